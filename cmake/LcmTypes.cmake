@@ -1,0 +1,30 @@
+# Finds LCM (Debian ships no CMake package, and its pkg-config file needs glib) and generates C++ types.
+find_path(LCM_INCLUDE_DIR lcm/lcm.h REQUIRED)
+find_library(LCM_LIBRARY lcm REQUIRED)
+find_program(LCM_GEN lcm-gen REQUIRED)
+
+add_library(lcm::lcm UNKNOWN IMPORTED)
+set_target_properties(lcm::lcm PROPERTIES
+  IMPORTED_LOCATION "${LCM_LIBRARY}"
+  INTERFACE_INCLUDE_DIRECTORIES "${LCM_INCLUDE_DIR}")
+
+# waymark_add_lcm_types(TARGET FILE...): an interface library with <package>/<type>.hpp for each file.
+function(waymark_add_lcm_types target)
+  set(generated_dir "${CMAKE_CURRENT_BINARY_DIR}/generated")
+  set(headers)
+  foreach(file IN LISTS ARGN)
+    get_filename_component(name "${file}" NAME_WE)
+    set(header "${generated_dir}/waymark/${name}.hpp")
+    add_custom_command(
+      OUTPUT "${header}"
+      COMMAND "${LCM_GEN}" --cpp --cpp-std c++11 --cpp-hpath "${generated_dir}" "${file}"
+      DEPENDS "${file}"
+      VERBATIM)
+    list(APPEND headers "${header}")
+  endforeach()
+  add_custom_target(${target}_generate DEPENDS ${headers})
+  add_library(${target} INTERFACE)
+  add_dependencies(${target} ${target}_generate)
+  target_include_directories(${target} SYSTEM INTERFACE "${generated_dir}")
+  target_link_libraries(${target} INTERFACE lcm::lcm)
+endfunction()

@@ -1,0 +1,29 @@
+# Short forms, so that every folder's CMakeLists.txt reads the same way.
+
+# waymark_library(NAME SOURCES ... LIBRARIES ...): a static library of ours; headers are included from procs/.
+function(waymark_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}/procs")
+  target_link_libraries(${name} PUBLIC ${ARG_LIBRARIES} PRIVATE waymark_warnings)
+endfunction()
+
+# waymark_program(NAME SOURCES ... LIBRARIES ...): an installed program, built into the top of the build folder.
+function(waymark_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} waymark_warnings)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}")
+  install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()
+
+# waymark_test(NAME LABEL unit|property|process|simulation SOURCES ... LIBRARIES ...): one GoogleTest program.
+function(waymark_test name)
+  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock_main waymark_warnings)
+  target_compile_definitions(${name} PRIVATE
+    WAYMARK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WAYMARK_BUILD_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+endfunction()

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reading configuration structs from TOML files and the command line, and writing them.
+#pragma once
+
+#include "common/config/fields.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// Everything that is wrong with a configuration; what() has one line `where: key: got X, expected
+/// Y` each.
+class ConfigError : public std::runtime_error {
+ public:
+  explicit ConfigError(const std::vector<std::string>& problems);
+};
+
+/// Where a configuration comes from; later sources win over earlier ones, and all over the
+/// defaults.
+struct ConfigSources {
+  std::vector<std::filesystem::path> files{};
+  std::vector<std::string> overrides{};  ///< "key.subkey=value", value as in TOML or a bare word
+};
+
+/// Problems that concern several fields at once, found by a struct's `check(Problems&)`.
+class Problems {
+ public:
+  void add(std::string key, std::string problem);
+
+  const std::vector<std::string>& lines() const { return lines_; }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+namespace config_detail {
+using Describe = std::function<void(Fields&)>;
+/// Reads all sources into the described struct; returns all problems.
+std::vector<std::string> read(const ConfigSources& sources, const Describe& describe);
+std::string dump(const Describe& describe);
+}  // namespace config_detail
+
+/// The struct's defaults, overlaid by the sources, checked.
+/// @throws ConfigError with all problems: unreadable files, syntax, unknown keys (with the nearest
+/// known one), types, ranges, and what the struct's own check() finds.
+template <class Config>
+Config load_config(const ConfigSources& sources) {
+  Config config{};
+  auto problems =
+      config_detail::read(sources, [&config](Fields& fields) { config.describe(fields); });
+  if (problems.empty()) {
+    if constexpr (requires(Problems & p) { config.check(p); }) {
+      Problems found;
+      config.check(found);
+      problems = found.lines();
+    }
+  }
+  if (!problems.empty()) throw ConfigError{problems};
+  return config;
+}
+
+/// The effective configuration as TOML, each key with its meaning as a comment. Reading it back
+/// gives the same struct.
+template <class Config>
+std::string dump_config(const Config& config) {
+  Config copy = config;
+  return config_detail::dump([&copy](Fields& fields) { copy.describe(fields); });
+}
+
+}  // namespace waymark

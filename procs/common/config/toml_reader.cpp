@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/config/toml_reader.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <sstream>
+
+namespace waymark::config_detail {
+namespace {
+
+/// Levenshtein distance, to find the key that was meant.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitution = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
+    }
+  }
+  return row.back();
+}
+
+std::string shown(const toml::node& node) {
+  std::ostringstream text;
+  if (node.is_table()) return "a table";
+  if (node.is_array()) return "an array";
+  node.visit([&text](const auto& n) {
+    if constexpr (toml::is_value<decltype(n)>) text << n;
+  });
+  return text.str();
+}
+
+/// Reads one table tree into a described struct.
+class Reader final : public Fields {
+ public:
+  Reader(const toml::table& root, std::string source, std::vector<std::string>& problems)
+      : source_{std::move(source)}, problems_{problems} {
+    levels_.push_back({&root, "", {}});
+  }
+
+  using Fields::field;
+
+  void field(std::string_view key, bool& value, std::string_view) override {
+    if (const toml::node* node = find(key)) read_as(key, *node, value, "true or false");
+  }
+
+  void field(std::string_view key, std::string& value, std::string_view) override {
+    if (const toml::node* node = find(key)) read_as(key, *node, value, "a string");
+  }
+
+  void field(std::string_view key, int& value, Range range, std::string_view) override {
+    std::int64_t wide = value;
+    range.low = std::max(range.low, double{std::numeric_limits<int>::min()});
+    range.high = std::min(range.high, double{std::numeric_limits<int>::max()});
+    if (const toml::node* node = find(key)) read_integer(key, *node, wide, range);
+    value = static_cast<int>(wide);
+  }
+
+  void field(std::string_view key, std::int64_t& value, Range range, std::string_view) override {
+    if (const toml::node* node = find(key)) read_integer(key, *node, value, range);
+  }
+
+  void field(std::string_view key, double& value, Range range, std::string_view) override {
+    if (const toml::node* node = find(key)) read_float(key, *node, value, range);
+  }
+
+  void field(std::string_view key, std::vector<int>& value, Range range,
+             std::string_view) override {
+    read_array(key, value, [&](const toml::node& node, int& element) {
+      std::int64_t wide = 0;
+      const bool good = read_integer(key, node, wide, range);
+      element = static_cast<int>(wide);
+      return good;
+    });
+  }
+
+  void field(std::string_view key, std::vector<double>& value, Range range,
+             std::string_view) override {
+    read_array(key, value, [&](const toml::node& node, double& element) {
+      return read_float(key, node, element, range);
+    });
+  }
+
+  void field(std::string_view key, std::vector<std::string>& value, std::string_view) override {
+    read_array(key, value, [&](const toml::node& node, std::string& element) {
+      return read_as(key, node, element, "a string");
+    });
+  }
+
+  /// Reports the keys of the outermost table that nobody asked for.
+  void finish() { report_unknown_keys(); }
+
+ protected:
+  void word(std::string_view key, std::span<const std::string_view> words, std::size_t& index,
+            std::string_view) override {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const auto text = node->value<std::string>();
+    const auto found = text ? std::find(words.begin(), words.end(), *text) : words.end();
+    if (node->is_string() && found != words.end()) {
+      index = static_cast<std::size_t>(found - words.begin());
+    } else {
+      problem(key, *node, fmt::format("one of {}", fmt::join(words, ", ")));
+    }
+  }
+
+  bool enter(std::string_view key) override {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const toml::table* table = node->as_table();
+    if (table == nullptr) {
+      problem(key, *node, "a table");
+      return false;
+    }
+    levels_.push_back({table, path_of(key) + ".", {}});
+    return true;
+  }
+
+  bool enter_element(std::string_view key, std::size_t index) override {
+    const toml::array* array = find(key) != nullptr ? find(key)->as_array() : nullptr;
+    if (array == nullptr || index >= array->size()) return false;
+    const toml::table* table = array->get(index)->as_table();
+    if (table == nullptr) {
+      problem(key, *array->get(index), "a table");
+      return false;
+    }
+    levels_.push_back({table, fmt::format("{}[{}].", path_of(key), index), {}});
+    return true;
+  }
+
+  void leave() override {
+    report_unknown_keys();
+    levels_.pop_back();
+  }
+
+  std::size_t list_size(std::string_view key, std::size_t current_size, std::string_view) override {
+    const toml::node* node = find(key);
+    if (node == nullptr) return current_size;
+    if (const toml::array* array = node->as_array()) return array->size();
+    problem(key, *node, "an array of tables");
+    return current_size;
+  }
+
+ private:
+  struct Level {
+    const toml::table* table;
+    std::string prefix;
+    std::set<std::string, std::less<>> known_keys;
+  };
+
+  const toml::node* find(std::string_view key) {
+    levels_.back().known_keys.emplace(key);
+    return levels_.back().table->get(key);
+  }
+
+  std::string path_of(std::string_view key) const {
+    return levels_.back().prefix + std::string{key};
+  }
+
+  std::string where(const toml::node& node) const {
+    const auto line = node.source().begin.line;
+    return source_.starts_with("--set") || line == 0 ? source_
+                                                     : fmt::format("{}:{}", source_, line);
+  }
+
+  void problem(std::string_view key, const toml::node& node, std::string_view expected) {
+    problems_.push_back(fmt::format("{}: {}: got {}, expected {}", where(node), path_of(key),
+                                    shown(node), expected));
+  }
+
+  template <class T>
+  bool read_as(std::string_view key, const toml::node& node, T& value, std::string_view expected) {
+    if (const auto* typed = node.as<T>()) {
+      value = typed->get();
+      return true;
+    }
+    problem(key, node, expected);
+    return false;
+  }
+
+  bool read_integer(std::string_view key, const toml::node& node, std::int64_t& value,
+                    Range range) {
+    const auto* typed = node.as_integer();
+    if (typed == nullptr) {
+      problem(key, node, "an integer");
+      return false;
+    }
+    if (!inside(static_cast<double>(typed->get()), range)) {
+      problem(key, node, range_text(range));
+      return false;
+    }
+    value = typed->get();
+    return true;
+  }
+
+  bool read_float(std::string_view key, const toml::node& node, double& value, Range range) {
+    if (!node.is_number()) {
+      problem(key, node, "a number");
+      return false;
+    }
+    const double number = *node.value<double>();
+    if (!std::isfinite(number) || !inside(number, range)) {
+      problem(key, node, range_text(range));
+      return false;
+    }
+    value = number;
+    return true;
+  }
+
+  template <class T, class ReadElement>
+  void read_array(std::string_view key, std::vector<T>& value, ReadElement read_element) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const toml::array* array = node->as_array();
+    if (array == nullptr) {
+      problem(key, *node, "an array");
+      return;
+    }
+    std::vector<T> read;
+    for (const toml::node& element_node : *array) {
+      T element{};
+      if (!read_element(element_node, element)) return;
+      read.push_back(element);
+    }
+    value = std::move(read);
+  }
+
+  static bool inside(double value, Range range) {
+    return value >= range.low && value <= range.high;
+  }
+
+  static std::string range_text(Range range) {
+    const bool has_low = std::isfinite(range.low);
+    const bool has_high = std::isfinite(range.high);
+    if (has_low && has_high) return fmt::format("a number from {} to {}", range.low, range.high);
+    if (has_low && range.low > 0.0 && range.low < 1e-300) return "a number above 0";
+    if (has_low) return fmt::format("a number of at least {}", range.low);
+    if (has_high) return fmt::format("a number of at most {}", range.high);
+    return "a finite number";
+  }
+
+  void report_unknown_keys() {
+    const Level& level = levels_.back();
+    for (const auto& [key, node] : *level.table) {
+      if (level.known_keys.contains(key.str())) continue;
+      std::string hint;
+      std::size_t best = key.str().size() / 2 + 2;
+      for (const std::string& known : level.known_keys) {
+        const std::size_t distance = edit_distance(key.str(), known);
+        if (distance < best) {
+          best = distance;
+          hint = fmt::format("; did you mean {}{}?", level.prefix, known);
+        }
+      }
+      problems_.push_back(
+          fmt::format("{}: {}: unknown key{}", where(node), path_of(key.str()), hint));
+    }
+  }
+
+  std::string source_;
+  std::vector<std::string>& problems_;
+  std::vector<Level> levels_;
+};
+
+void read_table(const toml::table& table, const std::string& source,
+                const std::function<void(Fields&)>& describe, std::vector<std::string>& problems) {
+  Reader reader{table, source, problems};
+  describe(reader);
+  reader.finish();
+}
+
+std::string described(const toml::parse_error& error) {
+  return std::string{error.description()};
+}
+
+}  // namespace
+
+void read_toml_file(const std::filesystem::path& file, const std::function<void(Fields&)>& describe,
+                    std::vector<std::string>& problems) {
+  std::ifstream stream{file};
+  std::stringstream text;
+  if (std::filesystem::is_directory(file) || !stream || !(text << stream.rdbuf())) {
+    if (!std::filesystem::is_regular_file(file) || std::filesystem::file_size(file) > 0) {
+      problems.push_back(fmt::format("{}: cannot be read as a configuration file", file.string()));
+    }
+    return;
+  }
+  try {
+    read_table(toml::parse(text.str(), file.string()), file.string(), describe, problems);
+  } catch (const toml::parse_error& error) {
+    problems.push_back(fmt::format("{}:{}: not TOML: {}", file.string(), error.source().begin.line,
+                                   described(error)));
+  }
+}
+
+void read_toml_override(const std::string& text, const std::function<void(Fields&)>& describe,
+                        std::vector<std::string>& problems) {
+  const std::string source = fmt::format("--set {}", text);
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    problems.push_back(source + ": expected key=value");
+    return;
+  }
+  try {
+    read_table(toml::parse(text), source, describe, problems);
+    return;
+  } catch (const toml::parse_error&) {
+    // Not a TOML value: a bare word is taken as a string, so that shells need no nested quotes.
+  }
+  try {
+    const std::string quoted = text.substr(0, equals + 1) + "'''" + text.substr(equals + 1) + "'''";
+    read_table(toml::parse(quoted), source, describe, problems);
+  } catch (const toml::parse_error& error) {
+    problems.push_back(fmt::format("{}: {}", source, described(error)));
+  }
+}
+
+}  // namespace waymark::config_detail

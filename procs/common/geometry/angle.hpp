@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Angles in radians.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+namespace waymark {
+
+constexpr double radians(double degrees) {
+  return degrees * std::numbers::pi / 180.0;
+}
+
+constexpr double degrees(double radians) {
+  return radians * 180.0 / std::numbers::pi;
+}
+
+/// The same direction in (-pi, pi].
+inline double wrap_angle(double angle_rad) {
+  const double wrapped = std::remainder(angle_rad, 2.0 * std::numbers::pi);
+  return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
+}
+
+/// Smallest signed turn that leads from one direction to the other, in (-pi, pi].
+inline double angle_difference(double to_rad, double from_rad) {
+  return wrap_angle(to_rad - from_rad);
+}
+
+}  // namespace waymark

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All channels, each with its type: the only list. lcmtypes/README.md is the same table for people.
+#pragma once
+
+#include <waymark/ack_t.hpp>
+#include <waymark/annotated_scan_t.hpp>
+#include <waymark/image_t.hpp>
+#include <waymark/lidar_t.hpp>
+#include <waymark/map_tiles_t.hpp>
+#include <waymark/marker_detections_t.hpp>
+#include <waymark/marker_map_t.hpp>
+#include <waymark/occupancy_grid_t.hpp>
+#include <waymark/particles_t.hpp>
+#include <waymark/planar_lidar_t.hpp>
+#include <waymark/pose2D_t.hpp>
+#include <waymark/process_status_t.hpp>
+#include <waymark/slam_estimate_t.hpp>
+#include <waymark/tick_t.hpp>
+#include <waymark/twist2D_t.hpp>
+
+#include <string_view>
+
+namespace waymark {
+
+/// A channel name bound to the type that travels on it.
+template <class Type>
+struct Channel {
+  std::string_view name;
+};
+
+namespace channels {
+
+inline constexpr Channel<image_t> kCamera{"CAMERA"};
+inline constexpr Channel<planar_lidar_t> kLidar{"LIDAR"};
+inline constexpr Channel<lidar_t> kMbotLidar{"LIDAR"};  // the other type that LIDAR may carry
+inline constexpr Channel<pose2D_t> kOdometry{"ODOMETRY"};
+inline constexpr Channel<twist2D_t> kDriveCommand{"DRIVE_COMMAND"};
+inline constexpr Channel<pose2D_t> kTruePose{"TRUE_POSE"};
+
+inline constexpr Channel<marker_detections_t> kMarkers{"MARKERS"};
+
+inline constexpr Channel<pose2D_t> kSlamPose{"SLAM_POSE"};
+inline constexpr Channel<slam_estimate_t> kSlamEstimate{"SLAM_ESTIMATE"};
+inline constexpr Channel<map_tiles_t> kSlamMap{"SLAM_MAP"};
+inline constexpr Channel<occupancy_grid_t> kSlamGrid{"SLAM_GRID"};
+inline constexpr Channel<marker_map_t> kSlamMarkers{"SLAM_MARKERS"};
+inline constexpr Channel<particles_t> kSlamParticles{"SLAM_PARTICLES"};
+inline constexpr Channel<annotated_scan_t> kSlamScan{"SLAM_SCAN"};
+
+inline constexpr Channel<process_status_t> kSimStatus{"SIM_STATUS"};
+inline constexpr Channel<process_status_t> kDetectorStatus{"DETECTOR_STATUS"};
+inline constexpr Channel<process_status_t> kSlamStatus{"SLAM_STATUS"};
+inline constexpr Channel<process_status_t> kViewerStatus{"VIEWER_STATUS"};
+inline constexpr Channel<process_status_t> kRecorderStatus{"RECORDER_STATUS"};
+
+inline constexpr Channel<tick_t> kTick{"TICK"};
+inline constexpr Channel<ack_t> kAck{"ACK"};
+
+}  // namespace channels
+}  // namespace waymark

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a process is, apart from where its messages come from: a node takes messages in order from
+// an Inbox and puts messages into an Outbox. The same node runs live in lockstep, in real time, and
+// on a log.
+#pragma once
+
+#include "common/messages/codec.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace waymark {
+
+/// Named counts, in a fixed order.
+class Counters {
+ public:
+  void add(std::string_view name, std::int64_t count = 1);
+  std::int64_t get(std::string_view name) const;
+
+  const std::map<std::string, std::int64_t, std::less<>>& all() const { return counts_; }
+
+ private:
+  std::map<std::string, std::int64_t, std::less<>> counts_;
+};
+
+/// What to do in real time when messages come faster than they are processed.
+enum class Backlog { kKeepAll, kNewestOnly };
+
+/// Decodes messages and hands them to the node's typed handlers. Several types may share a channel
+/// name; the fingerprint tells them apart. What cannot be decoded is counted as "CHANNEL rejected:
+/// reason".
+class Inbox {
+ public:
+  struct Subscription {
+    std::string channel{};
+    Backlog backlog{Backlog::kKeepAll};
+  };
+
+  template <class Type>
+  void on(Channel<Type> channel, std::function<void(const Type&)> handler,
+          Backlog backlog = Backlog::kKeepAll) {
+    add_handler(channel.name, Type::getHash(), backlog,
+                [handler = std::move(handler)](const Message& message) {
+                  const Decoded<Type> decoded = decode<Type>(message.payload);
+                  if (decoded.message) handler(*decoded.message);
+                  return decoded.reason;
+                });
+  }
+
+  /// Any message on a channel, undecoded (recorder).
+  void on_raw(std::string_view channel, std::function<void(const Message&)> handler);
+
+  void deliver(const Message& message);
+  std::vector<Subscription> subscriptions() const;
+
+  Counters& counters() { return counters_; }
+
+ private:
+  using Handler = std::function<RejectReason(const Message&)>;
+
+  struct ChannelHandlers {
+    Backlog backlog{Backlog::kKeepAll};
+    std::map<std::int64_t, Handler> by_fingerprint{};
+    std::function<void(const Message&)> raw{};
+  };
+
+  void add_handler(std::string_view channel, std::int64_t fingerprint, Backlog backlog,
+                   Handler handler);
+
+  std::map<std::string, ChannelHandlers, std::less<>> channels_;
+  Counters counters_;
+};
+
+/// Collects what a node publishes; whoever runs the node takes it away and sends or writes it.
+class Outbox {
+ public:
+  template <class Type>
+  void publish(Channel<Type> channel, const Type& message) {
+    add(encode(channel, message));
+  }
+
+  std::vector<Message> take();
+
+ private:
+  void add(Message message);
+
+  std::vector<Message> messages_;
+};
+
+/// Base of DetectorNode, SlamNode, ViewerNode, RecorderNode. A node type also has
+///   using Config = ...;                               a described configuration struct
+///   static constexpr ProcessTraits kTraits{...};
+///   Node(const Config&, Inbox&, Outbox&);             registers its handlers; throws SetupError
+class Node {
+ public:
+  virtual ~Node() = default;
+  /// The input has ended: publish or write what is left.
+  virtual void finish() = 0;
+};
+
+struct ProcessTraits {
+  std::string_view name;     ///< "slam": name in ACKs, statuses and logs
+  std::string_view purpose;  ///< one sentence for --help
+  bool joins_midway;         ///< can be restarted during a lockstep run
+};
+
+/// A usage or set-up problem (exit code 2): what, where, what to do.
+class SetupError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace waymark

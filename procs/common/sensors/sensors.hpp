@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the robot measures, as plain values: the cores' inputs. Frames: REP-103, base = between the
+// wheels on the floor, x forward, y left, z up.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "common/time/time.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <vector>
+
+namespace waymark {
+
+/// Id of "no marker". Every id >= 0 is a marker; 0 is one, too.
+constexpr int kNoMarker = -1;
+
+/// Pose of the base by wheel odometry, in the frame where odometry started.
+struct OdometrySample {
+  Timestamp time{};
+  Se2 odom_from_base{};
+};
+
+/// One sweep of a planar LiDAR. All arrays have one entry per beam; beam_time_offsets is empty when
+/// the sweep counts as taken at one instant.
+struct LidarScan {
+  Timestamp time{};
+  std::vector<double> ranges_m{};    ///< +inf = no return within range, NaN = invalid (REP-117)
+  std::vector<double> angles_rad{};  ///< counter-clockwise from x, LiDAR frame
+  std::vector<Duration> beam_time_offsets{};  ///< measured at time + offset
+};
+
+/// One square marker in one camera frame; see lcmtypes/marker_detection_t.lcm for the marker frame.
+struct MarkerDetection {
+  int id{kNoMarker};
+  std::array<Eigen::Vector2d, 4> corners_px{};  ///< clockwise from the marker's top left
+  Eigen::Isometry3d base_from_marker{Eigen::Isometry3d::Identity()};
+  /// Order x y z rx ry rz [m^2, rad^2]; errors added in the base frame, rotations about its axes.
+  Eigen::Matrix<double, 6, 6> covariance_in_base{Eigen::Matrix<double, 6, 6>::Zero()};
+  double reprojection_error_px{0.0};
+  Eigen::Isometry3d other_base_from_marker{
+      Eigen::Isometry3d::Identity()};  ///< the flipped solution
+  double other_reprojection_error_px{0.0};
+  double width_px{0.0};
+};
+
+/// All known markers of one frame; the list may be empty.
+struct MarkerDetections {
+  Timestamp time{};
+  int image_width_px{0};
+  int image_height_px{0};
+  std::vector<MarkerDetection> detections{};
+};
+
+}  // namespace waymark

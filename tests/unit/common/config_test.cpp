@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/config/config.hpp"
+
+#include "common/robot/robot_config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace waymark {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Wrapped {
+  RobotConfig robot{};
+
+  void describe(Fields& fields) { fields.section("robot", robot); }
+
+  void check(Problems& problems) const { robot.check(problems); }
+};
+
+std::string error_of(const ConfigSources& sources) {
+  try {
+    load_config<Wrapped>(sources);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::filesystem::path file_with(const std::string& text) {
+  const auto path = std::filesystem::path{::testing::TempDir()} / "config_test.toml";
+  std::ofstream{path} << text;
+  return path;
+}
+
+TEST(Config, DefaultsStandWhenThereIsNoSource) {
+  EXPECT_EQ(load_config<Wrapped>({}).robot.lidar.num_beams, 360);
+}
+
+TEST(Config, LaterSourcesWin) {
+  const auto file = file_with("[robot.lidar]\nnum_beams = 90\nrate_hz = 7\n");
+
+  const auto config = load_config<Wrapped>({{file}, {"robot.lidar.num_beams=12"}});
+
+  EXPECT_EQ(config.robot.lidar.num_beams, 12);
+  EXPECT_EQ(config.robot.lidar.rate_hz, 7.0);
+}
+
+TEST(Config, AllProblemsAreReportedWithTheirLines) {
+  const auto file =
+      file_with("[robot.lidar]\nnum_beam = 90\nrate_hz = \"fast\"\nrange_max_m = -1\n");
+
+  const std::string error = error_of({{file}, {}});
+
+  EXPECT_THAT(error,
+              HasSubstr("config_test.toml:2: robot.lidar.num_beam: unknown key; did you mean "
+                        "robot.lidar.num_beams?"));
+  EXPECT_THAT(error,
+              HasSubstr("config_test.toml:3: robot.lidar.rate_hz: got 'fast', expected a number"));
+  EXPECT_THAT(
+      error,
+      HasSubstr("config_test.toml:4: robot.lidar.range_max_m: got -1, expected a number above 0"));
+}
+
+TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
+  EXPECT_THAT(error_of({{file_with("[robot\n")}, {}}), HasSubstr("config_test.toml:1: not TOML"));
+  EXPECT_THAT(error_of({{"/no/such.toml"}, {}}), HasSubstr("/no/such.toml: cannot be read"));
+}
+
+TEST(Config, BareWordsOnTheCommandLineAreStrings) {
+  const auto config = load_config<Wrapped>({{}, {"robot.markers.dictionary=DICT_4X4_50"}});
+  EXPECT_EQ(config.robot.markers.dictionary, "DICT_4X4_50");
+}
+
+TEST(Config, OverridesWithoutValueAreRefused) {
+  EXPECT_THAT(error_of({{}, {"robot.lidar.num_beams"}}), HasSubstr("expected key=value"));
+}
+
+TEST(Config, ChecksAcrossFieldsRunOnTheResult) {
+  EXPECT_THAT(error_of({{}, {"robot.lidar.range_min_m=4"}}),
+              HasSubstr("must be below range_max_m"));
+}
+
+TEST(Config, ADumpReadsBackAsTheSame) {
+  Wrapped config{};
+  config.robot.lidar.num_beams = 17;
+  config.robot.camera.fx_px = 0.1 + 530.2;
+  config.robot.markers.dictionary = "a \"quoted\" \\ name";
+  config.robot.markers.ids = {0, 3};
+
+  const auto again = load_config<Wrapped>({{file_with(dump_config(config))}, {}});
+
+  EXPECT_EQ(dump_config(again), dump_config(config));
+  EXPECT_EQ(again.robot.camera.fx_px, config.robot.camera.fx_px);
+}
+
+}  // namespace
+}  // namespace waymark
