@@ -5,8 +5,14 @@
 #include "common/messages/convert.hpp"
 #include "common/random/random.hpp"
 
+#include <bot_core/image_t.hpp>
+#include <bot_core/planar_lidar_t.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <mbot_lcm_msgs/occupancy_grid_t.hpp>
+#include <mbot_lcm_msgs/particles_t.hpp>
+#include <mbot_lcm_msgs/pose2D_t.hpp>
+#include <mbot_lcm_msgs/twist2D_t.hpp>
 
 #include <cmath>
 #include <limits>
@@ -83,9 +89,16 @@ void expect_round_trip(Channel<Type> channel, const Type& message) {
   EXPECT_EQ(payload_of(channel, *decoded.message), payload) << channel.name;
 }
 
-// Fingerprints as lcm-gen makes them for bot_core and mbot_lcm_msgs (names of packages and structs
-// do not enter): our drivers, viewers and logs are theirs.
+// LCM's fingerprint is made of field names and types only, so a type with the fields of another is
+// that type on the wire: drivers, viewers and logs of bot_core and MBot are ours.
 TEST(Fingerprint, IsThatOfTheTypesOfOthers) {
+  EXPECT_EQ(planar_lidar_t::getHash(), bot_core::planar_lidar_t::getHash());
+  EXPECT_EQ(image_t::getHash(), bot_core::image_t::getHash());
+  EXPECT_EQ(pose2D_t::getHash(), mbot_lcm_msgs::pose2D_t::getHash());
+  EXPECT_EQ(twist2D_t::getHash(), mbot_lcm_msgs::twist2D_t::getHash());
+  EXPECT_EQ(occupancy_grid_t::getHash(), mbot_lcm_msgs::occupancy_grid_t::getHash());
+  EXPECT_EQ(particles_t::getHash(), mbot_lcm_msgs::particles_t::getHash());
+  // As found in logs of real MBots.
   EXPECT_EQ(static_cast<std::uint64_t>(lidar_t::getHash()), 0x89dc5b879a5056cfULL);
   EXPECT_EQ(static_cast<std::uint64_t>(pose2D_t::getHash()), 0x1f317af1246276acULL);
 }
