@@ -101,6 +101,10 @@ class Node {
   virtual ~Node() = default;
   /// The input has ended: publish or write what is left.
   virtual void finish() = 0;
+
+  /// Something that was asked for could not be done (say, a file not written); the process goes on,
+  /// and its exit code tells. The node has logged what it was.
+  virtual bool failed() const { return false; }
 };
 
 struct ProcessTraits {

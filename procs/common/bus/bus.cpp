@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/bus/bus.hpp"
+
+#include <lcm/lcm.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+namespace waymark {
+namespace {
+
+constexpr std::string_view kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
+constexpr std::size_t kMaxQueuedBytesPerChannel = std::size_t{16} << 20;
+// Small messages cost more than their payload; 10000 of them are minutes of any of our channels.
+constexpr std::size_t kMaxQueuedMessagesPerChannel = 10000;
+constexpr int kHandleTimeout_ms = 50;
+// LCM's own queue only bridges the moments in which our thread is not scheduled.
+constexpr int kLcmQueueCapacity = 200;
+
+SetupError no_network(const std::string& url) {
+  return SetupError{"cannot join the LCM network " + url +
+                    "\n  without a network, give multicast a route over loopback:"
+                    "\n    ip link set lo up"
+                    "\n    ip route add 224.0.0.0/4 dev lo"
+                    "\n  or set another --lcm-url (see README, \"No multicast route\")"};
+}
+
+}  // namespace
+
+std::string lcm_url_or_default(const std::string& given_url) {
+  if (!given_url.empty()) return given_url;
+  const char* from_environment = std::getenv("LCM_DEFAULT_URL");
+  if (from_environment != nullptr && *from_environment != '\0') return from_environment;
+  return std::string{kDefaultUrl};
+}
+
+class Bus::Implementation {
+ public:
+  Implementation(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions)
+      : lcm_{lcm_create(url.c_str()), &lcm_destroy} {
+    if (lcm_ == nullptr) throw no_network(url);
+    for (const Inbox::Subscription& subscription : subscriptions) {
+      Queue& queue = queues_[subscription.channel];
+      queue.backlog = subscription.backlog;
+      lcm_subscription_t* handle =
+          lcm_subscribe(lcm_.get(), subscription.channel.c_str(), &on_receive, this);
+      if (handle == nullptr) throw no_network(url);
+      lcm_subscription_set_queue_capacity(handle, kLcmQueueCapacity);
+    }
+    if (!subscriptions.empty())
+      receiver_ = std::thread{[this] {
+        receive_until_stopped();
+      }};
+  }
+
+  ~Implementation() {
+    stop_ = true;
+    if (receiver_.joinable()) receiver_.join();
+  }
+
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  std::optional<Message> receive(std::chrono::milliseconds timeout) {
+    std::unique_lock lock{mutex_};
+    arrived_.wait_for(lock, timeout, [this] { return !order_.empty(); });
+    if (order_.empty()) return std::nullopt;
+    Queue& queue = *order_.front();
+    order_.pop_front();
+    Message message = std::move(queue.messages.front());
+    queue.messages.pop_front();
+    queue.bytes -= message.payload.size();
+    return message;
+  }
+
+  void publish(const Message& message) {
+    if (message.payload.size() > kMaxPayloadBytes) {
+      throw std::logic_error{message.channel + ": a message of " +
+                             std::to_string(message.payload.size()) +
+                             " bytes does not fit one datagram"};
+    }
+    // The sender never learns of loss: lockstep and counters find it.
+    lcm_publish(lcm_.get(), message.channel.c_str(), message.payload.data(),
+                static_cast<unsigned>(message.payload.size()));
+  }
+
+  void collect_counts(Counters& counters) {
+    const std::lock_guard lock{mutex_};
+    for (const auto& [name, count] : counts_.all())
+      counters.add(name, count);
+    counts_ = {};
+  }
+
+ private:
+  struct Queue {
+    Backlog backlog{Backlog::kKeepAll};
+    std::deque<Message> messages{};
+    std::size_t bytes{0};
+  };
+
+  static void on_receive(const lcm_recv_buf_t* buffer, const char* channel, void* self) {
+    // Nothing may be thrown through C.
+    try {
+      static_cast<Implementation*>(self)->enqueue(buffer, channel);
+    } catch (...) {
+    }
+  }
+
+  void enqueue(const lcm_recv_buf_t* buffer, const char* channel) {
+    const std::lock_guard lock{mutex_};
+    const auto found = queues_.find(std::string_view{channel});
+    if (found == queues_.end()) return;  // a channel name without end, from a broken datagram
+    // liblcm 1.3.1 reports size -1 for a datagram without a channel end.
+    if (buffer->data == nullptr || buffer->data_size > kMaxPayloadBytes) {
+      counts_.add(found->first + " rejected: too large");
+      return;
+    }
+    const std::span bytes{static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
+    const auto time = time_of(bytes);
+    if (!time) {
+      counts_.add(found->first + " rejected: bad time");
+      return;
+    }
+    push(found->first, found->second, {found->first, *time, {bytes.begin(), bytes.end()}});
+  }
+
+  void push(const std::string& channel, Queue& queue, Message message) {
+    if (queue.backlog == Backlog::kNewestOnly && !queue.messages.empty()) {
+      counts_.add(channel + " skipped: newer one came",
+                  static_cast<std::int64_t>(queue.messages.size()));
+      std::erase(order_, &queue);
+      queue.messages.clear();
+      queue.bytes = 0;
+    }
+    if (queue.bytes + message.payload.size() > kMaxQueuedBytesPerChannel ||
+        queue.messages.size() >= kMaxQueuedMessagesPerChannel) {
+      counts_.add(channel + " dropped: queue full");
+      return;
+    }
+    queue.bytes += message.payload.size();
+    queue.messages.push_back(std::move(message));
+    order_.push_back(&queue);
+    arrived_.notify_one();
+  }
+
+  void receive_until_stopped() {
+    while (!stop_)
+      lcm_handle_timeout(lcm_.get(), kHandleTimeout_ms);
+  }
+
+  std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::map<std::string, Queue, std::less<>> queues_;
+  std::deque<Queue*> order_;  ///< queue of each waiting message, by arrival
+  Counters counts_;
+  std::atomic<bool> stop_{false};
+  std::thread receiver_;
+};
+
+Bus::Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions)
+    : implementation_{std::make_unique<Implementation>(url, subscriptions)} {}
+
+Bus::~Bus() = default;
+
+std::optional<Message> Bus::receive(std::chrono::milliseconds timeout) {
+  return implementation_->receive(timeout);
+}
+
+void Bus::publish(const Message& message) {
+  implementation_->publish(message);
+}
+
+void Bus::collect_counts(Counters& counters) {
+  implementation_->collect_counts(counters);
+}
+
+}  // namespace waymark

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The network: the only code that includes LCM.
+#pragma once
+
+#include "common/messages/message.hpp"
+#include "common/process/node.hpp"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// `--lcm-url`, else $LCM_DEFAULT_URL, else the loopback default.
+std::string lcm_url_or_default(const std::string& given_url);
+
+/// Messages in and out over one LCM instance.
+///
+/// A thread of its own takes everything from LCM at once (LCM's queues drop the newest message when
+/// full), refuses what cannot be a message (size, time), and keeps a bounded queue per channel.
+/// Nothing is decoded here, and nothing is thrown through LCM's C frames.
+class Bus {
+ public:
+  /// @throws SetupError when there is no multicast route or the URL is not one, with the cure.
+  Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions);
+  ~Bus();
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  /// Oldest queued message, waiting for one up to `timeout`.
+  std::optional<Message> receive(std::chrono::milliseconds timeout);
+
+  /// @throws std::logic_error when the payload does not fit one datagram.
+  void publish(const Message& message);
+
+  /// Adds what was refused or dropped since the last call to the counters.
+  void collect_counts(Counters& counters);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The simulator's side of the lockstep: sends ticks, a small window of them in flight, and sees to
+// it that every participant acknowledges every tick.
+#pragma once
+
+#include "common/lockstep/contents.hpp"
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// Pure: messages in, messages to publish out; the caller owns network and clock.
+class LockstepMaster {
+ public:
+  LockstepMaster(std::int64_t run_id, std::vector<std::string> participants, int window_ticks);
+
+  /// "Is everybody there?", to be repeated until all_ready().
+  Message probe() const;
+
+  bool all_ready() const { return ready_.size() == participants_.size(); }
+
+  std::vector<std::string> not_ready() const;
+
+  /// May another tick be sent?
+  bool has_room() const { return std::ssize(open_ticks_) < window_ticks_; }
+
+  bool all_acknowledged() const { return open_ticks_.empty(); }
+
+  /// Opens a tick. @return its messages and the TICK behind them.
+  std::vector<Message> open_tick(Timestamp end, std::vector<Message> messages, bool is_last);
+  /// @return true when the message is an acknowledgement that was still missing.
+  bool take(const Message& message);
+  /// All open ticks again.
+  std::vector<Message> resend() const;
+  /// Who has not acknowledged the oldest open tick.
+  std::vector<std::string> silent() const;
+  std::int64_t oldest_open_tick() const;
+  /// "The run is over", after the last acknowledgement.
+  Message closing() const;
+
+  /// Hash of everything that each participant has sent.
+  const std::map<std::string, std::int64_t>& state_hashes() const { return state_hashes_; }
+
+ private:
+  struct OpenTick {
+    std::int64_t tick{0};
+    std::vector<Message> messages{};  ///< the last one is the TICK
+    std::set<std::string> missing{};
+  };
+
+  Message special_tick(std::int64_t tick) const;
+
+  std::int64_t run_id_;
+  std::vector<std::string> participants_;
+  int window_ticks_;
+  std::int64_t next_tick_{0};
+  Timestamp last_end_{};
+  std::set<std::string> ready_;
+  std::deque<OpenTick> open_ticks_;
+  std::map<std::string, std::int64_t> state_hashes_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A process's side of the lockstep: collects a tick's messages, has them processed in order,
+// acknowledges.
+#pragma once
+
+#include "common/lockstep/contents.hpp"
+#include "common/process/node.hpp"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// Pure: messages in, messages to publish out; no network, no clock.
+///
+/// A tick is processed when everything that TICK names on the wanted channels has come, and
+/// everything that the participants before this one in the list named in their ACKs. Ticks are
+/// processed in order. A tick that comes again is answered from a cache, so every loss is mended by
+/// the simulator's re-sending.
+class LockstepParticipant {
+ public:
+  /// Processes the messages of one tick, in order, and returns what it publishes for it.
+  using Process = std::function<std::vector<Message>(const std::vector<Message>&, bool is_last)>;
+
+  LockstepParticipant(std::string name, std::vector<std::string> wanted_channels, bool joins_midway,
+                      Process process);
+
+  /// @return what to publish now.
+  /// @throws std::runtime_error when the run is under way and this process cannot join it.
+  std::vector<Message> take(Message message);
+
+  bool has_seen_tick() const { return run_id_.has_value(); }
+
+  /// The last tick has been acknowledged; stay a while for re-sent ticks.
+  bool finished() const { return finished_; }
+
+  /// The simulator has everybody's last acknowledgement.
+  bool closed() const { return closed_; }
+
+  Counters& counters() { return counters_; }
+
+ private:
+  struct OpenTick {
+    std::optional<tick_t> tick{};
+    std::map<std::string, ack_t> acks{};
+  };
+
+  std::vector<Message> take_tick(const tick_t& tick);
+  void take_ack(const ack_t& ack);
+  bool is_of_this_run(std::int64_t run_id);
+  void start_at(const tick_t& tick);
+  std::vector<Message> advance();
+  /// Hashes of the wanted messages of the tick; nullopt while an acknowledgement is missing.
+  std::optional<std::vector<std::int64_t>> needed_messages(const OpenTick& open) const;
+  std::vector<Message> answer(const tick_t& tick, std::vector<Message> published);
+  Message acknowledgement(const tick_t& tick, const std::vector<Message>& published) const;
+
+  std::string name_;
+  std::vector<std::string> wanted_channels_;
+  bool joins_midway_;
+  Process process_;
+
+  std::optional<std::int64_t> run_id_;
+  std::optional<std::int64_t> next_tick_;
+  bool finished_{false};
+  bool closed_{false};
+  MessagePool pool_;
+  std::map<std::int64_t, OpenTick> open_ticks_;
+  std::map<std::int64_t, std::vector<Message>> answers_;  ///< of the newest ticks, to be sent again
+  std::int64_t state_hash_{0};
+  Counters counters_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/log/log_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <set>
+#include <stdexcept>
+
+namespace waymark {
+namespace {
+
+constexpr std::uint32_t kSyncWord = 0xEDA1DA01U;
+constexpr std::int64_t kHeaderBytes = 28;
+constexpr std::int64_t kMaxChannelBytes = 999;                  // as liblcm
+constexpr std::int64_t kMaxDataBytes = std::int64_t{64} << 20;  // raw images of other robots fit
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+
+template <class Unsigned>
+Unsigned read_big_endian(const char* bytes) {
+  Unsigned value = 0;
+  for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
+    value = static_cast<Unsigned>((value << 8) | static_cast<std::uint8_t>(bytes[i]));
+  }
+  return value;
+}
+
+template <class Unsigned>
+void append_big_endian(std::string& bytes, Unsigned value) {
+  for (int shift = 8 * (static_cast<int>(sizeof(Unsigned)) - 1); shift >= 0; shift -= 8) {
+    bytes += static_cast<char>(value >> shift);
+  }
+}
+
+}  // namespace
+
+struct LogReader::Header {
+  std::int64_t time_us;
+  std::int64_t channel_bytes;
+  std::int64_t data_bytes;
+};
+
+LogReader::LogReader(const std::filesystem::path& path)
+    : path_{path}, file_{path, std::ios::binary} {
+  if (!std::filesystem::is_regular_file(path) || !file_) {
+    throw std::runtime_error{path.string() + ": cannot be read as an LCM log"};
+  }
+  size_bytes_ = static_cast<std::int64_t>(std::filesystem::file_size(path));
+}
+
+std::optional<Message> LogReader::next() {
+  return next([](std::string_view) { return true; });
+}
+
+std::optional<Message> LogReader::next(const std::function<bool(std::string_view)>& wanted) {
+  while (offset_ < size_bytes_) {
+    Header header{};
+    if (!read_header(offset_, header)) {
+      skip_to(find_event(offset_ + 1).value_or(size_bytes_));
+      continue;
+    }
+    Message event{std::string(static_cast<std::size_t>(header.channel_bytes), '\0'),
+                  timestamp_from_us(header.time_us),
+                  {}};
+    file_.read(event.channel.data(), header.channel_bytes);
+    const bool is_wanted = wanted(event.channel);
+    if (is_wanted) {
+      event.payload.resize(static_cast<std::size_t>(header.data_bytes));
+      file_.read(reinterpret_cast<char*>(event.payload.data()), header.data_bytes);
+    }
+    if (!file_) throw std::runtime_error{path_.string() + ": read error"};
+    offset_ += kHeaderBytes + header.channel_bytes + header.data_bytes;
+    if (is_wanted) return event;
+  }
+  return std::nullopt;
+}
+
+/// True when a whole event starts at the offset; leaves the file behind its header.
+bool LogReader::read_header(std::int64_t offset, Header& header) {
+  if (size_bytes_ - offset < kHeaderBytes) return false;
+  std::array<char, kHeaderBytes> bytes{};
+  if (file_.tellg() != std::streampos{offset}) file_.seekg(offset);
+  file_.read(bytes.data(), kHeaderBytes);
+  if (read_big_endian<std::uint32_t>(bytes.data()) != kSyncWord) return false;
+  header.time_us = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(&bytes[12]));
+  header.channel_bytes = static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&bytes[20]));
+  header.data_bytes = static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&bytes[24]));
+  return header.channel_bytes >= 1 && header.channel_bytes <= kMaxChannelBytes &&
+         header.data_bytes >= 0 && header.data_bytes <= kMaxDataBytes &&
+         header.channel_bytes + header.data_bytes <= size_bytes_ - offset - kHeaderBytes;
+}
+
+/// Offset of the next whole event at or behind `offset`.
+std::optional<std::int64_t> LogReader::find_event(std::int64_t offset) {
+  const std::array<char, 4> sync{'\xED', '\xA1', '\xDA', '\x01'};
+  std::vector<char> window(kBufferBytes);
+  while (size_bytes_ - offset >= kHeaderBytes) {
+    file_.seekg(offset);
+    const std::int64_t wanted_bytes = std::min<std::int64_t>(kBufferBytes, size_bytes_ - offset);
+    file_.read(window.data(), wanted_bytes);
+    const auto end = window.begin() + wanted_bytes;
+    for (auto at = window.begin();; ++at) {
+      at = std::search(at, end, sync.begin(), sync.end());
+      if (at == end) break;
+      Header header{};
+      const std::int64_t candidate = offset + (at - window.begin());
+      if (read_header(candidate, header)) return candidate;
+    }
+    offset += std::max<std::int64_t>(1, wanted_bytes - 3);
+  }
+  return std::nullopt;
+}
+
+void LogReader::skip_to(std::int64_t offset) {
+  if (skipped_bytes_ == 0) first_skipped_offset_ = offset_;
+  skipped_bytes_ += offset - offset_;
+  offset_ = offset;
+}
+
+std::vector<std::string> channels_in(const std::filesystem::path& path) {
+  LogReader reader{path};
+  std::set<std::string> channels;
+  reader.next([&channels](std::string_view channel) {
+    channels.emplace(channel);
+    return false;
+  });
+  return {channels.begin(), channels.end()};
+}
+
+LogWriter::LogWriter(const std::filesystem::path& path)
+    : path_{path}, part_path_{path.string() + ".part"}, buffer_(kBufferBytes) {
+  file_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  file_.open(part_path_, std::ios::binary | std::ios::trunc);
+  if (!file_) throw std::runtime_error{part_path_.string() + ": cannot be created"};
+}
+
+void LogWriter::write(const Message& message) {
+  std::string header;
+  header.reserve(static_cast<std::size_t>(kHeaderBytes) + message.channel.size());
+  append_big_endian(header, kSyncWord);
+  append_big_endian(header, static_cast<std::uint64_t>(next_event_number_++));
+  append_big_endian(header, static_cast<std::uint64_t>(to_us(message.time)));
+  append_big_endian(header, static_cast<std::uint32_t>(message.channel.size()));
+  append_big_endian(header, static_cast<std::uint32_t>(message.payload.size()));
+  header += message.channel;
+  file_.write(header.data(), static_cast<std::streamsize>(header.size()));
+  file_.write(reinterpret_cast<const char*>(message.payload.data()),
+              static_cast<std::streamsize>(message.payload.size()));
+  if (!file_) throw std::runtime_error{part_path_.string() + ": cannot be written (disk full?)"};
+}
+
+void LogWriter::close() {
+  file_.close();
+  if (!file_) throw std::runtime_error{part_path_.string() + ": cannot be written (disk full?)"};
+  std::filesystem::rename(part_path_, path_);
+}
+
+}  // namespace waymark

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// LCM event logs. Our own reader and writer of LCM's format, because liblcm's reader crashes on
+// hostile lengths and throws good events away before garbage; lcm-logplayer and lcm-logger read and
+// write the same. Format: big-endian {u32 0xEDA1DA01, i64 event number, i64 time us, i32 channel
+// length, i32 data length}, channel without terminating zero, data.
+#pragma once
+
+#include "common/messages/message.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace waymark {
+
+/// Reads events in file order; skips and counts what is not an event.
+class LogReader {
+ public:
+  /// @throws std::runtime_error when the file cannot be opened.
+  explicit LogReader(const std::filesystem::path& path);
+
+  /// Next event on a channel that `wanted` accepts (others are skipped without being read); nullopt
+  /// at the end. The message's time is the event's time.
+  std::optional<Message> next(const std::function<bool(std::string_view)>& wanted);
+  std::optional<Message> next();
+
+  /// Bytes that belonged to no whole event so far: garbage, or an event cut off by the end of the
+  /// file.
+  std::int64_t skipped_bytes() const { return skipped_bytes_; }
+
+  /// Offset of the first skipped byte; meaningful when skipped_bytes() > 0.
+  std::int64_t first_skipped_offset() const { return first_skipped_offset_; }
+
+  std::int64_t size_bytes() const { return size_bytes_; }
+
+  std::int64_t offset_bytes() const { return offset_; }
+
+ private:
+  struct Header;
+
+  bool read_header(std::int64_t offset, Header& header);
+  std::optional<std::int64_t> find_event(std::int64_t offset);
+  void skip_to(std::int64_t offset);
+
+  std::filesystem::path path_;
+  std::ifstream file_;
+  std::int64_t size_bytes_{0};
+  std::int64_t offset_{0};
+  std::int64_t skipped_bytes_{0};
+  std::int64_t first_skipped_offset_{0};
+};
+
+/// Channels that occur in a log.
+std::vector<std::string> channels_in(const std::filesystem::path& path);
+
+/// Writes events to `path` + ".part" and renames it when closed: a log that is there is whole.
+class LogWriter {
+ public:
+  /// @throws std::runtime_error when the file cannot be created.
+  explicit LogWriter(const std::filesystem::path& path);
+  ~LogWriter() = default;
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
+
+  /// Log time = message time. @throws std::runtime_error naming the file when the disk is full.
+  void write(const Message& message);
+  /// @throws std::runtime_error when not everything reached the file.
+  void close();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path part_path_;
+  std::vector<char> buffer_;
+  std::ofstream file_;
+  std::int64_t next_event_number_{0};
+};
+
+}  // namespace waymark

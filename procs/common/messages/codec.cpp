@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/messages/codec.hpp"
+
+#include "common/messages/layout.hpp"
+#include "common/messages/validate.hpp"
+
+#include <stdexcept>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kFingerprintBytes = 8;
+constexpr std::size_t kMaxDecodedBytes = std::size_t{16}
+                                         << 20;  // logs of other robots hold raw images
+constexpr std::int64_t kLatestTime_us = 4'102'444'800'000'000;  // the year 2100
+
+std::int64_t read_int64(std::span<const std::uint8_t> bytes, std::size_t offset) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < 8; ++i)
+    value = (value << 8) | bytes[offset + i];
+  return static_cast<std::int64_t>(value);
+}
+
+bool is_sane_time(std::int64_t utime_us) {
+  return utime_us >= 0 && utime_us <= kLatestTime_us;
+}
+
+}  // namespace
+
+std::string_view to_string(RejectReason reason) {
+  switch (reason) {
+    case RejectReason::kNone:
+      return "none";
+    case RejectReason::kTooLarge:
+      return "too large";
+    case RejectReason::kTruncated:
+      return "truncated";
+    case RejectReason::kWrongType:
+      return "wrong type";
+    case RejectReason::kBadLength:
+      return "bad length";
+    case RejectReason::kTrailingBytes:
+      return "trailing bytes";
+    case RejectReason::kNotFinite:
+      return "not finite";
+    case RejectReason::kInconsistent:
+      return "inconsistent";
+    case RejectReason::kBadTime:
+      return "bad time";
+  }
+  return "unknown";
+}
+
+std::int64_t content_hash(const Message& message) {
+  constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325ULL;
+  constexpr std::uint64_t kPrime = 0x100000001b3ULL;
+  std::uint64_t hash = kOffsetBasis;
+  for (const char c : message.channel)
+    hash = (hash ^ static_cast<std::uint8_t>(c)) * kPrime;
+  for (const std::uint8_t byte : message.payload)
+    hash = (hash ^ byte) * kPrime;
+  return static_cast<std::int64_t>(hash);
+}
+
+std::int64_t fingerprint_of(std::span<const std::uint8_t> payload) {
+  return payload.size() < kFingerprintBytes ? 0 : read_int64(payload, 0);
+}
+
+std::optional<Timestamp> time_of(std::span<const std::uint8_t> payload) {
+  if (payload.size() < 2 * kFingerprintBytes) return std::nullopt;
+  const std::int64_t utime_us = read_int64(payload, kFingerprintBytes);
+  if (!is_sane_time(utime_us)) return std::nullopt;
+  return timestamp_from_us(utime_us);
+}
+
+template <class Type>
+Decoded<Type> decode(std::span<const std::uint8_t> payload) {
+  if (payload.size() > kMaxDecodedBytes) return {{}, RejectReason::kTooLarge};
+  if (payload.size() < kFingerprintBytes) return {{}, RejectReason::kTruncated};
+  if (fingerprint_of(payload) != Type::getHash()) return {{}, RejectReason::kWrongType};
+  const RejectReason layout_fault = walk(payload.subspan(kFingerprintBytes), layout_of<Type>());
+  if (layout_fault != RejectReason::kNone) return {{}, layout_fault};
+  Type message{};
+  const int size = static_cast<int>(payload.size());
+  if (message.decode(payload.data(), 0, size) != size) return {{}, RejectReason::kTruncated};
+  if (!is_sane_time(message.utime)) return {{}, RejectReason::kBadTime};
+  const RejectReason fault = validate(message);
+  if (fault != RejectReason::kNone) return {{}, fault};
+  return {std::move(message), RejectReason::kNone};
+}
+
+template <class Type>
+Message encode(Channel<Type> channel, const Type& message) {
+  const RejectReason fault = validate(message);
+  if (fault != RejectReason::kNone) {
+    throw std::logic_error{"a message for " + std::string{channel.name} + " is " +
+                           std::string{to_string(fault)} + " (utime " +
+                           std::to_string(message.utime) + ")"};
+  }
+  Message encoded{std::string{channel.name}, timestamp_from_us(message.utime), {}};
+  encoded.payload.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(encoded.payload.data(), 0, static_cast<int>(encoded.payload.size()));
+  return encoded;
+}
+
+#define WAYMARK_INSTANTIATE(Type)                                     \
+  template Decoded<Type> decode<Type>(std::span<const std::uint8_t>); \
+  template Message encode<Type>(Channel<Type>, const Type&)
+WAYMARK_INSTANTIATE(ack_t);
+WAYMARK_INSTANTIATE(annotated_scan_t);
+WAYMARK_INSTANTIATE(image_t);
+WAYMARK_INSTANTIATE(lidar_t);
+WAYMARK_INSTANTIATE(map_tiles_t);
+WAYMARK_INSTANTIATE(marker_detections_t);
+WAYMARK_INSTANTIATE(marker_map_t);
+WAYMARK_INSTANTIATE(occupancy_grid_t);
+WAYMARK_INSTANTIATE(particles_t);
+WAYMARK_INSTANTIATE(planar_lidar_t);
+WAYMARK_INSTANTIATE(pose2D_t);
+WAYMARK_INSTANTIATE(process_status_t);
+WAYMARK_INSTANTIATE(slam_estimate_t);
+WAYMARK_INSTANTIATE(tick_t);
+WAYMARK_INSTANTIATE(twist2D_t);
+#undef WAYMARK_INSTANTIATE
+
+}  // namespace waymark

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/messages/layout.hpp"
+
+#include <array>
+
+namespace waymark {
+namespace {
+
+constexpr int kMaxFields = 16;
+
+std::int32_t read_int32(std::span<const std::uint8_t> bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    value = (value << 8) | bytes[offset + i];
+  return static_cast<std::int32_t>(value);
+}
+
+/// Moves `offset` behind one string: int32 length with the terminating zero, then the bytes.
+RejectReason walk_string(std::span<const std::uint8_t> body, std::size_t& offset) {
+  if (body.size() - offset < 4) return RejectReason::kTruncated;
+  const std::int32_t length = read_int32(body, offset);
+  offset += 4;
+  if (length < 1) return RejectReason::kBadLength;
+  if (body.size() - offset < static_cast<std::size_t>(length)) return RejectReason::kTruncated;
+  offset += static_cast<std::size_t>(length);
+  return body[offset - 1] == 0 ? RejectReason::kNone : RejectReason::kBadLength;
+}
+
+RejectReason walk_struct(std::span<const std::uint8_t> body, StructLayout layout,
+                         std::size_t& offset);
+
+RejectReason walk_field(std::span<const std::uint8_t> body, const FieldLayout& field,
+                        std::int64_t count, std::size_t& offset) {
+  if (count < 0) return RejectReason::kBadLength;
+  if (field.kind == FieldLayout::Kind::kFixed) {
+    const auto elements_left = static_cast<std::int64_t>(
+        (body.size() - offset) / static_cast<std::size_t>(field.element_bytes));
+    if (count > elements_left) return RejectReason::kTruncated;
+    offset += static_cast<std::size_t>(count * field.element_bytes);
+    return RejectReason::kNone;
+  }
+  for (std::int64_t i = 0; i < count; ++i) {
+    const RejectReason reason = field.kind == FieldLayout::Kind::kString
+                                    ? walk_string(body, offset)
+                                    : walk_struct(body, field.struct_fields, offset);
+    if (reason != RejectReason::kNone) return reason;
+  }
+  return RejectReason::kNone;
+}
+
+RejectReason walk_struct(std::span<const std::uint8_t> body, StructLayout layout,
+                         std::size_t& offset) {
+  std::array<std::int32_t, kMaxFields> int32_values{};
+  for (std::size_t i = 0; i < layout.size(); ++i) {
+    const FieldLayout& field = layout[i];
+    const std::int64_t count = field.count_field < 0
+                                   ? field.count
+                                   : int32_values[static_cast<std::size_t>(field.count_field)];
+    const std::size_t start = offset;
+    const RejectReason reason = walk_field(body, field, count, offset);
+    if (reason != RejectReason::kNone) return reason;
+    if (field.kind == FieldLayout::Kind::kFixed && field.element_bytes == 4 && count == 1) {
+      int32_values[i] = read_int32(body, start);
+    }
+  }
+  return RejectReason::kNone;
+}
+
+// Short forms for the tables below.
+constexpr FieldLayout fixed(int element_bytes, int count = 1) {
+  return {.element_bytes = element_bytes, .count = count};
+}
+
+constexpr FieldLayout fixed_array(int element_bytes, int count_field) {
+  return {.element_bytes = element_bytes, .count_field = count_field};
+}
+
+constexpr FieldLayout text() {
+  return {.kind = FieldLayout::Kind::kString};
+}
+
+constexpr FieldLayout texts(int count_field) {
+  return {.kind = FieldLayout::Kind::kString, .count_field = count_field};
+}
+
+constexpr FieldLayout one(StructLayout layout) {
+  return {.kind = FieldLayout::Kind::kStruct, .struct_fields = layout};
+}
+
+constexpr FieldLayout many(StructLayout layout, int count_field) {
+  return {.kind = FieldLayout::Kind::kStruct, .count_field = count_field, .struct_fields = layout};
+}
+
+constexpr int kByte = 1;
+constexpr int kInt16 = 2;
+constexpr int kInt32 = 4;
+constexpr int kInt64 = 8;
+constexpr int kFloat = 4;
+constexpr int kDouble = 8;
+
+// One table per type, fields in the order of lcmtypes/*.lcm; a test compares each with encoded
+// messages.
+constexpr FieldLayout kPlanarLidar[] = {
+    fixed(kInt64),          fixed(kInt32), fixed_array(kFloat, 1), fixed(kInt32),
+    fixed_array(kFloat, 3), fixed(kFloat), fixed(kFloat)};
+constexpr FieldLayout kLidar[] = {
+    fixed(kInt64),          fixed(kInt32),          fixed_array(kFloat, 1),
+    fixed_array(kFloat, 1), fixed_array(kInt64, 1), fixed_array(kFloat, 1),
+};
+constexpr FieldLayout kImageMetadata[] = {text(), fixed(kInt32), fixed_array(kByte, 1)};
+constexpr FieldLayout kImage[] = {fixed(kInt64),         fixed(kInt32), fixed(kInt32),
+                                  fixed(kInt32),         fixed(kInt32), fixed(kInt32),
+                                  fixed_array(kByte, 5), fixed(kInt32), many(kImageMetadata, 7)};
+constexpr FieldLayout kPose2D[] = {fixed(kInt64), fixed(kFloat, 3)};
+constexpr FieldLayout kTwist2D[] = {fixed(kInt64), fixed(kFloat, 3)};
+constexpr FieldLayout kOccupancyGrid[] = {fixed(kInt64), fixed(kFloat, 3), fixed(kInt32),
+                                          fixed(kInt32), fixed(kInt32),    fixed_array(kByte, 4)};
+constexpr FieldLayout kParticle[] = {one(kPose2D), one(kPose2D), fixed(kDouble)};
+constexpr FieldLayout kParticles[] = {fixed(kInt64), fixed(kInt32), many(kParticle, 1)};
+constexpr FieldLayout kMarkerDetection[] = {
+    fixed(kInt32),  fixed(kDouble, 8), fixed(kDouble, 3), fixed(kDouble, 4), fixed(kDouble, 36),
+    fixed(kDouble), fixed(kDouble, 3), fixed(kDouble, 4), fixed(kDouble),    fixed(kDouble)};
+constexpr FieldLayout kMarkerDetections[] = {fixed(kInt64), fixed(kInt32), fixed(kInt32),
+                                             fixed(kInt32), many(kMarkerDetection, 3)};
+constexpr FieldLayout kSlamEstimate[] = {fixed(kInt64),     fixed(kDouble, 3), fixed(kDouble, 9),
+                                         fixed(kByte),      fixed(kInt32),     fixed(kDouble),
+                                         fixed(kInt32),     fixed(kInt32),     fixed(kDouble, 9),
+                                         fixed(kDouble, 3), fixed(kDouble),    fixed(kByte)};
+constexpr FieldLayout kMapTile[] = {fixed(kInt32), fixed(kInt32), fixed(kInt32),
+                                    fixed_array(kByte, 2), fixed_array(kInt16, 2)};
+constexpr FieldLayout kMapTiles[] = {fixed(kInt64),     fixed(kInt32), fixed(kInt32),
+                                     fixed(kDouble, 3), fixed(kInt32), fixed(kInt32),
+                                     many(kMapTile, 5)};
+constexpr FieldLayout kMarkerLandmark[] = {fixed(kInt32),     fixed(kInt32), fixed(kDouble, 3),
+                                           fixed(kDouble, 9), fixed(kInt32), fixed(kInt64, 2),
+                                           fixed(kByte)};
+constexpr FieldLayout kMarkerMap[] = {fixed(kInt64), fixed(kInt32), fixed(kInt32), fixed(kInt32),
+                                      many(kMarkerLandmark, 3)};
+constexpr FieldLayout kAnnotatedScan[] = {fixed(kInt64),          fixed(kDouble, 3),
+                                          fixed(kInt32),          fixed_array(kFloat, 2),
+                                          fixed_array(kFloat, 2), fixed_array(kInt32, 2)};
+constexpr FieldLayout kCounter[] = {text(), fixed(kInt64)};
+constexpr FieldLayout kProcessStatus[] = {fixed(kInt64), text(), text(), fixed(kInt32),
+                                          many(kCounter, 3)};
+constexpr FieldLayout kChannelContent[] = {text(), fixed(kInt32), fixed_array(kInt64, 1)};
+constexpr FieldLayout kTick[] = {fixed(kInt64), fixed(kInt64), fixed(kInt64),
+                                 fixed(kInt64), fixed(kByte),  fixed(kInt32),
+                                 texts(5),      fixed(kInt32), many(kChannelContent, 7)};
+constexpr FieldLayout kAck[] = {fixed(kInt64), fixed(kInt64), fixed(kInt64),           text(),
+                                fixed(kInt64), fixed(kInt32), many(kChannelContent, 5)};
+
+}  // namespace
+
+RejectReason walk(std::span<const std::uint8_t> body, StructLayout layout) {
+  std::size_t offset = 0;
+  const RejectReason reason = walk_struct(body, layout, offset);
+  if (reason != RejectReason::kNone) return reason;
+  return offset == body.size() ? RejectReason::kNone : RejectReason::kTrailingBytes;
+}
+
+template <>
+StructLayout layout_of<ack_t>() {
+  return kAck;
+}
+
+template <>
+StructLayout layout_of<annotated_scan_t>() {
+  return kAnnotatedScan;
+}
+
+template <>
+StructLayout layout_of<image_t>() {
+  return kImage;
+}
+
+template <>
+StructLayout layout_of<lidar_t>() {
+  return kLidar;
+}
+
+template <>
+StructLayout layout_of<map_tiles_t>() {
+  return kMapTiles;
+}
+
+template <>
+StructLayout layout_of<marker_detections_t>() {
+  return kMarkerDetections;
+}
+
+template <>
+StructLayout layout_of<marker_map_t>() {
+  return kMarkerMap;
+}
+
+template <>
+StructLayout layout_of<occupancy_grid_t>() {
+  return kOccupancyGrid;
+}
+
+template <>
+StructLayout layout_of<particles_t>() {
+  return kParticles;
+}
+
+template <>
+StructLayout layout_of<planar_lidar_t>() {
+  return kPlanarLidar;
+}
+
+template <>
+StructLayout layout_of<pose2D_t>() {
+  return kPose2D;
+}
+
+template <>
+StructLayout layout_of<process_status_t>() {
+  return kProcessStatus;
+}
+
+template <>
+StructLayout layout_of<slam_estimate_t>() {
+  return kSlamEstimate;
+}
+
+template <>
+StructLayout layout_of<tick_t>() {
+  return kTick;
+}
+
+template <>
+StructLayout layout_of<twist2D_t>() {
+  return kTwist2D;
+}
+
+}  // namespace waymark

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The wire layout of our message types, to check the length fields of a payload before the
+// generated decoder sees it: those decoders throw, crash or allocate gigabytes on hostile lengths
+// (LCM 1.3.1).
+#pragma once
+
+#include "common/messages/codec.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace waymark {
+
+/// One field on the wire: `count` elements, or as many as the earlier int32 field at index
+/// `count_field`.
+struct FieldLayout {
+  enum class Kind { kFixed, kString, kStruct };
+
+  Kind kind{Kind::kFixed};
+  int element_bytes{0};  ///< kFixed only
+  int count{1};
+  int count_field{-1};                           ///< index in the same struct, or -1
+  std::span<const FieldLayout> struct_fields{};  ///< kStruct only
+};
+
+using StructLayout = std::span<const FieldLayout>;
+
+/// Walks the payload behind its fingerprint. kNone when the fields take exactly all bytes.
+/// O(number of fields and struct elements), no allocation; every count is checked against the bytes
+/// left.
+RejectReason walk(std::span<const std::uint8_t> body, StructLayout layout);
+
+/// Layout of a message type of ours.
+template <class Type>
+StructLayout layout_of();
+
+}  // namespace waymark

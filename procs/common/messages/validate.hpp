@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The semantic check of each message type: array sizes agree, numbers are finite where they must
+// be.
+#pragma once
+
+#include "common/messages/codec.hpp"
+
+namespace waymark {
+
+/// Holds for decoded messages and, with the sizes of the arrays, for messages about to be encoded.
+RejectReason validate(const ack_t& message);
+RejectReason validate(const annotated_scan_t& message);
+RejectReason validate(const image_t& message);
+RejectReason validate(const lidar_t& message);
+RejectReason validate(const map_tiles_t& message);
+RejectReason validate(const marker_detections_t& message);
+RejectReason validate(const marker_map_t& message);
+RejectReason validate(const occupancy_grid_t& message);
+RejectReason validate(const particles_t& message);
+RejectReason validate(const planar_lidar_t& message);
+RejectReason validate(const pose2D_t& message);
+RejectReason validate(const process_status_t& message);
+RejectReason validate(const slam_estimate_t& message);
+RejectReason validate(const tick_t& message);
+RejectReason validate(const twist2D_t& message);
+
+}  // namespace waymark

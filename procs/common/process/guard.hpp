@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Exceptions -> one clear line and an exit code.
+#pragma once
+
+#include "common/process/node.hpp"
+
+#include <functional>
+
+namespace waymark {
+
+/// Runs `body` with signals and logging set up; says what went wrong on standard error.
+int run_guarded(const ProcessTraits& traits, const std::function<int()>& body);
+
+/// Prints all counters that are not zero, one line.
+void log_counters(const Counters& counters);
+
+}  // namespace waymark

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/options.hpp"
+
+#include "common/process/exit_codes.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace waymark {
+
+ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
+                            const OptionSet& option_set) {
+  ParsedOptions parsed;
+  ProcessOptions& options = parsed.options;
+  const std::string name = "waymark-" + std::string{traits.name};
+  CLI::App app{std::string{traits.purpose}, name};
+  app.set_version_flag("--version", name + " " WAYMARK_VERSION);
+  app.add_option("--config", options.config_sources.files,
+                 "TOML file; may be given several times, later files win")
+      ->take_all();
+  app.add_option("--set", options.config_sources.overrides,
+                 "key.subkey=value; wins over the files; may be given several times")
+      ->take_all();
+  app.add_flag("--dump-config", options.dump_config,
+               "print the effective configuration with every key explained, and exit");
+  app.add_option("--lcm-url", options.lcm_url,
+                 "LCM network (default: $LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
+  app.add_flag(
+      "--real-time", options.real_time,
+      "process what arrives when it arrives (a real robot) instead of in lockstep with the "
+      "simulator");
+  if (option_set.log) {
+    app.add_option(
+           "--log", options.logs,
+           "replay this LCM log instead of listening; may be given several times: a channel is "
+           "taken from the last log that has it")
+        ->take_all();
+  }
+  if (option_set.out_log) {
+    app.add_option("--out-log", options.out_log, "write what is published to this LCM log");
+  }
+  if (option_set.out_dir) {
+    app.add_option("--out", options.out_dir, "folder for the output files");
+  }
+  if (option_set.seed) {
+    app.add_option("--seed", options.seed, "seed of everything random (default: run.seed)");
+  }
+  if (option_set.dump_robot_config) {
+    app.add_flag("--dump-robot-config", options.dump_robot_config,
+                 "print what the other processes may know (section [robot]), and exit");
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    parsed.exit_code = code == 0 ? kExitOk : kExitUsage;
+  }
+  return parsed;
+}
+
+}  // namespace waymark

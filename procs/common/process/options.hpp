@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line that all processes share.
+#pragma once
+
+#include "common/config/config.hpp"
+#include "common/process/node.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+struct ProcessOptions {
+  ConfigSources config_sources{};
+  bool dump_config{false};
+  bool dump_robot_config{false};
+  std::string lcm_url{};
+  bool real_time{false};
+  std::vector<std::filesystem::path> logs{};
+  std::filesystem::path out_log{};
+  std::filesystem::path out_dir{};
+  std::optional<std::int64_t> seed{};
+};
+
+/// Which of the optional options a process has.
+struct OptionSet {
+  bool log{false};
+  bool out_log{false};
+  bool out_dir{false};
+  bool seed{false};
+  bool dump_robot_config{false};
+};
+
+/// @return options, or the exit code when there is nothing more to do (--help, --version, bad
+/// usage).
+struct ParsedOptions {
+  ProcessOptions options{};
+  std::optional<int> exit_code{};
+};
+
+ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
+                            const OptionSet& option_set);
+
+}  // namespace waymark

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/progress.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace waymark {
+
+Progress::Progress(std::string what)
+    : what_{std::move(what)},
+      is_terminal_{isatty(STDERR_FILENO) == 1},
+      start_{std::chrono::steady_clock::now()} {}
+
+void Progress::show(double fraction, const std::string& detail) {
+  constexpr std::chrono::milliseconds kRedraw{200};
+  constexpr int kBarWidth = 24;
+  const double done = std::clamp(fraction, 0.0, 1.0);
+  const auto now = std::chrono::steady_clock::now();
+  if (is_terminal_) {
+    if (now - last_shown_ < kRedraw) return;
+    const int filled = static_cast<int>(done * kBarWidth);
+    fmt::print(stderr, "\r{} [{}{}] {:3.0f} %  {}\x1b[K", what_, std::string(filled, '#'),
+               std::string(kBarWidth - filled, '.'), 100.0 * done, detail);
+    line_is_open_ = true;
+  } else {
+    const int tenth = static_cast<int>(done * 10.0);
+    if (tenth == last_tenth_) return;
+    last_tenth_ = tenth;
+    fmt::print(stderr, "{} {:3.0f} %  {}\n", what_, 100.0 * done, detail);
+  }
+  std::fflush(stderr);
+  last_shown_ = now;
+}
+
+void Progress::done() {
+  if (line_is_open_) fmt::print(stderr, "\n");
+  line_is_open_ = false;
+}
+
+double Progress::elapsed_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+}  // namespace waymark

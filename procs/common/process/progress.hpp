@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Progress of long work on standard error.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace waymark {
+
+/// One line that is redrawn on a terminal; elsewhere a line every ten per cent.
+class Progress {
+ public:
+  explicit Progress(std::string what);
+
+  /// @param fraction  of the work done, 0..1
+  void show(double fraction, const std::string& detail);
+  /// Ends the redrawn line.
+  void done();
+  /// Wall-clock seconds since construction.
+  double elapsed_s() const;
+
+ private:
+  std::string what_;
+  bool is_terminal_;
+  bool line_is_open_{false};
+  int last_tenth_{-1};
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point last_shown_{};
+};
+
+/// Peak resident memory of this process [MB].
+double peak_memory_mb();
+
+}  // namespace waymark

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/replay.hpp"
+
+#include "common/log/log_file.hpp"
+#include "common/process/exit_codes.hpp"
+#include "common/process/guard.hpp"
+#include "common/process/progress.hpp"
+#include "common/process/signals.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <map>
+
+namespace waymark {
+namespace {
+
+/// One log, read ahead by one message, restricted to the channels that are taken from it.
+struct Source {
+  std::filesystem::path path;
+  LogReader reader;
+  std::vector<std::string> channels;
+  std::optional<Message> head{};
+
+  void advance() {
+    head = reader.next([this](std::string_view channel) {
+      return std::ranges::find(channels, channel) != channels.end();
+    });
+  }
+};
+
+/// Each wanted channel is taken from the last log that has it.
+std::vector<Source> open_sources(const std::vector<std::filesystem::path>& paths,
+                                 const std::vector<Inbox::Subscription>& subscriptions) {
+  std::map<std::string, std::size_t> source_of_channel;
+  std::vector<Source> sources;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    try {
+      for (const std::string& channel : channels_in(paths[i]))
+        source_of_channel[channel] = i;
+      sources.push_back({paths[i], LogReader{paths[i]}, {}, {}});
+    } catch (const std::exception& error) {
+      throw SetupError{error.what()};
+    }
+  }
+  for (const auto& subscription : subscriptions) {
+    const auto found = source_of_channel.find(subscription.channel);
+    if (found != source_of_channel.end()) {
+      sources[found->second].channels.push_back(subscription.channel);
+    }
+  }
+  for (Source& source : sources)
+    source.advance();
+  return sources;
+}
+
+/// The source whose next message is oldest; the first one among equals.
+Source* oldest(std::vector<Source>& sources) {
+  Source* best = nullptr;
+  for (Source& source : sources) {
+    if (source.head && (best == nullptr || source.head->time < best->head->time)) best = &source;
+  }
+  return best;
+}
+
+bool report_skipped(const std::vector<Source>& sources) {
+  bool any = false;
+  for (const Source& source : sources) {
+    if (source.reader.skipped_bytes() == 0) continue;
+    spdlog::error("{}: {} bytes from offset {} on are no events; skipped", source.path.string(),
+                  source.reader.skipped_bytes(), source.reader.first_skipped_offset());
+    any = true;
+  }
+  return any;
+}
+
+bool any_rejected(const Counters& counters) {
+  return std::ranges::any_of(counters.all(), [](const auto& counter) {
+    return counter.second > 0 && counter.first.find("rejected") != std::string::npos;
+  });
+}
+
+}  // namespace
+
+int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox) {
+  std::vector<Source> sources = open_sources(options.logs, inbox.subscriptions());
+  std::optional<LogWriter> writer;
+  if (!options.out_log.empty()) {
+    try {
+      writer.emplace(options.out_log);
+    } catch (const std::exception& error) {
+      throw SetupError{error.what()};
+    }
+  }
+  const auto write_out = [&] {
+    for (const Message& message : outbox.take()) {
+      if (writer) writer->write(message);
+    }
+  };
+  Progress progress{"replay"};
+  std::optional<Timestamp> first;
+  Timestamp last{};
+  std::int64_t num_messages = 0;
+  while (Source* source = oldest(sources)) {
+    if (stop_signal() != 0) {
+      spdlog::warn("interrupted");
+      return kExitSignal + stop_signal();
+    }
+    if (!first) first = source->head->time;
+    last = std::max(last, source->head->time);
+    inbox.deliver(*source->head);
+    write_out();
+    ++num_messages;
+    progress.show(static_cast<double>(source->reader.offset_bytes()) /
+                      static_cast<double>(std::max<std::int64_t>(1, source->reader.size_bytes())),
+                  fmt::format("{:.1f} s", to_seconds(last - *first)));
+    source->advance();
+  }
+  node.finish();
+  write_out();
+  if (writer) writer->close();
+  progress.done();
+  const double log_s = first ? to_seconds(last - *first) : 0.0;
+  const double wall_s = progress.elapsed_s();
+  spdlog::info(
+      "replayed {} messages, {:.1f} s of log in {:.2f} s ({:.1f} x real time), peak memory {:.0f} "
+      "MB",
+      num_messages, log_s, wall_s, log_s / std::max(wall_s, 1e-9), peak_memory_mb());
+  log_counters(inbox.counters());
+  if (num_messages == 0) {
+    spdlog::error("none of the channels that this process reads is in the log");
+    return kExitFailed;
+  }
+  const bool skipped = report_skipped(sources);
+  return skipped || any_rejected(inbox.counters()) || node.failed() ? kExitFailed : kExitOk;
+}
+
+}  // namespace waymark

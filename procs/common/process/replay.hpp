@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A node on logs instead of the network: in order, nothing lost, as fast as it can.
+#pragma once
+
+#include "common/process/node.hpp"
+#include "common/process/options.hpp"
+
+namespace waymark {
+
+/// @return exit code: 1 when a log held bytes that are not events or messages were refused.
+int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox);
+
+}  // namespace waymark

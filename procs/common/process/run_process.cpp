@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/run_process.hpp"
+
+#include "common/bus/bus.hpp"
+#include "common/lockstep/participant.hpp"
+#include "common/process/exit_codes.hpp"
+#include "common/process/guard.hpp"
+#include "common/process/reorder_buffer.hpp"
+#include "common/process/replay.hpp"
+#include "common/process/signals.hpp"
+#include "common/process/status.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace waymark {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kPoll{50};
+// How long a participant stays for re-sent ticks when the simulator's goodbye got lost.
+constexpr seconds kLinger{5};
+constexpr seconds kNoTickHint{10};
+// Longer than the jitter between our processes, shorter than a scan period.
+constexpr Duration kReorderWindow = milliseconds{150};
+
+void publish_all(Bus& bus, const std::vector<Message>& messages) {
+  for (const Message& message : messages)
+    bus.publish(message);
+}
+
+std::vector<std::string> names_of(const std::vector<Inbox::Subscription>& subscriptions) {
+  std::vector<std::string> names;
+  for (const auto& subscription : subscriptions)
+    names.push_back(subscription.channel);
+  return names;
+}
+
+/// Live, in step with the simulator, until its last tick.
+int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node, Inbox& inbox,
+                 Outbox& outbox) {
+  std::vector<Inbox::Subscription> subscriptions = inbox.subscriptions();
+  LockstepParticipant participant{std::string{traits.name}, names_of(subscriptions),
+                                  traits.joins_midway,
+                                  [&](const std::vector<Message>& messages, bool is_last) {
+                                    for (const Message& message : messages)
+                                      inbox.deliver(message);
+                                    if (is_last) node.finish();
+                                    return outbox.take();
+                                  }};
+  for (auto& subscription : subscriptions)
+    subscription.backlog = Backlog::kKeepAll;
+  for (const auto name : {channels::kTick.name, channels::kAck.name}) {
+    subscriptions.push_back({std::string{name}});
+  }
+  Bus bus{url, subscriptions};
+  StatusReporter reporter{traits.name};
+  spdlog::info("ready, waits for ticks on {}", url);
+  const auto start = steady_clock::now();
+  auto last_tick = start;
+  Timestamp newest{};
+  bool hinted = false;
+  while (!participant.closed() && stop_signal() == 0) {
+    if (auto message = bus.receive(kPoll)) {
+      last_tick = steady_clock::now();
+      newest = std::max(newest, message->time);
+      publish_all(bus, participant.take(std::move(*message)));
+    }
+    if (participant.finished() && steady_clock::now() - last_tick > kLinger) break;
+    if (!hinted && !participant.has_seen_tick() && steady_clock::now() - start > kNoTickHint) {
+      spdlog::info("no TICK so far: start waymark-sim, or use --real-time with a real robot");
+      hinted = true;
+    }
+    reporter.report(bus, participant.counters(), newest, "lockstep");
+  }
+  bus.collect_counts(participant.counters());
+  for (const auto& [name, count] : inbox.counters().all())
+    participant.counters().add(name, count);
+  log_counters(participant.counters());
+  if (participant.finished()) return node.failed() ? kExitFailed : kExitOk;
+  if (stop_signal() == 0) {
+    spdlog::error("the simulator ended the run before its last tick");
+    return kExitFailed;
+  }
+  return kExitSignal + stop_signal();
+}
+
+/// Live, on whatever arrives, until a signal asks to stop.
+int run_real_time(const ProcessTraits& traits, const std::string& url, Node& node, Inbox& inbox,
+                  Outbox& outbox) {
+  Bus bus{url, inbox.subscriptions()};
+  StatusReporter reporter{traits.name};
+  // A node with one input has nothing to put in order.
+  ReorderBuffer buffer{inbox.subscriptions().size() > 1 ? kReorderWindow : Duration{0}};
+  spdlog::info("ready, real time on {}", url);
+  Timestamp newest{};
+  const auto process = [&](const std::vector<Message>& messages) {
+    for (const Message& message : messages)
+      inbox.deliver(message);
+    publish_all(bus, outbox.take());
+  };
+  auto last_arrival = steady_clock::now();
+  while (stop_signal() == 0) {
+    if (auto message = bus.receive(kPoll)) {
+      last_arrival = steady_clock::now();
+      newest = std::max(newest, message->time);
+      process(buffer.add(std::move(*message), inbox.counters()));
+    } else if (steady_clock::now() - last_arrival > seconds{1}) {
+      process(buffer.flush());
+    }
+    reporter.report(bus, inbox.counters(), newest, "real-time");
+  }
+  process(buffer.flush());
+  node.finish();
+  publish_all(bus, outbox.take());
+  bus.collect_counts(inbox.counters());
+  log_counters(inbox.counters());
+  return node.failed() ? kExitFailed : kExitOk;
+}
+
+}  // namespace
+
+int run_described_process(int argc, char** argv, const ProcessDescription& description) {
+  const ParsedOptions parsed =
+      parse_options(argc, argv, description.traits, description.option_set);
+  if (parsed.exit_code) return *parsed.exit_code;
+  const ProcessOptions& options = parsed.options;
+  return run_guarded(description.traits, [&] {
+    if (options.dump_config) {
+      fmt::print("{}", description.dump_config(options));
+      return int{kExitOk};
+    }
+    const bool is_recorder = !description.option_set.log;
+    if (!is_recorder && !options.out_log.empty() && options.logs.empty()) {
+      throw SetupError{"--out-log needs --log; live runs are recorded by waymark-recorder"};
+    }
+    Inbox inbox;
+    Outbox outbox;
+    const auto node = description.make_node(options, inbox, outbox);
+    if (!options.logs.empty()) return run_replay(options, *node, inbox, outbox);
+    const std::string url = lcm_url_or_default(options.lcm_url);
+    const auto run = options.real_time ? run_real_time : run_lockstep;
+    return run(description.traits, url, *node, inbox, outbox);
+  });
+}
+
+}  // namespace waymark

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/run_simulator.hpp"
+
+#include "common/bus/bus.hpp"
+#include "common/lockstep/master.hpp"
+#include "common/process/exit_codes.hpp"
+#include "common/process/guard.hpp"
+#include "common/process/progress.hpp"
+#include "common/process/signals.hpp"
+#include "common/process/status.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace waymark {
+namespace {
+
+using std::chrono::duration_cast;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kProbePeriod{100};
+constexpr seconds kReadyTimeout{30};
+constexpr milliseconds kFirstResend{250};
+constexpr milliseconds kLongestResend{4000};
+constexpr seconds kSilenceTimeout{60};
+constexpr milliseconds kPoll{20};
+constexpr int kClosingRepeats = 3;
+
+/// Wall-clock side of a run: network, time-outs, progress.
+class Run {
+ public:
+  Run(const ProcessTraits& traits, const std::string& url, TickSource& source, Inbox& inbox)
+      : source_{source}, inbox_{inbox}, reporter_{traits.name}, bus_{url, subscriptions(inbox)} {}
+
+  int in_lockstep() {
+    LockstepMaster master{source_.run_id(), source_.participants(), source_.window_ticks()};
+    if (const int code = wait_until_ready(master); code != kExitOk) return code;
+    steady_clock::time_point last_ack = steady_clock::now();
+    milliseconds resend_after = kFirstResend;
+    auto last_sent = last_ack;
+    while (!(source_.finished() && master.all_acknowledged())) {
+      if (stop_signal() != 0) return kExitSignal + stop_signal();
+      const bool may_advance = !source_.finished() && master.has_room();
+      if (may_advance) {
+        send_tick(master);
+        last_sent = steady_clock::now();
+      }
+      if (take_messages(master, may_advance ? milliseconds{0} : kPoll)) {
+        last_ack = steady_clock::now();
+        resend_after = kFirstResend;
+      }
+      const auto now = steady_clock::now();
+      if (now - last_ack > kSilenceTimeout) return name_the_silent(master);
+      if (!may_advance && now - std::max(last_ack, last_sent) > resend_after) {
+        publish(master.resend());
+        inbox_.counters().add("TICK resent");
+        last_sent = now;
+        resend_after = std::min(2 * resend_after, kLongestResend);
+      }
+      report("lockstep");
+    }
+    for (int i = 0; i < kClosingRepeats; ++i)
+      bus_.publish(master.closing());
+    for (const auto& [who, hash] : master.state_hashes()) {
+      spdlog::info("state hash of {}: {:016x}", who, static_cast<std::uint64_t>(hash));
+    }
+    return kExitOk;
+  }
+
+  /// Paces the messages by the wall clock; nobody acknowledges.
+  int in_real_time() {
+    const auto start = steady_clock::now();
+    while (!source_.finished()) {
+      std::vector<Message> messages = source_.advance(tick_end_);
+      std::ranges::sort(messages, comes_before);
+      for (const Message& message : messages) {
+        // One tick of latency covers the time that it takes to simulate a tick.
+        const auto due = start + message.time.time_since_epoch() + kRealTimeLatency;
+        while (stop_signal() == 0 && steady_clock::now() < due) {
+          take_commands(std::min<milliseconds>(
+              kPoll, duration_cast<milliseconds>(due - steady_clock::now())));
+        }
+        if (stop_signal() != 0) return kExitSignal + stop_signal();
+        bus_.publish(message);
+      }
+      report("real-time");
+    }
+    return kExitOk;
+  }
+
+  void close() {
+    progress_.done();
+    const double simulated_s = to_seconds(tick_end_);
+    const double wall_s = progress_.elapsed_s();
+    spdlog::info("simulated {:.1f} s in {:.1f} s ({:.2f} x real time), peak memory {:.0f} MB",
+                 simulated_s, wall_s, simulated_s / std::max(wall_s, 1e-9), peak_memory_mb());
+    bus_.collect_counts(inbox_.counters());
+    log_counters(inbox_.counters());
+  }
+
+ private:
+  static constexpr milliseconds kRealTimeLatency{150};
+
+  static std::vector<Inbox::Subscription> subscriptions(const Inbox& inbox) {
+    std::vector<Inbox::Subscription> subscriptions = inbox.subscriptions();
+    subscriptions.push_back({std::string{channels::kAck.name}});
+    return subscriptions;
+  }
+
+  int wait_until_ready(LockstepMaster& master) {
+    const auto start = steady_clock::now();
+    auto last_probe = start - kProbePeriod;
+    while (!master.all_ready()) {
+      const auto now = steady_clock::now();
+      if (stop_signal() != 0) return kExitSignal + stop_signal();
+      if (now - start > kReadyTimeout) {
+        spdlog::error("not ready after {} s: {} (is it running, with the same --lcm-url?)",
+                      kReadyTimeout.count(), fmt::join(master.not_ready(), ", "));
+        return kExitTimeout;
+      }
+      if (now - last_probe >= kProbePeriod) {
+        bus_.publish(master.probe());
+        last_probe = now;
+      }
+      take_messages(master, kPoll);
+    }
+    spdlog::info("all ready: {}", fmt::join(source_.participants(), ", "));
+    return kExitOk;
+  }
+
+  void send_tick(LockstepMaster& master) {
+    std::vector<Message> messages = source_.advance(tick_end_);
+    publish(master.open_tick(tick_end_, std::move(messages), source_.finished()));
+  }
+
+  /// @return true when an acknowledgement came that was missing.
+  bool take_messages(LockstepMaster& master, milliseconds timeout) {
+    bool acknowledged = false;
+    for (auto message = bus_.receive(timeout); message; message = bus_.receive(milliseconds{0})) {
+      if (message->channel == channels::kAck.name) {
+        acknowledged = master.take(*message) || acknowledged;
+      } else {
+        inbox_.deliver(*message);
+      }
+    }
+    return acknowledged;
+  }
+
+  void take_commands(milliseconds timeout) {
+    if (auto message = bus_.receive(timeout)) inbox_.deliver(*message);
+  }
+
+  int name_the_silent(const LockstepMaster& master) const {
+    spdlog::error("no acknowledgement of tick {} ({:.1f} s simulated) for {} s from: {}",
+                  master.oldest_open_tick(), to_seconds(tick_end_), kSilenceTimeout.count(),
+                  fmt::join(master.silent(), ", "));
+    return kExitTimeout;
+  }
+
+  void publish(const std::vector<Message>& messages) {
+    for (const Message& message : messages)
+      bus_.publish(message);
+  }
+
+  void report(std::string_view state) {
+    const double simulated_s = to_seconds(tick_end_);
+    progress_.show(
+        source_.progress_fraction(),
+        fmt::format("{:.1f} s simulated, {:.1f} x real time, {}", simulated_s,
+                    simulated_s / std::max(progress_.elapsed_s(), 1e-9), source_.progress()));
+    reporter_.report(bus_, inbox_.counters(), tick_end_, state);
+  }
+
+  TickSource& source_;
+  Inbox& inbox_;
+  StatusReporter reporter_;
+  Bus bus_;
+  Progress progress_{"sim"};
+  Timestamp tick_end_{};
+};
+
+}  // namespace
+
+int run_described_simulator(int argc, char** argv, const SimulatorDescription& description) {
+  const ParsedOptions parsed = parse_options(
+      argc, argv, description.traits, {.out_dir = true, .seed = true, .dump_robot_config = true});
+  if (parsed.exit_code) return *parsed.exit_code;
+  const ProcessOptions& options = parsed.options;
+  return run_guarded(description.traits, [&] {
+    if (options.dump_config || options.dump_robot_config) {
+      fmt::print("{}", options.dump_config ? description.dump_config(options)
+                                           : description.dump_robot_config(options));
+      return int{kExitOk};
+    }
+    Inbox inbox;
+    const auto source = description.make_source(options, inbox);
+    Run run{description.traits, lcm_url_or_default(options.lcm_url), *source, inbox};
+    const int code = options.real_time ? run.in_real_time() : run.in_lockstep();
+    source->finish();
+    run.close();
+    return code;
+  });
+}
+
+}  // namespace waymark

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// main() of the simulator: it makes the ticks that the others follow.
+#pragma once
+
+#include "common/process/node.hpp"
+#include "common/process/options.hpp"
+#include "common/process/run_process.hpp"
+#include "common/robot/robot_config.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// What the runner drives. Procs/sim has the only one; tests have small ones.
+class TickSource {
+ public:
+  virtual ~TickSource() = default;
+
+  /// Who must acknowledge each tick, in the order of the data flow.
+  virtual std::vector<std::string> participants() const = 0;
+  virtual int window_ticks() const = 0;
+  /// Hash of everything that determines the run.
+  virtual std::int64_t run_id() const = 0;
+  /// The last tick has been made.
+  virtual bool finished() const = 0;
+  /// Simulates one tick. @return its messages; `tick_end` is the time up to which they reach.
+  virtual std::vector<Message> advance(Timestamp& tick_end) = 0;
+  virtual double progress_fraction() const = 0;
+  /// E.g. "x 12.3 m of 49.0 m".
+  virtual std::string progress() const = 0;
+  /// The run has ended, well or not.
+  virtual void finish() = 0;
+};
+
+struct SimulatorDescription {
+  ProcessTraits traits{};
+  std::function<std::string(const ProcessOptions&)> dump_config{};
+  std::function<std::string(const ProcessOptions&)> dump_robot_config{};
+  std::function<std::unique_ptr<TickSource>(const ProcessOptions&, Inbox&)> make_source{};
+};
+
+int run_described_simulator(int argc, char** argv, const SimulatorDescription& description);
+
+template <class Config>
+Config simulator_config_from(const ProcessOptions& options) {
+  ProcessOptions with_seed = options;
+  if (options.seed) {
+    with_seed.config_sources.overrides.push_back("run.seed=" + std::to_string(*options.seed));
+  }
+  return config_from<Config>(with_seed);
+}
+
+template <class SourceType>
+int run_simulator(int argc, char** argv) {
+  using Config = typename SourceType::Config;
+
+  struct RobotOnly {
+    RobotConfig robot;
+
+    void describe(Fields& fields) { fields.section("robot", robot); }
+  };
+
+  SimulatorDescription description;
+  description.traits = SourceType::kTraits;
+  description.dump_config = [](const ProcessOptions& options) {
+    return dump_config(simulator_config_from<Config>(options));
+  };
+  description.dump_robot_config = [](const ProcessOptions& options) {
+    return dump_config(RobotOnly{simulator_config_from<Config>(options).robot});
+  };
+  description.make_source = [](const ProcessOptions& options, Inbox& inbox) {
+    return std::make_unique<SourceType>(simulator_config_from<Config>(options), inbox);
+  };
+  return run_described_simulator(argc, argv, description);
+}
+
+}  // namespace waymark

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SIGINT, SIGTERM and SIGHUP as a flag.
+#pragma once
+
+namespace waymark {
+
+/// From now on the first such signal sets the flag, and the second ends the process at once.
+void install_stop_signals();
+
+/// The signal that asked to stop, or 0.
+int stop_signal();
+
+}  // namespace waymark

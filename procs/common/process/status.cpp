@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/status.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace waymark {
+namespace {
+
+bool is_loss(const std::string& counter) {
+  return counter.find("rejected") != std::string::npos ||
+         counter.find("dropped") != std::string::npos || counter.find("late") != std::string::npos;
+}
+
+}  // namespace
+
+StatusReporter::StatusReporter(std::string_view process_name) : name_{process_name} {
+  std::ranges::transform(name_, std::back_inserter(channel_),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  channel_ += "_STATUS";
+}
+
+void StatusReporter::report(Bus& bus, Counters& counters, Timestamp newest,
+                            std::string_view state) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < std::chrono::seconds{1}) return;
+  last_ = now;
+  bus.collect_counts(counters);
+  process_status_t status{};
+  status.utime = to_us(newest);
+  status.process = name_;
+  status.state = state;
+  for (const auto& [name, value] : counters.all()) {
+    counter_t counter{};
+    counter.name = name;
+    counter.value = value;
+    status.counters.push_back(counter);
+  }
+  status.num_counters = static_cast<int>(status.counters.size());
+  bus.publish(encode(Channel<process_status_t>{channel_}, status));
+  warn_of_new_losses(counters);
+}
+
+/// Warns whenever a count of lost or refused messages has doubled, so that a flood does not flood
+/// the log.
+void StatusReporter::warn_of_new_losses(const Counters& counters) {
+  for (const auto& [name, count] : counters.all()) {
+    const std::int64_t warned = warned_.get(name);
+    if (!is_loss(name) || count < std::max<std::int64_t>(1, 2 * warned)) continue;
+    spdlog::warn("{}: {} so far", name, count);
+    warned_.add(name, count - warned);
+  }
+}
+
+}  // namespace waymark

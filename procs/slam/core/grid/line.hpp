@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The cells along a straight line.
+#pragma once
+
+#include "slam/core/grid/cell_index.hpp"
+
+#include <cstdlib>
+
+namespace waymark {
+
+/// Calls visit(CellIndex) for every cell from `from` to `to`, both included: max(|dx|, |dy|) + 1
+/// cells, each touching the next. Source: Bresenham (1965).
+template <class Visit>
+void visit_line(CellIndex from, CellIndex to, Visit&& visit) {
+  const int dx = std::abs(to.x - from.x);
+  const int dy = std::abs(to.y - from.y);
+  const int step_x = from.x < to.x ? 1 : -1;
+  const int step_y = from.y < to.y ? 1 : -1;
+  int error = dx - dy;
+  CellIndex cell = from;
+  visit(cell);
+  while (cell != to) {
+    const int doubled = 2 * error;
+    if (doubled > -dy) {
+      error -= dy;
+      cell.x += step_x;
+    }
+    if (doubled < dx) {
+      error += dx;
+      cell.y += step_y;
+    }
+    visit(cell);
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recorder/recorder_node.hpp"
+
+#include "common/messages/channels.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+
+namespace waymark {
+namespace {
+
+constexpr std::array kDataChannels{
+    channels::kCamera.name,       channels::kLidar.name,        channels::kOdometry.name,
+    channels::kDriveCommand.name, channels::kTruePose.name,     channels::kMarkers.name,
+    channels::kSlamPose.name,     channels::kSlamEstimate.name, channels::kSlamMap.name,
+    channels::kSlamGrid.name,     channels::kSlamMarkers.name,  channels::kSlamParticles.name,
+    channels::kSlamScan.name};
+
+}  // namespace
+
+void RecorderSection::describe(Fields& fields) {
+  fields.field("exclude", exclude, "channels not to record, e.g. [\"CAMERA\"] for small logs");
+}
+
+void RecorderConfig::check(Problems& problems) const {
+  for (const std::string& channel : recorder.exclude) {
+    if (std::ranges::find(kDataChannels, channel) == kDataChannels.end()) {
+      problems.add("recorder.exclude", "got " + channel + ", which is no data channel");
+    }
+  }
+}
+
+RecorderNode::RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox&) {
+  if (config.out_log.empty())
+    throw SetupError{"--out-log FILE is missing: where shall the log go?"};
+  try {
+    writer_.emplace(config.out_log);
+  } catch (const std::exception& error) {
+    throw SetupError{error.what()};
+  }
+  for (const std::string_view channel : kDataChannels) {
+    if (std::ranges::find(config.recorder.exclude, channel) != config.recorder.exclude.end())
+      continue;
+    inbox.on_raw(channel, [this](const Message& message) { record(message); });
+  }
+}
+
+void RecorderNode::record(const Message& message) {
+  if (failed_) return;
+  try {
+    writer_->write(message);
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+void RecorderNode::finish() {
+  if (failed_) return;
+  try {
+    writer_->close();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+void RecorderNode::fail(const std::string& what) {
+  failed_ = true;
+  spdlog::error("{}; the log ends here, the run goes on", what);
+}
+
+}  // namespace waymark

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes all data channels to an LCM log, in the order in which the others process them. It
+// acknowledges ticks like the others, so a lockstep run is recorded without loss and with the same
+// bytes every time.
+#pragma once
+
+#include "common/config/config.hpp"
+#include "common/log/log_file.hpp"
+#include "common/process/node.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+struct RecorderSection {
+  std::vector<std::string> exclude{};  ///< channels not to record
+
+  void describe(Fields& fields);
+};
+
+struct RecorderConfig {
+  RecorderSection recorder{};
+  std::filesystem::path out_log{};  ///< from --out-log
+
+  void describe(Fields& fields) { fields.section("recorder", recorder); }
+
+  void check(Problems& problems) const;
+};
+
+class RecorderNode final : public Node {
+ public:
+  using Config = RecorderConfig;
+  static constexpr ProcessTraits kTraits{"recorder",
+                                         "Records every data channel of a run to an LCM log (log "
+                                         "time = message time). Statuses, ticks and "
+                                         "acknowledgements are not data.",
+                                         false};
+
+  /// @throws SetupError when the log cannot be created.
+  RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox& outbox);
+
+  void finish() override;
+
+  bool failed() const override { return failed_; }
+
+ private:
+  void record(const Message& message);
+  void fail(const std::string& what);
+
+  std::optional<LogWriter> writer_;
+  bool failed_{false};
+};
+
+}  // namespace waymark
