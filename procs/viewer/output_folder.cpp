@@ -50,7 +50,7 @@ class TemporaryFile {
 }  // namespace
 
 void write_file_atomically(const std::filesystem::path& file, std::string_view bytes) {
-  TemporaryFile temporary{file.parent_path() / ("." + file.filename().string() + ".part")};
+  TemporaryFile temporary{file.parent_path() / fmt::format(".{}.part", file.filename().string())};
   if (!temporary.write(bytes) || !temporary.rename_to(file)) {
     throw std::system_error{errno, std::generic_category(), file.string() + ": cannot be written"};
   }

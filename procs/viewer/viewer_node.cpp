@@ -11,8 +11,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <stdexcept>
+#include <spdlog/spdlog.h>
 
 namespace waymark {
 namespace {
@@ -92,10 +91,10 @@ void ViewerNode::write_pictures() {
 void ViewerNode::finish() {
   write_data();
   write_pictures();
-  if (folder_.failed_files().empty()) return;
-  throw std::runtime_error{fmt::format("{}: could not always be written: {}",
-                                       folder_.path().string(),
-                                       fmt::join(folder_.failed_files(), ", "))};
+  if (failed()) {
+    spdlog::error("{}: could not always be written: {}", folder_.path().string(),
+                  fmt::join(folder_.failed_files(), ", "));
+  }
 }
 
 }  // namespace waymark

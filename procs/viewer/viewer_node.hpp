@@ -24,8 +24,10 @@ class ViewerNode final : public Node {
   ViewerNode(const Config& config, Inbox& inbox, Outbox& outbox);
 
   /// Writes everything once more.
-  /// @throws std::runtime_error when a file could not be written, now or earlier.
   void finish() override;
+
+  /// True when a file could not be written, now or earlier.
+  bool failed() const override { return !folder_.failed_files().empty(); }
 
  private:
   void subscribe(Inbox& inbox);
