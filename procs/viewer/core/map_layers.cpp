@@ -136,7 +136,7 @@ void draw_particles(cv::Mat& panel, const View& view, const std::vector<Se2>& pa
 
 int ellipse_magnification(const std::vector<EstimatedPose>& estimates, double spacing_m,
                           double px_per_m) {
-  constexpr double kVisible_px = 14.0;
+  constexpr double kVisible_px = 26.0;
   std::vector<double> radii_px;
   for (const EstimatedPose& pose : spaced(estimates, spacing_m))
     radii_px.push_back(px_per_m * three_sigma(pose.covariance).major_m);

@@ -98,6 +98,11 @@ Folding best_folding(const Box& box, const MapPageStyle& style) {
   return best;
 }
 
+Box with_label_room(const Box& tight, const MapPageStyle& style) {
+  const double rough_px_per_m = best_folding(padded(tight, 0.5), style).px_per_m;
+  return padded(tight, kLabelRoom_px / rough_px_per_m);
+}
+
 Panel panel_at(const View& view, int left_px, int top_px) {
   return {view, cv::Rect{cv::Point{left_px, top_px}, view.size_px()}};
 }
@@ -113,7 +118,7 @@ PageContent content_of(const Scene& scene) {
           .particles = scene.particles};
 }
 
-Box bounds(const PageContent& content, const Se2& view_from_map) {
+Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry) {
   BoxBuilder bounds;
   add_known_cells(content.map, view_from_map, bounds);
   const auto reach = bounds.reach();
@@ -126,8 +131,10 @@ Box bounds(const PageContent& content, const Se2& view_from_map) {
     add(pose.map_from_base);
   for (const TimedPose& pose : content.truth_in_map)
     add(pose.frame_from_base);
-  for (const TimedPose& pose : content.odometry_in_map)
-    add(pose.frame_from_base);
+  if (odometry == Odometry::kIncluded) {
+    for (const TimedPose& pose : content.odometry_in_map)
+      add(pose.frame_from_base);
+  }
   return bounds.box();
 }
 
@@ -159,16 +166,19 @@ Se2 view_from_map(const GridMap& map) {
 
 MapPage lay_out(const PageContent& content, const MapPageStyle& style) {
   const Se2 view_from_map = viewer::view_from_map(content.map);
-  const Box tight = bounds(content, view_from_map);
-  const double rough_px_per_m = best_folding(padded(tight, 0.5), style).px_per_m;
-  const Box box = padded(tight, kLabelRoom_px / rough_px_per_m);
+  const Box whole_box = with_label_room(bounds(content, view_from_map, Odometry::kIncluded), style);
+  // Strips stay close to the map: odometry may leave them, the overview shows where it goes.
+  const bool is_folded = best_folding(whole_box, style).num_strips > 1;
+  const Box box = is_folded
+                      ? with_label_room(bounds(content, view_from_map, Odometry::kLeftOut), style)
+                      : whole_box;
   const Folding folding = best_folding(box, style);
 
   MapPage page;
   int y_px = kHeadingHeight_px;
   const int inner_px = style.page_width_px - 2 * kMargin_px;
   if (folding.num_strips > 1) {
-    const View whole{view_from_map, box, inner_px / box.width_m()};
+    const View whole{view_from_map, whole_box, inner_px / whole_box.width_m()};
     page.overview = panel_at(whole, kMargin_px, y_px);
     y_px = page.overview->page_px.br().y + 2 * kGap_px;
   }

@@ -40,9 +40,11 @@ struct PageContent {
 
 PageContent content_of(const Scene& scene);
 
+enum class Odometry { kIncluded, kLeftOut };
+
 /// The smallest upright box around the content after a rotation, without poses that are far away
 /// from the map. Never empty.
-Box bounds(const PageContent& content, const Se2& view_from_map);
+Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry);
 
 /// Turns long maps so that they lie; leaves the others, and those that nearly lie, as they are.
 Se2 view_from_map(const GridMap& map);

@@ -32,12 +32,21 @@ std::vector<Beam> beams_of(const AnnotatedScan& scan) {
   return beams;
 }
 
+double ring_step_m(double reach_m) {
+  return reach_m > 12.0 ? 5.0 : 1.0;
+}
+
 void draw_range_rings(cv::Mat& image, cv::Point2d centre, double reach_m, double px_per_m) {
-  const double step_m = reach_m > 12.0 ? 5.0 : 1.0;
-  for (double range_m = step_m; range_m <= reach_m; range_m += step_m) {
-    draw_circle(image, centre, range_m * px_per_m, {palette::kHairline, 1});
-    draw_text(image, fmt::format("{:g} m", range_m), {centre.x + 6, centre.y + range_m * px_per_m},
-              Anchor::kLeft, {.height_px = 13.0, .colour = palette::kFaintInk});
+  for (double range_m = ring_step_m(reach_m); range_m <= reach_m; range_m += ring_step_m(reach_m))
+    draw_circle(image, centre, range_m * px_per_m, {palette::kHairline, 2});
+}
+
+void label_range_rings(cv::Mat& image, cv::Point2d centre, double reach_m, double px_per_m) {
+  for (double range_m = ring_step_m(reach_m); range_m <= reach_m; range_m += ring_step_m(reach_m)) {
+    const cv::Point2d place{centre.x, centre.y + range_m * px_per_m};
+    fill_box(image, {place.x - 26, place.y - 11, 52, 22}, 6, palette::kPage);
+    draw_text(image, fmt::format("{:g} m", range_m), place, Anchor::kCentre,
+              {.height_px = 13.0, .colour = palette::kFaintInk});
   }
 }
 
@@ -53,7 +62,7 @@ void draw_ids(cv::Mat& image, const std::vector<Beam>& beams, cv::Point2d centre
       sum += beam.range_m * beam.direction;
     const cv::Point2d middle = sum * (1.0 / static_cast<double>(group.size()));
     const double range_m = std::max(cv::norm(middle), 1e-9);
-    const cv::Point2d place = centre + middle * (px_per_m + 44.0 / range_m);
+    const cv::Point2d place = centre + middle * (px_per_m + 64.0 / range_m);
     const Font font{.height_px = 20.0, .colour = palette::text_on(colour_of_id(id)), .bold = true};
     const std::string text = std::to_string(id);
     const double width = text_width_px(text, font) + 20.0;
@@ -90,6 +99,7 @@ cv::Mat paint_scan(const AnnotatedScan& scan, int size_px) {
     draw_line(image, centre, end, {colour_of_id(beam.marker_id), 2});
     fill_circle(image, end, 5.0, colour_of_id(beam.marker_id));
   }
+  label_range_rings(image, centre, reach_m, px_per_m);
   draw_ids(image, beams, centre, px_per_m);
   fill_circle(image, centre, 13.0, palette::kInk);
   fill_polygon(

@@ -37,20 +37,25 @@ inline GridMap drawn_map(const std::vector<std::string>& picture) {
   return map;
 }
 
-/// A whole map as one tile with its lower left corner at the origin of the map frame.
+/// A whole map as tiles of 64 cells; the lower left corner of tile (0, 0) is the map's.
 inline void put_cells(TiledMap& tiles, const GridMap& map) {
-  const int side = std::max(map.occupancy_percent.rows, map.occupancy_percent.cols);
-  std::vector<std::int8_t> occupancy(static_cast<std::size_t>(side) * side, -1);
-  std::vector<std::int16_t> ids(occupancy.size(), -1);
-  for (int row = 0; row < map.occupancy_percent.rows; ++row) {
-    for (int column = 0; column < map.occupancy_percent.cols; ++column) {
-      const auto index = static_cast<std::size_t>(row) * side + column;
-      occupancy[index] = map.occupancy_percent(row, column);
-      ids[index] = map.marker_ids(row, column);
+  constexpr int kSide = 64;
+  const TileLayout layout{map.origin_m.x(), map.origin_m.y(), map.resolution_m, kSide};
+  const cv::Rect all{{0, 0}, map.occupancy_percent.size()};
+  for (int bottom = 0; bottom < all.height; bottom += kSide) {
+    for (int left = 0; left < all.width; left += kSide) {
+      std::vector<std::int8_t> occupancy;
+      std::vector<std::int16_t> ids;
+      for (int row = bottom; row < bottom + kSide; ++row) {
+        for (int column = left; column < left + kSide; ++column) {
+          const bool is_inside = all.contains({column, row});
+          occupancy.push_back(is_inside ? map.occupancy_percent(row, column) : schar{-1});
+          ids.push_back(is_inside ? map.marker_ids(row, column) : short{-1});
+        }
+      }
+      tiles.put(layout, Timestamp{}, {left / kSide, bottom / kSide, occupancy, ids});
     }
   }
-  const TileLayout layout{map.origin_m.x(), map.origin_m.y(), map.resolution_m, side};
-  tiles.put(layout, Timestamp{}, {0, 0, occupancy, ids});
 }
 
 /// Rectangular room seen from inside: its walls run along the given inner faces.
@@ -111,10 +116,10 @@ inline Scene corridor_scene(double length_m, std::uint64_t seed = 1) {
   for (int i = 0; i < count; ++i) {
     const double x_m = 0.02 * i;
     const Timestamp time{i * kScanPeriod};
-    EstimatedPose pose{.time = time,
-                       .map_from_base = {x_m + 0.01 * std::sin(x_m), 0.03 * std::sin(0.7 * x_m),
-                                         0.02 * std::cos(0.7 * x_m)},
-                       .health = i < 20 ? Health::kInitialising : Health::kTracking};
+    EstimatedPose pose{
+        .time = time,
+        .map_from_base = {x_m + 0.01 * std::sin(x_m), 0.03 * std::sin(0.7 * x_m), 0.0},
+        .health = i < 20 ? Health::kInitialising : Health::kTracking};
     const double phase = std::fmod(x_m, 4.0);
     if (phase > 1.5 && phase < 2.4 && x_m > 20 && x_m < 35) pose.health = Health::kDegenerate;
     pose.covariance.diagonal() << std::pow(0.01 + 0.015 * phase, 2), 4e-5, 1e-5;
