@@ -43,9 +43,10 @@ core_is_pure() {
 core_is_pure_with_all_it_includes() {
   [[ -f $build_dir/build.ninja ]] || exit $kSkipped
   ninja -C "$build_dir" -t deps | awk '
-    /^[^ ].*: #deps/ { object = $1 ~ /^procs\/[a-z]+\/core\// ? $1 : "" }
+    /^[^ ].*: #deps/ { object = $1 ~ /^procs\/.*\/core\// ? $1 : ""; objects += object != "" }
     object && /\/lcm\/|\/generated\/waymark\/|\/spdlog\/|opencv2\/(highgui|viz)/ { print object, $1 }
-    object ~ /^procs\/slam/ && /\/(opencv2|mujoco|tbb|nlohmann)\// { print object, $1 }' |
+    object ~ /^procs\/slam/ && /\/(opencv2|mujoco|tbb|nlohmann)\// { print object, $1 }
+    END { if (!objects) print "no object of a core in", ENVIRON["PWD"] }' |
     none_of "objects of a core that depend on what is not for a core"
 }
 
