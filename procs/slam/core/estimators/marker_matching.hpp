@@ -20,17 +20,6 @@ struct MarkerMatchingConfig {
   void describe(Fields& fields);
 };
 
-MotionNoise motion{};
-UpdateGate gate{};
-MatchingRewards rewards{};
-int particles{200};
-double resample_threshold{0.5};  ///< share of effective particles below which to resample
-double sighting_sigma_m{0.025};  ///< a sighting with this error counts half
-double range_sigma_m{0.01};      ///< of the LiDAR
-double lost_agreement{0.25};     ///< of the beams with the mapped walls; below: lost
-std::uint64_t seed{1};
-};
-
 class MarkerMatchingEstimator final : public Estimator {
  public:
   MarkerMatchingEstimator(const EstimatorSetup& setup, const MarkerMatchingConfig& config);
