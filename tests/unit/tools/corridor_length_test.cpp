@@ -80,6 +80,28 @@ TEST(CorridorLength, AnSBendIsMeasuredAlongItsArcs) {
   }
 }
 
+TEST(CorridorLength, AnyCorridorIsMeasuredToAPixelAndWithoutBias) {
+  Random random{5};
+  constexpr int kCorridors = 60;
+  double sum_px = 0.0;
+  for (int i = 0; i < kCorridors; ++i) {
+    Drawing drawing{1000, 1000, random.uniform(180, 850), random.uniform(10, 25)};
+    drawing.holes = random.uniform(0, 0.3);
+    drawing.specks = random.uniform(0, 0.02);
+    const double turn = random.uniform(0, M_PI / 2);
+    const double bend = i % 2 == 0 ? 0.0 : random.uniform(0.05, 0.6);
+    const double x0 = 50 + 40 * random.uniform();
+    const double y0 = 50 + 40 * random.uniform();
+    const Shape shape = bend == 0.0 ? straight_shape(x0, y0, turn)
+                                    : arc_shape(x0, y0, turn * 0.5, drawing.length_px / bend);
+    const double error_px = measure_corridor(draw(drawing, shape)).length_px - drawing.length_px;
+    EXPECT_LE(std::abs(error_px), 1.0) << i;
+    sum_px += error_px;
+  }
+  EXPECT_LE(std::abs(sum_px / kCorridors), 0.3);
+  RecordProperty("mean", std::to_string(sum_px / kCorridors));
+}
+
 TEST(CorridorLength, FalseCellsAndHolesDoNotMatter) {
   for (const double share : {0.01, 0.03, 0.05}) {
     Drawing drawing{1020, 61, 1000};
