@@ -43,11 +43,11 @@ void MarkerMatchingConfig::describe(Fields& fields) {
   fields.field("particles", particles, {1, 100000}, "number of hypotheses");
   fields.field("resample_threshold", resample_threshold, kFraction,
                "share of effective particles below which to resample");
-  fields.section("rewards", rewards);
   fields.field("sighting_sigma_m", sighting_sigma_m, kPositive,
                "a sighting with this error along its wall counts half");
   fields.field("lost_agreement", lost_agreement, kFraction,
                "share of the beams that must end on mapped walls, else the robot is lost");
+  fields.section("rewards", rewards);
 }
 
 }  // namespace waymark
