@@ -119,7 +119,7 @@ Sheet draw_sheet(const SheetOptions& options, int id) {
   int baseline_px{};
   const cv::Size unit = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 1.0, 1, &baseline_px);
   const double scale =
-      std::min(0.9 * sheet.picture.cols / unit.width, 0.7 * text_px / (unit.height + baseline_px));
+      std::min(1.0 * side_px / unit.width, 0.7 * text_px / (unit.height + baseline_px));
   cv::putText(sheet.picture, text, {margin_px, sheet.picture.rows - text_px / 3},
               cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar{0},
               std::max(1, static_cast<int>(2.0 * scale)), cv::LINE_AA);
