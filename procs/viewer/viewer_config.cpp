@@ -6,9 +6,7 @@ namespace waymark {
 void ViewerSection::describe(Fields& fields) {
   fields.field("title", title, "heading of map.png; empty = name of the output folder");
   fields.field("write_period_s", write_period_s, {0.1, 3600.0},
-               "message time between writes of the map, trajectory and marker files");
-  fields.field("picture_period_s", picture_period_s, {0.1, 3600.0},
-               "message time between writes of the pictures");
+               "message time between writes of map, trajectory, markers, and one of the pictures");
   fields.field("occupied_threshold", thresholds.occupied, kFraction,
                "occupancy from which on a cell is written as occupied");
   fields.field("free_threshold", thresholds.free, kFraction,

@@ -14,7 +14,6 @@ namespace waymark {
 struct ViewerSection {
   std::string title{};  ///< empty = name of the output folder
   double write_period_s{5.0};
-  double picture_period_s{10.0};
   viewer::MapThresholds thresholds{};
   viewer::MapPageStyle map_page{};
   int scan_size_px{1000};

@@ -13,6 +13,8 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <array>
+
 namespace waymark {
 namespace {
 
@@ -28,9 +30,9 @@ std::string folder_name(const std::filesystem::path& folder) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-/// True when a period has passed, or on the first call (which starts the period).
+/// True when a period has passed. The first call starts it, and so does a jump back in time.
 bool is_due(std::optional<Timestamp>& last, Timestamp now, double period_s) {
-  if (!last) last = now;
+  if (!last || now < *last) last = now;
   if (now - *last < duration_from_seconds(period_s)) return false;
   last = now;
   return true;
@@ -61,8 +63,12 @@ void ViewerNode::subscribe(Inbox& inbox) {
 }
 
 void ViewerNode::write_when_due(Timestamp time) {
-  if (is_due(last_data_time_, time, config_.viewer.write_period_s)) write_data();
-  if (is_due(last_picture_time_, time, config_.viewer.picture_period_s)) write_pictures();
+  if (!is_due(last_write_time_, time, config_.viewer.write_period_s)) return;
+  write_data();
+  constexpr std::array kPictures{&ViewerNode::write_map_picture, &ViewerNode::write_marker_layer,
+                                 &ViewerNode::write_scan_and_plain_map};
+  (this->*kPictures[next_picture_])();
+  next_picture_ = (next_picture_ + 1) % kPictures.size();
 }
 
 void ViewerNode::write_data() {
@@ -75,22 +81,30 @@ void ViewerNode::write_data() {
   folder_.write("markers.csv", viewer::markers_csv_text(scene_.landmarks));
 }
 
-void ViewerNode::write_pictures() {
-  const ViewerSection& settings = config_.viewer;
-  const viewer::GridMap map = scene_.map.grid();
-  folder_.write("map.png", viewer::png_bytes(viewer::paint_map(scene_, settings.map_page)));
-  folder_.write("plain.png", viewer::png_bytes(viewer::paint_plain(map, settings.thresholds)));
-  folder_.write("marker_layer.png",
-                viewer::png_bytes(viewer::paint_marker_layer(
-                    map, scene_.title + ": marker id per cell", settings.map_page)));
-  if (scene_.scan)
-    folder_.write("scan.png",
-                  viewer::png_bytes(viewer::paint_scan(*scene_.scan, settings.scan_size_px)));
+void ViewerNode::write_map_picture() {
+  const cv::Mat picture = viewer::paint_map(scene_, config_.viewer.map_page);
+  folder_.write("map.png", viewer::png_bytes(picture));
+}
+
+void ViewerNode::write_marker_layer() {
+  const cv::Mat picture = viewer::paint_marker_layer(
+      scene_.map.grid(), scene_.title + ": marker id per cell", config_.viewer.map_page);
+  folder_.write("marker_layer.png", viewer::png_bytes(picture));
+}
+
+void ViewerNode::write_scan_and_plain_map() {
+  const cv::Mat plain = viewer::paint_plain(scene_.map.grid(), config_.viewer.thresholds);
+  folder_.write("plain.png", viewer::png_bytes(plain));
+  if (!scene_.scan) return;
+  const cv::Mat scan = viewer::paint_scan(*scene_.scan, config_.viewer.scan_size_px);
+  folder_.write("scan.png", viewer::png_bytes(scan));
 }
 
 void ViewerNode::finish() {
   write_data();
-  write_pictures();
+  write_map_picture();
+  write_marker_layer();
+  write_scan_and_plain_map();
   if (failed()) {
     spdlog::error("{}: could not always be written: {}", folder_.path().string(),
                   fmt::join(folder_.failed_files(), ", "));

@@ -8,6 +8,7 @@
 #include "viewer/scene_updater.hpp"
 #include "viewer/viewer_config.hpp"
 
+#include <cstddef>
 #include <optional>
 
 namespace waymark {
@@ -31,17 +32,20 @@ class ViewerNode final : public Node {
 
  private:
   void subscribe(Inbox& inbox);
-  /// Writes what is due at that message time.
+  /// Writes the data files when a period has passed, and with them one of the pictures: all at
+  /// once would hold up a lockstep run.
   void write_when_due(Timestamp time);
   void write_data();
-  void write_pictures();
+  void write_map_picture();
+  void write_marker_layer();
+  void write_scan_and_plain_map();
 
   Config config_;
   viewer::Scene scene_{};
   viewer::SceneUpdater updater_;
   viewer::OutputFolder folder_;
-  std::optional<Timestamp> last_data_time_{};
-  std::optional<Timestamp> last_picture_time_{};
+  std::optional<Timestamp> last_write_time_{};
+  std::size_t next_picture_{0};
 };
 
 }  // namespace waymark

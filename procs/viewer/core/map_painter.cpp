@@ -16,7 +16,7 @@ namespace waymark::viewer {
 namespace {
 
 constexpr StrokeWidths kFineStrokes{
-    .health_px = 10, .true_px = 5, .odometry_px = 3, .estimated_px = 1, .plate_px = 4};
+    .health_px = 10, .true_px = 5, .odometry_px = 3, .estimated_px = 2, .plate_px = 4};
 
 double label_height_px(double px_per_m) {
   return std::clamp(0.16 * px_per_m, 13.0, 21.0);

@@ -109,6 +109,13 @@ TEST_F(ViewerNodeTest, WritesDuringTheRunEveryPeriodOfMessageTime) {
   EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("105.000000 1.000000000"));
 }
 
+TEST_F(ViewerNodeTest, EveryPictureIsWrittenDuringTheRun) {
+  ViewerNode node{config_, inbox_, outbox_};
+  for (int i = 0; i <= 15; ++i)
+    deliver(channels::kSlamEstimate, estimate_at(1.0 * i, 0.1 * i));
+  EXPECT_THAT(names(), IsSupersetOf({"map.png", "marker_layer.png", "plain.png"}));
+}
+
 TEST_F(ViewerNodeTest, ATrajectoryHasOneLinePerEstimateWithoutRepeats) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
