@@ -28,10 +28,11 @@ std::vector<std::string> split(std::string_view line) {
 
 std::string read_text(const std::filesystem::path& file) {
   std::ifstream input{file, std::ios::binary};
-  std::string text{std::istreambuf_iterator<char>{input}, {}};
-  if (!input.is_open() || input.bad() || std::filesystem::is_directory(file))
+  if (!input.is_open() || std::filesystem::is_directory(file))
     throw InputError{
         fmt::format("{}: cannot be read; give the path of an existing file", file.string())};
+  std::string text{std::istreambuf_iterator<char>{input}, {}};
+  if (input.bad()) throw InputError{fmt::format("{}: reading failed", file.string())};
   return text;
 }
 

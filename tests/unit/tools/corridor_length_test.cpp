@@ -35,7 +35,7 @@ TEST(CorridorLength, ACorridorUpTheImageIsMeasuredTheSameWay) {
 }
 
 TEST(CorridorLength, TurningTheMapChangesNothing) {
-  for (const double turn_deg : {0.05, 0.3, 1.0, 3.5, 10.0, 27.0, 45.0, 63.0, 80.0, -3.5, -45.0}) {
+  for (const double turn_deg : {0.05, 1.0, 3.5, 10.0, 27.0, 45.0, 80.0, -3.5}) {
     const double turn = radians(turn_deg);
     const double x0 = turn_deg < 0 ? 60 : 60 + 60 * std::sin(turn);
     const double y0 = turn_deg < 0 ? 60 - 1000 * std::sin(turn) : 60;
@@ -78,6 +78,27 @@ TEST(CorridorLength, AnSBendIsMeasuredAlongItsArcs) {
     EXPECT_NEAR(measured.length_px, 1000.0, 1.0) << turn_deg;
     EXPECT_THAT(measured.flags, ElementsAre("curved")) << turn_deg;
   }
+}
+
+TEST(CorridorLength, AnyCorridorIsMeasuredToAPixelAndWithoutBias) {
+  Random random{5};
+  constexpr int kCorridors = 30;
+  double sum_px = 0.0;
+  for (int i = 0; i < kCorridors; ++i) {
+    Drawing drawing{720, 720, random.uniform(180, 600), random.uniform(10, 25)};
+    drawing.holes = random.uniform(0, 0.3);
+    drawing.specks = random.uniform(0, 0.02);
+    const double turn = random.uniform(0, M_PI / 2);
+    const double bend = i % 2 == 0 ? 0.0 : random.uniform(0.05, 0.6);
+    const double x0 = 50 + 40 * random.uniform();
+    const double y0 = 50 + 40 * random.uniform();
+    const Shape shape = bend == 0.0 ? straight_shape(x0, y0, turn)
+                                    : arc_shape(x0, y0, turn * 0.5, drawing.length_px / bend);
+    const double error_px = measure_corridor(draw(drawing, shape)).length_px - drawing.length_px;
+    EXPECT_LE(std::abs(error_px), 1.0) << i;
+    sum_px += error_px;
+  }
+  EXPECT_LE(std::abs(sum_px / kCorridors), 0.3);
 }
 
 TEST(CorridorLength, FalseCellsAndHolesDoNotMatter) {
