@@ -2,6 +2,7 @@
 // How the core's parameters stand in a configuration. The core itself knows no files.
 #include "common/config/fields.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
+#include "slam/core/estimators/waymark.hpp"
 
 namespace waymark {
 
@@ -48,6 +49,66 @@ void MarkerMatchingConfig::describe(Fields& fields) {
   fields.field("lost_agreement", lost_agreement, kFraction,
                "share of the beams that must end on mapped walls, else the robot is lost");
   fields.section("rewards", rewards);
+}
+
+void OdometryNoise::describe(Fields& fields) {
+  fields.field("along_per_sqrt_m", along_per_sqrt_m, kNotNegative,
+               "random walk of the distance [m/sqrt(m)]");
+  fields.field("across_per_sqrt_m", across_per_sqrt_m, kNotNegative,
+               "random walk sideways [m/sqrt(m)]");
+  fields.field("turn_per_sqrt_m", turn_per_sqrt_m, kNotNegative,
+               "random walk of the heading by distance [rad/sqrt(m)]");
+  fields.field("turn_per_sqrt_rad", turn_per_sqrt_rad, kNotNegative,
+               "random walk of the heading by turn [rad/sqrt(rad)]");
+  fields.field("scale_sigma", scale_sigma, kPositive,
+               "how wrong the scale of distances may be (standard deviation)");
+  fields.field("turn_scale_sigma", turn_scale_sigma, kPositive,
+               "how wrong the scale of turns may be");
+  fields.field("drift_sigma_rad_per_m", drift_sigma_rad_per_m, kPositive,
+               "how much the heading may drift per metre");
+}
+
+void SurfaceMatchingConfig::describe(Fields& fields) {
+  fields.field("surface_sigma_m", surface_sigma_m, kPositive,
+               "roughness of walls, and errors of the beams' angles");
+  fields.field("outlier_sigmas", outlier_sigmas, kPositive,
+               "a beam this far from its wall counts a quarter");
+  fields.field("information_share", information_share, kFraction,
+               "of independent beams on an exact map");
+  fields.field("weak_share", weak_share, kFraction,
+               "directions with less than this share of the strongest are unobserved");
+}
+
+void MarkerMeasurementConfig::describe(Fields& fields) {
+  fields.field("wall_sigma_m", wall_sigma_m, kNotNegative, "how far markers hang off their wall");
+  fields.field("wall_sigma_rad", wall_sigma_rad, kNotNegative, "how skew they hang");
+  fields.field("reach_m", reach_m, kPositive, "wall around a marker that is believed straight");
+  fields.field("camera_sigma_m", camera_sigma_m, kNotNegative,
+               "error that neighbouring frames have in common");
+  fields.field("camera_sigma_rad", camera_sigma_rad, kNotNegative, "the same, of the bearing");
+  fields.field("covariance_factor", covariance_factor, kPositive,
+               "on the detector's covariances: neighbouring frames err alike");
+  fields.field("gate", gate, kPositive, "chi^2 between camera and wall that is still believed");
+}
+
+void WaymarkConfig::describe(Fields& fields) {
+  fields.field("particles", particles, {1, 100000}, "number of hypotheses");
+  fields.field("resample_threshold", resample_threshold, kFraction,
+               "share of effective particles below which to resample");
+  fields.field("update_distance_m", update_distance_m, kNotNegative,
+               "a scan is used after this much driving");
+  fields.field("update_turn_rad", update_turn_rad, kNotNegative, "or this much turning");
+  fields.field("marker_gate", marker_gate, kPositive,
+               "chi^2 of a sighting of a known marker that is still believed");
+  fields.field("same_marker_within_m", same_marker_within_m, kPositive,
+               "no second marker of one id nearer than this");
+  fields.field("scan_evidence", scan_evidence, kFraction,
+               "share of a scan's log-likelihood that weighs particles");
+  fields.field("lost_agreement", lost_agreement, kFraction,
+               "share of the mapped beams that must agree with the walls, else the robot is lost");
+  fields.section("odometry", odometry);
+  fields.section("matching", matching);
+  fields.section("markers", markers);
 }
 
 }  // namespace waymark

@@ -2,6 +2,7 @@
 #include "slam/estimator_factory.hpp"
 
 #include "slam/core/estimators/odometry.hpp"
+#include "slam/core/estimators/waymark.hpp"
 
 namespace waymark {
 
@@ -12,6 +13,8 @@ std::unique_ptr<Estimator> make_estimator(const SlamConfig& config) {
       return std::make_unique<OdometryEstimator>(setup);
     case EstimatorName::kMarkerMatching:
       return std::make_unique<MarkerMatchingEstimator>(setup, config.slam.marker_matching);
+    case EstimatorName::kWaymark:
+      return std::make_unique<WaymarkEstimator>(setup, config.slam.waymark);
   }
   return nullptr;
 }

@@ -34,10 +34,11 @@ void PreprocessingConfig::describe(Fields& fields) {
 }
 
 void SlamSection::describe(Fields& fields) {
-  fields.choice(
-      "estimator", estimator,
-      {{"odometry", EstimatorName::kOdometry}, {"marker_matching", EstimatorName::kMarkerMatching}},
-      "method");
+  fields.choice("estimator", estimator,
+                {{"odometry", EstimatorName::kOdometry},
+                 {"marker_matching", EstimatorName::kMarkerMatching},
+                 {"waymark", EstimatorName::kWaymark}},
+                "method");
   fields.field("seed", seed, {0.0, 9e15}, "of all random numbers");
   fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
   fields.field("map_period_s", map_period_s, kPositive,
@@ -48,6 +49,7 @@ void SlamSection::describe(Fields& fields) {
   fields.section("gate", gate);
   fields.section("grid", grid);
   fields.section("marker_matching", marker_matching);
+  fields.section("waymark", waymark);
 }
 
 void SlamConfig::describe(Fields& fields) {
@@ -80,6 +82,7 @@ EstimatorSetup estimator_setup(const SlamConfig& config) {
   setup.motion = config.slam.motion;
   setup.gate = config.slam.gate;
   setup.range_sigma_m = config.robot.lidar.range_sigma_m;
+  setup.base_from_camera = sensor_setup(config).camera.base_from_camera;
   setup.seed = static_cast<std::uint64_t>(config.slam.seed);
   return setup;
 }

@@ -6,13 +6,14 @@
 #include "common/robot/robot_config.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
+#include "slam/core/estimators/waymark.hpp"
 #include "slam/core/input/sensor_queue.hpp"
 
 #include <cstdint>
 
 namespace waymark {
 
-enum class EstimatorName { kOdometry, kMarkerMatching };
+enum class EstimatorName { kOdometry, kMarkerMatching, kWaymark };
 
 /// How marker sightings are put on beams, and which beams may say "no marker here".
 struct PreprocessingConfig {
@@ -35,6 +36,7 @@ struct SlamSection {
   UpdateGate gate{};
   MapperConfig grid{};
   MarkerMatchingConfig marker_matching{};
+  WaymarkConfig waymark{};
 
   void describe(Fields& fields);
 };

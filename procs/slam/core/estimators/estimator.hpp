@@ -21,6 +21,7 @@ struct EstimatorSetup {
   MotionNoise motion{};
   UpdateGate gate{};
   double range_sigma_m{0.01};  ///< of the LiDAR
+  Se2 base_from_camera{};      ///< x = viewing direction
   std::uint64_t seed{1};
 };
 

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/landmark/marker_measurement.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kFirstBand_m = 0.15;  // beams this near to the expected line count at first
+constexpr double kBand_m = 0.04;       // and to the line once fitted
+constexpr double kFirstReach_m = 1.0;
+constexpr double kSurveyed_m = 0.5;
+constexpr int kFits = 4;
+constexpr int kMinBeams = 8;
+constexpr double kMinExtent_m = 0.1;            // [m] root mean square length of the fitted stretch
+constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
+constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
+
+double squared(double x) {
+  return x * x;
+}
+
+struct Line {
+  Eigen::Vector2d point;
+  Eigen::Vector2d normal;
+};
+
+/// Weighted least squares across the line, the weights from the range noise across it.
+struct LineFit {
+  double weight{0.0};
+  int beams{0};
+  Eigen::Vector2d sum{Eigen::Vector2d::Zero()};
+  Eigen::Matrix2d squares{Eigen::Matrix2d::Zero()};
+
+  void add(const Eigen::Vector2d& point, double variance) {
+    weight += 1.0 / variance;
+    sum += point / variance;
+    squares += point * point.transpose() / variance;
+    ++beams;
+  }
+};
+
+LineFit collect(std::span<const AnnotatedBeam> beams, const Line& line,
+                const Eigen::Vector2d& place, double band_m, double reach_m, double range_sigma_m) {
+  LineFit fit;
+  for (const AnnotatedBeam& annotated : beams) {
+    const Beam& beam = annotated.beam;
+    const Eigen::Vector2d offset = beam.end_in_base - place;
+    if (std::abs(line.normal.dot(beam.end_in_base - line.point)) > band_m) continue;
+    if (offset.norm() > reach_m) continue;
+    const double across =
+        line.normal.dot(beam.end_in_base - beam.start_in_base) / std::max(beam.range_m, 1e-6);
+    fit.add(offset, squared(range_sigma_m * across) + squared(kRoughness_m));
+  }
+  return fit;
+}
+
+Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const Se2& base_from_camera,
+                               const MarkerMeasurementConfig& config) {
+  const Eigen::Vector2d ray =
+      sighting.base_from_marker.translation() - base_from_camera.translation();
+  const Eigen::Vector2d across{-ray.y(), ray.x()};
+  Eigen::Matrix3d covariance = config.covariance_factor * sighting.covariance_in_base;
+  covariance.topLeftCorner<2, 2>() +=
+      squared(config.camera_sigma_rad) * across * across.transpose();
+  covariance.topLeftCorner<2, 2>().diagonal().array() += squared(config.camera_sigma_m);
+  covariance(2, 2) += squared(config.camera_sigma_rad);
+  return covariance;
+}
+
+/// Kalman update of the camera's pose with "it lies in the wall and faces as the wall does".
+std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, const WallLine& wall,
+                                              const MarkerMeasurementConfig& config) {
+  Eigen::Matrix<double, 2, 3> rows = Eigen::Matrix<double, 2, 3>::Zero();
+  rows.topLeftCorner<1, 2>() = wall.normal.transpose();
+  rows(1, 2) = 1.0;
+  const Se2& seen = measurement.base_from_marker;
+  const double normal_rad = std::atan2(wall.normal.y(), wall.normal.x());
+  const Eigen::Vector2d innovation{wall.normal.dot(wall.point - seen.translation()),
+                                   angle_difference(normal_rad, seen.theta())};
+  Eigen::Matrix2d spread = rows * measurement.covariance * rows.transpose();
+  spread(0, 0) += squared(wall.sigma_m) + squared(config.wall_sigma_m);
+  spread(1, 1) += squared(wall.sigma_rad) + squared(config.wall_sigma_rad);
+  const Eigen::Matrix2d inverse = spread.inverse();
+  if (!(innovation.dot(inverse * innovation) < config.gate)) return std::nullopt;
+  const Eigen::Matrix<double, 3, 2> gain = measurement.covariance * rows.transpose() * inverse;
+  measurement.base_from_marker = deviated(seen, gain * innovation);
+  measurement.covariance -= (gain * rows * measurement.covariance).eval();
+  measurement.covariance =
+      (0.5 * (measurement.covariance + measurement.covariance.transpose())).eval();
+  measurement.is_on_wall = true;
+  return measurement;
+}
+
+/// The LiDAR sees the surroundings of a marker: if no wall fits it there, its pose is wrong.
+bool is_surveyed(std::span<const AnnotatedBeam> beams, const MarkerSighting& sighting) {
+  const auto is_near = [&](const AnnotatedBeam& beam) {
+    return (beam.beam.end_in_base - sighting.base_from_marker.translation()).norm() < kSurveyed_m;
+  };
+  return std::count_if(beams.begin(), beams.end(), is_near) >= kMinBeams;
+}
+
+}  // namespace
+
+std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
+                                 const Eigen::Vector2d& place_in_base, double normal_rad,
+                                 double range_sigma_m, double reach_m) {
+  const Eigen::Vector2d expected{std::cos(normal_rad), std::sin(normal_rad)};
+  Line line{place_in_base, expected};
+  LineFit fit;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Vector2d axis = Eigen::Vector2d::Zero();
+  double extent = 0.0;  // weighted mean square length [m^2]
+  for (int round = 0; round < kFits; ++round) {
+    const bool is_first = round == 0;
+    fit = collect(beams, line, place_in_base, is_first ? kFirstBand_m : kBand_m,
+                  is_first ? std::min(kFirstReach_m, reach_m) : reach_m, range_sigma_m);
+    if (fit.beams < kMinBeams) return std::nullopt;
+    mean = fit.sum / fit.weight;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
+        Eigen::Matrix2d{fit.squares / fit.weight - mean * mean.transpose()}};
+    extent = axes.eigenvalues()[1];
+    axis = axes.eigenvectors().col(1);
+    Eigen::Vector2d normal{-axis.y(), axis.x()};
+    if (normal.dot(expected) < 0.0) normal = -normal;
+    if (normal.dot(expected) < std::cos(kMaxTurn_rad)) return std::nullopt;
+    line = {place_in_base + mean, normal};
+  }
+  if (extent < squared(kMinExtent_m)) return std::nullopt;
+  WallLine wall;
+  wall.normal = line.normal;
+  const double ahead_m = axis.dot(-mean);
+  wall.point = line.point + ahead_m * axis;
+  wall.sigma_rad = 1.0 / std::sqrt(fit.weight * extent);
+  wall.sigma_m = std::sqrt(1.0 / fit.weight + squared(ahead_m * wall.sigma_rad));
+  return wall;
+}
+
+std::vector<MarkerMeasurement> measure_markers(const Observation& observation, double range_sigma_m,
+                                               const Se2& base_from_camera,
+                                               const MarkerMeasurementConfig& config) {
+  // The newest frame only: what one frame gets wrong, the next gets wrong in the same way.
+  Timestamp newest{};
+  for (const MarkerSighting& sighting : observation.sightings)
+    newest = std::max(newest, sighting.time);
+  std::vector<MarkerMeasurement> measurements;
+  for (const MarkerSighting& sighting : observation.sightings) {
+    if (sighting.time != newest) continue;
+    MarkerMeasurement measurement{sighting.id, sighting.time, sighting.base_from_marker,
+                                  in_robot_frame(sighting, base_from_camera, config)};
+    const auto wall = fit_wall(observation.beams, sighting.base_from_marker.translation(),
+                               sighting.base_from_marker.theta(), range_sigma_m, config.reach_m);
+    if (!wall) {
+      if (!is_surveyed(observation.beams, sighting)) measurements.push_back(measurement);
+    } else if (const auto held = hold_to_wall(measurement, *wall, config)) {
+      measurements.push_back(*held);
+    }
+  }
+  return measurements;
+}
+
+}  // namespace waymark

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a marker is from the robot: the camera's view of it, held to the wall that the LiDAR sees.
+#pragma once
+
+#include "slam/core/proposal/pose_information.hpp"
+#include "slam/core/scan/observation.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace waymark {
+
+class Fields;
+
+struct MarkerMeasurementConfig {
+  double wall_sigma_m{0.004};   ///< how far a marker hangs before its wall, bulges
+  double wall_sigma_rad{0.01};  ///< how skew
+  double reach_m{1.5};  ///< wall on both sides of the marker that is believed to be straight
+  double camera_sigma_m{0.002};    ///< what frames have in common, beside their own covariance
+  double camera_sigma_rad{0.001};  ///< the same as an angle at the camera
+  double covariance_factor{2.0};   ///< on the detector's covariance: corners err together
+  double gate{16.3};  ///< chi^2 between camera and wall, 3 degrees of freedom (16.3 = 99.9 %)
+
+  void describe(Fields& fields);
+};
+
+/// A piece of straight wall, base frame.
+struct WallLine {
+  Eigen::Vector2d point{Eigen::Vector2d::Zero()};    ///< on it, nearest to the marker
+  Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< unit, towards the robot
+  double sigma_m{0.0};                               ///< of the distance at `point`
+  double sigma_rad{0.0};                             ///< of the direction
+};
+
+/// The line through the beams' ends around a place with an expected normal; nothing where too few
+/// beams lie on one. The line may be extended: its uncertainty grows with the distance to the
+/// beams.
+std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
+                                 const Eigen::Vector2d& place_in_base, double normal_rad,
+                                 double range_sigma_m, double reach_m);
+
+/// Pose of a marker in the base frame with its covariance (order x y yaw).
+struct MarkerMeasurement {
+  int id{kNoMarker};
+  Timestamp time{};
+  Se2 base_from_marker{};
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  bool is_on_wall{false};  ///< a wall line took part
+};
+
+/// The last sighting of each marker of an observation as a measurement. The corners tell the
+/// bearing best and the range worst; the wall tells where along that bearing the marker is. A view
+/// that the wall contradicts (a flipped pose) gives no measurement.
+std::vector<MarkerMeasurement> measure_markers(const Observation& observation, double range_sigma_m,
+                                               const Se2& base_from_camera,
+                                               const MarkerMeasurementConfig& config);
+
+}  // namespace waymark

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scan says about the pose, given the walls of a map: point to line, along observed axes.
+#pragma once
+
+#include "slam/core/proposal/pose_information.hpp"
+#include "slam/core/scan/annotated_scan.hpp"
+#include "slam/core/surface/surface_map.hpp"
+
+#include <span>
+
+namespace waymark {
+
+class Fields;
+
+struct SurfaceMatchingConfig {
+  double range_sigma_m{0.01};     ///< of the LiDAR; taken from the robot
+  double surface_sigma_m{0.004};  ///< roughness of walls, errors of beam angles
+  double outlier_sigmas{3.0};     ///< a beam this far off counts a quarter
+  double information_share{0.5};  ///< beams are not quite independent, nor is the map exact
+  double weak_share{0.02};        ///< directions below this share of the strongest are unobserved
+
+  void describe(Fields& fields);
+};
+
+struct SurfaceMatch {
+  PoseInformation pose{};  ///< without the unobserved directions
+  double mapped{0.0};      ///< number of beams that ended where the map has a surface
+  double agreeing{0.0};    ///< of those: in accordance with it
+  int beams{0};            ///< number of beams looked at
+};
+
+/// Second-order model of the scan's negative log-likelihood at a pose. Beams that end where nothing
+/// is mapped are neutral. Each beam measures its distance to the wall, n'(p - m), with the part of
+/// the range error that lies across the wall. Directions that the walls do not tell get no
+/// information and no gradient, so nothing pulls back along a bare corridor.
+/// Source: Censi (2008), "An ICP variant using a point-to-line metric"; Zhang, Kaess, Singh (2016),
+/// "On degeneracy of optimization-based state estimation problems".
+SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceMap& map,
+                            const Se2& map_from_base, const SurfaceMatchingConfig& config);
+
+/// Removes the directions with little information.
+void keep_observed(double weak_share, PoseInformation& pose);
+
+}  // namespace waymark

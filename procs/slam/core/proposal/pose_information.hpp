@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Gaussian knowledge about a pose, in the form that adds up.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+/// Second-order model of a negative log-likelihood about a pose:
+/// cost + gradient' d + d' information d / 2, d = (x, y, theta) deviation in the map frame.
+struct PoseInformation {
+  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
+  Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
+  double cost{0.0};
+
+  PoseInformation& operator+=(const PoseInformation& other) {
+    information += other.information;
+    gradient += other.gradient;
+    cost += other.cost;
+    return *this;
+  }
+};
+
+/// Deviation (x, y, theta) of one pose from another.
+inline Eigen::Vector3d deviation(const Se2& from, const Se2& to) {
+  return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
+}
+
+inline Se2 deviated(const Se2& pose, const Eigen::Vector3d& by) {
+  return {Eigen::Vector2d{pose.translation() + by.head<2>()}, pose.theta() + by.z()};
+}
+
+}  // namespace waymark

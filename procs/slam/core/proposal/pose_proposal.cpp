@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/proposal/pose_proposal.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace waymark {
+namespace {
+
+constexpr int kMaxSteps = 5;
+constexpr double kSmallStep = 2e-4;  // [m, rad] well below what a scan tells
+
+}  // namespace
+
+Se2 PoseProposal::at(const Eigen::Vector3d& standard_normal) const {
+  return deviated(mean, covariance.llt().matrixL() * standard_normal);
+}
+
+PoseProposal propose(const Se2& prior_mean, const Eigen::Matrix3d& prior_covariance,
+                     const std::function<PoseInformation(const Se2&)>& measurements) {
+  const Eigen::Matrix3d prior_information = prior_covariance.inverse();
+  PoseProposal proposal;
+  proposal.mean = prior_mean;
+  PoseInformation measured;
+  Eigen::Vector3d from_prior = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    measured = measurements(proposal.mean);
+    from_prior = deviation(prior_mean, proposal.mean);
+    information = prior_information + measured.information;
+    const Eigen::Vector3d move =
+        -information.ldlt().solve(prior_information * from_prior + measured.gradient);
+    if (move.norm() < kSmallStep) break;
+    proposal.mean = deviated(proposal.mean, move);
+  }
+  proposal.covariance = information.inverse();
+  proposal.log_evidence =
+      -measured.cost - 0.5 * from_prior.dot(prior_information * from_prior) -
+      0.5 * std::log(information.determinant() * prior_covariance.determinant());
+  return proposal;
+}
+
+}  // namespace waymark

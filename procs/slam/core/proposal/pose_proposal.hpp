@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The Gaussian that a particle's next pose is drawn from: odometry, walls and markers together.
+#pragma once
+
+#include "slam/core/proposal/pose_information.hpp"
+
+#include <functional>
+
+namespace waymark {
+
+struct PoseProposal {
+  Se2 mean{};
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< (x, y, theta), map frame
+  double log_evidence{0.0};  ///< of the measurements given the prior, up to their constants
+
+  /// The pose at `standard_normal` standard deviations.
+  Se2 at(const Eigen::Vector3d& standard_normal) const;
+};
+
+/// Fuses a Gaussian prior with measurements, each a second-order model of its negative
+/// log-likelihood about a given pose, by Gauss-Newton steps. The evidence is Laplace's.
+/// Source: Montemerlo et al. (2003), "FastSLAM 2.0", equations 6-16.
+PoseProposal propose(const Se2& prior_mean, const Eigen::Matrix3d& prior_covariance,
+                     const std::function<PoseInformation(const Se2&)>& measurements);
+
+}  // namespace waymark

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where walls are, to better than a cell: the moments of the points that beams hit.
+#pragma once
+
+#include "slam/core/grid/grid_frame.hpp"
+#include "slam/core/grid/tile_map.hpp"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace waymark {
+
+/// Count, sums and sums of products of the points in a cell, in cells from the cell's centre.
+struct SurfaceCell {
+  float count{0.0F};
+  float x{0.0F};
+  float y{0.0F};
+  float xx{0.0F};
+  float xy{0.0F};
+  float yy{0.0F};
+};
+
+/// A piece of wall: the line fitted to the points in a square of cells.
+struct Surface {
+  Eigen::Vector2d point_in_map{Eigen::Vector2d::Zero()};    ///< mean of the points
+  Eigen::Vector2d normal_in_map{Eigen::Vector2d::UnitX()};  ///< unit; its sign means nothing
+  double count{0.0};                                        ///< points that it was fitted to
+};
+
+/// Copies share the tiles that neither has edited since.
+class SurfaceMap {
+ public:
+  explicit SurfaceMap(const GridFrame& frame) : frame_{frame} {}
+
+  void add(const Eigen::Vector2d& point_in_map);
+
+  /// The surface through the cells around a point; nothing where too little is mapped, and where
+  /// the points do not lie on a line (corners, clutter). Moments add up exactly over cells, so a
+  /// wall along a border between cells is not split.
+  std::optional<Surface> near(const Eigen::Vector2d& point_in_map) const;
+
+ private:
+  GridFrame frame_;
+  TileMap<SurfaceCell> cells_{};
+};
+
+}  // namespace waymark
