@@ -87,7 +87,7 @@ TEST(SquarePose, SeenFromTheFrontTheRatioOfErrorsTellsTheDoubt) {
     }
     return doubtful;
   };
-  EXPECT_GT(doubtful_at(radians(3)), kTrials / 3);
+  EXPECT_GT(doubtful_at(radians(3)), kTrials / 10);
   EXPECT_LT(doubtful_at(radians(60)), kTrials / 50);
 }
 
