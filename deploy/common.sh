@@ -31,6 +31,9 @@ usage_error() { die $kExitUsage "$* (see $script_name.sh --help)"; }
 # print_usage: the comment block at the top of the script is its manual.
 print_usage() { sed -nE '3,/^(# shellcheck|[^#])/{/^# shellcheck/q; s/^# ?//p}' "$0"; }
 
+# show_progress_bars: programs whose output goes through a pipe do not see the terminal behind it.
+show_progress_bars() { [[ ! -t 2 ]] || export WAYMARK_PROGRESS_BAR=1; }
+
 # need_value OPTION [VALUE...]: an option that takes a value has one.
 need_value() { (($# >= 2)) || usage_error "$1 needs a value"; }
 

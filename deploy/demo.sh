@@ -14,6 +14,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 # The rows of the table: folder, estimator, and what is set differently.
 rows=(
   "odometry odometry"
+  "marker_matching_no_ids marker_matching slam.blank_ids=true"
+  "marker_matching_rotation_only marker_matching slam.motion.rotation_only=true"
   "marker_matching marker_matching"
 )
 readonly live_estimator=marker_matching

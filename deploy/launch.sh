@@ -263,6 +263,7 @@ trap kill_all EXIT
 trap 'on_signal INT 2' INT
 trap 'on_signal TERM 15' TERM
 trap 'on_signal HUP 1' HUP
+show_progress_bars
 exec {terminal}>&2 2>>"$out/logs/launch.log"
 tell "$(basename "$scenario"), seed $seed, $estimator, into $out"
 for name in recorder viewer slam detector sim; do start $name; done

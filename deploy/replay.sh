@@ -76,6 +76,7 @@ timing() {
 
 parse_arguments "$@"
 prepare
+show_progress_bars
 "$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config >"$folder/config.toml.tmp" || exit $?
 mv "$folder/config.toml.tmp" "$folder/config.toml"
 run slam "${slam_options[@]}" --log "$log" --out-log "$folder/slam.lcm"
