@@ -33,10 +33,10 @@ fail() {
 command -v apt-get >/dev/null ||
   fail "this needs Debian 12 or a relative with apt; elsewhere install the like of: ${packages[*]}"
 
+installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${packages[@]}" 2>/dev/null || true)
 missing=()
 for package in "${packages[@]}"; do
-  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-  [[ $status == installed ]] || missing+=("$package")
+  [[ $'\n'$installed$'\n' == *$'\n'"$package installed"$'\n'* ]] || missing+=("$package")
 done
 ((${#missing[@]} > 0)) || exit 0
 
