@@ -17,7 +17,7 @@ struct RefinementConfig {
   double min_contrast{15.0};
   int min_points{4};
   double max_residual_px{0.35};
-  double max_move_px{3.0};
+  double max_move_px{5.0};
   double side_sigma_px{0.01};
   double thin_border_sigma_px{0.8};
   double unrefined_sigma_px{0.8};

@@ -20,7 +20,9 @@ struct CandidateConfig {
   int threshold_window_min_px{3};
   int threshold_window_max_px{23};
   int threshold_window_step_px{10};
-  double threshold_constant{7.0};
+  /// A little above OpenCV's 7, which takes image noise for edges; from 10 on, photographs of pale
+  /// markers lose some.
+  double threshold_constant{8.0};
   double error_correction_rate{0.6};
   double min_perimeter_rate{0.03};
   double min_marker_distance_rate{0.05};
