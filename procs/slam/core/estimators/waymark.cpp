@@ -143,6 +143,8 @@ void WaymarkEstimator::judge(const std::vector<Step>& steps) {
   covariance_ = covariance_about(mean_, particles_);
   effective_particles_ = particles_.effective_number();
   const Step& best = steps[particles_.best()];
+  best_ = particles_.state(particles_.best());
+  best_->map_from_base = updates_ == 0 ? Se2{} : best.proposal.mean;
   const bool is_mapped = best.walls.mapped > kMinMappedShare * best.walls.beams;
   wall_agreement_ = is_mapped ? best.walls.agreeing / best.walls.mapped : 1.0;
   markers_told_ = !best.known.empty();
@@ -157,16 +159,31 @@ Se2 WaymarkEstimator::mean_pose() const {
 }
 
 const OdometryCalibration& WaymarkEstimator::calibration() const {
-  return particles_.state(particles_.best()).calibration;
+  return best_->calibration;
+}
+
+/// Where the best particle is now: between updates its walls hold the heading, which odometry loses
+/// fastest. Nothing of it is kept.
+PoseProposal WaymarkEstimator::track(const Observation& observation) const {
+  const Se2 predicted = best_->map_from_base * calibration().corrected(since_update_);
+  const Eigen::Matrix3d covariance =
+      turned(calibration().covariance(since_update_, config_.odometry), best_->map_from_base);
+  return propose(predicted, covariance, [&](const Se2& pose) {
+    return match_surfaces(observation.beams, best_->walls, pose, config_.matching).pose;
+  });
 }
 
 Estimate WaymarkEstimator::estimate(const Observation& observation) const {
-  const Se2 map_from_base = mean_ * calibration().corrected(since_update_);
-  Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
-  estimate.covariance = covariance_;
-  if (since_update_.distance_m > 0.0 || since_update_.turn_rad > 0.0) {
-    estimate.covariance += turned(calibration().covariance(since_update_, config_.odometry), mean_);
+  const bool has_moved = since_update_.distance_m > 0.0 || since_update_.turn_rad > 0.0;
+  Se2 map_from_base = mean_;
+  Eigen::Matrix3d covariance = covariance_;
+  if (has_moved) {
+    const PoseProposal now = track(observation);
+    map_from_base = mean_ * (best_->map_from_base.inverse() * now.mean);
+    covariance += now.covariance;
   }
+  Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
+  estimate.covariance = covariance;
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;

@@ -11,6 +11,7 @@
 #include "slam/core/proposal/pose_proposal.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace waymark {
@@ -79,6 +80,7 @@ class WaymarkEstimator final : public Estimator {
             const std::vector<MarkerMeasurement>& measurements) const;
   void judge(const std::vector<Step>& steps);
   Se2 mean_pose() const;
+  PoseProposal track(const Observation& observation) const;
   Estimate estimate(const Observation& observation) const;
 
   EstimatorSetup setup_;
@@ -89,6 +91,7 @@ class WaymarkEstimator final : public Estimator {
   std::uint64_t updates_{0};
 
   // Of the last update:
+  std::optional<State> best_{};  ///< the best particle, at the mean of its proposal
   Se2 mean_{};
   Eigen::Matrix3d covariance_{Eigen::Matrix3d::Zero()};
   double effective_particles_{1.0};
