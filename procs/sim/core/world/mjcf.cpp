@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/world/mjcf.hpp"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -90,14 +91,31 @@ std::string marker_geom(const MarkerPlate& marker, std::size_t index, double pla
       right.x(), right.y());
 }
 
+/// Floor and ceiling under and over all walls, as far as they are seen; contacts do not end there.
+/// Drawn as one piece each: infinite planes are drawn in thousands, which costs 10 ms per frame.
+std::string floor_and_ceiling(const World& world) {
+  Eigen::AlignedBox2d outline;
+  for (const Wall& wall : world.walls)
+    outline.extend(wall.from_m).extend(wall.to_m);
+  const Eigen::Vector2d half = 0.5 * outline.sizes();
+  const double piece_m = outline.sizes().maxCoeff();
+  const auto plane = [&](const char* material, double z_m, const char* more) {
+    return fmt::format(
+        "    <geom type=\"plane\" group=\"{}\" material=\"{}\" size=\"{:.17g} {:.17g} {:.17g}\" "
+        "pos=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
+        static_cast<int>(GeomGroup::kFloor), material, half.x(), half.y(), piece_m,
+        outline.center().x(), outline.center().y(), z_m, more);
+  };
+  return plane("floor", 0.0, "") +
+         plane("ceiling", world.ceiling_height_m,
+               R"(euler="3.141592653589793 0 0" contype="0" conaffinity="0")");
+}
+
 std::string world_geoms(const World& world, const MjcfOptions& options) {
-  std::string text = fmt::format(
+  std::string text =
       "    <light directional=\"true\" castshadow=\"false\" pos=\"0 0 10\" dir=\"0.35 0.2 -1\" "
-      "diffuse=\"0.3 0.3 0.3\" specular=\"0 0 0\"/>\n"
-      "    <geom type=\"plane\" group=\"{0}\" material=\"floor\" size=\"0 0 1\"/>\n"
-      "    <geom type=\"plane\" group=\"{0}\" material=\"ceiling\" size=\"0 0 1\" "
-      "pos=\"0 0 {1:.17g}\" euler=\"3.141592653589793 0 0\" contype=\"0\" conaffinity=\"0\"/>\n",
-      static_cast<int>(GeomGroup::kFloor), world.ceiling_height_m);
+      "diffuse=\"0.3 0.3 0.3\" specular=\"0 0 0\"/>\n" +
+      floor_and_ceiling(world);
   for (const Wall& wall : world.walls)
     text += wall_geom(wall);
   for (std::size_t i = 0; i < world.markers.size(); ++i)
