@@ -40,12 +40,12 @@ std::vector<Message> messages_of_drive(double drive_m = 0.6) {
   return messages;
 }
 
-struct Run {
+struct Slam {
   Inbox inbox{};
   Outbox outbox{};
   SlamNode node;
 
-  explicit Run(const SlamConfig& config = small_config()) : node{config, inbox, outbox} {}
+  explicit Slam(const SlamConfig& config = small_config()) : node{config, inbox, outbox} {}
 
   std::vector<Message> feed(const std::vector<Message>& messages) {
     for (const Message& message : messages)
@@ -63,9 +63,9 @@ std::map<std::string, int> count_by_channel(const std::vector<Message>& messages
 }
 
 TEST(SlamNode, AnswersEveryScan) {
-  Run run;
+  Slam slam;
   const auto input = messages_of_drive();
-  const auto output = run.feed(input);
+  const auto output = slam.feed(input);
   auto counts = count_by_channel(output);
   const int scans = count_by_channel(input)["LIDAR"];
   EXPECT_EQ(counts["SLAM_POSE"], scans);
@@ -79,15 +79,15 @@ TEST(SlamNode, AnswersEveryScan) {
 }
 
 TEST(SlamNode, NeverHearsTheTruth) {
-  Run run;
-  for (const auto& subscription : run.inbox.subscriptions())
+  Slam slam;
+  for (const auto& subscription : slam.inbox.subscriptions())
     EXPECT_NE(subscription.channel, "TRUE_POSE");
 }
 
 // Whatever the order within the delay that slam waits for, the result is the same bytes.
 TEST(SlamNode, TheResultDoesNotDependOnHowMessagesAreGrouped) {
   const auto input = messages_of_drive();
-  const auto expected = Run{}.feed(input);
+  const auto expected = Slam{}.feed(input);
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     Random random{seed};
     // Each channel comes with a delay of its own that changes now and then, in order.
@@ -104,13 +104,13 @@ TEST(SlamNode, TheResultDoesNotDependOnHowMessagesAreGrouped) {
     std::vector<Message> shuffled;
     for (const auto& [arrival_s, message] : arriving)
       shuffled.push_back(message);
-    EXPECT_TRUE(Run{}.feed(shuffled) == expected) << seed;
+    EXPECT_TRUE(Slam{}.feed(shuffled) == expected) << seed;
   }
 }
 
 TEST(SlamNode, TheMapIsCompleteAtTheEndAndForALateListener) {
-  Run run;
-  const auto output = run.feed(messages_of_drive());
+  Slam slam;
+  const auto output = slam.feed(messages_of_drive());
   std::map<std::pair<int, int>, map_tile_t> from_changes;
   std::map<std::pair<int, int>, map_tile_t> at_end;
   std::int64_t last_utime = 0;
@@ -139,8 +139,8 @@ TEST(SlamNode, TheMapIsCompleteAtTheEndAndForALateListener) {
 }
 
 TEST(SlamNode, NothingInNothingOut) {
-  Run run;
-  EXPECT_TRUE(run.feed({}).empty());
+  Slam slam;
+  EXPECT_TRUE(slam.feed({}).empty());
 }
 
 TEST(SlamNode, BadScansAndTimesAreCountedAndSkipped) {
@@ -160,9 +160,9 @@ TEST(SlamNode, BadScansAndTimesAreCountedAndSkipped) {
   input.insert(middle, {scan_message(late + 1, {inf, nan, -1.0F, 0.0F}), scan_message(late + 2, {}),
                         scan_message(late + 3, {1.0F, 1.0F, 1.0F}), scan_message(5, {1.0F}),
                         encode(channels::kOdometry, to_pose_message(timestamp_from_us(7), Se2{}))});
-  Run run;
-  const auto output = run.feed(input);
-  const Counters& counters = run.inbox.counters();
+  Slam slam;
+  const auto output = slam.feed(input);
+  const Counters& counters = slam.inbox.counters();
   EXPECT_EQ(
       counters.get("scans without returns") + counters.get("LIDAR rejected: inconsistent sizes"),
       2);
@@ -175,16 +175,16 @@ TEST(SlamNode, BadScansAndTimesAreCountedAndSkipped) {
 TEST(SlamNode, ScansWithoutOdometryAreNotUsed) {
   auto input = messages_of_drive(0.2);
   std::erase_if(input, [](const Message& message) { return message.channel == "ODOMETRY"; });
-  Run run;
-  EXPECT_TRUE(run.feed(input).empty());
-  EXPECT_GT(run.inbox.counters().get("scans after the last odometry"), 5);
+  Slam slam;
+  EXPECT_TRUE(slam.feed(input).empty());
+  EXPECT_GT(slam.inbox.counters().get("scans after the last odometry"), 5);
 }
 
 TEST(SlamNode, ScansDoNotWaitForeverForACamera) {
   auto input = messages_of_drive(0.4);
   std::erase_if(input, [](const Message& message) { return message.channel == "MARKERS"; });
   const int scans = count_by_channel(input)["LIDAR"];
-  EXPECT_EQ(count_by_channel(Run{}.feed(input))["SLAM_POSE"], scans);
+  EXPECT_EQ(count_by_channel(Slam{}.feed(input))["SLAM_POSE"], scans);
 }
 
 TEST(SlamNode, BlankIdsForgetAllMarkers) {
@@ -197,8 +197,8 @@ TEST(SlamNode, BlankIdsForgetAllMarkers) {
              decode<marker_map_t>(message.payload).message->num_landmarks > 0;
     });
   };
-  EXPECT_TRUE(any_marker(Run{}.feed(input)));
-  EXPECT_FALSE(any_marker(Run{config}.feed(input)));
+  EXPECT_TRUE(any_marker(Slam{}.feed(input)));
+  EXPECT_FALSE(any_marker(Slam{config}.feed(input)));
 }
 
 TEST(SlamNode, AbsurdOdometryAndMarkersDoNotKillIt) {
@@ -219,9 +219,9 @@ TEST(SlamNode, AbsurdOdometryAndMarkersDoNotKillIt) {
     pose.x = i % 2 ? 3e38F : -3e38F;
     input.push_back(encode(channels::kOdometry, pose));
   }
-  Run run;
-  EXPECT_GT(count_by_channel(run.feed(input))["SLAM_POSE"], 5);
-  EXPECT_GT(run.inbox.counters().get("odometry jumps"), 5);
+  Slam slam;
+  EXPECT_GT(count_by_channel(slam.feed(input))["SLAM_POSE"], 5);
+  EXPECT_GT(slam.inbox.counters().get("odometry jumps"), 5);
 }
 
 }  // namespace

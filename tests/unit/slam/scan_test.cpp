@@ -101,7 +101,9 @@ TEST(Annotate, BeamsOnTheMarkerCarryItsIdAlsoWhenItIsZero) {
       EXPECT_EQ(beam.sight, Sight::kMarker);
       ++on_marker;
     }
-    if (std::abs(end.x() - 7.5) > 0.3 || end.y() < 0.0) EXPECT_EQ(beam.marker_id, kNoMarker);
+    if (std::abs(end.x() - 7.5) > 0.3 || end.y() < 0.0) {
+      EXPECT_EQ(beam.marker_id, kNoMarker);
+    }
   }
   EXPECT_GE(on_marker, 2);
 }
@@ -111,8 +113,9 @@ TEST(Annotate, NoMarkerIsSeenOnlyWhereTheCameraLooks) {
   for (const AnnotatedBeam& beam : annotate(beams, {}, &kView, 0.08)) {
     const bool is_ahead = beam.beam.end_in_base.x() > 2.4 && beam.beam.end_in_base.x() < 3.0;
     const bool is_aside = beam.beam.end_in_base.x() < 1.8;
-    if (is_ahead) EXPECT_EQ(beam.sight, Sight::kNone);
-    if (is_aside) EXPECT_EQ(beam.sight, Sight::kUnknown);
+    if (is_ahead || is_aside) {
+      EXPECT_EQ(beam.sight, is_ahead ? Sight::kNone : Sight::kUnknown);
+    }
   }
   for (const AnnotatedBeam& beam : annotate(beams, {}, nullptr, 0.08))
     EXPECT_EQ(beam.sight, Sight::kUnknown);

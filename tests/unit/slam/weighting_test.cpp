@@ -2,6 +2,7 @@
 #include "common/random/random.hpp"
 #include "slam/core/mapping/insert_scan.hpp"
 #include "slam/core/resampling/systematic.hpp"
+#include "slam/core/scan/observability.hpp"
 #include "slam/core/weighting/marker_score.hpp"
 #include "slam/core/weighting/wall_score.hpp"
 #include "support/synthetic_corridor.hpp"
