@@ -29,6 +29,8 @@ void PreprocessingConfig::describe(Fields& fields) {
                "a marker nearer than this to the image's edge may be missed");
   fields.field("detectable_range_m", detectable_range_m, kPositive,
                "a marker further away may be missed: its absence says nothing");
+  fields.field("max_sigma_m", max_sigma_m, kPositive,
+               "sightings with a larger standard deviation along their wall are not used");
   fields.field("marker_wait_s", marker_wait_s, {0.0, 10.0},
                "how long a scan waits for the camera frames up to its time");
 }
@@ -69,6 +71,7 @@ SensorSetup sensor_setup(const SlamConfig& config) {
   setup.camera = camera_view(config.robot.camera, config.slam.preprocessing);
   setup.marker_size_m = config.robot.markers.size_m;
   setup.beam_tolerance_m = config.slam.preprocessing.beam_tolerance_m;
+  setup.max_sigma_m = config.slam.preprocessing.max_sigma_m;
   setup.marker_wait = duration_from_seconds(config.slam.preprocessing.marker_wait_s);
   setup.blank_ids = config.slam.blank_ids;
   return setup;

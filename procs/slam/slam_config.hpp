@@ -19,6 +19,7 @@ struct PreprocessingConfig {
   double beam_tolerance_m{0.08};
   double view_margin_rad{0.1};
   double detectable_range_m{3.2};
+  double max_sigma_m{0.05};
   double marker_wait_s{0.25};
 
   void describe(Fields& fields);
