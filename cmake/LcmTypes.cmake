@@ -14,7 +14,10 @@ function(waymark_add_lcm_types target)
   set(headers)
   foreach(file IN LISTS ARGN)
     get_filename_component(name "${file}" NAME_WE)
-    set(header "${generated_dir}/waymark/${name}.hpp")
+    file(READ "${file}" text)
+    string(REGEX MATCH "package ([a-z_]+)" package_line "${text}")
+    set(package "${CMAKE_MATCH_1}")
+    set(header "${generated_dir}/${package}/${name}.hpp")
     add_custom_command(
       OUTPUT "${header}"
       COMMAND "${LCM_GEN}" --cpp --cpp-std c++11 --cpp-hpath "${generated_dir}" "${file}"

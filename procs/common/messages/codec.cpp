@@ -4,6 +4,7 @@
 #include "common/messages/layout.hpp"
 #include "common/messages/validate.hpp"
 
+#include <cstring>
 #include <stdexcept>
 
 namespace waymark {
@@ -19,6 +20,12 @@ std::int64_t read_int64(std::span<const std::uint8_t> bytes, std::size_t offset)
   for (std::size_t i = 0; i < 8; ++i)
     value = (value << 8) | bytes[offset + i];
   return static_cast<std::int64_t>(value);
+}
+
+/// One step of a 64-bit multiplicative hash.
+std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0x9e3779b97f4a7c15ULL;
+  return hash ^ (hash >> 29);
 }
 
 bool is_sane_time(std::int64_t utime_us) {
@@ -52,13 +59,17 @@ std::string_view to_string(RejectReason reason) {
 }
 
 std::int64_t content_hash(const Message& message) {
-  constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325ULL;
-  constexpr std::uint64_t kPrime = 0x100000001b3ULL;
-  std::uint64_t hash = kOffsetBasis;
+  std::uint64_t hash = message.payload.size();
   for (const char c : message.channel)
-    hash = (hash ^ static_cast<std::uint8_t>(c)) * kPrime;
-  for (const std::uint8_t byte : message.payload)
-    hash = (hash ^ byte) * kPrime;
+    hash = mix(hash, static_cast<std::uint8_t>(c));
+  std::size_t offset = 0;
+  for (; offset + 8 <= message.payload.size(); offset += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, &message.payload[offset], 8);
+    hash = mix(hash, word);
+  }
+  for (; offset < message.payload.size(); ++offset)
+    hash = mix(hash, message.payload[offset]);
   return static_cast<std::int64_t>(hash);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/messages/layout.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace waymark {
@@ -22,8 +23,11 @@ RejectReason walk_string(std::span<const std::uint8_t> body, std::size_t& offset
   offset += 4;
   if (length < 1) return RejectReason::kBadLength;
   if (body.size() - offset < static_cast<std::size_t>(length)) return RejectReason::kTruncated;
-  offset += static_cast<std::size_t>(length);
-  return body[offset - 1] == 0 ? RejectReason::kNone : RejectReason::kBadLength;
+  const auto text = body.subspan(offset, static_cast<std::size_t>(length));
+  offset += text.size();
+  // One zero, at the end: LCM's encoder takes strings for C strings.
+  const bool is_c_string = std::ranges::find(text, 0) == text.end() - 1;
+  return is_c_string ? RejectReason::kNone : RejectReason::kBadLength;
 }
 
 RejectReason walk_struct(std::span<const std::uint8_t> body, StructLayout layout,

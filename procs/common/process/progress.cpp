@@ -7,12 +7,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 namespace waymark {
 
 Progress::Progress(std::string what)
     : what_{std::move(what)},
-      is_terminal_{isatty(STDERR_FILENO) == 1},
+      is_terminal_{isatty(STDERR_FILENO) == 1 || std::getenv("WAYMARK_PROGRESS_BAR") != nullptr},
       start_{std::chrono::steady_clock::now()} {}
 
 void Progress::show(double fraction, const std::string& detail) {

@@ -7,7 +7,8 @@
 
 namespace waymark {
 
-/// One line that is redrawn on a terminal; elsewhere a line every ten per cent.
+/// One line that is redrawn on a terminal (or where $WAYMARK_PROGRESS_BAR says that one is behind
+/// the pipe); elsewhere a line every ten per cent.
 class Progress {
  public:
   explicit Progress(std::string what);

@@ -35,7 +35,9 @@ struct LidarScan {
 /// One square marker in one camera frame; see lcmtypes/marker_detection_t.lcm for the marker frame.
 struct MarkerDetection {
   int id{kNoMarker};
-  std::array<Eigen::Vector2d, 4> corners_px{};  ///< clockwise from the marker's top left
+  /// Clockwise from the marker's top left.
+  std::array<Eigen::Vector2d, 4> corners_px{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                            Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   Eigen::Isometry3d base_from_marker{Eigen::Isometry3d::Identity()};
   /// Order x y z rx ry rz [m^2, rad^2]; errors added in the base frame, rotations about its axes.
   Eigen::Matrix<double, 6, 6> covariance_in_base{Eigen::Matrix<double, 6, 6>::Zero()};

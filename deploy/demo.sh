@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# The whole thing on a machine with nothing installed: packages, build, one drive through the corridor,
+# its log through every estimator, and the paper's table.
+#
+# usage: deploy/demo.sh [options]
+#   --out DIR        where everything goes (default: runs/demo-SCENARIO)
+#   --scenario FILE  (default: deploy/scenarios/corridor.toml, 50 m)
+#   --seed N         seed of everything random (default: the scenario's run.seed)
+#   --fast           deploy/scenarios/corridor_fast.toml: 10 m, driven faster than the real robot can
+# shellcheck source=deploy/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+# The rows of the table: folder, estimator, and what is set differently.
+rows=(
+  "odometry odometry"
+  "marker_matching_no_ids marker_matching slam.blank_ids=true"
+  "marker_matching_rotation_only marker_matching slam.motion.rotation_only=true"
+  "marker_matching marker_matching"
+)
+readonly live_estimator=marker_matching
+
+parse_arguments() {
+  out='' scenario='' seed=()
+  while (($# > 0)); do
+    case $1 in
+      --help | -h) print_usage && exit 0 ;;
+      --fast) scenario=$deploy_dir/scenarios/corridor_fast.toml && shift && continue ;;
+      --out | --scenario | --seed) need_value "$@" ;;&
+      --out) out=$2 ;;
+      --scenario) scenario=$2 ;;
+      --seed) need_number "$1" "$2" && seed=(--seed "$2") ;;
+      *) usage_error "unknown option '$1'" ;;
+    esac
+    shift 2
+  done
+  scenario=${scenario:-$deploy_dir/scenarios/corridor.toml}
+  need_file "$scenario"
+  out=$(make_folder "${out:-runs/demo-$(basename "${scenario%.toml}")}")
+}
+
+step_names=() step_seconds=()
+
+# step NAME COMMAND...
+step() {
+  local name=$1 start=$SECONDS
+  shift
+  say "== $name"
+  "$@" || die $? "the step '$name' failed"
+  step_names+=("$name") step_seconds+=($((SECONDS - start)))
+}
+
+# fingerprint: of the files that live run and replay must have in common, byte for byte.
+fingerprint() { (cd "$out/$live_estimator" && sha256sum map.pgm trajectory.tum); }
+
+replay_row() {
+  local name estimator settings setting options=()
+  read -r name estimator settings <<<"$1"
+  for setting in $settings; do options+=(--set "$setting"); done
+  "$deploy_dir/replay.sh" "$out/run.lcm" --estimator "$estimator" --row "$name" "${options[@]}"
+}
+
+report_times() {
+  local i
+  say "seconds per step"
+  for i in "${!step_names[@]}"; do printf '%8d  %s\n' "${step_seconds[i]}" "${step_names[i]}"; done
+}
+
+parse_arguments "$@"
+step "install packages" "$deploy_dir/install-deps.sh"
+step "build" build release
+step "drive" "$deploy_dir/launch.sh" "$scenario" --out "$out" --estimator $live_estimator "${seed[@]}"
+live=$(fingerprint)
+for row in "${rows[@]}"; do step "replay ${row%% *}" replay_row "$row"; done
+[[ $live == "$(fingerprint)" ]] ||
+  die $kExitFailed "live run and replay of its log differ in $live_estimator/map.pgm or trajectory.tum"
+step "evaluate" "$bin_dir/waymark-evaluate" run "$out"
+report_times
+say "live run and replay of its log: the same map and trajectory, byte for byte"
+say "pictures: $out/*/map.png; table: $out/results.md"

@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the Debian packages that Waymark is built with; does nothing when none is missing.
+set -euo pipefail
+
+packages=(
+  cmake ninja-build g++ ccache             # build
+  liblcm-dev liblcm-bin                    # transport, lcm-gen, lcm-logger, lcm-logplayer
+  libopencv-dev libopencv-contrib-dev      # detector and viewer; contrib has ArUco
+  libeigen3-dev libtbb-dev                 # slam: algebra, threads
+  libmujoco-dev libosmesa6-dev             # sim: physics, rendering without a display
+  libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libceres-dev  # tests, benchmarks
+  iproute2                                 # `ip`: a route for multicast where there is none
+)
+
+if [[ ${1:-} == --help || ${1:-} == -h ]]; then
+  printf 'usage: deploy/install-deps.sh [--list]\nInstalls what is missing of: %s\n' "${packages[*]}"
+  exit 0
+elif [[ ${1:-} == --list && $# -eq 1 ]]; then
+  printf '%s\n' "${packages[@]}"
+  exit 0
+elif (($# > 0)); then
+  echo "install-deps: unknown option '$1'; the only ones are --list and --help" >&2
+  exit 2
+fi
+
+fail() {
+  echo "install-deps: $*" >&2
+  exit 2
+}
+
+command -v apt-get >/dev/null ||
+  fail "this needs Debian 12 or a relative with apt; elsewhere install the like of: ${packages[*]}"
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [[ $status == installed ]] || missing+=("$package")
+done
+((${#missing[@]} > 0)) || exit 0
+
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo >/dev/null ||
+    fail "not root and no sudo; as root run: apt-get install --no-install-recommends ${missing[*]}"
+  as_root=(sudo)
+fi
+
+echo "install-deps: installing ${missing[*]}"
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300)
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+run_apt() {
+  "${apt[@]}" "$@" >"$log" 2>&1 </dev/null && return
+  tail -n 25 "$log" >&2
+  fail "'apt-get $1' failed (see above); missing still: ${missing[*]}"
+}
+run_apt update
+run_apt install --no-install-recommends "${missing[@]}"
+echo "install-deps: ${#missing[@]} packages installed"

@@ -1,0 +1,272 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Runs the stack live on a scenario and supervises it: recorder, viewer, slam, detector, simulator.
+#
+# usage: deploy/launch.sh SCENARIO [options]
+#   --out DIR         where everything goes (default: runs/SCENARIO-seedN-DATE)
+#   --seed N          seed of everything random (default: the scenario's run.seed)
+#   --real-time       as fast as the clock and without lockstep, like on a real robot
+#   --estimator NAME  slam.estimator (default: what waymark-slam's configuration says)
+#   --config FILE     configuration of slam; may be given several times, later files win
+#   --set KEY=VALUE   the same for one value; may be given several times
+#   --lcm-url URL     LCM network (default: $LCM_DEFAULT_URL, else a UDP port of its own)
+#
+# detector and viewer are restarted when they die, at most five times; the death of simulator, slam or
+# recorder ends the run. Exit codes: 0 fine, 1 the run failed, 2 bad usage or set-up, 3 a process died,
+# 4 time-out, 128+n signal n.
+# shellcheck source=deploy/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+readonly kRestartDelays_s=(0.2 0.5 1 2 4)  # one per allowed restart
+readonly kFinish_s=15                      # after the simulator's end, for files to be written
+readonly kStop_s=7                         # from SIGINT to SIGKILL
+
+parse_arguments() {
+  scenario='' out='' seed='' real_time=() slam_options=() lcm_url=${LCM_DEFAULT_URL:-}
+  while (($# > 0)); do
+    case $1 in
+      --help | -h) print_usage && exit 0 ;;
+      --real-time) real_time=(--real-time) && shift && continue ;;
+      --out | --seed | --estimator | --config | --set | --lcm-url) need_value "$@" ;;&
+      --out) out=$2 ;;
+      --seed) need_number "$1" "$2" && seed=$2 ;;
+      --estimator) slam_options+=(--set "slam.estimator=$2") ;;
+      --config) need_file "$2" && slam_options+=(--config "$2") ;;
+      --set) slam_options+=(--set "$2") ;;
+      --lcm-url) lcm_url=$2 ;;
+      -*) usage_error "unknown option '$1'" ;;
+      *)
+        [[ -z $scenario ]] || usage_error "one scenario, not both '$scenario' and '$1'"
+        scenario=$1 && shift && continue
+        ;;
+    esac
+    shift 2
+  done
+  [[ -n $scenario ]] || usage_error "no scenario given"
+}
+
+# prepare: everything that can be wrong is found here, before anything runs.
+prepare() {
+  need_file "$scenario"
+  need_programs waymark-{sim,detector,slam,viewer,recorder}
+  sim_options=(--config "$scenario")
+  [[ -z $seed ]] || sim_options+=(--seed "$seed")
+  local effective
+  effective=$(mktemp)
+  "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-config >"$effective" || exit $?
+  seed=$(toml_value "$effective" run seed)
+  rm -f "$effective"
+
+  local name
+  name=$(basename "${scenario%.toml}")
+  out=$(make_folder "${out:-runs/$name-seed$seed-$(date +%Y%m%d-%H%M%S)}")
+  exec {out_lock}<"$out"
+  flock --nonblock "$out_lock" || die $kExitUsage "another run is writing to '$out'"
+  clear_old_run
+  mkdir -p "$out/logs"
+
+  "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-robot-config >"$out/robot.toml" || exit $?
+  slam_options=(--config "$out/robot.toml" --set "slam.seed=$seed" "${slam_options[@]}")
+  local slam_config=$out/slam.toml
+  "$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config >"$slam_config" || exit $?
+  estimator=$(toml_value "$slam_config" slam estimator)
+  row=$out/$estimator
+  mkdir -p "$row"
+  mv "$slam_config" "$row/config.toml"
+  [[ -n $lcm_url ]] || take_port
+}
+
+# clear_old_run: a folder holds one run; files of an earlier one must not be taken for results.
+clear_old_run() {
+  [[ -e $out/run.lcm || -e $out/robot.toml ]] || return 0
+  say "replaces the run in $out"
+  local config
+  for config in "$out"/*/config.toml; do
+    [[ ! -f $config ]] || rm -rf -- "${config%/config.toml}"
+  done
+  rm -rf -- "$out"/{run.lcm,scenario.toml,robot.toml,truth.tum,truth_markers.csv} \
+    "$out"/results.{json,md} "$out/logs"
+}
+
+# command_of NAME: sets `command` to its command line.
+command_of() {
+  case $1 in
+    recorder) command=(--out-log "$out/run.lcm") ;;
+    viewer) command=(--out "$row") ;;
+    slam) command=("${slam_options[@]}") ;;
+    detector) command=(--config "$out/robot.toml") ;;
+    sim) command=("${sim_options[@]}" --out "$out") ;;
+  esac
+  command=("$bin_dir/waymark-$1" "${command[@]}" --lcm-url "$lcm_url" "${real_time[@]}")
+}
+
+declare -A pid_of=() code_of=() restarts_of=()  # code_of: of those that have ended
+
+# tell SENTENCE: to whoever started the script. Standard error itself is logs/launch.log during the run,
+# where bash may note the ends of its jobs.
+tell() { echo "$script_name: $*" >&"$terminal"; }
+
+# start NAME [DELAY_S]: in a process group of its own, so that Ctrl-C reaches only this script, which
+# then stops things in order; should the script itself be killed, the kernel ends its processes.
+start() {
+  local name=$1 delay=${2:-} command log=$out/logs/$1.log
+  command_of "$name"
+  (
+    [[ -z $delay ]] || sleep "$delay"
+    if [[ $name == sim ]]; then  # its progress is for the terminal, too
+      exec 2> >(exec tee -i -a "$log" >&"$terminal")
+    else
+      exec 2>>"$log"
+    fi
+    exec setpriv --pdeathsig TERM "${command[@]}" >>"$log" </dev/null
+  ) &
+  pid_of[$name]=$!
+  unset "code_of[$name]"
+}
+
+is_running() { [[ -v pid_of[$1] ]] && kill -0 "${pid_of[$1]}" 2>/dev/null; }
+
+interrupt() {
+  local name
+  for name in "$@"; do
+    ! is_running "$name" || kill -INT "${pid_of[$name]}" 2>/dev/null || true
+  done
+}
+
+# wait_for SECONDS NAME...: true when all have ended in time.
+wait_for() {
+  local end=$((${EPOCHREALTIME/./} + $1 * 1000000)) name
+  shift
+  for name in "$@"; do
+    while is_running "$name"; do
+      ((${EPOCHREALTIME/./} < end)) || return 1
+      sleep 0.05
+    done
+  done
+}
+
+# stop_all: the simulator first, so that the others have seen everything that it sent.
+stop_all() {
+  interrupt sim
+  wait_for 2 sim || true
+  interrupt recorder viewer slam detector
+  wait_for $kStop_s sim recorder viewer slam detector || true
+  kill_all
+}
+
+kill_all() {
+  local name
+  for name in "${!pid_of[@]}"; do
+    ! is_running "$name" || kill -KILL -- "-${pid_of[$name]}" 2>/dev/null || true
+  done
+  wait
+}
+
+on_signal() {
+  trap 'kill_all; exit $((128 + $2))' INT TERM HUP  # impatient
+  tell "stopped by SIG$1; what there is is in $out"
+  stop_all
+  exit $((128 + $2))
+}
+
+# end_run CODE SENTENCE [NAME]: stops the rest and shows the last words of the process that is to blame.
+end_run() {
+  tell "$2"
+  if [[ -n ${3:-} && -s $out/logs/$3.log ]]; then
+    tell "the end of $out/logs/$3.log:"
+    tr '\r' '\n' <"$out/logs/$3.log" | tail -n 8 >&"$terminal"
+  fi
+  stop_all
+  tell "logs are in $out/logs"
+  exit "$1"
+}
+
+how() { if (($1 > 128)); then echo "was killed by SIG$(kill -l $(($1 - 128)))"; else echo "ended with code $1"; fi; }
+
+# on_sim_end CODE
+on_sim_end() {
+  case $1 in
+    0) return ;;
+    "$kExitFailed" | "$kExitUsage") end_run "$1" "sim $(how "$1")" sim ;;
+    "$kExitTimeout") end_run "$1" "sim gave up waiting for another process" sim ;;
+    *) end_run $kExitDied "sim $(how "$1")" sim ;;
+  esac
+}
+
+# on_other_end NAME CODE: restart, or end the run.
+on_other_end() {
+  local name=$1 code=$2 restarts=${restarts_of[$1]:-0}
+  if ((code < 128)) && wait_for 1 sim; then  # the simulator's end was the cause
+    local code
+    take_exit_code sim
+    on_sim_end "$code"
+    end_run $kExitFailed "$name $(how "$2") when the run was over" "$name"
+  fi
+  ((code != kExitUsage)) || end_run $kExitUsage "$name could not be set up" "$name"
+  case $name in
+    detector | viewer)
+      ((restarts < ${#kRestartDelays_s[@]})) ||
+        end_run $kExitDied "$name $(how "$code") for the $((restarts + 1))th time" "$name"
+      tell "$name $(how "$code"); starting it again"
+      start "$name" "${kRestartDelays_s[restarts]}"
+      restarts_of[$name]=$((restarts + 1))
+      ;;
+    *) end_run $kExitDied "$name $(how "$code")" "$name" ;;
+  esac
+}
+
+# take_exit_code NAME: sets `code`; false while the process runs and when the code was taken already.
+take_exit_code() {
+  [[ ! -v code_of[$1] ]] && ! is_running "$1" || return 1
+  code=0
+  wait "${pid_of[$1]}" || code=$?
+  code_of[$1]=$code
+}
+
+# supervise: returns when the simulator has come to its good end. (Not with wait -n: in bash 5.2 it
+# misses one of two processes that die together.)
+supervise() {
+  local name code
+  until take_exit_code sim; do
+    for name in recorder slam detector viewer; do
+      ! take_exit_code $name || ((code == 0)) || on_other_end $name "$code"
+    done
+    sleep 0.1
+  done
+  on_sim_end "$code"
+}
+
+# finish: the others end by themselves in lockstep, and are told to in real time.
+finish() {
+  local name code
+  [[ ${#real_time[@]} -eq 0 ]] || interrupt recorder viewer slam detector
+  wait_for $kFinish_s recorder viewer slam detector ||
+    end_run $kExitFailed "not all processes ended within $kFinish_s s of the simulator"
+  for name in recorder slam detector viewer; do
+    ! take_exit_code $name || ((code == 0)) ||
+      end_run $kExitFailed "$name $(how "$code") when the run was over" $name
+  done
+  ((${restarts_of[viewer]:-0} == 0)) || render_from_log
+}
+
+# render_from_log: a viewer that came in late has not seen everything; the log has.
+render_from_log() {
+  tell "the viewer was restarted: its files are made once more, from the log"
+  "$bin_dir/waymark-viewer" --log "$out/run.lcm" --out "$row" 2>>"$out/logs/viewer.log" ||
+    end_run $kExitFailed "viewer $(how $?) on the log" viewer
+}
+
+parse_arguments "$@"
+prepare
+set -m
+trap kill_all EXIT
+trap 'on_signal INT 2' INT
+trap 'on_signal TERM 15' TERM
+trap 'on_signal HUP 1' HUP
+show_progress_bars
+exec {terminal}>&2 2>>"$out/logs/launch.log"
+tell "$(basename "$scenario"), seed $seed, $estimator, into $out"
+for name in recorder viewer slam detector sim; do start $name; done
+supervise
+finish
+tell "finished in $SECONDS s; pictures and maps are in $row, logs in $out/logs"

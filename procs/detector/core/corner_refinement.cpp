@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detector/core/corner_refinement.hpp"
+
+#include "detector/core/edge_profile.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+// The first pass starts half a pixel off, the second one on the edge.
+constexpr int kPasses = 2;
+// Neighbouring profiles share pixels, so N of them count as N / 1.6 independent ones.
+constexpr double kSharedNoise = 1.6;
+constexpr double kOutlierSigmas = 2.5;
+// Rounding of grey values: residuals say nothing below this.
+constexpr double kSmallestResidualPx = 0.01;
+
+using Sides = std::array<Side, 4>;
+
+/// Offset of the edge from a side, `at_start + slope * along`, with the covariance of the offsets
+/// at the side's two corners.
+struct EdgeLine {
+  double at_start_px{0.0};
+  double slope{0.0};
+  double residual_px{0.0};
+  Eigen::Matrix2d covariance_at_corners{Eigen::Matrix2d::Zero()};
+};
+
+struct EdgePoint {
+  double along_px{0.0};
+  double offset_px{0.0};
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Sides sides_of(const Corners& corners) {
+  return {Side{corners[0], corners[1]}, Side{corners[1], corners[2]}, Side{corners[2], corners[3]},
+          Side{corners[3], corners[0]}};
+}
+
+/// Distance to the opposite side, in units of modules: how thick the black border looks.
+double module_px(const Corners& corners, std::size_t side, int modules_per_side) {
+  const Side here = sides_of(corners)[side];
+  const Eigen::Vector2d middle_there_px = 0.5 * (corners[(side + 2) % 4] + corners[(side + 3) % 4]);
+  return std::abs(here.outward().dot(middle_there_px - here.start_px)) / modules_per_side;
+}
+
+/// The least raised of the sides' black levels: where the border looks thin, blur mixes white in.
+double black_level(const std::array<std::vector<EdgeProfile>, 4>& profiles) {
+  double darkest = 255.0;
+  for (const auto& side : profiles) {
+    if (side.empty()) continue;
+    std::vector<double> levels;
+    for (const EdgeProfile& profile : side)
+      levels.push_back(profile.black);
+    darkest = std::min(darkest, median(std::move(levels)));
+  }
+  return darkest;
+}
+
+std::vector<EdgePoint> edge_points(const std::vector<EdgeProfile>& profiles, double black,
+                                   double min_contrast) {
+  std::vector<EdgePoint> points;
+  for (const EdgeProfile& profile : profiles) {
+    if (profile.white - black < min_contrast) continue;
+    const auto offset_px = profile.crossing_px(0.5 * (profile.white + black));
+    if (offset_px) points.push_back({profile.along_px, *offset_px});
+  }
+  return points;
+}
+
+/// Ordinary least squares: the side's frame makes the slope tiny.
+EdgeLine fit_once(const std::vector<EdgePoint>& points, double length_px) {
+  const double n = static_cast<double>(points.size());
+  double mean_along = 0.0;
+  double mean_offset = 0.0;
+  for (const EdgePoint& p : points) {
+    mean_along += p.along_px / n;
+    mean_offset += p.offset_px / n;
+  }
+  double spread = 0.0;
+  double joint = 0.0;
+  for (const EdgePoint& p : points) {
+    spread += (p.along_px - mean_along) * (p.along_px - mean_along);
+    joint += (p.along_px - mean_along) * (p.offset_px - mean_offset);
+  }
+  EdgeLine line;
+  line.slope = joint / spread;
+  line.at_start_px = mean_offset - line.slope * mean_along;
+  double squares = 0.0;
+  for (const EdgePoint& p : points) {
+    const double residual = p.offset_px - line.at_start_px - line.slope * p.along_px;
+    squares += residual * residual;
+  }
+  line.residual_px = std::max(kSmallestResidualPx, std::sqrt(squares / (n - 2.0)));
+
+  const Eigen::Vector2d from_mean{-mean_along, length_px - mean_along};
+  const double variance = kSharedNoise * line.residual_px * line.residual_px;
+  line.covariance_at_corners =
+      variance * (Eigen::Matrix2d::Constant(1.0 / n) + from_mean * from_mean.transpose() / spread);
+  return line;
+}
+
+/// Fit without the points that lie far off the fit before.
+std::optional<EdgeLine> fit_line(std::vector<EdgePoint> points, double length_px, int min_points) {
+  constexpr int kRounds = 3;
+  if (std::ssize(points) < min_points) return std::nullopt;
+  std::optional<EdgeLine> line;
+  for (int round = 0; round < kRounds; ++round) {
+    line = fit_once(points, length_px);
+    std::vector<double> distances;
+    const auto distance_px = [&line](const EdgePoint& p) {
+      return std::abs(p.offset_px - line->at_start_px - line->slope * p.along_px);
+    };
+    for (const EdgePoint& p : points)
+      distances.push_back(distance_px(p));
+    constexpr double kSigmaFromMedian = 1.4826;  // of a normal distribution's absolute deviations
+    const double limit_px =
+        kOutlierSigmas *
+        std::max(kSmallestResidualPx, kSigmaFromMedian * median(std::move(distances)));
+    const auto is_far = [&](const EdgePoint& p) {
+      return distance_px(p) > limit_px;
+    };
+    const auto far = std::ranges::count_if(points, is_far);
+    if (far == 0 || std::ssize(points) - far < min_points) break;
+    std::erase_if(points, is_far);
+  }
+  return line;
+}
+
+/// Where two neighbouring sides meet when they shift outwards: corner shift = solve * (shift of the
+/// side that ends here, shift of the side that starts here).
+Eigen::Matrix2d corner_from_side_shifts(const Side& ends_here, const Side& starts_here) {
+  Eigen::Matrix2d normals;
+  normals << ends_here.outward().transpose(), starts_here.outward().transpose();
+  return normals.inverse();
+}
+
+Side shifted(const Side& side, const EdgeLine& line) {
+  return {side.start_px + line.at_start_px * side.outward(),
+          side.end_px + (line.at_start_px + line.slope * side.length_px()) * side.outward()};
+}
+
+Eigen::Vector2d intersection(const Side& a, const Side& b) {
+  const Eigen::Vector2d distances{a.outward().dot(a.start_px), b.outward().dot(b.start_px)};
+  return corner_from_side_shifts(a, b) * distances;
+}
+
+struct FittedQuad {
+  Corners corners{};
+  Eigen::Matrix<double, 8, 8> covariance{};
+};
+
+FittedQuad intersect(const Sides& sides, const std::array<EdgeLine, 4>& lines) {
+  FittedQuad quad;
+  Eigen::Matrix<double, 8, 8> corners_from_sides = Eigen::Matrix<double, 8, 8>::Zero();
+  Eigen::Matrix<double, 8, 8> side_covariance = Eigen::Matrix<double, 8, 8>::Zero();
+  for (int k = 0; k < 4; ++k) {
+    const int before = (k + 3) % 4;
+    const Side ends_here = shifted(sides[before], lines[before]);
+    const Side starts_here = shifted(sides[k], lines[k]);
+    quad.corners[k] = intersection(ends_here, starts_here);
+    const Eigen::Matrix2d solve = corner_from_side_shifts(ends_here, starts_here);
+    corners_from_sides.block<2, 1>(2 * k, 2 * before + 1) = solve.col(0);
+    corners_from_sides.block<2, 1>(2 * k, 2 * k) = solve.col(1);
+    side_covariance.block<2, 2>(2 * k, 2 * k) = lines[k].covariance_at_corners;
+  }
+  quad.covariance = corners_from_sides * side_covariance * corners_from_sides.transpose();
+  return quad;
+}
+
+/// Standard deviation of what blur, sampling and neighbouring bits do to all of a side alike.
+double common_sigma_px(double border_px, const RefinementConfig& config) {
+  constexpr double kThinnestBorderPx = 1.0;
+  const double thickness = std::max(kThinnestBorderPx, border_px);
+  return std::hypot(config.side_sigma_px, config.thin_border_sigma_px / std::pow(thickness, 4));
+}
+
+std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camera,
+                                   const Corners& corners, int modules_per_side,
+                                   const RefinementConfig& config) {
+  constexpr double kShortestReachPx = 1.5;
+  const Sides sides = sides_of(corners);
+  std::array<double, 4> border_px{};
+  std::array<std::vector<EdgeProfile>, 4> profiles;
+  for (std::size_t k = 0; k < 4; ++k) {
+    border_px[k] = module_px(corners, k, modules_per_side);
+    const double reach_px = std::min(config.reach_px, std::max(kShortestReachPx, border_px[k]));
+    profiles[k] = sample_profiles(gray, camera, sides[k], reach_px);
+  }
+  const double black = black_level(profiles);
+
+  std::array<EdgeLine, 4> lines;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto line = fit_line(edge_points(profiles[k], black, config.min_contrast),
+                               sides[k].length_px(), config.min_points);
+    if (!line || line->residual_px > config.max_residual_px) return std::nullopt;
+    lines[k] = *line;
+    const double sigma_px = common_sigma_px(border_px[k], config);
+    lines[k].covariance_at_corners.array() += sigma_px * sigma_px;
+  }
+  return intersect(sides, lines);
+}
+
+double largest_move_px(const Corners& from, const Corners& to) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < 4; ++k)
+    largest = std::max(largest, (to[k] - from[k]).norm());
+  return largest;
+}
+
+}  // namespace
+
+void RefinementConfig::describe(Fields& fields) {
+  fields.field("reach_px", reach_px, {1.5, 20.0},
+               "how far from a side its edge is looked for; at most the border's thickness");
+  fields.field("min_contrast", min_contrast, {1.0, 255.0},
+               "grey levels between border and quiet zone that an edge point needs");
+  fields.field("min_points", min_points, {3, 1000}, "edge points that a side needs");
+  fields.field("max_residual_px", max_residual_px, kPositive,
+               "scatter of the edge points about their line that is still an edge");
+  fields.field("max_move_px", max_move_px, kPositive,
+               "a corner that would move further stays where it was");
+  fields.field("side_sigma_px", side_sigma_px, kNotNegative,
+               "standard deviation of a side's offset beyond what the scatter of its points says");
+  fields.field(
+      "thin_border_sigma_px", thin_border_sigma_px, kNotNegative,
+      "the same, added where the black border looks one pixel thick; falls with the fourth "
+      "power of the thickness");
+  fields.field("unrefined_sigma_px", unrefined_sigma_px, kPositive,
+               "standard deviation of a corner that could not be refined");
+}
+
+MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
+                               const Corners& raw_corners_px, int modules_per_side,
+                               const RefinementConfig& config) {
+  MeasuredCorners unrefined;
+  for (std::size_t k = 0; k < 4; ++k)
+    unrefined.ideal_px[k] = camera.ideal_from_raw(raw_corners_px[k]);
+  unrefined.covariance *= config.unrefined_sigma_px * config.unrefined_sigma_px;
+
+  MeasuredCorners measured = unrefined;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const auto quad = fit_quad(gray, camera, measured.ideal_px, modules_per_side, config);
+    if (!quad) return unrefined;
+    measured = {quad->corners, quad->covariance, true};
+    if (!(largest_move_px(unrefined.ideal_px, measured.ideal_px) <= config.max_move_px)) {
+      return unrefined;
+    }
+  }
+  return measured;
+}
+
+}  // namespace waymark

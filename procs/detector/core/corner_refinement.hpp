@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Second stage: corners to a few hundredths of a pixel, as intersections of lines fitted to the
+// marker's edges.
+#pragma once
+
+#include "common/config/fields.hpp"
+#include "detector/core/camera_model.hpp"
+#include "detector/core/marker_candidates.hpp"
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace waymark {
+
+struct RefinementConfig {
+  double reach_px{3.0};
+  double min_contrast{15.0};
+  int min_points{4};
+  double max_residual_px{0.35};
+  double max_move_px{3.0};
+  double side_sigma_px{0.01};
+  double thin_border_sigma_px{0.8};
+  double unrefined_sigma_px{0.8};
+
+  void describe(Fields& fields);
+};
+
+/// Corners with what is known about their errors.
+struct MeasuredCorners {
+  Corners ideal_px{};  ///< without lens distortion
+  /// [px^2] order u0 v0 u1 v1 u2 v2 u3 v3.
+  Eigen::Matrix<double, 8, 8> covariance{Eigen::Matrix<double, 8, 8>::Identity()};
+  bool refined{false};
+};
+
+/// Walks along the four sides of a marker, finds where the brightness crosses from black to white
+/// to a fraction of a pixel, fits a line to each side and intersects them. The walk is in ideal
+/// pixels, so a lens that bends lines does not matter. A side that shows too few good points, or
+/// corners that would move far, leave the corners as they were with a large covariance.
+///
+/// @param gray                8-bit, one channel.
+/// @param raw_corners_px      to within about two pixels, from the first stage.
+/// @param modules_per_side    bits of the dictionary plus the two of the border.
+MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
+                               const Corners& raw_corners_px, int modules_per_side,
+                               const RefinementConfig& config);
+
+}  // namespace waymark

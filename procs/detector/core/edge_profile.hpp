@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Brightness across one side of a marker.
+#pragma once
+
+#include "detector/core/camera_model.hpp"
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace waymark {
+
+/// One side of a marker in ideal pixels, from corner to corner, clockwise around the marker.
+struct Side {
+  Eigen::Vector2d start_px{};
+  Eigen::Vector2d end_px{};
+
+  double length_px() const { return (end_px - start_px).norm(); }
+
+  Eigen::Vector2d direction() const { return (end_px - start_px).normalized(); }
+
+  Eigen::Vector2d outward() const { return {direction().y(), -direction().x()}; }
+};
+
+/// Brightness along the normal of a side at one place of it, at even steps from -reach (inside, the
+/// black border) to +reach (outside, the white zone).
+struct EdgeProfile {
+  double along_px{0.0};  ///< distance from the side's start
+  double reach_px{0.0};
+  std::vector<double> brightness{};
+  double white{0.0};  ///< mean level outside
+  double black{0.0};  ///< mean level inside, raised where the border is thin
+
+  /// Offset [px, outwards] of the dark-to-bright crossing of a level that is nearest to the side.
+  std::optional<double> crossing_px(double level) const;
+};
+
+/// One profile per pixel along the side, away from its corners. Places from which the profile would
+/// leave the image are left out.
+std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
+                                         const Side& side, double reach_px);
+
+}  // namespace waymark

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detector/core/jpeg_header.hpp"
+
+#include <cstddef>
+
+namespace waymark {
+namespace {
+
+constexpr std::uint8_t kMarkerPrefix = 0xFF;
+constexpr std::uint8_t kStartOfImage = 0xD8;
+constexpr std::uint8_t kEndOfImage = 0xD9;
+constexpr std::uint8_t kStartOfScan = 0xDA;
+
+/// SOF0 to SOF15; C4, C8 and CC in their midst are something else.
+bool is_frame_header(std::uint8_t marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+bool is_restart(std::uint8_t marker) {
+  return marker >= 0xD0 && marker <= 0xD7;
+}
+
+/// Position of the next marker's prefix in entropy-coded data, where FF 00 is a data byte.
+std::size_t end_of_scan(std::span<const std::uint8_t> bytes, std::size_t at) {
+  for (; at + 1 < bytes.size(); ++at) {
+    const std::uint8_t next = bytes[at + 1];
+    if (bytes[at] == kMarkerPrefix && next != 0x00 && next != kMarkerPrefix && !is_restart(next)) {
+      return at;
+    }
+  }
+  return bytes.size();
+}
+
+int big_endian_16(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return bytes[at] * 256 + bytes[at + 1];
+}
+
+}  // namespace
+
+std::optional<JpegHeader> read_jpeg_header(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < 2 || bytes[0] != kMarkerPrefix || bytes[1] != kStartOfImage) {
+    return std::nullopt;
+  }
+  constexpr std::size_t kFrameHeaderBytes = 9;  // marker, length, precision, height, width
+  std::optional<JpegHeader> header;
+  std::size_t at = 2;
+  while (at + 1 < bytes.size() && bytes[at] == kMarkerPrefix) {
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == kMarkerPrefix) {  // fill byte
+      ++at;
+      continue;
+    }
+    if (marker == kEndOfImage) {
+      if (header) header->complete = true;
+      break;
+    }
+    if (at + 4 > bytes.size()) break;
+    const int length = big_endian_16(bytes, at + 2);
+    if (length < 2) break;
+    if (is_frame_header(marker)) {
+      // A second frame header would let the image differ from what was checked.
+      if (header || at + kFrameHeaderBytes > bytes.size()) return std::nullopt;
+      header = JpegHeader{big_endian_16(bytes, at + 7), big_endian_16(bytes, at + 5), false};
+    }
+    at += 2 + static_cast<std::size_t>(length);
+    if (marker == kStartOfScan) at = end_of_scan(bytes, at);
+  }
+  return header;
+}
+
+}  // namespace waymark

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a JPEG says about itself, read without a decoder that would believe it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace waymark {
+
+struct JpegHeader {
+  int width_px{0};
+  int height_px{0};
+  bool complete{false};  ///< the end-of-image marker is there
+};
+
+/// Walks the segments of a JPEG stream (ITU-T T.81, annex B). nullopt when it is none or ends
+/// before its frame header. Never reads outside the span; allocates nothing.
+std::optional<JpegHeader> read_jpeg_header(std::span<const std::uint8_t> bytes);
+
+}  // namespace waymark

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// First stage: which markers are in the image, and roughly where.
+#pragma once
+
+#include "common/config/fields.hpp"
+
+#include <Eigen/Core>
+#include <opencv2/aruco.hpp>
+#include <opencv2/core.hpp>
+
+#include <array>
+#include <vector>
+
+namespace waymark {
+
+using Corners = std::array<Eigen::Vector2d, 4>;  ///< [px] clockwise from the marker's top left
+
+/// Parameters of cv::aruco, where ours differ or users may need to turn one.
+struct CandidateConfig {
+  int threshold_window_min_px{3};
+  int threshold_window_max_px{23};
+  int threshold_window_step_px{10};
+  double threshold_constant{7.0};
+  double error_correction_rate{0.6};
+  double min_perimeter_rate{0.03};
+  double min_marker_distance_rate{0.05};
+  double polygon_accuracy_rate{0.03};
+  int border_distance_px{3};
+
+  void describe(Fields& fields);
+};
+
+struct MarkerCandidate {
+  int id{0};
+  Corners corners_px{};  ///< raw image, to about half a pixel, biased inwards
+};
+
+/// Finds and reads markers with cv::aruco, without its corner refinement.
+class CandidateFinder {
+ public:
+  CandidateFinder(const cv::aruco::Dictionary& dictionary, const CandidateConfig& config);
+
+  /// @param gray 8-bit, one channel. @return ordered by id, then from left to right.
+  std::vector<MarkerCandidate> find(const cv::Mat& gray) const;
+
+ private:
+  cv::Ptr<cv::aruco::Dictionary> dictionary_;
+  cv::Ptr<cv::aruco::DetectorParameters> parameters_;
+};
+
+}  // namespace waymark

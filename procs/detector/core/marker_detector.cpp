@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detector/core/marker_detector.hpp"
+
+#include "detector/core/marker_dictionary.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace waymark {
+namespace {
+
+constexpr int kBorderModules = 2;  // one on each side
+
+cv::aruco::Dictionary dictionary_of(const MarkerConfig& markers) {
+  const auto dictionary = find_dictionary(markers.dictionary);
+  if (!dictionary) throw std::invalid_argument{"unknown dictionary " + markers.dictionary};
+  return *dictionary;
+}
+
+double width_px(const Corners& corners) {
+  const auto length = [&corners](int a, int b) {
+    return (corners[a] - corners[b]).norm();
+  };
+  return 0.5 * std::min(length(0, 1) + length(2, 3), length(1, 2) + length(3, 0));
+}
+
+Eigen::Vector2d centre_px(const MarkerDetection& detection) {
+  return 0.25 * (detection.corners_px[0] + detection.corners_px[1] + detection.corners_px[2] +
+                 detection.corners_px[3]);
+}
+
+bool overlap(const MarkerDetection& a, const MarkerDetection& b) {
+  return (centre_px(a) - centre_px(b)).norm() < 0.5 * std::max(a.width_px, b.width_px);
+}
+
+/// One marker can yield two quads with the same id (inner and outer contour): the one that is more
+/// of a square stays.
+std::vector<MarkerDetection> without_overlaps(const std::vector<MarkerDetection>& detections) {
+  std::vector<MarkerDetection> kept;
+  for (const MarkerDetection& detection : detections) {
+    const auto rival = std::ranges::find_if(kept, [&detection](const MarkerDetection& other) {
+      return other.id == detection.id && overlap(other, detection);
+    });
+    if (rival == kept.end()) {
+      kept.push_back(detection);
+    } else if (detection.reprojection_error_px < rival->reprojection_error_px) {
+      *rival = detection;
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+void CalibrationErrorConfig::describe(Fields& fields) {
+  fields.field("range_rate", range_rate, kFraction,
+               "standard deviation of the range as a share of it; 0 = camera exactly known");
+  fields.field("bearing_rad", bearing_rad, kNotNegative,
+               "standard deviation of the direction to a marker, about each axis");
+  fields.field("orientation_rad", orientation_rad, kNotNegative,
+               "standard deviation of the marker's orientation, about each axis");
+}
+
+void MarkerDetectorConfig::describe(Fields& fields) {
+  fields.section("candidates", candidates);
+  fields.section("refinement", refinement);
+  fields.section("calibration_error", calibration_error);
+}
+
+MarkerDetector::MarkerDetector(const RobotConfig& robot, const MarkerDetectorConfig& config)
+    : markers_{robot.markers},
+      known_ids_{robot.markers.ids.begin(), robot.markers.ids.end()},
+      config_{config},
+      camera_{robot.camera},
+      base_from_camera_{robot.camera.base_from_camera()},
+      modules_per_side_{dictionary_of(robot.markers).markerSize + kBorderModules},
+      finder_{dictionary_of(robot.markers), config.candidates} {}
+
+std::vector<MarkerDetection> MarkerDetector::detect(const cv::Mat& gray) const {
+  std::vector<MarkerDetection> detections;
+  for (const MarkerCandidate& candidate : finder_.find(gray)) {
+    if (!known_ids_.empty() && !known_ids_.contains(candidate.id)) continue;
+    if (const auto detection = measure(gray, candidate)) detections.push_back(*detection);
+  }
+  return without_overlaps(detections);
+}
+
+std::optional<MarkerDetection> MarkerDetector::measure(const cv::Mat& gray,
+                                                       const MarkerCandidate& candidate) const {
+  const MeasuredCorners corners =
+      refine_corners(gray, camera_, candidate.corners_px, modules_per_side_, config_.refinement);
+  const auto poses = solve_square(corners, camera_, markers_.size_m);
+  if (!poses) return std::nullopt;
+
+  MarkerDetection detection;
+  detection.id = candidate.id;
+  std::ranges::transform(corners.ideal_px, detection.corners_px.begin(),
+                         [this](const auto& corner) { return camera_.raw_from_ideal(corner); });
+  detection.base_from_marker = base_from_camera_ * poses->best.camera_from_marker;
+  detection.covariance_in_base = covariance_in_base(*poses);
+  detection.reprojection_error_px = poses->best.reprojection_error_px;
+  detection.other_base_from_marker = base_from_camera_ * poses->other.camera_from_marker;
+  detection.other_reprojection_error_px = poses->other.reprojection_error_px;
+  detection.width_px = width_px(detection.corners_px);
+  return detection;
+}
+
+Eigen::Matrix<double, 6, 6> MarkerDetector::covariance_in_base(const SquarePoses& poses) const {
+  const CalibrationErrorConfig& error = config_.calibration_error;
+  const Eigen::Vector3d to_marker = poses.best.camera_from_marker.translation();
+  const Eigen::Matrix3d along_ray = to_marker * to_marker.transpose();
+  const Eigen::Matrix3d across_ray =
+      to_marker.squaredNorm() * Eigen::Matrix3d::Identity() - along_ray;
+
+  Eigen::Matrix<double, 6, 6> in_camera = poses.covariance_in_camera;
+  in_camera.topLeftCorner<3, 3>() += error.range_rate * error.range_rate * along_ray +
+                                     error.bearing_rad * error.bearing_rad * across_ray;
+  in_camera.bottomRightCorner<3, 3>().diagonal().array() +=
+      error.orientation_rad * error.orientation_rad;
+
+  Eigen::Matrix<double, 6, 6> base_from_camera_axes = Eigen::Matrix<double, 6, 6>::Zero();
+  base_from_camera_axes.topLeftCorner<3, 3>() = base_from_camera_.linear();
+  base_from_camera_axes.bottomRightCorner<3, 3>() = base_from_camera_.linear();
+  return base_from_camera_axes * in_camera * base_from_camera_axes.transpose();
+}
+
+}  // namespace waymark

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The detector's method: one grey image in, markers with poses and covariances out.
+#pragma once
+
+#include "common/robot/robot_config.hpp"
+#include "common/sensors/sensors.hpp"
+#include "detector/core/camera_model.hpp"
+#include "detector/core/corner_refinement.hpp"
+#include "detector/core/marker_candidates.hpp"
+#include "detector/core/square_pose.hpp"
+
+#include <opencv2/core.hpp>
+
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace waymark {
+
+/// What the camera's calibration adds to every pose: it is wrong in the same way in all frames, so
+/// no corner tells. Zero = intrinsics and mounting are exact, as in simulation. A carefully
+/// calibrated real camera: 0.005, 0.005 rad (0.3 degrees), 0.017 rad (1 degree).
+struct CalibrationErrorConfig {
+  double range_rate{0.0};
+  double bearing_rad{0.0};
+  double orientation_rad{0.0};
+
+  void describe(Fields& fields);
+};
+
+/// Parameters of all stages.
+struct MarkerDetectorConfig {
+  CandidateConfig candidates{};
+  RefinementConfig refinement{};
+  CalibrationErrorConfig calibration_error{};
+
+  void describe(Fields& fields);
+};
+
+class MarkerDetector {
+ public:
+  /// @throws std::invalid_argument when robot.markers.dictionary is no dictionary.
+  MarkerDetector(const RobotConfig& robot, const MarkerDetectorConfig& config);
+
+  /// Markers of the configured ids, ordered by id, then from left to right. One id may occur more
+  /// than once: ids are what markers look like, not which ones they are.
+  /// @param gray 8-bit, one channel, of the configured camera's size.
+  std::vector<MarkerDetection> detect(const cv::Mat& gray) const;
+
+ private:
+  std::optional<MarkerDetection> measure(const cv::Mat& gray,
+                                         const MarkerCandidate& candidate) const;
+  Eigen::Matrix<double, 6, 6> covariance_in_base(const SquarePoses& poses) const;
+
+  MarkerConfig markers_;
+  std::set<int> known_ids_;
+  MarkerDetectorConfig config_;
+  CameraModel camera_;
+  Eigen::Isometry3d base_from_camera_;
+  int modules_per_side_;
+  CandidateFinder finder_;
+};
+
+}  // namespace waymark

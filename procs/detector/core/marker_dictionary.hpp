@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Marker dictionaries by name, with their error correction set right.
+#pragma once
+
+#include <opencv2/aruco.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace waymark {
+
+/// OpenCV's predefined dictionary of that name, e.g. "DICT_6X6_250" or "DICT_APRILTAG_36h11".
+/// OpenCV 4.6 corrects no bit of AprilTag dictionaries; here they get what their code distance
+/// allows.
+std::optional<cv::aruco::Dictionary> find_dictionary(std::string_view name);
+
+std::vector<std::string> dictionary_names();
+
+/// Number of ids: they are 0 to one less.
+int size_of(const cv::aruco::Dictionary& dictionary);
+
+}  // namespace waymark

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Third stage: the pose of a square from its four corners.
+#pragma once
+
+#include "detector/core/camera_model.hpp"
+#include "detector/core/corner_refinement.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <optional>
+
+namespace waymark {
+
+struct SquarePose {
+  Eigen::Isometry3d camera_from_marker{Eigen::Isometry3d::Identity()};
+  double reprojection_error_px{0.0};  ///< root mean square over the four corners
+};
+
+/// A square seen from far has two poses that explain its corners almost equally well.
+struct SquarePoses {
+  SquarePose best{};
+  SquarePose other{};
+  /// Of the best one: x y z rx ry rz [m^2, rad^2], errors added in the optical frame, rotations
+  /// about its axes.
+  Eigen::Matrix<double, 6, 6> covariance_in_camera{Eigen::Matrix<double, 6, 6>::Zero()};
+};
+
+/// Both solutions in closed form (Collins, Bartoli, "Infinitesimal plane-based pose estimation",
+/// 2014), each refined to the least reprojection error weighted by the corners' covariance. Marker
+/// frame: see lcmtypes/marker_detection_t.lcm. nullopt when the corners are no square in front of
+/// the camera.
+std::optional<SquarePoses> solve_square(const MeasuredCorners& corners, const CameraModel& camera,
+                                        double size_m);
+
+}  // namespace waymark

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Camera frames with what was found drawn on them, as PNG files for people.
+#pragma once
+
+#include "common/sensors/sensors.hpp"
+
+#include <opencv2/core.hpp>
+
+#include <cstdint>
+#include <filesystem>
+
+namespace waymark {
+
+/// The frame in colour: outline, first corner, id and range of each marker.
+cv::Mat annotated(const cv::Mat& gray, const MarkerDetections& detections);
+
+class DebugPictures {
+ public:
+  /// @throws SetupError when the folder cannot be made.
+  DebugPictures(std::filesystem::path folder, int every);
+
+  /// Writes every so many'th frame as frame_<utime>.png. False when that failed.
+  bool offer(const cv::Mat& gray, const MarkerDetections& detections);
+
+ private:
+  std::filesystem::path folder_;
+  int every_;
+  std::int64_t frames_{0};
+};
+
+}  // namespace waymark

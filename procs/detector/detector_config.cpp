@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detector/detector_config.hpp"
+
+#include "detector/core/marker_dictionary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace waymark {
+
+void DetectorSection::describe(Fields& fields) {
+  fields.field("debug_dir", debug_dir, "folder for annotated pictures; \"\" = none");
+  fields.field("debug_every", debug_every, {1, 1000000}, "one picture in so many frames");
+  MarkerDetectorConfig::describe(fields);
+}
+
+void DetectorConfig::describe(Fields& fields) {
+  fields.section("robot", robot);
+  fields.section("detector", detector);
+}
+
+void DetectorConfig::check(Problems& problems) const {
+  robot.check(problems);
+  const MarkerConfig& markers = robot.markers;
+  const auto dictionary = find_dictionary(markers.dictionary);
+  if (!dictionary) {
+    problems.add("robot.markers.dictionary",
+                 fmt::format("got '{}', expected one of {}", markers.dictionary,
+                             fmt::join(dictionary_names(), ", ")));
+    return;
+  }
+  for (const int id : markers.ids) {
+    if (id < size_of(*dictionary)) continue;
+    problems.add("robot.markers.ids", fmt::format("got {}, but {} has the ids 0 to {}", id,
+                                                  markers.dictionary, size_of(*dictionary) - 1));
+  }
+  const CandidateConfig& candidates = detector.candidates;
+  if (candidates.threshold_window_min_px > candidates.threshold_window_max_px) {
+    problems.add("detector.candidates.threshold_window_min_px",
+                 "must not be above threshold_window_max_px");
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detector/detector_node.hpp"
+
+#include "common/messages/convert.hpp"
+
+#include <opencv2/core/utility.hpp>
+
+#include <string>
+
+namespace waymark {
+namespace {
+
+PixelFormat format_of(const image_t& image) {
+  switch (image.pixelformat) {
+    case image_t::PIXEL_FORMAT_GRAY:
+      return PixelFormat::kGray;
+    case image_t::PIXEL_FORMAT_RGB:
+      return PixelFormat::kRgb;
+    case image_t::PIXEL_FORMAT_BGR:
+      return PixelFormat::kBgr;
+    case image_t::PIXEL_FORMAT_MJPEG:
+      return PixelFormat::kMjpeg;
+    default:
+      return PixelFormat::kOther;
+  }
+}
+
+}  // namespace
+
+DetectorNode::DetectorNode(const DetectorConfig& config, Inbox& inbox, Outbox& outbox)
+    : image_size_{config.robot.camera.width_px, config.robot.camera.height_px},
+      detector_{config.robot, config.detector},
+      inbox_{inbox},
+      outbox_{outbox} {
+  if (!config.detector.debug_dir.empty()) {
+    debug_pictures_.emplace(config.detector.debug_dir, config.detector.debug_every);
+  }
+  // Two cores are shared by all processes; OpenCV's own threads gain nothing on images this small.
+  cv::setNumThreads(1);
+  inbox.on<image_t>(
+      channels::kCamera, [this](const image_t& image) { handle(image); }, Backlog::kNewestOnly);
+}
+
+void DetectorNode::handle(const image_t& image) {
+  MarkerDetections detections{.time = timestamp_from_us(image.utime),
+                              .image_width_px = image_size_.width,
+                              .image_height_px = image_size_.height};
+  const DecodedFrame frame = decode_image(image);
+  if (frame.problem == FrameProblem::kNone) {
+    detections.detections = detector_.detect(frame.gray);
+    if (debug_pictures_ && !debug_pictures_->offer(frame.gray, detections)) {
+      inbox_.counters().add("debug pictures not written");
+    }
+  } else {
+    inbox_.counters().add("CAMERA rejected: " + std::string{to_string(frame.problem)});
+  }
+  outbox_.publish(channels::kMarkers, to_detections_message(detections));
+}
+
+DecodedFrame DetectorNode::decode_image(const image_t& image) const {
+  return decode_frame({.format = format_of(image),
+                       .width_px = image.width,
+                       .height_px = image.height,
+                       .row_stride_bytes = image.row_stride,
+                       .bytes = image.data},
+                      image_size_);
+}
+
+}  // namespace waymark

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The detector as a process: CAMERA in, MARKERS out, one for one.
+#pragma once
+
+#include "common/process/node.hpp"
+#include "detector/core/frame_decoder.hpp"
+#include "detector/debug_pictures.hpp"
+#include "detector/detector_config.hpp"
+
+#include <optional>
+
+namespace waymark {
+
+class DetectorNode final : public Node {
+ public:
+  using Config = DetectorConfig;
+  static constexpr ProcessTraits kTraits{
+      .name = "detector",
+      .purpose = "Finds square markers in camera frames and measures their poses.",
+      .joins_midway = true};
+
+  /// @throws SetupError when the folder for debug pictures cannot be made.
+  DetectorNode(const DetectorConfig& config, Inbox& inbox, Outbox& outbox);
+
+  void finish() override {}
+
+ private:
+  /// Answers every frame, an unreadable one with an empty list, so that nobody waits for it.
+  void handle(const image_t& image);
+  DecodedFrame decode_image(const image_t& image) const;
+
+  cv::Size image_size_;
+  MarkerDetector detector_;
+  std::optional<DebugPictures> debug_pictures_;
+  Inbox& inbox_;
+  Outbox& outbox_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// waymark-detector
+#include "common/process/run_process.hpp"
+#include "detector/detector_node.hpp"
+
+int main(int argc, char** argv) {
+  return waymark::run_process<waymark::DetectorNode>(argc, argv);
+}

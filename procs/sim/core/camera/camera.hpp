@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The camera as the other processes know it: rendered, bent, blurred, noisy, compressed.
+#pragma once
+
+#include "common/time/time.hpp"
+#include "sim/core/camera/image_noise.hpp"
+#include "sim/core/camera/lens.hpp"
+#include "sim/core/camera/renderer.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace waymark {
+
+enum class ImageColour { kGrey, kColour };
+
+/// What is wrong with the pictures, and how they are compressed.
+struct CameraNoiseConfig {
+  double sigma_grey_levels{3.0};
+  double blur_sigma_px{0.0};
+  ImageColour colour{ImageColour::kGrey};
+  int jpeg_quality{85};
+
+  void describe(Fields& fields);
+};
+
+/// One compressed frame.
+struct CameraFrame {
+  Timestamp time{};
+  int width_px{0};
+  int height_px{0};
+  int jpeg_quality{0};
+  std::vector<std::uint8_t> jpeg{};
+};
+
+/// A frame must fit one datagram: 65 000 bytes with the message around it.
+constexpr std::size_t kMaxJpegBytes = 64000;
+
+class Camera {
+ public:
+  Camera(const CameraConfig& camera, const CameraNoiseConfig& noise, std::int64_t seed);
+
+  const Pinhole& pinhole() const { return lens_.pinhole(); }
+
+  const CameraConfig& config() const { return camera_; }
+
+  /// Lens, blur and noise on a rendered RGB picture: 8 bit, one channel or three (BGR).
+  cv::Mat expose(const cv::Mat& rendered, std::uint64_t frame) const;
+
+  /// Compresses at the configured quality, or at the best lower one that fits kMaxJpegBytes.
+  CameraFrame compress(const cv::Mat& picture, Timestamp time) const;
+
+ private:
+  CameraConfig camera_;
+  CameraNoiseConfig noise_config_;
+  Lens lens_;
+  ImageNoise noise_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures of the world by MuJoCo's renderer, in memory.
+#pragma once
+
+#include "common/robot/robot_config.hpp"
+#include "sim/core/camera/gl_context.hpp"
+#include "sim/core/camera/plate_textures.hpp"
+#include "sim/core/robot/physics.hpp"
+#include "sim/core/world/marker_picture.hpp"
+#include "sim/core/world/world.hpp"
+
+#include <mujoco/mujoco.h>
+#include <opencv2/core/mat.hpp>
+
+#include <vector>
+
+namespace waymark {
+
+/// A pinhole with square pixels; pixel centres are integers.
+struct Pinhole {
+  int width_px{0};
+  int height_px{0};
+  double focal_px{0.0};
+  double cx_px{0.0};
+  double cy_px{0.0};
+};
+
+/// What is on the plates.
+enum class PlatePrint { kMarkers, kBlank };
+
+/// Renders what the robot's camera sees; its own body is never in the picture. One per thread.
+class Renderer {
+ public:
+  /// @param physics  of that world; must outlive the renderer.
+  Renderer(const World& world, const MarkerPrint& print, PlatePrint plate_print,
+           const Pinhole& pinhole, Physics& physics);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// 8-bit RGB, top row first; valid until the next call.
+  /// @param world_from_camera  optical frame: x right, y down, z forward.
+  const cv::Mat& render(const Eigen::Isometry3d& world_from_camera);
+
+ private:
+  void place_camera(const Eigen::Isometry3d& world_from_camera);
+
+  Physics& physics_;
+  Pinhole pinhole_;
+  GlContext gl_;
+  PlateTextures textures_;
+  std::vector<int> id_of_geom_;
+  mjvOption options_{};
+  mjvScene scene_{};
+  mjrContext context_{};
+  cv::Mat bottom_up_;
+  cv::Mat picture_;
+};
+
+}  // namespace waymark

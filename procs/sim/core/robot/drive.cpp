@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/core/robot/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+// A line is kept by steering: turn rate = -kOffsetGain * v * offset - kHeadingGain * heading error,
+// critically damped over about a metre of path: kHeadingGain = 2 sqrt(kOffsetGain) v.
+constexpr double kOffsetGain_per_m2 = 4.0;
+constexpr double kHeadingGain_per_m = 4.0;
+constexpr double kAligned_rad = 0.002;           // a turn on the spot ends here
+constexpr double kTurnAcceleration_per_m = 5.0;  // of the forward one: alike at the wheels
+constexpr double kArrived_m = 0.001;
+constexpr double kSlowestShare = 0.1;  // of the speed; creep to the point, do not creep for ever
+
+}  // namespace
+
+WheelPair wheel_speeds(const BaseConfig& base, const Velocity& velocity) {
+  const double half_separation = 0.5 * base.wheel_separation_m;
+  return {(velocity.forward_mps - half_separation * velocity.turn_radps) / base.wheel_radius_m,
+          (velocity.forward_mps + half_separation * velocity.turn_radps) / base.wheel_radius_m};
+}
+
+void Waypoint::describe(Fields& fields) {
+  fields.field("x_m", x_m, kAnyNumber, "world frame");
+  fields.field("y_m", y_m, kAnyNumber, "world frame");
+}
+
+void RouteConfig::describe(Fields& fields) {
+  fields.choice("source", source,
+                {{"route", DriveSource::kRoute}, {"command", DriveSource::kCommand}},
+                "who drives: the route below, or DRIVE_COMMAND messages");
+  fields.field("start_x_m", start_x_m, kAnyNumber, "where the base begins, world frame");
+  fields.field("start_y_m", start_y_m, kAnyNumber, "where the base begins");
+  fields.field("start_yaw_rad", start_yaw_rad, {-7.0, 7.0}, "heading at the beginning");
+  fields.field("end_x_m", end_x_m, kAnyNumber, "drive straight to this x; unless waypoints");
+  fields.field("speed_mps", speed_mps, {0.01, 2.0}, "the real robot tops out at 0.26");
+  fields.field("acceleration_mps2", acceleration_mps2, {0.01, 10.0}, "speeding up, slowing down");
+  fields.field("turn_speed_radps", turn_speed_radps, {0.01, 2.0}, "greatest turn rate");
+  fields.field("settle_s", settle_s, {0.0, 60.0}, "time that the robot stands at the end");
+  fields.field("duration_s", duration_s, {0.0, 86400.0},
+               "with source = command: length of the run; else 0 or the time limit of the route");
+  fields.field("command_delay_ticks", command_delay_ticks, {1, 1000},
+               "a DRIVE_COMMAND acts this many ticks after its time; more than run.window_ticks");
+  fields.list("waypoints", waypoints, "points to visit in turn instead of end_x_m");
+}
+
+std::vector<Eigen::Vector2d> RouteConfig::points() const {
+  if (waypoints.empty()) return {{end_x_m, start_y_m}};
+  std::vector<Eigen::Vector2d> points_m;
+  for (const Waypoint& waypoint : waypoints)
+    points_m.emplace_back(waypoint.x_m, waypoint.y_m);
+  return points_m;
+}
+
+RouteFollower::RouteFollower(const RouteConfig& config, double period_s)
+    : config_{config},
+      period_s_{period_s},
+      points_m_{config.points()},
+      leg_start_m_{config.start_x_m, config.start_y_m} {
+  Eigen::Vector2d previous_m = leg_start_m_;
+  for (const Eigen::Vector2d& point_m : points_m_) {
+    route_length_m_ += (point_m - previous_m).norm();
+    previous_m = point_m;
+  }
+}
+
+Velocity RouteFollower::next(const Se2& world_from_base) {
+  if (arrived()) return {};
+  const Eigen::Vector2d leg_m = points_m_[target_] - leg_start_m_;
+  const double heading_error_rad =
+      angle_difference(world_from_base.theta(), std::atan2(leg_m.y(), leg_m.x()));
+  if (std::abs(heading_error_rad) <= kAligned_rad) turning_ = false;
+  return turning_ ? turn(heading_error_rad) : drive(world_from_base);
+}
+
+Velocity RouteFollower::turn(double heading_error_rad) {
+  // The fastest turn that can still stop in time, at the acceleration that the wheels are allowed.
+  const double acceleration_radps2 = kTurnAcceleration_per_m * config_.acceleration_mps2;
+  const double wanted_radps = std::min(
+      config_.turn_speed_radps, std::sqrt(acceleration_radps2 * std::abs(heading_error_rad)));
+  turn_speed_radps_ = std::min(wanted_radps, turn_speed_radps_ + acceleration_radps2 * period_s_);
+  return {0.0, std::copysign(turn_speed_radps_, -heading_error_rad)};
+}
+
+Velocity RouteFollower::drive(const Se2& world_from_base) {
+  turn_speed_radps_ = 0.0;
+  const Eigen::Vector2d leg_m = points_m_[target_] - leg_start_m_;
+  const Se2 world_from_leg{leg_start_m_, std::atan2(leg_m.y(), leg_m.x())};
+  const Se2 leg_from_base = world_from_leg.inverse() * world_from_base;
+  const double to_go_m = leg_m.norm() - leg_from_base.x();
+  progress_m_ = finished_legs_m_ + std::clamp(leg_from_base.x(), 0.0, leg_m.norm());
+  if (to_go_m <= kArrived_m) {
+    begin_next_leg();
+    return {};
+  }
+  const double braking_mps = std::sqrt(2.0 * config_.acceleration_mps2 * to_go_m);
+  const double wanted_mps =
+      std::clamp(braking_mps, kSlowestShare * config_.speed_mps, config_.speed_mps);
+  speed_mps_ = std::min(wanted_mps, speed_mps_ + config_.acceleration_mps2 * period_s_);
+  const double steer_radps = -speed_mps_ * (kOffsetGain_per_m2 * leg_from_base.y() +
+                                            kHeadingGain_per_m * leg_from_base.theta());
+  return {speed_mps_, std::clamp(steer_radps, -config_.turn_speed_radps, config_.turn_speed_radps)};
+}
+
+void RouteFollower::begin_next_leg() {
+  finished_legs_m_ += (points_m_[target_] - leg_start_m_).norm();
+  leg_start_m_ = points_m_[target_];
+  ++target_;
+  speed_mps_ = 0.0;
+  turning_ = true;
+}
+
+CommandFollower::CommandFollower(const RouteConfig& config, Duration delay, double period_s)
+    : config_{config}, delay_{delay}, period_s_{period_s} {}
+
+bool CommandFollower::receive(Timestamp stamp, const Velocity& velocity) {
+  const Timestamp acts_at = stamp + delay_;
+  pending_[acts_at] = velocity;
+  return acts_at > now_;
+}
+
+Velocity CommandFollower::next(Timestamp now) {
+  now_ = now;
+  while (!pending_.empty() && pending_.begin()->first <= now) {
+    wanted_ = pending_.begin()->second;
+    pending_.erase(pending_.begin());
+  }
+  const double max_change_mps = config_.acceleration_mps2 * period_s_;
+  const double max_change_radps = kTurnAcceleration_per_m * max_change_mps;
+  current_.forward_mps +=
+      std::clamp(wanted_.forward_mps - current_.forward_mps, -max_change_mps, max_change_mps);
+  current_.turn_radps +=
+      std::clamp(wanted_.turn_radps - current_.turn_radps, -max_change_radps, max_change_radps);
+  return current_;
+}
+
+}  // namespace waymark

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the robot is told to go: by the route follower, which stands for the operator.
+#pragma once
+
+#include "common/config/config.hpp"
+#include "common/geometry/se2.hpp"
+#include "common/robot/robot_config.hpp"
+#include "common/time/time.hpp"
+#include "sim/core/robot/physics.hpp"
+
+#include <map>
+#include <vector>
+
+namespace waymark {
+
+struct Velocity {
+  double forward_mps{0.0};
+  double turn_radps{0.0};
+};
+
+/// Speeds of the wheels that move the base like that when nothing slips [rad/s].
+WheelPair wheel_speeds(const BaseConfig& base, const Velocity& velocity);
+
+enum class DriveSource { kRoute, kCommand };
+
+struct Waypoint {
+  double x_m{0.0};
+  double y_m{0.0};
+
+  void describe(Fields& fields);
+};
+
+/// Start and path in the world frame.
+struct RouteConfig {
+  DriveSource source{DriveSource::kRoute};
+  double start_x_m{1.0};
+  double start_y_m{0.0};
+  double start_yaw_rad{0.0};
+  double end_x_m{49.0};
+  double speed_mps{0.1};
+  double acceleration_mps2{0.2};
+  double turn_speed_radps{0.5};
+  double settle_s{1.0};
+  double duration_s{0.0};
+  int command_delay_ticks{8};
+  std::vector<Waypoint> waypoints{};
+
+  Se2 world_from_start() const { return {start_x_m, start_y_m, start_yaw_rad}; }
+
+  /// The points to visit after the start: the waypoints, or the end at end_x_m.
+  std::vector<Eigen::Vector2d> points() const;
+  void describe(Fields& fields);
+};
+
+/// Follows straight lines from point to point: turns on the spot at each, keeps to the line, slows
+/// down before the end. Has a state; call once per control period.
+class RouteFollower {
+ public:
+  RouteFollower(const RouteConfig& config, double period_s);
+
+  /// What to do now, given where the robot truly is.
+  Velocity next(const Se2& world_from_base);
+
+  /// At the last point, standing.
+  bool arrived() const { return target_ >= points_m_.size(); }
+
+  double route_length_m() const { return route_length_m_; }
+
+  /// Length of the route up to the robot's projection onto it.
+  double progress_m() const { return progress_m_; }
+
+ private:
+  Velocity drive(const Se2& world_from_base);
+  Velocity turn(double heading_error_rad);
+  void begin_next_leg();
+
+  RouteConfig config_;
+  double period_s_;
+  std::vector<Eigen::Vector2d> points_m_;
+  Eigen::Vector2d leg_start_m_;
+  std::size_t target_{0};
+  bool turning_{true};
+  double speed_mps_{0.0};
+  double turn_speed_radps_{0.0};
+  double route_length_m_{0.0};
+  double finished_legs_m_{0.0};
+  double progress_m_{0.0};
+};
+
+/// Obeys velocity commands, each a fixed time after its stamp, within the robot's acceleration.
+class CommandFollower {
+ public:
+  CommandFollower(const RouteConfig& config, Duration delay, double period_s);
+
+  /// Takes a command; returns false when its time to act is already over (it then acts at once).
+  bool receive(Timestamp stamp, const Velocity& velocity);
+
+  /// What to do now. Call in order of time.
+  Velocity next(Timestamp now);
+
+ private:
+  RouteConfig config_;
+  Duration delay_;
+  double period_s_;
+  Timestamp now_{};
+  std::map<Timestamp, Velocity> pending_;  ///< by the time at which they act
+  Velocity wanted_{};
+  Velocity current_{};
+};
+
+}  // namespace waymark

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/core/robot/physics.hpp"
+
+#include "sim/core/world/mjcf.hpp"
+
+#include <array>
+#include <cstring>
+
+namespace waymark {
+namespace {
+
+constexpr double kSettlingTime_s = 0.5;
+
+/// MuJoCo reads models from files; this is a file in memory.
+mjModel* compile(const std::string& mjcf) {
+  constexpr const char* kName = "world.xml";
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  const int size = static_cast<int>(mjcf.size());
+  if (mj_makeEmptyFileVFS(files.get(), kName, size) != 0) {
+    throw SimulatorError{"MuJoCo: no room for the model's text"};
+  }
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), kName)], mjcf.data(), mjcf.size());
+  std::array<char, 1000> error{};
+  mjModel* model = mj_loadXML(kName, files.get(), error.data(), static_cast<int>(error.size()));
+  mj_deleteVFS(files.get());
+  if (model == nullptr) throw SimulatorError{std::string{"MuJoCo: "} + error.data()};
+  return model;
+}
+
+[[noreturn]] void throw_simulator_error(const char* text) {
+  throw SimulatorError{std::string{"MuJoCo: "} + text};
+}
+
+}  // namespace
+
+void report_mujoco_errors_as_exceptions() {
+  mju_user_error = throw_simulator_error;
+  mju_user_warning = throw_simulator_error;
+}
+
+Physics::Physics(const std::string& mjcf)
+    : model_{(report_mujoco_errors_as_exceptions(), compile(mjcf))} {
+  data_.reset(mj_makeData(model_.get()));
+  const int base = mj_name2id(model_.get(), mjOBJ_BODY, mjcf_names::kBase);
+  base_position_address_ = model_->jnt_qposadr[model_->body_jntadr[base]];
+  left_ = find_wheel(mjcf_names::kLeftWheel);
+  right_ = find_wheel(mjcf_names::kRightWheel);
+  come_to_rest();
+}
+
+Physics::Wheel Physics::find_wheel(const char* name) const {
+  const int joint = mj_name2id(model_.get(), mjOBJ_JOINT, name);
+  return {model_->jnt_qposadr[joint], mj_name2id(model_.get(), mjOBJ_ACTUATOR, name), 0.0};
+}
+
+/// Contacts are soft: the robot sinks in by micrometres first. That is over before the run begins.
+void Physics::come_to_rest() {
+  for (int i = 0; i * model_->opt.timestep < kSettlingTime_s; ++i)
+    step({});
+  left_.angle_at_start_rad = data_->qpos[left_.position_address];
+  right_.angle_at_start_rad = data_->qpos[right_.position_address];
+}
+
+void Physics::step(const WheelPair& target_speed_per_s) {
+  data_->ctrl[left_.actuator] = target_speed_per_s.left_rad;
+  data_->ctrl[right_.actuator] = target_speed_per_s.right_rad;
+  mj_step(model_.get(), data_.get());
+}
+
+Eigen::Isometry3d Physics::world_from_base_3d() const {
+  // From the free joint's coordinates: mj_step leaves the derived body poses one step behind.
+  const double* position = data_->qpos + base_position_address_;
+  Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();
+  world_from_base.translation() = Eigen::Map<const Eigen::Vector3d>{position};
+  world_from_base.linear() =
+      Eigen::Quaterniond{position[3], position[4], position[5], position[6]}.toRotationMatrix();
+  return world_from_base;
+}
+
+Se2 Physics::world_from_base() const {
+  const Eigen::Isometry3d world_from_base = world_from_base_3d();
+  const Eigen::Vector3d forward = world_from_base.linear().col(0);
+  return {world_from_base.translation().head<2>(), std::atan2(forward.y(), forward.x())};
+}
+
+WheelPair Physics::wheel_angles() const {
+  return {data_->qpos[left_.position_address] - left_.angle_at_start_rad,
+          data_->qpos[right_.position_address] - right_.angle_at_start_rad};
+}
+
+}  // namespace waymark

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scenario: everything that a simulated run depends on. Scenario and build determine every byte.
+#pragma once
+
+#include "common/config/config.hpp"
+#include "common/robot/robot_config.hpp"
+#include "sim/core/camera/camera.hpp"
+#include "sim/core/robot/drive.hpp"
+#include "sim/core/sensors/encoders.hpp"
+#include "sim/core/sensors/lidar.hpp"
+#include "sim/core/world/marker_picture.hpp"
+#include "sim/core/world/world.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// Time, chance, and who takes part.
+struct RunConfig {
+  std::int64_t seed{1};
+  double tick_s{0.1};
+  int physics_rate_hz{600};  ///< divisible by 30, 10 and 5 Hz
+  bool rolling_scan{false};
+  std::vector<std::string> participants{"detector", "slam", "viewer", "recorder"};
+  int window_ticks{4};
+
+  void describe(Fields& fields);
+};
+
+struct Scenario {
+  RobotConfig robot{};
+  WorldConfig world{};
+  MarkerLayoutConfig markers{};
+  RouteConfig route{};
+  OdometryErrorConfig odometry_errors{};
+  LidarNoiseConfig lidar_noise{};
+  CameraNoiseConfig camera_noise{};
+  RunConfig run{};
+
+  MarkerPrint marker_print() const {
+    return {robot.markers.dictionary, robot.markers.size_m, markers.quiet_zone_modules};
+  }
+
+  /// Physics steps from one measurement of a sensor to the next.
+  int steps_per(double rate_hz) const;
+  int steps_per_tick() const;
+
+  void describe(Fields& fields);
+  void check(Problems& problems) const;
+
+ private:
+  void check_world(Problems& problems) const;
+  void check_markers(Problems& problems) const;
+  void check_route(Problems& problems) const;
+  void check_times(Problems& problems) const;
+};
+
+}  // namespace waymark

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/core/sensors/encoders.hpp"
+
+#include "sim/core/sensors/random_streams.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace waymark {
+namespace {
+
+// DESIGN's default errors: what a well-kept TurtleBot3 shows.
+constexpr double kDrawnScale = 0.01;
+constexpr double kDrawnHeadingScale = 0.005;
+
+}  // namespace
+
+void OdometryErrorConfig::describe(Fields& fields) {
+  fields.field("draw_from_seed", draw_from_seed,
+               "scale +0.01 on odd seeds, -0.01 on even ones; heading_scale drawn in +-0.005");
+  fields.field("scale", scale, {-0.5, 0.5}, "share by which distances are measured too long");
+  fields.field("heading_scale", heading_scale, {-0.5, 0.5},
+               "share by which turns are measured too large (wrong wheel base)");
+  fields.field("diffusion_m_per_sqrt_m", diffusion_m_per_sqrt_m, kNotNegative,
+               "standard deviation of the distance after one metre; grows with its square root");
+  fields.field("heading_diffusion_deg_per_sqrt_m", heading_diffusion_deg_per_sqrt_m, kNotNegative,
+               "standard deviation of the heading after one metre");
+  fields.field("slips_per_m", slips_per_m, kNotNegative, "how often the wheels spin, on average");
+  fields.field("slip_m", slip_m, kNotNegative, "mean distance that a slip adds to the odometry");
+  fields.field("ticks_per_turn", ticks_per_turn, {0, 1000000},
+               "encoder resolution; 0 = unlimited. XM430: 4096");
+}
+
+OdometryErrorConfig errors_of_seed(const OdometryErrorConfig& config, std::int64_t seed) {
+  OdometryErrorConfig errors = config;
+  if (!config.draw_from_seed) return errors;
+  Random random{static_cast<std::uint64_t>(seed), random_streams::kOdometryConstants};
+  errors.scale = seed % 2 != 0 ? kDrawnScale : -kDrawnScale;
+  errors.heading_scale = random.uniform(-kDrawnHeadingScale, kDrawnHeadingScale);
+  return errors;
+}
+
+Encoders::Encoders(const BaseConfig& base, const OdometryErrorConfig& errors, std::int64_t seed)
+    : base_{base}, errors_{errors_of_seed(errors, seed)}, seed_{static_cast<std::uint64_t>(seed)} {}
+
+double Encoders::counted_angle_rad(double angle_rad) const {
+  if (errors_.ticks_per_turn == 0) return angle_rad;
+  const double tick_rad = 2.0 * std::numbers::pi / errors_.ticks_per_turn;
+  return std::floor(angle_rad / tick_rad + 0.5) * tick_rad;
+}
+
+/// Slips come at random like raindrops and have exponential lengths.
+double Encoders::slip_m(double distance_m, Random& random) const {
+  const double chance = random.uniform();
+  const double length_m = -std::log(1.0 - random.uniform()) * errors_.slip_m;
+  return chance < errors_.slips_per_m * distance_m ? length_m : 0.0;
+}
+
+OdometrySample Encoders::measure(Timestamp time, const WheelPair& angles) {
+  const WheelPair counted{counted_angle_rad(angles.left_rad), counted_angle_rad(angles.right_rad)};
+  const double left_m = (counted.left_rad - last_.left_rad) * base_.wheel_radius_m;
+  const double right_m = (counted.right_rad - last_.right_rad) * base_.wheel_radius_m;
+  last_ = counted;
+
+  // Variances grow with the path, so that no error depends on how often it is measured.
+  const double path_m = 0.5 * (std::abs(left_m) + std::abs(right_m));
+  Random random{seed_, random_streams::kOdometry, step_++};
+  const double sqrt_path = std::sqrt(path_m);
+  const double forward_m = 0.5 * (left_m + right_m) * (1.0 + errors_.scale) +
+                           errors_.diffusion_m_per_sqrt_m * sqrt_path * random.normal() +
+                           slip_m(path_m, random);
+  const double turn_rad =
+      (right_m - left_m) / base_.wheel_separation_m * (1.0 + errors_.heading_scale) +
+      radians(errors_.heading_diffusion_deg_per_sqrt_m) * sqrt_path * random.normal();
+
+  // Second order: the arc's chord points along the middle heading.
+  const Se2 half_turn{0.0, 0.0, 0.5 * turn_rad};
+  odom_from_base_ = odom_from_base_ * half_turn * Se2{forward_m, 0.0, 0.0} * half_turn;
+  return {time, odom_from_base_};
+}
+
+}  // namespace waymark

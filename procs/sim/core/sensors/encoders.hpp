@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Wheel odometry: what the encoders make of the turning wheels, with its errors. Never sees the
+// true pose.
+#pragma once
+
+#include "common/config/config.hpp"
+#include "common/random/random.hpp"
+#include "common/robot/robot_config.hpp"
+#include "common/sensors/sensors.hpp"
+#include "sim/core/robot/physics.hpp"
+
+#include <cstdint>
+
+namespace waymark {
+
+/// What is wrong with the odometry.
+struct OdometryErrorConfig {
+  bool draw_from_seed{true};
+  double scale{0.0};
+  double heading_scale{0.0};
+  double diffusion_m_per_sqrt_m{0.003};
+  double heading_diffusion_deg_per_sqrt_m{0.5};
+  double slips_per_m{0.0};
+  double slip_m{0.02};
+  int ticks_per_turn{4096};
+
+  void describe(Fields& fields);
+};
+
+/// The constant errors of this seed: with draw_from_seed +1 % of distance on odd seeds and -1 % on
+/// even ones, and up to half a percent of heading either way; else as configured.
+OdometryErrorConfig errors_of_seed(const OdometryErrorConfig& config, std::int64_t seed);
+
+/// Integrates wheel angles to a pose that starts at the identity.
+class Encoders {
+ public:
+  Encoders(const BaseConfig& base, const OdometryErrorConfig& errors, std::int64_t seed);
+
+  /// @param angles  of the wheels since the start; call at the odometry rate, in order.
+  OdometrySample measure(Timestamp time, const WheelPair& angles);
+
+ private:
+  double counted_angle_rad(double angle_rad) const;
+  double slip_m(double distance_m, Random& random) const;
+
+  BaseConfig base_;
+  OdometryErrorConfig errors_;
+  std::uint64_t seed_;
+  std::uint64_t step_{0};
+  WheelPair last_{};
+  Se2 odom_from_base_{};
+};
+
+}  // namespace waymark

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The simulated robot in its world, tick by tick.
+#pragma once
+
+#include "common/sensors/sensors.hpp"
+#include "sim/core/camera/camera.hpp"
+#include "sim/core/camera/renderer.hpp"
+#include "sim/core/robot/drive.hpp"
+#include "sim/core/robot/physics.hpp"
+#include "sim/core/scenario.hpp"
+#include "sim/core/sensors/encoders.hpp"
+#include "sim/core/sensors/lidar.hpp"
+#include "sim/core/world/world.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace waymark {
+
+struct TruePose {
+  Timestamp time{};
+  Se2 world_from_base{};
+};
+
+/// What was measured from the end of the last tick (inclusive) to the end of this one (exclusive).
+struct Tick {
+  Timestamp end{};
+  std::vector<OdometrySample> odometry{};
+  std::vector<TruePose> true_poses{};
+  std::vector<LidarScan> scans{};
+  std::vector<CameraFrame> frames{};
+};
+
+/// Deterministic: the scenario, and the commands with their stamps, determine every value.
+class Simulation {
+ public:
+  /// @param scenario  checked. @throws SimulatorError when MuJoCo or OSMesa cannot be used.
+  explicit Simulation(const Scenario& scenario);
+
+  /// Simulates the next tick. @throws SimulatorError when the robot does not arrive in time.
+  Tick advance();
+
+  /// A velocity command (route.source = command only).
+  /// @return false when it comes too late for the fixed delay.
+  bool command(Timestamp stamp, const Velocity& velocity);
+
+  /// The robot has arrived and stood long enough, or the time is over.
+  bool finished() const;
+
+  Timestamp now() const { return time_of_step(step_); }
+
+  const World& world() const { return world_; }
+
+  Se2 world_from_base() const { return physics_.world_from_base(); }
+
+  /// 0 at the start, 1 when finished: of the route, or of the time.
+  double progress_fraction() const;
+
+ private:
+  Timestamp time_of_step(std::int64_t step) const;
+  bool is_due(double rate_hz) const;
+  void sense(Tick& tick);
+  void sense_rolling_scan(Tick& tick);
+  CameraFrame photograph();
+  Velocity decide();
+  void check_progress() const;
+
+  Scenario scenario_;
+  World world_;
+  Camera camera_;
+  Physics physics_;
+  RouteFollower route_;
+  CommandFollower commands_;
+  Encoders encoders_;
+  Lidar lidar_;
+  Renderer renderer_;
+  std::int64_t step_{0};
+  std::int64_t arrival_step_{-1};
+  std::uint64_t frames_taken_{0};
+  LidarScan sweep_{};  ///< of a rolling scan, growing
+};
+
+}  // namespace waymark

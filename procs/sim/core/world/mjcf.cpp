@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/core/world/mjcf.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+// Masses and sizes of the Waffle Pi: turtlebot3_description, turtlebot3_waffle_pi.urdf; the total
+// is the data sheet's 1.8 kg, the body's share is what the other parts leave.
+constexpr double kWheelMass_kg = 0.0285;
+constexpr double kWheelWidth_m = 0.018;
+constexpr double kBodyMass_kg = 1.8 - 2 * kWheelMass_kg;
+constexpr const char* kBodyInertia = "0.0087 0.0086 0.0146";  // [kg m^2]
+constexpr double kBodyCentreX_m = -0.064;
+constexpr double kBodyHalfLength_m = 0.133;
+constexpr double kBodyHalfHeight_m = 0.047;
+constexpr double kGroundClearance_m = 0.010;
+constexpr double kCasterX_m = -0.177;
+constexpr double kCasterY_m = 0.064;
+constexpr double kCasterRadius_m = 0.010;
+
+// Wheel servo: torque = gain * (target speed - speed). Stiff: the wheel follows in about 10 ms.
+constexpr double kServoGain_Nms = 0.1;
+constexpr double kMotorTorque_Nm = 1.4;      // XM430-W210, stall at 12 V is 3
+constexpr double kRotorInertia_kgm2 = 1e-4;  // seen through the gear; keeps a lifted wheel stable
+
+/// Constants of the whole model. Near and far plane are multiples of extent, hence extent = 1.
+std::string header(const MjcfOptions& options) {
+  return fmt::format(R"(<mujoco model="waymark">
+  <compiler angle="radian"/>
+  <option timestep="{:.17g}" integrator="implicit" cone="elliptic" impratio="10"/>
+  <size njmax="500" nconmax="100"/>
+  <statistic extent="1" center="0 0 0"/>
+  <visual>
+    <global offwidth="{}" offheight="{}"/>
+    <map znear="0.03" zfar="500"/>
+    <headlight ambient="0.62 0.62 0.62" diffuse="0.2 0.2 0.2" specular="0 0 0"/>
+    <quality shadowsize="0" offsamples="0" numquads="1"/>
+  </visual>
+)",
+                     options.time_step_s, options.picture_width_px, options.picture_height_px);
+}
+
+/// One texture stands for all markers; the renderer puts the right one in its place.
+std::string assets() {
+  return R"(  <asset>
+    <texture name="plate" type="2d" builtin="flat" width="8" height="8" rgb1="1 1 1"/>
+    <material name="plate" texture="plate" texrepeat="1 1" specular="0" shininess="0" emission="0.35"/>
+    <material name="side_wall" rgba="0.74 0.73 0.70 1" specular="0" shininess="0"/>
+    <material name="end_wall" rgba="0.50 0.53 0.58 1" specular="0" shininess="0"/>
+    <material name="floor" rgba="0.42 0.38 0.34 1" specular="0" shininess="0"/>
+    <material name="ceiling" rgba="0.93 0.93 0.93 1" specular="0" shininess="0"/>
+    <material name="robot" rgba="0.15 0.15 0.17 1"/>
+  </asset>
+)";
+}
+
+std::string wall_geom(const Wall& wall) {
+  const Eigen::Vector2d along = (wall.to_m - wall.from_m).normalized();
+  const Eigen::Vector2d outward{along.y(), -along.x()};
+  const Eigen::Vector2d centre = 0.5 * (wall.from_m + wall.to_m) + 0.5 * wall.thickness_m * outward;
+  // Longer by the thickness at both ends, so that outer corners are closed.
+  const double half_length = 0.5 * (wall.to_m - wall.from_m).norm() + wall.thickness_m;
+  return fmt::format(
+      "    <geom type=\"box\" group=\"{}\" material=\"{}\" pos=\"{:.17g} {:.17g} {:.17g}\" "
+      "size=\"{:.17g} {:.17g} {:.17g}\" xyaxes=\"{:.17g} {:.17g} 0 {:.17g} {:.17g} 0\"/>\n",
+      static_cast<int>(GeomGroup::kWalls), wall.kind == WallKind::kSide ? "side_wall" : "end_wall",
+      centre.x(), centre.y(), 0.5 * wall.height_m, half_length, 0.5 * wall.thickness_m,
+      0.5 * wall.height_m, along.x(), along.y(), -along.y(), along.x());
+}
+
+/// A thin box whose +z face shows the texture, upright: x to the right as seen from the front.
+std::string marker_geom(const MarkerPlate& marker, std::size_t index, double plate_size_m) {
+  const Eigen::Vector3d facing{std::cos(marker.yaw_rad), std::sin(marker.yaw_rad), 0.0};
+  const Eigen::Vector3d right{-facing.y(), facing.x(), 0.0};
+  const Eigen::Vector3d centre = marker.centre_m - 0.5 * kPlateThickness_m * facing;
+  return fmt::format(
+      "    <geom name=\"{}{}\" type=\"box\" group=\"{}\" material=\"plate\" contype=\"0\" "
+      "conaffinity=\"0\" pos=\"{:.17g} {:.17g} {:.17g}\" size=\"{:.17g} {:.17g} {:.17g}\" "
+      "xyaxes=\"{:.17g} {:.17g} 0 0 0 1\"/>\n",
+      mjcf_names::kMarkerPrefix, index, static_cast<int>(GeomGroup::kMarkers), centre.x(),
+      centre.y(), centre.z(), 0.5 * plate_size_m, 0.5 * plate_size_m, 0.5 * kPlateThickness_m,
+      right.x(), right.y());
+}
+
+std::string world_geoms(const World& world, const MjcfOptions& options) {
+  std::string text = fmt::format(
+      "    <light directional=\"true\" castshadow=\"false\" pos=\"0 0 10\" dir=\"0.35 0.2 -1\" "
+      "diffuse=\"0.35 0.35 0.35\" specular=\"0 0 0\"/>\n"
+      "    <geom type=\"plane\" group=\"{0}\" material=\"floor\" size=\"0 0 1\"/>\n"
+      "    <geom type=\"plane\" group=\"{0}\" material=\"ceiling\" size=\"0 0 1\" "
+      "pos=\"0 0 {1:.17g}\" euler=\"3.141592653589793 0 0\" contype=\"0\" conaffinity=\"0\"/>\n",
+      static_cast<int>(GeomGroup::kFloor), world.ceiling_height_m);
+  for (const Wall& wall : world.walls)
+    text += wall_geom(wall);
+  for (std::size_t i = 0; i < world.markers.size(); ++i)
+    text += marker_geom(world.markers[i], i, options.plate_size_m);
+  return text;
+}
+
+/// A tyre with a crowned tread touches in one point, so the wheel separation is exact.
+std::string wheel(const char* name, double y_m, double radius_m) {
+  return fmt::format(
+      R"(      <body name="{0}" pos="0 {1:.17g} {2:.17g}">
+        <joint name="{0}" type="hinge" axis="0 1 0" armature="{3}"/>
+        <geom type="ellipsoid" group="{4}" material="robot" size="{2:.17g} {5:.17g} {2:.17g}" mass="{6}" friction="1 0.005 0.0001"/>
+      </body>
+)",
+      name, y_m, radius_m, kRotorInertia_kgm2, static_cast<int>(GeomGroup::kRobot),
+      0.5 * kWheelWidth_m, kWheelMass_kg);
+}
+
+/// Casters have no friction: contact friction is the greater of the two geoms' unless one of them
+/// has priority, and dragging casters make the wheels slip.
+std::string caster(double y_m) {
+  return fmt::format(
+      "      <geom type=\"sphere\" group=\"{}\" material=\"robot\" pos=\"{} {} {}\" size=\"{}\" "
+      "mass=\"0\" condim=\"1\" priority=\"1\"/>\n",
+      static_cast<int>(GeomGroup::kRobot), kCasterX_m, y_m, kCasterRadius_m, kCasterRadius_m);
+}
+
+std::string robot_body(const RobotConfig& robot, const Se2& world_from_start) {
+  std::string text = fmt::format(
+      R"(    <body name="{}" pos="{:.17g} {:.17g} 0" euler="0 0 {:.17g}">
+      <freejoint/>
+      <inertial pos="{} 0 {}" mass="{}" diaginertia="{}"/>
+      <geom type="box" group="{}" material="robot" pos="{} 0 {}" size="{} {} {}" mass="0"/>
+)",
+      mjcf_names::kBase, world_from_start.x(), world_from_start.y(), world_from_start.theta(),
+      kBodyCentreX_m, kGroundClearance_m + kBodyHalfHeight_m, kBodyMass_kg, kBodyInertia,
+      static_cast<int>(GeomGroup::kRobot), kBodyCentreX_m, kGroundClearance_m + kBodyHalfHeight_m,
+      kBodyHalfLength_m, kBodyHalfLength_m, kBodyHalfHeight_m);
+  text += caster(kCasterY_m) + caster(-kCasterY_m);
+  const double half_separation = 0.5 * robot.base.wheel_separation_m;
+  text += wheel(mjcf_names::kLeftWheel, half_separation, robot.base.wheel_radius_m);
+  text += wheel(mjcf_names::kRightWheel, -half_separation, robot.base.wheel_radius_m);
+  return text + "    </body>\n";
+}
+
+std::string wheel_servo(const char* joint) {
+  return fmt::format(
+      "    <velocity name=\"{0}\" joint=\"{0}\" kv=\"{1}\" forcelimited=\"true\" forcerange=\"-{2} "
+      "{2}\"/>\n",
+      joint, kServoGain_Nms, kMotorTorque_Nm);
+}
+
+}  // namespace
+
+std::string to_mjcf(const World& world, const RobotConfig& robot, const MjcfOptions& options) {
+  return header(options) + assets() + "  <worldbody>\n" + world_geoms(world, options) +
+         robot_body(robot, options.world_from_start) + "  </worldbody>\n  <actuator>\n" +
+         wheel_servo(mjcf_names::kLeftWheel) + wheel_servo(mjcf_names::kRightWheel) +
+         "  </actuator>\n</mujoco>\n";
+}
+
+}  // namespace waymark

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// World and robot as MJCF text, MuJoCo's modelling language.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "common/robot/robot_config.hpp"
+#include "sim/core/world/world.hpp"
+
+#include <string>
+
+namespace waymark {
+
+/// Geom groups, so that each sensor sees what it should.
+enum class GeomGroup : int {
+  kWalls = 0,    ///< seen by LiDAR and camera, collide
+  kRobot = 1,    ///< seen by nobody on board, collides
+  kMarkers = 2,  ///< seen by the camera only, no contacts
+  kFloor = 3,    ///< seen by the camera, carries the wheels
+};
+
+/// Names of what the simulation looks up in the model.
+namespace mjcf_names {
+inline constexpr const char* kBase = "base";
+inline constexpr const char* kLeftWheel = "left_wheel";
+inline constexpr const char* kRightWheel = "right_wheel";
+inline constexpr const char* kMarkerPrefix = "marker_";  ///< + index into World::markers
+}  // namespace mjcf_names
+
+struct MjcfOptions {
+  double time_step_s{1.0 / 600.0};
+  double plate_size_m{0.6};  ///< marker with quiet zone
+  int picture_width_px{640};
+  int picture_height_px{480};
+  Se2 world_from_start{};  ///< where the base begins
+};
+
+/// The model of a TurtleBot3 Waffle Pi (masses and sizes: turtlebot3_description) in the world.
+/// The base frame lies on the floor between the wheels.
+std::string to_mjcf(const World& world, const RobotConfig& robot, const MjcfOptions& options);
+
+}  // namespace waymark

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/sim_node.hpp"
+
+#include "common/messages/convert.hpp"
+
+#include <fmt/format.h>
+
+namespace waymark {
+namespace {
+
+/// The part of a scenario that the other processes may know.
+struct RobotOnly {
+  RobotConfig robot{};
+
+  void describe(Fields& fields) { fields.section("robot", robot); }
+};
+
+image_t to_image_message(const CameraFrame& frame) {
+  image_t message{};
+  message.utime = to_us(frame.time);
+  message.width = frame.width_px;
+  message.height = frame.height_px;
+  message.row_stride = 0;
+  message.pixelformat = image_t::PIXEL_FORMAT_MJPEG;
+  message.size = static_cast<std::int32_t>(frame.jpeg.size());
+  message.data = frame.jpeg;
+  message.nmetadata = 0;
+  return message;
+}
+
+}  // namespace
+
+SimNode::SimNode(const Config& config, Inbox& inbox) : config_{config}, inbox_{inbox} {
+  try {
+    simulation_.emplace(config_);
+  } catch (const SimulatorError& error) {
+    throw SetupError{error.what()};
+  }
+  if (!config_.out_dir.empty()) write_what_is_known();
+  if (config_.route.source == DriveSource::kCommand) {
+    inbox.on<twist2D_t>(channels::kDriveCommand,
+                        [this](const twist2D_t& command) { obey(command); });
+  }
+}
+
+void SimNode::write_what_is_known() {
+  std::error_code error;
+  std::filesystem::create_directories(config_.out_dir, error);
+  write_whole_file(config_.out_dir / "scenario.toml", dump_config(config_));
+  write_whole_file(config_.out_dir / "robot.toml", dump_config(RobotOnly{config_.robot}));
+  write_whole_file(config_.out_dir / "truth_markers.csv", truth_markers_csv(simulation_->world()));
+  truth_.emplace(config_.out_dir / "truth.tum");
+}
+
+std::int64_t SimNode::run_id() const {
+  const std::string text = dump_config(config_);
+  return content_hash({"scenario", {}, {text.begin(), text.end()}});
+}
+
+void SimNode::obey(const twist2D_t& command) {
+  const Velocity velocity{double{command.vx}, double{command.wz}};
+  const bool in_time = simulation_->command(timestamp_from_us(command.utime), velocity);
+  inbox_.counters().add(in_time ? "DRIVE_COMMAND obeyed" : "DRIVE_COMMAND late");
+}
+
+std::vector<Message> SimNode::advance(Timestamp& tick_end) {
+  const Tick tick = simulation_->advance();
+  tick_end = tick.end;
+  std::vector<Message> messages;
+  for (const OdometrySample& sample : tick.odometry) {
+    messages.push_back(
+        encode(channels::kOdometry, to_pose_message(sample.time, sample.odom_from_base)));
+  }
+  for (const TruePose& pose : tick.true_poses) {
+    messages.push_back(
+        encode(channels::kTruePose, to_pose_message(pose.time, pose.world_from_base)));
+    if (truth_) truth_->add(pose);
+  }
+  for (const LidarScan& scan : tick.scans) {
+    messages.push_back(config_.run.rolling_scan ? encode(channels::kMbotLidar, to_mbot_lidar(scan))
+                                                : encode(channels::kLidar, to_planar_lidar(scan)));
+  }
+  for (const CameraFrame& frame : tick.frames)
+    messages.push_back(encode(channels::kCamera, to_image_message(frame)));
+  return messages;
+}
+
+std::string SimNode::progress() const {
+  const Se2 at = simulation_->world_from_base();
+  if (config_.route.source == DriveSource::kCommand) {
+    return fmt::format("at ({:.1f}, {:.1f}) m", at.x(), at.y());
+  }
+  const Eigen::Vector2d end = config_.route.points().back();
+  return fmt::format("x {:.1f} m of {:.1f} m", at.x(), end.x());
+}
+
+void SimNode::finish() {
+  if (truth_) truth_->finish();
+}
+
+}  // namespace waymark

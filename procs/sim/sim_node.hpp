@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The simulator as the runner sees it: messages of one tick after another.
+#pragma once
+
+#include "common/process/run_simulator.hpp"
+#include "sim/core/simulation.hpp"
+#include "sim/sim_config.hpp"
+#include "sim/truth_files.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// Publishes CAMERA, LIDAR, ODOMETRY and TRUE_POSE; obeys DRIVE_COMMAND when the scenario says so.
+/// With an output folder it writes scenario.toml, robot.toml, truth_markers.csv and truth.tum.
+class SimNode final : public TickSource {
+ public:
+  using Config = SimConfig;
+  static constexpr ProcessTraits kTraits{
+      "sim", "Simulates a TurtleBot3 Waffle Pi in a corridor: wheels, LiDAR, camera.", false};
+
+  /// @throws SetupError when the output folder or the renderer cannot be used.
+  SimNode(const Config& config, Inbox& inbox);
+
+  std::vector<std::string> participants() const override { return config_.run.participants; }
+
+  int window_ticks() const override { return config_.run.window_ticks; }
+
+  std::int64_t run_id() const override;
+
+  bool finished() const override { return simulation_->finished(); }
+
+  std::vector<Message> advance(Timestamp& tick_end) override;
+
+  double progress_fraction() const override { return simulation_->progress_fraction(); }
+
+  std::string progress() const override;
+  void finish() override;
+
+ private:
+  void write_what_is_known();
+  void obey(const twist2D_t& command);
+
+  Config config_;
+  Inbox& inbox_;
+  std::optional<Simulation> simulation_;
+  std::optional<TruthTrajectory> truth_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/truth_files.hpp"
+
+#include "common/process/node.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+std::filesystem::path unfinished(const std::filesystem::path& path) {
+  return path.string() + ".unfinished";
+}
+
+[[noreturn]] void throw_not_writable(const std::filesystem::path& path) {
+  throw SetupError{path.string() + ": cannot be written; does the folder exist, is it writable?"};
+}
+
+}  // namespace
+
+void write_whole_file(const std::filesystem::path& path, const std::string& text) {
+  const std::filesystem::path unfinished_path = unfinished(path);
+  std::ofstream stream{unfinished_path, std::ios::binary};
+  stream << text;
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(unfinished_path, path, error);
+  if (!stream || error) throw_not_writable(path);
+}
+
+std::string truth_markers_csv(const World& world) {
+  std::string text = "id,instance,x_m,y_m,yaw_rad\n";
+  for (const MarkerPlate& marker : world.markers) {
+    text += fmt::format("{},{},{:.6f},{:.6f},{:.9f}\n", marker.id, marker.instance,
+                        marker.centre_m.x(), marker.centre_m.y(), marker.yaw_rad);
+  }
+  return text;
+}
+
+TruthTrajectory::TruthTrajectory(const std::filesystem::path& path)
+    : path_{path}, unfinished_path_{unfinished(path)}, stream_{unfinished_path_} {
+  if (!stream_) throw_not_writable(path);
+}
+
+void TruthTrajectory::add(const TruePose& pose) {
+  const double half_yaw_rad = 0.5 * pose.world_from_base.theta();
+  stream_ << fmt::format("{:.6f} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n", to_seconds(pose.time),
+                         pose.world_from_base.x(), pose.world_from_base.y(), std::sin(half_yaw_rad),
+                         std::cos(half_yaw_rad));
+}
+
+void TruthTrajectory::finish() {
+  stream_.close();
+  std::error_code error;
+  if (stream_) std::filesystem::rename(unfinished_path_, path_, error);
+  if (!stream_ || error) throw_not_writable(path_);
+}
+
+}  // namespace waymark

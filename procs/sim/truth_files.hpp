@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the simulator knows and leaves for the evaluation: no other process gets it.
+#pragma once
+
+#include "sim/core/simulation.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace waymark {
+
+/// Writes a file under another name first and renames it: a file that is there is whole.
+/// @throws SetupError when it cannot be written.
+void write_whole_file(const std::filesystem::path& path, const std::string& text);
+
+/// `id,instance,x_m,y_m,yaw_rad` of every marker, world frame; yaw = direction that it faces.
+std::string truth_markers_csv(const World& world);
+
+/// truth.tum: `t x y z qx qy qz qw` of the base in the world frame, growing during the run.
+class TruthTrajectory {
+ public:
+  explicit TruthTrajectory(const std::filesystem::path& path);
+  void add(const TruePose& pose);
+  /// Puts the file in place.
+  void finish();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path unfinished_path_;
+  std::ofstream stream_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the process knows about a method.
+#pragma once
+
+#include "slam/core/filter/estimate.hpp"
+#include "slam/core/filter/update_gate.hpp"
+#include "slam/core/grid/grid_map.hpp"
+#include "slam/core/mapping/landmark_map.hpp"
+#include "slam/core/mapping/mapper.hpp"
+#include "slam/core/motion/motion_model.hpp"
+#include "slam/core/scan/observation.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace waymark {
+
+/// What all methods are given.
+struct EstimatorSetup {
+  MapperConfig grid{};
+  MotionNoise motion{};
+  UpdateGate gate{};
+  double range_sigma_m{0.01};  ///< of the LiDAR
+  std::uint64_t seed{1};
+};
+
+/// A hypothesis, for pictures.
+struct PublishedParticle {
+  Se2 map_from_base{};
+  Se2 previous_map_from_base{};  ///< its parent, one update ago
+  double weight{0.0};            ///< normalised
+};
+
+/// A SLAM method. The map frame is the base's pose at the first observation.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+
+  /// Takes the next scan. Whether it is weighed and mapped or only followed by odometry is the
+  /// method's business; it always says where the robot is.
+  virtual Estimate update(const Observation& observation) = 0;
+
+  /// The map so far. Copies are cheap, and tiles that did not change keep their address.
+  virtual const GridMap& map() const = 0;
+  virtual std::vector<Landmark> landmarks() const = 0;
+  virtual std::vector<PublishedParticle> particles() const = 0;
+};
+
+}  // namespace waymark

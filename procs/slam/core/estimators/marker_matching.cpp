@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/estimators/marker_matching.hpp"
+
+#include "slam/core/mapping/insert_scan.hpp"
+#include "slam/core/weighting/wall_score.hpp"
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+enum RandomStream : std::uint64_t { kMotionStream = 1, kResamplingStream = 2 };
+
+}  // namespace
+
+MarkerMatchingEstimator::MarkerMatchingEstimator(const EstimatorSetup& setup,
+                                                 const MarkerMatchingConfig& config)
+    : setup_{setup},
+      config_{config},
+      particles_{static_cast<std::size_t>(config.particles), State{}},
+      mapper_{setup.grid} {}
+
+Estimate MarkerMatchingEstimator::update(const Observation& observation) {
+  since_update_ = since_update_.then(observation.motion);
+  if (updates_ == 0) {
+    mapper_.insert(observation, best_, covariance_);
+    ++updates_;
+  } else if (setup_.gate.is_open(since_update_)) {
+    propagate();
+    weigh(observation);
+    const State& best = particles_.state(particles_.best());
+    best_ = best.map_from_base;
+    covariance_ = covariance_about(best_, particles_);
+    effective_particles_ = particles_.effective_number();
+    mapper_.insert(observation, best_, covariance_);
+    Random random{setup_.seed, kResamplingStream, updates_};
+    particles_.resample_if_needed(config_.resample_threshold, random);
+    since_update_ = {};
+    ++updates_;
+  }
+  return estimate(observation);
+}
+
+void MarkerMatchingEstimator::propagate() {
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Random random{setup_.seed, kMotionStream, updates_, i};
+    State& state = particles_.state(i);
+    state.previous_map_from_base = state.map_from_base;
+    state.map_from_base = state.map_from_base * sample_motion(since_update_, setup_.motion, random);
+  }
+}
+
+void MarkerMatchingEstimator::weigh(const Observation& observation) {
+  const std::vector<JudgedSpot> spots = judged_spots(observation);
+  std::vector<WallScore> walls(particles_.size());
+  std::vector<double> markers(particles_.size());
+  WallScore all;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Se2& pose = particles_.state(i).map_from_base;
+    walls[i] = wall_score(mapper_.map(), observation.beams, pose);
+    markers[i] = marker_score(mapper_.map(), spots, pose, config_.rewards);
+    all.agreement += particles_.weights()[i] * walls[i].agreement;
+    all.mapped += particles_.weights()[i] * walls[i].mapped;
+  }
+  const double expected = all.mapped > 0.0 ? all.agreement / all.mapped : 0.0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    particles_.add_log_weight(i,
+                              markers[i] + config_.rewards.weak_reward * walls[i].beyond(expected));
+  }
+  particles_.normalise();
+  const std::size_t best = particles_.best();
+  wall_agreement_ = walls[best].mapped > 0.0 ? walls[best].agreement / walls[best].mapped : 1.0;
+  markers_told_ = markers[best] > 0.0;
+}
+
+std::vector<JudgedSpot> MarkerMatchingEstimator::judged_spots(
+    const Observation& observation) const {
+  std::vector<JudgedSpot> spots;
+  for (const AnnotatedBeam& annotated : observation.beams) {
+    if (annotated.sight == Sight::kUnknown) continue;
+    spots.push_back({annotated.beam.end_in_base, annotated.marker_id, 1.0});
+  }
+  for (const MarkerSighting& sighting : observation.sightings) {
+    const double sigma_m = sighting.sigma_along_m() / config_.sighting_sigma_m;
+    const double trust = 1.0 / (1.0 + sigma_m * sigma_m);
+    const auto face = face_points(sighting, setup_.grid.face_spacing_m, setup_.grid.face_margin_m);
+    for (const FacePoint& point : face)
+      spots.push_back({point.in_base, point.marker_id, trust});
+  }
+  return spots;
+}
+
+Estimate MarkerMatchingEstimator::estimate(const Observation& observation) const {
+  const Se2 map_from_base = best_ * since_update_.start_from_end;
+  Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
+  estimate.covariance = covariance_;
+  estimate.num_particles = particles_.size();
+  estimate.effective_particles = effective_particles_;
+  estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
+  if (updates_ < 2) {
+    estimate.health = Health::kInitialising;
+  } else if (wall_agreement_ < config_.lost_agreement) {
+    estimate.health = Health::kLost;
+  } else if (estimate.observability.is_degenerate && !markers_told_) {
+    estimate.health = Health::kDegenerate;
+  } else {
+    estimate.health = Health::kTracking;
+  }
+  return estimate;
+}
+
+std::vector<PublishedParticle> MarkerMatchingEstimator::particles() const {
+  std::vector<PublishedParticle> published;
+  published.reserve(particles_.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const State& state = particles_.state(i);
+    published.push_back({state.map_from_base * since_update_.start_from_end,
+                         state.previous_map_from_base, particles_.weights()[i]});
+  }
+  return published;
+}
+
+}  // namespace waymark

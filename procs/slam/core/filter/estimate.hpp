@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an estimator says after a scan.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "common/time/time.hpp"
+#include "slam/core/filter/particle_set.hpp"
+#include "slam/core/scan/observability.hpp"
+#include "slam/core/scan/observation.hpp"
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+enum class Health { kInitialising, kTracking, kDegenerate, kLost };
+
+/// What tells the motion along the weakest direction of the walls.
+enum class WeakAxisSource { kUnknown, kOdometry, kMarkers };
+
+struct Estimate {
+  Timestamp time{};
+  Se2 map_from_base{};
+  /// [m^2, m rad, rad^2] order x y theta, map frame.
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  Health health{Health::kInitialising};
+  std::size_t num_particles{1};
+  double effective_particles{1.0};
+  int beams_on_markers{0};
+  int markers_in_view{0};
+  Observability observability{};
+  WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
+};
+
+/// The part of an estimate that the observation alone decides.
+Estimate describe_observation(const Observation& observation, const Se2& map_from_base,
+                              double range_sigma_m);
+
+/// Mean square of the particles' deviations from a pose, map frame. About a pose that is not their
+/// mean it contains the square of the difference: the honest error of that pose.
+/// @tparam State  has a member map_from_base.
+template <class State>
+Eigen::Matrix3d covariance_about(const Se2& map_from_base, const ParticleSet<State>& particles) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const Se2& pose = particles.state(i).map_from_base;
+    const Eigen::Vector3d deviation{pose.x() - map_from_base.x(), pose.y() - map_from_base.y(),
+                                    angle_difference(pose.theta(), map_from_base.theta())};
+    covariance += particles.weights()[i] * deviation * deviation.transpose();
+  }
+  return covariance;
+}
+
+}  // namespace waymark

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/input/sensor_queue.hpp"
+
+#include <utility>
+
+namespace waymark {
+
+std::string_view to_string(Skip skip) {
+  switch (skip) {
+    case Skip::kOdometryOutOfOrder:
+      return "odometry out of order";
+    case Skip::kOdometryJumped:
+      return "odometry jumps";
+    case Skip::kScanOutOfOrder:
+      return "scans out of order";
+    case Skip::kScanWithoutReturns:
+      return "scans without returns";
+    case Skip::kScanBeforeOdometry:
+      return "scans before the first odometry";
+    case Skip::kScanWithoutOdometry:
+      return "scans after the last odometry";
+    case Skip::kScanOverflow:
+      return "scans dropped waiting for odometry";
+    case Skip::kFrameOutOfOrder:
+      return "camera frames out of order";
+    case Skip::kFrameOverflow:
+      return "camera frames dropped waiting for a scan";
+    case Skip::kMarkerImplausible:
+      return "markers not upright";
+  }
+  return "unknown";
+}
+
+void SensorQueue::add(const OdometrySample& sample) {
+  switch (odometry_.add(sample)) {
+    case OdometryBuffer::Outcome::kAdded:
+      break;
+    case OdometryBuffer::Outcome::kOutOfOrder:
+      skips_.push_back(Skip::kOdometryOutOfOrder);
+      break;
+    case OdometryBuffer::Outcome::kJumped:
+      skips_.push_back(Skip::kOdometryJumped);
+      break;
+  }
+}
+
+void SensorQueue::add(LidarScan scan) {
+  if (newest_scan_ && scan.time <= *newest_scan_) {
+    skips_.push_back(Skip::kScanOutOfOrder);
+    return;
+  }
+  newest_scan_ = scan.time;
+  scans_.push_back(std::move(scan));
+  if (scans_.size() > kMaxScans) {
+    scans_.pop_front();
+    skips_.push_back(Skip::kScanOverflow);
+  }
+}
+
+void SensorQueue::add(MarkerDetections frame) {
+  if (newest_frame_ && frame.time <= *newest_frame_) {
+    skips_.push_back(Skip::kFrameOutOfOrder);
+    return;
+  }
+  newest_frame_ = frame.time;
+  frames_.push_back(std::move(frame));
+  if (frames_.size() > kMaxFrames) {
+    frames_.pop_front();
+    skips_.push_back(Skip::kFrameOverflow);
+  }
+}
+
+void SensorQueue::finish() {
+  has_finished_ = true;
+}
+
+std::vector<Skip> SensorQueue::take_skips() {
+  return std::exchange(skips_, {});
+}
+
+bool SensorQueue::has_passed(Timestamp time) const {
+  return !odometry_.is_empty() && odometry_.newest() >= time;
+}
+
+bool SensorQueue::is_ready(const LidarScan& scan) const {
+  if (has_finished_) return true;
+  if (!has_passed(last_beam_time(scan))) return false;
+  return (newest_frame_ && *newest_frame_ >= scan.time) ||
+         has_passed(scan.time + setup_.marker_wait);
+}
+
+std::optional<SensorQueue::Ready> SensorQueue::next() {
+  while (!scans_.empty() && is_ready(scans_.front())) {
+    LidarScan scan = std::move(scans_.front());
+    scans_.pop_front();
+    if (!has_passed(last_beam_time(scan))) {
+      skips_.push_back(Skip::kScanWithoutOdometry);
+      continue;
+    }
+    if (!odometry_.covers(first_beam_time(scan))) {
+      skips_.push_back(Skip::kScanBeforeOdometry);
+      continue;
+    }
+    const std::vector<Beam> beams = beams_of(scan, setup_.lidar, odometry_);
+    if (beams.empty()) {
+      skips_.push_back(Skip::kScanWithoutReturns);
+      continue;
+    }
+    Ready ready{observe(scan.time, beams), std::move(scan)};
+    last_observed_ = ready.observation.time;
+    // Camera frames that still belong to the next scan are at most marker_wait older than this one.
+    odometry_.forget_before(*last_observed_ - setup_.marker_wait);
+    return ready;
+  }
+  return std::nullopt;
+}
+
+Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {
+  Observation observation;
+  observation.time = time;
+  if (last_observed_) observation.motion = odometry_.motion_between(*last_observed_, time);
+  while (!frames_.empty() && frames_.front().time <= time) {
+    const MarkerDetections frame = std::move(frames_.front());
+    frames_.pop_front();
+    if (!odometry_.covers(frame.time)) continue;
+    observation.camera_reported = true;
+    if (!setup_.blank_ids) sight_markers(frame, time, observation.sightings);
+  }
+  const bool camera_told = observation.camera_reported && !setup_.blank_ids;
+  observation.beams = annotate(beams, observation.sightings, camera_told ? &setup_.camera : nullptr,
+                               setup_.beam_tolerance_m);
+  return observation;
+}
+
+void SensorQueue::sight_markers(const MarkerDetections& frame, Timestamp time,
+                                std::vector<MarkerSighting>& sightings) {
+  const Se2 scan_base_from_frame_base =
+      odometry_.pose_at(time).inverse() * odometry_.pose_at(frame.time);
+  for (const MarkerDetection& detection : frame.detections) {
+    const auto sighting =
+        sight_marker(detection, frame.time, scan_base_from_frame_base, setup_.marker_size_m);
+    if (sighting) {
+      sightings.push_back(*sighting);
+    } else {
+      skips_.push_back(Skip::kMarkerImplausible);
+    }
+  }
+}
+
+}  // namespace waymark

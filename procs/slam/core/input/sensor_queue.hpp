@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Turns three streams of sensor values into observations, whatever order they arrive in.
+#pragma once
+
+#include "slam/core/motion/odometry_buffer.hpp"
+#include "slam/core/scan/observation.hpp"
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace waymark {
+
+/// Sensors as the queue needs to know them.
+struct SensorSetup {
+  LidarSetup lidar{};
+  CameraView camera{};
+  double marker_size_m{0.4};
+  double beam_tolerance_m{0.08};  ///< a beam that ends this near to a marker's segment is on it
+  Duration marker_wait{250'000};  ///< how long a scan waits for the camera frames up to its time
+  bool blank_ids{false};          ///< control: forget all markers
+};
+
+/// Why a value was not used.
+enum class Skip {
+  kOdometryOutOfOrder,
+  kOdometryJumped,  ///< used as a new beginning, its jump is not
+  kScanOutOfOrder,
+  kScanWithoutReturns,
+  kScanBeforeOdometry,
+  kScanWithoutOdometry,  ///< the input ended before the odometry for it came
+  kScanOverflow,         ///< odometry stays away
+  kFrameOutOfOrder,
+  kFrameOverflow,
+  kMarkerImplausible,
+};
+
+std::string_view to_string(Skip skip);
+
+/// A scan becomes an observation when odometry covers it and the camera frames up to its time have
+/// come (or marker_wait of odometry has passed without them). So the result depends on the values
+/// and not on how they were grouped on their way.
+class SensorQueue {
+ public:
+  explicit SensorQueue(const SensorSetup& setup) : setup_{setup} {}
+
+  void add(const OdometrySample& sample);
+  void add(LidarScan scan);
+  void add(MarkerDetections frame);
+  /// No more values will come: stop waiting for them.
+  void finish();
+
+  /// The next observation that is ready, with its scan; call until there is none.
+  struct Ready {
+    Observation observation{};
+    LidarScan scan{};
+  };
+
+  std::optional<Ready> next();
+
+  /// What was skipped since the last call, in order.
+  std::vector<Skip> take_skips();
+
+ private:
+  bool is_ready(const LidarScan& scan) const;
+  bool has_passed(Timestamp time) const;
+  Observation observe(Timestamp time, std::span<const Beam> beams);
+  void sight_markers(const MarkerDetections& frame, Timestamp time,
+                     std::vector<MarkerSighting>& sightings);
+
+  static constexpr std::size_t kMaxScans = 100;
+  static constexpr std::size_t kMaxFrames = 200;
+
+  SensorSetup setup_;
+  OdometryBuffer odometry_{};
+  std::deque<LidarScan> scans_{};
+  std::deque<MarkerDetections> frames_{};
+  std::optional<Timestamp> newest_scan_{};
+  std::optional<Timestamp> newest_frame_{};
+  std::optional<Timestamp> last_observed_{};
+  std::vector<Skip> skips_{};
+  bool has_finished_{false};
+};
+
+}  // namespace waymark

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The markers as things with a place: id, instance, pose, covariance.
+#pragma once
+
+#include "slam/core/scan/marker_sighting.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace waymark {
+
+struct Landmark {
+  int id{kNoMarker};
+  int instance{0};  ///< tells markers of equal id apart, in order of their first sighting
+  Se2 map_from_marker{};
+  /// [m^2, m rad, rad^2] order x y yaw, map frame.
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  int sightings{0};
+  Timestamp first_seen{};
+  Timestamp last_seen{};
+};
+
+/// Collects sightings. An id is a class, not a key: sightings of one id that lie apart are
+/// different instances.
+class LandmarkMap {
+ public:
+  /// @param same_within_m  sightings of an id nearer than this are of one marker.
+  explicit LandmarkMap(double same_within_m) : same_within_m_{same_within_m} {}
+
+  /// @param pose_covariance  of map_from_base, map frame.
+  void add(const MarkerSighting& sighting, const Se2& map_from_base,
+           const Eigen::Matrix3d& pose_covariance);
+
+  /// In order of (id, instance).
+  std::vector<Landmark> landmarks() const;
+
+ private:
+  /// Sightings are averaged by their information. The error of the robot's pose is common to
+  /// neighbouring sightings, so averaging does not reduce it: its mean is added at the end.
+  struct Entry {
+    Landmark first{};  ///< as first sighted; deviations are averaged about it
+    Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
+    Eigen::Vector3d weighted_deviation{Eigen::Vector3d::Zero()};
+    Eigen::Matrix3d pose_covariance_sum{Eigen::Matrix3d::Zero()};
+
+    Landmark landmark() const;
+  };
+
+  static constexpr std::size_t kMaxLandmarks = 4096;  ///< more are noise, or an attack
+
+  double same_within_m_;
+  std::vector<Entry> entries_{};
+};
+
+}  // namespace waymark

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One shared map, drawn along one trajectory: what methods without a map per particle have.
+#pragma once
+
+#include "slam/core/grid/grid_map.hpp"
+#include "slam/core/mapping/landmark_map.hpp"
+#include "slam/core/scan/observation.hpp"
+
+namespace waymark {
+
+class Fields;
+
+struct MapperConfig {
+  double resolution_m{0.05};
+  double face_spacing_m{0.02};       ///< between the points that stand for a marker's face
+  double face_margin_m{0.1};         ///< bare wall beside a marker, seen together with it
+  double same_marker_within_m{1.0};  ///< sightings of an id nearer than this are of one marker
+
+  void describe(Fields& fields);
+};
+
+class Mapper {
+ public:
+  explicit Mapper(const MapperConfig& config);
+
+  void insert(const Observation& observation, const Se2& map_from_base,
+              const Eigen::Matrix3d& pose_covariance);
+
+  const GridMap& map() const { return map_; }
+
+  const LandmarkMap& landmarks() const { return landmarks_; }
+
+ private:
+  MapperConfig config_;
+  GridMap map_;
+  LandmarkMap landmarks_;
+};
+
+}  // namespace waymark

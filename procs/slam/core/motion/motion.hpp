@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the robot moved between two moments, by its encoders.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+
+#include <cmath>
+
+namespace waymark {
+
+/// Motions add up: noise grows with the path that was driven, not with the number of steps or with
+/// the distance between the ends.
+struct Motion {
+  Se2 start_from_end{};    ///< pose at the end in the base frame at the start
+  double distance_m{0.0};  ///< length of the path
+  double turn_rad{0.0};    ///< sum of the turns, without sign
+
+  /// The motion of one step.
+  static Motion between(const Se2& odom_from_start, const Se2& odom_from_end) {
+    const Se2 step = odom_from_start.inverse() * odom_from_end;
+    return {step, step.translation().norm(), std::abs(step.theta())};
+  }
+
+  /// First this motion, then `next`.
+  Motion then(const Motion& next) const {
+    return {start_from_end * next.start_from_end, distance_m + next.distance_m,
+            turn_rad + next.turn_rad};
+  }
+};
+
+}  // namespace waymark

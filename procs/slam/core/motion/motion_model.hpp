@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Samples where the robot may be after a motion: encoder increment plus noise (the paper, IV-B).
+#pragma once
+
+#include "common/random/random.hpp"
+#include "slam/core/motion/motion.hpp"
+
+namespace waymark {
+
+class Fields;
+
+/// All noise is a random walk along the path: its variance grows with distance and turn, so it does
+/// not depend on how many steps the path is cut into.
+struct MotionNoise {
+  double along_per_sqrt_m{0.01};   ///< [m/sqrt(m)] along the motion
+  double turn_per_sqrt_m{0.0087};  ///< [rad/sqrt(m)] heading, by distance
+  double turn_per_sqrt_rad{0.02};  ///< [rad/sqrt(rad)] heading, by turn
+  bool rotation_only{false};       ///< the paper to the letter: no noise along the motion
+
+  void describe(Fields& fields);
+};
+
+/// One sample of start_from_end.
+Se2 sample_motion(const Motion& motion, const MotionNoise& noise, Random& random);
+
+}  // namespace waymark

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/motion/odometry_buffer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+
+namespace waymark {
+
+OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
+  Outcome outcome = Outcome::kAdded;
+  if (!samples_.empty()) {
+    if (sample.time <= newest()) return Outcome::kOutOfOrder;
+    const double elapsed_s = to_seconds(sample.time - newest());
+    const Se2 step = last_raw_.inverse() * sample.odom_from_base;
+    if (!(step.translation().norm() <= kMaxSpeed_m_s * elapsed_s) ||
+        !(std::abs(step.theta()) <= kMaxTurnRate_rad_s * elapsed_s)) {
+      smooth_from_raw_ = samples_.back().odom_from_base * sample.odom_from_base.inverse();
+      outcome = Outcome::kJumped;
+    }
+  }
+  last_raw_ = sample.odom_from_base;
+  samples_.push_back({sample.time, smooth_from_raw_ * sample.odom_from_base});
+  if (samples_.size() > kMaxSamples) samples_.pop_front();
+  return outcome;
+}
+
+Se2 OdometryBuffer::pose_at(Timestamp time) const {
+  assert(covers(time));
+  const auto after = std::lower_bound(
+      samples_.begin(), samples_.end(), time,
+      [](const OdometrySample& sample, Timestamp wanted) { return sample.time < wanted; });
+  if (after->time == time) return after->odom_from_base;
+  const auto before = std::prev(after);
+  const double fraction = to_seconds(time - before->time) / to_seconds(after->time - before->time);
+  return interpolate(before->odom_from_base, after->odom_from_base, fraction);
+}
+
+Motion OdometryBuffer::motion_between(Timestamp from, Timestamp to) const {
+  Motion motion;
+  Se2 odom_from_last = pose_at(from);
+  for (const OdometrySample& sample : samples_) {
+    if (sample.time <= from || sample.time >= to) continue;
+    motion = motion.then(Motion::between(odom_from_last, sample.odom_from_base));
+    odom_from_last = sample.odom_from_base;
+  }
+  return motion.then(Motion::between(odom_from_last, pose_at(to)));
+}
+
+void OdometryBuffer::forget_before(Timestamp time) {
+  while (samples_.size() >= 2 && samples_[1].time <= time) {
+    samples_.pop_front();
+  }
+}
+
+}  // namespace waymark

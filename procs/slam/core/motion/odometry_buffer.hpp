@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The odometry of the last seconds, readable at any time in between.
+#pragma once
+
+#include "common/sensors/sensors.hpp"
+#include "slam/core/motion/motion.hpp"
+
+#include <deque>
+
+namespace waymark {
+
+class OdometryBuffer {
+ public:
+  /// How a sample was taken.
+  enum class Outcome { kAdded, kOutOfOrder, kJumped };
+
+  /// A sample that is not newer than the last is refused. A jump that no robot can drive (its
+  /// odometry was reset) counts as no motion.
+  Outcome add(const OdometrySample& sample);
+
+  bool is_empty() const { return samples_.empty(); }
+
+  bool covers(Timestamp time) const {
+    return !samples_.empty() && samples_.front().time <= time && time <= samples_.back().time;
+  }
+
+  /// Interpolated; needs covers(time).
+  Se2 pose_at(Timestamp time) const;
+
+  /// Along the path of the samples; needs both times covered, from <= to.
+  Motion motion_between(Timestamp from, Timestamp to) const;
+
+  Timestamp newest() const { return samples_.back().time; }
+
+  /// Forgets what is not needed to read at `time` or later.
+  void forget_before(Timestamp time);
+
+ private:
+  static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
+  static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
+  static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz, if nobody forgets
+
+  std::deque<OdometrySample> samples_{};  ///< without jumps
+  Se2 smooth_from_raw_{};
+  Se2 last_raw_{};
+};
+
+}  // namespace waymark

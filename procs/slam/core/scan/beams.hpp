@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The beams of a scan that hit something, as geometry in the base frame.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "common/sensors/sensors.hpp"
+#include "slam/core/motion/odometry_buffer.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace waymark {
+
+/// Where the LiDAR sits and which of its ranges are to be trusted.
+struct LidarSetup {
+  Se2 base_from_lidar{};
+  double range_min_m{0.12};
+  double range_max_m{3.5};
+};
+
+/// One beam that ended on something, in the base frame at the scan's time.
+struct Beam {
+  int index{0};  ///< in the LidarScan
+  Eigen::Vector2d start_in_base{Eigen::Vector2d::Zero()};
+  Eigen::Vector2d end_in_base{Eigen::Vector2d::Zero()};
+  double range_m{0.0};
+};
+
+/// Newest moment at which a beam of the scan was measured.
+Timestamp last_beam_time(const LidarScan& scan);
+Timestamp first_beam_time(const LidarScan& scan);
+
+/// Beams with a range in [range_min_m, range_max_m]; others (no return, invalid) give none. Where
+/// the scan has a time per beam, the motion within the sweep is undone with odometry, which must
+/// cover the sweep and the scan's time.
+std::vector<Beam> beams_of(const LidarScan& scan, const LidarSetup& lidar,
+                           const OdometryBuffer& odometry);
+
+}  // namespace waymark

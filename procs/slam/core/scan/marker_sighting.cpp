@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/scan/marker_sighting.hpp"
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kMaxTilt_rad = radians(30.0);
+constexpr double kMaxRange_m = 100.0;  // no camera reads a marker from there
+constexpr double kMaxVariance = 1e6;   // nothing is left of a sighting with that
+
+Eigen::Matrix3d planar_covariance(const Eigen::Matrix<double, 6, 6>& covariance) {
+  constexpr int kPlanar[]{0, 1, 5};  // x, y, rotation about z
+  Eigen::Matrix3d planar;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      planar(row, column) = covariance(kPlanar[row], kPlanar[column]);
+    }
+  }
+  return planar;
+}
+
+}  // namespace
+
+std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Timestamp time,
+                                           const Se2& scan_base_from_frame_base, double size_m) {
+  const Eigen::Vector3d facing = detection.base_from_marker.linear().col(2);
+  if (std::abs(facing.z()) > std::sin(kMaxTilt_rad)) return std::nullopt;
+  if (!(detection.base_from_marker.translation().norm() < kMaxRange_m)) return std::nullopt;
+  if (!(detection.covariance_in_base.topLeftCorner<2, 2>().determinant() >= 0.0) ||
+      !(detection.covariance_in_base.diagonal().minCoeff() >= 0.0) ||
+      !(detection.covariance_in_base.trace() < kMaxVariance)) {
+    return std::nullopt;
+  }
+
+  const Se2 frame_base_from_marker{
+      Eigen::Vector2d{detection.base_from_marker.translation().head<2>()},
+      std::atan2(facing.y(), facing.x())};
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = scan_base_from_frame_base.rotation();
+  return MarkerSighting{detection.id, time, scan_base_from_frame_base * frame_base_from_marker,
+                        turn * planar_covariance(detection.covariance_in_base) * turn.transpose(),
+                        size_m};
+}
+
+}  // namespace waymark

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/scan/observability.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <optional>
+
+namespace waymark {
+namespace {
+
+constexpr int kNeighbours = 5;               // beams on each side that the surface is fitted to
+constexpr double kSurfaceReach_m = 0.5;      // neighbours further away belong to other surfaces
+constexpr double kMaxThicknessRatio = 0.15;  // of a line's two standard deviations
+constexpr int kMinPoints = 5;
+// Noise turns fitted normals by some degrees, which leaks sin^2 of them into the weak direction:
+// below this share of the strong direction it means nothing.
+constexpr double kDegenerateShare = 0.03;
+
+/// Unit normal of the surface around a beam's end, map frame; nothing at edges and on small things.
+std::optional<Eigen::Vector2d> normal_at(std::span<const AnnotatedBeam> beams, int middle) {
+  const auto count = static_cast<int>(beams.size());
+  const Eigen::Vector2d& centre = beams[static_cast<std::size_t>(middle)].beam.end_in_base;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  int points = 0;
+  for (int step = -kNeighbours; step <= kNeighbours; ++step) {
+    const int wrapped = ((middle + step) % count + count) % count;
+    const Eigen::Vector2d offset =
+        beams[static_cast<std::size_t>(wrapped)].beam.end_in_base - centre;
+    if (offset.norm() > kSurfaceReach_m) continue;
+    sum += offset;
+    squares += offset * offset.transpose();
+    ++points;
+  }
+  if (points < kMinPoints) return std::nullopt;
+  const Eigen::Vector2d mean = sum / points;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
+      Eigen::Matrix2d{squares / points - mean * mean.transpose()}};
+  if (std::sqrt(std::max(0.0, axes.eigenvalues()[0])) >
+      kMaxThicknessRatio * std::sqrt(axes.eigenvalues()[1])) {
+    return std::nullopt;
+  }
+  return Eigen::Vector2d{axes.eigenvectors().col(0)};
+}
+
+}  // namespace
+
+Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
+                               double range_sigma_m) {
+  Observability result;
+  const Eigen::Matrix2d turn = map_from_base.rotation();
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const auto normal_in_base = normal_at(beams, static_cast<int>(i));
+    if (!normal_in_base) continue;
+    const Eigen::Vector2d& end = beams[i].beam.end_in_base;
+    const Eigen::Vector2d normal = turn * *normal_in_base;
+    // A turn moves the end by (-y, x) in the base frame.
+    const Eigen::Vector3d row{normal.x(), normal.y(),
+                              normal_in_base->dot(Eigen::Vector2d{-end.y(), end.x()})};
+    result.information += row * row.transpose() / (range_sigma_m * range_sigma_m);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
+      Eigen::Matrix2d{result.information.topLeftCorner<2, 2>()}};
+  result.weak_direction = axes.eigenvectors().col(0);
+  result.weak_information = axes.eigenvalues()[0];
+  result.is_degenerate = axes.eigenvalues()[0] <= kDegenerateShare * axes.eigenvalues()[1];
+  return result;
+}
+
+}  // namespace waymark

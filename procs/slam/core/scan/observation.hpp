@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything that an estimator is given at one scan.
+#pragma once
+
+#include "slam/core/motion/motion.hpp"
+#include "slam/core/scan/annotated_scan.hpp"
+
+#include <vector>
+
+namespace waymark {
+
+struct Observation {
+  Timestamp time{};  ///< of the scan
+  Motion motion{};   ///< since the observation before; none for the first
+  std::vector<AnnotatedBeam> beams{};
+  std::vector<MarkerSighting> sightings{};  ///< of the camera frames since the observation before
+  bool camera_reported{false};              ///< there was such a frame, even if it was empty
+};
+
+}  // namespace waymark

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Weight update of the paper (IV-C): what the camera says about each beam against the marker layer.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "slam/core/grid/grid_map.hpp"
+
+#include <span>
+
+namespace waymark {
+
+class Fields;
+
+/// Values of one beam in units of log weight (the temperature is in the values).
+struct MatchingRewards {
+  double strong_reward{1.0};  ///< the ids of beam and cell match
+  double penalty{1.0};        ///< they differ
+  double weak_reward{0.05};   ///< both are outside marker regions, and the cell is a wall
+
+  void describe(Fields& fields);
+};
+
+/// Score of one spot that the camera has judged, against the votes of the cells around it: between
+/// strong_reward (the cells agree on the same id) and -penalty (they agree on something else). Zero
+/// where both say "no marker", and where no camera has looked before: a new spot is worth what a
+/// confirmed bare wall is worth, so nothing pulls the robot back to where it has been.
+double marker_score(const GridMap& map, const Eigen::Vector2d& point_in_map, int marker_id,
+                    const MatchingRewards& rewards);
+
+/// A spot that the camera has judged: where a beam ended, or a point that stands for a marker's
+/// face.
+struct JudgedSpot {
+  Eigen::Vector2d in_base{Eigen::Vector2d::Zero()};
+  int marker_id{kNoMarker};
+  double trust{1.0};  ///< factor on the score
+};
+
+/// Sum over spots.
+double marker_score(const GridMap& map, std::span<const JudgedSpot> spots, const Se2& map_from_base,
+                    const MatchingRewards& rewards);
+
+}  // namespace waymark

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/estimator_factory.hpp"
+
+#include "slam/core/estimators/odometry.hpp"
+
+namespace waymark {
+
+std::unique_ptr<Estimator> make_estimator(const SlamConfig& config) {
+  const EstimatorSetup setup = estimator_setup(config);
+  switch (config.slam.estimator) {
+    case EstimatorName::kOdometry:
+      return std::make_unique<OdometryEstimator>(setup);
+    case EstimatorName::kMarkerMatching:
+      return std::make_unique<MarkerMatchingEstimator>(setup, config.slam.marker_matching);
+  }
+  return nullptr;
+}
+
+}  // namespace waymark

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The methods by name.
+#pragma once
+
+#include "slam/slam_config.hpp"
+
+#include <memory>
+
+namespace waymark {
+
+std::unique_ptr<Estimator> make_estimator(const SlamConfig& config);
+
+}  // namespace waymark

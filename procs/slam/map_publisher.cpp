@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/map_publisher.hpp"
+
+#include "common/messages/message.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kTilesPerMessage = 20;  // 20 * (12 + 3 * 1024) bytes: fits one datagram
+
+/// Tiles with anything in them, row by row.
+std::vector<TileIndex> tiles_of(const GridMap& map) {
+  std::set<TileIndex> tiles;
+  map.occupancy.for_each_tile([&](TileIndex index, const auto&) { tiles.insert(index); });
+  map.markers.for_each_tile([&](TileIndex index, const auto&) { tiles.insert(index); });
+  return {tiles.begin(), tiles.end()};
+}
+
+std::int8_t percent(const OccupancyCell& cell) {
+  if (!cell.is_mapped()) return -1;
+  return static_cast<std::int8_t>(std::lround(100.0 * cell.occupancy()));
+}
+
+map_tile_t to_message(const GridMap& map, TileIndex index) {
+  map_tile_t tile{};
+  tile.tile_x = index.x;
+  tile.tile_y = index.y;
+  tile.num_cells = kTileCells;
+  tile.occupancy.reserve(kTileCells);
+  tile.marker_ids.reserve(kTileCells);
+  for (std::size_t offset = 0; offset < kTileCells; ++offset) {
+    const CellIndex cell = cell_at(index, offset);
+    tile.occupancy.push_back(percent(map.occupancy[cell]));
+    tile.marker_ids.push_back(static_cast<std::int16_t>(map.markers[cell].most_supported()));
+  }
+  return tile;
+}
+
+std::vector<map_tiles_t> to_messages(const GridMap& map, const std::vector<TileIndex>& tiles,
+                                     Timestamp time) {
+  std::vector<map_tiles_t> messages((tiles.size() + kTilesPerMessage - 1) / kTilesPerMessage);
+  for (std::size_t part = 0; part < messages.size(); ++part) {
+    map_tiles_t& message = messages[part];
+    message.utime = to_us(time);
+    message.part = static_cast<std::int32_t>(part);
+    message.num_parts = static_cast<std::int32_t>(messages.size());
+    message.origin_x_m = map.frame.origin_m.x();
+    message.origin_y_m = map.frame.origin_m.y();
+    message.resolution_m = map.frame.resolution_m;
+    message.tile_size_cells = kTileSize;
+    const std::size_t last = std::min(tiles.size(), (part + 1) * kTilesPerMessage);
+    for (std::size_t i = part * kTilesPerMessage; i < last; ++i)
+      message.tiles.push_back(to_message(map, tiles[i]));
+    message.num_tiles = static_cast<std::int32_t>(message.tiles.size());
+  }
+  return messages;
+}
+
+/// Log odds of the cell's occupancy in the units of MBot grids, which count them in whole numbers.
+std::int8_t log_odds(const OccupancyCell& cell) {
+  if (!cell.is_mapped()) return 0;
+  constexpr double kPerUnit = 20.0;  // probability 0.5 -> 0, 0.998 -> 127
+  const double probability = (cell.hits + 0.5) / (cell.visits + 1.0);
+  const double odds = kPerUnit * std::log(probability / (1.0 - probability));
+  return static_cast<std::int8_t>(std::clamp(std::lround(odds), -127L, 127L));
+}
+
+}  // namespace
+
+bool MapPublisher::has_changed(const GridMap& map, TileIndex index) const {
+  return map.occupancy.tile(index) != published_.occupancy.tile(index) ||
+         map.markers.tile(index) != published_.markers.tile(index);
+}
+
+std::vector<map_tiles_t> MapPublisher::changes(const GridMap& map, Timestamp time) {
+  const std::vector<TileIndex> all = tiles_of(map);
+  std::vector<TileIndex> chosen;
+  std::vector<TileIndex> others;
+  for (const TileIndex index : all)
+    (has_changed(map, index) ? chosen : others).push_back(index);
+  for (std::size_t i = 0; i < std::min(kRefreshedTiles, others.size()); ++i)
+    chosen.push_back(others[next_refreshed_++ % others.size()]);
+  published_ = map;
+  return to_messages(map, chosen, time);
+}
+
+std::vector<map_tiles_t> MapPublisher::complete(const GridMap& map, Timestamp time) {
+  published_ = map;
+  return to_messages(map, tiles_of(map), time);
+}
+
+std::optional<occupancy_grid_t> to_occupancy_grid(const GridMap& map, Timestamp time) {
+  const std::vector<TileIndex> tiles = tiles_of(map);
+  if (tiles.empty()) return std::nullopt;
+  const auto [left, right] = std::minmax_element(
+      tiles.begin(), tiles.end(), [](TileIndex a, TileIndex b) { return a.x < b.x; });
+  const CellIndex first = cell_at({left->x, tiles.front().y}, 0);
+  const int width = (right->x - left->x + 1) * kTileSize;
+  const int height = (tiles.back().y - tiles.front().y + 1) * kTileSize;
+  constexpr std::int64_t kHeaderBytes = 64;
+  if (std::int64_t{width} * height + kHeaderBytes > std::int64_t{kMaxPayloadBytes}) {
+    return std::nullopt;
+  }
+  occupancy_grid_t grid{};
+  grid.utime = to_us(time);
+  const Eigen::Vector2d corner =
+      map.frame.origin_m + map.frame.resolution_m * Eigen::Vector2d{first.x, first.y};
+  grid.origin_x = static_cast<float>(corner.x());
+  grid.origin_y = static_cast<float>(corner.y());
+  grid.meters_per_cell = static_cast<float>(map.frame.resolution_m);
+  grid.width = width;
+  grid.height = height;
+  grid.num_cells = width * height;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x)
+      grid.cells.push_back(log_odds(map.occupancy[{first.x + x, first.y + y}]));
+  }
+  return grid;
+}
+
+}  // namespace waymark

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The map as messages that each fit one datagram.
+#pragma once
+
+#include "common/messages/channels.hpp"
+#include "common/time/time.hpp"
+#include "slam/core/grid/grid_map.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace waymark {
+
+/// Sends the tiles that changed since the last time, found by comparing addresses with a kept copy
+/// of the map, and a few of the others in turn, so that a listener that came late becomes complete.
+class MapPublisher {
+ public:
+  std::vector<map_tiles_t> changes(const GridMap& map, Timestamp time);
+  /// The whole map.
+  std::vector<map_tiles_t> complete(const GridMap& map, Timestamp time);
+
+ private:
+  static constexpr std::size_t kRefreshedTiles = 4;  ///< old tiles per update
+
+  bool has_changed(const GridMap& map, TileIndex index) const;
+
+  GridMap published_{};
+  std::size_t next_refreshed_{0};
+};
+
+/// The whole map, cropped to what is known; nothing when it does not fit one message.
+std::optional<occupancy_grid_t> to_occupancy_grid(const GridMap& map, Timestamp time);
+
+}  // namespace waymark

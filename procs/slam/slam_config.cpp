@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/slam_config.hpp"
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+/// The horizontal wedge in which a whole marker fits into the image.
+CameraView camera_view(const CameraConfig& camera, const PreprocessingConfig& preprocessing) {
+  const Eigen::Isometry3d base_from_camera = camera.base_from_camera();
+  const Eigen::Vector3d forward = base_from_camera.linear().col(2);
+  CameraView view;
+  view.base_from_camera = {Eigen::Vector2d{base_from_camera.translation().head<2>()},
+                           std::atan2(forward.y(), forward.x())};
+  view.left_rad = std::atan(camera.cx_px / camera.fx_px) - preprocessing.view_margin_rad;
+  view.right_rad = -std::atan((camera.width_px - 1 - camera.cx_px) / camera.fx_px) +
+                   preprocessing.view_margin_rad;
+  view.range_max_m = preprocessing.detectable_range_m;
+  return view;
+}
+
+}  // namespace
+
+void PreprocessingConfig::describe(Fields& fields) {
+  fields.field("beam_tolerance_m", beam_tolerance_m, kPositive,
+               "a beam that ends this near to a sighted marker's segment carries its id");
+  fields.field("view_margin_rad", view_margin_rad, kNotNegative,
+               "a marker nearer than this to the image's edge may be missed");
+  fields.field("detectable_range_m", detectable_range_m, kPositive,
+               "a marker further away may be missed: its absence says nothing");
+  fields.field("marker_wait_s", marker_wait_s, {0.0, 10.0},
+               "how long a scan waits for the camera frames up to its time");
+}
+
+void SlamSection::describe(Fields& fields) {
+  fields.choice(
+      "estimator", estimator,
+      {{"odometry", EstimatorName::kOdometry}, {"marker_matching", EstimatorName::kMarkerMatching}},
+      "method");
+  fields.field("seed", seed, {0.0, 9e15}, "of all random numbers");
+  fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
+  fields.field("map_period_s", map_period_s, kPositive,
+               "message time between two SLAM_MAP and SLAM_MARKERS updates");
+  fields.field("publish_grid", publish_grid, "also send the whole map on SLAM_GRID if it fits");
+  fields.section("preprocessing", preprocessing);
+  fields.section("motion", motion);
+  fields.section("gate", gate);
+  fields.section("grid", grid);
+  fields.section("marker_matching", marker_matching);
+}
+
+void SlamConfig::describe(Fields& fields) {
+  fields.section("robot", robot);
+  fields.section("slam", slam);
+}
+
+void SlamConfig::check(Problems& problems) const {
+  robot.check(problems);
+  if (slam.grid.face_spacing_m > slam.grid.resolution_m) {
+    problems.add("slam.grid.face_spacing_m", "must not be above resolution_m");
+  }
+}
+
+SensorSetup sensor_setup(const SlamConfig& config) {
+  const LidarConfig& lidar = config.robot.lidar;
+  SensorSetup setup;
+  setup.lidar = {lidar.base_from_lidar(), lidar.range_min_m, lidar.range_max_m};
+  setup.camera = camera_view(config.robot.camera, config.slam.preprocessing);
+  setup.marker_size_m = config.robot.markers.size_m;
+  setup.beam_tolerance_m = config.slam.preprocessing.beam_tolerance_m;
+  setup.marker_wait = duration_from_seconds(config.slam.preprocessing.marker_wait_s);
+  setup.blank_ids = config.slam.blank_ids;
+  return setup;
+}
+
+EstimatorSetup estimator_setup(const SlamConfig& config) {
+  EstimatorSetup setup;
+  setup.grid = config.slam.grid;
+  setup.motion = config.slam.motion;
+  setup.gate = config.slam.gate;
+  setup.range_sigma_m = config.robot.lidar.range_sigma_m;
+  setup.seed = static_cast<std::uint64_t>(config.slam.seed);
+  return setup;
+}
+
+}  // namespace waymark

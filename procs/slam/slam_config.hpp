@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Configuration of the slam process: the robot, and [slam]. Nothing about the world.
+#pragma once
+
+#include "common/config/config.hpp"
+#include "common/robot/robot_config.hpp"
+#include "slam/core/estimators/estimator.hpp"
+#include "slam/core/estimators/marker_matching.hpp"
+#include "slam/core/input/sensor_queue.hpp"
+
+#include <cstdint>
+
+namespace waymark {
+
+enum class EstimatorName { kOdometry, kMarkerMatching };
+
+/// How marker sightings are put on beams, and which beams may say "no marker here".
+struct PreprocessingConfig {
+  double beam_tolerance_m{0.08};
+  double view_margin_rad{0.1};
+  double detectable_range_m{3.2};
+  double marker_wait_s{0.25};
+
+  void describe(Fields& fields);
+};
+
+struct SlamSection {
+  EstimatorName estimator{EstimatorName::kMarkerMatching};
+  std::int64_t seed{1};
+  bool blank_ids{false};
+  double map_period_s{1.0};
+  bool publish_grid{false};
+  PreprocessingConfig preprocessing{};
+  MotionNoise motion{};
+  UpdateGate gate{};
+  MapperConfig grid{};
+  MarkerMatchingConfig marker_matching{};
+
+  void describe(Fields& fields);
+};
+
+struct SlamConfig {
+  RobotConfig robot{};
+  SlamSection slam{};
+
+  void describe(Fields& fields);
+  void check(Problems& problems) const;
+};
+
+SensorSetup sensor_setup(const SlamConfig& config);
+EstimatorSetup estimator_setup(const SlamConfig& config);
+
+}  // namespace waymark

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/slam_messages.hpp"
+
+#include "common/messages/convert.hpp"
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+constexpr std::size_t kParticlesPerMessage = 1300;  // 48 bytes each
+constexpr std::size_t kLandmarksPerMessage = 500;   // 125 bytes each
+constexpr int kConfirmingSightings = 3;             // fewer may be a misread marker
+
+std::int8_t to_message(Health health) {
+  switch (health) {
+    case Health::kInitialising:
+      return slam_estimate_t::HEALTH_INITIALISING;
+    case Health::kTracking:
+      return slam_estimate_t::HEALTH_TRACKING;
+    case Health::kDegenerate:
+      return slam_estimate_t::HEALTH_DEGENERATE;
+    case Health::kLost:
+      return slam_estimate_t::HEALTH_LOST;
+  }
+  return slam_estimate_t::HEALTH_UNKNOWN;
+}
+
+std::int8_t to_message(WeakAxisSource source) {
+  switch (source) {
+    case WeakAxisSource::kUnknown:
+      return slam_estimate_t::SOURCE_UNKNOWN;
+    case WeakAxisSource::kOdometry:
+      return slam_estimate_t::SOURCE_ODOMETRY;
+    case WeakAxisSource::kMarkers:
+      return slam_estimate_t::SOURCE_MARKERS;
+  }
+  return slam_estimate_t::SOURCE_UNKNOWN;
+}
+
+marker_landmark_t to_message(const Landmark& landmark) {
+  marker_landmark_t message{};
+  message.id = landmark.id;
+  message.instance = landmark.instance;
+  message.x_m = landmark.map_from_marker.x();
+  message.y_m = landmark.map_from_marker.y();
+  message.yaw_rad = landmark.map_from_marker.theta();
+  Eigen::Map<RowMajor3>{message.covariance} = landmark.covariance;
+  message.sightings = landmark.sightings;
+  message.first_seen_utime = to_us(landmark.first_seen);
+  message.last_seen_utime = to_us(landmark.last_seen);
+  message.state = landmark.sightings >= kConfirmingSightings ? marker_landmark_t::STATE_CONFIRMED
+                                                             : marker_landmark_t::STATE_TENTATIVE;
+  return message;
+}
+
+}  // namespace
+
+slam_estimate_t to_message(const Estimate& estimate) {
+  slam_estimate_t message{};
+  message.utime = to_us(estimate.time);
+  message.x_m = estimate.map_from_base.x();
+  message.y_m = estimate.map_from_base.y();
+  message.theta_rad = estimate.map_from_base.theta();
+  Eigen::Map<RowMajor3>{message.covariance} = estimate.covariance;
+  message.health = to_message(estimate.health);
+  message.num_particles = static_cast<std::int32_t>(estimate.num_particles);
+  message.effective_particles = estimate.effective_particles;
+  message.beams_on_markers = estimate.beams_on_markers;
+  message.markers_in_view = estimate.markers_in_view;
+  const Observability& walls = estimate.observability;
+  Eigen::Map<RowMajor3>{message.information} = walls.information;
+  message.weak_information = walls.weak_information;
+  if (walls.is_degenerate) {
+    message.weak_axis[0] = walls.weak_direction.x();
+    message.weak_axis[1] = walls.weak_direction.y();
+    message.weak_axis_source = to_message(estimate.weak_axis_source);
+  }
+  return message;
+}
+
+annotated_scan_t to_message(const LidarScan& scan, const Observation& observation,
+                            const Se2& map_from_lidar) {
+  annotated_scan_t message{};
+  message.utime = to_us(scan.time);
+  message.x_m = map_from_lidar.x();
+  message.y_m = map_from_lidar.y();
+  message.theta_rad = map_from_lidar.theta();
+  message.num_beams = static_cast<std::int32_t>(scan.ranges_m.size());
+  for (const double range_m : scan.ranges_m)
+    message.ranges.push_back(static_cast<float>(range_m));
+  for (const double angle_rad : scan.angles_rad)
+    message.angles.push_back(static_cast<float>(angle_rad));
+  message.marker_ids.assign(scan.ranges_m.size(), kNoMarker);
+  for (const AnnotatedBeam& annotated : observation.beams) {
+    message.marker_ids[static_cast<std::size_t>(annotated.beam.index)] = annotated.marker_id;
+  }
+  return message;
+}
+
+particles_t to_message(std::span<const PublishedParticle> particles, Timestamp time) {
+  const std::size_t count = std::min(particles.size(), kParticlesPerMessage);
+  particles_t message{};
+  message.utime = to_us(time);
+  message.num_particles = static_cast<std::int32_t>(count);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const PublishedParticle& particle = particles[i * particles.size() / count];
+    particle_t& sent = message.particles.emplace_back();
+    sent.pose = to_pose_message(time, particle.map_from_base);
+    sent.parent_pose = to_pose_message(time, particle.previous_map_from_base);
+    sent.weight = particle.weight;
+    sum += particle.weight;
+  }
+  if (sum > 0.0) {
+    for (particle_t& sent : message.particles)
+      sent.weight /= sum;
+  }
+  return message;
+}
+
+std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Timestamp time) {
+  const std::size_t parts = std::max<std::size_t>(
+      1, (landmarks.size() + kLandmarksPerMessage - 1) / kLandmarksPerMessage);
+  std::vector<marker_map_t> messages(parts);
+  for (std::size_t part = 0; part < parts; ++part) {
+    marker_map_t& message = messages[part];
+    message.utime = to_us(time);
+    message.part = static_cast<std::int32_t>(part);
+    message.num_parts = static_cast<std::int32_t>(parts);
+    const std::size_t last = std::min(landmarks.size(), (part + 1) * kLandmarksPerMessage);
+    for (std::size_t i = part * kLandmarksPerMessage; i < last; ++i)
+      message.landmarks.push_back(to_message(landmarks[i]));
+    message.num_landmarks = static_cast<std::int32_t>(message.landmarks.size());
+  }
+  return messages;
+}
+
+}  // namespace waymark

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The core's results as messages.
+#pragma once
+
+#include "common/messages/channels.hpp"
+#include "slam/core/estimators/estimator.hpp"
+
+#include <span>
+#include <vector>
+
+namespace waymark {
+
+slam_estimate_t to_message(const Estimate& estimate);
+
+annotated_scan_t to_message(const LidarScan& scan, const Observation& observation,
+                            const Se2& map_from_lidar);
+
+/// At most as many particles, evenly picked, as fit one datagram.
+particles_t to_message(std::span<const PublishedParticle> particles, Timestamp time);
+
+/// In parts that each fit one datagram; at least one.
+std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Timestamp time);
+
+}  // namespace waymark

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/slam_node.hpp"
+
+#include "common/messages/convert.hpp"
+#include "slam/estimator_factory.hpp"
+#include "slam/slam_messages.hpp"
+
+#include <utility>
+
+namespace waymark {
+
+SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
+    : config_{config},
+      counters_{inbox.counters()},
+      outbox_{outbox},
+      queue_{sensor_setup(config)},
+      estimator_{make_estimator(config)} {
+  inbox.on<planar_lidar_t>(channels::kLidar, [this](const auto& m) { take(to_scan(m)); });
+  inbox.on<lidar_t>(channels::kMbotLidar, [this](const auto& m) { take(to_scan(m)); });
+  inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) {
+    queue_.add(to_odometry(m));
+    process_ready_scans();
+  });
+  inbox.on<marker_detections_t>(channels::kMarkers, [this](const auto& m) {
+    queue_.add(to_detections(m));
+    process_ready_scans();
+  });
+}
+
+void SlamNode::finish() {
+  queue_.finish();
+  process_ready_scans();
+  if (!last_scan_) return;
+  for (const map_tiles_t& part : map_publisher_.complete(estimator_->map(), *last_scan_))
+    outbox_.publish(channels::kSlamMap, part);
+  publish_markers(*last_scan_);
+  publish_grid(*last_scan_);
+}
+
+void SlamNode::take(LidarScan scan) {
+  if (num_beams_ == 0) num_beams_ = scan.ranges_m.size();
+  if (scan.ranges_m.size() != num_beams_) counters_.add("scans with another number of beams");
+  queue_.add(std::move(scan));
+  process_ready_scans();
+}
+
+void SlamNode::process_ready_scans() {
+  while (const auto ready = queue_.next())
+    process(*ready);
+  for (const Skip skip : queue_.take_skips())
+    counters_.add(to_string(skip));
+}
+
+void SlamNode::process(const SensorQueue::Ready& ready) {
+  const Estimate estimate = estimator_->update(ready.observation);
+  const Timestamp time = estimate.time;
+  const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
+  last_scan_ = time;
+  counters_.add("scans processed");
+  outbox_.publish(channels::kSlamScan, to_message(ready.scan, ready.observation, map_from_lidar));
+  outbox_.publish(channels::kSlamPose, to_pose_message(time, estimate.map_from_base));
+  outbox_.publish(channels::kSlamEstimate, to_message(estimate));
+  outbox_.publish(channels::kSlamParticles, to_message(estimator_->particles(), time));
+  publish_map_when_due(time);
+}
+
+void SlamNode::publish_map_when_due(Timestamp time) {
+  if (next_map_ && time < *next_map_) return;
+  next_map_ = time + duration_from_seconds(config_.slam.map_period_s);
+  for (const map_tiles_t& part : map_publisher_.changes(estimator_->map(), time))
+    outbox_.publish(channels::kSlamMap, part);
+  publish_markers(time);
+  publish_grid(time);
+}
+
+void SlamNode::publish_markers(Timestamp time) {
+  for (const marker_map_t& part : to_messages(estimator_->landmarks(), time))
+    outbox_.publish(channels::kSlamMarkers, part);
+}
+
+void SlamNode::publish_grid(Timestamp time) {
+  if (!config_.slam.publish_grid) return;
+  const auto grid = to_occupancy_grid(estimator_->map(), time);
+  if (grid) {
+    outbox_.publish(channels::kSlamGrid, *grid);
+  } else {
+    counters_.add("SLAM_GRID not sent: larger than a datagram");
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The slam process: sensors in, pose and map out.
+#pragma once
+
+#include "common/process/node.hpp"
+#include "slam/core/estimators/estimator.hpp"
+#include "slam/core/input/sensor_queue.hpp"
+#include "slam/map_publisher.hpp"
+#include "slam/slam_config.hpp"
+
+#include <memory>
+#include <optional>
+
+namespace waymark {
+
+/// Hears LIDAR, ODOMETRY and MARKERS, never the truth. Answers every scan with SLAM_SCAN,
+/// SLAM_POSE, SLAM_ESTIMATE and SLAM_PARTICLES, and once per map period with SLAM_MAP and
+/// SLAM_MARKERS.
+class SlamNode final : public Node {
+ public:
+  using Config = SlamConfig;
+  static constexpr ProcessTraits kTraits{
+      .name = "slam",
+      .purpose =
+          "Estimates where the robot is and draws the map, from LIDAR, ODOMETRY and MARKERS.",
+      .joins_midway = false};
+
+  SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox);
+
+  /// Uses the scans that still wait for camera frames; sends the whole map.
+  void finish() override;
+
+ private:
+  void take(LidarScan scan);
+  void process_ready_scans();
+  void process(const SensorQueue::Ready& ready);
+  void publish_map_when_due(Timestamp time);
+  void publish_markers(Timestamp time);
+  void publish_grid(Timestamp time);
+
+  SlamConfig config_;
+  Counters& counters_;
+  Outbox& outbox_;
+  SensorQueue queue_;
+  std::unique_ptr<Estimator> estimator_;
+  MapPublisher map_publisher_{};
+  std::optional<Timestamp> last_scan_{};
+  std::optional<Timestamp> next_map_{};
+  std::size_t num_beams_{0};
+};
+
+}  // namespace waymark

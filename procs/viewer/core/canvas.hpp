@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Anti-aliased strokes and text at sub-pixel positions. All positions in pixels, y down; whatever
+// lies outside the image is clipped.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace waymark::viewer {
+
+struct Pen {
+  cv::Scalar colour{};
+  int width_px{1};
+};
+
+void draw_line(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px, const Pen& pen);
+void draw_polyline(cv::Mat& image, std::span<const cv::Point2d> points_px, const Pen& pen);
+void draw_circle(cv::Mat& image, cv::Point2d centre_px, double radius_px, const Pen& pen);
+void fill_circle(cv::Mat& image, cv::Point2d centre_px, double radius_px, const cv::Scalar& colour);
+void fill_polygon(cv::Mat& image, std::span<const cv::Point2d> corners_px,
+                  const cv::Scalar& colour);
+/// Corners rounded.
+void fill_box(cv::Mat& image, const cv::Rect2d& box_px, double corner_radius_px,
+              const cv::Scalar& colour);
+
+struct Font {
+  double height_px{16.0};  ///< of a capital letter
+  cv::Scalar colour{};
+  bool bold{false};
+};
+
+enum class Anchor { kLeft, kCentre, kRight };
+
+/// Width of a line of text. Only ASCII characters have a shape.
+double text_width_px(std::string_view text, const Font& font);
+/// Writes a line of text whose capitals are centred vertically on the anchor.
+void draw_text(cv::Mat& image, std::string_view text, cv::Point2d anchor_px, Anchor anchor,
+               const Font& font);
+
+}  // namespace waymark::viewer

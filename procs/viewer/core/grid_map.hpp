@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A rectangle of map cells, as the painters and the map files want it.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace waymark::viewer {
+
+constexpr int kUnknownOccupancy = -1;
+
+/// Occupancy and marker id per cell. Row 0 is the lowest y, column 0 the lowest x.
+struct GridMap {
+  cv::Mat_<schar> occupancy_percent{};                ///< 0..100, -1 = unknown
+  cv::Mat_<short> marker_ids{};                       ///< same size; -1 = no marker
+  Eigen::Vector2d origin_m{Eigen::Vector2d::Zero()};  ///< lower left corner of cell (0, 0), map
+  double resolution_m{0.05};
+
+  bool empty() const { return occupancy_percent.empty(); }
+
+  /// @return position in the map of the middle of the cell in that row and column.
+  Eigen::Vector2d cell_centre_m(int row, int column) const {
+    return origin_m + resolution_m * Eigen::Vector2d{column + 0.5, row + 0.5};
+  }
+};
+
+}  // namespace waymark::viewer

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sizes and distances that the user may choose for map.png.
+#pragma once
+
+namespace waymark::viewer {
+
+struct MapPageStyle {
+  int page_width_px{2400};
+  int page_height_px{2000};  ///< for the map; heading, overview and legend come on top
+  int max_strips{8};
+  double max_scale_px_per_m{240.0};
+  double ellipse_spacing_m{2.0};
+  double marker_size_m{0.4};  ///< side of the black square
+};
+
+}  // namespace waymark::viewer

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/run_process.hpp"
+#include "viewer/viewer_node.hpp"
+
+int main(int argc, char** argv) {
+  return waymark::run_process<waymark::ViewerNode>(argc, argv);
+}

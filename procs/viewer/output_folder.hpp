@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the files go. A file that is there is whole; a file that cannot be written is remembered.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace waymark::viewer {
+
+/// Writes to a temporary name in the same folder and renames it, so that a reader finds the old
+/// content or the new, never a part.
+/// @throws std::system_error with the file's name; the old file then still stands.
+void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
+
+class OutputFolder {
+ public:
+  /// Creates the folder if need be.
+  /// @throws SetupError when files cannot be written there.
+  explicit OutputFolder(std::filesystem::path folder);
+
+  /// Writes one file. A failure is logged and remembered, and does not stop anybody.
+  void write(const std::string& name, std::string_view bytes);
+
+  const std::filesystem::path& path() const { return folder_; }
+
+  /// Names of the files that at least once could not be written.
+  const std::set<std::string>& failed_files() const { return failed_files_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::set<std::string> failed_files_;
+};
+
+}  // namespace waymark::viewer

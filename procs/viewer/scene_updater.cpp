@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/scene_updater.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace waymark::viewer {
+namespace {
+
+/// Poses kept per path: 9 hours at 30 Hz. Bounds the memory that a flood of messages can take.
+constexpr std::size_t kMaxPathPoses = 1'000'000;
+/// Parts of one marker map: far more than 65 000 markers.
+constexpr std::int32_t kMaxMarkerParts = 256;
+
+Eigen::Matrix3d to_matrix(const double (&row_major)[9]) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{row_major};
+}
+
+Health to_health(std::int8_t value) {
+  if (value < 0 || value > static_cast<int>(Health::kLost)) return Health::kUnknown;
+  return static_cast<Health>(value);
+}
+
+LandmarkState to_state(std::int8_t value) {
+  if (value < 0 || value > static_cast<int>(LandmarkState::kMoved)) return LandmarkState::kUnknown;
+  return static_cast<LandmarkState>(value);
+}
+
+TimedPose to_timed_pose(const pose2D_t& message) {
+  return {timestamp_from_us(message.utime), {message.x, message.y, message.theta}};
+}
+
+Landmark to_landmark(const marker_landmark_t& message) {
+  return {.id = message.id,
+          .instance = message.instance,
+          .map_from_marker = {message.x_m, message.y_m, message.yaw_rad},
+          .covariance = to_matrix(message.covariance),
+          .sightings = message.sightings,
+          .state = to_state(message.state)};
+}
+
+std::string_view problem_of(TiledMap::Outcome outcome) {
+  switch (outcome) {
+    case TiledMap::Outcome::kOlderThanKnown:
+      return "older than what is known";
+    case TiledMap::Outcome::kMalformed:
+      return "malformed";
+    case TiledMap::Outcome::kTooFarAway:
+      return "too far away";
+    case TiledMap::Outcome::kStored:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+template <class Pose>
+void SceneUpdater::append(std::vector<Pose>& path, const Pose& pose, std::string_view path_name) {
+  if (!path.empty() && pose.time <= path.back().time) {
+    counters_.add(fmt::format("{} left out: not newer", path_name));
+  } else if (path.size() >= kMaxPathPoses) {
+    counters_.add(fmt::format("{} left out: path is full", path_name));
+  } else {
+    path.push_back(pose);
+  }
+}
+
+void SceneUpdater::add(const map_tiles_t& message) {
+  const TileLayout layout{message.origin_x_m, message.origin_y_m, message.resolution_m,
+                          message.tile_size_cells};
+  for (const map_tile_t& tile : message.tiles) {
+    const auto outcome =
+        scene_.map.put(layout, timestamp_from_us(message.utime),
+                       {tile.tile_x, tile.tile_y, tile.occupancy, tile.marker_ids});
+    if (outcome != TiledMap::Outcome::kStored)
+      counters_.add(fmt::format("SLAM_MAP tiles left out: {}", problem_of(outcome)));
+  }
+}
+
+void SceneUpdater::add(const marker_map_t& message) {
+  const bool is_part = message.part >= 0 && message.part < message.num_parts;
+  if (!is_part || message.num_parts > kMaxMarkerParts || message.utime < marker_parts_utime_) {
+    counters_.add("SLAM_MARKERS left out: not a part of the newest map");
+    return;
+  }
+  if (message.utime != marker_parts_utime_ || message.num_parts != num_marker_parts_) {
+    marker_parts_.clear();
+    marker_parts_utime_ = message.utime;
+    num_marker_parts_ = message.num_parts;
+  }
+  std::vector<Landmark>& part = marker_parts_[message.part];
+  part.clear();
+  for (const marker_landmark_t& landmark : message.landmarks)
+    part.push_back(to_landmark(landmark));
+  if (static_cast<int>(marker_parts_.size()) < num_marker_parts_) return;
+  scene_.landmarks.clear();
+  for (const auto& [index, landmarks] : marker_parts_)
+    scene_.landmarks.insert(scene_.landmarks.end(), landmarks.begin(), landmarks.end());
+}
+
+void SceneUpdater::add(const slam_estimate_t& message) {
+  append(scene_.estimates,
+         EstimatedPose{.time = timestamp_from_us(message.utime),
+                       .map_from_base = {message.x_m, message.y_m, message.theta_rad},
+                       .covariance = to_matrix(message.covariance),
+                       .health = to_health(message.health)},
+         "SLAM_ESTIMATE");
+}
+
+void SceneUpdater::add(const annotated_scan_t& message) {
+  AnnotatedScan scan{.time = timestamp_from_us(message.utime),
+                     .map_from_lidar = {message.x_m, message.y_m, message.theta_rad},
+                     .ranges_m = {message.ranges.begin(), message.ranges.end()},
+                     .angles_rad = {message.angles.begin(), message.angles.end()},
+                     .marker_ids = {message.marker_ids.begin(), message.marker_ids.end()}};
+  // The last scan that shows a marker is worth more than a later one without any.
+  if (scene_.scan && scene_.scan->has_marker() && !scan.has_marker()) return;
+  scene_.scan = std::move(scan);
+}
+
+void SceneUpdater::add(const particles_t& message) {
+  scene_.particles.clear();
+  for (const particle_t& particle : message.particles)
+    scene_.particles.emplace_back(particle.pose.x, particle.pose.y, particle.pose.theta);
+}
+
+void SceneUpdater::add_odometry(const pose2D_t& message) {
+  append(scene_.odometry, to_timed_pose(message), "ODOMETRY");
+}
+
+void SceneUpdater::add_truth(const pose2D_t& message) {
+  append(scene_.truth, to_timed_pose(message), "TRUE_POSE");
+}
+
+}  // namespace waymark::viewer

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Messages -> scene. What does not fit is counted and left out.
+#pragma once
+
+#include "common/messages/channels.hpp"
+#include "common/process/node.hpp"
+#include "viewer/core/scene.hpp"
+
+#include <cstdint>
+#include <map>
+#include <string_view>
+#include <vector>
+
+namespace waymark::viewer {
+
+class SceneUpdater {
+ public:
+  SceneUpdater(Scene& scene, Counters& counters) : scene_{scene}, counters_{counters} {}
+
+  void add(const map_tiles_t& message);
+  /// Replaces the landmarks as soon as all parts of one time are there.
+  void add(const marker_map_t& message);
+  void add(const slam_estimate_t& message);
+  void add(const annotated_scan_t& message);
+  void add(const particles_t& message);
+  void add_odometry(const pose2D_t& message);
+  void add_truth(const pose2D_t& message);
+
+ private:
+  template <class Pose>
+  void append(std::vector<Pose>& path, const Pose& pose, std::string_view path_name);
+
+  Scene& scene_;
+  Counters& counters_;
+  std::int64_t marker_parts_utime_{-1};
+  std::int32_t num_marker_parts_{0};
+  std::map<std::int32_t, std::vector<Landmark>> marker_parts_{};
+};
+
+}  // namespace waymark::viewer

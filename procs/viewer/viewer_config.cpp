@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/viewer_config.hpp"
+
+namespace waymark {
+
+void ViewerSection::describe(Fields& fields) {
+  fields.field("title", title, "heading of map.png; empty = name of the output folder");
+  fields.field("write_period_s", write_period_s, {0.1, 3600.0},
+               "message time between writes of map, trajectory, markers, and one of the pictures");
+  fields.field("occupied_threshold", thresholds.occupied, kFraction,
+               "occupancy from which on a cell is written as occupied");
+  fields.field("free_threshold", thresholds.free, kFraction,
+               "occupancy up to which a cell is written as free");
+  fields.field("scan_size_px", scan_size_px, {200, 4000}, "side of scan.png");
+  fields.field("page_width_px", map_page.page_width_px, {800, 8000}, "width of map.png");
+  fields.field("page_height_px", map_page.page_height_px, {400, 8000},
+               "height that map.png may take for the map");
+  fields.field("max_strips", map_page.max_strips, {1, 20},
+               "a long map is folded into up to this many strips");
+  fields.field("max_scale_px_per_m", map_page.max_scale_px_per_m, {10.0, 2000.0},
+               "map.png: no larger than this");
+  fields.field("ellipse_spacing_m", map_page.ellipse_spacing_m, {0.1, 1000.0},
+               "map.png: distance along the path between covariance ellipses");
+  fields.field("marker_size_m", map_page.marker_size_m, {0.01, 5.0},
+               "map.png: length of a marker's plate");
+}
+
+void ViewerConfig::describe(Fields& fields) {
+  fields.section("viewer", viewer);
+}
+
+}  // namespace waymark

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the viewer can be told.
+#pragma once
+
+#include "common/config/config.hpp"
+#include "viewer/core/plain_painter.hpp"
+#include "viewer/core/style.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace waymark {
+
+struct ViewerSection {
+  std::string title{};  ///< empty = name of the output folder
+  double write_period_s{5.0};
+  viewer::MapThresholds thresholds{};
+  viewer::MapPageStyle map_page{};
+  int scan_size_px{1000};
+
+  void describe(Fields& fields);
+};
+
+struct ViewerConfig {
+  ViewerSection viewer{};
+  std::filesystem::path out_dir{};  ///< from the command line (--out)
+
+  void describe(Fields& fields);
+};
+
+}  // namespace waymark

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/viewer_node.hpp"
+
+#include "viewer/core/layer_painter.hpp"
+#include "viewer/core/map_painter.hpp"
+#include "viewer/core/plain_painter.hpp"
+#include "viewer/core/scan_painter.hpp"
+#include "viewer/map_files.hpp"
+#include "viewer/png.hpp"
+#include "viewer/text_files.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+
+namespace waymark {
+namespace {
+
+const std::filesystem::path& required_folder(const std::filesystem::path& out_dir) {
+  if (out_dir.empty())
+    throw SetupError{"--out is missing: give the folder that the viewer shall write to"};
+  return out_dir;
+}
+
+/// Name of the last folder of a path, also when it ends in a slash.
+std::string folder_name(const std::filesystem::path& folder) {
+  const auto path = std::filesystem::absolute(folder).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+/// True when a period has passed. The first call starts it, and so does a jump back in time.
+bool is_due(std::optional<Timestamp>& last, Timestamp now, double period_s) {
+  if (!last || now < *last) last = now;
+  if (now - *last < duration_from_seconds(period_s)) return false;
+  last = now;
+  return true;
+}
+
+}  // namespace
+
+ViewerNode::ViewerNode(const Config& config, Inbox& inbox, Outbox& /*outbox*/)
+    : config_{config},
+      updater_{scene_, inbox.counters()},
+      folder_{required_folder(config.out_dir)} {
+  scene_.title = config_.viewer.title.empty() ? folder_name(folder_.path()) : config_.viewer.title;
+  subscribe(inbox);
+}
+
+void ViewerNode::subscribe(Inbox& inbox) {
+  inbox.on<map_tiles_t>(channels::kSlamMap, [this](const auto& m) { updater_.add(m); });
+  inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) { updater_.add(m); });
+  inbox.on<annotated_scan_t>(channels::kSlamScan, [this](const auto& m) { updater_.add(m); });
+  inbox.on<particles_t>(
+      channels::kSlamParticles, [this](const auto& m) { updater_.add(m); }, Backlog::kNewestOnly);
+  inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) { updater_.add_odometry(m); });
+  inbox.on<pose2D_t>(channels::kTruePose, [this](const auto& m) { updater_.add_truth(m); });
+  inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) {
+    updater_.add(m);
+    write_when_due(timestamp_from_us(m.utime));
+  });
+}
+
+void ViewerNode::write_when_due(Timestamp time) {
+  if (!is_due(last_write_time_, time, config_.viewer.write_period_s)) return;
+  write_data();
+  constexpr std::array kPictures{&ViewerNode::write_map_picture, &ViewerNode::write_marker_layer,
+                                 &ViewerNode::write_scan_and_plain_map};
+  (this->*kPictures[next_picture_])();
+  next_picture_ = (next_picture_ + 1) % kPictures.size();
+}
+
+void ViewerNode::write_data() {
+  const viewer::GridMap map = scene_.map.grid();
+  folder_.write("map.pgm", viewer::pgm_text(map, config_.viewer.thresholds));
+  folder_.write("map.yaml", viewer::map_yaml_text(map, config_.viewer.thresholds, "map.pgm"));
+  folder_.write("trajectory.tum", viewer::tum_text(scene_.estimates));
+  folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
+  folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
+  folder_.write("markers.csv", viewer::markers_csv_text(scene_.landmarks));
+}
+
+void ViewerNode::write_map_picture() {
+  const cv::Mat picture = viewer::paint_map(scene_, config_.viewer.map_page);
+  folder_.write("map.png", viewer::png_bytes(picture));
+}
+
+void ViewerNode::write_marker_layer() {
+  const cv::Mat picture = viewer::paint_marker_layer(
+      scene_.map.grid(), scene_.title + ": marker id per cell", config_.viewer.map_page);
+  folder_.write("marker_layer.png", viewer::png_bytes(picture));
+}
+
+void ViewerNode::write_scan_and_plain_map() {
+  const cv::Mat plain = viewer::paint_plain(scene_.map.grid(), config_.viewer.thresholds);
+  folder_.write("plain.png", viewer::png_bytes(plain));
+  if (!scene_.scan) return;
+  const cv::Mat scan = viewer::paint_scan(*scene_.scan, config_.viewer.scan_size_px);
+  folder_.write("scan.png", viewer::png_bytes(scan));
+}
+
+void ViewerNode::finish() {
+  write_data();
+  write_map_picture();
+  write_marker_layer();
+  write_scan_and_plain_map();
+  if (failed()) {
+    spdlog::error("{}: could not always be written: {}", folder_.path().string(),
+                  fmt::join(folder_.failed_files(), ", "));
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The headless viewer: listens to everything that slam publishes, and writes it as files.
+#pragma once
+
+#include "common/process/node.hpp"
+#include "viewer/core/scene.hpp"
+#include "viewer/output_folder.hpp"
+#include "viewer/scene_updater.hpp"
+#include "viewer/viewer_config.hpp"
+
+#include <cstddef>
+#include <optional>
+
+namespace waymark {
+
+class ViewerNode final : public Node {
+ public:
+  using Config = ViewerConfig;
+  static constexpr ProcessTraits kTraits{
+      .name = "viewer",
+      .purpose = "Writes the map, the trajectory and pictures of a run into a folder (--out DIR).",
+      .joins_midway = true};
+
+  /// @throws SetupError when there is no folder to write to.
+  ViewerNode(const Config& config, Inbox& inbox, Outbox& outbox);
+
+  /// Writes everything once more.
+  void finish() override;
+
+  /// True when a file could not be written, now or earlier.
+  bool failed() const override { return !folder_.failed_files().empty(); }
+
+ private:
+  void subscribe(Inbox& inbox);
+  /// Writes the data files when a period has passed, and with them one of the pictures: all at
+  /// once would hold up a lockstep run.
+  void write_when_due(Timestamp time);
+  void write_data();
+  void write_map_picture();
+  void write_marker_layer();
+  void write_scan_and_plain_map();
+
+  Config config_;
+  viewer::Scene scene_{};
+  viewer::SceneUpdater updater_;
+  viewer::OutputFolder folder_;
+  std::optional<Timestamp> last_write_time_{};
+  std::size_t next_picture_{0};
+};
+
+}  // namespace waymark

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bus over real LCM: nothing that anybody sends kills a receiver or makes it grow.
+#include "common/bus/bus.hpp"
+
+#include "common/messages/codec.hpp"
+#include "common/process/progress.hpp"
+#include "support/lcm_network.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace waymark {
+namespace {
+
+using std::chrono::milliseconds;
+using testing_support::lcm_datagram;
+using testing_support::lcm_fragment;
+using testing_support::PrivateNetwork;
+
+Message pose(std::int64_t utime_us) {
+  pose2D_t message{};
+  message.utime = utime_us;
+  return encode(channels::kOdometry, message);
+}
+
+class BusTest : public ::testing::Test {
+ protected:
+  /// Everything that arrives until nothing has for a while.
+  std::vector<Message> drain() {
+    std::vector<Message> messages;
+    while (auto message = bus_.receive(milliseconds{300}))
+      messages.push_back(*message);
+    return messages;
+  }
+
+  std::int64_t counted(const std::string& name) {
+    bus_.collect_counts(counters_);
+    return counters_.get(name);
+  }
+
+  PrivateNetwork network_;
+  Bus bus_{network_.url(), {{"ODOMETRY", Backlog::kKeepAll}, {"CAMERA", Backlog::kNewestOnly}}};
+  Counters counters_;
+};
+
+TEST_F(BusTest, DeliversInOrder) {
+  for (int i = 0; i < 100; ++i)
+    bus_.publish(pose(i));
+  const auto messages = drain();
+  ASSERT_EQ(messages.size(), 100U);
+  for (int i = 0; i < 100; ++i)
+    EXPECT_EQ(messages[static_cast<std::size_t>(i)], pose(i));
+}
+
+TEST_F(BusTest, NewestOnlyKeepsTheNewest) {
+  image_t image{};
+  image.width = image.height = 1;
+  for (int i = 0; i < 10; ++i) {
+    image.utime = i;
+    bus_.publish(encode(channels::kCamera, image));
+  }
+  std::this_thread::sleep_for(
+      milliseconds{200});  // so that all have arrived before the first is taken
+  const auto messages = drain();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(to_us(messages[0].time), 9);
+  EXPECT_EQ(counted("CAMERA skipped: newer one came"), 9);
+}
+
+TEST_F(BusTest, TooLargeToSendIsAnErrorOfTheSender) {
+  Message large = pose(1);
+  large.payload.resize(kMaxPayloadBytes + 1);
+  EXPECT_THROW(bus_.publish(large), std::logic_error);
+}
+
+// research/lcm.md A11, but for the fragment offset that crashes liblcm 1.3.1 itself.
+TEST_F(BusTest, CorruptDatagramsAreSurvived) {
+  const auto good = pose(5).payload;
+  auto bad_magic = lcm_datagram("ODOMETRY", good);
+  bad_magic[0] = 0;
+  auto no_channel_end = lcm_datagram("ODOMETRY", {});
+  no_channel_end.pop_back();
+  for (const auto& datagram :
+       {bad_magic, no_channel_end, std::vector<std::uint8_t>{1, 2}, std::vector<std::uint8_t>{},
+        lcm_fragment(100, 0, 0, 0, good), lcm_fragment(0x7fffffff, 0, 0, 2, good),
+        lcm_fragment(10, 0, 0, 2, std::vector<std::uint8_t>(1000)), lcm_datagram("ODOMETRY", {}),
+        lcm_datagram("ODOMETRY", {1, 2, 3})}) {
+    network_.send_datagram(datagram);
+  }
+  network_.send_datagram(lcm_datagram("ODOMETRY", good));
+  const auto messages = drain();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0], pose(5));
+  EXPECT_EQ(counted("ODOMETRY rejected: bad time"), 2);
+}
+
+TEST_F(BusTest, LargeMessagesOfOthersAreRefused) {
+  std::vector<std::uint8_t> body{'O', 'D', 'O', 'M', 'E', 'T', 'R', 'Y', 0};
+  body.resize(9 + 40000);
+  network_.send_datagram(lcm_fragment(80000, 0, 0, 2, body));
+  network_.send_datagram(lcm_fragment(80000, 40000, 1, 2, std::vector<std::uint8_t>(40000)));
+  EXPECT_TRUE(drain().empty());
+  EXPECT_EQ(counted("ODOMETRY rejected: too large"), 1);
+}
+
+TEST_F(BusTest, AFloodStaysBounded) {
+  Message large = pose(1);
+  large.payload.resize(60000);
+  const double before_mb = peak_memory_mb();
+  for (int i = 0; i < 3000; ++i)
+    network_.send_datagram(lcm_datagram("ODOMETRY", large.payload));
+  // 180 MB were sent; a queue holds 16 MB.
+  EXPECT_LT(peak_memory_mb() - before_mb, 100.0);
+  drain();
+  bus_.publish(pose(7));
+  const auto messages = drain();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0], pose(7));
+}
+
+TEST(BusSetup, AnUnusableUrlIsASetupError) {
+  EXPECT_THROW((Bus{"no-such-scheme://", {}}), SetupError);
+}
+
+TEST(BusSetup, TheCommandLineWinsOverTheEnvironment) {
+  setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:1?ttl=0", 1);
+  EXPECT_EQ(lcm_url_or_default("memq://"), "memq://");
+  EXPECT_EQ(lcm_url_or_default(""), "udpm://239.255.76.67:1?ttl=0");
+  unsetenv("LCM_DEFAULT_URL");
+  EXPECT_EQ(lcm_url_or_default(""), "udpm://239.255.76.67:7667?ttl=0");
+}
+
+}  // namespace
+}  // namespace waymark

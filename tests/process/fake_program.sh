@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Stands in for waymark-sim, -slam, ... in scripts_test.sh: does what the environment says.
+#   FAKE_DIR              shared folder: pids of all that ran; the file `closed` says that the run is over
+#   FAKE_sim_seconds      length of the run (default 0.5)
+#   FAKE_NAME_exit=CODE   NAME ends at once with this code; `crash` kills itself
+#   FAKE_NAME_stays=1     NAME ignores both the end of the run and SIGINT
+# With --real-time all but the simulator run until SIGINT and then end well.
+name=${0##*/waymark-}
+setting() {
+  local variable=FAKE_${name}_$1
+  echo "${!variable:-}"
+}
+
+case " $* " in
+  *" --dump-config "*)
+    estimator=$(sed -E 's/.*slam.estimator=([a-z_]+).*/\1/' <<<"slam.estimator=fake_estimator $*")
+    if [[ $estimator == unknown ]]; then
+      echo "slam.estimator: got 'unknown', expected one of those there are" >&2
+      exit 2
+    fi
+    printf '[run]\nseed = 7  # seed\n\n[slam]\nestimator = "%s"  # name\n' "$estimator"
+    exit ;;
+  *" --dump-robot-config "*) echo "[robot]" && exit ;;
+  *" --log "*) # replay
+    echo "replayed 12 messages, 3.5 s of log in 0.5 s (7.0 x real time), peak memory 20 MB" >&2
+    echo "$*" >"$FAKE_DIR/$name.replay"
+    exit ;;
+esac
+
+echo $$ >>"$FAKE_DIR/pids"
+echo $$ >>"$FAKE_DIR/pids.$name"
+echo "$*" >"$FAKE_DIR/$name.arguments"
+echo "$name says something" >&2
+case $(setting exit) in
+  '') ;;
+  crash) kill -SEGV $$ ;;
+  *) exit "$(setting exit)" ;;
+esac
+real_time=
+[[ " $* " != *" --real-time "* || $name == sim ]] || real_time=1
+on_signal() {
+  echo "$name" >>"$FAKE_DIR/interrupted"
+  [[ -n $real_time ]] || exit 130
+  exit 0
+}
+if [[ -n $(setting stays) ]]; then trap '' INT TERM; else trap on_signal INT TERM; fi
+end=$((${EPOCHREALTIME/./} + $(awk "BEGIN { print int(1e6 * ${FAKE_sim_seconds:-0.5}) }")))
+while [[ -n $real_time$(setting stays) || ! -e $FAKE_DIR/closed ]]; do
+  if [[ $name == sim ]] && ((${EPOCHREALTIME/./} > end)); then
+    touch "$FAKE_DIR/closed"
+    break
+  fi
+  sleep 0.02
+done

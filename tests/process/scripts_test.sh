@@ -1,0 +1,283 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# The scripts of deploy/ with fake programs: what they check, pass on, supervise and leave behind.
+#
+# usage: tests/process/scripts_test.sh [--list | CASE...]
+# shellcheck disable=SC2317  # cases are called by name
+set -euo pipefail
+
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export FAKE_DIR=$work
+unset LCM_DEFAULT_URL
+
+# The installed layout, with one fake program under all names.
+deploy=$work/share/waymark/deploy
+mkdir -p "$work/bin" "$work/share/waymark"
+cp -r "$source_dir/deploy" "$deploy"
+cp "$source_dir/tests/process/fake_program.sh" "$work/bin/waymark-sim"
+for name in detector slam viewer recorder; do ln -s waymark-sim "$work/bin/waymark-$name"; done
+scenario=$work/short.toml
+touch "$scenario"
+out=$work/run
+output=$work/output
+
+fail() {
+  echo "FAILED: $*; the script's output:" >&2
+  cat "$output" >&2
+  exit 1
+}
+
+# expect CODE SCRIPT ARGUMENTS...
+expect() {
+  local expected=$1 script=$deploy/$2 code=0
+  shift 2
+  "$script" "$@" >"$output" 2>&1 || code=$?
+  ((code == expected)) || fail "exit code $code instead of $expected from: ${script##*/} $*"
+}
+
+expect_output() { grep -qE -- "$1" "$output" || fail "no line like '$1'"; }
+
+expect_nothing_left() {
+  local pid
+  while read -r pid; do
+    grep -qsE '^State:\s+Z' "/proc/$pid/status" || [[ ! -d /proc/$pid ]] || fail "process $pid is left"
+  done <"$work/pids"
+}
+
+# wait_until COMMAND...: for at most 10 s.
+wait_until() {
+  local i
+  for ((i = 0; i < 200; ++i)); do
+    "$@" && return
+    sleep 0.05
+  done
+  fail "waited in vain for: $*"
+}
+
+all_started() { [[ -e $work/pids ]] && (($(wc -l <"$work/pids") >= 5)); }
+
+# ------------------------------------------------------------------------------ bad input
+
+bad_usage() {
+  expect 2 launch.sh && expect_output "no scenario given"
+  expect 2 launch.sh a.toml b.toml && expect_output "one scenario"
+  expect 2 launch.sh "$scenario" --bogus && expect_output "unknown option '--bogus'"
+  expect 2 launch.sh "$scenario" --seed && expect_output "seed needs a value"
+  expect 2 launch.sh "$scenario" --seed seven && expect_output "whole number, not 'seven'"
+  expect 2 launch.sh "$work/nowhere.toml" && expect_output "no readable file '.*nowhere.toml'"
+  expect 2 launch.sh "$scenario" --estimator unknown --out "$out" && expect_output "got 'unknown'"
+  expect 2 replay.sh && expect_output "no log given"
+  expect 2 replay.sh "$work/run.lcm" && expect_output "estimator is missing"
+  expect 2 replay.sh "$work/run.lcm" --estimator odometry && expect_output "no readable file"
+  expect 2 demo.sh --scenario "$work/nowhere.toml" && expect_output "no readable file"
+  expect 2 demo.sh --bogus && expect_output "unknown option"
+  expect 2 install-deps.sh --bogus && expect_output "unknown option"
+  expect 0 launch.sh --help && expect_output "usage: deploy/launch.sh SCENARIO"
+}
+
+bad_out_folder() {
+  touch "$work/file"
+  expect 2 launch.sh "$scenario" --out "$work/file/run" && expect_output "cannot make the folder"
+  expect 2 launch.sh "$scenario" --out /proc/run && expect_output "cannot make the folder"
+  expect 2 demo.sh --out /proc/run --scenario "$scenario" && expect_output "cannot make the folder"
+}
+
+missing_program() {
+  rm "$work/bin/waymark-viewer"
+  expect 2 launch.sh "$scenario" --out "$out"
+  expect_output "no program .*waymark-viewer; build with"
+}
+
+# Nothing to install: no apt, no network, and quickly.
+install_deps_when_nothing_is_missing() {
+  mkdir "$work/path"
+  printf '#!/bin/sh\necho "apt-get was called" >&2; exit 1\n' >"$work/path/apt-get"
+  printf '#!/bin/sh\nprintf installed\n' >"$work/path/dpkg-query"
+  chmod +x "$work"/path/*
+  PATH=$work/path:$PATH expect 0 install-deps.sh
+  [[ ! -s $output ]] || fail "it should have been silent"
+}
+
+install_deps_says_what_fails() {
+  mkdir "$work/path"
+  printf '#!/bin/sh\necho "E: no network"; exit 100\n' >"$work/path/apt-get"
+  printf '#!/bin/sh\nexec "$@"\n' >"$work/path/sudo"
+  printf '#!/bin/sh\necho not-installed\n' >"$work/path/dpkg-query"
+  chmod +x "$work"/path/*
+  PATH=$work/path:$PATH expect 2 install-deps.sh
+  expect_output "E: no network" && expect_output "'apt-get update' failed"
+  expect_output "installing cmake .*liblcm-dev"
+}
+
+# ------------------------------------------------------------------------------ a good run
+
+good_run() {
+  expect 0 launch.sh "$scenario" --out "$out" --seed 3 --set slam.particles=9
+  expect_nothing_left
+  expect_output "finished in"
+  grep -q -- "--config $scenario --seed 3 --out $out --lcm-url udpm" "$work/sim.arguments" || fail "sim"
+  grep -q -- "--config $out/robot.toml --set slam.seed=7 --set slam.particles=9" "$work/slam.arguments" || fail "slam"
+  grep -q -- "--out-log $out/run.lcm" "$work/recorder.arguments" || fail "recorder"
+  grep -q -- "--out $out/fake_estimator" "$work/viewer.arguments" || fail "viewer"
+  for name in sim slam detector viewer recorder; do
+    grep -q "$name says something" "$out/logs/$name.log" || fail "$name.log"
+  done
+}
+
+own_folder_by_default() {
+  cd "$work"
+  expect 0 launch.sh "$scenario"
+  compgen -G "$work/runs/short-seed7-*/robot.toml" >/dev/null || fail "no folder of its own"
+}
+
+an_old_run_is_replaced() {
+  mkdir -p "$out/old_row" "$out/mine"
+  touch "$out/run.lcm" "$out/results.json" "$out/old_row/config.toml" "$out/mine/notes"
+  expect 0 launch.sh "$scenario" --out "$out"
+  [[ ! -e $out/results.json && ! -e $out/old_row ]] || fail "old results are left"
+  [[ -e $out/mine/notes ]] || fail "somebody's notes are gone"
+}
+
+two_stacks_have_two_ports() {
+  FAKE_sim_seconds=1.5 "$deploy/launch.sh" "$scenario" --out "$work/other" >"$work/other_output" 2>&1 &
+  wait_until all_started
+  sed -E 's/.*--lcm-url ([^ ]+).*/\1/' "$work/sim.arguments" >"$work/other_url"
+  expect 0 launch.sh "$scenario" --out "$out"
+  wait $! || fail "the other stack failed"
+  ! grep -qF -- "$(cat "$work/other_url")" "$work/sim.arguments" || fail "both use $(cat "$work/other_url")"
+}
+
+one_folder_for_one_run() {
+  FAKE_sim_seconds=1.5 "$deploy/launch.sh" "$scenario" --out "$out" >/dev/null 2>&1 &
+  wait_until all_started
+  expect 2 launch.sh "$scenario" --out "$out" && expect_output "another run is writing"
+  wait $! || fail "the first one failed"
+}
+
+given_url_is_used() {
+  expect 0 launch.sh "$scenario" --out "$out" --lcm-url memq://
+  grep -q -- "--lcm-url memq://" "$work/slam.arguments" || fail "--lcm-url is not passed on"
+  LCM_DEFAULT_URL=udpm://239.255.76.67:7999 expect 0 launch.sh "$scenario" --out "$out"
+  grep -q -- "--lcm-url udpm://239.255.76.67:7999" "$work/slam.arguments" || fail "LCM_DEFAULT_URL"
+}
+
+real_time_processes_are_interrupted() {
+  expect 0 launch.sh "$scenario" --out "$out" --real-time
+  [[ $(wc -l <"$work/interrupted") == 4 ]] || fail "not all four were interrupted"
+  grep -q -- "--real-time" "$work/detector.arguments" || fail "--real-time is not passed on"
+}
+
+# ------------------------------------------------------------------------------ processes that end
+
+critical_process_dies() {
+  local name
+  for name in sim slam recorder; do
+    rm -f "$work"/pids* "$work/closed"
+    FAKE_sim_seconds=30 "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+    wait_until all_started
+    kill -KILL "$(cat "$work/pids.$name")"
+    local code=0
+    wait $! || code=$?
+    ((code == 3)) || fail "exit code $code when $name died"
+    expect_output "^launch: $name was killed by SIGKILL"
+    expect_output "^$name says something"
+    expect_nothing_left
+  done
+}
+
+detector_and_viewer_are_restarted() {
+  FAKE_sim_seconds=2 "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+  wait_until all_started
+  kill -KILL "$(cat "$work/pids.detector")" "$(cat "$work/pids.viewer")"
+  wait $! || fail "exit code $?"
+  expect_output "detector was killed by SIGKILL; starting it again"
+  [[ $(wc -l <"$work/pids.detector") == 2 ]] || fail "detector was not restarted once"
+  grep -q -- "--log $out/run.lcm --out $out/fake_estimator" "$work/viewer.replay" || fail "no pictures from the log"
+}
+
+restarts_end() {
+  FAKE_sim_seconds=60 FAKE_detector_exit=crash expect 3 launch.sh "$scenario" --out "$out"
+  [[ $(wc -l <"$work/pids.detector") == 6 ]] || fail "not five restarts"
+  expect_nothing_left
+}
+
+exit_codes_are_passed_on() {
+  FAKE_sim_exit=4 expect 4 launch.sh "$scenario" --out "$out" && expect_output "gave up waiting"
+  FAKE_sim_exit=1 expect 1 launch.sh "$scenario" --out "$out"
+  FAKE_sim_exit=2 expect 2 launch.sh "$scenario" --out "$out"
+  FAKE_slam_exit=2 FAKE_sim_seconds=30 expect 2 launch.sh "$scenario" --out "$out"
+  expect_output "slam could not be set up"
+  FAKE_slam_exit=1 FAKE_sim_seconds=30 expect 3 launch.sh "$scenario" --out "$out"
+  expect_output "slam ended with code 1"
+  expect_nothing_left
+}
+
+signals_stop_everything() {
+  local signal
+  for signal in INT:130 TERM:143 HUP:129; do
+    rm -f "$work"/pids* "$work/closed" "$work/interrupted"
+    # By way of env: bash starts background jobs with SIGINT ignored.
+    FAKE_sim_seconds=30 env --default-signal=INT "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+    wait_until all_started
+    sleep 0.2
+    kill "-${signal%:*}" $!
+    local code=0
+    wait $! || code=$?
+    ((code == ${signal#*:})) || fail "exit code $code after SIG${signal%:*}"
+    [[ $(head -n 1 "$work/interrupted") == sim ]] || fail "sim was not the first to be told"
+    expect_nothing_left
+  done
+}
+
+# Even when the script itself has no chance to clean up.
+killed_script_leaves_nothing() {
+  FAKE_sim_seconds=30 "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+  wait_until all_started
+  kill -KILL $!
+  wait $! 2>/dev/null || true
+  sleep 1
+  expect_nothing_left
+}
+
+stubborn_process_is_killed() {
+  FAKE_viewer_stays=1 expect 1 launch.sh "$scenario" --out "$out"
+  expect_output "not all processes ended"
+  expect_nothing_left
+}
+
+# ------------------------------------------------------------------------------ replay
+
+replay_writes_its_row() {
+  touch "$work/run.lcm" "$work/robot.toml"
+  printf '[run]\nseed = 5  # seed\n' >"$work/scenario.toml"
+  expect 0 replay.sh "$work/run.lcm" --estimator odometry --row control --set slam.a=1
+  [[ -s $work/control/config.toml ]] || fail "no config.toml"
+  grep -q '"slam": {"messages": 12, "log_s": 3.5, "wall_s": 0.5, "real_time_factor": 7.0, "peak_memory_mb": 20}' \
+    "$work/control/timings.json" || fail "timings.json"
+  grep -q -- "--set slam.seed=5 --set slam.estimator=odometry --set slam.a=1" "$work/slam.replay" || fail "slam"
+}
+
+replay_needs_the_robot() {
+  touch "$work/run.lcm"
+  expect 2 replay.sh "$work/run.lcm" --estimator odometry && expect_output "say with --robot"
+}
+
+all_cases() { sed -nE 's/^([a-z_]+)\(\) \{$/\1/p' "$0" | grep -vxE 'fail|expect.*|wait_until|all_cases'; }
+
+if (($# == 0)); then
+  mapfile -t cases < <(all_cases)
+  set -- "${cases[@]}"
+fi
+[[ $1 != --list ]] || { all_cases && exit; }
+if (($# == 1)); then
+  declare -F "$1" >/dev/null || { echo "no case '$1'" >&2 && exit 2; }
+  "$1"
+  exit
+fi
+failed=0
+for name in "$@"; do
+  if "$0" "$name"; then echo "ok     $name"; else echo "FAILED $name" && failed=1; fi
+done
+exit $failed

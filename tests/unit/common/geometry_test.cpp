@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/geometry/se2.hpp"
+#include "common/process/reorder_buffer.hpp"
+#include "common/random/random.hpp"
+#include "common/robot/robot_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace waymark {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+void expect_near(const Se2& a, const Se2& b) {
+  EXPECT_NEAR(a.x(), b.x(), 1e-9);
+  EXPECT_NEAR(a.y(), b.y(), 1e-9);
+  EXPECT_NEAR(angle_difference(a.theta(), b.theta()), 0.0, 1e-12);
+}
+
+TEST(Angle, WrapsIntoTheHalfOpenInterval) {
+  EXPECT_EQ(wrap_angle(kPi), kPi);
+  EXPECT_EQ(wrap_angle(-kPi), kPi);
+  EXPECT_NEAR(wrap_angle(3.0 * kPi + 0.1), -kPi + 0.1, 1e-12);
+  EXPECT_NEAR(angle_difference(-3.0, 3.0), 2.0 * kPi - 6.0, 1e-12);
+}
+
+TEST(Se2, MovesPointsCounterClockwise) {
+  const Se2 map_from_base{1.0, 2.0, kPi / 2.0};
+  const Eigen::Vector2d point_in_map = map_from_base * Eigen::Vector2d{1.0, 0.0};
+  EXPECT_NEAR(point_in_map.x(), 1.0, 1e-12);
+  EXPECT_NEAR(point_in_map.y(), 3.0, 1e-12);
+}
+
+TEST(Se2, IsAGroup) {
+  Random random{{3}};
+  const auto draw = [&random] {
+    return Se2{random.normal(0, 10), random.normal(0, 10), random.uniform(-9, 9)};
+  };
+  for (int i = 0; i < 200; ++i) {
+    const Se2 a = draw();
+    const Se2 b = draw();
+    const Se2 c = draw();
+    expect_near((a * b) * c, a * (b * c));
+    expect_near(a * a.inverse(), Se2{});
+    const Eigen::Vector2d point{random.normal(), random.normal()};
+    EXPECT_TRUE(((a * b) * point).isApprox(a * (b * point), 1e-9));
+  }
+}
+
+TEST(Se2, InterpolatesTheShortWayRound) {
+  expect_near(interpolate({0, 0, 3.0}, {2, 0, -3.0}, 0.5), {1, 0, kPi});
+}
+
+std::uint64_t first_draw(std::initializer_list<std::uint64_t> key) {
+  return Random{key}();
+}
+
+TEST(Random, DependsOnTheKeyOnly) {
+  EXPECT_EQ(first_draw({1, 2}), first_draw({1, 2}));
+  EXPECT_NE(first_draw({1, 2}), first_draw({2, 1}));
+  EXPECT_NE(first_draw({1}), first_draw({1, 0}));
+}
+
+TEST(Random, HasTheRightMoments) {
+  double sum = 0.0;
+  double sum_of_squares = 0.0;
+  double uniform_sum = 0.0;
+  constexpr int kDraws = 100000;
+  for (std::uint64_t i = 0; i < kDraws; ++i) {
+    Random random{{7, i}};  // a generator for each draw, as particles use it
+    const double value = random.normal();
+    sum += value;
+    sum_of_squares += value * value;
+    uniform_sum += random.uniform();
+  }
+  const double three_sigma = 3.0 / std::sqrt(kDraws);
+  EXPECT_NEAR(sum / kDraws, 0.0, three_sigma);
+  EXPECT_NEAR(sum_of_squares / kDraws, 1.0, three_sigma * std::sqrt(2.0));
+  EXPECT_NEAR(uniform_sum / kDraws, 0.5, three_sigma * std::sqrt(1.0 / 12.0));
+}
+
+TEST(CameraConfig, LooksForwardByDefault) {
+  CameraConfig camera{};
+  camera.x_m = camera.y_m = camera.z_m = 0.0;
+  const Eigen::Vector3d ahead{0.0, 0.0, 1.0};
+  EXPECT_TRUE((camera.base_from_camera() * ahead).isApprox(Eigen::Vector3d::UnitX()));
+  camera.yaw_rad = kPi / 2.0;
+  EXPECT_TRUE((camera.base_from_camera() * ahead).isApprox(Eigen::Vector3d::UnitY()));
+  camera.yaw_rad = 0.0;
+  camera.pitch_rad = kPi / 2.0;
+  EXPECT_TRUE((camera.base_from_camera() * ahead).isApprox(-Eigen::Vector3d::UnitZ()));
+}
+
+Message at(std::int64_t utime_us, std::string channel = "A") {
+  return {std::move(channel), timestamp_from_us(utime_us), {}};
+}
+
+TEST(ReorderBuffer, SortsWithinItsWindowAndDropsWhatIsLate) {
+  Counters counters;
+  ReorderBuffer buffer{Duration{100}};
+  EXPECT_TRUE(buffer.add(at(1000), counters).empty());
+  EXPECT_TRUE(buffer.add(at(1050), counters).empty());
+  EXPECT_TRUE(buffer.add(at(1020), counters).empty());
+  const auto released = buffer.add(at(1150), counters);
+  ASSERT_EQ(released.size(), 3U);
+  EXPECT_EQ(released[1].time, timestamp_from_us(1020));
+  EXPECT_TRUE(buffer.add(at(1040), counters).empty());
+  EXPECT_EQ(counters.get("A late, dropped"), 1);
+  EXPECT_EQ(buffer.flush().size(), 1U);
+}
+
+TEST(ReorderBuffer, AJumpOfTheClockDoesNotSilenceEverybodyElse) {
+  Counters counters;
+  ReorderBuffer buffer{Duration{0}};
+  EXPECT_EQ(buffer.add(at(1000), counters).size(), 1U);
+  EXPECT_TRUE(buffer.add(at(3'600'000'000), counters).empty());
+  EXPECT_EQ(counters.get("A rejected: time jumps ahead"), 1);
+  EXPECT_EQ(buffer.add(at(2000), counters).size(), 1U);
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The lockstep protocol over a simulated network that loses, repeats and reorders.
+#include "common/lockstep/master.hpp"
+#include "common/lockstep/participant.hpp"
+#include "common/random/random.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace waymark {
+namespace {
+
+Message odometry(std::int64_t utime_us, float x_m) {
+  pose2D_t pose{};
+  pose.utime = utime_us;
+  pose.x = x_m;
+  return encode(channels::kOdometry, pose);
+}
+
+Message marker_answer(const Message& odometry_message) {
+  marker_detections_t markers{};
+  markers.utime = to_us(odometry_message.time);
+  return encode(channels::kMarkers, markers);
+}
+
+/// Master, detector and slam; every message reaches everybody, as on a multicast bus.
+class Stack {
+ public:
+  explicit Stack(double loss, std::uint64_t seed) : loss_{loss}, random_{{seed}} {
+    restart_detector();
+    slam_ = std::make_unique<LockstepParticipant>(
+        "slam", std::vector<std::string>{"ODOMETRY", "MARKERS"}, false,
+        [this](const std::vector<Message>& messages, bool) {
+          slam_input_.insert(slam_input_.end(), messages.begin(), messages.end());
+          return std::vector<Message>{};
+        });
+  }
+
+  void restart_detector() {
+    detector_ =
+        std::make_unique<LockstepParticipant>("detector", std::vector<std::string>{"ODOMETRY"},
+                                              true, [](const std::vector<Message>& messages, bool) {
+                                                std::vector<Message> answers;
+                                                for (const Message& message : messages)
+                                                  answers.push_back(marker_answer(message));
+                                                return answers;
+                                              });
+  }
+
+  void send(std::vector<Message> messages) {
+    std::vector<Message> wave = std::move(messages);
+    while (!wave.empty()) {
+      std::vector<Message> answers;
+      for (const Message& message : wave) {
+        if (message.channel == "ACK" && !lost()) master_.take(message);
+        for (auto* participant : {detector_.get(), slam_.get()}) {
+          if (lost()) continue;
+          const int copies = random_.uniform() < 0.1 ? 2 : 1;
+          for (int i = 0; i < copies; ++i) {
+            const auto published = participant->take(message);
+            answers.insert(answers.end(), published.begin(), published.end());
+          }
+        }
+      }
+      // Arrival order between processes is arbitrary.
+      for (std::size_t i = answers.size(); i > 1; --i)
+        std::swap(answers[i - 1], answers[random_() % i]);
+      wave = std::move(answers);
+    }
+  }
+
+  void run(int num_ticks) {
+    while (!master_.all_ready())
+      send({master_.probe()});
+    int sent = 0;
+    for (int guard = 0; guard < 100000 && !(sent == num_ticks && master_.all_acknowledged());
+         ++guard) {
+      if (sent < num_ticks && master_.has_room()) {
+        const std::int64_t base_us = 1000 * sent;
+        send(master_.open_tick(timestamp_from_us(base_us + 999),
+                               {odometry(base_us + 500, 2.0F), odometry(base_us, 1.0F)},
+                               ++sent == num_ticks));
+      } else {
+        send(master_.resend());
+      }
+      if (sent == num_ticks / 2 && !restarted_ && restart_) {
+        restart_detector();
+        restarted_ = true;
+      }
+    }
+    send({master_.closing()});
+  }
+
+  bool restart_{false};
+  bool restarted_{false};
+  double loss_;
+  Random random_{{0}};
+  LockstepMaster master_{77, {"detector", "slam"}, 4};
+  std::unique_ptr<LockstepParticipant> detector_;
+  std::unique_ptr<LockstepParticipant> slam_;
+  std::vector<Message> slam_input_;
+
+ private:
+  bool lost() { return random_.uniform() < loss_; }
+};
+
+std::vector<Message> expected_input(int num_ticks) {
+  std::vector<Message> messages;
+  for (int tick = 0; tick < num_ticks; ++tick) {
+    for (const int offset_us : {0, 500}) {
+      const Message message = odometry(1000 * tick + offset_us, offset_us == 0 ? 1.0F : 2.0F);
+      messages.push_back(marker_answer(message));
+      messages.push_back(message);
+    }
+  }
+  return messages;
+}
+
+TEST(Lockstep, SlamSeesEverythingOnceAndInOrder) {
+  Stack stack{0.0, 1};
+  stack.run(50);
+  EXPECT_EQ(stack.slam_input_, expected_input(50));
+  EXPECT_TRUE(stack.slam_->finished());
+  EXPECT_TRUE(stack.slam_->closed());
+}
+
+TEST(Lockstep, LossChangesNothing) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    Stack stack{0.2, seed};
+    stack.run(50);
+    EXPECT_EQ(stack.slam_input_, expected_input(50)) << "seed " << seed;
+  }
+}
+
+TEST(Lockstep, ARestartedDetectorChangesNothing) {
+  Stack stack{0.05, 9};
+  stack.restart_ = true;
+  stack.run(50);
+  EXPECT_TRUE(stack.restarted_);
+  EXPECT_EQ(stack.slam_input_, expected_input(50));
+}
+
+TEST(Lockstep, StateHashesTellWhatWasSent) {
+  Stack a{0.0, 1};
+  Stack b{0.3, 2};
+  Stack c{0.0, 1};
+  a.run(20);
+  b.run(20);
+  c.run(21);
+  EXPECT_EQ(a.master_.state_hashes(), b.master_.state_hashes());
+  EXPECT_NE(a.master_.state_hashes().at("detector"), c.master_.state_hashes().at("detector"));
+}
+
+TEST(Lockstep, StrangersMessagesAreNotProcessed) {
+  Stack stack{0.0, 1};
+  while (!stack.master_.all_ready())
+    stack.send({stack.master_.probe()});
+  for (int i = 0; i < 1000; ++i)
+    stack.send({odometry(100 + i, 9.0F)});
+  stack.run(10);
+  EXPECT_EQ(stack.slam_input_, expected_input(10));
+}
+
+TEST(Lockstep, TicksOfAnotherRunAreIgnoredAndCounted) {
+  Stack stack{0.0, 1};
+  while (!stack.master_.all_ready())
+    stack.send({stack.master_.probe()});
+  LockstepMaster other{78, {"detector", "slam"}, 4};
+  stack.send(other.open_tick(timestamp_from_us(1), {odometry(0, 9.0F)}, true));
+  stack.run(10);
+  EXPECT_EQ(stack.slam_input_, expected_input(10));
+  EXPECT_GT(stack.slam_->counters().get("TICK or ACK of another run"), 0);
+}
+
+TEST(Lockstep, AStatefulProcessRefusesToJoinMidway) {
+  LockstepMaster master{1, {"slam"}, 1};
+  LockstepParticipant first{"slam", {}, false, [](const auto&, bool) {
+                              return std::vector<Message>{};
+                            }};
+  for (const Message& message : master.open_tick(timestamp_from_us(1), {}, false)) {
+    for (const Message& answer : first.take(message))
+      master.take(answer);
+  }
+  LockstepParticipant late{"slam", {}, false, [](const auto&, bool) {
+                             return std::vector<Message>{};
+                           }};
+  const auto tick = master.open_tick(timestamp_from_us(2), {}, false);
+  EXPECT_THROW(late.take(tick.back()), std::runtime_error);
+}
+
+TEST(Lockstep, TheMasterNamesTheSilent) {
+  LockstepMaster master{1, {"detector", "slam"}, 2};
+  EXPECT_THAT(master.not_ready(), ::testing::ElementsAre("detector", "slam"));
+  master.open_tick(timestamp_from_us(1), {}, false);
+  EXPECT_THAT(master.silent(), ::testing::ElementsAre("detector", "slam"));
+  EXPECT_TRUE(master.has_room());
+  master.open_tick(timestamp_from_us(2), {}, false);
+  EXPECT_FALSE(master.has_room());
+}
+
+TEST(MessagePool, ForgetsTheOldestInAFloodAndStaysSmall) {
+  MessagePool pool;
+  Message large = odometry(0, 0.0F);
+  large.payload.resize(60000);
+  std::int64_t first_hash = 0;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    for (int k = 0; k < 4; ++k)
+      large.payload[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(i >> (8 * k));
+    if (i == 0) first_hash = content_hash(large);
+    EXPECT_TRUE(pool.add(large));
+    EXPECT_FALSE(pool.add(large));
+  }
+  EXPECT_FALSE(pool.has(first_hash));
+  EXPECT_TRUE(pool.has(content_hash(large)));
+}
+
+}  // namespace
+}  // namespace waymark

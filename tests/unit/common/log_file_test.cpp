@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/log/log_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace waymark {
+namespace {
+
+class LogFile : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove(path_); }
+
+  std::filesystem::path path_{std::filesystem::path{::testing::TempDir()} /
+                              ::testing::UnitTest::GetInstance()->current_test_info()->name()};
+
+  static Message event(int i) {
+    return {i % 2 == 0 ? "EVEN" : "ODD", timestamp_from_us(1000 * i),
+            std::vector<std::uint8_t>(static_cast<std::size_t>(i), static_cast<std::uint8_t>(i))};
+  }
+
+  std::string good_log(int num_events) const {
+    LogWriter writer{path_};
+    for (int i = 0; i < num_events; ++i)
+      writer.write(event(i));
+    writer.close();
+    std::ifstream file{path_, std::ios::binary};
+    std::stringstream bytes;
+    bytes << file.rdbuf();
+    return bytes.str();
+  }
+
+  void put(const std::string& bytes) const { std::ofstream{path_, std::ios::binary} << bytes; }
+
+  std::vector<Message> read(std::int64_t& skipped_bytes) const {
+    LogReader reader{path_};
+    std::vector<Message> events;
+    while (auto message = reader.next())
+      events.push_back(*message);
+    skipped_bytes = reader.skipped_bytes();
+    return events;
+  }
+};
+
+TEST_F(LogFile, WhatIsWrittenIsRead) {
+  good_log(10);
+  std::int64_t skipped_bytes = -1;
+  const auto events = read(skipped_bytes);
+  ASSERT_EQ(events.size(), 10U);
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(events[static_cast<std::size_t>(i)], event(i));
+  EXPECT_EQ(skipped_bytes, 0);
+}
+
+TEST_F(LogFile, HasTheFormatOfLcm) {
+  // Event 1 of the log: sync word, number 1, time 1000, channel of 3 bytes, data of 1 byte.
+  const std::string bytes = good_log(2).substr(28 + 4);
+  const std::string expected{
+      "\xED\xA1\xDA\x01\0\0\0\0\0\0\0\x01\0\0\0\0\0\0\x03\xE8\0\0\0\x03\0\0\0\x01ODD\x01", 32};
+  EXPECT_EQ(bytes, expected);
+}
+
+TEST_F(LogFile, OnlyAClosedLogHasItsName) {
+  {
+    LogWriter writer{path_};
+    writer.write(event(1));
+    EXPECT_FALSE(std::filesystem::exists(path_));
+    writer.close();
+  }
+  EXPECT_TRUE(std::filesystem::exists(path_));
+  EXPECT_FALSE(std::filesystem::exists(path_.string() + ".part"));
+}
+
+TEST_F(LogFile, UnwantedChannelsAreSkippedAndListed) {
+  good_log(6);
+  LogReader reader{path_};
+  int count = 0;
+  while (auto message = reader.next([](std::string_view channel) { return channel == "ODD"; })) {
+    EXPECT_EQ(message->channel, "ODD");
+    ++count;
+  }
+  EXPECT_EQ(count, 3);
+  EXPECT_EQ(channels_in(path_), (std::vector<std::string>{"EVEN", "ODD"}));
+}
+
+TEST_F(LogFile, GarbageBeforeBetweenAndBehindEventsIsCountedAndNothingElseIsLost) {
+  const std::string good = good_log(10);
+  const std::string sync{"\xED\xA1\xDA\x01", 4};
+  const auto middle = good.find(sync, good.size() / 2);
+  const std::string garbage = "garbage " + sync + " more";
+  put(garbage + good.substr(0, middle) + garbage + good.substr(middle) + std::string(50, '\0'));
+
+  std::int64_t skipped_bytes = 0;
+  const auto events = read(skipped_bytes);
+
+  EXPECT_EQ(events.size(), 10U);
+  EXPECT_EQ(skipped_bytes, static_cast<std::int64_t>(2 * garbage.size() + 50));
+}
+
+TEST_F(LogFile, ACutOffEventIsCounted) {
+  const std::string good = good_log(10);
+  put(good.substr(0, good.size() - 3));
+  std::int64_t skipped_bytes = 0;
+  EXPECT_EQ(read(skipped_bytes).size(), 9U);
+  EXPECT_EQ(skipped_bytes, 28 + 3 + 9 - 3);
+}
+
+// Lengths that crash liblcm's own reader (research/lcm.md A9).
+TEST_F(LogFile, HostileLengthsSkipOneEventOnly) {
+  for (const std::string& length :
+       {std::string{"\x7f\xff\xff\xff"}, std::string{"\xff\xff\xff\xff"},
+        std::string{"\x7f\xff\xff\xf0"}}) {
+    std::string bytes = good_log(10);
+    const std::size_t event_1 = 28 + 4;
+    bytes.replace(event_1 + 24, 4, length);
+    put(bytes);
+    std::int64_t skipped_bytes = 0;
+    EXPECT_EQ(read(skipped_bytes).size(), 9U);
+    EXPECT_EQ(skipped_bytes, 28 + 3 + 1);
+  }
+}
+
+TEST_F(LogFile, MissingFilesAreNamed) {
+  EXPECT_THROW(LogReader{"/no/such.lcm"}, std::runtime_error);
+  EXPECT_THROW(LogReader{"/tmp"}, std::runtime_error);
+  EXPECT_THROW(LogWriter{"/no/such/folder.lcm"}, std::runtime_error);
+}
+
+TEST_F(LogFile, AFullDiskIsReported) {
+  std::filesystem::create_symlink("/dev/full", path_.string() + ".part");
+  LogWriter writer{path_};
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 3000; ++i)
+          writer.write(event(1000));
+        writer.close();
+      },
+      std::runtime_error);
+  std::filesystem::remove(path_.string() + ".part");
+}
+
+}  // namespace
+}  // namespace waymark

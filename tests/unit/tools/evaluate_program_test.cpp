@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Exit codes of the program itself.
+#include "unit/tools/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+namespace waymark::evaluate {
+namespace {
+
+int exit_code(const std::string& arguments) {
+  const std::string command =
+      WAYMARK_BUILD_DIR "/waymark-evaluate " + arguments + " > /dev/null 2>&1";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(EvaluateProgram, HelpAndVersionAreFine) {
+  EXPECT_EQ(exit_code("--help"), 0);
+  EXPECT_EQ(exit_code("run --help"), 0);
+  EXPECT_EQ(exit_code("--version"), 0);
+}
+
+TEST(EvaluateProgram, WrongUsageAndMissingFilesAreTwo) {
+  EXPECT_EQ(exit_code(""), 2);
+  EXPECT_EQ(exit_code("measure"), 2);
+  EXPECT_EQ(exit_code("length"), 2);
+  EXPECT_EQ(exit_code("length /no/such.yaml"), 2);
+  EXPECT_EQ(exit_code("run /no/such/folder"), 2);
+  EXPECT_EQ(exit_code("trajectory /no/such.tum /no/such.tum"), 2);
+  const TemporaryFolder folder;
+  const std::string tum = folder.file("a.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n").string();
+  EXPECT_EQ(exit_code("trajectory " + tum + " " + tum + " --align sideways"), 2);
+  EXPECT_EQ(exit_code("trajectory " + tum + " " + tum + " --align se2 --json"), 0);
+}
+
+TEST(EvaluateProgram, SkippedRelationsAreOneUnlessTolerated) {
+  const TemporaryFolder folder;
+  const std::string tum = folder.file("a.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n").string();
+  const std::string both = folder.file("both", "0 1 1 0 0 0 0 0\n0 7 1 0 0 0 0 0\n").string();
+  const std::string none = folder.file("none", "0 7 1 0 0 0 0 0\n").string();
+  EXPECT_EQ(exit_code("relations " + tum + " " + both), 1);
+  EXPECT_EQ(exit_code("relations --tolerant " + tum + " " + both), 0);
+  EXPECT_EQ(exit_code("relations --tolerant " + tum + " " + none), 1);
+}
+
+}  // namespace
+}  // namespace waymark::evaluate

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The run sub-command on a folder as a run leaves it.
+#include "evaluate/commands.hpp"
+#include "evaluate/report.hpp"
+#include "unit/tools/drawn_map.hpp"
+#include "unit/tools/temporary_folder.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace waymark::evaluate {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const Output kQuietly{false, false};
+
+/// A drive of 8 m from x = 1 m; the estimate's steps are longer by a factor.
+std::string tum(double x0_m, double factor) {
+  std::string text;
+  for (int i = 0; i <= 80; ++i)
+    text += fmt::format("{:.6f} {:.6f} 0 0 0 0 0 1\n", 0.2 * i, x0_m + factor * 0.1 * i);
+  return text;
+}
+
+std::string pgm(const MapImage& map) {
+  std::string text = fmt::format("P5\n{} {}\n255\n", map.width_px, map.height_px);
+  for (int y = map.height_px - 1; y >= 0; --y) {
+    for (int x = 0; x < map.width_px; ++x)
+      text += map.at(x, y) == Cell::kFree       ? '\xfe'
+              : map.at(x, y) == Cell::kOccupied ? '\0'
+                                                : '\xcd';
+  }
+  return text;
+}
+
+void add_estimator(const TemporaryFolder& run, const std::string& name, double length_px,
+                   double factor) {
+  run.file(name + "/trajectory.tum", tum(0.0, factor));
+  run.file(name + "/map.pgm", pgm(draw({230, 61, length_px}, straight_shape(7, 30, 0))));
+  run.file(name + "/map.yaml",
+           "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
+           "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+}
+
+void add_truth(const TemporaryFolder& run) {
+  run.file("scenario.toml", "[world]\nlength_m = 10\n");
+  run.file("truth.tum", tum(1.0, 1.0));
+  run.file("truth_markers.csv", "id,instance,x_m,y_m,yaw_rad\n0,0,4,1,-1.5708\n1,0,8,1,-1.5708\n");
+}
+
+Json json_in(const std::filesystem::path& file) {
+  return Json::parse(read_text(file));
+}
+
+TEST(Run, WritesMetricsAndTheTable) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "waymark", 200, 1.0);
+  add_estimator(run, "odometry", 202, 1.01);
+  add_estimator(run, "marker_matching", 200, 1.005);
+  run.file("waymark/markers.csv",
+           "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings\n"
+           "0,0,3.02,1,-1.5708,0.1,0.1,0.1,7\n");
+  run.file("waymark/config.toml", "[slam]\nseed = 7\n");
+  run.file("waymark/timings.json", "{\"scan_ms\": 1.5}");
+  run.file("waymark/covariance.csv",
+           "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n0.2,0.01,0,0,0.01,0,0.01,2\n");
+
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+
+  const Json waymark = json_in(run.path() / "waymark/metrics.json");
+  EXPECT_EQ(waymark["length_px"], 200.0);
+  EXPECT_EQ(waymark["accuracy_percent"], 100.0);
+  EXPECT_EQ(waymark["ate_origin_m"], 0.0);
+  EXPECT_EQ(waymark["marker_error_mean_m"], 0.02);
+  EXPECT_EQ(waymark["markers_missing"], 1);
+  EXPECT_EQ(waymark["nees_poses"], 1);
+  EXPECT_EQ(waymark["timings"]["scan_ms"], 1.5);
+  const Json odometry = json_in(run.path() / "odometry/metrics.json");
+  EXPECT_EQ(odometry["accuracy_percent"], 99.0);
+  EXPECT_EQ(odometry["along_max_m"], 0.08);
+  EXPECT_TRUE(odometry["nees_mean"].is_null());
+
+  const Json results = json_in(run.path() / "results.json");
+  ASSERT_EQ(results["estimators"].size(), 3u);
+  EXPECT_EQ(results["estimators"][0]["estimator"], "odometry");
+  EXPECT_EQ(results["estimators"][1]["estimator"], "marker_matching");
+  EXPECT_EQ(results["estimators"][2]["config_toml"], "[slam]\nseed = 7\n");
+  EXPECT_EQ(results["scenario_toml"], "[world]\nlength_m = 10\n");
+  const std::string table = read_text(run.path() / "results.md");
+  EXPECT_THAT(table, HasSubstr("| marker_matching | 0.05 m/pixel | 10.0 m          | 200 pixel   "
+                               "| 10.00 m    | 100.00 % | 0.023 m    | 0.50 "));
+}
+
+TEST(Run, RowsStandInTheTablesOrder) {
+  const TemporaryFolder run;
+  for (const char* name : {"zeta", "waymark", "marker_matching_blank", "marker_matching", "alpha",
+                           "gmapping_turtlebot3", "gmapping", "odometry"})
+    run.file(std::string{name} + "/trajectory.tum", "");
+  run.file("logs/slam.log", "");
+  EXPECT_THAT(estimators_in(run.path()),
+              ElementsAre("odometry", "gmapping", "gmapping_turtlebot3", "marker_matching",
+                          "marker_matching_blank", "waymark", "alpha", "zeta"));
+}
+
+TEST(Run, WithoutTruthThereAreLengthsOnly) {
+  const TemporaryFolder run;
+  add_estimator(run, "odometry", 200, 1.0);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  const Json metrics = json_in(run.path() / "odometry/metrics.json");
+  EXPECT_EQ(metrics["length_m"], 10.0);
+  EXPECT_TRUE(metrics["accuracy_percent"].is_null());
+  EXPECT_TRUE(metrics["ate_origin_m"].is_null());
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("No truth.tum: lengths only"));
+}
+
+TEST(Run, AnEstimatorWithoutAMapIsAFailureOfThatRowOnly) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "odometry", 200, 1.0);
+  run.file("waymark/trajectory.tum", tum(0.0, 1.0));
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
+  const Json waymark = json_in(run.path() / "waymark/metrics.json");
+  EXPECT_TRUE(waymark["length_px"].is_null());
+  EXPECT_EQ(waymark["ate_origin_m"], 0.0);
+  EXPECT_THAT(waymark["problems"][0].get<std::string>(), HasSubstr("map.yaml: cannot be read"));
+  EXPECT_EQ(run_run(run.path(), {"odometry"}, {}, kQuietly), kFine);
+}
+
+TEST(Run, SkippedLinesFailUnlessTolerated) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "odometry", 200, 1.0);
+  run.file("odometry/trajectory.tum", tum(0.0, 1.0) + "garbage\n");
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
+  EXPECT_EQ(run_run(run.path(), {}, {}, Output{false, true}), kFine);
+  EXPECT_EQ(json_in(run.path() / "odometry/metrics.json")["skipped"].size(), 1u);
+}
+
+TEST(Run, TruthOfAnotherRunIsAProblem) {
+  const TemporaryFolder run;
+  add_estimator(run, "odometry", 200, 1.0);
+  run.file("truth.tum", "1000 0 0 0 0 0 0 1\n1001 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("within the truth's time span"));
+  EXPECT_THAT(read_text(run.path() / "results.json"), Not(HasSubstr("nan")));
+}
+
+TEST(Run, WhatCannotBeEvaluatedAtAllIsAUsageError) {
+  const TemporaryFolder run;
+  EXPECT_THROW(run_run(run.path() / "none", {}, {}, kQuietly), InputError);
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+  add_estimator(run, "odometry", 200, 1.0);
+  EXPECT_THROW(run_run(run.path(), {"gmapping"}, {}, kQuietly), InputError);
+  run.file("scenario.toml", "[world\n");
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+  run.file("scenario.toml", "[world]\nlength_m = \"long\"\n");
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+}
+
+}  // namespace
+}  // namespace waymark::evaluate

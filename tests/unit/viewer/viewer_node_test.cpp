@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/viewer_node.hpp"
+
+#include "unit/viewer/drawn_scene.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::SizeIs;
+
+slam_estimate_t estimate_at(double time_s, double x_m) {
+  slam_estimate_t message{};
+  message.utime = to_us(Timestamp{duration_from_seconds(time_s)});
+  message.x_m = x_m;
+  message.health = slam_estimate_t::HEALTH_TRACKING;
+  return message;
+}
+
+map_tiles_t tile_at(int tile_x, int part, int num_parts) {
+  map_tiles_t message{};
+  message.part = part;
+  message.num_parts = num_parts;
+  message.resolution_m = 0.05;
+  message.tile_size_cells = 2;
+  message.num_tiles = 1;
+  message.tiles.resize(1);
+  message.tiles[0].tile_x = tile_x;
+  message.tiles[0].num_cells = 4;
+  message.tiles[0].occupancy = {0, 0, 100, 100};
+  message.tiles[0].marker_ids = {-1, -1, 0, 0};
+  return message;
+}
+
+marker_map_t markers_at(std::int64_t utime, int part, int num_parts, int id) {
+  marker_map_t message{};
+  message.utime = utime;
+  message.part = part;
+  message.num_parts = num_parts;
+  message.num_landmarks = 1;
+  message.landmarks.resize(1);
+  message.landmarks[0] = marker_landmark_t{};
+  message.landmarks[0].id = id;
+  return message;
+}
+
+class ViewerNodeTest : public ::testing::Test {
+ protected:
+  ViewerNodeTest() {
+    fs::remove_all(folder_);
+    config_.out_dir = folder_;
+  }
+
+  ~ViewerNodeTest() override { fs::remove_all(folder_); }
+
+  template <class Type>
+  void deliver(Channel<Type> channel, const Type& message) {
+    inbox_.deliver(encode(channel, message));
+  }
+
+  std::string content_of(const std::string& name) const {
+    std::ifstream stream{folder_ / name, std::ios::binary};
+    return {std::istreambuf_iterator<char>{stream}, {}};
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator{folder_})
+      names.push_back(entry.path().filename());
+    return names;
+  }
+
+  const fs::path folder_ = fs::path{::testing::TempDir()} /
+                           ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  ViewerConfig config_{};
+  Inbox inbox_{};
+  Outbox outbox_{};
+};
+
+TEST_F(ViewerNodeTest, NeedsAFolder) {
+  config_.out_dir.clear();
+  EXPECT_THROW((ViewerNode{config_, inbox_, outbox_}), SetupError);
+}
+
+TEST_F(ViewerNodeTest, WritesEveryFileAtTheEndEvenWithoutMessages) {
+  ViewerNode node{config_, inbox_, outbox_};
+  node.finish();
+  EXPECT_THAT(names(),
+              IsSupersetOf({"map.pgm", "map.yaml", "map.png", "marker_layer.png", "plain.png",
+                            "trajectory.tum", "covariance.csv", "odometry.tum", "markers.csv"}));
+  EXPECT_FALSE(node.failed());
+}
+
+TEST_F(ViewerNodeTest, WritesDuringTheRunEveryPeriodOfMessageTime) {
+  config_.viewer.write_period_s = 5.0;
+  ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamEstimate, estimate_at(100.0, 0.0));
+  deliver(channels::kSlamEstimate, estimate_at(104.9, 0.5));
+  EXPECT_EQ(content_of("trajectory.tum"), "");
+  deliver(channels::kSlamEstimate, estimate_at(105.0, 1.0));
+  EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("105.000000 1.000000000"));
+}
+
+TEST_F(ViewerNodeTest, EveryPictureIsWrittenDuringTheRun) {
+  ViewerNode node{config_, inbox_, outbox_};
+  for (int i = 0; i <= 15; ++i)
+    deliver(channels::kSlamEstimate, estimate_at(1.0 * i, 0.1 * i));
+  EXPECT_THAT(names(), IsSupersetOf({"map.png", "marker_layer.png", "plain.png"}));
+}
+
+TEST_F(ViewerNodeTest, ATrajectoryHasOneLinePerEstimateWithoutRepeats) {
+  ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
+  deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
+  deliver(channels::kSlamEstimate, estimate_at(0.5, 0.0));
+  deliver(channels::kSlamEstimate, estimate_at(1.2, 0.1));
+  node.finish();
+  const std::string text = content_of("trajectory.tum");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_EQ(inbox_.counters().get("SLAM_ESTIMATE left out: not newer"), 2);
+}
+
+TEST_F(ViewerNodeTest, PutsTheMapTogetherFromPartsInAnyOrder) {
+  ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamMap, tile_at(0, 1, 2));
+  deliver(channels::kSlamMap, tile_at(-1, 0, 2));
+  deliver(channels::kSlamMap, tile_at(-1, 0, 2));
+  node.finish();
+  EXPECT_EQ(content_of("map.pgm"),
+            "P5\n4 2\n255\n" + std::string(4, '\0') + std::string(4, '\xFE'));
+  EXPECT_THAT(content_of("map.yaml"), HasSubstr("origin: [-0.100000000, 0.000000000, 0.0]"));
+}
+
+TEST_F(ViewerNodeTest, MarkersAppearWhenAllPartsAreThere) {
+  viewer::Scene scene;
+  Counters counters;
+  viewer::SceneUpdater updater{scene, counters};
+  updater.add(markers_at(10, 1, 2, 5));
+  EXPECT_THAT(scene.landmarks, SizeIs(0));
+  updater.add(markers_at(10, 0, 2, 4));
+  ASSERT_THAT(scene.landmarks, SizeIs(2));
+  EXPECT_EQ(scene.landmarks[0].id, 4);
+  updater.add(markers_at(20, 0, 2, 9));
+  EXPECT_THAT(scene.landmarks, SizeIs(2)) << "half a map does not replace a whole one";
+  updater.add(markers_at(15, 1, 2, 9));
+  EXPECT_EQ(scene.landmarks[0].id, 4) << "parts of different times do not mix";
+}
+
+TEST_F(ViewerNodeTest, TheScanWithMarkersStays) {
+  viewer::Scene scene;
+  Counters counters;
+  viewer::SceneUpdater updater{scene, counters};
+  annotated_scan_t scan{};
+  scan.num_beams = 1;
+  scan.ranges = {1.0F};
+  scan.angles = {0.0F};
+  scan.marker_ids = {0};
+  scan.utime = 1;
+  updater.add(scan);
+  scan.marker_ids = {-1};
+  scan.utime = 2;
+  updater.add(scan);
+  EXPECT_EQ(to_us(scene.scan->time), 1);
+}
+
+TEST_F(ViewerNodeTest, AFileThatCannotBeWrittenMakesItFailAndTheOthersAreWritten) {
+  ViewerNode node{config_, inbox_, outbox_};
+  fs::create_directories(folder_ / "map.yaml" / "in the way");
+  deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
+  node.finish();
+  EXPECT_TRUE(node.failed());
+  EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("1.000000 "));
+}
+
+}  // namespace
+}  // namespace waymark

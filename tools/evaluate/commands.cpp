@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/commands.hpp"
+
+#include "evaluate/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace waymark::evaluate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names what was skipped on stderr; the exit code that it deserves.
+int report_skipped(const Skipped& skipped, const Output& output) {
+  constexpr std::size_t kShown = 10;
+  for (std::size_t i = 0; i < std::min(skipped.size(), kShown); ++i)
+    fmt::print(stderr, "skipped: {}\n", skipped[i]);
+  if (skipped.size() > kShown) fmt::print(stderr, "skipped: {} more\n", skipped.size() - kShown);
+  return skipped.empty() || output.tolerant ? kFine : kFailed;
+}
+
+/// JSON as it is, or one `key: value` per line; unknown values are left out.
+void print(const Json& json, const Output& output) {
+  if (output.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  for (const auto& [key, value] : json.items()) {
+    if (!value.is_null())
+      fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+}
+
+std::string file_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+int run_length(const fs::path& map_yaml, std::optional<double> true_length_m,
+               const Output& output) {
+  const MapImage map = read_map(map_yaml);
+  print(json_of(measure_corridor(map), true_length_m), output);
+  return kFine;
+}
+
+int run_trajectory(const fs::path& estimate_file, const fs::path& reference_file,
+                   Alignment alignment, const Output& output) {
+  Skipped skipped;
+  const Trajectory estimate = read_tum(estimate_file, skipped);
+  const Trajectory reference = read_tum(reference_file, skipped);
+  const std::vector<PosePair> pairs = associate(estimate, reference);
+  if (pairs.empty())
+    throw InputError{fmt::format("{}: no pose within the time span of {}; are the two of one run?",
+                                 estimate_file.string(), reference_file.string())};
+  Json json = json_of(trajectory_error(pairs, alignment));
+  json["poses_outside_reference"] = estimate.size() - pairs.size();
+  json["skipped"] = skipped.size();
+  print(json, output);
+  return report_skipped(skipped, output);
+}
+
+int run_relations(const fs::path& trajectory_file, const fs::path& relations_file,
+                  const Output& output) {
+  Skipped skipped;
+  const Trajectory trajectory = read_tum(trajectory_file, skipped);
+  const std::vector<Relation> relations = read_relations(relations_file, skipped);
+  const RelationsError error = relations_error(trajectory, relations, relations_file, skipped);
+  Json json = json_of(error);
+  json["skipped"] = skipped.size();
+  print(json, output);
+  const int skipped_code = report_skipped(skipped, output);
+  if (error.count > 0) return skipped_code;
+  fmt::print(stderr, "{}: no relation lies within the trajectory\n", relations_file.string());
+  return kFailed;
+}
+
+int run_run(const fs::path& run_dir, const std::vector<std::string>& wanted,
+            const EvaluationOptions& options, const Output& output) {
+  if (!fs::is_directory(run_dir))
+    throw InputError{run_dir.string() + ": not a folder; give the output folder of a run"};
+  const std::vector<std::string> found = estimators_in(run_dir);
+  if (found.empty())
+    throw InputError{run_dir.string() +
+                     ": no sub-folder with a trajectory.tum; run an estimator on its log first"};
+  for (const std::string& name : wanted) {
+    if (std::find(found.begin(), found.end(), name) == found.end())
+      throw InputError{fmt::format("{}: no estimator '{}' (with a trajectory.tum); there are: {}",
+                                   run_dir.string(), name, fmt::join(found, ", "))};
+  }
+  const RunTruth truth = read_truth(run_dir, options);
+  std::vector<EstimatorResult> results;
+  Skipped skipped = truth.skipped;
+  bool complete = true;
+  for (const std::string& name : found) {
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
+    results.push_back(evaluate_estimator(run_dir / name, truth, options));
+    const EstimatorResult& result = results.back();
+    write_whole_file(run_dir / name / "metrics.json", file_text(metrics_json(result)));
+    skipped.insert(skipped.end(), result.skipped.begin(), result.skipped.end());
+    complete = complete && result.problems.empty();
+  }
+  const Json json = results_json(truth, results);
+  const std::string markdown = results_markdown(truth, results);
+  write_whole_file(run_dir / "results.json", file_text(json));
+  write_whole_file(run_dir / "results.md", markdown);
+  fmt::print("{}", output.json ? file_text(json) : markdown);
+  const int skipped_code = report_skipped(skipped, output);
+  return complete ? skipped_code : kFailed;
+}
+
+}  // namespace waymark::evaluate

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The sub-commands: read, compute, print. Each returns the program's exit code and throws
+// InputError for what makes it impossible.
+#pragma once
+
+#include "evaluate/run_evaluation.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark::evaluate {
+
+inline constexpr int kFine = 0;
+inline constexpr int kFailed = 1;
+inline constexpr int kUsage = 2;
+
+struct Output {
+  bool json{};      ///< print JSON instead of text
+  bool tolerant{};  ///< skipped lines do not fail the program
+};
+
+int run_length(const std::filesystem::path& map_yaml, std::optional<double> true_length_m,
+               const Output& output);
+
+int run_trajectory(const std::filesystem::path& estimate, const std::filesystem::path& reference,
+                   Alignment alignment, const Output& output);
+
+int run_relations(const std::filesystem::path& trajectory, const std::filesystem::path& relations,
+                  const Output& output);
+
+/// Writes metrics.json into each estimator's folder, results.json and results.md into the run's.
+/// @param estimators  names of sub-folders; empty = all that have a trajectory.tum.
+int run_run(const std::filesystem::path& run_dir, const std::vector<std::string>& estimators,
+            const EvaluationOptions& options, const Output& output);
+
+}  // namespace waymark::evaluate

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// waymark-evaluate: how good a map and a trajectory are.
+#include "evaluate/commands.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <functional>
+#include <map>
+
+namespace {
+
+using namespace waymark::evaluate;
+
+struct Arguments {
+  std::filesystem::path map_yaml{};
+  std::filesystem::path run_dir{};
+  std::filesystem::path trajectory{};
+  std::filesystem::path reference{};
+  std::filesystem::path relations{};
+  std::vector<std::string> estimators{};
+  EvaluationOptions options{};
+  Output output{};
+};
+
+using Command = std::function<int()>;
+
+void add_alignment(CLI::App& command, Arguments& arguments) {
+  const std::map<std::string, Alignment> names{{"origin", Alignment::kOrigin},
+                                               {"se2", Alignment::kSe2}};
+  command
+      .add_option("--align", arguments.options.alignment,
+                  "along, across and heading errors after alignment on the first pose (origin) or "
+                  "after the best rigid fit (se2)")
+      ->transform(CLI::CheckedTransformer(names))
+      ->default_str("origin");
+}
+
+void add_output(CLI::App& command, Arguments& arguments, const std::string& json_help) {
+  command.add_flag("--json", arguments.output.json, json_help);
+}
+
+void add_tolerant(CLI::App& command, Arguments& arguments) {
+  command.add_flag("--tolerant", arguments.output.tolerant,
+                   "exit with 0 although lines were skipped (they are named all the same)");
+}
+
+void add_true_length(CLI::App& command, Arguments& arguments) {
+  command
+      .add_option("--true-length-m", arguments.options.true_length_m,
+                  "true corridor length between inner faces [m], for the accuracy")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_length(CLI::App& program, Arguments& arguments, Command& chosen) {
+  CLI::App& command = *program.add_subcommand(
+      "length", "corridor length on a map image alone, from end wall to end wall");
+  command.add_option("MAP", arguments.map_yaml, "map.yaml beside its PGM image")->required();
+  add_true_length(command, arguments);
+  add_output(command, arguments, "print JSON");
+  command.callback([&] {
+    chosen = [&] {
+      return run_length(arguments.map_yaml, arguments.options.true_length_m, arguments.output);
+    };
+  });
+}
+
+void add_run(CLI::App& program, Arguments& arguments, Command& chosen) {
+  CLI::App& command = *program.add_subcommand(
+      "run", "every estimator folder of a run: writes metrics.json, results.json, results.md");
+  command
+      .add_option("RUN_DIR", arguments.run_dir,
+                  "folder with truth.tum, truth_markers.csv, scenario.toml (each if there is one) "
+                  "and one sub-folder per estimator")
+      ->required();
+  command.add_option("--estimators", arguments.estimators, "only these, separated by commas")
+      ->delimiter(',');
+  command
+      .add_option("--marker-gate-m", arguments.options.marker_gate_m,
+                  "a marker estimated further from its true place counts as missing and spurious")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  add_true_length(command, arguments);
+  add_alignment(command, arguments);
+  add_output(command, arguments, "print results.json instead of the table");
+  add_tolerant(command, arguments);
+  command.callback([&] {
+    chosen = [&] {
+      return run_run(arguments.run_dir, arguments.estimators, arguments.options, arguments.output);
+    };
+  });
+}
+
+void add_trajectory(CLI::App& program, Arguments& arguments, Command& chosen) {
+  CLI::App& command =
+      *program.add_subcommand("trajectory", "a trajectory against a reference: ATE and RPE");
+  command.add_option("ESTIMATE", arguments.trajectory, "TUM file: t x y z qx qy qz qw")->required();
+  command.add_option("REFERENCE", arguments.reference, "TUM file, interpolated")->required();
+  add_alignment(command, arguments);
+  add_output(command, arguments, "print JSON");
+  add_tolerant(command, arguments);
+  command.callback([&] {
+    chosen = [&] {
+      return run_trajectory(arguments.trajectory, arguments.reference, arguments.options.alignment,
+                            arguments.output);
+    };
+  });
+}
+
+void add_relations(CLI::App& program, Arguments& arguments, Command& chosen) {
+  CLI::App& command = *program.add_subcommand(
+      "relations", "a trajectory against known relative poses (Kümmerle et al. 2009)");
+  command.add_option("TRAJECTORY", arguments.trajectory, "TUM file: t x y z qx qy qz qw")
+      ->required();
+  command.add_option("RELATIONS", arguments.relations, "lines t1 t2 x y z roll pitch yaw")
+      ->required();
+  add_output(command, arguments, "print JSON");
+  add_tolerant(command, arguments);
+  command.callback([&] {
+    chosen = [&] {
+      return run_relations(arguments.trajectory, arguments.relations, arguments.output);
+    };
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  Command chosen;
+  CLI::App program{
+      "Measures how good a map and a trajectory are.\n"
+      "Exit code: 0 fine; 1 a figure could not be had, or lines were skipped; 2 wrong usage or "
+      "files."};
+  program.set_version_flag("--version", "waymark-evaluate " WAYMARK_VERSION);
+  program.require_subcommand(1);
+  add_length(program, arguments, chosen);
+  add_run(program, arguments, chosen);
+  add_trajectory(program, arguments, chosen);
+  add_relations(program, arguments, chosen);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kFine : kUsage;
+  }
+  try {
+    return chosen();
+  } catch (const InputError& error) {
+    fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
+    return kUsage;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
+    return kUsage;
+  }
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Estimated markers against the true ones.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "evaluate/text_file.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace waymark::evaluate {
+
+/// Centre of a marker and the direction that it faces, in the map or in the world.
+struct Marker {
+  int id{};
+  Se2 parent_from_marker{};
+};
+
+struct MarkerError {
+  std::size_t matched{};
+  std::size_t missing{};   ///< true markers without an estimate
+  std::size_t spurious{};  ///< estimates without a true marker
+  std::optional<double> mean_position_m{};
+  std::optional<double> max_position_m{};
+  std::optional<double> mean_yaw_deg{};
+  std::optional<double> max_yaw_deg{};
+};
+
+/// Reads `id,instance,x_m,y_m,yaw_rad`; more columns may follow.
+std::vector<Marker> read_markers(const std::filesystem::path& file, Skipped& skipped);
+
+/// Pairs markers of the same id, nearest pairs first, each marker once, none further than `gate_m`
+/// apart: so duplicates of an id find their own places.
+MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Marker>& in_world,
+                         const Se2& world_from_map, double gate_m);
+
+}  // namespace waymark::evaluate

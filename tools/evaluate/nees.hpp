@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether the reported covariances tell the truth.
+#pragma once
+
+#include "evaluate/trajectory_error.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace waymark::evaluate {
+
+/// Covariance of a pose in the map frame, order x y theta [m^2, m rad, rad^2].
+struct StampedCovariance {
+  double t_s{};
+  Eigen::Matrix3d covariance{};
+};
+
+/// Normalised estimation error squared, e^T P^-1 e with 3 degrees of freedom: 3 on average if the
+/// covariances are right.
+struct Nees {
+  std::size_t poses{};
+  std::size_t
+      singular{};  ///< covariances left out because they cannot be inverted (the first pose)
+  double mean{};   ///< NaN if there is no pose
+  double share_in_band{};  ///< share between the 2.5 % and 97.5 % quantiles; 0.95 if right
+};
+
+/// Reads `t,cxx,cxy,cxt,cyy,cyt,ctt` of covariance.csv.
+std::vector<StampedCovariance> read_covariances(const std::filesystem::path& file,
+                                                Skipped& skipped);
+
+/// @param world_from_map aligned on the first pose.
+Nees nees(const std::vector<PosePair>& pairs, const std::vector<StampedCovariance>& covariances,
+          const Se2& world_from_map);
+
+}  // namespace waymark::evaluate

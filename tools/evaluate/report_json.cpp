@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/report.hpp"
+
+#include <cmath>
+
+namespace waymark::evaluate {
+namespace {
+
+/// Micrometres and microdegrees are enough; JSON has no NaN.
+Json number(double value) {
+  constexpr double kDecimals = 1e6;
+  if (!std::isfinite(value)) return nullptr;
+  const double rounded = std::round(value * kDecimals) / kDecimals;
+  return rounded == 0.0 ? 0.0 : rounded;  // no -0.0
+}
+
+Json number(const std::optional<double>& value) {
+  return value ? number(*value) : Json{};
+}
+
+Json rms_of(const std::optional<Spread>& spread) {
+  return spread ? number(spread->rms) : Json{};
+}
+
+Json max_of(const std::optional<Spread>& spread) {
+  return spread ? number(spread->max) : Json{};
+}
+
+/// @param text  checked to be JSON.
+Json parsed(const std::optional<std::string>& text) {
+  return text ? Json::parse(*text) : Json{};
+}
+
+Json text_or_null(const std::optional<std::string>& text) {
+  return text ? Json(*text) : Json{};
+}
+
+Json json_of(const std::optional<MarkerError>& error) {
+  Json json;
+  json["markers_matched"] = error ? Json(error->matched) : Json{};
+  json["markers_missing"] = error ? Json(error->missing) : Json{};
+  json["markers_spurious"] = error ? Json(error->spurious) : Json{};
+  json["marker_error_mean_m"] = error ? number(error->mean_position_m) : Json{};
+  json["marker_error_max_m"] = error ? number(error->max_position_m) : Json{};
+  json["marker_yaw_error_mean_deg"] = error ? number(error->mean_yaw_deg) : Json{};
+  json["marker_yaw_error_max_deg"] = error ? number(error->max_yaw_deg) : Json{};
+  return json;
+}
+
+Json json_of(const std::optional<Nees>& nees) {
+  Json json;
+  json["nees_mean"] = nees ? number(nees->mean) : Json{};
+  json["nees_share_in_95_band"] = nees ? number(nees->share_in_band) : Json{};
+  json["nees_poses"] = nees ? Json(nees->poses) : Json{};
+  json["nees_singular"] = nees ? Json(nees->singular) : Json{};
+  return json;
+}
+
+/// The keys of an object, all null.
+Json nulls_like(Json json) {
+  for (auto& value : json)
+    value = nullptr;
+  return json;
+}
+
+}  // namespace
+
+Json json_of(const CorridorLength& length, std::optional<double> true_length_m) {
+  Json json;
+  json["length_px"] = number(length.length_px);
+  json["pixel_length_m"] = number(length.length_m / length.length_px);
+  json["length_m"] = number(length.length_m);
+  json["width_px"] = number(length.width_px);
+  json["length_method"] = name_of(length.method);
+  json["length_flags"] = length.flags;
+  json["true_length_m"] = number(true_length_m);
+  json["accuracy_percent"] =
+      true_length_m ? number(accuracy_percent(length.length_m, *true_length_m)) : Json{};
+  return json;
+}
+
+Json json_of(const TrajectoryError& error) {
+  Json json;
+  json["poses"] = error.poses;
+  json["duration_s"] = number(error.duration_s);
+  json["ate_origin_m"] = number(error.ate_origin_m);
+  json["ate_se2_m"] = number(error.ate_se2_m);
+  json["alignment"] = name_of(error.alignment);  // of the keys that follow, but for RPE
+  json["along_rmse_m"] = rms_of(error.along_m);
+  json["along_max_m"] = max_of(error.along_m);
+  json["across_rmse_m"] = rms_of(error.across_m);
+  json["across_max_m"] = max_of(error.across_m);
+  json["heading_rmse_deg"] = number(error.heading_deg.rms);
+  json["heading_max_deg"] = number(error.heading_deg.max);
+  json["distance_max_m"] = number(error.distance_m.max);
+  json["end_distance_m"] = number(error.end_distance_m);
+  json["end_heading_deg"] = number(error.end_heading_deg);
+  json["rpe_pairs_1m"] = error.rpe_pairs;
+  json["rpe_translation_rmse_m"] = rms_of(error.rpe_translation_m);
+  json["rpe_translation_max_m"] = max_of(error.rpe_translation_m);
+  json["rpe_rotation_rmse_deg"] = rms_of(error.rpe_rotation_deg);
+  json["rpe_rotation_max_deg"] = max_of(error.rpe_rotation_deg);
+  return json;
+}
+
+Json json_of(const RelationsError& error) {
+  Json json;
+  json["count"] = error.count;
+  json["translation_mean_m"] = number(error.translation_m.mean);
+  json["translation_sigma_m"] = number(error.translation_m.sigma);
+  json["rotation_mean_deg"] = number(error.rotation_deg.mean);
+  json["rotation_sigma_deg"] = number(error.rotation_deg.sigma);
+  return json;
+}
+
+Json metrics_json(const EstimatorResult& result) {
+  Json json;
+  json["estimator"] = result.name;
+  json.update(result.length ? json_of(*result.length, result.true_length_m)
+                            : nulls_like(json_of(CorridorLength{}, std::nullopt)));
+  json["true_length_m"] = number(result.true_length_m);
+  json.update(result.trajectory ? json_of(*result.trajectory)
+                                : nulls_like(json_of(TrajectoryError{})));
+  json["poses_outside_truth"] = result.poses_outside_truth;
+  json.update(json_of(result.markers));
+  json.update(json_of(result.nees));
+  json["timings"] = parsed(result.timings_json);
+  json["counters"] = parsed(result.counters_json);
+  json["problems"] = result.problems;
+  json["skipped"] = result.skipped;
+  return json;
+}
+
+Json results_json(const RunTruth& truth, const std::vector<EstimatorResult>& results) {
+  Json json;
+  json["true_length_m"] = number(truth.length_m);
+  json["true_trajectory"] = truth.trajectory.has_value();
+  json["true_markers"] = truth.markers ? Json(truth.markers->size()) : Json{};
+  json["scenario_toml"] = text_or_null(truth.scenario_toml);
+  json["skipped"] = truth.skipped;
+  json["estimators"] = Json::array();
+  for (const EstimatorResult& result : results) {
+    Json metrics = metrics_json(result);
+    metrics["config_toml"] = text_or_null(result.config_toml);
+    json["estimators"].push_back(metrics);
+  }
+  return json;
+}
+
+}  // namespace waymark::evaluate

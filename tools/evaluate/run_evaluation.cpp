@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/run_evaluation.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+namespace waymark::evaluate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDefaultLength_m = 50.0;  ///< the default world's
+/// More than the last scan or two outside the truth means that the files are not of one run.
+constexpr double kOutsideShare = 0.05;
+
+std::optional<std::string> text_if_there(const fs::path& file) {
+  if (!fs::exists(file)) return std::nullopt;
+  return read_text(file);
+}
+
+double scenario_length_m(const std::string& text, const fs::path& file) {
+  try {
+    const toml::table scenario = toml::parse(text, file.string());
+    const auto length = scenario["world"]["length_m"];
+    if (!length) return kDefaultLength_m;
+    const std::optional<double> length_m = length.value<double>();
+    if (!length_m || !(*length_m > 0.0))
+      throw InputError{file.string() + ": world.length_m: expected a length above 0 [m]"};
+    return *length_m;
+  } catch (const toml::parse_error& error) {
+    throw InputError{
+        at_line(file, error.source().begin.line, fmt::format("not TOML: {}", error.description()))};
+  }
+}
+
+/// @throws InputError if the file is there and is not JSON.
+std::optional<std::string> json_if_there(const fs::path& file) {
+  std::optional<std::string> text = text_if_there(file);
+  if (text && !nlohmann::json::accept(*text)) throw InputError{file.string() + ": not JSON"};
+  return text;
+}
+
+/// Runs one part of the evaluation; what goes wrong becomes a problem.
+void attempt(std::vector<std::string>& problems, const std::function<void()>& part) {
+  try {
+    part();
+  } catch (const InputError& error) {
+    problems.emplace_back(error.what());
+  }
+}
+
+void add_trajectory(const fs::path& dir, const Trajectory& truth, const EvaluationOptions& options,
+                    EstimatorResult& result, Se2& world_from_map) {
+  const Trajectory estimate = read_tum(dir / "trajectory.tum", result.skipped);
+  const std::vector<PosePair> pairs = associate(estimate, truth);
+  result.poses_outside_truth = estimate.size() - pairs.size();
+  if (pairs.empty())
+    throw InputError{(dir / "trajectory.tum").string() + ": no pose within the truth's time span"};
+  if (static_cast<double>(result.poses_outside_truth) >
+      kOutsideShare * static_cast<double>(estimate.size()))
+    result.problems.push_back(fmt::format("{}: {} of {} poses are outside the truth's time span",
+                                          (dir / "trajectory.tum").string(),
+                                          result.poses_outside_truth, estimate.size()));
+  result.trajectory = trajectory_error(pairs, options.alignment);
+  world_from_map = align(pairs, Alignment::kOrigin);
+  const fs::path covariance_file = dir / "covariance.csv";
+  if (fs::exists(covariance_file))
+    result.nees = nees(pairs, read_covariances(covariance_file, result.skipped), world_from_map);
+}
+
+/// Position in the table.
+std::size_t rank_of(const std::string& name) {
+  constexpr std::array<std::string_view, 4> kFirst{"odometry", "gmapping", "gmapping_turtlebot3",
+                                                   "marker_matching"};
+  const auto found = std::find(kFirst.begin(), kFirst.end(), name);
+  if (found != kFirst.end()) return static_cast<std::size_t>(found - kFirst.begin());
+  if (name.starts_with("marker_matching_")) return kFirst.size();
+  return name == "waymark" ? kFirst.size() + 1 : kFirst.size() + 2;
+}
+
+}  // namespace
+
+RunTruth read_truth(const fs::path& run_dir, const EvaluationOptions& options) {
+  RunTruth truth{};
+  truth.scenario_toml = text_if_there(run_dir / "scenario.toml");
+  if (truth.scenario_toml)
+    truth.length_m = scenario_length_m(*truth.scenario_toml, run_dir / "scenario.toml");
+  if (options.true_length_m) truth.length_m = options.true_length_m;
+  if (fs::exists(run_dir / "truth.tum"))
+    truth.trajectory = read_tum(run_dir / "truth.tum", truth.skipped);
+  if (fs::exists(run_dir / "truth_markers.csv"))
+    truth.markers = read_markers(run_dir / "truth_markers.csv", truth.skipped);
+  return truth;
+}
+
+std::vector<std::string> estimators_in(const fs::path& run_dir) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator{run_dir}) {
+    if (fs::exists(entry.path() / "trajectory.tum"))
+      names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
+    return std::pair{rank_of(a), a} < std::pair{rank_of(b), b};
+  });
+  return names;
+}
+
+EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
+                                   const EvaluationOptions& options) {
+  EstimatorResult result{};
+  result.name = dir.filename().string();
+  result.true_length_m = truth.length_m;
+  attempt(result.problems, [&] {
+    const fs::path map_file = dir / "map.yaml";
+    const MapImage map = read_map(map_file);
+    try {
+      result.length = measure_corridor(map);
+    } catch (const InputError& error) {
+      throw InputError{fmt::format("{}: {}", map_file.string(), error.what())};
+    }
+  });
+  std::optional<Se2> world_from_map;
+  if (truth.trajectory) {
+    attempt(result.problems, [&] {
+      Se2 aligned;
+      add_trajectory(dir, *truth.trajectory, options, result, aligned);
+      world_from_map = aligned;
+    });
+  }
+  if (truth.markers && world_from_map && fs::exists(dir / "markers.csv")) {
+    attempt(result.problems, [&] {
+      result.markers = marker_error(read_markers(dir / "markers.csv", result.skipped),
+                                    *truth.markers, *world_from_map, options.marker_gate_m);
+    });
+  }
+  attempt(result.problems, [&] { result.config_toml = text_if_there(dir / "config.toml"); });
+  attempt(result.problems, [&] { result.timings_json = json_if_there(dir / "timings.json"); });
+  attempt(result.problems, [&] { result.counters_json = json_if_there(dir / "counters.json"); });
+  return result;
+}
+
+}  // namespace waymark::evaluate

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One run folder: what is known of the truth, and every estimator's files against it.
+#pragma once
+
+#include "evaluate/corridor_length.hpp"
+#include "evaluate/marker_error.hpp"
+#include "evaluate/nees.hpp"
+#include "evaluate/trajectory_error.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark::evaluate {
+
+struct EvaluationOptions {
+  Alignment alignment{Alignment::kOrigin};
+  std::optional<double> true_length_m{};  ///< wins over the scenario's
+  double marker_gate_m{5.0};              ///< an estimate further from its marker is another one
+};
+
+/// What the simulator knows; each part only if the run folder has it.
+struct RunTruth {
+  std::optional<std::string> scenario_toml{};
+  std::optional<double> length_m{};
+  std::optional<Trajectory> trajectory{};
+  std::optional<std::vector<Marker>> markers{};
+  Skipped skipped{};
+};
+
+/// Everything about one estimator; absent = could not be had, and `problems` or the run's missing
+/// truth says why.
+struct EstimatorResult {
+  std::string name{};
+  std::optional<CorridorLength> length{};
+  std::optional<double> true_length_m{};
+  std::optional<TrajectoryError> trajectory{};
+  std::size_t poses_outside_truth{};
+  std::optional<MarkerError> markers{};
+  std::optional<Nees> nees{};
+  std::optional<std::string> config_toml{};
+  std::optional<std::string> timings_json{};
+  std::optional<std::string> counters_json{};
+  std::vector<std::string> problems{};  ///< figures that should be there and are not
+  Skipped skipped{};                    ///< lines that were left out
+};
+
+/// Reads scenario.toml (world.length_m, 50 if it does not say), truth.tum and truth_markers.csv.
+/// @throws InputError for files that are there and cannot be understood.
+RunTruth read_truth(const std::filesystem::path& run_dir, const EvaluationOptions& options);
+
+/// Names of the sub-folders with a trajectory.tum, in the table's order: odometry, gmapping,
+/// gmapping_turtlebot3, marker_matching, its variants, waymark, others.
+std::vector<std::string> estimators_in(const std::filesystem::path& run_dir);
+
+/// Never throws for what is wrong inside the folder: that is a problem of this estimator.
+EstimatorResult evaluate_estimator(const std::filesystem::path& estimator_dir,
+                                   const RunTruth& truth, const EvaluationOptions& options);
+
+}  // namespace waymark::evaluate

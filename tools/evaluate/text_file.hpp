@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Text files in and out: lines, numbers, comma-separated tables, whole files written at once.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace waymark::evaluate {
+
+/// An input that makes the whole evaluation impossible; says what, where and what to do.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What was left out and why, one "file:line: reason" each.
+using Skipped = std::vector<std::string>;
+
+/// @throws InputError if the file cannot be read.
+std::string read_text(const std::filesystem::path& file);
+
+/// Lines without their ends ("\n" or "\r\n"). @throws InputError if the file cannot be read.
+std::vector<std::string> read_lines(const std::filesystem::path& file);
+
+/// Finite numbers separated by white space or commas; nothing if anything else is in the line.
+std::optional<std::vector<double>> parse_numbers(std::string_view line);
+
+/// "file:line: reason"
+std::string at_line(const std::filesystem::path& file, std::size_t line_number,
+                    std::string_view reason);
+
+/// Comma-separated numbers under a line of names. Columns are found by name, so their order is
+/// free and more may be there.
+struct CsvTable {
+  std::map<std::string, std::size_t, std::less<>> column_of{};
+  std::vector<std::vector<double>> rows{};
+
+  double at(const std::vector<double>& row, std::string_view column) const {
+    return row[column_of.find(column)->second];
+  }
+};
+
+/// Lines that are not numbers, or not as many as there are names, are left out and named.
+/// @throws InputError if the file cannot be read or a column is missing.
+CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns,
+                  Skipped& skipped);
+
+/// Writes to a temporary name and renames, so that a file that is there is whole.
+/// @throws InputError if that fails.
+void write_whole_file(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace waymark::evaluate

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A picture of a marker to print and put on a wall.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace waymark::marker_sheet {
+
+struct SheetOptions {
+  std::string dictionary{"DICT_6X6_250"};
+  double size_m{0.4};  ///< side of the black square
+  int quiet_zone_modules{2};
+  double dpi{300.0};
+};
+
+/// "0-3,7" -> 0 1 2 3 7. @throws std::runtime_error naming the part that is not an id or a range.
+std::vector<int> parse_ids(const std::string& text);
+
+/// The marker, its quiet zone, and below that the id and the size in words. Modules are squares of
+/// whole pixels, so the black square may differ from size_m by half a pixel per module; the dots
+/// per metre that make up for it are in `pixels_per_m`.
+struct Sheet {
+  cv::Mat picture{};
+  double pixels_per_m{};
+};
+
+/// @throws std::runtime_error if the options or the id make no marker.
+Sheet draw_sheet(const SheetOptions& options, int id);
+
+/// Writes marker_<dictionary>_<id>.png with its resolution, so that it prints at its true size.
+/// @throws std::runtime_error if the sheet cannot be drawn or written.
+std::filesystem::path write_sheet(const SheetOptions& options, int id,
+                                  const std::filesystem::path& folder);
+
+}  // namespace waymark::marker_sheet
