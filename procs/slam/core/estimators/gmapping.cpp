@@ -20,12 +20,12 @@ GmappingConfig with_ranges(GmappingConfig config, double lidar_range_max_m) {
 
 }  // namespace
 
-GmappingEstimator::GmappingEstimator(const GmappingConfig& config, const Setting& setting)
-    : config_{with_ranges(config, setting.lidar_range_max_m)},
-      setting_{setting},
-      matcher_{config.matcher, GridFrame::centred_on_map_origin(config.resolution_m)},
+GmappingEstimator::GmappingEstimator(const EstimatorSetup& setup, const GmappingConfig& config)
+    : setup_{setup},
+      config_{with_ranges(config, setup.range_max_m)},
+      matcher_{config.matcher, GridFrame::centred_on_map_origin(setup.grid.resolution_m)},
       particles_{static_cast<std::size_t>(config.particles), State{}},
-      published_map_{matcher_.frame, config_.max_usable_range_m} {}
+      published_map_{matcher_.frame, config_.max_usable_range_m, config.occupied_threshold} {}
 
 Estimate GmappingEstimator::update(const Observation& observation) {
   const bool is_first = updates_ == 0;
@@ -45,7 +45,7 @@ Estimate GmappingEstimator::update(const Observation& observation) {
 
 void GmappingEstimator::propagate(const Motion& motion) {
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    Random random{setting_.seed, kMotionStream, observations_, i};
+    Random random{setup_.seed, kMotionStream, observations_, i};
     State& state = particles_.state(i);
     state.map_from_base =
         state.map_from_base * sample_step(motion.start_from_end, config_.motion, random);
@@ -66,7 +66,7 @@ void GmappingEstimator::match_and_weigh(std::span<const Beam> beams) {
   std::copy_if(beams.begin(), beams.end(), std::back_inserter(usable),
                [&](const Beam& beam) { return beam.range_m <= config_.max_usable_range_m; });
   std::vector<double> log_likelihoods(particles_.size());
-  setting_.parallel_for(particles_.size(), [&](std::size_t i) {
+  setup_.parallel_for(particles_.size(), [&](std::size_t i) {
     State& state = particles_.state(i);
     ScanMatcher matcher{matcher_, state.hits, usable};
     const ScanMatcher::Match match = matcher.climb(state.map_from_base);
@@ -86,11 +86,11 @@ void GmappingEstimator::match_and_weigh(std::span<const Beam> beams) {
 }
 
 void GmappingEstimator::resample_and_register(const std::shared_ptr<const StoredScan>& scan) {
-  Random random{setting_.seed, kResamplingStream, updates_};
+  Random random{setup_.seed, kResamplingStream, updates_};
   const bool has_resampled =
       !particles_.resample_if_needed(config_.resample_threshold, random).empty();
 
-  setting_.parallel_for(particles_.size(), [&](std::size_t i) {
+  setup_.parallel_for(particles_.size(), [&](std::size_t i) {
     State& state = particles_.state(i);
     state.previous_map_from_base =
         state.trajectory ? state.trajectory->map_from_base : state.map_from_base;
@@ -117,13 +117,13 @@ void GmappingEstimator::resample_and_register(const std::shared_ptr<const Stored
 }
 
 const GridMap& GmappingEstimator::map() const {
-  return published_map_.drawn_along(particles_.state(best_).trajectory);
+  return published_map_.along(particles_.state(best_).trajectory);
 }
 
 Estimate GmappingEstimator::estimate(const Observation& observation) const {
   // Between updates the pose follows odometry, not the noise of a particle.
   const Se2 map_from_base = map_from_best_ * since_update_.start_from_end;
-  Estimate estimate = describe_observation(observation, map_from_base, setting_.range_sigma_m);
+  Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = covariance_about(map_from_base, particles_);
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;

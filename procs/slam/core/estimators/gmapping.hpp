@@ -3,7 +3,6 @@
 #pragma once
 
 #include "slam/core/estimators/estimator.hpp"
-#include "slam/core/filter/parallel_for.hpp"
 #include "slam/core/filter/particle_set.hpp"
 #include "slam/core/gmapping/motion_noise.hpp"
 #include "slam/core/gmapping/published_map.hpp"
@@ -17,15 +16,16 @@
 
 namespace waymark {
 
-/// Defaults: slam_gmapping's. GMapping's own names are in the descriptions.
+/// Defaults: slam_gmapping's, whose own names stand beside the members. Cells and seed are those of
+/// EstimatorSetup.
 struct GmappingConfig {
   int particles{30};
-  double resolution_m{0.05};       ///< delta
-  double max_range_m{0.0};         ///< maxRange; 0 = a centimetre less than the LiDAR's
-  double max_usable_range_m{0.0};  ///< maxUrange; 0 = max_range_m
-  double minimum_score{0.0};       ///< minimumScore
-  double resample_threshold{0.5};  ///< resampleThreshold
-  double likelihood_gain{3.0};     ///< ogain
+  double max_range_m{0.0};          ///< maxRange; 0 = a centimetre less than the LiDAR's
+  double max_usable_range_m{0.0};   ///< maxUrange; 0 = max_range_m
+  double minimum_score{0.0};        ///< minimumScore
+  double resample_threshold{0.5};   ///< resampleThreshold
+  double likelihood_gain{3.0};      ///< ogain
+  double occupied_threshold{0.25};  ///< occ_thresh
   StepNoise motion{};
   ScanGate gate{};
   MatcherConfig matcher{};
@@ -36,15 +36,7 @@ struct GmappingConfig {
 /// Each particle carries a map of the hits it has seen. Results do not depend on the ParallelFor.
 class GmappingEstimator final : public Estimator {
  public:
-  /// What the robot and the process add to the configuration.
-  struct Setting {
-    double lidar_range_max_m{3.5};
-    double range_sigma_m{0.01};
-    std::uint64_t seed{1};
-    ParallelFor parallel_for{serial_for};
-  };
-
-  GmappingEstimator(const GmappingConfig& config, const Setting& setting);
+  GmappingEstimator(const EstimatorSetup& setup, const GmappingConfig& config);
 
   Estimate update(const Observation& observation) override;
 
@@ -71,8 +63,8 @@ class GmappingEstimator final : public Estimator {
   StoredScan trusted_beams(const Observation& observation) const;
   Estimate estimate(const Observation& observation) const;
 
+  EstimatorSetup setup_;
   GmappingConfig config_;
-  Setting setting_;
   MatcherSetting matcher_;
   ParticleSet<State> particles_;
   std::uint64_t observations_{0};

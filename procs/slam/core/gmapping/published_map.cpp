@@ -47,8 +47,13 @@ void draw_scan(const StoredScan& scan, const Se2& map_from_base, double usable_r
   }
 }
 
-PublishedMap::PublishedMap(const GridFrame& frame, double usable_range_m)
-    : settled_{frame, {}, {}}, drawn_{frame, {}, {}}, usable_range_m_{usable_range_m} {}
+PublishedMap::PublishedMap(const GridFrame& frame, double usable_range_m, double occupied_threshold)
+    : settled_{frame, {}, {}},
+      drawn_{settled_},
+      decided_of_{settled_},
+      decided_{settled_},
+      usable_range_m_{usable_range_m},
+      occupied_threshold_{occupied_threshold} {}
 
 void PublishedMap::settle(const Trajectory& trunk) {
   for (const TrajectoryNode* node : nodes_after(nullptr, trunk.get())) {
@@ -60,7 +65,7 @@ void PublishedMap::settle(const Trajectory& trunk) {
   if (!passes_through(trunk.get(), drawn_until_.get())) drawn_until_.reset();
 }
 
-const GridMap& PublishedMap::drawn_along(const Trajectory& trajectory) {
+void PublishedMap::draw(const Trajectory& trajectory) {
   if (!drawn_until_ || !passes_through(drawn_until_.get(), trajectory.get())) {
     drawn_ = settled_;
     drawn_until_.reset();
@@ -69,7 +74,29 @@ const GridMap& PublishedMap::drawn_along(const Trajectory& trajectory) {
     draw_scan(*node->scan, node->map_from_base, usable_range_m_, drawn_);
   }
   drawn_until_ = trajectory;
-  return drawn_;
+}
+
+void PublishedMap::decide(TileIndex tile) {
+  for (std::size_t offset = 0; offset < kTileCells; ++offset) {
+    const CellIndex index = cell_at(tile, offset);
+    const OccupancyCell& cell = drawn_.occupancy[index];
+    const OccupancyCell decided{cell.occupancy() > occupied_threshold_ ? 1U : 0U,
+                                cell.is_mapped() ? 1U : 0U};
+    if (decided_.occupancy[index] != decided) decided_.occupancy.edit(index) = decided;
+  }
+}
+
+const GridMap& PublishedMap::along(const Trajectory& trajectory) {
+  draw(trajectory);
+  drawn_.occupancy.for_each_tile([&](TileIndex tile, const auto& cells) {
+    if (decided_of_.occupancy.tile(tile) != &cells) decide(tile);
+  });
+  // What another trajectory had drawn and this one has not.
+  decided_of_.occupancy.for_each_tile([&](TileIndex tile, const auto&) {
+    if (!drawn_.occupancy.tile(tile)) decide(tile);
+  });
+  decided_of_ = drawn_;
+  return decided_;
 }
 
 }  // namespace waymark

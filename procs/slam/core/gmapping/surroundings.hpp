@@ -47,7 +47,7 @@ class Surroundings {
     bool is_read{false};
   };
 
-  static constexpr int kSlotBits = 11;
+  static constexpr int kSlotBits = 12;
 
   /// Multiplicative hash (Knuth): cells along a wall, also an oblique one, get slots of their own.
   static std::size_t slot_of(CellIndex cell) {
