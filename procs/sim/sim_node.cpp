@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace waymark {
 namespace {
 
@@ -86,12 +88,14 @@ std::vector<Message> SimNode::advance(Timestamp& tick_end) {
 }
 
 std::string SimNode::progress() const {
+  const auto shown = [](double metres) {
+    return std::round(10.0 * metres) / 10.0 + 0.0;
+  };  // no -0
   const Se2 at = simulation_->world_from_base();
-  if (config_.route.source == DriveSource::kCommand) {
-    return fmt::format("at ({:.1f}, {:.1f}) m", at.x(), at.y());
+  if (config_.route.source == DriveSource::kCommand || !config_.route.waypoints.empty()) {
+    return fmt::format("at ({:.1f}, {:.1f}) m", shown(at.x()), shown(at.y()));
   }
-  const Eigen::Vector2d end = config_.route.points().back();
-  return fmt::format("x {:.1f} m of {:.1f} m", at.x(), end.x());
+  return fmt::format("x {:.1f} m of {:.1f} m", shown(at.x()), config_.route.end_x_m);
 }
 
 void SimNode::finish() {

@@ -54,7 +54,8 @@ std::string covariance_csv_text(std::span<const EstimatedPose> path) {
     const Eigen::Matrix3d& c = pose.covariance;
     fmt::format_to(std::back_inserter(text),
                    "{}.{:06d},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{}\n", t.whole, t.micro,
-                   c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2), to_string(pose.health));
+                   c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2),
+                   static_cast<int>(pose.health));
   }
   return text;
 }

@@ -15,7 +15,8 @@ std::string tum_text(std::span<const TimedPose> path);
 std::string tum_text(std::span<const EstimatedPose> path);
 
 /// `t,cxx,cxy,cxt,cyy,cyt,ctt,health`: covariance of (x, y, theta) in the map for each line of the
-/// trajectory [m^2, m rad, rad^2]; health as a word.
+/// trajectory [m^2, m rad, rad^2]; health as the number
+/// in lcmtypes/slam_estimate_t.lcm, so that all columns are numbers.
 std::string covariance_csv_text(std::span<const EstimatedPose> path);
 
 /// `id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings`, by id and instance.

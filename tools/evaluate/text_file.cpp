@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -22,6 +23,15 @@ std::vector<std::string> split(std::string_view line) {
     begin = line.find_first_not_of(kSeparators, end);
   }
   return words;
+}
+
+/// A finite number that takes the whole word.
+std::optional<double> parse_number(const std::string& word) {
+  double number{};
+  const char* const end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, number);
+  if (error != std::errc{} || stop != end || !std::isfinite(number)) return std::nullopt;
+  return number;
 }
 
 }  // namespace
@@ -49,11 +59,9 @@ std::vector<std::string> read_lines(const std::filesystem::path& file) {
 std::optional<std::vector<double>> parse_numbers(std::string_view line) {
   std::vector<double> numbers;
   for (const std::string& word : split(line)) {
-    double number{};
-    const char* const end = word.data() + word.size();
-    const auto [stop, error] = std::from_chars(word.data(), end, number);
-    if (error != std::errc{} || stop != end || !std::isfinite(number)) return std::nullopt;
-    numbers.push_back(number);
+    const auto number = parse_number(word);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
   }
   return numbers;
 }
@@ -69,23 +77,30 @@ CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::stri
   const std::vector<std::string> names =
       lines.empty() ? std::vector<std::string>{} : split(lines.front());
   CsvTable table;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    table.column_of[names[i]] = i;
+  std::vector<std::size_t> places;  // of the wanted columns in a line
   for (const std::string& column : columns) {
-    if (!table.column_of.contains(column))
+    const auto place = std::find(names.begin(), names.end(), column);
+    if (place == names.end())
       throw InputError{at_line(file, 1,
                                fmt::format("no column '{}'; the first line must be '{}'", column,
                                            fmt::join(columns, ",")))};
+    table.column_of[column] = places.size();
+    places.push_back(static_cast<std::size_t>(place - names.begin()));
   }
   for (std::size_t i = 1; i < lines.size(); ++i) {
     if (lines[i].empty()) continue;
-    const auto numbers = parse_numbers(lines[i]);
-    if (numbers && numbers->size() == names.size())
-      table.rows.push_back(*numbers);
+    const std::vector<std::string> words = split(lines[i]);
+    std::vector<double> row;
+    for (const std::size_t place : places) {
+      const auto number = words.size() == names.size() ? parse_number(words[place]) : std::nullopt;
+      if (number) row.push_back(*number);
+    }
+    if (row.size() == places.size())
+      table.rows.push_back(row);
     else
-      skipped.push_back(
-          at_line(file, i + 1,
-                  fmt::format("got '{}', expected {} finite numbers", lines[i], names.size())));
+      skipped.push_back(at_line(file, i + 1,
+                                fmt::format("got '{}', expected finite numbers for {}", lines[i],
+                                            fmt::join(columns, ","))));
   }
   return table;
 }

@@ -46,7 +46,8 @@ struct CsvTable {
   }
 };
 
-/// Lines that are not numbers, or not as many as there are names, are left out and named.
+/// Reads the named columns; others may hold any words. Lines whose named columns are not finite
+/// numbers, or with another number of words than the first line, are left out and named.
 /// @throws InputError if the file cannot be read or a column is missing.
 CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns,
                   Skipped& skipped);

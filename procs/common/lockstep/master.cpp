@@ -32,19 +32,17 @@ std::vector<Message> LockstepMaster::open_tick(Timestamp end, std::vector<Messag
   tick.utime = to_us(end);
   tick.run_id = run_id_;
   tick.tick = next_tick_++;
-  tick.first_open_tick = open_ticks_.empty() ? tick.tick : open_ticks_.front().tick;
   tick.is_last = is_last ? 1 : 0;
   tick.participants = participants_;
   tick.num_participants = static_cast<int>(participants_.size());
   tick.channels = contents_of(messages);
   tick.num_channels = static_cast<int>(tick.channels.size());
   last_end_ = end;
-  messages.push_back(encode(channels::kTick, tick));
-  if (!participants_.empty()) {
-    open_ticks_.push_back(
-        {tick.tick, messages, std::set<std::string>(participants_.begin(), participants_.end())});
-  }
-  return messages;
+  open_ticks_.push_back({tick, std::move(messages), {participants_.begin(), participants_.end()}});
+  std::vector<Message> to_send;
+  append(open_ticks_.back(), to_send);
+  if (participants_.empty()) open_ticks_.pop_back();
+  return to_send;
 }
 
 bool LockstepMaster::take(const Message& message) {
@@ -55,7 +53,8 @@ bool LockstepMaster::take(const Message& message) {
     return std::ranges::find(participants_, who) != participants_.end() &&
            ready_.insert(who).second;
   }
-  const auto open = std::ranges::find(open_ticks_, ack.message->tick, &OpenTick::tick);
+  const auto open = std::ranges::find_if(
+      open_ticks_, [&ack](const OpenTick& o) { return o.tick.tick == ack.message->tick; });
   if (open == open_ticks_.end() || open->missing.erase(who) == 0) return false;
   state_hashes_[who] = ack.message->state_hash;
   while (!open_ticks_.empty() && open_ticks_.front().missing.empty())
@@ -65,10 +64,18 @@ bool LockstepMaster::take(const Message& message) {
 
 std::vector<Message> LockstepMaster::resend() const {
   std::vector<Message> messages;
-  for (const OpenTick& open : open_ticks_) {
-    messages.insert(messages.end(), open.messages.begin(), open.messages.end());
-  }
+  for (const OpenTick& open : open_ticks_)
+    append(open, messages);
   return messages;
+}
+
+/// The tick's messages, and behind them its TICK, which tells a process that has just been started
+/// again where to begin.
+void LockstepMaster::append(const OpenTick& open, std::vector<Message>& messages) const {
+  messages.insert(messages.end(), open.messages.begin(), open.messages.end());
+  tick_t tick = open.tick;
+  tick.first_open_tick = oldest_open_tick();
+  messages.push_back(encode(channels::kTick, tick));
 }
 
 std::vector<std::string> LockstepMaster::silent() const {
@@ -78,7 +85,7 @@ std::vector<std::string> LockstepMaster::silent() const {
 }
 
 std::int64_t LockstepMaster::oldest_open_tick() const {
-  return open_ticks_.empty() ? next_tick_ : open_ticks_.front().tick;
+  return open_ticks_.empty() ? next_tick_ : open_ticks_.front().tick.tick;
 }
 
 Message LockstepMaster::special_tick(std::int64_t tick_number) const {

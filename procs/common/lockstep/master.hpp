@@ -48,12 +48,13 @@ class LockstepMaster {
 
  private:
   struct OpenTick {
-    std::int64_t tick{0};
-    std::vector<Message> messages{};  ///< the last one is the TICK
-    std::set<std::string> missing{};
+    tick_t tick{};
+    std::vector<Message> messages{};
+    std::set<std::string> missing{};  ///< who has not acknowledged it
   };
 
   Message special_tick(std::int64_t tick) const;
+  void append(const OpenTick& open, std::vector<Message>& messages) const;
 
   std::int64_t run_id_;
   std::vector<std::string> participants_;

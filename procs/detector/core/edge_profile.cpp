@@ -2,7 +2,6 @@
 #include "detector/core/edge_profile.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace waymark {
@@ -19,31 +18,21 @@ constexpr double kWhiteFrom = 0.6;
 constexpr double kBlackFrom = -0.9;
 constexpr double kBlackTo = -0.6;
 
-/// Weights of four neighbours for a place between the middle two (Catmull and Rom, 1974). Linear
-/// interpolation would pull edges towards pixel centres by up to 0.05 px.
-std::array<double, 4> cubic_weights(double t) {
-  return {0.5 * t * (-1.0 + t * (2.0 - t)), 1.0 + 0.5 * t * t * (-5.0 + 3.0 * t),
-          0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (-1.0 + t)};
-}
-
-/// Bicubic; nullopt at the image border and outside.
+/// Bilinear; nullopt outside the image.
 std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& raw_px) {
   const double floor_u = std::floor(raw_px.x());
   const double floor_v = std::floor(raw_px.y());
-  if (!(floor_u >= 1 && floor_v >= 1 && floor_u < gray.cols - 2 && floor_v < gray.rows - 2)) {
+  if (!(floor_u >= 0 && floor_v >= 0 && floor_u < gray.cols - 1 && floor_v < gray.rows - 1)) {
     return std::nullopt;
   }
   const int u = static_cast<int>(floor_u);
   const int v = static_cast<int>(floor_v);
-  const auto across = cubic_weights(raw_px.x() - floor_u);
-  const auto down = cubic_weights(raw_px.y() - floor_v);
-  double sum = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    const auto* row = gray.ptr<std::uint8_t>(v + k - 1) + u - 1;
-    sum += down[k] *
-           (across[0] * row[0] + across[1] * row[1] + across[2] * row[2] + across[3] * row[3]);
-  }
-  return sum;
+  const double right = raw_px.x() - floor_u;
+  const double down = raw_px.y() - floor_v;
+  const auto* upper = gray.ptr<std::uint8_t>(v) + u;
+  const auto* lower = gray.ptr<std::uint8_t>(v + 1) + u;
+  return (1 - down) * ((1 - right) * upper[0] + right * upper[1]) +
+         down * ((1 - right) * lower[0] + right * lower[1]);
 }
 
 double mean_between(const EdgeProfile& profile, double from_rate, double to_rate) {
@@ -58,16 +47,40 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
 
 }  // namespace
 
+double EdgeProfile::step_px() const {
+  return 2.0 * reach_px / static_cast<double>(brightness.size() - 1);
+}
+
+double EdgeProfile::at(double offset_px) const {
+  const double place = std::clamp((offset_px + reach_px) / step_px(), 0.0,
+                                  static_cast<double>(brightness.size() - 1));
+  const auto before = std::min(static_cast<std::size_t>(place), brightness.size() - 2);
+  const double fraction = place - static_cast<double>(before);
+  return (1.0 - fraction) * brightness[before] + fraction * brightness[before + 1];
+}
+
 std::optional<double> EdgeProfile::crossing_px(double level) const {
   std::optional<double> nearest_px;
-  const double step_px = 2.0 * reach_px / static_cast<double>(brightness.size() - 1);
   for (std::size_t i = 0; i + 1 < brightness.size(); ++i) {
     if (!(brightness[i] <= level && brightness[i + 1] > level)) continue;
     const double fraction = (level - brightness[i]) / (brightness[i + 1] - brightness[i]);
-    const double offset_px = step_px * (static_cast<double>(i) + fraction) - reach_px;
+    const double offset_px = step_px() * (static_cast<double>(i) + fraction) - reach_px;
     if (!nearest_px || std::abs(offset_px) < std::abs(*nearest_px)) nearest_px = offset_px;
   }
   return nearest_px;
+}
+
+std::optional<double> EdgeProfile::edge_px(double black_level, double half_window_px) const {
+  const auto crossing = crossing_px(0.5 * (white + black_level));
+  if (!crossing) return std::nullopt;
+  const double half_px = std::min(half_window_px, reach_px - std::abs(*crossing));
+  const int steps = std::max(1, static_cast<int>(std::ceil(half_px * kStepsPerPixel)));
+  double white_share = 0.0;
+  for (int i = -steps; i < steps; ++i) {
+    const double level = at(*crossing + half_px * (i + 0.5) / steps);
+    white_share += (level - black_level) / (white - black_level) / (2.0 * steps);
+  }
+  return *crossing + half_px * (1.0 - 2.0 * white_share);
 }
 
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,

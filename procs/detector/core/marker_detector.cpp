@@ -62,6 +62,8 @@ void CalibrationErrorConfig::describe(Fields& fields) {
 }
 
 void MarkerDetectorConfig::describe(Fields& fields) {
+  fields.field("max_reprojection_px", max_reprojection_px, kPositive,
+               "corners that no square explains to this accuracy are no marker");
   fields.section("candidates", candidates);
   fields.section("refinement", refinement);
   fields.section("calibration_error", calibration_error);
@@ -90,8 +92,9 @@ std::optional<MarkerDetection> MarkerDetector::measure(const cv::Mat& gray,
   const MeasuredCorners corners =
       refine_corners(gray, camera_, candidate.corners_px, modules_per_side_, config_.refinement);
   const auto poses = solve_square(corners, camera_, markers_.size_m);
-  if (!poses) return std::nullopt;
-
+  if (!poses || poses->best.reprojection_error_px > config_.max_reprojection_px) {
+    return std::nullopt;
+  }
   MarkerDetection detection;
   detection.id = candidate.id;
   std::ranges::transform(corners.ideal_px, detection.corners_px.begin(),

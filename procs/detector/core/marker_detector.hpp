@@ -33,6 +33,7 @@ struct MarkerDetectorConfig {
   CandidateConfig candidates{};
   RefinementConfig refinement{};
   CalibrationErrorConfig calibration_error{};
+  double max_reprojection_px{3.0};
 
   void describe(Fields& fields);
 };

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace waymark::viewer {
@@ -23,8 +22,6 @@ constexpr std::int64_t kMaxMapCells = 16'000'000;
 
 /// How well an estimate is known; values as in lcmtypes/slam_estimate_t.lcm.
 enum class Health { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
-
-std::string_view to_string(Health health);
 
 /// What the map thinks of a marker; values as in lcmtypes/marker_landmark_t.lcm.
 enum class LandmarkState { kUnknown, kConfirmed, kTentative, kMoved };

@@ -174,6 +174,30 @@ TEST(Lockstep, TicksOfAnotherRunAreIgnoredAndCounted) {
   EXPECT_GT(stack.slam_->counters().get("TICK or ACK of another run"), 0);
 }
 
+// What a restarted process sees first may be a tick that was opened when older ones were still
+// open.
+TEST(Lockstep, ARestartedProcessBeginsWithTheOldestTickOpenNow) {
+  LockstepMaster master{1, {"viewer"}, 4};
+  const auto make = [] {
+    return LockstepParticipant{"viewer", {}, true, [](const auto&, bool) {
+                                 return std::vector<Message>{};
+                               }};
+  };
+  const auto tick_0 = master.open_tick(timestamp_from_us(1), {}, false);
+  const auto tick_1 = master.open_tick(timestamp_from_us(2), {}, false);
+  LockstepParticipant first = make();
+  for (const Message& answer : first.take(tick_0.back()))
+    master.take(answer);
+
+  LockstepParticipant restarted = make();
+  for (const Message& message : master.resend()) {
+    for (const Message& answer : restarted.take(message))
+      master.take(answer);
+  }
+
+  EXPECT_TRUE(master.all_acknowledged());
+}
+
 TEST(Lockstep, AStatefulProcessRefusesToJoinMidway) {
   LockstepMaster master{1, {"slam"}, 1};
   LockstepParticipant first{"slam", {}, false, [](const auto&, bool) {

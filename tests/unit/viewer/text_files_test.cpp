@@ -34,7 +34,7 @@ TEST(CovarianceCsv, ListsTheUpperTriangleAndHealth) {
   EXPECT_EQ(covariance_csv_text(std::vector{pose_at_us(2'000'000)}),
             "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n"
             "2.000000,1.000000000e+00,2.000000000e+00,3.000000000e+00,5.000000000e+00,"
-            "6.000000000e+00,9.000000000e+00,degenerate\n");
+            "6.000000000e+00,9.000000000e+00,3\n");
 }
 
 TEST(MarkersCsv, IsSortedByIdAndInstance) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/world/mjcf.hpp"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -22,22 +23,26 @@ constexpr double kCasterX_m = -0.177;
 constexpr double kCasterY_m = 0.064;
 constexpr double kCasterRadius_m = 0.010;
 
-// Wheel servo: torque = gain * (target speed - speed). Stiff: the wheel follows in about 10 ms.
-constexpr double kServoGain_Nms = 0.1;
+// Wheel servo: torque = gain * (target speed - speed). The wheel follows in about 20 ms.
+constexpr double kServoGain_Nms = 0.05;
 constexpr double kMotorTorque_Nm = 1.4;      // XM430-W210, stall at 12 V is 3
 constexpr double kRotorInertia_kgm2 = 1e-4;  // seen through the gear; keeps a lifted wheel stable
+
+// Contacts are about as stiff as the time step allows (two steps): MuJoCo's default lets the
+// wheels sink in by 0.4 mm, and the robot rolls 0.6 % short.
+constexpr const char* kStiffContact = R"(solref="0.004 1" solimp="0.98 0.999 0.0001")";
 
 /// Constants of the whole model. Near and far plane are multiples of extent, hence extent = 1.
 std::string header(const MjcfOptions& options) {
   return fmt::format(R"(<mujoco model="waymark">
   <compiler angle="radian"/>
-  <option timestep="{:.17g}" integrator="implicit" cone="elliptic" impratio="10"/>
+  <option timestep="{:.17g}" cone="elliptic" impratio="10"/>
   <size njmax="500" nconmax="100"/>
   <statistic extent="1" center="0 0 0"/>
   <visual>
     <global offwidth="{}" offheight="{}"/>
     <map znear="0.03" zfar="500"/>
-    <headlight ambient="0.62 0.62 0.62" diffuse="0.2 0.2 0.2" specular="0 0 0"/>
+    <headlight ambient="0.9 0.9 0.9" diffuse="0.15 0.15 0.15" specular="0 0 0"/>
     <quality shadowsize="0" offsamples="0" numquads="1"/>
   </visual>
 )",
@@ -48,10 +53,10 @@ std::string header(const MjcfOptions& options) {
 std::string assets() {
   return R"(  <asset>
     <texture name="plate" type="2d" builtin="flat" width="8" height="8" rgb1="1 1 1"/>
-    <material name="plate" texture="plate" texrepeat="1 1" specular="0" shininess="0" emission="0.35"/>
-    <material name="side_wall" rgba="0.74 0.73 0.70 1" specular="0" shininess="0"/>
-    <material name="end_wall" rgba="0.50 0.53 0.58 1" specular="0" shininess="0"/>
-    <material name="floor" rgba="0.42 0.38 0.34 1" specular="0" shininess="0"/>
+    <material name="plate" texture="plate" texrepeat="1 1" specular="0" shininess="0" emission="0.2"/>
+    <material name="side_wall" rgba="0.72 0.71 0.68 1" specular="0" shininess="0"/>
+    <material name="end_wall" rgba="0.46 0.50 0.56 1" specular="0" shininess="0"/>
+    <material name="floor" rgba="0.33 0.30 0.27 1" specular="0" shininess="0"/>
     <material name="ceiling" rgba="0.93 0.93 0.93 1" specular="0" shininess="0"/>
     <material name="robot" rgba="0.15 0.15 0.17 1"/>
   </asset>
@@ -86,14 +91,31 @@ std::string marker_geom(const MarkerPlate& marker, std::size_t index, double pla
       right.x(), right.y());
 }
 
+/// Floor and ceiling under and over all walls, as far as they are seen; contacts do not end there.
+/// Drawn as one piece each: infinite planes are drawn in thousands, which costs 10 ms per frame.
+std::string floor_and_ceiling(const World& world) {
+  Eigen::AlignedBox2d outline;
+  for (const Wall& wall : world.walls)
+    outline.extend(wall.from_m).extend(wall.to_m);
+  const Eigen::Vector2d half = 0.5 * outline.sizes();
+  const double piece_m = outline.sizes().maxCoeff();
+  const auto plane = [&](const char* material, double z_m, const char* more) {
+    return fmt::format(
+        "    <geom type=\"plane\" group=\"{}\" material=\"{}\" size=\"{:.17g} {:.17g} {:.17g}\" "
+        "pos=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
+        static_cast<int>(GeomGroup::kFloor), material, half.x(), half.y(), piece_m,
+        outline.center().x(), outline.center().y(), z_m, more);
+  };
+  return plane("floor", 0.0, "") +
+         plane("ceiling", world.ceiling_height_m,
+               R"(euler="3.141592653589793 0 0" contype="0" conaffinity="0")");
+}
+
 std::string world_geoms(const World& world, const MjcfOptions& options) {
-  std::string text = fmt::format(
+  std::string text =
       "    <light directional=\"true\" castshadow=\"false\" pos=\"0 0 10\" dir=\"0.35 0.2 -1\" "
-      "diffuse=\"0.35 0.35 0.35\" specular=\"0 0 0\"/>\n"
-      "    <geom type=\"plane\" group=\"{0}\" material=\"floor\" size=\"0 0 1\"/>\n"
-      "    <geom type=\"plane\" group=\"{0}\" material=\"ceiling\" size=\"0 0 1\" "
-      "pos=\"0 0 {1:.17g}\" euler=\"3.141592653589793 0 0\" contype=\"0\" conaffinity=\"0\"/>\n",
-      static_cast<int>(GeomGroup::kFloor), world.ceiling_height_m);
+      "diffuse=\"0.3 0.3 0.3\" specular=\"0 0 0\"/>\n" +
+      floor_and_ceiling(world);
   for (const Wall& wall : world.walls)
     text += wall_geom(wall);
   for (std::size_t i = 0; i < world.markers.size(); ++i)
@@ -106,11 +128,11 @@ std::string wheel(const char* name, double y_m, double radius_m) {
   return fmt::format(
       R"(      <body name="{0}" pos="0 {1:.17g} {2:.17g}">
         <joint name="{0}" type="hinge" axis="0 1 0" armature="{3}"/>
-        <geom type="ellipsoid" group="{4}" material="robot" size="{2:.17g} {5:.17g} {2:.17g}" mass="{6}" friction="1 0.005 0.0001"/>
+        <geom type="ellipsoid" group="{4}" material="robot" size="{2:.17g} {5:.17g} {2:.17g}" mass="{6}" friction="1 0.005 0.0001" priority="1" {7}/>
       </body>
 )",
       name, y_m, radius_m, kRotorInertia_kgm2, static_cast<int>(GeomGroup::kRobot),
-      0.5 * kWheelWidth_m, kWheelMass_kg);
+      0.5 * kWheelWidth_m, kWheelMass_kg, kStiffContact);
 }
 
 /// Casters have no friction: contact friction is the greater of the two geoms' unless one of them
@@ -118,8 +140,9 @@ std::string wheel(const char* name, double y_m, double radius_m) {
 std::string caster(double y_m) {
   return fmt::format(
       "      <geom type=\"sphere\" group=\"{}\" material=\"robot\" pos=\"{} {} {}\" size=\"{}\" "
-      "mass=\"0\" condim=\"1\" priority=\"1\"/>\n",
-      static_cast<int>(GeomGroup::kRobot), kCasterX_m, y_m, kCasterRadius_m, kCasterRadius_m);
+      "mass=\"0\" condim=\"1\" priority=\"1\" {}/>\n",
+      static_cast<int>(GeomGroup::kRobot), kCasterX_m, y_m, kCasterRadius_m, kCasterRadius_m,
+      kStiffContact);
 }
 
 std::string robot_body(const RobotConfig& robot, const Se2& world_from_start) {
@@ -127,7 +150,7 @@ std::string robot_body(const RobotConfig& robot, const Se2& world_from_start) {
       R"(    <body name="{}" pos="{:.17g} {:.17g} 0" euler="0 0 {:.17g}">
       <freejoint/>
       <inertial pos="{} 0 {}" mass="{}" diaginertia="{}"/>
-      <geom type="box" group="{}" material="robot" pos="{} 0 {}" size="{} {} {}" mass="0"/>
+      <geom type="box" group="{}" material="robot" pos="{} 0 {}" size="{} {} {}" mass="0" friction="0.2 0 0" priority="1"/>
 )",
       mjcf_names::kBase, world_from_start.x(), world_from_start.y(), world_from_start.theta(),
       kBodyCentreX_m, kGroundClearance_m + kBodyHalfHeight_m, kBodyMass_kg, kBodyInertia,

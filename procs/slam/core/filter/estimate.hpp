@@ -35,6 +35,20 @@ struct Estimate {
 Estimate describe_observation(const Observation& observation, const Se2& map_from_base,
                               double range_sigma_m);
 
+/// Weighted mean of the particles' poses; headings are averaged on the circle.
+template <class State>
+Se2 mean_pose(const ParticleSet<State>& particles) {
+  Eigen::Vector2d translation = Eigen::Vector2d::Zero();
+  Eigen::Vector2d heading = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const Se2& pose = particles.state(i).map_from_base;
+    const double weight = particles.weights()[i];
+    translation += weight * pose.translation();
+    heading += weight * Eigen::Vector2d{std::cos(pose.theta()), std::sin(pose.theta())};
+  }
+  return {translation, std::atan2(heading.y(), heading.x())};
+}
+
 /// Mean square of the particles' deviations from a pose, map frame. About a pose that is not their
 /// mean it contains the square of the difference: the honest error of that pose.
 /// @tparam State  has a member map_from_base.

@@ -16,7 +16,16 @@ struct Observability {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
   Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit, map frame
   double weak_information{0.0};                             ///< [1/m^2] along weak_direction
-  bool is_degenerate{true};  ///< walls all but silent about weak_direction
+  bool is_degenerate{true};  ///< the walls are all but silent about weak_direction
+
+  /// `pose` moved along the weak direction to where `reference` is, if there is a weak direction.
+  /// What is computed from it can pull nobody along a bare corridor.
+  Se2 without_weak_part(const Se2& pose, const Se2& reference) const {
+    if (!is_degenerate) return pose;
+    const Eigen::Vector2d deviation = pose.translation() - reference.translation();
+    return {Eigen::Vector2d{pose.translation() - weak_direction * weak_direction.dot(deviation)},
+            pose.theta()};
+  }
 };
 
 /// Each beam that lies on a smooth surface measures its distance along the surface's normal

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detector/core/camera_model.hpp"
+
+#include "common/random/random.hpp"
+
+#include <gtest/gtest.h>
+#include <opencv2/calib3d.hpp>
+
+namespace waymark {
+namespace {
+
+CameraConfig bent_camera() {
+  CameraConfig camera;
+  camera.fy_px = 541.0;
+  camera.distortion = {-0.28, 0.09, 0.0012, -0.0007, 0.01};
+  return camera;
+}
+
+Eigen::Vector2d projected_by_opencv(const CameraConfig& camera, const Eigen::Vector3d& point) {
+  const cv::Matx33d matrix{camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1};
+  std::vector<cv::Point2d> pixels;
+  cv::projectPoints(std::vector{cv::Point3d{point.x(), point.y(), point.z()}}, cv::Vec3d{},
+                    cv::Vec3d{}, matrix, camera.distortion, pixels);
+  return {pixels[0].x, pixels[0].y};
+}
+
+TEST(CameraModel, RawPixelsAreWhatOpenCvProjects) {
+  const CameraModel camera{bent_camera()};
+  Random random{1};
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d point{random.uniform(-1, 1), random.uniform(-0.8, 0.8),
+                                random.uniform(1.7, 4)};
+    const Eigen::Vector2d raw_px = camera.raw_from_ideal(camera.project(point));
+    EXPECT_LT((raw_px - projected_by_opencv(bent_camera(), point)).norm(), 1e-9);
+  }
+}
+
+TEST(CameraModel, UndistortingIsTheInverse) {
+  const CameraModel camera{bent_camera()};
+  for (const double u : {0.0, 100.0, 319.5, 639.0}) {
+    for (const double v : {0.0, 240.0, 479.0}) {
+      const Eigen::Vector2d raw_px{u, v};
+      EXPECT_LT((camera.raw_from_ideal(camera.ideal_from_raw(raw_px)) - raw_px).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(CameraModel, JacobianMatchesDifferences) {
+  const CameraModel camera{bent_camera()};
+  const Eigen::Vector3d point{0.4, -0.3, 2.2};
+  constexpr double kStepM = 1e-6;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d step = kStepM * Eigen::Vector3d::Unit(axis);
+    const Eigen::Vector2d difference =
+        (camera.project(point + step) - camera.project(point - step)) / (2.0 * kStepM);
+    EXPECT_LT((difference - camera.projection_jacobian(point).col(axis)).norm(), 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detector/core/corner_refinement.hpp"
+
+#include "support/marker_image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace waymark {
+namespace {
+
+using testing::base_from_upright_marker;
+using testing::ImageLook;
+using testing::render_markers;
+
+constexpr int kModules = 8;
+
+struct Scene {
+  RobotConfig robot{};
+  Eigen::Isometry3d camera_from_marker{};
+  Corners true_raw_px{};
+  cv::Mat image{};
+};
+
+Scene scene_with(const RobotConfig& robot, const Eigen::Isometry3d& base_from_marker,
+                 const ImageLook& look) {
+  Scene scene{.robot = robot};
+  scene.camera_from_marker = robot.camera.base_from_camera().inverse() * base_from_marker;
+  const CameraModel camera{robot.camera};
+  const double half_m = 0.5 * robot.markers.size_m;
+  const std::array<Eigen::Vector2d, 4> directions{Eigen::Vector2d{-1, 1}, Eigen::Vector2d{1, 1},
+                                                  Eigen::Vector2d{1, -1}, Eigen::Vector2d{-1, -1}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector3d corner{half_m * directions[k].x(), half_m * directions[k].y(), 0.0};
+    scene.true_raw_px[k] = camera.raw_from_ideal(camera.project(scene.camera_from_marker * corner));
+  }
+  scene.image = render_markers(robot, {{7, scene.camera_from_marker}}, look, Random{5});
+  return scene;
+}
+
+/// Corners as the first stage gives them: pulled inwards by half a pixel.
+Corners pulled_inwards(const Corners& corners, double pull_px) {
+  const Eigen::Vector2d centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+  Corners pulled;
+  for (std::size_t k = 0; k < 4; ++k)
+    pulled[k] = corners[k] + pull_px * (centre - corners[k]).normalized();
+  return pulled;
+}
+
+Corners refined_error_px(const Scene& scene, double pull_px) {
+  const CameraModel camera{scene.robot.camera};
+  const MeasuredCorners corners =
+      refine_corners(scene.image, camera, pulled_inwards(scene.true_raw_px, pull_px), kModules, {});
+  EXPECT_TRUE(corners.refined);
+  Corners error;
+  for (std::size_t k = 0; k < 4; ++k)
+    error[k] = camera.raw_from_ideal(corners.ideal_px[k]) - scene.true_raw_px[k];
+  return error;
+}
+
+TEST(CornerRefinement, CornersAreFoundWithoutBiasWhereverThePixelsLie) {
+  const ImageLook no_noise{.noise_sigma = 0.0};
+  for (const double shift_m : {0.0, 0.0013, 0.0026, 0.0039}) {  // 0 to 0.75 px
+    const Scene frontal = scene_with(
+        {}, base_from_upright_marker({2.6, shift_m, 0.2 + shift_m}, std::numbers::pi), no_noise);
+    for (const Eigen::Vector2d& error : refined_error_px(frontal, 0.7))
+      EXPECT_LT(error.norm(), 0.02) << "shift " << shift_m;
+    const Scene oblique = scene_with(
+        {}, base_from_upright_marker({2.6 + shift_m, 1.0, 0.25}, -0.5 * std::numbers::pi),
+        no_noise);
+    for (const Eigen::Vector2d& error : refined_error_px(oblique, 0.7))
+      EXPECT_LT(error.norm(), 0.03) << "shift " << shift_m;
+  }
+}
+
+TEST(CornerRefinement, BentEdgesOfALensDoNotMatter) {
+  RobotConfig robot;
+  robot.camera.distortion = {-0.3, 0.1, 0.001, -0.001, 0.0};
+  const Scene scene =
+      scene_with(robot, base_from_upright_marker({2.1, 0.9, 0.25}, -0.5 * std::numbers::pi),
+                 {.noise_sigma = 0});
+  for (const Eigen::Vector2d& error : refined_error_px(scene, 0.7))
+    EXPECT_LT(error.norm(), 0.03);
+}
+
+TEST(CornerRefinement, CornersThatWouldMoveFarStayWithALargeCovariance) {
+  const Scene scene =
+      scene_with({}, base_from_upright_marker({1.5, 0.0, 0.1}, std::numbers::pi), {});
+  const CameraModel camera{scene.robot.camera};
+  const Corners far_off = pulled_inwards(scene.true_raw_px, 4.0);
+  const RefinementConfig config{.reach_px = 6.0, .max_move_px = 2.0};
+
+  const MeasuredCorners corners = refine_corners(scene.image, camera, far_off, kModules, config);
+
+  EXPECT_FALSE(corners.refined);
+  EXPECT_EQ(corners.ideal_px[0], far_off[0]);
+  EXPECT_NEAR(corners.covariance(0, 0), 0.64, 1e-12);
+}
+
+TEST(CornerRefinement, NothingIsRefinedWhereThereIsNoEdge) {
+  const cv::Mat flat(480, 640, CV_8UC1, cv::Scalar{120});
+  const Corners corners{Eigen::Vector2d{100, 100}, Eigen::Vector2d{200, 100},
+                        Eigen::Vector2d{200, 200}, Eigen::Vector2d{100, 200}};
+  EXPECT_FALSE(refine_corners(flat, CameraModel{CameraConfig{}}, corners, kModules, {}).refined);
+}
+
+TEST(CornerRefinement, CornersOutsideTheImageAreHarmless) {
+  const cv::Mat flat(480, 640, CV_8UC1, cv::Scalar{120});
+  const Corners corners{Eigen::Vector2d{-50, -50}, Eigen::Vector2d{700, -20},
+                        Eigen::Vector2d{690, 500}, Eigen::Vector2d{-10, 490}};
+  EXPECT_FALSE(refine_corners(flat, CameraModel{CameraConfig{}}, corners, kModules, {}).refined);
+}
+
+}  // namespace
+}  // namespace waymark

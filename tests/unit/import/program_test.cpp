@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program's exit codes.
+#include "import_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace waymark {
+namespace {
+
+int exit_code(const std::string& arguments) {
+  const std::string command = std::string{WAYMARK_BUILD_DIR} + "/waymark-import " + arguments +
+                              " >" + (test_folder() / "stdout.txt").string() + " 2>&1";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string carmen(const std::filesystem::path& file) {
+  return "carmen " + file.string() + " --first-angle-deg -45 --angle-step-deg 30 --out " +
+         (test_folder() / "out.lcm").string();
+}
+
+TEST(ImportProgram, AGoodLogGives0) {
+  EXPECT_EQ(exit_code(carmen(data_file("small.clf"))), 0);
+  EXPECT_TRUE(std::filesystem::exists(test_folder() / "out.lcm"));
+  EXPECT_TRUE(std::filesystem::exists(test_folder() / "robot.toml"));
+}
+
+TEST(ImportProgram, SkippedLinesGive1UnlessTolerated) {
+  EXPECT_EQ(exit_code(carmen(data_file("bad.clf"))), 1);
+  EXPECT_EQ(exit_code(carmen(data_file("bad.clf")) + " --tolerant"), 0);
+}
+
+TEST(ImportProgram, EmptyUnreadableAndUnknownGive2) {
+  EXPECT_EQ(exit_code(carmen(write_file("empty.clf", ""))), 2);
+  EXPECT_EQ(exit_code(carmen("/nowhere/log.clf")), 2);
+  EXPECT_EQ(exit_code("mbot " + write_file("empty.lcm", "").string() +
+                      " --encoder-channel A --out x.lcm"),
+            2);
+  EXPECT_EQ(exit_code(""), 2);
+  EXPECT_EQ(exit_code("carmen a.clf"), 2) << "--out is missing";
+}
+
+TEST(ImportProgram, TheLogItselfIsNeverOverwritten) {
+  const auto file = write_file("out.lcm", read_file(data_file("small.clf")));
+  EXPECT_EQ(exit_code(carmen(file)), 2);
+  EXPECT_EQ(read_file(file), read_file(data_file("small.clf")));
+}
+
+TEST(ImportProgram, HelpAndVersionGive0) {
+  EXPECT_EQ(exit_code("--help"), 0);
+  EXPECT_EQ(exit_code("carmen --help"), 0);
+  EXPECT_EQ(exit_code("--version"), 0);
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/core/robot/drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+constexpr double kPeriod_s = 0.01;
+
+/// A robot without inertia or slip, driven until it has arrived; all its poses.
+std::vector<Se2> drive_ideal_robot(const RouteConfig& config) {
+  RouteFollower follower{config, kPeriod_s};
+  Se2 world_from_base = config.world_from_start();
+  std::vector<Se2> poses;
+  while (!follower.arrived() && poses.size() < 100'000) {
+    const Velocity velocity = follower.next(world_from_base);
+    world_from_base = world_from_base *
+                      Se2{velocity.forward_mps * kPeriod_s, 0.0, velocity.turn_radps * kPeriod_s};
+    poses.push_back(world_from_base);
+  }
+  EXPECT_TRUE(follower.arrived());
+  return poses;
+}
+
+RouteConfig short_route() {
+  RouteConfig config{};
+  config.end_x_m = 4.0;
+  return config;
+}
+
+TEST(WheelSpeeds, StraightAndOnTheSpot) {
+  const BaseConfig base{};
+  const WheelPair straight = wheel_speeds(base, {0.33, 0.0});
+  EXPECT_DOUBLE_EQ(straight.left_rad, 10.0);
+  EXPECT_DOUBLE_EQ(straight.right_rad, 10.0);
+  const WheelPair to_the_left = wheel_speeds(base, {0.0, 1.0});
+  EXPECT_DOUBLE_EQ(to_the_left.right_rad, 0.287 / 2 / 0.033);
+  EXPECT_DOUBLE_EQ(to_the_left.left_rad, -to_the_left.right_rad);
+}
+
+TEST(RouteFollower, DrivesStraightToTheEndInTheExpectedTime) {
+  const auto poses = drive_ideal_robot(short_route());
+
+  EXPECT_NEAR(poses.back().x(), 4.0, 0.002);
+  EXPECT_EQ(poses.back().y(), 0.0);
+  // 3 m at 0.1 m/s, speeding up and slowing down within half a second each, a short creep.
+  EXPECT_NEAR(static_cast<double>(poses.size()) * kPeriod_s, 30.5, 1.0);
+}
+
+TEST(RouteFollower, RespectsSpeedAndAcceleration) {
+  const RouteConfig config = short_route();
+  RouteFollower follower{config, kPeriod_s};
+  double last_mps = 0.0;
+  for (double x = 1.0; x < 3.9; x += 0.001) {
+    const Velocity velocity = follower.next({x, 0.0, 0.0});
+    EXPECT_LE(velocity.forward_mps, config.speed_mps);
+    EXPECT_LE(velocity.forward_mps - last_mps, config.acceleration_mps2 * kPeriod_s + 1e-12);
+    last_mps = velocity.forward_mps;
+  }
+  EXPECT_DOUBLE_EQ(last_mps, config.speed_mps);
+}
+
+TEST(RouteFollower, ReturnsToTheLineWithoutOvershooting) {
+  const RouteConfig config = short_route();
+  RouteFollower follower{config, kPeriod_s};
+  follower.next(config.world_from_start());  // aligned: driving from now on
+  Se2 world_from_base{1.0, 0.1, 0.0};
+  while (!follower.arrived()) {
+    const Velocity velocity = follower.next(world_from_base);
+    world_from_base = world_from_base *
+                      Se2{velocity.forward_mps * kPeriod_s, 0.0, velocity.turn_radps * kPeriod_s};
+    EXPECT_GT(world_from_base.y(), -0.005);
+  }
+  EXPECT_NEAR(world_from_base.y(), 0.0, 0.01);
+}
+
+TEST(RouteFollower, VisitsWaypointsWithTurnsOnTheSpot) {
+  RouteConfig config{};
+  config.start_yaw_rad = std::numbers::pi;
+  config.waypoints = {{3.0, 0.0}, {3.0, 0.5}, {1.0, 0.5}};
+
+  const auto poses = drive_ideal_robot(config);
+
+  for (const Waypoint& waypoint : config.waypoints) {
+    const auto distance_m = [&waypoint](const Se2& pose) {
+      return std::hypot(pose.x() - waypoint.x_m, pose.y() - waypoint.y_m);
+    };
+    double nearest_m = 1e9;
+    for (const Se2& pose : poses)
+      nearest_m = std::min(nearest_m, distance_m(pose));
+    EXPECT_LT(nearest_m, 0.01);
+  }
+  EXPECT_NEAR(std::abs(poses.back().theta()), std::numbers::pi, 0.01);
+}
+
+TEST(RouteFollower, ProgressEndsAtTheRoutesLength) {
+  RouteConfig config{};
+  config.waypoints = {{2.0, 0.0}, {2.0, 0.5}};
+  RouteFollower follower{config, kPeriod_s};
+  EXPECT_DOUBLE_EQ(follower.route_length_m(), 1.5);
+  follower.next({1.25, 0.0, 0.0});
+  EXPECT_DOUBLE_EQ(follower.progress_m(), 0.25);
+}
+
+TEST(CommandFollower, ACommandActsAFixedTimeAfterItsStamp) {
+  const Duration delay{500'000};
+  CommandFollower follower{{}, delay, kPeriod_s};
+  EXPECT_TRUE(follower.receive(timestamp_from_us(100'000), {0.2, 0.0}));
+
+  EXPECT_EQ(follower.next(timestamp_from_us(599'999)).forward_mps, 0.0);
+  EXPECT_GT(follower.next(timestamp_from_us(600'000)).forward_mps, 0.0);
+}
+
+TEST(CommandFollower, LateCommandsAreReportedAndObeyed) {
+  CommandFollower follower{{}, Duration{500'000}, kPeriod_s};
+  follower.next(timestamp_from_us(2'000'000));
+  EXPECT_FALSE(follower.receive(timestamp_from_us(1'000'000), {0.2, 0.0}));
+  EXPECT_GT(follower.next(timestamp_from_us(2'010'000)).forward_mps, 0.0);
+}
+
+TEST(CommandFollower, OrderOfArrivalDoesNotMatter) {
+  const std::vector<std::pair<std::int64_t, double>> commands{{0, 0.1}, {50'000, 0.3}};
+  CommandFollower in_order{{}, Duration{100'000}, kPeriod_s};
+  CommandFollower reversed{{}, Duration{100'000}, kPeriod_s};
+  for (const auto& [stamp_us, speed_mps] : commands)
+    in_order.receive(timestamp_from_us(stamp_us), {speed_mps, 0.0});
+  for (auto it = commands.rbegin(); it != commands.rend(); ++it)
+    reversed.receive(timestamp_from_us(it->first), {it->second, 0.0});
+  for (std::int64_t now_us = 0; now_us < 3'000'000; now_us += 10'000) {
+    const Timestamp now = timestamp_from_us(now_us);
+    EXPECT_EQ(in_order.next(now).forward_mps, reversed.next(now).forward_mps);
+  }
+}
+
+}  // namespace
+}  // namespace waymark

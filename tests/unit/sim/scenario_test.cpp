@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/core/scenario.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace waymark {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string error_of(const std::vector<std::string>& overrides) {
+  try {
+    load_config<Scenario>({{}, overrides});
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Scenario, DefaultsAreValid) {
+  EXPECT_EQ(error_of({}), "no error");
+}
+
+TEST(Scenario, AllShippedFilesAreValid) {
+  const std::filesystem::path folder =
+      std::filesystem::path{WAYMARK_SOURCE_DIR} / "deploy" / "scenarios";
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
+    EXPECT_NO_THROW(load_config<Scenario>({{entry.path()}, {}})) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 4);
+}
+
+TEST(Scenario, TheShippedDefaultCorridorIsTheDefault) {
+  const std::filesystem::path file =
+      std::filesystem::path{WAYMARK_SOURCE_DIR} / "deploy/scenarios/corridor.toml";
+  EXPECT_EQ(dump_config(load_config<Scenario>({{file}, {}})), dump_config(Scenario{}));
+}
+
+TEST(Scenario, ACorridorShorterThanTheRobotIsOneError) {
+  const std::string error = error_of({"world.length_m=0.2"});
+  EXPECT_THAT(error, HasSubstr("world.length_m: got 0.2, expected more than the robot's length"));
+  EXPECT_THAT(error, Not(HasSubstr("\n")));
+}
+
+TEST(Scenario, MarkersMustHangInsideTheWalls) {
+  EXPECT_THAT(error_of({"markers.last_m=49.9"}), HasSubstr("within the walls"));
+  EXPECT_THAT(error_of({"markers.first_m=0.1"}), HasSubstr("within the walls"));
+  EXPECT_THAT(error_of({"markers.spacing_m=0.5"}), HasSubstr("markers.spacing_m"));
+  EXPECT_THAT(error_of({"markers.centre_height_m=0.2"}), HasSubstr("markers.centre_height_m"));
+  EXPECT_EQ(error_of({"markers.layout=none", "markers.last_m=99"}), "no error");
+}
+
+TEST(Scenario, IdsMustBeInTheDictionary) {
+  EXPECT_THAT(error_of({"markers.first_id=240"}),
+              HasSubstr("markers.first_id: marker id 250 is not in DICT_6X6_250"));
+  EXPECT_THAT(error_of({"robot.markers.dictionary=DICT_9X9"}), HasSubstr("got 'DICT_9X9'"));
+  EXPECT_THAT(error_of({"markers.ids=[1, 2]"}), HasSubstr("expected one for each of the 24"));
+}
+
+TEST(Scenario, TheRouteMustKeepClearOfTheWalls) {
+  EXPECT_THAT(error_of({"route.start_x_m=0.05"}), HasSubstr("route.start"));
+  EXPECT_THAT(error_of({"route.start_y_m=1.0"}), HasSubstr("route.start"));
+  EXPECT_THAT(error_of({"route.end_x_m=51"}), HasSubstr("route.end_x_m"));
+}
+
+TEST(Scenario, SensorsMustFitThePhysicsSteps) {
+  EXPECT_THAT(error_of({"robot.camera.rate_hz=7"}), HasSubstr("robot.camera.rate_hz"));
+  EXPECT_THAT(error_of({"run.tick_s=0.0123"}), HasSubstr("run.tick_s"));
+}
+
+TEST(Scenario, CommandsMustNotReachIntoTheWindow) {
+  EXPECT_THAT(
+      error_of({"route.source=command", "route.duration_s=5", "route.command_delay_ticks=2"}),
+      HasSubstr("route.command_delay_ticks"));
+  EXPECT_THAT(error_of({"route.source=command"}), HasSubstr("route.duration_s"));
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/core/simulation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+using ::testing::ElementsAre;
+
+/// A short corridor and a small camera: fast.
+Scenario small_scenario() {
+  Scenario scenario{};
+  scenario.world.length_m = 6.0;
+  scenario.markers.last_m = 4.0;
+  scenario.route.end_x_m = 2.0;
+  scenario.route.speed_mps = 0.5;
+  scenario.robot.camera.width_px = 160;
+  scenario.robot.camera.height_px = 120;
+  scenario.robot.camera.fx_px = scenario.robot.camera.fy_px = 132.0;
+  scenario.robot.camera.cx_px = 79.5;
+  scenario.robot.camera.cy_px = 59.5;
+  return scenario;
+}
+
+std::vector<std::int64_t> odometry_times_us(const Tick& tick) {
+  std::vector<std::int64_t> times;
+  for (const OdometrySample& sample : tick.odometry)
+    times.push_back(to_us(sample.time));
+  return times;
+}
+
+TEST(Simulation, TicksHoldEachSensorAtItsRate) {
+  Simulation simulation{small_scenario()};
+  const Tick first = simulation.advance();
+  const Tick second = simulation.advance();
+
+  EXPECT_EQ(to_us(first.end), 100'000);
+  EXPECT_THAT(odometry_times_us(first), ElementsAre(0, 33'333, 66'667));
+  EXPECT_THAT(odometry_times_us(second), ElementsAre(100'000, 133'333, 166'667));
+  EXPECT_EQ(first.true_poses.size(), 3U);
+  EXPECT_EQ(first.scans.size(), 1U);
+  EXPECT_EQ(second.scans.size(), 0U);
+  ASSERT_EQ(second.frames.size(), 1U);
+  EXPECT_EQ(to_us(second.frames[0].time), 100'000);
+  EXPECT_EQ(first.odometry[0].odom_from_base.x(), 0.0);
+  EXPECT_NEAR(first.true_poses[0].world_from_base.x(), 1.0, 1e-4);
+}
+
+TEST(Simulation, DrivesTheRouteAndStops) {
+  Simulation simulation{small_scenario()};
+  Tick last;
+  int ticks = 0;
+  while (!simulation.finished() && ++ticks < 200)
+    last = simulation.advance();
+
+  EXPECT_TRUE(simulation.finished());
+  EXPECT_EQ(simulation.progress_fraction(), 1.0);
+  EXPECT_NEAR(simulation.world_from_base().x(), 2.0, 0.005);
+  EXPECT_NEAR(simulation.world_from_base().y(), 0.0, 0.002);
+  // Odometry is 1 % long on seed 1, give or take three sigma of 3 mm per root metre.
+  EXPECT_NEAR(last.odometry.back().odom_from_base.x(), 1.01, 0.012);
+}
+
+TEST(Simulation, SameScenarioSameBytes) {
+  Simulation a{small_scenario()};
+  Simulation b{small_scenario()};
+  for (int i = 0; i < 12; ++i) {
+    const Tick tick_a = a.advance();
+    const Tick tick_b = b.advance();
+    EXPECT_EQ(tick_a.frames[0].jpeg, tick_b.frames[0].jpeg);
+    EXPECT_EQ(tick_a.odometry.back().odom_from_base.x(), tick_b.odometry.back().odom_from_base.x());
+    EXPECT_EQ(tick_a.true_poses.back().world_from_base.x(),
+              tick_b.true_poses.back().world_from_base.x());
+    ASSERT_EQ(tick_a.scans.size(), tick_b.scans.size());
+    if (tick_a.scans.empty()) continue;
+    EXPECT_EQ(tick_a.scans[0].ranges_m[90], tick_b.scans[0].ranges_m[90]);
+  }
+}
+
+TEST(Simulation, SeedsDiffer) {
+  Scenario other_seed = small_scenario();
+  other_seed.run.seed = 2;
+  EXPECT_NE(Simulation{small_scenario()}.advance().frames[0].jpeg,
+            Simulation{other_seed}.advance().frames[0].jpeg);
+}
+
+TEST(Simulation, ARollingScanTakesItsBeamsOneAfterTheOther) {
+  Scenario scenario = small_scenario();
+  scenario.run.rolling_scan = true;
+  Simulation simulation{scenario};
+  EXPECT_TRUE(simulation.advance().scans.empty());  // half a sweep
+  const Tick second = simulation.advance();
+  ASSERT_EQ(second.scans.size(), 1U);
+  const LidarScan& scan = second.scans[0];
+  ASSERT_EQ(scan.ranges_m.size(), 360U);
+  ASSERT_EQ(scan.beam_time_offsets.size(), 360U);
+  EXPECT_EQ(to_us(scan.time + scan.beam_time_offsets.front()), 0);
+  EXPECT_EQ(scan.beam_time_offsets.back(), Duration{0});
+  EXPECT_TRUE(std::is_sorted(scan.beam_time_offsets.begin(), scan.beam_time_offsets.end()));
+  EXPECT_LT(scan.time, second.end);
+}
+
+TEST(Simulation, ObeysCommandsAFixedTimeLater) {
+  Scenario scenario = small_scenario();
+  scenario.route.source = DriveSource::kCommand;
+  scenario.route.duration_s = 2.0;
+  Simulation simulation{scenario};
+  EXPECT_TRUE(simulation.command(timestamp_from_us(0), {0.2, 0.0}));
+  for (int i = 0; i < 8; ++i)
+    simulation.advance();
+  EXPECT_NEAR(simulation.world_from_base().x(), 1.0, 1e-4);
+  for (int i = 0; i < 12; ++i)
+    simulation.advance();
+  EXPECT_TRUE(simulation.finished());
+  EXPECT_NEAR(simulation.world_from_base().x(), 1.0 + 0.2 * 1.2 - 0.1, 0.01);
+}
+
+TEST(Simulation, ARobotThatNeverArrivesIsAnError) {
+  Scenario scenario = small_scenario();
+  scenario.route.duration_s = 0.3;
+  Simulation simulation{scenario};
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 4; ++i)
+          simulation.advance();
+      },
+      SimulatorError);
+}
+
+}  // namespace
+}  // namespace waymark

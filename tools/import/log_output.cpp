@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/log_output.hpp"
+
+#include "common/log/log_file.hpp"
+#include "common/messages/convert.hpp"
+#include "common/process/node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace waymark {
+namespace {
+
+/// The part of a process's configuration that tells of the robot.
+struct RobotFile {
+  RobotConfig robot{};
+
+  void describe(Fields& fields) { fields.section("robot", robot); }
+};
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  const std::filesystem::path part = path.string() + ".part";
+  std::ofstream file{part, std::ios::binary | std::ios::trunc};
+  file << text;
+  file.close();
+  if (!file) throw SetupError{path.string() + ": cannot be written"};
+  std::filesystem::rename(part, path);
+}
+
+std::string to_tum(const std::vector<ImportedPose>& poses) {
+  std::string text;
+  for (const ImportedPose& pose : poses) {
+    const std::int64_t us = to_us(pose.time);
+    text += fmt::format("{}.{:06} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n", us / 1'000'000,
+                        us % 1'000'000, pose.pose.x(), pose.pose.y(),
+                        std::sin(0.5 * pose.pose.theta()), std::cos(0.5 * pose.pose.theta()));
+  }
+  return text;
+}
+
+void write_log(const ImportedLog& log, const std::filesystem::path& out) {
+  std::vector<Message> messages;
+  for (const ImportedScan& scan : log.scans)
+    messages.push_back(scan.message);
+  for (const ImportedPose& sample : log.odometry) {
+    messages.push_back(encode(channels::kOdometry, to_pose_message(sample.time, sample.pose)));
+  }
+  std::ranges::sort(messages, comes_before);
+  LogWriter writer{out};
+  for (const Message& message : messages)
+    writer.write(message);
+  writer.close();
+}
+
+void check_robot(const RobotConfig& robot) {
+  Problems problems;
+  robot.check(problems);
+  if (!problems.lines().empty()) throw SetupError{problems.lines().front()};
+}
+
+double longest_range_m(const ImportedLog& log) {
+  return std::ranges::max(log.scans, {}, &ImportedScan::longest_range_m).longest_range_m;
+}
+
+std::string beam_counts(const ImportedLog& log) {
+  const auto [fewest, most] = std::ranges::minmax(log.scans, {}, &ImportedScan::num_beams);
+  return fewest.num_beams == most.num_beams
+             ? fmt::format("{}", most.num_beams)
+             : fmt::format("{}..{}", fewest.num_beams, most.num_beams);
+}
+
+std::string skipped(const ImportReport& report) {
+  std::string text = fmt::format("{}", report.num_skipped());
+  for (const auto& [kind, count] : report.skipped_by_kind())
+    text += fmt::format(", {} {}", kind, count);
+  return text;
+}
+
+}  // namespace
+
+void write_imported_log(const ImportedLog& log, const std::filesystem::path& out) {
+  check_robot(log.robot);
+  const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
+  try {
+    std::filesystem::create_directories(folder);
+    write_log(log, out);
+    write_text(folder / "robot.toml", dump_config(RobotFile{log.robot}));
+    if (!log.reference.empty()) write_text(folder / "reference.tum", to_tum(log.reference));
+  } catch (const std::runtime_error& error) {
+    throw SetupError{error.what()};
+  }
+}
+
+std::string summary(const ImportedLog& log, const ImportReport& report) {
+  const auto [first, last] = std::ranges::minmax(log.odometry, {}, &ImportedPose::time);
+  const LidarConfig& lidar = log.robot.lidar;
+  std::string text;
+  const auto line = [&text](std::string_view name, const std::string& value) {
+    text += fmt::format("{:<17}{}\n", name, value);
+  };
+  line("read", log.contents);
+  line("scans", fmt::format("{}", log.scans.size()));
+  line("beams", beam_counts(log));
+  line("odometry", fmt::format("{} samples", log.odometry.size()));
+  line("duration", fmt::format("{:.3f} s", to_seconds(last.time - first.time)));
+  line("path length", fmt::format("{:.3f} m (odometry)", path_length_m(log.odometry)));
+  if (!log.reference.empty()) {
+    line("reference", fmt::format("{} poses, path length {:.3f} m", log.reference.size(),
+                                  path_length_m(log.reference)));
+  }
+  line("longest range", fmt::format("{:.3f} m", longest_range_m(log)));
+  line("range maximum", fmt::format("{:.3f} m (no return from there on)", lidar.range_max_m));
+  line("LiDAR mounting", fmt::format("x {:.3f} m, y {:.3f} m, yaw {:.2f} deg", lidar.x_m, lidar.y_m,
+                                     degrees(lidar.yaw_rad)));
+  line("skipped", skipped(report));
+  return text;
+}
+
+}  // namespace waymark

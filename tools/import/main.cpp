@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/exit_codes.hpp"
+#include "common/process/guard.hpp"
+#include "import/carmen_reader.hpp"
+#include "import/log_output.hpp"
+#include "import/mbot_reader.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <map>
+
+namespace waymark {
+namespace {
+
+constexpr ProcessTraits kTraits{
+    "import", "Turns logs of other robots into logs that every estimator can be replayed on.",
+    false};
+
+struct Options {
+  std::filesystem::path file{};
+  std::filesystem::path out{};
+  bool tolerant{false};
+  std::optional<double> first_angle_deg{};
+  std::optional<double> angle_step_deg{};
+  std::optional<double> lidar_yaw_deg{};
+  CarmenOptions carmen{};
+  MbotOptions mbot{};
+};
+
+/// What both kinds of logs have.
+void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting,
+                        double& range_min_m) {
+  app.add_option("FILE", options.file, "the log to read")->required();
+  app.add_option("--out", options.out,
+                 "LCM log to write; robot.toml (and reference.tum) go beside it")
+      ->required();
+  app.add_flag("--tolerant", options.tolerant, "exit with 0 although lines or events were skipped");
+  app.add_option("--min-range-m", range_min_m, "shortest range measured")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--lidar-x-m", mounting.x_m, "where the LiDAR sits in the base frame");
+  app.add_option("--lidar-y-m", mounting.y_m, "where the LiDAR sits in the base frame");
+  app.add_option("--lidar-yaw-deg", options.lidar_yaw_deg, "direction of the LiDAR's x axis");
+}
+
+CLI::App* add_carmen(CLI::App& app, Options& options) {
+  CLI::App* carmen = app.add_subcommand(
+      "carmen", "CARMEN text log: FLASER, RLASER, ROBOTLASER1, ROBOTLASER2, ODOM; gzip or not");
+  add_common_options(*carmen, options, options.carmen.mounting, options.carmen.range_min_m);
+  carmen
+      ->add_option("--lidar", options.carmen.lidar,
+                   "front (FLASER, ROBOTLASER1; default) or rear (RLASER, ROBOTLASER2)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, CarmenLidar>{
+          {"front", CarmenLidar::kFront}, {"rear", CarmenLidar::kRear}}));
+  carmen
+      ->add_option("--odometry", options.carmen.odometry,
+                   "laser (odometry poses of the LiDAR's lines; default) or odom (ODOM lines)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, CarmenOdometrySource>{{"laser", CarmenOdometrySource::kLaserLines},
+                                                      {"odom", CarmenOdometrySource::kOdomLines}}));
+  carmen
+      ->add_option("--max-range-m", options.carmen.range_max_m,
+                   "ranges from here on are no returns (default: as the line says, else 81.9)")
+      ->check(CLI::PositiveNumber);
+  carmen->add_option("--first-angle-deg", options.first_angle_deg,
+                     "beam 0 of FLASER and RLASER (default -90)");
+  carmen->add_option("--angle-step-deg", options.angle_step_deg,
+                     "between beams of FLASER and RLASER (default 1 for 180 and 181 beams, 0.5 for "
+                     "360 and 361)");
+  return carmen;
+}
+
+CLI::App* add_mbot(CLI::App& app, Options& options) {
+  CLI::App* mbot = app.add_subcommand(
+      "mbot", "LCM log of an MBot robot (lidar_t) or of one with bot_core's planar_lidar_t");
+  MbotOptions& chosen = options.mbot;
+  add_common_options(*mbot, options, chosen.mounting, chosen.range_min_m);
+  mbot->add_option("--lidar-channel", chosen.lidar_channel, "lidar_t or planar_lidar_t")
+      ->capture_default_str();
+  mbot->add_option("--odometry-channel", chosen.odometry_channel,
+                   "pose2D_t, pose_xyt_t, odometry_t or bot_core.pose_t");
+  mbot->add_option("--encoder-channel", chosen.encoder_channel,
+                   "left and right ticks of a MAEBot, instead of --odometry-channel");
+  mbot->add_option("--reference-channel", chosen.reference_channel,
+                   "poses to write as reference.tum, types as for --odometry-channel");
+  mbot->add_option("--meters-per-tick", chosen.wheels.meters_per_tick, "way of a wheel per tick")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  mbot->add_option("--wheel-base-m", chosen.wheels.wheel_base_m, "distance between the wheels")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  mbot->add_option("--max-range-m", chosen.range_max_m, "longest range measured")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  return mbot;
+}
+
+void convert_angles(Options& options) {
+  const auto to_radians = [](const std::optional<double>& angle_deg) {
+    return angle_deg ? std::optional{radians(*angle_deg)} : std::nullopt;
+  };
+  options.carmen.beams = {to_radians(options.first_angle_deg), to_radians(options.angle_step_deg)};
+  options.carmen.mounting.yaw_rad = to_radians(options.lidar_yaw_deg);
+  options.mbot.mounting.yaw_rad = to_radians(options.lidar_yaw_deg);
+}
+
+void tell(const ImportReport& report) {
+  for (const std::string& message : report.messages())
+    spdlog::warn("{}", message);
+  for (const std::string& note : report.notes())
+    spdlog::info("{}", note);
+}
+
+int import(const Options& options, bool is_carmen) {
+  std::error_code none;
+  if (std::filesystem::equivalent(options.file, options.out, none)) {
+    throw SetupError{"--out is the log to read: give another name"};
+  }
+  ImportReport report{options.file, is_carmen ? AddressUnit::kLine : AddressUnit::kByte};
+  try {
+    const ImportedLog log = is_carmen ? read_carmen_log(options.file, options.carmen, report)
+                                      : read_mbot_log(options.file, options.mbot, report);
+    write_imported_log(log, options.out);
+    tell(report);
+    fmt::print("{}", summary(log, report));
+  } catch (...) {
+    tell(report);
+    throw;
+  }
+  if (report.num_skipped() == 0 || options.tolerant) return kExitOk;
+  spdlog::error("skipped {} (--tolerant accepts that)", report.num_skipped());
+  return kExitFailed;
+}
+
+}  // namespace
+}  // namespace waymark
+
+int main(int argc, char** argv) {
+  using namespace waymark;
+  Options options;
+  CLI::App app{std::string{kTraits.purpose}, "waymark-import"};
+  app.set_version_flag("--version", "waymark-import " WAYMARK_VERSION);
+  app.require_subcommand(1);
+  const CLI::App* carmen = add_carmen(app, options);
+  add_mbot(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  convert_angles(options);
+  return run_guarded(kTraits, [&] { return import(options, carmen->parsed()); });
+}
