@@ -7,7 +7,7 @@ set -euo pipefail
 readonly kExitFailed=1 kExitUsage=2 kExitDied=3 kExitTimeout=4  # DESIGN.md, section 7
 
 script_name=$(basename "${0%.sh}")
-deploy_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+deploy_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 if [[ -f $deploy_dir/../CMakeLists.txt ]]; then  # in the source tree
   source_dir=$(cd "$deploy_dir/.." && pwd)
   bin_dir=$source_dir/build/release

@@ -10,6 +10,7 @@ packages=(
   libeigen3-dev libtbb-dev                 # slam: algebra, threads
   libmujoco-dev libosmesa6-dev             # sim: physics, rendering without a display
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  zlib1g-dev                               # import of compressed CARMEN logs
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libceres-dev  # tests, benchmarks
   iproute2                                 # `ip`: a route for multicast where there is none
 )
@@ -33,10 +34,10 @@ fail() {
 command -v apt-get >/dev/null ||
   fail "this needs Debian 12 or a relative with apt; elsewhere install the like of: ${packages[*]}"
 
+installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${packages[@]}" 2>/dev/null || true)
 missing=()
 for package in "${packages[@]}"; do
-  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-  [[ $status == installed ]] || missing+=("$package")
+  [[ $'\n'$installed$'\n' == *$'\n'"$package installed"$'\n'* ]] || missing+=("$package")
 done
 ((${#missing[@]} > 0)) || exit 0
 

@@ -94,7 +94,8 @@ missing_program() {
 install_deps_when_nothing_is_missing() {
   mkdir "$work/path"
   printf '#!/bin/sh\necho "apt-get was called" >&2; exit 1\n' >"$work/path/apt-get"
-  printf '#!/bin/sh\nprintf installed\n' >"$work/path/dpkg-query"
+  # shellcheck disable=SC2016  # for the fake to expand
+  printf '#!/bin/sh\nshift 2; for name; do echo "$name installed"; done\n' >"$work/path/dpkg-query"
   chmod +x "$work"/path/*
   PATH=$work/path:$PATH expect 0 install-deps.sh
   [[ ! -s $output ]] || fail "it should have been silent"
@@ -104,7 +105,7 @@ install_deps_says_what_fails() {
   mkdir "$work/path"
   printf '#!/bin/sh\necho "E: no network"; exit 100\n' >"$work/path/apt-get"
   printf '#!/bin/sh\nexec "$@"\n' >"$work/path/sudo"
-  printf '#!/bin/sh\necho not-installed\n' >"$work/path/dpkg-query"
+  printf '#!/bin/sh\necho "ninja-build not-installed"; exit 1\n' >"$work/path/dpkg-query"
   chmod +x "$work"/path/*
   PATH=$work/path:$PATH expect 2 install-deps.sh
   expect_output "E: no network" && expect_output "'apt-get update' failed"

@@ -30,23 +30,29 @@ struct Source {
   }
 };
 
-/// Each wanted channel is taken from the last log that has it.
+/// A channel is taken from the last log that has it. What SLAM publishes belongs together: a log
+/// with any SLAM_* channel replaces all of them in the logs before it.
+std::string group_of(const std::string& channel) {
+  constexpr std::string_view kSlam = "SLAM_";
+  return channel.starts_with(kSlam) ? std::string{kSlam} : channel;
+}
+
 std::vector<Source> open_sources(const std::vector<std::filesystem::path>& paths,
                                  const std::vector<Inbox::Subscription>& subscriptions) {
-  std::map<std::string, std::size_t> source_of_channel;
+  std::map<std::string, std::size_t> source_of_group;
   std::vector<Source> sources;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     try {
       for (const std::string& channel : channels_in(paths[i]))
-        source_of_channel[channel] = i;
+        source_of_group[group_of(channel)] = i;
       sources.push_back({paths[i], LogReader{paths[i]}, {}, {}});
     } catch (const std::exception& error) {
       throw SetupError{error.what()};
     }
   }
   for (const auto& subscription : subscriptions) {
-    const auto found = source_of_channel.find(subscription.channel);
-    if (found != source_of_channel.end()) {
+    const auto found = source_of_group.find(group_of(subscription.channel));
+    if (found != source_of_group.end()) {
       sources[found->second].channels.push_back(subscription.channel);
     }
   }

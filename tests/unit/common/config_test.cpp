@@ -32,7 +32,11 @@ std::string error_of(const ConfigSources& sources) {
 }
 
 std::filesystem::path file_with(const std::string& text) {
-  const auto path = std::filesystem::path{::testing::TempDir()} / "config_test.toml";
+  // A folder per test: ctest runs them at the same time.
+  const auto folder = std::filesystem::path{::testing::TempDir()} /
+                      ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::filesystem::create_directories(folder);
+  const auto path = folder / "config_test.toml";
   std::ofstream{path} << text;
   return path;
 }

@@ -15,7 +15,9 @@ class Fields;
 struct MatchingRewards {
   double strong_reward{1.0};  ///< the ids of beam and cell match
   double penalty{1.0};        ///< they differ
-  double weak_reward{0.05};   ///< both are outside marker regions, and the cell is a wall
+  /// Both are outside marker regions, and the cell is a wall. A quarter of this lets the map get a
+  /// kink of half a degree when a particle with good ids and a bad heading draws it.
+  double weak_reward{0.2};
 
   void describe(Fields& fields);
 };

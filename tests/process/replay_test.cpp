@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Nodes on logs: order, which log a channel is taken from, and what is said about damaged logs.
+#include "common/process/replay.hpp"
+
+#include "common/log/log_file.hpp"
+#include "common/process/exit_codes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace waymark {
+namespace {
+
+Message pose(std::string_view channel, std::int64_t utime_us, float x_m) {
+  pose2D_t message{};
+  message.utime = utime_us;
+  message.x = x_m;
+  return encode(Channel<pose2D_t>{channel}, message);
+}
+
+/// Writes down what it is given.
+class Listener final : public Node {
+ public:
+  Listener(Inbox& inbox, Outbox& outbox) : outbox_{outbox} {
+    for (const std::string_view channel : {"ODOMETRY", "SLAM_POSE", "SLAM_ESTIMATE"}) {
+      inbox.on<pose2D_t>({channel}, [this, channel](const pose2D_t& message) {
+        heard_ += std::string{channel} + " " + std::to_string(message.utime) + " " +
+                  std::to_string(static_cast<int>(message.x)) + "\n";
+        outbox_.publish(channels::kTruePose, message);
+      });
+    }
+  }
+
+  void finish() override { heard_ += "end\n"; }
+
+  std::string heard_;
+
+ private:
+  Outbox& outbox_;
+};
+
+class Replay : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path{::testing::TempDir()} /
+              ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::create_directories(folder_);
+  }
+
+  std::filesystem::path log(const std::string& name, const std::vector<Message>& messages) const {
+    LogWriter writer{folder_ / name};
+    for (const Message& message : messages)
+      writer.write(message);
+    writer.close();
+    return folder_ / name;
+  }
+
+  int replay(const std::vector<std::filesystem::path>& logs) {
+    ProcessOptions options;
+    options.logs = logs;
+    options.out_log = folder_ / "out.lcm";
+    Inbox inbox;
+    Outbox outbox;
+    Listener listener{inbox, outbox};
+    const int code = run_replay(options, listener, inbox, outbox);
+    heard_ = listener.heard_;
+    return code;
+  }
+
+  std::filesystem::path folder_;
+  std::string heard_;
+};
+
+TEST_F(Replay, MergesLogsByTime) {
+  const auto a = log("a.lcm", {pose("ODOMETRY", 1, 1), pose("ODOMETRY", 5, 1)});
+  const auto b = log("b.lcm", {pose("SLAM_POSE", 3, 2)});
+  EXPECT_EQ(replay({a, b}), kExitOk);
+  EXPECT_EQ(heard_, "ODOMETRY 1 1\nSLAM_POSE 3 2\nODOMETRY 5 1\nend\n");
+  LogReader out{folder_ / "out.lcm"};
+  EXPECT_EQ(out.next()->channel, "TRUE_POSE");
+}
+
+TEST_F(Replay, ALaterLogReplacesAChannelAndAllOfSlam) {
+  const auto run = log(
+      "run.lcm", {pose("ODOMETRY", 1, 1), pose("SLAM_POSE", 1, 1), pose("SLAM_ESTIMATE", 2, 1)});
+  const auto again = log("again.lcm", {pose("SLAM_POSE", 1, 2)});
+  EXPECT_EQ(replay({run, again}), kExitOk);
+  EXPECT_EQ(heard_, "ODOMETRY 1 1\nSLAM_POSE 1 2\nend\n");
+}
+
+TEST_F(Replay, ADamagedLogIsReadToItsEndAndFails) {
+  const auto path = log("damaged.lcm", {pose("ODOMETRY", 1, 1)});
+  std::ofstream{path, std::ios::app} << "garbage";
+  EXPECT_EQ(replay({path}), kExitFailed);
+  EXPECT_EQ(heard_, "ODOMETRY 1 1\nend\n");
+}
+
+TEST_F(Replay, ALogWithoutOurChannelsFails) {
+  EXPECT_EQ(replay({log("other.lcm", {pose("TRUE_POSE", 1, 1)})}), kExitFailed);
+}
+
+TEST_F(Replay, AMissingLogIsASetupError) {
+  EXPECT_THROW(replay({folder_ / "none.lcm"}), SetupError);
+}
+
+TEST_F(Replay, RefusedMessagesFail) {
+  Message bad = pose("ODOMETRY", 1, 1);
+  bad.payload.push_back(0);
+  EXPECT_EQ(replay({log("bad.lcm", {bad, pose("ODOMETRY", 2, 1)})}), kExitFailed);
+  EXPECT_EQ(heard_, "ODOMETRY 2 1\nend\n");
+}
+
+}  // namespace
+}  // namespace waymark

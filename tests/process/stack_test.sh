@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# The real programs under deploy/launch.sh when they cannot start or are told to stop. (Whole runs, killed
+# processes and two stacks at once: tests/simulation.)
+#
+# usage: tests/process/stack_test.sh BUILD_DIR CASE
+# shellcheck disable=SC2317  # cases are called by name
+set -euo pipefail
+
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build_dir=${1:?usage: stack_test.sh BUILD_DIR CASE}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+unset LCM_DEFAULT_URL
+
+# The installed layout, so that the programs of any build folder are under test.
+mkdir -p "$work/share/waymark"
+cp -r "$source_dir/deploy" "$work/share/waymark/"
+ln -s "$build_dir" "$work/bin"
+launch=$work/share/waymark/deploy/launch.sh
+
+cat >"$work/short.toml" <<'END'
+[world]
+length_m = 7.0
+[markers]
+first_m = 3.0
+spacing_m = 2.0
+last_m = 5.0
+[route]
+end_x_m = 5.0
+speed_mps = 0.5
+END
+
+fail() {
+  echo "FAILED: $*" >&2
+  tail -n 20 "$work"/*.output >&2
+  exit 1
+}
+
+# begin NAME: a run in the background into $work/NAME; its pid is $!.
+begin() {
+  env --default-signal=INT "$launch" "$work/short.toml" --out "$work/$1" >"$work/$1.output" 2>&1 &
+}
+
+# until_under_way NAME: ticks are going round.
+until_under_way() {
+  local i
+  for ((i = 0; i < 600; ++i)); do
+    ! grep -qs '%.*simulated' "$work/$1/logs/sim.log" || return 0
+    sleep 0.05
+  done
+  fail "$1 does not start"
+}
+
+# expect_code CODE PID
+expect_code() {
+  local code=0
+  wait "$2" || code=$?
+  ((code == $1)) || fail "exit code $code instead of $1"
+}
+
+expect_nothing_left() {
+  local left
+  left=$(pgrep -af -- "$work/bin/waymark-" || true)
+  [[ -z $left ]] || fail "left over: $left"
+}
+
+ctrl_c_leaves_nothing() {
+  begin run
+  local run=$!
+  until_under_way run
+  kill -INT $run
+  expect_code 130 $run
+  expect_nothing_left
+}
+
+no_multicast_route() {
+  unshare --map-root-user --net true 2>/dev/null || exit 77
+  local code=0
+  unshare --map-root-user --net "$launch" "$work/short.toml" --out "$work/run" >"$work/run.output" 2>&1 || code=$?
+  ((code == 2)) || fail "exit code $code"
+  grep -q "ip route add 224.0.0.0/4 dev lo" "$work/run.output" || fail "no advice"
+  expect_nothing_left
+}
+
+bad_scenario() {
+  printf '[world]\nlenght_m = 7.0\n' >"$work/short.toml"
+  begin run
+  expect_code 2 $!
+  grep -q "length_m" "$work/run.output" || fail "the nearest key is not named"
+  [[ ! -e $work/run ]] || fail "a folder for nothing"
+}
+
+declare -F "${2:?no case given}" >/dev/null || { echo "no case '$2'" >&2 && exit 2; }
+"$2"
