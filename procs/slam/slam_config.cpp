@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/slam_config.hpp"
 
+#include "slam/parallel.hpp"
+
 #include <cmath>
 
 namespace waymark {
@@ -36,11 +38,14 @@ void PreprocessingConfig::describe(Fields& fields) {
 }
 
 void SlamSection::describe(Fields& fields) {
-  fields.choice(
-      "estimator", estimator,
-      {{"odometry", EstimatorName::kOdometry}, {"marker_matching", EstimatorName::kMarkerMatching}},
-      "method");
+  fields.choice("estimator", estimator,
+                {{"odometry", EstimatorName::kOdometry},
+                 {"gmapping", EstimatorName::kGmapping},
+                 {"marker_matching", EstimatorName::kMarkerMatching}},
+                "method");
   fields.field("seed", seed, {0.0, 9e15}, "of all random numbers");
+  fields.field("threads", threads, {1.0, 256.0},
+               "for the particles of gmapping; any number gives the same result");
   fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
   fields.field("map_period_s", map_period_s, kPositive,
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
@@ -49,6 +54,7 @@ void SlamSection::describe(Fields& fields) {
   fields.section("motion", motion);
   fields.section("gate", gate);
   fields.section("grid", grid);
+  fields.section("gmapping", gmapping);
   fields.section("marker_matching", marker_matching);
 }
 
@@ -83,6 +89,8 @@ EstimatorSetup estimator_setup(const SlamConfig& config) {
   setup.motion = config.slam.motion;
   setup.gate = config.slam.gate;
   setup.range_sigma_m = config.robot.lidar.range_sigma_m;
+  setup.range_max_m = config.robot.lidar.range_max_m;
+  setup.parallel_for = parallel_for_with(config.slam.threads);
   setup.seed = static_cast<std::uint64_t>(config.slam.seed);
   return setup;
 }

@@ -5,6 +5,7 @@
 #include "common/config/config.hpp"
 #include "common/robot/robot_config.hpp"
 #include "slam/core/estimators/estimator.hpp"
+#include "slam/core/estimators/gmapping.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/input/sensor_queue.hpp"
 
@@ -12,7 +13,7 @@
 
 namespace waymark {
 
-enum class EstimatorName { kOdometry, kMarkerMatching };
+enum class EstimatorName { kOdometry, kGmapping, kMarkerMatching };
 
 /// How marker sightings are put on beams, and which beams may say "no marker here".
 struct PreprocessingConfig {
@@ -28,6 +29,7 @@ struct PreprocessingConfig {
 struct SlamSection {
   EstimatorName estimator{EstimatorName::kMarkerMatching};
   std::int64_t seed{1};
+  int threads{1};
   bool blank_ids{false};
   double map_period_s{1.0};
   bool publish_grid{false};
@@ -35,6 +37,7 @@ struct SlamSection {
   MotionNoise motion{};
   UpdateGate gate{};
   MapperConfig grid{};
+  GmappingConfig gmapping{};
   MarkerMatchingConfig marker_matching{};
 
   void describe(Fields& fields);
