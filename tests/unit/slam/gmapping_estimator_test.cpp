@@ -42,7 +42,8 @@ TEST(GmappingInABareCorridor, AScanScoresMoreFurtherBackAlthoughOdometryIsPerfec
   constexpr double kStep_m = 0.06;
   const GridFrame frame = GridFrame::centred_on_map_origin(0.05);
   const MatcherSetting setting{MatcherConfig{}, frame};
-  const std::vector<double> moved_back_m{-0.05, 0.0, 0.05, 0.1};
+  // Further back the score stays: by then all hits lie beside mapped ones.
+  const std::vector<double> moved_back_m{-0.05, 0.0, 0.05};
   std::vector<double> scores(moved_back_m.size());
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random{seed};
