@@ -11,9 +11,11 @@
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-# The rows of the table: folder, estimator, and what is set differently.
+# The rows of the table: folder, estimator, and what is set differently (key=value or a file of deploy/).
 rows=(
   "odometry odometry"
+  "gmapping gmapping gmapping/slam_gmapping.toml"
+  "gmapping_turtlebot3 gmapping gmapping/turtlebot3.toml"
   "marker_matching_no_ids marker_matching slam.blank_ids=true"
   "marker_matching_rotation_only marker_matching slam.motion.rotation_only=true"
   "marker_matching marker_matching"
@@ -56,7 +58,12 @@ fingerprint() { (cd "$out/$live_estimator" && sha256sum map.pgm trajectory.tum);
 replay_row() {
   local name estimator settings setting options=()
   read -r name estimator settings <<<"$1"
-  for setting in $settings; do options+=(--set "$setting"); done
+  for setting in $settings; do
+    case $setting in
+      *.toml) options+=(--config "$deploy_dir/$setting") ;;
+      *) options+=(--set "$setting") ;;
+    esac
+  done
   "$deploy_dir/replay.sh" "$out/run.lcm" --estimator "$estimator" --row "$name" "${options[@]}"
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the core's parameters stand in a configuration. The core itself knows no files.
 #include "common/config/fields.hpp"
+#include "slam/core/estimators/gmapping.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
@@ -30,6 +31,59 @@ void MapperConfig::describe(Fields& fields) {
                "bare wall beside a marker that is seen together with it");
   fields.field("same_marker_within_m", same_marker_within_m, kPositive,
                "sightings of an id nearer than this are of one marker");
+}
+
+void StepNoise::describe(Fields& fields) {
+  fields.field("srr", srr, kNotNegative, "srr: translation by translation [m/m]");
+  fields.field("srt", srt, kNotNegative, "srt: rotation by translation [rad/m]");
+  fields.field("str", str, kNotNegative, "str: translation by rotation [m/rad]");
+  fields.field("stt", stt, kNotNegative, "stt: rotation by rotation [rad/rad]");
+}
+
+void ScanGate::describe(Fields& fields) {
+  fields.field("linear_update_m", linear_update_m, kNotNegative,
+               "linearUpdate: a scan is processed after this much driving");
+  fields.field("angular_update_rad", angular_update_rad, kNotNegative,
+               "angularUpdate: or this much turning");
+  fields.field("temporal_update_s", temporal_update_s, kAnyNumber,
+               "temporalUpdate: or more than this much time; negative: never");
+}
+
+void MatcherConfig::describe(Fields& fields) {
+  fields.field("sigma_m2", sigma_m2, kPositive, "sigma: a beam scores exp(-d^2 / sigma)");
+  fields.field("likelihood_sigma_m2", likelihood_sigma_m2, kPositive,
+               "lsigma: log-likelihood of a beam is -d^2 / lsigma");
+  fields.field("kernel_size", kernel_size, {0.0, 10.0},
+               "kernelSize: cells searched around the end of a beam, each way");
+  fields.field("linear_step_m", linear_step_m, kPositive, "lstep: first step of the climb");
+  fields.field("angular_step_rad", angular_step_rad, kPositive, "astep: first turn of the climb");
+  fields.field("iterations", iterations, {0.0, 30.0}, "iterations: how often the steps are halved");
+  fields.field("skip_beams", skip_beams, {0.0, 1000.0},
+               "lskip: beams left out between two that are matched");
+  fields.choice("free_cells", free_cells,
+                {{"as_released", FreeCells::kAsReleased}, {"intended", FreeCells::kIntended}},
+                "whether a wall just before the end of a beam refuses the hit, or, as in the "
+                "released code, never does");
+}
+
+void GmappingConfig::describe(Fields& fields) {
+  fields.field("particles", particles, {1.0, 10000.0}, "particles: number of hypotheses");
+  fields.field("max_range_m", max_range_m, kNotNegative,
+               "maxRange: longer beams are dropped; 0 = a centimetre less than the LiDAR's");
+  fields.field("max_usable_range_m", max_usable_range_m, kNotNegative,
+               "maxUrange: longer beams are not matched, and clear the map up to here; 0 = "
+               "max_range_m");
+  fields.field("minimum_score", minimum_score, kNotNegative,
+               "minimumScore: a match must score more, else odometry is believed");
+  fields.field("resample_threshold", resample_threshold, kFraction,
+               "resampleThreshold: share of effective particles below which to resample");
+  fields.field("likelihood_gain", likelihood_gain, kPositive,
+               "ogain: log weights are divided by this times the number of particles");
+  fields.field("occupied_threshold", occupied_threshold, kFraction,
+               "occ_thresh: share of hits above which a cell is published as occupied");
+  fields.section("motion", motion);
+  fields.section("gate", gate);
+  fields.section("matcher", matcher);
 }
 
 void MatchingRewards::describe(Fields& fields) {

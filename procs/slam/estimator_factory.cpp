@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/estimator_factory.hpp"
 
+#include "slam/core/estimators/gmapping.hpp"
 #include "slam/core/estimators/odometry.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
@@ -11,6 +12,8 @@ std::unique_ptr<Estimator> make_estimator(const SlamConfig& config) {
   switch (config.slam.estimator) {
     case EstimatorName::kOdometry:
       return std::make_unique<OdometryEstimator>(setup);
+    case EstimatorName::kGmapping:
+      return std::make_unique<GmappingEstimator>(setup, config.slam.gmapping);
     case EstimatorName::kMarkerMatching:
       return std::make_unique<MarkerMatchingEstimator>(setup, config.slam.marker_matching);
     case EstimatorName::kWaymark:

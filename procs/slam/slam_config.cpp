@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/slam_config.hpp"
 
+#include "slam/parallel.hpp"
+
 #include <cmath>
 
 namespace waymark {
@@ -29,6 +31,8 @@ void PreprocessingConfig::describe(Fields& fields) {
                "a marker nearer than this to the image's edge may be missed");
   fields.field("detectable_range_m", detectable_range_m, kPositive,
                "a marker further away may be missed: its absence says nothing");
+  fields.field("max_sigma_m", max_sigma_m, kPositive,
+               "sightings with a larger standard deviation along their wall are not used");
   fields.field("marker_wait_s", marker_wait_s, {0.0, 10.0},
                "how long a scan waits for the camera frames up to its time");
 }
@@ -36,10 +40,13 @@ void PreprocessingConfig::describe(Fields& fields) {
 void SlamSection::describe(Fields& fields) {
   fields.choice("estimator", estimator,
                 {{"odometry", EstimatorName::kOdometry},
+                 {"gmapping", EstimatorName::kGmapping},
                  {"marker_matching", EstimatorName::kMarkerMatching},
                  {"waymark", EstimatorName::kWaymark}},
                 "method");
   fields.field("seed", seed, {0.0, 9e15}, "of all random numbers");
+  fields.field("threads", threads, {1.0, 256.0},
+               "for the particles of gmapping; any number gives the same result");
   fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
   fields.field("map_period_s", map_period_s, kPositive,
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
@@ -48,6 +55,7 @@ void SlamSection::describe(Fields& fields) {
   fields.section("motion", motion);
   fields.section("gate", gate);
   fields.section("grid", grid);
+  fields.section("gmapping", gmapping);
   fields.section("marker_matching", marker_matching);
   fields.section("waymark", waymark);
 }
@@ -71,6 +79,7 @@ SensorSetup sensor_setup(const SlamConfig& config) {
   setup.camera = camera_view(config.robot.camera, config.slam.preprocessing);
   setup.marker_size_m = config.robot.markers.size_m;
   setup.beam_tolerance_m = config.slam.preprocessing.beam_tolerance_m;
+  setup.max_sigma_m = config.slam.preprocessing.max_sigma_m;
   setup.marker_wait = duration_from_seconds(config.slam.preprocessing.marker_wait_s);
   setup.blank_ids = config.slam.blank_ids;
   return setup;
@@ -83,6 +92,8 @@ EstimatorSetup estimator_setup(const SlamConfig& config) {
   setup.gate = config.slam.gate;
   setup.range_sigma_m = config.robot.lidar.range_sigma_m;
   setup.base_from_camera = sensor_setup(config).camera.base_from_camera;
+  setup.range_max_m = config.robot.lidar.range_max_m;
+  setup.parallel_for = parallel_for_with(config.slam.threads);
   setup.seed = static_cast<std::uint64_t>(config.slam.seed);
   return setup;
 }

@@ -5,6 +5,7 @@
 #include "common/config/config.hpp"
 #include "common/robot/robot_config.hpp"
 #include "slam/core/estimators/estimator.hpp"
+#include "slam/core/estimators/gmapping.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/waymark.hpp"
 #include "slam/core/input/sensor_queue.hpp"
@@ -13,13 +14,14 @@
 
 namespace waymark {
 
-enum class EstimatorName { kOdometry, kMarkerMatching, kWaymark };
+enum class EstimatorName { kOdometry, kGmapping, kMarkerMatching, kWaymark };
 
 /// How marker sightings are put on beams, and which beams may say "no marker here".
 struct PreprocessingConfig {
   double beam_tolerance_m{0.08};
   double view_margin_rad{0.1};
   double detectable_range_m{3.2};
+  double max_sigma_m{0.05};
   double marker_wait_s{0.25};
 
   void describe(Fields& fields);
@@ -28,6 +30,7 @@ struct PreprocessingConfig {
 struct SlamSection {
   EstimatorName estimator{EstimatorName::kMarkerMatching};
   std::int64_t seed{1};
+  int threads{1};
   bool blank_ids{false};
   double map_period_s{1.0};
   bool publish_grid{false};
@@ -35,6 +38,7 @@ struct SlamSection {
   MotionNoise motion{};
   UpdateGate gate{};
   MapperConfig grid{};
+  GmappingConfig gmapping{};
   MarkerMatchingConfig marker_matching{};
   WaymarkConfig waymark{};
 

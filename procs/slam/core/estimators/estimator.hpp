@@ -3,6 +3,7 @@
 #pragma once
 
 #include "slam/core/filter/estimate.hpp"
+#include "slam/core/filter/parallel_for.hpp"
 #include "slam/core/filter/update_gate.hpp"
 #include "slam/core/grid/grid_map.hpp"
 #include "slam/core/mapping/landmark_map.hpp"
@@ -22,7 +23,9 @@ struct EstimatorSetup {
   UpdateGate gate{};
   double range_sigma_m{0.01};  ///< of the LiDAR
   Se2 base_from_camera{};      ///< x = viewing direction
+  double range_max_m{3.5};     ///< of the LiDAR
   std::uint64_t seed{1};
+  ParallelFor parallel_for{serial_for};
 };
 
 /// A hypothesis, for pictures.

@@ -18,10 +18,12 @@ namespace waymark {
 /// Cells at any (also negative) index; a cell that was never edited reads as Cell{}.
 /// Reading costs two shifts and a table look-up; copying a map costs one counter increment per
 /// tile; the first edit of a shared tile copies that tile only.
-template <class Cell>
+/// @tparam TileOfCells  how a tile stores its cells: anything indexed by offset_in_tile, e.g.
+///                      SparseTile where most cells stay untouched.
+template <class Cell, class TileOfCells = std::array<Cell, kTileCells>>
 class TileMap {
  public:
-  using Tile = std::array<Cell, kTileCells>;
+  using Tile = TileOfCells;
 
   const Cell& operator[](CellIndex cell) const {
     const Tile* cells = tile(tile_of(cell));

@@ -27,6 +27,8 @@ std::string_view to_string(Skip skip) {
       return "camera frames dropped waiting for a scan";
     case Skip::kMarkerImplausible:
       return "markers not upright";
+    case Skip::kMarkerUncertain:
+      return "markers too uncertain";
   }
   return "unknown";
 }
@@ -139,10 +141,12 @@ void SensorQueue::sight_markers(const MarkerDetections& frame, Timestamp time,
   for (const MarkerDetection& detection : frame.detections) {
     const auto sighting =
         sight_marker(detection, frame.time, scan_base_from_frame_base, setup_.marker_size_m);
-    if (sighting) {
-      sightings.push_back(*sighting);
-    } else {
+    if (!sighting) {
       skips_.push_back(Skip::kMarkerImplausible);
+    } else if (sighting->sigma_along_m() > setup_.max_sigma_m) {
+      skips_.push_back(Skip::kMarkerUncertain);
+    } else {
+      sightings.push_back(*sighting);
     }
   }
 }

@@ -19,6 +19,7 @@ struct SensorSetup {
   CameraView camera{};
   double marker_size_m{0.4};
   double beam_tolerance_m{0.08};  ///< a beam that ends this near to a marker's segment is on it
+  double max_sigma_m{0.05};       ///< sightings less certain than this are not used
   Duration marker_wait{250'000};  ///< how long a scan waits for the camera frames up to its time
   bool blank_ids{false};          ///< control: forget all markers
 };
@@ -35,6 +36,7 @@ enum class Skip {
   kFrameOutOfOrder,
   kFrameOverflow,
   kMarkerImplausible,
+  kMarkerUncertain,
 };
 
 std::string_view to_string(Skip skip);

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The baseline: a Rao-Blackwellised particle filter equivalent to OpenSLAM GMapping.
+#pragma once
+
+#include "slam/core/estimators/estimator.hpp"
+#include "slam/core/filter/particle_set.hpp"
+#include "slam/core/gmapping/motion_noise.hpp"
+#include "slam/core/gmapping/published_map.hpp"
+#include "slam/core/gmapping/scan_gate.hpp"
+#include "slam/core/gmapping/scan_matcher.hpp"
+#include "slam/core/gmapping/trajectory.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace waymark {
+
+/// Defaults: slam_gmapping's, whose own names stand beside the members. Cells and seed are those of
+/// EstimatorSetup.
+struct GmappingConfig {
+  int particles{30};
+  double max_range_m{0.0};          ///< maxRange; 0 = a centimetre less than the LiDAR's
+  double max_usable_range_m{0.0};   ///< maxUrange; 0 = max_range_m
+  double minimum_score{0.0};        ///< minimumScore
+  double resample_threshold{0.5};   ///< resampleThreshold
+  double likelihood_gain{3.0};      ///< ogain
+  double occupied_threshold{0.25};  ///< occ_thresh
+  StepNoise motion{};
+  ScanGate gate{};
+  MatcherConfig matcher{};
+
+  void describe(Fields& fields);
+};
+
+/// Each particle carries a map of the hits it has seen. Results do not depend on the ParallelFor.
+class GmappingEstimator final : public Estimator {
+ public:
+  GmappingEstimator(const EstimatorSetup& setup, const GmappingConfig& config);
+
+  Estimate update(const Observation& observation) override;
+
+  /// Drawn when asked for: a map along the best trajectory costs what changed since the last call.
+  const GridMap& map() const override;
+
+  std::vector<Landmark> landmarks() const override { return {}; }
+
+  std::vector<PublishedParticle> particles() const override;
+
+ private:
+  struct State {
+    Se2 map_from_base{};
+    Se2 previous_map_from_base{};
+    HitMap hits{};
+    Trajectory trajectory{};
+    double log_likelihood{0.0};  ///< of the whole trajectory
+    bool is_matched{true};       ///< the last scan scored enough
+  };
+
+  void propagate(const Motion& motion);
+  void match_and_weigh(std::span<const Beam> beams);
+  void resample_and_register(const std::shared_ptr<const StoredScan>& scan);
+  StoredScan trusted_beams(const Observation& observation) const;
+  Estimate estimate(const Observation& observation) const;
+
+  EstimatorSetup setup_;
+  GmappingConfig config_;
+  MatcherSetting matcher_;
+  ParticleSet<State> particles_;
+  std::uint64_t observations_{0};
+
+  // Of the last update:
+  std::uint64_t updates_{0};
+  Timestamp updated_at_{};
+  Motion since_update_{};
+  std::size_t best_{0};  ///< the particle with the most likely trajectory
+  Se2 map_from_best_{};  ///< its pose then
+  double effective_particles_{1.0};
+  mutable PublishedMap published_map_;  ///< a cache: the trajectories decide what it shows
+};
+
+}  // namespace waymark

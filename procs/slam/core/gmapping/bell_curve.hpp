@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// exp(-d^2 / width) from a table: the matcher needs a million of them per scan.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace waymark {
+
+/// Linear between 1024 equal steps of d^2. Its error is below (limit / width)^2 / 8e6: 2e-8 for
+/// GMapping's defaults. tests/benchmark/gmapping_benchmark.cpp
+class BellCurve {
+ public:
+  /// @param width_squared  and
+  /// @param limit          the largest argument, in the same unit.
+  BellCurve(double width_squared, double limit)
+      : steps_per_unit_{static_cast<float>(kSteps / limit)} {
+    const double step = limit / kSteps / width_squared;
+    for (std::size_t i = 0; i < kSteps; ++i) {
+      const double here = std::exp(-step * static_cast<double>(i));
+      const double next = std::exp(-step * static_cast<double>(i + 1));
+      pieces_[i] = {static_cast<float>(here), static_cast<float>(next - here)};
+    }
+  }
+
+  /// @param squared  in [0, limit).
+  float operator()(float squared) const {
+    const float position = squared * steps_per_unit_;
+    const auto index = static_cast<std::size_t>(static_cast<int>(position));
+    const Piece piece = pieces_[index < kSteps ? index : kSteps - 1];
+    return piece.start + piece.rise * (position - static_cast<float>(index));
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 1024;
+
+  struct Piece {
+    float start;
+    float rise;
+  };
+
+  std::array<Piece, kSteps> pieces_{};
+  float steps_per_unit_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The map for others: all scans drawn again, with free space, along the best particle's trajectory.
+#pragma once
+
+#include "slam/core/gmapping/trajectory.hpp"
+#include "slam/core/grid/grid_map.hpp"
+
+namespace waymark {
+
+/// Draws a scan: cells up to a beam's end are crossed, the last one is hit. A beam longer than
+/// `usable_range_m` clears its way up to there and hits nothing.
+void draw_scan(const StoredScan& scan, const Se2& map_from_base, double usable_range_m,
+               GridMap& map);
+
+/// Always the same as drawing the whole trajectory into an empty map, at the cost of what is new.
+class PublishedMap {
+ public:
+  PublishedMap(const GridFrame& frame, double usable_range_m, double occupied_threshold);
+
+  /// Nobody will ever take another way than `trunk` up to its newest node: draws it for good and
+  /// frees its scans and all nodes but the newest.
+  void settle(const Trajectory& trunk);
+
+  /// The map along a trajectory as slam_gmapping publishes it: a mapped cell counts one visit, and
+  /// a hit when more than the threshold of its beams ended there. When the trajectory continues the
+  /// one before, only its new scans are drawn. Tiles without a change keep their address.
+  const GridMap& along(const Trajectory& trajectory);
+
+ private:
+  void draw(const Trajectory& trajectory);
+  void decide(TileIndex tile);
+
+  GridMap settled_;           ///< along the trunk, which all trajectories share
+  GridMap drawn_;             ///< along the last trajectory asked for
+  GridMap decided_of_;        ///< what decided_ was made from
+  GridMap decided_;           ///< drawn_ after the threshold
+  Trajectory drawn_until_{};  ///< its newest node
+  double usable_range_m_;
+  double occupied_threshold_;
+};
+
+}  // namespace waymark

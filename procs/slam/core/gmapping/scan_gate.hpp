@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which scans GMapping processes; the others only move the particles.
+#pragma once
+
+#include "common/time/time.hpp"
+#include "slam/core/motion/motion.hpp"
+
+namespace waymark {
+
+class Fields;
+
+struct ScanGate {
+  double linear_update_m{1.0};     ///< linearUpdate
+  double angular_update_rad{0.5};  ///< angularUpdate
+  double temporal_update_s{-1.0};  ///< temporalUpdate; negative: never for the time alone
+
+  bool is_open(const Motion& since_update, Duration elapsed) const {
+    return since_update.distance_m >= linear_update_m ||
+           since_update.turn_rad >= angular_update_rad ||
+           (temporal_update_s >= 0.0 && to_seconds(elapsed) > temporal_update_s);
+  }
+
+  void describe(Fields& fields);
+};
+
+}  // namespace waymark

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// GMapping's matcher: how well a scan fits a particle's map, and a hill climb to where it fits
+// best.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "slam/core/gmapping/bell_curve.hpp"
+#include "slam/core/gmapping/surroundings.hpp"
+#include "slam/core/scan/beams.hpp"
+
+#include <span>
+#include <vector>
+
+namespace waymark {
+
+class Fields;
+
+/// What is done with "the cell before a hit has to be free" (research in this folder's README).
+enum class FreeCells {
+  kAsReleased,  ///< the released code looks half a map away, so nothing is ever refused
+  kIntended,    ///< the cell sqrt(2) cells before the end of the beam must not be a wall
+};
+
+/// Under GMapping's names. The widths are in m^2: the released code does not square them.
+struct MatcherConfig {
+  double sigma_m2{0.05};              ///< score of a beam: exp(-d^2 / sigma)
+  double likelihood_sigma_m2{0.075};  ///< lsigma: log-likelihood of a beam: -d^2 / lsigma
+  int kernel_size{1};                 ///< cells searched around the end of a beam, each way
+  double linear_step_m{0.05};         ///< lstep
+  double angular_step_rad{0.05};      ///< astep
+  int iterations{5};                  ///< how often both steps are halved
+  int skip_beams{0};                  ///< lskip: beams left out between two that are used
+  FreeCells free_cells{FreeCells::kAsReleased};
+
+  void describe(Fields& fields);
+};
+
+/// What all matchers of a filter share: the configuration, made ready.
+struct MatcherSetting {
+  MatcherSetting(const MatcherConfig& matcher_config, const GridFrame& grid_frame);
+
+  MatcherConfig config;
+  GridFrame frame;
+  BellCurve score_of;  ///< of a squared distance in cells^2
+};
+
+/// Compares one scan with one map. d of a beam = distance from its end to the nearest mean of hit
+/// points in the cells around it. Make one per scan and map; the map must not change meanwhile.
+class ScanMatcher {
+ public:
+  ScanMatcher(const MatcherSetting& setting, const HitMap& map, std::span<const Beam> beams);
+
+  /// Sum over the beams of exp(-d^2 / sigma); 0 for a beam with no hit around. From 0 to the number
+  /// of beams.
+  double score(const Se2& map_from_base);
+
+  /// Sum over the beams of -d^2 / lsigma; -0.5 / lsigma for a beam with no hit around.
+  double log_likelihood(const Se2& map_from_base);
+
+  struct Match {
+    Se2 map_from_base{};
+    double score{0.0};
+  };
+
+  /// Climbs the score from `start`: the best of six moves (along the map's x and y and turning,
+  /// both ways) as long as one helps, else half the step.
+  Match climb(const Se2& start);
+
+ private:
+  /// A beam in cells, base frame.
+  struct Ray {
+    double end_x;
+    double end_y;
+    double before_x;  ///< where the free cell is looked for
+    double before_y;
+  };
+
+  template <class Add>
+  void for_each_squared_distance(const Se2& map_from_base, Add&& add);
+
+  const MatcherSetting& setting_;
+  Surroundings surroundings_;
+  std::vector<Ray> rays_{};
+};
+
+}  // namespace waymark

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ways of the particles as a tree: what they share is stored once, what none needs is freed.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "slam/core/scan/beams.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace waymark {
+
+using StoredScan = std::vector<Beam>;
+
+/// One processed scan on the way of one particle, or of several that descend from it.
+struct TrajectoryNode {
+  TrajectoryNode(const Se2& pose, std::shared_ptr<const StoredScan> beams,
+                 std::shared_ptr<TrajectoryNode> before)
+      : map_from_base{pose}, scan{std::move(beams)}, parent{std::move(before)} {}
+
+  TrajectoryNode(const TrajectoryNode&) = delete;
+  TrajectoryNode& operator=(const TrajectoryNode&) = delete;
+  ~TrajectoryNode();
+
+  Se2 map_from_base;
+  std::shared_ptr<const StoredScan> scan;  ///< the same one for all particles
+  std::shared_ptr<TrajectoryNode> parent;  ///< one processed scan earlier; null at the root
+};
+
+using Trajectory = std::shared_ptr<TrajectoryNode>;  ///< its newest node
+
+/// The newest node that all of them passed through; null when there is none. They must be equally
+/// long. O(particles x nodes that they do not share).
+Trajectory common_ancestor(std::vector<Trajectory> trajectories);
+
+}  // namespace waymark

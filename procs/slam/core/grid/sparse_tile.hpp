@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A tile that stores only the cells that were touched: small to keep and quick to copy.
+#pragma once
+
+#include "slam/core/grid/cell_index.hpp"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace waymark {
+
+/// Use as TileMap<Cell, SparseTile<Cell>> for layers in which few cells of a tile are ever written,
+/// such as walls. One bit per cell says whether it was touched; the touched ones lie packed, row by
+/// row. Reading is O(1), touching a new cell moves the ones behind it.
+template <class Cell>
+class SparseTile {
+ public:
+  const Cell& operator[](std::size_t offset) const {
+    return is_touched(offset) ? cells_[place_of(offset)] : kUntouched;
+  }
+
+  /// The cell for writing; it counts as touched from now on.
+  Cell& operator[](std::size_t offset) {
+    const std::size_t place = place_of(offset);
+    if (!is_touched(offset)) {
+      cells_.insert(cells_.begin() + static_cast<std::ptrdiff_t>(place), Cell{});
+      touched_[row_of(offset)] |= bit_of(offset);
+      for (std::size_t row = row_of(offset) + 1; row < kTileSize; ++row)
+        ++first_[row];
+    }
+    return cells_[place];
+  }
+
+  bool is_touched(std::size_t offset) const {
+    return (touched_[row_of(offset)] & bit_of(offset)) != 0;
+  }
+
+  std::size_t num_touched() const { return cells_.size(); }
+
+  /// Calls visit(column, cell) for the touched cells of a row in columns [low, high] of the tile.
+  template <class Visit>
+  void visit_row(int row, int low, int high, Visit&& visit) const {
+    const auto y = static_cast<std::size_t>(row);
+    const std::uint32_t from_low = ~std::uint32_t{0} << low;
+    const std::uint32_t to_high = ~std::uint32_t{0} >> (kTileSize - 1 - high);
+    std::uint32_t left = touched_[y] & from_low & to_high;
+    if (left == 0) return;
+    std::size_t place = first_[y] + number_of_bits(touched_[y] & ~from_low);
+    for (; left != 0; left &= left - 1) {
+      visit(std::countr_zero(left), cells_[place++]);
+    }
+  }
+
+ private:
+  inline static const Cell kUntouched{};
+
+  static std::size_t row_of(std::size_t offset) { return offset >> kTileBits; }
+
+  static std::uint32_t bit_of(std::size_t offset) {
+    return std::uint32_t{1} << (offset & (kTileSize - 1));
+  }
+
+  static std::size_t number_of_bits(std::uint32_t bits) {
+    return static_cast<std::size_t>(std::popcount(bits));
+  }
+
+  std::size_t place_of(std::size_t offset) const {
+    const std::size_t row = row_of(offset);
+    return first_[row] + number_of_bits(touched_[row] & (bit_of(offset) - 1));
+  }
+
+  std::array<std::uint32_t, kTileSize> touched_{};  ///< bit x of row y
+  std::array<std::uint16_t, kTileSize> first_{};    ///< place of the first touched cell of the row
+  std::vector<Cell> cells_{};
+};
+
+}  // namespace waymark

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The process without a network: messages in, messages out.
+#include "common/messages/convert.hpp"
+#include "common/random/random.hpp"
+#include "slam/slam_node.hpp"
+#include "support/synthetic_corridor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace waymark {
+namespace {
+
+SlamConfig small_config() {
+  SlamConfig config;
+  config.slam.marker_matching.particles = 20;
+  return config;
+}
+
+/// A short drive as messages in the order of a recorded log.
+std::vector<Message> messages_of_drive(double drive_m = 0.6) {
+  test::SyntheticCorridor corridor;
+  corridor.length_m = 8.0;
+  corridor.drive_m = drive_m;
+  corridor.markers = test::opposite_markers(corridor);
+  const test::SensorLog log = test::drive(corridor);
+  std::vector<Message> messages;
+  for (const LidarScan& scan : log.scans)
+    messages.push_back(encode(channels::kLidar, to_planar_lidar(scan)));
+  for (const OdometrySample& sample : log.odometry) {
+    messages.push_back(
+        encode(channels::kOdometry, to_pose_message(sample.time, sample.odom_from_base)));
+  }
+  for (const MarkerDetections& frame : log.frames)
+    messages.push_back(encode(channels::kMarkers, to_detections_message(frame)));
+  std::sort(messages.begin(), messages.end(), comes_before);
+  return messages;
+}
+
+struct Slam {
+  Inbox inbox{};
+  Outbox outbox{};
+  SlamNode node;
+
+  explicit Slam(const SlamConfig& config = small_config()) : node{config, inbox, outbox} {}
+
+  std::vector<Message> feed(const std::vector<Message>& messages) {
+    for (const Message& message : messages)
+      inbox.deliver(message);
+    node.finish();
+    return outbox.take();
+  }
+};
+
+std::map<std::string, int> count_by_channel(const std::vector<Message>& messages) {
+  std::map<std::string, int> counts;
+  for (const Message& message : messages)
+    ++counts[message.channel];
+  return counts;
+}
+
+TEST(SlamNode, AnswersEveryScan) {
+  Slam slam;
+  const auto input = messages_of_drive();
+  const auto output = slam.feed(input);
+  auto counts = count_by_channel(output);
+  const int scans = count_by_channel(input)["LIDAR"];
+  EXPECT_EQ(counts["SLAM_POSE"], scans);
+  EXPECT_EQ(counts["SLAM_ESTIMATE"], scans);
+  EXPECT_EQ(counts["SLAM_SCAN"], scans);
+  EXPECT_EQ(counts["SLAM_PARTICLES"], scans);
+  EXPECT_GE(counts["SLAM_MAP"], 6);
+  EXPECT_EQ(counts["SLAM_GRID"], 0);
+  for (const Message& message : output)
+    EXPECT_LE(message.payload.size(), kMaxPayloadBytes) << message.channel;
+}
+
+TEST(SlamNode, NeverHearsTheTruth) {
+  Slam slam;
+  for (const auto& subscription : slam.inbox.subscriptions())
+    EXPECT_NE(subscription.channel, "TRUE_POSE");
+}
+
+// Whatever the order within the delay that slam waits for, the result is the same bytes.
+TEST(SlamNode, TheResultDoesNotDependOnHowMessagesAreGrouped) {
+  const auto input = messages_of_drive();
+  const auto expected = Slam{}.feed(input);
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    Random random{seed};
+    // Each channel comes with a delay of its own that changes now and then, in order.
+    std::vector<std::pair<double, Message>> arriving;
+    std::map<std::string, double> last_arrival_s;
+    for (const Message& message : input) {
+      const double arrival_s = to_seconds(message.time) + random.uniform(0.0, 0.1);
+      double& last_s = last_arrival_s[message.channel];
+      last_s = std::max(last_s, arrival_s);
+      arriving.emplace_back(last_s, message);
+    }
+    std::stable_sort(arriving.begin(), arriving.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Message> shuffled;
+    for (const auto& [arrival_s, message] : arriving)
+      shuffled.push_back(message);
+    EXPECT_TRUE(Slam{}.feed(shuffled) == expected) << seed;
+  }
+}
+
+TEST(SlamNode, TheMapIsCompleteAtTheEndAndForALateListener) {
+  Slam slam;
+  const auto output = slam.feed(messages_of_drive());
+  std::map<std::pair<int, int>, map_tile_t> from_changes;
+  std::map<std::pair<int, int>, map_tile_t> at_end;
+  std::int64_t last_utime = 0;
+  for (const Message& message : output) {
+    if (message.channel != "SLAM_MAP") continue;
+    const auto tiles = *decode<map_tiles_t>(message.payload).message;
+    last_utime = std::max(last_utime, tiles.utime);
+    for (const map_tile_t& tile : tiles.tiles)
+      from_changes[{tile.tile_x, tile.tile_y}] = tile;
+  }
+  for (const Message& message : output) {
+    if (message.channel != "SLAM_MAP") continue;
+    const auto tiles = *decode<map_tiles_t>(message.payload).message;
+    if (tiles.utime != last_utime) continue;
+    for (const map_tile_t& tile : tiles.tiles)
+      at_end[{tile.tile_x, tile.tile_y}] = tile;
+  }
+  ASSERT_EQ(from_changes.size(), at_end.size());
+  int occupied = 0;
+  for (const auto& [index, tile] : at_end) {
+    EXPECT_EQ(from_changes.at(index).occupancy, tile.occupancy);
+    occupied += static_cast<int>(
+        std::count_if(tile.occupancy.begin(), tile.occupancy.end(), [](int o) { return o > 50; }));
+  }
+  EXPECT_GT(occupied, 100);
+}
+
+TEST(SlamNode, NothingInNothingOut) {
+  Slam slam;
+  EXPECT_TRUE(slam.feed({}).empty());
+}
+
+TEST(SlamNode, BadScansAndTimesAreCountedAndSkipped) {
+  auto input = messages_of_drive(0.2);
+  const auto scan_message = [](std::int64_t utime, std::vector<float> ranges) {
+    planar_lidar_t scan{};
+    scan.utime = utime;
+    scan.nranges = static_cast<std::int32_t>(ranges.size());
+    scan.ranges = std::move(ranges);
+    scan.radstep = 0.1F;
+    return encode(channels::kLidar, scan);
+  };
+  const float inf = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::int64_t late = to_us(input[input.size() / 2].time);
+  const auto middle = input.begin() + static_cast<std::ptrdiff_t>(input.size() / 2);
+  input.insert(middle, {scan_message(late + 1, {inf, nan, -1.0F, 0.0F}),
+                        scan_message(late + 3, {1.0F, 1.0F, 1.0F}), scan_message(5, {1.0F}),
+                        encode(channels::kOdometry, to_pose_message(timestamp_from_us(7), Se2{}))});
+  Slam slam;
+  const auto output = slam.feed(input);
+  const Counters& counters = slam.inbox.counters();
+  EXPECT_EQ(counters.get("scans without returns"), 1);
+  EXPECT_GE(counters.get("scans out of order"), 1);
+  EXPECT_EQ(counters.get("odometry out of order"), 1);
+  EXPECT_GE(counters.get("scans with another number of beams"), 2);
+  EXPECT_GT(count_by_channel(output)["SLAM_POSE"], 5);
+}
+
+TEST(SlamNode, ScansWithoutOdometryAreNotUsed) {
+  auto input = messages_of_drive(0.2);
+  std::erase_if(input, [](const Message& message) { return message.channel == "ODOMETRY"; });
+  Slam slam;
+  EXPECT_TRUE(slam.feed(input).empty());
+  EXPECT_GT(slam.inbox.counters().get("scans after the last odometry"), 5);
+}
+
+TEST(SlamNode, ScansDoNotWaitForeverForACamera) {
+  auto input = messages_of_drive(0.4);
+  std::erase_if(input, [](const Message& message) { return message.channel == "MARKERS"; });
+  const int scans = count_by_channel(input)["LIDAR"];
+  EXPECT_EQ(count_by_channel(Slam{}.feed(input))["SLAM_POSE"], scans);
+}
+
+TEST(SlamNode, BlankIdsForgetAllMarkers) {
+  SlamConfig config = small_config();
+  config.slam.blank_ids = true;
+  const auto input = messages_of_drive();
+  const auto any_marker = [](const std::vector<Message>& output) {
+    return std::any_of(output.begin(), output.end(), [](const Message& message) {
+      return message.channel == "SLAM_MARKERS" &&
+             decode<marker_map_t>(message.payload).message->num_landmarks > 0;
+    });
+  };
+  EXPECT_TRUE(any_marker(Slam{}.feed(input)));
+  EXPECT_FALSE(any_marker(Slam{config}.feed(input)));
+}
+
+TEST(SlamNode, AbsurdOdometryAndMarkersDoNotKillIt) {
+  auto input = messages_of_drive(0.2);
+  const std::int64_t end = to_us(input.back().time);
+  marker_detections_t frame{};
+  frame.utime = end + 1;
+  frame.num_detections = 1;
+  marker_detection_t& detection = frame.detections.emplace_back();
+  detection.id = 3;
+  detection.position_m[0] = 1e300;
+  detection.orientation[0] = 1.0;
+  detection.other_orientation[0] = 1.0;
+  input.push_back(encode(channels::kMarkers, frame));
+  for (int i = 1; i < 20; ++i) {
+    pose2D_t pose{};
+    pose.utime = end + i * 100'000;
+    pose.x = i % 2 ? 3e38F : -3e38F;
+    input.push_back(encode(channels::kOdometry, pose));
+  }
+  Slam slam;
+  EXPECT_GT(count_by_channel(slam.feed(input))["SLAM_POSE"], 5);
+  EXPECT_GT(slam.inbox.counters().get("odometry jumps"), 5);
+}
+
+}  // namespace
+}  // namespace waymark
