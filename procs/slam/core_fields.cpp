@@ -140,6 +140,10 @@ void MarkerMeasurementConfig::describe(Fields& fields) {
   fields.field("camera_sigma_m", camera_sigma_m, kNotNegative,
                "error that neighbouring frames have in common");
   fields.field("camera_sigma_rad", camera_sigma_rad, kNotNegative, "the same, of the bearing");
+  fields.field("camera_yaw_sigma_rad", camera_yaw_sigma_rad, kNotNegative,
+               "how wrong the camera's mounting may be; learnt while driving");
+  fields.field("camera_focal_sigma", camera_focal_sigma, kNotNegative,
+               "how wrong its focal length may be, relative; learnt while driving");
   fields.field("covariance_factor", covariance_factor, kPositive,
                "on the detector's covariances: neighbouring frames err alike");
   fields.field("gate", gate, kPositive, "chi^2 between camera and wall that is still believed");
@@ -156,6 +160,8 @@ void WaymarkConfig::describe(Fields& fields) {
                "chi^2 of a sighting of a known marker that is still believed");
   fields.field("same_marker_within_m", same_marker_within_m, kPositive,
                "no second marker of one id nearer than this");
+  fields.field("joint_markers", joint_markers, {2, 1000},
+               "markers that each particle knows together with its pose; the others are settled");
   fields.field("scan_evidence", scan_evidence, kFraction,
                "share of a scan's log-likelihood that weighs particles");
   fields.field("lost_agreement", lost_agreement, kFraction,

@@ -7,14 +7,23 @@
 namespace waymark {
 namespace {
 
-enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2 };
+enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2, kSettlingStream = 3 };
 
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
-Eigen::Matrix3d turned(const Eigen::Matrix3d& covariance, const Se2& map_from_base) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = map_from_base.rotation();
-  return turn * covariance * turn.transpose();
+BeliefPrior prior_of(const WaymarkConfig& config) {
+  return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma};
+}
+
+/// Axes of (x, y, theta) in the map, as columns, that the walls of a scan can tell.
+Eigen::Matrix<double, 3, Eigen::Dynamic> told_axes(const Observability& walls_in_base,
+                                                   const Se2& map_from_base) {
+  const Eigen::Vector2d weak = map_from_base.rotation() * walls_in_base.weak_direction;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, walls_in_base.is_degenerate ? 2 : 3);
+  axes.col(0) = Eigen::Vector3d::UnitZ();
+  axes.col(1) << -weak.y(), weak.x(), 0.0;
+  if (!walls_in_base.is_degenerate) axes.col(2) << weak, 0.0;
+  return axes;
 }
 
 }  // namespace
@@ -22,8 +31,9 @@ Eigen::Matrix3d turned(const Eigen::Matrix3d& covariance, const Se2& map_from_ba
 WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config)
     : setup_{setup},
       config_{config},
-      particles_{static_cast<std::size_t>(config.particles),
-                 State{GridFrame::centred_on_map_origin(setup.grid.resolution_m), config.odometry}},
+      particles_{
+          static_cast<std::size_t>(config.particles),
+          State{GridFrame::centred_on_map_origin(setup.grid.resolution_m), prior_of(config)}},
       mapper_{setup.grid} {
   config_.matching.range_sigma_m = setup.range_sigma_m;
 }
@@ -47,63 +57,67 @@ bool WaymarkEstimator::is_due() const {
 }
 
 void WaymarkEstimator::process(const Observation& observation) {
-  const auto measurements =
-      measure_markers(observation, setup_.range_sigma_m, setup_.base_from_camera, config_.markers);
-  std::vector<Step> steps(particles_.size());
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    steps[i] = prepare(particles_.state(i), observation, measurements);
+  const Sensed sensed{
+      &observation,
+      measure_markers(observation, setup_.range_sigma_m, setup_.base_from_camera, config_.markers),
+      observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
   const std::vector<Eigen::Vector3d> normals = centred_normals();
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const PoseProposal& proposal = steps[i].proposal;
-    State& state = particles_.state(i);
-    move(state, updates_ == 0 ? Se2{} : proposal.at(normals[i]), steps[i], measurements);
-    for (const AnnotatedBeam& annotated : observation.beams)
-      state.walls.add(state.map_from_base * annotated.beam.end_in_base);
-    particles_.add_log_weight(i, proposal.log_evidence - steps[i].penalty);
-  }
+  std::vector<Outcome> outcomes(particles_.size());
+  setup_.parallel_for(particles_.size(), [&](std::size_t i) {
+    outcomes[i] = advance(particles_.state(i), sensed, normals[i]);
+    Random random{setup_.seed, kSettlingStream, updates_, i};
+    particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers),
+                                             random);
+  });
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    particles_.add_log_weight(i, outcomes[i].log_evidence);
   particles_.normalise();
-  judge(steps);
+  judge(outcomes);
 }
 
-WaymarkEstimator::Step WaymarkEstimator::prepare(
-    const State& state, const Observation& observation,
-    const std::vector<MarkerMeasurement>& measurements) const {
-  Step step;
-  const Se2 prior_mean = state.map_from_base * state.calibration.corrected(since_update_);
-  const Eigen::Matrix3d prior_covariance =
-      turned(state.calibration.covariance(since_update_, config_.odometry), state.map_from_base);
-  const PoseProposal by_walls = propose(prior_mean, prior_covariance, [&](const Se2& pose) {
-    step.walls = match_surfaces(observation.beams, state.walls, pose, config_.matching);
-    PoseInformation walls = step.walls.pose;
-    walls.cost *= config_.scan_evidence;
-    return walls;
-  });
-  step.proposal = by_walls;
-  associate(state, measurements, step);
-  step.proposal = propose(by_walls.mean, by_walls.covariance, [&](const Se2& pose) {
-    PoseInformation markers;
-    for (const auto& [measurement, landmark] : step.known) {
-      markers +=
-          information_of(state.markers.compare_with(landmark, measurements[measurement], pose));
-    }
-    return markers;
-  });
-  step.proposal.log_evidence += by_walls.log_evidence;
-  return step;
+WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& sensed,
+                                                    const Eigen::Vector3d& normal) const {
+  Outcome outcome;
+  state.previous_map_from_base = state.map_from_base;
+  if (updates_ > 0) {
+    state.belief.move(since_update_, config_.odometry);
+    correct_by_walls(state, sensed, outcome);
+  }
+  correct_by_markers(state, sensed, outcome);
+  state.belief.draw_pose(told_axes(sensed.walls, state.belief.map_from_base()), normal);
+  state.map_from_base = state.belief.map_from_base();
+  for (const AnnotatedBeam& annotated : sensed.observation->beams)
+    state.walls.add(state.map_from_base * annotated.beam.end_in_base);
+  return outcome;
 }
 
-void WaymarkEstimator::associate(const State& state,
-                                 const std::vector<MarkerMeasurement>& measurements,
-                                 Step& step) const {
-  for (std::size_t i = 0; i < measurements.size(); ++i) {
-    const auto nearest =
-        state.markers.nearest(measurements[i], step.proposal.mean, step.proposal.covariance);
+void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
+                                        Outcome& outcome) const {
+  const PoseProposal by_walls =
+      propose(state.belief.map_from_base(), state.belief.pose_covariance(), [&](const Se2& pose) {
+        outcome.walls =
+            match_surfaces(sensed.observation->beams, state.walls, pose, config_.matching);
+        PoseInformation walls = outcome.walls.pose;
+        walls.cost *= config_.scan_evidence;
+        return walls;
+      });
+  state.belief.correct_pose(by_walls.mean, by_walls.covariance);
+  outcome.log_evidence += by_walls.log_evidence;
+}
+
+void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
+                                          Outcome& outcome) const {
+  for (const MarkerMeasurement& measurement : sensed.markers) {
+    if (measurement.wall) state.belief.correct_camera(*measurement.wall);
+    const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->distance < config_.marker_gate) {
-      step.known.emplace_back(i, nearest->innovation.landmark);
-      continue;
+      outcome.log_evidence += state.belief.correct(nearest->marker, measurement);
+      ++outcome.known_markers;
+    } else {
+      outcome.log_evidence -= 0.5 * config_.marker_gate;
+      if (!nearest || nearest->distance_m() > config_.same_marker_within_m)
+        state.belief.add(measurement);
     }
-    step.penalty += 0.5 * config_.marker_gate;
-    if (!nearest || nearest->distance_m > config_.same_marker_within_m) step.fresh.push_back(i);
   }
 }
 
@@ -124,30 +138,14 @@ std::vector<Eigen::Vector3d> WaymarkEstimator::centred_normals() const {
   return normals;
 }
 
-void WaymarkEstimator::move(State& state, const Se2& map_from_base, const Step& step,
-                            const std::vector<MarkerMeasurement>& measurements) const {
-  state.previous_map_from_base = state.map_from_base;
-  state.map_from_base = map_from_base;
-  if (updates_ > 0) {
-    state.calibration.learn(since_update_, state.previous_map_from_base.inverse() * map_from_base,
-                            config_.odometry);
-  }
-  for (const auto& [measurement, landmark] : step.known)
-    state.markers.update(landmark, measurements[measurement], map_from_base);
-  for (const std::size_t measurement : step.fresh)
-    state.markers.add(measurements[measurement], map_from_base);
-}
-
-void WaymarkEstimator::judge(const std::vector<Step>& steps) {
+void WaymarkEstimator::judge(const std::vector<Outcome>& outcomes) {
   mean_ = mean_pose();
-  covariance_ = covariance_about(mean_, particles_);
+  covariance_ = covariance_about_mean();
   effective_particles_ = particles_.effective_number();
-  const Step& best = steps[particles_.best()];
-  best_ = particles_.state(particles_.best());
-  best_->map_from_base = updates_ == 0 ? Se2{} : best.proposal.mean;
+  const Outcome& best = outcomes[particles_.best()];
   const bool is_mapped = best.walls.mapped > kMinMappedShare * best.walls.beams;
   wall_agreement_ = is_mapped ? best.walls.agreeing / best.walls.mapped : 1.0;
-  markers_told_ = !best.known.empty();
+  markers_told_ = best.known_markers > 0;
 }
 
 Se2 WaymarkEstimator::mean_pose() const {
@@ -158,28 +156,28 @@ Se2 WaymarkEstimator::mean_pose() const {
   return deviated(about, mean);
 }
 
-const OdometryCalibration& WaymarkEstimator::calibration() const {
-  return best_->calibration;
+/// Of the mixture: what the particles' Gaussians leave open, and how far the particles disagree.
+Eigen::Matrix3d WaymarkEstimator::covariance_about_mean() const {
+  Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    within += particles_.weights()[i] * particles_.state(i).belief.pose_covariance();
+  return within + covariance_about(mean_, particles_);
 }
 
-/// Where the best particle is now: between updates its walls hold the heading, which odometry loses
-/// fastest. Nothing of it is kept.
-PoseProposal WaymarkEstimator::track(const Observation& observation) const {
-  const Se2 predicted = best_->map_from_base * calibration().corrected(since_update_);
-  const Eigen::Matrix3d covariance =
-      turned(calibration().covariance(since_update_, config_.odometry), best_->map_from_base);
-  return propose(predicted, covariance, [&](const Se2& pose) {
-    return match_surfaces(observation.beams, best_->walls, pose, config_.matching).pose;
-  });
-}
-
+/// Between updates the walls of the best particle hold the heading, which odometry loses fastest.
+/// Nothing of it is kept.
 Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   const bool has_moved = since_update_.distance_m > 0.0 || since_update_.turn_rad > 0.0;
   Se2 map_from_base = mean_;
   Eigen::Matrix3d covariance = covariance_;
   if (has_moved) {
-    const PoseProposal now = track(observation);
-    map_from_base = mean_ * (best_->map_from_base.inverse() * now.mean);
+    const State& best = particles_.state(particles_.best());
+    const Belief::Prediction predicted = best.belief.predicted(since_update_, config_.odometry);
+    const PoseProposal now =
+        propose(predicted.map_from_base, predicted.covariance, [&](const Se2& pose) {
+          return match_surfaces(observation.beams, best.walls, pose, config_.matching).pose;
+        });
+    map_from_base = mean_ * (best.map_from_base.inverse() * now.mean);
     covariance += now.covariance;
   }
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
@@ -200,7 +198,10 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
 }
 
 std::vector<Landmark> WaymarkEstimator::landmarks() const {
-  const MarkerLandmarks& best = particles_.state(particles_.best()).markers;
+  const std::vector<Landmark> best = belief().markers();
+  std::vector<std::vector<Landmark>> of_particles;
+  for (std::size_t p = 0; p < particles_.size(); ++p)
+    of_particles.push_back(particles_.state(p).belief.markers());
   std::vector<Landmark> landmarks;
   for (std::size_t i = 0; i < best.size(); ++i) {
     Landmark landmark = best[i];
@@ -210,7 +211,7 @@ std::vector<Landmark> WaymarkEstimator::landmarks() const {
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     for (std::size_t p = 0; p < particles_.size(); ++p) {
       // Particles meet markers in the same order unless they disagree about which one it is.
-      const MarkerLandmarks& others = particles_.state(p).markers;
+      const std::vector<Landmark>& others = of_particles[p];
       if (i >= others.size() || others[i].id != landmark.id) continue;
       const Eigen::Vector3d away = deviation(best[i].map_from_marker, others[i].map_from_marker);
       if (away.head<2>().norm() > config_.same_marker_within_m) continue;
@@ -236,7 +237,7 @@ std::vector<PublishedParticle> WaymarkEstimator::particles() const {
   published.reserve(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const State& state = particles_.state(i);
-    published.push_back({state.map_from_base * state.calibration.corrected(since_update_),
+    published.push_back({state.belief.predicted(since_update_, config_.odometry).map_from_base,
                          state.previous_map_from_base, particles_.weights()[i]});
   }
   return published;

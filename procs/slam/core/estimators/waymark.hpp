@@ -3,15 +3,13 @@
 // markers and calibration of the odometry.
 #pragma once
 
-#include "slam/core/calibration/odometry_calibration.hpp"
+#include "slam/core/belief/belief.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/filter/particle_set.hpp"
-#include "slam/core/landmark/marker_landmarks.hpp"
 #include "slam/core/matching/surface_matching.hpp"
 #include "slam/core/proposal/pose_proposal.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace waymark {
@@ -23,6 +21,7 @@ struct WaymarkConfig {
   double update_turn_rad{0.0873};
   double marker_gate{16.3};          ///< chi^2 of a sighting's innovation, 3 degrees of freedom
   double same_marker_within_m{1.0};  ///< no second marker of one id nearer than this
+  int joint_markers{24};             ///< in each particle's covariance; the others are settled
   double scan_evidence{0.1};         ///< share of a scan's log-likelihood that weighs particles
   double lost_agreement{0.3};        ///< share of the mapped beams; below: lost
   OdometryNoise odometry{};
@@ -32,9 +31,12 @@ struct WaymarkConfig {
   void describe(Fields& fields);
 };
 
-/// FastSLAM 2.0 (Montemerlo et al., 2003) on a line-based scan matcher: each particle's pose is
-/// drawn from the Gaussian that fuses its calibrated odometry, the walls it has mapped, along the
-/// axes that they tell, and the markers it knows; its weight is the evidence of what was measured.
+/// FastSLAM 2.0 (Montemerlo et al., 2003) on a line-based scan matcher, with delayed drawing: each
+/// particle is a Gaussian over its pose, the errors of odometry and camera, and the markers. Along
+/// the axes that walls can tell, the pose is drawn at each update from the fusion of odometry,
+/// walls and markers, for the particle's walls are mapped from there; along the others nothing is
+/// mapped that could tell later, so the Gaussian stays whole and no particles are spent on it.
+/// Weights are the evidence of what was measured.
 class WaymarkEstimator final : public Estimator {
  public:
   WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config);
@@ -47,40 +49,41 @@ class WaymarkEstimator final : public Estimator {
   std::vector<PublishedParticle> particles() const override;
 
   /// Of the best particle.
-  const OdometryCalibration& calibration() const;
+  const Belief& belief() const { return particles_.state(particles_.best()).belief; }
 
  private:
   struct State {
-    State(const GridFrame& frame, const OdometryNoise& noise) : walls{frame}, calibration{noise} {}
+    State(const GridFrame& frame, const BeliefPrior& prior) : walls{frame}, belief{prior} {}
 
-    Se2 map_from_base{};
+    Se2 map_from_base{};  ///< mean of the belief
     Se2 previous_map_from_base{};
     SurfaceMap walls;
-    MarkerLandmarks markers{};
-    OdometryCalibration calibration;
+    Belief belief;
   };
 
-  /// What one particle makes of the measurements, before it moves.
-  struct Step {
-    PoseProposal proposal{};
-    std::vector<std::pair<std::size_t, std::size_t>> known{};  ///< measurement, landmark
-    std::vector<std::size_t> fresh{};                          ///< measurements of new markers
-    double penalty{0.0};  ///< log weight lost to measurements that fit nothing known
+  /// What is the same for all particles at an update.
+  struct Sensed {
+    const Observation* observation{nullptr};
+    std::vector<MarkerMeasurement> markers{};
+    Observability walls{};  ///< base frame
+  };
+
+  /// What one particle made of it.
+  struct Outcome {
+    double log_evidence{0.0};
+    int known_markers{0};
     SurfaceMatch walls{};
   };
 
   bool is_due() const;
   void process(const Observation& observation);
-  Step prepare(const State& state, const Observation& observation,
-               const std::vector<MarkerMeasurement>& measurements) const;
-  void associate(const State& state, const std::vector<MarkerMeasurement>& measurements,
-                 Step& step) const;
+  Outcome advance(State& state, const Sensed& sensed, const Eigen::Vector3d& normal) const;
+  void correct_by_walls(State& state, const Sensed& sensed, Outcome& outcome) const;
+  void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   std::vector<Eigen::Vector3d> centred_normals() const;
-  void move(State& state, const Se2& map_from_base, const Step& step,
-            const std::vector<MarkerMeasurement>& measurements) const;
-  void judge(const std::vector<Step>& steps);
+  void judge(const std::vector<Outcome>& outcomes);
   Se2 mean_pose() const;
-  PoseProposal track(const Observation& observation) const;
+  Eigen::Matrix3d covariance_about_mean() const;
   Estimate estimate(const Observation& observation) const;
 
   EstimatorSetup setup_;
@@ -91,7 +94,6 @@ class WaymarkEstimator final : public Estimator {
   std::uint64_t updates_{0};
 
   // Of the last update:
-  std::optional<State> best_{};  ///< the best particle, at the mean of its proposal
   Se2 mean_{};
   Eigen::Matrix3d covariance_{Eigen::Matrix3d::Zero()};
   double effective_particles_{1.0};

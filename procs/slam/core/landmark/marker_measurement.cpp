@@ -72,6 +72,18 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const Se2& base_f
   return covariance;
 }
 
+/// How the camera's errors move what it sees: a camera that is mounted further left than told sees
+/// everything turned to the right; a longer focal length brings everything nearer to the image.
+Eigen::Matrix<double, 3, 2> by_camera_errors(const Se2& base_from_marker,
+                                             const Se2& base_from_camera) {
+  const Eigen::Vector2d ray = base_from_marker.translation() - base_from_camera.translation();
+  const Eigen::Vector2d forward = base_from_camera.rotation().col(0);
+  Eigen::Matrix<double, 3, 2> by_camera;
+  by_camera.col(0) << ray.y(), -ray.x(), -1.0;
+  by_camera.col(1) << -forward.dot(ray) * forward, 0.0;
+  return by_camera;
+}
+
 /// Kalman update of the camera's pose with "it lies in the wall and faces as the wall does".
 std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, const WallLine& wall,
                                               const MarkerMeasurementConfig& config) {
@@ -80,19 +92,30 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
   rows(1, 2) = 1.0;
   const Se2& seen = measurement.base_from_marker;
   const double normal_rad = std::atan2(wall.normal.y(), wall.normal.x());
-  const Eigen::Vector2d innovation{wall.normal.dot(wall.point - seen.translation()),
-                                   angle_difference(normal_rad, seen.theta())};
-  Eigen::Matrix2d spread = rows * measurement.covariance * rows.transpose();
-  spread(0, 0) += squared(wall.sigma_m) + squared(config.wall_sigma_m);
-  spread(1, 1) += squared(wall.sigma_rad) + squared(config.wall_sigma_rad);
-  const Eigen::Matrix2d inverse = spread.inverse();
-  if (!(innovation.dot(inverse * innovation) < config.gate)) return std::nullopt;
-  const Eigen::Matrix<double, 3, 2> gain = measurement.covariance * rows.transpose() * inverse;
-  measurement.base_from_marker = deviated(seen, gain * innovation);
+  WallInnovation innovation;
+  innovation.residual << wall.normal.dot(wall.point - seen.translation()),
+      angle_difference(normal_rad, seen.theta());
+  innovation.by_camera = -rows * measurement.by_camera;
+  innovation.covariance = rows * measurement.covariance * rows.transpose();
+  innovation.covariance(0, 0) += squared(wall.sigma_m) + squared(config.wall_sigma_m);
+  innovation.covariance(1, 1) += squared(wall.sigma_rad) + squared(config.wall_sigma_rad);
+
+  const Eigen::Vector2d camera_variance{squared(config.camera_yaw_sigma_rad),
+                                        squared(config.camera_focal_sigma)};
+  const Eigen::Matrix2d spread = innovation.covariance + innovation.by_camera *
+                                                             camera_variance.asDiagonal() *
+                                                             innovation.by_camera.transpose();
+  if (!(innovation.residual.dot(spread.inverse() * innovation.residual) < config.gate))
+    return std::nullopt;
+
+  const Eigen::Matrix<double, 3, 2> gain =
+      measurement.covariance * rows.transpose() * innovation.covariance.inverse();
+  measurement.base_from_marker = deviated(seen, gain * innovation.residual);
+  measurement.by_camera += gain * innovation.by_camera;
   measurement.covariance -= (gain * rows * measurement.covariance).eval();
   measurement.covariance =
       (0.5 * (measurement.covariance + measurement.covariance.transpose())).eval();
-  measurement.is_on_wall = true;
+  measurement.wall = innovation;
   return measurement;
 }
 
@@ -150,8 +173,10 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation, d
   std::vector<MarkerMeasurement> measurements;
   for (const MarkerSighting& sighting : observation.sightings) {
     if (sighting.time != newest) continue;
-    MarkerMeasurement measurement{sighting.id, sighting.time, sighting.base_from_marker,
-                                  in_robot_frame(sighting, base_from_camera, config)};
+    const MarkerMeasurement measurement{
+        sighting.id, sighting.time, sighting.base_from_marker,
+        in_robot_frame(sighting, base_from_camera, config),
+        by_camera_errors(sighting.base_from_marker, base_from_camera)};
     const auto wall = fit_wall(observation.beams, sighting.base_from_marker.translation(),
                                sighting.base_from_marker.theta(), range_sigma_m, config.reach_m);
     if (!wall) {

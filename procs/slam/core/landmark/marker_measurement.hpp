@@ -17,9 +17,11 @@ struct MarkerMeasurementConfig {
   double wall_sigma_m{0.004};   ///< how far a marker hangs before its wall, bulges
   double wall_sigma_rad{0.01};  ///< how skew
   double reach_m{1.5};  ///< wall on both sides of the marker that is believed to be straight
-  double camera_sigma_m{0.002};    ///< what frames have in common, beside their own covariance
-  double camera_sigma_rad{0.001};  ///< the same as an angle at the camera
-  double covariance_factor{2.0};   ///< on the detector's covariance: corners err together
+  double camera_sigma_m{0.002};         ///< what frames have in common, beside their own covariance
+  double camera_sigma_rad{0.001};       ///< the same as an angle at the camera
+  double camera_yaw_sigma_rad{0.0087};  ///< how wrong the mounting may be, learnt while driving
+  double camera_focal_sigma{0.01};      ///< the same of the focal length, relative
+  double covariance_factor{2.0};        ///< on the detector's covariance: corners err together
   double gate{16.3};  ///< chi^2 between camera and wall, 3 degrees of freedom (16.3 = 99.9 %)
 
   void describe(Fields& fields);
@@ -40,13 +42,23 @@ std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
                                  const Eigen::Vector2d& place_in_base, double normal_rad,
                                  double range_sigma_m, double reach_m);
 
+/// What the wall says about the camera: by how much the marker's view misses it.
+struct WallInnovation {
+  /// Wall minus view: distance [m] and direction [rad] of the wall's normal.
+  Eigen::Vector2d residual{Eigen::Vector2d::Zero()};
+  Eigen::Matrix2d by_camera{Eigen::Matrix2d::Zero()};  ///< as in MarkerMeasurement
+  Eigen::Matrix2d covariance{Eigen::Matrix2d::Identity()};
+};
+
 /// Pose of a marker in the base frame with its covariance (order x y yaw).
 struct MarkerMeasurement {
   int id{kNoMarker};
   Timestamp time{};
   Se2 base_from_marker{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
-  bool is_on_wall{false};  ///< a wall line took part
+  /// By the camera's errors: mounted further left [rad], longer focal length (relative).
+  Eigen::Matrix<double, 3, 2> by_camera{Eigen::Matrix<double, 3, 2>::Zero()};
+  std::optional<WallInnovation> wall{};  ///< its error is independent of the pose's
 };
 
 /// The last sighting of each marker of an observation as a measurement. The corners tell the

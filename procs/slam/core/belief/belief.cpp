@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/belief/belief.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace waymark {
+namespace {
+
+/// Share of a settled marker's covariance that is kept as its own, for want of particles.
+constexpr double kKeptShare = 0.1;
+/// [m^2], [rad^2] below this an axis is exact already: nothing is left to draw.
+constexpr double kExact = 1e-12;
+
+double squared(double x) {
+  return x * x;
+}
+
+/// The place where a marker is expected from a pose, with the derivatives.
+struct Expected {
+  Se2 base_from_marker{};
+  Eigen::Matrix3d by_pose{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d by_marker{Eigen::Matrix3d::Identity()};
+};
+
+Expected expect(const Se2& map_from_base, const Se2& map_from_marker) {
+  Expected expected;
+  expected.base_from_marker = map_from_base.inverse() * map_from_marker;
+  expected.by_marker.topLeftCorner<2, 2>() = map_from_base.rotation().transpose();
+  expected.by_pose = -expected.by_marker;
+  // Turning the robot left moves the marker to the right of it.
+  expected.by_pose(0, 2) = expected.base_from_marker.y();
+  expected.by_pose(1, 2) = -expected.base_from_marker.x();
+  return expected;
+}
+
+}  // namespace
+
+double Innovation::log_likelihood() const {
+  return -0.5 *
+         (distance + std::log(covariance.determinant()) + 3.0 * std::log(2.0 * std::numbers::pi));
+}
+
+Belief::Belief(const BeliefPrior& prior) : covariance_{Eigen::MatrixXd::Zero(kMarkers, kMarkers)} {
+  covariance_(kOdometry, kOdometry) = squared(prior.odometry.scale_sigma);
+  covariance_(kOdometry + 1, kOdometry + 1) = squared(prior.odometry.drift_sigma_rad_per_m);
+  covariance_(kOdometry + 2, kOdometry + 2) = squared(prior.odometry.turn_scale_sigma);
+  covariance_(kCamera, kCamera) = squared(prior.camera_yaw_sigma_rad);
+  covariance_(kCamera + 1, kCamera + 1) = squared(prior.camera_focal_sigma);
+}
+
+Belief::Prediction Belief::predicted(const Motion& motion, const OdometryNoise& noise) const {
+  const CorrectedMotion corrected = corrected_motion(motion, odometry_errors_, noise);
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = map_from_base_.rotation();
+  const Eigen::Matrix3d in_base = corrected.covariance + corrected.by_errors *
+                                                             odometry_errors_covariance() *
+                                                             corrected.by_errors.transpose();
+  return {map_from_base_ * corrected.start_from_end, turn * in_base * turn.transpose()};
+}
+
+void Belief::move(const Motion& motion, const OdometryNoise& noise) {
+  const CorrectedMotion corrected = corrected_motion(motion, odometry_errors_, noise);
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = map_from_base_.rotation();
+  const Eigen::Vector2d step = map_from_base_.rotation() * corrected.start_from_end.translation();
+  Eigen::Matrix3d by_pose = Eigen::Matrix3d::Identity();
+  by_pose(0, 2) = -step.y();
+  by_pose(1, 2) = step.x();
+  const Eigen::Matrix3d by_errors = turn * corrected.by_errors;
+
+  const Eigen::MatrixXd rows =
+      by_pose * covariance_.topRows<3>() + by_errors * covariance_.middleRows<3>(kOdometry);
+  covariance_.topRows<3>() = rows;
+  const Eigen::MatrixXd columns = covariance_.leftCols<3>() * by_pose.transpose() +
+                                  covariance_.middleCols<3>(kOdometry) * by_errors.transpose();
+  covariance_.leftCols<3>() = columns;
+  covariance_.topLeftCorner<3, 3>() += turn * corrected.covariance * turn.transpose();
+  map_from_base_ = map_from_base_ * corrected.start_from_end;
+}
+
+/// Everything deviates by gain * deviation, and loses gain * covariance_lost * gain'.
+void Belief::condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,
+                       const Eigen::Ref<const Eigen::VectorXd>& deviation,
+                       const Eigen::Ref<const Eigen::MatrixXd>& covariance_lost) {
+  const Eigen::VectorXd by = gain * deviation;
+  map_from_base_ = deviated(map_from_base_, by.head<3>());
+  odometry_errors_ += by.segment<3>(kOdometry);
+  camera_errors_ += by.segment<2>(kCamera);
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    active_[i].map_from_marker = deviated(active_[i].map_from_marker, by.segment<3>(place_of(i)));
+  }
+  const Eigen::MatrixXd lost = gain * covariance_lost;
+  covariance_.noalias() -= lost * gain.transpose();
+  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+}
+
+void Belief::correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d before = pose_covariance();
+  const Eigen::MatrixXd gain = before.ldlt().solve(covariance_.topRows<3>()).transpose();
+  condition(gain, deviation(map_from_base_, map_from_base), before - covariance);
+}
+
+void Belief::draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
+                       const Eigen::Vector3d& standard_normal) {
+  const Eigen::MatrixXd with_axes = covariance_.leftCols<3>() * axes;
+  const Eigen::MatrixXd spread = axes.transpose() * with_axes.topRows<3>();
+  if (spread.diagonal().minCoeff() < kExact) return;
+  const Eigen::LLT<Eigen::MatrixXd> root{spread};
+  const Eigen::MatrixXd gain = root.solve(with_axes.transpose()).transpose();
+  condition(gain, root.matrixL() * standard_normal.head(axes.cols()), spread);
+}
+
+const std::vector<Landmark>& Belief::settled() const {
+  static const std::vector<Landmark> none{};
+  return settled_.get() ? *settled_.get() : none;
+}
+
+void Belief::correct_camera(const WallInnovation& wall) {
+  const Eigen::MatrixXd with_wall = covariance_.middleCols<2>(kCamera) * wall.by_camera.transpose();
+  const Eigen::Matrix2d spread =
+      wall.covariance + wall.by_camera * with_wall.middleRows<2>(kCamera);
+  const Eigen::MatrixXd gain = spread.ldlt().solve(with_wall.transpose()).transpose();
+  condition(gain, wall.residual - wall.by_camera * camera_errors_, spread);
+}
+
+/// @param with_residual  out: covariance of everything with what is expected.
+Innovation Belief::compare(std::size_t index, const MarkerMeasurement& measurement,
+                           Columns& with_residual) const {
+  const Landmark& known = marker(index);
+  const Expected expected = expect(map_from_base_, known.map_from_marker);
+  Innovation innovation;
+  innovation.marker = index;
+  innovation.by_pose = expected.by_pose;
+  innovation.by_marker = expected.by_marker;
+  innovation.residual = deviation(expected.base_from_marker, measurement.base_from_marker) -
+                        measurement.by_camera * camera_errors_;
+  with_residual = covariance_.leftCols<3>() * expected.by_pose.transpose() +
+                  covariance_.middleCols<2>(kCamera) * measurement.by_camera.transpose();
+  innovation.covariance = measurement.covariance;
+  if (index < active_.size()) {
+    const Eigen::Index place = place_of(index);
+    with_residual += covariance_.middleCols<3>(place) * expected.by_marker.transpose();
+    innovation.covariance += expected.by_marker * with_residual.middleRows<3>(place);
+  } else {
+    innovation.covariance += expected.by_marker * known.covariance * expected.by_marker.transpose();
+  }
+  innovation.covariance += expected.by_pose * with_residual.topRows<3>() +
+                           measurement.by_camera * with_residual.middleRows<2>(kCamera);
+  innovation.distance =
+      innovation.residual.dot(innovation.covariance.ldlt().solve(innovation.residual));
+  return innovation;
+}
+
+std::optional<Innovation> Belief::nearest(const MarkerMeasurement& measurement) const {
+  std::optional<Innovation> nearest;
+  Columns unused;
+  for (std::size_t i = 0; i < num_markers(); ++i) {
+    if (marker(i).id != measurement.id) continue;
+    const Innovation innovation = compare(i, measurement, unused);
+    if (!nearest || innovation.distance < nearest->distance) nearest = innovation;
+  }
+  return nearest;
+}
+
+double Belief::correct(std::size_t index, const MarkerMeasurement& measurement) {
+  if (index >= active_.size()) index = revive(index - active_.size());
+  Columns with_residual;
+  const Innovation innovation = compare(index, measurement, with_residual);
+  const Eigen::MatrixXd gain =
+      innovation.covariance.ldlt().solve(with_residual.transpose()).transpose();
+  condition(gain, innovation.residual, innovation.covariance);
+  ++active_[index].sightings;
+  active_[index].last_seen = measurement.time;
+  return innovation.log_likelihood();
+}
+
+void Belief::augment(const Landmark& landmark, const Columns& with_all,
+                     const Eigen::Matrix3d& own) {
+  const Eigen::Index size = covariance_.rows();
+  covariance_.conservativeResize(size + 3, size + 3);
+  covariance_.topRightCorner(size, 3) = with_all;
+  covariance_.bottomLeftCorner(3, size) = with_all.transpose();
+  covariance_.bottomRightCorner<3, 3>() = own;
+  active_.push_back(landmark);
+}
+
+void Belief::add(const MarkerMeasurement& measurement) {
+  Landmark fresh;
+  fresh.id = measurement.id;
+  for (std::size_t i = 0; i < num_markers(); ++i)
+    if (marker(i).id == fresh.id) ++fresh.instance;
+  fresh.sightings = 1;
+  fresh.first_seen = measurement.time;
+  fresh.last_seen = measurement.time;
+  const Se2 base_from_marker =
+      deviated(measurement.base_from_marker, -(measurement.by_camera * camera_errors_));
+  fresh.map_from_marker = map_from_base_ * base_from_marker;
+
+  const Expected expected = expect(map_from_base_, fresh.map_from_marker);
+  const Eigen::Matrix3d turn = expected.by_marker.transpose();
+  const Eigen::Matrix3d by_pose = -turn * expected.by_pose;
+  const Eigen::Matrix<double, 3, 2> by_camera = -turn * measurement.by_camera;
+  const Columns with_all = covariance_.leftCols<3>() * by_pose.transpose() +
+                           covariance_.middleCols<2>(kCamera) * by_camera.transpose();
+  const Eigen::Matrix3d own = by_pose * with_all.topRows<3>() +
+                              by_camera * with_all.middleRows<2>(kCamera) +
+                              turn * measurement.covariance * turn.transpose();
+  augment(fresh, with_all, own);
+}
+
+/// @return its place among the active ones.
+std::size_t Belief::revive(std::size_t settled_marker) {
+  std::vector<Landmark>& settled = settled_.edit();
+  const Landmark revived = settled[settled_marker];
+  settled.erase(settled.begin() + static_cast<std::ptrdiff_t>(settled_marker));
+  augment(revived, Columns::Zero(covariance_.rows(), 3), revived.covariance);
+  return active_.size() - 1;
+}
+
+void Belief::settle_oldest(std::size_t limit, Random& random) {
+  while (active_.size() > limit) {
+    const auto oldest = std::min_element(
+        active_.begin(), active_.end(),
+        [](const Landmark& a, const Landmark& b) { return a.last_seen < b.last_seen; });
+    settle(static_cast<std::size_t>(oldest - active_.begin()), random);
+  }
+}
+
+void Belief::settle(std::size_t marker, Random& random) {
+  const Eigen::Index place = place_of(marker);
+  const Eigen::Matrix3d own = covariance_.block<3, 3>(place, place);
+  const Eigen::LLT<Eigen::Matrix3d> root{own};
+  const Eigen::Vector3d normal{random.normal(), random.normal(), random.normal()};
+  const Eigen::MatrixXd gain = root.solve(covariance_.middleRows<3>(place)).transpose();
+  condition(gain, root.matrixL() * (std::sqrt(1.0 - kKeptShare) * normal),
+            (1.0 - kKeptShare) * own);
+
+  Landmark settled = active_[marker];
+  settled.covariance = covariance_.block<3, 3>(place, place);
+  settled_.edit().push_back(settled);
+  active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(marker));
+  const Eigen::Index behind = covariance_.rows() - place - 3;
+  covariance_.middleRows(place, behind) = covariance_.bottomRows(behind).eval();
+  covariance_.middleCols(place, behind) = covariance_.rightCols(behind).eval();
+  covariance_.conservativeResize(covariance_.rows() - 3, covariance_.cols() - 3);
+}
+
+std::vector<Landmark> Belief::markers() const {
+  std::vector<Landmark> markers = settled();
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    markers.push_back(active_[i]);
+    markers.back().covariance = covariance_.block<3, 3>(place_of(i), place_of(i));
+  }
+  std::stable_sort(markers.begin(), markers.end(), [](const Landmark& a, const Landmark& b) {
+    return a.first_seen < b.first_seen;
+  });
+  return markers;
+}
+
+}  // namespace waymark

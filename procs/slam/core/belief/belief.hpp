@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What one particle knows: its pose, the errors of odometry and camera, and the markers, with the
+// covariance of all of them together.
+#pragma once
+
+#include "common/random/random.hpp"
+#include "slam/core/belief/odometry_errors.hpp"
+#include "slam/core/grid/copy_on_write.hpp"
+#include "slam/core/landmark/marker_measurement.hpp"
+#include "slam/core/mapping/landmark_map.hpp"
+#include "slam/core/proposal/pose_information.hpp"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace waymark {
+
+/// A measurement compared with a known marker.
+struct Innovation {
+  std::size_t marker{0};
+  /// Measured minus expected, base frame (x, y, yaw).
+  Eigen::Vector3d residual{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d by_pose{Eigen::Matrix3d::Zero()};    ///< of the expected, by (x, y, theta) in map
+  Eigen::Matrix3d by_marker{Eigen::Matrix3d::Zero()};  ///< by the marker's (x, y, yaw) in map
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< of the residual
+  double distance{0.0};                                 ///< squared, Mahalanobis
+
+  double distance_m() const { return residual.head<2>().norm(); }
+
+  /// Log of the residual's density.
+  double log_likelihood() const;
+};
+
+/// How a belief begins.
+struct BeliefPrior {
+  OdometryNoise odometry{};
+  double camera_yaw_sigma_rad{0.0};  ///< of the mounting
+  double camera_focal_sigma{0.0};    ///< relative
+};
+
+/// A Gaussian over (pose, odometry errors, camera errors, markers), about a mean that is moved with
+/// every correction (error-state Kalman filter). Markers that have not been seen for long are
+/// settled: their position is drawn and they leave the covariance, so that it stays small. An id is
+/// a class: several markers may have it, told apart by place.
+class Belief {
+ public:
+  explicit Belief(const BeliefPrior& prior);
+
+  const Se2& map_from_base() const { return map_from_base_; }
+
+  /// Order x y theta, map frame.
+  Eigen::Matrix3d pose_covariance() const { return covariance_.topLeftCorner<3, 3>(); }
+
+  const OdometryErrors& odometry_errors() const { return odometry_errors_; }
+
+  Eigen::Matrix3d odometry_errors_covariance() const {
+    return covariance_.block<3, 3>(kOdometry, kOdometry);
+  }
+
+  /// Errors of the camera: mounted `x` [rad] further left than told, focal length 1 + `y` as long.
+  const Eigen::Vector2d& camera_errors() const { return camera_errors_; }
+
+  /// Where a motion leads, given where the robot is exactly.
+  struct Prediction {
+    Se2 map_from_base{};
+    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  };
+
+  Prediction predicted(const Motion& motion, const OdometryNoise& noise) const;
+
+  void move(const Motion& motion, const OdometryNoise& noise);
+
+  /// Takes over what has been found about the pose; everything that is correlated with it follows.
+  void correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
+
+  /// Draws the pose along axes (columns; orthonormal, (x, y, theta) in map): along them it is exact
+  /// from now on, and everything that is correlated with it follows.
+  void draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
+                 const Eigen::Vector3d& standard_normal);
+
+  /// Learns the camera's errors from what a wall says about it.
+  void correct_camera(const WallInnovation& wall);
+
+  /// The marker of that id that fits best; nothing when none is known.
+  std::optional<Innovation> nearest(const MarkerMeasurement& measurement) const;
+
+  /// Kalman update with a measurement of a known marker.
+  /// @return log-likelihood of the measurement.
+  double correct(std::size_t marker, const MarkerMeasurement& measurement);
+
+  /// A marker that was not known.
+  void add(const MarkerMeasurement& measurement);
+
+  /// Settles the markers that were seen longest ago while more than `limit` are in the covariance.
+  void settle_oldest(std::size_t limit, Random& random);
+
+  /// In order of their first sighting, with their marginal covariances.
+  std::vector<Landmark> markers() const;
+
+ private:
+  static constexpr Eigen::Index kOdometry = 3;
+  static constexpr Eigen::Index kCamera = 6;
+  static constexpr Eigen::Index kMarkers = 8;
+
+  static Eigen::Index place_of(std::size_t marker) {
+    return kMarkers + 3 * static_cast<Eigen::Index>(marker);
+  }
+
+  /// All columns' covariance with a residual's parts.
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+  std::size_t num_markers() const { return active_.size() + settled().size(); }
+
+  const Landmark& marker(std::size_t index) const {
+    return index < active_.size() ? active_[index] : settled()[index - active_.size()];
+  }
+
+  const std::vector<Landmark>& settled() const;
+  Innovation compare(std::size_t marker, const MarkerMeasurement& measurement,
+                     Columns& with_residual) const;
+  void condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,
+                 const Eigen::Ref<const Eigen::VectorXd>& deviation,
+                 const Eigen::Ref<const Eigen::MatrixXd>& covariance_lost);
+  void augment(const Landmark& landmark, const Columns& with_all, const Eigen::Matrix3d& own);
+  std::size_t revive(std::size_t settled_marker);
+  void settle(std::size_t marker, Random& random);
+
+  Se2 map_from_base_{};
+  OdometryErrors odometry_errors_{OdometryErrors::Zero()};
+  Eigen::Vector2d camera_errors_{Eigen::Vector2d::Zero()};
+  std::vector<Landmark> active_{};  ///< their covariances are in `covariance_`
+  CopyOnWrite<std::vector<Landmark>> settled_{};
+  Eigen::MatrixXd covariance_;
+};
+
+}  // namespace waymark

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/belief/odometry_errors.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr double kVarianceFloor = 1e-9;  // [m^2, rad^2] of a step: 0.03 mm, 0.002 degrees
+
+double squared(double x) {
+  return x * x;
+}
+
+Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
+  const double length_m = motion.start_from_end.translation().norm();
+  const Eigen::Vector2d along =
+      length_m > 0.0 ? Eigen::Vector2d{motion.start_from_end.translation() / length_m}
+                     : Eigen::Vector2d::UnitX();
+  const Eigen::Vector2d left{-along.y(), along.x()};
+  const double turn_rad2 = squared(noise.turn_per_sqrt_m) * motion.distance_m +
+                           squared(noise.turn_per_sqrt_rad) * motion.turn_rad + kVarianceFloor;
+  const double along_m2 = squared(noise.along_per_sqrt_m) * motion.distance_m + kVarianceFloor;
+  // Integrated random walk: L^2 / 3 of the final heading's variance, L / 2 in common with it.
+  const double across_m2 = squared(length_m) * turn_rad2 / 3.0 +
+                           squared(noise.across_per_sqrt_m) * motion.distance_m + kVarianceFloor;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.topLeftCorner<2, 2>() =
+      along_m2 * along * along.transpose() + across_m2 * left * left.transpose();
+  covariance(2, 2) = turn_rad2;
+  covariance.topRightCorner<2, 1>() = 0.5 * length_m * turn_rad2 * left;
+  covariance.bottomLeftCorner<1, 2>() = covariance.topRightCorner<2, 1>().transpose();
+  return covariance;
+}
+
+}  // namespace
+
+CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& errors,
+                                 const OdometryNoise& noise) {
+  const double turn_rad = measured.start_from_end.theta();
+  const double extra_rad = errors[1] * measured.distance_m + errors[2] * turn_rad;
+  // A turn that grows evenly along the way bends the path by half of it.
+  const Eigen::Vector2d bent =
+      Se2{0.0, 0.0, 0.5 * extra_rad} * measured.start_from_end.translation();
+  const Eigen::Vector2d moved = (1.0 + errors[0]) * bent;
+  CorrectedMotion corrected;
+  corrected.start_from_end = {moved, turn_rad + extra_rad};
+  const Eigen::Vector3d by_extra{-0.5 * moved.y(), 0.5 * moved.x(), 1.0};
+  corrected.by_errors.col(0) << bent, 0.0;
+  corrected.by_errors.col(1) = measured.distance_m * by_extra;
+  corrected.by_errors.col(2) = turn_rad * by_extra;
+  corrected.covariance = random_walk(measured, noise);
+  return corrected;
+}
+
+}  // namespace waymark

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the odometry gets wrong: by chance at every step, and in the same way all the time.
+#pragma once
+
+#include "slam/core/motion/motion.hpp"
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+class Fields;
+
+/// Random walk of the odometry along the path, and how wrong its calibration may be (one sigma).
+struct OdometryNoise {
+  double along_per_sqrt_m{0.004};      ///< [m/sqrt(m)]
+  double across_per_sqrt_m{0.001};     ///< [m/sqrt(m)] beyond what the heading explains
+  double turn_per_sqrt_m{0.0087};      ///< [rad/sqrt(m)]
+  double turn_per_sqrt_rad{0.02};      ///< [rad/sqrt(rad)]
+  double scale_sigma{0.02};            ///< of distances
+  double turn_scale_sigma{0.02};       ///< of turns
+  double drift_sigma_rad_per_m{0.01};  ///< heading gained per metre
+
+  void describe(Fields& fields);
+};
+
+/// Systematic errors, as a vector (scale, drift, turn scale): true distance = (1 + scale) measured
+/// distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * distance.
+using OdometryErrors = Eigen::Vector3d;
+
+/// A measured motion, corrected by systematic errors.
+struct CorrectedMotion {
+  Se2 start_from_end{};
+  /// Of (x, y, theta) at the end, in the frame at the start, by the systematic errors.
+  Eigen::Matrix3d by_errors{Eigen::Matrix3d::Zero()};
+  /// Of the random walk, same order and frame.
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+};
+
+CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& errors,
+                                 const OdometryNoise& noise);
+
+}  // namespace waymark
