@@ -144,6 +144,10 @@ void MarkerMeasurementConfig::describe(Fields& fields) {
                "how wrong the camera's mounting may be; learnt while driving");
   fields.field("camera_focal_sigma", camera_focal_sigma, kNotNegative,
                "how wrong its focal length may be, relative; learnt while driving");
+  fields.field("perspective_sigma", perspective_sigma, kPositive,
+               "of the focal length, as one view of a marker tells it; views err alike");
+  fields.field("perspective_max_sigma", perspective_max_sigma, kPositive,
+               "views that the noise of corners makes worse say nothing about it");
   fields.field("covariance_factor", covariance_factor, kPositive,
                "on the detector's covariances: neighbouring frames err alike");
   fields.field("gate", gate, kPositive, "chi^2 between camera and wall that is still believed");
@@ -164,6 +168,7 @@ void WaymarkConfig::describe(Fields& fields) {
                "markers that each particle knows together with its pose; the others are settled");
   fields.field("scan_evidence", scan_evidence, kFraction,
                "share of a scan's log-likelihood that weighs particles");
+  fields.field("marker_evidence", marker_evidence, kFraction, "the same of a sighting");
   fields.field("lost_agreement", lost_agreement, kFraction,
                "share of the mapped beams that must agree with the walls, else the robot is lost");
   fields.section("odometry", odometry);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/slam_config.hpp"
 
+#include "common/robot/camera_model.hpp"
 #include "slam/parallel.hpp"
 
 #include <cmath>
 
 namespace waymark {
 namespace {
+
+constexpr double kCornerSigma_px = 0.05;  // of refined corners
 
 /// The horizontal wedge in which a whole marker fits into the image.
 CameraView camera_view(const CameraConfig& camera, const PreprocessingConfig& preprocessing) {
@@ -82,6 +85,11 @@ SensorSetup sensor_setup(const SlamConfig& config) {
   setup.max_sigma_m = config.slam.preprocessing.max_sigma_m;
   setup.marker_wait = duration_from_seconds(config.slam.preprocessing.marker_wait_s);
   setup.blank_ids = config.slam.blank_ids;
+  const CameraModel camera{config.robot.camera};
+  setup.ray_of_pixel = [camera](const Eigen::Vector2d& raw_px) {
+    return camera.normalized_from_ideal(camera.ideal_from_raw(raw_px));
+  };
+  setup.corner_sigma = kCornerSigma_px / config.robot.camera.fx_px;
   return setup;
 }
 

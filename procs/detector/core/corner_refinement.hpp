@@ -4,7 +4,7 @@
 #pragma once
 
 #include "common/config/fields.hpp"
-#include "detector/core/camera_model.hpp"
+#include "common/robot/camera_model.hpp"
 #include "detector/core/marker_candidates.hpp"
 
 #include <Eigen/Core>

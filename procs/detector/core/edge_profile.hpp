@@ -2,7 +2,7 @@
 // Brightness across one side of a marker.
 #pragma once
 
-#include "detector/core/camera_model.hpp"
+#include "common/robot/camera_model.hpp"
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>

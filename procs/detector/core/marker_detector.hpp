@@ -4,7 +4,7 @@
 
 #include "common/robot/robot_config.hpp"
 #include "common/sensors/sensors.hpp"
-#include "detector/core/camera_model.hpp"
+#include "common/robot/camera_model.hpp"
 #include "detector/core/corner_refinement.hpp"
 #include "detector/core/marker_candidates.hpp"
 #include "detector/core/square_pose.hpp"

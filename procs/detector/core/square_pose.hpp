@@ -2,7 +2,7 @@
 // Third stage: the pose of a square from its four corners.
 #pragma once
 
-#include "detector/core/camera_model.hpp"
+#include "common/robot/camera_model.hpp"
 #include "detector/core/corner_refinement.hpp"
 
 #include <Eigen/Core>

@@ -121,11 +121,21 @@ const std::vector<Landmark>& Belief::settled() const {
 }
 
 void Belief::correct_camera(const WallInnovation& wall) {
-  const Eigen::MatrixXd with_wall = covariance_.middleCols<2>(kCamera) * wall.by_camera.transpose();
-  const Eigen::Matrix2d spread =
-      wall.covariance + wall.by_camera * with_wall.middleRows<2>(kCamera);
-  const Eigen::MatrixXd gain = spread.ldlt().solve(with_wall.transpose()).transpose();
-  condition(gain, wall.residual - wall.by_camera * camera_errors_, spread);
+  correct_camera(wall.residual - wall.by_camera * camera_errors_, wall.by_camera, wall.covariance);
+}
+
+void Belief::correct_camera(const FocalSighting& focal) {
+  correct_camera(Eigen::VectorXd::Constant(1, focal.error - camera_errors_.y()),
+                 Eigen::RowVector2d::UnitY(),
+                 Eigen::MatrixXd::Constant(1, 1, squared(focal.sigma)));
+}
+
+void Belief::correct_camera(const Eigen::VectorXd& residual, const Eigen::MatrixXd& by_camera,
+                            const Eigen::MatrixXd& covariance) {
+  const Eigen::MatrixXd with_residual = covariance_.middleCols<2>(kCamera) * by_camera.transpose();
+  const Eigen::MatrixXd spread = covariance + by_camera * with_residual.middleRows<2>(kCamera);
+  const Eigen::MatrixXd gain = spread.ldlt().solve(with_residual.transpose()).transpose();
+  condition(gain, residual, spread);
 }
 
 /// @param with_residual  out: covariance of everything with what is expected.

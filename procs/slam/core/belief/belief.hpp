@@ -83,6 +83,9 @@ class Belief {
   /// Learns the camera's errors from what a wall says about it.
   void correct_camera(const WallInnovation& wall);
 
+  /// The same from the perspective of a marker.
+  void correct_camera(const FocalSighting& focal);
+
   /// The marker of that id that fits best; nothing when none is known.
   std::optional<Innovation> nearest(const MarkerMeasurement& measurement) const;
 
@@ -118,6 +121,8 @@ class Belief {
   }
 
   const std::vector<Landmark>& settled() const;
+  void correct_camera(const Eigen::VectorXd& residual, const Eigen::MatrixXd& by_camera,
+                      const Eigen::MatrixXd& covariance);
   Innovation compare(std::size_t marker, const MarkerMeasurement& measurement,
                      Columns& with_residual) const;
   void condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/belief/odometry_errors.hpp"
 
+#include <algorithm>
+
 namespace waymark {
 namespace {
 
+// A turn below so many standard deviations of its noise tells nothing about the scale of turns.
+constexpr double kTellingSigmas = 3.0;
 constexpr double kVarianceFloor = 1e-9;  // [m^2, rad^2] of a step: 0.03 mm, 0.002 degrees
 
 double squared(double x) {
@@ -31,12 +35,20 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   return covariance;
 }
 
+/// The noise is in what was measured: a turn that is mostly noise would show a scale below one
+/// (regression dilution), so only what stands out of the noise is held against the scale.
+double telling_turn(double turn_rad, double noise_rad2) {
+  const double share = 1.0 - squared(kTellingSigmas) * noise_rad2 / squared(turn_rad);
+  return turn_rad != 0.0 ? std::max(0.0, share) * turn_rad : 0.0;
+}
+
 }  // namespace
 
 CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& errors,
                                  const OdometryNoise& noise) {
   const double turn_rad = measured.start_from_end.theta();
-  const double extra_rad = errors[1] * measured.distance_m + errors[2] * turn_rad;
+  const double telling_rad = telling_turn(turn_rad, random_walk(measured, noise)(2, 2));
+  const double extra_rad = errors[1] * measured.distance_m + errors[2] * telling_rad;
   // A turn that grows evenly along the way bends the path by half of it.
   const Eigen::Vector2d bent =
       Se2{0.0, 0.0, 0.5 * extra_rad} * measured.start_from_end.translation();
@@ -46,7 +58,7 @@ CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& e
   const Eigen::Vector3d by_extra{-0.5 * moved.y(), 0.5 * moved.x(), 1.0};
   corrected.by_errors.col(0) << bent, 0.0;
   corrected.by_errors.col(1) = measured.distance_m * by_extra;
-  corrected.by_errors.col(2) = turn_rad * by_extra;
+  corrected.by_errors.col(2) = telling_rad * by_extra;
   corrected.covariance = random_walk(measured, noise);
   return corrected;
 }

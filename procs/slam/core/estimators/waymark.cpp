@@ -97,24 +97,24 @@ void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
       propose(state.belief.map_from_base(), state.belief.pose_covariance(), [&](const Se2& pose) {
         outcome.walls =
             match_surfaces(sensed.observation->beams, state.walls, pose, config_.matching);
-        PoseInformation walls = outcome.walls.pose;
-        walls.cost *= config_.scan_evidence;
-        return walls;
+        return outcome.walls.pose;
       });
   state.belief.correct_pose(by_walls.mean, by_walls.covariance);
-  outcome.log_evidence += by_walls.log_evidence;
+  outcome.log_evidence += config_.scan_evidence * by_walls.log_evidence;
 }
 
 void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
                                           Outcome& outcome) const {
   for (const MarkerMeasurement& measurement : sensed.markers) {
     if (measurement.wall) state.belief.correct_camera(*measurement.wall);
+    if (measurement.focal) state.belief.correct_camera(*measurement.focal);
     const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->distance < config_.marker_gate) {
-      outcome.log_evidence += state.belief.correct(nearest->marker, measurement);
+      outcome.log_evidence +=
+          config_.marker_evidence * state.belief.correct(nearest->marker, measurement);
       ++outcome.known_markers;
     } else {
-      outcome.log_evidence -= 0.5 * config_.marker_gate;
+      outcome.log_evidence -= config_.marker_evidence * 0.5 * config_.marker_gate;
       if (!nearest || nearest->distance_m() > config_.same_marker_within_m)
         state.belief.add(measurement);
     }

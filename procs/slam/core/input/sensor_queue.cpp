@@ -134,18 +134,27 @@ Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {
   return observation;
 }
 
+std::optional<FocalSighting> SensorQueue::focal_sighting(const MarkerDetection& detection) const {
+  if (!setup_.ray_of_pixel) return std::nullopt;
+  std::array<Eigen::Vector2d, 4> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    corners[i] = setup_.ray_of_pixel(detection.corners_px[i]);
+  return focal_error_of(corners, setup_.corner_sigma);
+}
+
 void SensorQueue::sight_markers(const MarkerDetections& frame, Timestamp time,
                                 std::vector<MarkerSighting>& sightings) {
   const Se2 scan_base_from_frame_base =
       odometry_.pose_at(time).inverse() * odometry_.pose_at(frame.time);
   for (const MarkerDetection& detection : frame.detections) {
-    const auto sighting =
+    auto sighting =
         sight_marker(detection, frame.time, scan_base_from_frame_base, setup_.marker_size_m);
     if (!sighting) {
       skips_.push_back(Skip::kMarkerImplausible);
     } else if (sighting->sigma_along_m() > setup_.max_sigma_m) {
       skips_.push_back(Skip::kMarkerUncertain);
     } else {
+      sighting->focal = focal_sighting(detection);
       sightings.push_back(*sighting);
     }
   }

@@ -6,6 +6,7 @@
 #include "slam/core/scan/observation.hpp"
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -21,7 +22,10 @@ struct SensorSetup {
   double beam_tolerance_m{0.08};  ///< a beam that ends this near to a marker's segment is on it
   double max_sigma_m{0.05};       ///< sightings less certain than this are not used
   Duration marker_wait{250'000};  ///< how long a scan waits for the camera frames up to its time
-  bool blank_ids{false};          ///< control: forget all markers
+  /// Ray of a pixel: its point at distance 1 in front of a camera without lens errors.
+  std::function<Eigen::Vector2d(const Eigen::Vector2d&)> ray_of_pixel{};
+  double corner_sigma{1e-4};  ///< of a marker's corner, same unit as ray_of_pixel
+  bool blank_ids{false};      ///< control: forget all markers
 };
 
 /// Why a value was not used.
@@ -69,6 +73,7 @@ class SensorQueue {
   bool is_ready(const LidarScan& scan) const;
   bool has_passed(Timestamp time) const;
   Observation observe(Timestamp time, std::span<const Beam> beams);
+  std::optional<FocalSighting> focal_sighting(const MarkerDetection& detection) const;
   void sight_markers(const MarkerDetections& frame, Timestamp time,
                      std::vector<MarkerSighting>& sightings);
 

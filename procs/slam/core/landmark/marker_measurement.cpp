@@ -163,6 +163,13 @@ std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
   return wall;
 }
 
+std::optional<FocalSighting> usable(std::optional<FocalSighting> focal,
+                                    const MarkerMeasurementConfig& config) {
+  if (!focal || focal->sigma > config.perspective_max_sigma) return std::nullopt;
+  focal->sigma = std::hypot(focal->sigma, config.perspective_sigma);
+  return focal;
+}
+
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation, double range_sigma_m,
                                                const Se2& base_from_camera,
                                                const MarkerMeasurementConfig& config) {
@@ -174,9 +181,12 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation, d
   for (const MarkerSighting& sighting : observation.sightings) {
     if (sighting.time != newest) continue;
     const MarkerMeasurement measurement{
-        sighting.id, sighting.time, sighting.base_from_marker,
+        sighting.id,
+        sighting.time,
+        sighting.base_from_marker,
         in_robot_frame(sighting, base_from_camera, config),
-        by_camera_errors(sighting.base_from_marker, base_from_camera)};
+        by_camera_errors(sighting.base_from_marker, base_from_camera),
+        usable(sighting.focal, config)};
     const auto wall = fit_wall(observation.beams, sighting.base_from_marker.translation(),
                                sighting.base_from_marker.theta(), range_sigma_m, config.reach_m);
     if (!wall) {

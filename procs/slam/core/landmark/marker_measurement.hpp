@@ -17,11 +17,13 @@ struct MarkerMeasurementConfig {
   double wall_sigma_m{0.004};   ///< how far a marker hangs before its wall, bulges
   double wall_sigma_rad{0.01};  ///< how skew
   double reach_m{1.5};  ///< wall on both sides of the marker that is believed to be straight
-  double camera_sigma_m{0.002};         ///< what frames have in common, beside their own covariance
-  double camera_sigma_rad{0.001};       ///< the same as an angle at the camera
+  double camera_sigma_m{0.001};         ///< what frames have in common, beside their own covariance
+  double camera_sigma_rad{0.0003};      ///< the same as an angle at the camera
   double camera_yaw_sigma_rad{0.0087};  ///< how wrong the mounting may be, learnt while driving
   double camera_focal_sigma{0.01};      ///< the same of the focal length, relative
-  double covariance_factor{2.0};        ///< on the detector's covariance: corners err together
+  double perspective_sigma{0.01};       ///< of the focal length by one view; views err alike
+  double perspective_max_sigma{0.008};  ///< views that the corners' noise makes worse say nothing
+  double covariance_factor{1.0};        ///< on the detector's covariance: corners err together
   double gate{16.3};  ///< chi^2 between camera and wall, 3 degrees of freedom (16.3 = 99.9 %)
 
   void describe(Fields& fields);
@@ -58,6 +60,7 @@ struct MarkerMeasurement {
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   /// By the camera's errors: mounted further left [rad], longer focal length (relative).
   Eigen::Matrix<double, 3, 2> by_camera{Eigen::Matrix<double, 3, 2>::Zero()};
+  std::optional<FocalSighting> focal{};  ///< what the marker's perspective says
   std::optional<WallInnovation> wall{};  ///< its error is independent of the pose's
 };
 

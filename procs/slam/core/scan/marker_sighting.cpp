@@ -39,9 +39,12 @@ std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Tim
       std::atan2(facing.y(), facing.x())};
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = scan_base_from_frame_base.rotation();
-  return MarkerSighting{detection.id, time, scan_base_from_frame_base * frame_base_from_marker,
+  return MarkerSighting{detection.id,
+                        time,
+                        scan_base_from_frame_base * frame_base_from_marker,
                         turn * planar_covariance(detection.covariance_in_base) * turn.transpose(),
-                        size_m};
+                        size_m,
+                        std::nullopt};
 }
 
 }  // namespace waymark

@@ -4,6 +4,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/sensors/sensors.hpp"
+#include "slam/core/scan/square_perspective.hpp"
 
 #include <Eigen/Core>
 
@@ -21,7 +22,8 @@ struct MarkerSighting {
   Se2 base_from_marker{};  ///< centre, and the direction that the marker faces
   /// [m^2, m rad, rad^2] order x y yaw, base frame.
   Eigen::Matrix3d covariance_in_base{Eigen::Matrix3d::Zero()};
-  double size_m{0.0};  ///< side of the black square
+  double size_m{0.0};                    ///< side of the black square
+  std::optional<FocalSighting> focal{};  ///< what it says about the camera
 
   /// Point on the marker's line, `right_m` to the right of its centre as it is printed.
   Eigen::Vector2d point_at(double right_m) const {

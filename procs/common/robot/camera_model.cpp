@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "detector/core/camera_model.hpp"
+#include "common/robot/camera_model.hpp"
 
 #include <algorithm>
 
