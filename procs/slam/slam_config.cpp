@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kCornerSigma_px = 0.05;  // of refined corners
+constexpr double kCornerSigma_px = 0.02;  // of refined corners
 
 /// The horizontal wedge in which a whole marker fits into the image.
 CameraView camera_view(const CameraConfig& camera, const PreprocessingConfig& preprocessing) {

@@ -12,7 +12,7 @@ class Fields;
 
 /// Random walk of the odometry along the path, and how wrong its calibration may be (one sigma).
 struct OdometryNoise {
-  double along_per_sqrt_m{0.004};      ///< [m/sqrt(m)]
+  double along_per_sqrt_m{0.003};      ///< [m/sqrt(m)]
   double across_per_sqrt_m{0.001};     ///< [m/sqrt(m)] beyond what the heading explains
   double turn_per_sqrt_m{0.0087};      ///< [rad/sqrt(m)]
   double turn_per_sqrt_rad{0.02};      ///< [rad/sqrt(rad)]

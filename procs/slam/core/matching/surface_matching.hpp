@@ -14,9 +14,9 @@ class Fields;
 
 struct SurfaceMatchingConfig {
   double range_sigma_m{0.01};     ///< of the LiDAR; taken from the robot
-  double surface_sigma_m{0.004};  ///< roughness of walls, errors of beam angles
+  double surface_sigma_m{0.002};  ///< roughness of walls, errors of beam angles
   double outlier_sigmas{3.0};     ///< a beam this far off counts a quarter
-  double information_share{0.5};  ///< beams are not quite independent, nor is the map exact
+  double information_share{1.0};  ///< beams are not quite independent, nor is the map exact
   double weak_share{0.02};        ///< directions below this share of the strongest are unobserved
 
   void describe(Fields& fields);
