@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of the waymark estimator, each against something slow and obvious.
 #include "common/random/random.hpp"
-#include "slam/core/calibration/odometry_calibration.hpp"
-#include "slam/core/landmark/marker_landmarks.hpp"
+#include "slam/core/belief/belief.hpp"
 #include "slam/core/matching/surface_matching.hpp"
 #include "slam/core/proposal/pose_proposal.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -21,28 +23,139 @@ Eigen::Matrix3d diagonal(double x, double y, double yaw) {
 }
 
 MarkerMeasurement measurement_at(const Se2& base_from_marker, int id = 7) {
-  return {id, {}, base_from_marker, diagonal(0.01, 0.005, 0.02), true};
+  MarkerMeasurement measurement;
+  measurement.id = id;
+  measurement.base_from_marker = base_from_marker;
+  measurement.covariance = diagonal(0.01, 0.005, 0.02);
+  return measurement;
 }
 
-TEST(MarkerMeasurementModel, DerivativesAgreeWithDifferences) {
+Belief belief_with(const std::vector<MarkerMeasurement>& measurements) {
+  Belief belief{{OdometryNoise{}, 0.005, 0.002}};
+  for (const MarkerMeasurement& measurement : measurements)
+    belief.add(measurement);
+  return belief;
+}
+
+const Motion kForward{Se2{0.5, 0.0, 0.02}, 0.5, 0.02};
+
+TEST(OdometryErrors, DerivativesAgreeWithDifferences) {
   constexpr double kStep = 1e-6;
-  Random random{1};
-  for (int round = 0; round < 50; ++round) {
-    const Se2 pose{random.normal(), random.normal(), random.uniform(-3.0, 3.0)};
-    const Se2 marker{random.normal(), random.normal(), random.uniform(-3.0, 3.0)};
-    const MarkerMeasurement measured = measurement_at(pose.inverse() * marker);
-    const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
-    const Innovation at = compare(measured, marker, none, pose);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(axis);
-      const Eigen::Vector3d by_pose =
-          -compare(measured, marker, none, deviated(pose, step)).residual / kStep;
-      const Eigen::Vector3d by_marker =
-          -compare(measured, deviated(marker, step), none, pose).residual / kStep;
-      EXPECT_LT((by_pose - at.by_pose.col(axis)).norm(), 1e-4);
-      EXPECT_LT((by_marker - at.by_landmark.col(axis)).norm(), 1e-4);
-    }
+  const Motion motion{Se2{0.3, 0.05, 0.8}, 0.31, 0.8};
+  const OdometryErrors errors{0.01, 0.02, -0.03};
+  const CorrectedMotion at = corrected_motion(motion, errors, {});
+  for (int axis = 0; axis < 3; ++axis) {
+    const CorrectedMotion moved =
+        corrected_motion(motion, errors + kStep * OdometryErrors::Unit(axis), {});
+    const Eigen::Vector3d difference = deviation(at.start_from_end, moved.start_from_end) / kStep;
+    EXPECT_LT((difference - at.by_errors.col(axis)).norm(), 1e-5) << axis;
   }
+}
+
+TEST(OdometryErrors, ATurnWithinItsNoiseTellsNothingOfTheScaleOfTurns) {
+  const Motion straight{Se2{0.1, 0.0, 0.003}, 0.1, 0.003};
+  EXPECT_TRUE(corrected_motion(straight, OdometryErrors::Zero(), {}).by_errors.col(2).isZero());
+}
+
+TEST(Belief, IsUnsureAlongTheWayAndAMarkerMakesItSurer) {
+  Belief belief = belief_with({measurement_at({2.0, 1.0, -1.57})});
+  belief.move(kForward, {});
+  const Eigen::Matrix3d before = belief.pose_covariance();
+  EXPECT_GT(before(0, 0), 0.0);
+  const Se2 base_from_marker = belief.map_from_base().inverse() * Se2{2.0, 1.0, -1.57};
+  const auto nearest = belief.nearest(measurement_at(base_from_marker));
+  ASSERT_TRUE(nearest);
+  EXPECT_NEAR(nearest->distance, 0.0, 1e-9);
+  belief.correct(nearest->marker, measurement_at(base_from_marker));
+  EXPECT_LT(belief.pose_covariance()(0, 0), before(0, 0));
+  EXPECT_EQ(belief.markers()[0].sightings, 2);
+}
+
+TEST(Belief, LearnsTheScaleOfTheOdometryFromAMarker) {
+  Belief belief = belief_with({measurement_at({3.0, 1.0, -1.57})});
+  double true_x = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    belief.move({Se2{0.05, 0.0, 0.0}, 0.05, 0.0}, {});
+    true_x += 0.05 * 1.01;
+    belief.correct(0, measurement_at({3.0 - true_x, 1.0, -1.57}));
+  }
+  const double sigma = std::sqrt(belief.odometry_errors_covariance()(0, 0));
+  EXPECT_NEAR(belief.odometry_errors()[0], 0.01, 3.0 * sigma);
+  EXPECT_LT(sigma, 0.01);
+  EXPECT_NEAR(belief.map_from_base().x(), true_x, 0.02);
+}
+
+TEST(Belief, DrawingAnAxisMakesItExactAndLeavesTheOthers) {
+  Belief belief = belief_with({measurement_at({2.0, 1.0, -1.57})});
+  belief.move(kForward, {});
+  const Eigen::Matrix3d before = belief.pose_covariance();
+  const Se2 mean = belief.map_from_base();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, 1);
+  axes.col(0) = Eigen::Vector3d::UnitZ();
+  belief.draw_pose(axes, {1.5, 0.0, 0.0});
+  EXPECT_NEAR(belief.pose_covariance()(2, 2), 0.0, 1e-12);
+  EXPECT_NEAR(belief.map_from_base().theta(), mean.theta() + 1.5 * std::sqrt(before(2, 2)), 1e-9);
+  EXPECT_GT(belief.pose_covariance()(0, 0), 0.5 * before(0, 0));
+}
+
+TEST(Belief, CorrectingThePoseMovesTheMarkersThatHangOnIt) {
+  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  belief.move(kForward, {});
+  belief.add(measurement_at({1.5, 1.0, -1.57}));
+  const Se2 before = belief.map_from_base();
+  const double marker_x = belief.markers()[0].map_from_marker.x();
+  belief.correct_pose({before.x() + 0.01, before.y(), before.theta()},
+                      1e-12 * Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(belief.markers()[0].map_from_marker.x(), marker_x + 0.01, 1e-6);
+}
+
+TEST(Belief, AnIdIsAClass) {
+  const Belief belief =
+      belief_with({measurement_at({1.0, 1.0, -1.5}, 3), measurement_at({5.0, 1.0, -1.5}, 3)});
+  EXPECT_EQ(belief.markers()[1].instance, 1);
+  const auto nearest = belief.nearest(measurement_at({4.98, 1.0, -1.5}, 3));
+  ASSERT_TRUE(nearest);
+  EXPECT_EQ(nearest->marker, 1U);
+  EXPECT_FALSE(belief.nearest(measurement_at({1.0, 1.0, -1.5}, 9)));
+}
+
+TEST(Belief, SettledMarkersLeaveTheCovarianceAndAreKnownAgain) {
+  std::vector<MarkerMeasurement> seen;
+  for (int id = 0; id < 6; ++id) {
+    seen.push_back(measurement_at({1.0 + id, 1.0, -1.57}, id));
+    seen.back().time = Timestamp{std::chrono::seconds{id}};
+  }
+  Belief belief = belief_with(seen);
+  Belief copy = belief;
+  Random random{4};
+  belief.settle_oldest(2, random);
+  EXPECT_EQ(belief.markers().size(), 6U);
+  EXPECT_EQ(copy.markers().size(), 6U);
+  EXPECT_LT(belief.markers()[0].covariance(0, 0), copy.markers()[0].covariance(0, 0));
+  const auto nearest = belief.nearest(measurement_at({1.0, 1.0, -1.57}, 0));
+  ASSERT_TRUE(nearest);
+  belief.correct(nearest->marker, measurement_at({1.0, 1.0, -1.57}, 0));
+  EXPECT_EQ(belief.markers()[0].sightings, 2);
+}
+
+TEST(SquarePerspective, TellsTheFocalLengthOfTheCamera) {
+  for (const double error : {-0.01, 0.0, 0.02}) {
+    std::array<Eigen::Vector2d, 4> corners;
+    const double ahead[]{2.4, 2.0, 2.0, 2.4};
+    const double down[]{-0.2, -0.2, 0.2, 0.2};
+    for (std::size_t i = 0; i < 4; ++i)
+      corners[i] = (1.0 + error) * Eigen::Vector2d{-1.0 / ahead[i], down[i] / ahead[i]};
+    const auto focal = focal_error_of(corners, 1e-4);
+    ASSERT_TRUE(focal);
+    EXPECT_NEAR(focal->error, error, 1e-9);
+    EXPECT_GT(focal->sigma, 0.0);
+  }
+}
+
+TEST(SquarePerspective, AViewFromTheFrontTellsNothing) {
+  EXPECT_FALSE(focal_error_of({Eigen::Vector2d{-0.1, -0.1}, Eigen::Vector2d{0.1, -0.1},
+                               Eigen::Vector2d{0.1, 0.1}, Eigen::Vector2d{-0.1, 0.1}},
+                              1e-4));
 }
 
 // One dimension is enough to integrate by hand: only x is uncertain.
@@ -51,14 +164,15 @@ TEST(PoseProposal, AgreesWithBruteForceIntegration) {
   const Eigen::Matrix3d prior_covariance = diagonal(0.05, 1e-4, 1e-4);
   constexpr double kMeasured = 1.08;
   constexpr double kVariance = 0.03 * 0.03;
-  const PoseProposal proposal = propose(prior, prior_covariance, [&](const Se2& pose) {
-    PoseInformation information;
-    const double residual = pose.x() - kMeasured;
-    information.information(0, 0) = 1.0 / kVariance;
-    information.gradient.x() = residual / kVariance;
-    information.cost = 0.5 * residual * residual / kVariance;
-    return information;
-  });
+  const PoseProposal proposal = propose(
+      prior, prior_covariance, [&](const Se2& pose, const Eigen::Matrix3d& /*uncertainty*/) {
+        PoseInformation information;
+        const double residual = pose.x() - kMeasured;
+        information.information(0, 0) = 1.0 / kVariance;
+        information.gradient.x() = residual / kVariance;
+        information.cost = 0.5 * residual * residual / kVariance;
+        return information;
+      });
   double mass = 0.0;
   double mean = 0.0;
   double square = 0.0;
@@ -76,64 +190,6 @@ TEST(PoseProposal, AgreesWithBruteForceIntegration) {
   EXPECT_NEAR(proposal.covariance(0, 0), square / mass - mean * mean, 1e-8);
   EXPECT_NEAR(proposal.log_evidence, std::log(mass), 1e-6);
   EXPECT_NEAR(proposal.mean.y(), prior.y(), 1e-9);
-}
-
-TEST(OdometryCalibration, IsTheRegressionOverAllSteps) {
-  OdometryNoise noise;
-  OdometryCalibration calibration{noise};
-  Random random{3};
-  double information = 1.0 / (noise.scale_sigma * noise.scale_sigma);
-  double weighted = 0.0;
-  for (int i = 0; i < 100; ++i) {
-    const double measured_m = random.uniform(0.05, 0.15);
-    const double true_m = 0.99 * measured_m + random.normal(0.0, 0.001);
-    const Motion motion{Se2{measured_m, 0.0, 0.0}, measured_m, 0.0};
-    calibration.learn(motion, Se2{true_m, 0.0, 0.0}, noise);
-    const double variance = noise.along_per_sqrt_m * noise.along_per_sqrt_m * measured_m + 1e-9;
-    information += measured_m * measured_m / variance;
-    weighted += measured_m * (true_m - measured_m) / variance;
-  }
-  EXPECT_NEAR(calibration.scale(), weighted / information, 1e-12);
-  EXPECT_NEAR(calibration.scale_variance(), 1.0 / information, 1e-15);
-  EXPECT_NEAR(calibration.scale(), -0.01, 0.003);
-}
-
-TEST(OdometryCalibration, CorrectsWhatItLearnt) {
-  OdometryNoise noise;
-  OdometryCalibration calibration{noise};
-  const Motion motion{Se2{0.1, 0.0, 0.0}, 0.1, 0.0};
-  for (int i = 0; i < 2000; ++i)
-    calibration.learn(motion, Se2{0.101, 0.0, 0.0002}, noise);
-  EXPECT_NEAR(calibration.corrected(motion).x(), 0.101, 1e-4);
-  EXPECT_NEAR(calibration.corrected(motion).theta(), 0.0002, 1e-5);
-}
-
-TEST(MarkerLandmarks, CopiesShareUntilOneChanges) {
-  MarkerLandmarks one;
-  one.add(measurement_at({1.0, 1.0, -1.5}, 3), {});
-  one.add(measurement_at({2.0, 1.0, -1.5}, 4), {});
-  MarkerLandmarks other = one;
-  EXPECT_EQ(&one[0], &other[0]);
-  const Landmark before = one[0];
-  other.update(0, measurement_at({1.01, 1.0, -1.5}, 3), {});
-  EXPECT_NE(&one[0], &other[0]);
-  EXPECT_EQ(&one[1], &other[1]);
-  EXPECT_EQ(one[0].map_from_marker.x(), before.map_from_marker.x());
-  EXPECT_EQ(one[0].sightings, 1);
-  EXPECT_NEAR(other[0].map_from_marker.x(), 1.005, 1e-6);
-  EXPECT_EQ(other[0].sightings, 2);
-}
-
-TEST(MarkerLandmarks, AnIdIsAClass) {
-  MarkerLandmarks markers;
-  markers.add(measurement_at({1.0, 1.0, -1.5}, 3), {});
-  markers.add(measurement_at({5.0, 1.0, -1.5}, 3), {});
-  EXPECT_EQ(markers[1].instance, 1);
-  const auto nearest =
-      markers.nearest(measurement_at({4.98, 1.0, -1.5}, 3), {}, diagonal(0.05, 0.05, 0.05));
-  ASSERT_TRUE(nearest);
-  EXPECT_EQ(nearest->innovation.landmark, 1U);
-  EXPECT_FALSE(markers.nearest(measurement_at({1.0, 1.0, -1.5}, 9), {}, diagonal(1, 1, 1)));
 }
 
 /// A robot in the middle of a corridor of 2 m, walls in sight on both sides.
@@ -158,13 +214,14 @@ TEST(SurfaceMatching, FindsThePoseAcrossABareCorridorAndNothingAlongIt) {
   }
   const auto beams = corridor_beams(0.01, random);
   const Se2 start{0.3, 0.03, 0.02};
-  const PoseProposal matched = propose(start, diagonal(1.0, 1.0, 1.0), [&](const Se2& pose) {
-    return match_surfaces(beams, map, pose, {}).pose;
-  });
+  const PoseProposal matched = propose(
+      start, diagonal(0.1, 0.1, 0.1), [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
+        return match_surfaces(beams, map, pose, uncertainty, {}).pose;
+      });
   EXPECT_NEAR(matched.mean.y(), 0.0, 0.003);
   EXPECT_NEAR(matched.mean.theta(), 0.0, 0.003);
   EXPECT_NEAR(matched.mean.x(), 0.3, 0.002);  // nothing pulls
-  EXPECT_NEAR(matched.covariance(0, 0), 1.0, 0.05);
+  EXPECT_NEAR(matched.covariance(0, 0), 0.01, 0.001);
 }
 
 TEST(WallFit, ExtendsTheWallWithItsUncertainty) {
@@ -191,7 +248,7 @@ TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {
   observation.sightings = {sighting};
   const auto upright = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {});
   ASSERT_EQ(upright.size(), 1U);
-  EXPECT_TRUE(upright[0].is_on_wall);
+  EXPECT_TRUE(upright[0].wall.has_value());
   EXPECT_NEAR(upright[0].base_from_marker.y(), 1.0, 0.006);
   EXPECT_LT(upright[0].covariance(0, 0), 2.0 * sighting.covariance_in_base(0, 0));
   observation.sightings[0].base_from_marker = {2.5, 1.01, radians(-130.0)};

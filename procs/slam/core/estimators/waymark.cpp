@@ -94,11 +94,12 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
 void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
                                         Outcome& outcome) const {
   const PoseProposal by_walls =
-      propose(state.belief.map_from_base(), state.belief.pose_covariance(), [&](const Se2& pose) {
-        outcome.walls =
-            match_surfaces(sensed.observation->beams, state.walls, pose, config_.matching);
-        return outcome.walls.pose;
-      });
+      propose(state.belief.map_from_base(), state.belief.pose_covariance(),
+              [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
+                outcome.walls = match_surfaces(sensed.observation->beams, state.walls, pose,
+                                               uncertainty, config_.matching);
+                return outcome.walls.pose;
+              });
   state.belief.correct_pose(by_walls.mean, by_walls.covariance);
   outcome.log_evidence += config_.scan_evidence * by_walls.log_evidence;
 }
@@ -173,10 +174,12 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   if (has_moved) {
     const State& best = particles_.state(particles_.best());
     const Belief::Prediction predicted = best.belief.predicted(since_update_, config_.odometry);
-    const PoseProposal now =
-        propose(predicted.map_from_base, predicted.covariance, [&](const Se2& pose) {
-          return match_surfaces(observation.beams, best.walls, pose, config_.matching).pose;
-        });
+    const PoseProposal now = propose(predicted.map_from_base, predicted.covariance,
+                                     [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
+                                       return match_surfaces(observation.beams, best.walls, pose,
+                                                             uncertainty, config_.matching)
+                                           .pose;
+                                     });
     map_from_base = mean_ * (best.map_from_base.inverse() * now.mean);
     covariance += now.covariance;
   }

@@ -28,7 +28,8 @@ void keep_observed(double weak_share, PoseInformation& pose) {
 }
 
 SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceMap& map,
-                            const Se2& map_from_base, const SurfaceMatchingConfig& config) {
+                            const Se2& map_from_base, const Eigen::Matrix3d& uncertainty,
+                            const SurfaceMatchingConfig& config) {
   const Eigen::Matrix2d turn = map_from_base.rotation();
   SurfaceMatch match;
   match.beams = static_cast<int>(beams.size());
@@ -36,22 +37,43 @@ SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceM
     const Beam& beam = annotated.beam;
     const Eigen::Vector2d lever = turn * beam.end_in_base;
     const Eigen::Vector2d end = lever + map_from_base.translation();
-    const auto surface = map.near(end);
+    const double spread_m2 =
+        std::max(uncertainty(0, 0), uncertainty(1, 1)) + uncertainty(2, 2) * lever.squaredNorm();
+    const auto surface = map.near(end, 2.0 * std::sqrt(spread_m2));
     if (!surface) continue;
     const Eigen::Vector2d& normal = surface->normal_in_map;
+    const Eigen::Vector2d along{-normal.y(), normal.x()};
     const Eigen::Vector2d ray = turn * (beam.end_in_base - beam.start_in_base) / beam.range_m;
-    const double variance_m2 =
-        squared(config.range_sigma_m * normal.dot(ray)) + squared(config.surface_sigma_m);
-    const double residual_m = normal.dot(end - surface->point_in_map);
-    const double error = squared(residual_m) / variance_m2;
+    const Eigen::Vector2d off = end - surface->point_in_map;
+    const Eigen::Vector3d across_row{normal.x(), normal.y(),
+                                     normal.x() * -lever.y() + normal.y() * lever.x()};
+    const Eigen::Vector3d along_row{along.x(), along.y(),
+                                    along.x() * -lever.y() + along.y() * lever.x()};
+    const double map_m2 =
+        surface->is_line ? surface->across_m2 / surface->count : surface->across_m2;
+    const double across_m2 =
+        squared(config.range_sigma_m * normal.dot(ray)) + squared(config.surface_sigma_m) + map_m2;
+    const double along_m2 = across_m2 + surface->along_m2;
+    double error =
+        squared(normal.dot(off)) / (across_m2 + across_row.dot(uncertainty * across_row));
+    if (!surface->is_line) {
+      error += squared(along.dot(off)) / (along_m2 + along_row.dot(uncertainty * along_row));
+    }
     // Geman-McClure: quadratic near zero, constant far away.
     const double knee = squared(config.outlier_sigmas);
     const double trust = knee / (knee + error);
-    const double weight = config.information_share * trust * trust / variance_m2;
-    const Eigen::Vector3d row{normal.x(), normal.y(),
-                              normal.x() * -lever.y() + normal.y() * lever.x()};
-    match.pose.information.noalias() += weight * row * row.transpose();
-    match.pose.gradient.noalias() += weight * residual_m * row;
+    const double weight = config.information_share * squared(trust);
+    match.pose.information.noalias() += weight / across_m2 * across_row * across_row.transpose();
+    match.pose.gradient.noalias() += weight / across_m2 * normal.dot(off) * across_row;
+    if (surface->is_line) {
+      // A normal that is turned by its noise seems to tell what lies along the surface: the square
+      // of that is taken out again, on average.
+      match.pose.information.noalias() -=
+          weight / across_m2 * surface->normal_rad2 * along_row * along_row.transpose();
+    } else {
+      match.pose.information.noalias() += weight / along_m2 * along_row * along_row.transpose();
+      match.pose.gradient.noalias() += weight / along_m2 * along.dot(off) * along_row;
+    }
     match.pose.cost += 0.5 * config.information_share * error * trust;
     match.mapped += 1.0;
     match.agreeing += trust;

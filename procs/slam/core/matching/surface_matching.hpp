@@ -15,9 +15,9 @@ class Fields;
 struct SurfaceMatchingConfig {
   double range_sigma_m{0.01};     ///< of the LiDAR; taken from the robot
   double surface_sigma_m{0.002};  ///< roughness of walls, errors of beam angles
-  double outlier_sigmas{3.0};     ///< a beam this far off counts a quarter
+  double outlier_sigmas{10.0};    ///< a beam this far off counts a quarter
   double information_share{1.0};  ///< beams are not quite independent, nor is the map exact
-  double weak_share{0.02};        ///< directions below this share of the strongest are unobserved
+  double weak_share{0.005};       ///< directions below this share of the strongest are unobserved
 
   void describe(Fields& fields);
 };
@@ -35,8 +35,11 @@ struct SurfaceMatch {
 /// information and no gradient, so nothing pulls back along a bare corridor.
 /// Source: Censi (2008), "An ICP variant using a point-to-line metric"; Zhang, Kaess, Singh (2016),
 /// "On degeneracy of optimization-based state estimation problems".
+/// @param uncertainty  covariance of the pose (x, y, theta), map frame: how far off beams may be
+/// before they count as outliers.
 SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceMap& map,
-                            const Se2& map_from_base, const SurfaceMatchingConfig& config);
+                            const Se2& map_from_base, const Eigen::Matrix3d& uncertainty,
+                            const SurfaceMatchingConfig& config);
 
 /// Removes the directions with little information.
 void keep_observed(double weak_share, PoseInformation& pose);

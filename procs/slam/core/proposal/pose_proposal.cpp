@@ -7,7 +7,8 @@
 namespace waymark {
 namespace {
 
-constexpr int kMaxSteps = 5;
+constexpr int kMaxSteps = 6;
+constexpr double kShrink = 0.25;     // of the uncertainty, by a step
 constexpr double kSmallStep = 2e-4;  // [m, rad] well below what a scan tells
 
 }  // namespace
@@ -17,15 +18,17 @@ Se2 PoseProposal::at(const Eigen::Vector3d& standard_normal) const {
 }
 
 PoseProposal propose(const Se2& prior_mean, const Eigen::Matrix3d& prior_covariance,
-                     const std::function<PoseInformation(const Se2&)>& measurements) {
+                     const MeasurementModel& measurements) {
   const Eigen::Matrix3d prior_information = prior_covariance.inverse();
   PoseProposal proposal;
   proposal.mean = prior_mean;
   PoseInformation measured;
   Eigen::Vector3d from_prior = Eigen::Vector3d::Zero();
   Eigen::Matrix3d information;
+  Eigen::Matrix3d uncertainty = prior_covariance;
   for (int step = 0; step < kMaxSteps; ++step) {
-    measured = measurements(proposal.mean);
+    measured = measurements(proposal.mean, uncertainty);
+    uncertainty *= kShrink;
     from_prior = deviation(prior_mean, proposal.mean);
     information = prior_information + measured.information;
     const Eigen::Vector3d move =

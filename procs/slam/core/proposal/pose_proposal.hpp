@@ -17,10 +17,15 @@ struct PoseProposal {
   Se2 at(const Eigen::Vector3d& standard_normal) const;
 };
 
+/// Measurements as a second-order model of their negative log-likelihood about a pose, given how
+/// uncertain that pose still is: robust models judge outliers by it.
+using MeasurementModel =
+    std::function<PoseInformation(const Se2& pose, const Eigen::Matrix3d& uncertainty)>;
+
 /// Fuses a Gaussian prior with measurements, each a second-order model of its negative
 /// log-likelihood about a given pose, by Gauss-Newton steps. The evidence is Laplace's.
 /// Source: Montemerlo et al. (2003), "FastSLAM 2.0", equations 6-16.
 PoseProposal propose(const Se2& prior_mean, const Eigen::Matrix3d& prior_covariance,
-                     const std::function<PoseInformation(const Se2&)>& measurements);
+                     const MeasurementModel& measurements);
 
 }  // namespace waymark

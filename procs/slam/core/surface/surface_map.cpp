@@ -7,11 +7,12 @@
 namespace waymark {
 namespace {
 
-constexpr int kReach = 1;           // [cell] the square has 2 kReach + 1 of them along each side
-constexpr int kSecondReach = 2;     // [cell] when the smaller square says too little
-constexpr double kMinPoints = 4.0;  // fewer do not make a line
+constexpr int kReaches[]{1, 2, 4};      // [cell] squares of 2 reach + 1 cells along each side
+constexpr int kAlwaysTried = 2;         // [cell]
+constexpr double kMinPoints = 4.0;      // fewer do not make a line
 constexpr double kMaxThickness = 0.45;  // [cell] standard deviation across the line
-constexpr double kMinElongation = 2.0;  // of the line: length over thickness
+constexpr double kMinElongation = 3.0;  // of the line: length over thickness
+constexpr double kCellVariance = 1e-3;  // [cell^2] points are never known better
 
 /// Sums over a square of cells, in cells from the centre of its middle cell.
 struct Moments {
@@ -41,7 +42,7 @@ Moments moments_around(const TileMap<SurfaceCell>& cells, CellIndex middle, int 
   return moments;
 }
 
-/// Line through the points; in cells from the middle.
+/// In cells from the middle.
 std::optional<Surface> fit(const Moments& moments) {
   if (moments.count < kMinPoints) return std::nullopt;
   const Eigen::Vector2d mean = moments.sum / moments.count;
@@ -50,11 +51,22 @@ std::optional<Surface> fit(const Moments& moments) {
   const double yy = moments.squares(1, 1) / moments.count - mean.y() * mean.y();
   const double half_trace = 0.5 * (xx + yy);
   const double root = std::hypot(0.5 * (xx - yy), xy);
-  const double thickness = std::sqrt(std::max(0.0, half_trace - root));
-  const double length = std::sqrt(half_trace + root);
-  if (thickness > kMaxThickness || length < kMinElongation * thickness) return std::nullopt;
-  const double along_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
-  return Surface{mean, {-std::sin(along_rad), std::cos(along_rad)}, moments.count};
+  Surface surface;
+  surface.point_in_map = mean;
+  surface.count = moments.count;
+  surface.across_m2 = std::max(0.0, half_trace - root) + kCellVariance;
+  surface.along_m2 = half_trace + root + kCellVariance;
+  surface.normal_rad2 = surface.across_m2 / (moments.count * surface.along_m2);
+  surface.is_line = surface.across_m2 < kMaxThickness * kMaxThickness &&
+                    surface.along_m2 > kMinElongation * kMinElongation * surface.across_m2;
+  // Eigenvector of the smaller eigenvalue.
+  const double along_x = 0.5 * (xx - yy) + root;
+  surface.normal_in_map = Eigen::Vector2d{-xy, along_x};
+  if (0.5 * (xx - yy) < 0.0) surface.normal_in_map = {root - 0.5 * (xx - yy), -xy};
+  const double norm = surface.normal_in_map.norm();
+  surface.normal_in_map =
+      norm > 0.0 ? Eigen::Vector2d{surface.normal_in_map / norm} : Eigen::Vector2d::UnitX();
+  return surface;
 }
 
 }  // namespace
@@ -72,13 +84,21 @@ void SurfaceMap::add(const Eigen::Vector2d& point_in_map) {
   cell.yy += p.y() * p.y();
 }
 
-std::optional<Surface> SurfaceMap::near(const Eigen::Vector2d& point_in_map) const {
+std::optional<Surface> SurfaceMap::near(const Eigen::Vector2d& point_in_map, double reach_m) const {
   const CellIndex middle = frame_.cell_of(point_in_map);
-  std::optional<Surface> surface = fit(moments_around(cells_, middle, kReach));
-  if (!surface) surface = fit(moments_around(cells_, middle, kSecondReach));
-  if (surface) {
-    surface->point_in_map = frame_.centre_of(middle) + frame_.resolution_m * surface->point_in_map;
+  const double reach_cells = reach_m / frame_.resolution_m;
+  std::optional<Surface> surface;
+  for (const int reach : kReaches) {
+    if (reach > kAlwaysTried && reach / 2 >= reach_cells) break;
+    const std::optional<Surface> wider = fit(moments_around(cells_, middle, reach));
+    if (wider && (!surface || wider->is_line)) surface = wider;
+    if (surface && surface->is_line) break;
   }
+  if (!surface) return std::nullopt;
+  const double cell_m2 = frame_.resolution_m * frame_.resolution_m;
+  surface->point_in_map = frame_.centre_of(middle) + frame_.resolution_m * surface->point_in_map;
+  surface->across_m2 *= cell_m2;
+  surface->along_m2 *= cell_m2;
   return surface;
 }
 
