@@ -5,6 +5,7 @@
 #include "common/config/config.hpp"
 #include "common/robot/robot_config.hpp"
 #include "sim/core/camera/camera.hpp"
+#include "sim/core/expect.hpp"
 #include "sim/core/robot/drive.hpp"
 #include "sim/core/sensors/encoders.hpp"
 #include "sim/core/sensors/lidar.hpp"
@@ -38,6 +39,7 @@ struct Scenario {
   LidarNoiseConfig lidar_noise{};
   CameraNoiseConfig camera_noise{};
   RunConfig run{};
+  ExpectConfig expect{};
 
   MarkerPrint marker_print() const {
     return {robot.markers.dictionary, robot.markers.size_m, markers.quiet_zone_modules};
