@@ -3,9 +3,9 @@
 #pragma once
 
 #include "common/config/config.hpp"
+#include "common/expect/expect_config.hpp"
 #include "common/robot/robot_config.hpp"
 #include "sim/core/camera/camera.hpp"
-#include "sim/core/expect.hpp"
 #include "sim/core/robot/drive.hpp"
 #include "sim/core/sensors/encoders.hpp"
 #include "sim/core/sensors/lidar.hpp"
@@ -39,7 +39,7 @@ struct Scenario {
   LidarNoiseConfig lidar_noise{};
   CameraNoiseConfig camera_noise{};
   RunConfig run{};
-  ExpectConfig expect{};
+  ExpectConfig expect{};  ///< not for the simulation: for who reads its results
 
   MarkerPrint marker_print() const {
     return {robot.markers.dictionary, robot.markers.size_m, markers.quiet_zone_modules};
