@@ -51,6 +51,7 @@ void Scenario::describe(Fields& fields) {
   fields.section("camera_noise", camera_noise);
   fields.section("run", run);
   fields.section("route", route);
+  fields.section("expect", expect);
 }
 
 void Scenario::check(Problems& problems) const {

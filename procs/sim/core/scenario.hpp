@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/config/config.hpp"
+#include "common/expect/expect_config.hpp"
 #include "common/robot/robot_config.hpp"
 #include "sim/core/camera/camera.hpp"
 #include "sim/core/robot/drive.hpp"
@@ -38,6 +39,7 @@ struct Scenario {
   LidarNoiseConfig lidar_noise{};
   CameraNoiseConfig camera_noise{};
   RunConfig run{};
+  ExpectConfig expect{};  ///< not for the simulation: for who reads its results
 
   MarkerPrint marker_print() const {
     return {robot.markers.dictionary, robot.markers.size_m, markers.quiet_zone_modules};
