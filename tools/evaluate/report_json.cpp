@@ -89,6 +89,14 @@ Json nulls_like(Json json) {
   return json;
 }
 
+/// The same values under keys with "final_" before them.
+Json as_final(const Json& json) {
+  Json renamed;
+  for (const auto& [key, value] : json.items())
+    renamed["final_" + key] = value;
+  return renamed;
+}
+
 }  // namespace
 
 Json json_of(const CorridorLength& length, std::optional<double> true_length_m) {
@@ -147,6 +155,8 @@ Json metrics_json(const EstimatorResult& result) {
   json["true_length_m"] = number(result.true_length_m);
   json.update(result.trajectory ? json_of(*result.trajectory)
                                 : nulls_like(json_of(TrajectoryError{})));
+  json.update(as_final(result.final_trajectory ? json_of(*result.final_trajectory)
+                                               : nulls_like(json_of(TrajectoryError{}))));
   json["poses_outside_truth"] = result.poses_outside_truth;
   json.update(json_of(result.markers));
   json.update(json_of(result.nees));

@@ -67,13 +67,19 @@ void attempt(std::vector<std::string>& problems, const std::function<void()>& pa
   }
 }
 
+/// @throws InputError when no pose has a true one.
+std::vector<PosePair> pairs_of(const fs::path& file, const Trajectory& estimate,
+                               const Trajectory& truth) {
+  std::vector<PosePair> pairs = associate(estimate, truth);
+  if (pairs.empty()) throw InputError{file.string() + ": no pose within the truth's time span"};
+  return pairs;
+}
+
 void add_trajectory(const fs::path& dir, const RunTruth& truth, const EvaluationOptions& options,
                     EstimatorResult& result, Se2& world_from_map) {
   const Trajectory estimate = read_tum(dir / "trajectory.tum", result.skipped);
-  const std::vector<PosePair> pairs = associate(estimate, *truth.trajectory);
+  const std::vector<PosePair> pairs = pairs_of(dir / "trajectory.tum", estimate, *truth.trajectory);
   result.poses_outside_truth = estimate.size() - pairs.size();
-  if (pairs.empty())
-    throw InputError{(dir / "trajectory.tum").string() + ": no pose within the truth's time span"};
   if (static_cast<double>(result.poses_outside_truth) >
       kOutsideShare * static_cast<double>(estimate.size()))
     result.problems.push_back(fmt::format("{}: {} of {} poses are outside the truth's time span",
@@ -90,6 +96,14 @@ void add_trajectory(const fs::path& dir, const RunTruth& truth, const Evaluation
   result.stations = stations(pairs, covariances, world_from_map);
   result.timeline =
       timeline(pairs, covariances, world_from_map, truth.lifted_t_s, truth.sightings_s);
+}
+
+void add_final_trajectory(const fs::path& dir, const Trajectory& truth,
+                          const EvaluationOptions& options, EstimatorResult& result) {
+  const fs::path file = dir / "trajectory_final.tum";
+  if (!fs::exists(file)) return;
+  const Trajectory estimate = read_tum(file, result.skipped);
+  result.final_trajectory = trajectory_error(pairs_of(file, estimate, truth), options.alignment);
 }
 
 /// Position in the table.
@@ -159,6 +173,8 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
       add_trajectory(dir, truth, options, result, aligned);
       world_from_map = aligned;
     });
+    attempt(result.problems,
+            [&] { add_final_trajectory(dir, *truth.trajectory, options, result); });
   }
   if (truth.markers && world_from_map && fs::exists(dir / "markers.csv")) {
     attempt(result.problems, [&] {

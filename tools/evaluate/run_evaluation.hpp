@@ -40,8 +40,9 @@ struct EstimatorResult {
   std::string name{};
   std::optional<CorridorLength> length{};
   std::optional<double> true_length_m{};
-  std::optional<int> wall_cells{};  ///< thickness
-  std::optional<TrajectoryError> trajectory{};
+  std::optional<int> wall_cells{};                    ///< thickness
+  std::optional<TrajectoryError> trajectory{};        ///< poses as given during the run
+  std::optional<TrajectoryError> final_trajectory{};  ///< as corrected until its end, if it was
   std::size_t poses_outside_truth{};
   std::optional<MarkerError> markers{};
   std::optional<Nees> nees{};
