@@ -12,6 +12,7 @@ using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr std::size_t kParticlesPerMessage = 1300;  // 48 bytes each
 constexpr std::size_t kLandmarksPerMessage = 500;   // 125 bytes each
+constexpr std::size_t kPosesPerMessage = 3000;      // 20 bytes each
 constexpr int kConfirmingSightings = 3;             // fewer may be a misread marker
 
 std::int8_t to_message(Health health) {
@@ -134,6 +135,22 @@ std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Times
     for (std::size_t i = part * kLandmarksPerMessage; i < last; ++i)
       message.landmarks.push_back(to_message(landmarks[i]));
     message.num_landmarks = static_cast<std::int32_t>(message.landmarks.size());
+  }
+  return messages;
+}
+
+std::vector<trajectory_t> to_messages(std::span<const TimedPose> trajectory) {
+  std::vector<trajectory_t> messages((trajectory.size() + kPosesPerMessage - 1) / kPosesPerMessage);
+  for (std::size_t part = 0; part < messages.size(); ++part) {
+    trajectory_t& message = messages[part];
+    message.utime = to_us(trajectory.back().time);
+    message.part = static_cast<std::int32_t>(part);
+    message.num_parts = static_cast<std::int32_t>(messages.size());
+    const std::size_t first = part * kPosesPerMessage;
+    const std::size_t count = std::min(kPosesPerMessage, trajectory.size() - first);
+    for (const TimedPose& pose : trajectory.subspan(first, count))
+      message.poses.push_back(to_pose_message(pose.time, pose.map_from_base));
+    message.num_poses = static_cast<std::int32_t>(count);
   }
   return messages;
 }

@@ -21,4 +21,7 @@ particles_t to_message(std::span<const PublishedParticle> particles, Timestamp t
 /// In parts that each fit one datagram; at least one.
 std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Timestamp time);
 
+/// In parts that each fit one datagram; none for an empty trajectory.
+std::vector<trajectory_t> to_messages(std::span<const TimedPose> trajectory);
+
 }  // namespace waymark

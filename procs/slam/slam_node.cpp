@@ -35,6 +35,8 @@ void SlamNode::finish() {
     outbox_.publish(channels::kSlamMap, part);
   publish_markers(*last_scan_);
   publish_grid(*last_scan_);
+  for (const trajectory_t& part : to_messages(estimator_->trajectory()))
+    outbox_.publish(channels::kSlamTrajectory, part);
 }
 
 void SlamNode::take(LidarScan scan) {

@@ -27,7 +27,8 @@ class SlamNode final : public Node {
 
   SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox);
 
-  /// Uses the scans that still wait for camera frames; sends the whole map.
+  /// Uses the scans that still wait for camera frames; sends the whole map, and on SLAM_TRAJECTORY
+  /// the way there as it is known at the end.
   void finish() override;
 
  private:

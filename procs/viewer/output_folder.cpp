@@ -79,4 +79,12 @@ void OutputFolder::write(const std::string& name, std::string_view bytes) {
   }
 }
 
+void OutputFolder::remove(const std::string& name) {
+  std::error_code error;
+  std::filesystem::remove(folder_ / name, error);
+  if (!error) return;
+  spdlog::error("{}: cannot be removed", (folder_ / name).string());
+  failed_files_.insert(name);
+}
+
 }  // namespace waymark::viewer

@@ -23,6 +23,9 @@ class OutputFolder {
   /// Writes one file. A failure is logged and remembered, and does not stop anybody.
   void write(const std::string& name, std::string_view bytes);
 
+  /// Removes a file of an earlier run, if there is one.
+  void remove(const std::string& name);
+
   const std::filesystem::path& path() const { return folder_; }
 
   /// Names of the files that at least once could not be written.

@@ -126,6 +126,20 @@ void SceneUpdater::add(const particles_t& message) {
     scene_.particles.emplace_back(particle.pose.x, particle.pose.y, particle.pose.theta);
 }
 
+void SceneUpdater::add(const trajectory_t& message) {
+  if (message.part == 0) {
+    num_trajectory_parts_ = 0;
+    trajectory_parts_.clear();
+  }
+  if (message.part != num_trajectory_parts_) {
+    counters_.add("SLAM_TRAJECTORY left out: an earlier part is missing");
+    return;
+  }
+  for (const pose2D_t& pose : message.poses)
+    append(trajectory_parts_, to_timed_pose(pose), "SLAM_TRAJECTORY");
+  if (++num_trajectory_parts_ == message.num_parts) scene_.final_trajectory = trajectory_parts_;
+}
+
 void SceneUpdater::add_odometry(const pose2D_t& message) {
   append(scene_.odometry, to_timed_pose(message), "ODOMETRY");
 }

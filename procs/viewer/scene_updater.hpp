@@ -23,6 +23,8 @@ class SceneUpdater {
   void add(const slam_estimate_t& message);
   void add(const annotated_scan_t& message);
   void add(const particles_t& message);
+  /// Replaces the final trajectory as soon as all parts are there; they come in order.
+  void add(const trajectory_t& message);
   void add_odometry(const pose2D_t& message);
   void add_truth(const pose2D_t& message);
 
@@ -35,6 +37,8 @@ class SceneUpdater {
   std::int64_t marker_parts_utime_{-1};
   std::int32_t num_marker_parts_{0};
   std::map<std::int32_t, std::vector<Landmark>> marker_parts_{};
+  std::int32_t num_trajectory_parts_{0};  ///< received of the trajectory under way
+  std::vector<TimedPose> trajectory_parts_{};
 };
 
 }  // namespace waymark::viewer

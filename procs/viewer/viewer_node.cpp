@@ -52,6 +52,7 @@ void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<map_tiles_t>(channels::kSlamMap, [this](const auto& m) { updater_.add(m); });
   inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) { updater_.add(m); });
   inbox.on<annotated_scan_t>(channels::kSlamScan, [this](const auto& m) { updater_.add(m); });
+  inbox.on<trajectory_t>(channels::kSlamTrajectory, [this](const auto& m) { updater_.add(m); });
   inbox.on<particles_t>(
       channels::kSlamParticles, [this](const auto& m) { updater_.add(m); }, Backlog::kNewestOnly);
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) { updater_.add_odometry(m); });
@@ -81,6 +82,15 @@ void ViewerNode::write_data() {
   folder_.write("markers.csv", viewer::markers_csv_text(scene_.landmarks));
 }
 
+void ViewerNode::write_final_trajectory() {
+  constexpr auto kName = "trajectory_final.tum";
+  if (scene_.final_trajectory.empty()) {
+    folder_.remove(kName);
+  } else {
+    folder_.write(kName, viewer::tum_text(scene_.final_trajectory));
+  }
+}
+
 void ViewerNode::write_map_picture() {
   const cv::Mat picture = viewer::paint_map(scene_, config_.viewer.map_page);
   folder_.write("map.png", viewer::png_bytes(picture));
@@ -102,6 +112,7 @@ void ViewerNode::write_scan_and_plain_map() {
 
 void ViewerNode::finish() {
   write_data();
+  write_final_trajectory();
   write_map_picture();
   write_marker_layer();
   write_scan_and_plain_map();

@@ -36,6 +36,7 @@ class ViewerNode final : public Node {
   /// once would hold up a lockstep run.
   void write_when_due(Timestamp time);
   void write_data();
+  void write_final_trajectory();
   void write_map_picture();
   void write_marker_layer();
   void write_scan_and_plain_map();

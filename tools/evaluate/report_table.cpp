@@ -10,11 +10,11 @@
 namespace waymark::evaluate {
 namespace {
 
-constexpr std::array<std::string_view, 16> kColumns{
+constexpr std::array<std::string_view, 17> kColumns{
     "Case",      "Pixel Length", "Corridor Length", "Pixel Count",      "Map Length",
     "Accuracy",  "along RMSE",   "x odometry",      "across RMSE",      "ate_origin_m",
     "ate_se2_m", "heading RMSE", "marker error",    "missing/spurious", "NEES",
-    "flags"};
+    "expected",  "flags"};
 
 using Row = std::array<std::string, kColumns.size()>;
 
@@ -54,12 +54,11 @@ void add_length(const EstimatorResult& result, Row& row) {
     row[5] = cell(accuracy_percent(length.length_m, *result.true_length_m), 2, " %");
 }
 
-void add_trajectory(const EstimatorResult& result, std::optional<double> odometry_m, Row& row) {
-  if (!result.trajectory) return;
-  const TrajectoryError& error = *result.trajectory;
-  const std::optional<double> along_m = along_rmse_m(result);
-  row[6] = cell(along_m, 3, " m");
-  if (along_m && odometry_m && *odometry_m > 0.0) row[7] = cell(*along_m / *odometry_m, 2, "");
+void add_trajectory(const TrajectoryError& error, std::optional<double> odometry_m, Row& row) {
+  if (error.along_m) {
+    row[6] = cell(error.along_m->rms, 3, " m");
+    if (odometry_m && *odometry_m > 0.0) row[7] = cell(error.along_m->rms / *odometry_m, 2, "");
+  }
   if (error.across_m) row[8] = cell(error.across_m->rms, 3, " m");
   row[9] = cell(error.ate_origin_m, 3, " m");
   row[10] = cell(error.ate_se2_m, 3, " m");
@@ -71,13 +70,24 @@ Row row_of(const EstimatorResult& result, std::optional<double> odometry_m) {
   row.fill("-");
   row[0] = result.name;
   add_length(result, row);
-  add_trajectory(result, odometry_m, row);
+  if (result.trajectory) add_trajectory(*result.trajectory, odometry_m, row);
   if (result.markers) {
     row[12] = cell(result.markers->mean_position_m, 3, " m");
     row[13] = fmt::format("{}/{}", result.markers->missing, result.markers->spurious);
   }
   if (result.nees) row[14] = cell(result.nees->mean, 2, "");
-  row[15] = flags_of(result);
+  row[15] = text_of(result.expectations);
+  row[16] = flags_of(result);
+  return row;
+}
+
+/// The way as corrected until the end of the run.
+Row final_row_of(const std::string& name, const TrajectoryError& error,
+                 std::optional<double> odometry_m) {
+  Row row;
+  row.fill("-");
+  row[0] = name + ", final";
+  add_trajectory(error, odometry_m, row);
   return row;
 }
 
@@ -98,8 +108,11 @@ std::string results_table(const std::vector<EstimatorResult>& results) {
   Row names;
   std::copy(kColumns.begin(), kColumns.end(), names.begin());
   std::vector<Row> rows{names};
-  for (const EstimatorResult& result : results)
+  for (const EstimatorResult& result : results) {
     rows.push_back(row_of(result, odometry_m));
+    if (result.final_trajectory)
+      rows.push_back(final_row_of(result.name, *result.final_trajectory, odometry_m));
+  }
 
   std::array<std::size_t, kColumns.size()> widths{};
   for (const Row& row : rows) {
@@ -126,7 +139,9 @@ std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorR
   text +=
       "; `x odometry`: along RMSE over that of the row `odometry`. Marker error: mean distance "
       "over "
-      "all true markers that were mapped. NEES: 3 is right.\n";
+      "all true markers that were mapped. NEES: 3 is right. Expected: by the scenario, its limit "
+      "in parentheses. "
+      "Trajectories are the poses given during the run; `final`: corrected until its end.\n";
   if (!truth.length_m)
     text += "\nNo scenario.toml: the true length is not known, so no accuracy.\n";
   if (!truth.trajectory) text += "\nNo truth.tum: lengths only, no trajectory error.\n";

@@ -141,6 +141,13 @@ std::vector<std::string> config_detail::read(const ConfigSources& sources,
   return problems;
 }
 
+std::vector<std::string> config_detail::read_part(const std::filesystem::path& file,
+                                                  const Describe& describe) {
+  std::vector<std::string> problems;
+  read_toml_file(file, describe, problems, UnknownKeys::kIgnored);
+  return problems;
+}
+
 std::string config_detail::dump(const Describe& describe) {
   Writer writer;
   describe(writer);

@@ -41,6 +41,8 @@ namespace config_detail {
 using Describe = std::function<void(Fields&)>;
 /// Reads all sources into the described struct; returns all problems.
 std::vector<std::string> read(const ConfigSources& sources, const Describe& describe);
+/// Reads one file, of which the struct describes only a part.
+std::vector<std::string> read_part(const std::filesystem::path& file, const Describe& describe);
 std::string dump(const Describe& describe);
 }  // namespace config_detail
 
@@ -59,6 +61,17 @@ Config load_config(const ConfigSources& sources) {
       problems = found.lines();
     }
   }
+  if (!problems.empty()) throw ConfigError{problems};
+  return config;
+}
+
+/// The struct's defaults, overlaid by what it knows of a file; other keys are left alone.
+/// @throws ConfigError as above, but for unknown keys.
+template <class Config>
+Config load_part(const std::filesystem::path& file) {
+  Config config{};
+  const auto problems =
+      config_detail::read_part(file, [&config](Fields& fields) { config.describe(fields); });
   if (!problems.empty()) throw ConfigError{problems};
   return config;
 }

@@ -43,8 +43,9 @@ std::string shown(const toml::node& node) {
 /// Reads one table tree into a described struct.
 class Reader final : public Fields {
  public:
-  Reader(const toml::table& root, std::string source, std::vector<std::string>& problems)
-      : source_{std::move(source)}, problems_{problems} {
+  Reader(const toml::table& root, std::string source, std::vector<std::string>& problems,
+         UnknownKeys unknown_keys)
+      : source_{std::move(source)}, problems_{problems}, unknown_keys_{unknown_keys} {
     levels_.push_back({&root, "", {}});
   }
 
@@ -250,6 +251,7 @@ class Reader final : public Fields {
   }
 
   void report_unknown_keys() {
+    if (unknown_keys_ == UnknownKeys::kIgnored) return;
     const Level& level = levels_.back();
     for (const auto& [key, node] : *level.table) {
       if (level.known_keys.contains(key.str())) continue;
@@ -269,12 +271,14 @@ class Reader final : public Fields {
 
   std::string source_;
   std::vector<std::string>& problems_;
+  UnknownKeys unknown_keys_;
   std::vector<Level> levels_;
 };
 
 void read_table(const toml::table& table, const std::string& source,
-                const std::function<void(Fields&)>& describe, std::vector<std::string>& problems) {
-  Reader reader{table, source, problems};
+                const std::function<void(Fields&)>& describe, std::vector<std::string>& problems,
+                UnknownKeys unknown_keys = UnknownKeys::kProblem) {
+  Reader reader{table, source, problems, unknown_keys};
   describe(reader);
   reader.finish();
 }
@@ -286,7 +290,7 @@ std::string described(const toml::parse_error& error) {
 }  // namespace
 
 void read_toml_file(const std::filesystem::path& file, const std::function<void(Fields&)>& describe,
-                    std::vector<std::string>& problems) {
+                    std::vector<std::string>& problems, UnknownKeys unknown_keys) {
   std::ifstream stream{file};
   std::stringstream text;
   if (std::filesystem::is_directory(file) || !stream || !(text << stream.rdbuf())) {
@@ -296,7 +300,8 @@ void read_toml_file(const std::filesystem::path& file, const std::function<void(
     return;
   }
   try {
-    read_table(toml::parse(text.str(), file.string()), file.string(), describe, problems);
+    read_table(toml::parse(text.str(), file.string()), file.string(), describe, problems,
+               unknown_keys);
   } catch (const toml::parse_error& error) {
     problems.push_back(fmt::format("{}:{}: not TOML: {}", file.string(), error.source().begin.line,
                                    described(error)));

@@ -16,6 +16,7 @@
 #include <waymark/process_status_t.hpp>
 #include <waymark/slam_estimate_t.hpp>
 #include <waymark/tick_t.hpp>
+#include <waymark/trajectory_t.hpp>
 #include <waymark/twist2D_t.hpp>
 
 #include <string_view>
@@ -46,6 +47,7 @@ inline constexpr Channel<occupancy_grid_t> kSlamGrid{"SLAM_GRID"};
 inline constexpr Channel<marker_map_t> kSlamMarkers{"SLAM_MARKERS"};
 inline constexpr Channel<particles_t> kSlamParticles{"SLAM_PARTICLES"};
 inline constexpr Channel<annotated_scan_t> kSlamScan{"SLAM_SCAN"};
+inline constexpr Channel<trajectory_t> kSlamTrajectory{"SLAM_TRAJECTORY"};
 
 inline constexpr Channel<process_status_t> kSimStatus{"SIM_STATUS"};
 inline constexpr Channel<process_status_t> kDetectorStatus{"DETECTOR_STATUS"};

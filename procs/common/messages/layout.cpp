@@ -121,6 +121,8 @@ constexpr FieldLayout kOccupancyGrid[] = {fixed(kInt64), fixed(kFloat, 3), fixed
                                           fixed(kInt32), fixed(kInt32),    fixed_array(kByte, 4)};
 constexpr FieldLayout kParticle[] = {one(kPose2D), one(kPose2D), fixed(kDouble)};
 constexpr FieldLayout kParticles[] = {fixed(kInt64), fixed(kInt32), many(kParticle, 1)};
+constexpr FieldLayout kTrajectory[] = {fixed(kInt64), fixed(kInt32), fixed(kInt32), fixed(kInt32),
+                                       many(kPose2D, 3)};
 constexpr FieldLayout kMarkerDetection[] = {
     fixed(kInt32),  fixed(kDouble, 8), fixed(kDouble, 3), fixed(kDouble, 4), fixed(kDouble, 36),
     fixed(kDouble), fixed(kDouble, 3), fixed(kDouble, 4), fixed(kDouble),    fixed(kDouble)};
@@ -230,6 +232,11 @@ StructLayout layout_of<slam_estimate_t>() {
 template <>
 StructLayout layout_of<tick_t>() {
   return kTick;
+}
+
+template <>
+StructLayout layout_of<trajectory_t>() {
+  return kTrajectory;
 }
 
 template <>

@@ -161,6 +161,13 @@ RejectReason validate(const tick_t& m) {
                   true);
 }
 
+RejectReason validate(const trajectory_t& m) {
+  const bool poses_finite = std::ranges::all_of(
+      m.poses, [](const pose2D_t& pose) { return all_finite(pose.x, pose.y, pose.theta); });
+  return first_of(has_size(m.poses, m.num_poses) && m.part >= 0 && m.part < m.num_parts,
+                  poses_finite);
+}
+
 RejectReason validate(const twist2D_t& m) {
   return first_of(true, all_finite(m.vx, m.vy, m.wz));
 }

@@ -22,6 +22,7 @@ RejectReason validate(const pose2D_t& message);
 RejectReason validate(const process_status_t& message);
 RejectReason validate(const slam_estimate_t& message);
 RejectReason validate(const tick_t& message);
+RejectReason validate(const trajectory_t& message);
 RejectReason validate(const twist2D_t& message);
 
 }  // namespace waymark

@@ -65,9 +65,10 @@ struct Scene {
   TiledMap map{kMaxMapCells};
   std::vector<Landmark> landmarks{};
   std::vector<EstimatedPose> estimates{};
-  std::vector<TimedPose> odometry{};  ///< odom_from_base
-  std::vector<TimedPose> truth{};     ///< world_from_base; empty on a real robot
-  std::vector<Se2> particles{};       ///< map_from_base of each
+  std::vector<TimedPose> final_trajectory{};  ///< as the estimator knows it at the end
+  std::vector<TimedPose> odometry{};          ///< odom_from_base
+  std::vector<TimedPose> truth{};             ///< world_from_base; empty on a real robot
+  std::vector<Se2> particles{};               ///< map_from_base of each
   std::optional<AnnotatedScan> scan{};
 };
 

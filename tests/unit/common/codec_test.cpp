@@ -136,6 +136,11 @@ TEST(Codec, EveryTypeSurvivesARoundTrip) {
     landmark = marker_landmark_t{};
   markers.num_landmarks = 2;
   expect_round_trip(channels::kSlamMarkers, markers);
+  trajectory_t trajectory{};
+  trajectory.num_parts = 1;
+  trajectory.poses.assign(2, pose2D_t{});
+  trajectory.num_poses = 2;
+  expect_round_trip(channels::kSlamTrajectory, trajectory);
   particles_t particles{};
   particles.particles.assign(3, particle_t{});
   particles.num_particles = 3;

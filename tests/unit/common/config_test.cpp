@@ -75,6 +75,13 @@ TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
   EXPECT_THAT(error_of({{"/no/such.toml"}, {}}), HasSubstr("/no/such.toml: cannot be read"));
 }
 
+TEST(Config, APartOfAFileMayBeRead) {
+  const auto file = file_with("[other]\nkey = 1\n[robot.base]\nwheel_radius_m = 0.1\n");
+  EXPECT_EQ(load_part<Wrapped>(file).robot.base.wheel_radius_m, 0.1);
+  const auto wrong = file_with("[other]\nkey = 1\n[robot.base]\nwheel_radius_m = 'a'\n");
+  EXPECT_THROW(load_part<Wrapped>(wrong), ConfigError);
+}
+
 TEST(Config, BareWordsOnTheCommandLineAreStrings) {
   const auto config = load_config<Wrapped>({{}, {"robot.markers.dictionary=DICT_4X4_50"}});
   EXPECT_EQ(config.robot.markers.dictionary, "DICT_4X4_50");

@@ -29,7 +29,8 @@ TEST(Scenario, AllShippedFilesAreValid) {
   const std::filesystem::path folder =
       std::filesystem::path{WAYMARK_SOURCE_DIR} / "deploy" / "scenarios";
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator{folder}) {
+    if (entry.is_directory()) continue;
     EXPECT_NO_THROW(load_config<Scenario>({{entry.path()}, {}})) << entry.path();
     ++count;
   }
@@ -40,6 +41,19 @@ TEST(Scenario, TheShippedDefaultCorridorIsTheDefault) {
   const std::filesystem::path file =
       std::filesystem::path{WAYMARK_SOURCE_DIR} / "deploy/scenarios/corridor.toml";
   EXPECT_EQ(dump_config(load_config<Scenario>({{file}, {}})), dump_config(Scenario{}));
+}
+
+TEST(Scenario, EveryHardCorridorSaysWhatItExpects) {
+  const std::filesystem::path folder =
+      std::filesystem::path{WAYMARK_SOURCE_DIR} / "deploy" / "scenarios" / "hard";
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
+    const auto scenario = load_config<Scenario>({{entry.path()}, {}});
+    EXPECT_GT(scenario.expect.ate_origin_m + scenario.expect.found_again_s, 0.0) << entry.path();
+    EXPECT_EQ(scenario.expect.estimator, "waymark");
+    ++count;
+  }
+  EXPECT_GE(count, 6);
 }
 
 TEST(Scenario, ACorridorShorterThanTheRobotIsOneError) {

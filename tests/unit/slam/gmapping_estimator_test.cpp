@@ -158,6 +158,49 @@ TEST(GmappingEstimator, ResultsDoNotDependOnThreads) {
   EXPECT_GT(cells, 0U);
 }
 
+// Oracle: from the best particle back from parent to parent, as they were published.
+TEST(GmappingEstimator, TheTrajectoryIsTheWayOfTheBestParticlesAncestors) {
+  const SyntheticCorridor corridor = room();
+  const auto observations = observations_of(drive(corridor), corridor);
+  for (const double resample_threshold : {0.0, 0.99}) {
+    GmappingConfig config;
+    config.particles = 8;
+    config.gate.linear_update_m = 0.3;
+    config.resample_threshold = resample_threshold;
+    GmappingEstimator estimator{setup_for(corridor), config};
+    std::vector<std::vector<PublishedParticle>> generations;
+    std::vector<Timestamp> updated_at;
+    Se2 best;
+    double since_update_m = config.gate.linear_update_m;
+    for (const Observation& observation : observations) {
+      since_update_m += observation.motion.distance_m;
+      const Estimate estimate = estimator.update(observation);
+      if (since_update_m < config.gate.linear_update_m) continue;
+      since_update_m = 0.0;
+      best = estimate.map_from_base;
+      generations.push_back(estimator.particles());
+      updated_at.push_back(observation.time);
+    }
+    const std::vector<TimedPose> trajectory = estimator.trajectory();
+    ASSERT_EQ(trajectory.size(), observations.size());
+    ASSERT_GT(generations.size(), 10U);
+    for (std::size_t update = generations.size(); update-- > 0;) {
+      const auto pose = std::find_if(trajectory.begin(), trajectory.end(), [&](const TimedPose& p) {
+        return p.time == updated_at[update];
+      });
+      ASSERT_NE(pose, trajectory.end());
+      EXPECT_EQ(pose->map_from_base.translation(), best.translation()) << update;
+      EXPECT_EQ(pose->map_from_base.theta(), best.theta()) << update;
+      const auto& generation = generations[update];
+      const auto particle = std::find_if(generation.begin(), generation.end(), [&](const auto& p) {
+        return p.map_from_base.translation() == best.translation();
+      });
+      ASSERT_NE(particle, generation.end());
+      best = particle->previous_map_from_base;
+    }
+  }
+}
+
 TEST(GmappingEstimator, SurvivesScansWithoutBeams) {
   GmappingEstimator estimator{EstimatorSetup{}, GmappingConfig{}};
   Observation observation;

@@ -2,6 +2,7 @@
 // The process without a network: messages in, messages out.
 #include "common/messages/convert.hpp"
 #include "common/random/random.hpp"
+#include "slam/slam_messages.hpp"
 #include "slam/slam_node.hpp"
 #include "support/synthetic_corridor.hpp"
 
@@ -136,6 +137,44 @@ TEST(SlamNode, TheMapIsCompleteAtTheEndAndForALateListener) {
         std::count_if(tile.occupancy.begin(), tile.occupancy.end(), [](int o) { return o > 50; }));
   }
   EXPECT_GT(occupied, 100);
+}
+
+std::vector<trajectory_t> trajectories_in(const std::vector<Message>& output) {
+  std::vector<trajectory_t> trajectories;
+  for (const Message& message : output) {
+    if (message.channel == "SLAM_TRAJECTORY")
+      trajectories.push_back(*decode<trajectory_t>(message.payload).message);
+  }
+  return trajectories;
+}
+
+TEST(SlamNode, AnEstimatorThatCorrectsThePastSendsItsWayAtTheEnd) {
+  SlamConfig config = small_config();
+  config.slam.estimator = EstimatorName::kGmapping;
+  const auto input = messages_of_drive();
+  const auto trajectories = trajectories_in(Slam{config}.feed(input));
+  ASSERT_EQ(trajectories.size(), 1U);
+  EXPECT_EQ(trajectories[0].num_poses, count_by_channel(input)["LIDAR"]);
+  EXPECT_EQ(trajectories[0].poses.back().utime, trajectories[0].utime);
+  EXPECT_NEAR(static_cast<double>(trajectories[0].poses.back().x), 0.6, 0.05);
+  config.slam.estimator = EstimatorName::kOdometry;
+  EXPECT_TRUE(trajectories_in(Slam{config}.feed(input)).empty());
+}
+
+TEST(SlamMessages, ALongTrajectoryComesInParts) {
+  std::vector<TimedPose> way;
+  for (int i = 0; i < 7000; ++i)
+    way.push_back({timestamp_from_us(i), Se2{1.0 * i, 0.0, 0.0}});
+  const auto parts = to_messages(way);
+  ASSERT_EQ(parts.size(), 3U);
+  int next = 0;
+  for (const trajectory_t& part : parts) {
+    EXPECT_LE(encode(channels::kSlamTrajectory, part).payload.size(), kMaxPayloadBytes);
+    EXPECT_EQ(part.utime, 6999);
+    for (const pose2D_t& pose : part.poses)
+      EXPECT_EQ(pose.utime, next++);
+  }
+  EXPECT_EQ(next, 7000);
 }
 
 TEST(SlamNode, NothingInNothingOut) {

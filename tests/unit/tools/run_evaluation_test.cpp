@@ -68,7 +68,7 @@ TEST(Run, WritesMetricsAndTheTable) {
   run.file("waymark/config.toml", "[slam]\nseed = 7\n");
   run.file("waymark/timings.json", "{\"scan_ms\": 1.5}");
   run.file("waymark/covariance.csv",
-           "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n0.2,0.01,0,0,0.01,0,0.01,tracking\n");
+           "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n0.2,0.01,0,0,0.01,0,0.01,2\n");
 
   EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
 
@@ -94,6 +94,23 @@ TEST(Run, WritesMetricsAndTheTable) {
   const std::string table = read_text(run.path() / "results.md");
   EXPECT_THAT(table, HasSubstr("| marker_matching | 0.05 m/pixel | 10.0 m          | 200 pixel   "
                                "| 10.00 m    | 100.00 % | 0.023 m    | 0.50 "));
+}
+
+TEST(Run, AFinalTrajectoryHasItsOwnFiguresAndRow) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "gmapping", 200, 1.01);
+  add_estimator(run, "odometry", 202, 1.02);
+  run.file("gmapping/trajectory_final.tum", tum(0.0, 1.0));
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  const Json gmapping = json_in(run.path() / "gmapping/metrics.json");
+  EXPECT_GT(gmapping["ate_origin_m"], 0.01);
+  EXPECT_EQ(gmapping["final_ate_origin_m"], 0.0);
+  EXPECT_EQ(gmapping["final_poses"], 81);
+  EXPECT_TRUE(json_in(run.path() / "odometry/metrics.json")["final_ate_origin_m"].is_null());
+  const std::string table = read_text(run.path() / "results.md");
+  EXPECT_THAT(table, HasSubstr("| gmapping, final |"));
+  EXPECT_THAT(table, Not(HasSubstr("odometry, final")));
 }
 
 TEST(Run, RowsStandInTheTablesOrder) {

@@ -52,6 +52,19 @@ marker_map_t markers_at(std::int64_t utime, int part, int num_parts, int id) {
   return message;
 }
 
+trajectory_t trajectory_part(int part, int num_parts) {
+  trajectory_t message{};
+  message.utime = 10;
+  message.part = part;
+  message.num_parts = num_parts;
+  message.num_poses = 1;
+  message.poses.resize(1);
+  message.poses[0] = pose2D_t{};
+  message.poses[0].utime = part + 1;
+  message.poses[0].x = 0.5F;
+  return message;
+}
+
 class ViewerNodeTest : public ::testing::Test {
  protected:
   ViewerNodeTest() {
@@ -152,6 +165,28 @@ TEST_F(ViewerNodeTest, MarkersAppearWhenAllPartsAreThere) {
   EXPECT_THAT(scene.landmarks, SizeIs(2)) << "half a map does not replace a whole one";
   updater.add(markers_at(15, 1, 2, 9));
   EXPECT_EQ(scene.landmarks[0].id, 4) << "parts of different times do not mix";
+}
+
+TEST_F(ViewerNodeTest, WritesAFinalTrajectoryWhenOneCameWhole) {
+  ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamTrajectory, trajectory_part(0, 2));
+  node.finish();
+  EXPECT_EQ(content_of("trajectory_final.tum"), "");
+  deliver(channels::kSlamTrajectory, trajectory_part(1, 2));
+  node.finish();
+  EXPECT_EQ(content_of("trajectory_final.tum"),
+            "0.000001 0.500000000 0.000000000 0 0 0 0.000000000000 1.000000000000\n"
+            "0.000002 0.500000000 0.000000000 0 0 0 0.000000000000 1.000000000000\n");
+  EXPECT_FALSE(node.failed());
+}
+
+TEST_F(ViewerNodeTest, AFinalTrajectoryWithoutItsFirstPartIsLeftOut) {
+  ViewerNode node{config_, inbox_, outbox_};
+  std::ofstream{folder_ / "trajectory_final.tum"} << "of an earlier run";
+  deliver(channels::kSlamTrajectory, trajectory_part(1, 2));
+  node.finish();
+  EXPECT_FALSE(fs::exists(folder_ / "trajectory_final.tum"));
+  EXPECT_EQ(inbox_.counters().get("SLAM_TRAJECTORY left out: an earlier part is missing"), 1);
 }
 
 TEST_F(ViewerNodeTest, TheScanWithMarkersStays) {

@@ -4,6 +4,7 @@
 
 #include "slam/core/filter/estimate.hpp"
 #include "slam/core/filter/parallel_for.hpp"
+#include "slam/core/filter/scan_trail.hpp"
 #include "slam/core/filter/update_gate.hpp"
 #include "slam/core/grid/grid_map.hpp"
 #include "slam/core/mapping/landmark_map.hpp"
@@ -48,6 +49,10 @@ class Estimator {
   virtual const GridMap& map() const = 0;
   virtual std::vector<Landmark> landmarks() const = 0;
   virtual std::vector<PublishedParticle> particles() const = 0;
+
+  /// The whole way as it is known now, one pose per scan, in the frame of map(): what came later
+  /// has corrected it. Empty when the method never changes its mind about the past. O(scans).
+  virtual std::vector<TimedPose> trajectory() const { return {}; }
 };
 
 }  // namespace waymark

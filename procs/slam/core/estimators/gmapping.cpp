@@ -31,7 +31,10 @@ Estimate GmappingEstimator::update(const Observation& observation) {
   const bool is_first = updates_ == 0;
   propagate(observation.motion);
   since_update_ = since_update_.then(observation.motion);
-  if (is_first || config_.gate.is_open(since_update_, observation.time - updated_at_)) {
+  const bool is_update =
+      is_first || config_.gate.is_open(since_update_, observation.time - updated_at_);
+  trail_.add(observation.time, observation.motion, is_update);
+  if (is_update) {
     auto scan = std::make_shared<const StoredScan>(trusted_beams(observation));
     if (!is_first) match_and_weigh(*scan);
     resample_and_register(scan);
@@ -111,9 +114,20 @@ void GmappingEstimator::resample_and_register(const std::shared_ptr<const Stored
   }
   map_from_best_ = particles_.state(best_).map_from_base;
   if (!has_resampled) return;
-  if (const Trajectory trunk = common_ancestor(std::move(trajectories))) {
-    published_map_.settle(trunk);
-  }
+  if (const Trajectory trunk = common_ancestor(std::move(trajectories))) settle(trunk);
+}
+
+void GmappingEstimator::settle(const Trajectory& trunk) {
+  const std::vector<Se2> way = way_of(trunk);
+  settled_way_.insert(settled_way_.end(), way.begin(), way.end());
+  published_map_.settle(trunk);
+}
+
+std::vector<TimedPose> GmappingEstimator::trajectory() const {
+  std::vector<Se2> way = settled_way_;
+  const std::vector<Se2> unsettled = way_of(particles_.state(best_).trajectory);
+  way.insert(way.end(), unsettled.begin(), unsettled.end());
+  return trail_.along(way);
 }
 
 const GridMap& GmappingEstimator::map() const {

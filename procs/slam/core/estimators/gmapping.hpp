@@ -47,6 +47,9 @@ class GmappingEstimator final : public Estimator {
 
   std::vector<PublishedParticle> particles() const override;
 
+  /// The way of the particle that is the best one now.
+  std::vector<TimedPose> trajectory() const override;
+
  private:
   struct State {
     Se2 map_from_base{};
@@ -60,6 +63,7 @@ class GmappingEstimator final : public Estimator {
   void propagate(const Motion& motion);
   void match_and_weigh(std::span<const Beam> beams);
   void resample_and_register(const std::shared_ptr<const StoredScan>& scan);
+  void settle(const Trajectory& trunk);
   StoredScan trusted_beams(const Observation& observation) const;
   Estimate estimate(const Observation& observation) const;
 
@@ -68,6 +72,8 @@ class GmappingEstimator final : public Estimator {
   MatcherSetting matcher_;
   ParticleSet<State> particles_;
   std::uint64_t observations_{0};
+  ScanTrail trail_{};
+  std::vector<Se2> settled_way_{};  ///< poses at the updates that all particles share
 
   // Of the last update:
   std::uint64_t updates_{0};

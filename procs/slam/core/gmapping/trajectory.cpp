@@ -24,4 +24,12 @@ Trajectory common_ancestor(std::vector<Trajectory> trajectories) {
   return trajectories.front();
 }
 
+std::vector<Se2> way_of(const Trajectory& trajectory) {
+  std::vector<Se2> way;
+  for (const TrajectoryNode* node = trajectory.get(); node && node->scan; node = node->parent.get())
+    way.push_back(node->map_from_base);
+  std::reverse(way.begin(), way.end());
+  return way;
+}
+
 }  // namespace waymark

@@ -34,4 +34,7 @@ using Trajectory = std::shared_ptr<TrajectoryNode>;  ///< its newest node
 /// long. O(particles x nodes that they do not share).
 Trajectory common_ancestor(std::vector<Trajectory> trajectories);
 
+/// map_from_base of the nodes that still have their scan, oldest first.
+std::vector<Se2> way_of(const Trajectory& trajectory);
+
 }  // namespace waymark

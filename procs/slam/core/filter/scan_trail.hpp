@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The scans of a run on a string of odometry, to be hung up on poses that are known better later.
+#pragma once
+
+#include "common/time/time.hpp"
+#include "slam/core/motion/motion.hpp"
+
+#include <span>
+#include <vector>
+
+namespace waymark {
+
+/// Where the base was at some moment.
+struct TimedPose {
+  Timestamp time{};
+  Se2 map_from_base{};
+};
+
+/// Remembers every scan of a run: 64 bytes each.
+class ScanTrail {
+ public:
+  /// @param motion     since the scan before.
+  /// @param is_update  the estimator gives this scan a pose of its own; the first scan must be one.
+  void add(Timestamp time, const Motion& motion, bool is_update);
+
+  /// One pose per scan. Between two updates odometry is bent so that it meets both: what is left
+  /// over is shared out along the way. After the last update the pose follows odometry.
+  /// @param map_from_updates  one pose per update.
+  std::vector<TimedPose> along(std::span<const Se2> map_from_updates) const;
+
+ private:
+  struct Scan {
+    Timestamp time{};
+    Motion since_update{};  ///< since the update before; whole at an update
+    bool is_update{false};
+  };
+
+  std::vector<Scan> scans_{};
+};
+
+}  // namespace waymark
