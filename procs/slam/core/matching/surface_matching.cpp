@@ -44,36 +44,24 @@ SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceM
     const Eigen::Vector2d& normal = surface->normal_in_map;
     const Eigen::Vector2d along{-normal.y(), normal.x()};
     const Eigen::Vector2d ray = turn * (beam.end_in_base - beam.start_in_base) / beam.range_m;
-    const Eigen::Vector2d off = end - surface->point_in_map;
-    const Eigen::Vector3d across_row{normal.x(), normal.y(),
-                                     normal.x() * -lever.y() + normal.y() * lever.x()};
+    const Eigen::Vector3d row{normal.x(), normal.y(),
+                              normal.x() * -lever.y() + normal.y() * lever.x()};
     const Eigen::Vector3d along_row{along.x(), along.y(),
                                     along.x() * -lever.y() + along.y() * lever.x()};
-    const double map_m2 =
-        surface->is_line ? surface->across_m2 / surface->count : surface->across_m2;
-    const double across_m2 =
-        squared(config.range_sigma_m * normal.dot(ray)) + squared(config.surface_sigma_m) + map_m2;
-    const double along_m2 = across_m2 + surface->along_m2;
-    double error =
-        squared(normal.dot(off)) / (across_m2 + across_row.dot(uncertainty * across_row));
-    if (!surface->is_line) {
-      error += squared(along.dot(off)) / (along_m2 + along_row.dot(uncertainty * along_row));
-    }
+    const double variance_m2 = squared(config.range_sigma_m * normal.dot(ray)) +
+                               squared(config.surface_sigma_m) +
+                               surface->across_m2 / surface->count;
+    const double residual_m = normal.dot(end - surface->point_in_map);
+    const double error = squared(residual_m) / (variance_m2 + row.dot(uncertainty * row));
     // Geman-McClure: quadratic near zero, constant far away.
     const double knee = squared(config.outlier_sigmas);
     const double trust = knee / (knee + error);
-    const double weight = config.information_share * squared(trust);
-    match.pose.information.noalias() += weight / across_m2 * across_row * across_row.transpose();
-    match.pose.gradient.noalias() += weight / across_m2 * normal.dot(off) * across_row;
-    if (surface->is_line) {
-      // A normal that is turned by its noise seems to tell what lies along the surface: the square
-      // of that is taken out again, on average.
-      match.pose.information.noalias() -=
-          weight / across_m2 * surface->normal_rad2 * along_row * along_row.transpose();
-    } else {
-      match.pose.information.noalias() += weight / along_m2 * along_row * along_row.transpose();
-      match.pose.gradient.noalias() += weight / along_m2 * along.dot(off) * along_row;
-    }
+    const double weight = config.information_share * squared(trust) / variance_m2;
+    // A normal that is turned by its noise seems to tell what lies along the surface: the square of
+    // that is taken out again, on average.
+    match.pose.information.noalias() +=
+        weight * (row * row.transpose() - surface->normal_rad2 * along_row * along_row.transpose());
+    match.pose.gradient.noalias() += weight * residual_m * row;
     match.pose.cost += 0.5 * config.information_share * error * trust;
     match.mapped += 1.0;
     match.agreeing += trust;

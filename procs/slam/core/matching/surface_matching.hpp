@@ -17,7 +17,7 @@ struct SurfaceMatchingConfig {
   double surface_sigma_m{0.002};  ///< roughness of walls, errors of beam angles
   double outlier_sigmas{10.0};    ///< a beam this far off counts a quarter
   double information_share{1.0};  ///< beams are not quite independent, nor is the map exact
-  double weak_share{0.005};       ///< directions below this share of the strongest are unobserved
+  double weak_share{0.02};        ///< directions below this share of the strongest are unobserved
 
   void describe(Fields& fields);
 };

@@ -11,6 +11,7 @@ constexpr int kReaches[]{1, 2, 4};      // [cell] squares of 2 reach + 1 cells a
 constexpr int kAlwaysTried = 2;         // [cell]
 constexpr double kMinPoints = 4.0;      // fewer do not make a line
 constexpr double kMaxThickness = 0.45;  // [cell] standard deviation across the line
+constexpr double kMinLength = 0.6;  // [cell] standard deviation along it; shorter is range noise
 constexpr double kMinElongation = 3.0;  // of the line: length over thickness
 constexpr double kCellVariance = 1e-3;  // [cell^2] points are never known better
 
@@ -55,10 +56,12 @@ std::optional<Surface> fit(const Moments& moments) {
   surface.point_in_map = mean;
   surface.count = moments.count;
   surface.across_m2 = std::max(0.0, half_trace - root) + kCellVariance;
-  surface.along_m2 = half_trace + root + kCellVariance;
-  surface.normal_rad2 = surface.across_m2 / (moments.count * surface.along_m2);
-  surface.is_line = surface.across_m2 < kMaxThickness * kMaxThickness &&
-                    surface.along_m2 > kMinElongation * kMinElongation * surface.across_m2;
+  const double along_m2 = half_trace + root + kCellVariance;
+  surface.normal_rad2 = surface.across_m2 / (moments.count * along_m2);
+  if (surface.across_m2 > kMaxThickness * kMaxThickness || along_m2 < kMinLength * kMinLength ||
+      along_m2 < kMinElongation * kMinElongation * surface.across_m2) {
+    return std::nullopt;
+  }
   // Eigenvector of the smaller eigenvalue.
   const double along_x = 0.5 * (xx - yy) + root;
   surface.normal_in_map = Eigen::Vector2d{-xy, along_x};
@@ -89,16 +92,13 @@ std::optional<Surface> SurfaceMap::near(const Eigen::Vector2d& point_in_map, dou
   const double reach_cells = reach_m / frame_.resolution_m;
   std::optional<Surface> surface;
   for (const int reach : kReaches) {
-    if (reach > kAlwaysTried && reach / 2 >= reach_cells) break;
-    const std::optional<Surface> wider = fit(moments_around(cells_, middle, reach));
-    if (wider && (!surface || wider->is_line)) surface = wider;
-    if (surface && surface->is_line) break;
+    if (surface || (reach > kAlwaysTried && reach / 2 >= reach_cells)) break;
+    surface = fit(moments_around(cells_, middle, reach));
   }
   if (!surface) return std::nullopt;
   const double cell_m2 = frame_.resolution_m * frame_.resolution_m;
   surface->point_in_map = frame_.centre_of(middle) + frame_.resolution_m * surface->point_in_map;
   surface->across_m2 *= cell_m2;
-  surface->along_m2 *= cell_m2;
   return surface;
 }
 

@@ -21,15 +21,13 @@ struct SurfaceCell {
   float yy{0.0F};
 };
 
-/// What lies around a place: a piece of wall, or something without a direction, such as clutter.
+/// A piece of wall: the line fitted to the points in a square of cells.
 struct Surface {
   Eigen::Vector2d point_in_map{Eigen::Vector2d::Zero()};    ///< mean of the points
   Eigen::Vector2d normal_in_map{Eigen::Vector2d::UnitX()};  ///< unit; its sign means nothing
   double count{0.0};                                        ///< points that it was fitted to
-  double across_m2{0.0};    ///< variance of the points along the normal
-  double along_m2{0.0};     ///< variance of the points along the surface
-  double normal_rad2{0.0};  ///< variance of the normal's direction
-  bool is_line{true};       ///< only then the normal and what lies across it mean something
+  double across_m2{0.0};                                    ///< variance of the points across it
+  double normal_rad2{0.0};                                  ///< variance of the normal's direction
 };
 
 /// Copies share the tiles that neither has edited since.
@@ -39,8 +37,10 @@ class SurfaceMap {
 
   void add(const Eigen::Vector2d& point_in_map);
 
-  /// The surface through the cells around a point; nothing where too little is mapped. Moments add
-  /// up exactly over cells, so a wall along a border between cells is not split.
+  /// The surface through the cells around a point; nothing where too little is mapped, and where
+  /// the points do not lie on a line (corners, clutter): what has no direction would hold a robot
+  /// back along a bare wall. Moments add up exactly over cells, so a wall along a border between
+  /// cells is not split.
   /// @param reach_m  how far off the surface may be; small reaches are tried first.
   std::optional<Surface> near(const Eigen::Vector2d& point_in_map, double reach_m) const;
 
