@@ -98,6 +98,30 @@ TEST(RouteFollower, VisitsWaypointsWithTurnsOnTheSpot) {
   EXPECT_NEAR(std::abs(poses.back().theta()), std::numbers::pi, 0.01);
 }
 
+TEST(RouteFollower, DrivesThroughRoundedCornersWithoutStopping) {
+  RouteConfig config{};
+  config.corner_radius_m = 0.6;
+  config.laps = 2;
+  config.waypoints = {{5.0, 0.0}, {5.0, 4.0}, {1.0, 4.0}, {1.0, 0.0}};
+  RouteFollower follower{config, kPeriod_s};
+  Se2 world_from_base = config.world_from_start();
+  double slowest_mps = config.speed_mps;
+  while (follower.progress_m() < 29.0) {
+    const Velocity velocity = follower.next(world_from_base);
+    world_from_base = world_from_base *
+                      Se2{velocity.forward_mps * kPeriod_s, 0.0, velocity.turn_radps * kPeriod_s};
+    if (follower.progress_m() < 0.1) continue;  // it has sped up
+    slowest_mps = std::min(slowest_mps, velocity.forward_mps);
+    // Never far from the sides of the square, cutting corners by (sqrt 2 - 1) radii at most.
+    const double off_m = std::min(
+        std::min(std::abs(world_from_base.y()), std::abs(world_from_base.y() - 4.0)),
+        std::min(std::abs(world_from_base.x() - 1.0), std::abs(world_from_base.x() - 5.0)));
+    EXPECT_LT(off_m, 0.21);
+  }
+  EXPECT_NEAR(slowest_mps, config.speed_mps, 1e-9);
+  EXPECT_NEAR(follower.route_length_m(), 32.0 - 7 * (2.0 - 0.5 * std::numbers::pi) * 0.6, 1e-9);
+}
+
 TEST(RouteFollower, ProgressEndsAtTheRoutesLength) {
   RouteConfig config{};
   config.waypoints = {{2.0, 0.0}, {2.0, 0.5}};

@@ -53,7 +53,7 @@ TEST(Scenario, EveryHardCorridorSaysWhatItExpects) {
     EXPECT_EQ(scenario.expect.estimator, "waymark");
     ++count;
   }
-  EXPECT_GE(count, 6);
+  EXPECT_GE(count, 40);
 }
 
 TEST(Scenario, ACorridorShorterThanTheRobotIsOneError) {
@@ -81,6 +81,25 @@ TEST(Scenario, TheRouteMustKeepClearOfTheWalls) {
   EXPECT_THAT(error_of({"route.start_x_m=0.05"}), HasSubstr("route.start"));
   EXPECT_THAT(error_of({"route.start_y_m=1.0"}), HasSubstr("route.start"));
   EXPECT_THAT(error_of({"route.end_x_m=51"}), HasSubstr("route.end_x_m"));
+}
+
+TEST(Scenario, TheWholeWayMustBeFree) {
+  EXPECT_THAT(error_of({"world.boxes=[{x_m=20.0, y_m=0.3}]"}), HasSubstr("from a wall or box"));
+  EXPECT_THAT(error_of({"world.layout=L", "kidnaps=[{at_m=3.0, to_x_m=20.0, to_y_m=10.0}]"}),
+              HasSubstr("outside of the walls"));
+  EXPECT_THAT(error_of({"kidnaps=[{at_m=3.0, to_x_m=60.0}]"}), HasSubstr("kidnaps[0]"));
+}
+
+TEST(Scenario, WhatCannotHappenIsAnError) {
+  EXPECT_THAT(error_of({"kidnaps=[{to_x_m=9.0}]"}), HasSubstr("expected an at_s or at_m"));
+  EXPECT_THAT(error_of({"markers.missing=[24]"}), HasSubstr("there is no place 24"));
+  EXPECT_THAT(error_of({"markers.missing=[3]", "markers.moved=[{place=3, at_m=5.0, dx_m=1.0}]"}),
+              HasSubstr("no marker that could be moved"));
+  EXPECT_THAT(error_of({"markers.moved=[{place=3, at_m=5.0, dy_m=1.0}]"}),
+              HasSubstr("would not hang on its wall"));
+  EXPECT_THAT(error_of({"faults=[{kind='delayed'}]"}), HasSubstr("expected a delay_s above 0"));
+  EXPECT_THAT(error_of({"faults=[{from_s=3.0, to_s=2.0}]"}), HasSubstr("ends before it begins"));
+  EXPECT_THAT(error_of({"faults=[{wheel='left'}]"}), HasSubstr("a wheel can only"));
 }
 
 TEST(Scenario, SensorsMustFitThePhysicsSteps) {

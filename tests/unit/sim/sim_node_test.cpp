@@ -97,6 +97,35 @@ TEST(SimNode, WritesWhatIsTrueAndTellsTheOthersOnlyOfTheRobot) {
   EXPECT_THAT(truth, ::testing::StartsWith("0.000000 1.0000"));
 }
 
+TEST(SimNode, MovedMarkersAreWrittenDown) {
+  SimConfig config = short_run();
+  config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_moves_test";
+  std::filesystem::remove_all(config.out_dir);
+  config.markers.moved = {{1, {.at_s = 0.15}, 1.0, 0.0}};
+  Inbox inbox;
+  SimNode node{config, inbox};
+  const std::filesystem::path moves = config.out_dir / "truth_marker_moves.csv";
+  EXPECT_EQ(content(moves), "t_s,id,instance,x_m,y_m,yaw_rad\n");
+  Timestamp tick_end{};
+  for (int i = 0; i < 4; ++i)
+    node.advance(tick_end);
+  EXPECT_EQ(content(moves),
+            "t_s,id,instance,x_m,y_m,yaw_rad\n"
+            "0.200000,1,0,5.000000,-0.998000,1.570796327\n");
+  EXPECT_THAT(content(config.out_dir / "truth_markers.csv"), HasSubstr("1,0,4.000000,-0.998000"));
+}
+
+TEST(SimNode, TheRobotIsToldOfTheNominalCameraOnly) {
+  SimConfig config = short_run();
+  config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_camera_test";
+  config.camera_errors.focal_share = 0.005;
+  Inbox inbox;
+  SimNode node{config, inbox};
+  const std::string told = content(config.out_dir / "robot.toml");
+  EXPECT_THAT(told, HasSubstr("fx_px = 530.4663 "));
+  EXPECT_THAT(told, Not(HasSubstr("camera_errors")));
+}
+
 TEST(SimNode, AnUnwritableFolderIsASetupError) {
   SimConfig config = short_run();
   config.out_dir = "/proc/no_such_folder";

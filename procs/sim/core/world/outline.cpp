@@ -72,8 +72,8 @@ std::vector<Corner> opening_corners(const OpeningConfig& opening, double centre_
   const double room_to = centre_m + 0.5 * opening.room_width_m;
   const double back = -partition_m - opening.depth_m;
   return {
-      {{from, 0.0}, kSide},        {{from, -partition_m}, kEnd}, {{room_from, -partition_m}, kEnd},
-      {{room_from, back}, kEnd},   {{room_to, back}, kEnd},      {{room_to, -partition_m}, kEnd},
+      {{from, 0.0}, kSide},        {{from, -partition_m}, kSide}, {{room_from, -partition_m}, kEnd},
+      {{room_from, back}, kEnd},   {{room_to, back}, kEnd},       {{room_to, -partition_m}, kSide},
       {{to, -partition_m}, kSide}, {{to, 0.0}, wall_kind}};
 }
 
@@ -107,7 +107,9 @@ bool cut(ClosedLine& line, const OpeningConfig& opening, const WorldConfig& worl
     const Eigen::Vector2d along_m = to.at_m - from.at_m;
     const Se2 world_from_wall{from.at_m, std::atan2(along_m.y(), along_m.x())};
     const double at_m = (centre_m - from.at_m).norm();
-    std::vector<Corner> corners = opening_corners(opening, at_m, world.wall_thickness_m, from.kind);
+    // Room for the bodies of both faces, that of the corridor and that of the room.
+    const double partition_m = 2.0 * world.wall_thickness_m;
+    std::vector<Corner> corners = opening_corners(opening, at_m, partition_m, from.kind);
     for (Corner& corner : corners)
       corner.at_m = world_from_wall * corner.at_m;
     line.insert(line.begin() + static_cast<std::ptrdiff_t>(i) + 1, corners.begin(), corners.end());
