@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "faults/faulty_run.hpp"
+
+#include "common/log/log_file.hpp"
+#include "faults/injector.hpp"
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace waymark::faults {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is read of a scenario.
+struct SeedPart {
+  struct Run {
+    std::int64_t seed{1};
+
+    void describe(Fields& fields) { fields.field("seed", seed, kNotNegative, "of the run"); }
+  };
+
+  Run run{};
+
+  void describe(Fields& fields) { fields.section("run", run); }
+};
+
+/// What the sweep's evaluation reads in place of the scenario's section.
+struct ExpectFile {
+  ExpectConfig expect{};
+
+  void describe(Fields& fields) { fields.section("expect", expect); }
+};
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream{file, std::ios::binary};
+  std::stringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw std::runtime_error{file.string() + ": cannot be read"};
+  return text.str();
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream stream{file, std::ios::binary};
+  stream << text;
+  stream.close();
+  if (!stream) throw std::runtime_error{file.string() + ": cannot be written"};
+}
+
+bool is_output_of_slam(const Message& message) {
+  return message.channel.starts_with("SLAM_");
+}
+
+LogContent content_of(const fs::path& log) {
+  LogContent content;
+  LogReader reader{log};
+  while (const auto message = reader.next())
+    content.add(*message);
+  return content;
+}
+
+void copy_truth(const fs::path& run_dir, const FaultConfig& faults, const fs::path& out_dir) {
+  for (const char* name : {"scenario.toml", "robot.toml", "truth.tum", "truth_markers.csv"}) {
+    if (!fs::exists(run_dir / name)) continue;
+    const std::string text = text_of(run_dir / name);
+    const bool has_ids = std::string_view{name} == "truth_markers.csv" && faults.changes_ids();
+    write(out_dir / name, has_ids ? renamed_markers(text, faults) : text);
+  }
+}
+
+}  // namespace
+
+std::string renamed_markers(const std::string& csv, const FaultConfig& faults) {
+  std::istringstream lines{csv};
+  std::string line;
+  std::getline(lines, line);
+  std::string renamed = line + "\n";
+  std::map<int, int> instances;
+  while (std::getline(lines, line)) {
+    const std::size_t first = line.find(',');
+    const std::size_t second = first == std::string::npos ? first : line.find(',', first + 1);
+    if (second == std::string::npos) continue;
+    const int id = faults.id_of(std::stoi(line));
+    renamed += std::to_string(id) + "," + std::to_string(instances[id]++) + line.substr(second);
+    renamed += "\n";
+  }
+  return renamed;
+}
+
+std::map<std::string, std::int64_t> write_faulty_run(const fs::path& run_dir,
+                                                     const Variant& variant,
+                                                     const fs::path& out_dir) {
+  const fs::path log = run_dir / "run.lcm";
+  fs::create_directories(out_dir);
+  copy_truth(run_dir, variant.faults, out_dir);
+  write(out_dir / "expect.toml", dump_config(ExpectFile{variant.expect}));
+
+  const fs::path scenario = run_dir / "scenario.toml";
+  const std::int64_t seed = fs::exists(scenario) ? load_part<SeedPart>(scenario).run.seed : 1;
+  const LogContent content = content_of(log);
+  Injector injector{variant.faults, static_cast<std::uint64_t>(seed), content};
+  LogReader reader{log};
+  LogWriter writer{out_dir / "run.lcm"};
+  while (const auto message = reader.next()) {
+    if (is_output_of_slam(*message)) continue;
+    if (const auto faulty = injector.apply(*message)) writer.write(*faulty);
+  }
+  writer.close();
+  return injector.counts();
+}
+
+}  // namespace waymark::faults

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "faults/injector.hpp"
+
+#include "common/messages/codec.hpp"
+#include "common/messages/convert.hpp"
+#include "common/random/random.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace waymark::faults {
+namespace {
+
+/// Streams of random numbers of their own, so that one fault does not change another's draws.
+enum Stream : std::uint64_t { kSightings = 0xfa01, kGhosts = 0xfa02 };
+
+void flip(marker_detection_t& detection) {
+  std::swap(detection.position_m, detection.other_position_m);
+  std::swap(detection.orientation, detection.other_orientation);
+  std::swap(detection.reprojection_error_px, detection.other_reprojection_error_px);
+}
+
+template <class T>
+const T& pick(const std::vector<T>& from, double uniform) {
+  const auto index = static_cast<std::size_t>(uniform * static_cast<double>(from.size()));
+  return from[std::min(index, from.size() - 1)];
+}
+
+}  // namespace
+
+void LogContent::add(const Message& message) {
+  if (message.channel != channels::kMarkers.name) return;
+  const auto decoded = decode<marker_detections_t>(message.payload);
+  if (!decoded.message) return;
+  for (const marker_detection_t& detection : decoded.message->detections) {
+    sightings.push_back(detection);
+    const auto place = std::lower_bound(ids.begin(), ids.end(), detection.id);
+    if (place == ids.end() || *place != detection.id) ids.insert(place, detection.id);
+  }
+}
+
+std::optional<Message> Injector::apply(const Message& message) {
+  if (!start_) start_ = message.time;
+  const bool is_markers = message.channel == channels::kMarkers.name;
+  const bool is_camera = message.channel == channels::kCamera.name;
+  const bool is_lidar = message.channel == channels::kLidar.name;
+  if (is_markers) ++frame_;
+  const bool is_lost = ((is_markers || is_camera) && is_off(config_.camera_off_s, message.time)) ||
+                       (is_lidar && is_off(config_.lidar_off_s, message.time));
+  if (is_lost) {
+    ++counts_[message.channel + " lost"];
+    return std::nullopt;
+  }
+  if (is_markers) return with_faulty_markers(message);
+  if (message.channel == channels::kOdometry.name) return with_faulty_odometry(message);
+  return message;
+}
+
+bool Injector::is_off(const std::vector<double>& times_s, Timestamp time) const {
+  const double t_s = to_seconds(time - *start_);
+  for (std::size_t i = 0; i + 1 < times_s.size(); i += 2) {
+    if (t_s >= times_s[i] && t_s < times_s[i + 1]) return true;
+  }
+  return false;
+}
+
+Message Injector::with_faulty_markers(const Message& message) {
+  const auto decoded = decode<marker_detections_t>(message.payload);
+  if (!decoded.message) return message;
+  marker_detections_t spoilt = *decoded.message;
+  std::vector<marker_detection_t> kept;
+  const bool is_dark = is_off(config_.markers_off_s, message.time);
+  for (std::size_t i = 0; i < spoilt.detections.size(); ++i) {
+    marker_detection_t detection = spoilt.detections[i];
+    if (is_dark)
+      ++counts_["sightings in the dark"];
+    else if (spoil(detection, i))
+      kept.push_back(detection);
+  }
+  spoilt.detections = std::move(kept);
+  if (!is_dark) add_ghost(spoilt);
+  spoilt.num_detections = static_cast<std::int32_t>(spoilt.detections.size());
+  return encode(channels::kMarkers, spoilt);
+}
+
+bool Injector::spoil(marker_detection_t& detection, std::uint64_t index) {
+  // Always the same draws in the same order, whatever is switched on.
+  Random random{seed_, kSightings, frame_, index};
+  const bool is_dropped = random.uniform() < config_.dropped_share;
+  const bool is_flipped = random.uniform() < config_.flipped_share;
+  const bool is_wrong = random.uniform() < config_.wrong_id_share;
+  const double which = random.uniform();
+  ++counts_["sightings"];
+  if (is_dropped) {
+    ++counts_["sightings dropped"];
+    return false;
+  }
+  if (is_flipped) {
+    flip(detection);
+    ++counts_["sightings flipped"];
+  }
+  if (is_wrong && content_.ids.size() > 1) {
+    detection.id = another_id(detection.id, which);
+    ++counts_["wrong ids"];
+  }
+  detection.id = config_.id_of(detection.id);
+  return true;
+}
+
+int Injector::another_id(int id, double uniform) const {
+  std::vector<int> others;
+  for (const int other : content_.ids) {
+    if (other != id) others.push_back(other);
+  }
+  return pick(others, uniform);
+}
+
+void Injector::add_ghost(marker_detections_t& message) {
+  Random random{seed_, kGhosts, frame_};
+  if (random.uniform() >= config_.ghost_share || content_.sightings.empty()) return;
+  marker_detection_t ghost = pick(content_.sightings, random.uniform());
+  ghost.id = config_.id_of(pick(content_.ids, random.uniform()));
+  message.detections.push_back(ghost);
+  ++counts_["ghosts"];
+}
+
+Message Injector::with_faulty_odometry(const Message& message) {
+  const auto decoded = decode<pose2D_t>(message.payload);
+  if (!decoded.message) return message;
+  const Se2 recorded = to_se2(*decoded.message);
+  if (!last_odometry_) odom_from_base_ = recorded;
+  const Se2 step = last_odometry_ ? last_odometry_->inverse() * recorded : Se2{};
+  last_odometry_ = recorded;
+  const double distance_m = step.translation().norm();
+  odom_from_base_ = odom_from_base_ * Se2{config_.odometry_distance_factor * step.translation(),
+                                          config_.odometry_turn_factor * step.theta() +
+                                              config_.odometry_drift_rad_per_m * distance_m};
+  return encode(channels::kOdometry,
+                to_pose_message(timestamp_from_us(decoded.message->utime), odom_from_base_));
+}
+
+}  // namespace waymark::faults

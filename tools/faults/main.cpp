@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// waymark-faults: a recorded run with faults put into its messages.
+#include "faults/faulty_run.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+struct Arguments {
+  std::filesystem::path run_dir{};
+  std::filesystem::path variants{};
+  std::filesystem::path out{};
+  std::string variant{};
+  bool list{};
+  bool explain{};
+};
+
+int run(const Arguments& arguments) {
+  using namespace waymark;
+  using namespace waymark::faults;
+  if (arguments.explain) {
+    fmt::print("{}", dump_config(VariantsFile{{Variant{.name = "example"}}}));
+    return 0;
+  }
+  const auto file = load_config<VariantsFile>({{arguments.variants}, {}});
+  if (arguments.list) {
+    for (const Variant& variant : file.variant)
+      fmt::print("{}\n", variant.name);
+    return 0;
+  }
+  const Variant& variant = file.named(arguments.variant);
+  for (const auto& [name, count] : write_faulty_run(arguments.run_dir, variant, arguments.out))
+    fmt::print("{}: {}\n", name, count);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App program{
+      "Writes a recorded run once more, with faults in its messages: wrong ids, ghosts, flipped "
+      "poses, lost messages, wrong odometry. The same run and variant give the same bytes."};
+  program.set_version_flag("--version", "waymark-faults " WAYMARK_VERSION);
+  program.add_option("RUN_DIR", arguments.run_dir,
+                     "folder with run.lcm, robot.toml, scenario.toml and the truth");
+  program.add_option("--variants", arguments.variants, "TOML file with [[variant]] tables");
+  program.add_option("--variant", arguments.variant, "name of the one to apply");
+  program.add_option("--out", arguments.out, "folder for the faulty run");
+  program.add_flag("--list", arguments.list, "print the names of the variants, and exit");
+  program.add_flag("--explain", arguments.explain,
+                   "print a variant with every key explained, and exit");
+  try {
+    program.parse(argc, argv);
+    const bool is_complete = !arguments.run_dir.empty() && !arguments.variants.empty() &&
+                             !arguments.variant.empty() && !arguments.out.empty();
+    const bool is_list = arguments.list && !arguments.variants.empty();
+    if (!is_complete && !is_list && !arguments.explain)
+      throw CLI::RequiredError{"RUN_DIR, --variants, --variant and --out (or --list, --explain)"};
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : kUsage;
+  }
+  try {
+    return run(arguments);
+  } catch (const waymark::ConfigError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kUsage;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "waymark-faults: {}\n", error.what());
+    return kFailed;
+  }
+}
