@@ -124,3 +124,6 @@ take_port() {
 }
 
 port_in_use() { cut -c 1-40 /proc/net/udp | grep -q "$(printf ':%04X ' "$1")"; }
+
+# min_free_MB: a sweep wants this much free disk at any time.
+min_free_MB() { echo "${WAYMARK_MIN_FREE_MB:-200}"; }

@@ -12,6 +12,7 @@ packages=(
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   zlib1g-dev                               # import of compressed CARMEN logs
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libceres-dev  # tests, benchmarks
+  parallel gnuplot-nox                     # sweeps: many runs at once, plots
   iproute2                                 # `ip`: a route for multicast where there is none
 )
 

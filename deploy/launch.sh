@@ -5,6 +5,8 @@
 # usage: deploy/launch.sh SCENARIO [options]
 #   --out DIR         where everything goes (default: runs/SCENARIO-seedN-DATE)
 #   --seed N          seed of everything random (default: the scenario's run.seed)
+#   --record-only     no slam and no viewer: only a log, for deploy/replay.sh
+#   --no-images       leave the camera's images out of the log
 #   --real-time       as fast as the clock and without lockstep, like on a real robot
 #   --estimator NAME  slam.estimator (default: what waymark-slam's configuration says)
 #   --config FILE     configuration of slam; may be given several times, later files win
@@ -23,10 +25,13 @@ readonly kStop_s=7                         # from SIGINT to SIGKILL
 
 parse_arguments() {
   scenario='' out='' seed='' real_time=() slam_options=() lcm_url=${LCM_DEFAULT_URL:-}
+  others=(recorder viewer slam detector) recorder_options=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
       --real-time) real_time=(--real-time) && shift && continue ;;
+      --record-only) others=(recorder detector) && shift && continue ;;
+      --no-images) recorder_options=(--set 'recorder.exclude=["CAMERA"]') && shift && continue ;;
       --out | --seed | --estimator | --config | --set | --lcm-url) need_value "$@" ;;&
       --out) out=$2 ;;
       --seed) need_number "$1" "$2" && seed=$2 ;;
@@ -45,11 +50,14 @@ parse_arguments() {
   [[ -n $scenario ]] || usage_error "no scenario given"
 }
 
+is_record_only() { ((${#others[@]} == 2)); }
+
 # prepare: everything that can be wrong is found here, before anything runs.
 prepare() {
   need_file "$scenario"
-  need_programs waymark-{sim,detector,slam,viewer,recorder}
+  need_programs waymark-sim "${others[@]/#/waymark-}"
   sim_options=(--config "$scenario")
+  ! is_record_only || sim_options+=(--set 'run.participants=["detector","recorder"]')
   [[ -z $seed ]] || sim_options+=(--seed "$seed")
   local effective
   effective=$(mktemp)
@@ -66,6 +74,12 @@ prepare() {
   mkdir -p "$out/logs"
 
   "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-robot-config >"$out/robot.toml" || exit $?
+  row=$out
+  is_record_only || prepare_slam
+  [[ -n $lcm_url ]] || take_port
+}
+
+prepare_slam() {
   slam_options=(--config "$out/robot.toml" --set "slam.seed=$seed" "${slam_options[@]}")
   local slam_config=$out/slam.toml
   "$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config >"$slam_config" || exit $?
@@ -73,7 +87,6 @@ prepare() {
   row=$out/$estimator
   mkdir -p "$row"
   mv "$slam_config" "$row/config.toml"
-  [[ -n $lcm_url ]] || take_port
 }
 
 # clear_old_run: a folder holds one run; files of an earlier one must not be taken for results.
@@ -91,7 +104,7 @@ clear_old_run() {
 # command_of NAME: sets `command` to its command line.
 command_of() {
   case $1 in
-    recorder) command=(--out-log "$out/run.lcm") ;;
+    recorder) command=(--out-log "$out/run.lcm" "${recorder_options[@]}") ;;
     viewer) command=(--out "$row") ;;
     slam) command=("${slam_options[@]}") ;;
     detector) command=(--config "$out/robot.toml") ;;
@@ -149,8 +162,8 @@ wait_for() {
 stop_all() {
   interrupt sim
   wait_for 2 sim || true
-  interrupt recorder viewer slam detector
-  wait_for $kStop_s sim recorder viewer slam detector || true
+  interrupt "${others[@]}"
+  wait_for $kStop_s sim "${others[@]}" || true
   kill_all
 }
 
@@ -228,8 +241,8 @@ take_exit_code() {
 supervise() {
   local name code
   until take_exit_code sim; do
-    for name in recorder slam detector viewer; do
-      ! take_exit_code $name || ((code == 0)) || on_other_end $name "$code"
+    for name in "${others[@]}"; do
+      ! take_exit_code "$name" || ((code == 0)) || on_other_end "$name" "$code"
     done
     sleep 0.1
   done
@@ -239,12 +252,12 @@ supervise() {
 # finish: the others end by themselves in lockstep, and are told to in real time.
 finish() {
   local name code
-  [[ ${#real_time[@]} -eq 0 ]] || interrupt recorder viewer slam detector
-  wait_for $kFinish_s recorder viewer slam detector ||
+  [[ ${#real_time[@]} -eq 0 ]] || interrupt "${others[@]}"
+  wait_for $kFinish_s "${others[@]}" ||
     end_run $kExitFailed "not all processes ended within $kFinish_s s of the simulator"
-  for name in recorder slam detector viewer; do
-    ! take_exit_code $name || ((code == 0)) ||
-      end_run $kExitFailed "$name $(how "$code") when the run was over" $name
+  for name in "${others[@]}"; do
+    ! take_exit_code "$name" || ((code == 0)) ||
+      end_run $kExitFailed "$name $(how "$code") when the run was over" "$name"
   done
   ((${restarts_of[viewer]:-0} == 0)) || render_from_log
 }
@@ -265,8 +278,8 @@ trap 'on_signal TERM 15' TERM
 trap 'on_signal HUP 1' HUP
 show_progress_bars
 exec {terminal}>&2 2>>"$out/logs/launch.log"
-tell "$(basename "$scenario"), seed $seed, $estimator, into $out"
-for name in recorder viewer slam detector sim; do start $name; done
+tell "$(basename "$scenario"), seed $seed, ${estimator:-no estimator}, into $out"
+for name in "${others[@]}" sim; do start "$name"; done
 supervise
 finish
-tell "finished in $SECONDS s; pictures and maps are in $row, logs in $out/logs"
+tell "finished in $SECONDS s; results are in $row, logs in $out/logs"

@@ -51,7 +51,16 @@ void SimNode::write_what_is_known() {
   write_whole_file(config_.out_dir / "scenario.toml", dump_config(config_));
   write_whole_file(config_.out_dir / "robot.toml", dump_config(RobotOnly{config_.robot}));
   write_whole_file(config_.out_dir / "truth_markers.csv", truth_markers_csv(simulation_->world()));
+  std::filesystem::remove(config_.out_dir / "truth_marker_moves.csv", error);  // of another run
+  if (!config_.markers.moved.empty()) write_moves({});
   truth_.emplace(config_.out_dir / "truth.tum");
+}
+
+/// Anew each time: a run that is cut short leaves what has happened.
+void SimNode::write_moves(const std::vector<MovedMarker>& moved) {
+  moved_markers_.insert(moved_markers_.end(), moved.begin(), moved.end());
+  write_whole_file(config_.out_dir / "truth_marker_moves.csv",
+                   truth_marker_moves_csv(moved_markers_));
 }
 
 std::int64_t SimNode::run_id() const {
@@ -68,6 +77,7 @@ void SimNode::obey(const twist2D_t& command) {
 std::vector<Message> SimNode::advance(Timestamp& tick_end) {
   const Tick tick = simulation_->advance();
   tick_end = tick.end;
+  if (truth_ && !tick.moved_markers.empty()) write_moves(tick.moved_markers);
   std::vector<Message> messages;
   for (const OdometrySample& sample : tick.odometry) {
     messages.push_back(

@@ -14,7 +14,8 @@
 namespace waymark {
 
 /// Publishes CAMERA, LIDAR, ODOMETRY and TRUE_POSE; obeys DRIVE_COMMAND when the scenario says so.
-/// With an output folder it writes scenario.toml, robot.toml, truth_markers.csv and truth.tum.
+/// With an output folder it writes scenario.toml, robot.toml, truth_markers.csv, truth.tum,
+/// and truth_marker_moves.csv when the scenario moves markers.
 class SimNode final : public TickSource {
  public:
   using Config = SimConfig;
@@ -41,12 +42,14 @@ class SimNode final : public TickSource {
 
  private:
   void write_what_is_known();
+  void write_moves(const std::vector<MovedMarker>& moved);
   void obey(const twist2D_t& command);
 
   Config config_;
   Inbox& inbox_;
   std::optional<Simulation> simulation_;
   std::optional<TruthTrajectory> truth_;
+  std::vector<MovedMarker> moved_markers_;
 };
 
 }  // namespace waymark

@@ -18,6 +18,11 @@ std::filesystem::path unfinished(const std::filesystem::path& path) {
   throw SetupError{path.string() + ": cannot be written; does the folder exist, is it writable?"};
 }
 
+std::string marker_row(const MarkerPlate& marker) {
+  return fmt::format("{},{},{:.6f},{:.6f},{:.9f}", marker.id, marker.instance, marker.centre_m.x(),
+                     marker.centre_m.y(), marker.yaw_rad);
+}
+
 }  // namespace
 
 void write_whole_file(const std::filesystem::path& path, const std::string& text) {
@@ -32,9 +37,15 @@ void write_whole_file(const std::filesystem::path& path, const std::string& text
 
 std::string truth_markers_csv(const World& world) {
   std::string text = "id,instance,x_m,y_m,yaw_rad\n";
-  for (const MarkerPlate& marker : world.markers) {
-    text += fmt::format("{},{},{:.6f},{:.6f},{:.9f}\n", marker.id, marker.instance,
-                        marker.centre_m.x(), marker.centre_m.y(), marker.yaw_rad);
+  for (const MarkerPlate& marker : world.markers)
+    text += marker_row(marker) + '\n';
+  return text;
+}
+
+std::string truth_marker_moves_csv(const std::vector<MovedMarker>& moves) {
+  std::string text = "t_s,id,instance,x_m,y_m,yaw_rad\n";
+  for (const MovedMarker& moved : moves) {
+    text += fmt::format("{:.6f},{}\n", to_seconds(moved.time), marker_row(moved.marker));
   }
   return text;
 }

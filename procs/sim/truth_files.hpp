@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace waymark {
 
@@ -16,6 +17,10 @@ void write_whole_file(const std::filesystem::path& path, const std::string& text
 
 /// `id,instance,x_m,y_m,yaw_rad` of every marker, world frame; yaw = direction that it faces.
 std::string truth_markers_csv(const World& world);
+
+/// `t_s,id,instance,x_m,y_m,yaw_rad`: where markers have hung since they were moved, in order of
+/// time; before, and all others, see truth_markers.csv.
+std::string truth_marker_moves_csv(const std::vector<MovedMarker>& moves);
 
 /// truth.tum: `t x y z qx qy qz qw` of the base in the world frame, growing during the run.
 class TruthTrajectory {

@@ -88,7 +88,8 @@ class Bench {
  public:
   Bench(const Scenario& scenario, const MarkerDetectorConfig& detector)
       : scenario_{scenario},
-        world_{straight_corridor(scenario.world, scenario.markers)},
+        world_{build_world(scenario.world, scenario.markers, plate_size_m(scenario.marker_print()),
+                           scenario.run.seed)},
         camera_{scenario.robot.camera, scenario.camera_noise, scenario.run.seed},
         physics_{mjcf()},
         renderer_{world_, scenario.marker_print(), PlatePrint::kMarkers, camera_.pinhole(),

@@ -4,6 +4,7 @@
 #   FAKE_DIR              shared folder: pids of all that ran; the file `closed` says that the run is over
 #   FAKE_sim_seconds      length of the run (default 0.5)
 #   FAKE_NAME_exit=CODE   NAME ends at once with this code; `crash` kills itself
+#   FAKE_NAME_fails=WORDS NAME ends with code 1, as a replay, too, when its arguments have these words
 #   FAKE_NAME_stays=1     NAME ignores both the end of the run and SIGINT
 # With --real-time all but the simulator run until SIGINT and then end well.
 name=${0##*/waymark-}
@@ -12,7 +13,24 @@ setting() {
   echo "${!variable:-}"
 }
 
+# argument NAME ARGUMENTS...: the word after NAME.
+argument() {
+  local wanted=$1
+  shift
+  while (($# > 1)); do
+    [[ $1 != "$wanted" ]] || echo "$2"
+    shift
+  done
+}
+
+if [[ -n $(setting fails) && " $* " == *"$(setting fails)"* ]]; then
+  echo "$name fails" >&2
+  exit 1
+fi
 case " $* " in
+  *" --list "*) echo wrong_ids && exit ;;
+  *" --variant "*) touch "$(argument --out "$@")"/{run.lcm,robot.toml} && exit ;;
+  " run "* | " sweep "*) echo "$*" >>"$FAKE_DIR/$name.calls" && exit ;;
   *" --dump-config "*)
     estimator=$(sed -E 's/.*slam.estimator=([a-z_]+).*/\1/' <<<"slam.estimator=fake_estimator $*")
     if [[ $estimator == unknown ]]; then
@@ -53,3 +71,4 @@ while [[ -n $real_time$(setting stays) || ! -e $FAKE_DIR/closed ]]; do
   fi
   sleep 0.02
 done
+[[ $name != recorder ]] || touch "$(argument --out-log "$@")"

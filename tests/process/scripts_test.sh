@@ -4,59 +4,8 @@
 #
 # usage: tests/process/scripts_test.sh [--list | CASE...]
 # shellcheck disable=SC2317  # cases are called by name
-set -euo pipefail
-
-source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-export FAKE_DIR=$work
-unset LCM_DEFAULT_URL
-
-# The installed layout, with one fake program under all names.
-deploy=$work/share/waymark/deploy
-mkdir -p "$work/bin" "$work/share/waymark"
-cp -r "$source_dir/deploy" "$deploy"
-cp "$source_dir/tests/process/fake_program.sh" "$work/bin/waymark-sim"
-for name in detector slam viewer recorder; do ln -s waymark-sim "$work/bin/waymark-$name"; done
-scenario=$work/short.toml
-touch "$scenario"
-out=$work/run
-output=$work/output
-
-fail() {
-  echo "FAILED: $*; the script's output:" >&2
-  cat "$output" >&2
-  exit 1
-}
-
-# expect CODE SCRIPT ARGUMENTS...
-expect() {
-  local expected=$1 script=$deploy/$2 code=0
-  shift 2
-  "$script" "$@" >"$output" 2>&1 || code=$?
-  ((code == expected)) || fail "exit code $code instead of $expected from: ${script##*/} $*"
-}
-
-expect_output() { grep -qE -- "$1" "$output" || fail "no line like '$1'"; }
-
-expect_nothing_left() {
-  local pid
-  while read -r pid; do
-    grep -qsE '^State:\s+Z' "/proc/$pid/status" || [[ ! -d /proc/$pid ]] || fail "process $pid is left"
-  done <"$work/pids"
-}
-
-# wait_until COMMAND...: for at most 10 s.
-wait_until() {
-  local i
-  for ((i = 0; i < 200; ++i)); do
-    "$@" && return
-    sleep 0.05
-  done
-  fail "waited in vain for: $*"
-}
-
-all_started() { [[ -e $work/pids ]] && (($(wc -l <"$work/pids") >= 5)); }
+# shellcheck source=tests/process/fake_stack.sh
+source "$(dirname "${BASH_SOURCE[0]}")/fake_stack.sh"
 
 # ------------------------------------------------------------------------------ bad input
 
@@ -265,20 +214,4 @@ replay_needs_the_robot() {
   expect 2 replay.sh "$work/run.lcm" --estimator odometry && expect_output "say with --robot"
 }
 
-all_cases() { sed -nE 's/^([a-z_]+)\(\) \{$/\1/p' "$0" | grep -vxE 'fail|expect.*|wait_until|all_cases'; }
-
-if (($# == 0)); then
-  mapfile -t cases < <(all_cases)
-  set -- "${cases[@]}"
-fi
-[[ $1 != --list ]] || { all_cases && exit; }
-if (($# == 1)); then
-  declare -F "$1" >/dev/null || { echo "no case '$1'" >&2 && exit 2; }
-  "$1"
-  exit
-fi
-failed=0
-for name in "$@"; do
-  if "$0" "$name"; then echo "ok     $name"; else echo "FAILED $name" && failed=1; fi
-done
-exit $failed
+run_cases "$@"

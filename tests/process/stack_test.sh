@@ -91,5 +91,24 @@ bad_scenario() {
   [[ ! -e $work/run ]] || fail "a folder for nothing"
 }
 
+# A sweep with real programs: figures, an expectation that cannot be reached, and going on.
+sweep() {
+  command -v parallel >/dev/null || exit 77
+  printf '[expect]\nestimator = "odometry"\nate_origin_m = 0.000001\nmax_wall_cells = 9\n' >>"$work/short.toml"
+  local again=("${launch%launch.sh}sweep.sh" "$work/short.toml" --seeds 4 --estimators 'odometry,marker_matching'
+    --out "$work/swept")
+  "${again[@]}" >"$work/sweep.output" 2>&1 || fail "exit code $?"
+  grep -q '^| short | odometry | 1 | .* | 0 | 1 | ate_origin_m 1e-06, max_wall_cells 9 | MISS |$' "$work/swept/results.md" ||
+    fail "no row of odometry"
+  grep -q '^| short | marker_matching | 1 | .* | 0 | 0 | - | - |$' "$work/swept/results.md" || fail "no row of marker_matching"
+  grep -q '"got": ' "$work/swept/short/seed-4/odometry/metrics.json" || fail "no expectation in metrics.json"
+  local line
+  line=$(grep -- '--again$' "$work/swept/results.md") || fail "no command for the seed that missed"
+  [[ $line == "${launch%launch.sh}sweep_job.sh $work/swept short 4 --again" ]] || fail "the command is $line"
+  "${again[@]}" >"$work/sweep.output" 2>&1 || fail "exit code $? the second time"
+  ! grep -q "jobs done" "$work/sweep.output" || fail "the job was done twice"
+  expect_nothing_left
+}
+
 declare -F "${2:?no case given}" >/dev/null || { echo "no case '$2'" >&2 && exit 2; }
 "$2"

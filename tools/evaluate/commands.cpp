@@ -100,6 +100,7 @@ int run_run(const fs::path& run_dir, const std::vector<std::string>& wanted,
     results.push_back(evaluate_estimator(run_dir / name, truth, options));
     const EstimatorResult& result = results.back();
     write_whole_file(run_dir / name / "metrics.json", file_text(metrics_json(result)));
+    write_whole_file(run_dir / name / "stations.csv", stations_csv(result.stations));
     skipped.insert(skipped.end(), result.skipped.begin(), result.skipped.end());
     complete = complete && result.problems.empty();
   }

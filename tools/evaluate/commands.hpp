@@ -35,4 +35,11 @@ int run_relations(const std::filesystem::path& trajectory, const std::filesystem
 int run_run(const std::filesystem::path& run_dir, const std::vector<std::string>& estimators,
             const EvaluationOptions& options, const Output& output);
 
+/// Writes results.md, results.csv, runs.csv, index.html and plots/ into a sweep's folder.
+/// @return kFine also where runs failed or missed: the table says so.
+int run_sweep(const std::filesystem::path& sweep_dir, const Output& output);
+
+/// Mean NEES per station over estimator folders with a stations.csv.
+int run_consistency(const std::vector<std::filesystem::path>& row_dirs, const Output& output);
+
 }  // namespace waymark::evaluate

@@ -19,6 +19,7 @@ struct Arguments {
   std::filesystem::path trajectory{};
   std::filesystem::path reference{};
   std::filesystem::path relations{};
+  std::vector<std::filesystem::path> row_dirs{};
   std::vector<std::string> estimators{};
   EvaluationOptions options{};
   Output output{};
@@ -124,6 +125,33 @@ void add_relations(CLI::App& program, Arguments& arguments, Command& chosen) {
   });
 }
 
+void add_sweep(CLI::App& program, Arguments& arguments, Command& chosen) {
+  CLI::App& command = *program.add_subcommand(
+      "sweep", "all runs of deploy/sweep.sh: writes results.md, results.csv, runs.csv, index.html");
+  command.add_option("DIR", arguments.run_dir, "the sweep's folder")->required();
+  add_output(command, arguments, "print JSON instead of the table");
+  command.callback([&] {
+    chosen = [&] {
+      return run_sweep(arguments.run_dir, arguments.output);
+    };
+  });
+}
+
+void add_consistency(CLI::App& program, Arguments& arguments, Command& chosen) {
+  CLI::App& command = *program.add_subcommand(
+      "consistency", "mean NEES per metre over many runs, against its 95 % band");
+  command
+      .add_option("ROW_DIR", arguments.row_dirs,
+                  "estimator folders of several runs, each with a stations.csv (see run)")
+      ->required();
+  add_output(command, arguments, "print JSON");
+  command.callback([&] {
+    chosen = [&] {
+      return run_consistency(arguments.row_dirs, arguments.output);
+    };
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -139,6 +167,8 @@ int main(int argc, char** argv) {
   add_run(program, arguments, chosen);
   add_trajectory(program, arguments, chosen);
   add_relations(program, arguments, chosen);
+  add_sweep(program, arguments, chosen);
+  add_consistency(program, arguments, chosen);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

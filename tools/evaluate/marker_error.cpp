@@ -48,6 +48,7 @@ MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Ma
   double sum_deg = 0.0;
   double max_m = 0.0;
   double max_deg = 0.0;
+  double num_right = 0.0;
   std::vector<bool> estimate_taken(in_map.size(), false);
   std::vector<bool> truth_taken(in_world.size(), false);
   for (const auto& [distance_m, e, t] : candidates) {
@@ -60,11 +61,14 @@ MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Ma
     sum_deg += turn_deg;
     max_m = std::max(max_m, distance_m);
     max_deg = std::max(max_deg, turn_deg);
+    num_right += distance_m <= kRightMarker_m ? 1.0 : 0.0;
     ++error.matched;
   }
   error.missing = in_world.size() - error.matched;
   error.spurious = in_map.size() - error.matched;
   if (error.matched == 0) return error;
+  error.right_share =
+      num_right / static_cast<double>(error.matched + error.missing + error.spurious);
   const double count = static_cast<double>(error.matched);
   error.mean_position_m = sum_m / count;
   error.max_position_m = max_m;

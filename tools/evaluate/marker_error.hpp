@@ -16,10 +16,14 @@ struct Marker {
   Se2 parent_from_marker{};
 };
 
+/// A marker that is mapped further from its true place is not right: half its size.
+inline constexpr double kRightMarker_m = 0.2;
+
 struct MarkerError {
   std::size_t matched{};
   std::size_t missing{};   ///< true markers without an estimate
   std::size_t spurious{};  ///< estimates without a true marker
+  double right_share{};    ///< of all, true and estimated, those matched within kRightMarker_m
   std::optional<double> mean_position_m{};
   std::optional<double> max_position_m{};
   std::optional<double> mean_yaw_deg{};

@@ -40,6 +40,7 @@ Json json_of(const std::optional<MarkerError>& error) {
   json["markers_matched"] = error ? Json(error->matched) : Json{};
   json["markers_missing"] = error ? Json(error->missing) : Json{};
   json["markers_spurious"] = error ? Json(error->spurious) : Json{};
+  json["marker_map_share"] = error ? number(error->right_share) : Json{};
   json["marker_error_mean_m"] = error ? number(error->mean_position_m) : Json{};
   json["marker_error_max_m"] = error ? number(error->max_position_m) : Json{};
   json["marker_yaw_error_mean_deg"] = error ? number(error->mean_yaw_deg) : Json{};
@@ -53,6 +54,31 @@ Json json_of(const std::optional<Nees>& nees) {
   json["nees_share_in_95_band"] = nees ? number(nees->share_in_band) : Json{};
   json["nees_poses"] = nees ? Json(nees->poses) : Json{};
   json["nees_singular"] = nees ? Json(nees->singular) : Json{};
+  return json;
+}
+
+Json json_of(const std::optional<Timeline>& timeline) {
+  const Kidnap* const kidnap = timeline && timeline->kidnap ? &*timeline->kidnap : nullptr;
+  Json json;
+  json["max_jump_m"] = timeline ? number(timeline->max_jump_m) : Json{};
+  json["share_tracking"] = timeline ? number(timeline->share_tracking) : Json{};
+  json["share_degenerate"] = timeline ? number(timeline->share_degenerate) : Json{};
+  json["share_lost"] = timeline ? number(timeline->share_lost) : Json{};
+  json["lifted_at_s"] = kidnap ? number(kidnap->lifted_t_s) : Json{};
+  json["first_sighting_at_s"] = kidnap ? number(kidnap->sighting_t_s) : Json{};
+  json["says_lost_s"] = kidnap ? number(kidnap->says_lost_s) : Json{};
+  json["found_again_s"] = kidnap ? number(kidnap->found_again_s) : Json{};
+  json["confident_wrong_s"] = kidnap ? number(kidnap->confident_wrong_s) : Json{};
+  return json;
+}
+
+Json json_of(const std::vector<ExpectedFigure>& figures) {
+  Json json = Json::array();
+  for (const ExpectedFigure& figure : figures)
+    json.push_back({{"figure", figure.key},
+                    {"limit", number(figure.limit)},
+                    {"got", number(figure.got)},
+                    {"hit", figure.is_hit}});
   return json;
 }
 
@@ -134,6 +160,9 @@ Json metrics_json(const EstimatorResult& result) {
   json["poses_outside_truth"] = result.poses_outside_truth;
   json.update(json_of(result.markers));
   json.update(json_of(result.nees));
+  json["wall_cells"] = result.wall_cells ? Json(*result.wall_cells) : Json{};
+  json.update(json_of(result.timeline));
+  json["expectations"] = json_of(result.expectations);
   json["timings"] = parsed(result.timings_json);
   json["counters"] = parsed(result.counters_json);
   json["problems"] = result.problems;

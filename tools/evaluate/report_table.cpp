@@ -10,11 +10,11 @@
 namespace waymark::evaluate {
 namespace {
 
-constexpr std::array<std::string_view, 16> kColumns{
+constexpr std::array<std::string_view, 17> kColumns{
     "Case",      "Pixel Length", "Corridor Length", "Pixel Count",      "Map Length",
     "Accuracy",  "along RMSE",   "x odometry",      "across RMSE",      "ate_origin_m",
     "ate_se2_m", "heading RMSE", "marker error",    "missing/spurious", "NEES",
-    "flags"};
+    "expected",  "flags"};
 
 using Row = std::array<std::string, kColumns.size()>;
 
@@ -76,7 +76,8 @@ Row row_of(const EstimatorResult& result, std::optional<double> odometry_m) {
     row[13] = fmt::format("{}/{}", result.markers->missing, result.markers->spurious);
   }
   if (result.nees) row[14] = cell(result.nees->mean, 2, "");
-  row[15] = flags_of(result);
+  row[15] = text_of(result.expectations);
+  row[16] = flags_of(result);
   return row;
 }
 
@@ -138,7 +139,8 @@ std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorR
   text +=
       "; `x odometry`: along RMSE over that of the row `odometry`. Marker error: mean distance "
       "over "
-      "all true markers that were mapped. NEES: 3 is right. "
+      "all true markers that were mapped. NEES: 3 is right. Expected: by the scenario, its limit "
+      "in parentheses. "
       "Trajectories are the poses given during the run; `final`: corrected until its end.\n";
   if (!truth.length_m)
     text += "\nNo scenario.toml: the true length is not known, so no accuracy.\n";

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/run_evaluation.hpp"
 
+#include "common/config/config.hpp"
+#include "evaluate/wall_thickness.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDefaultLength_m = 50.0;  ///< the default world's
 /// More than the last scan or two outside the truth means that the files are not of one run.
 constexpr double kOutsideShare = 0.05;
 
@@ -23,18 +24,30 @@ std::optional<std::string> text_if_there(const fs::path& file) {
   return read_text(file);
 }
 
-double scenario_length_m(const std::string& text, const fs::path& file) {
+/// What the evaluation reads of a scenario.
+struct ScenarioPart {
+  struct World {
+    double length_m{50.0};  ///< the default world's
+
+    void describe(Fields& fields) {
+      fields.field("length_m", length_m, kPositive, "between the inner faces of the end walls");
+    }
+  };
+
+  World world{};
+  ExpectConfig expect{};
+
+  void describe(Fields& fields) {
+    fields.section("world", world);
+    fields.section("expect", expect);
+  }
+};
+
+ScenarioPart read_scenario(const fs::path& file) {
   try {
-    const toml::table scenario = toml::parse(text, file.string());
-    const auto length = scenario["world"]["length_m"];
-    if (!length) return kDefaultLength_m;
-    const std::optional<double> length_m = length.value<double>();
-    if (!length_m || !(*length_m > 0.0))
-      throw InputError{file.string() + ": world.length_m: expected a length above 0 [m]"};
-    return *length_m;
-  } catch (const toml::parse_error& error) {
-    throw InputError{
-        at_line(file, error.source().begin.line, fmt::format("not TOML: {}", error.description()))};
+    return load_part<ScenarioPart>(file);
+  } catch (const ConfigError& error) {
+    throw InputError{error.what()};
   }
 }
 
@@ -62,10 +75,10 @@ std::vector<PosePair> pairs_of(const fs::path& file, const Trajectory& estimate,
   return pairs;
 }
 
-void add_trajectory(const fs::path& dir, const Trajectory& truth, const EvaluationOptions& options,
+void add_trajectory(const fs::path& dir, const RunTruth& truth, const EvaluationOptions& options,
                     EstimatorResult& result, Se2& world_from_map) {
   const Trajectory estimate = read_tum(dir / "trajectory.tum", result.skipped);
-  const std::vector<PosePair> pairs = pairs_of(dir / "trajectory.tum", estimate, truth);
+  const std::vector<PosePair> pairs = pairs_of(dir / "trajectory.tum", estimate, *truth.trajectory);
   result.poses_outside_truth = estimate.size() - pairs.size();
   if (static_cast<double>(result.poses_outside_truth) >
       kOutsideShare * static_cast<double>(estimate.size()))
@@ -75,8 +88,14 @@ void add_trajectory(const fs::path& dir, const Trajectory& truth, const Evaluati
   result.trajectory = trajectory_error(pairs, options.alignment);
   world_from_map = align(pairs, Alignment::kOrigin);
   const fs::path covariance_file = dir / "covariance.csv";
-  if (fs::exists(covariance_file))
-    result.nees = nees(pairs, read_covariances(covariance_file, result.skipped), world_from_map);
+  std::vector<StampedCovariance> covariances;
+  if (fs::exists(covariance_file)) {
+    covariances = read_covariances(covariance_file, result.skipped);
+    result.nees = nees(pairs, covariances, world_from_map);
+  }
+  result.stations = stations(pairs, covariances, world_from_map);
+  result.timeline =
+      timeline(pairs, covariances, world_from_map, truth.lifted_t_s, truth.sightings_s);
 }
 
 void add_final_trajectory(const fs::path& dir, const Trajectory& truth,
@@ -102,11 +121,19 @@ std::size_t rank_of(const std::string& name) {
 RunTruth read_truth(const fs::path& run_dir, const EvaluationOptions& options) {
   RunTruth truth{};
   truth.scenario_toml = text_if_there(run_dir / "scenario.toml");
-  if (truth.scenario_toml)
-    truth.length_m = scenario_length_m(*truth.scenario_toml, run_dir / "scenario.toml");
+  if (truth.scenario_toml) {
+    const ScenarioPart scenario = read_scenario(run_dir / "scenario.toml");
+    truth.length_m = scenario.world.length_m;
+    truth.expect = scenario.expect;
+  }
+  if (fs::exists(run_dir / "expect.toml"))
+    truth.expect = read_scenario(run_dir / "expect.toml").expect;
   if (options.true_length_m) truth.length_m = options.true_length_m;
   if (fs::exists(run_dir / "truth.tum"))
     truth.trajectory = read_tum(run_dir / "truth.tum", truth.skipped);
+  if (truth.trajectory) truth.lifted_t_s = lifted_t_s(*truth.trajectory);
+  if (truth.lifted_t_s && fs::exists(run_dir / "run.lcm"))
+    truth.sightings_s = sighting_times(run_dir / "run.lcm");
   if (fs::exists(run_dir / "truth_markers.csv"))
     truth.markers = read_markers(run_dir / "truth_markers.csv", truth.skipped);
   return truth;
@@ -132,6 +159,7 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
   attempt(result.problems, [&] {
     const fs::path map_file = dir / "map.yaml";
     const MapImage map = read_map(map_file);
+    result.wall_cells = wall_thickness_cells(map);
     try {
       result.length = measure_corridor(map);
     } catch (const InputError& error) {
@@ -142,7 +170,7 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
   if (truth.trajectory) {
     attempt(result.problems, [&] {
       Se2 aligned;
-      add_trajectory(dir, *truth.trajectory, options, result, aligned);
+      add_trajectory(dir, truth, options, result, aligned);
       world_from_map = aligned;
     });
     attempt(result.problems,
@@ -157,6 +185,7 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
   attempt(result.problems, [&] { result.config_toml = text_if_there(dir / "config.toml"); });
   attempt(result.problems, [&] { result.timings_json = json_if_there(dir / "timings.json"); });
   attempt(result.problems, [&] { result.counters_json = json_if_there(dir / "counters.json"); });
+  result.expectations = check_expectations(truth.expect, result);
   return result;
 }
 

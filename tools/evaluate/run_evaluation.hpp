@@ -3,8 +3,10 @@
 #pragma once
 
 #include "evaluate/corridor_length.hpp"
+#include "evaluate/expectation.hpp"
 #include "evaluate/marker_error.hpp"
-#include "evaluate/nees.hpp"
+#include "evaluate/stations.hpp"
+#include "evaluate/timeline.hpp"
 #include "evaluate/trajectory_error.hpp"
 
 #include <filesystem>
@@ -24,8 +26,11 @@ struct EvaluationOptions {
 struct RunTruth {
   std::optional<std::string> scenario_toml{};
   std::optional<double> length_m{};
+  ExpectConfig expect{};
   std::optional<Trajectory> trajectory{};
   std::optional<std::vector<Marker>> markers{};
+  std::optional<double> lifted_t_s{};  ///< when the robot was lifted and put down elsewhere
+  std::vector<double> sightings_s{};   ///< times of frames with a marker; only if it was lifted
   Skipped skipped{};
 };
 
@@ -35,11 +40,15 @@ struct EstimatorResult {
   std::string name{};
   std::optional<CorridorLength> length{};
   std::optional<double> true_length_m{};
+  std::optional<int> wall_cells{};                    ///< thickness
   std::optional<TrajectoryError> trajectory{};        ///< poses as given during the run
   std::optional<TrajectoryError> final_trajectory{};  ///< as corrected until its end, if it was
   std::size_t poses_outside_truth{};
   std::optional<MarkerError> markers{};
   std::optional<Nees> nees{};
+  std::vector<Station> stations{};
+  std::optional<Timeline> timeline{};
+  std::vector<ExpectedFigure> expectations{};
   std::optional<std::string> config_toml{};
   std::optional<std::string> timings_json{};
   std::optional<std::string> counters_json{};
@@ -47,7 +56,8 @@ struct EstimatorResult {
   Skipped skipped{};                    ///< lines that were left out
 };
 
-/// Reads scenario.toml (world.length_m, 50 if it does not say), truth.tum and truth_markers.csv.
+/// Reads scenario.toml (world.length_m, 50 if it does not say; [expect], which expect.toml beside
+/// it replaces), truth.tum, truth_markers.csv, and the log run.lcm if the robot was lifted.
 /// @throws InputError for files that are there and cannot be understood.
 RunTruth read_truth(const std::filesystem::path& run_dir, const EvaluationOptions& options);
 

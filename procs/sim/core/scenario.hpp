@@ -6,6 +6,8 @@
 #include "common/expect/expect_config.hpp"
 #include "common/robot/robot_config.hpp"
 #include "sim/core/camera/camera.hpp"
+#include "sim/core/faults/fault_config.hpp"
+#include "sim/core/happenings.hpp"
 #include "sim/core/robot/drive.hpp"
 #include "sim/core/sensors/encoders.hpp"
 #include "sim/core/sensors/lidar.hpp"
@@ -38,7 +40,10 @@ struct Scenario {
   OdometryErrorConfig odometry_errors{};
   LidarNoiseConfig lidar_noise{};
   CameraNoiseConfig camera_noise{};
+  CameraErrorConfig camera_errors{};
   RunConfig run{};
+  std::vector<FaultConfig> faults{};
+  std::vector<KidnapConfig> kidnaps{};
   ExpectConfig expect{};  ///< not for the simulation: for who reads its results
 
   MarkerPrint marker_print() const {
@@ -55,7 +60,10 @@ struct Scenario {
  private:
   void check_world(Problems& problems) const;
   void check_markers(Problems& problems) const;
+  void check_places(Problems& problems) const;
+  void check_moves(Problems& problems) const;
   void check_route(Problems& problems) const;
+  void check_faults(Problems& problems) const;
   void check_times(Problems& problems) const;
 };
 

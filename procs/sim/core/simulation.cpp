@@ -15,6 +15,7 @@ constexpr std::int64_t kNotYet = -1;
 // A route takes this much longer than its length over its speed before something is wrong.
 constexpr double kPatienceFactor = 3.0;
 constexpr double kPatience_s = 60.0;
+constexpr int kPicturesPerExposure = 5;
 
 std::string mjcf_of(const Scenario& scenario, const World& world, const Pinhole& pinhole) {
   MjcfOptions options;
@@ -34,8 +35,10 @@ PlatePrint plate_print(const Scenario& scenario) {
 
 Simulation::Simulation(const Scenario& scenario)
     : scenario_{scenario},
-      world_{straight_corridor(scenario.world, scenario.markers)},
-      camera_{scenario.robot.camera, scenario.camera_noise, scenario.run.seed},
+      world_{build_world(scenario.world, scenario.markers, plate_size_m(scenario.marker_print()),
+                         scenario.run.seed)},
+      camera_{real_camera(scenario.robot.camera, scenario.camera_errors), scenario.camera_noise,
+              scenario.run.seed},
       physics_{mjcf_of(scenario, world_, camera_.pinhole())},
       route_{scenario.route, 1.0 / scenario.run.physics_rate_hz},
       commands_{scenario.route,
@@ -44,16 +47,25 @@ Simulation::Simulation(const Scenario& scenario)
       encoders_{scenario.robot.base, scenario.odometry_errors, scenario.run.seed},
       lidar_{scenario.robot.lidar, scenario.lidar_noise, scenario.run.seed},
       renderer_{world_, scenario.marker_print(), plate_print(scenario), camera_.pinhole(),
-                physics_} {}
+                physics_},
+      bustle_{world_},
+      kidnapper_{scenario.kidnaps},
+      odometry_outlet_{Faults{Sensor::kOdometry, scenario.faults}, scenario.run.seed},
+      lidar_outlet_{Faults{Sensor::kLidar, scenario.faults}, scenario.run.seed},
+      camera_outlet_{Faults{Sensor::kCamera, scenario.faults}, scenario.run.seed} {}
 
 Tick Simulation::advance() {
   Tick tick;
+  tick.moved_markers = bustle_.update(now(), moment(), physics_);
   for (int i = 0; i < scenario_.steps_per_tick(); ++i) {
     sense(tick);
     physics_.step(wheel_speeds(scenario_.robot.base, decide()));
     ++step_;
   }
   tick.end = now();
+  tick.odometry = odometry_outlet_.release(tick.end);
+  tick.scans = lidar_outlet_.release(tick.end);
+  tick.frames = camera_outlet_.release(tick.end);
   check_progress();
   return tick;
 }
@@ -88,22 +100,53 @@ bool Simulation::is_due(double rate_hz) const {
   return step_ % scenario_.steps_per(rate_hz) == 0;
 }
 
+Moment Simulation::moment() const {
+  return {to_seconds(now()), route_.progress_m()};
+}
+
 void Simulation::sense(Tick& tick) {
   if (is_due(scenario_.robot.base.odometry_rate_hz)) {
-    tick.odometry.push_back(encoders_.measure(now(), physics_.wheel_angles()));
+    measure_odometry();
     tick.true_poses.push_back({now(), physics_.world_from_base()});
   }
   if (scenario_.run.rolling_scan) {
-    sense_rolling_scan(tick);
+    sense_rolling_scan();
   } else if (is_due(scenario_.robot.lidar.rate_hz)) {
-    tick.scans.push_back(lidar_.scan(now(), physics_));
+    send_scan(lidar_.scan(now(), physics_));
   }
-  if (is_due(scenario_.robot.camera.rate_hz)) tick.frames.push_back(photograph());
+  if (is_due(scenario_.robot.camera.rate_hz)) camera_outlet_.take(photograph(), moment());
+}
+
+void Simulation::measure_odometry() {
+  const Faults& faults = odometry_outlet_.faults();
+  OdometrySample sample =
+      encoders_.measure(now(), spinning_wheels_.counted(physics_.wheel_angles(), faults, moment()));
+  if (faults.acting(FaultKind::kGarbage, moment()) != nullptr) {
+    Random random = garbage_random(Sensor::kOdometry);
+    make_garbage(sample, random);
+  }
+  odometry_outlet_.take(sample, moment());
+}
+
+void Simulation::send_scan(LidarScan scan) {
+  const Faults& faults = lidar_outlet_.faults();
+  if (const FaultConfig* fault = faults.acting(FaultKind::kWrong, moment()))
+    scale_ranges(scan, scenario_.robot.lidar, fault->share);
+  if (faults.acting(FaultKind::kGarbage, moment()) != nullptr) {
+    Random random = garbage_random(Sensor::kLidar);
+    make_garbage(scan, scenario_.robot.lidar, random);
+  }
+  lidar_outlet_.take(std::move(scan), moment());
+}
+
+Random Simulation::garbage_random(Sensor sensor) const {
+  return Random{static_cast<std::uint64_t>(scenario_.run.seed), random_streams::kGarbage,
+                static_cast<std::uint64_t>(sensor), static_cast<std::uint64_t>(step_)};
 }
 
 /// A few beams in every step; a finished sweep is stamped with the time of its last beams, so that
 /// messages stay in order of time.
-void Simulation::sense_rolling_scan(Tick& tick) {
+void Simulation::sense_rolling_scan() {
   const int num_beams = scenario_.robot.lidar.num_beams;
   const int steps_per_sweep = scenario_.steps_per(scenario_.robot.lidar.rate_hz);
   const int phase = static_cast<int>(step_ % steps_per_sweep);
@@ -120,17 +163,44 @@ void Simulation::sense_rolling_scan(Tick& tick) {
   for (Duration& offset : sweep_.beam_time_offsets)
     offset -= now() - sweep_.time;
   sweep_.time = now();
-  tick.scans.push_back(sweep_);
+  send_scan(sweep_);
+}
+
+cv::Mat Simulation::look(double later_s) {
+  return renderer_.render(physics_.world_from_base_3d_at(later_s) *
+                          camera_.config().base_from_camera());
+}
+
+/// The mean of a few pictures around now.
+cv::Mat Simulation::look_for_an_exposure() {
+  const double exposure_s = scenario_.camera_noise.exposure_s;
+  if (exposure_s == 0.0) return look(0.0);
+  cv::Mat sum;
+  for (int i = 0; i < kPicturesPerExposure; ++i) {
+    cv::Mat picture;
+    look(exposure_s * ((i + 0.5) / kPicturesPerExposure - 0.5)).convertTo(picture, CV_16UC3);
+    sum = i == 0 ? picture : cv::Mat{sum + picture};
+  }
+  cv::Mat mean;
+  sum.convertTo(mean, CV_8UC3, 1.0 / kPicturesPerExposure);
+  return mean;
 }
 
 CameraFrame Simulation::photograph() {
-  const Eigen::Isometry3d world_from_camera =
-      physics_.world_from_base_3d() * scenario_.robot.camera.base_from_camera();
-  const cv::Mat picture = camera_.expose(renderer_.render(world_from_camera), frames_taken_++);
-  return camera_.compress(picture, now());
+  const Faults& faults = camera_outlet_.faults();
+  if (faults.acting(FaultKind::kGarbage, moment()) != nullptr) {
+    Random random = garbage_random(Sensor::kCamera);
+    return camera_.compress(camera_.garbage(random), now());
+  }
+  const FaultConfig* wrong = faults.acting(FaultKind::kWrong, moment());
+  const double light = wrong != nullptr ? 1.0 + wrong->share : 1.0;
+  return camera_.compress(camera_.expose(look_for_an_exposure(), frames_taken_++, light), now());
 }
 
 Velocity Simulation::decide() {
+  const Kidnapper::Grip grip = kidnapper_.update(moment(), physics_);
+  if (grip == Kidnapper::Grip::kHeld) return {};
+  if (grip == Kidnapper::Grip::kReleased) route_.begin_anew();
   if (scenario_.route.source == DriveSource::kCommand) return commands_.next(now());
   const Velocity velocity = route_.next(physics_.world_from_base());
   if (route_.arrived() && arrival_step_ == kNotYet) arrival_step_ = step_;

@@ -2,9 +2,13 @@
 // The simulated robot in its world, tick by tick.
 #pragma once
 
+#include "common/random/random.hpp"
 #include "common/sensors/sensors.hpp"
 #include "sim/core/camera/camera.hpp"
 #include "sim/core/camera/renderer.hpp"
+#include "sim/core/faults/faulty_outlet.hpp"
+#include "sim/core/faults/spoil.hpp"
+#include "sim/core/happenings.hpp"
 #include "sim/core/robot/drive.hpp"
 #include "sim/core/robot/physics.hpp"
 #include "sim/core/scenario.hpp"
@@ -22,13 +26,15 @@ struct TruePose {
   Se2 world_from_base{};
 };
 
-/// What was measured from the end of the last tick (inclusive) to the end of this one (exclusive).
+/// What was measured from the end of the last tick (inclusive) to the end of this one (exclusive),
+/// by its stamps, and which markers were moved.
 struct Tick {
   Timestamp end{};
   std::vector<OdometrySample> odometry{};
   std::vector<TruePose> true_poses{};
   std::vector<LidarScan> scans{};
   std::vector<CameraFrame> frames{};
+  std::vector<MovedMarker> moved_markers{};
 };
 
 /// Deterministic: the scenario, and the commands with their stamps, determine every value.
@@ -59,9 +65,15 @@ class Simulation {
  private:
   Timestamp time_of_step(std::int64_t step) const;
   bool is_due(double rate_hz) const;
+  Moment moment() const;
+  Random garbage_random(Sensor sensor) const;
   void sense(Tick& tick);
-  void sense_rolling_scan(Tick& tick);
+  void sense_rolling_scan();
+  void measure_odometry();
+  void send_scan(LidarScan scan);
   CameraFrame photograph();
+  cv::Mat look(double later_s);
+  cv::Mat look_for_an_exposure();
   Velocity decide();
   void check_progress() const;
 
@@ -74,6 +86,12 @@ class Simulation {
   Encoders encoders_;
   Lidar lidar_;
   Renderer renderer_;
+  Bustle bustle_;
+  Kidnapper kidnapper_;
+  SpinningWheels spinning_wheels_{};
+  FaultyOutlet<OdometrySample> odometry_outlet_;
+  FaultyOutlet<LidarScan> lidar_outlet_;
+  FaultyOutlet<CameraFrame> camera_outlet_;
   std::int64_t step_{0};
   std::int64_t arrival_step_{-1};
   std::uint64_t frames_taken_{0};

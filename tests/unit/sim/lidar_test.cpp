@@ -17,7 +17,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 Physics standing_at(const Se2& world_from_start) {
   MjcfOptions options{};
   options.world_from_start = world_from_start;
-  return Physics{to_mjcf(straight_corridor({}, {}), {}, options)};
+  return Physics{to_mjcf(build_world({}, {}, 0.6, 1), {}, options)};
 }
 
 /// Distance from inside the default corridor to its inner faces: the box's exit, by hand.

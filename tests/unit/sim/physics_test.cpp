@@ -19,7 +19,7 @@ Physics standing_at(const Se2& world_from_start) {
   MjcfOptions options{};
   options.time_step_s = 1.0 / kRate_hz;
   options.world_from_start = world_from_start;
-  return Physics{to_mjcf(straight_corridor({}, {}), {}, options)};
+  return Physics{to_mjcf(build_world({}, {}, 0.6, 1), {}, options)};
 }
 
 /// Speeds up within half a second, so that the tyres hold.

@@ -21,7 +21,7 @@ constexpr Pinhole kPinhole{320, 240, 200.0, 159.5, 119.5};
 struct Scene {
   Scene(const WorldConfig& world_config, const MarkerLayoutConfig& markers, PlatePrint plate_print,
         const Pinhole& pinhole = kPinhole)
-      : world{straight_corridor(world_config, markers)},
+      : world{build_world(world_config, markers, plate_size_m({}), 1)},
         physics{mjcf(pinhole)},
         renderer{world, {}, plate_print, pinhole, physics} {}
 

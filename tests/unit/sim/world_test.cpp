@@ -15,6 +15,11 @@ namespace {
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
+World corridor_world(const WorldConfig& config = {}, const MarkerLayoutConfig& markers = {},
+                     std::int64_t seed = 1) {
+  return build_world(config, markers, plate_size_m({}), seed);
+}
+
 std::vector<double> stations_of(const World& world, double side) {
   std::vector<double> stations;
   for (const MarkerPlate& marker : world.markers)
@@ -23,7 +28,7 @@ std::vector<double> stations_of(const World& world, double side) {
 }
 
 TEST(World, DefaultIsThePapersCorridor) {
-  const World world = straight_corridor({}, {});
+  const World world = corridor_world();
 
   ASSERT_EQ(world.markers.size(), 24U);
   EXPECT_EQ(world.markers[0].id, 0);
@@ -37,7 +42,7 @@ TEST(World, DefaultIsThePapersCorridor) {
 }
 
 TEST(World, MarkersHangOnTheirWallAndFaceTheMiddle) {
-  for (const MarkerPlate& marker : straight_corridor({}, {}).markers) {
+  for (const MarkerPlate& marker : corridor_world().markers) {
     EXPECT_NEAR(std::abs(marker.centre_m.y()), 1.0, 0.005);
     EXPECT_NEAR(std::sin(marker.yaw_rad), marker.centre_m.y() > 0 ? -1.0 : 1.0, 1e-12);
   }
@@ -48,7 +53,7 @@ TEST(World, StaggeredShiftsTheRightWallByHalfASpacing) {
   markers.layout = MarkerLayout::kStaggered;
   markers.last_m = 12.0;
 
-  const World world = straight_corridor({}, markers);
+  const World world = corridor_world({}, markers);
 
   EXPECT_THAT(stations_of(world, 1.0), ElementsAre(4.0, 8.0, 12.0));
   EXPECT_THAT(stations_of(world, -1.0), ElementsAre(6.0, 10.0));
@@ -61,7 +66,7 @@ TEST(World, StationsDoNotSufferFromRounding) {
   markers.spacing_m = 0.1;
   markers.last_m = 0.3;  // 0.1 + 2 * 0.1 is a little more than 0.3
 
-  EXPECT_EQ(marker_count(markers), 6U);
+  EXPECT_EQ(place_count({}, markers, 0.05), 6U);
 }
 
 TEST(World, ExplicitIdsAreUsedAndRepeatedOnesCounted) {
@@ -69,7 +74,7 @@ TEST(World, ExplicitIdsAreUsedAndRepeatedOnesCounted) {
   markers.last_m = 8.0;
   markers.ids = {7, 7, 3, 7};
 
-  const World world = straight_corridor({}, markers);
+  const World world = corridor_world({}, markers);
 
   std::vector<int> instances;
   for (const MarkerPlate& marker : world.markers)
@@ -81,7 +86,7 @@ TEST(World, WallsEncloseTheFreeSpaceOnTheirLeft) {
   WorldConfig config{};
   config.length_m = 10.0;
   config.width_m = 3.0;
-  const World world = straight_corridor(config, {});
+  const World world = corridor_world(config);
   const Eigen::Vector2d inside{5.0, 0.0};
 
   ASSERT_EQ(world.walls.size(), 4U);

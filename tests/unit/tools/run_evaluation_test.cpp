@@ -68,7 +68,7 @@ TEST(Run, WritesMetricsAndTheTable) {
   run.file("waymark/config.toml", "[slam]\nseed = 7\n");
   run.file("waymark/timings.json", "{\"scan_ms\": 1.5}");
   run.file("waymark/covariance.csv",
-           "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n0.2,0.01,0,0,0.01,0,0.01,tracking\n");
+           "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n0.2,0.01,0,0,0.01,0,0.01,2\n");
 
   EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
 

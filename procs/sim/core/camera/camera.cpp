@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/camera/camera.hpp"
 
+#include "common/geometry/angle.hpp"
+
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include <algorithm>
 
 namespace waymark {
 namespace {
@@ -14,23 +18,51 @@ constexpr int kQualityStep = 5;
 void CameraNoiseConfig::describe(Fields& fields) {
   fields.field("sigma_grey_levels", sigma_grey_levels, {0.0, 40.0}, "sensor noise per pixel");
   fields.field("blur_sigma_px", blur_sigma_px, {0.0, 20.0}, "Gaussian blur of the lens; 0 = none");
+  fields.field("exposure_s", exposure_s, {0.0, 1.0},
+               "the picture is the mean over this time around its stamp; 0 = an instant");
   fields.choice("colour", colour, {{"grey", ImageColour::kGrey}, {"colour", ImageColour::kColour}},
                 "what is compressed");
   fields.field("jpeg_quality", jpeg_quality, {10, 100},
                "quality to begin with; lowered for a frame that does not fit a datagram");
 }
 
+void CameraErrorConfig::describe(Fields& fields) {
+  fields.field("focal_share", focal_share, {-0.5, 0.5},
+               "true focal length is longer by this share");
+  fields.field("yaw_deg", yaw_deg, {-45.0, 45.0}, "mounted further to the left by this");
+  fields.field("pitch_deg", pitch_deg, {-45.0, 45.0}, "mounted further down by this");
+}
+
+CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors) {
+  CameraConfig real = nominal;
+  real.fx_px *= 1.0 + errors.focal_share;
+  real.fy_px *= 1.0 + errors.focal_share;
+  real.yaw_rad += radians(errors.yaw_deg);
+  real.pitch_rad += radians(errors.pitch_deg);
+  return real;
+}
+
 Camera::Camera(const CameraConfig& camera, const CameraNoiseConfig& noise, std::int64_t seed)
     : camera_{camera}, noise_config_{noise}, lens_{camera}, noise_{noise.sigma_grey_levels, seed} {}
 
-cv::Mat Camera::expose(const cv::Mat& rendered, std::uint64_t frame) const {
+cv::Mat Camera::expose(const cv::Mat& rendered, std::uint64_t frame, double light) const {
   cv::Mat picture;
   const bool grey = noise_config_.colour == ImageColour::kGrey;
   cv::cvtColor(rendered, picture, grey ? cv::COLOR_RGB2GRAY : cv::COLOR_RGB2BGR);
   picture = lens_.apply(picture);
   const double sigma_px = noise_config_.blur_sigma_px;
   if (sigma_px > 0.0) cv::GaussianBlur(picture, picture, {}, sigma_px);
+  if (light != 1.0) picture *= light;
   noise_.add_to(picture, frame);
+  return picture;
+}
+
+cv::Mat Camera::garbage(Random& random) const {
+  const bool grey = noise_config_.colour == ImageColour::kGrey;
+  cv::Mat picture{camera_.height_px, camera_.width_px, grey ? CV_8UC1 : CV_8UC3};
+  constexpr std::uint64_t kGreyLevels = 256;
+  std::generate(picture.data, picture.data + picture.total() * picture.elemSize(),
+                [&random] { return static_cast<std::uint8_t>(random() % kGreyLevels); });
   return picture;
 }
 

@@ -2,6 +2,7 @@
 // The camera as the other processes know it: rendered, bent, blurred, noisy, compressed.
 #pragma once
 
+#include "common/random/random.hpp"
 #include "common/time/time.hpp"
 #include "sim/core/camera/image_noise.hpp"
 #include "sim/core/camera/lens.hpp"
@@ -18,11 +19,24 @@ enum class ImageColour { kGrey, kColour };
 struct CameraNoiseConfig {
   double sigma_grey_levels{3.0};
   double blur_sigma_px{0.0};
+  double exposure_s{0.0};
   ImageColour colour{ImageColour::kGrey};
   int jpeg_quality{85};
 
   void describe(Fields& fields);
 };
+
+/// How the camera differs from what the robot has been told of it.
+struct CameraErrorConfig {
+  double focal_share{0.0};
+  double yaw_deg{0.0};
+  double pitch_deg{0.0};
+
+  void describe(Fields& fields);
+};
+
+/// The camera that takes the pictures, given the one that the robot believes in.
+CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors);
 
 /// One compressed frame.
 struct CameraFrame {
@@ -45,7 +59,11 @@ class Camera {
   const CameraConfig& config() const { return camera_; }
 
   /// Lens, blur and noise on a rendered RGB picture: 8 bit, one channel or three (BGR).
-  cv::Mat expose(const cv::Mat& rendered, std::uint64_t frame) const;
+  /// @param light  factor of the brightness, before the noise.
+  cv::Mat expose(const cv::Mat& rendered, std::uint64_t frame, double light = 1.0) const;
+
+  /// A picture of nothing: every value is random.
+  cv::Mat garbage(Random& random) const;
 
   /// Compresses at the configured quality, or at the best lower one that fits kMaxJpegBytes.
   CameraFrame compress(const cv::Mat& picture, Timestamp time) const;

@@ -14,7 +14,8 @@ constexpr double kHeadingGain_per_m = 4.0;
 constexpr double kAligned_rad = 0.002;           // a turn on the spot ends here
 constexpr double kTurnAcceleration_per_m = 5.0;  // of the forward one: alike at the wheels
 constexpr double kArrived_m = 0.001;
-constexpr double kSlowestShare = 0.1;  // of the speed; creep to the point, do not creep for ever
+constexpr double kSlowestShare = 0.1;     // of the speed; creep to the point, do not creep for ever
+constexpr double kSteeringReserve = 0.8;  // share of the turn speed that an arc may take
 
 }  // namespace
 
@@ -40,41 +41,53 @@ void RouteConfig::describe(Fields& fields) {
   fields.field("speed_mps", speed_mps, {0.01, 2.0}, "the real robot tops out at 0.26");
   fields.field("acceleration_mps2", acceleration_mps2, {0.01, 10.0}, "speeding up, slowing down");
   fields.field("turn_speed_radps", turn_speed_radps, {0.01, 2.0}, "greatest turn rate");
+  fields.field("corner_radius_m", corner_radius_m, {0.0, 100.0},
+               "of the arcs around corners; 0 = stop and turn on the spot");
   fields.field("settle_s", settle_s, {0.0, 60.0}, "time that the robot stands at the end");
   fields.field("duration_s", duration_s, {0.0, 86400.0},
                "with source = command: length of the run; else 0 or the time limit of the route");
   fields.field("command_delay_ticks", command_delay_ticks, {1, 1000},
                "a DRIVE_COMMAND acts this many ticks after its time; more than run.window_ticks");
+  fields.field("laps", laps, {1, 1000}, "how often the waypoints are visited, all in turn");
   fields.list("waypoints", waypoints, "points to visit in turn instead of end_x_m");
 }
 
 std::vector<Eigen::Vector2d> RouteConfig::points() const {
   if (waypoints.empty()) return {{end_x_m, start_y_m}};
   std::vector<Eigen::Vector2d> points_m;
-  for (const Waypoint& waypoint : waypoints)
-    points_m.emplace_back(waypoint.x_m, waypoint.y_m);
+  for (int lap = 0; lap < laps; ++lap)
+    for (const Waypoint& waypoint : waypoints)
+      points_m.emplace_back(waypoint.x_m, waypoint.y_m);
   return points_m;
 }
 
+std::vector<Eigen::Vector2d> RouteConfig::corners() const {
+  std::vector<Eigen::Vector2d> corners_m = points();
+  corners_m.insert(corners_m.begin(), Eigen::Vector2d{start_x_m, start_y_m});
+  return corners_m;
+}
+
 RouteFollower::RouteFollower(const RouteConfig& config, double period_s)
-    : config_{config},
-      period_s_{period_s},
-      points_m_{config.points()},
-      leg_start_m_{config.start_x_m, config.start_y_m} {
-  Eigen::Vector2d previous_m = leg_start_m_;
-  for (const Eigen::Vector2d& point_m : points_m_) {
-    route_length_m_ += (point_m - previous_m).norm();
-    previous_m = point_m;
-  }
+    : config_{config}, period_s_{period_s} {
+  path_ = path_through(config.corners(), config.corner_radius_m);
+  for (const PathPiece& piece : path_)
+    route_length_m_ += piece.length_m;
 }
 
 Velocity RouteFollower::next(const Se2& world_from_base) {
-  if (arrived()) return {};
-  const Eigen::Vector2d leg_m = points_m_[target_] - leg_start_m_;
-  const double heading_error_rad =
-      angle_difference(world_from_base.theta(), std::atan2(leg_m.y(), leg_m.x()));
-  if (std::abs(heading_error_rad) <= kAligned_rad) turning_ = false;
-  return turning_ ? turn(heading_error_rad) : drive(world_from_base);
+  while (!arrived()) {
+    const PathPiece& piece = path_[target_];
+    const PathPlace place = locate(piece, world_from_base);
+    if (std::abs(place.heading_error_rad) <= kAligned_rad) turning_ = false;
+    if (turning_) return turn(place.heading_error_rad);
+    progress_m_ = finished_pieces_m_ + std::clamp(place.along_m, 0.0, piece.length_m);
+    const double to_go_m = piece.length_m - place.along_m;
+    if (to_go_m > (piece.is_smooth_end ? 0.0 : kArrived_m)) return drive(place);
+    const bool stops = !piece.is_smooth_end;
+    begin_next_piece();
+    if (stops) return {};
+  }
+  return {};
 }
 
 Velocity RouteFollower::turn(double heading_error_rad) {
@@ -86,31 +99,44 @@ Velocity RouteFollower::turn(double heading_error_rad) {
   return {0.0, std::copysign(turn_speed_radps_, -heading_error_rad)};
 }
 
-Velocity RouteFollower::drive(const Se2& world_from_base) {
-  turn_speed_radps_ = 0.0;
-  const Eigen::Vector2d leg_m = points_m_[target_] - leg_start_m_;
-  const Se2 world_from_leg{leg_start_m_, std::atan2(leg_m.y(), leg_m.x())};
-  const Se2 leg_from_base = world_from_leg.inverse() * world_from_base;
-  const double to_go_m = leg_m.norm() - leg_from_base.x();
-  progress_m_ = finished_legs_m_ + std::clamp(leg_from_base.x(), 0.0, leg_m.norm());
-  if (to_go_m <= kArrived_m) {
-    begin_next_leg();
-    return {};
-  }
-  const double braking_mps = std::sqrt(2.0 * config_.acceleration_mps2 * to_go_m);
-  const double wanted_mps =
-      std::clamp(braking_mps, kSlowestShare * config_.speed_mps, config_.speed_mps);
-  speed_mps_ = std::min(wanted_mps, speed_mps_ + config_.acceleration_mps2 * period_s_);
-  const double steer_radps = -speed_mps_ * (kOffsetGain_per_m2 * leg_from_base.y() +
-                                            kHeadingGain_per_m * leg_from_base.theta());
-  return {speed_mps_, std::clamp(steer_radps, -config_.turn_speed_radps, config_.turn_speed_radps)};
+double RouteFollower::greatest_speed_mps(const PathPiece& piece) const {
+  if (piece.curvature_per_m == 0.0) return config_.speed_mps;
+  return std::min(config_.speed_mps,
+                  kSteeringReserve * config_.turn_speed_radps / std::abs(piece.curvature_per_m));
 }
 
-void RouteFollower::begin_next_leg() {
-  finished_legs_m_ += (points_m_[target_] - leg_start_m_).norm();
-  leg_start_m_ = points_m_[target_];
+Velocity RouteFollower::drive(const PathPlace& place) {
+  turn_speed_radps_ = 0.0;
+  const PathPiece& piece = path_[target_];
+  const double exit_mps = piece.is_smooth_end ? greatest_speed_mps(path_[target_ + 1]) : 0.0;
+  const double to_go_m = piece.length_m - place.along_m;
+  const double braking_mps =
+      std::sqrt(exit_mps * exit_mps + 2.0 * config_.acceleration_mps2 * to_go_m);
+  const double greatest_mps = greatest_speed_mps(piece);
+  const double wanted_mps = std::clamp(braking_mps, kSlowestShare * greatest_mps, greatest_mps);
+  speed_mps_ = std::min(wanted_mps, speed_mps_ + config_.acceleration_mps2 * period_s_);
+  const double wanted_radps = speed_mps_ * piece.curvature_per_m -
+                              speed_mps_ * (kOffsetGain_per_m2 * place.offset_m +
+                                            kHeadingGain_per_m * place.heading_error_rad);
+  const double limited_radps =
+      std::clamp(wanted_radps, -config_.turn_speed_radps, config_.turn_speed_radps);
+  const double max_change_radps = kTurnAcceleration_per_m * config_.acceleration_mps2 * period_s_;
+  steer_radps_ =
+      std::clamp(limited_radps, steer_radps_ - max_change_radps, steer_radps_ + max_change_radps);
+  return {speed_mps_, steer_radps_};
+}
+
+void RouteFollower::begin_next_piece() {
+  finished_pieces_m_ += path_[target_].length_m;
+  const bool stops = !path_[target_].is_smooth_end;
   ++target_;
+  if (stops) begin_anew();
+}
+
+void RouteFollower::begin_anew() {
   speed_mps_ = 0.0;
+  turn_speed_radps_ = 0.0;
+  steer_radps_ = 0.0;
   turning_ = true;
 }
 

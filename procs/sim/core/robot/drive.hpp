@@ -6,6 +6,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/robot/robot_config.hpp"
 #include "common/time/time.hpp"
+#include "sim/core/robot/path.hpp"
 #include "sim/core/robot/physics.hpp"
 
 #include <map>
@@ -40,20 +41,25 @@ struct RouteConfig {
   double speed_mps{0.1};
   double acceleration_mps2{0.2};
   double turn_speed_radps{0.5};
+  double corner_radius_m{0.0};
   double settle_s{1.0};
   double duration_s{0.0};
   int command_delay_ticks{8};
+  int laps{1};
   std::vector<Waypoint> waypoints{};
 
   Se2 world_from_start() const { return {start_x_m, start_y_m, start_yaw_rad}; }
 
-  /// The points to visit after the start: the waypoints, or the end at end_x_m.
+  /// The points to visit after the start: the waypoints in every lap, or the end at end_x_m.
   std::vector<Eigen::Vector2d> points() const;
+  /// The same with the start before them.
+  std::vector<Eigen::Vector2d> corners() const;
   void describe(Fields& fields);
 };
 
-/// Follows straight lines from point to point: turns on the spot at each, keeps to the line, slows
-/// down before the end. Has a state; call once per control period.
+/// Follows the route: turns on the spot where it begins and at sharp corners, drives through
+/// rounded ones, keeps to the path, slows down before an end. Has a state; call once per control
+/// period.
 class RouteFollower {
  public:
   RouteFollower(const RouteConfig& config, double period_s);
@@ -61,8 +67,11 @@ class RouteFollower {
   /// What to do now, given where the robot truly is.
   Velocity next(const Se2& world_from_base);
 
+  /// The robot has been stopped or moved by others: speed up from standing, turn to the path first.
+  void begin_anew();
+
   /// At the last point, standing.
-  bool arrived() const { return target_ >= points_m_.size(); }
+  bool arrived() const { return target_ >= path_.size(); }
 
   double route_length_m() const { return route_length_m_; }
 
@@ -70,20 +79,21 @@ class RouteFollower {
   double progress_m() const { return progress_m_; }
 
  private:
-  Velocity drive(const Se2& world_from_base);
+  Velocity drive(const PathPlace& place);
   Velocity turn(double heading_error_rad);
-  void begin_next_leg();
+  double greatest_speed_mps(const PathPiece& piece) const;
+  void begin_next_piece();
 
   RouteConfig config_;
   double period_s_;
-  std::vector<Eigen::Vector2d> points_m_;
-  Eigen::Vector2d leg_start_m_;
+  std::vector<PathPiece> path_;
   std::size_t target_{0};
   bool turning_{true};
   double speed_mps_{0.0};
   double turn_speed_radps_{0.0};
+  double steer_radps_{0.0};
   double route_length_m_{0.0};
-  double finished_legs_m_{0.0};
+  double finished_pieces_m_{0.0};
   double progress_m_{0.0};
 };
 

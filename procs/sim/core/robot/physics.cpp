@@ -3,6 +3,7 @@
 
 #include "sim/core/world/mjcf.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -44,6 +45,7 @@ Physics::Physics(const std::string& mjcf)
   data_.reset(mj_makeData(model_.get()));
   const int base = mj_name2id(model_.get(), mjOBJ_BODY, mjcf_names::kBase);
   base_position_address_ = model_->jnt_qposadr[model_->body_jntadr[base]];
+  base_velocity_address_ = model_->jnt_dofadr[model_->body_jntadr[base]];
   left_ = find_wheel(mjcf_names::kLeftWheel);
   right_ = find_wheel(mjcf_names::kRightWheel);
   come_to_rest();
@@ -66,6 +68,41 @@ void Physics::step(const WheelPair& target_speed_per_s) {
   data_->ctrl[left_.actuator] = target_speed_per_s.left_rad;
   data_->ctrl[right_.actuator] = target_speed_per_s.right_rad;
   mj_step(model_.get(), data_.get());
+}
+
+void Physics::put_down(const Se2& world_from_there) {
+  // Height and tilt stay as they were: the robot has sunk in and stands.
+  const double turn_rad = angle_difference(world_from_there.theta(), world_from_base().theta());
+  double* position = data_->qpos + base_position_address_;
+  const Eigen::Quaterniond before{position[3], position[4], position[5], position[6]};
+  const Eigen::Quaterniond after =
+      Eigen::Quaterniond{Eigen::AngleAxisd{turn_rad, Eigen::Vector3d::UnitZ()}} * before;
+  position[0] = world_from_there.x();
+  position[1] = world_from_there.y();
+  position[3] = after.w();
+  position[4] = after.x();
+  position[5] = after.y();
+  position[6] = after.z();
+  std::fill_n(data_->qvel, model_->nv, 0.0);
+}
+
+void Physics::displace(const std::string& body, const Eigen::Vector3d& by_m) {
+  const int number = mj_name2id(model_.get(), mjOBJ_BODY, body.c_str());
+  const int mocap = number < 0 ? -1 : model_->body_mocapid[number];
+  if (mocap < 0) throw SimulatorError{"no body that can be displaced: " + body};
+  Eigen::Map<Eigen::Vector3d>{data_->mocap_pos + 3 * mocap} = by_m;
+  mj_kinematics(model_.get(), data_.get());  // rays and pictures see it at once
+}
+
+Eigen::Isometry3d Physics::world_from_base_3d_at(double later_s) const {
+  // A free joint's velocity: linear in the world, angular about the body's own axes.
+  const double* velocity = data_->qvel + base_velocity_address_;
+  const Eigen::Vector3d turned_rad = later_s * Eigen::Map<const Eigen::Vector3d>{velocity + 3};
+  Eigen::Isometry3d world_from_base = world_from_base_3d();
+  world_from_base.translation() += later_s * Eigen::Map<const Eigen::Vector3d>{velocity};
+  if (turned_rad.norm() > 0.0)
+    world_from_base.rotate(Eigen::AngleAxisd{turned_rad.norm(), turned_rad.normalized()});
+  return world_from_base;
 }
 
 Eigen::Isometry3d Physics::world_from_base_3d() const {

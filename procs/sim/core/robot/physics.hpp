@@ -34,10 +34,18 @@ class Physics {
   /// One time step; the wheels follow the target speeds [rad/s] as their motors can.
   void step(const WheelPair& target_speed_per_s);
 
+  /// Lifts the robot and puts it down elsewhere, standing; the wheels do not turn.
+  void put_down(const Se2& world_from_there);
+
+  /// Moves a body of its own (see mjcf.hpp) to so far from where the model has it.
+  void displace(const std::string& body, const Eigen::Vector3d& by_m);
+
   /// Planar pose of the base: position between the wheels, heading.
   Se2 world_from_base() const;
   /// The same with height and tilt.
   Eigen::Isometry3d world_from_base_3d() const;
+  /// The same a moment later or earlier, if the velocity stays as it is.
+  Eigen::Isometry3d world_from_base_3d_at(double later_s) const;
   /// Joint angles since construction; they grow beyond a turn.
   WheelPair wheel_angles() const;
 
@@ -69,6 +77,7 @@ class Physics {
   std::unique_ptr<mjModel, DeleteModel> model_;
   std::unique_ptr<mjData, DeleteData> data_;
   int base_position_address_{0};
+  int base_velocity_address_{0};
   Wheel left_{};
   Wheel right_{};
 };

@@ -11,5 +11,8 @@ inline constexpr std::uint64_t kOdometry = 2;
 inline constexpr std::uint64_t kLidar = 3;
 inline constexpr std::uint64_t kCameraTile = 4;
 inline constexpr std::uint64_t kCameraFrame = 5;
+inline constexpr std::uint64_t kMissingMarkers = 6;
+inline constexpr std::uint64_t kLostMeasurements = 7;
+inline constexpr std::uint64_t kGarbage = 8;
 
 }  // namespace waymark::random_streams

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace waymark {
@@ -56,6 +57,8 @@ std::string assets() {
     <material name="plate" texture="plate" texrepeat="1 1" specular="0" shininess="0" emission="0.2"/>
     <material name="side_wall" rgba="0.72 0.71 0.68 1" specular="0" shininess="0"/>
     <material name="end_wall" rgba="0.46 0.50 0.56 1" specular="0" shininess="0"/>
+    <material name="door" rgba="0.50 0.36 0.24 1" specular="0" shininess="0"/>
+    <material name="box" rgba="0.36 0.42 0.34 1" specular="0" shininess="0"/>
     <material name="floor" rgba="0.33 0.30 0.27 1" specular="0" shininess="0"/>
     <material name="ceiling" rgba="0.93 0.93 0.93 1" specular="0" shininess="0"/>
     <material name="robot" rgba="0.15 0.15 0.17 1"/>
@@ -63,18 +66,30 @@ std::string assets() {
 )";
 }
 
+const char* material_of(WallKind kind) {
+  switch (kind) {
+    case WallKind::kSide:
+      return "side_wall";
+    case WallKind::kEnd:
+      return "end_wall";
+    case WallKind::kDoor:
+      return "door";
+  }
+  return "";
+}
+
 std::string wall_geom(const Wall& wall) {
-  const Eigen::Vector2d along = (wall.to_m - wall.from_m).normalized();
-  const Eigen::Vector2d outward{along.y(), -along.x()};
-  const Eigen::Vector2d centre = 0.5 * (wall.from_m + wall.to_m) + 0.5 * wall.thickness_m * outward;
-  // Longer by the thickness at both ends, so that outer corners are closed.
-  const double half_length = 0.5 * (wall.to_m - wall.from_m).norm() + wall.thickness_m;
+  const Eigen::Vector2d along = wall.along();
+  const Eigen::Vector2d centre = 0.5 * (wall.from_m + wall.to_m) +
+                                 0.5 * wall.thickness_m * wall.outward() +
+                                 0.5 * (wall.beyond_to_m - wall.beyond_from_m) * along;
+  const double half_length = 0.5 * wall.length_m() + 0.5 * (wall.beyond_from_m + wall.beyond_to_m);
   return fmt::format(
       "    <geom type=\"box\" group=\"{}\" material=\"{}\" pos=\"{:.17g} {:.17g} {:.17g}\" "
       "size=\"{:.17g} {:.17g} {:.17g}\" xyaxes=\"{:.17g} {:.17g} 0 {:.17g} {:.17g} 0\"/>\n",
-      static_cast<int>(GeomGroup::kWalls), wall.kind == WallKind::kSide ? "side_wall" : "end_wall",
-      centre.x(), centre.y(), 0.5 * wall.height_m, half_length, 0.5 * wall.thickness_m,
-      0.5 * wall.height_m, along.x(), along.y(), -along.y(), along.x());
+      static_cast<int>(GeomGroup::kWalls), material_of(wall.kind), centre.x(), centre.y(),
+      0.5 * wall.height_m, half_length, 0.5 * wall.thickness_m, 0.5 * wall.height_m, along.x(),
+      along.y(), -along.y(), along.x());
 }
 
 /// A thin box whose +z face shows the texture, upright: x to the right as seen from the front.
@@ -91,20 +106,33 @@ std::string marker_geom(const MarkerPlate& marker, std::size_t index, double pla
       right.x(), right.y());
 }
 
+std::string box_geom(const BoxConfig& box, std::size_t index) {
+  return fmt::format(
+      "    <geom name=\"{}{}\" type=\"box\" group=\"{}\" material=\"box\" pos=\"{:.17g} {:.17g} "
+      "{:.17g}\" size=\"{:.17g} {:.17g} {:.17g}\" euler=\"0 0 {:.17g}\"/>\n",
+      mjcf_names::kBoxPrefix, index, static_cast<int>(GeomGroup::kWalls), box.x_m, box.y_m,
+      0.5 * box.height_m, 0.5 * box.length_m, 0.5 * box.width_m, 0.5 * box.height_m,
+      radians(box.yaw_deg));
+}
+
+std::string on_its_own_body(const std::string& name, const std::string& geom) {
+  return fmt::format("    <body name=\"{}\" mocap=\"true\">\n{}    </body>\n", body_of(name), geom);
+}
+
 /// Floor and ceiling under and over all walls, as far as they are seen; contacts do not end there.
 /// Drawn as one piece each: infinite planes are drawn in thousands, which costs 10 ms per frame.
 std::string floor_and_ceiling(const World& world) {
-  Eigen::AlignedBox2d outline;
+  Eigen::AlignedBox2d extent;
   for (const Wall& wall : world.walls)
-    outline.extend(wall.from_m).extend(wall.to_m);
-  const Eigen::Vector2d half = 0.5 * outline.sizes();
-  const double piece_m = outline.sizes().maxCoeff();
+    extent.extend(wall.from_m).extend(wall.to_m);
+  const Eigen::Vector2d half = 0.5 * extent.sizes();
+  const double piece_m = extent.sizes().maxCoeff();
   const auto plane = [&](const char* material, double z_m, const char* more) {
     return fmt::format(
         "    <geom type=\"plane\" group=\"{}\" material=\"{}\" size=\"{:.17g} {:.17g} {:.17g}\" "
         "pos=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
         static_cast<int>(GeomGroup::kFloor), material, half.x(), half.y(), piece_m,
-        outline.center().x(), outline.center().y(), z_m, more);
+        extent.center().x(), extent.center().y(), z_m, more);
   };
   return plane("floor", 0.0, "") +
          plane("ceiling", world.ceiling_height_m,
@@ -118,8 +146,17 @@ std::string world_geoms(const World& world, const MjcfOptions& options) {
       floor_and_ceiling(world);
   for (const Wall& wall : world.walls)
     text += wall_geom(wall);
-  for (std::size_t i = 0; i < world.markers.size(); ++i)
-    text += marker_geom(world.markers[i], i, options.plate_size_m);
+  for (std::size_t i = 0; i < world.markers.size(); ++i) {
+    const std::string geom = marker_geom(world.markers[i], i, options.plate_size_m);
+    const bool moves = std::any_of(world.moves.begin(), world.moves.end(),
+                                   [i](const MarkerMove& move) { return move.marker == i; });
+    text += moves ? on_its_own_body(mjcf_names::kMarkerPrefix + std::to_string(i), geom) : geom;
+  }
+  for (std::size_t i = 0; i < world.boxes.size(); ++i) {
+    const std::string geom = box_geom(world.boxes[i], i);
+    const bool stays = world.boxes[i].present.is_always();
+    text += stays ? geom : on_its_own_body(mjcf_names::kBoxPrefix + std::to_string(i), geom);
+  }
   return text;
 }
 
@@ -171,6 +208,10 @@ std::string wheel_servo(const char* joint) {
 }
 
 }  // namespace
+
+std::string body_of(const std::string& geom) {
+  return geom + "_body";
+}
 
 std::string to_mjcf(const World& world, const RobotConfig& robot, const MjcfOptions& options) {
   return header(options) + assets() + "  <worldbody>\n" + world_geoms(world, options) +

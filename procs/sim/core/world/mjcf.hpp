@@ -24,6 +24,7 @@ inline constexpr const char* kBase = "base";
 inline constexpr const char* kLeftWheel = "left_wheel";
 inline constexpr const char* kRightWheel = "right_wheel";
 inline constexpr const char* kMarkerPrefix = "marker_";  ///< + index into World::markers
+inline constexpr const char* kBoxPrefix = "box_";        ///< + index into World::boxes
 }  // namespace mjcf_names
 
 struct MjcfOptions {
@@ -33,6 +34,11 @@ struct MjcfOptions {
   int picture_height_px{480};
   Se2 world_from_start{};  ///< where the base begins
 };
+
+/// Name of the body that carries a marker or box, given the name of its geom. Only what moves or
+/// comes and goes has a body of its own (a mocap body at the origin); the rest belongs to the
+/// world.
+std::string body_of(const std::string& geom);
 
 /// The model of a TurtleBot3 Waffle Pi (masses and sizes: turtlebot3_description) in the world.
 /// The base frame lies on the floor between the wheels.

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/world/world.hpp"
 
+#include "common/random/random.hpp"
+#include "sim/core/sensors/random_streams.hpp"
+
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 
 namespace waymark {
 namespace {
 
-enum class Side { kLeft, kRight };
-
 struct Place {
-  double station_m{0.0};
+  Eigen::Vector2d centre_m{0.0, 0.0};
+  double yaw_rad{0.0};
+  int station{0};  ///< of its corridor
   Side side{Side::kLeft};
 };
 
@@ -25,92 +30,107 @@ std::vector<double> stations(const MarkerLayoutConfig& markers) {
   return stations_m;
 }
 
-std::vector<Place> places(const MarkerLayoutConfig& markers) {
+/// Where the right wall's marker of a station hangs, if it has one.
+std::optional<double> right_station(const MarkerLayoutConfig& markers, double station_m) {
+  if (markers.layout == MarkerLayout::kOpposite) return station_m;
+  const double between_m = station_m + 0.5 * markers.spacing_m;
+  return between_m <= markers.last_m ? std::optional{between_m} : std::nullopt;
+}
+
+Place place_on(const Corridor& corridor, double width_m, Side side, double station_m) {
+  const double left = side == Side::kLeft ? 1.0 : -1.0;
+  const double y_m = left * (0.5 * width_m - kPlateThickness_m);
+  const double yaw_rad = -left * 0.5 * std::numbers::pi;
+  const Eigen::Vector2d in_corridor_m{station_m, y_m};
+  return {corridor.world_from_corridor * in_corridor_m,
+          wrap_angle(corridor.world_from_corridor.theta() + yaw_rad), 0, side};
+}
+
+std::vector<Place> places(const WorldConfig& world, const MarkerLayoutConfig& markers,
+                          double plate_size_m) {
   std::vector<Place> found;
-  switch (markers.layout) {
-    case MarkerLayout::kNone:
-      break;
-    case MarkerLayout::kOpposite:
-      for (const double station_m : stations(markers)) {
-        found.push_back({station_m, Side::kLeft});
-        found.push_back({station_m, Side::kRight});
+  if (markers.layout == MarkerLayout::kNone) return found;
+  const std::vector<Wall> walls = outline(world);
+  const auto add = [&](const Place& place) {
+    if (hangs_on_a_wall(walls, place.centre_m, plate_size_m)) found.push_back(place);
+  };
+  for (const Corridor& corridor : corridors(world)) {
+    int index = 0;
+    for (const double station_m : stations(markers)) {
+      Place left = place_on(corridor, world.width_m, Side::kLeft, station_m);
+      left.station = index;
+      add(left);
+      if (const std::optional<double> right_m = right_station(markers, station_m)) {
+        Place right = place_on(corridor, world.width_m, Side::kRight, *right_m);
+        right.station = index;
+        add(right);
       }
-      break;
-    case MarkerLayout::kStaggered:
-      for (const double station_m : stations(markers)) {
-        found.push_back({station_m, Side::kLeft});
-        const double between_m = station_m + 0.5 * markers.spacing_m;
-        if (between_m <= markers.last_m) found.push_back({between_m, Side::kRight});
-      }
-      break;
+      ++index;
+    }
   }
   return found;
 }
 
+bool is_kept(const MarkerLayoutConfig& markers, const Place& place, std::size_t number,
+             std::int64_t seed) {
+  const int shift = place.side == Side::kRight ? markers.keep_every / 2 : 0;
+  if ((place.station + shift) % markers.keep_every != 0) return false;
+  if (std::count(markers.missing.begin(), markers.missing.end(), static_cast<int>(number)) > 0)
+    return false;
+  Random random{static_cast<std::uint64_t>(seed), random_streams::kMissingMarkers, number};
+  return random.uniform() >= markers.missing_share;
+}
+
 }  // namespace
 
-void WorldConfig::describe(Fields& fields) {
-  fields.field("length_m", length_m, {0.1, 1000.0}, "corridor length between the end walls");
-  fields.field("width_m", width_m, {0.1, 100.0}, "corridor width between the side walls");
-  fields.field("wall_height_m", wall_height_m, {0.3, 20.0}, "height of walls and ceiling");
-  fields.field("wall_thickness_m", wall_thickness_m, {0.01, 10.0}, "thickness of every wall");
+bool hangs_on_a_wall(const std::vector<Wall>& walls, const Eigen::Vector2d& centre_m,
+                     double plate_size_m) {
+  constexpr double kRoundingSlack_m = 1e-9;
+  const double half_m = 0.5 * plate_size_m - kRoundingSlack_m;
+  return std::any_of(walls.begin(), walls.end(), [&](const Wall& wall) {
+    const Eigen::Vector2d offset_m = centre_m - wall.from_m;
+    const double along_m = wall.along().dot(offset_m);
+    const double in_front_m = -wall.outward().dot(offset_m);
+    return std::abs(in_front_m - kPlateThickness_m) < kRoundingSlack_m && along_m >= half_m &&
+           along_m <= wall.length_m() - half_m;
+  });
 }
 
-void MarkerLayoutConfig::describe(Fields& fields) {
-  fields.choice("layout", layout,
-                {{"opposite", MarkerLayout::kOpposite},
-                 {"staggered", MarkerLayout::kStaggered},
-                 {"none", MarkerLayout::kNone}},
-                "pairs facing each other, or the right wall's shifted by half the spacing");
-  fields.field("first_m", first_m, kNotNegative, "x of the first station");
-  fields.field("spacing_m", spacing_m, {0.1, 1000.0}, "from station to station");
-  fields.field("last_m", last_m, kNotNegative, "no marker beyond this x");
-  fields.field("centre_height_m", centre_height_m, kPositive, "centre of the black square");
-  fields.field("quiet_zone_modules", quiet_zone_modules, {0.0, 10.0},
-               "white border around the black square, in marker modules");
-  fields.field("blank", blank, "plain white plates: the same world without information");
-  fields.field("first_id", first_id, {0, 100000}, "id of the first marker, the next have the next");
-  fields.field("ids", ids, {0, 100000},
-               "id of every marker by station, left wall before right wall; [] = from first_id on");
+std::size_t place_count(const WorldConfig& world, const MarkerLayoutConfig& markers,
+                        double plate_size_m) {
+  return places(world, markers, plate_size_m).size();
 }
 
-std::size_t marker_count(const MarkerLayoutConfig& markers) {
-  return places(markers).size();
-}
-
-std::vector<int> marker_ids(const MarkerLayoutConfig& markers) {
+std::vector<int> marker_ids(const MarkerLayoutConfig& markers, std::size_t num_places) {
+  if (markers.ids.size() == 1) return std::vector<int>(num_places, markers.ids.front());
   if (!markers.ids.empty()) return markers.ids;
-  std::vector<int> ids(marker_count(markers));
+  std::vector<int> ids(num_places);
   for (std::size_t i = 0; i < ids.size(); ++i)
     ids[i] = markers.first_id + static_cast<int>(i);
   return ids;
 }
 
-World straight_corridor(const WorldConfig& world, const MarkerLayoutConfig& markers) {
-  const double length = world.length_m;
-  const double half_width = 0.5 * world.width_m;
-  const auto wall = [&world](WallKind kind, Eigen::Vector2d from_m, Eigen::Vector2d to_m) {
-    return Wall{kind, from_m, to_m, world.wall_height_m, world.wall_thickness_m};
-  };
-
+World build_world(const WorldConfig& world, const MarkerLayoutConfig& markers, double plate_size_m,
+                  std::int64_t seed) {
   World built;
   built.ceiling_height_m = world.wall_height_m;
-  built.walls = {wall(WallKind::kSide, {0.0, -half_width}, {length, -half_width}),
-                 wall(WallKind::kEnd, {length, -half_width}, {length, half_width}),
-                 wall(WallKind::kSide, {length, half_width}, {0.0, half_width}),
-                 wall(WallKind::kEnd, {0.0, half_width}, {0.0, -half_width})};
+  built.walls = outline(world);
+  built.boxes = world.boxes;
 
-  const std::vector<Place> all_places = places(markers);
-  const std::vector<int> ids = marker_ids(markers);
+  const std::vector<Place> all_places = places(world, markers, plate_size_m);
+  const std::vector<int> ids = marker_ids(markers, all_places.size());
   std::map<int, int> instances;
   for (std::size_t i = 0; i < all_places.size(); ++i) {
-    const bool left = all_places[i].side == Side::kLeft;
-    const double y_m = (left ? 1.0 : -1.0) * (half_width - kPlateThickness_m);
-    const double yaw_rad = (left ? -0.5 : 0.5) * std::numbers::pi;
+    const Place& place = all_places[i];
+    if (!is_kept(markers, place, i, seed)) continue;
+    for (const MarkerMoveConfig& move : markers.moved) {
+      if (move.place == static_cast<int>(i))
+        built.moves.push_back({built.markers.size(), move.when, {move.dx_m, move.dy_m}});
+    }
     built.markers.push_back({ids.at(i),
                              instances[ids.at(i)]++,
-                             {all_places[i].station_m, y_m, markers.centre_height_m},
-                             yaw_rad});
+                             {place.centre_m.x(), place.centre_m.y(), markers.centre_height_m},
+                             place.yaw_rad});
   }
   return built;
 }

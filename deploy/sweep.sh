@@ -1,0 +1,210 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Many seeds of many scenarios through many estimators, on all cores, and one table of what came out.
+#
+# usage: deploy/sweep.sh SCENARIO... --out DIR [options]
+#   --seeds LIST        e.g. 1-20 or 1,3,7-9 (default: 1-20)
+#   --estimators LIST   rows of the table, NAME or NAME=ESTIMATOR:KEY=VALUE:..., separated by commas
+#                       (default: odometry,waymark); e.g. no_ids=waymark:slam.blank_ids=true
+#   --variants FILE     faults that are put into each recorded log, a row for each (waymark-faults --help)
+#   --out DIR           where everything goes; the same command again goes on where it stopped
+#   --jobs N            jobs at the same time (default: one per core)
+#   --sshlogin LIST     machines, as GNU parallel takes them; DIR and this folder must be shared with them
+#   --keep-images       record the camera's images, too (20 times the disk)
+#   --plan-only         state the cost, write the plan, and stop (deploy/sweep.slurm runs it on a cluster)
+#
+# A job records the log of one scenario and seed, live and in lockstep, replays every estimator on it and
+# evaluates. A run that fails is a failure in the table and stops nobody; a full disk stops the sweep.
+# Results: DIR/results.md, results.csv, runs.csv, index.html (the worst map of every row), plots/.
+# shellcheck source=deploy/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+# Measured on two cores of a server, 30 particles, 360 beams; for the estimate only.
+readonly kSimSpeed=4       # times real time: simulator, camera pictures, detector, recorder
+readonly kReplaySpeed=40   # times real time: one estimator, viewer and evaluation
+readonly kLog_MB_per_s=0.04 kImages_MB_per_s=0.4 kRow_MB=3
+
+parse_arguments() {
+  scenarios=() seeds=1-20 estimators=odometry,waymark variants='' out='' jobs=$(nproc) images=0
+  plan_only='' parallel_options=()
+  while (($# > 0)); do
+    case $1 in
+      --help | -h) print_usage && exit 0 ;;
+      --keep-images) images=1 && shift && continue ;;
+      --plan-only) plan_only=1 && shift && continue ;;
+      --seeds | --estimators | --variants | --out | --jobs | --sshlogin) need_value "$@" ;;&
+      --seeds) seeds=$2 ;;
+      --estimators) estimators=$2 ;;
+      --variants) need_file "$2" && variants=$2 ;;
+      --out) out=$2 ;;
+      --jobs) need_number "$1" "$2" && jobs=$2 ;;
+      --sshlogin) parallel_options+=(--sshlogin "$2") ;;
+      -*) usage_error "unknown option '$1'" ;;
+      *) scenarios+=("$1") && shift && continue ;;
+    esac
+    shift 2
+  done
+  ((${#scenarios[@]} > 0)) || usage_error "no scenario given"
+  [[ -n $out ]] || usage_error "--out is missing"
+  expand_seeds
+}
+
+# expand_seeds: sets seed_list.
+expand_seeds() {
+  seed_list=()
+  local part
+  for part in ${seeds//,/ }; do
+    [[ $part =~ ^([0-9]+)(-([0-9]+))?$ ]] || usage_error "--seeds needs a list like 1-20 or 1,3,7-9, not '$seeds'"
+    mapfile -t -O ${#seed_list[@]} seed_list < <(seq "${BASH_REMATCH[1]}" "${BASH_REMATCH[3]:-${BASH_REMATCH[1]}}")
+  done
+  ((${#seed_list[@]} > 0)) || usage_error "no seed in --seeds '$seeds'"
+}
+
+# write_plan: DIR/plan holds all that a job needs, so that it can be done alone and anywhere.
+#   scenarios/NAME.toml, variants.toml   copies
+#   rows        NAME ESTIMATOR KEY=VALUE... per line
+#   variants    names, one per line
+#   jobs        SCENARIO SEED per line
+#   runs.tsv    scenario, seed, folder, row, command that does it again: for waymark-evaluate sweep
+write_plan() {
+  local file name row
+  plan=$out/plan
+  mkdir -p "$plan/scenarios"
+  rm -f "$plan"/scenarios/*.toml "$plan"/{rows,variants,variants.toml,jobs,jobs.tmp,runs.tsv}
+  for file in "${scenarios[@]}"; do
+    need_file "$file"
+    name=$(basename "${file%.toml}")
+    [[ $name =~ ^[A-Za-z0-9_.-]+$ ]] || die $kExitUsage "'$name': names of scenarios are letters, digits, _ . -"
+    [[ ! -e $plan/scenarios/$name.toml ]] || die $kExitUsage "two scenarios are called '$name'"
+    "$bin_dir/waymark-sim" --config "$file" --dump-config >"$plan/effective.toml" || exit $?
+    cost_of_scenario "$plan/effective.toml"
+    cp "$file" "$plan/scenarios/$name.toml"
+    for seed in "${seed_list[@]}"; do echo "$name $seed" >>"$plan/jobs.tmp"; done
+  done
+  rm -f "$plan/effective.toml"
+  for row in ${estimators//,/ }; do
+    name=${row%%=*} row=${row#*=}
+    [[ $name =~ ^[A-Za-z0-9_-]+$ ]] || die $kExitUsage "'$name': names of rows are letters, digits, _ -"
+    echo "$name ${row//:/ }" >>"$plan/rows"
+  done
+  check_rows
+  : >"$plan/variants"
+  if [[ -n $variants ]]; then
+    need_programs waymark-faults
+    "$bin_dir/waymark-faults" --variants "$variants" --list >"$plan/variants" || exit $?
+    cp "$variants" "$plan/variants.toml"
+  fi
+  echo "$images" >"$plan/images"
+  write_runs
+  mv "$plan/jobs.tmp" "$plan/jobs"  # last: a plan with jobs is whole
+}
+
+# check_rows: wrong estimators and settings are found now, not after an hour.
+check_rows() {
+  local name estimator settings setting options
+  while read -r name estimator settings; do
+    options=(--set "slam.estimator=$estimator")
+    for setting in $settings; do options+=(--set "$setting"); done
+    "$bin_dir/waymark-slam" "${options[@]}" --dump-config >/dev/null || exit $?
+  done <"$plan/rows"
+}
+
+write_runs() {
+  local name seed variant row rest again
+  for name in $(cut -d ' ' -f 1 "$plan/jobs.tmp" | uniq); do
+    for variant in '' $(cat "$plan/variants"); do
+      while read -r row rest; do
+        for seed in "${seed_list[@]}"; do
+          again="$deploy_dir/sweep_job.sh $out $name $seed --again"
+          printf '%s\t%s\t%s\t%s\t%s\n' "$name${variant:+"+$variant"}" "$seed" \
+            "$name${variant:+"+$variant"}/seed-$seed" "$row" "$again"
+        done
+      done <"$plan/rows"
+    done
+  done >"$plan/runs.tsv"
+}
+
+simulated_s=0
+
+# cost_of_scenario FILE: adds the scenario's simulated time, from its route: length over speed.
+cost_of_scenario() {
+  local s
+  s=$(awk '
+    /^\[/ { inside = /route/ }
+    inside && $2 == "=" { v[$1] = $3; if ($1 == "x_m") x[++n] = $3; if ($1 == "y_m") y[n] = $3 }
+    END {
+      px = v["start_x_m"]; py = v["start_y_m"]
+      if (!n) { n = 1; x[1] = v["end_x_m"]; y[1] = py }
+      for (i = 1; i <= n; ++i) { d += sqrt((x[i] - px) ^ 2 + (y[i] - py) ^ 2); px = x[i]; py = y[i] }
+      speed = v["speed_mps"] > 0 ? v["speed_mps"] : 0.1
+      print int(v["duration_s"] > 0 ? v["duration_s"] : d / speed) }' "$1")
+  simulated_s=$((simulated_s + s))
+}
+
+# state_cost: before anything runs. Refuses what cannot fit on the disk.
+state_cost() {
+  local num_seeds=${#seed_list[@]} num_rows num_replays hours disk_MB free_MB
+  num_rows=$(wc -l <"$plan/rows")
+  num_replays=$((num_rows * (1 + $(wc -l <"$plan/variants"))))
+  local sums
+  sums=$(awk -v s=$simulated_s -v seeds="$num_seeds" -v replays=$num_replays -v jobs="$jobs" -v images="$images" \
+    -v sim=$kSimSpeed -v replay=$kReplaySpeed -v log_=$kLog_MB_per_s -v img=$kImages_MB_per_s -v row=$kRow_MB \
+    -v scenarios=${#scenarios[@]} 'BEGIN {
+      printf "%.1f %d", s * seeds * (1 / sim + replays / replay) / jobs / 3600,
+        s * seeds * (log_ + images * img) + row * replays * seeds * scenarios + 1 }')
+  read -r hours disk_MB <<<"$sums"
+  free_MB=$(df --output=avail -BM "$out" | tr -dc 0-9)
+  say "${#scenarios[@]} scenarios x $num_seeds seeds = $(wc -l <"$plan/jobs") logs, $(wc -l <"$plan/runs.tsv") runs of an estimator"
+  say "about $hours hours with $jobs at a time, $disk_MB MB of $free_MB MB of disk (what is done already is not done again)"
+  ((disk_MB + $(min_free_MB) < free_MB)) ||
+    die $kExitUsage "not enough disk: $disk_MB MB are needed in $out, $free_MB MB are free"
+}
+
+# run_jobs: 0 = all jobs have been done, well or not.
+run_jobs() {
+  local show=() name seed finished=0
+  while read -r name seed; do
+    [[ ! -e $out/$name/seed-$seed/finished ]] || finished=$((finished + 1))
+  done <"$plan/jobs"
+  echo "$EPOCHSECONDS $finished" >"$plan/start"
+  [[ ! -t 2 ]] || show=(--bar)
+  # In the background, so that a signal is heeded at once; with SIGINT as usual all the same.
+  env --default-signal=INT parallel --will-cite --jobs "$jobs" --line-buffer --colsep ' ' \
+    --halt soon,fail=1 --workdir "$out" "${show[@]}" "${parallel_options[@]}" \
+    "$(printf '%q ' "$deploy_dir/sweep_job.sh" "$out")" '{1} {2} --count' :::: "$plan/jobs" </dev/null &
+  parallel_pid=$!
+  wait $parallel_pid
+}
+
+# on_signal NAME NUMBER
+on_signal() {
+  trap '' INT TERM HUP
+  say "stopped by SIG$1; the same command goes on from here"
+  [[ -z ${parallel_pid:-} ]] || kill -INT "$parallel_pid" 2>/dev/null || true
+  wait
+  exit $((128 + $2))
+}
+
+summarise() {
+  "$bin_dir/waymark-evaluate" sweep "$out" || die $? "no table"
+  ! command -v gnuplot >/dev/null || (cd "$out/plots" && gnuplot plots.gp >plots.log 2>&1) || say "no plots; see $out/plots"
+  say "table: $out/results.md, $out/results.csv; worst maps: $out/index.html"
+}
+
+parse_arguments "$@"
+need_programs waymark-{sim,detector,slam,viewer,recorder,evaluate}
+command -v parallel >/dev/null || die $kExitUsage "GNU parallel is missing; install it with $deploy_dir/install-deps.sh"
+out=$(make_folder "$out")
+exec {sweep_lock}<"$out"
+flock --nonblock "$sweep_lock" || die $kExitUsage "another sweep is writing to '$out'"
+write_plan
+state_cost
+[[ -z $plan_only ]] || exit 0
+trap 'on_signal INT 2' INT
+trap 'on_signal TERM 15' TERM
+trap 'on_signal HUP 1' HUP
+code=0
+run_jobs || code=$kExitFailed
+((code == 0)) || say "stopped before the end (see above); the same command goes on from here"
+summarise
+((code == 0)) || exit $code

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A route as lines and arcs.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace waymark {
+
+/// A straight line, or with a curvature an arc (positive: to the left).
+struct PathPiece {
+  Se2 world_from_start{};
+  double length_m{0.0};
+  double curvature_per_m{0.0};
+  bool is_smooth_end{false};  ///< the next piece goes on in the same direction
+
+  /// The pose on the path so far along it, heading along it.
+  Se2 world_from(double along_m) const;
+};
+
+/// Where a robot is as seen from a piece of path.
+struct PathPlace {
+  double along_m{0.0};
+  double offset_m{0.0};  ///< to the left of the path
+  double heading_error_rad{0.0};
+};
+
+PathPlace locate(const PathPiece& piece, const Se2& world_from_base);
+
+/// Lines from point to point; with a radius above 0 the corners are rounded as far as the adjoining
+/// lines have room. Points where the path turns back stay corners.
+std::vector<PathPiece> path_through(const std::vector<Eigen::Vector2d>& points_m,
+                                    double corner_radius_m);
+
+}  // namespace waymark

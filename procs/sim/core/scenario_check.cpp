@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What must hold across the fields of a scenario.
+#include "sim/core/robot/path.hpp"
+#include "sim/core/scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace waymark {
+namespace {
+
+constexpr double kRoundingSlack_m = 1e-9;
+// Half of the Waffle Pi's length and width with some air: closest approach of the base to a wall.
+constexpr double kBodyBehind_m = 0.20;
+constexpr double kBodyBeside_m = 0.16;
+constexpr double kRobotLength_m = 0.30;
+constexpr double kRouteSample_m = 0.05;
+
+bool is_whole(double value) {
+  return std::abs(value - std::round(value)) < 1e-9 * std::max(1.0, std::abs(value)) &&
+         std::round(value) >= 1.0;
+}
+
+/// Distance from a point to a box; 0 inside.
+double distance_m(const BoxConfig& box, const Eigen::Vector2d& point_m) {
+  const Se2 world_from_box{box.x_m, box.y_m, radians(box.yaw_deg)};
+  const Eigen::Vector2d in_box_m = world_from_box.inverse() * point_m;
+  const Eigen::Vector2d beyond_m =
+      (in_box_m.cwiseAbs() - 0.5 * Eigen::Vector2d{box.length_m, box.width_m}).cwiseMax(0.0);
+  return beyond_m.norm();
+}
+
+/// Is there room for the robot: so much to every wall and box, whenever the box is there? Empty if
+/// so.
+std::string what_is_too_close(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
+                              const Eigen::Vector2d& point_m, double needed_m) {
+  const double to_wall_m = clearance_m(walls, point_m);
+  double nearest_m = to_wall_m;
+  for (const BoxConfig& box : boxes)
+    nearest_m = std::min(nearest_m, distance_m(box, point_m));
+  if (nearest_m >= needed_m - kRoundingSlack_m) return {};
+  const std::string place = to_wall_m < 0.0 ? "outside of the walls"
+                                            : fmt::format("{:.2f} m from a wall or box", nearest_m);
+  return fmt::format("({:.2f}, {:.2f}) is {}, expected {:.2f} m of room on all sides", point_m.x(),
+                     point_m.y(), place, needed_m);
+}
+
+void check_fault(const FaultConfig& fault, const std::string& key, Problems& problems) {
+  const auto demand = [&](FaultKind kind, bool is_good, const char* expected) {
+    if (fault.kind == kind && !is_good) problems.add(key, expected);
+  };
+  const bool is_of_one_wheel = fault.sensor == Sensor::kOdometry && fault.kind == FaultKind::kWrong;
+  if (fault.during.is_empty()) problems.add(key, "it ends before it begins");
+  demand(FaultKind::kWrong, fault.share != 0.0, "wrong by a share of 0 is right; set share");
+  demand(FaultKind::kIntermittent, fault.share > 0.0 && fault.share <= 1.0,
+         "expected a share above 0 and up to 1");
+  demand(FaultKind::kDelayed, fault.delay_s > 0.0, "expected a delay_s above 0");
+  if (fault.wheel != Wheel::kBoth && !is_of_one_wheel)
+    problems.add(key, "a wheel can only be named where the odometry is wrong");
+}
+
+}  // namespace
+
+void Scenario::check(Problems& problems) const {
+  robot.check(problems);
+  check_world(problems);
+  if (!problems.lines().empty()) return;  // nothing fits into a world that is too small
+  check_markers(problems);
+  if (problems.lines().empty()) check_places(problems);
+  check_route(problems);
+  check_faults(problems);
+  check_times(problems);
+}
+
+void Scenario::check_world(Problems& problems) const {
+  const double least_m = world.layout == Layout::kStraight ? kRobotLength_m
+                         : world.layout == Layout::kL      ? world.width_m + kRobotLength_m
+                                                           : 2.0 * world.width_m + kRobotLength_m;
+  const auto check_length = [&](const char* key, double length_m) {
+    if (length_m >= least_m) return;
+    problems.add(
+        key, fmt::format("got {}, expected more than the robot's length{}, {} m", length_m,
+                         world.layout == Layout::kStraight ? "" : " between the corners", least_m));
+  };
+  check_length("world.length_m", world.length_m);
+  if (world.layout != Layout::kStraight)
+    check_length("world.second_length_m", world.second_length_m);
+  if (world.width_m < 2.0 * kBodyBeside_m) {
+    problems.add("world.width_m", fmt::format("got {}, expected more than the robot's width, {} m",
+                                              world.width_m, 2.0 * kBodyBeside_m));
+  }
+  if (!problems.lines().empty()) return;
+  if (const std::optional<std::size_t> opening = opening_without_wall(world)) {
+    problems.add(fmt::format("world.openings[{}]", *opening),
+                 "expected a wall of its corridor, wide enough, that no other opening has cut");
+  } else if (walls_cross(outline(world))) {
+    problems.add("world.openings",
+                 "two of them are in the same place, or reach through a corridor");
+  }
+}
+
+void Scenario::check_markers(Problems& problems) const {
+  const std::optional<int> num_ids = dictionary_size(robot.markers.dictionary);
+  if (!num_ids) {
+    problems.add("robot.markers.dictionary",
+                 fmt::format("got '{}', expected a predefined dictionary of OpenCV, e.g. "
+                             "DICT_6X6_250",
+                             robot.markers.dictionary));
+    return;
+  }
+  if (markers.layout == MarkerLayout::kNone) return;
+  const double half_plate_m = 0.5 * plate_size_m(marker_print());
+  const bool ends_in_time = world.layout != Layout::kStraight ||
+                            markers.last_m <= world.length_m - half_plate_m + kRoundingSlack_m;
+  if (markers.first_m < half_plate_m - kRoundingSlack_m || markers.last_m < markers.first_m ||
+      !ends_in_time) {
+    problems.add("markers", fmt::format("first_m {} and last_m {} must lie in this order within "
+                                        "the walls, from {:.2f} to {:.2f} m",
+                                        markers.first_m, markers.last_m, half_plate_m,
+                                        world.length_m - half_plate_m));
+    return;
+  }
+  if (markers.spacing_m < 2.0 * half_plate_m - kRoundingSlack_m) {
+    problems.add("markers.spacing_m", fmt::format("got {}, expected at least the size of a plate, "
+                                                  "{:.2f} m",
+                                                  markers.spacing_m, 2.0 * half_plate_m));
+  }
+  if (markers.centre_height_m < half_plate_m - kRoundingSlack_m ||
+      markers.centre_height_m > world.wall_height_m - half_plate_m + kRoundingSlack_m) {
+    problems.add("markers.centre_height_m",
+                 fmt::format("got {}, expected a plate of {:.2f} m to fit between floor and wall "
+                             "top, {} m",
+                             markers.centre_height_m, 2.0 * half_plate_m, world.wall_height_m));
+  }
+}
+
+void Scenario::check_places(Problems& problems) const {
+  const std::size_t num_places = place_count(world, markers, plate_size_m(marker_print()));
+  if (markers.ids.size() > 1 && markers.ids.size() != num_places) {
+    problems.add("markers.ids", fmt::format("got {} ids, expected one for each of the {} markers",
+                                            markers.ids.size(), num_places));
+    return;
+  }
+  const int num_ids = *dictionary_size(robot.markers.dictionary);
+  for (const int id : marker_ids(markers, num_places)) {
+    if (id < num_ids) continue;
+    problems.add(markers.ids.empty() ? "markers.first_id" : "markers.ids",
+                 fmt::format("marker id {} is not in {}, which has ids 0 to {}", id,
+                             robot.markers.dictionary, num_ids - 1));
+    return;
+  }
+  for (const int number : markers.missing) {
+    if (number < static_cast<int>(num_places)) continue;
+    problems.add("markers.missing", fmt::format("there is no place {}, the last one is {}", number,
+                                                static_cast<int>(num_places) - 1));
+  }
+  check_moves(problems);
+}
+
+void Scenario::check_moves(Problems& problems) const {
+  const double plate_m = plate_size_m(marker_print());
+  const World built = build_world(world, markers, plate_m, run.seed);
+  if (built.moves.size() != markers.moved.size()) {
+    problems.add("markers.moved", "one of the places has no marker that could be moved");
+    return;
+  }
+  std::vector<MarkerPlate> now = built.markers;
+  for (std::size_t i = 0; i < built.moves.size(); ++i) {
+    const MarkerMove& move = built.moves[i];
+    const std::string key = fmt::format("markers.moved[{}]", i);
+    now[move.marker].centre_m.head<2>() += move.by_m;
+    if (!hangs_on_a_wall(built.walls, now[move.marker].centre_m.head<2>(), plate_m))
+      problems.add(key, "the marker would not hang on its wall any more");
+    if (!move.when.is_set()) problems.add(key, "expected an at_s or at_m above 0");
+  }
+}
+
+void Scenario::check_route(Problems& problems) const {
+  const std::vector<Wall> walls = outline(world);
+  const auto check_free = [&](const std::string& key, const Eigen::Vector2d& point_m,
+                              double needed_m) {
+    const std::string problem = what_is_too_close(walls, world.boxes, point_m, needed_m);
+    if (!problem.empty()) problems.add(key, problem);
+    return problem.empty();
+  };
+  check_free("route.start", {route.start_x_m, route.start_y_m}, kBodyBehind_m);
+  for (std::size_t i = 0; i < kidnaps.size(); ++i) {
+    const std::string key = fmt::format("kidnaps[{}]", i);
+    check_free(key, {kidnaps[i].to_x_m, kidnaps[i].to_y_m}, kBodyBehind_m);
+    if (!kidnaps[i].when.is_set()) problems.add(key, "expected an at_s or at_m above 0");
+  }
+  if (route.source == DriveSource::kCommand) {
+    if (route.duration_s <= 0.0) {
+      problems.add("route.duration_s", "expected a number above 0 when commands drive");
+    }
+    if (route.command_delay_ticks <= run.window_ticks) {
+      problems.add("route.command_delay_ticks",
+                   fmt::format("got {}, expected more than run.window_ticks, {}: the next ticks "
+                               "have been simulated when a command arrives",
+                               route.command_delay_ticks, run.window_ticks));
+    }
+    return;
+  }
+  const char* key = route.waypoints.empty() ? "route.end_x_m" : "route.waypoints";
+  if (route.waypoints.empty() && route.laps > 1)
+    problems.add("route.laps", "expected waypoints that lead back to the start");
+  for (const PathPiece& piece : path_through(route.corners(), route.corner_radius_m)) {
+    const int num_samples = 1 + static_cast<int>(piece.length_m / kRouteSample_m);
+    for (int i = 0; i <= num_samples; ++i) {
+      const Se2 world_from_base = piece.world_from(i * piece.length_m / num_samples);
+      if (!check_free(key, world_from_base.translation(), kBodyBeside_m)) return;  // one is enough
+    }
+  }
+}
+
+void Scenario::check_faults(Problems& problems) const {
+  for (std::size_t i = 0; i < faults.size(); ++i)
+    check_fault(faults[i], fmt::format("faults[{}]", i), problems);
+  for (std::size_t i = 0; i < world.boxes.size(); ++i)
+    if (world.boxes[i].present.is_empty())
+      problems.add(fmt::format("world.boxes[{}]", i), "it goes before it comes");
+}
+
+void Scenario::check_times(Problems& problems) const {
+  const auto check_rate = [&](const char* key, double rate_hz) {
+    if (!is_whole(run.physics_rate_hz / rate_hz)) {
+      problems.add(key, fmt::format("got {}, expected a divisor of run.physics_rate_hz, {}",
+                                    rate_hz, run.physics_rate_hz));
+    }
+  };
+  check_rate("robot.base.odometry_rate_hz", robot.base.odometry_rate_hz);
+  check_rate("robot.lidar.rate_hz", robot.lidar.rate_hz);
+  check_rate("robot.camera.rate_hz", robot.camera.rate_hz);
+  if (!is_whole(run.physics_rate_hz * run.tick_s)) {
+    problems.add("run.tick_s", fmt::format("got {}, expected a whole number of physics steps of "
+                                           "1/{} s",
+                                           run.tick_s, run.physics_rate_hz));
+  }
+  const std::set<std::string> distinct(run.participants.begin(), run.participants.end());
+  if (distinct.size() != run.participants.size()) {
+    problems.add("run.participants", "a name is listed twice");
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When something happens in a run: by the clock, by the way that the robot has come, or both.
+#pragma once
+
+#include "common/config/config.hpp"
+
+namespace waymark {
+
+/// How far the run has got.
+struct Moment {
+  double time_s{0.0};
+  double route_m{0.0};  ///< progress along the route; 0 when commands drive
+};
+
+/// Far beyond every run, and a number that TOML and a reader can take.
+constexpr double kNever = 1e9;
+
+/// As long as both clock and way are within; by default always.
+struct Span {
+  double from_s{0.0};
+  double to_s{kNever};
+  double from_m{0.0};
+  double to_m{kNever};
+
+  bool covers(const Moment& moment) const {
+    return moment.time_s >= from_s && moment.time_s < to_s && moment.route_m >= from_m &&
+           moment.route_m < to_m;
+  }
+
+  bool is_always() const {
+    return from_s <= 0.0 && to_s >= kNever && from_m <= 0.0 && to_m >= kNever;
+  }
+
+  bool is_empty() const { return from_s >= to_s || from_m >= to_m; }
+
+  void describe(Fields& fields);
+};
+
+/// Once both are reached.
+struct Trigger {
+  double at_s{0.0};
+  double at_m{0.0};
+
+  bool is_reached(const Moment& moment) const {
+    return moment.time_s >= at_s && moment.route_m >= at_m;
+  }
+
+  /// False: from the very beginning, so that nothing happens in the run.
+  bool is_set() const { return at_s > 0.0 || at_m > 0.0; }
+
+  void describe(Fields& fields);
+};
+
+}  // namespace waymark

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scenario expects, checked against results that are written by hand.
+#include "evaluate/expectation.hpp"
+
+#include "evaluate/run_evaluation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace waymark::evaluate {
+namespace {
+
+using ::testing::HasSubstr;
+
+EstimatorResult result_of(const std::string& row) {
+  EstimatorResult result{};
+  result.name = row;
+  result.true_length_m = 50.0;
+  result.length = CorridorLength{};
+  result.length->length_m = 50.2;  // 0.4 %
+  result.trajectory = TrajectoryError{};
+  result.trajectory->ate_origin_m = 0.1;
+  result.markers = MarkerError{};
+  result.markers->right_share = 0.98;
+  result.timeline = Timeline{.max_jump_m = 0.05};
+  result.wall_cells = 2;
+  return result;
+}
+
+bool hits(const ExpectConfig& expect, const EstimatorResult& result) {
+  const auto figures = check_expectations(expect, result);
+  EXPECT_EQ(figures.size(), 1u);
+  return figures.front().is_hit;
+}
+
+TEST(Expectation, NothingIsExpectedByDefault) {
+  EXPECT_TRUE(check_expectations({}, result_of("waymark")).empty());
+  EXPECT_EQ(text_of({}), "-");
+}
+
+TEST(Expectation, EachFigureHasItsSideOfTheLimit) {
+  const EstimatorResult result = result_of("waymark");
+  EXPECT_TRUE(hits({.length_error_percent = 0.41}, result));
+  EXPECT_FALSE(hits({.length_error_percent = 0.39}, result));
+  EXPECT_TRUE(hits({.ate_origin_m = 0.1}, result));
+  EXPECT_FALSE(hits({.ate_origin_m = 0.099}, result));
+  EXPECT_TRUE(hits({.marker_map_share = 0.98}, result));
+  EXPECT_FALSE(hits({.marker_map_share = 0.99}, result));
+  EXPECT_TRUE(hits({.max_jump_m = 0.05}, result));
+  EXPECT_FALSE(hits({.max_jump_m = 0.04}, result));
+  EXPECT_TRUE(hits({.max_wall_cells = 2}, result));
+  EXPECT_FALSE(hits({.max_wall_cells = 1}, result));
+}
+
+TEST(Expectation, IsAboutItsEstimatorOnly) {
+  const ExpectConfig expect{.estimator = "waymark", .ate_origin_m = 0.01};
+  EXPECT_TRUE(check_expectations(expect, result_of("odometry")).empty());
+  EXPECT_EQ(check_expectations(expect, result_of("waymark")).size(), 1u);
+  const ExpectConfig of_all{.estimator = "", .ate_origin_m = 0.01};
+  EXPECT_EQ(check_expectations(of_all, result_of("odometry")).size(), 1u);
+}
+
+TEST(Expectation, AFigureThatIsNotThereIsMissed) {
+  EstimatorResult result{};
+  result.name = "waymark";
+  const auto figures = check_expectations({.ate_origin_m = 0.1, .found_again_s = 3.0}, result);
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_FALSE(figures[0].is_hit || figures[1].is_hit);
+  EXPECT_THAT(text_of(figures), HasSubstr("MISS ate_origin_m none (0.1)"));
+}
+
+TEST(Expectation, WhoIsFoundNeedNotSayThatItIsLost) {
+  EstimatorResult result = result_of("waymark");
+  result.timeline->kidnap = Kidnap{.says_lost_s = std::nullopt, .found_again_s = 1.5};
+  EXPECT_TRUE(hits({.says_lost_s = 2.0}, result));
+  EXPECT_TRUE(hits({.found_again_s = 3.0}, result));
+  result.timeline->kidnap = Kidnap{.says_lost_s = 0.5, .found_again_s = 9.0};
+  EXPECT_TRUE(hits({.says_lost_s = 2.0}, result));
+  EXPECT_FALSE(hits({.found_again_s = 3.0}, result));
+  result.timeline->kidnap = Kidnap{};
+  EXPECT_FALSE(hits({.says_lost_s = 2.0}, result));
+}
+
+}  // namespace
+}  // namespace waymark::evaluate

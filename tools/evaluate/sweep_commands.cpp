@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The sub-commands about many runs.
+#include "evaluate/commands.hpp"
+#include "evaluate/sweep_report.hpp"
+
+#include <fmt/format.h>
+
+namespace waymark::evaluate {
+namespace {
+
+namespace fs = std::filesystem;
+
+nlohmann::ordered_json json_of(const std::vector<StationConsistency>& stations) {
+  auto json = nlohmann::ordered_json::array();
+  for (const StationConsistency& station : stations)
+    json.push_back({{"travel_m", station.travel_m},
+                    {"runs", station.runs},
+                    {"mean_nees", station.mean_nees},
+                    {"band_low", station.band_low},
+                    {"band_high", station.band_high},
+                    {"in_band", station.in_band()},
+                    {"rms_along_m", station.rms_along_m},
+                    {"rms_heading_rad", station.rms_heading_rad}});
+  return json;
+}
+
+}  // namespace
+
+int run_sweep(const fs::path& sweep_dir, const Output& output) {
+  const std::vector<SweepRow> rows = sweep_rows(read_runs(sweep_dir));
+  const PlotFiles plots = sweep_plots(rows);
+  fs::create_directories(sweep_dir / "plots");
+  write_whole_file(sweep_dir / "plots/errors.dat", plots.errors_dat);
+  write_whole_file(sweep_dir / "plots/stations.dat", plots.stations_dat);
+  write_whole_file(sweep_dir / "plots/plots.gp", plots.program);
+  write_whole_file(sweep_dir / "results.csv", sweep_csv(rows));
+  write_whole_file(sweep_dir / "runs.csv", sweep_runs_csv(rows));
+  write_whole_file(sweep_dir / "index.html", sweep_page(rows));
+  const std::string markdown = sweep_markdown(rows);
+  write_whole_file(sweep_dir / "results.md", markdown);
+  if (!output.json) {
+    fmt::print("{}", markdown);
+    return kFine;
+  }
+  auto json = nlohmann::ordered_json::array();
+  for (const SweepRow& row : rows)
+    json.push_back({{"scenario", row.scenario},
+                    {"estimator", row.row},
+                    {"failures", row.failures()},
+                    {"misses", row.misses()},
+                    {"stations", json_of(row.stations)}});
+  fmt::print("{}\n", json.dump(2));
+  return kFine;
+}
+
+int run_consistency(const std::vector<fs::path>& row_dirs, const Output& output) {
+  Skipped skipped;
+  std::vector<std::vector<Station>> runs;
+  for (const fs::path& dir : row_dirs)
+    runs.push_back(read_stations(dir / "stations.csv", skipped));
+  const std::vector<StationConsistency> stations = consistency(runs);
+  if (output.json) {
+    fmt::print("{}\n", json_of(stations).dump(2));
+  } else {
+    fmt::print("driven   runs  mean NEES  95 % band        RMS along\n");
+    for (const StationConsistency& station : stations)
+      fmt::print("{:4.0f} m  {:6}  {:9.2f}  {:6.2f} .. {:6.2f}  {:7.3f} m{}\n", station.travel_m,
+                 station.runs, station.mean_nees, station.band_low, station.band_high,
+                 station.rms_along_m, station.in_band() ? "" : "  outside");
+    fmt::print("in the band: {:.1f} % of {} stations\n", 100.0 * share_in_band(stations),
+               stations.size());
+  }
+  for (const std::string& line : skipped)
+    fmt::print(stderr, "skipped: {}\n", line);
+  return stations.empty() || !skipped.empty() ? kFailed : kFine;
+}
+
+}  // namespace waymark::evaluate
