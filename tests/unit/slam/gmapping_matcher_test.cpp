@@ -104,6 +104,25 @@ TEST(ScanMatcher, AgreesWithTheSlowOracleEverywhereAndInAnyOrder) {
   }
 }
 
+TEST(ScanMatcher, AScoreToBeatDecidesAsTheWholeScoreDoes) {
+  const MappedRoom room{3};
+  Random random{4};
+  const std::vector<Beam> beams = beams_to(room_as_seen({0.2, 0.1, 0.3}, random));
+  const MatcherSetting setting{MatcherConfig{}, kFrame};
+  ScanMatcher matcher{setting, room.map, beams};
+  for (int i = 0; i < 200; ++i) {
+    const Se2 pose{random.normal(0.2, 0.05), random.normal(0.1, 0.05), random.normal(0.3, 0.05)};
+    const double whole = matcher.score(pose);
+    const double to_beat = whole + random.normal(0.0, 5.0);
+    const double told = matcher.score(pose, to_beat);
+    if (whole > to_beat) {
+      EXPECT_EQ(told, whole);
+    } else {
+      EXPECT_LE(told, to_beat);
+    }
+  }
+}
+
 TEST(ScanMatcher, AWallBeforeTheHitRefusesItOnlyAsIntended) {
   // Two walls, one sqrt(2) cells behind the other: the far one's free cell is the near one.
   HitMap map;

@@ -9,7 +9,7 @@
 namespace waymark {
 
 /// Linear between 1024 equal steps of d^2. Its error is below (limit / width)^2 / 8e6: 2e-8 for
-/// GMapping's defaults. tests/benchmark/gmapping_benchmark.cpp
+/// GMapping's defaults. tests/benchmark/gmapping_speed.cpp
 class BellCurve {
  public:
   /// @param width_squared  and

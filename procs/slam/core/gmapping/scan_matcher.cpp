@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace waymark {
@@ -14,17 +13,23 @@ namespace {
 /// with no hit around counts as if it were sqrt(0.5) m off.
 constexpr double kFreeCellDistance_cells = std::numbers::sqrt2;
 constexpr double kNoHit_m2 = 0.5;
-constexpr float kNothingAround = std::numeric_limits<float>::infinity();
 
 /// Without SSE4.1 std::floor is a function call; this loop cannot afford one.
-/// tests/benchmark/gmapping_benchmark.cpp
+/// tests/benchmark/gmapping_speed.cpp
 int floor_to_int(double value) {
   const int truncated = static_cast<int>(value);
   return truncated - (value < truncated ? 1 : 0);
 }
 
+/// Furthest that a hit in the kernel can be from the end of a beam: corner to corner.
+double furthest_squared_cells2(int kernel_size) {
+  return 2.0 * (kernel_size + 1) * (kernel_size + 1);
+}
+
+}  // namespace
+
 /// From the base frame to the map, both in cells.
-struct Transform {
+struct ScanMatcher::Transform {
   double cosine;
   double sine;
   double x;
@@ -40,13 +45,6 @@ struct Transform {
 
   double y_of(double base_x, double base_y) const { return sine * base_x + cosine * base_y + y; }
 };
-
-/// Furthest that a hit in the kernel can be from the end of a beam: corner to corner.
-double furthest_squared_cells2(int kernel_size) {
-  return 2.0 * (kernel_size + 1) * (kernel_size + 1);
-}
-
-}  // namespace
 
 MatcherSetting::MatcherSetting(const MatcherConfig& matcher_config, const GridFrame& grid_frame)
     : config{matcher_config},
@@ -69,45 +67,42 @@ ScanMatcher::ScanMatcher(const MatcherSetting& setting, const HitMap& map,
   }
 }
 
-/// Calls add(d^2) in cells^2 for every ray in order; kNothingAround when there is no hit.
-template <class Add>
-void ScanMatcher::for_each_squared_distance(const Se2& map_from_base, Add&& add) {
-  const Transform map_from_ray{map_from_base, setting_.frame};
-  const bool needs_free_cell = setting_.config.free_cells == FreeCells::kIntended;
-  for (const Ray& ray : rays_) {
-    const double x = map_from_ray.x_of(ray.end_x, ray.end_y);
-    const double y = map_from_ray.y_of(ray.end_x, ray.end_y);
-    BeamCells cells{{floor_to_int(x), floor_to_int(y)}, {}};
-    if (needs_free_cell) {
-      cells.before = {floor_to_int(map_from_ray.x_of(ray.before_x, ray.before_y)),
-                      floor_to_int(map_from_ray.y_of(ray.before_x, ray.before_y))};
-    }
-    const auto from_centre_x = static_cast<float>(x - cells.end.x - 0.5);
-    const auto from_centre_y = static_cast<float>(y - cells.end.y - 0.5);
-    float nearest = kNothingAround;
-    for (const Surroundings::Hit& hit : surroundings_.of(cells)) {
-      const float dx = from_centre_x - hit.x;
-      const float dy = from_centre_y - hit.y;
-      nearest = std::min(nearest, dx * dx + dy * dy);
-    }
-    add(nearest);
+/// Squared distance [cells^2] from the ray's end to the nearest hit around.
+float ScanMatcher::nearest_squared(const Ray& ray, const Transform& map_from_ray) {
+  const double x = map_from_ray.x_of(ray.end_x, ray.end_y);
+  const double y = map_from_ray.y_of(ray.end_x, ray.end_y);
+  BeamCells cells{{floor_to_int(x), floor_to_int(y)}, {}};
+  if (setting_.config.free_cells == FreeCells::kIntended) {
+    cells.before = {floor_to_int(map_from_ray.x_of(ray.before_x, ray.before_y)),
+                    floor_to_int(map_from_ray.y_of(ray.before_x, ray.before_y))};
   }
+  return surroundings_.nearest_squared(cells, static_cast<float>(x - cells.end.x - 0.5),
+                                       static_cast<float>(y - cells.end.y - 0.5));
 }
 
-double ScanMatcher::score(const Se2& map_from_base) {
+double ScanMatcher::score(const Se2& map_from_base, double to_beat) {
+  const Transform map_from_ray{map_from_base, setting_.frame};
   double score = 0.0;
-  for_each_squared_distance(map_from_base, [&](float squared) {
-    if (squared != kNothingAround) score += static_cast<double>(setting_.score_of(squared));
-  });
+  auto can_add = static_cast<double>(rays_.size());  // a beam adds 1 at most
+  for (const Ray& ray : rays_) {
+    const float squared = nearest_squared(ray, map_from_ray);
+    if (squared != Surroundings::kNothingAround)
+      score += static_cast<double>(setting_.score_of(squared));
+    can_add -= 1.0;
+    if (score + can_add <= to_beat) return score;
+  }
   return score;
 }
 
 double ScanMatcher::log_likelihood(const Se2& map_from_base) {
+  const Transform map_from_ray{map_from_base, setting_.frame};
   const double cell_m2 = setting_.frame.resolution_m * setting_.frame.resolution_m;
   double sum_m2 = 0.0;
-  for_each_squared_distance(map_from_base, [&](float squared) {
-    sum_m2 += squared == kNothingAround ? kNoHit_m2 : cell_m2 * static_cast<double>(squared);
-  });
+  for (const Ray& ray : rays_) {
+    const float squared = nearest_squared(ray, map_from_ray);
+    sum_m2 += squared == Surroundings::kNothingAround ? kNoHit_m2
+                                                      : cell_m2 * static_cast<double>(squared);
+  }
   return -sum_m2 / setting_.config.likelihood_sigma_m2;
 }
 
@@ -125,7 +120,7 @@ ScanMatcher::Match ScanMatcher::climb(const Se2& start) {
                                    Se2{centre.x(), centre.y(), centre.theta() - turn_rad}};
     bool has_improved = false;
     for (const Se2& moved : moves) {
-      const double moved_score = score(moved);
+      const double moved_score = score(moved, best.score);
       if (moved_score <= best.score) continue;
       best = {moved, moved_score};
       has_improved = true;

@@ -52,7 +52,9 @@ class ScanMatcher {
 
   /// Sum over the beams of exp(-d^2 / sigma); 0 for a beam with no hit around. From 0 to the number
   /// of beams.
-  double score(const Se2& map_from_base);
+  /// @param to_beat  a score that is not above it need not be exact, only not above it either: the
+  /// beams that cannot help any more are not looked at.
+  double score(const Se2& map_from_base, double to_beat = -1.0);
 
   /// Sum over the beams of -d^2 / lsigma; -0.5 / lsigma for a beam with no hit around.
   double log_likelihood(const Se2& map_from_base);
@@ -75,8 +77,9 @@ class ScanMatcher {
     double before_y;
   };
 
-  template <class Add>
-  void for_each_squared_distance(const Se2& map_from_base, Add&& add);
+  struct Transform;
+
+  float nearest_squared(const Ray& ray, const Transform& map_from_ray);
 
   const MatcherSetting& setting_;
   Surroundings surroundings_;
