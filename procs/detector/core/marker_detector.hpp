@@ -2,9 +2,9 @@
 // The detector's method: one grey image in, markers with poses and covariances out.
 #pragma once
 
+#include "common/robot/camera_model.hpp"
 #include "common/robot/robot_config.hpp"
 #include "common/sensors/sensors.hpp"
-#include "common/robot/camera_model.hpp"
 #include "detector/core/corner_refinement.hpp"
 #include "detector/core/marker_candidates.hpp"
 #include "detector/core/square_pose.hpp"
