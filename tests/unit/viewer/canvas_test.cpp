@@ -24,7 +24,7 @@ TEST(DashedPolyline, AlternatesAlongTheWholeWay) {
   Image image = white();
   // The second dash goes around the corner.
   const std::array<cv::Point2d, 3> path{{{0, 10}, {50, 10}, {50, 90}}};
-  draw_dashed_polyline(image, path, {kBlack, 1}, 20.0, 20.0);
+  draw_dashed_polyline(image, path, {kBlack, 3}, 20.0, 20.0);
   EXPECT_EQ(image(10, 10)[0], 0);
   EXPECT_EQ(image(10, 30)[0], 255);
   EXPECT_EQ(image(10, 45)[0], 0);
