@@ -53,7 +53,8 @@ marker_landmark_t to_message(const Landmark& landmark) {
   message.first_seen_utime = to_us(landmark.first_seen);
   message.last_seen_utime = to_us(landmark.last_seen);
   message.state = marker_landmark_t::STATE_TENTATIVE;
-  if (landmark.sightings >= kConfirmingSightings) message.state = marker_landmark_t::STATE_CONFIRMED;
+  if (landmark.sightings >= kConfirmingSightings)
+    message.state = marker_landmark_t::STATE_CONFIRMED;
   if (landmark.was_moved) message.state = marker_landmark_t::STATE_MOVED;
   return message;
 }

@@ -37,10 +37,8 @@ Belief travelled() {
   for (int id = 0; id < 8; ++id)
     belief.add(seen_from({}, id, place_of(id)));
   belief.move({Se2{15.0, 0.0, 0.0}, 15.0, 0.0}, {});
-  Belief sure{{OdometryNoise{}, 0.0, 0.0}};
-  sure = belief;
-  sure.correct_pose(belief.map_from_base(), 1e-4 * Eigen::Matrix3d::Identity());
-  return sure;
+  belief.correct_pose(belief.map_from_base(), 1e-4 * Eigen::Matrix3d::Identity());
+  return belief;
 }
 
 Verdict judge(KidnapWatch& watch, const std::vector<MarkerMeasurement>& seen) {
@@ -112,8 +110,9 @@ TEST(KidnapWatch, AnIdThatSeveralMarkersHaveIsNoWitness) {
   EXPECT_FALSE(belief.only_marker(4));
   const Se2 truth{11.0, 0.1, 0.05};
   KidnapWatch watch;
-  EXPECT_EQ(watch.judge(belief, std::vector{seen_from(truth, 4, place_of(4))}, kStep, kGate, kNear_m),
-            Verdict::kSettled);
+  EXPECT_EQ(
+      watch.judge(belief, std::vector{seen_from(truth, 4, place_of(4))}, kStep, kGate, kNear_m),
+      Verdict::kSettled);
 }
 
 TEST(Belief, AMarkerThatIsSlightlyOffPullsLessThanOneThatFits) {
@@ -140,7 +139,9 @@ TEST(Belief, AMarkerThatIsGoneAndHasTurnedUpElsewhereWasMoved) {
   MarkerMeasurement fresh = seen_from({}, 4, {3.0, 1.0, -1.57});
   fresh.time = Timestamp{seconds{10}};
   belief.add(fresh);
-  const auto all_in_view = [](const Se2&) { return true; };
+  const auto all_in_view = [](const Se2&) {
+    return true;
+  };
   for (int i = 0; i < 4; ++i) {
     belief.note_absences(all_in_view, Timestamp{seconds{9}});
     belief.correct(belief.nearest(fresh)->marker, fresh, kGate);

@@ -30,8 +30,8 @@ struct Innovation {
 
   double distance_m() const { return residual.head<2>().norm(); }
 
-  /// The marker may be the one that was measured: it is where it is expected (chi^2 below `gate`), or
-  /// so near that drift or a bad calibration explain it.
+  /// The marker may be the one that was measured: it is where it is expected (chi^2 below `gate`),
+  /// or so near that drift or a bad calibration explain it.
   bool may_be_it(double gate, double near_m) const {
     return distance < gate || distance_m() < near_m;
   }

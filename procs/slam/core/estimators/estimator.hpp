@@ -24,7 +24,7 @@ struct EstimatorSetup {
   UpdateGate gate{};
   double range_sigma_m{0.01};  ///< of the LiDAR
   CameraView camera{};
-  double range_max_m{3.5};     ///< of the LiDAR
+  double range_max_m{3.5};  ///< of the LiDAR
   std::uint64_t seed{1};
   ParallelFor parallel_for{serial_for};
 };

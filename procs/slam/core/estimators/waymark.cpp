@@ -86,7 +86,8 @@ void WaymarkEstimator::process(const Observation& observation) {
                 observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
   Belief expected = belief();
   expected.move(since_update_, noise_);
-  verdict_ = kidnap_watch_.judge(expected, sensed.markers, since_update_, config_.marker_gate, config_.marker_near_m);
+  verdict_ = kidnap_watch_.judge(expected, sensed.markers, since_update_, config_.marker_gate,
+                                 config_.marker_near_m);
   sensed.verdict = verdict_;
   const std::vector<Eigen::Vector3d> normals = centred_normals();
   std::vector<Outcome> outcomes(particles_.size());
@@ -180,7 +181,8 @@ void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
     const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->may_be_it(config_.marker_gate, config_.marker_near_m)) {
       outcome.log_evidence +=
-          config_.marker_evidence * state.belief.correct(nearest->marker, measurement, config_.marker_gate);
+          config_.marker_evidence *
+          state.belief.correct(nearest->marker, measurement, config_.marker_gate);
       ++outcome.known_markers;
     } else {
       outcome.log_evidence -= config_.marker_evidence * 0.5 * config_.marker_gate;

@@ -29,7 +29,8 @@ class KidnapWatch {
   /// @param belief  of the moment before the markers were sighted, moved to now.
   /// @param motion  since the last call.
   /// @param gate, near_m  when a marker is where it is expected, see Innovation::may_be_it.
-  Verdict judge(const Belief& belief, std::span<const MarkerMeasurement> seen, const Motion& motion, double gate, double near_m);
+  Verdict judge(const Belief& belief, std::span<const MarkerMeasurement> seen, const Motion& motion,
+                double gate, double near_m);
 
   /// The other place, while there is a doubt.
   const std::optional<Se2>& elsewhere() const { return elsewhere_; }
