@@ -125,10 +125,17 @@ std::string health_summary(const std::vector<EstimatedPose>& estimates) {
   }
   std::string text = "health: " + shares_text(kHealths, healths, estimates.size());
   if (!sources.empty()) {
-    text += "   |   weak axis, by what told the motion along it: " +
-            shares_text(kSources, sources, estimates.size());
+    text += "   |   weak axis told by " + shares_text(kSources, sources, estimates.size());
   }
   return text + " of the updates";
+}
+
+/// A line that becomes smaller rather than leave the area.
+void draw_fitting(cv::Mat& page, const std::string& text, const cv::Rect& area_px, double y_px) {
+  Font font{.height_px = 18.0, .colour = palette::kFaintInk};
+  const double width_px = text_width_px(text, font);
+  if (width_px > area_px.width) font.height_px *= area_px.width / width_px;
+  draw_text(page, text, {area_px.x + 0.0, area_px.y + y_px}, Anchor::kLeft, font);
 }
 
 }  // namespace
@@ -156,10 +163,8 @@ void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& tit
                   const PageContent& content, const Se2& view_from_map) {
   draw_text(page, title, {area_px.x + 0.0, area_px.y + 46.0}, Anchor::kLeft,
             {.height_px = 32.0, .colour = palette::kInk, .bold = true});
-  draw_text(page, summary(content, view_from_map), {area_px.x + 0.0, area_px.y + 94.0},
-            Anchor::kLeft, {.height_px = 18.0, .colour = palette::kFaintInk});
-  draw_text(page, health_summary(content.estimates), {area_px.x + 0.0, area_px.y + 128.0},
-            Anchor::kLeft, {.height_px = 18.0, .colour = palette::kFaintInk});
+  draw_fitting(page, summary(content, view_from_map), area_px, 94.0);
+  draw_fitting(page, health_summary(content.estimates), area_px, 128.0);
 }
 
 void draw_ruler(cv::Mat& page, const Panel& panel) {

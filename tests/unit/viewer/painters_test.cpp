@@ -11,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 namespace waymark::viewer {
 namespace {
@@ -108,6 +109,24 @@ TEST(PaintMap, TheLegendNamesWhatIsThereAndIsNoLongerThanNeeded) {
   const cv::Mat page = paint_map(scene, kStyle);
   EXPECT_GT(page.rows, height_px);
   EXPECT_LT(page.rows, height_px + 200);
+}
+
+TEST(Heading, StaysInItsAreaHoweverMuchThereIsToTell) {
+  PageContent content = content_of(corridor_scene(50.0));
+  for (std::size_t i = 0; i < content.estimates.size(); ++i) {
+    content.estimates[i].health = static_cast<Health>(i % 5);
+    content.estimates[i].weak_axis =
+        WeakAxis{.direction = {1, 0, 0}, .source = static_cast<WeakAxisSource>(i % 4)};
+  }
+  cv::Mat_<Colour> page(160, 1200, Colour{255, 255, 255});
+  const cv::Rect area{60, 0, 1080, 158};
+  draw_heading(page, area, "corridor", content, Se2{});
+  cv::Mat drawn;
+  cv::inRange(page, cv::Scalar{0, 0, 0}, cv::Scalar{250, 250, 250}, drawn);
+  const cv::Rect box = cv::boundingRect(drawn);
+  EXPECT_GT(box.width, 1000);
+  EXPECT_GE(box.x, area.x - 2);
+  EXPECT_LE(box.br().x, area.br().x + 2);
 }
 
 TEST(PaintMap, TheFinalTrajectoryIsDashedOverTheOthers) {
