@@ -239,7 +239,9 @@ TEST(SurfaceFinder, FindsWhatTheMapHas) {
     const auto expected = map.near(point, reach_m);
     const auto found = finder.near(0, point, reach_m);
     ASSERT_EQ(found.has_value(), expected.has_value());
-    if (found) ASSERT_EQ(found->point_in_map, expected->point_in_map);
+    if (found) {
+      ASSERT_EQ(found->point_in_map, expected->point_in_map);
+    }
   }
 }
 
