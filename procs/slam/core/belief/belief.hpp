@@ -82,8 +82,8 @@ class Belief {
   /// Takes over what has been found about the pose; everything that is correlated with it follows.
   void correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
 
-  /// Draws the pose along axes (columns; orthonormal, (x, y, theta) in map): along them it is exact
-  /// from now on, and everything that is correlated with it follows.
+  /// Draws linear functions of the pose (columns; of (x, y, theta) in map): they are exact from now
+  /// on, and everything that is correlated with them follows.
   void draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
                  const Eigen::Vector3d& standard_normal);
 

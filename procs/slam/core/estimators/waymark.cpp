@@ -19,14 +19,24 @@ BeliefPrior prior_of(const WaymarkConfig& config) {
   return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma};
 }
 
-/// Axes of (x, y, theta) in the map, as columns, that the walls of a scan can tell.
+/// What the walls of a scan can tell of the pose, as linear functions of (x, y, theta) in the map, in
+/// columns. Along a bare wall they leave out what is correlated with the motion along it: one scan
+/// knows the wall's direction to a fraction of a degree only, and drawing the rest of it would take
+/// the uncertainty along the wall away by and by.
 Eigen::Matrix<double, 3, Eigen::Dynamic> told_axes(const Observability& walls_in_base,
-                                                   const Se2& map_from_base) {
-  const Eigen::Vector2d weak = map_from_base.rotation() * walls_in_base.weak_direction;
+                                                   const Belief& belief) {
+  const Eigen::Vector2d weak = belief.map_from_base().rotation() * walls_in_base.weak_direction;
+  const Eigen::Vector3d along{weak.x(), weak.y(), 0.0};
   Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, walls_in_base.is_degenerate ? 2 : 3);
   axes.col(0) = Eigen::Vector3d::UnitZ();
   axes.col(1) << -weak.y(), weak.x(), 0.0;
-  if (!walls_in_base.is_degenerate) axes.col(2) << weak, 0.0;
+  if (!walls_in_base.is_degenerate) {
+    axes.col(2) = along;
+    return axes;
+  }
+  const Eigen::Vector3d with_along = belief.pose_covariance() * along;
+  const double variance = along.dot(with_along);
+  if (variance > 0.0) axes -= (along * (with_along.transpose() * axes) / variance).eval();
   return axes;
 }
 
@@ -125,7 +135,7 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
     correct_by_markers(state, sensed, outcome);
   }
   if (!is_doubtful) note_absences(state, sensed);
-  state.belief.draw_pose(told_axes(sensed.walls, state.belief.map_from_base()), normal);
+  state.belief.draw_pose(told_axes(sensed.walls, state.belief), normal);
   state.map_from_base = state.belief.map_from_base();
   if (is_doubtful) return outcome;
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
