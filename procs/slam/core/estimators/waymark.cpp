@@ -16,13 +16,14 @@ constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen sin
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
 BeliefPrior prior_of(const WaymarkConfig& config) {
-  return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma};
+  return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma,
+          config.markers.standoff_sigma_m};
 }
 
-/// What the walls of a scan can tell of the pose, as linear functions of (x, y, theta) in the map, in
-/// columns. Along a bare wall they leave out what is correlated with the motion along it: one scan
-/// knows the wall's direction to a fraction of a degree only, and drawing the rest of it would take
-/// the uncertainty along the wall away by and by.
+/// What the walls of a scan can tell of the pose, as linear functions of (x, y, theta) in the map,
+/// in columns. Along a bare wall they leave out what is correlated with the motion along it: one
+/// scan knows the wall's direction to a fraction of a degree only, and drawing the rest of it would
+/// take the uncertainty along the wall away by and by.
 Eigen::Matrix<double, 3, Eigen::Dynamic> told_axes(const Observability& walls_in_base,
                                                    const Belief& belief) {
   const Eigen::Vector2d weak = belief.map_from_base().rotation() * walls_in_base.weak_direction;
@@ -187,8 +188,8 @@ void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
 void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
                                           Outcome& outcome) const {
   for (const MarkerMeasurement& measurement : sensed.markers) {
-    if (measurement.wall) state.belief.correct_camera(*measurement.wall);
-    if (measurement.focal) state.belief.correct_camera(*measurement.focal);
+    if (measurement.wall) state.belief.correct_sighting_errors(*measurement.wall);
+    if (measurement.focal) state.belief.correct_sighting_errors(*measurement.focal);
     const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->may_be_it(config_.marker_gate, config_.marker_near_m)) {
       outcome.log_evidence +=
