@@ -14,6 +14,8 @@ namespace waymark::evaluate {
 struct Marker {
   int id{};
   Se2 parent_from_marker{};
+  int instance{0};        ///< tells markers of equal id apart
+  bool has_moved{false};  ///< true: it was moved; estimated: it is said to have been
 };
 
 /// A marker that is mapped further from its true place is not right: half its size.
@@ -28,10 +30,19 @@ struct MarkerError {
   std::optional<double> max_position_m{};
   std::optional<double> mean_yaw_deg{};
   std::optional<double> max_yaw_deg{};
+  /// Of the markers that were moved or are said to be: those that are both. Absent if there are
+  /// none.
+  std::optional<double> moved_named_share{};
 };
 
-/// Reads `id,instance,x_m,y_m,yaw_rad`; more columns may follow.
+/// Reads `id,instance,x_m,y_m,yaw_rad`, and `state` (as in marker_landmark_t) if it is there; more
+/// columns may follow.
 std::vector<Marker> read_markers(const std::filesystem::path& file, Skipped& skipped);
+
+/// The same markers where they are in the end. `file`: `t_s,id,instance,x_m,y_m,yaw_rad`, in order
+/// of time.
+std::vector<Marker> with_moves(std::vector<Marker> markers, const std::filesystem::path& file,
+                               Skipped& skipped);
 
 /// Pairs markers of the same id, nearest pairs first, each marker once, none further than `gate_m`
 /// apart: so duplicates of an id find their own places.
