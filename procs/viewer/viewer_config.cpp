@@ -7,6 +7,9 @@ void ViewerSection::describe(Fields& fields) {
   fields.field("title", title, "heading of map.png; empty = name of the output folder");
   fields.field("write_period_s", write_period_s, {0.1, 3600.0},
                "message time between writes of map, trajectory, markers, and one of the pictures");
+  fields.field("max_write_share", max_write_share, {0.001, 1.0},
+               "of the wall-clock time that these writes may take; what is due more often waits, "
+               "the end is always written");
   fields.field("occupied_threshold", thresholds.occupied, kFraction,
                "occupancy from which on a cell is written as occupied");
   fields.field("free_threshold", thresholds.free, kFraction,
