@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <tuple>
 
@@ -20,7 +21,8 @@ struct Candidate {
   }
 };
 
-/// The value of column `state` that says so; as in lcmtypes/marker_landmark_t.lcm.
+// Values of column `state`; as in lcmtypes/marker_landmark_t.lcm.
+constexpr double kStateTentative = 2.0;
 constexpr double kStateMoved = 3.0;
 
 bool has_state(const std::filesystem::path& file) {
@@ -66,7 +68,9 @@ std::vector<Marker> read_markers(const std::filesystem::path& file, Skipped& ski
   std::vector<Marker> markers;
   for (const auto& row : table.rows) {
     markers.push_back(marker_of(table, row));
-    markers.back().has_moved = with_state && table.at(row, "state") == kStateMoved;
+    if (!with_state) continue;
+    markers.back().has_moved = table.at(row, "state") == kStateMoved;
+    markers.back().is_tentative = table.at(row, "state") == kStateTentative;
   }
   return markers;
 }
@@ -84,8 +88,11 @@ std::vector<Marker> with_moves(std::vector<Marker> markers, const std::filesyste
   return markers;
 }
 
-MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Marker>& in_world,
+MarkerError marker_error(const std::vector<Marker>& estimated, const std::vector<Marker>& in_world,
                          const Se2& world_from_map, double gate_m) {
+  std::vector<Marker> in_map;
+  std::copy_if(estimated.begin(), estimated.end(), std::back_inserter(in_map),
+               [](const Marker& marker) { return !marker.is_tentative; });
   std::vector<Candidate> candidates;
   for (std::size_t e = 0; e < in_map.size(); ++e) {
     const Eigen::Vector2d estimate = world_from_map * in_map[e].parent_from_marker.translation();
@@ -97,7 +104,7 @@ MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Ma
   }
   std::sort(candidates.begin(), candidates.end());
 
-  MarkerError error{};
+  MarkerError error{.tentative = estimated.size() - in_map.size()};
   double sum_m = 0.0;
   double sum_deg = 0.0;
   double max_m = 0.0;

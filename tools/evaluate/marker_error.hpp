@@ -14,8 +14,9 @@ namespace waymark::evaluate {
 struct Marker {
   int id{};
   Se2 parent_from_marker{};
-  int instance{0};        ///< tells markers of equal id apart
-  bool has_moved{false};  ///< true: it was moved; estimated: it is said to have been
+  int instance{0};           ///< tells markers of equal id apart
+  bool has_moved{false};     ///< true: it was moved; estimated: it is said to have been
+  bool is_tentative{false};  ///< estimated: the map does not vouch for it
 };
 
 /// A marker that is mapped further from its true place is not right: half its size.
@@ -23,9 +24,10 @@ inline constexpr double kRightMarker_m = 0.2;
 
 struct MarkerError {
   std::size_t matched{};
-  std::size_t missing{};   ///< true markers without an estimate
-  std::size_t spurious{};  ///< estimates without a true marker
-  double right_share{};    ///< of all, true and estimated, those matched within kRightMarker_m
+  std::size_t missing{};    ///< true markers without an estimate
+  std::size_t spurious{};   ///< estimates without a true marker
+  std::size_t tentative{};  ///< estimates that the map does not vouch for: left out of all the rest
+  double right_share{};     ///< of all, true and estimated, those matched within kRightMarker_m
   std::optional<double> mean_position_m{};
   std::optional<double> max_position_m{};
   std::optional<double> mean_yaw_deg{};
@@ -46,7 +48,7 @@ std::vector<Marker> with_moves(std::vector<Marker> markers, const std::filesyste
 
 /// Pairs markers of the same id, nearest pairs first, each marker once, none further than `gate_m`
 /// apart: so duplicates of an id find their own places.
-MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Marker>& in_world,
+MarkerError marker_error(const std::vector<Marker>& estimated, const std::vector<Marker>& in_world,
                          const Se2& world_from_map, double gate_m);
 
 }  // namespace waymark::evaluate

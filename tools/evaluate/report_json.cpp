@@ -40,6 +40,7 @@ Json json_of(const std::optional<MarkerError>& error) {
   json["markers_matched"] = error ? Json(error->matched) : Json{};
   json["markers_missing"] = error ? Json(error->missing) : Json{};
   json["markers_spurious"] = error ? Json(error->spurious) : Json{};
+  json["markers_tentative"] = error ? Json(error->tentative) : Json{};
   json["marker_map_share"] = error ? number(error->right_share) : Json{};
   json["moved_named_share"] = error ? number(error->moved_named_share) : Json{};
   json["marker_error_mean_m"] = error ? number(error->mean_position_m) : Json{};

@@ -76,6 +76,12 @@ TEST(Expectation, EachFigureHasItsSideOfTheLimit) {
   EXPECT_FALSE(hits({.max_wall_cells = 1}, result));
 }
 
+TEST(Expectation, RoundingIsNoMiss) {
+  EstimatorResult result = result_of("waymark");
+  result.length->length_m = 49.9;  // 100 - 99.8 > 0.2 in binary fractions
+  EXPECT_TRUE(hits({.length_error_percent = 0.2}, result));
+}
+
 TEST(Expectation, WhatIsOfAllSeedsIsNotOfARun) {
   const ExpectConfig expect{.nees_in_band_share = 0.9, .seeds_share = 0.95};
   EXPECT_TRUE(check_expectations(expect, result_of("waymark")).empty());

@@ -79,6 +79,15 @@ TEST(MarkerError, MovesThatAreNotNamedAndNamesWithoutAMoveCount) {
   EXPECT_FALSE(marker_error({still}, {still}, Se2{}, kGate_m).moved_named_share);
 }
 
+TEST(MarkerError, TentativeMarkersAreNoPartOfTheMap) {
+  const Marker tentative{.id = 1, .is_tentative = true};
+  const MarkerError error = marker_error({tentative, {2, Se2{}}}, {{2, Se2{}}}, Se2{}, kGate_m);
+  EXPECT_EQ(error.tentative, 1u);
+  EXPECT_EQ(error.spurious, 0u);
+  EXPECT_EQ(error.right_share, 1.0);
+  EXPECT_EQ(marker_error({tentative}, {{1, Se2{}}}, Se2{}, kGate_m).missing, 1u);
+}
+
 TEST(MarkerError, WithoutMatchesThereIsNoMean) {
   const MarkerError error = marker_error({}, {{1, Se2{}}}, Se2{}, kGate_m);
   EXPECT_EQ(error.missing, 1u);
