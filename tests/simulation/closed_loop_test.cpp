@@ -194,11 +194,11 @@ TEST_F(ClosedLoop, WaymarkHoldsWithFaultsInTheMessages) {
   int count = 0;
   for (std::string name; std::getline(names, name); ++count) {
     const std::string run = (folder() / ("faulty-" + name)).string();
-    const auto finished = run_command(
-        faults + " " + (folder() / "reference").string() + " --variants " + variants +
-        " --variant " + name + " --out " + run + " && " + (kSource / "deploy/replay.sh").string() +
-        " " + run + "/run.lcm --estimator waymark && " +
-        (kPrograms / "waymark-evaluate").string() + " run " + run);
+    const auto finished = run_command(faults + " " + (folder() / "reference").string() +
+                                      " --variants " + variants + " --variant " + name + " --out " +
+                                      run + " && " + (kSource / "deploy/replay.sh").string() + " " +
+                                      run + "/run.lcm --estimator waymark && " +
+                                      (kPrograms / "waymark-evaluate").string() + " run " + run);
     ASSERT_EQ(finished.exit_code, 0) << name << ": " << finished.output;
     const auto metrics = nlohmann::json::parse(content_of(fs::path{run} / "waymark/metrics.json"));
     EXPECT_FALSE(metrics.at("expectations").empty()) << name;
