@@ -64,7 +64,7 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
 Estimate WaymarkEstimator::update(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
   believe_scans_about_slips(observation);
-  if (updates_ == 0 || is_due()) {
+  if (updates_ == 0 || is_due() || is_contradicted_by(observation)) {
     process(observation);
     if (verdict_ != KidnapWatch::Verdict::kDoubtful)
       mapper_.insert(observation, mean_, covariance_);
@@ -88,6 +88,20 @@ void WaymarkEstimator::believe_scans_about_slips(const Observation& observation)
 bool WaymarkEstimator::is_due() const {
   return since_update_.distance_m >= config_.update_distance_m ||
          since_update_.turn_rad >= config_.update_turn_rad;
+}
+
+/// A marker where none of its id should be may mean that the robot was carried away: that cannot
+/// wait until it has driven on.
+bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const {
+  if (observation.sightings.empty()) return false;
+  Belief expected = belief();
+  expected.move(since_update_, noise_);
+  const auto seen = measure_markers(observation, setup_.range_sigma_m,
+                                    setup_.camera.base_from_camera, config_.markers);
+  return std::any_of(seen.begin(), seen.end(), [&](const MarkerMeasurement& measurement) {
+    const auto nearest = expected.nearest(measurement);
+    return nearest && !nearest->may_be_it(config_.marker_gate, config_.marker_near_m);
+  });
 }
 
 void WaymarkEstimator::process(const Observation& observation) {
