@@ -73,7 +73,11 @@ TEST(KidnapWatch, TwoMarkersThatAgreeTellWhereTheRobotIs) {
 TEST(KidnapWatch, OneMarkerAloneIsADoubtUntilTheNext) {
   const Se2 truth{11.0, 0.1, 0.05};
   KidnapWatch watch;
-  EXPECT_EQ(judge(watch, {seen_from(truth, 4, place_of(4))}), Verdict::kDoubtful);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(
+        watch.judge(travelled(), std::vector{seen_from(truth, 4, place_of(4))}, {}, kGate, kNear_m),
+        Verdict::kDoubtful);
+  }
   ASSERT_TRUE(watch.elsewhere());
   EXPECT_NEAR(watch.elsewhere()->x(), 11.0, 1e-9);
   EXPECT_EQ(judge(watch, {}), Verdict::kDoubtful);
@@ -93,15 +97,44 @@ TEST(KidnapWatch, AWitnessThatTheRobotIsWhereItBelievesEndsTheDoubt) {
             Verdict::kSettled);
 }
 
-TEST(KidnapWatch, ADoubtWithoutASecondMarkerPasses) {
+/// Number of steps after which a doubt passes that `sightings` of one marker have raised.
+int doubtful_steps(int sightings) {
   const Se2 truth{11.0, 0.1, 0.05};
   KidnapWatch watch;
-  EXPECT_EQ(judge(watch, {seen_from(truth, 4, place_of(4))}), Verdict::kDoubtful);
-  int doubtful = 0;
-  while (judge(watch, {}) == Verdict::kDoubtful && doubtful < 100)
-    ++doubtful;
-  EXPECT_GT(doubtful, 5);
-  EXPECT_LT(doubtful, 15);
+  for (int i = 0; i < sightings; ++i)
+    watch.judge(travelled(), std::vector{seen_from(truth, 4, place_of(4))}, {}, kGate, kNear_m);
+  int steps = 0;
+  while (judge(watch, {}) == Verdict::kDoubtful && steps < 1000)
+    ++steps;
+  return steps;
+}
+
+TEST(KidnapWatch, ADoubtWithoutASecondMarkerPasses) {
+  EXPECT_LE(doubtful_steps(1), 2);  // a misreading
+  EXPECT_GT(doubtful_steps(5), 40);
+  EXPECT_LT(doubtful_steps(5), 60);
+}
+
+TEST(KidnapWatch, StrangersWhereOthersShouldBeShowThatTheMarkersWereDoubles) {
+  KidnapWatch watch;
+  Belief belief = travelled();
+  // Doubles of the pair at 12 m hang at 20 m; the robot at 17 m takes them for the originals.
+  belief.move({Se2{2.0, 0.0, 0.0}, 2.0, 0.0}, {});
+  const Se2 mistaken{9.0, 0.0, 0.0};
+  const std::vector doubles{seen_from(mistaken, 4, place_of(4)),
+                            seen_from(mistaken, 5, place_of(5))};
+  ASSERT_EQ(watch.judge(belief, doubles, kStep, kGate, kNear_m), Verdict::kElsewhere);
+  belief.relocate(*belief.only_marker(4), doubles[0]);
+  EXPECT_NEAR(belief.map_from_base().x(), 9.0, 1e-9);
+  // 4 m further on, a new pair hangs where 6 and 7 should be.
+  const Motion onwards{Se2{4.0, 0.0, 0.0}, 4.0, 0.0};
+  belief.move(onwards, {});
+  const Se2 now = belief.map_from_base();
+  const std::vector strangers{seen_from(now, 40, place_of(6)), seen_from(now, 41, place_of(7))};
+  ASSERT_EQ(watch.judge(belief, strangers, onwards, kGate, kNear_m), Verdict::kBack);
+  EXPECT_NEAR(watch.returning_pose().x(), 21.0, 1e-6);
+  belief.relocate(watch.returning_pose());
+  EXPECT_EQ(watch.judge(belief, strangers, kStep, kGate, kNear_m), Verdict::kSettled);
 }
 
 TEST(KidnapWatch, AnIdThatSeveralMarkersHaveIsNoWitness) {

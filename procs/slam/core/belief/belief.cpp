@@ -202,7 +202,11 @@ Se2 Belief::pose_by(std::size_t index, const MarkerMeasurement& measurement) con
 }
 
 void Belief::relocate(std::size_t index, const MarkerMeasurement& measurement) {
-  map_from_base_ = pose_by(index, measurement);
+  relocate(pose_by(index, measurement));
+}
+
+void Belief::relocate(const Se2& map_from_base) {
+  map_from_base_ = map_from_base;
   covariance_.topRows<3>().setZero();
   covariance_.leftCols<3>().setZero();
   covariance_.topLeftCorner<3, 3>().diagonal() << squared(kRelocated_m), squared(kRelocated_m),

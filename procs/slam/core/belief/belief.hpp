@@ -108,6 +108,9 @@ class Belief {
   /// was known before: the measurement is still to be used.
   void relocate(std::size_t marker, const MarkerMeasurement& measurement);
 
+  /// The same to a given pose.
+  void relocate(const Se2& map_from_base);
+
   /// Kalman update with a measurement of a known marker. One that is off by more than the gate
   /// counts as much less.
   /// @param gate  chi^2, 3 degrees of freedom.

@@ -161,9 +161,12 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
 /// By odometry, or to where the markers say that the robot has been carried.
 void WaymarkEstimator::move(State& state, const Sensed& sensed) const {
   state.belief.move(since_update_, noise_);
-  if (sensed.verdict != KidnapWatch::Verdict::kElsewhere) return;
-  const MarkerMeasurement& by = kidnap_watch_.relocating_marker();
-  if (const auto marker = state.belief.only_marker(by.id)) state.belief.relocate(*marker, by);
+  if (sensed.verdict == KidnapWatch::Verdict::kBack) {
+    state.belief.relocate(kidnap_watch_.returning_pose());
+  } else if (sensed.verdict == KidnapWatch::Verdict::kElsewhere) {
+    const MarkerMeasurement& by = kidnap_watch_.relocating_marker();
+    if (const auto marker = state.belief.only_marker(by.id)) state.belief.relocate(*marker, by);
+  }
 }
 
 /// Absence is evidence where the camera could have seen the marker, and nothing stood before it:

@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/landmark/kidnap_watch.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace waymark {
 namespace {
 
-constexpr std::size_t kProof = 2;     // markers that agree about the other place
-constexpr double kPatience_m = 1.0;   // then a marker without a witness is taken for a double
-constexpr double kSamePlace_m = 0.5;  // two markers agree about the other place
+constexpr std::size_t kProof = 2;     // markers that agree
+constexpr double kSamePlace_m = 0.5;  // about the other place
 constexpr double kSameHeading_rad = 0.35;
+constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
+constexpr double kMisread_m = 0.15;  // way without another sighting that ends such a doubt
+constexpr double kPatience_m = 5.0;  // the same for a marker that was really there
+constexpr double kReturn_m = 30.0;   // way after which a relocation is final
 
 }  // namespace
 
 KidnapWatch::Verdict KidnapWatch::judge(const Belief& belief,
                                         std::span<const MarkerMeasurement> seen,
                                         const Motion& motion, double gate, double near_m) {
-  if (elsewhere_) {
-    elsewhere_ = *elsewhere_ * motion.start_from_end;
-    doubted_m_ += motion.distance_m;
-    if (doubted_m_ > kPatience_m) forget();
-  }
+  follow(motion);
+  if (doubles_explain(belief, seen)) return Verdict::kBack;
   bool belief_is_confirmed = false;
   for (const MarkerMeasurement& measurement : seen) {
     const auto nearest = belief.nearest(measurement);
@@ -31,11 +33,43 @@ KidnapWatch::Verdict KidnapWatch::judge(const Belief& belief,
       relocating_marker_ = measurement;
     }
   }
-  if (belief_is_confirmed) forget();
+  if (belief_is_confirmed) forget_doubt();
   if (!elsewhere_) return Verdict::kSettled;
   if (ids_for_elsewhere_.size() < kProof) return Verdict::kDoubtful;
-  forget();
+  forget_doubt();
+  unbelieved_ = belief.map_from_base();
+  strangers_.clear();
+  relocated_m_ = 0.0;
   return Verdict::kElsewhere;
+}
+
+void KidnapWatch::follow(const Motion& motion) {
+  if (elsewhere_) {
+    elsewhere_ = *elsewhere_ * motion.start_from_end;
+    unsupported_m_ += motion.distance_m;
+    if (unsupported_m_ > (sightings_ < kRealSightings ? kMisread_m : kPatience_m)) forget_doubt();
+  }
+  if (unbelieved_) {
+    unbelieved_ = *unbelieved_ * motion.start_from_end;
+    relocated_m_ += motion.distance_m;
+    if (relocated_m_ > kReturn_m || strangers_.size() >= kProof) unbelieved_.reset();
+  }
+}
+
+bool KidnapWatch::doubles_explain(const Belief& belief, std::span<const MarkerMeasurement> seen) {
+  if (!unbelieved_) return false;
+  for (const MarkerMeasurement& measurement : seen) {
+    if (belief.nearest(measurement)) continue;
+    const Eigen::Vector2d place =
+        belief.map_from_base() * measurement.base_from_marker.translation();
+    const std::vector<Landmark> known = belief.markers();
+    if (std::any_of(known.begin(), known.end(), [&](const Landmark& marker) {
+          return (marker.map_from_marker.translation() - place).norm() < kSamePlace_m;
+        })) {
+      strangers_.insert(measurement.id);
+    }
+  }
+  return strangers_.size() >= kProof;
 }
 
 void KidnapWatch::count_for_elsewhere(int id, const Se2& map_from_base) {
@@ -45,16 +79,19 @@ void KidnapWatch::count_for_elsewhere(int id, const Se2& map_from_base) {
       std::abs(angle_difference(map_from_base.theta(), elsewhere_->theta())) < kSameHeading_rad;
   if (!agrees) {
     ids_for_elsewhere_.clear();
-    doubted_m_ = 0.0;
+    sightings_ = 0;
   }
   ids_for_elsewhere_.insert(id);
+  ++sightings_;
+  unsupported_m_ = 0.0;
   elsewhere_ = map_from_base;
 }
 
-void KidnapWatch::forget() {
+void KidnapWatch::forget_doubt() {
   elsewhere_.reset();
   ids_for_elsewhere_.clear();
-  doubted_m_ = 0.0;
+  sightings_ = 0;
+  unsupported_m_ = 0.0;
 }
 
 }  // namespace waymark

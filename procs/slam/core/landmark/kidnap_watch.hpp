@@ -24,6 +24,7 @@ class KidnapWatch {
     kSettled,    ///< the robot is where it is believed to be
     kDoubtful,   ///< until the next marker: nothing is to be mapped
     kElsewhere,  ///< the robot has to be put to where relocating_marker() was seen from
+    kBack,       ///< doubles: the robot has to be put to returning_pose()
   };
 
   /// @param belief  of the moment before the markers were sighted, moved to now.
@@ -38,14 +39,25 @@ class KidnapWatch {
   /// What to relocate by after kElsewhere.
   const MarkerMeasurement& relocating_marker() const { return relocating_marker_; }
 
+  /// Where the robot would be had it not been relocated; of use after kBack.
+  const Se2& returning_pose() const { return *unbelieved_; }
+
  private:
-  void forget();
+  void follow(const Motion& motion);
+  void forget_doubt();
   void count_for_elsewhere(int id, const Se2& map_from_base);
+  bool doubles_explain(const Belief& belief, std::span<const MarkerMeasurement> seen);
 
   std::optional<Se2> elsewhere_{};
   std::set<int> ids_for_elsewhere_{};
-  double doubted_m_{0.0};  ///< way since the doubt began
+  int sightings_{0};           ///< that have fed the doubt
+  double unsupported_m_{0.0};  ///< way since the last of them
   MarkerMeasurement relocating_marker_{};
+
+  // After a relocation:
+  std::optional<Se2> unbelieved_{};  ///< the pose that was given up, as odometry carries it on
+  std::set<int> strangers_{};        ///< new ids where others should be
+  double relocated_m_{0.0};          ///< way since
 };
 
 }  // namespace waymark
