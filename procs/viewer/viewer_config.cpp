@@ -7,6 +7,9 @@ void ViewerSection::describe(Fields& fields) {
   fields.field("title", title, "heading of map.png; empty = name of the output folder");
   fields.field("write_period_s", write_period_s, {0.1, 3600.0},
                "message time between writes of map, trajectory, markers, and one of the pictures");
+  fields.field("max_write_share", max_write_share, {0.001, 1.0},
+               "of the wall-clock time that these writes may take; what is due more often waits, "
+               "the end is always written");
   fields.field("occupied_threshold", thresholds.occupied, kFraction,
                "occupancy from which on a cell is written as occupied");
   fields.field("free_threshold", thresholds.free, kFraction,
@@ -19,8 +22,8 @@ void ViewerSection::describe(Fields& fields) {
                "a long map is folded into up to this many strips");
   fields.field("max_scale_px_per_m", map_page.max_scale_px_per_m, {10.0, 2000.0},
                "map.png: no larger than this");
-  fields.field("ellipse_spacing_m", map_page.ellipse_spacing_m, {0.1, 1000.0},
-               "map.png: distance along the path between covariance ellipses");
+  fields.field("mark_spacing_px", map_page.mark_spacing_px, {20, 2000},
+               "map.png: least distance along the path between ellipses and between weak axes");
   fields.field("marker_size_m", map_page.marker_size_m, {0.01, 5.0},
                "map.png: length of a marker's plate");
 }

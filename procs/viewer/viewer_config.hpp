@@ -14,6 +14,7 @@ namespace waymark {
 struct ViewerSection {
   std::string title{};  ///< empty = name of the output folder
   double write_period_s{5.0};
+  double max_write_share{0.05};
   viewer::MapThresholds thresholds{};
   viewer::MapPageStyle map_page{};
   int scan_size_px{1000};

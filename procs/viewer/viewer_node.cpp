@@ -38,19 +38,32 @@ bool is_due(std::optional<Timestamp>& last, Timestamp now, double period_s) {
   return true;
 }
 
+void tell(const viewer::Change& change) {
+  if (change.kind == viewer::Change::Kind::kAlarm) {
+    spdlog::warn("{}", change.text);
+  } else {
+    spdlog::info("{}", change.text);
+  }
+}
+
 }  // namespace
 
 ViewerNode::ViewerNode(const Config& config, Inbox& inbox, Outbox& /*outbox*/)
     : config_{config},
       updater_{scene_, inbox.counters()},
-      folder_{required_folder(config.out_dir)} {
+      folder_{required_folder(config.out_dir)},
+      pacer_{config.viewer.max_write_share} {
   scene_.title = config_.viewer.title.empty() ? folder_name(folder_.path()) : config_.viewer.title;
   subscribe(inbox);
 }
 
 void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<map_tiles_t>(channels::kSlamMap, [this](const auto& m) { updater_.add(m); });
-  inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) { updater_.add(m); });
+  inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) {
+    updater_.add(m);
+    for (const auto& change : change_watch_.see(timestamp_from_us(m.utime), scene_.landmarks))
+      tell(change);
+  });
   inbox.on<annotated_scan_t>(channels::kSlamScan, [this](const auto& m) { updater_.add(m); });
   inbox.on<trajectory_t>(channels::kSlamTrajectory, [this](const auto& m) { updater_.add(m); });
   inbox.on<particles_t>(
@@ -59,17 +72,23 @@ void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<pose2D_t>(channels::kTruePose, [this](const auto& m) { updater_.add_truth(m); });
   inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) {
     updater_.add(m);
+    if (!scene_.estimates.empty()) {
+      if (const auto change = change_watch_.see(scene_.estimates.back())) tell(*change);
+    }
     write_when_due(timestamp_from_us(m.utime));
   });
 }
 
 void ViewerNode::write_when_due(Timestamp time) {
+  const auto start = viewer::Pacer::Clock::now();
+  if (!pacer_.may_start(start)) return;
   if (!is_due(last_write_time_, time, config_.viewer.write_period_s)) return;
   write_data();
   constexpr std::array kPictures{&ViewerNode::write_map_picture, &ViewerNode::write_marker_layer,
                                  &ViewerNode::write_scan_and_plain_map};
   (this->*kPictures[next_picture_])();
   next_picture_ = (next_picture_ + 1) % kPictures.size();
+  pacer_.has_worked(start, viewer::Pacer::Clock::now());
 }
 
 void ViewerNode::write_data() {

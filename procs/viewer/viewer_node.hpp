@@ -3,8 +3,10 @@
 #pragma once
 
 #include "common/process/node.hpp"
+#include "viewer/core/change_watch.hpp"
 #include "viewer/core/scene.hpp"
 #include "viewer/output_folder.hpp"
+#include "viewer/pacer.hpp"
 #include "viewer/scene_updater.hpp"
 #include "viewer/viewer_config.hpp"
 
@@ -33,7 +35,7 @@ class ViewerNode final : public Node {
  private:
   void subscribe(Inbox& inbox);
   /// Writes the data files when a period has passed, and with them one of the pictures: all at
-  /// once would hold up a lockstep run.
+  /// once would hold up a lockstep run. Large maps, which cost more, are written less often.
   void write_when_due(Timestamp time);
   void write_data();
   void write_final_trajectory();
@@ -44,7 +46,9 @@ class ViewerNode final : public Node {
   Config config_;
   viewer::Scene scene_{};
   viewer::SceneUpdater updater_;
+  viewer::ChangeWatch change_watch_{};
   viewer::OutputFolder folder_;
+  viewer::Pacer pacer_;
   std::optional<Timestamp> last_write_time_{};
   std::size_t next_picture_{0};
 };

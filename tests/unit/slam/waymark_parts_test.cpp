@@ -37,6 +37,7 @@ Belief belief_with(const std::vector<MarkerMeasurement>& measurements) {
   return belief;
 }
 
+constexpr double kGate = 16.3;  // chi^2, 3 degrees of freedom: 99.9 %
 const Motion kForward{Se2{0.5, 0.0, 0.02}, 0.5, 0.02};
 
 TEST(OdometryErrors, DerivativesAgreeWithDifferences) {
@@ -66,7 +67,7 @@ TEST(Belief, IsUnsureAlongTheWayAndAMarkerMakesItSurer) {
   const auto nearest = belief.nearest(measurement_at(base_from_marker));
   ASSERT_TRUE(nearest);
   EXPECT_NEAR(nearest->distance, 0.0, 1e-9);
-  belief.correct(nearest->marker, measurement_at(base_from_marker));
+  belief.correct(nearest->marker, measurement_at(base_from_marker), kGate);
   EXPECT_LT(belief.pose_covariance()(0, 0), before(0, 0));
   EXPECT_EQ(belief.markers()[0].sightings, 2);
 }
@@ -77,7 +78,7 @@ TEST(Belief, LearnsTheScaleOfTheOdometryFromAMarker) {
   for (int i = 0; i < 40; ++i) {
     belief.move({Se2{0.05, 0.0, 0.0}, 0.05, 0.0}, {});
     true_x += 0.05 * 1.01;
-    belief.correct(0, measurement_at({3.0 - true_x, 1.0, -1.57}));
+    belief.correct(0, measurement_at({3.0 - true_x, 1.0, -1.57}), kGate);
   }
   const double sigma = std::sqrt(belief.odometry_errors_covariance()(0, 0));
   EXPECT_NEAR(belief.odometry_errors()[0], 0.01, 3.0 * sigma);
@@ -134,7 +135,7 @@ TEST(Belief, SettledMarkersLeaveTheCovarianceAndAreKnownAgain) {
   EXPECT_LT(belief.markers()[0].covariance(0, 0), copy.markers()[0].covariance(0, 0));
   const auto nearest = belief.nearest(measurement_at({1.0, 1.0, -1.57}, 0));
   ASSERT_TRUE(nearest);
-  belief.correct(nearest->marker, measurement_at({1.0, 1.0, -1.57}, 0));
+  belief.correct(nearest->marker, measurement_at({1.0, 1.0, -1.57}, 0), kGate);
   EXPECT_EQ(belief.markers()[0].sightings, 2);
 }
 
@@ -213,15 +214,56 @@ TEST(SurfaceMatching, FindsThePoseAcrossABareCorridorAndNothingAlongIt) {
       map.add(beam.beam.end_in_base);
   }
   const auto beams = corridor_beams(0.01, random);
+  SurfaceFinder finder{map, beams.size()};
   const Se2 start{0.3, 0.03, 0.02};
   const PoseProposal matched = propose(
       start, diagonal(0.1, 0.1, 0.1), [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
-        return match_surfaces(beams, map, pose, uncertainty, {}).pose;
+        return match_surfaces(beams, finder, pose, uncertainty, {}).pose;
       });
   EXPECT_NEAR(matched.mean.y(), 0.0, 0.003);
   EXPECT_NEAR(matched.mean.theta(), 0.0, 0.003);
   EXPECT_NEAR(matched.mean.x(), 0.3, 0.002);  // nothing pulls
   EXPECT_NEAR(matched.covariance(0, 0), 0.01, 0.001);
+}
+
+TEST(SurfaceFinder, FindsWhatTheMapHas) {
+  Random random{9};
+  SurfaceMap map{GridFrame::centred_on_map_origin(0.05)};
+  for (const AnnotatedBeam& beam : corridor_beams(0.01, random))
+    map.add(beam.beam.end_in_base);
+  SurfaceFinder finder{map, 1};
+  Eigen::Vector2d point{0.5, 0.95};
+  for (int i = 0; i < 2000; ++i) {
+    point += 0.01 * Eigen::Vector2d{random.normal(), 0.3 * random.normal()};
+    const double reach_m = random.uniform() < 0.5 ? 0.05 : 0.3;
+    const auto expected = map.near(point, reach_m);
+    const auto found = finder.near(0, point, reach_m);
+    ASSERT_EQ(found.has_value(), expected.has_value());
+    if (found) {
+      ASSERT_EQ(found->point_in_map, expected->point_in_map);
+    }
+  }
+}
+
+TEST(SurfaceMatching, AClumpTellsThePlaceAndALineOnlyTheDistance) {
+  const GridFrame frame = GridFrame::centred_on_map_origin(0.05);
+  Random random{5};
+  const auto match_of = [&](double length_m) {
+    SurfaceMap map{frame};
+    for (int i = 0; i < 400; ++i)
+      map.add({2.0 + 0.01 * random.normal(), length_m * (random.uniform() - 0.5)});
+    std::vector<AnnotatedBeam> beams(1);
+    beams[0].beam.end_in_base = {2.0, 0.02};
+    beams[0].beam.range_m = 2.0;
+    SurfaceMatchingConfig config;
+    config.weak_share = 0.0;
+    SurfaceFinder finder{map, beams.size()};
+    return match_surfaces(beams, finder, {}, diagonal(0.01, 0.01, 0.001), config).pose.information;
+  };
+  const Eigen::Matrix3d line = match_of(2.0);
+  const Eigen::Matrix3d clump = match_of(0.04);
+  EXPECT_LT(line(1, 1), 0.01 * line(0, 0));
+  EXPECT_GT(clump(1, 1), 0.1 * clump(0, 0));
 }
 
 TEST(WallFit, ExtendsTheWallWithItsUncertainty) {

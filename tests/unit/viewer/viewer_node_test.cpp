@@ -123,10 +123,35 @@ TEST_F(ViewerNodeTest, WritesDuringTheRunEveryPeriodOfMessageTime) {
 }
 
 TEST_F(ViewerNodeTest, EveryPictureIsWrittenDuringTheRun) {
+  config_.viewer.max_write_share = 1.0;
   ViewerNode node{config_, inbox_, outbox_};
   for (int i = 0; i <= 15; ++i)
     deliver(channels::kSlamEstimate, estimate_at(1.0 * i, 0.1 * i));
   EXPECT_THAT(names(), IsSupersetOf({"map.png", "marker_layer.png", "plain.png"}));
+}
+
+TEST_F(ViewerNodeTest, WhatIsWrittenAtTheEndDoesNotDependOnThePace) {
+  const std::vector<std::string> files{"map.pgm",          "map.yaml",  "map.png",
+                                       "marker_layer.png", "plain.png", "trajectory.tum",
+                                       "covariance.csv"};
+  std::vector<std::string> unpaced;
+  for (const double share : {1.0, 0.001}) {
+    config_.viewer.max_write_share = share;
+    Inbox inbox;
+    ViewerNode node{config_, inbox, outbox_};
+    for (int i = 0; i <= 30; ++i) {
+      inbox.deliver(encode(channels::kSlamMap, tile_at(i, 0, 1)));
+      inbox.deliver(encode(channels::kSlamEstimate, estimate_at(1.0 * i, 0.1 * i)));
+    }
+    // A share of a thousandth allows the first write and then none.
+    EXPECT_EQ(fs::exists(folder_ / "plain.png"), share == 1.0);
+    node.finish();
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      if (share == 1.0) unpaced.push_back(content_of(files[i]));
+      EXPECT_TRUE(content_of(files[i]) == unpaced[i]) << files[i];
+      fs::remove(folder_ / files[i]);
+    }
+  }
 }
 
 TEST_F(ViewerNodeTest, ATrajectoryHasOneLinePerEstimateWithoutRepeats) {
@@ -165,6 +190,28 @@ TEST_F(ViewerNodeTest, MarkersAppearWhenAllPartsAreThere) {
   EXPECT_THAT(scene.landmarks, SizeIs(2)) << "half a map does not replace a whole one";
   updater.add(markers_at(15, 1, 2, 9));
   EXPECT_EQ(scene.landmarks[0].id, 4) << "parts of different times do not mix";
+}
+
+TEST_F(ViewerNodeTest, AWeakAxisIsKeptWhenThereIsOne) {
+  viewer::Scene scene;
+  Counters counters;
+  viewer::SceneUpdater updater{scene, counters};
+  updater.add(estimate_at(1.0, 0.0));
+  slam_estimate_t message = estimate_at(2.0, 0.0);
+  message.weak_axis[1] = 1.0;
+  message.weak_information = 50.0;
+  message.weak_axis_source = slam_estimate_t::SOURCE_NOTHING;
+  updater.add(message);
+  message.utime += 1;
+  message.weak_axis_source = 100;
+  updater.add(message);
+  ASSERT_THAT(scene.estimates, SizeIs(3));
+  EXPECT_FALSE(scene.estimates[0].weak_axis);
+  ASSERT_TRUE(scene.estimates[1].weak_axis);
+  EXPECT_EQ(scene.estimates[1].weak_axis->direction, (Eigen::Vector3d{0, 1, 0}));
+  EXPECT_EQ(scene.estimates[1].weak_axis->information, 50.0);
+  EXPECT_EQ(scene.estimates[1].weak_axis->source, viewer::WeakAxisSource::kNothing);
+  EXPECT_EQ(scene.estimates[2].weak_axis->source, viewer::WeakAxisSource::kUnknown);
 }
 
 TEST_F(ViewerNodeTest, WritesAFinalTrajectoryWhenOneCameWhole) {

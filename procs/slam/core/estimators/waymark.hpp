@@ -4,10 +4,13 @@
 #pragma once
 
 #include "slam/core/belief/belief.hpp"
+#include "slam/core/belief/noise_growth.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/filter/particle_set.hpp"
+#include "slam/core/landmark/kidnap_watch.hpp"
 #include "slam/core/matching/surface_matching.hpp"
 #include "slam/core/proposal/pose_proposal.hpp"
+#include "slam/core/scan/turn_by_scans.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -20,7 +23,8 @@ struct WaymarkConfig {
   double update_distance_m{0.1};   ///< scans in between are followed by odometry
   double update_turn_rad{0.0873};
   double marker_gate{16.3};          ///< chi^2 of a sighting's innovation, 3 degrees of freedom
-  double same_marker_within_m{1.0};  ///< no second marker of one id nearer than this
+  double marker_near_m{0.25};        ///< off by less, it is believed, too, but counts less
+  double same_marker_within_m{0.5};  ///< no second marker of one id nearer than this
   int joint_markers{24};             ///< in each particle's covariance; the others are settled
   double scan_evidence{0.02};        ///< share of a scan's log-likelihood that weighs particles
   double marker_evidence{0.02};      ///< the same of a sighting
@@ -67,6 +71,7 @@ class WaymarkEstimator final : public Estimator {
     const Observation* observation{nullptr};
     std::vector<MarkerMeasurement> markers{};
     Observability walls{};  ///< base frame
+    KidnapWatch::Verdict verdict{KidnapWatch::Verdict::kSettled};
   };
 
   /// What one particle made of it.
@@ -74,13 +79,17 @@ class WaymarkEstimator final : public Estimator {
     double log_evidence{0.0};
     int known_markers{0};
     SurfaceMatch walls{};
+    PoseCorrection correction{};
   };
 
+  void believe_scans_about_slips(const Observation& observation);
   bool is_due() const;
   void process(const Observation& observation);
   Outcome advance(State& state, const Sensed& sensed, const Eigen::Vector3d& normal) const;
+  void move(State& state, const Sensed& sensed) const;
   void correct_by_walls(State& state, const Sensed& sensed, Outcome& outcome) const;
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
+  void note_absences(State& state, const Sensed& sensed) const;
   std::vector<Eigen::Vector3d> centred_normals() const;
   void judge(const std::vector<Outcome>& outcomes);
   Se2 mean_pose() const;
@@ -90,8 +99,12 @@ class WaymarkEstimator final : public Estimator {
   EstimatorSetup setup_;
   WaymarkConfig config_;
   ParticleSet<State> particles_;
+  KidnapWatch kidnap_watch_{};
+  NoiseGrowth noise_growth_{};
+  OdometryNoise noise_{};  ///< the configured one, grown
   Mapper mapper_;
   Motion since_update_{};
+  std::vector<AnnotatedBeam> updated_beams_{};  ///< those of the last update
   std::uint64_t updates_{0};
 
   // Of the last update:
@@ -100,6 +113,7 @@ class WaymarkEstimator final : public Estimator {
   double effective_particles_{1.0};
   double wall_agreement_{1.0};
   bool markers_told_{false};
+  KidnapWatch::Verdict verdict_{KidnapWatch::Verdict::kSettled};
 };
 
 }  // namespace waymark

@@ -58,10 +58,10 @@ std::optional<Surface> fit(const Moments& moments) {
   surface.across_m2 = std::max(0.0, half_trace - root) + kCellVariance;
   const double along_m2 = half_trace + root + kCellVariance;
   surface.normal_rad2 = surface.across_m2 / (moments.count * along_m2);
-  if (surface.across_m2 > kMaxThickness * kMaxThickness || along_m2 < kMinLength * kMinLength ||
-      along_m2 < kMinElongation * kMinElongation * surface.across_m2) {
-    return std::nullopt;
-  }
+  surface.along_m2 = along_m2;
+  surface.is_line = surface.across_m2 <= kMaxThickness * kMaxThickness &&
+                    along_m2 >= kMinLength * kMinLength &&
+                    along_m2 >= kMinElongation * kMinElongation * surface.across_m2;
   // Eigenvector of the smaller eigenvalue.
   const double along_x = 0.5 * (xx - yy) + root;
   surface.normal_in_map = Eigen::Vector2d{-xy, along_x};
@@ -87,19 +87,36 @@ void SurfaceMap::add(const Eigen::Vector2d& point_in_map) {
   cell.yy += p.y() * p.y();
 }
 
-std::optional<Surface> SurfaceMap::near(const Eigen::Vector2d& point_in_map, double reach_m) const {
-  const CellIndex middle = frame_.cell_of(point_in_map);
-  const double reach_cells = reach_m / frame_.resolution_m;
+bool SurfaceMap::looks_far(double reach_m) const {
+  return reach_m > kAlwaysTried * frame_.resolution_m;
+}
+
+std::optional<Surface> SurfaceMap::near(CellIndex middle, bool looks_far) const {
   std::optional<Surface> surface;
   for (const int reach : kReaches) {
-    if (surface || (reach > kAlwaysTried && reach / 2 >= reach_cells)) break;
-    surface = fit(moments_around(cells_, middle, reach));
+    if (reach > kAlwaysTried && !looks_far) break;
+    const auto here = fit(moments_around(cells_, middle, reach));
+    if (!here) continue;
+    if (here->is_line || !surface) surface = here;
+    if (here->is_line) break;
   }
   if (!surface) return std::nullopt;
   const double cell_m2 = frame_.resolution_m * frame_.resolution_m;
   surface->point_in_map = frame_.centre_of(middle) + frame_.resolution_m * surface->point_in_map;
   surface->across_m2 *= cell_m2;
+  surface->along_m2 *= cell_m2;
   return surface;
+}
+
+const std::optional<Surface>& SurfaceFinder::near(std::size_t point,
+                                                  const Eigen::Vector2d& point_in_map,
+                                                  double reach_m) {
+  Found& found = found_[point];
+  const CellIndex middle = map_.frame_.cell_of(point_in_map);
+  const bool looks_far = map_.looks_far(reach_m);
+  if (!found.is_known || found.middle != middle || found.looks_far != looks_far)
+    found = {true, looks_far, middle, map_.near(middle, looks_far)};
+  return found.surface;
 }
 
 }  // namespace waymark

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps repeated work to a share of the time, however much one turn of it costs.
+#pragma once
+
+#include <chrono>
+
+namespace waymark::viewer {
+
+/// Each turn buys its pause: after a turn that took c, the next may start c / share after its
+/// start. Wall-clock time, so that nothing which must be repeatable may depend on it.
+class Pacer {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// @param max_share  of the time that the work may take, in (0, 1]; 1 = no pause.
+  explicit Pacer(double max_share) : max_share_{max_share} {}
+
+  bool may_start(Clock::time_point now) const { return now >= next_start_; }
+
+  void has_worked(Clock::time_point start, Clock::time_point end) {
+    const std::chrono::duration<double> pause = (end - start) / max_share_;
+    next_start_ = start + std::chrono::duration_cast<Clock::duration>(pause);
+  }
+
+ private:
+  double max_share_;
+  Clock::time_point next_start_{Clock::time_point::min()};
+};
+
+}  // namespace waymark::viewer

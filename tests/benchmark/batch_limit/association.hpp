@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which measurement is of which wall and which marker, and a first guess of where all of them are.
+#pragma once
+
+#include "batch_limit/recorded_drive.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace waymark::benchmark {
+
+/// A straight wall: normal' (point - anchor) = offset, map frame.
+struct Wall {
+  Eigen::Vector2d anchor{Eigen::Vector2d::Zero()};  ///< on it when first seen; fixed
+  double normal_rad{0.0};
+  double offset_m{0.0};
+
+  Eigen::Vector2d normal() const { return {std::cos(normal_rad), std::sin(normal_rad)}; }
+};
+
+struct Marker {
+  int id{kNoMarker};
+  Se2 map_from_marker{};
+  std::optional<std::size_t> wall{};  ///< that it hangs on
+};
+
+/// A measurement (by its place among those of its stop) and the wall or marker that it is of.
+struct Link {
+  std::size_t stop{0};
+  std::size_t measurement{0};
+  std::size_t landmark{0};
+};
+
+/// The map's origin is the first stop.
+struct Scene {
+  std::vector<Se2> map_from_base{};  ///< of each stop
+  std::vector<Wall> walls{};
+  std::vector<Marker> markers{};
+  std::vector<Link> wall_links{};
+  std::vector<Link> marker_links{};
+};
+
+/// Dead reckoning that keeps to the walls; walls by place and direction, markers by id and place.
+/// @param same_marker_within_m  sightings of an id further apart are of different markers.
+Scene associate(const std::vector<Stop>& stops, const OdometryNoise& noise,
+                double same_marker_within_m);
+
+}  // namespace waymark::benchmark

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "batch_limit/least_squares.hpp"
+
+#include "batch_limit/residuals.hpp"
+
+#include <algorithm>
+
+namespace waymark::benchmark {
+namespace {
+
+constexpr double kOutlierSigmas = 4.0;  // residuals beyond count linearly
+constexpr int kRounds = 2;              // the derivatives by odometry errors are taken anew
+constexpr int kMaxIterations = 100;
+constexpr double kExact = 1e-7;     // stands for a standard deviation of zero
+constexpr double kBulge_m = 0.001;  // of a marker off its wall, beside what all have in common
+
+std::array<double, 3> values_of(const Se2& pose) {
+  return {pose.x(), pose.y(), pose.theta()};
+}
+
+Se2 pose_of(const std::array<double, 3>& values) {
+  return {values[0], values[1], values[2]};
+}
+
+/// The unknowns in the form that Ceres edits, and the problem over them.
+class Batch {
+ public:
+  Batch(const std::vector<Stop>& stops, const BatchSolution& start, const BatchNoise& noise)
+      : stops_{stops}, solution_{start} {
+    for (const Se2& pose : start.scene.map_from_base)
+      poses_.push_back(values_of(pose));
+    for (const Marker& marker : start.scene.markers)
+      markers_.push_back(values_of(marker.map_from_marker));
+    for (const Wall& wall : start.scene.walls)
+      walls_.push_back({wall.normal_rad, wall.offset_m});
+    add_motions(noise.odometry);
+    add_walls();
+    add_markers(noise.markers);
+    add_priors(noise);
+    problem_.SetParameterBlockConstant(poses_.front().data());
+  }
+
+  BatchSolution solve() {
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    options.max_num_iterations = kMaxIterations;
+    options.function_tolerance = 1e-10;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem_, &summary);
+    solution_.has_converged = summary.termination_type == ceres::CONVERGENCE;
+    solution_.report = summary.BriefReport();
+    solution_.chi2 = 2.0 * summary.final_cost;
+    solution_.residuals = static_cast<std::size_t>(problem_.NumResiduals());
+    take_over();
+    return solution_;
+  }
+
+ private:
+  template <class Residual, int kResiduals, int... kBlocks>
+  void add(const Residual& residual, ceres::LossFunction* loss, auto*... blocks) {
+    problem_.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<Residual, kResiduals, kBlocks...>(new Residual(residual)),
+        loss, blocks...);
+  }
+
+  static ceres::LossFunction* robust() { return new ceres::HuberLoss(kOutlierSigmas); }
+
+  void add_motions(const OdometryNoise& noise) {
+    for (std::size_t i = 1; i < stops_.size(); ++i) {
+      const CorrectedMotion motion =
+          corrected_motion(stops_[i].motion, solution_.odometry_errors, noise);
+      add<MotionResidual, 3, 3, 3, 3>(
+          {motion, solution_.odometry_errors, whitening(motion.covariance)}, nullptr,
+          poses_[i - 1].data(), poses_[i].data(), solution_.odometry_errors.data());
+    }
+  }
+
+  void add_walls() {
+    for (const Link& link : solution_.scene.wall_links) {
+      add<WallResidual, 2, 3, 2>(
+          {stops_[link.stop].lines[link.measurement], solution_.scene.walls[link.landmark].anchor},
+          robust(), poses_[link.stop].data(), walls_[link.landmark].data());
+    }
+  }
+
+  void add_markers(const MarkerMeasurementConfig& noise) {
+    double* const camera = solution_.camera_errors.data();
+    for (const Link& link : solution_.scene.marker_links) {
+      const MarkerMeasurement& measurement = stops_[link.stop].markers[link.measurement];
+      add<MarkerResidual, 3, 3, 3, 2>({measurement, whitening(measurement.covariance)}, robust(),
+                                      poses_[link.stop].data(), markers_[link.landmark].data(),
+                                      camera);
+    }
+    for (std::size_t i = 0; i < markers_.size(); ++i) {
+      const auto& wall = solution_.scene.markers[i].wall;
+      if (!wall) continue;
+      add<HangingResidual, 2, 3, 2, 1>(
+          {solution_.scene.walls[*wall].anchor, kBulge_m, noise.wall_sigma_rad}, robust(),
+          markers_[i].data(), walls_[*wall].data(), &solution_.standoff_m);
+    }
+    add_perspective(noise.perspective_sigma);
+  }
+
+  /// Views err alike, so that all of them together count as one.
+  void add_perspective(double sigma) {
+    double sum = 0.0;
+    double weight = 0.0;
+    for (const Link& link : solution_.scene.marker_links) {
+      const auto& focal = stops_[link.stop].markers[link.measurement].focal;
+      if (!focal) continue;
+      sum += focal->error / (focal->sigma * focal->sigma);
+      weight += 1.0 / (focal->sigma * focal->sigma);
+    }
+    if (weight > 0.0)
+      add<FocalResidual, 1, 2>({{sum / weight, sigma}}, nullptr, solution_.camera_errors.data());
+  }
+
+  void add_priors(const BatchNoise& noise) {
+    const OdometryNoise& odometry = noise.odometry;
+    add<PriorResidual<3>, 3, 3>(
+        {{odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma}},
+        nullptr, solution_.odometry_errors.data());
+    const MarkerMeasurementConfig& markers = noise.markers;
+    add<PriorResidual<2>, 2, 2>({{std::max(markers.camera_yaw_sigma_rad, kExact),
+                                  std::max(markers.camera_focal_sigma, kExact)}},
+                                nullptr, solution_.camera_errors.data());
+    add<PriorResidual<1>, 1, 1>({{std::max(markers.wall_sigma_m, kExact)}}, nullptr,
+                                &solution_.standoff_m);
+  }
+
+  void take_over() {
+    Scene& scene = solution_.scene;
+    for (std::size_t i = 0; i < poses_.size(); ++i)
+      scene.map_from_base[i] = pose_of(poses_[i]);
+    for (std::size_t i = 0; i < markers_.size(); ++i)
+      scene.markers[i].map_from_marker = pose_of(markers_[i]);
+    for (std::size_t i = 0; i < walls_.size(); ++i) {
+      scene.walls[i].normal_rad = walls_[i][0];
+      scene.walls[i].offset_m = walls_[i][1];
+    }
+  }
+
+  const std::vector<Stop>& stops_;
+  BatchSolution solution_;
+  std::vector<std::array<double, 3>> poses_{};
+  std::vector<std::array<double, 3>> markers_{};
+  std::vector<std::array<double, 2>> walls_{};
+  ceres::Problem problem_{};
+};
+
+}  // namespace
+
+BatchSolution solve(const std::vector<Stop>& stops, const Scene& guess, const BatchNoise& noise) {
+  BatchSolution solution;
+  solution.scene = guess;
+  for (int round = 0; round < kRounds; ++round)
+    solution = Batch{stops, solution, noise}.solve();
+  return solution;
+}
+
+}  // namespace waymark::benchmark

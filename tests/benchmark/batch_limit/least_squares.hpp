@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The best trajectory that the data allow: all measurements of a drive at once, by least squares.
+#pragma once
+
+#include "batch_limit/association.hpp"
+
+#include <string>
+#include <vector>
+
+namespace waymark::benchmark {
+
+struct BatchNoise {
+  OdometryNoise odometry{};
+  MarkerMeasurementConfig markers{};
+};
+
+struct BatchSolution {
+  Scene scene{};  ///< moved to the minimum
+  OdometryErrors odometry_errors{OdometryErrors::Zero()};
+  Eigen::Vector2d camera_errors{Eigen::Vector2d::Zero()};  ///< yaw [rad], focal length (relative)
+  double standoff_m{0.0};                                  ///< of all markers before their walls
+  double chi2{0.0};
+  std::size_t residuals{0};
+  bool has_converged{false};
+  std::string report{};  ///< Ceres', one line
+};
+
+/// Poses, odometry's and camera's systematic errors, walls and markers that fit best.
+/// Source: Ceres Solver; noise models and derivatives by errors are those of the estimator.
+BatchSolution solve(const std::vector<Stop>& stops, const Scene& guess, const BatchNoise& noise);
+
+}  // namespace waymark::benchmark

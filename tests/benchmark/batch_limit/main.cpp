@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Prints how well the data of a recorded run determine its trajectory: the best that any method
+// could do, by least squares over all of the log at once. The truth is used only to measure that.
+#include "batch_limit/least_squares.hpp"
+#include "evaluate/marker_error.hpp"
+#include "evaluate/trajectory_error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace {
+
+using namespace waymark;
+namespace fs = std::filesystem;
+using evaluate::Alignment;
+using evaluate::InputError;
+using evaluate::Skipped;
+using evaluate::Trajectory;
+using evaluate::TrajectoryError;
+
+constexpr int kFine = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+struct Arguments {
+  fs::path run_dir{};
+  fs::path estimate{};
+  fs::path out{};
+  std::vector<std::string> settings{};
+};
+
+SlamConfig configuration(const Arguments& arguments) {
+  ConfigSources sources{{arguments.run_dir / "robot.toml"}, arguments.settings};
+  return load_config<SlamConfig>(sources);
+}
+
+Trajectory trajectory_of(const benchmark::Scene& scene, const std::vector<benchmark::Stop>& stops) {
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < stops.size(); ++i)
+    trajectory.push_back({to_seconds(stops[i].time), scene.map_from_base[i]});
+  return trajectory;
+}
+
+void write_tum(const fs::path& file, const Trajectory& trajectory) {
+  std::string text;
+  for (const auto& [t_s, pose] : trajectory)
+    text += fmt::format("{:.6f} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n", t_s, pose.x(), pose.y(),
+                        std::sin(0.5 * pose.theta()), std::cos(0.5 * pose.theta()));
+  evaluate::write_whole_file(file, text);
+}
+
+std::vector<evaluate::PosePair> pairs_of(const Trajectory& trajectory, const Trajectory& truth,
+                                         const std::string& name) {
+  auto pairs = evaluate::associate(trajectory, truth);
+  if (pairs.empty()) throw InputError{name + ": no pose within the time span of the truth"};
+  return pairs;
+}
+
+void print_error(const char* name, const TrajectoryError& error) {
+  fmt::print("{:9} ate_origin {:.4f} m  along {:.4f} m  across {:.4f} m  heading {:.4f} deg\n",
+             name, error.ate_origin_m, error.along_m ? error.along_m->rms : 0.0,
+             error.across_m ? error.across_m->rms : 0.0, error.heading_deg.rms);
+}
+
+void print_markers(const benchmark::Scene& scene, const fs::path& truth_file,
+                   const Se2& world_from_map) {
+  if (!fs::exists(truth_file)) return;
+  Skipped skipped;
+  std::vector<evaluate::Marker> in_map;
+  for (const benchmark::Marker& marker : scene.markers)
+    in_map.push_back({marker.id, marker.map_from_marker});
+  const auto error = evaluate::marker_error(in_map, evaluate::read_markers(truth_file, skipped),
+                                            world_from_map, 5.0);
+  fmt::print("markers   mean {:.4f} m  worst {:.4f} m  matched {}  missing {}  spurious {}\n",
+             error.mean_position_m.value_or(0.0), error.max_position_m.value_or(0.0), error.matched,
+             error.missing, error.spurious);
+}
+
+void print_errors_found(const benchmark::BatchSolution& solution) {
+  fmt::print("odometry  scale {:+.3f} %  drift {:+.4f} deg/m  turn scale {:+.3f} %\n",
+             100.0 * solution.odometry_errors[0], degrees(solution.odometry_errors[1]),
+             100.0 * solution.odometry_errors[2]);
+  fmt::print("camera    yaw {:+.4f} deg  focal length {:+.3f} %  markers stand off {:.1f} mm\n",
+             degrees(solution.camera_errors[0]), 100.0 * solution.camera_errors[1],
+             1e3 * solution.standoff_m);
+}
+
+int run(const Arguments& arguments) {
+  const SlamConfig config = configuration(arguments);
+  Skipped skipped;
+  const auto stops = benchmark::recorded_stops(arguments.run_dir / "run.lcm", config);
+  const WaymarkConfig& waymark = config.slam.waymark;
+  const auto guess = benchmark::associate(stops, waymark.odometry, waymark.same_marker_within_m);
+  const auto solution = benchmark::solve(stops, guess, {waymark.odometry, waymark.markers});
+  fmt::print("{} poses, {} walls seen {} times, {} markers seen {} times; chi2 {:.0f} of {}; {}\n",
+             stops.size(), guess.walls.size(), guess.wall_links.size(), guess.markers.size(),
+             guess.marker_links.size(), solution.chi2, solution.residuals, solution.report);
+  print_errors_found(solution);
+  const Trajectory limit = trajectory_of(solution.scene, stops);
+  if (!arguments.out.empty()) write_tum(arguments.out, limit);
+
+  const Trajectory truth = evaluate::read_tum(arguments.run_dir / "truth.tum", skipped);
+  const auto pairs = pairs_of(limit, truth, "the limit");
+  const TrajectoryError limit_error = evaluate::trajectory_error(pairs, Alignment::kOrigin);
+  print_error("limit", limit_error);
+  print_markers(solution.scene, arguments.run_dir / "truth_markers.csv",
+                evaluate::align(pairs, Alignment::kOrigin));
+  if (!arguments.estimate.empty()) {
+    const Trajectory estimate = evaluate::read_tum(arguments.estimate, skipped);
+    const TrajectoryError error = evaluate::trajectory_error(
+        pairs_of(estimate, truth, arguments.estimate.string()), Alignment::kOrigin);
+    print_error("estimate", error);
+    fmt::print("ratio     {:.3f}\n", error.ate_origin_m / limit_error.ate_origin_m);
+  }
+  for (const std::string& line : skipped)
+    fmt::print(stderr, "skipped: {}\n", line);
+  if (!solution.has_converged) fmt::print(stderr, "batch_limit: has not converged\n");
+  return solution.has_converged && skipped.empty() ? kFine : kFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App program{
+      "The best trajectory that the data of a run allow, against the truth.\n"
+      "Exit code: 0 fine; 1 not converged, or lines were skipped; 2 wrong usage or files."};
+  program.add_option("RUN_DIR", arguments.run_dir, "with run.lcm, robot.toml, truth.tum")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  program
+      .add_option("--estimate", arguments.estimate,
+                  "trajectory.tum of an estimator: prints its ATE over the limit's")
+      ->check(CLI::ExistingFile);
+  program.add_option("--out", arguments.out, "write the limit's trajectory there (TUM)");
+  program.add_option("--set", arguments.settings,
+                     "key=value, as waymark-slam's; the noise is that of [slam.waymark]");
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kFine : kUsage;
+  }
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "batch_limit: {}\n", error.what());
+    return kUsage;
+  }
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "batch_limit/recorded_drive.hpp"
+
+#include "common/log/log_file.hpp"
+#include "common/messages/codec.hpp"
+#include "common/messages/convert.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+namespace waymark::benchmark {
+namespace {
+
+void deliver(const Message& message, SensorQueue& queue) {
+  if (message.channel == channels::kLidar.name) {
+    if (const auto planar = decode<planar_lidar_t>(message.payload).message)
+      queue.add(to_scan(*planar));
+    else if (const auto rolling = decode<lidar_t>(message.payload).message)
+      queue.add(to_scan(*rolling));
+  } else if (message.channel == channels::kOdometry.name) {
+    if (const auto pose = decode<pose2D_t>(message.payload).message) queue.add(to_odometry(*pose));
+  } else if (const auto frame = decode<marker_detections_t>(message.payload).message) {
+    queue.add(to_detections(*frame));
+  }
+}
+
+constexpr double kSamePlace_m = 0.3;
+constexpr double kNoWall = 1e3;  // [m, rad]: nothing is held to a wall that vague
+
+/// What the camera alone says of the markers that the walls do not contradict: a batch knows the
+/// walls better than one scan does.
+std::vector<MarkerMeasurement> camera_measurements(const Observation& observation,
+                                                   const EstimatorSetup& setup,
+                                                   MarkerMeasurementConfig config) {
+  const auto believed =
+      measure_markers(observation, setup.range_sigma_m, setup.camera.base_from_camera, config);
+  config.wall_sigma_m = kNoWall;
+  config.wall_sigma_rad = kNoWall;
+  auto measured =
+      measure_markers(observation, setup.range_sigma_m, setup.camera.base_from_camera, config);
+  std::erase_if(measured, [&](const MarkerMeasurement& one) {
+    return std::ranges::none_of(believed, [&](const MarkerMeasurement& other) {
+      return one.id == other.id &&
+             (one.base_from_marker.translation() - other.base_from_marker.translation()).norm() <
+                 kSamePlace_m;
+    });
+  });
+  return measured;
+}
+
+/// Makes stops of observations; keeps those out that come too soon after the last stop.
+class StopCollector {
+ public:
+  explicit StopCollector(const SlamConfig& config)
+      : waymark_{config.slam.waymark}, setup_{estimator_setup(config)} {
+    noise_ = {setup_.range_sigma_m, waymark_.matching.surface_sigma_m, setup_.range_max_m};
+  }
+
+  void add(const Observation& observation) {
+    since_stop_ = since_stop_.then(observation.motion);
+    newest_ = observation;
+    if (stops_.empty() || since_stop_.distance_m >= waymark_.update_distance_m ||
+        since_stop_.turn_rad >= waymark_.update_turn_rad)
+      stop();
+  }
+
+  std::vector<Stop> finish() {
+    if (newest_ && stops_.back().time < newest_->time) stop();
+    return std::move(stops_);
+  }
+
+ private:
+  void stop() {
+    stops_.push_back({newest_->time, since_stop_, wall_lines(newest_->beams, noise_),
+                      camera_measurements(*newest_, setup_, waymark_.markers)});
+    since_stop_ = {};
+  }
+
+  WaymarkConfig waymark_;
+  EstimatorSetup setup_;
+  LineNoise noise_{};
+  std::optional<Observation> newest_{};
+  Motion since_stop_{};
+  std::vector<Stop> stops_{};
+};
+
+}  // namespace
+
+std::vector<Stop> recorded_stops(const std::filesystem::path& log, const SlamConfig& config) {
+  LogReader reader{log};
+  SensorQueue queue{sensor_setup(config)};
+  StopCollector collector{config};
+  const auto is_wanted = [](std::string_view channel) {
+    return channel == channels::kLidar.name || channel == channels::kOdometry.name ||
+           channel == channels::kMarkers.name;
+  };
+  const auto take_ready = [&] {
+    while (const auto ready = queue.next())
+      collector.add(ready->observation);
+  };
+  while (const auto message = reader.next(is_wanted)) {
+    deliver(*message, queue);
+    take_ready();
+  }
+  queue.finish();
+  take_ready();
+  std::vector<Stop> stops = collector.finish();
+  if (stops.empty())
+    throw std::runtime_error{log.string() +
+                             ": no LIDAR scan with ODOMETRY around it; is this the "
+                             "log of a run?"};
+  return stops;
+}
+
+}  // namespace waymark::benchmark

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a log says of a drive, without the truth: motions, walls and markers at every stop that is
+// to be solved for.
+#pragma once
+
+#include "batch_limit/wall_lines.hpp"
+#include "slam/core/landmark/marker_measurement.hpp"
+#include "slam/slam_config.hpp"
+
+#include <filesystem>
+#include <vector>
+
+namespace waymark::benchmark {
+
+/// A pose to solve for.
+struct Stop {
+  Timestamp time{};
+  Motion motion{};  ///< since the stop before
+  std::vector<LineOfScan> lines{};
+  std::vector<MarkerMeasurement> markers{};  ///< by the camera alone
+};
+
+/// Stops at the first scan, after every update_distance_m or update_turn_rad of [slam.waymark], and
+/// at the last scan.
+/// @throws std::runtime_error if the log cannot be read or holds no scan that odometry covers.
+std::vector<Stop> recorded_stops(const std::filesystem::path& log, const SlamConfig& config);
+
+}  // namespace waymark::benchmark

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/pacer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark::viewer {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr Pacer::Clock::time_point kStart{1000s};
+
+TEST(Pacer, StartsAtOnce) {
+  EXPECT_TRUE(Pacer{0.05}.may_start(kStart));
+}
+
+TEST(Pacer, ATurnBuysAPauseInProportionToItsCost) {
+  Pacer pacer{0.25};
+  pacer.has_worked(kStart, kStart + 2s);
+  EXPECT_FALSE(pacer.may_start(kStart + 7999ms));
+  EXPECT_TRUE(pacer.may_start(kStart + 8s));
+
+  pacer.has_worked(kStart + 8s, kStart + 8s + 20ms);
+  EXPECT_FALSE(pacer.may_start(kStart + 8s + 79ms));
+  EXPECT_TRUE(pacer.may_start(kStart + 8s + 80ms));
+}
+
+TEST(Pacer, TakesNoMoreThanItsShareHoweverOftenItIsAsked) {
+  Pacer pacer{0.05};
+  std::chrono::milliseconds worked{0};
+  auto now = kStart;
+  for (; now < kStart + 60s; now += 1ms) {
+    if (!pacer.may_start(now)) continue;
+    const auto cost = 30ms + worked / 20;  // grows with the map
+    pacer.has_worked(now, now + cost);
+    worked += cost;
+    now += cost;
+  }
+  EXPECT_LE(worked, 0.05 * (now - kStart) + 500ms) << "the last pause may still be open";
+  EXPECT_GE(worked, 0.03 * (now - kStart));
+}
+
+TEST(Pacer, AWholeShareMeansNoPause) {
+  Pacer pacer{1.0};
+  pacer.has_worked(kStart, kStart + 2s);
+  EXPECT_TRUE(pacer.may_start(kStart + 2s));
+}
+
+}  // namespace
+}  // namespace waymark::viewer
