@@ -49,7 +49,7 @@ mbot() {
     --align se2 | expect_at_most ate_se2_m 0.0070
 }
 
-# The first two minutes: two corridors and a room. The whole log: docs/gmapping.md.
+# The first two minutes. The whole log: docs/gmapping.md.
 fr079() {
   need_log fr079.clf.gz
   need_log fr079.relations
