@@ -19,8 +19,10 @@ rows=(
   "marker_matching_no_ids marker_matching slam.blank_ids=true"
   "marker_matching_rotation_only marker_matching slam.motion.rotation_only=true"
   "marker_matching marker_matching"
+  "waymark_no_ids waymark slam.blank_ids=true"
+  "waymark waymark"
 )
-readonly live_estimator=marker_matching
+readonly live_estimator=waymark
 
 parse_arguments() {
   out='' scenario='' seed=()

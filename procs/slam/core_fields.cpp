@@ -129,6 +129,8 @@ void SurfaceMatchingConfig::describe(Fields& fields) {
                "a beam this far from its wall counts a quarter");
   fields.field("information_share", information_share, kFraction,
                "of independent beams on an exact map");
+  fields.field("clump_weight", clump_weight, kNotNegative,
+               "of beams that hit no line but a clump of points; 0: not matched");
   fields.field("weak_share", weak_share, kFraction,
                "directions with less than this share of the strongest are unobserved");
 }

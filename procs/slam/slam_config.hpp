@@ -28,7 +28,7 @@ struct PreprocessingConfig {
 };
 
 struct SlamSection {
-  EstimatorName estimator{EstimatorName::kMarkerMatching};
+  EstimatorName estimator{EstimatorName::kWaymark};
   std::int64_t seed{1};
   int threads{1};
   bool blank_ids{false};

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 const fs::path kSource{WAYMARK_SOURCE_DIR};
 const fs::path kPrograms{WAYMARK_BUILD_DIR};
-constexpr const char* kRow = "marker_matching";
+constexpr const char* kRow = "waymark";
 
 class ClosedLoop : public ::testing::Test {
  protected:
@@ -67,9 +67,8 @@ class ClosedLoop : public ::testing::Test {
   }
 
   static void expect_same_result(const std::string& name) {
-    for (const std::string file :
-         {"run.lcm", "truth.tum", "marker_matching/map.pgm", "marker_matching/map.yaml",
-          "marker_matching/trajectory.tum", "marker_matching/markers.csv"}) {
+    for (const std::string file : {"run.lcm", "truth.tum", "waymark/map.pgm", "waymark/map.yaml",
+                                   "waymark/trajectory.tum", "waymark/markers.csv"}) {
       EXPECT_TRUE(content_of(folder() / name / file) == content_of(folder() / "reference" / file))
           << file << " of " << name << " differs from that of the undisturbed run";
     }
@@ -108,9 +107,8 @@ TEST_F(ClosedLoop, EstimatesPoseMapAndMarkers) {
 TEST_F(ClosedLoop, WritesEverythingThatScriptsRelyOn) {
   for (const std::string file :
        {"run.lcm", "scenario.toml", "robot.toml", "truth.tum", "truth_markers.csv", "logs/sim.log",
-        "marker_matching/map.pgm", "marker_matching/map.yaml", "marker_matching/map.png",
-        "marker_matching/marker_layer.png", "marker_matching/trajectory.tum",
-        "marker_matching/markers.csv"}) {
+        "waymark/map.pgm", "waymark/map.yaml", "waymark/map.png", "waymark/marker_layer.png",
+        "waymark/trajectory.tum", "waymark/markers.csv"}) {
     EXPECT_TRUE(fs::exists(folder() / "reference" / file)) << file;
   }
   for (const auto& entry : fs::recursive_directory_iterator{folder() / "reference"}) {

@@ -224,6 +224,26 @@ TEST(SurfaceMatching, FindsThePoseAcrossABareCorridorAndNothingAlongIt) {
   EXPECT_NEAR(matched.covariance(0, 0), 0.01, 0.001);
 }
 
+TEST(SurfaceMatching, AClumpTellsThePlaceAndALineOnlyTheDistance) {
+  const GridFrame frame = GridFrame::centred_on_map_origin(0.05);
+  Random random{5};
+  const auto match_of = [&](double length_m) {
+    SurfaceMap map{frame};
+    for (int i = 0; i < 400; ++i)
+      map.add({2.0 + 0.01 * random.normal(), length_m * (random.uniform() - 0.5)});
+    std::vector<AnnotatedBeam> beams(1);
+    beams[0].beam.end_in_base = {2.0, 0.02};
+    beams[0].beam.range_m = 2.0;
+    SurfaceMatchingConfig config;
+    config.weak_share = 0.0;
+    return match_surfaces(beams, map, {}, diagonal(0.01, 0.01, 0.001), config).pose.information;
+  };
+  const Eigen::Matrix3d line = match_of(2.0);
+  const Eigen::Matrix3d clump = match_of(0.04);
+  EXPECT_LT(line(1, 1), 0.01 * line(0, 0));
+  EXPECT_GT(clump(1, 1), 0.1 * clump(0, 0));
+}
+
 TEST(WallFit, ExtendsTheWallWithItsUncertainty) {
   Random random{6};
   const auto beams = corridor_beams(0.01, random);

@@ -26,6 +26,13 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> told_axes(const Observability& walls_in
   return axes;
 }
 
+/// Covariance of (x, y, theta) in the map, turned into the base's axes.
+Eigen::Matrix3d in_frame_of(const Se2& map_from_base, const Eigen::Matrix3d& covariance_in_map) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = map_from_base.rotation();
+  return turn.transpose() * covariance_in_map * turn;
+}
+
 }  // namespace
 
 WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config)
@@ -36,19 +43,30 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
           State{GridFrame::centred_on_map_origin(setup.grid.resolution_m), prior_of(config)}},
       mapper_{setup.grid} {
   config_.matching.range_sigma_m = setup.range_sigma_m;
+  noise_ = config_.odometry;
 }
 
 Estimate WaymarkEstimator::update(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
+  believe_scans_about_slips(observation);
   if (updates_ == 0 || is_due()) {
     process(observation);
     mapper_.insert(observation, mean_, covariance_);
     Random random{setup_.seed, kResamplingStream, updates_};
     particles_.resample_if_needed(config_.resample_threshold, random);
     since_update_ = {};
+    updated_beams_ = observation.beams;
     ++updates_;
   }
   return estimate(observation);
+}
+
+void WaymarkEstimator::believe_scans_about_slips(const Observation& observation) {
+  const auto by_scans = turn_between(updated_beams_, observation.beams, since_update_);
+  if (!by_scans || !by_scans->contradicts_odometry) return;
+  Se2& start_from_end = since_update_.start_from_end;
+  since_update_.turn_rad += std::abs(angle_difference(by_scans->turn_rad, start_from_end.theta()));
+  start_from_end = {start_from_end.translation(), by_scans->turn_rad};
 }
 
 bool WaymarkEstimator::is_due() const {
@@ -72,6 +90,8 @@ void WaymarkEstimator::process(const Observation& observation) {
   for (std::size_t i = 0; i < particles_.size(); ++i)
     particles_.add_log_weight(i, outcomes[i].log_evidence);
   particles_.normalise();
+  noise_growth_.learn(outcomes[particles_.best()].correction);
+  noise_ = noise_growth_.applied_to(config_.odometry);
   judge(outcomes);
 }
 
@@ -80,10 +100,18 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   Outcome outcome;
   state.previous_map_from_base = state.map_from_base;
   if (updates_ > 0) {
-    state.belief.move(since_update_, config_.odometry);
+    state.belief.move(since_update_, noise_);
+    const Se2 predicted = state.belief.map_from_base();
+    const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
     correct_by_walls(state, sensed, outcome);
+    correct_by_markers(state, sensed, outcome);
+    const Eigen::Matrix3d posterior = in_frame_of(predicted, state.belief.pose_covariance());
+    const Se2 moved = predicted.inverse() * state.belief.map_from_base();
+    outcome.correction = {
+        {moved.x(), moved.y(), moved.theta()}, prior.diagonal(), posterior.diagonal()};
+  } else {
+    correct_by_markers(state, sensed, outcome);
   }
-  correct_by_markers(state, sensed, outcome);
   state.belief.draw_pose(told_axes(sensed.walls, state.belief.map_from_base()), normal);
   state.map_from_base = state.belief.map_from_base();
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
@@ -173,7 +201,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   Eigen::Matrix3d covariance = covariance_;
   if (has_moved) {
     const State& best = particles_.state(particles_.best());
-    const Belief::Prediction predicted = best.belief.predicted(since_update_, config_.odometry);
+    const Belief::Prediction predicted = best.belief.predicted(since_update_, noise_);
     const PoseProposal now = propose(predicted.map_from_base, predicted.covariance,
                                      [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
                                        return match_surfaces(observation.beams, best.walls, pose,
@@ -240,7 +268,7 @@ std::vector<PublishedParticle> WaymarkEstimator::particles() const {
   published.reserve(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const State& state = particles_.state(i);
-    published.push_back({state.belief.predicted(since_update_, config_.odometry).map_from_base,
+    published.push_back({state.belief.predicted(since_update_, noise_).map_from_base,
                          state.previous_map_from_base, particles_.weights()[i]});
   }
   return published;

@@ -4,10 +4,12 @@
 #pragma once
 
 #include "slam/core/belief/belief.hpp"
+#include "slam/core/belief/noise_growth.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/filter/particle_set.hpp"
 #include "slam/core/matching/surface_matching.hpp"
 #include "slam/core/proposal/pose_proposal.hpp"
+#include "slam/core/scan/turn_by_scans.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -74,8 +76,10 @@ class WaymarkEstimator final : public Estimator {
     double log_evidence{0.0};
     int known_markers{0};
     SurfaceMatch walls{};
+    PoseCorrection correction{};
   };
 
+  void believe_scans_about_slips(const Observation& observation);
   bool is_due() const;
   void process(const Observation& observation);
   Outcome advance(State& state, const Sensed& sensed, const Eigen::Vector3d& normal) const;
@@ -90,8 +94,11 @@ class WaymarkEstimator final : public Estimator {
   EstimatorSetup setup_;
   WaymarkConfig config_;
   ParticleSet<State> particles_;
+  NoiseGrowth noise_growth_{};
+  OdometryNoise noise_{};  ///< the configured one, grown
   Mapper mapper_;
   Motion since_update_{};
+  std::vector<AnnotatedBeam> updated_beams_{};  ///< those of the last update
   std::uint64_t updates_{0};
 
   // Of the last update:

@@ -10,6 +10,68 @@ double squared(double x) {
   return x * x;
 }
 
+constexpr double kClumpKnee = 3.0;  // [sigma] a beam this far from its clump counts a quarter
+
+/// The end of a beam, with how it moves with the pose (x, y, theta; map frame).
+struct BeamEnd {
+  Eigen::Vector2d end;
+  Eigen::Vector2d lever;  ///< from the base
+  Eigen::Vector2d ray;    ///< unit
+
+  Eigen::Vector3d moved_along(const Eigen::Vector2d& direction) const {
+    return {direction.x(), direction.y(), direction.x() * -lever.y() + direction.y() * lever.x()};
+  }
+};
+
+/// Geman-McClure: 1 near zero, so that the cost is quadratic, and falling, so that it is constant
+/// far away.
+double trust_in(double error, double knee_sigmas) {
+  return squared(knee_sigmas) / (squared(knee_sigmas) + error);
+}
+
+/// Adds "it lies off by `residual_m`", an error that counts `weight` times.
+/// @return how far it is trusted.
+double add_distance(const Eigen::Vector3d& row, double residual_m, double variance_m2,
+                    double weight, double knee_sigmas, const Eigen::Matrix3d& uncertainty,
+                    PoseInformation& pose) {
+  const double error = squared(residual_m) / (variance_m2 + row.dot(uncertainty * row));
+  const double trust = trust_in(error, knee_sigmas);
+  const double information = weight * squared(trust) / variance_m2;
+  pose.information.noalias() += information * row * row.transpose();
+  pose.gradient.noalias() += information * residual_m * row;
+  pose.cost += 0.5 * weight * error * trust;
+  return trust;
+}
+
+double add_line(const BeamEnd& hit, const Surface& line, const Eigen::Matrix3d& uncertainty,
+                const SurfaceMatchingConfig& config, PoseInformation& pose) {
+  const Eigen::Vector2d& normal = line.normal_in_map;
+  const Eigen::Vector3d along = hit.moved_along({-normal.y(), normal.x()});
+  const double variance_m2 = squared(config.range_sigma_m * normal.dot(hit.ray)) +
+                             squared(config.surface_sigma_m) + line.across_m2 / line.count;
+  const double trust =
+      add_distance(hit.moved_along(normal), normal.dot(hit.end - line.point_in_map), variance_m2,
+                   config.information_share, config.outlier_sigmas, uncertainty, pose);
+  // A normal that is turned by its noise seems to tell what lies along the surface: the square of
+  // that is taken out again, on average.
+  pose.information.noalias() -= config.information_share * squared(trust) / variance_m2 *
+                                line.normal_rad2 * along * along.transpose();
+  return trust;
+}
+
+/// The beam may have hit any of the clump's points, so their scatter is its uncertainty.
+void add_clump(const BeamEnd& hit, const Surface& clump, const Eigen::Matrix3d& uncertainty,
+               const SurfaceMatchingConfig& config, PoseInformation& pose) {
+  const Eigen::Vector2d& normal = clump.normal_in_map;
+  const Eigen::Vector2d along{-normal.y(), normal.x()};
+  const Eigen::Vector2d away = hit.end - clump.point_in_map;
+  const double range_m2 = squared(config.range_sigma_m);
+  add_distance(hit.moved_along(normal), normal.dot(away), clump.across_m2 + range_m2,
+               config.clump_weight, kClumpKnee, uncertainty, pose);
+  add_distance(hit.moved_along(along), along.dot(away), clump.along_m2 + range_m2,
+               config.clump_weight, kClumpKnee, uncertainty, pose);
+}
+
 }  // namespace
 
 void keep_observed(double weak_share, PoseInformation& pose) {
@@ -36,35 +98,18 @@ SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceM
   for (const AnnotatedBeam& annotated : beams) {
     const Beam& beam = annotated.beam;
     const Eigen::Vector2d lever = turn * beam.end_in_base;
-    const Eigen::Vector2d end = lever + map_from_base.translation();
+    const BeamEnd hit{lever + map_from_base.translation(), lever,
+                      turn * (beam.end_in_base - beam.start_in_base) / beam.range_m};
     const double spread_m2 =
         std::max(uncertainty(0, 0), uncertainty(1, 1)) + uncertainty(2, 2) * lever.squaredNorm();
-    const auto surface = map.near(end, 2.0 * std::sqrt(spread_m2));
+    const auto surface = map.near(hit.end, 2.0 * std::sqrt(spread_m2));
     if (!surface) continue;
-    const Eigen::Vector2d& normal = surface->normal_in_map;
-    const Eigen::Vector2d along{-normal.y(), normal.x()};
-    const Eigen::Vector2d ray = turn * (beam.end_in_base - beam.start_in_base) / beam.range_m;
-    const Eigen::Vector3d row{normal.x(), normal.y(),
-                              normal.x() * -lever.y() + normal.y() * lever.x()};
-    const Eigen::Vector3d along_row{along.x(), along.y(),
-                                    along.x() * -lever.y() + along.y() * lever.x()};
-    const double variance_m2 = squared(config.range_sigma_m * normal.dot(ray)) +
-                               squared(config.surface_sigma_m) +
-                               surface->across_m2 / surface->count;
-    const double residual_m = normal.dot(end - surface->point_in_map);
-    const double error = squared(residual_m) / (variance_m2 + row.dot(uncertainty * row));
-    // Geman-McClure: quadratic near zero, constant far away.
-    const double knee = squared(config.outlier_sigmas);
-    const double trust = knee / (knee + error);
-    const double weight = config.information_share * squared(trust) / variance_m2;
-    // A normal that is turned by its noise seems to tell what lies along the surface: the square of
-    // that is taken out again, on average.
-    match.pose.information.noalias() +=
-        weight * (row * row.transpose() - surface->normal_rad2 * along_row * along_row.transpose());
-    match.pose.gradient.noalias() += weight * residual_m * row;
-    match.pose.cost += 0.5 * config.information_share * error * trust;
-    match.mapped += 1.0;
-    match.agreeing += trust;
+    if (surface->is_line) {
+      match.mapped += 1.0;
+      match.agreeing += add_line(hit, *surface, uncertainty, config, match.pose);
+    } else if (config.clump_weight > 0.0) {
+      add_clump(hit, *surface, uncertainty, config, match.pose);
+    }
   }
   keep_observed(config.weak_share, match.pose);
   return match;

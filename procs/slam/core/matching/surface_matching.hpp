@@ -17,6 +17,7 @@ struct SurfaceMatchingConfig {
   double surface_sigma_m{0.002};  ///< roughness of walls, errors of beam angles
   double outlier_sigmas{10.0};    ///< a beam this far off counts a quarter
   double information_share{1.0};  ///< beams are not quite independent, nor is the map exact
+  double clump_weight{3.0};       ///< of a beam that hits a clump; 0: clumps are not matched
   double weak_share{0.02};        ///< directions below this share of the strongest are unobserved
 
   void describe(Fields& fields);
@@ -31,10 +32,12 @@ struct SurfaceMatch {
 
 /// Second-order model of the scan's negative log-likelihood at a pose. Beams that end where nothing
 /// is mapped are neutral. Each beam measures its distance to the wall, n'(p - m), with the part of
-/// the range error that lies across the wall. Directions that the walls do not tell get no
+/// the range error that lies across the wall; where there is no line but a clump of points, how far
+/// it is from their middle, judged by their scatter. Directions that the scan does not tell get no
 /// information and no gradient, so nothing pulls back along a bare corridor.
-/// Source: Censi (2008), "An ICP variant using a point-to-line metric"; Zhang, Kaess, Singh (2016),
-/// "On degeneracy of optimization-based state estimation problems".
+/// Source: Censi (2008), "An ICP variant using a point-to-line metric"; Biber, Strasser (2003),
+/// "The normal distributions transform"; Zhang, Kaess, Singh (2016), "On degeneracy of
+/// optimization-based state estimation problems".
 /// @param uncertainty  covariance of the pose (x, y, theta), map frame: how far off beams may be
 /// before they count as outliers.
 SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceMap& map,

@@ -58,10 +58,10 @@ std::optional<Surface> fit(const Moments& moments) {
   surface.across_m2 = std::max(0.0, half_trace - root) + kCellVariance;
   const double along_m2 = half_trace + root + kCellVariance;
   surface.normal_rad2 = surface.across_m2 / (moments.count * along_m2);
-  if (surface.across_m2 > kMaxThickness * kMaxThickness || along_m2 < kMinLength * kMinLength ||
-      along_m2 < kMinElongation * kMinElongation * surface.across_m2) {
-    return std::nullopt;
-  }
+  surface.along_m2 = along_m2;
+  surface.is_line = surface.across_m2 <= kMaxThickness * kMaxThickness &&
+                    along_m2 >= kMinLength * kMinLength &&
+                    along_m2 >= kMinElongation * kMinElongation * surface.across_m2;
   // Eigenvector of the smaller eigenvalue.
   const double along_x = 0.5 * (xx - yy) + root;
   surface.normal_in_map = Eigen::Vector2d{-xy, along_x};
@@ -92,13 +92,17 @@ std::optional<Surface> SurfaceMap::near(const Eigen::Vector2d& point_in_map, dou
   const double reach_cells = reach_m / frame_.resolution_m;
   std::optional<Surface> surface;
   for (const int reach : kReaches) {
-    if (surface || (reach > kAlwaysTried && reach / 2 >= reach_cells)) break;
-    surface = fit(moments_around(cells_, middle, reach));
+    if ((surface && surface->is_line) || (reach > kAlwaysTried && reach / 2 >= reach_cells)) break;
+    const auto here = fit(moments_around(cells_, middle, reach));
+    if (!here) continue;
+    if (here->is_line || !surface) surface = here;
+    if (here->is_line) break;
   }
   if (!surface) return std::nullopt;
   const double cell_m2 = frame_.resolution_m * frame_.resolution_m;
   surface->point_in_map = frame_.centre_of(middle) + frame_.resolution_m * surface->point_in_map;
   surface->across_m2 *= cell_m2;
+  surface->along_m2 *= cell_m2;
   return surface;
 }
 

@@ -21,13 +21,16 @@ struct SurfaceCell {
   float yy{0.0F};
 };
 
-/// A piece of wall: the line fitted to the points in a square of cells.
+/// A piece of wall: the line fitted to the points in a square of cells. Points that do not lie on a
+/// line (corners, legs of tables) are a clump: a place, but no direction.
 struct Surface {
   Eigen::Vector2d point_in_map{Eigen::Vector2d::Zero()};    ///< mean of the points
   Eigen::Vector2d normal_in_map{Eigen::Vector2d::UnitX()};  ///< unit; its sign means nothing
   double count{0.0};                                        ///< points that it was fitted to
   double across_m2{0.0};                                    ///< variance of the points across it
   double normal_rad2{0.0};                                  ///< variance of the normal's direction
+  double along_m2{0.0};                                     ///< the same along it
+  bool is_line{true};                                       ///< else a clump
 };
 
 /// Copies share the tiles that neither has edited since.
@@ -37,11 +40,10 @@ class SurfaceMap {
 
   void add(const Eigen::Vector2d& point_in_map);
 
-  /// The surface through the cells around a point; nothing where too little is mapped, and where
-  /// the points do not lie on a line (corners, clutter): what has no direction would hold a robot
-  /// back along a bare wall. Moments add up exactly over cells, so a wall along a border between
-  /// cells is not split.
-  /// @param reach_m  how far off the surface may be; small reaches are tried first.
+  /// The surface through the cells around a point; nothing where too little is mapped. Moments add
+  /// up exactly over cells, so a wall along a border between cells is not split.
+  /// @param reach_m  how far off the surface may be; small reaches are tried first, and a line is
+  /// preferred to a nearer clump: what has no direction holds a robot back along a bare wall.
   std::optional<Surface> near(const Eigen::Vector2d& point_in_map, double reach_m) const;
 
  private:
