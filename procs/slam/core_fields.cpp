@@ -164,6 +164,8 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.field("update_turn_rad", update_turn_rad, kNotNegative, "or this much turning");
   fields.field("marker_gate", marker_gate, kPositive,
                "chi^2 of a sighting of a known marker that is still believed");
+  fields.field("marker_near_m", marker_near_m, kNotNegative,
+               "a known marker that is off by less is believed, but counts less");
   fields.field("same_marker_within_m", same_marker_within_m, kPositive,
                "no second marker of one id nearer than this");
   fields.field("joint_markers", joint_markers, {2, 1000},

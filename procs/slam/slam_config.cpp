@@ -99,7 +99,7 @@ EstimatorSetup estimator_setup(const SlamConfig& config) {
   setup.motion = config.slam.motion;
   setup.gate = config.slam.gate;
   setup.range_sigma_m = config.robot.lidar.range_sigma_m;
-  setup.base_from_camera = sensor_setup(config).camera.base_from_camera;
+  setup.camera = sensor_setup(config).camera;
   setup.range_max_m = config.robot.lidar.range_max_m;
   setup.parallel_for = parallel_for_with(config.slam.threads);
   setup.seed = static_cast<std::uint64_t>(config.slam.seed);

@@ -52,8 +52,10 @@ marker_landmark_t to_message(const Landmark& landmark) {
   message.sightings = landmark.sightings;
   message.first_seen_utime = to_us(landmark.first_seen);
   message.last_seen_utime = to_us(landmark.last_seen);
-  message.state = landmark.sightings >= kConfirmingSightings ? marker_landmark_t::STATE_CONFIRMED
-                                                             : marker_landmark_t::STATE_TENTATIVE;
+  message.state = marker_landmark_t::STATE_TENTATIVE;
+  if (landmark.sightings >= kConfirmingSightings)
+    message.state = marker_landmark_t::STATE_CONFIRMED;
+  if (landmark.was_moved) message.state = marker_landmark_t::STATE_MOVED;
   return message;
 }
 

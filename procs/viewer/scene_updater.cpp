@@ -27,6 +27,17 @@ LandmarkState to_state(std::int8_t value) {
   return static_cast<LandmarkState>(value);
 }
 
+std::optional<WeakAxis> to_weak_axis(const slam_estimate_t& message) {
+  const Eigen::Vector3d direction{message.weak_axis[0], message.weak_axis[1], message.weak_axis[2]};
+  if (direction.isZero()) return std::nullopt;
+  const bool is_known = message.weak_axis_source >= 0 &&
+                        message.weak_axis_source <= static_cast<int>(WeakAxisSource::kNothing);
+  return WeakAxis{.direction = direction,
+                  .information = message.weak_information,
+                  .source = is_known ? static_cast<WeakAxisSource>(message.weak_axis_source)
+                                     : WeakAxisSource::kUnknown};
+}
+
 TimedPose to_timed_pose(const pose2D_t& message) {
   return {timestamp_from_us(message.utime), {message.x, message.y, message.theta}};
 }
@@ -105,7 +116,8 @@ void SceneUpdater::add(const slam_estimate_t& message) {
          EstimatedPose{.time = timestamp_from_us(message.utime),
                        .map_from_base = {message.x_m, message.y_m, message.theta_rad},
                        .covariance = to_matrix(message.covariance),
-                       .health = to_health(message.health)},
+                       .health = to_health(message.health),
+                       .weak_axis = to_weak_axis(message)},
          "SLAM_ESTIMATE");
 }
 

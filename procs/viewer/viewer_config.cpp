@@ -22,8 +22,8 @@ void ViewerSection::describe(Fields& fields) {
                "a long map is folded into up to this many strips");
   fields.field("max_scale_px_per_m", map_page.max_scale_px_per_m, {10.0, 2000.0},
                "map.png: no larger than this");
-  fields.field("ellipse_spacing_m", map_page.ellipse_spacing_m, {0.1, 1000.0},
-               "map.png: distance along the path between covariance ellipses");
+  fields.field("mark_spacing_px", map_page.mark_spacing_px, {20, 2000},
+               "map.png: least distance along the path between ellipses and between weak axes");
   fields.field("marker_size_m", map_page.marker_size_m, {0.01, 5.0},
                "map.png: length of a marker's plate");
 }

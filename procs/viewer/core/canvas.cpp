@@ -51,6 +51,38 @@ void draw_polyline(cv::Mat& image, std::span<const cv::Point2d> points_px, const
   cv::polylines(image, fixed(points_px), false, pen.colour, pen.width_px, cv::LINE_AA, kShift);
 }
 
+void draw_dashed_polyline(cv::Mat& image, std::span<const cv::Point2d> points_px, const Pen& pen,
+                          double dash_px, double gap_px) {
+  constexpr double kLongStep_px = 5000.0;
+  bool is_dash = true;
+  double left_px = dash_px;  // of the dash or gap under way
+  std::vector<cv::Point2d> dash;
+  for (std::size_t i = 1; i < points_px.size(); ++i) {
+    cv::Point2d from = points_px[i - 1];
+    const cv::Point2d to = points_px[i];
+    double step_px = cv::norm(to - from);
+    if (!(step_px <= kLongStep_px)) {
+      draw_line(image, from, to, pen);
+      continue;
+    }
+    while (step_px > 0.0) {
+      const double part_px = std::min(step_px, left_px);
+      const cv::Point2d end = from + (part_px / step_px) * (to - from);
+      if (is_dash && dash.empty()) dash.push_back(from);
+      if (is_dash) dash.push_back(end);
+      from = end;
+      step_px -= part_px;
+      left_px -= part_px;
+      if (left_px > 0.0) continue;
+      draw_polyline(image, dash, pen);
+      dash.clear();
+      is_dash = !is_dash;
+      left_px = is_dash ? dash_px : gap_px;
+    }
+  }
+  draw_polyline(image, dash, pen);
+}
+
 void draw_circle(cv::Mat& image, cv::Point2d centre_px, double radius_px, const Pen& pen) {
   cv::circle(image, fixed(centre_px), fixed(std::abs(radius_px)), pen.colour, pen.width_px,
              cv::LINE_AA, kShift);
@@ -60,6 +92,15 @@ void fill_circle(cv::Mat& image, cv::Point2d centre_px, double radius_px,
                  const cv::Scalar& colour) {
   cv::circle(image, fixed(centre_px), fixed(std::abs(radius_px)), colour, cv::FILLED, cv::LINE_AA,
              kShift);
+}
+
+void tint_polygons(cv::Mat& image, const std::vector<std::vector<cv::Point2d>>& polygons_px,
+                   const cv::Scalar& colour, double opacity) {
+  if (polygons_px.empty()) return;
+  cv::Mat painted = image.clone();
+  for (const std::vector<cv::Point2d>& polygon : polygons_px)
+    fill_polygon(painted, polygon, colour);
+  cv::addWeighted(painted, opacity, image, 1.0 - opacity, 0.0, image);
 }
 
 void fill_polygon(cv::Mat& image, std::span<const cv::Point2d> corners_px,

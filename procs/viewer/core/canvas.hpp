@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace waymark::viewer {
 
@@ -18,8 +19,14 @@ struct Pen {
 
 void draw_line(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px, const Pen& pen);
 void draw_polyline(cv::Mat& image, std::span<const cv::Point2d> points_px, const Pen& pen);
+/// Solid where a single step is far longer than any dash: points off the page cost nothing.
+void draw_dashed_polyline(cv::Mat& image, std::span<const cv::Point2d> points_px, const Pen& pen,
+                          double dash_px, double gap_px);
 void draw_circle(cv::Mat& image, cv::Point2d centre_px, double radius_px, const Pen& pen);
 void fill_circle(cv::Mat& image, cv::Point2d centre_px, double radius_px, const cv::Scalar& colour);
+/// As if through coloured glass; the areas' union, so that overlaps are not darker.
+void tint_polygons(cv::Mat& image, const std::vector<std::vector<cv::Point2d>>& polygons_px,
+                   const cv::Scalar& colour, double opacity);
 void fill_polygon(cv::Mat& image, std::span<const cv::Point2d> corners_px,
                   const cv::Scalar& colour);
 /// Corners rounded.

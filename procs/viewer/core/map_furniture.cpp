@@ -9,8 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
+#include <string_view>
+#include <utility>
 
 namespace waymark::viewer {
 namespace {
@@ -83,67 +84,58 @@ std::string summary(const PageContent& content, const Se2& view_from_map) {
   return text;
 }
 
-bool has_health(const PageContent& content, Health health) {
-  return std::any_of(content.estimates.begin(), content.estimates.end(),
-                     [health](const EstimatedPose& pose) { return pose.health == health; });
+std::string share_text(std::string_view name, std::size_t count, std::size_t of) {
+  const double percent = 100.0 * static_cast<double>(count) / static_cast<double>(of);
+  return percent < 0.95 ? fmt::format("{} {:.1f} %", name, percent)
+                        : fmt::format("{} {:.0f} %", name, percent);
 }
 
-/// Writes samples with their meaning from left to right, line by line.
-class LegendWriter {
- public:
-  using DrawSample = std::function<void(cv::Point2d left, cv::Point2d right)>;
-
-  LegendWriter(cv::Mat& page, const cv::Rect& area_px)
-      : page_{page}, area_px_{area_px}, x_px_(area_px.x), y_px_(area_px.y + 40.0) {}
-
-  void add(const std::string& meaning, const DrawSample& draw_sample) {
-    const Font font{.height_px = kText_px, .colour = palette::kInk};
-    const double width_px = kSampleWidth_px + 14.0 + text_width_px(meaning, font);
-    if (x_px_ + width_px > area_px_.br().x) new_line();
-    draw_sample({x_px_, y_px_}, {x_px_ + kSampleWidth_px, y_px_});
-    draw_text(page_, meaning, {x_px_ + kSampleWidth_px + 14.0, y_px_}, Anchor::kLeft, font);
-    x_px_ += width_px + 44.0;
+/// "degenerate 12 %, lost 0.4 %": the names that occur, with their shares.
+template <class Kind, std::size_t N>
+std::string shares_text(const std::array<std::pair<Kind, std::string_view>, N>& names,
+                        const std::map<Kind, std::size_t>& counts, std::size_t of) {
+  std::string text;
+  for (const auto& [kind, name] : names) {
+    const auto count = counts.find(kind);
+    if (count == counts.end()) continue;
+    text += (text.empty() ? "" : ", ") + share_text(name, count->second, of);
   }
+  return text;
+}
 
-  void add_line(const std::string& meaning, const Pen& pen) {
-    add(meaning, [&](cv::Point2d left, cv::Point2d right) { draw_line(page_, left, right, pen); });
+/// Shares of the updates; empty without any.
+std::string health_summary(const std::vector<EstimatedPose>& estimates) {
+  constexpr std::array<std::pair<Health, std::string_view>, 5> kHealths{
+      {{Health::kInitialising, "initialising"},
+       {Health::kTracking, "tracking"},
+       {Health::kDegenerate, "degenerate"},
+       {Health::kLost, "lost"},
+       {Health::kUnknown, "unknown"}}};
+  constexpr std::array<std::pair<WeakAxisSource, std::string_view>, 4> kSources{
+      {{WeakAxisSource::kOdometry, "odometry"},
+       {WeakAxisSource::kMarkers, "markers"},
+       {WeakAxisSource::kNothing, "nothing"},
+       {WeakAxisSource::kUnknown, "something unknown"}}};
+  if (estimates.empty()) return "";
+  std::map<Health, std::size_t> healths;
+  std::map<WeakAxisSource, std::size_t> sources;
+  for (const EstimatedPose& pose : estimates) {
+    ++healths[pose.health];
+    if (pose.weak_axis) ++sources[pose.weak_axis->source];
   }
-
-  void add_box(const std::string& meaning, const cv::Scalar& colour) {
-    add(meaning, [&](cv::Point2d left, cv::Point2d right) {
-      const cv::Rect2d box{left.x + 10, left.y - 13, right.x - left.x - 20, 26};
-      fill_box(page_, box, 4, palette::kHairline);
-      fill_box(page_, {box.x + 1.5, box.y + 1.5, box.width - 3, box.height - 3}, 3, colour);
-    });
+  std::string text = "health: " + shares_text(kHealths, healths, estimates.size());
+  if (!sources.empty()) {
+    text += "   |   weak axis told by " + shares_text(kSources, sources, estimates.size());
   }
+  return text + " of the updates";
+}
 
-  void new_line() {
-    x_px_ = area_px_.x;
-    y_px_ += 44.0;
-  }
-
- private:
-  static constexpr double kSampleWidth_px = 58.0;
-
-  cv::Mat& page_;
-  cv::Rect area_px_;
-  double x_px_;
-  double y_px_;
-};
-
-void draw_scale_bar(cv::Mat& page, cv::Point2d right_end, double px_per_m) {
-  const double length_m = round_length(320.0 / px_per_m);
-  const double length_px = length_m * px_per_m;
-  constexpr int kPieces = 4;
-  for (int piece = 0; piece < kPieces; ++piece) {
-    const double left = right_end.x - length_px + piece * length_px / kPieces;
-    const cv::Rect2d box{left, right_end.y - 5, length_px / kPieces, 10};
-    fill_box(page, box, 0, palette::kInk);
-    if (piece % 2 == 1)
-      fill_box(page, {box.x + 2, box.y + 2, box.width - 4, box.height - 4}, 0, palette::kPage);
-  }
-  draw_text(page, fmt::format("{:g} m", length_m), {right_end.x - length_px - 14, right_end.y},
-            Anchor::kRight, {.height_px = kText_px, .colour = palette::kInk});
+/// A line that becomes smaller rather than leave the area.
+void draw_fitting(cv::Mat& page, const std::string& text, const cv::Rect& area_px, double y_px) {
+  Font font{.height_px = 18.0, .colour = palette::kFaintInk};
+  const double width_px = text_width_px(text, font);
+  if (width_px > area_px.width) font.height_px *= area_px.width / width_px;
+  draw_text(page, text, {area_px.x + 0.0, area_px.y + y_px}, Anchor::kLeft, font);
 }
 
 }  // namespace
@@ -171,8 +163,8 @@ void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& tit
                   const PageContent& content, const Se2& view_from_map) {
   draw_text(page, title, {area_px.x + 0.0, area_px.y + 46.0}, Anchor::kLeft,
             {.height_px = 32.0, .colour = palette::kInk, .bold = true});
-  draw_text(page, summary(content, view_from_map), {area_px.x + 0.0, area_px.y + 94.0},
-            Anchor::kLeft, {.height_px = 18.0, .colour = palette::kFaintInk});
+  draw_fitting(page, summary(content, view_from_map), area_px, 94.0);
+  draw_fitting(page, health_summary(content.estimates), area_px, 128.0);
 }
 
 void draw_ruler(cv::Mat& page, const Panel& panel) {
@@ -218,43 +210,20 @@ void draw_strip_marks(cv::Mat& page, const MapPage& layout) {
   }
 }
 
-void draw_legend(cv::Mat& page, const cv::Rect& area_px, const PageContent& content,
-                 int magnification, double px_per_m) {
-  LegendWriter legend{page, area_px};
-  legend.add_line("estimated path", {palette::kEstimated, 3});
-  if (!content.truth_in_map.empty()) legend.add_line("true path", {palette::kTrue, 8});
-  if (!content.odometry_in_map.empty()) legend.add_line("odometry", {palette::kOdometry, 4});
-  legend.add(magnification == 1 ? "3 sigma" : fmt::format("3 sigma, {} times", magnification),
-             [&](cv::Point2d left, cv::Point2d right) {
-               draw_circle(page, 0.5 * (left + right), 13.0, {palette::kEllipse, 2});
-             });
-  legend.add("start", [&](cv::Point2d left, cv::Point2d right) {
-    draw_circle(page, 0.5 * (left + right), 11.0, {palette::kEstimated, 5});
-  });
-  legend.add("end", [&](cv::Point2d left, cv::Point2d right) {
-    const cv::Point2d m = 0.5 * (left + right);
-    fill_polygon(
-        page,
-        std::array<cv::Point2d, 4>{
-            cv::Point2d{m.x + 20, m.y}, {m.x - 14, m.y - 14}, {m.x - 7, m.y}, {m.x - 14, m.y + 14}},
-        palette::kEstimated);
-  });
-  legend.new_line();
-  legend.add("marker, its id behind the wall", [&](cv::Point2d left, cv::Point2d right) {
-    draw_line(page, {left.x + 6, left.y}, {right.x - 6, right.y}, {palette::kMarker, 7});
-    draw_line(page, 0.5 * (left + right), 0.5 * (left + right) + cv::Point2d{0, 13},
-              {palette::kMarker, 3});
-  });
-  legend.add_box("occupied", palette::kOccupied);
-  legend.add_box("free", palette::kFree);
-  legend.add_box("unknown", palette::kUnknown);
-  if (has_health(content, Health::kInitialising))
-    legend.add_box("initialising", palette::kInitialising);
-  if (has_health(content, Health::kDegenerate))
-    legend.add_box("an axis unobserved", palette::kDegenerate);
-  if (has_health(content, Health::kLost)) legend.add_box("lost", palette::kLost);
-  if (has_health(content, Health::kUnknown)) legend.add_box("health unknown", palette::kNoHealth);
-  draw_scale_bar(page, {area_px.br().x - 2.0, area_px.br().y - 44.0}, px_per_m);
+void draw_scale_bar(cv::Mat& page, cv::Point2d right_end_px, double px_per_m) {
+  const double length_m = round_length(320.0 / px_per_m);
+  const double length_px = length_m * px_per_m;
+  constexpr int kPieces = 4;
+  for (int piece = 0; piece < kPieces; ++piece) {
+    const double left = right_end_px.x - length_px + piece * length_px / kPieces;
+    const cv::Rect2d box{left, right_end_px.y - 5, length_px / kPieces, 10};
+    fill_box(page, box, 0, palette::kInk);
+    if (piece % 2 == 1)
+      fill_box(page, {box.x + 2, box.y + 2, box.width - 4, box.height - 4}, 0, palette::kPage);
+  }
+  draw_text(page, fmt::format("{:g} m", length_m),
+            {right_end_px.x - length_px - 14, right_end_px.y}, Anchor::kRight,
+            {.height_px = kText_px, .colour = palette::kInk});
 }
 
 }  // namespace waymark::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What stands around the map on map.png: heading, rulers, legend with scale bar.
+// What stands around the map on map.png: heading, scale bar, rulers.
 #pragma once
 
 #include "viewer/core/map_page.hpp"
@@ -20,6 +20,7 @@ struct FreeExtent {
 /// without any. A few stray cells do not count.
 std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_map);
 
+/// Title; what the map measures; in which health the path was, and what its weak axes rest on.
 void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& title,
                   const PageContent& content, const Se2& view_from_map);
 
@@ -29,8 +30,7 @@ void draw_ruler(cv::Mat& page, const Panel& panel);
 /// Frames of the strips in the overview, with their letters.
 void draw_strip_marks(cv::Mat& page, const MapPage& layout);
 
-/// @param magnification  how many times larger than 3 sigma the ellipses are.
-void draw_legend(cv::Mat& page, const cv::Rect& area_px, const PageContent& content,
-                 int magnification, double px_per_m);
+/// A round length as a bar that ends at the right.
+void draw_scale_bar(cv::Mat& page, cv::Point2d right_end_px, double px_per_m);
 
 }  // namespace waymark::viewer

@@ -10,35 +10,27 @@ namespace waymark::viewer {
 
 /// Widths of the strokes; the overview has finer ones.
 struct StrokeWidths {
-  int health_px{20};
+  int health_px{30};
   int true_px{8};
   int odometry_px{4};
   int estimated_px{3};
   int plate_px{7};
 };
 
+constexpr double kDash_px = 14.0;
+constexpr double kDashGap_px = 12.0;
+
 /// One pixel per cell, row 0 = lowest y, BGR.
 cv::Mat colour_cells(const GridMap& map);
 
 void draw_cells(cv::Mat& panel, const View& view, const GridMap& map, const cv::Mat& cell_colours);
 
-/// A broad band below the estimated path wherever its health is not `tracking`.
-void draw_health(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates,
-                 int width_px);
-
-/// All three paths, so that coinciding ones all stay visible: the broadest at the bottom.
+/// All paths, so that coinciding ones all stay visible: the broadest at the bottom, and what is
+/// known at the end in dashes on top.
 void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,
                 const StrokeWidths& widths);
 
 void draw_particles(cv::Mat& panel, const View& view, const std::vector<Se2>& particles);
-
-/// How many times larger than 3 sigma the ellipses are drawn, so that they can be seen.
-int ellipse_magnification(const std::vector<EstimatedPose>& estimates, double spacing_m,
-                          double px_per_m);
-
-/// 3-sigma ellipses of the position, magnified, every few metres of the path.
-void draw_ellipses(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates,
-                   double spacing_m, int magnification);
 
 /// Where the base was first (ring) and last (arrow head in the direction of travel).
 void draw_ends(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates);

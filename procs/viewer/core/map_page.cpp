@@ -12,8 +12,8 @@ namespace waymark::viewer {
 namespace {
 
 constexpr int kMargin_px = 60;
-constexpr int kHeadingHeight_px = 128;
-constexpr int kLegendHeight_px = 178;
+constexpr int kHeadingHeight_px = 158;
+constexpr int kLegendHeight_px = 320;
 constexpr int kGap_px = 30;
 constexpr int kMinPageWidth_px = 1700;  // for the legend
 /// Room around the map for the markers' labels.
@@ -113,6 +113,7 @@ PageContent content_of(const Scene& scene) {
   return {.map = scene.map.grid(),
           .landmarks = scene.landmarks,
           .estimates = scene.estimates,
+          .final_in_map = scene.final_trajectory,
           .truth_in_map = aligned_on_first(scene.estimates, scene.truth),
           .odometry_in_map = aligned_on_first(scene.estimates, scene.odometry),
           .particles = scene.particles};
@@ -129,6 +130,8 @@ Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odomet
     add(landmark.map_from_marker);
   for (const EstimatedPose& pose : content.estimates)
     add(pose.map_from_base);
+  for (const TimedPose& pose : content.final_in_map)
+    add(pose.frame_from_base);
   for (const TimedPose& pose : content.truth_in_map)
     add(pose.frame_from_base);
   if (odometry == Odometry::kIncluded) {

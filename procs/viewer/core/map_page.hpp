@@ -22,7 +22,7 @@ struct MapPage {
   cv::Rect heading_px{};
   std::optional<Panel> overview{};
   std::vector<Panel> strips{};
-  cv::Rect legend_px{};
+  cv::Rect legend_px{};  ///< as high as the longest legend; what it leaves free can be cut off
 };
 
 /// Height of the ruler below each strip.
@@ -33,6 +33,7 @@ struct PageContent {
   GridMap map{};
   std::vector<Landmark> landmarks{};
   std::vector<EstimatedPose> estimates{};
+  std::vector<TimedPose> final_in_map{};
   std::vector<TimedPose> truth_in_map{};
   std::vector<TimedPose> odometry_in_map{};
   std::vector<Se2> particles{};

@@ -4,9 +4,11 @@
 #include "viewer/core/canvas.hpp"
 #include "viewer/core/map_furniture.hpp"
 #include "viewer/core/map_layers.hpp"
+#include "viewer/core/map_legend.hpp"
 #include "viewer/core/map_page.hpp"
 #include "viewer/core/marker_labels.hpp"
 #include "viewer/core/palette.hpp"
+#include "viewer/core/path_marks.hpp"
 
 #include <opencv2/imgproc.hpp>
 
@@ -32,15 +34,16 @@ void draw_overview(cv::Mat& page, const Panel& overview, const PageContent& cont
 }
 
 void draw_strip(cv::Mat& page, const Panel& strip, const PageContent& content,
-                const cv::Mat& cell_colours, const MapPageStyle& style, int magnification) {
+                const cv::Mat& cell_colours, const MapPageStyle& style, const PathMarks& marks) {
   cv::Mat panel = page(strip.page_px);
   const View& view = strip.view;
   const StrokeWidths widths{};
   draw_cells(panel, view, content.map, cell_colours);
   draw_health(panel, view, content.estimates, widths.health_px);
   draw_particles(panel, view, content.particles);
+  draw_ellipses(panel, view, marks);
   draw_paths(panel, view, content, widths);
-  draw_ellipses(panel, view, content.estimates, style.ellipse_spacing_m, magnification);
+  draw_weak_axes(panel, view, marks);
   draw_ends(panel, view, content.estimates);
   const double text_px = label_height_px(view.px_per_m);
   const auto labels = place_labels(content.landmarks, content.map, view, text_px);
@@ -56,8 +59,7 @@ cv::Mat paint_map(const Scene& scene, const MapPageStyle& style) {
   const MapPage layout = lay_out(content, style);
   const cv::Mat cell_colours = colour_cells(content.map);
   const double px_per_m = layout.strips.front().view.px_per_m;
-  const int magnification =
-      ellipse_magnification(content.estimates, style.ellipse_spacing_m, px_per_m);
+  const PathMarks marks = choose_marks(content.estimates, px_per_m, style.mark_spacing_px);
 
   cv::Mat page{layout.size_px, CV_8UC3, palette::kPage};
   draw_heading(page, layout.heading_px, scene.title, content,
@@ -67,9 +69,10 @@ cv::Mat paint_map(const Scene& scene, const MapPageStyle& style) {
     draw_strip_marks(page, layout);
   }
   for (const Panel& strip : layout.strips)
-    draw_strip(page, strip, content, cell_colours, style, magnification);
-  draw_legend(page, layout.legend_px, content, magnification, px_per_m);
-  return page;
+    draw_strip(page, strip, content, cell_colours, style, marks);
+  draw_scale_bar(page, {layout.heading_px.br().x - 2.0, layout.heading_px.y + 46.0}, px_per_m);
+  const int bottom_px = draw_legend(page, layout.legend_px, content, marks);
+  return page(cv::Rect{0, 0, page.cols, bottom_px}).clone();
 }
 
 }  // namespace waymark::viewer

@@ -3,6 +3,7 @@
 
 #include "viewer/core/canvas.hpp"
 
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -109,8 +110,23 @@ struct Placer {
 }  // namespace
 
 std::string label_text(const Landmark& landmark) {
-  const std::string id = std::to_string(landmark.id);
-  return landmark.instance == 0 ? id : id + "." + std::to_string(landmark.instance);
+  std::string text = landmark.instance == 0 ? fmt::format("{}", landmark.id)
+                                            : fmt::format("{}.{}", landmark.id, landmark.instance);
+  if (landmark.state == LandmarkState::kMoved) text += " moved";
+  return text;
+}
+
+cv::Scalar colour_of(LandmarkState state) {
+  switch (state) {
+    case LandmarkState::kConfirmed:
+    case LandmarkState::kTentative:
+      return palette::kMarker;
+    case LandmarkState::kMoved:
+      return palette::kMoved;
+    case LandmarkState::kUnknown:
+      break;
+  }
+  return palette::kFaintInk;
 }
 
 std::vector<MarkerLabel> place_labels(const std::vector<Landmark>& landmarks, const GridMap& map,
@@ -131,7 +147,8 @@ std::vector<MarkerLabel> place_labels(const std::vector<Landmark>& landmarks, co
     const cv::Size2d size{text_width_px(text, font) + 0.9 * text_height_px, 1.9 * text_height_px};
     const cv::Point2d behind = -view.direction(landmark.map_from_marker.theta());
     const cv::Rect2d box = Placer{open_space, taken, panel}.best_box(marker_px, behind, size);
-    labels.push_back({landmark.id, text, marker_px, box, landmark.state});
+    labels.push_back(
+        {landmark.id, text, marker_px, box, landmark.state, colour_of(landmark.state)});
     taken.push_back(grown(box, kClearance_px));
   }
   return labels;
@@ -143,7 +160,7 @@ void draw_labels(cv::Mat& panel, const std::vector<MarkerLabel>& labels, double 
                              label.box_px.y + label.box_px.height / 2};
     draw_line(panel, label.marker_px, middle, {label.colour, 2});
     const double radius_px = 0.4 * text_height_px;
-    const bool is_firm = label.state == LandmarkState::kConfirmed;
+    const bool is_firm = label.state != LandmarkState::kTentative;
     fill_box(panel, label.box_px, radius_px, label.colour);
     if (!is_firm) fill_box(panel, grown(label.box_px, -2.5), radius_px - 1.0, palette::kPage);
     draw_text(panel, label.text, middle, Anchor::kCentre,

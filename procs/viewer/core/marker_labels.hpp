@@ -19,13 +19,15 @@ struct MarkerLabel {
   cv::Scalar colour{palette::kMarker};
 };
 
-/// "7", or "7.1" for the second marker with that id.
+/// "7", or "7.1" for the second marker with that id; "7 moved" for one that was elsewhere before.
 std::string label_text(const Landmark& landmark);
 
 /// Places the labels of the markers that lie in the view, one after the other, each where it
 /// disturbs least. Deterministic.
 std::vector<MarkerLabel> place_labels(const std::vector<Landmark>& landmarks, const GridMap& map,
                                       const View& view, double text_height_px);
+
+cv::Scalar colour_of(LandmarkState state);
 
 void draw_labels(cv::Mat& panel, const std::vector<MarkerLabel>& labels, double text_height_px);
 

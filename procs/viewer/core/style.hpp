@@ -9,7 +9,7 @@ struct MapPageStyle {
   int page_height_px{2000};  ///< for the map; heading, overview and legend come on top
   int max_strips{8};
   double max_scale_px_per_m{240.0};
-  double ellipse_spacing_m{2.0};
+  int mark_spacing_px{120};   ///< the spacing is the next round length
   double marker_size_m{0.4};  ///< side of the black square
 };
 

@@ -37,6 +37,7 @@ Belief belief_with(const std::vector<MarkerMeasurement>& measurements) {
   return belief;
 }
 
+constexpr double kGate = 16.3;  // chi^2, 3 degrees of freedom: 99.9 %
 const Motion kForward{Se2{0.5, 0.0, 0.02}, 0.5, 0.02};
 
 TEST(OdometryErrors, DerivativesAgreeWithDifferences) {
@@ -66,7 +67,7 @@ TEST(Belief, IsUnsureAlongTheWayAndAMarkerMakesItSurer) {
   const auto nearest = belief.nearest(measurement_at(base_from_marker));
   ASSERT_TRUE(nearest);
   EXPECT_NEAR(nearest->distance, 0.0, 1e-9);
-  belief.correct(nearest->marker, measurement_at(base_from_marker));
+  belief.correct(nearest->marker, measurement_at(base_from_marker), kGate);
   EXPECT_LT(belief.pose_covariance()(0, 0), before(0, 0));
   EXPECT_EQ(belief.markers()[0].sightings, 2);
 }
@@ -77,7 +78,7 @@ TEST(Belief, LearnsTheScaleOfTheOdometryFromAMarker) {
   for (int i = 0; i < 40; ++i) {
     belief.move({Se2{0.05, 0.0, 0.0}, 0.05, 0.0}, {});
     true_x += 0.05 * 1.01;
-    belief.correct(0, measurement_at({3.0 - true_x, 1.0, -1.57}));
+    belief.correct(0, measurement_at({3.0 - true_x, 1.0, -1.57}), kGate);
   }
   const double sigma = std::sqrt(belief.odometry_errors_covariance()(0, 0));
   EXPECT_NEAR(belief.odometry_errors()[0], 0.01, 3.0 * sigma);
@@ -134,7 +135,7 @@ TEST(Belief, SettledMarkersLeaveTheCovarianceAndAreKnownAgain) {
   EXPECT_LT(belief.markers()[0].covariance(0, 0), copy.markers()[0].covariance(0, 0));
   const auto nearest = belief.nearest(measurement_at({1.0, 1.0, -1.57}, 0));
   ASSERT_TRUE(nearest);
-  belief.correct(nearest->marker, measurement_at({1.0, 1.0, -1.57}, 0));
+  belief.correct(nearest->marker, measurement_at({1.0, 1.0, -1.57}, 0), kGate);
   EXPECT_EQ(belief.markers()[0].sightings, 2);
 }
 

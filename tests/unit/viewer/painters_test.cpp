@@ -2,6 +2,7 @@
 #include "unit/viewer/drawn_scene.hpp"
 #include "viewer/core/layer_painter.hpp"
 #include "viewer/core/map_furniture.hpp"
+#include "viewer/core/map_layers.hpp"
 #include "viewer/core/map_painter.hpp"
 #include "viewer/core/marker_labels.hpp"
 #include "viewer/core/palette.hpp"
@@ -10,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 namespace waymark::viewer {
 namespace {
@@ -84,6 +86,65 @@ TEST(PaintMap, ShowsEverythingInItsColour) {
   EXPECT_FALSE(contains_colour(page, palette::kLost));
 }
 
+TEST(PaintMap, ShowsLostStretchesAndMovedMarkersInMapAndLegend) {
+  Scene scene = corridor_scene(50.0);
+  EXPECT_FALSE(contains_colour(paint_map(scene, kStyle), palette::kMoved));
+  scene.estimates[1000].health = Health::kLost;
+  scene.landmarks[3].state = LandmarkState::kMoved;
+  const cv::Mat page = paint_map(scene, kStyle);
+  EXPECT_TRUE(contains_colour(page, palette::kLost));
+  EXPECT_TRUE(contains_colour(page, palette::kMoved));
+}
+
+TEST(PaintMap, TheLegendNamesWhatIsThereAndIsNoLongerThanNeeded) {
+  const int height_px = paint_map(corridor_scene(50.0), kStyle).rows;
+  Scene scene = corridor_scene(50.0);
+  for (EstimatedPose& pose : scene.estimates)
+    pose.weak_axis = WeakAxis{.direction = {1, 0, 0}, .source = WeakAxisSource::kNothing};
+  scene.final_trajectory = {{scene.estimates.front().time, {0, 0, 0}},
+                            {scene.estimates.back().time, {48, 0, 0}}};
+  scene.landmarks[0].state = LandmarkState::kTentative;
+  scene.landmarks[3].state = LandmarkState::kMoved;
+  scene.estimates[1000].health = Health::kLost;
+  const cv::Mat page = paint_map(scene, kStyle);
+  EXPECT_GT(page.rows, height_px);
+  EXPECT_LT(page.rows, height_px + 200);
+}
+
+TEST(Heading, StaysInItsAreaHoweverMuchThereIsToTell) {
+  PageContent content = content_of(corridor_scene(50.0));
+  for (std::size_t i = 0; i < content.estimates.size(); ++i) {
+    content.estimates[i].health = static_cast<Health>(i % 5);
+    content.estimates[i].weak_axis =
+        WeakAxis{.direction = {1, 0, 0}, .source = static_cast<WeakAxisSource>(i % 4)};
+  }
+  cv::Mat_<Colour> page(160, 1200, Colour{255, 255, 255});
+  const cv::Rect area{60, 0, 1080, 158};
+  draw_heading(page, area, "corridor", content, Se2{});
+  cv::Mat drawn;
+  cv::inRange(page, cv::Scalar{0, 0, 0}, cv::Scalar{250, 250, 250}, drawn);
+  const cv::Rect box = cv::boundingRect(drawn);
+  EXPECT_GT(box.width, 1000);
+  EXPECT_GE(box.x, area.x - 2);
+  EXPECT_LE(box.br().x, area.br().x + 2);
+}
+
+TEST(PaintMap, TheFinalTrajectoryIsDashedOverTheOthers) {
+  const View view{.box = {0, -1, 4, 1}, .px_per_m = 50.0};
+  PageContent content;
+  content.estimates = {{.map_from_base = {0, 0, 0}}, {.map_from_base = {4, 0, 0}}};
+  content.final_in_map = {{{}, {0, 0, 0}}, {{}, {4, 0, 0}}};
+  cv::Mat_<Colour> panel(100, 200, Colour{255, 255, 255});
+  draw_paths(panel, view, content, {});
+  int dashes = 0, gaps = 0;
+  for (int x = 0; x < panel.cols; ++x) {
+    dashes += panel(50, x) == to_colour(palette::kFinal) ? 1 : 0;
+    gaps += panel(50, x) == to_colour(palette::kEstimated) ? 1 : 0;
+  }
+  EXPECT_GT(dashes, 60);
+  EXPECT_GT(gaps, 30);
+}
+
 TEST(PaintMap, WorksWithoutAnything) {
   const cv::Mat page = paint_map(Scene{}, kStyle);
   EXPECT_GE(page.cols, 800);
@@ -97,6 +158,7 @@ TEST(PaintMap, WorksForOneCellAndForWildNumbers) {
   const Timestamp later = scene.estimates.back().time + Duration{1};
   scene.estimates.push_back({.time = later, .map_from_base = {1e300, -1e300, 0}});
   scene.estimates.back().covariance.diagonal() << 1e200, -1.0, 0.0;
+  scene.final_trajectory = {{later, {1e300, std::nan(""), 0}}, {later, {0, -1e300, 0}}};
   scene.landmarks.push_back({.id = 1 << 30, .map_from_marker = {-1e12, 3, 0}});
   scene.particles.emplace_back(1e30, 0, 0);
   const cv::Mat page = paint_map(scene, kStyle);
@@ -147,6 +209,7 @@ TEST(Labels, MarkersSideBySideGetLabelsSideBySide) {
 TEST(Labels, TellInstancesApart) {
   EXPECT_EQ(label_text({.id = 0, .instance = 0}), "0");
   EXPECT_EQ(label_text({.id = 7, .instance = 2}), "7.2");
+  EXPECT_EQ(label_text({.id = 7, .state = LandmarkState::kMoved}), "7 moved");
 }
 
 TEST(FreeExtent, CountsCellsBetweenTheWalls) {

@@ -192,6 +192,28 @@ TEST_F(ViewerNodeTest, MarkersAppearWhenAllPartsAreThere) {
   EXPECT_EQ(scene.landmarks[0].id, 4) << "parts of different times do not mix";
 }
 
+TEST_F(ViewerNodeTest, AWeakAxisIsKeptWhenThereIsOne) {
+  viewer::Scene scene;
+  Counters counters;
+  viewer::SceneUpdater updater{scene, counters};
+  updater.add(estimate_at(1.0, 0.0));
+  slam_estimate_t message = estimate_at(2.0, 0.0);
+  message.weak_axis[1] = 1.0;
+  message.weak_information = 50.0;
+  message.weak_axis_source = slam_estimate_t::SOURCE_NOTHING;
+  updater.add(message);
+  message.utime += 1;
+  message.weak_axis_source = 100;
+  updater.add(message);
+  ASSERT_THAT(scene.estimates, SizeIs(3));
+  EXPECT_FALSE(scene.estimates[0].weak_axis);
+  ASSERT_TRUE(scene.estimates[1].weak_axis);
+  EXPECT_EQ(scene.estimates[1].weak_axis->direction, (Eigen::Vector3d{0, 1, 0}));
+  EXPECT_EQ(scene.estimates[1].weak_axis->information, 50.0);
+  EXPECT_EQ(scene.estimates[1].weak_axis->source, viewer::WeakAxisSource::kNothing);
+  EXPECT_EQ(scene.estimates[2].weak_axis->source, viewer::WeakAxisSource::kUnknown);
+}
+
 TEST_F(ViewerNodeTest, WritesAFinalTrajectoryWhenOneCameWhole) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamTrajectory, trajectory_part(0, 2));

@@ -15,6 +15,10 @@ namespace {
 constexpr double kKeptShare = 0.1;
 /// [m^2], [rad^2] below this an axis is exact already: nothing is left to draw.
 constexpr double kExact = 1e-12;
+constexpr double kRelocated_m = 0.5;  // sigma of a pose that is known by one marker only
+constexpr double kRelocated_rad = 0.2;
+constexpr int kMisses = 5;    // updates without a marker that should be in view
+constexpr int kTurnedUp = 3;  // sightings of the one that it may have become
 
 double squared(double x) {
   return x * x;
@@ -177,14 +181,43 @@ std::optional<Innovation> Belief::nearest(const MarkerMeasurement& measurement) 
   return nearest;
 }
 
-double Belief::correct(std::size_t index, const MarkerMeasurement& measurement) {
+std::optional<std::size_t> Belief::only_marker(int id) const {
+  std::optional<std::size_t> only;
+  for (std::size_t i = 0; i < num_markers(); ++i) {
+    if (marker(i).id != id) continue;
+    if (only) return std::nullopt;
+    only = i;
+  }
+  return only;
+}
+
+Se2 Belief::pose_by(std::size_t index, const MarkerMeasurement& measurement) const {
+  const Se2 base_from_marker =
+      deviated(measurement.base_from_marker, -(measurement.by_camera * camera_errors_));
+  return marker(index).map_from_marker * base_from_marker.inverse();
+}
+
+void Belief::relocate(std::size_t index, const MarkerMeasurement& measurement) {
+  map_from_base_ = pose_by(index, measurement);
+  covariance_.topRows<3>().setZero();
+  covariance_.leftCols<3>().setZero();
+  covariance_.topLeftCorner<3, 3>().diagonal() << squared(kRelocated_m), squared(kRelocated_m),
+      squared(kRelocated_rad);
+}
+
+double Belief::correct(std::size_t index, const MarkerMeasurement& measurement, double gate) {
   if (index >= active_.size()) index = revive(index - active_.size());
   Columns with_residual;
-  const Innovation innovation = compare(index, measurement, with_residual);
+  Innovation innovation = compare(index, measurement, with_residual);
+  if (innovation.distance > gate) {
+    innovation.covariance *= innovation.distance / gate;
+    innovation.distance = gate;
+  }
   const Eigen::MatrixXd gain =
       innovation.covariance.ldlt().solve(with_residual.transpose()).transpose();
   condition(gain, innovation.residual, innovation.covariance);
   ++active_[index].sightings;
+  active_[index].misses = 0;
   active_[index].last_seen = measurement.time;
   return innovation.log_likelihood();
 }
@@ -253,11 +286,51 @@ void Belief::settle(std::size_t marker, Random& random) {
   Landmark settled = active_[marker];
   settled.covariance = covariance_.block<3, 3>(place, place);
   settled_.edit().push_back(settled);
+  remove_active(marker);
+}
+
+void Belief::remove_active(std::size_t marker) {
+  const Eigen::Index place = place_of(marker);
   active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(marker));
   const Eigen::Index behind = covariance_.rows() - place - 3;
   covariance_.middleRows(place, behind) = covariance_.bottomRows(behind).eval();
   covariance_.middleCols(place, behind) = covariance_.rightCols(behind).eval();
   covariance_.conservativeResize(covariance_.rows() - 3, covariance_.cols() - 3);
+}
+
+Landmark& Belief::editable(std::size_t index) {
+  return index < active_.size() ? active_[index] : settled_.edit()[index - active_.size()];
+}
+
+void Belief::note_absences(const std::function<bool(const Se2&)>& is_in_view, Timestamp now) {
+  const Se2 base_from_map = map_from_base_.inverse();
+  for (std::size_t i = 0; i < num_markers(); ++i) {
+    if (marker(i).last_seen < now && is_in_view(base_from_map * marker(i).map_from_marker))
+      ++editable(i).misses;
+  }
+  forget_moved();
+}
+
+void Belief::forget_moved() {
+  for (std::size_t i = 0; i < num_markers(); ++i) {
+    if (marker(i).misses < kMisses) continue;
+    for (std::size_t k = 0; k < num_markers(); ++k) {
+      const Landmark& other = marker(k);
+      if (k == i || other.id != marker(i).id || other.first_seen <= marker(i).last_seen ||
+          other.sightings < kTurnedUp) {
+        continue;
+      }
+      editable(k).instance = marker(i).instance;
+      editable(k).was_moved = true;
+      if (i < active_.size()) {
+        remove_active(i);
+      } else {
+        std::vector<Landmark>& settled = settled_.edit();
+        settled.erase(settled.begin() + static_cast<std::ptrdiff_t>(i - active_.size()));
+      }
+      return;  // the others come with the next update
+    }
+  }
 }
 
 std::vector<Landmark> Belief::markers() const {

@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -28,6 +29,12 @@ struct Innovation {
   double distance{0.0};                                 ///< squared, Mahalanobis
 
   double distance_m() const { return residual.head<2>().norm(); }
+
+  /// The marker may be the one that was measured: it is where it is expected (chi^2 below `gate`),
+  /// or so near that drift or a bad calibration explain it.
+  bool may_be_it(double gate, double near_m) const {
+    return distance < gate || distance_m() < near_m;
+  }
 
   /// Log of the residual's density.
   double log_likelihood() const;
@@ -89,12 +96,31 @@ class Belief {
   /// The marker of that id that fits best; nothing when none is known.
   std::optional<Innovation> nearest(const MarkerMeasurement& measurement) const;
 
-  /// Kalman update with a measurement of a known marker.
+  /// The marker of that id, if there is exactly one.
+  std::optional<std::size_t> only_marker(int id) const;
+
+  /// Where the robot is if the measurement is of that marker.
+  Se2 pose_by(std::size_t marker, const MarkerMeasurement& measurement) const;
+
+  /// Puts the robot there. The pose is all but unknown afterwards and has nothing to do with what
+  /// was known before: the measurement is still to be used.
+  void relocate(std::size_t marker, const MarkerMeasurement& measurement);
+
+  /// Kalman update with a measurement of a known marker. One that is off by more than the gate
+  /// counts as much less.
+  /// @param gate  chi^2, 3 degrees of freedom.
   /// @return log-likelihood of the measurement.
-  double correct(std::size_t marker, const MarkerMeasurement& measurement);
+  double correct(std::size_t marker, const MarkerMeasurement& measurement, double gate);
 
   /// A marker that was not known.
   void add(const MarkerMeasurement& measurement);
+
+  /// Counts, for each marker that should be in view and was not sighted, one more miss. A marker
+  /// that was missed often while another one of its id has turned up later has been moved there:
+  /// the old place is forgotten.
+  /// @param is_in_view  for a place and the direction that it faces, base frame.
+  void note_absences(const std::function<bool(const Se2& base_from_marker)>& is_in_view,
+                     Timestamp now);
 
   /// Settles the markers that were seen longest ago while more than `limit` are in the covariance.
   void settle_oldest(std::size_t limit, Random& random);
@@ -131,6 +157,9 @@ class Belief {
   void augment(const Landmark& landmark, const Columns& with_all, const Eigen::Matrix3d& own);
   std::size_t revive(std::size_t settled_marker);
   void settle(std::size_t marker, Random& random);
+  Landmark& editable(std::size_t marker);
+  void remove_active(std::size_t marker);
+  void forget_moved();
 
   Se2 map_from_base_{};
   OdometryErrors odometry_errors_{OdometryErrors::Zero()};

@@ -23,8 +23,8 @@ struct EstimatorSetup {
   MotionNoise motion{};
   UpdateGate gate{};
   double range_sigma_m{0.01};  ///< of the LiDAR
-  Se2 base_from_camera{};      ///< x = viewing direction
-  double range_max_m{3.5};     ///< of the LiDAR
+  CameraView camera{};
+  double range_max_m{3.5};  ///< of the LiDAR
   std::uint64_t seed{1};
   ParallelFor parallel_for{serial_for};
 };

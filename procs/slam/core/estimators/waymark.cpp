@@ -9,6 +9,10 @@ namespace {
 
 enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2, kSettlingStream = 3 };
 
+constexpr double kMinFacing =
+    0.3;  // cosine; markers that are seen more from the side may be missed
+constexpr double kWallInSight_m = 0.2;                      // a beam ends this near to the marker
+constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
 BeliefPrior prior_of(const WaymarkConfig& config) {
@@ -51,7 +55,8 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
   believe_scans_about_slips(observation);
   if (updates_ == 0 || is_due()) {
     process(observation);
-    mapper_.insert(observation, mean_, covariance_);
+    if (verdict_ != KidnapWatch::Verdict::kDoubtful)
+      mapper_.insert(observation, mean_, covariance_);
     Random random{setup_.seed, kResamplingStream, updates_};
     particles_.resample_if_needed(config_.resample_threshold, random);
     since_update_ = {};
@@ -75,10 +80,15 @@ bool WaymarkEstimator::is_due() const {
 }
 
 void WaymarkEstimator::process(const Observation& observation) {
-  const Sensed sensed{
-      &observation,
-      measure_markers(observation, setup_.range_sigma_m, setup_.base_from_camera, config_.markers),
-      observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
+  Sensed sensed{&observation,
+                measure_markers(observation, setup_.range_sigma_m, setup_.camera.base_from_camera,
+                                config_.markers),
+                observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
+  Belief expected = belief();
+  expected.move(since_update_, noise_);
+  verdict_ = kidnap_watch_.judge(expected, sensed.markers, since_update_, config_.marker_gate,
+                                 config_.marker_near_m);
+  sensed.verdict = verdict_;
   const std::vector<Eigen::Vector3d> normals = centred_normals();
   std::vector<Outcome> outcomes(particles_.size());
   setup_.parallel_for(particles_.size(), [&](std::size_t i) {
@@ -90,7 +100,8 @@ void WaymarkEstimator::process(const Observation& observation) {
   for (std::size_t i = 0; i < particles_.size(); ++i)
     particles_.add_log_weight(i, outcomes[i].log_evidence);
   particles_.normalise();
-  noise_growth_.learn(outcomes[particles_.best()].correction);
+  if (verdict_ == KidnapWatch::Verdict::kSettled)
+    noise_growth_.learn(outcomes[particles_.best()].correction);
   noise_ = noise_growth_.applied_to(config_.odometry);
   judge(outcomes);
 }
@@ -98,25 +109,55 @@ void WaymarkEstimator::process(const Observation& observation) {
 WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& sensed,
                                                     const Eigen::Vector3d& normal) const {
   Outcome outcome;
+  const bool is_doubtful = sensed.verdict == KidnapWatch::Verdict::kDoubtful;
   state.previous_map_from_base = state.map_from_base;
   if (updates_ > 0) {
-    state.belief.move(since_update_, noise_);
+    move(state, sensed);
     const Se2 predicted = state.belief.map_from_base();
     const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
     correct_by_walls(state, sensed, outcome);
-    correct_by_markers(state, sensed, outcome);
     const Eigen::Matrix3d posterior = in_frame_of(predicted, state.belief.pose_covariance());
     const Se2 moved = predicted.inverse() * state.belief.map_from_base();
     outcome.correction = {
         {moved.x(), moved.y(), moved.theta()}, prior.diagonal(), posterior.diagonal()};
+    if (!is_doubtful) correct_by_markers(state, sensed, outcome);
   } else {
     correct_by_markers(state, sensed, outcome);
   }
+  if (!is_doubtful) note_absences(state, sensed);
   state.belief.draw_pose(told_axes(sensed.walls, state.belief.map_from_base()), normal);
   state.map_from_base = state.belief.map_from_base();
+  if (is_doubtful) return outcome;
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
     state.walls.add(state.map_from_base * annotated.beam.end_in_base);
   return outcome;
+}
+
+/// By odometry, or to where the markers say that the robot has been carried.
+void WaymarkEstimator::move(State& state, const Sensed& sensed) const {
+  state.belief.move(since_update_, noise_);
+  if (sensed.verdict != KidnapWatch::Verdict::kElsewhere) return;
+  const MarkerMeasurement& by = kidnap_watch_.relocating_marker();
+  if (const auto marker = state.belief.only_marker(by.id)) state.belief.relocate(*marker, by);
+}
+
+/// Absence is evidence where the camera could have seen the marker, and nothing stood before it:
+/// the LiDAR sees its wall.
+void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
+  const Observation& observation = *sensed.observation;
+  if (!observation.camera_reported) return;
+  const auto is_in_view = [&](const Se2& base_from_marker) {
+    const Eigen::Vector2d place = base_from_marker.translation();
+    const Eigen::Vector2d to_camera =
+        (setup_.camera.base_from_camera.translation() - place).normalized();
+    const Eigen::Vector2d facing = base_from_marker.rotation().col(0);
+    return facing.dot(to_camera) > kMinFacing && setup_.camera.would_show(place) &&
+           std::any_of(observation.beams.begin(), observation.beams.end(),
+                       [&](const AnnotatedBeam& annotated) {
+                         return (annotated.beam.end_in_base - place).norm() < kWallInSight_m;
+                       });
+  };
+  state.belief.note_absences(is_in_view, observation.time - kSightingAge);
 }
 
 void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
@@ -138,9 +179,10 @@ void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
     if (measurement.wall) state.belief.correct_camera(*measurement.wall);
     if (measurement.focal) state.belief.correct_camera(*measurement.focal);
     const auto nearest = state.belief.nearest(measurement);
-    if (nearest && nearest->distance < config_.marker_gate) {
+    if (nearest && nearest->may_be_it(config_.marker_gate, config_.marker_near_m)) {
       outcome.log_evidence +=
-          config_.marker_evidence * state.belief.correct(nearest->marker, measurement);
+          config_.marker_evidence *
+          state.belief.correct(nearest->marker, measurement, config_.marker_gate);
       ++outcome.known_markers;
     } else {
       outcome.log_evidence -= config_.marker_evidence * 0.5 * config_.marker_gate;
@@ -170,6 +212,10 @@ std::vector<Eigen::Vector3d> WaymarkEstimator::centred_normals() const {
 void WaymarkEstimator::judge(const std::vector<Outcome>& outcomes) {
   mean_ = mean_pose();
   covariance_ = covariance_about_mean();
+  if (kidnap_watch_.elsewhere()) {
+    const Eigen::Vector3d away = deviation(mean_, *kidnap_watch_.elsewhere());
+    covariance_ += away * away.transpose();
+  }
   effective_particles_ = particles_.effective_number();
   const Outcome& best = outcomes[particles_.best()];
   const bool is_mapped = best.walls.mapped > kMinMappedShare * best.walls.beams;
@@ -218,7 +264,8 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
   if (updates_ < 2) {
     estimate.health = Health::kInitialising;
-  } else if (wall_agreement_ < config_.lost_agreement) {
+  } else if (verdict_ == KidnapWatch::Verdict::kDoubtful ||
+             wall_agreement_ < config_.lost_agreement) {
     estimate.health = Health::kLost;
   } else if (estimate.observability.is_degenerate && !markers_told_) {
     estimate.health = Health::kDegenerate;

@@ -7,6 +7,7 @@
 #include "slam/core/belief/noise_growth.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/filter/particle_set.hpp"
+#include "slam/core/landmark/kidnap_watch.hpp"
 #include "slam/core/matching/surface_matching.hpp"
 #include "slam/core/proposal/pose_proposal.hpp"
 #include "slam/core/scan/turn_by_scans.hpp"
@@ -22,6 +23,7 @@ struct WaymarkConfig {
   double update_distance_m{0.1};   ///< scans in between are followed by odometry
   double update_turn_rad{0.0873};
   double marker_gate{16.3};          ///< chi^2 of a sighting's innovation, 3 degrees of freedom
+  double marker_near_m{0.25};        ///< off by less, it is believed, too, but counts less
   double same_marker_within_m{1.0};  ///< no second marker of one id nearer than this
   int joint_markers{24};             ///< in each particle's covariance; the others are settled
   double scan_evidence{0.02};        ///< share of a scan's log-likelihood that weighs particles
@@ -69,6 +71,7 @@ class WaymarkEstimator final : public Estimator {
     const Observation* observation{nullptr};
     std::vector<MarkerMeasurement> markers{};
     Observability walls{};  ///< base frame
+    KidnapWatch::Verdict verdict{KidnapWatch::Verdict::kSettled};
   };
 
   /// What one particle made of it.
@@ -83,8 +86,10 @@ class WaymarkEstimator final : public Estimator {
   bool is_due() const;
   void process(const Observation& observation);
   Outcome advance(State& state, const Sensed& sensed, const Eigen::Vector3d& normal) const;
+  void move(State& state, const Sensed& sensed) const;
   void correct_by_walls(State& state, const Sensed& sensed, Outcome& outcome) const;
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
+  void note_absences(State& state, const Sensed& sensed) const;
   std::vector<Eigen::Vector3d> centred_normals() const;
   void judge(const std::vector<Outcome>& outcomes);
   Se2 mean_pose() const;
@@ -94,6 +99,7 @@ class WaymarkEstimator final : public Estimator {
   EstimatorSetup setup_;
   WaymarkConfig config_;
   ParticleSet<State> particles_;
+  KidnapWatch kidnap_watch_{};
   NoiseGrowth noise_growth_{};
   OdometryNoise noise_{};  ///< the configured one, grown
   Mapper mapper_;
@@ -107,6 +113,7 @@ class WaymarkEstimator final : public Estimator {
   double effective_particles_{1.0};
   double wall_agreement_{1.0};
   bool markers_told_{false};
+  KidnapWatch::Verdict verdict_{KidnapWatch::Verdict::kSettled};
 };
 
 }  // namespace waymark

@@ -19,6 +19,8 @@ struct Landmark {
   int sightings{0};
   Timestamp first_seen{};
   Timestamp last_seen{};
+  int misses{0};          ///< updates since the last sighting at which it should have been in view
+  bool was_moved{false};  ///< it used to be at another place
 };
 
 /// Collects sightings. An id is a class, not a key: sightings of one id that lie apart are

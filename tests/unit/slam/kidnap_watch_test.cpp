@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Markers that are not where they should be: was the robot carried away, or the marker?
+#include "slam/core/landmark/kidnap_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <numbers>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+using Verdict = KidnapWatch::Verdict;
+
+constexpr double kGate = 16.3;
+constexpr double kNear_m = 0.25;
+const Motion kStep{Se2{0.1, 0.0, 0.0}, 0.1, 0.0};
+
+/// Of a marker at a place in the map, seen from where the robot really is.
+MarkerMeasurement seen_from(const Se2& map_from_base, int id, const Se2& map_from_marker) {
+  MarkerMeasurement measurement;
+  measurement.id = id;
+  measurement.base_from_marker = map_from_base.inverse() * map_from_marker;
+  measurement.covariance = Eigen::Vector3d{1e-4, 1e-4, 1e-4}.asDiagonal();
+  return measurement;
+}
+
+Se2 place_of(int id) {
+  const double side = id % 2 == 0 ? 1.0 : -1.0;
+  return {4.0 * (1 + id / 2), side, -side * std::numbers::pi / 2.0};
+}
+
+/// Has seen markers 0 to 7, in pairs every 4 m, and believes to stand at x = 15.
+Belief travelled() {
+  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  for (int id = 0; id < 8; ++id)
+    belief.add(seen_from({}, id, place_of(id)));
+  belief.move({Se2{15.0, 0.0, 0.0}, 15.0, 0.0}, {});
+  belief.correct_pose(belief.map_from_base(), 1e-4 * Eigen::Matrix3d::Identity());
+  return belief;
+}
+
+Verdict judge(KidnapWatch& watch, const std::vector<MarkerMeasurement>& seen) {
+  return watch.judge(travelled(), seen, kStep, kGate, kNear_m);
+}
+
+TEST(KidnapWatch, HasNoDoubtWhereMarkersAreWhereTheyWere) {
+  KidnapWatch watch;
+  const Se2 truth = travelled().map_from_base();
+  EXPECT_EQ(judge(watch, {seen_from(truth, 6, place_of(6))}), Verdict::kSettled);
+  EXPECT_EQ(judge(watch, {seen_from(truth, 6, place_of(6)), seen_from(truth, 7, place_of(7))}),
+            Verdict::kSettled);
+  EXPECT_EQ(judge(watch, {}), Verdict::kSettled);
+}
+
+TEST(KidnapWatch, TwoMarkersThatAgreeTellWhereTheRobotIs) {
+  KidnapWatch watch;
+  const Se2 truth{11.0, 0.1, 0.05};
+  ASSERT_EQ(judge(watch, {seen_from(truth, 4, place_of(4)), seen_from(truth, 5, place_of(5))}),
+            Verdict::kElsewhere);
+  Belief belief = travelled();
+  const MarkerMeasurement& by = watch.relocating_marker();
+  belief.relocate(*belief.only_marker(by.id), by);
+  EXPECT_NEAR(belief.map_from_base().x(), truth.x(), 1e-9);
+  EXPECT_NEAR(belief.map_from_base().y(), truth.y(), 1e-9);
+  EXPECT_GT(belief.pose_covariance()(0, 0), 0.1);
+  const auto nearest = belief.nearest(by);
+  belief.correct(nearest->marker, by, kGate);
+  EXPECT_LT(belief.pose_covariance()(0, 0), 0.05);
+}
+
+TEST(KidnapWatch, OneMarkerAloneIsADoubtUntilTheNext) {
+  const Se2 truth{11.0, 0.1, 0.05};
+  KidnapWatch watch;
+  EXPECT_EQ(judge(watch, {seen_from(truth, 4, place_of(4))}), Verdict::kDoubtful);
+  ASSERT_TRUE(watch.elsewhere());
+  EXPECT_NEAR(watch.elsewhere()->x(), 11.0, 1e-9);
+  EXPECT_EQ(judge(watch, {}), Verdict::kDoubtful);
+  const Se2 later = truth * kStep.start_from_end * kStep.start_from_end;
+  EXPECT_EQ(judge(watch, {seen_from(later, 5, place_of(5))}), Verdict::kElsewhere);
+}
+
+TEST(KidnapWatch, AWitnessThatTheRobotIsWhereItBelievesEndsTheDoubt) {
+  const Se2 truth = travelled().map_from_base();
+  const Se2 moved{place_of(4).x() + 4.5, place_of(4).y(), place_of(4).theta()};
+  KidnapWatch watch;
+  EXPECT_EQ(judge(watch, {seen_from(truth, 4, moved)}), Verdict::kDoubtful);
+  EXPECT_EQ(judge(watch, {seen_from(truth, 4, moved), seen_from(truth, 7, place_of(7))}),
+            Verdict::kSettled);
+  // A marker that was never seen fits what is believed, too.
+  EXPECT_EQ(judge(watch, {seen_from(truth, 4, moved), seen_from(truth, 30, {17.0, 1.0, -1.6})}),
+            Verdict::kSettled);
+}
+
+TEST(KidnapWatch, ADoubtWithoutASecondMarkerPasses) {
+  const Se2 truth{11.0, 0.1, 0.05};
+  KidnapWatch watch;
+  EXPECT_EQ(judge(watch, {seen_from(truth, 4, place_of(4))}), Verdict::kDoubtful);
+  int doubtful = 0;
+  while (judge(watch, {}) == Verdict::kDoubtful && doubtful < 100)
+    ++doubtful;
+  EXPECT_GT(doubtful, 5);
+  EXPECT_LT(doubtful, 15);
+}
+
+TEST(KidnapWatch, AnIdThatSeveralMarkersHaveIsNoWitness) {
+  Belief belief = travelled();
+  belief.add(seen_from(belief.map_from_base(), 4, {40.0, 1.0, -1.57}));
+  EXPECT_FALSE(belief.only_marker(4));
+  const Se2 truth{11.0, 0.1, 0.05};
+  KidnapWatch watch;
+  EXPECT_EQ(
+      watch.judge(belief, std::vector{seen_from(truth, 4, place_of(4))}, kStep, kGate, kNear_m),
+      Verdict::kSettled);
+}
+
+TEST(Belief, AMarkerThatIsSlightlyOffPullsLessThanOneThatFits) {
+  const auto moved_by = [](double off_m) {
+    Belief belief = travelled();
+    const Se2 before = belief.map_from_base();
+    const Se2 seen{place_of(6).x() - off_m, place_of(6).y(), place_of(6).theta()};
+    const MarkerMeasurement measurement = seen_from(before, 6, seen);
+    belief.correct(belief.nearest(measurement)->marker, measurement, kGate);
+    return (belief.map_from_base().x() - before.x()) / off_m;
+  };
+  const double fits = moved_by(0.01);
+  EXPECT_GT(fits, 0.0);
+  EXPECT_LT(moved_by(0.3), 0.5 * fits);
+  EXPECT_GT(moved_by(0.3), 0.0);
+}
+
+TEST(Belief, AMarkerThatIsGoneAndHasTurnedUpElsewhereWasMoved) {
+  using std::chrono::seconds;
+  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  MarkerMeasurement old = seen_from({}, 4, {2.0, 1.0, -1.57});
+  old.time = Timestamp{seconds{1}};
+  belief.add(old);
+  MarkerMeasurement fresh = seen_from({}, 4, {3.0, 1.0, -1.57});
+  fresh.time = Timestamp{seconds{10}};
+  belief.add(fresh);
+  const auto all_in_view = [](const Se2&) {
+    return true;
+  };
+  for (int i = 0; i < 4; ++i) {
+    belief.note_absences(all_in_view, Timestamp{seconds{9}});
+    belief.correct(belief.nearest(fresh)->marker, fresh, kGate);
+  }
+  EXPECT_EQ(belief.markers().size(), 2U);
+  belief.note_absences(all_in_view, Timestamp{seconds{9}});
+  ASSERT_EQ(belief.markers().size(), 1U);
+  EXPECT_TRUE(belief.markers()[0].was_moved);
+  EXPECT_EQ(belief.markers()[0].instance, 0);
+  EXPECT_NEAR(belief.markers()[0].map_from_marker.x(), 3.0, 0.05);
+}
+
+TEST(Belief, AMarkerOutOfViewIsNotMissed) {
+  Belief belief = travelled();
+  for (int i = 0; i < 20; ++i)
+    belief.note_absences([](const Se2&) { return false; }, Timestamp{std::chrono::seconds{9}});
+  for (const Landmark& marker : belief.markers())
+    EXPECT_EQ(marker.misses, 0);
+}
+
+}  // namespace
+}  // namespace waymark
