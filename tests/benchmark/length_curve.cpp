@@ -46,7 +46,7 @@ Errors errors_of(double length_m, std::uint64_t seed) {
   setup.seed = seed;
   setup.range_sigma_m = corridor.range_sigma_m;
   setup.range_max_m = corridor.range_max_m;
-  setup.base_from_camera = {corridor.camera_x_m, 0.0, 0.0};
+  setup.camera = test::setup_of(corridor).camera;
   WaymarkEstimator estimator{setup, {}};
   const auto steps = test::run(estimator, test::drive(corridor), test::setup_of(corridor));
   double across = 0.0;

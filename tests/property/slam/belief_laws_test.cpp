@@ -17,6 +17,7 @@ namespace waymark {
 namespace {
 
 constexpr int kCases = 20;
+constexpr double kGate = 16.3;  // chi^2, 3 degrees of freedom: 99.9 %
 
 Eigen::Matrix3d diagonal(double x, double y, double yaw) {
   return Eigen::Vector3d{x * x, y * y, yaw * yaw}.asDiagonal();
@@ -148,7 +149,7 @@ void happen(int n, Belief& belief) {
   measurement.time = Timestamp{std::chrono::seconds{n}};
   const auto nearest = belief.nearest(measurement);
   if (nearest && nearest->distance_m() < 1.5) {
-    belief.correct(nearest->marker, measurement);  // revives those that have been settled
+    belief.correct(nearest->marker, measurement, kGate);  // revives what has been settled
   } else {
     belief.add(measurement);
   }

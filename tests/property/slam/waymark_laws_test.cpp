@@ -23,7 +23,7 @@ EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std::uint64
   setup.seed = seed;
   setup.range_sigma_m = corridor.range_sigma_m;
   setup.range_max_m = corridor.range_max_m;
-  setup.base_from_camera = {corridor.camera_x_m, 0.0, 0.0};
+  setup.camera = setup_of(corridor).camera;
   return setup;
 }
 
