@@ -64,13 +64,16 @@ std::string markers_csv_text(std::vector<Landmark> landmarks) {
   std::sort(landmarks.begin(), landmarks.end(), [](const Landmark& a, const Landmark& b) {
     return std::tie(a.id, a.instance) < std::tie(b.id, b.instance);
   });
-  std::string text = "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings\n";
+  std::string text =
+      "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,"
+      "state\n";
   for (const Landmark& landmark : landmarks) {
     const Se2& pose = landmark.map_from_marker;
     const Eigen::Matrix3d& c = landmark.covariance;
-    fmt::format_to(std::back_inserter(text), "{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{}\n",
-                   landmark.id, landmark.instance, pose.x(), pose.y(), pose.theta(), sigma(c(0, 0)),
-                   sigma(c(1, 1)), sigma(c(2, 2)), landmark.sightings);
+    fmt::format_to(
+        std::back_inserter(text), "{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n",
+        landmark.id, landmark.instance, pose.x(), pose.y(), pose.theta(), sigma(c(0, 0)),
+        sigma(c(1, 1)), sigma(c(2, 2)), landmark.sightings, static_cast<int>(landmark.state));
   }
   return text;
 }

@@ -19,7 +19,8 @@ std::string tum_text(std::span<const EstimatedPose> path);
 /// in lcmtypes/slam_estimate_t.lcm, so that all columns are numbers.
 std::string covariance_csv_text(std::span<const EstimatedPose> path);
 
-/// `id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings`, by id and instance.
+/// `id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state`, by id and
+/// instance.
 std::string markers_csv_text(std::vector<Landmark> landmarks);
 
 }  // namespace waymark::viewer

@@ -68,9 +68,18 @@ a_new_row_or_seed_uses_the_logs_that_are_there() {
 
 another_scenario_of_the_same_name_is_recorded_anew() {
   expect 0 "${arguments[@]}"
-  echo "# changed" >>"$scenario"
+  echo "[world]" >>"$scenario"
   expect 0 "${arguments[@]}"
   [[ $(wc -l <"$work/pids.recorder") == 4 ]] || fail "old logs were taken"
+}
+
+another_expectation_is_only_evaluated_anew() {
+  expect 0 "${arguments[@]}"
+  printf '[expect]\nate_origin_m = 0.5\n' >>"$scenario"
+  expect 0 "${arguments[@]}"
+  [[ $(wc -l <"$work/pids.recorder") == 2 ]] || fail "logs were recorded twice"
+  [[ $(evaluations_of_case) == 4 ]] || fail "not evaluated anew"
+  grep -q '^ate_origin_m = 0.5' "$sweep/short/seed-2/expect.toml" || fail "expect.toml"
 }
 
 a_failed_replay_is_a_failure_of_its_row() {

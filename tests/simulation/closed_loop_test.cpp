@@ -15,6 +15,7 @@
 #include <fstream>
 #include <future>
 #include <map>
+#include <sstream>
 #include <thread>
 
 namespace waymark {
@@ -183,6 +184,28 @@ TEST_F(ClosedLoop, AReplayGivesTheSameMapAsTheLiveRun) {
                 content_of(folder() / "reference" / kRow / file))
         << file;
   }
+}
+
+/// The smoke test of deploy/sweep.sh's scenarios; they themselves take hours.
+TEST_F(ClosedLoop, WaymarkHoldsWithFaultsInTheMessages) {
+  const std::string variants = (kSource / "tests/data/faults/short.toml").string();
+  const std::string faults = (kPrograms / "waymark-faults").string();
+  std::istringstream names{run_command(faults + " --variants " + variants + " --list").output};
+  int count = 0;
+  for (std::string name; std::getline(names, name); ++count) {
+    const std::string run = (folder() / ("faulty-" + name)).string();
+    const auto finished = run_command(faults + " " + (folder() / "reference").string() +
+                                      " --variants " + variants + " --variant " + name + " --out " +
+                                      run + " && " + (kSource / "deploy/replay.sh").string() + " " +
+                                      run + "/run.lcm --estimator waymark && " +
+                                      (kPrograms / "waymark-evaluate").string() + " run " + run);
+    ASSERT_EQ(finished.exit_code, 0) << name << ": " << finished.output;
+    const auto metrics = nlohmann::json::parse(content_of(fs::path{run} / "waymark/metrics.json"));
+    EXPECT_FALSE(metrics.at("expectations").empty()) << name;
+    for (const auto& figure : metrics.at("expectations"))
+      EXPECT_TRUE(figure.at("hit")) << name << ": " << figure.dump();
+  }
+  EXPECT_GE(count, 5);
 }
 
 TEST_F(ClosedLoop, AHostilePublisherChangesNothing) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <tuple>
 
 namespace waymark::evaluate {
@@ -19,19 +21,78 @@ struct Candidate {
   }
 };
 
+// Values of column `state`; as in lcmtypes/marker_landmark_t.lcm.
+constexpr double kStateTentative = 2.0;
+constexpr double kStateMoved = 3.0;
+
+bool has_state(const std::filesystem::path& file) {
+  const std::vector<std::string> lines = read_lines(file);
+  return !lines.empty() && (lines.front() + ",").find(",state,") != std::string::npos;
+}
+
+Marker marker_of(const CsvTable& table, const std::vector<double>& row) {
+  return {
+      .id = static_cast<int>(std::lround(table.at(row, "id"))),
+      .parent_from_marker = {table.at(row, "x_m"), table.at(row, "y_m"), table.at(row, "yaw_rad")},
+      .instance = static_cast<int>(std::lround(table.at(row, "instance")))};
+}
+
+/// Absent if no marker was moved and none is said to be.
+std::optional<double> moved_named_share(const std::vector<Marker>& in_map,
+                                        const std::vector<Marker>& in_world) {
+  std::map<int, int> moved;  // by id
+  std::map<int, int> named;
+  for (const Marker& marker : in_world)
+    moved[marker.id] += marker.has_moved ? 1 : 0;
+  for (const Marker& marker : in_map)
+    named[marker.id] += marker.has_moved ? 1 : 0;
+  int both = 0;
+  int either = 0;
+  for (const auto& [id, count] : moved) {
+    both += std::min(count, named[id]);
+    either += std::max(count, named[id]);
+  }
+  for (const auto& [id, count] : named)
+    either += moved.count(id) == 0 ? count : 0;
+  if (either == 0) return std::nullopt;
+  return static_cast<double>(both) / static_cast<double>(either);
+}
+
 }  // namespace
 
 std::vector<Marker> read_markers(const std::filesystem::path& file, Skipped& skipped) {
-  const CsvTable table = read_csv(file, {"id", "instance", "x_m", "y_m", "yaw_rad"}, skipped);
+  std::vector<std::string> columns{"id", "instance", "x_m", "y_m", "yaw_rad"};
+  const bool with_state = has_state(file);
+  if (with_state) columns.emplace_back("state");
+  const CsvTable table = read_csv(file, columns, skipped);
   std::vector<Marker> markers;
-  for (const auto& row : table.rows)
-    markers.push_back({static_cast<int>(std::lround(table.at(row, "id"))),
-                       Se2{table.at(row, "x_m"), table.at(row, "y_m"), table.at(row, "yaw_rad")}});
+  for (const auto& row : table.rows) {
+    markers.push_back(marker_of(table, row));
+    if (!with_state) continue;
+    markers.back().has_moved = table.at(row, "state") == kStateMoved;
+    markers.back().is_tentative = table.at(row, "state") == kStateTentative;
+  }
   return markers;
 }
 
-MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Marker>& in_world,
+std::vector<Marker> with_moves(std::vector<Marker> markers, const std::filesystem::path& file,
+                               Skipped& skipped) {
+  const CsvTable table = read_csv(file, {"id", "instance", "x_m", "y_m", "yaw_rad"}, skipped);
+  for (const auto& row : table.rows) {
+    Marker moved = marker_of(table, row);
+    moved.has_moved = true;
+    for (Marker& marker : markers) {
+      if (marker.id == moved.id && marker.instance == moved.instance) marker = moved;
+    }
+  }
+  return markers;
+}
+
+MarkerError marker_error(const std::vector<Marker>& estimated, const std::vector<Marker>& in_world,
                          const Se2& world_from_map, double gate_m) {
+  std::vector<Marker> in_map;
+  std::copy_if(estimated.begin(), estimated.end(), std::back_inserter(in_map),
+               [](const Marker& marker) { return !marker.is_tentative; });
   std::vector<Candidate> candidates;
   for (std::size_t e = 0; e < in_map.size(); ++e) {
     const Eigen::Vector2d estimate = world_from_map * in_map[e].parent_from_marker.translation();
@@ -43,7 +104,7 @@ MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Ma
   }
   std::sort(candidates.begin(), candidates.end());
 
-  MarkerError error{};
+  MarkerError error{.tentative = estimated.size() - in_map.size()};
   double sum_m = 0.0;
   double sum_deg = 0.0;
   double max_m = 0.0;
@@ -65,6 +126,7 @@ MarkerError marker_error(const std::vector<Marker>& in_map, const std::vector<Ma
     ++error.matched;
   }
   error.missing = in_world.size() - error.matched;
+  error.moved_named_share = moved_named_share(in_map, in_world);
   error.spurious = in_map.size() - error.matched;
   if (error.matched == 0) return error;
   error.right_share =

@@ -40,7 +40,9 @@ Json json_of(const std::optional<MarkerError>& error) {
   json["markers_matched"] = error ? Json(error->matched) : Json{};
   json["markers_missing"] = error ? Json(error->missing) : Json{};
   json["markers_spurious"] = error ? Json(error->spurious) : Json{};
+  json["markers_tentative"] = error ? Json(error->tentative) : Json{};
   json["marker_map_share"] = error ? number(error->right_share) : Json{};
+  json["moved_named_share"] = error ? number(error->moved_named_share) : Json{};
   json["marker_error_mean_m"] = error ? number(error->mean_position_m) : Json{};
   json["marker_error_max_m"] = error ? number(error->max_position_m) : Json{};
   json["marker_yaw_error_mean_deg"] = error ? number(error->mean_yaw_deg) : Json{};
@@ -162,7 +164,12 @@ Json metrics_json(const EstimatorResult& result) {
   json.update(json_of(result.nees));
   json["wall_cells"] = result.wall_cells ? Json(*result.wall_cells) : Json{};
   json.update(json_of(result.timeline));
+  json["driven_m"] = number(result.driven_m);
+  json["memory_mb_per_m"] = number(result.memory_mb_per_m);
+  json["sigma_growth"] = number(result.sigma_growth);
   json["expectations"] = json_of(result.expectations);
+  json["expected_of_seeds"] = {{"nees_in_band_share", number(result.expect.nees_in_band_share)},
+                               {"seeds_share", number(result.expect.seeds_share)}};
   json["timings"] = parsed(result.timings_json);
   json["counters"] = parsed(result.counters_json);
   json["problems"] = result.problems;

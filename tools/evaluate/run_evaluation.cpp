@@ -93,6 +93,7 @@ void add_trajectory(const fs::path& dir, const RunTruth& truth, const Evaluation
     covariances = read_covariances(covariance_file, result.skipped);
     result.nees = nees(pairs, covariances, world_from_map);
   }
+  result.driven_m = driven_m(pairs);
   result.stations = stations(pairs, covariances, world_from_map);
   result.timeline =
       timeline(pairs, covariances, world_from_map, truth.lifted_t_s, truth.sightings_s);
@@ -104,6 +105,27 @@ void add_final_trajectory(const fs::path& dir, const Trajectory& truth,
   if (!fs::exists(file)) return;
   const Trajectory estimate = read_tum(file, result.skipped);
   result.final_trajectory = trajectory_error(pairs_of(file, estimate, truth), options.alignment);
+}
+
+/// slam.peak_memory_mb of timings.json.
+std::optional<double> peak_memory_mb(const std::optional<std::string>& timings_json) {
+  if (!timings_json) return std::nullopt;
+  const auto timings = nlohmann::json::parse(*timings_json);
+  const auto pointer = nlohmann::json::json_pointer{"/slam/peak_memory_mb"};
+  if (!timings.contains(pointer) || !timings.at(pointer).is_number()) return std::nullopt;
+  return timings.at(pointer).get<double>();
+}
+
+/// What the figures need that are about the scenario.
+void add_figures_of_scenario(const ExpectConfig& expect, EstimatorResult& result) {
+  const auto memory_mb = peak_memory_mb(result.timings_json);
+  if (memory_mb && result.driven_m.value_or(0.0) > 0.0)
+    result.memory_mb_per_m = *memory_mb / *result.driven_m;
+  if (expect.sigma_growth_to_m > expect.sigma_growth_from_m)
+    result.sigma_growth =
+        sigma_growth(result.stations, expect.sigma_growth_from_m, expect.sigma_growth_to_m);
+  if (is_expected_of(expect, result.name)) result.expect = expect;
+  result.expectations = check_expectations(expect, result);
 }
 
 /// Position in the table.
@@ -136,6 +158,8 @@ RunTruth read_truth(const fs::path& run_dir, const EvaluationOptions& options) {
     truth.sightings_s = sighting_times(run_dir / "run.lcm");
   if (fs::exists(run_dir / "truth_markers.csv"))
     truth.markers = read_markers(run_dir / "truth_markers.csv", truth.skipped);
+  if (truth.markers && fs::exists(run_dir / "truth_marker_moves.csv"))
+    truth.markers = with_moves(*truth.markers, run_dir / "truth_marker_moves.csv", truth.skipped);
   return truth;
 }
 
@@ -185,7 +209,7 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
   attempt(result.problems, [&] { result.config_toml = text_if_there(dir / "config.toml"); });
   attempt(result.problems, [&] { result.timings_json = json_if_there(dir / "timings.json"); });
   attempt(result.problems, [&] { result.counters_json = json_if_there(dir / "counters.json"); });
-  result.expectations = check_expectations(truth.expect, result);
+  add_figures_of_scenario(truth.expect, result);
   return result;
 }
 

@@ -48,7 +48,11 @@ struct EstimatorResult {
   std::optional<Nees> nees{};
   std::vector<Station> stations{};
   std::optional<Timeline> timeline{};
+  std::optional<double> driven_m{};         ///< by the true robot
+  std::optional<double> sigma_growth{};     ///< between the stations that the scenario names
+  std::optional<double> memory_mb_per_m{};  ///< peak of the process over `driven_m`
   std::vector<ExpectedFigure> expectations{};
+  ExpectConfig expect{};  ///< of this row; all zero if nothing is expected of it
   std::optional<std::string> config_toml{};
   std::optional<std::string> timings_json{};
   std::optional<std::string> counters_json{};

@@ -10,6 +10,7 @@ namespace waymark::evaluate {
 namespace {
 
 constexpr double kSpacing_m = 1.0;
+constexpr double kFastest_mps = 1.0;  ///< twice the fastest scenario's robot
 /// Stands for "none" in the file, where every column is a finite number; no such value is negative.
 constexpr double kNone = -1.0;
 
@@ -36,7 +37,22 @@ Station station_at(double travel_m, const PosePair& pair, const StampedCovarianc
   return station;
 }
 
+/// Of the true robot from one pose to the next; 0 if it was lifted in between.
+double step_m(const PosePair& before, const PosePair& after) {
+  const double distance_m =
+      (after.world_from_truth.translation() - before.world_from_truth.translation()).norm();
+  const double most_m = std::max(kLifted_m, kFastest_mps * (after.t_s - before.t_s));
+  return distance_m < most_m ? distance_m : 0.0;
+}
+
 }  // namespace
+
+double driven_m(const std::vector<PosePair>& pairs) {
+  double sum_m = 0.0;
+  for (std::size_t i = 1; i < pairs.size(); ++i)
+    sum_m += step_m(pairs[i - 1], pairs[i]);
+  return sum_m;
+}
 
 std::vector<Station> stations(const std::vector<PosePair>& pairs,
                               const std::vector<StampedCovariance>& covariances,
@@ -45,16 +61,28 @@ std::vector<Station> stations(const std::vector<PosePair>& pairs,
   double travelled_m = 0.0;
   double next_m = kSpacing_m;
   for (std::size_t i = 1; i < pairs.size(); ++i) {
-    const double step_m =
-        (pairs[i].world_from_truth.translation() - pairs[i - 1].world_from_truth.translation())
-            .norm();
-    if (step_m < kLifted_m) travelled_m += step_m;
+    travelled_m += step_m(pairs[i - 1], pairs[i]);
     if (travelled_m < next_m) continue;
+    const double station_m = kSpacing_m * std::floor(travelled_m / kSpacing_m);
     found.push_back(
-        station_at(next_m, pairs[i], covariance_at(covariances, pairs[i].t_s), world_from_map));
-    next_m += kSpacing_m;
+        station_at(station_m, pairs[i], covariance_at(covariances, pairs[i].t_s), world_from_map));
+    next_m = station_m + kSpacing_m;
   }
   return found;
+}
+
+std::optional<double> sigma_growth(const std::vector<Station>& stations, double from_m,
+                                   double to_m) {
+  const auto sigma_at = [&](double travel_m) {
+    const auto station = std::find_if(stations.begin(), stations.end(), [&](const Station& s) {
+      return s.travel_m == std::floor(travel_m);
+    });
+    return station == stations.end() ? std::nullopt : station->sigma_along_m;
+  };
+  const std::optional<double> from = sigma_at(from_m);
+  const std::optional<double> to = sigma_at(to_m);
+  if (!from || !to || *from <= 0.0) return std::nullopt;
+  return *to / *from;
 }
 
 std::string stations_csv(const std::vector<Station>& stations) {

@@ -26,10 +26,18 @@ struct Station {
 /// Truth moves further than this between two poses of a trajectory only when the robot is lifted.
 inline constexpr double kLifted_m = 0.3;
 
-/// The first pose at or behind each metre. Where the robot is lifted it does not travel.
+/// Length of the true way [m], without being lifted.
+double driven_m(const std::vector<PosePair>& pairs);
+
+/// The first pose at or behind each metre; metres without a pose are left out. Where the robot is
+/// lifted it does not travel.
 std::vector<Station> stations(const std::vector<PosePair>& pairs,
                               const std::vector<StampedCovariance>& covariances,
                               const Se2& world_from_map);
+
+/// Standard deviation along at one station over that at another; absent if either has none.
+std::optional<double> sigma_growth(const std::vector<Station>& stations, double from_m,
+                                   double to_m);
 
 /// `travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,health`; -1 where there is none.
 std::string stations_csv(const std::vector<Station>& stations);

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <string_view>
 #include <utility>
 
 namespace waymark::evaluate {
@@ -63,6 +65,12 @@ void add_figures(SweptRun& run, const std::optional<double>& odometry_ate_m) {
     run.metrics["ate_over_odometry"] = *run.figure("ate_origin_m") / *odometry_ate_m;
 }
 
+bool is_more_better(std::string_view key) {
+  constexpr std::array<std::string_view, 4> kKeys{"marker_map_share", "moved_named_share",
+                                                  "sigma_growth", "share_tracking"};
+  return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
+}
+
 }  // namespace
 
 std::vector<PlannedRun> read_plan(const fs::path& sweep_dir) {
@@ -84,6 +92,12 @@ bool SweptRun::misses() const {
   if (has_failed() || !metrics.contains("expectations")) return false;
   return std::any_of(metrics["expectations"].begin(), metrics["expectations"].end(),
                      [](const Json& figure) { return !figure.value("hit", false); });
+}
+
+double SweptRun::limit_of_seeds(const std::string& key) const {
+  const Json::json_pointer place{"/expected_of_seeds/" + key};
+  if (!metrics.is_object() || !metrics.contains(place) || !metrics[place].is_number()) return 0.0;
+  return metrics[place].get<double>();
 }
 
 std::optional<double> SweptRun::figure(const std::string& key) const {
@@ -119,7 +133,32 @@ Figures SweepRow::figures(const std::string& key) const {
   const std::size_t middle = values.size() / 2;
   const double median =
       values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-  return {median, values.back()};
+  return {median, is_more_better(key) ? values.front() : values.back()};
+}
+
+double SweepRow::limit(const std::string& key) const {
+  double limit = 0.0;
+  for (const SweptRun& run : runs)
+    limit = std::max(limit, run.limit_of_seeds(key));
+  return limit;
+}
+
+bool SweepRow::expects_anything() const {
+  return limit("nees_in_band_share") > 0.0 ||
+         std::any_of(runs.begin(), runs.end(), [](const SweptRun& run) {
+           return run.metrics.is_object() && run.metrics.contains("expectations") &&
+                  !run.metrics["expectations"].empty();
+         });
+}
+
+bool SweepRow::is_hit() const {
+  constexpr double kAll = 1.0;
+  const double wanted = limit("seeds_share") > 0.0 ? limit("seeds_share") : kAll;
+  const double hits = static_cast<double>(runs.size() - failures() - misses());
+  constexpr double kRounding = 1e-9;
+  return hits + kRounding >= wanted * static_cast<double>(runs.size()) &&
+         (limit("nees_in_band_share") <= 0.0 ||
+          share_in_band(stations) >= limit("nees_in_band_share"));  // NaN is no hit
 }
 
 const SweptRun* SweepRow::worst_run() const {

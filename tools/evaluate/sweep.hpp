@@ -38,6 +38,9 @@ struct SweptRun {
   /// True if a figure that the scenario expects was not reached.
   bool misses() const;
 
+  /// A limit that the scenario sets for all seeds together; 0 = none.
+  double limit_of_seeds(const std::string& key) const;
+
   /// A number of metrics.json; absent if it has none.
   std::optional<double> figure(const std::string& key) const;
 };
@@ -45,7 +48,7 @@ struct SweptRun {
 /// A run without metrics.json has failed; the file `failed` in its row or its folder says how.
 std::vector<SweptRun> read_runs(const std::filesystem::path& sweep_dir);
 
-/// Over the seeds that have the figure; worst = largest.
+/// Over the seeds that have the figure; worst = largest, smallest where more is better.
 struct Figures {
   std::optional<double> median{};
   std::optional<double> worst{};
@@ -62,9 +65,18 @@ struct SweepRow {
   std::size_t misses() const;
   Figures figures(const std::string& key) const;
 
+  bool expects_anything() const;
+
+  /// True if as many seeds reach their figures, and as many stations have a mean NEES in its band,
+  /// as the scenario wants; failures are no hits.
+  bool is_hit() const;
+
   /// The seed to look at: one that failed to reach its expectations before others, then the one
   /// with the largest ATE; null if every seed failed.
   const SweptRun* worst_run() const;
+
+  /// A limit for all seeds together, of any run that has it; 0 = none.
+  double limit(const std::string& key) const;
 };
 
 /// In the order of the plan. Adds `length_error_percent` and `ate_over_odometry` to the metrics.

@@ -24,10 +24,10 @@ constexpr std::array kColumns{Column{"length error [%]", "length_error_percent",
                               Column{"x odometry", "ate_over_odometry", 2}};
 
 /// Further figures that only results.csv has.
-constexpr std::array kMoreKeys{"marker_map_share", "max_jump_m",    "wall_cells",
-                               "found_again_s",    "says_lost_s",   "confident_wrong_s",
-                               "share_degenerate", "share_lost",    "nees_mean",
-                               "across_rmse_m",    "distance_max_m"};
+constexpr std::array kMoreKeys{
+    "length_px",     "marker_map_share", "moved_named_share", "max_jump_m",       "wall_cells",
+    "found_again_s", "says_lost_s",      "confident_wrong_s", "share_degenerate", "share_lost",
+    "nees_mean",     "sigma_growth",     "memory_mb_per_m",   "across_rmse_m",    "distance_max_m"};
 
 std::string shown(const std::optional<double>& value, int decimals) {
   return value && std::isfinite(*value) ? fmt::format("{:.{}f}", *value, decimals) : "-";
@@ -41,24 +41,37 @@ std::string label_of(const SweepRow& row) {
   return row.scenario + ", " + row.row;
 }
 
+std::string with(std::string text, std::string_view key, double limit) {
+  return limit <= 0.0 ? text
+                      : fmt::format("{}{}{} {:g}", text, text.empty() ? "" : ", ", key, limit);
+}
+
+/// Those of all seeds together.
+std::string expected_of_seeds(const SweepRow& row, std::string text) {
+  for (const char* key : {"nees_in_band_share", "seeds_share"})
+    text = with(std::move(text), key, row.limit(key));
+  return text;
+}
+
 /// The limits are those of the first run that has any.
 std::string expected_of(const SweepRow& row) {
+  if (!row.expects_anything()) return "-";
   for (const SweptRun& run : row.runs) {
     if (run.has_failed() || run.metrics.value("expectations", nlohmann::ordered_json{}).empty())
       continue;
     std::string text;
     for (const auto& figure : run.metrics["expectations"])
-      text += fmt::format("{}{} {:g}", text.empty() ? "" : ", ",
-                          figure["figure"].get<std::string>(), figure["limit"].get<double>());
-    return text;
+      text =
+          with(std::move(text), figure["figure"].get<std::string>(), figure["limit"].get<double>());
+    return expected_of_seeds(row, text);
   }
-  return "-";
+  return expected_of_seeds(row, "");
 }
 
 std::string verdict_of(const SweepRow& row) {
   if (row.failures() > 0) return "FAIL";
   if (expected_of(row) == "-") return "-";
-  return row.misses() > 0 ? "MISS" : "hit";
+  return row.is_hit() ? "hit" : "MISS";
 }
 
 std::string row_line(const SweepRow& row) {

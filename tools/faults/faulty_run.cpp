@@ -61,6 +61,11 @@ LogContent content_of(const fs::path& log) {
 }
 
 void copy_truth(const fs::path& run_dir, const FaultConfig& faults, const fs::path& out_dir) {
+  if (const fs::path moves = run_dir / "truth_marker_moves.csv"; fs::exists(moves)) {
+    if (faults.changes_ids())
+      throw std::runtime_error{moves.string() + ": markers that move cannot have other ids, too"};
+    write(out_dir / moves.filename(), text_of(moves));
+  }
   for (const char* name : {"scenario.toml", "robot.toml", "truth.tum", "truth_markers.csv"}) {
     if (!fs::exists(run_dir / name)) continue;
     const std::string text = text_of(run_dir / name);

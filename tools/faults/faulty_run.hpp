@@ -11,8 +11,9 @@
 
 namespace waymark::faults {
 
-/// Copies scenario.toml, robot.toml, truth.tum and truth_markers.csv (with the ids that the markers
-/// now have), writes expect.toml and, last, run.lcm. Random numbers: the scenario's run.seed.
+/// Copies scenario.toml, robot.toml, truth.tum, truth_marker_moves.csv (if there) and
+/// truth_markers.csv (with the ids that the markers now have), writes expect.toml and, last,
+/// run.lcm. Random numbers: the scenario's run.seed.
 /// @return how often each fault was put in.
 /// @throws std::runtime_error naming the file that cannot be read or written.
 std::map<std::string, std::int64_t> write_faulty_run(const std::filesystem::path& run_dir,

@@ -214,15 +214,35 @@ TEST(SurfaceMatching, FindsThePoseAcrossABareCorridorAndNothingAlongIt) {
       map.add(beam.beam.end_in_base);
   }
   const auto beams = corridor_beams(0.01, random);
+  SurfaceFinder finder{map, beams.size()};
   const Se2 start{0.3, 0.03, 0.02};
   const PoseProposal matched = propose(
       start, diagonal(0.1, 0.1, 0.1), [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
-        return match_surfaces(beams, map, pose, uncertainty, {}).pose;
+        return match_surfaces(beams, finder, pose, uncertainty, {}).pose;
       });
   EXPECT_NEAR(matched.mean.y(), 0.0, 0.003);
   EXPECT_NEAR(matched.mean.theta(), 0.0, 0.003);
   EXPECT_NEAR(matched.mean.x(), 0.3, 0.002);  // nothing pulls
   EXPECT_NEAR(matched.covariance(0, 0), 0.01, 0.001);
+}
+
+TEST(SurfaceFinder, FindsWhatTheMapHas) {
+  Random random{9};
+  SurfaceMap map{GridFrame::centred_on_map_origin(0.05)};
+  for (const AnnotatedBeam& beam : corridor_beams(0.01, random))
+    map.add(beam.beam.end_in_base);
+  SurfaceFinder finder{map, 1};
+  Eigen::Vector2d point{0.5, 0.95};
+  for (int i = 0; i < 2000; ++i) {
+    point += 0.01 * Eigen::Vector2d{random.normal(), 0.3 * random.normal()};
+    const double reach_m = random.uniform() < 0.5 ? 0.05 : 0.3;
+    const auto expected = map.near(point, reach_m);
+    const auto found = finder.near(0, point, reach_m);
+    ASSERT_EQ(found.has_value(), expected.has_value());
+    if (found) {
+      ASSERT_EQ(found->point_in_map, expected->point_in_map);
+    }
+  }
 }
 
 TEST(SurfaceMatching, AClumpTellsThePlaceAndALineOnlyTheDistance) {
@@ -237,7 +257,8 @@ TEST(SurfaceMatching, AClumpTellsThePlaceAndALineOnlyTheDistance) {
     beams[0].beam.range_m = 2.0;
     SurfaceMatchingConfig config;
     config.weak_share = 0.0;
-    return match_surfaces(beams, map, {}, diagonal(0.01, 0.01, 0.001), config).pose.information;
+    SurfaceFinder finder{map, beams.size()};
+    return match_surfaces(beams, finder, {}, diagonal(0.01, 0.01, 0.001), config).pose.information;
   };
   const Eigen::Matrix3d line = match_of(2.0);
   const Eigen::Matrix3d clump = match_of(0.04);

@@ -53,6 +53,25 @@ TEST(Stations, BeingLiftedIsNoTravel) {
   EXPECT_EQ(stations(pairs, {}, {}).size(), 1u);
 }
 
+TEST(Stations, MetresWithoutAPoseAreLeftOut) {
+  auto pairs = drive(55, {});
+  pairs.erase(pairs.begin() + 15, pairs.begin() + 45);  // no pose from 1.5 to 4.5 m
+  std::vector<double> travel_m;
+  for (const Station& station : stations(pairs, {}, {}))
+    travel_m.push_back(station.travel_m);
+  EXPECT_THAT(travel_m, ElementsAre(1.0, 4.0, 5.0));
+  EXPECT_NEAR(driven_m(pairs), 5.5, 1e-9);
+}
+
+TEST(Stations, GrowthIsFromOneStationToAnother) {
+  const std::vector<Station> at{{.travel_m = 1.0, .sigma_along_m = 0.1},
+                                {.travel_m = 2.0, .sigma_along_m = 0.3},
+                                {.travel_m = 3.0}};
+  EXPECT_NEAR(sigma_growth(at, 1.0, 2.0).value(), 3.0, 1e-12);
+  EXPECT_FALSE(sigma_growth(at, 1.0, 3.0));
+  EXPECT_FALSE(sigma_growth(at, 0.0, 2.0));
+}
+
 TEST(Stations, TheFileReadsBack) {
   const TemporaryFolder folder;
   const auto pairs = drive(12, {0.02, 0.0, 0.0});

@@ -90,6 +90,45 @@ TEST(Sweep, TheTableNamesOneCommandPerSeedToLookAt) {
   EXPECT_THAT(table, Not(HasSubstr("again plain 1")));
 }
 
+/// Four seeds of `plain`; the last misses. What is expected of all seeds is in every run's file.
+std::vector<SweepRow> rows_with(const std::string& expected_of_seeds) {
+  const TemporaryFolder folder;
+  std::string plan;
+  for (int seed = 1; seed <= 4; ++seed) {
+    plan += fmt::format("plain\t{0}\tplain/seed-{0}\twaymark\tagain\n", seed);
+    const std::string run = fmt::format("plain/seed-{}/waymark", seed);
+    nlohmann::json json = nlohmann::json::parse(metrics(0.05, 100.1, seed < 4));
+    json["expected_of_seeds"] = nlohmann::json::parse(expected_of_seeds);
+    json["marker_map_share"] = 0.9 + 0.01 * seed;
+    folder.file(run + "/metrics.json", json.dump());
+    folder.file(run + "/stations.csv",
+                "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,health\n"
+                "1,10,0.1,0,0,3,0.1,2\n2,20,0.1,0,0,99,0.1,2\n");
+  }
+  folder.file("plan/runs.tsv", plan);
+  return sweep_rows(read_runs(folder.path()));
+}
+
+TEST(Sweep, AllSeedsCountUnlessTheScenarioSaysHowMany) {
+  EXPECT_FALSE(rows_with("{}")[0].is_hit());
+  EXPECT_TRUE(rows_with(R"({"seeds_share": 0.75})")[0].is_hit());
+  EXPECT_FALSE(rows_with(R"({"seeds_share": 0.8})")[0].is_hit());
+  EXPECT_THAT(sweep_markdown(rows_with(R"({"seeds_share": 0.75})")),
+              HasSubstr("| ate_origin_m 0.1, seeds_share 0.75 | hit |"));
+}
+
+TEST(Sweep, StationsOutsideOfTheirBandAreAMiss) {
+  const std::string wanted = R"({{"seeds_share": 0.75, "nees_in_band_share": {}}})";
+  EXPECT_TRUE(rows_with(fmt::format(fmt::runtime(wanted), 0.5))[0].is_hit());
+  EXPECT_FALSE(rows_with(fmt::format(fmt::runtime(wanted), 0.6))[0].is_hit());
+}
+
+TEST(Sweep, TheWorstIsTheSmallestWhereMoreIsBetter) {
+  const Figures figures = rows_with("{}")[0].figures("marker_map_share");
+  EXPECT_NEAR(figures.worst.value(), 0.91, 1e-12);
+  EXPECT_NEAR(figures.median.value(), 0.925, 1e-12);
+}
+
 TEST(Sweep, AllFilesAreWritten) {
   const SweptFolder sweep;
   EXPECT_EQ(run_sweep(sweep.folder.path(), {}), kFine);

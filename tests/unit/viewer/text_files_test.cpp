@@ -38,20 +38,24 @@ TEST(CovarianceCsv, ListsTheUpperTriangleAndHealth) {
 }
 
 TEST(MarkersCsv, IsSortedByIdAndInstance) {
-  Landmark first{.id = 0, .instance = 0, .map_from_marker = {3, 1, -0.5}, .sightings = 7};
+  Landmark first{.id = 0,
+                 .instance = 0,
+                 .map_from_marker = {3, 1, -0.5},
+                 .sightings = 7,
+                 .state = LandmarkState::kMoved};
   first.covariance.diagonal() << 0.0004, 0.0001, 0.01;
   const Landmark second{.id = 4, .instance = 0};
   const Landmark third{.id = 4, .instance = 1};
   EXPECT_EQ(markers_csv_text({third, first, second}),
-            "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings\n"
-            "0,0,3.000000,1.000000,-0.500000,0.020000,0.010000,0.100000,7\n"
-            "4,0,0.000000,0.000000,0.000000,0.000000,0.000000,0.000000,0\n"
-            "4,1,0.000000,0.000000,0.000000,0.000000,0.000000,0.000000,0\n");
+            "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state\n"
+            "0,0,3.000000,1.000000,-0.500000,0.020000,0.010000,0.100000,7,3\n"
+            "4,0,0.000000,0.000000,0.000000,0.000000,0.000000,0.000000,0,0\n"
+            "4,1,0.000000,0.000000,0.000000,0.000000,0.000000,0.000000,0,0\n");
 }
 
 TEST(MarkersCsv, HasAHeadingWithoutMarkers) {
   EXPECT_EQ(markers_csv_text({}),
-            "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings\n");
+            "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state\n");
 }
 
 }  // namespace

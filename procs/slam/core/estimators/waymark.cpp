@@ -162,11 +162,12 @@ void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
 
 void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
                                         Outcome& outcome) const {
+  SurfaceFinder walls{state.walls, sensed.observation->beams.size()};
   const PoseProposal by_walls =
       propose(state.belief.map_from_base(), state.belief.pose_covariance(),
               [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
-                outcome.walls = match_surfaces(sensed.observation->beams, state.walls, pose,
-                                               uncertainty, config_.matching);
+                outcome.walls = match_surfaces(sensed.observation->beams, walls, pose, uncertainty,
+                                               config_.matching);
                 return outcome.walls.pose;
               });
   state.belief.correct_pose(by_walls.mean, by_walls.covariance);
@@ -248,12 +249,12 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   if (has_moved) {
     const State& best = particles_.state(particles_.best());
     const Belief::Prediction predicted = best.belief.predicted(since_update_, noise_);
-    const PoseProposal now = propose(predicted.map_from_base, predicted.covariance,
-                                     [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
-                                       return match_surfaces(observation.beams, best.walls, pose,
-                                                             uncertainty, config_.matching)
-                                           .pose;
-                                     });
+    SurfaceFinder walls{best.walls, observation.beams.size()};
+    const PoseProposal now = propose(
+        predicted.map_from_base, predicted.covariance,
+        [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
+          return match_surfaces(observation.beams, walls, pose, uncertainty, config_.matching).pose;
+        });
     map_from_base = mean_ * (best.map_from_base.inverse() * now.mean);
     covariance += now.covariance;
   }

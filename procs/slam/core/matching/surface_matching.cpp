@@ -10,6 +10,9 @@ double squared(double x) {
   return x * x;
 }
 
+/// What a beam gains by hitting what is mapped: beams that hit nothing known cost nothing, so
+/// without it a particle that has left its map would be the most likely one. 1 is the mean error.
+constexpr double kExplained = 2.0;
 constexpr double kClumpKnee = 3.0;  // [sigma] a beam this far from its clump counts a quarter
 
 /// The end of a beam, with how it moves with the pose (x, y, theta; map frame).
@@ -39,7 +42,7 @@ double add_distance(const Eigen::Vector3d& row, double residual_m, double varian
   const double information = weight * squared(trust) / variance_m2;
   pose.information.noalias() += information * row * row.transpose();
   pose.gradient.noalias() += information * residual_m * row;
-  pose.cost += 0.5 * weight * error * trust;
+  pose.cost += 0.5 * weight * (error * trust - kExplained);
   return trust;
 }
 
@@ -89,20 +92,20 @@ void keep_observed(double weak_share, PoseInformation& pose) {
   pose.gradient = observed * pose.gradient;
 }
 
-SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceMap& map,
+SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, SurfaceFinder& map,
                             const Se2& map_from_base, const Eigen::Matrix3d& uncertainty,
                             const SurfaceMatchingConfig& config) {
   const Eigen::Matrix2d turn = map_from_base.rotation();
   SurfaceMatch match;
   match.beams = static_cast<int>(beams.size());
-  for (const AnnotatedBeam& annotated : beams) {
-    const Beam& beam = annotated.beam;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const Beam& beam = beams[i].beam;
     const Eigen::Vector2d lever = turn * beam.end_in_base;
     const BeamEnd hit{lever + map_from_base.translation(), lever,
                       turn * (beam.end_in_base - beam.start_in_base) / beam.range_m};
     const double spread_m2 =
         std::max(uncertainty(0, 0), uncertainty(1, 1)) + uncertainty(2, 2) * lever.squaredNorm();
-    const auto surface = map.near(hit.end, 2.0 * std::sqrt(spread_m2));
+    const auto& surface = map.near(i, hit.end, 2.0 * std::sqrt(spread_m2));
     if (!surface) continue;
     if (surface->is_line) {
       match.mapped += 1.0;

@@ -38,9 +38,10 @@ struct SurfaceMatch {
 /// Source: Censi (2008), "An ICP variant using a point-to-line metric"; Biber, Strasser (2003),
 /// "The normal distributions transform"; Zhang, Kaess, Singh (2016), "On degeneracy of
 /// optimization-based state estimation problems".
+/// @param map  for the same beams at every call.
 /// @param uncertainty  covariance of the pose (x, y, theta), map frame: how far off beams may be
 /// before they count as outliers.
-SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, const SurfaceMap& map,
+SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, SurfaceFinder& map,
                             const Se2& map_from_base, const Eigen::Matrix3d& uncertainty,
                             const SurfaceMatchingConfig& config);
 

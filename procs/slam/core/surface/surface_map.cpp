@@ -87,12 +87,14 @@ void SurfaceMap::add(const Eigen::Vector2d& point_in_map) {
   cell.yy += p.y() * p.y();
 }
 
-std::optional<Surface> SurfaceMap::near(const Eigen::Vector2d& point_in_map, double reach_m) const {
-  const CellIndex middle = frame_.cell_of(point_in_map);
-  const double reach_cells = reach_m / frame_.resolution_m;
+bool SurfaceMap::looks_far(double reach_m) const {
+  return reach_m > kAlwaysTried * frame_.resolution_m;
+}
+
+std::optional<Surface> SurfaceMap::near(CellIndex middle, bool looks_far) const {
   std::optional<Surface> surface;
   for (const int reach : kReaches) {
-    if ((surface && surface->is_line) || (reach > kAlwaysTried && reach / 2 >= reach_cells)) break;
+    if (reach > kAlwaysTried && !looks_far) break;
     const auto here = fit(moments_around(cells_, middle, reach));
     if (!here) continue;
     if (here->is_line || !surface) surface = here;
@@ -104,6 +106,17 @@ std::optional<Surface> SurfaceMap::near(const Eigen::Vector2d& point_in_map, dou
   surface->across_m2 *= cell_m2;
   surface->along_m2 *= cell_m2;
   return surface;
+}
+
+const std::optional<Surface>& SurfaceFinder::near(std::size_t point,
+                                                  const Eigen::Vector2d& point_in_map,
+                                                  double reach_m) {
+  Found& found = found_[point];
+  const CellIndex middle = map_.frame_.cell_of(point_in_map);
+  const bool looks_far = map_.looks_far(reach_m);
+  if (!found.is_known || found.middle != middle || found.looks_far != looks_far)
+    found = {true, looks_far, middle, map_.near(middle, looks_far)};
+  return found.surface;
 }
 
 }  // namespace waymark

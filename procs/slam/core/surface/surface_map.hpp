@@ -7,7 +7,9 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace waymark {
 
@@ -44,11 +46,39 @@ class SurfaceMap {
   /// up exactly over cells, so a wall along a border between cells is not split.
   /// @param reach_m  how far off the surface may be; small reaches are tried first, and a line is
   /// preferred to a nearer clump: what has no direction holds a robot back along a bare wall.
-  std::optional<Surface> near(const Eigen::Vector2d& point_in_map, double reach_m) const;
+  std::optional<Surface> near(const Eigen::Vector2d& point_in_map, double reach_m) const {
+    return near(frame_.cell_of(point_in_map), looks_far(reach_m));
+  }
 
  private:
+  friend class SurfaceFinder;
+
+  bool looks_far(double reach_m) const;
+  std::optional<Surface> near(CellIndex middle, bool looks_far) const;
+
   GridFrame frame_;
   TileMap<SurfaceCell> cells_{};
+};
+
+/// SurfaceMap::near() for the points of a scan, again and again while the scan is moved about: what
+/// was found is kept for as long as a point stays in its cell. The map must not change meanwhile.
+class SurfaceFinder {
+ public:
+  SurfaceFinder(const SurfaceMap& map, std::size_t num_points) : map_{map}, found_(num_points) {}
+
+  const std::optional<Surface>& near(std::size_t point, const Eigen::Vector2d& point_in_map,
+                                     double reach_m);
+
+ private:
+  struct Found {
+    bool is_known{false};
+    bool looks_far{false};
+    CellIndex middle{};
+    std::optional<Surface> surface{};
+  };
+
+  const SurfaceMap& map_;
+  std::vector<Found> found_;
 };
 
 }  // namespace waymark
