@@ -136,7 +136,9 @@ void SurfaceMatchingConfig::describe(Fields& fields) {
 }
 
 void MarkerMeasurementConfig::describe(Fields& fields) {
-  fields.field("wall_sigma_m", wall_sigma_m, kNotNegative, "how far markers hang off their wall");
+  fields.field("standoff_sigma_m", standoff_sigma_m, kNotNegative,
+               "how far all markers hang before their walls; learnt while driving");
+  fields.field("wall_sigma_m", wall_sigma_m, kNotNegative, "how far they differ in that");
   fields.field("wall_sigma_rad", wall_sigma_rad, kNotNegative, "how skew they hang");
   fields.field("reach_m", reach_m, kPositive, "wall around a marker that is believed straight");
   fields.field("camera_sigma_m", camera_sigma_m, kNotNegative,

@@ -53,8 +53,9 @@ Belief::Belief(const BeliefPrior& prior) : covariance_{Eigen::MatrixXd::Zero(kMa
   covariance_(kOdometry, kOdometry) = squared(prior.odometry.scale_sigma);
   covariance_(kOdometry + 1, kOdometry + 1) = squared(prior.odometry.drift_sigma_rad_per_m);
   covariance_(kOdometry + 2, kOdometry + 2) = squared(prior.odometry.turn_scale_sigma);
-  covariance_(kCamera, kCamera) = squared(prior.camera_yaw_sigma_rad);
-  covariance_(kCamera + 1, kCamera + 1) = squared(prior.camera_focal_sigma);
+  covariance_(kSighting, kSighting) = squared(prior.camera_yaw_sigma_rad);
+  covariance_(kSighting + 1, kSighting + 1) = squared(prior.camera_focal_sigma);
+  covariance_(kSighting + 2, kSighting + 2) = squared(prior.standoff_sigma_m);
 }
 
 Belief::Prediction Belief::predicted(const Motion& motion, const OdometryNoise& noise) const {
@@ -94,7 +95,7 @@ void Belief::condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,
   const Eigen::VectorXd by = gain * deviation;
   map_from_base_ = deviated(map_from_base_, by.head<3>());
   odometry_errors_ += by.segment<3>(kOdometry);
-  camera_errors_ += by.segment<2>(kCamera);
+  sighting_errors_ += by.segment<3>(kSighting);
   for (std::size_t i = 0; i < active_.size(); ++i) {
     active_[i].map_from_marker = deviated(active_[i].map_from_marker, by.segment<3>(place_of(i)));
   }
@@ -124,20 +125,23 @@ const std::vector<Landmark>& Belief::settled() const {
   return settled_.get() ? *settled_.get() : none;
 }
 
-void Belief::correct_camera(const WallInnovation& wall) {
-  correct_camera(wall.residual - wall.by_camera * camera_errors_, wall.by_camera, wall.covariance);
+void Belief::correct_sighting_errors(const WallInnovation& wall) {
+  correct_sighting_errors(wall.residual - wall.by_errors() * sighting_errors_, wall.by_errors(),
+                          wall.covariance);
 }
 
-void Belief::correct_camera(const FocalSighting& focal) {
-  correct_camera(Eigen::VectorXd::Constant(1, focal.error - camera_errors_.y()),
-                 Eigen::RowVector2d::UnitY(),
-                 Eigen::MatrixXd::Constant(1, 1, squared(focal.sigma)));
+void Belief::correct_sighting_errors(const FocalSighting& focal) {
+  correct_sighting_errors(Eigen::VectorXd::Constant(1, focal.error - sighting_errors_.y()),
+                          Eigen::RowVector3d::UnitY(),
+                          Eigen::MatrixXd::Constant(1, 1, squared(focal.sigma)));
 }
 
-void Belief::correct_camera(const Eigen::VectorXd& residual, const Eigen::MatrixXd& by_camera,
-                            const Eigen::MatrixXd& covariance) {
-  const Eigen::MatrixXd with_residual = covariance_.middleCols<2>(kCamera) * by_camera.transpose();
-  const Eigen::MatrixXd spread = covariance + by_camera * with_residual.middleRows<2>(kCamera);
+void Belief::correct_sighting_errors(const Eigen::VectorXd& residual,
+                                     const Eigen::MatrixXd& by_errors,
+                                     const Eigen::MatrixXd& covariance) {
+  const Eigen::MatrixXd with_residual =
+      covariance_.middleCols<3>(kSighting) * by_errors.transpose();
+  const Eigen::MatrixXd spread = covariance + by_errors * with_residual.middleRows<3>(kSighting);
   const Eigen::MatrixXd gain = spread.ldlt().solve(with_residual.transpose()).transpose();
   condition(gain, residual, spread);
 }
@@ -152,9 +156,9 @@ Innovation Belief::compare(std::size_t index, const MarkerMeasurement& measureme
   innovation.by_pose = expected.by_pose;
   innovation.by_marker = expected.by_marker;
   innovation.residual = deviation(expected.base_from_marker, measurement.base_from_marker) -
-                        measurement.by_camera * camera_errors_;
+                        measurement.by_errors() * sighting_errors_;
   with_residual = covariance_.leftCols<3>() * expected.by_pose.transpose() +
-                  covariance_.middleCols<2>(kCamera) * measurement.by_camera.transpose();
+                  covariance_.middleCols<3>(kSighting) * measurement.by_errors().transpose();
   innovation.covariance = measurement.covariance;
   if (index < active_.size()) {
     const Eigen::Index place = place_of(index);
@@ -164,7 +168,7 @@ Innovation Belief::compare(std::size_t index, const MarkerMeasurement& measureme
     innovation.covariance += expected.by_marker * known.covariance * expected.by_marker.transpose();
   }
   innovation.covariance += expected.by_pose * with_residual.topRows<3>() +
-                           measurement.by_camera * with_residual.middleRows<2>(kCamera);
+                           measurement.by_errors() * with_residual.middleRows<3>(kSighting);
   innovation.distance =
       innovation.residual.dot(innovation.covariance.ldlt().solve(innovation.residual));
   return innovation;
@@ -193,7 +197,7 @@ std::optional<std::size_t> Belief::only_marker(int id) const {
 
 Se2 Belief::pose_by(std::size_t index, const MarkerMeasurement& measurement) const {
   const Se2 base_from_marker =
-      deviated(measurement.base_from_marker, -(measurement.by_camera * camera_errors_));
+      deviated(measurement.base_from_marker, -(measurement.by_errors() * sighting_errors_));
   return marker(index).map_from_marker * base_from_marker.inverse();
 }
 
@@ -241,17 +245,17 @@ void Belief::add(const MarkerMeasurement& measurement) {
   fresh.first_seen = measurement.time;
   fresh.last_seen = measurement.time;
   const Se2 base_from_marker =
-      deviated(measurement.base_from_marker, -(measurement.by_camera * camera_errors_));
+      deviated(measurement.base_from_marker, -(measurement.by_errors() * sighting_errors_));
   fresh.map_from_marker = map_from_base_ * base_from_marker;
 
   const Expected expected = expect(map_from_base_, fresh.map_from_marker);
   const Eigen::Matrix3d turn = expected.by_marker.transpose();
   const Eigen::Matrix3d by_pose = -turn * expected.by_pose;
-  const Eigen::Matrix<double, 3, 2> by_camera = -turn * measurement.by_camera;
+  const Eigen::Matrix3d by_errors = -turn * measurement.by_errors();
   const Columns with_all = covariance_.leftCols<3>() * by_pose.transpose() +
-                           covariance_.middleCols<2>(kCamera) * by_camera.transpose();
+                           covariance_.middleCols<3>(kSighting) * by_errors.transpose();
   const Eigen::Matrix3d own = by_pose * with_all.topRows<3>() +
-                              by_camera * with_all.middleRows<2>(kCamera) +
+                              by_errors * with_all.middleRows<3>(kSighting) +
                               turn * measurement.covariance * turn.transpose();
   augment(fresh, with_all, own);
 }

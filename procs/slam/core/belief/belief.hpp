@@ -45,10 +45,11 @@ struct BeliefPrior {
   OdometryNoise odometry{};
   double camera_yaw_sigma_rad{0.0};  ///< of the mounting
   double camera_focal_sigma{0.0};    ///< relative
+  double standoff_sigma_m{0.0};      ///< of the markers before their walls
 };
 
-/// A Gaussian over (pose, odometry errors, camera errors, markers), about a mean that is moved with
-/// every correction (error-state Kalman filter). Markers that have not been seen for long are
+/// A Gaussian over (pose, odometry errors, sighting errors, markers), about a mean that is moved
+/// with every correction (error-state Kalman filter). Markers that have not been seen for long are
 /// settled: their position is drawn and they leave the covariance, so that it stays small. An id is
 /// a class: several markers may have it, told apart by place.
 class Belief {
@@ -66,8 +67,9 @@ class Belief {
     return covariance_.block<3, 3>(kOdometry, kOdometry);
   }
 
-  /// Errors of the camera: mounted `x` [rad] further left than told, focal length 1 + `y` as long.
-  const Eigen::Vector2d& camera_errors() const { return camera_errors_; }
+  /// What all sightings get wrong in the same way: the camera is mounted `x` [rad] further left
+  /// than told, its focal length is 1 + `y` as long, and markers hang `z` [m] before their wall.
+  const Eigen::Vector3d& sighting_errors() const { return sighting_errors_; }
 
   /// Where a motion leads, given where the robot is exactly.
   struct Prediction {
@@ -82,16 +84,16 @@ class Belief {
   /// Takes over what has been found about the pose; everything that is correlated with it follows.
   void correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
 
-  /// Draws the pose along axes (columns; orthonormal, (x, y, theta) in map): along them it is exact
-  /// from now on, and everything that is correlated with it follows.
+  /// Draws linear functions of the pose (columns; of (x, y, theta) in map): they are exact from now
+  /// on, and everything that is correlated with them follows.
   void draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
                  const Eigen::Vector3d& standard_normal);
 
-  /// Learns the camera's errors from what a wall says about it.
-  void correct_camera(const WallInnovation& wall);
+  /// Learns what sightings get wrong from what a wall says about one.
+  void correct_sighting_errors(const WallInnovation& wall);
 
   /// The same from the perspective of a marker.
-  void correct_camera(const FocalSighting& focal);
+  void correct_sighting_errors(const FocalSighting& focal);
 
   /// The marker of that id that fits best; nothing when none is known.
   std::optional<Innovation> nearest(const MarkerMeasurement& measurement) const;
@@ -130,8 +132,8 @@ class Belief {
 
  private:
   static constexpr Eigen::Index kOdometry = 3;
-  static constexpr Eigen::Index kCamera = 6;
-  static constexpr Eigen::Index kMarkers = 8;
+  static constexpr Eigen::Index kSighting = 6;
+  static constexpr Eigen::Index kMarkers = 9;
 
   static Eigen::Index place_of(std::size_t marker) {
     return kMarkers + 3 * static_cast<Eigen::Index>(marker);
@@ -147,8 +149,8 @@ class Belief {
   }
 
   const std::vector<Landmark>& settled() const;
-  void correct_camera(const Eigen::VectorXd& residual, const Eigen::MatrixXd& by_camera,
-                      const Eigen::MatrixXd& covariance);
+  void correct_sighting_errors(const Eigen::VectorXd& residual, const Eigen::MatrixXd& by_errors,
+                               const Eigen::MatrixXd& covariance);
   Innovation compare(std::size_t marker, const MarkerMeasurement& measurement,
                      Columns& with_residual) const;
   void condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,
@@ -163,7 +165,7 @@ class Belief {
 
   Se2 map_from_base_{};
   OdometryErrors odometry_errors_{OdometryErrors::Zero()};
-  Eigen::Vector2d camera_errors_{Eigen::Vector2d::Zero()};
+  Eigen::Vector3d sighting_errors_{Eigen::Vector3d::Zero()};
   std::vector<Landmark> active_{};  ///< their covariances are in `covariance_`
   CopyOnWrite<std::vector<Landmark>> settled_{};
   Eigen::MatrixXd covariance_;

@@ -16,17 +16,28 @@ constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen sin
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
 BeliefPrior prior_of(const WaymarkConfig& config) {
-  return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma};
+  return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma,
+          config.markers.standoff_sigma_m};
 }
 
-/// Axes of (x, y, theta) in the map, as columns, that the walls of a scan can tell.
+/// What the walls of a scan can tell of the pose, as linear functions of (x, y, theta) in the map,
+/// in columns. Along a bare wall they leave out what is correlated with the motion along it: one
+/// scan knows the wall's direction to a fraction of a degree only, and drawing the rest of it would
+/// take the uncertainty along the wall away by and by.
 Eigen::Matrix<double, 3, Eigen::Dynamic> told_axes(const Observability& walls_in_base,
-                                                   const Se2& map_from_base) {
-  const Eigen::Vector2d weak = map_from_base.rotation() * walls_in_base.weak_direction;
+                                                   const Belief& belief) {
+  const Eigen::Vector2d weak = belief.map_from_base().rotation() * walls_in_base.weak_direction;
+  const Eigen::Vector3d along{weak.x(), weak.y(), 0.0};
   Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, walls_in_base.is_degenerate ? 2 : 3);
   axes.col(0) = Eigen::Vector3d::UnitZ();
   axes.col(1) << -weak.y(), weak.x(), 0.0;
-  if (!walls_in_base.is_degenerate) axes.col(2) << weak, 0.0;
+  if (!walls_in_base.is_degenerate) {
+    axes.col(2) = along;
+    return axes;
+  }
+  const Eigen::Vector3d with_along = belief.pose_covariance() * along;
+  const double variance = along.dot(with_along);
+  if (variance > 0.0) axes -= (along * (with_along.transpose() * axes) / variance).eval();
   return axes;
 }
 
@@ -53,7 +64,7 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
 Estimate WaymarkEstimator::update(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
   believe_scans_about_slips(observation);
-  if (updates_ == 0 || is_due()) {
+  if (updates_ == 0 || is_due() || is_contradicted_by(observation)) {
     process(observation);
     if (verdict_ != KidnapWatch::Verdict::kDoubtful)
       mapper_.insert(observation, mean_, covariance_);
@@ -77,6 +88,20 @@ void WaymarkEstimator::believe_scans_about_slips(const Observation& observation)
 bool WaymarkEstimator::is_due() const {
   return since_update_.distance_m >= config_.update_distance_m ||
          since_update_.turn_rad >= config_.update_turn_rad;
+}
+
+/// A marker where none of its id should be may mean that the robot was carried away: that cannot
+/// wait until it has driven on.
+bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const {
+  if (observation.sightings.empty()) return false;
+  Belief expected = belief();
+  expected.move(since_update_, noise_);
+  const auto seen = measure_markers(observation, setup_.range_sigma_m,
+                                    setup_.camera.base_from_camera, config_.markers);
+  return std::any_of(seen.begin(), seen.end(), [&](const MarkerMeasurement& measurement) {
+    const auto nearest = expected.nearest(measurement);
+    return nearest && !nearest->may_be_it(config_.marker_gate, config_.marker_near_m);
+  });
 }
 
 void WaymarkEstimator::process(const Observation& observation) {
@@ -125,7 +150,7 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
     correct_by_markers(state, sensed, outcome);
   }
   if (!is_doubtful) note_absences(state, sensed);
-  state.belief.draw_pose(told_axes(sensed.walls, state.belief.map_from_base()), normal);
+  state.belief.draw_pose(told_axes(sensed.walls, state.belief), normal);
   state.map_from_base = state.belief.map_from_base();
   if (is_doubtful) return outcome;
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
@@ -177,8 +202,8 @@ void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
 void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
                                           Outcome& outcome) const {
   for (const MarkerMeasurement& measurement : sensed.markers) {
-    if (measurement.wall) state.belief.correct_camera(*measurement.wall);
-    if (measurement.focal) state.belief.correct_camera(*measurement.focal);
+    if (measurement.wall) state.belief.correct_sighting_errors(*measurement.wall);
+    if (measurement.focal) state.belief.correct_sighting_errors(*measurement.focal);
     const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->may_be_it(config_.marker_gate, config_.marker_near_m)) {
       outcome.log_evidence +=

@@ -84,6 +84,7 @@ class WaymarkEstimator final : public Estimator {
 
   void believe_scans_about_slips(const Observation& observation);
   bool is_due() const;
+  bool is_contradicted_by(const Observation& observation) const;
   void process(const Observation& observation);
   Outcome advance(State& state, const Sensed& sensed, const Eigen::Vector3d& normal) const;
   void move(State& state, const Sensed& sensed) const;

@@ -96,15 +96,17 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
   innovation.residual << wall.normal.dot(wall.point - seen.translation()),
       angle_difference(normal_rad, seen.theta());
   innovation.by_camera = -rows * measurement.by_camera;
+  innovation.by_standoff = -Eigen::Vector2d::UnitX();  // the normal points to the robot
   innovation.covariance = rows * measurement.covariance * rows.transpose();
   innovation.covariance(0, 0) += squared(wall.sigma_m) + squared(config.wall_sigma_m);
   innovation.covariance(1, 1) += squared(wall.sigma_rad) + squared(config.wall_sigma_rad);
 
-  const Eigen::Vector2d camera_variance{squared(config.camera_yaw_sigma_rad),
-                                        squared(config.camera_focal_sigma)};
-  const Eigen::Matrix2d spread = innovation.covariance + innovation.by_camera *
-                                                             camera_variance.asDiagonal() *
-                                                             innovation.by_camera.transpose();
+  const Eigen::Vector3d error_variance{squared(config.camera_yaw_sigma_rad),
+                                       squared(config.camera_focal_sigma),
+                                       squared(config.standoff_sigma_m)};
+  const Eigen::Matrix2d spread = innovation.covariance + innovation.by_errors() *
+                                                             error_variance.asDiagonal() *
+                                                             innovation.by_errors().transpose();
   if (!(innovation.residual.dot(spread.inverse() * innovation.residual) < config.gate))
     return std::nullopt;
 
@@ -112,6 +114,7 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
       measurement.covariance * rows.transpose() * innovation.covariance.inverse();
   measurement.base_from_marker = deviated(seen, gain * innovation.residual);
   measurement.by_camera += gain * innovation.by_camera;
+  measurement.by_standoff = gain * innovation.by_standoff;
   measurement.covariance -= (gain * rows * measurement.covariance).eval();
   measurement.covariance =
       (0.5 * (measurement.covariance + measurement.covariance.transpose())).eval();
@@ -186,6 +189,7 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation, d
         sighting.base_from_marker,
         in_robot_frame(sighting, base_from_camera, config),
         by_camera_errors(sighting.base_from_marker, base_from_camera),
+        Eigen::Vector3d::Zero(),
         usable(sighting.focal, config)};
     const auto wall = fit_wall(observation.beams, sighting.base_from_marker.translation(),
                                sighting.base_from_marker.theta(), range_sigma_m, config.reach_m);

@@ -14,8 +14,9 @@ namespace waymark {
 class Fields;
 
 struct MarkerMeasurementConfig {
-  double wall_sigma_m{0.004};   ///< how far a marker hangs before its wall, bulges
-  double wall_sigma_rad{0.01};  ///< how skew
+  double wall_sigma_m{0.002};      ///< how far markers differ in that, bulges
+  double standoff_sigma_m{0.003};  ///< how far all markers hang before their walls, learnt
+  double wall_sigma_rad{0.01};     ///< how skew
   double reach_m{1.5};  ///< wall on both sides of the marker that is believed to be straight
   double camera_sigma_m{0.001};         ///< what frames have in common, beside their own covariance
   double camera_sigma_rad{0.0003};      ///< the same as an angle at the camera
@@ -49,7 +50,12 @@ struct WallInnovation {
   /// Wall minus view: distance [m] and direction [rad] of the wall's normal.
   Eigen::Vector2d residual{Eigen::Vector2d::Zero()};
   Eigen::Matrix2d by_camera{Eigen::Matrix2d::Zero()};  ///< as in MarkerMeasurement
+  Eigen::Vector2d by_standoff{Eigen::Vector2d::UnitX()};
   Eigen::Matrix2d covariance{Eigen::Matrix2d::Identity()};
+
+  Eigen::Matrix<double, 2, 3> by_errors() const {
+    return (Eigen::Matrix<double, 2, 3>{} << by_camera, by_standoff).finished();
+  }
 };
 
 /// Pose of a marker in the base frame with its covariance (order x y yaw).
@@ -60,8 +66,14 @@ struct MarkerMeasurement {
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   /// By the camera's errors: mounted further left [rad], longer focal length (relative).
   Eigen::Matrix<double, 3, 2> by_camera{Eigen::Matrix<double, 3, 2>::Zero()};
-  std::optional<FocalSighting> focal{};  ///< what the marker's perspective says
-  std::optional<WallInnovation> wall{};  ///< its error is independent of the pose's
+  Eigen::Vector3d by_standoff{Eigen::Vector3d::Zero()};  ///< by the marker hanging before its wall
+  std::optional<FocalSighting> focal{};                  ///< what the marker's perspective says
+  std::optional<WallInnovation> wall{};                  ///< its error is independent of the pose's
+
+  /// By (camera yaw [rad], focal length (relative), standoff [m]).
+  Eigen::Matrix3d by_errors() const {
+    return (Eigen::Matrix3d{} << by_camera, by_standoff).finished();
+  }
 };
 
 /// The last sighting of each marker of an observation as a measurement. The corners tell the
