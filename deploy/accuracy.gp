@@ -16,8 +16,8 @@ set output images.'/accuracy_nees.png'
 set title sprintf('Mean NEES over %d seeds at every metre; 3 is right', runs)
 set ylabel 'NEES'
 set yrange [0:*]
-plot data.'/stations.dat' index 1 using 1:4:5 with filledcurves lc rgb '#dddddd' title '95 % band', \
-  '' index 1 using 1:3 with linespoints pt 7 ps 0.5 lc rgb '#1f77b4' title 'waymark'
+plot data.'/stations.dat' index 0 using 1:4:5 with filledcurves lc rgb '#dddddd' title '95 % band', \
+  '' index 0 using 1:3 with linespoints pt 7 ps 0.5 lc rgb '#1f77b4' title 'waymark'
 set yrange [*:*]
 
 set output images.'/accuracy_ellipses.png'

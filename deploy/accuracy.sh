@@ -70,7 +70,7 @@ columns_of() {
 }
 
 measure_corridor() {
-  sweep "$seeds" odometry waymark
+  sweep "$seeds" waymark
   cp "$out/sweep/results.md" "$out/corridor.md"
   cp "$out/sweep/runs.csv" "$out/corridor_runs.csv"
   cp "$out/sweep/plots/stations.dat" "$out/stations.dat"

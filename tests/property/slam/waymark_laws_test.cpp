@@ -28,8 +28,8 @@ EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std::uint64
 }
 
 std::vector<Step> run_waymark(const SensorLog& log, const SyntheticCorridor& corridor,
-                              std::uint64_t seed, const WaymarkConfig& config = {}) {
-  WaymarkEstimator estimator{estimator_setup_of(corridor, seed), config};
+                              std::uint64_t seed) {
+  WaymarkEstimator estimator{estimator_setup_of(corridor, seed), {}};
   return run(estimator, log, setup_of(corridor));
 }
 
@@ -52,14 +52,10 @@ double along_error_m(const Step& step) {
 }
 
 TEST(Waymark, WithoutMarkersTheVarianceAlongACorridorNeverShrinks) {
-  // What the particles draw is not quite across the walls, so that part of what is not known along
-  // them is in their spread, which scatters the less the more particles there are.
-  WaymarkConfig config;
-  config.particles = 200;
   constexpr double kScatter = 0.05;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const SyntheticCorridor corridor = between_two_walls(seed);
-    const auto steps = run_waymark(test::drive(corridor), corridor, seed, config);
+    const auto steps = run_waymark(test::drive(corridor), corridor, seed);
     double widest_m2 = 0.0;
     for (const Step& step : steps) {
       ASSERT_GE(along_variance_m2(step), (1.0 - kScatter) * widest_m2) << seed;
