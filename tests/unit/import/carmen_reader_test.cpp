@@ -148,6 +148,25 @@ TEST(CarmenReader, CompressedIsTheSame) {
   EXPECT_EQ(report.num_skipped(), 0);
 }
 
+TEST(CarmenReader, OfACutOffGzipFileTheWholeLinesAreRead) {
+  const auto file = test_folder() / "whole.clf.gz";
+  gzFile gz = gzopen(file.c_str(), "wb0");  // stored: a line of text lies where it lay
+  for (int second = 1; second <= 100; ++second) {
+    const std::string line =
+        "FLASER 4 1 1 1 1 0 0 0 0 0 0 " + std::to_string(second) + ".5 host 0\n";
+    gzwrite(gz, line.data(), static_cast<unsigned>(line.size()));
+  }
+  gzclose(gz);
+  const std::string bytes = read_file(file);
+  const auto cut = write_file("cut.clf.gz", bytes.substr(0, bytes.size() / 2));
+  ImportReport report{cut, AddressUnit::kLine};
+
+  const ImportedLog log = read_carmen_log(cut, four_beams(), report);
+
+  EXPECT_THAT(log.scans, SizeIs(::testing::AllOf(::testing::Ge(45U), ::testing::Le(55U))));
+  EXPECT_EQ(report.skipped_by_kind().at("damaged file"), 1);
+}
+
 TEST(CarmenReader, BadLinesAreNamedCountedAndLeftOut) {
   ImportReport report{"bad.clf", AddressUnit::kLine};
   CarmenOptions options = four_beams();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// exp(-d^2 / width) from a table: the matcher needs a million of them per scan.
+// exp(-d^2 / width) up to a limit, then 0, from a table: the matcher needs a million per scan.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -13,7 +14,7 @@ namespace waymark {
 class BellCurve {
  public:
   /// @param width_squared  and
-  /// @param limit          the largest argument, in the same unit.
+  /// @param limit          in the same unit: from here on the curve is 0.
   BellCurve(double width_squared, double limit)
       : steps_per_unit_{static_cast<float>(kSteps / limit)} {
     const double step = limit / kSteps / width_squared;
@@ -24,11 +25,11 @@ class BellCurve {
     }
   }
 
-  /// @param squared  in [0, limit).
+  /// @param squared  not negative; infinite is fine.
   float operator()(float squared) const {
-    const float position = squared * steps_per_unit_;
-    const auto index = static_cast<std::size_t>(static_cast<int>(position));
-    const Piece piece = pieces_[index < kSteps ? index : kSteps - 1];
+    const float position = std::min(squared * steps_per_unit_, static_cast<float>(kSteps));
+    const int index = static_cast<int>(position);
+    const Piece piece = pieces_[static_cast<std::size_t>(index)];
     return piece.start + piece.rise * (position - static_cast<float>(index));
   }
 
@@ -40,7 +41,7 @@ class BellCurve {
     float rise;
   };
 
-  std::array<Piece, kSteps> pieces_{};
+  std::array<Piece, kSteps + 1> pieces_{};  ///< the last one is 0
   float steps_per_unit_;
 };
 

@@ -75,11 +75,15 @@ class ScanMatcher {
     double end_y;
     double before_x;  ///< where the free cell is looked for
     double before_y;
+    float rank;  ///< for worst_first()
   };
 
   struct Transform;
 
   float nearest_squared(const Ray& ray, const Transform& map_from_ray);
+
+  /// Puts the rays first that lose most at this pose: a score that cannot win is told sooner.
+  void worst_first(const Se2& map_from_base);
 
   const MatcherSetting& setting_;
   Surroundings surroundings_;

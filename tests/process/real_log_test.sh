@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Real logs from import to error with the real programs: estimator gmapping, its default parameters.
+# The logs are third-party data beside the project: $WAYMARK_DATA or ../shared/data. Without them the
+# test is skipped and says so.
+#
+# usage: tests/process/real_log_test.sh BUILD_DIR CASE
+# shellcheck disable=SC2317  # cases are called by name
+set -euo pipefail
+
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build_dir=${1:?usage: real_log_test.sh BUILD_DIR CASE}
+data=${WAYMARK_DATA:-$source_dir/../shared/data}/logs
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# The installed layout, so that the programs of any build folder are under test.
+mkdir -p "$work/share/waymark"
+cp -r "$source_dir/deploy" "$work/share/waymark/"
+ln -s "$build_dir" "$work/bin"
+
+need_log() {
+  [[ -f $data/$1 ]] && return
+  echo "skipped: no $data/$1"
+  exit 77
+}
+
+replay() {
+  "$work/share/waymark/deploy/replay.sh" "$work/run.lcm" --estimator gmapping \
+    --config "$source_dir/deploy/gmapping/slam_gmapping.toml" --set slam.map_period_s=3600 >"$work/output" 2>&1 ||
+    { cat "$work/output" >&2 && exit 1; }
+}
+
+# expect_at_most NAME BOUND: the figure of that name among those on standard input.
+expect_at_most() {
+  awk -v name="$1" -v bound="$2" '
+    { print }
+    index($1, name) == 1 { value = $2 }
+    END { if (value == "" || value + 0 <= 0 || value + 0 > bound) { print "FAILED: more than " bound; exit 1 } }'
+}
+
+# The whole log, against the reference in it.
+mbot() {
+  need_log mbot_convex.lcm
+  "$build_dir/waymark-import" mbot "$data/mbot_convex.lcm" --out "$work/run.lcm" \
+    --encoder-channel MAEBOT_ENCODERS --reference-channel SLAM_POSE >/dev/null
+  replay
+  "$build_dir/waymark-evaluate" trajectory "$work/gmapping/trajectory_final.tum" "$work/reference.tum" \
+    --align se2 | expect_at_most ate_se2_m 0.0070
+}
+
+# The first two minutes. The whole log: docs/gmapping.md.
+fr079() {
+  need_log fr079.clf.gz
+  need_log fr079.relations
+  local end_s=1340
+  gzip -dc "$data/fr079.clf.gz" | awk -v end="$end_s" '$(NF - 2) < end' >"$work/start.clf"
+  awk -v end="$end_s" '$1 < end - 1 && $2 < end - 1' "$data/fr079.relations" >"$work/start.relations"
+  "$build_dir/waymark-import" carmen "$work/start.clf" --out "$work/run.lcm" >/dev/null
+  replay
+  "$build_dir/waymark-evaluate" relations "$work/gmapping/trajectory_final.tum" "$work/start.relations" |
+    expect_at_most translation_mean_m 0.058
+}
+
+"${2:?usage: real_log_test.sh BUILD_DIR CASE}"
