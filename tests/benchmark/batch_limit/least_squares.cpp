@@ -11,8 +11,7 @@ namespace {
 constexpr double kOutlierSigmas = 4.0;  // residuals beyond count linearly
 constexpr int kRounds = 2;              // the derivatives by odometry errors are taken anew
 constexpr int kMaxIterations = 100;
-constexpr double kExact = 1e-7;     // stands for a standard deviation of zero
-constexpr double kBulge_m = 0.001;  // of a marker off its wall, beside what all have in common
+constexpr double kExact = 1e-7;  // stands for a standard deviation of zero
 
 std::array<double, 3> values_of(const Se2& pose) {
   return {pose.x(), pose.y(), pose.theta()};
@@ -95,9 +94,10 @@ class Batch {
     for (std::size_t i = 0; i < markers_.size(); ++i) {
       const auto& wall = solution_.scene.markers[i].wall;
       if (!wall) continue;
-      add<HangingResidual, 2, 3, 2, 1>(
-          {solution_.scene.walls[*wall].anchor, kBulge_m, noise.wall_sigma_rad}, robust(),
-          markers_[i].data(), walls_[*wall].data(), &solution_.standoff_m);
+      add<HangingResidual, 2, 3, 2, 1>({solution_.scene.walls[*wall].anchor,
+                                        std::max(noise.wall_sigma_m, kExact), noise.wall_sigma_rad},
+                                       robust(), markers_[i].data(), walls_[*wall].data(),
+                                       &solution_.standoff_m);
     }
     add_perspective(noise.perspective_sigma);
   }
@@ -125,7 +125,7 @@ class Batch {
     add<PriorResidual<2>, 2, 2>({{std::max(markers.camera_yaw_sigma_rad, kExact),
                                   std::max(markers.camera_focal_sigma, kExact)}},
                                 nullptr, solution_.camera_errors.data());
-    add<PriorResidual<1>, 1, 1>({{std::max(markers.wall_sigma_m, kExact)}}, nullptr,
+    add<PriorResidual<1>, 1, 1>({{std::max(markers.standoff_sigma_m, kExact)}}, nullptr,
                                 &solution_.standoff_m);
   }
 

@@ -1,55 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Laws of the estimators over simulated drives and seeds.
+#include "estimator_run.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/odometry.hpp"
-#include "slam/core/input/sensor_queue.hpp"
-#include "support/synthetic_corridor.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 namespace waymark {
 namespace {
 
+using test::along_rmse_m;
+using test::run;
 using test::SensorLog;
+using test::setup_of;
+using test::short_corridor;
+using test::Step;
 using test::SyntheticCorridor;
-
-SensorSetup setup_of(const SyntheticCorridor& corridor) {
-  SensorSetup setup;
-  setup.lidar = {Se2{corridor.lidar_x_m, 0.0, 0.0}, 0.12, corridor.range_max_m};
-  setup.camera.base_from_camera = {corridor.camera_x_m, 0.0, 0.0};
-  setup.marker_size_m = corridor.marker_size_m;
-  return setup;
-}
-
-struct Step {
-  Estimate estimate{};
-  Se2 truth{};  ///< base in the frame of its first pose
-};
-
-std::vector<Step> run(Estimator& estimator, const SensorLog& log, const SensorSetup& setup) {
-  SensorQueue queue{setup};
-  for (const OdometrySample& sample : log.odometry)
-    queue.add(sample);
-  std::vector<Step> steps;
-  auto frame = log.frames.begin();
-  for (const LidarScan& scan : log.scans) {
-    for (; frame != log.frames.end() && frame->time <= scan.time; ++frame)
-      queue.add(*frame);
-    queue.add(scan);
-    while (const auto ready = queue.next()) {
-      const auto truth = std::lower_bound(
-          log.truth.begin(), log.truth.end(), ready->observation.time,
-          [](const test::TruePose& pose, Timestamp time) { return pose.time < time; });
-      steps.push_back({estimator.update(ready->observation),
-                       log.truth.front().world_from_base.inverse() * truth->world_from_base});
-    }
-  }
-  return steps;
-}
 
 std::vector<Step> match_markers(const SensorLog& log, const SensorSetup& setup,
                                 std::uint64_t seed) {
@@ -57,24 +26,6 @@ std::vector<Step> match_markers(const SensorLog& log, const SensorSetup& setup,
   estimator_setup.seed = seed;
   MarkerMatchingEstimator estimator{estimator_setup, {}};
   return run(estimator, log, setup);
-}
-
-double along_rmse_m(const std::vector<Step>& steps) {
-  double sum = 0.0;
-  for (const Step& step : steps)
-    sum += std::pow(step.estimate.map_from_base.x() - step.truth.x(), 2);
-  return std::sqrt(sum / static_cast<double>(steps.size()));
-}
-
-SyntheticCorridor short_corridor(std::uint64_t seed) {
-  SyntheticCorridor corridor;
-  corridor.seed = seed;
-  corridor.length_m = 14.0;
-  corridor.drive_m = 12.0;
-  corridor.speed_m_s = 0.2;
-  corridor.scale_error = seed % 2 == 0 ? -0.02 : 0.02;
-  corridor.markers = test::opposite_markers(corridor);
-  return corridor;
 }
 
 // The paper's claim in small, with its controls: odometry, and the same filter without ids.

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Laws of the whole waymark estimator over simulated drives and seeds.
+#include "estimator_run.hpp"
+#include "slam/core/estimators/waymark.hpp"
+#include "slam/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+using test::run;
+using test::SensorLog;
+using test::setup_of;
+using test::Step;
+using test::SyntheticCorridor;
+
+EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std::uint64_t seed) {
+  EstimatorSetup setup;
+  setup.seed = seed;
+  setup.range_sigma_m = corridor.range_sigma_m;
+  setup.range_max_m = corridor.range_max_m;
+  setup.camera = setup_of(corridor).camera;
+  return setup;
+}
+
+std::vector<Step> run_waymark(const SensorLog& log, const SyntheticCorridor& corridor,
+                              std::uint64_t seed) {
+  WaymarkEstimator estimator{estimator_setup_of(corridor, seed), {}};
+  return run(estimator, log, setup_of(corridor));
+}
+
+/// In the middle of a corridor whose ends are out of sight.
+SyntheticCorridor between_two_walls(std::uint64_t seed) {
+  SyntheticCorridor corridor = test::short_corridor(seed);
+  corridor.length_m = 40.0;
+  corridor.start_x_m = 10.0;
+  corridor.drive_m = 6.0;
+  corridor.markers.clear();
+  return corridor;
+}
+
+double along_variance_m2(const Step& step) {
+  return step.estimate.covariance(0, 0);
+}
+
+double along_error_m(const Step& step) {
+  return step.estimate.map_from_base.x() - step.truth.x();
+}
+
+TEST(Waymark, WithoutMarkersTheVarianceAlongACorridorNeverShrinks) {
+  constexpr double kScatter = 0.05;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const SyntheticCorridor corridor = between_two_walls(seed);
+    const auto steps = run_waymark(test::drive(corridor), corridor, seed);
+    double widest_m2 = 0.0;
+    for (const Step& step : steps) {
+      ASSERT_GE(along_variance_m2(step), (1.0 - kScatter) * widest_m2) << seed;
+      widest_m2 = std::max(widest_m2, along_variance_m2(step));
+    }
+    const OdometryNoise noise;
+    const double walk_m2 = std::pow(noise.along_per_sqrt_m, 2) * corridor.drive_m;
+    const double scale_m2 = std::pow(noise.scale_sigma * corridor.drive_m, 2);
+    EXPECT_NEAR(widest_m2, walk_m2 + scale_m2, 0.4 * (walk_m2 + scale_m2)) << seed;
+    EXPECT_LT(std::pow(along_error_m(steps.back()), 2), 9.0 * widest_m2) << seed;
+    EXPECT_EQ(steps.back().estimate.health, Health::kDegenerate) << seed;
+    EXPECT_EQ(steps.back().estimate.weak_axis_source, WeakAxisSource::kOdometry) << seed;
+  }
+}
+
+// Seen at the start, then hidden, then seen again.
+TEST(Waymark, AKnownMarkerShrinksTheVarianceAlongTheCorridor) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SyntheticCorridor corridor = between_two_walls(seed);
+    corridor.drive_m = 3.0;
+    corridor.markers = {{0, {15.0, 1.0}, radians(-90.0)}, {1, {15.0, -1.0}, radians(90.0)}};
+    SensorLog log = test::drive(corridor);
+    const Timestamp start = log.truth.front().time;
+    const Timestamp hidden = start + duration_from_seconds(1.0 / corridor.speed_m_s);
+    const Timestamp again = start + duration_from_seconds(2.0 / corridor.speed_m_s);
+    for (MarkerDetections& frame : log.frames)
+      if (frame.time > hidden && frame.time < again) frame.detections.clear();
+
+    const auto steps = run_waymark(log, corridor, seed);
+    double at_its_widest_m2 = 0.0;
+    for (const Step& step : steps)
+      if (step.estimate.time < again)
+        at_its_widest_m2 = std::max(at_its_widest_m2, along_variance_m2(step));
+    EXPECT_LT(along_variance_m2(steps.back()), 0.7 * at_its_widest_m2) << seed;
+    EXPECT_EQ(steps.back().estimate.health, Health::kTracking) << seed;
+    EXPECT_EQ(steps.back().estimate.weak_axis_source, WeakAxisSource::kMarkers) << seed;
+  }
+}
+
+TEST(Waymark, AMirroredWorldGivesAMirroredResult) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    SyntheticCorridor corridor = test::short_corridor(seed);
+    corridor.drive_m = 6.0;
+    const SensorLog log = test::drive(corridor);
+    const auto direct = run_waymark(log, corridor, 1);
+    const auto mirrored = run_waymark(test::mirrored(log), corridor, 1);
+    ASSERT_EQ(direct.size(), mirrored.size());
+    // What particles draw is not mirrored, but their mean hardly depends on it: less than on what
+    // the sensors leave open.
+    for (std::size_t i = 0; i < direct.size(); ++i) {
+      const Se2& a = direct[i].estimate.map_from_base;
+      const Se2& b = mirrored[i].estimate.map_from_base;
+      ASSERT_NEAR(a.x(), b.x(), 0.005) << seed << " " << i;
+      ASSERT_NEAR(a.y(), -b.y(), 0.005) << seed << " " << i;
+      ASSERT_NEAR(a.theta(), -b.theta(), radians(0.1)) << seed << " " << i;
+    }
+  }
+}
+
+bool are_equal(const Estimate& a, const Estimate& b) {
+  return a.map_from_base.translation() == b.map_from_base.translation() &&
+         a.map_from_base.theta() == b.map_from_base.theta() && a.covariance == b.covariance &&
+         a.effective_particles == b.effective_particles && a.health == b.health;
+}
+
+TEST(Waymark, TheNumberOfThreadsDoesNotChangeABit) {
+  SyntheticCorridor corridor = test::short_corridor(3);
+  corridor.drive_m = 6.0;
+  const SensorLog log = test::drive(corridor);
+  EstimatorSetup setup = estimator_setup_of(corridor, 7);
+  WaymarkEstimator alone{setup, {}};
+  const auto expected = run(alone, log, setup_of(corridor));
+  for (const int threads : {2, 3}) {
+    setup.parallel_for = parallel_for_with(threads);
+    WaymarkEstimator together{setup, {}};
+    const auto steps = run(together, log, setup_of(corridor));
+    ASSERT_EQ(steps.size(), expected.size());
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      ASSERT_TRUE(are_equal(steps[i].estimate, expected[i].estimate)) << threads << " " << i;
+    const auto one = alone.landmarks();
+    const auto other = together.landmarks();
+    ASSERT_EQ(one.size(), other.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(one[i].map_from_marker.translation(), other[i].map_from_marker.translation());
+      EXPECT_EQ(one[i].covariance, other[i].covariance);
+    }
+  }
+}
+
+TEST(Waymark, AnotherSeedGivesAnotherResult) {
+  SyntheticCorridor corridor = between_two_walls(3);
+  corridor.drive_m = 1.0;
+  const SensorLog log = test::drive(corridor);
+  EXPECT_FALSE(are_equal(run_waymark(log, corridor, 7).back().estimate,
+                         run_waymark(log, corridor, 8).back().estimate));
+}
+
+}  // namespace
+}  // namespace waymark
