@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kProof = 2;     // markers that agree
 constexpr double kSamePlace_m = 0.5;  // about the other place
 constexpr double kSameHeading_rad = 0.35;
+constexpr int kProofSightings = 2;   // of each of them: misread ids do not repeat
 constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
 constexpr double kMisread_m = 0.15;  // way without another sighting that ends such a doubt
 constexpr double kPatience_m = 5.0;  // the same for a marker that was really there
@@ -35,7 +36,7 @@ KidnapWatch::Verdict KidnapWatch::judge(const Belief& belief,
   }
   if (belief_is_confirmed) forget_doubt();
   if (!elsewhere_) return Verdict::kSettled;
-  if (ids_for_elsewhere_.size() < kProof) return Verdict::kDoubtful;
+  if (!is_elsewhere()) return Verdict::kDoubtful;
   forget_doubt();
   unbelieved_ = belief.map_from_base();
   strangers_.clear();
@@ -81,10 +82,16 @@ void KidnapWatch::count_for_elsewhere(int id, const Se2& map_from_base) {
     ids_for_elsewhere_.clear();
     sightings_ = 0;
   }
-  ids_for_elsewhere_.insert(id);
+  ++ids_for_elsewhere_[id];
   ++sightings_;
   unsupported_m_ = 0.0;
   elsewhere_ = map_from_base;
+}
+
+bool KidnapWatch::is_elsewhere() const {
+  return std::count_if(ids_for_elsewhere_.begin(), ids_for_elsewhere_.end(), [](const auto& seen) {
+           return seen.second >= kProofSightings;
+         }) >= static_cast<std::ptrdiff_t>(kProof);
 }
 
 void KidnapWatch::forget_doubt() {

@@ -4,6 +4,7 @@
 
 #include "slam/core/belief/belief.hpp"
 
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -46,12 +47,13 @@ class KidnapWatch {
   void follow(const Motion& motion);
   void forget_doubt();
   void count_for_elsewhere(int id, const Se2& map_from_base);
+  bool is_elsewhere() const;
   bool doubles_explain(const Belief& belief, std::span<const MarkerMeasurement> seen);
 
   std::optional<Se2> elsewhere_{};
-  std::set<int> ids_for_elsewhere_{};
-  int sightings_{0};           ///< that have fed the doubt
-  double unsupported_m_{0.0};  ///< way since the last of them
+  std::map<int, int> ids_for_elsewhere_{};  ///< with the number of sightings
+  int sightings_{0};                        ///< that have fed the doubt
+  double unsupported_m_{0.0};               ///< way since the last of them
   MarkerMeasurement relocating_marker_{};
 
   // After a relocation:
