@@ -36,7 +36,7 @@ set output images.'/accuracy_ablations.png'
 set title 'ATE with parts left out: root mean square and worst of the seeds'
 set style data histograms
 set style histogram clustered gap 1
-set style fill solid 0.8
+set style fill solid 0.8 noborder
 unset xlabel
 set ylabel 'ATE [m]'
 set logscale y

@@ -16,9 +16,7 @@
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-# NAME=ESTIMATOR:KEY=VALUE:... as in deploy/sweep.sh. A camera 0.3 degrees and 0.3 % from its
-# calibration shows what is lost when its errors are not learnt.
-readonly kBent='robot.camera.yaw_rad=0.005:robot.camera.fx_px=532.0577:robot.camera.fy_px=532.0577'
+# NAME=ESTIMATOR:KEY=VALUE:... as in deploy/sweep.sh.
 readonly kFixedOdometry='slam.waymark.odometry.scale_sigma=1e-6:slam.waymark.odometry.turn_scale_sigma=1e-6:slam.waymark.odometry.drift_sigma_rad_per_m=1e-6'
 readonly kFixedCamera='slam.waymark.markers.camera_yaw_sigma_rad=0:slam.waymark.markers.camera_focal_sigma=0'
 ablations=(
@@ -28,8 +26,6 @@ ablations=(
   proposal_only=waymark:slam.waymark.marker_evidence=0
   "odometry_not_learnt=waymark:$kFixedOdometry"
   "camera_not_learnt=waymark:$kFixedCamera"
-  "bent_camera=waymark:$kBent"
-  "bent_camera_not_learnt=waymark:$kBent:$kFixedCamera"
   no_ids=waymark:slam.blank_ids=true
 )
 
