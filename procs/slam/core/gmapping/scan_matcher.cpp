@@ -19,11 +19,11 @@ constexpr double kNoHit_m2 = 0.5;
 /// leaves coordinates exact to 1e-8 cells. tests/benchmark/gmapping_speed.cpp
 constexpr int kBias_cells = 1 << 27;
 
-/// A pose of a climb, in its present steps from the start.
+/// A pose of a climb: whole numbers of its present steps from the start.
 struct LatticePoint {
-  int x{0};
-  int y{0};
-  int turn{0};
+  double x{0.0};
+  double y{0.0};
+  double turn{0.0};
 
   bool operator==(const LatticePoint&) const = default;
 
