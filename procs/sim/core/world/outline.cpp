@@ -148,7 +148,7 @@ bool overlap(const Wall& a, const Wall& b) {
     return false;
   }
   const auto [low, high] =
-      std::minmax(along.dot(b.from_m - a.from_m), along.dot(b.to_m - a.from_m));
+      std::minmax({along.dot(b.from_m - a.from_m), along.dot(b.to_m - a.from_m)});
   return std::min(high, a.length_m()) - std::max(low, 0.0) > kSlack_m;
 }
 

@@ -142,14 +142,8 @@ Estimate GmappingEstimator::estimate(const Observation& observation) const {
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = WeakAxisSource::kOdometry;
-  if (updates_ < 2) {
-    estimate.health = Health::kInitialising;
-  } else if (!particles_.state(best_).is_matched) {
-    estimate.health = Health::kLost;
-  } else {
-    estimate.health =
-        estimate.observability.is_degenerate ? Health::kDegenerate : Health::kTracking;
-  }
+  estimate.health = health_of(updates_, !particles_.state(best_).is_matched,
+                              !estimate.observability.is_degenerate);
   return estimate;
 }
 

@@ -101,15 +101,8 @@ Estimate MarkerMatchingEstimator::estimate(const Observation& observation) const
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
-  if (updates_ < 2) {
-    estimate.health = Health::kInitialising;
-  } else if (wall_agreement_ < config_.lost_agreement) {
-    estimate.health = Health::kLost;
-  } else if (estimate.observability.is_degenerate && !markers_told_) {
-    estimate.health = Health::kDegenerate;
-  } else {
-    estimate.health = Health::kTracking;
-  }
+  estimate.health = health_of(updates_, wall_agreement_ < config_.lost_agreement,
+                              !estimate.observability.is_degenerate || markers_told_);
   return estimate;
 }
 

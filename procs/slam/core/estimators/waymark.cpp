@@ -9,8 +9,8 @@ namespace {
 
 enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2, kSettlingStream = 3 };
 
-constexpr double kMinFacing =
-    0.3;  // cosine; markers that are seen more from the side may be missed
+// Cosine: markers that are seen more from the side may be missed.
+constexpr double kMinFacing = 0.3;
 constexpr double kWallInSight_m = 0.2;                      // a beam ends this near to the marker
 constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
@@ -90,14 +90,23 @@ bool WaymarkEstimator::is_due() const {
          since_update_.turn_rad >= config_.update_turn_rad;
 }
 
+std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& observation) const {
+  return measure_markers(observation, setup_.range_sigma_m, setup_.camera.base_from_camera,
+                         config_.markers);
+}
+
+Belief WaymarkEstimator::belief_now() const {
+  Belief now = belief();
+  now.move(since_update_, noise_);
+  return now;
+}
+
 /// A marker where none of its id should be may mean that the robot was carried away: that cannot
 /// wait until it has driven on.
 bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const {
   if (observation.sightings.empty()) return false;
-  Belief expected = belief();
-  expected.move(since_update_, noise_);
-  const auto seen = measure_markers(observation, setup_.range_sigma_m,
-                                    setup_.camera.base_from_camera, config_.markers);
+  const Belief expected = belief_now();
+  const auto seen = measured(observation);
   return std::any_of(seen.begin(), seen.end(), [&](const MarkerMeasurement& measurement) {
     const auto nearest = expected.nearest(measurement);
     return nearest && !nearest->may_be_it(config_.marker_gate, config_.marker_near_m);
@@ -105,13 +114,9 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
 }
 
 void WaymarkEstimator::process(const Observation& observation) {
-  Sensed sensed{&observation,
-                measure_markers(observation, setup_.range_sigma_m, setup_.camera.base_from_camera,
-                                config_.markers),
+  Sensed sensed{&observation, measured(observation),
                 observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
-  Belief expected = belief();
-  expected.move(since_update_, noise_);
-  verdict_ = kidnap_watch_.judge(expected, sensed.markers, since_update_, config_.marker_gate,
+  verdict_ = kidnap_watch_.judge(belief_now(), sensed.markers, since_update_, config_.marker_gate,
                                  config_.marker_near_m);
   sensed.verdict = verdict_;
   const std::vector<Eigen::Vector3d> normals = centred_normals();
@@ -291,16 +296,10 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
-  if (updates_ < 2) {
-    estimate.health = Health::kInitialising;
-  } else if (verdict_ == KidnapWatch::Verdict::kDoubtful ||
-             wall_agreement_ < config_.lost_agreement) {
-    estimate.health = Health::kLost;
-  } else if (estimate.observability.is_degenerate && !markers_told_) {
-    estimate.health = Health::kDegenerate;
-  } else {
-    estimate.health = Health::kTracking;
-  }
+  const bool is_lost =
+      verdict_ == KidnapWatch::Verdict::kDoubtful || wall_agreement_ < config_.lost_agreement;
+  estimate.health =
+      health_of(updates_, is_lost, !estimate.observability.is_degenerate || markers_told_);
   return estimate;
 }
 

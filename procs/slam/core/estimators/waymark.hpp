@@ -84,6 +84,8 @@ class WaymarkEstimator final : public Estimator {
 
   void believe_scans_about_slips(const Observation& observation);
   bool is_due() const;
+  std::vector<MarkerMeasurement> measured(const Observation& observation) const;
+  Belief belief_now() const;  ///< of the best particle, moved on by odometry
   bool is_contradicted_by(const Observation& observation) const;
   void process(const Observation& observation);
   Outcome advance(State& state, const Sensed& sensed, const Eigen::Vector3d& normal) const;

@@ -5,6 +5,12 @@
 
 namespace waymark {
 
+Health health_of(std::uint64_t updates, bool is_lost, bool observes_all_axes) {
+  if (updates < 2) return Health::kInitialising;
+  if (is_lost) return Health::kLost;
+  return observes_all_axes ? Health::kTracking : Health::kDegenerate;
+}
+
 Estimate describe_observation(const Observation& observation, const Se2& map_from_base,
                               double range_sigma_m) {
   Estimate estimate;

@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include <cstdint>
+
 namespace waymark {
 
 enum class Health { kInitialising, kTracking, kDegenerate, kLost };
@@ -30,6 +32,10 @@ struct Estimate {
   Observability observability{};
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
 };
+
+/// What a method can say about itself after `updates` updates.
+/// @param observes_all_axes  walls or markers tell the motion in every direction.
+Health health_of(std::uint64_t updates, bool is_lost, bool observes_all_axes);
 
 /// The part of an estimate that the observation alone decides.
 Estimate describe_observation(const Observation& observation, const Se2& map_from_base,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace waymark {
@@ -48,7 +49,7 @@ void KidnapWatch::follow(const Motion& motion) {
   if (elsewhere_) {
     elsewhere_ = *elsewhere_ * motion.start_from_end;
     unsupported_m_ += motion.distance_m;
-    if (unsupported_m_ > (sightings_ < kRealSightings ? kMisread_m : kPatience_m)) forget_doubt();
+    if (unsupported_m_ > (sightings() < kRealSightings ? kMisread_m : kPatience_m)) forget_doubt();
   }
   if (unbelieved_) {
     unbelieved_ = *unbelieved_ * motion.start_from_end;
@@ -59,11 +60,11 @@ void KidnapWatch::follow(const Motion& motion) {
 
 bool KidnapWatch::doubles_explain(const Belief& belief, std::span<const MarkerMeasurement> seen) {
   if (!unbelieved_) return false;
+  const std::vector<Landmark> known = belief.markers();
   for (const MarkerMeasurement& measurement : seen) {
     if (belief.nearest(measurement)) continue;
     const Eigen::Vector2d place =
         belief.map_from_base() * measurement.base_from_marker.translation();
-    const std::vector<Landmark> known = belief.markers();
     if (std::any_of(known.begin(), known.end(), [&](const Landmark& marker) {
           return (marker.map_from_marker.translation() - place).norm() < kSamePlace_m;
         })) {
@@ -78,14 +79,15 @@ void KidnapWatch::count_for_elsewhere(int id, const Se2& map_from_base) {
       elsewhere_ &&
       (map_from_base.translation() - elsewhere_->translation()).norm() < kSamePlace_m &&
       std::abs(angle_difference(map_from_base.theta(), elsewhere_->theta())) < kSameHeading_rad;
-  if (!agrees) {
-    ids_for_elsewhere_.clear();
-    sightings_ = 0;
-  }
+  if (!agrees) ids_for_elsewhere_.clear();
   ++ids_for_elsewhere_[id];
-  ++sightings_;
   unsupported_m_ = 0.0;
   elsewhere_ = map_from_base;
+}
+
+int KidnapWatch::sightings() const {
+  return std::accumulate(ids_for_elsewhere_.begin(), ids_for_elsewhere_.end(), 0,
+                         [](int sum, const auto& seen) { return sum + seen.second; });
 }
 
 bool KidnapWatch::is_elsewhere() const {
@@ -97,7 +99,6 @@ bool KidnapWatch::is_elsewhere() const {
 void KidnapWatch::forget_doubt() {
   elsewhere_.reset();
   ids_for_elsewhere_.clear();
-  sightings_ = 0;
   unsupported_m_ = 0.0;
 }
 

@@ -47,12 +47,12 @@ class KidnapWatch {
   void follow(const Motion& motion);
   void forget_doubt();
   void count_for_elsewhere(int id, const Se2& map_from_base);
+  int sightings() const;  ///< that have fed the doubt
   bool is_elsewhere() const;
   bool doubles_explain(const Belief& belief, std::span<const MarkerMeasurement> seen);
 
   std::optional<Se2> elsewhere_{};
   std::map<int, int> ids_for_elsewhere_{};  ///< with the number of sightings
-  int sightings_{0};                        ///< that have fed the doubt
   double unsupported_m_{0.0};               ///< way since the last of them
   MarkerMeasurement relocating_marker_{};
 
