@@ -11,8 +11,6 @@
 namespace waymark {
 namespace {
 
-/// Share of a settled marker's covariance that is kept as its own, for want of particles.
-constexpr double kKeptShare = 0.1;
 /// [m^2], [rad^2] below this an axis is exact already: nothing is left to draw.
 constexpr double kExact = 1e-12;
 constexpr double kRelocated_m = 0.5;  // sigma of a pose that is known by one marker only
@@ -117,7 +115,14 @@ void Belief::draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
   if (spread.diagonal().minCoeff() < kExact) return;
   const Eigen::LLT<Eigen::MatrixXd> root{spread};
   const Eigen::MatrixXd gain = root.solve(with_axes.transpose()).transpose();
+  const OdometryErrors odometry_errors = odometry_errors_;
+  const Eigen::Vector3d sighting_errors = sighting_errors_;
+  const Eigen::Matrix<double, kErrors, kErrors> errors_covariance =
+      covariance_.block<kErrors, kErrors>(kOdometry, kOdometry);
   condition(gain, root.matrixL() * standard_normal.head(axes.cols()), spread);
+  odometry_errors_ = odometry_errors;
+  sighting_errors_ = sighting_errors;
+  covariance_.block<kErrors, kErrors>(kOdometry, kOdometry) = errors_covariance;
 }
 
 const std::vector<Landmark>& Belief::settled() const {
@@ -273,24 +278,17 @@ std::size_t Belief::revive(std::size_t settled_marker) {
   return active_.size() - 1;
 }
 
-void Belief::settle_oldest(std::size_t limit, Random& random) {
+void Belief::settle_oldest(std::size_t limit) {
   while (active_.size() > limit) {
     const auto oldest = std::min_element(
         active_.begin(), active_.end(),
         [](const Landmark& a, const Landmark& b) { return a.last_seen < b.last_seen; });
-    settle(static_cast<std::size_t>(oldest - active_.begin()), random);
+    settle(static_cast<std::size_t>(oldest - active_.begin()));
   }
 }
 
-void Belief::settle(std::size_t marker, Random& random) {
+void Belief::settle(std::size_t marker) {
   const Eigen::Index place = place_of(marker);
-  const Eigen::Matrix3d own = covariance_.block<3, 3>(place, place);
-  const Eigen::LLT<Eigen::Matrix3d> root{own};
-  const Eigen::Vector3d normal{random.normal(), random.normal(), random.normal()};
-  const Eigen::MatrixXd gain = root.solve(covariance_.middleRows<3>(place)).transpose();
-  condition(gain, root.matrixL() * (std::sqrt(1.0 - kKeptShare) * normal),
-            (1.0 - kKeptShare) * own);
-
   Landmark settled = active_[marker];
   settled.covariance = covariance_.block<3, 3>(place, place);
   settled_.edit().push_back(settled);

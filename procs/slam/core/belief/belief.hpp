@@ -3,7 +3,6 @@
 // covariance of all of them together.
 #pragma once
 
-#include "common/random/random.hpp"
 #include "slam/core/belief/odometry_errors.hpp"
 #include "slam/core/grid/copy_on_write.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
@@ -50,8 +49,8 @@ struct BeliefPrior {
 
 /// A Gaussian over (pose, odometry errors, sighting errors, markers), about a mean that is moved
 /// with every correction (error-state Kalman filter). Markers that have not been seen for long are
-/// settled: their position is drawn and they leave the covariance, so that it stays small. An id is
-/// a class: several markers may have it, told apart by place.
+/// settled: they leave the joint covariance with their own, so that it stays small. An id is a
+/// class: several markers may have it, told apart by place.
 class Belief {
  public:
   explicit Belief(const BeliefPrior& prior);
@@ -85,7 +84,10 @@ class Belief {
   void correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
 
   /// Draws linear functions of the pose (columns; of (x, y, theta) in map): they are exact from now
-  /// on, and everything that is correlated with them follows.
+  /// on, and the rest of the pose and the markers follow. What is known of the errors of odometry
+  /// and camera stays as it is: they are the same for ever, and a few particles that are drawn
+  /// again and again would soon agree on a value that nobody measured. Source: Schmidt (1966),
+  /// "Application of state-space methods to navigation problems": considered states.
   void draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
                  const Eigen::Vector3d& standard_normal);
 
@@ -128,7 +130,7 @@ class Belief {
                      Timestamp now);
 
   /// Settles the markers that were seen longest ago while more than `limit` are in the covariance.
-  void settle_oldest(std::size_t limit, Random& random);
+  void settle_oldest(std::size_t limit);
 
   /// In order of their first sighting, with their marginal covariances.
   std::vector<Landmark> markers() const;
@@ -137,6 +139,7 @@ class Belief {
   static constexpr Eigen::Index kOdometry = 3;
   static constexpr Eigen::Index kSighting = 6;
   static constexpr Eigen::Index kMarkers = 9;
+  static constexpr Eigen::Index kErrors = kMarkers - kOdometry;
 
   static Eigen::Index place_of(std::size_t marker) {
     return kMarkers + 3 * static_cast<Eigen::Index>(marker);
@@ -161,7 +164,7 @@ class Belief {
                  const Eigen::Ref<const Eigen::MatrixXd>& covariance_lost);
   void augment(const Landmark& landmark, const Columns& with_all, const Eigen::Matrix3d& own);
   std::size_t revive(std::size_t settled_marker);
-  void settle(std::size_t marker, Random& random);
+  void settle(std::size_t marker);
   Landmark& editable(std::size_t marker);
   void remove_active(std::size_t marker);
   void forget_moved();

@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2, kSettlingStream = 3 };
+enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2 };
 
 // Cosine: markers that are seen more from the side may be missed.
 constexpr double kMinFacing = 0.3;
@@ -123,9 +123,7 @@ void WaymarkEstimator::process(const Observation& observation) {
   std::vector<Outcome> outcomes(particles_.size());
   setup_.parallel_for(particles_.size(), [&](std::size_t i) {
     outcomes[i] = advance(particles_.state(i), sensed, normals[i]);
-    Random random{setup_.seed, kSettlingStream, updates_, i};
-    particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers),
-                                             random);
+    particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
   });
   for (std::size_t i = 0; i < particles_.size(); ++i)
     particles_.add_log_weight(i, outcomes[i].log_evidence);

@@ -25,7 +25,7 @@ struct WaymarkConfig {
   double marker_gate{16.3};          ///< chi^2 of a sighting's innovation, 3 degrees of freedom
   double marker_near_m{0.25};        ///< off by less, it is believed, too, but counts less
   double same_marker_within_m{0.5};  ///< no second marker of one id nearer than this
-  int joint_markers{24};             ///< in each particle's covariance; the others are settled
+  int joint_markers{48};             ///< in each particle's covariance; the others are settled
   double scan_evidence{0.02};        ///< share of a scan's log-likelihood that weighs particles
   double marker_evidence{0.02};      ///< the same of a sighting
   double lost_agreement{0.3};        ///< share of the mapped beams; below: lost
