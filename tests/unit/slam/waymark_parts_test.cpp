@@ -43,9 +43,9 @@ const Motion kForward{Se2{0.5, 0.0, 0.02}, 0.5, 0.02};
 TEST(OdometryErrors, DerivativesAgreeWithDifferences) {
   constexpr double kStep = 1e-6;
   const Motion motion{Se2{0.3, 0.05, 0.8}, 0.31, 0.8};
-  const OdometryErrors errors{0.01, 0.02, -0.03};
+  const OdometryErrors errors{0.01, 0.02, -0.03, 0.04};
   const CorrectedMotion at = corrected_motion(motion, errors, {});
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < errors.size(); ++axis) {
     const CorrectedMotion moved =
         corrected_motion(motion, errors + kStep * OdometryErrors::Unit(axis), {});
     const Eigen::Vector3d difference = deviation(at.start_from_end, moved.start_from_end) / kStep;
@@ -114,7 +114,7 @@ TEST(Belief, CorrectingThePoseMovesTheMarkersThatHangOnIt) {
 TEST(Belief, DrawingThePoseTellsNothingOfSystematicErrors) {
   Belief belief{{OdometryNoise{}, 0.005, 0.002, 0.003}};
   const OdometryErrors errors = belief.odometry_errors();
-  const Eigen::Matrix3d covariance = belief.odometry_errors_covariance();
+  const Eigen::Matrix4d covariance = belief.odometry_errors_covariance();
   for (int step = 0; step < 100; ++step) {
     belief.move({Se2{0.1, 0.0, 0.0}, 0.1, 0.0}, {});
     belief.draw_pose(Eigen::Matrix3d::Identity(), {1.0, -1.0, 0.5});

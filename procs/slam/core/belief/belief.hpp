@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace waymark {
@@ -39,6 +40,30 @@ struct Innovation {
   double log_likelihood() const;
 };
 
+/// What one marker is called: its id, and its instance among those of that id.
+using MarkerName = std::pair<int, int>;
+
+inline MarkerName name_of(const Landmark& marker) {
+  return {marker.id, marker.instance};
+}
+
+/// All systematic errors: those of the odometry, then those of sightings.
+inline constexpr Eigen::Index kStaticErrors = 7;
+using StaticErrors = Eigen::Matrix<double, kStaticErrors, 1>;
+
+/// What stays the same while the robot drives.
+struct Statics {
+  StaticErrors errors{StaticErrors::Zero()};
+  std::vector<Landmark> markers{};
+};
+
+/// How the mean of the pose (x, y, theta; map frame) moves with what stays the same: with the
+/// errors, then with (x, y, yaw) of the markers named.
+struct PoseByStatics {
+  std::vector<MarkerName> markers{};
+  Eigen::Matrix<double, 3, Eigen::Dynamic> gain{};
+};
+
 /// How a belief begins.
 struct BeliefPrior {
   OdometryNoise odometry{};
@@ -62,8 +87,8 @@ class Belief {
 
   const OdometryErrors& odometry_errors() const { return odometry_errors_; }
 
-  Eigen::Matrix3d odometry_errors_covariance() const {
-    return covariance_.block<3, 3>(kOdometry, kOdometry);
+  Eigen::Matrix4d odometry_errors_covariance() const {
+    return covariance_.block<4, 4>(kOdometry, kOdometry);
   }
 
   /// What all sightings get wrong in the same way: the camera is mounted `x` [rad] further left
@@ -79,6 +104,11 @@ class Belief {
   Prediction predicted(const Motion& motion, const OdometryNoise& noise) const;
 
   void move(const Motion& motion, const OdometryNoise& noise);
+
+  /// The pose may be off by more than was thought, independently of all else.
+  void widen(const Eigen::Matrix3d& pose_covariance) {
+    covariance_.topLeftCorner<3, 3>() += pose_covariance;
+  }
 
   /// Takes over what has been found about the pose; everything that is correlated with it follows.
   void correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
@@ -132,14 +162,20 @@ class Belief {
   /// Settles the markers that were seen longest ago while more than `limit` are in the covariance.
   void settle_oldest(std::size_t limit);
 
+  StaticErrors static_errors() const {
+    return (StaticErrors{} << odometry_errors_, sighting_errors_).finished();
+  }
+
+  /// By the errors and the `most` markers that were seen last.
+  PoseByStatics pose_by_statics(std::size_t most) const;
+
   /// In order of their first sighting, with their marginal covariances.
   std::vector<Landmark> markers() const;
 
  private:
   static constexpr Eigen::Index kOdometry = 3;
-  static constexpr Eigen::Index kSighting = 6;
-  static constexpr Eigen::Index kMarkers = 9;
-  static constexpr Eigen::Index kErrors = kMarkers - kOdometry;
+  static constexpr Eigen::Index kSighting = 7;
+  static constexpr Eigen::Index kMarkers = 10;
 
   static Eigen::Index place_of(std::size_t marker) {
     return kMarkers + 3 * static_cast<Eigen::Index>(marker);
