@@ -142,7 +142,9 @@ std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorR
       "all true markers that were mapped. NEES: 3 is right. Expected: by the scenario, its limit "
       "in parentheses. "
       "Trajectories are the poses given during the run; `final`: corrected until its end.\n";
-  if (!truth.length_m)
+  if (!truth.is_one_corridor)
+    text += "\nNot one straight corridor: no length.\n";
+  else if (!truth.length_m)
     text += "\nNo scenario.toml: the true length is not known, so no accuracy.\n";
   if (!truth.trajectory) text += "\nNo truth.tum: lengths only, no trajectory error.\n";
   if (!truth.markers) text += "\nNo truth_markers.csv: no marker error.\n";

@@ -24,12 +24,16 @@ std::optional<std::string> text_if_there(const fs::path& file) {
   return read_text(file);
 }
 
+constexpr const char* kOneCorridor = "straight";
+
 /// What the evaluation reads of a scenario.
 struct ScenarioPart {
   struct World {
+    std::string layout{kOneCorridor};
     double length_m{50.0};  ///< the default world's
 
     void describe(Fields& fields) {
+      fields.field("layout", layout, "only a straight corridor has a length");
       fields.field("length_m", length_m, kPositive, "between the inner faces of the end walls");
     }
   };
@@ -145,12 +149,16 @@ RunTruth read_truth(const fs::path& run_dir, const EvaluationOptions& options) {
   truth.scenario_toml = text_if_there(run_dir / "scenario.toml");
   if (truth.scenario_toml) {
     const ScenarioPart scenario = read_scenario(run_dir / "scenario.toml");
-    truth.length_m = scenario.world.length_m;
+    truth.is_one_corridor = scenario.world.layout == kOneCorridor;
+    if (truth.is_one_corridor) truth.length_m = scenario.world.length_m;
     truth.expect = scenario.expect;
   }
   if (fs::exists(run_dir / "expect.toml"))
     truth.expect = read_scenario(run_dir / "expect.toml").expect;
-  if (options.true_length_m) truth.length_m = options.true_length_m;
+  if (options.true_length_m) {
+    truth.length_m = options.true_length_m;
+    truth.is_one_corridor = true;
+  }
   if (fs::exists(run_dir / "truth.tum"))
     truth.trajectory = read_tum(run_dir / "truth.tum", truth.skipped);
   if (truth.trajectory) truth.lifted_t_s = lifted_t_s(*truth.trajectory);
@@ -184,6 +192,7 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
     const fs::path map_file = dir / "map.yaml";
     const MapImage map = read_map(map_file);
     result.wall_cells = wall_thickness_cells(map);
+    if (!truth.is_one_corridor) return;
     try {
       result.length = measure_corridor(map);
     } catch (const InputError& error) {

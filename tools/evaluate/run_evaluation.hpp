@@ -26,6 +26,7 @@ struct EvaluationOptions {
 struct RunTruth {
   std::optional<std::string> scenario_toml{};
   std::optional<double> length_m{};
+  bool is_one_corridor{true};  ///< an L or a ring has no length from end wall to end wall
   ExpectConfig expect{};
   std::optional<Trajectory> trajectory{};
   std::optional<std::vector<Marker>> markers{};
@@ -60,8 +61,9 @@ struct EstimatorResult {
   Skipped skipped{};                    ///< lines that were left out
 };
 
-/// Reads scenario.toml (world.length_m, 50 if it does not say; [expect], which expect.toml beside
-/// it replaces), truth.tum, truth_markers.csv, and the log run.lcm if the robot was lifted.
+/// Reads scenario.toml (world.layout and length_m, 50 if it does not say; [expect], which
+/// expect.toml beside it replaces), truth.tum, truth_markers.csv, and the log run.lcm if the robot
+/// was lifted.
 /// @throws InputError for files that are there and cannot be understood.
 RunTruth read_truth(const std::filesystem::path& run_dir, const EvaluationOptions& options);
 

@@ -167,6 +167,24 @@ TEST(Run, TruthOfAnotherRunIsAProblem) {
   EXPECT_THAT(read_text(run.path() / "results.json"), Not(HasSubstr("nan")));
 }
 
+TEST(Run, AWorldWithCornersHasNoLength) {
+  const TemporaryFolder run;
+  add_truth(run);
+  run.file("scenario.toml", "[world]\nlayout = \"L\"\nlength_m = 10\n");
+  add_estimator(run, "waymark", 200, 1.0);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  const Json metrics = json_in(run.path() / "waymark/metrics.json");
+  EXPECT_TRUE(metrics["length_m"].is_null());
+  EXPECT_TRUE(metrics["accuracy_percent"].is_null());
+  EXPECT_EQ(metrics["ate_origin_m"], 0.0);
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("Not one straight corridor"));
+
+  EvaluationOptions options{};
+  options.true_length_m = 10.0;  // whoever says so wants it
+  EXPECT_EQ(run_run(run.path(), {}, options, kQuietly), kFine);
+  EXPECT_EQ(json_in(run.path() / "waymark/metrics.json")["accuracy_percent"], 100.0);
+}
+
 TEST(Run, WhatCannotBeEvaluatedAtAllIsAUsageError) {
   const TemporaryFolder run;
   EXPECT_THROW(run_run(run.path() / "none", {}, {}, kQuietly), InputError);

@@ -19,7 +19,21 @@ constexpr double kNoHit_m2 = 0.5;
 /// leaves coordinates exact to 1e-8 cells. tests/benchmark/gmapping_speed.cpp
 constexpr int kBias_cells = 1 << 27;
 
-constexpr std::size_t kNoMove = 6;  // one past the six moves of a climb
+/// A pose of a climb: whole numbers of its present steps from the start.
+struct LatticePoint {
+  double x{0.0};
+  double y{0.0};
+  double turn{0.0};
+
+  bool operator==(const LatticePoint&) const = default;
+
+  LatticePoint operator+(const LatticePoint& other) const {
+    return {x + other.x, y + other.y, turn + other.turn};
+  }
+};
+
+constexpr std::array<LatticePoint, 6> kMoves{
+    {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
 /// Beyond what a hit in the kernel can be from the end of a beam, which is corner to corner.
 double furthest_squared_cells2(int kernel_size) {
@@ -63,55 +77,86 @@ ScanMatcher::ScanMatcher(const MatcherSetting& setting, const HitMap& map,
     const Eigen::Vector2d end = beam.end_in_base / setting.frame.resolution_m;
     const Eigen::Vector2d start = beam.start_in_base / setting.frame.resolution_m;
     const Eigen::Vector2d before = end - kFreeCellDistance_cells * (end - start).normalized();
-    rays_.push_back({end.x(), end.y(), before.x(), before.y(), 0.0F});
+    rays_.push_back({end.x(), end.y(), before.x(), before.y()});
   }
+  num_rays_ = rays_.size();
+  rays_.resize((num_rays_ + kAtOnce - 1) / kAtOnce * kAtOnce);
 }
 
-/// Squared distance [cells^2] from the ray's end to the nearest hit around.
-inline float ScanMatcher::nearest_squared(const Ray& ray, const Transform& map_from_ray) {
-  const double x = map_from_ray.x_of(ray.end_x, ray.end_y);
-  const double y = map_from_ray.y_of(ray.end_x, ray.end_y);
-  const int cell_x = static_cast<int>(x);
-  const int cell_y = static_cast<int>(y);
-  BeamCells cells{{cell_x - kBias_cells, cell_y - kBias_cells}, {}};
-  if (setting_.config.free_cells == FreeCells::kIntended) {
-    cells.before = {static_cast<int>(map_from_ray.x_of(ray.before_x, ray.before_y)) - kBias_cells,
-                    static_cast<int>(map_from_ray.y_of(ray.before_x, ray.before_y)) - kBias_cells};
+// Vectors of eight, and a score that is looked at once per eight:
+// tests/benchmark/gmapping_speed.cpp
+ScanMatcher::Distances ScanMatcher::nearest(std::size_t first, const Transform& map_from_ray) {
+  std::array<BeamCells, kAtOnce> cells{};
+  std::array<float, kAtOnce> from_centre_x{};
+  std::array<float, kAtOnce> from_centre_y{};
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    const Ray& ray = rays_[first + i];
+    const double x = map_from_ray.x_of(ray.end_x, ray.end_y);
+    const double y = map_from_ray.y_of(ray.end_x, ray.end_y);
+    const int cell_x = static_cast<int>(x);
+    const int cell_y = static_cast<int>(y);
+    from_centre_x[i] = static_cast<float>(x - cell_x) - 0.5F;
+    from_centre_y[i] = static_cast<float>(y - cell_y) - 0.5F;
+    cells[i].end = {cell_x - kBias_cells, cell_y - kBias_cells};
   }
-  return surroundings_.nearest_squared(cells, static_cast<float>(x - cell_x) - 0.5F,
-                                       static_cast<float>(y - cell_y) - 0.5F);
+  if (setting_.config.free_cells == FreeCells::kIntended) {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      const Ray& ray = rays_[first + i];
+      cells[i].before = {
+          static_cast<int>(map_from_ray.x_of(ray.before_x, ray.before_y)) - kBias_cells,
+          static_cast<int>(map_from_ray.y_of(ray.before_x, ray.before_y)) - kBias_cells};
+    }
+  }
+  Distances distances{{}, std::min(kAtOnce, num_rays_ - first)};
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    distances.squared[i] =
+        surroundings_.nearest_squared(cells[i], from_centre_x[i], from_centre_y[i]);
+  }
+  return distances;
 }
 
 double ScanMatcher::score(const Se2& map_from_base, double to_beat) {
   const Transform map_from_ray{map_from_base, setting_.frame};
-  double score = 0.0;
-  auto can_add = static_cast<double>(rays_.size());  // a beam adds 1 at most
-  for (const Ray& ray : rays_) {
-    score += static_cast<double>(setting_.score_of(nearest_squared(ray, map_from_ray)));
-    can_add -= 1.0;
-    if (score + can_add <= to_beat) return score;
+  const auto highest = static_cast<double>(num_rays_);  // a beam adds 1 at most
+  double lost = 0.0;
+  for (std::size_t first = 0; first < num_rays_; first += kAtOnce) {
+    for (const float squared : nearest(first, map_from_ray))
+      lost += 1.0 - static_cast<double>(setting_.score_of(squared));
+    if (highest - lost <= to_beat) break;
   }
-  return score;
+  return highest - lost;
 }
 
 double ScanMatcher::log_likelihood(const Se2& map_from_base) {
   const Transform map_from_ray{map_from_base, setting_.frame};
   const double cell_m2 = setting_.frame.resolution_m * setting_.frame.resolution_m;
   double sum_m2 = 0.0;
-  for (const Ray& ray : rays_) {
-    const float squared = nearest_squared(ray, map_from_ray);
-    sum_m2 += squared == Surroundings::kNothingAround ? kNoHit_m2
-                                                      : cell_m2 * static_cast<double>(squared);
+  for (std::size_t first = 0; first < num_rays_; first += kAtOnce) {
+    for (const float squared : nearest(first, map_from_ray)) {
+      sum_m2 += squared == Surroundings::kNothingAround ? kNoHit_m2
+                                                        : cell_m2 * static_cast<double>(squared);
+    }
   }
   return -sum_m2 / setting_.config.likelihood_sigma_m2;
 }
 
 void ScanMatcher::worst_first(const Se2& map_from_base) {
+  struct Ranked {
+    float squared;
+    Ray ray;
+  };
+
   const Transform map_from_ray{map_from_base, setting_.frame};
-  for (Ray& ray : rays_)
-    ray.rank = nearest_squared(ray, map_from_ray);
-  std::stable_sort(rays_.begin(), rays_.end(),
-                   [](const Ray& a, const Ray& b) { return a.rank > b.rank; });
+  std::vector<Ranked> ranked;
+  ranked.reserve(rays_.size());
+  for (std::size_t first = 0; first < num_rays_; first += kAtOnce) {
+    for (const float squared : nearest(first, map_from_ray))
+      ranked.push_back({squared, rays_[ranked.size()]});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.squared > b.squared; });
+  std::transform(ranked.begin(), ranked.end(), rays_.begin(),
+                 [](const Ranked& each) { return each.ray; });
 }
 
 ScanMatcher::Match ScanMatcher::climb(const Se2& start) {
@@ -119,29 +164,35 @@ ScanMatcher::Match ScanMatcher::climb(const Se2& start) {
   Match best{start, score(start)};
   double step_m = setting_.config.linear_step_m;
   double turn_rad = setting_.config.angular_step_rad;
-  std::size_t way_back = kNoMove;
+  LatticePoint best_point{};
+  std::vector<LatticePoint> seen{best_point};
+  // A pose that was looked at before scored less than the best one, by whatever way it is reached.
+  const auto is_new = [&](const LatticePoint& point) {
+    if (std::find(seen.begin(), seen.end(), point) != seen.end()) return false;
+    seen.push_back(point);
+    return true;
+  };
   for (int halvings = 0; halvings <= setting_.config.iterations;) {
-    const Se2 centre = best.map_from_base;
-    // Opposite moves stand side by side.
-    const std::array<Se2, 6> moves{Se2{centre.x() + step_m, centre.y(), centre.theta()},
-                                   Se2{centre.x() - step_m, centre.y(), centre.theta()},
-                                   Se2{centre.x(), centre.y() - step_m, centre.theta()},
-                                   Se2{centre.x(), centre.y() + step_m, centre.theta()},
-                                   Se2{centre.x(), centre.y(), centre.theta() + turn_rad},
-                                   Se2{centre.x(), centre.y(), centre.theta() - turn_rad}};
-    std::size_t best_move = kNoMove;
-    for (std::size_t move = 0; move < moves.size(); ++move) {
-      if (move == way_back) continue;  // where it came from scored less
-      const double moved_score = score(moves[move], best.score);
+    const Match centre = best;
+    const LatticePoint centre_point = best_point;
+    for (const LatticePoint& move : kMoves) {
+      const LatticePoint point = centre_point + move;
+      if (!is_new(point)) continue;
+      const Se2 moved{centre.map_from_base.x() + move.x * step_m,
+                      centre.map_from_base.y() + move.y * step_m,
+                      centre.map_from_base.theta() + move.turn * turn_rad};
+      const double moved_score = score(moved, best.score);
       if (moved_score <= best.score) continue;
-      best = {moves[move], moved_score};
-      best_move = move;
+      best = {moved, moved_score};
+      best_point = point;
     }
-    way_back = best_move == kNoMove ? kNoMove : best_move ^ 1U;
-    if (best_move != kNoMove) continue;
+    if (best.score > centre.score) continue;
     step_m *= 0.5;
     turn_rad *= 0.5;
     ++halvings;
+    best_point = best_point + best_point;
+    for (LatticePoint& point : seen)
+      point = point + point;
   }
   return best;
 }

@@ -8,6 +8,8 @@
 #include "slam/core/gmapping/surroundings.hpp"
 #include "slam/core/scan/beams.hpp"
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -75,19 +77,33 @@ class ScanMatcher {
     double end_y;
     double before_x;  ///< where the free cell is looked for
     double before_y;
-    float rank;  ///< for worst_first()
+  };
+
+  /// So many rays are turned into the map together, with vector instructions.
+  static constexpr std::size_t kAtOnce = 8;
+
+  /// Of the rays that were turned together: squared, in cells^2.
+  struct Distances {
+    std::array<float, kAtOnce> squared;
+    std::size_t count;
+
+    const float* begin() const { return squared.data(); }
+
+    const float* end() const { return squared.data() + count; }
   };
 
   struct Transform;
 
-  float nearest_squared(const Ray& ray, const Transform& map_from_ray);
+  /// From the ends of the rays from `first` on to the nearest hits around.
+  Distances nearest(std::size_t first, const Transform& map_from_ray);
 
   /// Puts the rays first that lose most at this pose: a score that cannot win is told sooner.
   void worst_first(const Se2& map_from_base);
 
   const MatcherSetting& setting_;
   Surroundings surroundings_;
-  std::vector<Ray> rays_{};
+  std::size_t num_rays_{0};
+  std::vector<Ray> rays_{};  ///< filled up to a multiple of kAtOnce
 };
 
 }  // namespace waymark

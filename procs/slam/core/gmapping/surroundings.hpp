@@ -69,7 +69,7 @@ class Surroundings {
   };
 
   static constexpr CellIndex kNoCell{std::numeric_limits<int>::min(), 0};
-  static constexpr int kSlotBits = 12;
+  static constexpr int kSlotBits = 13;
   static constexpr std::size_t kSlots = std::size_t{1} << kSlotBits;
 
   /// Multiplicative hash (Knuth): cells along a wall, also an oblique one, get slots of their own.
