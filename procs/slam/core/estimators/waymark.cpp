@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/waymark.hpp"
 
+#include "slam/core/landmark/mean_landmarks.hpp"
+
 #include <algorithm>
-#include <tuple>
 
 namespace waymark {
 namespace {
@@ -121,13 +122,13 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
 void WaymarkEstimator::process(const Observation& observation) {
   Sensed sensed{&observation, measured(observation),
                 observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
-  verdict_ = kidnap_watch_.judge(belief_now(), sensed.markers, since_update_, config_.marker_gate,
+  const Belief expected = belief_now();
+  verdict_ = kidnap_watch_.judge(expected, sensed.markers, since_update_, config_.marker_gate,
                                  config_.marker_near_m);
   sensed.verdict = verdict_;
-  const Se2 expected = belief_now().map_from_base();
-  drift_.move(expected);
-  sensed.drift =
-      drift_.release(observation.beams, expected.rotation() * sensed.walls.weak_direction);
+  drift_.move(expected.map_from_base());
+  sensed.drift = drift_.release(observation.beams,
+                                expected.map_from_base().rotation() * sensed.walls.weak_direction);
   const std::vector<Eigen::Vector3d> normals = centred_normals();
   std::vector<Outcome> outcomes(particles_.size());
   setup_.parallel_for(particles_.size(), [&](std::size_t i) {
@@ -146,13 +147,15 @@ void WaymarkEstimator::process(const Observation& observation) {
   if (verdict_ != KidnapWatch::Verdict::kDoubtful) drift_.map(observation.beams);
 }
 
+/// Beams err together, so that a few units of evidence are chance: what is less than the knee
+/// counts with its square. A particle that has lost its walls has less by far more than that.
 void WaymarkEstimator::weigh(const std::vector<Outcome>& outcomes) {
   double most = outcomes.front().log_evidence;
   for (const Outcome& outcome : outcomes)
     most = std::max(most, outcome.log_evidence);
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const double less = most - outcomes[i].log_evidence;
-    particles_.add_log_weight(i, -less * less / (less + config_.evidence_knee));
+    particles_.add_log_weight(i, -less / (1.0 + config_.evidence_knee / less));
   }
   particles_.normalise();
 }
@@ -336,38 +339,10 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
 }
 
 std::vector<Landmark> WaymarkEstimator::landmarks() const {
-  const std::vector<Landmark> best = belief().markers();
-  std::vector<std::vector<Landmark>> of_particles;
-  for (std::size_t p = 0; p < particles_.size(); ++p)
-    of_particles.push_back(particles_.state(p).belief.markers());
-  std::vector<Landmark> landmarks;
-  for (std::size_t i = 0; i < best.size(); ++i) {
-    Landmark landmark = best[i];
-    double weight = 0.0;
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (std::size_t p = 0; p < particles_.size(); ++p) {
-      // Particles meet markers in the same order unless they disagree about which one it is.
-      const std::vector<Landmark>& others = of_particles[p];
-      if (i >= others.size() || others[i].id != landmark.id) continue;
-      const Eigen::Vector3d away = deviation(best[i].map_from_marker, others[i].map_from_marker);
-      if (away.head<2>().norm() > config_.same_marker_within_m) continue;
-      const double share = particles_.weights()[p];
-      weight += share;
-      mean += share * away;
-      within += share * others[i].covariance;
-      squares += share * away * away.transpose();
-    }
-    mean /= weight;
-    landmark.map_from_marker = deviated(best[i].map_from_marker, mean);
-    landmark.covariance = within / weight + squares / weight - mean * mean.transpose();
-    landmarks.push_back(landmark);
-  }
-  std::sort(landmarks.begin(), landmarks.end(), [](const Landmark& a, const Landmark& b) {
-    return std::tie(a.id, a.instance) < std::tie(b.id, b.instance);
-  });
-  return landmarks;
+  std::vector<WeighedLandmarks> known;
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    known.push_back({particles_.state(i).belief.markers(), particles_.weights()[i]});
+  return mean_landmarks(known, particles_.best(), config_.same_marker_within_m);
 }
 
 /// What cannot be mapped where the robot seems to be is not drawn again either.
