@@ -120,6 +120,8 @@ void OdometryNoise::describe(Fields& fields) {
                "how wrong the scale of turns may be");
   fields.field("drift_sigma_rad_per_m", drift_sigma_rad_per_m, kPositive,
                "how much the heading may drift per metre");
+  fields.field("lidar_ahead_sigma_m", lidar_ahead_sigma_m, kPositive,
+               "how far the LiDAR may be ahead of where it is told to be");
 }
 
 void SurfaceMatchingConfig::describe(Fields& fields) {
@@ -175,6 +177,8 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.field("scan_evidence", scan_evidence, kFraction,
                "share of a scan's log-likelihood that weighs particles");
   fields.field("marker_evidence", marker_evidence, kFraction, "the same of a sighting");
+  fields.field("evidence_knee", evidence_knee, kPositive,
+               "a particle with this much less evidence [nat] is weighed by half of it");
   fields.field("lost_agreement", lost_agreement, kFraction,
                "share of the mapped beams that must agree with the walls, else the robot is lost");
   fields.section("odometry", odometry);

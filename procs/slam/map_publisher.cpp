@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -90,8 +91,12 @@ std::vector<map_tiles_t> MapPublisher::changes(const GridMap& map, Timestamp tim
 }
 
 std::vector<map_tiles_t> MapPublisher::complete(const GridMap& map, Timestamp time) {
+  std::set<TileIndex> tiles;
+  for (const GridMap* shown : {&map, &std::as_const(published_)})
+    for (const TileIndex tile : tiles_of(*shown))
+      tiles.insert(tile);
   published_ = map;
-  return to_messages(map, tiles_of(map), time);
+  return to_messages(map, {tiles.begin(), tiles.end()}, time);
 }
 
 std::optional<occupancy_grid_t> to_occupancy_grid(const GridMap& map, Timestamp time) {

@@ -17,7 +17,7 @@ namespace waymark {
 class MapPublisher {
  public:
   std::vector<map_tiles_t> changes(const GridMap& map, Timestamp time);
-  /// The whole map.
+  /// The whole map, and empty tiles where another one was sent before.
   std::vector<map_tiles_t> complete(const GridMap& map, Timestamp time);
 
  private:

@@ -31,7 +31,7 @@ void SlamNode::finish() {
   queue_.finish();
   process_ready_scans();
   if (!last_scan_) return;
-  for (const map_tiles_t& part : map_publisher_.complete(estimator_->map(), *last_scan_))
+  for (const map_tiles_t& part : map_publisher_.complete(estimator_->redrawn_map(), *last_scan_))
     outbox_.publish(channels::kSlamMap, part);
   publish_markers(*last_scan_);
   publish_grid(*last_scan_);

@@ -153,7 +153,7 @@ void happen(int n, Belief& belief) {
   } else {
     belief.add(measurement);
   }
-  belief.settle_oldest(3, random);
+  belief.settle_oldest(3);
 }
 
 void expect_equal(const Belief& one, const Belief& other) {

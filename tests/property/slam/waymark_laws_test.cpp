@@ -51,6 +51,47 @@ double along_error_m(const Step& step) {
   return step.estimate.map_from_base.x() - step.truth.x();
 }
 
+/// Along the corridor, as for on-line poses.
+double along_rmse_m(const std::vector<TimedPose>& way, const std::vector<Step>& steps) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < way.size(); ++i)
+    sum += std::pow(way[i].map_from_base.x() - steps[i].truth.x(), 2);
+  return std::sqrt(sum / static_cast<double>(way.size()));
+}
+
+// With nothing ahead or behind that tells how far it went, and wheels that are 3 % off, the robot
+// learns that from the markers it passes: too late for the poses so far. On single seeds chance may
+// have it the other way round.
+TEST(Waymark, TheWayIsKnownBetterAtTheEnd) {
+  double on_line = 0.0;
+  double smoothed = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SyntheticCorridor corridor = between_two_walls(seed);
+    corridor.scale_error = 0.03;
+    corridor.drive_m = 12.0;
+    corridor.markers = test::opposite_markers(corridor);
+    WaymarkEstimator estimator{estimator_setup_of(corridor, seed), {}};
+    const auto steps = run(estimator, test::drive(corridor), setup_of(corridor));
+    const auto way = estimator.trajectory();
+    ASSERT_EQ(way.size(), steps.size());
+    EXPECT_NEAR(way.back().map_from_base.x(), steps.back().estimate.map_from_base.x(), 1e-3);
+    on_line += std::pow(test::along_rmse_m(steps), 2);
+    smoothed += std::pow(along_rmse_m(way, steps), 2);
+
+    std::size_t cells = 0;
+    std::size_t redrawn_cells = 0;
+    const auto count = [](std::size_t& number) {
+      return [&number](TileIndex, const auto&) {
+        ++number;
+      };
+    };
+    estimator.map().occupancy.for_each_tile(count(cells));
+    estimator.redrawn_map().occupancy.for_each_tile(count(redrawn_cells));
+    EXPECT_NEAR(static_cast<double>(redrawn_cells), static_cast<double>(cells), 2.0);
+  }
+  EXPECT_LT(smoothed, on_line);
+}
+
 TEST(Waymark, WithoutMarkersTheVarianceAlongACorridorNeverShrinks) {
   constexpr double kScatter = 0.05;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {

@@ -43,9 +43,9 @@ const Motion kForward{Se2{0.5, 0.0, 0.02}, 0.5, 0.02};
 TEST(OdometryErrors, DerivativesAgreeWithDifferences) {
   constexpr double kStep = 1e-6;
   const Motion motion{Se2{0.3, 0.05, 0.8}, 0.31, 0.8};
-  const OdometryErrors errors{0.01, 0.02, -0.03};
+  const OdometryErrors errors{0.01, 0.02, -0.03, 0.04};
   const CorrectedMotion at = corrected_motion(motion, errors, {});
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < errors.size(); ++axis) {
     const CorrectedMotion moved =
         corrected_motion(motion, errors + kStep * OdometryErrors::Unit(axis), {});
     const Eigen::Vector3d difference = deviation(at.start_from_end, moved.start_from_end) / kStep;
@@ -110,6 +110,20 @@ TEST(Belief, CorrectingThePoseMovesTheMarkersThatHangOnIt) {
   EXPECT_NEAR(belief.markers()[0].map_from_marker.x(), marker_x + 0.01, 1e-6);
 }
 
+// A pose that is drawn again and again must not make the errors of the odometry known.
+TEST(Belief, DrawingThePoseTellsNothingOfSystematicErrors) {
+  Belief belief{{OdometryNoise{}, 0.005, 0.002, 0.003}};
+  const OdometryErrors errors = belief.odometry_errors();
+  const Eigen::Matrix4d covariance = belief.odometry_errors_covariance();
+  for (int step = 0; step < 100; ++step) {
+    belief.move({Se2{0.1, 0.0, 0.0}, 0.1, 0.0}, {});
+    belief.draw_pose(Eigen::Matrix3d::Identity(), {1.0, -1.0, 0.5});
+    EXPECT_LT(belief.pose_covariance().norm(), 1e-9);
+  }
+  EXPECT_EQ(belief.odometry_errors(), errors);
+  EXPECT_EQ(belief.odometry_errors_covariance(), covariance);
+}
+
 TEST(Belief, AnIdIsAClass) {
   const Belief belief =
       belief_with({measurement_at({1.0, 1.0, -1.5}, 3), measurement_at({5.0, 1.0, -1.5}, 3)});
@@ -128,11 +142,11 @@ TEST(Belief, SettledMarkersLeaveTheCovarianceAndAreKnownAgain) {
   }
   Belief belief = belief_with(seen);
   Belief copy = belief;
-  Random random{4};
-  belief.settle_oldest(2, random);
+  belief.settle_oldest(2);
   EXPECT_EQ(belief.markers().size(), 6U);
   EXPECT_EQ(copy.markers().size(), 6U);
-  EXPECT_LT(belief.markers()[0].covariance(0, 0), copy.markers()[0].covariance(0, 0));
+  EXPECT_EQ(belief.markers()[0].covariance, copy.markers()[0].covariance);
+  EXPECT_EQ(belief.pose_covariance(), copy.pose_covariance());
   const auto nearest = belief.nearest(measurement_at({1.0, 1.0, -1.57}, 0));
   ASSERT_TRUE(nearest);
   belief.correct(nearest->marker, measurement_at({1.0, 1.0, -1.57}, 0), kGate);

@@ -7,12 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace waymark {
 namespace {
 
-/// Share of a settled marker's covariance that is kept as its own, for want of particles.
-constexpr double kKeptShare = 0.1;
 /// [m^2], [rad^2] below this an axis is exact already: nothing is left to draw.
 constexpr double kExact = 1e-12;
 constexpr double kRelocated_m = 0.5;  // sigma of a pose that is known by one marker only
@@ -53,6 +52,7 @@ Belief::Belief(const BeliefPrior& prior) : covariance_{Eigen::MatrixXd::Zero(kMa
   covariance_(kOdometry, kOdometry) = squared(prior.odometry.scale_sigma);
   covariance_(kOdometry + 1, kOdometry + 1) = squared(prior.odometry.drift_sigma_rad_per_m);
   covariance_(kOdometry + 2, kOdometry + 2) = squared(prior.odometry.turn_scale_sigma);
+  covariance_(kOdometry + 3, kOdometry + 3) = squared(prior.odometry.lidar_ahead_sigma_m);
   covariance_(kSighting, kSighting) = squared(prior.camera_yaw_sigma_rad);
   covariance_(kSighting + 1, kSighting + 1) = squared(prior.camera_focal_sigma);
   covariance_(kSighting + 2, kSighting + 2) = squared(prior.standoff_sigma_m);
@@ -76,13 +76,13 @@ void Belief::move(const Motion& motion, const OdometryNoise& noise) {
   Eigen::Matrix3d by_pose = Eigen::Matrix3d::Identity();
   by_pose(0, 2) = -step.y();
   by_pose(1, 2) = step.x();
-  const Eigen::Matrix3d by_errors = turn * corrected.by_errors;
+  const Eigen::Matrix<double, 3, 4> by_errors = turn * corrected.by_errors;
 
   const Eigen::MatrixXd rows =
-      by_pose * covariance_.topRows<3>() + by_errors * covariance_.middleRows<3>(kOdometry);
+      by_pose * covariance_.topRows<3>() + by_errors * covariance_.middleRows<4>(kOdometry);
   covariance_.topRows<3>() = rows;
   const Eigen::MatrixXd columns = covariance_.leftCols<3>() * by_pose.transpose() +
-                                  covariance_.middleCols<3>(kOdometry) * by_errors.transpose();
+                                  covariance_.middleCols<4>(kOdometry) * by_errors.transpose();
   covariance_.leftCols<3>() = columns;
   covariance_.topLeftCorner<3, 3>() += turn * corrected.covariance * turn.transpose();
   map_from_base_ = map_from_base_ * corrected.start_from_end;
@@ -94,7 +94,7 @@ void Belief::condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,
                        const Eigen::Ref<const Eigen::MatrixXd>& covariance_lost) {
   const Eigen::VectorXd by = gain * deviation;
   map_from_base_ = deviated(map_from_base_, by.head<3>());
-  odometry_errors_ += by.segment<3>(kOdometry);
+  odometry_errors_ += by.segment<4>(kOdometry);
   sighting_errors_ += by.segment<3>(kSighting);
   for (std::size_t i = 0; i < active_.size(); ++i) {
     active_[i].map_from_marker = deviated(active_[i].map_from_marker, by.segment<3>(place_of(i)));
@@ -117,7 +117,14 @@ void Belief::draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
   if (spread.diagonal().minCoeff() < kExact) return;
   const Eigen::LLT<Eigen::MatrixXd> root{spread};
   const Eigen::MatrixXd gain = root.solve(with_axes.transpose()).transpose();
+  const OdometryErrors odometry_errors = odometry_errors_;
+  const Eigen::Vector3d sighting_errors = sighting_errors_;
+  const Eigen::Matrix<double, kStaticErrors, kStaticErrors> errors_covariance =
+      covariance_.block<kStaticErrors, kStaticErrors>(kOdometry, kOdometry);
   condition(gain, root.matrixL() * standard_normal.head(axes.cols()), spread);
+  odometry_errors_ = odometry_errors;
+  sighting_errors_ = sighting_errors;
+  covariance_.block<kStaticErrors, kStaticErrors>(kOdometry, kOdometry) = errors_covariance;
 }
 
 const std::vector<Landmark>& Belief::settled() const {
@@ -273,24 +280,17 @@ std::size_t Belief::revive(std::size_t settled_marker) {
   return active_.size() - 1;
 }
 
-void Belief::settle_oldest(std::size_t limit, Random& random) {
+void Belief::settle_oldest(std::size_t limit) {
   while (active_.size() > limit) {
     const auto oldest = std::min_element(
         active_.begin(), active_.end(),
         [](const Landmark& a, const Landmark& b) { return a.last_seen < b.last_seen; });
-    settle(static_cast<std::size_t>(oldest - active_.begin()), random);
+    settle(static_cast<std::size_t>(oldest - active_.begin()));
   }
 }
 
-void Belief::settle(std::size_t marker, Random& random) {
+void Belief::settle(std::size_t marker) {
   const Eigen::Index place = place_of(marker);
-  const Eigen::Matrix3d own = covariance_.block<3, 3>(place, place);
-  const Eigen::LLT<Eigen::Matrix3d> root{own};
-  const Eigen::Vector3d normal{random.normal(), random.normal(), random.normal()};
-  const Eigen::MatrixXd gain = root.solve(covariance_.middleRows<3>(place)).transpose();
-  condition(gain, root.matrixL() * (std::sqrt(1.0 - kKeptShare) * normal),
-            (1.0 - kKeptShare) * own);
-
   Landmark settled = active_[marker];
   settled.covariance = covariance_.block<3, 3>(place, place);
   settled_.edit().push_back(settled);
@@ -339,6 +339,28 @@ void Belief::forget_moved() {
       return;  // the others come with the next update
     }
   }
+}
+
+PoseByStatics Belief::pose_by_statics(std::size_t most) const {
+  std::vector<std::size_t> chosen(active_.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  std::stable_sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) {
+    return active_[a].last_seen > active_[b].last_seen;
+  });
+  if (chosen.size() > most) chosen.resize(most);
+
+  PoseByStatics by;
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(kStaticErrors));
+  std::iota(places.begin(), places.end(), kOdometry);
+  for (const std::size_t marker : chosen) {
+    by.markers.push_back(name_of(active_[marker]));
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      places.push_back(place_of(marker) + axis);
+  }
+  const Eigen::MatrixXd statics = covariance_(places, places);
+  const Eigen::MatrixXd with_pose = covariance_(places, Eigen::seqN(0, 3));
+  by.gain = statics.ldlt().solve(with_pose).transpose();
+  return by;
 }
 
 std::vector<Landmark> Belief::markers() const {

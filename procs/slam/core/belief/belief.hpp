@@ -3,7 +3,6 @@
 // covariance of all of them together.
 #pragma once
 
-#include "common/random/random.hpp"
 #include "slam/core/belief/odometry_errors.hpp"
 #include "slam/core/grid/copy_on_write.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
@@ -14,6 +13,7 @@
 
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace waymark {
@@ -40,6 +40,30 @@ struct Innovation {
   double log_likelihood() const;
 };
 
+/// What one marker is called: its id, and its instance among those of that id.
+using MarkerName = std::pair<int, int>;
+
+inline MarkerName name_of(const Landmark& marker) {
+  return {marker.id, marker.instance};
+}
+
+/// All systematic errors: those of the odometry, then those of sightings.
+inline constexpr Eigen::Index kStaticErrors = 7;
+using StaticErrors = Eigen::Matrix<double, kStaticErrors, 1>;
+
+/// What stays the same while the robot drives.
+struct Statics {
+  StaticErrors errors{StaticErrors::Zero()};
+  std::vector<Landmark> markers{};
+};
+
+/// How the mean of the pose (x, y, theta; map frame) moves with what stays the same: with the
+/// errors, then with (x, y, yaw) of the markers named.
+struct PoseByStatics {
+  std::vector<MarkerName> markers{};
+  Eigen::Matrix<double, 3, Eigen::Dynamic> gain{};
+};
+
 /// How a belief begins.
 struct BeliefPrior {
   OdometryNoise odometry{};
@@ -50,8 +74,8 @@ struct BeliefPrior {
 
 /// A Gaussian over (pose, odometry errors, sighting errors, markers), about a mean that is moved
 /// with every correction (error-state Kalman filter). Markers that have not been seen for long are
-/// settled: their position is drawn and they leave the covariance, so that it stays small. An id is
-/// a class: several markers may have it, told apart by place.
+/// settled: they leave the joint covariance with their own, so that it stays small. An id is a
+/// class: several markers may have it, told apart by place.
 class Belief {
  public:
   explicit Belief(const BeliefPrior& prior);
@@ -63,8 +87,8 @@ class Belief {
 
   const OdometryErrors& odometry_errors() const { return odometry_errors_; }
 
-  Eigen::Matrix3d odometry_errors_covariance() const {
-    return covariance_.block<3, 3>(kOdometry, kOdometry);
+  Eigen::Matrix4d odometry_errors_covariance() const {
+    return covariance_.block<4, 4>(kOdometry, kOdometry);
   }
 
   /// What all sightings get wrong in the same way: the camera is mounted `x` [rad] further left
@@ -81,11 +105,19 @@ class Belief {
 
   void move(const Motion& motion, const OdometryNoise& noise);
 
+  /// The pose may be off by more than was thought, independently of all else.
+  void widen(const Eigen::Matrix3d& pose_covariance) {
+    covariance_.topLeftCorner<3, 3>() += pose_covariance;
+  }
+
   /// Takes over what has been found about the pose; everything that is correlated with it follows.
   void correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
 
   /// Draws linear functions of the pose (columns; of (x, y, theta) in map): they are exact from now
-  /// on, and everything that is correlated with them follows.
+  /// on, and the rest of the pose and the markers follow. What is known of the errors of odometry
+  /// and camera stays as it is: they are the same for ever, and a few particles that are drawn
+  /// again and again would soon agree on a value that nobody measured. Source: Schmidt (1966),
+  /// "Application of state-space methods to navigation problems": considered states.
   void draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
                  const Eigen::Vector3d& standard_normal);
 
@@ -128,15 +160,22 @@ class Belief {
                      Timestamp now);
 
   /// Settles the markers that were seen longest ago while more than `limit` are in the covariance.
-  void settle_oldest(std::size_t limit, Random& random);
+  void settle_oldest(std::size_t limit);
+
+  StaticErrors static_errors() const {
+    return (StaticErrors{} << odometry_errors_, sighting_errors_).finished();
+  }
+
+  /// By the errors and the `most` markers that were seen last.
+  PoseByStatics pose_by_statics(std::size_t most) const;
 
   /// In order of their first sighting, with their marginal covariances.
   std::vector<Landmark> markers() const;
 
  private:
   static constexpr Eigen::Index kOdometry = 3;
-  static constexpr Eigen::Index kSighting = 6;
-  static constexpr Eigen::Index kMarkers = 9;
+  static constexpr Eigen::Index kSighting = 7;
+  static constexpr Eigen::Index kMarkers = 10;
 
   static Eigen::Index place_of(std::size_t marker) {
     return kMarkers + 3 * static_cast<Eigen::Index>(marker);
@@ -161,7 +200,7 @@ class Belief {
                  const Eigen::Ref<const Eigen::MatrixXd>& covariance_lost);
   void augment(const Landmark& landmark, const Columns& with_all, const Eigen::Matrix3d& own);
   std::size_t revive(std::size_t settled_marker);
-  void settle(std::size_t marker, Random& random);
+  void settle(std::size_t marker);
   Landmark& editable(std::size_t marker);
   void remove_active(std::size_t marker);
   void forget_moved();

@@ -2,6 +2,7 @@
 #include "slam/core/belief/odometry_errors.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace waymark {
 namespace {
@@ -54,11 +55,13 @@ CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& e
       Se2{0.0, 0.0, 0.5 * extra_rad} * measured.start_from_end.translation();
   const Eigen::Vector2d moved = (1.0 + errors[0]) * bent;
   CorrectedMotion corrected;
-  corrected.start_from_end = {moved, turn_rad + extra_rad};
+  const Eigen::Vector2d swing{std::cos(telling_rad) - 1.0, std::sin(telling_rad)};
+  corrected.start_from_end = {Eigen::Vector2d{moved + errors[3] * swing}, turn_rad + extra_rad};
   const Eigen::Vector3d by_extra{-0.5 * moved.y(), 0.5 * moved.x(), 1.0};
   corrected.by_errors.col(0) << bent, 0.0;
   corrected.by_errors.col(1) = measured.distance_m * by_extra;
   corrected.by_errors.col(2) = telling_rad * by_extra;
+  corrected.by_errors.col(3) << swing, 0.0;
   corrected.covariance = random_walk(measured, noise);
   return corrected;
 }

@@ -19,19 +19,22 @@ struct OdometryNoise {
   double scale_sigma{0.02};            ///< of distances
   double turn_scale_sigma{0.02};       ///< of turns
   double drift_sigma_rad_per_m{0.01};  ///< heading gained per metre
+  double lidar_ahead_sigma_m{0.05};    ///< of the place that the LiDAR is told to be at
 
   void describe(Fields& fields);
 };
 
-/// Systematic errors, as a vector (scale, drift, turn scale): true distance = (1 + scale) measured
-/// distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * distance.
-using OdometryErrors = Eigen::Vector3d;
+/// Systematic errors, as a vector (scale, drift, turn scale, ahead): true distance = (1 + scale)
+/// measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * distance. What
+/// the LiDAR localises is `ahead` [m] before what the wheels turn about, beyond what the
+/// configuration tells: a robot that turns on the spot moves it sideways.
+using OdometryErrors = Eigen::Vector4d;
 
 /// A measured motion, corrected by systematic errors.
 struct CorrectedMotion {
   Se2 start_from_end{};
   /// Of (x, y, theta) at the end, in the frame at the start, by the systematic errors.
-  Eigen::Matrix3d by_errors{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix<double, 3, 4> by_errors{Eigen::Matrix<double, 3, 4>::Zero()};
   /// Of the random walk, same order and frame.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
 };

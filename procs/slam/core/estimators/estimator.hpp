@@ -53,6 +53,9 @@ class Estimator {
   /// The whole way as it is known now, one pose per scan, in the frame of map(): what came later
   /// has corrected it. Empty when the method never changes its mind about the past. O(scans).
   virtual std::vector<TimedPose> trajectory() const { return {}; }
+
+  /// The map as it is when drawn along trajectory(). O(scans).
+  virtual GridMap redrawn_map() const { return map(); }
 };
 
 }  // namespace waymark

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/waymark.hpp"
 
+#include "slam/core/landmark/mean_landmarks.hpp"
+
 #include <algorithm>
-#include <tuple>
 
 namespace waymark {
 namespace {
 
-enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2, kSettlingStream = 3 };
+enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2, kStartStream = 3 };
 
 // Cosine: markers that are seen more from the side may be missed.
 constexpr double kMinFacing = 0.3;
 constexpr double kWallInSight_m = 0.2;                      // a beam ends this near to the marker
 constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
+constexpr std::size_t kStaticMarkers = 4;                   // that a past pose is corrected by
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
 BeliefPrior prior_of(const WaymarkConfig& config) {
@@ -64,17 +66,21 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
 Estimate WaymarkEstimator::update(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
   believe_scans_about_slips(observation);
-  if (updates_ == 0 || is_due() || is_contradicted_by(observation)) {
+  const bool is_update = updates_ == 0 || is_due() || is_contradicted_by(observation);
+  if (is_update) {
     process(observation);
     if (verdict_ != KidnapWatch::Verdict::kDoubtful)
       mapper_.insert(observation, mean_, covariance_);
+    remember(observation);
     Random random{setup_.seed, kResamplingStream, updates_};
     particles_.resample_if_needed(config_.resample_threshold, random);
     since_update_ = {};
     updated_beams_ = observation.beams;
     ++updates_;
   }
-  return estimate(observation);
+  const Estimate now = estimate(observation);
+  hindsight_.add_scan(observation.time, now.map_from_base);
+  return now;
 }
 
 void WaymarkEstimator::believe_scans_about_slips(const Observation& observation) {
@@ -116,36 +122,55 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
 void WaymarkEstimator::process(const Observation& observation) {
   Sensed sensed{&observation, measured(observation),
                 observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
-  verdict_ = kidnap_watch_.judge(belief_now(), sensed.markers, since_update_, config_.marker_gate,
+  const Belief expected = belief_now();
+  verdict_ = kidnap_watch_.judge(expected, sensed.markers, since_update_, config_.marker_gate,
                                  config_.marker_near_m);
   sensed.verdict = verdict_;
+  drift_.move(expected.map_from_base());
+  sensed.drift = drift_.release(observation.beams,
+                                expected.map_from_base().rotation() * sensed.walls.weak_direction);
   const std::vector<Eigen::Vector3d> normals = centred_normals();
   std::vector<Outcome> outcomes(particles_.size());
   setup_.parallel_for(particles_.size(), [&](std::size_t i) {
-    outcomes[i] = advance(particles_.state(i), sensed, normals[i]);
-    Random random{setup_.seed, kSettlingStream, updates_, i};
-    particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers),
-                                             random);
+    Random random{setup_.seed, kStartStream, updates_, i};
+    const Chance chance{normals[i], i == 0 ? 0.0 : random.normal()};
+    outcomes[i] = advance(particles_.state(i), sensed, chance);
+    particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
   });
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    particles_.add_log_weight(i, outcomes[i].log_evidence);
-  particles_.normalise();
+  weigh(outcomes);
   if (verdict_ == KidnapWatch::Verdict::kSettled)
     noise_growth_.learn(outcomes[particles_.best()].correction);
   noise_ = noise_growth_.applied_to(config_.odometry);
+  drift_.take(outcomes[particles_.best()].drawn);
   judge(outcomes);
+  drift_.move(mean_);
+  if (verdict_ != KidnapWatch::Verdict::kDoubtful) drift_.map(observation.beams);
+}
+
+/// Beams err together, so that a few units of evidence are chance: what is less than the knee
+/// counts with its square. A particle that has lost its walls has less by far more than that.
+void WaymarkEstimator::weigh(const std::vector<Outcome>& outcomes) {
+  double most = outcomes.front().log_evidence;
+  for (const Outcome& outcome : outcomes)
+    most = std::max(most, outcome.log_evidence);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const double less = most - outcomes[i].log_evidence;
+    particles_.add_log_weight(i, -less / (1.0 + config_.evidence_knee / less));
+  }
+  particles_.normalise();
 }
 
 WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& sensed,
-                                                    const Eigen::Vector3d& normal) const {
+                                                    const Chance& chance) const {
   Outcome outcome;
   const bool is_doubtful = sensed.verdict == KidnapWatch::Verdict::kDoubtful;
   state.previous_map_from_base = state.map_from_base;
   if (updates_ > 0) {
     move(state, sensed);
+    state.belief.widen(sensed.drift);
     const Se2 predicted = state.belief.map_from_base();
     const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
-    correct_by_walls(state, sensed, outcome);
+    correct_by_walls(state, sensed, chance.start, outcome);
     const Eigen::Matrix3d posterior = in_frame_of(predicted, state.belief.pose_covariance());
     const Se2 moved = predicted.inverse() * state.belief.map_from_base();
     outcome.correction = {
@@ -155,7 +180,9 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
     correct_by_markers(state, sensed, outcome);
   }
   if (!is_doubtful) note_absences(state, sensed);
-  state.belief.draw_pose(told_axes(sensed.walls, state.belief), normal);
+  outcome.drawn = state.belief.pose_covariance();
+  state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
+  outcome.drawn -= state.belief.pose_covariance();
   state.map_from_base = state.belief.map_from_base();
   if (is_doubtful) return outcome;
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
@@ -193,16 +220,22 @@ void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
   state.belief.note_absences(is_in_view, observation.time - kSightingAge);
 }
 
-void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
+/// Matching begins at headings as the particles may have them: where the wheels slip in a turn,
+/// scans fit among clutter in more than one way, and from the expected heading alone all particles
+/// would find the same one.
+void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed, double start,
                                         Outcome& outcome) const {
   SurfaceFinder walls{state.walls, sensed.observation->beams.size()};
-  const PoseProposal by_walls =
-      propose(state.belief.map_from_base(), state.belief.pose_covariance(),
-              [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
-                outcome.walls = match_surfaces(sensed.observation->beams, walls, pose, uncertainty,
-                                               config_.matching);
-                return outcome.walls.pose;
-              });
+  const Se2 expected = state.belief.map_from_base();
+  const Eigen::Matrix3d prior = state.belief.pose_covariance();
+  const PoseProposal by_walls = propose(
+      expected, prior,
+      [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
+        outcome.walls =
+            match_surfaces(sensed.observation->beams, walls, pose, uncertainty, config_.matching);
+        return outcome.walls.pose;
+      },
+      deviated(expected, {0.0, 0.0, start * std::sqrt(prior(2, 2))}));
   state.belief.correct_pose(by_walls.mean, by_walls.covariance);
   outcome.log_evidence += config_.scan_evidence * by_walls.log_evidence;
 }
@@ -265,12 +298,14 @@ Se2 WaymarkEstimator::mean_pose() const {
   return deviated(about, mean);
 }
 
-/// Of the mixture: what the particles' Gaussians leave open, and how far the particles disagree.
+/// Of the mixture: what the particles' Gaussians leave open, and how far the particles disagree, or
+/// should disagree if there were enough of them.
 Eigen::Matrix3d WaymarkEstimator::covariance_about_mean() const {
   Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < particles_.size(); ++i)
     within += particles_.weights()[i] * particles_.state(i).belief.pose_covariance();
-  return within + covariance_about(mean_, particles_);
+  const Eigen::Matrix3d between = covariance_about(mean_, particles_);
+  return within + drift_.now() + positive_part(between - drift_.now());
 }
 
 /// Between updates the walls of the best particle hold the heading, which odometry loses fastest.
@@ -304,38 +339,36 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
 }
 
 std::vector<Landmark> WaymarkEstimator::landmarks() const {
-  const std::vector<Landmark> best = belief().markers();
-  std::vector<std::vector<Landmark>> of_particles;
-  for (std::size_t p = 0; p < particles_.size(); ++p)
-    of_particles.push_back(particles_.state(p).belief.markers());
-  std::vector<Landmark> landmarks;
-  for (std::size_t i = 0; i < best.size(); ++i) {
-    Landmark landmark = best[i];
-    double weight = 0.0;
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (std::size_t p = 0; p < particles_.size(); ++p) {
-      // Particles meet markers in the same order unless they disagree about which one it is.
-      const std::vector<Landmark>& others = of_particles[p];
-      if (i >= others.size() || others[i].id != landmark.id) continue;
-      const Eigen::Vector3d away = deviation(best[i].map_from_marker, others[i].map_from_marker);
-      if (away.head<2>().norm() > config_.same_marker_within_m) continue;
-      const double share = particles_.weights()[p];
-      weight += share;
-      mean += share * away;
-      within += share * others[i].covariance;
-      squares += share * away * away.transpose();
-    }
-    mean /= weight;
-    landmark.map_from_marker = deviated(best[i].map_from_marker, mean);
-    landmark.covariance = within / weight + squares / weight - mean * mean.transpose();
-    landmarks.push_back(landmark);
-  }
-  std::sort(landmarks.begin(), landmarks.end(), [](const Landmark& a, const Landmark& b) {
-    return std::tie(a.id, a.instance) < std::tie(b.id, b.instance);
-  });
-  return landmarks;
+  std::vector<WeighedLandmarks> known;
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    known.push_back({particles_.state(i).belief.markers(), particles_.weights()[i]});
+  return mean_landmarks(known, particles_.best(), config_.same_marker_within_m);
+}
+
+/// What cannot be mapped where the robot seems to be is not drawn again either.
+void WaymarkEstimator::remember(const Observation& observation) {
+  hindsight_.add_update(belief().pose_by_statics(kStaticMarkers), statics());
+  archive_.add(verdict_ == KidnapWatch::Verdict::kDoubtful ? Observation{} : observation);
+}
+
+Statics WaymarkEstimator::statics() const {
+  Statics statics;
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    statics.errors += particles_.weights()[i] * particles_.state(i).belief.static_errors();
+  statics.markers = landmarks();
+  return statics;
+}
+
+std::vector<TimedPose> WaymarkEstimator::trajectory() const {
+  return hindsight_.way(statics(), config_.same_marker_within_m);
+}
+
+GridMap WaymarkEstimator::redrawn_map() const {
+  const std::vector<Se2> way = hindsight_.way_of_updates(statics(), config_.same_marker_within_m);
+  Mapper mapper{setup_.grid};
+  for (std::size_t i = 0; i < archive_.size(); ++i)
+    mapper.insert(archive_.at(i), way[i], Eigen::Matrix3d::Zero());
+  return mapper.map();
 }
 
 std::vector<PublishedParticle> WaymarkEstimator::particles() const {

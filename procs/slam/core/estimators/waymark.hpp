@@ -8,9 +8,12 @@
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/filter/particle_set.hpp"
 #include "slam/core/landmark/kidnap_watch.hpp"
+#include "slam/core/mapping/map_drift.hpp"
 #include "slam/core/matching/surface_matching.hpp"
 #include "slam/core/proposal/pose_proposal.hpp"
 #include "slam/core/scan/turn_by_scans.hpp"
+#include "slam/core/smoothing/hindsight.hpp"
+#include "slam/core/smoothing/scan_archive.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -25,9 +28,10 @@ struct WaymarkConfig {
   double marker_gate{16.3};          ///< chi^2 of a sighting's innovation, 3 degrees of freedom
   double marker_near_m{0.25};        ///< off by less, it is believed, too, but counts less
   double same_marker_within_m{0.5};  ///< no second marker of one id nearer than this
-  int joint_markers{24};             ///< in each particle's covariance; the others are settled
-  double scan_evidence{0.02};        ///< share of a scan's log-likelihood that weighs particles
+  int joint_markers{48};             ///< in each particle's covariance; the others are settled
+  double scan_evidence{0.1};         ///< share of a scan's log-likelihood that weighs particles
   double marker_evidence{0.02};      ///< the same of a sighting
+  double evidence_knee{5.0};         ///< [nat] less than the best: half of it weighs
   double lost_agreement{0.3};        ///< share of the mapped beams; below: lost
   OdometryNoise odometry{};
   SurfaceMatchingConfig matching{};
@@ -53,6 +57,10 @@ class WaymarkEstimator final : public Estimator {
   std::vector<Landmark> landmarks() const override;
   std::vector<PublishedParticle> particles() const override;
 
+  /// Smoothed: what has been learnt of the systematic errors and the markers corrects the past.
+  std::vector<TimedPose> trajectory() const override;
+  GridMap redrawn_map() const override;
+
   /// Of the best particle.
   const Belief& belief() const { return particles_.state(particles_.best()).belief; }
 
@@ -72,6 +80,14 @@ class WaymarkEstimator final : public Estimator {
     std::vector<MarkerMeasurement> markers{};
     Observability walls{};  ///< base frame
     KidnapWatch::Verdict verdict{KidnapWatch::Verdict::kSettled};
+    /// What the robot may be off from the walls it sees, since they were mapped.
+    Eigen::Matrix3d drift{Eigen::Matrix3d::Zero()};
+  };
+
+  /// What one particle draws: standard normal.
+  struct Chance {
+    Eigen::Vector3d pose{Eigen::Vector3d::Zero()};
+    double start{0.0};  ///< heading that matching begins with
   };
 
   /// What one particle made of it.
@@ -80,6 +96,7 @@ class WaymarkEstimator final : public Estimator {
     int known_markers{0};
     SurfaceMatch walls{};
     PoseCorrection correction{};
+    Eigen::Matrix3d drawn{Eigen::Matrix3d::Zero()};  ///< covariance that drawing has taken away
   };
 
   void believe_scans_about_slips(const Observation& observation);
@@ -88,11 +105,14 @@ class WaymarkEstimator final : public Estimator {
   Belief belief_now() const;  ///< of the best particle, moved on by odometry
   bool is_contradicted_by(const Observation& observation) const;
   void process(const Observation& observation);
-  Outcome advance(State& state, const Sensed& sensed, const Eigen::Vector3d& normal) const;
+  void weigh(const std::vector<Outcome>& outcomes);
+  Outcome advance(State& state, const Sensed& sensed, const Chance& chance) const;
   void move(State& state, const Sensed& sensed) const;
-  void correct_by_walls(State& state, const Sensed& sensed, Outcome& outcome) const;
+  void correct_by_walls(State& state, const Sensed& sensed, double start, Outcome& outcome) const;
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   void note_absences(State& state, const Sensed& sensed) const;
+  void remember(const Observation& observation);
+  Statics statics() const;
   std::vector<Eigen::Vector3d> centred_normals() const;
   void judge(const std::vector<Outcome>& outcomes);
   Se2 mean_pose() const;
@@ -106,6 +126,9 @@ class WaymarkEstimator final : public Estimator {
   NoiseGrowth noise_growth_{};
   OdometryNoise noise_{};  ///< the configured one, grown
   Mapper mapper_;
+  MapDrift drift_{};
+  Hindsight hindsight_{};
+  ScanArchive archive_{};
   Motion since_update_{};
   std::vector<AnnotatedBeam> updated_beams_{};  ///< those of the last update
   std::uint64_t updates_{0};

@@ -22,7 +22,7 @@ struct MarkerMeasurementConfig {
   double camera_sigma_rad{0.0003};      ///< the same as an angle at the camera
   double camera_yaw_sigma_rad{0.0087};  ///< how wrong the mounting may be, learnt while driving
   double camera_focal_sigma{0.001};     ///< the same of the focal length, relative
-  double perspective_sigma{0.006};      ///< of the focal length by one view; views err alike
+  double perspective_sigma{0.02};       ///< of the focal length by one view; views err alike
   double perspective_max_sigma{0.003};  ///< views that the corners' noise makes worse say nothing
   double covariance_factor{1.0};        ///< on the detector's covariance: corners err together
   double gate{16.3};  ///< chi^2 between camera and wall, 3 degrees of freedom (16.3 = 99.9 %)

@@ -18,10 +18,10 @@ Se2 PoseProposal::at(const Eigen::Vector3d& standard_normal) const {
 }
 
 PoseProposal propose(const Se2& prior_mean, const Eigen::Matrix3d& prior_covariance,
-                     const MeasurementModel& measurements) {
+                     const MeasurementModel& measurements, const Se2& start) {
   const Eigen::Matrix3d prior_information = prior_covariance.inverse();
   PoseProposal proposal;
-  proposal.mean = prior_mean;
+  proposal.mean = start;
   PoseInformation measured;
   Eigen::Vector3d from_prior = Eigen::Vector3d::Zero();
   Eigen::Matrix3d information;

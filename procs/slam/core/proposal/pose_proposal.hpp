@@ -25,7 +25,14 @@ using MeasurementModel =
 /// Fuses a Gaussian prior with measurements, each a second-order model of its negative
 /// log-likelihood about a given pose, by Gauss-Newton steps. The evidence is Laplace's.
 /// Source: Montemerlo et al. (2003), "FastSLAM 2.0", equations 6-16.
+/// @param start  where the steps begin: measurements may have more than one minimum.
 PoseProposal propose(const Se2& prior_mean, const Eigen::Matrix3d& prior_covariance,
-                     const MeasurementModel& measurements);
+                     const MeasurementModel& measurements, const Se2& start);
+
+/// The same, beginning at the prior's mean.
+inline PoseProposal propose(const Se2& prior_mean, const Eigen::Matrix3d& prior_covariance,
+                            const MeasurementModel& measurements) {
+  return propose(prior_mean, prior_covariance, measurements, prior_mean);
+}
 
 }  // namespace waymark

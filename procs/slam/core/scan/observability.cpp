@@ -3,8 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <optional>
-
 namespace waymark {
 namespace {
 
@@ -16,15 +14,16 @@ constexpr int kMinPoints = 5;
 // below this share of the strong direction it means nothing.
 constexpr double kDegenerateShare = 0.03;
 
-/// Unit normal of the surface around a beam's end, map frame; nothing at edges and on small things.
-std::optional<Eigen::Vector2d> normal_at(std::span<const AnnotatedBeam> beams, int middle) {
+}  // namespace
+
+std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> beams, int beam) {
   const auto count = static_cast<int>(beams.size());
-  const Eigen::Vector2d& centre = beams[static_cast<std::size_t>(middle)].beam.end_in_base;
+  const Eigen::Vector2d& centre = beams[static_cast<std::size_t>(beam)].beam.end_in_base;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   int points = 0;
   for (int step = -kNeighbours; step <= kNeighbours; ++step) {
-    const int wrapped = ((middle + step) % count + count) % count;
+    const int wrapped = ((beam + step) % count + count) % count;
     const Eigen::Vector2d offset =
         beams[static_cast<std::size_t>(wrapped)].beam.end_in_base - centre;
     if (offset.norm() > kSurfaceReach_m) continue;
@@ -43,14 +42,12 @@ std::optional<Eigen::Vector2d> normal_at(std::span<const AnnotatedBeam> beams, i
   return Eigen::Vector2d{axes.eigenvectors().col(0)};
 }
 
-}  // namespace
-
 Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
                                double range_sigma_m) {
   Observability result;
   const Eigen::Matrix2d turn = map_from_base.rotation();
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    const auto normal_in_base = normal_at(beams, static_cast<int>(i));
+    const auto normal_in_base = surface_normal(beams, static_cast<int>(i));
     if (!normal_in_base) continue;
     const Eigen::Vector2d& end = beams[i].beam.end_in_base;
     const Eigen::Vector2d normal = turn * *normal_in_base;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <span>
 
 namespace waymark {
@@ -27,6 +28,10 @@ struct Observability {
             pose.theta()};
   }
 };
+
+/// Unit normal of the surface around a beam's end, base frame, either way; nothing at edges and on
+/// small things.
+std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> beams, int beam);
 
 /// Each beam that lies on a smooth surface measures its distance along the surface's normal
 /// (point-to-line; Censi 2007), with `range_sigma_m`.
