@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/random/random.hpp"
 #include "slam/core/scan/annotated_scan.hpp"
 #include "slam/core/scan/observability.hpp"
 #include "support/synthetic_corridor.hpp"
@@ -136,6 +137,19 @@ TEST(Observability, ACorridorTellsNothingAlongItsAxis) {
 TEST(Observability, AnEndWallTellsIt) {
   const auto beams = annotate(beams_from(Se2{48.5, 0.0, 0.0}), {}, nullptr, 0.08);
   EXPECT_FALSE(observability_of(beams, Se2{48.5, 0.0, 0.0}, 0.01).is_degenerate);
+}
+
+TEST(Observability, GarbageShowsNoSurfaces) {
+  auto beams = annotate(beams_from(Se2{20.0, 0.2, 0.1}), {}, nullptr, 0.08);
+  EXPECT_GT(surface_share(beams), 0.5);
+  Random random{3};
+  for (AnnotatedBeam& annotated : beams) {
+    Beam& beam = annotated.beam;
+    beam.end_in_base = beam.start_in_base + random.uniform(0.1, 3.5) / beam.range_m *
+                                                (beam.end_in_base - beam.start_in_base);
+  }
+  EXPECT_LT(surface_share(beams), 0.1);
+  EXPECT_EQ(surface_share({}), 0.0);
 }
 
 }  // namespace

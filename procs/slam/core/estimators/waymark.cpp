@@ -15,6 +15,7 @@ constexpr double kMinFacing = 0.3;
 constexpr double kWallInSight_m = 0.2;                      // a beam ends this near to the marker
 constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
 constexpr std::size_t kStaticMarkers = 4;                   // that a past pose is corrected by
+constexpr double kMinSurfaces = 0.1;     // share of beams; a scan with fewer shows nothing
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
 BeliefPrior prior_of(const WaymarkConfig& config) {
@@ -64,6 +65,14 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
 }
 
 Estimate WaymarkEstimator::update(const Observation& observation) {
+  if (surface_share(observation.beams) >= kMinSurfaces) return update_by(observation);
+  // A LiDAR that measures nonsense must neither be matched nor mapped.
+  Observation without_beams = observation;
+  without_beams.beams.clear();
+  return update_by(without_beams);
+}
+
+Estimate WaymarkEstimator::update_by(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
   believe_scans_about_slips(observation);
   const bool is_update = updates_ == 0 || is_due() || is_contradicted_by(observation);
@@ -75,7 +84,7 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
     Random random{setup_.seed, kResamplingStream, updates_};
     particles_.resample_if_needed(config_.resample_threshold, random);
     since_update_ = {};
-    updated_beams_ = observation.beams;
+    if (!observation.beams.empty()) updated_beams_ = observation.beams;
     ++updates_;
   }
   const Estimate now = estimate(observation);
@@ -181,7 +190,8 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   }
   if (!is_doubtful) note_absences(state, sensed);
   outcome.drawn = state.belief.pose_covariance();
-  state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
+  if (!sensed.observation->beams.empty())
+    state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
   outcome.drawn -= state.belief.pose_covariance();
   state.map_from_base = state.belief.map_from_base();
   if (is_doubtful) return outcome;

@@ -99,6 +99,7 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Matrix3d drawn{Eigen::Matrix3d::Zero()};  ///< covariance that drawing has taken away
   };
 
+  Estimate update_by(const Observation& observation);
   void believe_scans_about_slips(const Observation& observation);
   bool is_due() const;
   std::vector<MarkerMeasurement> measured(const Observation& observation) const;

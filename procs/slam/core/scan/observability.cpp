@@ -42,6 +42,13 @@ std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> bea
   return Eigen::Vector2d{axes.eigenvectors().col(0)};
 }
 
+double surface_share(std::span<const AnnotatedBeam> beams) {
+  int on_surface = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i)
+    on_surface += surface_normal(beams, static_cast<int>(i)).has_value();
+  return beams.empty() ? 0.0 : on_surface / static_cast<double>(beams.size());
+}
+
 Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
                                double range_sigma_m) {
   Observability result;

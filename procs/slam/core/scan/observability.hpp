@@ -33,6 +33,10 @@ struct Observability {
 /// small things.
 std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> beams, int beam);
 
+/// Share of the beams that lie on a surface; 0 without beams. Of a real scan, even among clutter,
+/// more than a tenth do.
+double surface_share(std::span<const AnnotatedBeam> beams);
+
 /// Each beam that lies on a smooth surface measures its distance along the surface's normal
 /// (point-to-line; Censi 2007), with `range_sigma_m`.
 Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
