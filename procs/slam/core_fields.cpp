@@ -179,6 +179,8 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.field("marker_evidence", marker_evidence, kFraction, "the same of a sighting");
   fields.field("evidence_knee", evidence_knee, kPositive,
                "a particle with this much less evidence [nat] is weighed by half of it");
+  fields.field("drawn_spread", drawn_spread, kFraction,
+               "share of a pose's standard deviations that particles draw");
   fields.field("lost_agreement", lost_agreement, kFraction,
                "share of the mapped beams that must agree with the walls, else the robot is lost");
   fields.section("odometry", odometry);

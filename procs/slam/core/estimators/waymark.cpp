@@ -142,7 +142,7 @@ void WaymarkEstimator::process(const Observation& observation) {
   std::vector<Outcome> outcomes(particles_.size());
   setup_.parallel_for(particles_.size(), [&](std::size_t i) {
     Random random{setup_.seed, kStartStream, updates_, i};
-    const Chance chance{normals[i], i == 0 ? 0.0 : random.normal()};
+    const Chance chance{config_.drawn_spread * normals[i], i == 0 ? 0.0 : random.normal()};
     outcomes[i] = advance(particles_.state(i), sensed, chance);
     particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
   });

@@ -32,7 +32,10 @@ struct WaymarkConfig {
   double scan_evidence{0.1};         ///< share of a scan's log-likelihood that weighs particles
   double marker_evidence{0.02};      ///< the same of a sighting
   double evidence_knee{5.0};         ///< [nat] less than the best: half of it weighs
-  double lost_agreement{0.3};        ///< share of the mapped beams; below: lost
+  /// Share of a pose's standard deviations that is drawn. The map drift knows the variance, and 30
+  /// particles that are drawn again and again make a random walk of it.
+  double drawn_spread{0.3};
+  double lost_agreement{0.3};  ///< share of the mapped beams; below: lost
   OdometryNoise odometry{};
   SurfaceMatchingConfig matching{};
   MarkerMeasurementConfig markers{};

@@ -81,6 +81,14 @@ void keep_observed(double weak_share, PoseInformation& pose) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> translation{
       Eigen::Matrix2d{pose.information.topLeftCorner<2, 2>()}};
   const double threshold = weak_share * translation.eigenvalues()[1];
+  if (translation.eigenvalues()[0] <= threshold) {
+    // Exactly: an axis that is off by its noise would tell a little of what no wall tells.
+    const Eigen::Vector2d weak = translation.eigenvectors().col(0);
+    Eigen::Matrix3d others = Eigen::Matrix3d::Identity();
+    others.topLeftCorner<2, 2>() -= weak * weak.transpose();
+    pose.information = others * pose.information * others;
+    pose.gradient = others * pose.gradient;
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes{pose.information};
   Eigen::Matrix3d observed = Eigen::Matrix3d::Zero();
   for (int i = 0; i < 3; ++i) {
