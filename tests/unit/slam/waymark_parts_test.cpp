@@ -53,6 +53,15 @@ TEST(OdometryErrors, DerivativesAgreeWithDifferences) {
   }
 }
 
+// A LiDAR ahead of the wheels' axle goes round it: left and back.
+TEST(OdometryErrors, ALidarAheadOfTheWheelsSwingsWhenTheyTurnOnTheSpot) {
+  const double quarter_rad = radians(90.0);
+  const Motion left{Se2{0.0, 0.0, quarter_rad}, 0.0, quarter_rad};
+  const Se2 moved = corrected_motion(left, {0.0, 0.0, 0.0, 0.2}, {}).start_from_end;
+  EXPECT_NEAR(moved.x(), -0.2, 2e-3);
+  EXPECT_NEAR(moved.y(), 0.2, 2e-3);
+}
+
 TEST(OdometryErrors, ATurnWithinItsNoiseTellsNothingOfTheScaleOfTurns) {
   const Motion straight{Se2{0.1, 0.0, 0.003}, 0.1, 0.003};
   EXPECT_TRUE(corrected_motion(straight, OdometryErrors::Zero(), {}).by_errors.col(2).isZero());

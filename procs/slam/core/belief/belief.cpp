@@ -72,10 +72,8 @@ void Belief::move(const Motion& motion, const OdometryNoise& noise) {
   const CorrectedMotion corrected = corrected_motion(motion, odometry_errors_, noise);
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = map_from_base_.rotation();
-  const Eigen::Vector2d step = map_from_base_.rotation() * corrected.start_from_end.translation();
-  Eigen::Matrix3d by_pose = Eigen::Matrix3d::Identity();
-  by_pose(0, 2) = -step.y();
-  by_pose(1, 2) = step.x();
+  const Eigen::Matrix3d by_pose =
+      carried_along(map_from_base_.rotation() * corrected.start_from_end.translation());
   const Eigen::Matrix<double, 3, 4> by_errors = turn * corrected.by_errors;
 
   const Eigen::MatrixXd rows =

@@ -48,14 +48,8 @@ inline MarkerName name_of(const Landmark& marker) {
 }
 
 /// All systematic errors: those of the odometry, then those of sightings.
-inline constexpr Eigen::Index kStaticErrors = 7;
+inline constexpr Eigen::Index kStaticErrors = OdometryErrors::SizeAtCompileTime + 3;
 using StaticErrors = Eigen::Matrix<double, kStaticErrors, 1>;
-
-/// What stays the same while the robot drives.
-struct Statics {
-  StaticErrors errors{StaticErrors::Zero()};
-  std::vector<Landmark> markers{};
-};
 
 /// How the mean of the pose (x, y, theta; map frame) moves with what stays the same: with the
 /// errors, then with (x, y, yaw) of the markers named.
@@ -174,8 +168,8 @@ class Belief {
 
  private:
   static constexpr Eigen::Index kOdometry = 3;
-  static constexpr Eigen::Index kSighting = 7;
-  static constexpr Eigen::Index kMarkers = 10;
+  static constexpr Eigen::Index kSighting = kOdometry + OdometryErrors::SizeAtCompileTime;
+  static constexpr Eigen::Index kMarkers = kOdometry + kStaticErrors;
 
   static Eigen::Index place_of(std::size_t marker) {
     return kMarkers + 3 * static_cast<Eigen::Index>(marker);

@@ -75,8 +75,7 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
 Estimate WaymarkEstimator::update_by(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
   believe_scans_about_slips(observation);
-  const bool is_update = updates_ == 0 || is_due() || is_contradicted_by(observation);
-  if (is_update) {
+  if (updates_ == 0 || is_due() || is_contradicted_by(observation)) {
     process(observation);
     if (verdict_ != KidnapWatch::Verdict::kDoubtful)
       mapper_.insert(observation, mean_, covariance_);

@@ -20,9 +20,7 @@ std::pair<int, int> key_of(const Eigen::Vector2d& place) {
 
 /// Of the rigid motion whose covariance is known at one place, at another.
 Eigen::Matrix3d carried(const Eigen::Matrix3d& covariance, const Eigen::Vector2d& step) {
-  Eigen::Matrix3d by = Eigen::Matrix3d::Identity();
-  by(0, 2) = -step.y();
-  by(1, 2) = step.x();
+  const Eigen::Matrix3d by = carried_along(step);
   return by * covariance * by.transpose();
 }
 
@@ -92,12 +90,6 @@ void MapDrift::map(std::span<const AnnotatedBeam> beams) {
     regions_.try_emplace(key_of(map_from_base_ * annotated.beam.end_in_base),
                          Region{now_, map_from_base_.translation()});
   }
-}
-
-Eigen::Matrix3d MapDrift::at(const Eigen::Vector2d& place_in_map) const {
-  const Region* region = region_at(place_in_map);
-  return region ? carried(region->covariance, place_in_map - region->robot)
-                : carried(now_, place_in_map - map_from_base_.translation());
 }
 
 }  // namespace waymark

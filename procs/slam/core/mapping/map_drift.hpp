@@ -37,9 +37,6 @@ class MapDrift {
   /// Of what is being mapped.
   const Eigen::Matrix3d& now() const { return now_; }
 
-  /// Of the map at a place; now() where nothing is known.
-  Eigen::Matrix3d at(const Eigen::Vector2d& place_in_map) const;
-
  private:
   struct Region {
     Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};

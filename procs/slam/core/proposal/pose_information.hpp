@@ -28,6 +28,15 @@ inline Eigen::Vector3d deviation(const Se2& from, const Se2& to) {
   return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
 }
 
+/// How a deviation at one place shows at another, `step_in_map` further on: a turn moves it
+/// sideways.
+inline Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map) {
+  Eigen::Matrix3d by = Eigen::Matrix3d::Identity();
+  by(0, 2) = -step_in_map.y();
+  by(1, 2) = step_in_map.x();
+  return by;
+}
+
 inline Se2 deviated(const Se2& pose, const Eigen::Vector3d& by) {
   return {Eigen::Vector2d{pose.translation() + by.head<2>()}, pose.theta() + by.z()};
 }

@@ -9,6 +9,12 @@
 
 namespace waymark {
 
+/// What stays the same while the robot drives, as it is known at some moment.
+struct Statics {
+  StaticErrors errors{StaticErrors::Zero()};
+  std::vector<Landmark> markers{};
+};
+
 /// Remembers at each update how the pose hung on what stays the same: the errors of odometry and
 /// camera, and the markers seen last. When those are known better, so is the pose: it moves by
 /// cov(pose, static) cov(static)^-1 (static now - static then), its mean given them. What a later
