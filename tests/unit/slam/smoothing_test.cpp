@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Unit tests of what corrects the past, and of how far the map may have drifted.
-#include "slam/core/mapping/map_drift.hpp"
+// Unit tests of what corrects the past.
 #include "slam/core/smoothing/hindsight.hpp"
 #include "slam/core/smoothing/scan_archive.hpp"
 #include "slam/map_publisher.hpp"
@@ -98,61 +97,6 @@ TEST(ScanArchive, GivesBackWhereBeamsWent) {
     EXPECT_NEAR(again.beams[i].beam.range_m, scan.beams[i].beam.range_m, 1e-6);
     EXPECT_LT((again.beams[i].beam.end_in_base - scan.beams[i].beam.end_in_base).norm(), 1e-6);
   }
-}
-
-/// Two walls along x, a metre away on both sides.
-std::vector<AnnotatedBeam> between_walls() {
-  std::vector<AnnotatedBeam> beams;
-  for (int side : {1, -1}) {
-    for (int i = -20; i <= 20; ++i) {
-      AnnotatedBeam annotated;
-      annotated.beam.end_in_base = {0.1 * side * i, side};
-      annotated.beam.range_m = annotated.beam.end_in_base.norm();
-      beams.push_back(annotated);
-    }
-  }
-  return beams;
-}
-
-Eigen::Matrix3d diagonal(double x, double y, double theta) {
-  return Eigen::Vector3d{x, y, theta}.asDiagonal();
-}
-
-TEST(MapDrift, WhatCameSinceIsReleasedWhereTheMapIsOlder) {
-  MapDrift drift;
-  drift.take(diagonal(0.0, 1e-4, 1e-6));
-  drift.map(between_walls());
-  drift.move({50.0, 0.0, 0.0});
-  EXPECT_NEAR(drift.now()(1, 1), 1e-4 + 2500.0 * 1e-6, 1e-9) << "headings turn into positions";
-  EXPECT_NEAR(drift.now()(1, 2), 50.0 * 1e-6, 1e-12) << "turned left means off to the left";
-  drift.take(diagonal(0.0, 3e-4, 0.0));
-  EXPECT_TRUE(drift.release(between_walls(), Eigen::Vector2d::UnitX()).isZero(1e-12))
-      << "nothing is known here";
-  drift.move({0.0, 0.0, 0.0});
-  const Eigen::Matrix3d since = drift.release(between_walls(), Eigen::Vector2d::UnitX());
-  EXPECT_NEAR(since(1, 1), 3e-4, 1e-9);
-  EXPECT_NEAR(drift.now()(1, 1), 1e-4, 1e-9);
-}
-
-TEST(MapDrift, WallsAlongACorridorReleaseNothingAlongIt) {
-  MapDrift drift;
-  drift.map(between_walls());
-  drift.take(diagonal(4e-4, 1e-4, 0.0));
-  const Eigen::Matrix3d since = drift.release(between_walls(), Eigen::Vector2d::UnitX());
-  EXPECT_NEAR(since(0, 0), 0.0, 1e-12);
-  EXPECT_NEAR(since(1, 1), 1e-4, 1e-9);
-  EXPECT_NEAR(drift.now()(0, 0), 4e-4, 1e-12);
-}
-
-TEST(MapDrift, APlaceKeepsTheDriftOfItsFirstSighting) {
-  MapDrift drift;
-  drift.take(diagonal(1e-4, 1e-4, 0.0));
-  drift.map(between_walls());
-  drift.take(diagonal(1.0, 1.0, 0.0));
-  drift.map(between_walls());
-  const Eigen::Matrix3d since = drift.release(between_walls(), Eigen::Vector2d::UnitX());
-  EXPECT_NEAR(since(1, 1), 1.0, 1e-9);
-  EXPECT_NEAR(drift.now()(1, 1), 1e-4, 1e-9);
 }
 
 TEST(MapPublisher, TilesThatAreGoneAreSentEmpty) {

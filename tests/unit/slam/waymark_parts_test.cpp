@@ -133,6 +133,18 @@ TEST(Belief, DrawingThePoseTellsNothingOfSystematicErrors) {
   EXPECT_EQ(belief.odometry_errors_covariance(), covariance);
 }
 
+TEST(Belief, APoseThatWasPushedByAnErrorTellsTheErrorWhenItIsCorrected) {
+  Belief belief{{OdometryNoise{}, 0.0, 0.0, 0.0}};
+  PoseError pushed;
+  pushed.by_errors(0, 0) = 3.0;  // 3 m with the wrong scale
+  pushed.covariance(0, 0) = 9.0 * belief.errors_covariance()(0, 0) + 1e-6;
+  belief.widen(pushed);
+  EXPECT_NEAR(belief.pose_covariance()(0, 0), pushed.covariance(0, 0), 1e-9);
+  EXPECT_TRUE(belief.pose_error().by_errors.isApprox(pushed.by_errors, 1e-9));
+  belief.correct_pose({0.03, 0.0, 0.0}, 1e-12 * Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(belief.odometry_errors()[0], 0.01, 1e-4);
+}
+
 TEST(Belief, AnIdIsAClass) {
   const Belief belief =
       belief_with({measurement_at({1.0, 1.0, -1.5}, 3), measurement_at({5.0, 1.0, -1.5}, 3)});
@@ -271,7 +283,7 @@ TEST(SurfaceFinder, FindsWhatTheMapHas) {
 TEST(SurfaceMatching, AClumpTellsThePlaceAndALineOnlyTheDistance) {
   const GridFrame frame = GridFrame::centred_on_map_origin(0.05);
   Random random{5};
-  const auto match_of = [&](double length_m) {
+  const auto match_of = [&](double length_m, double uncertainty_m = 0.1) {
     SurfaceMap map{frame};
     for (int i = 0; i < 400; ++i)
       map.add({2.0 + 0.01 * random.normal(), length_m * (random.uniform() - 0.5)});
@@ -281,12 +293,15 @@ TEST(SurfaceMatching, AClumpTellsThePlaceAndALineOnlyTheDistance) {
     SurfaceMatchingConfig config;
     config.weak_share = 0.0;
     SurfaceFinder finder{map, beams.size()};
-    return match_surfaces(beams, finder, {}, diagonal(0.01, 0.01, 0.001), config).pose.information;
+    const double variance_m2 = uncertainty_m * uncertainty_m;
+    return match_surfaces(beams, finder, {}, diagonal(variance_m2, variance_m2, 0.0), config)
+        .pose.information;
   };
   const Eigen::Matrix3d line = match_of(2.0);
   const Eigen::Matrix3d clump = match_of(0.04);
   EXPECT_LT(line(1, 1), 0.01 * line(0, 0));
   EXPECT_GT(clump(1, 1), 0.1 * clump(0, 0));
+  EXPECT_LT(match_of(0.04, 0.001)(1, 1), 0.2 * clump(1, 1)) << "the place is known better already";
 }
 
 TEST(WallFit, ExtendsTheWallWithItsUncertainty) {
@@ -299,6 +314,19 @@ TEST(WallFit, ExtendsTheWallWithItsUncertainty) {
   EXPECT_NEAR(far->point.y(), 1.0, 4.0 * far->sigma_m);
   EXPECT_GT(far->sigma_m, 1.5 * near->sigma_m);
   EXPECT_FALSE(fit_wall(beams, {0.0, 0.2}, radians(-90.0), 0.01, 1.5));
+}
+
+TEST(MeasureMarkers, BesideWallsAMarkerTellsOnlyWhereAlongItsWallItIs) {
+  const MarkerMeasurement whole = measurement_at({2.0, 1.0, radians(-60.0)});
+  const MarkerMeasurement news = beside_walls(whole);
+  const Eigen::Vector2d across = whole.base_from_marker.rotation().col(0);
+  const Eigen::Vector2d along = whole.base_from_marker.rotation().col(1);
+  const auto variance_of = [](const MarkerMeasurement& of, const Eigen::Vector2d& axis) {
+    return axis.dot(of.covariance.topLeftCorner<2, 2>() * axis);
+  };
+  EXPECT_NEAR(variance_of(news, along), variance_of(whole, along), 1e-12);
+  EXPECT_GT(variance_of(news, across), 0.01);
+  EXPECT_GT(news.covariance(2, 2), 0.04);
 }
 
 TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {

@@ -86,6 +86,25 @@ void Belief::move(const Motion& motion, const OdometryNoise& noise) {
   map_from_base_ = map_from_base_ * corrected.start_from_end;
 }
 
+PoseError Belief::pose_error() const {
+  const Eigen::Matrix<double, kStaticErrors, 3> with_pose =
+      covariance_.block<kStaticErrors, 3>(kOdometry, 0);
+  return {pose_covariance(), errors_covariance().ldlt().solve(with_pose).transpose()};
+}
+
+void Belief::widen(const PoseError& more) {
+  const Eigen::MatrixXd rows =
+      covariance_.topRows<3>() + more.by_errors * covariance_.middleRows<kStaticErrors>(kOdometry);
+  covariance_.topRows<3>() = rows;
+  const Eigen::MatrixXd columns =
+      covariance_.leftCols<3>() +
+      covariance_.middleCols<kStaticErrors>(kOdometry) * more.by_errors.transpose();
+  covariance_.leftCols<3>() = columns;
+  const Eigen::Matrix3d followed =
+      more.by_errors * errors_covariance() * more.by_errors.transpose();
+  covariance_.topLeftCorner<3, 3>() += positive_part(more.covariance - followed);
+}
+
 /// Everything deviates by gain * deviation, and loses gain * covariance_lost * gain'.
 void Belief::condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,
                        const Eigen::Ref<const Eigen::VectorXd>& deviation,
@@ -117,12 +136,11 @@ void Belief::draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
   const Eigen::MatrixXd gain = root.solve(with_axes.transpose()).transpose();
   const OdometryErrors odometry_errors = odometry_errors_;
   const Eigen::Vector3d sighting_errors = sighting_errors_;
-  const Eigen::Matrix<double, kStaticErrors, kStaticErrors> errors_covariance =
-      covariance_.block<kStaticErrors, kStaticErrors>(kOdometry, kOdometry);
+  const ErrorsCovariance errors_before = errors_covariance();
   condition(gain, root.matrixL() * standard_normal.head(axes.cols()), spread);
   odometry_errors_ = odometry_errors;
   sighting_errors_ = sighting_errors;
-  covariance_.block<kStaticErrors, kStaticErrors>(kOdometry, kOdometry) = errors_covariance;
+  covariance_.block<kStaticErrors, kStaticErrors>(kOdometry, kOdometry) = errors_before;
 }
 
 const std::vector<Landmark>& Belief::settled() const {

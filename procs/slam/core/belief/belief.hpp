@@ -58,6 +58,18 @@ struct PoseByStatics {
   Eigen::Matrix<double, 3, Eigen::Dynamic> gain{};
 };
 
+using ErrorsCovariance = Eigen::Matrix<double, kStaticErrors, kStaticErrors>;
+
+/// How (x, y, theta; map frame) follows the systematic errors.
+using PoseByErrors = Eigen::Matrix<double, 3, kStaticErrors>;
+
+/// An error of the pose (x, y, theta; map frame): its covariance, and how it follows the systematic
+/// errors. What follows them is part of the covariance.
+struct PoseError {
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  PoseByErrors by_errors{PoseByErrors::Zero()};
+};
+
 /// How a belief begins.
 struct BeliefPrior {
   OdometryNoise odometry{};
@@ -99,10 +111,11 @@ class Belief {
 
   void move(const Motion& motion, const OdometryNoise& noise);
 
-  /// The pose may be off by more than was thought, independently of all else.
-  void widen(const Eigen::Matrix3d& pose_covariance) {
-    covariance_.topLeftCorner<3, 3>() += pose_covariance;
-  }
+  PoseError pose_error() const;
+
+  /// The pose may be off by more than was thought: by what the systematic errors have made of it,
+  /// and by a rest that is independent of all else.
+  void widen(const PoseError& more);
 
   /// Takes over what has been found about the pose; everything that is correlated with it follows.
   void correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
@@ -155,6 +168,10 @@ class Belief {
 
   /// Settles the markers that were seen longest ago while more than `limit` are in the covariance.
   void settle_oldest(std::size_t limit);
+
+  ErrorsCovariance errors_covariance() const {
+    return covariance_.block<kStaticErrors, kStaticErrors>(kOdometry, kOdometry);
+  }
 
   StaticErrors static_errors() const {
     return (StaticErrors{} << odometry_errors_, sighting_errors_).finished();

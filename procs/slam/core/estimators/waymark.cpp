@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/waymark.hpp"
 
+#include "slam/core/belief/told_axes.hpp"
 #include "slam/core/landmark/mean_landmarks.hpp"
 
 #include <algorithm>
@@ -15,33 +16,13 @@ constexpr double kMinFacing = 0.3;
 constexpr double kWallInSight_m = 0.2;                      // a beam ends this near to the marker
 constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
 constexpr std::size_t kStaticMarkers = 4;                   // that a past pose is corrected by
-constexpr double kMinSurfaces = 0.1;     // share of beams; a scan with fewer shows nothing
-constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
+constexpr double kMinSurfaces = 0.1;      // share of beams; a scan with fewer shows nothing
+constexpr double kMinMappedBeams = 10.0;  // fewer do not tell the pose across the walls
+constexpr double kMinMappedShare = 0.2;   // of a scan's beams; fewer say nothing about being lost
 
 BeliefPrior prior_of(const WaymarkConfig& config) {
   return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma,
           config.markers.standoff_sigma_m};
-}
-
-/// What the walls of a scan can tell of the pose, as linear functions of (x, y, theta) in the map,
-/// in columns. Along a bare wall they leave out what is correlated with the motion along it: one
-/// scan knows the wall's direction to a fraction of a degree only, and drawing the rest of it would
-/// take the uncertainty along the wall away by and by.
-Eigen::Matrix<double, 3, Eigen::Dynamic> told_axes(const Observability& walls_in_base,
-                                                   const Belief& belief) {
-  const Eigen::Vector2d weak = belief.map_from_base().rotation() * walls_in_base.weak_direction;
-  const Eigen::Vector3d along{weak.x(), weak.y(), 0.0};
-  Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, walls_in_base.is_degenerate ? 2 : 3);
-  axes.col(0) = Eigen::Vector3d::UnitZ();
-  axes.col(1) << -weak.y(), weak.x(), 0.0;
-  if (!walls_in_base.is_degenerate) {
-    axes.col(2) = along;
-    return axes;
-  }
-  const Eigen::Vector3d with_along = belief.pose_covariance() * along;
-  const double variance = along.dot(with_along);
-  if (variance > 0.0) axes -= (along * (with_along.transpose() * axes) / variance).eval();
-  return axes;
 }
 
 /// Covariance of (x, y, theta) in the map, turned into the base's axes.
@@ -149,7 +130,8 @@ void WaymarkEstimator::process(const Observation& observation) {
   if (verdict_ == KidnapWatch::Verdict::kSettled)
     noise_growth_.learn(outcomes[particles_.best()].correction);
   noise_ = noise_growth_.applied_to(config_.odometry);
-  drift_.take(outcomes[particles_.best()].drawn);
+  const Outcome& best = outcomes[particles_.best()];
+  drift_.take(best.drawn, best.by_noise, belief().errors_covariance());
   judge(outcomes);
   drift_.move(mean_);
   if (verdict_ != KidnapWatch::Verdict::kDoubtful) drift_.map(observation.beams);
@@ -188,15 +170,32 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
     correct_by_markers(state, sensed, outcome);
   }
   if (!is_doubtful) note_absences(state, sensed);
-  outcome.drawn = state.belief.pose_covariance();
-  if (!sensed.observation->beams.empty())
-    state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
-  outcome.drawn -= state.belief.pose_covariance();
+  if (!sensed.observation->beams.empty()) outcome.drawn = draw(state, sensed, chance);
   state.map_from_base = state.belief.map_from_base();
   if (is_doubtful) return outcome;
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
     state.walls.add(state.map_from_base * annotated.beam.end_in_base);
+  if (updates_ == 0) outcome.by_noise = outcome.drawn.covariance = noise_of_first(state, sensed);
   return outcome;
+}
+
+/// @return what the belief has lost by it.
+PoseError WaymarkEstimator::draw(State& state, const Sensed& sensed, const Chance& chance) const {
+  const PoseError before = state.belief.pose_error();
+  state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
+  const PoseError after = state.belief.pose_error();
+  return {before.covariance - after.covariance, before.by_errors - after.by_errors};
+}
+
+/// The first pose is exact, but what is mapped from there is off by what the scan's noise makes of
+/// it, for ever.
+Eigen::Matrix3d WaymarkEstimator::noise_of_first(const State& state, const Sensed& sensed) const {
+  const std::vector<AnnotatedBeam>& beams = sensed.observation->beams;
+  SurfaceFinder walls{state.walls, beams.size()};
+  const Eigen::Matrix3d looks_far = 0.01 * Eigen::Matrix3d::Identity();
+  const SurfaceMatch match =
+      match_surfaces(beams, walls, state.map_from_base, looks_far, config_.matching);
+  return match.pose.information.completeOrthogonalDecomposition().pseudoInverse();
 }
 
 /// By odometry, or to where the markers say that the robot has been carried.
@@ -246,19 +245,22 @@ void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed, doub
       },
       deviated(expected, {0.0, 0.0, start * std::sqrt(prior(2, 2))}));
   state.belief.correct_pose(by_walls.mean, by_walls.covariance);
+  outcome.by_noise =
+      by_walls.covariance - by_walls.covariance * prior.inverse() * by_walls.covariance;
   outcome.log_evidence += config_.scan_evidence * by_walls.log_evidence;
 }
 
 void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
                                           Outcome& outcome) const {
+  const bool walls_told = outcome.walls.mapped >= kMinMappedBeams;
   for (const MarkerMeasurement& measurement : sensed.markers) {
     if (measurement.wall) state.belief.correct_sighting_errors(*measurement.wall);
     if (measurement.focal) state.belief.correct_sighting_errors(*measurement.focal);
     const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->may_be_it(config_.marker_gate, config_.marker_near_m)) {
-      outcome.log_evidence +=
-          config_.marker_evidence *
-          state.belief.correct(nearest->marker, measurement, config_.marker_gate);
+      const MarkerMeasurement news = walls_told ? beside_walls(measurement) : measurement;
+      outcome.log_evidence += config_.marker_evidence *
+                              state.belief.correct(nearest->marker, news, config_.marker_gate);
       ++outcome.known_markers;
     } else {
       outcome.log_evidence -= config_.marker_evidence * 0.5 * config_.marker_gate;
@@ -313,8 +315,12 @@ Eigen::Matrix3d WaymarkEstimator::covariance_about_mean() const {
   Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < particles_.size(); ++i)
     within += particles_.weights()[i] * particles_.state(i).belief.pose_covariance();
+  const PoseError& drift = drift_.now();
+  const Eigen::Matrix3d common =
+      belief().pose_error().by_errors * belief().errors_covariance() * drift.by_errors.transpose();
   const Eigen::Matrix3d between = covariance_about(mean_, particles_);
-  return within + drift_.now() + positive_part(between - drift_.now());
+  return within + common + common.transpose() + drift.covariance +
+         positive_part(between - drift.covariance);
 }
 
 /// Between updates the walls of the best particle hold the heading, which odometry loses fastest.

@@ -84,7 +84,7 @@ class WaymarkEstimator final : public Estimator {
     Observability walls{};  ///< base frame
     KidnapWatch::Verdict verdict{KidnapWatch::Verdict::kSettled};
     /// What the robot may be off from the walls it sees, since they were mapped.
-    Eigen::Matrix3d drift{Eigen::Matrix3d::Zero()};
+    PoseError drift{};
   };
 
   /// What one particle draws: standard normal.
@@ -99,7 +99,9 @@ class WaymarkEstimator final : public Estimator {
     int known_markers{0};
     SurfaceMatch walls{};
     PoseCorrection correction{};
-    Eigen::Matrix3d drawn{Eigen::Matrix3d::Zero()};  ///< covariance that drawing has taken away
+    PoseError drawn{};  ///< what drawing has taken from the belief
+    /// The part of it that comes from the noise of this scan.
+    Eigen::Matrix3d by_noise{Eigen::Matrix3d::Zero()};
   };
 
   Estimate update_by(const Observation& observation);
@@ -115,6 +117,8 @@ class WaymarkEstimator final : public Estimator {
   void correct_by_walls(State& state, const Sensed& sensed, double start, Outcome& outcome) const;
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   void note_absences(State& state, const Sensed& sensed) const;
+  PoseError draw(State& state, const Sensed& sensed, const Chance& chance) const;
+  Eigen::Matrix3d noise_of_first(const State& state, const Sensed& sensed) const;
   void remember(const Observation& observation);
   Statics statics() const;
   std::vector<Eigen::Vector3d> centred_normals() const;

@@ -1,9 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/input/sensor_queue.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace waymark {
+namespace {
+
+/// No camera sees the same twice to the last bit, unless it does not look again.
+bool are_repeated(std::span<const MarkerDetection> before, std::span<const MarkerDetection> now) {
+  return !now.empty() &&
+         std::equal(before.begin(), before.end(), now.begin(), now.end(),
+                    [](const MarkerDetection& a, const MarkerDetection& b) {
+                      return a.id == b.id && a.corners_px == b.corners_px &&
+                             a.base_from_marker.matrix() == b.base_from_marker.matrix();
+                    });
+}
+
+}  // namespace
 
 std::string_view to_string(Skip skip) {
   switch (skip) {
@@ -25,6 +39,8 @@ std::string_view to_string(Skip skip) {
       return "camera frames out of order";
     case Skip::kFrameOverflow:
       return "camera frames dropped waiting for a scan";
+    case Skip::kFrameRepeated:
+      return "camera frames that repeat the one before";
     case Skip::kMarkerImplausible:
       return "markers not upright";
     case Skip::kMarkerUncertain:
@@ -65,6 +81,12 @@ void SensorQueue::add(MarkerDetections frame) {
     return;
   }
   newest_frame_ = frame.time;
+  const bool is_repeated = are_repeated(newest_detections_, frame.detections);
+  newest_detections_ = frame.detections;
+  if (is_repeated) {
+    skips_.push_back(Skip::kFrameRepeated);
+    return;
+  }
   frames_.push_back(std::move(frame));
   if (frames_.size() > kMaxFrames) {
     frames_.pop_front();

@@ -39,6 +39,7 @@ enum class Skip {
   kScanOverflow,         ///< odometry stays away
   kFrameOutOfOrder,
   kFrameOverflow,
+  kFrameRepeated,  ///< pixel for pixel the one before: the camera is stuck, or nothing moves
   kMarkerImplausible,
   kMarkerUncertain,
 };
@@ -86,6 +87,7 @@ class SensorQueue {
   std::deque<MarkerDetections> frames_{};
   std::optional<Timestamp> newest_scan_{};
   std::optional<Timestamp> newest_frame_{};
+  std::vector<MarkerDetection> newest_detections_{};
   std::optional<Timestamp> last_observed_{};
   std::vector<Skip> skips_{};
   bool has_finished_{false};

@@ -19,6 +19,9 @@ constexpr int kMinBeams = 8;
 constexpr double kMinExtent_m = 0.1;            // [m] root mean square length of the fitted stretch
 constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
 constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
+// Far more than walls leave open: what they have told already.
+constexpr double kTold_m = 0.1;
+constexpr double kTold_rad = 0.2;
 
 double squared(double x) {
   return x * x;
@@ -171,6 +174,13 @@ std::optional<FocalSighting> usable(std::optional<FocalSighting> focal,
   if (!focal || focal->sigma > config.perspective_max_sigma) return std::nullopt;
   focal->sigma = std::hypot(focal->sigma, config.perspective_sigma);
   return focal;
+}
+
+MarkerMeasurement beside_walls(MarkerMeasurement measurement) {
+  const Eigen::Vector2d normal = measurement.base_from_marker.rotation().col(0);
+  measurement.covariance.topLeftCorner<2, 2>() += squared(kTold_m) * normal * normal.transpose();
+  measurement.covariance(2, 2) += squared(kTold_rad);
+  return measurement;
 }
 
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation, double range_sigma_m,

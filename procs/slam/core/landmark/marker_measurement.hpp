@@ -83,4 +83,9 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation, d
                                                const Se2& base_from_camera,
                                                const MarkerMeasurementConfig& config);
 
+/// What a sighting of a known marker adds when the walls in view have told the pose already: where
+/// along its wall the marker is. Across the wall, and about directions, it would tell again what
+/// the same beams have told, or what a camera gets wrong in every frame alike.
+MarkerMeasurement beside_walls(MarkerMeasurement measurement);
+
 }  // namespace waymark

@@ -3,9 +3,8 @@
 
 #include "slam/core/scan/observability.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <cmath>
+#include <set>
 
 namespace waymark {
 namespace {
@@ -19,37 +18,33 @@ std::pair<int, int> key_of(const Eigen::Vector2d& place) {
 }
 
 /// Of the rigid motion whose covariance is known at one place, at another.
-Eigen::Matrix3d carried(const Eigen::Matrix3d& covariance, const Eigen::Vector2d& step) {
+PoseError carried(const PoseError& error, const Eigen::Vector2d& step) {
   const Eigen::Matrix3d by = carried_along(step);
-  return by * covariance * by.transpose();
+  return {by * error.covariance * by.transpose(), by * error.by_errors};
 }
 
-/// Of covariances; those of many walls that tell a direction a little are none.
+/// Of errors; those of many walls that tell a direction a little are none.
 class Average {
  public:
-  void add(double weight, const Eigen::Matrix3d& covariance) {
+  void add(double weight, const PoseError& error) {
     weight_ += weight;
-    sum_ += weight * covariance;
+    covariance_ += weight * error.covariance;
+    by_errors_ += weight * error.by_errors;
   }
 
-  /// By how much; zero when nothing is known.
-  Eigen::Matrix3d less_than(const Eigen::Matrix3d& other) const {
-    if (weight_ < kMinWalls) return Eigen::Matrix3d::Zero();
-    return positive_part(other - sum_ / weight_);
+  /// What `error` is more; zero when nothing is known.
+  PoseError taken_from(const PoseError& error) const {
+    if (weight_ < kMinWalls) return {};
+    return {error.covariance - covariance_ / weight_, error.by_errors - by_errors_ / weight_};
   }
 
  private:
   double weight_{0.0};
-  Eigen::Matrix3d sum_{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d covariance_{Eigen::Matrix3d::Zero()};
+  PoseByErrors by_errors_{PoseByErrors::Zero()};
 };
 
 }  // namespace
-
-Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes{symmetric};
-  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         axes.eigenvectors().transpose();
-}
 
 const MapDrift::Region* MapDrift::region_at(const Eigen::Vector2d& place_in_map) const {
   const auto region = regions_.find(key_of(place_in_map));
@@ -61,8 +56,7 @@ void MapDrift::move(const Se2& map_from_base) {
   map_from_base_ = map_from_base;
 }
 
-Eigen::Matrix3d MapDrift::release(std::span<const AnnotatedBeam> beams,
-                                  const Eigen::Vector2d& weak) {
+PoseError MapDrift::release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak) {
   Average of_strong;
   Average of_weak;
   for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -70,25 +64,49 @@ Eigen::Matrix3d MapDrift::release(std::span<const AnnotatedBeam> beams,
     if (!region) continue;
     const auto normal = surface_normal(beams, static_cast<int>(i));
     if (!normal) continue;
-    const Eigen::Matrix3d covariance =
-        carried(region->covariance, map_from_base_.translation() - region->robot);
+    PoseError error = region->error;
+    error.covariance += region->noise / region->scans;
+    error = carried(error, map_from_base_.translation() - region->robot);
     const double told = std::pow(weak.dot(map_from_base_.rotation() * *normal), 2);
-    of_weak.add(told, covariance);
-    of_strong.add(1.0 - told, covariance);
+    of_weak.add(told, error);
+    of_strong.add(1.0 - told, error);
   }
   Eigen::Matrix3d along_weak = Eigen::Matrix3d::Zero();
   along_weak.topLeftCorner<2, 2>() = weak * weak.transpose();
   const Eigen::Matrix3d others = Eigen::Matrix3d::Identity() - along_weak;
-  const Eigen::Matrix3d since = others * of_strong.less_than(now_) * others +
-                                along_weak * of_weak.less_than(now_) * along_weak;
-  now_ = positive_part(now_ - since);
-  return since;
+  const PoseError strong = of_strong.taken_from(now_);
+  const PoseError along = of_weak.taken_from(now_);
+  const PoseError since{
+      others * strong.covariance * others + along_weak * along.covariance * along_weak,
+      others * strong.by_errors + along_weak * along.by_errors};
+  now_ = {positive_part(now_.covariance - since.covariance), now_.by_errors - since.by_errors};
+  return {positive_part(since.covariance), since.by_errors};
+}
+
+/// What was drawn follows errors that the drift has followed already.
+void MapDrift::take(const PoseError& drawn, const Eigen::Matrix3d& by_noise,
+                    const ErrorsCovariance& errors_covariance) {
+  const Eigen::Matrix3d common = now_.by_errors * errors_covariance * drawn.by_errors.transpose();
+  now_.covariance += drawn.covariance + common + common.transpose();
+  now_.by_errors += drawn.by_errors;
+  noise_ = by_noise;
 }
 
 void MapDrift::map(std::span<const AnnotatedBeam> beams) {
-  for (const AnnotatedBeam& annotated : beams) {
-    regions_.try_emplace(key_of(map_from_base_ * annotated.beam.end_in_base),
-                         Region{now_, map_from_base_.translation()});
+  std::set<std::pair<int, int>> seen;
+  for (const AnnotatedBeam& annotated : beams)
+    seen.insert(key_of(map_from_base_ * annotated.beam.end_in_base));
+  for (const auto& key : seen) {
+    Region& region = regions_[key];
+    if (region.scans == 0) region.robot = map_from_base_.translation();
+    const Eigen::Vector2d step = region.robot - map_from_base_.translation();
+    const PoseError there = carried({now_.covariance - noise_, now_.by_errors}, step);
+    const PoseError noise = carried({noise_, PoseByErrors::Zero()}, step);
+    ++region.scans;
+    const double share = 1.0 / region.scans;
+    region.error.covariance += share * (there.covariance - region.error.covariance);
+    region.noise += share * (noise.covariance - region.noise);
+    region.error.by_errors += share * (there.by_errors - region.error.by_errors);
   }
 }
 

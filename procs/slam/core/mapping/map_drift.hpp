@@ -2,7 +2,7 @@
 // How far the map has drifted from where it began, place by place.
 #pragma once
 
-#include "slam/core/proposal/pose_information.hpp"
+#include "slam/core/belief/belief.hpp"
 #include "slam/core/scan/annotated_scan.hpp"
 
 #include <map>
@@ -13,10 +13,11 @@ namespace waymark {
 
 /// A pose that has been drawn is exact for its particle, and what is mapped from there shares its
 /// error. A few particles, drawn again and again, do not remember how large such errors may have
-/// grown: this does. Each square metre keeps the covariance that the robot's pose had when it was
-/// first seen. Where known walls are seen again, the robot may be off from them by what has come
+/// grown: this does. Each square metre keeps the error that the robot's pose had, on average, when
+/// it was mapped. Where known walls are seen again, the robot may be off from them by what has come
 /// since only, and is off from the origin by what they are.
-/// Covariances are of (x, y, theta) of the robot, map frame: the map's error as a rigid motion.
+/// Systematic errors push the same way at every step, so that what they do grows with the way and
+/// not with its root: the drift is kept together with them.
 class MapDrift {
  public:
   /// The robot has moved: an error of the heading turns into one of the position.
@@ -26,31 +27,35 @@ class MapDrift {
   /// now belongs to the pose, where matching can tell it.
   /// @param weak  unit, map frame: each wall counts for this direction, and for the others, as far
   /// as it can tell them.
-  Eigen::Matrix3d release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak);
+  PoseError release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak);
 
   /// What the pose has lost by drawing.
-  void take(const Eigen::Matrix3d& drawn) { now_ += drawn; }
+  /// @param errors_covariance  of the systematic errors, as they are known now.
+  /// @param by_noise  the part of it that comes from the noise of this scan alone.
+  void take(const PoseError& drawn, const Eigen::Matrix3d& by_noise,
+            const ErrorsCovariance& errors_covariance);
 
-  /// A scan is mapped: what had not been seen yet drifts with the robot.
+  /// A scan is mapped.
   void map(std::span<const AnnotatedBeam> beams);
 
   /// Of what is being mapped.
-  const Eigen::Matrix3d& now() const { return now_; }
+  const PoseError& now() const { return now_; }
 
  private:
   struct Region {
-    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+    PoseError error{};                               ///< mean over its scans, without their noise
+    Eigen::Matrix3d noise{Eigen::Matrix3d::Zero()};  ///< of one scan
     Eigen::Vector2d robot{Eigen::Vector2d::Zero()};  ///< from where it was first seen
+    int scans{0};
   };
 
   const Region* region_at(const Eigen::Vector2d& place_in_map) const;
 
   Se2 map_from_base_{};
-  Eigen::Matrix3d now_{Eigen::Matrix3d::Zero()};
+  PoseError now_{};
+  Eigen::Matrix3d noise_{
+      Eigen::Matrix3d::Zero()};  ///< the part of it that comes from the last scan
   std::map<std::pair<int, int>, Region> regions_{};
 };
-
-/// The part of a symmetric matrix with positive eigenvalues.
-Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
 
 }  // namespace waymark

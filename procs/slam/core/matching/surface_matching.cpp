@@ -14,6 +14,10 @@ double squared(double x) {
 /// without it a particle that has left its map would be the most likely one. 1 is the mean error.
 constexpr double kExplained = 2.0;
 constexpr double kClumpKnee = 3.0;  // [sigma] a beam this far from its clump counts a quarter
+// A clump counts half when the pose is less uncertain than the clump by this factor (variances),
+// and this share when it is certain.
+constexpr double kClumpGuides = 30.0;
+constexpr double kClumpShare = 0.1;
 
 /// The end of a beam, with how it moves with the pose (x, y, theta; map frame).
 struct BeamEnd {
@@ -32,17 +36,23 @@ double trust_in(double error, double knee_sigmas) {
   return squared(knee_sigmas) / (squared(knee_sigmas) + error);
 }
 
-/// Adds "it lies off by `residual_m`", an error that counts `weight` times.
+/// How often an error counts: for where the pose is, and for how likely the scan is.
+struct Weight {
+  double information{1.0};
+  double evidence{1.0};
+};
+
+/// Adds "it lies off by `residual_m`".
 /// @return how far it is trusted.
 double add_distance(const Eigen::Vector3d& row, double residual_m, double variance_m2,
-                    double weight, double knee_sigmas, const Eigen::Matrix3d& uncertainty,
+                    const Weight& weight, double knee_sigmas, const Eigen::Matrix3d& uncertainty,
                     PoseInformation& pose) {
   const double error = squared(residual_m) / (variance_m2 + row.dot(uncertainty * row));
   const double trust = trust_in(error, knee_sigmas);
-  const double information = weight * squared(trust) / variance_m2;
+  const double information = weight.information * squared(trust) / variance_m2;
   pose.information.noalias() += information * row * row.transpose();
   pose.gradient.noalias() += information * residual_m * row;
-  pose.cost += 0.5 * weight * (error * trust - kExplained);
+  pose.cost += 0.5 * weight.evidence * (error * trust - kExplained);
   return trust;
 }
 
@@ -54,7 +64,8 @@ double add_line(const BeamEnd& hit, const Surface& line, const Eigen::Matrix3d& 
                              squared(config.surface_sigma_m) + line.across_m2 / line.count;
   const double trust =
       add_distance(hit.moved_along(normal), normal.dot(hit.end - line.point_in_map), variance_m2,
-                   config.information_share, config.outlier_sigmas, uncertainty, pose);
+                   {config.information_share, config.information_share}, config.outlier_sigmas,
+                   uncertainty, pose);
   // A normal that is turned by its noise seems to tell what lies along the surface: the square of
   // that is taken out again, on average.
   pose.information.noalias() -= config.information_share * squared(trust) / variance_m2 *
@@ -62,17 +73,23 @@ double add_line(const BeamEnd& hit, const Surface& line, const Eigen::Matrix3d& 
   return trust;
 }
 
-/// The beam may have hit any of the clump's points, so their scatter is its uncertainty.
+/// The beam may have hit any of the clump's points, so their scatter is its uncertainty. Beams that
+/// hit one clump err alike, and so do their successors that its points are made of: a clump guides
+/// a pose that is uncertain, and says little about one that is known to a fraction of it.
 void add_clump(const BeamEnd& hit, const Surface& clump, const Eigen::Matrix3d& uncertainty,
                const SurfaceMatchingConfig& config, PoseInformation& pose) {
   const Eigen::Vector2d& normal = clump.normal_in_map;
-  const Eigen::Vector2d along{-normal.y(), normal.x()};
   const Eigen::Vector2d away = hit.end - clump.point_in_map;
   const double range_m2 = squared(config.range_sigma_m);
-  add_distance(hit.moved_along(normal), normal.dot(away), clump.across_m2 + range_m2,
-               config.clump_weight, kClumpKnee, uncertainty, pose);
-  add_distance(hit.moved_along(along), along.dot(away), clump.along_m2 + range_m2,
-               config.clump_weight, kClumpKnee, uncertainty, pose);
+  const auto add = [&](const Eigen::Vector2d& axis, double variance_m2) {
+    const Eigen::Vector3d row = hit.moved_along(axis);
+    const double uncertain = kClumpGuides * row.dot(uncertainty * row);
+    const double share = kClumpShare + (1.0 - kClumpShare) * uncertain / (uncertain + variance_m2);
+    add_distance(row, axis.dot(away), variance_m2,
+                 {config.clump_weight * share, config.clump_weight}, kClumpKnee, uncertainty, pose);
+  };
+  add(normal, clump.across_m2 + range_m2);
+  add({-normal.y(), normal.x()}, clump.along_m2 + range_m2);
 }
 
 }  // namespace

@@ -37,6 +37,9 @@ inline Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map) {
   return by;
 }
 
+/// The part of a symmetric matrix with positive eigenvalues.
+Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
+
 inline Se2 deviated(const Se2& pose, const Eigen::Vector3d& by) {
   return {Eigen::Vector2d{pose.translation() + by.head<2>()}, pose.theta() + by.z()};
 }
