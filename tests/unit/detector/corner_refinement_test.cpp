@@ -79,7 +79,7 @@ Corners mean_error_in_corridor_px(double wall_y_m, double blur_sigma_px, double 
   Corners sum{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
               Eigen::Vector2d::Zero()};
   Random random{3};
-  constexpr int kPoses = 30;
+  constexpr int kPoses = 20;
   const double camera_x_m = RobotConfig{}.camera.x_m;
   for (int pose = 0; pose < kPoses; ++pose) {
     const Eigen::Vector3d centre_m{camera_x_m + random.uniform(2.0, farthest_m),
