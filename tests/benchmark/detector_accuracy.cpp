@@ -31,6 +31,19 @@ namespace {
 constexpr std::array kDistancesM{1.9, 2.1, 2.3, 2.5, 2.7, 2.9, 3.1, 3.3, 3.5, 3.9, 4.3};
 constexpr double kIssueFarthestM = 3.5;
 
+/// Detected minus true corners, summed over sightings, clockwise from the marker's top left.
+struct CornerErrors {
+  int markers{0};
+  std::array<Eigen::Vector2d, 4> sum_px{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                        Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+
+  void merge(const CornerErrors& other) {
+    markers += other.markers;
+    for (std::size_t k = 0; k < sum_px.size(); ++k)
+      sum_px[k] += other.sum_px[k];
+  }
+};
+
 /// What is known after many sightings at one distance.
 struct Tally {
   int markers{0};
@@ -42,6 +55,8 @@ struct Tally {
   double bearing_squares{0.0};
   double yaw_squares{0.0};
   double nees_sum{0.0};
+  CornerErrors left_wall{};
+  CornerErrors right_wall{};
   std::vector<double> milliseconds{};
 
   void merge(const Tally& other) {
@@ -54,6 +69,8 @@ struct Tally {
     bearing_squares += other.bearing_squares;
     yaw_squares += other.yaw_squares;
     nees_sum += other.nees_sum;
+    left_wall.merge(other.left_wall);
+    right_wall.merge(other.right_wall);
     milliseconds.insert(milliseconds.end(), other.milliseconds.begin(), other.milliseconds.end());
   }
 };
@@ -195,6 +212,21 @@ class Bench {
     tally.bearing_squares += bearing_error_rad * bearing_error_rad;
     tally.yaw_squares += yaw_error_rad * yaw_error_rad;
     tally.nees_sum += error.dot(seen.covariance_in_base.ldlt().solve(error));
+    add_corners(seen, truth, truth.translation().y() > 0.0 ? tally.left_wall : tally.right_wall);
+  }
+
+  void add_corners(const MarkerDetection& seen, const Eigen::Isometry3d& truth,
+                   CornerErrors& errors) const {
+    const double half_m = 0.5 * scenario_.robot.markers.size_m;
+    const std::array<Eigen::Vector3d, 4> corners_m{
+        Eigen::Vector3d{-half_m, half_m, 0.0}, Eigen::Vector3d{half_m, half_m, 0.0},
+        Eigen::Vector3d{half_m, -half_m, 0.0}, Eigen::Vector3d{-half_m, -half_m, 0.0}};
+    ++errors.markers;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Eigen::Vector3d corner =
+          scenario_.robot.camera.base_from_camera().inverse() * truth * corners_m[k];
+      errors.sum_px[k] += seen.corners_px[k] - model_.raw_from_ideal(model_.project(corner));
+    }
   }
 
   Scenario scenario_;
@@ -218,6 +250,17 @@ void print_row(const std::string& name, const Tally& tally) {
       tally.nees_sum / n, median(tally.milliseconds));
 }
 
+/// Mean errors, which all markers of a corridor have in common.
+void print_corners(const std::string& wall, const CornerErrors& errors) {
+  std::string text;
+  for (const Eigen::Vector2d& sum : errors.sum_px) {
+    const Eigen::Vector2d mean = sum / std::max(1, errors.markers);
+    text += fmt::format("   {:+.4f} {:+.4f}", mean.x(), mean.y());
+  }
+  fmt::print("mean error of the corners [px], {:>5} wall, clockwise from top left, u v:{}\n", wall,
+             text);
+}
+
 void print_table(const std::string& title, const std::vector<Tally>& tallies) {
   fmt::print("\n{}\n{:>9} {:>7} {:>7} {:>9} {:>8} {:>8} {:>8} {:>9} {:>8} {:>6} {:>6}\n", title,
              "distance", "markers", "found %", "unrefined", "false id", "bias cm", "range cm",
@@ -228,6 +271,8 @@ void print_table(const std::string& title, const std::vector<Tally>& tallies) {
     if (kDistancesM[i] <= kIssueFarthestM) band.merge(tallies[i]);
   }
   print_row("1.9-3.5 m", band);
+  print_corners("left", band.left_wall);
+  print_corners("right", band.right_wall);
 }
 
 void run(int poses, std::uint64_t seed, std::vector<std::string> overrides) {

@@ -49,24 +49,47 @@ Sides sides_of(const Corners& corners) {
           Side{corners[3], corners[0]}};
 }
 
-/// Distance to the opposite side, in units of modules: how thick the black border looks.
-double module_px(const Corners& corners, std::size_t side, int modules_per_side) {
-  const Side here = sides_of(corners)[side];
-  const Eigen::Vector2d middle_there_px = 0.5 * (corners[(side + 2) % 4] + corners[(side + 3) % 4]);
-  return std::abs(here.outward().dot(middle_there_px - here.start_px)) / modules_per_side;
+double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+  const Eigen::Vector2d ab = b - a;
+  const Eigen::Vector2d ac = c - a;
+  return 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
 }
 
-/// The least raised of the sides' black levels: where the border looks thin, blur mixes white in.
-double black_level(const std::array<std::vector<EdgeProfile>, 4>& profiles) {
-  double darkest = 255.0;
-  for (const auto& side : profiles) {
-    if (side.empty()) continue;
-    std::vector<double> levels;
-    for (const EdgeProfile& profile : side)
-      levels.push_back(profile.black);
-    darkest = std::min(darkest, median(std::move(levels)));
+/// How thick the black border looks along each side. A module of the far side of an oblique marker
+/// looks thinner than one of the near side.
+std::array<double, 4> border_thickness_px(const Corners& corners, int modules_per_side) {
+  // Homogeneous corners of a square: w0 c0 - w1 c1 + w2 c2 - w3 c3 = 0.
+  std::array<double, 4> weights{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    weights[k] = triangle_area(corners[(k + 1) % 4], corners[(k + 2) % 4], corners[(k + 3) % 4]);
   }
-  return darkest;
+  const double share = 1.0 / modules_per_side;
+  const auto one_module_from = [&](std::size_t from, std::size_t to) -> Eigen::Vector2d {
+    const double from_weight = (1.0 - share) * weights[from];
+    const double to_weight = share * weights[to];
+    return (from_weight * corners[from] + to_weight * corners[to]) / (from_weight + to_weight);
+  };
+  std::array<double, 4> thickness_px{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t end = (k + 1) % 4;
+    const Eigen::Vector2d inner_px =
+        0.5 * (one_module_from(k, (k + 3) % 4) + one_module_from(end, (k + 2) % 4));
+    const Side side{corners[k], corners[end]};
+    thickness_px[k] = std::abs(side.outward().dot(inner_px - side.start_px));
+  }
+  return thickness_px;
+}
+
+/// Black level of the two opposite sides with the thicker borders: where the border looks thin,
+/// blur mixes white in. (The darkest side would be the one whose noise is darkest.)
+double black_level(const std::array<std::vector<EdgeProfile>, 4>& profiles,
+                   const std::array<double, 4>& border_px) {
+  const std::size_t first = border_px[0] + border_px[2] >= border_px[1] + border_px[3] ? 0 : 1;
+  std::vector<double> levels;
+  for (const std::size_t side : {first, first + 2})
+    for (const EdgeProfile& profile : profiles[side])
+      levels.push_back(profile.black);
+  return levels.empty() ? 0.0 : median(std::move(levels));
 }
 
 std::vector<EdgePoint> edge_points(const std::vector<EdgeProfile>& profiles, double black,
@@ -195,14 +218,13 @@ std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camer
                                    const RefinementConfig& config) {
   constexpr double kShortestReachPx = 1.5;
   const Sides sides = sides_of(corners);
-  std::array<double, 4> border_px{};
+  const std::array<double, 4> border_px = border_thickness_px(corners, modules_per_side);
   std::array<std::vector<EdgeProfile>, 4> profiles;
   for (std::size_t k = 0; k < 4; ++k) {
-    border_px[k] = module_px(corners, k, modules_per_side);
     const double reach_px = std::min(config.reach_px, std::max(kShortestReachPx, border_px[k]));
     profiles[k] = sample_profiles(gray, camera, sides[k], reach_px);
   }
-  const double black = black_level(profiles);
+  const double black = black_level(profiles, border_px);
 
   std::array<EdgeLine, 4> lines;
   for (std::size_t k = 0; k < 4; ++k) {

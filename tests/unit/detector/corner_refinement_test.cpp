@@ -74,6 +74,36 @@ TEST(CornerRefinement, CornersAreFoundWithoutBiasWhereverThePixelsLie) {
   }
 }
 
+/// Mean error of each corner over poses in a corridor 2 m wide.
+Corners mean_error_in_corridor_px(double wall_y_m, double blur_sigma_px, double farthest_m) {
+  Corners sum{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+              Eigen::Vector2d::Zero()};
+  Random random{3};
+  constexpr int kPoses = 20;
+  const double camera_x_m = RobotConfig{}.camera.x_m;
+  for (int pose = 0; pose < kPoses; ++pose) {
+    const Eigen::Vector3d centre_m{camera_x_m + random.uniform(2.0, farthest_m),
+                                   wall_y_m + random.uniform(-0.1, 0.1), 0.3};
+    const double facing_rad = wall_y_m > 0.0 ? -0.5 * std::numbers::pi : 0.5 * std::numbers::pi;
+    const Scene scene = scene_with({}, base_from_upright_marker(centre_m, facing_rad),
+                                   {.blur_sigma_px = blur_sigma_px, .noise_sigma = 3.0});
+    const Corners error = refined_error_px(scene, 0.7);
+    for (std::size_t k = 0; k < 4; ++k)
+      sum[k] += error[k] / kPoses;
+  }
+  return sum;
+}
+
+TEST(CornerRefinement, CornersInACorridorAreUnbiasedOnBothWalls) {
+  // What all markers of a corridor have in common does not average out along it.
+  for (const double wall_y_m : {1.0, -1.0}) {
+    for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 0.0, 3.3))
+      EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.01) << "pixels' own area, wall at " << wall_y_m;
+    for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 0.6, 2.7))
+      EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.01) << "blurred, wall at " << wall_y_m;
+  }
+}
+
 TEST(CornerRefinement, BentEdgesOfALensDoNotMatter) {
   RobotConfig robot;
   robot.camera.distortion = {-0.3, 0.1, 0.001, -0.001, 0.0};

@@ -80,7 +80,7 @@ cv::Point2d mean_of(const std::vector<cv::Point2f>& corners) {
   return cv::Point2d{sum} / static_cast<double>(corners.size());
 }
 
-TEST(Renderer, MoreMarkersThanMuJoCoHasTexturesShowTheirOwnIds) {
+TEST(Renderer, ManyMarkersShowTheirOwnIds) {
   WorldConfig world{};
   world.length_m = 246.0;
   MarkerLayoutConfig markers{};
@@ -127,6 +127,76 @@ TEST(Renderer, PixelsLieWhereThePinholePutsThem) {
     const double side_px = cv::norm(seen.corners[0][1] - seen.corners[0][0]);
     EXPECT_NEAR(side_px, pinhole.focal_px * 0.4 / 1.5, 2.0);
   }
+}
+
+/// Row at which a column crosses from one level to the other: from the sum of its grey levels
+/// between the two rows, as exact as the pixels are means over their areas.
+double edge_row(const cv::Mat& grey, int column, int black_row, int white_row) {
+  const double black = grey.at<std::uint8_t>(black_row, column);
+  const double white = grey.at<std::uint8_t>(white_row, column);
+  const int step = white_row > black_row ? 1 : -1;
+  double black_rows = 0.5;
+  for (int row = black_row + step; row != white_row; row += step)
+    black_rows += (white - grey.at<std::uint8_t>(row, column)) / (white - black);
+  return black_row + step * black_rows;
+}
+
+TEST(Renderer, EdgesAlongPixelRowsAreUnbiased) {
+  // The default camera looks along the corridor and sees the lower edges of all markers within the
+  // same row of pixels: what is wrong there is wrong alike for every marker.
+  const RobotConfig robot{};
+  const Pinhole pinhole{640, 480, robot.camera.fx_px, robot.camera.cx_px, robot.camera.cy_px};
+  Scene scene{{}, {}, PlatePrint::kMarkers, pinhole};
+  for (const std::size_t i : {2U, 3U}) {  // left wall, right wall
+    const Eigen::Vector3d centre = scene.world.markers[i].centre_m;
+    for (const double distance_m : {1.9, 2.1, 2.3, 2.5, 2.7, 2.9}) {
+      Eigen::Isometry3d world_from_camera = robot.camera.base_from_camera();
+      world_from_camera.translation().x() = centre.x() - distance_m;
+      cv::Mat grey;
+      cv::cvtColor(scene.renderer.render(world_from_camera), grey, cv::COLOR_RGB2GRAY);
+      const auto lower = [&](double x_m) {
+        return project(pinhole, world_from_camera, centre + Eigen::Vector3d{x_m, 0.0, -0.2});
+      };
+      const cv::Point2d near = lower(-0.2), far = lower(0.2);
+      constexpr int kMargin_px = 3;
+      const int first = static_cast<int>(std::ceil(std::min(near.x, far.x))) + kMargin_px;
+      const int last = static_cast<int>(std::floor(std::max(near.x, far.x))) - kMargin_px;
+      double sum_px = 0.0;
+      for (int column = first; column <= last; ++column) {
+        const double row = near.y + (far.y - near.y) * (column - near.x) / (far.x - near.x);
+        const int middle = static_cast<int>(std::lround(row));
+        sum_px += edge_row(grey, column, middle - kMargin_px, middle + kMargin_px) - row;
+      }
+      EXPECT_LT(std::abs(sum_px) / (last - first + 1), 0.004)
+          << i << " from " << distance_m << " m";
+    }
+  }
+}
+
+TEST(Renderer, WhatStandsInFrontOfAPlateIsNotPrintedOn) {
+  WorldConfig world{};
+  BoxConfig box{};
+  box.x_m = 4.0;
+  box.y_m = 0.5;
+  box.length_m = 0.1;
+  box.width_m = 0.1;
+  box.height_m = 1.0;
+  world.boxes = {box};
+  Scene scene{world, {}, PlatePrint::kMarkers};
+  const MarkerPlate& marker = scene.world.markers[0];
+  const Eigen::Isometry3d world_from_camera = looking_at(marker, 1.2);
+  const cv::Mat picture = scene.renderer.render(world_from_camera);
+  cv::Mat grey;
+  cv::cvtColor(picture, grey, cv::COLOR_RGB2GRAY);
+  // The box covers the middle of the plate: one level throughout.
+  const cv::Mat on_box = grey(cv::Rect{150, 80, 20, 80});
+  double low = 0.0, high = 0.0;
+  cv::minMaxLoc(on_box, &low, &high);
+  EXPECT_EQ(low, high);
+  // Beside it the plate is seen: black and white.
+  cv::minMaxLoc(grey(cv::Rect{112, 80, 28, 80}), &low, &high);
+  EXPECT_LT(low, 40.0);
+  EXPECT_GT(high, 200.0);
 }
 
 TEST(Renderer, CornerZeroIsThePrintsTopLeft) {

@@ -4,7 +4,7 @@
 
 #include "common/robot/robot_config.hpp"
 #include "sim/core/camera/gl_context.hpp"
-#include "sim/core/camera/plate_textures.hpp"
+#include "sim/core/camera/plate_prints.hpp"
 #include "sim/core/robot/physics.hpp"
 #include "sim/core/world/marker_picture.hpp"
 #include "sim/core/world/world.hpp"
@@ -16,17 +16,14 @@
 
 namespace waymark {
 
-/// A pinhole with square pixels; pixel centres are integers.
-struct Pinhole {
-  int width_px{0};
-  int height_px{0};
-  double focal_px{0.0};
-  double cx_px{0.0};
-  double cy_px{0.0};
-};
-
 /// What is on the plates.
 enum class PlatePrint { kMarkers, kBlank };
+
+/// A plate in MuJoCo's model.
+struct PlateGeom {
+  int geom{0};
+  int id{0};
+};
 
 /// Renders what the robot's camera sees; its own body is never in the picture. One per thread.
 class Renderer {
@@ -43,18 +40,19 @@ class Renderer {
   const cv::Mat& render(const Eigen::Isometry3d& world_from_camera);
 
  private:
-  void place_camera(const Eigen::Isometry3d& world_from_camera);
+  void place_camera();
+  void read_view();
 
   Physics& physics_;
-  Pinhole pinhole_;
   GlContext gl_;
-  PlateTextures textures_;
-  std::vector<int> id_of_geom_;
+  PlatePrints prints_;
+  std::vector<PlateGeom> plates_;
   mjvOption options_{};
   mjvScene scene_{};
   mjrContext context_{};
   cv::Mat bottom_up_;
-  cv::Mat picture_;
+  cv::Mat depth_bottom_up_;
+  View view_{};
 };
 
 }  // namespace waymark

@@ -50,11 +50,10 @@ std::string header(const MjcfOptions& options) {
                      options.time_step_s, options.picture_width_px, options.picture_height_px);
 }
 
-/// One texture stands for all markers; the renderer puts the right one in its place.
+/// Plates are white; the renderer prints on them.
 std::string assets() {
   return R"(  <asset>
-    <texture name="plate" type="2d" builtin="flat" width="8" height="8" rgb1="1 1 1"/>
-    <material name="plate" texture="plate" texrepeat="1 1" specular="0" shininess="0" emission="0.2"/>
+    <material name="plate" rgba="1 1 1 1" specular="0" shininess="0" emission="0.2"/>
     <material name="side_wall" rgba="0.72 0.71 0.68 1" specular="0" shininess="0"/>
     <material name="end_wall" rgba="0.46 0.50 0.56 1" specular="0" shininess="0"/>
     <material name="door" rgba="0.50 0.36 0.24 1" specular="0" shininess="0"/>
@@ -92,7 +91,7 @@ std::string wall_geom(const Wall& wall) {
       along.y(), -along.y(), along.x());
 }
 
-/// A thin box whose +z face shows the texture, upright: x to the right as seen from the front.
+/// A thin box whose +z face is printed on: x to the right as seen from the front.
 std::string marker_geom(const MarkerPlate& marker, std::size_t index, double plate_size_m) {
   const Eigen::Vector3d facing{std::cos(marker.yaw_rad), std::sin(marker.yaw_rad), 0.0};
   const Eigen::Vector3d right{-facing.y(), facing.x(), 0.0};

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The markers, put into the renderer's pictures of blank plates.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include <map>
+
+namespace waymark {
+
+/// A pinhole with square pixels; pixel centres are integers.
+struct Pinhole {
+  int width_px{0};
+  int height_px{0};
+  double focal_px{0.0};
+  double cx_px{0.0};
+  double cy_px{0.0};
+};
+
+/// What a pinhole sees.
+struct View {
+  Pinhole pinhole{};
+  Eigen::Isometry3d world_from_camera{};  ///< optical frame: x right, y down, z forward
+  cv::Mat rgb{};                          ///< 8 bit, three channels
+  cv::Mat nearness_per_m{};               ///< float: 1/z of what each pixel's centre shows
+};
+
+/// The pictures of all ids. Each pixel gets the mean of the print over its own area, as a sensor's
+/// pixel does. OpenGL's texture filters take fewer samples, and edges along a row of pixels then
+/// appear up to 0.04 px off, alike for every marker that hangs at the same height.
+class PlatePrints {
+ public:
+  /// @param pictures       8-bit grey pictures of whole plates, top row first, of at most a million
+  ///                       texels each, by id.
+  /// @param plate_size_m   side of a plate.
+  PlatePrints(const std::map<int, cv::Mat>& pictures, double plate_size_m);
+
+  /// Darkens the pixels that show a blank white plate by what is printed there.
+  /// @param world_from_plate  of the front face: origin in its middle, x right, y up, z outwards.
+  void print(int id, const Eigen::Isometry3d& world_from_plate, View& view) const;
+
+ private:
+  struct Print {
+    cv::Mat texels{};
+    cv::Mat sums{};  ///< integral image
+  };
+
+  std::map<int, Print> print_of_id_;
+  double plate_size_m_;
+};
+
+}  // namespace waymark
