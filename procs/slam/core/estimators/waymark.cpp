@@ -2,6 +2,7 @@
 #include "slam/core/estimators/waymark.hpp"
 
 #include "slam/core/belief/told_axes.hpp"
+#include "slam/core/filter/centred_normals.hpp"
 #include "slam/core/landmark/mean_landmarks.hpp"
 
 #include <algorithm>
@@ -68,7 +69,7 @@ Estimate WaymarkEstimator::update_by(const Observation& observation) {
     ++updates_;
   }
   const Estimate now = estimate(observation);
-  hindsight_.add_scan(observation.time, now.map_from_base);
+  retrospect_.add_scan(observation.time, now.map_from_base);
   return now;
 }
 
@@ -118,7 +119,10 @@ void WaymarkEstimator::process(const Observation& observation) {
   drift_.move(expected.map_from_base());
   sensed.drift = drift_.release(observation.beams,
                                 expected.map_from_base().rotation() * sensed.walls.weak_direction);
-  const std::vector<Eigen::Vector3d> normals = centred_normals();
+  const std::vector<Eigen::Vector3d> normals =
+      centred_normals(particles_.weights(), [&](std::size_t particle) {
+        return Random{setup_.seed, kPoseStream, updates_, particle};
+      });
   std::vector<Outcome> outcomes(particles_.size());
   setup_.parallel_for(particles_.size(), [&](std::size_t i) {
     Random random{setup_.seed, kStartStream, updates_, i};
@@ -270,23 +274,6 @@ void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
   }
 }
 
-/// Standard normal samples whose weighted mean is exactly zero and whose spread is kept: the mean
-/// of the particles then follows the mean of the proposals, without sampling noise.
-std::vector<Eigen::Vector3d> WaymarkEstimator::centred_normals() const {
-  std::vector<Eigen::Vector3d> normals;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    Random random{setup_.seed, kPoseStream, updates_, i};
-    normals.emplace_back(random.normal(), random.normal(), random.normal());
-    mean += particles_.weights()[i] * normals.back();
-  }
-  const double shrunk = 1.0 - 1.0 / particles_.effective_number();
-  if (shrunk < 0.5) return normals;  // one particle has nearly all the weight
-  for (Eigen::Vector3d& normal : normals)
-    normal = (normal - mean) / std::sqrt(shrunk);
-  return normals;
-}
-
 void WaymarkEstimator::judge(const std::vector<Outcome>& outcomes) {
   mean_ = mean_pose();
   covariance_ = covariance_about_mean();
@@ -362,8 +349,9 @@ std::vector<Landmark> WaymarkEstimator::landmarks() const {
 
 /// What cannot be mapped where the robot seems to be is not drawn again either.
 void WaymarkEstimator::remember(const Observation& observation) {
-  hindsight_.add_update(belief().pose_by_statics(kStaticMarkers), statics());
-  archive_.add(verdict_ == KidnapWatch::Verdict::kDoubtful ? Observation{} : observation);
+  const bool is_mapped = verdict_ != KidnapWatch::Verdict::kDoubtful;
+  retrospect_.add_update(belief().pose_by_statics(kStaticMarkers), statics(),
+                         is_mapped ? observation : Observation{});
 }
 
 Statics WaymarkEstimator::statics() const {
@@ -375,15 +363,11 @@ Statics WaymarkEstimator::statics() const {
 }
 
 std::vector<TimedPose> WaymarkEstimator::trajectory() const {
-  return hindsight_.way(statics(), config_.same_marker_within_m);
+  return retrospect_.trajectory(statics(), config_.same_marker_within_m);
 }
 
 GridMap WaymarkEstimator::redrawn_map() const {
-  const std::vector<Se2> way = hindsight_.way_of_updates(statics(), config_.same_marker_within_m);
-  Mapper mapper{setup_.grid};
-  for (std::size_t i = 0; i < archive_.size(); ++i)
-    mapper.insert(archive_.at(i), way[i], Eigen::Matrix3d::Zero());
-  return mapper.map();
+  return retrospect_.redrawn_map(setup_.grid, statics(), config_.same_marker_within_m);
 }
 
 std::vector<PublishedParticle> WaymarkEstimator::particles() const {

@@ -12,8 +12,7 @@
 #include "slam/core/matching/surface_matching.hpp"
 #include "slam/core/proposal/pose_proposal.hpp"
 #include "slam/core/scan/turn_by_scans.hpp"
-#include "slam/core/smoothing/hindsight.hpp"
-#include "slam/core/smoothing/scan_archive.hpp"
+#include "slam/core/smoothing/retrospect.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -121,7 +120,6 @@ class WaymarkEstimator final : public Estimator {
   Eigen::Matrix3d noise_of_first(const State& state, const Sensed& sensed) const;
   void remember(const Observation& observation);
   Statics statics() const;
-  std::vector<Eigen::Vector3d> centred_normals() const;
   void judge(const std::vector<Outcome>& outcomes);
   Se2 mean_pose() const;
   Eigen::Matrix3d covariance_about_mean() const;
@@ -135,8 +133,7 @@ class WaymarkEstimator final : public Estimator {
   OdometryNoise noise_{};  ///< the configured one, grown
   Mapper mapper_;
   MapDrift drift_{};
-  Hindsight hindsight_{};
-  ScanArchive archive_{};
+  Retrospect retrospect_{};
   Motion since_update_{};
   std::vector<AnnotatedBeam> updated_beams_{};  ///< those of the last update
   std::uint64_t updates_{0};
