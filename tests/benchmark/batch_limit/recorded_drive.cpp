@@ -34,11 +34,11 @@ std::vector<MarkerMeasurement> camera_measurements(const Observation& observatio
                                                    const EstimatorSetup& setup,
                                                    MarkerMeasurementConfig config) {
   const auto believed =
-      measure_markers(observation, setup.range_sigma_m, setup.camera.base_from_camera, config);
+      measure_markers(observation, setup.range_sigma_m, setup.camera.base_from_camera, {}, config);
   config.wall_sigma_m = kNoWall;
   config.wall_sigma_rad = kNoWall;
   auto measured =
-      measure_markers(observation, setup.range_sigma_m, setup.camera.base_from_camera, config);
+      measure_markers(observation, setup.range_sigma_m, setup.camera.base_from_camera, {}, config);
   std::erase_if(measured, [&](const MarkerMeasurement& one) {
     return std::ranges::none_of(believed, [&](const MarkerMeasurement& other) {
       return one.id == other.id &&

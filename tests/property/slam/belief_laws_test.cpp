@@ -107,7 +107,7 @@ struct WallScene {
 
   MarkerMeasurement measured_with(const Eigen::Vector2d& camera_errors) const {
     const auto measurements = measure_markers(
-        seen_by_camera_with(camera_errors.x(), camera_errors.y()), 0.01, base_from_camera, {});
+        seen_by_camera_with(camera_errors.x(), camera_errors.y()), 0.01, base_from_camera, {}, {});
     EXPECT_EQ(measurements.size(), 1U);
     return measurements.at(0);
   }

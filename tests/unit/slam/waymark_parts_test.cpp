@@ -316,17 +316,23 @@ TEST(WallFit, ExtendsTheWallWithItsUncertainty) {
   EXPECT_FALSE(fit_wall(beams, {0.0, 0.2}, radians(-90.0), 0.01, 1.5));
 }
 
-TEST(MeasureMarkers, BesideWallsAMarkerTellsOnlyWhereAlongItsWallItIs) {
-  const MarkerMeasurement whole = measurement_at({2.0, 1.0, radians(-60.0)});
-  const MarkerMeasurement news = beside_walls(whole);
-  const Eigen::Vector2d across = whole.base_from_marker.rotation().col(0);
-  const Eigen::Vector2d along = whole.base_from_marker.rotation().col(1);
-  const auto variance_of = [](const MarkerMeasurement& of, const Eigen::Vector2d& axis) {
-    return axis.dot(of.covariance.topLeftCorner<2, 2>() * axis);
+TEST(MeasureMarkers, OdometryBetweenFrameAndScanTurnsASightingAboutTheRobot) {
+  Observation observation;  // without walls: what the camera says
+  MarkerSighting sighting;
+  sighting.base_from_marker = {2.0, 1.0, radians(-90.0)};
+  sighting.covariance_in_base = 1e-6 * Eigen::Matrix3d::Identity();
+  observation.sightings = {sighting};
+  const OdometryNoise odometry;
+  const auto covariance_of = [&] {
+    return measure_markers(observation, 0.01, {}, odometry, {}).at(0).covariance;
   };
-  EXPECT_NEAR(variance_of(news, along), variance_of(whole, along), 1e-12);
-  EXPECT_GT(variance_of(news, across), 0.01);
-  EXPECT_GT(news.covariance(2, 2), 0.04);
+  const Eigen::Matrix3d at_once = covariance_of();
+  observation.sightings[0].carried_m = 0.05;
+  const Eigen::Matrix3d more = covariance_of() - at_once;
+  const double turn_rad2 = odometry.turn_per_sqrt_m * odometry.turn_per_sqrt_m * 0.05;
+  EXPECT_NEAR(more(2, 2), turn_rad2, 1e-12);
+  EXPECT_NEAR(more(0, 0), 1.0 * turn_rad2, 1e-12) << "a metre to the left moves along x";
+  EXPECT_NEAR(more(1, 1), 4.0 * turn_rad2, 1e-12);
 }
 
 TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {
@@ -339,13 +345,13 @@ TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {
   sighting.covariance_in_base = diagonal(0.02, 0.01, 0.03);
   sighting.size_m = 0.4;
   observation.sightings = {sighting};
-  const auto upright = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {});
+  const auto upright = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {}, {});
   ASSERT_EQ(upright.size(), 1U);
   EXPECT_TRUE(upright[0].wall.has_value());
   EXPECT_NEAR(upright[0].base_from_marker.y(), 1.0, 0.006);
   EXPECT_LT(upright[0].covariance(0, 0), 2.0 * sighting.covariance_in_base(0, 0));
   observation.sightings[0].base_from_marker = {2.5, 1.01, radians(-130.0)};
-  const auto flipped = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {});
+  const auto flipped = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {}, {});
   EXPECT_TRUE(flipped.empty());
 }
 

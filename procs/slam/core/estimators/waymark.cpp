@@ -17,9 +17,8 @@ constexpr double kMinFacing = 0.3;
 constexpr double kWallInSight_m = 0.2;                      // a beam ends this near to the marker
 constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
 constexpr std::size_t kStaticMarkers = 4;                   // that a past pose is corrected by
-constexpr double kMinSurfaces = 0.1;      // share of beams; a scan with fewer shows nothing
-constexpr double kMinMappedBeams = 10.0;  // fewer do not tell the pose across the walls
-constexpr double kMinMappedShare = 0.2;   // of a scan's beams; fewer say nothing about being lost
+constexpr double kMinSurfaces = 0.1;     // share of beams; a scan with fewer shows nothing
+constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
 BeliefPrior prior_of(const WaymarkConfig& config) {
   return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma,
@@ -87,7 +86,7 @@ bool WaymarkEstimator::is_due() const {
 }
 
 std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& observation) const {
-  return measure_markers(observation, setup_.range_sigma_m, setup_.camera.base_from_camera,
+  return measure_markers(observation, setup_.range_sigma_m, setup_.camera.base_from_camera, noise_,
                          config_.markers);
 }
 
@@ -256,15 +255,15 @@ void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed, doub
 
 void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
                                           Outcome& outcome) const {
-  const bool walls_told = outcome.walls.mapped >= kMinMappedBeams;
+  const Eigen::Matrix3d before = state.belief.pose_covariance();
   for (const MarkerMeasurement& measurement : sensed.markers) {
     if (measurement.wall) state.belief.correct_sighting_errors(*measurement.wall);
     if (measurement.focal) state.belief.correct_sighting_errors(*measurement.focal);
     const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->may_be_it(config_.marker_gate, config_.marker_near_m)) {
-      const MarkerMeasurement news = walls_told ? beside_walls(measurement) : measurement;
-      outcome.log_evidence += config_.marker_evidence *
-                              state.belief.correct(nearest->marker, news, config_.marker_gate);
+      outcome.log_evidence +=
+          config_.marker_evidence *
+          state.belief.correct(nearest->marker, measurement, config_.marker_gate);
       ++outcome.known_markers;
     } else {
       outcome.log_evidence -= config_.marker_evidence * 0.5 * config_.marker_gate;
@@ -272,6 +271,10 @@ void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
         state.belief.add(measurement);
     }
   }
+  // What markers tell comes with noise of its own: Joseph's form of the update.
+  const Eigen::Matrix3d after = state.belief.pose_covariance();
+  const Eigen::Matrix3d kept = before.ldlt().solve(after).transpose();
+  outcome.by_noise = after - kept * (before - outcome.by_noise) * kept.transpose();
 }
 
 void WaymarkEstimator::judge(const std::vector<Outcome>& outcomes) {

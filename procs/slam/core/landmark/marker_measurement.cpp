@@ -19,9 +19,6 @@ constexpr int kMinBeams = 8;
 constexpr double kMinExtent_m = 0.1;            // [m] root mean square length of the fitted stretch
 constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
 constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
-// Far more than walls leave open: what they have told already.
-constexpr double kTold_m = 0.1;
-constexpr double kTold_rad = 0.2;
 
 double squared(double x) {
   return x * x;
@@ -63,6 +60,7 @@ LineFit collect(std::span<const AnnotatedBeam> beams, const Line& line,
 }
 
 Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const Se2& base_from_camera,
+                               const OdometryNoise& odometry,
                                const MarkerMeasurementConfig& config) {
   const Eigen::Vector2d ray =
       sighting.base_from_marker.translation() - base_from_camera.translation();
@@ -72,6 +70,12 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const Se2& base_f
       squared(config.camera_sigma_rad) * across * across.transpose();
   covariance.topLeftCorner<2, 2>().diagonal().array() += squared(config.camera_sigma_m);
   covariance(2, 2) += squared(config.camera_sigma_rad);
+  // A heading that odometry gets wrong in between turns the sighting about the robot.
+  const Eigen::Vector2d place = sighting.base_from_marker.translation();
+  const Eigen::Vector3d turned{-place.y(), place.x(), 1.0};
+  covariance += (squared(odometry.turn_per_sqrt_m) * sighting.carried_m +
+                 squared(odometry.turn_per_sqrt_rad) * sighting.carried_rad) *
+                turned * turned.transpose();
   return covariance;
 }
 
@@ -176,15 +180,9 @@ std::optional<FocalSighting> usable(std::optional<FocalSighting> focal,
   return focal;
 }
 
-MarkerMeasurement beside_walls(MarkerMeasurement measurement) {
-  const Eigen::Vector2d normal = measurement.base_from_marker.rotation().col(0);
-  measurement.covariance.topLeftCorner<2, 2>() += squared(kTold_m) * normal * normal.transpose();
-  measurement.covariance(2, 2) += squared(kTold_rad);
-  return measurement;
-}
-
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation, double range_sigma_m,
                                                const Se2& base_from_camera,
+                                               const OdometryNoise& odometry,
                                                const MarkerMeasurementConfig& config) {
   // The newest frame only: what one frame gets wrong, the next gets wrong in the same way.
   Timestamp newest{};
@@ -197,7 +195,7 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation, d
         sighting.id,
         sighting.time,
         sighting.base_from_marker,
-        in_robot_frame(sighting, base_from_camera, config),
+        in_robot_frame(sighting, base_from_camera, odometry, config),
         by_camera_errors(sighting.base_from_marker, base_from_camera),
         Eigen::Vector3d::Zero(),
         usable(sighting.focal, config)};

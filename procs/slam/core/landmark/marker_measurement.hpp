@@ -2,6 +2,7 @@
 // Where a marker is from the robot: the camera's view of it, held to the wall that the LiDAR sees.
 #pragma once
 
+#include "slam/core/belief/odometry_errors.hpp"
 #include "slam/core/proposal/pose_information.hpp"
 #include "slam/core/scan/observation.hpp"
 
@@ -79,13 +80,10 @@ struct MarkerMeasurement {
 /// The last sighting of each marker of an observation as a measurement. The corners tell the
 /// bearing best and the range worst; the wall tells where along that bearing the marker is. A view
 /// that the wall contradicts (a flipped pose) gives no measurement.
+/// @param odometry  that carried the sightings from their frames' times to the scan's.
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation, double range_sigma_m,
                                                const Se2& base_from_camera,
+                                               const OdometryNoise& odometry,
                                                const MarkerMeasurementConfig& config);
-
-/// What a sighting of a known marker adds when the walls in view have told the pose already: where
-/// along its wall the marker is. Across the wall, and about directions, it would tell again what
-/// the same beams have told, or what a camera gets wrong in every frame alike.
-MarkerMeasurement beside_walls(MarkerMeasurement measurement);
 
 }  // namespace waymark

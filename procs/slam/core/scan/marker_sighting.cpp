@@ -44,6 +44,8 @@ std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Tim
                         scan_base_from_frame_base * frame_base_from_marker,
                         turn * planar_covariance(detection.covariance_in_base) * turn.transpose(),
                         size_m,
+                        scan_base_from_frame_base.translation().norm(),
+                        std::abs(scan_base_from_frame_base.theta()),
                         std::nullopt};
 }
 
