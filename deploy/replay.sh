@@ -62,8 +62,8 @@ prepare() {
 run() {
   local name=$1 program=$bin_dir/waymark-$1 log_file=$logs/$row.$1.log code=0
   shift
-  "$program" "$@" 2> >(exec tee -i "$log_file" >&2) || code=$?
-  wait  # for tee
+  # A pipe, for a process substitution may still be writing when its timing is read.
+  { "$program" "$@" 2>&1 >&3 | tee -i "$log_file" >&2; } 3>&1 || code=$?
   ((code == 0)) || die "$code" "$name ended with code $code; its log is $log_file"
 }
 
