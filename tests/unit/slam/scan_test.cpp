@@ -152,22 +152,5 @@ TEST(Observability, GarbageShowsNoSurfaces) {
   EXPECT_EQ(surface_share({}), 0.0);
 }
 
-TEST(Observability, GrazingBeamsTellTheDistanceOfTheirWallBest) {
-  const auto wall_seen_at = [](double x_m) {
-    std::vector<AnnotatedBeam> beams(11);
-    for (std::size_t i = 0; i < beams.size(); ++i) {
-      Beam& beam = beams[i].beam;
-      beam.end_in_base = {x_m + 0.02 * static_cast<double>(i), 1.0};
-      beam.range_m = beam.end_in_base.norm();
-    }
-    return information_of(beams, Se2{}, 0.01, 0.002);
-  };
-  const Eigen::Matrix3d before = wall_seen_at(-0.1);
-  EXPECT_NEAR(before(1, 1), 11.0 / (1e-4 + 4e-6), 0.02 * before(1, 1));
-  EXPECT_NEAR(before(0, 0), 0.0, 1e-6);
-  EXPECT_GT(wall_seen_at(3.0)(1, 1), 5.0 * before(1, 1));
-  EXPECT_GT(wall_seen_at(3.0)(2, 2), 100.0 * before(2, 2)) << "far away they tell the heading";
-}
-
 }  // namespace
 }  // namespace waymark

@@ -193,12 +193,12 @@ PoseError WaymarkEstimator::draw(State& state, const Sensed& sensed, const Chanc
 /// The first pose is exact, but what is mapped from there is off by what the scan's noise makes of
 /// it, for ever.
 Eigen::Matrix3d WaymarkEstimator::noise_of_first(const State& state, const Sensed& sensed) const {
-  PoseInformation told;
-  told.information =
-      information_of(sensed.observation->beams, state.map_from_base, config_.matching.range_sigma_m,
-                     config_.matching.surface_sigma_m);
-  keep_observed(config_.matching.weak_share, told);
-  return told.information.completeOrthogonalDecomposition().pseudoInverse();
+  const std::vector<AnnotatedBeam>& beams = sensed.observation->beams;
+  SurfaceFinder walls{state.walls, beams.size()};
+  const Eigen::Matrix3d looks_far = 0.01 * Eigen::Matrix3d::Identity();
+  const SurfaceMatch match =
+      match_surfaces(beams, walls, state.map_from_base, looks_far, config_.matching);
+  return match.pose.information.completeOrthogonalDecomposition().pseudoInverse();
 }
 
 /// By odometry, or to where the markers say that the robot has been carried.

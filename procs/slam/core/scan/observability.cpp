@@ -3,8 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <cmath>
-
 namespace waymark {
 namespace {
 
@@ -15,26 +13,6 @@ constexpr int kMinPoints = 5;
 // Noise turns fitted normals by some degrees, which leaks sin^2 of them into the weak direction:
 // below this share of the strong direction it means nothing.
 constexpr double kDegenerateShare = 0.03;
-
-/// Of what beams measure along their surfaces' normals.
-/// @param variance_of  of a beam, given its normal in the base frame.
-template <class VarianceOf>
-Eigen::Matrix3d sum_over_surfaces(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
-                                  const VarianceOf& variance_of) {
-  const Eigen::Matrix2d turn = map_from_base.rotation();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    const auto normal_in_base = surface_normal(beams, static_cast<int>(i));
-    if (!normal_in_base) continue;
-    const Eigen::Vector2d& end = beams[i].beam.end_in_base;
-    const Eigen::Vector2d normal = turn * *normal_in_base;
-    // A turn moves the end by (-y, x) in the base frame.
-    const Eigen::Vector3d row{normal.x(), normal.y(),
-                              normal_in_base->dot(Eigen::Vector2d{-end.y(), end.x()})};
-    information += row * row.transpose() / variance_of(beams[i].beam, *normal_in_base);
-  }
-  return information;
-}
 
 }  // namespace
 
@@ -71,20 +49,20 @@ double surface_share(std::span<const AnnotatedBeam> beams) {
   return beams.empty() ? 0.0 : on_surface / static_cast<double>(beams.size());
 }
 
-Eigen::Matrix3d information_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
-                               double range_sigma_m, double surface_sigma_m) {
-  return sum_over_surfaces(beams, map_from_base, [&](const Beam& beam, const auto& normal) {
-    const Eigen::Vector2d ray = (beam.end_in_base - beam.start_in_base) / beam.range_m;
-    return std::pow(range_sigma_m * normal.dot(ray), 2) + surface_sigma_m * surface_sigma_m;
-  });
-}
-
 Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
                                double range_sigma_m) {
   Observability result;
-  result.information = sum_over_surfaces(beams, map_from_base, [&](const Beam&, const auto&) {
-    return range_sigma_m * range_sigma_m;
-  });
+  const Eigen::Matrix2d turn = map_from_base.rotation();
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const auto normal_in_base = surface_normal(beams, static_cast<int>(i));
+    if (!normal_in_base) continue;
+    const Eigen::Vector2d& end = beams[i].beam.end_in_base;
+    const Eigen::Vector2d normal = turn * *normal_in_base;
+    // A turn moves the end by (-y, x) in the base frame.
+    const Eigen::Vector3d row{normal.x(), normal.y(),
+                              normal_in_base->dot(Eigen::Vector2d{-end.y(), end.x()})};
+    result.information += row * row.transpose() / (range_sigma_m * range_sigma_m);
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
       Eigen::Matrix2d{result.information.topLeftCorner<2, 2>()}};
   result.weak_direction = axes.eigenvectors().col(0);

@@ -37,15 +37,8 @@ std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> bea
 /// more than a tenth do.
 double surface_share(std::span<const AnnotatedBeam> beams);
 
-/// What a scan can tell of the pose at best: each beam measures its distance along its surface's
-/// normal, with the part of the range's error that lies across the surface.
-/// @return [1/m^2, 1/(m rad), 1/rad^2] order x y theta, map frame.
-Eigen::Matrix3d information_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
-                               double range_sigma_m, double surface_sigma_m);
-
 /// Each beam that lies on a smooth surface measures its distance along the surface's normal
-/// (point-to-line; Censi 2007), with `range_sigma_m` whatever the surface's direction: for
-/// comparing directions.
+/// (point-to-line; Censi 2007), with `range_sigma_m`.
 Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
                                double range_sigma_m);
 
