@@ -157,11 +157,11 @@ void PlatePrints::print(int id, const Eigen::Isometry3d& world_from_plate, View&
   const Eigen::Isometry3d camera_from_plate = view.world_from_camera.inverse() * world_from_plate;
   const bool shows_its_back =
       camera_from_plate.linear().col(2).dot(camera_from_plate.translation()) >= 0.0;
-  if (shows_its_back) return;
+  const cv::Rect region = region_of(view.pinhole, camera_from_plate, 0.5 * plate_size_m_);
+  if (shows_its_back || region.empty()) return;
   const Eigen::Matrix3d to_texel =
       texel_from_pixel(view.pinhole, camera_from_plate, texels.cols / plate_size_m_, texels.size());
   const Sampler sampler{texels, print.sums, to_texel};
-  const cv::Rect region = region_of(view.pinhole, camera_from_plate, 0.5 * plate_size_m_);
   for (int v = region.y; v < region.br().y; ++v) {
     for (int u = region.x; u < region.br().x; ++u) {
       const Eigen::Vector3d texel = to_texel * Eigen::Vector3d(u, v, 1.0);

@@ -76,14 +76,21 @@ void Belief::move(const Motion& motion, const OdometryNoise& noise) {
       carried_along(map_from_base_.rotation() * corrected.start_from_end.translation());
   const Eigen::Matrix<double, 3, 4> by_errors = turn * corrected.by_errors;
 
-  const Eigen::MatrixXd rows =
-      by_pose * covariance_.topRows<3>() + by_errors * covariance_.middleRows<4>(kOdometry);
-  covariance_.topRows<3>() = rows;
-  const Eigen::MatrixXd columns = covariance_.leftCols<3>() * by_pose.transpose() +
-                                  covariance_.middleCols<4>(kOdometry) * by_errors.transpose();
-  covariance_.leftCols<3>() = columns;
+  transform_pose(by_pose, by_errors);
   covariance_.topLeftCorner<3, 3>() += turn * corrected.covariance * turn.transpose();
   map_from_base_ = map_from_base_ * corrected.start_from_end;
+}
+
+/// The pose deviates by `by_pose` times itself and `by_errors` times the first systematic errors.
+void Belief::transform_pose(const Eigen::Matrix3d& by_pose,
+                            const Eigen::Ref<const Eigen::MatrixXd>& by_errors) {
+  const Eigen::Index errors = by_errors.cols();
+  const Eigen::MatrixXd rows =
+      by_pose * covariance_.topRows<3>() + by_errors * covariance_.middleRows(kOdometry, errors);
+  covariance_.topRows<3>() = rows;
+  const Eigen::MatrixXd columns = covariance_.leftCols<3>() * by_pose.transpose() +
+                                  covariance_.middleCols(kOdometry, errors) * by_errors.transpose();
+  covariance_.leftCols<3>() = columns;
 }
 
 PoseError Belief::pose_error() const {
@@ -93,13 +100,7 @@ PoseError Belief::pose_error() const {
 }
 
 void Belief::widen(const PoseError& more) {
-  const Eigen::MatrixXd rows =
-      covariance_.topRows<3>() + more.by_errors * covariance_.middleRows<kStaticErrors>(kOdometry);
-  covariance_.topRows<3>() = rows;
-  const Eigen::MatrixXd columns =
-      covariance_.leftCols<3>() +
-      covariance_.middleCols<kStaticErrors>(kOdometry) * more.by_errors.transpose();
-  covariance_.leftCols<3>() = columns;
+  transform_pose(Eigen::Matrix3d::Identity(), more.by_errors);
   const Eigen::Matrix3d followed =
       more.by_errors * errors_covariance() * more.by_errors.transpose();
   covariance_.topLeftCorner<3, 3>() += positive_part(more.covariance - followed);

@@ -206,6 +206,8 @@ class Belief {
                                const Eigen::MatrixXd& covariance);
   Innovation compare(std::size_t marker, const MarkerMeasurement& measurement,
                      Columns& with_residual) const;
+  void transform_pose(const Eigen::Matrix3d& by_pose,
+                      const Eigen::Ref<const Eigen::MatrixXd>& by_errors);
   void condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,
                  const Eigen::Ref<const Eigen::VectorXd>& deviation,
                  const Eigen::Ref<const Eigen::MatrixXd>& covariance_lost);

@@ -21,8 +21,8 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
       length_m > 0.0 ? Eigen::Vector2d{motion.start_from_end.translation() / length_m}
                      : Eigen::Vector2d::UnitX();
   const Eigen::Vector2d left{-along.y(), along.x()};
-  const double turn_rad2 = squared(noise.turn_per_sqrt_m) * motion.distance_m +
-                           squared(noise.turn_per_sqrt_rad) * motion.turn_rad + kVarianceFloor;
+  const double turn_rad2 =
+      turn_variance(noise, motion.distance_m, motion.turn_rad) + kVarianceFloor;
   const double along_m2 = squared(noise.along_per_sqrt_m) * motion.distance_m + kVarianceFloor;
   // Integrated random walk: L^2 / 3 of the final heading's variance, L / 2 in common with it.
   const double across_m2 = squared(length_m) * turn_rad2 / 3.0 +
@@ -44,6 +44,10 @@ double telling_turn(double turn_rad, double noise_rad2) {
 }
 
 }  // namespace
+
+double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad) {
+  return squared(noise.turn_per_sqrt_m) * distance_m + squared(noise.turn_per_sqrt_rad) * turn_rad;
+}
 
 CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& errors,
                                  const OdometryNoise& noise) {

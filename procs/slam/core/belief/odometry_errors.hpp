@@ -24,6 +24,9 @@ struct OdometryNoise {
   void describe(Fields& fields);
 };
 
+/// Variance of the heading's random walk [rad^2] on a way of `distance_m` with turns of `turn_rad`.
+double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad);
+
 /// Systematic errors, as a vector (scale, drift, turn scale, ahead): true distance = (1 + scale)
 /// measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * distance. What
 /// the LiDAR localises is `ahead` [m] before what the wheels turn about, beyond what the

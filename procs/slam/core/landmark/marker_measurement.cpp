@@ -73,9 +73,8 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const Se2& base_f
   // A heading that odometry gets wrong in between turns the sighting about the robot.
   const Eigen::Vector2d place = sighting.base_from_marker.translation();
   const Eigen::Vector3d turned{-place.y(), place.x(), 1.0};
-  covariance += (squared(odometry.turn_per_sqrt_m) * sighting.carried_m +
-                 squared(odometry.turn_per_sqrt_rad) * sighting.carried_rad) *
-                turned * turned.transpose();
+  covariance += turn_variance(odometry, sighting.carried_m, sighting.carried_rad) * turned *
+                turned.transpose();
   return covariance;
 }
 
