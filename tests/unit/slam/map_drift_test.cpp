@@ -49,10 +49,10 @@ TEST(MapDrift, WhatCameSinceIsReleasedWhereTheMapIsOlder) {
   EXPECT_NEAR(drift.now().covariance(1, 2), 50.0 * 1e-6, 1e-12)
       << "turned left means off to the left";
   drift.take(independent(0.0, 3e-4, 0.0), kNone, kErrors);
-  EXPECT_TRUE(drift.release(between_walls(), kAlong).covariance.isZero(1e-12))
+  EXPECT_TRUE(drift.release(between_walls(), kAlong, kErrors).since.covariance.isZero(1e-12))
       << "nothing is known here";
   drift.move({0.0, 0.0, 0.0});
-  const PoseError since = drift.release(between_walls(), kAlong);
+  const PoseError since = drift.release(between_walls(), kAlong, kErrors).since;
   EXPECT_NEAR(since.covariance(1, 1), 3e-4, 1e-9);
   EXPECT_NEAR(drift.now().covariance(1, 1), 1e-4, 1e-9);
 }
@@ -61,7 +61,7 @@ TEST(MapDrift, WallsAlongACorridorReleaseNothingAlongIt) {
   MapDrift drift;
   drift.map(between_walls());
   drift.take(independent(4e-4, 1e-4, 0.0), kNone, kErrors);
-  const PoseError since = drift.release(between_walls(), kAlong);
+  const PoseError since = drift.release(between_walls(), kAlong, kErrors).since;
   EXPECT_NEAR(since.covariance(0, 0), 0.0, 1e-12);
   EXPECT_NEAR(since.covariance(1, 1), 1e-4, 1e-9);
   EXPECT_NEAR(drift.now().covariance(0, 0), 4e-4, 1e-12);
@@ -84,7 +84,7 @@ TEST(MapDrift, WhatIsReleasedSaysWhichErrorsItFollows) {
   drift.map(between_walls());
   drift.take(following(1e-4), kNone, kErrors);
   drift.take(following(1e-4), kNone, kErrors);
-  const PoseError since = drift.release(between_walls(), kAlong);
+  const PoseError since = drift.release(between_walls(), kAlong, kErrors).since;
   EXPECT_NEAR(since.by_errors(1, 0), 2.0, 1e-12);
   EXPECT_NEAR(drift.now().by_errors(1, 0), 1.0, 1e-12);
   EXPECT_NEAR(drift.now().covariance(1, 1), 1e-4, 1e-9);
@@ -96,7 +96,7 @@ TEST(MapDrift, APlaceHasTheMeanErrorOfItsScans) {
   drift.map(between_walls());
   drift.take(independent(0.0, 2e-4, 0.0), kNone, kErrors);
   drift.map(between_walls());
-  EXPECT_NEAR(drift.release(between_walls(), kAlong).covariance(1, 1), 1e-4, 1e-9);
+  EXPECT_NEAR(drift.release(between_walls(), kAlong, kErrors).since.covariance(1, 1), 1e-4, 1e-9);
   EXPECT_NEAR(drift.now().covariance(1, 1), 2e-4, 1e-9);
 }
 
@@ -105,15 +105,42 @@ TEST(MapDrift, TheNoiseOfScansAveragesOut) {
   drift.take(independent(0.0, 3e-4, 0.0), Eigen::Vector3d{0.0, 1e-4, 0.0}.asDiagonal(), kErrors);
   for (int scan = 0; scan < 4; ++scan)
     drift.map(between_walls());
-  EXPECT_NEAR(drift.release(between_walls(), kAlong).covariance(1, 1), 0.75e-4, 1e-9);
+  EXPECT_NEAR(drift.release(between_walls(), kAlong, kErrors).since.covariance(1, 1), 0.75e-4,
+              1e-9);
   EXPECT_NEAR(drift.now().covariance(1, 1), 2.25e-4, 1e-9);
+}
+
+TEST(MapDrift, WallsMayBeWorseThanThePoseTheyWereMappedFrom) {
+  MapDrift drift;
+  drift.map(between_walls(), Eigen::Vector3d{0.0, 1e-4, 1e-6}.asDiagonal());
+  EXPECT_TRUE(drift.now().covariance.isZero());
+  const DriftFromWalls off = drift.release(between_walls(), kAlong, kErrors);
+  EXPECT_TRUE(off.since.covariance.isZero(1e-12));
+  EXPECT_NEAR(off.before(1, 1), 1e-4, 1e-9);
+  EXPECT_NEAR(off.before(2, 2), 1e-6, 1e-12);
+  EXPECT_NEAR(off.before(0, 0), 0.0, 1e-12) << "these walls tell nothing along them";
+  EXPECT_TRUE(drift.now().covariance.isZero(1e-12)) << "seeing them makes the pose no worse";
+}
+
+TEST(MapDrift, WallsThatFollowMoreOfASystematicErrorAreOffByThatAlone) {
+  MapDrift drift;
+  drift.take(following(1e-4), kNone, kErrors);
+  drift.map(between_walls());
+  PoseError back = following(1e-4);
+  back.by_errors *= -1.0;
+  drift.take(back, kNone, kErrors);
+  const DriftFromWalls off = drift.release(between_walls(), kAlong, kErrors);
+  EXPECT_NEAR(off.since.by_errors(1, 0), -1.0, 1e-12);
+  EXPECT_NEAR(off.since.covariance(1, 1), 1e-4, 1e-9);
+  EXPECT_TRUE(off.before.isZero(1e-12));
+  EXPECT_NEAR(drift.now().covariance(1, 1), 1e-4, 1e-9) << "matching takes over what walls follow";
 }
 
 TEST(MapDrift, TheCovarianceOfWhatIsKnownStaysPositive) {
   MapDrift drift;
   for (int step = 0; step < 50; ++step) {
     drift.move({0.3 * step, 0.01 * step, 0.05 * step});
-    drift.release(between_walls(), kAlong);
+    drift.release(between_walls(), kAlong, kErrors);
     PoseError drawn = following(1e-4);
     drawn.covariance += 1e-6 * Eigen::Matrix3d::Identity();
     drift.take(drawn, 0.5e-6 * Eigen::Matrix3d::Identity(), kErrors);

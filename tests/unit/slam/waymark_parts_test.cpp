@@ -11,7 +11,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -194,40 +193,6 @@ TEST(SquarePerspective, AViewFromTheFrontTellsNothing) {
                               1e-4));
 }
 
-// One dimension is enough to integrate by hand: only x is uncertain.
-TEST(PoseProposal, AgreesWithBruteForceIntegration) {
-  const Se2 prior{1.0, 2.0, 0.1};
-  const Eigen::Matrix3d prior_covariance = diagonal(0.05, 1e-4, 1e-4);
-  constexpr double kMeasured = 1.08;
-  constexpr double kVariance = 0.03 * 0.03;
-  const PoseProposal proposal = propose(
-      prior, prior_covariance, [&](const Se2& pose, const Eigen::Matrix3d& /*uncertainty*/) {
-        PoseInformation information;
-        const double residual = pose.x() - kMeasured;
-        information.information(0, 0) = 1.0 / kVariance;
-        information.gradient.x() = residual / kVariance;
-        information.cost = 0.5 * residual * residual / kVariance;
-        return information;
-      });
-  double mass = 0.0;
-  double mean = 0.0;
-  double square = 0.0;
-  constexpr double kStep = 1e-4;
-  for (double x = 0.5; x < 1.5; x += kStep) {
-    const double density = std::exp(-0.5 * std::pow((x - prior.x()) / 0.05, 2)) /
-                           (0.05 * std::sqrt(2.0 * std::numbers::pi)) *
-                           std::exp(-0.5 * std::pow(x - kMeasured, 2) / kVariance);
-    mass += kStep * density;
-    mean += kStep * density * x;
-    square += kStep * density * x * x;
-  }
-  mean /= mass;
-  EXPECT_NEAR(proposal.mean.x(), mean, 1e-6);
-  EXPECT_NEAR(proposal.covariance(0, 0), square / mass - mean * mean, 1e-8);
-  EXPECT_NEAR(proposal.log_evidence, std::log(mass), 1e-6);
-  EXPECT_NEAR(proposal.mean.y(), prior.y(), 1e-9);
-}
-
 /// A robot in the middle of a corridor of 2 m, walls in sight on both sides.
 std::vector<AnnotatedBeam> corridor_beams(double noise_m, Random& random) {
   std::vector<AnnotatedBeam> beams;
@@ -259,6 +224,33 @@ TEST(SurfaceMatching, FindsThePoseAcrossABareCorridorAndNothingAlongIt) {
   EXPECT_NEAR(matched.mean.theta(), 0.0, 0.003);
   EXPECT_NEAR(matched.mean.x(), 0.3, 0.002);  // nothing pulls
   EXPECT_NEAR(matched.covariance(0, 0), 0.01, 0.001);
+}
+
+TEST(NoiseOfWalls, IsThatOfTheScansBestFit) {
+  Random random{8};
+  constexpr double kNoise_m = 0.01;
+  constexpr int kScans = 300;
+  SurfaceMatchingConfig config;
+  config.surface_sigma_m = 1e-6;
+  double squares = 0.0;
+  Eigen::Matrix3d told = Eigen::Matrix3d::Zero();
+  for (int scan = 0; scan < kScans; ++scan) {
+    const auto beams = corridor_beams(kNoise_m, random);
+    told += noise_of_walls(beams, config) / kScans;
+    // Least squares of the heading, which symmetry makes independent of all else.
+    double weights = 0.0;
+    double sum = 0.0;
+    for (const AnnotatedBeam& annotated : beams) {
+      const Eigen::Vector2d& end = annotated.beam.end_in_base;
+      const double across_m = end.y() > 0.0 ? end.y() - 1.0 : end.y() + 1.0;
+      const double weight = end.squaredNorm();  // the noise across the wall falls with the range
+      weights += weight * end.x() * end.x();
+      sum += weight * end.x() * across_m;
+    }
+    squares += std::pow(sum / weights, 2) / kScans;
+  }
+  EXPECT_NEAR(std::sqrt(told(2, 2) / squares), 1.0, 0.15);
+  EXPECT_NEAR(told(0, 0), 0.0, 1e-12) << "a bare corridor tells nothing along it";
 }
 
 TEST(SurfaceFinder, FindsWhatTheMapHas) {

@@ -117,7 +117,8 @@ void WaymarkEstimator::process(const Observation& observation) {
   sensed.verdict = verdict_;
   drift_.move(expected.map_from_base());
   sensed.drift = drift_.release(observation.beams,
-                                expected.map_from_base().rotation() * sensed.walls.weak_direction);
+                                expected.map_from_base().rotation() * sensed.walls.weak_direction,
+                                expected.errors_covariance());
   const std::vector<Eigen::Vector3d> normals =
       centred_normals(particles_.weights(), [&](std::size_t particle) {
         return Random{setup_.seed, kPoseStream, updates_, particle};
@@ -137,7 +138,13 @@ void WaymarkEstimator::process(const Observation& observation) {
   drift_.take(best.drawn, best.by_noise, belief().errors_covariance());
   judge(outcomes);
   drift_.move(mean_);
-  if (verdict_ != KidnapWatch::Verdict::kDoubtful) drift_.map(observation.beams);
+  if (verdict_ != KidnapWatch::Verdict::kDoubtful) {
+    // The first pose is exact, and what is mapped from there is off by what the scan's noise makes
+    // of it, for ever. Later ones follow the noise of their scans.
+    const bool is_first = updates_ == 0;
+    drift_.map(observation.beams, is_first ? noise_of_walls(observation.beams, config_.matching)
+                                           : Eigen::Matrix3d::Zero());
+  }
 }
 
 /// Beams err together, so that a few units of evidence are chance: what is less than the knee
@@ -160,7 +167,7 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   state.previous_map_from_base = state.map_from_base;
   if (updates_ > 0) {
     move(state, sensed);
-    state.belief.widen(sensed.drift);
+    state.belief.widen(sensed.drift.since);
     const Se2 predicted = state.belief.map_from_base();
     const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
     correct_by_walls(state, sensed, chance.start, outcome);
@@ -178,7 +185,6 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   if (is_doubtful) return outcome;
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
     state.walls.add(state.map_from_base * annotated.beam.end_in_base);
-  if (updates_ == 0) outcome.by_noise = outcome.drawn.covariance = noise_of_first(state, sensed);
   return outcome;
 }
 
@@ -188,17 +194,6 @@ PoseError WaymarkEstimator::draw(State& state, const Sensed& sensed, const Chanc
   state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
   const PoseError after = state.belief.pose_error();
   return {before.covariance - after.covariance, before.by_errors - after.by_errors};
-}
-
-/// The first pose is exact, but what is mapped from there is off by what the scan's noise makes of
-/// it, for ever.
-Eigen::Matrix3d WaymarkEstimator::noise_of_first(const State& state, const Sensed& sensed) const {
-  const std::vector<AnnotatedBeam>& beams = sensed.observation->beams;
-  SurfaceFinder walls{state.walls, beams.size()};
-  const Eigen::Matrix3d looks_far = 0.01 * Eigen::Matrix3d::Identity();
-  const SurfaceMatch match =
-      match_surfaces(beams, walls, state.map_from_base, looks_far, config_.matching);
-  return match.pose.information.completeOrthogonalDecomposition().pseudoInverse();
 }
 
 /// By odometry, or to where the markers say that the robot has been carried.
@@ -242,14 +237,16 @@ void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed, doub
   const PoseProposal by_walls = propose(
       expected, prior,
       [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
+        const Eigen::Matrix3d off = uncertainty + sensed.drift.before;
         outcome.walls =
-            match_surfaces(sensed.observation->beams, walls, pose, uncertainty, config_.matching);
-        return outcome.walls.pose;
+            match_surfaces(sensed.observation->beams, walls, pose, off, config_.matching);
+        return blurred(outcome.walls.pose, sensed.drift.before);
       },
       deviated(expected, {0.0, 0.0, start * std::sqrt(prior(2, 2))}));
   state.belief.correct_pose(by_walls.mean, by_walls.covariance);
-  outcome.by_noise =
-      by_walls.covariance - by_walls.covariance * prior.inverse() * by_walls.covariance;
+  const Eigen::Matrix3d followed =
+      by_walls.covariance * share_left(outcome.walls.pose, sensed.drift.before);
+  outcome.by_noise = followed * outcome.walls.pose.information * followed.transpose();
   outcome.log_evidence += config_.scan_evidence * by_walls.log_evidence;
 }
 

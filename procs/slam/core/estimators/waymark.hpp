@@ -82,8 +82,7 @@ class WaymarkEstimator final : public Estimator {
     std::vector<MarkerMeasurement> markers{};
     Observability walls{};  ///< base frame
     KidnapWatch::Verdict verdict{KidnapWatch::Verdict::kSettled};
-    /// What the robot may be off from the walls it sees, since they were mapped.
-    PoseError drift{};
+    DriftFromWalls drift{};
   };
 
   /// What one particle draws: standard normal.
@@ -117,7 +116,6 @@ class WaymarkEstimator final : public Estimator {
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   void note_absences(State& state, const Sensed& sensed) const;
   PoseError draw(State& state, const Sensed& sensed, const Chance& chance) const;
-  Eigen::Matrix3d noise_of_first(const State& state, const Sensed& sensed) const;
   void remember(const Observation& observation);
   Statics statics() const;
   void judge(const std::vector<Outcome>& outcomes);

@@ -23,6 +23,16 @@ PoseError carried(const PoseError& error, const Eigen::Vector2d& step) {
   return {by * error.covariance * by.transpose(), by * error.by_errors};
 }
 
+/// The part of it that does not follow the systematic errors.
+Eigen::Matrix3d rest_of(const PoseError& error, const ErrorsCovariance& errors_covariance) {
+  return error.covariance - error.by_errors * errors_covariance * error.by_errors.transpose();
+}
+
+PoseError with_rest(const Eigen::Matrix3d& rest, const PoseByErrors& by_errors,
+                    const ErrorsCovariance& errors_covariance) {
+  return {rest + by_errors * errors_covariance * by_errors.transpose(), by_errors};
+}
+
 /// Of errors; those of many walls that tell a direction a little are none.
 class Average {
  public:
@@ -32,10 +42,10 @@ class Average {
     by_errors_ += weight * error.by_errors;
   }
 
-  /// What `error` is more; zero when nothing is known.
-  PoseError taken_from(const PoseError& error) const {
-    if (weight_ < kMinWalls) return {};
-    return {error.covariance - covariance_ / weight_, error.by_errors - by_errors_ / weight_};
+  /// @param unknown  when nothing is known.
+  PoseError mean_or(const PoseError& unknown) const {
+    if (weight_ < kMinWalls) return unknown;
+    return {covariance_ / weight_, by_errors_ / weight_};
   }
 
  private:
@@ -56,7 +66,8 @@ void MapDrift::move(const Se2& map_from_base) {
   map_from_base_ = map_from_base;
 }
 
-PoseError MapDrift::release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak) {
+DriftFromWalls MapDrift::release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak,
+                                 const ErrorsCovariance& errors_covariance) {
   Average of_strong;
   Average of_weak;
   for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -74,13 +85,18 @@ PoseError MapDrift::release(std::span<const AnnotatedBeam> beams, const Eigen::V
   Eigen::Matrix3d along_weak = Eigen::Matrix3d::Zero();
   along_weak.topLeftCorner<2, 2>() = weak * weak.transpose();
   const Eigen::Matrix3d others = Eigen::Matrix3d::Identity() - along_weak;
-  const PoseError strong = of_strong.taken_from(now_);
-  const PoseError along = of_weak.taken_from(now_);
-  const PoseError since{
-      others * strong.covariance * others + along_weak * along.covariance * along_weak,
-      others * strong.by_errors + along_weak * along.by_errors};
-  now_ = {positive_part(now_.covariance - since.covariance), now_.by_errors - since.by_errors};
-  return {positive_part(since.covariance), since.by_errors};
+  const PoseError strong = of_strong.mean_or(now_);
+  const PoseError along = of_weak.mean_or(now_);
+  const Eigen::Matrix3d rest = rest_of(now_, errors_covariance);
+  const Eigen::Matrix3d more = others * (rest - rest_of(strong, errors_covariance)) * others +
+                               along_weak * (rest - rest_of(along, errors_covariance)) * along_weak;
+  const PoseByErrors by_errors = others * (now_.by_errors - strong.by_errors) +
+                                 along_weak * (now_.by_errors - along.by_errors);
+  const DriftFromWalls drift{with_rest(positive_part(more), by_errors, errors_covariance),
+                             positive_part(-more)};
+  now_ = with_rest(positive_part(rest - positive_part(more)), now_.by_errors - by_errors,
+                   errors_covariance);
+  return drift;
 }
 
 /// What was drawn follows errors that the drift has followed already.
@@ -92,7 +108,7 @@ void MapDrift::take(const PoseError& drawn, const Eigen::Matrix3d& by_noise,
   noise_ = by_noise;
 }
 
-void MapDrift::map(std::span<const AnnotatedBeam> beams) {
+void MapDrift::map(std::span<const AnnotatedBeam> beams, const Eigen::Matrix3d& by_scan) {
   std::set<std::pair<int, int>> seen;
   for (const AnnotatedBeam& annotated : beams)
     seen.insert(key_of(map_from_base_ * annotated.beam.end_in_base));
@@ -100,7 +116,7 @@ void MapDrift::map(std::span<const AnnotatedBeam> beams) {
     Region& region = regions_[key];
     if (region.scans == 0) region.robot = map_from_base_.translation();
     const Eigen::Vector2d step = region.robot - map_from_base_.translation();
-    const PoseError there = carried({now_.covariance - noise_, now_.by_errors}, step);
+    const PoseError there = carried({now_.covariance - noise_ + by_scan, now_.by_errors}, step);
     const PoseError noise = carried({noise_, PoseByErrors::Zero()}, step);
     ++region.scans;
     const double share = 1.0 / region.scans;

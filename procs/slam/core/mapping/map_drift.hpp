@@ -11,6 +11,14 @@
 
 namespace waymark {
 
+/// How far the robot and the walls that it sees are off from each other, for they were mapped at
+/// another time.
+struct DriftFromWalls {
+  PoseError since{};  ///< of the robot: what has come since they were mapped
+  /// Of the walls (covariance): what they were off when they were mapped, and the robot is not.
+  Eigen::Matrix3d before{Eigen::Matrix3d::Zero()};
+};
+
 /// A pose that has been drawn is exact for its particle, and what is mapped from there shares its
 /// error. A few particles, drawn again and again, do not remember how large such errors may have
 /// grown: this does. Each square metre keeps the error that the robot's pose had, on average, when
@@ -23,20 +31,23 @@ class MapDrift {
   /// The robot has moved: an error of the heading turns into one of the position.
   void move(const Se2& map_from_base);
 
-  /// What has come since the walls that a scan shows were mapped. It is taken from the drift: it
-  /// now belongs to the pose, where matching can tell it.
+  /// What lies between the walls that a scan shows and the robot. What has come since they were
+  /// mapped is taken from the drift: it now belongs to the pose, where matching can tell it.
   /// @param weak  unit, map frame: each wall counts for this direction, and for the others, as far
   /// as it can tell them.
-  PoseError release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak);
+  /// @param errors_covariance  of the systematic errors, as they are known now.
+  DriftFromWalls release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak,
+                         const ErrorsCovariance& errors_covariance);
 
   /// What the pose has lost by drawing.
-  /// @param errors_covariance  of the systematic errors, as they are known now.
   /// @param by_noise  the part of it that comes from the noise of this scan alone.
   void take(const PoseError& drawn, const Eigen::Matrix3d& by_noise,
             const ErrorsCovariance& errors_covariance);
 
   /// A scan is mapped.
-  void map(std::span<const AnnotatedBeam> beams);
+  /// @param by_scan  what its own noise adds to the walls; nothing where the pose has followed it.
+  void map(std::span<const AnnotatedBeam> beams,
+           const Eigen::Matrix3d& by_scan = Eigen::Matrix3d::Zero());
 
   /// Of what is being mapped.
   const PoseError& now() const { return now_; }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/matching/surface_matching.hpp"
 
+#include "slam/core/scan/observability.hpp"
+
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 namespace waymark {
 namespace {
@@ -115,6 +118,24 @@ void keep_observed(double weak_share, PoseInformation& pose) {
   }
   pose.information = observed * pose.information * observed;
   pose.gradient = observed * pose.gradient;
+}
+
+Eigen::Matrix3d noise_of_walls(std::span<const AnnotatedBeam> beams,
+                               const SurfaceMatchingConfig& config) {
+  PoseInformation told;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const auto normal = surface_normal(beams, static_cast<int>(i));
+    if (!normal) continue;
+    const Beam& beam = beams[i].beam;
+    const BeamEnd hit{beam.end_in_base, beam.end_in_base,
+                      (beam.end_in_base - beam.start_in_base) / beam.range_m};
+    const Eigen::Vector3d row = hit.moved_along(*normal);
+    told.information +=
+        row * row.transpose() /
+        (squared(config.range_sigma_m * normal->dot(hit.ray)) + squared(config.surface_sigma_m));
+  }
+  keep_observed(config.weak_share, told);
+  return told.information.completeOrthogonalDecomposition().pseudoInverse();
 }
 
 SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, SurfaceFinder& map,

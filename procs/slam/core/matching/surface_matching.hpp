@@ -45,6 +45,11 @@ SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, SurfaceFinder&
                             const Se2& map_from_base, const Eigen::Matrix3d& uncertainty,
                             const SurfaceMatchingConfig& config);
 
+/// How far the walls of one scan are off, as a whole, by its noise: covariance of the rigid motion
+/// (x, y, theta; base frame) that would put them right. Zero where the scan does not tell.
+Eigen::Matrix3d noise_of_walls(std::span<const AnnotatedBeam> beams,
+                               const SurfaceMatchingConfig& config);
+
 /// Removes the directions with little information.
 void keep_observed(double weak_share, PoseInformation& pose);
 

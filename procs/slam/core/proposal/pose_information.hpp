@@ -23,6 +23,12 @@ struct PoseInformation {
   }
 };
 
+/// What is left of a deviation that is measured when what it is measured from is uncertain, too.
+Eigen::Matrix3d share_left(const PoseInformation& measured, const Eigen::Matrix3d& uncertainty);
+
+/// A measurement from something that is itself uncertain: its covariance adds to the measurement's.
+PoseInformation blurred(const PoseInformation& measured, const Eigen::Matrix3d& uncertainty);
+
 /// Deviation (x, y, theta) of one pose from another.
 inline Eigen::Vector3d deviation(const Se2& from, const Se2& to) {
   return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
