@@ -8,7 +8,7 @@
 namespace waymark {
 namespace {
 
-const Eigen::Vector2d kAlong = Eigen::Vector2d::UnitX();
+const Observability kTellsAlong{Eigen::Matrix3d::Identity(), Eigen::Vector2d::UnitX(), 1.0, false};
 const Eigen::Matrix3d kNone = Eigen::Matrix3d::Zero();
 
 /// Two walls along x, a metre away on both sides.
@@ -42,26 +42,26 @@ const ErrorsCovariance kErrors = 1e-4 * ErrorsCovariance::Identity();
 TEST(MapDrift, WhatCameSinceIsReleasedWhereTheMapIsOlder) {
   MapDrift drift;
   drift.take(independent(0.0, 1e-4, 1e-6), kNone, kErrors);
-  drift.map(between_walls());
+  drift.map(between_walls(), kNone, {}, kErrors);
   drift.move({50.0, 0.0, 0.0});
   EXPECT_NEAR(drift.now().covariance(1, 1), 1e-4 + 2500.0 * 1e-6, 1e-9)
       << "headings turn into positions";
   EXPECT_NEAR(drift.now().covariance(1, 2), 50.0 * 1e-6, 1e-12)
       << "turned left means off to the left";
   drift.take(independent(0.0, 3e-4, 0.0), kNone, kErrors);
-  EXPECT_TRUE(drift.release(between_walls(), kAlong, kErrors).since.covariance.isZero(1e-12))
+  EXPECT_TRUE(drift.release(between_walls(), kTellsAlong, kErrors).since.covariance.isZero(1e-12))
       << "nothing is known here";
   drift.move({0.0, 0.0, 0.0});
-  const PoseError since = drift.release(between_walls(), kAlong, kErrors).since;
+  const PoseError since = drift.release(between_walls(), kTellsAlong, kErrors).since;
   EXPECT_NEAR(since.covariance(1, 1), 3e-4, 1e-9);
   EXPECT_NEAR(drift.now().covariance(1, 1), 1e-4, 1e-9);
 }
 
 TEST(MapDrift, WallsAlongACorridorReleaseNothingAlongIt) {
   MapDrift drift;
-  drift.map(between_walls());
+  drift.map(between_walls(), kNone, {}, kErrors);
   drift.take(independent(4e-4, 1e-4, 0.0), kNone, kErrors);
-  const PoseError since = drift.release(between_walls(), kAlong, kErrors).since;
+  const PoseError since = drift.release(between_walls(), kTellsAlong, kErrors).since;
   EXPECT_NEAR(since.covariance(0, 0), 0.0, 1e-12);
   EXPECT_NEAR(since.covariance(1, 1), 1e-4, 1e-9);
   EXPECT_NEAR(drift.now().covariance(0, 0), 4e-4, 1e-12);
@@ -81,10 +81,10 @@ TEST(MapDrift, SystematicErrorsAddUpAndOthersAddTheirSquares) {
 TEST(MapDrift, WhatIsReleasedSaysWhichErrorsItFollows) {
   MapDrift drift;
   drift.take(following(1e-4), kNone, kErrors);
-  drift.map(between_walls());
+  drift.map(between_walls(), kNone, {}, kErrors);
   drift.take(following(1e-4), kNone, kErrors);
   drift.take(following(1e-4), kNone, kErrors);
-  const PoseError since = drift.release(between_walls(), kAlong, kErrors).since;
+  const PoseError since = drift.release(between_walls(), kTellsAlong, kErrors).since;
   EXPECT_NEAR(since.by_errors(1, 0), 2.0, 1e-12);
   EXPECT_NEAR(drift.now().by_errors(1, 0), 1.0, 1e-12);
   EXPECT_NEAR(drift.now().covariance(1, 1), 1e-4, 1e-9);
@@ -93,10 +93,11 @@ TEST(MapDrift, WhatIsReleasedSaysWhichErrorsItFollows) {
 TEST(MapDrift, APlaceHasTheMeanErrorOfItsScans) {
   MapDrift drift;
   drift.take(independent(0.0, 1e-4, 0.0), kNone, kErrors);
-  drift.map(between_walls());
+  drift.map(between_walls(), kNone, {}, kErrors);
   drift.take(independent(0.0, 2e-4, 0.0), kNone, kErrors);
-  drift.map(between_walls());
-  EXPECT_NEAR(drift.release(between_walls(), kAlong, kErrors).since.covariance(1, 1), 1e-4, 1e-9);
+  drift.map(between_walls(), kNone, {}, kErrors);
+  EXPECT_NEAR(drift.release(between_walls(), kTellsAlong, kErrors).since.covariance(1, 1), 1e-4,
+              1e-9);
   EXPECT_NEAR(drift.now().covariance(1, 1), 2e-4, 1e-9);
 }
 
@@ -104,17 +105,17 @@ TEST(MapDrift, TheNoiseOfScansAveragesOut) {
   MapDrift drift;
   drift.take(independent(0.0, 3e-4, 0.0), Eigen::Vector3d{0.0, 1e-4, 0.0}.asDiagonal(), kErrors);
   for (int scan = 0; scan < 4; ++scan)
-    drift.map(between_walls());
-  EXPECT_NEAR(drift.release(between_walls(), kAlong, kErrors).since.covariance(1, 1), 0.75e-4,
+    drift.map(between_walls(), kNone, {}, kErrors);
+  EXPECT_NEAR(drift.release(between_walls(), kTellsAlong, kErrors).since.covariance(1, 1), 0.75e-4,
               1e-9);
   EXPECT_NEAR(drift.now().covariance(1, 1), 2.25e-4, 1e-9);
 }
 
 TEST(MapDrift, WallsMayBeWorseThanThePoseTheyWereMappedFrom) {
   MapDrift drift;
-  drift.map(between_walls(), Eigen::Vector3d{0.0, 1e-4, 1e-6}.asDiagonal());
+  drift.map(between_walls(), Eigen::Vector3d{0.0, 1e-4, 1e-6}.asDiagonal(), {}, kErrors);
   EXPECT_TRUE(drift.now().covariance.isZero());
-  const DriftFromWalls off = drift.release(between_walls(), kAlong, kErrors);
+  const DriftFromWalls off = drift.release(between_walls(), kTellsAlong, kErrors);
   EXPECT_TRUE(off.since.covariance.isZero(1e-12));
   EXPECT_NEAR(off.before(1, 1), 1e-4, 1e-9);
   EXPECT_NEAR(off.before(2, 2), 1e-6, 1e-12);
@@ -125,11 +126,11 @@ TEST(MapDrift, WallsMayBeWorseThanThePoseTheyWereMappedFrom) {
 TEST(MapDrift, WallsThatFollowMoreOfASystematicErrorAreOffByThatAlone) {
   MapDrift drift;
   drift.take(following(1e-4), kNone, kErrors);
-  drift.map(between_walls());
+  drift.map(between_walls(), kNone, {}, kErrors);
   PoseError back = following(1e-4);
   back.by_errors *= -1.0;
   drift.take(back, kNone, kErrors);
-  const DriftFromWalls off = drift.release(between_walls(), kAlong, kErrors);
+  const DriftFromWalls off = drift.release(between_walls(), kTellsAlong, kErrors);
   EXPECT_NEAR(off.since.by_errors(1, 0), -1.0, 1e-12);
   EXPECT_NEAR(off.since.covariance(1, 1), 1e-4, 1e-9);
   EXPECT_TRUE(off.before.isZero(1e-12));
@@ -140,11 +141,11 @@ TEST(MapDrift, TheCovarianceOfWhatIsKnownStaysPositive) {
   MapDrift drift;
   for (int step = 0; step < 50; ++step) {
     drift.move({0.3 * step, 0.01 * step, 0.05 * step});
-    drift.release(between_walls(), kAlong, kErrors);
+    drift.release(between_walls(), kTellsAlong, kErrors);
     PoseError drawn = following(1e-4);
     drawn.covariance += 1e-6 * Eigen::Matrix3d::Identity();
     drift.take(drawn, 0.5e-6 * Eigen::Matrix3d::Identity(), kErrors);
-    drift.map(between_walls());
+    drift.map(between_walls(), kNone, {}, kErrors);
     EXPECT_GE(drift.now().covariance.eigenvalues().real().minCoeff(), -1e-12);
   }
 }

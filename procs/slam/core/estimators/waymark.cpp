@@ -10,7 +10,12 @@
 namespace waymark {
 namespace {
 
-enum RandomStream : std::uint64_t { kPoseStream = 1, kResamplingStream = 2, kStartStream = 3 };
+enum RandomStream : std::uint64_t {
+  kPoseStream = 1,
+  kResamplingStream = 2,
+  kStartStream = 3,
+  kRestStream = 4
+};
 
 // Cosine: markers that are seen more from the side may be missed.
 constexpr double kMinFacing = 0.3;
@@ -111,22 +116,28 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
 void WaymarkEstimator::process(const Observation& observation) {
   Sensed sensed{&observation, measured(observation),
                 observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
+  if (!sensed.walls.is_degenerate) {
+    // What older scans have left open is the error of their walls, too.
+    drift_.take(belief().pose_error(), Eigen::Matrix3d::Zero(), belief().errors_covariance());
+  }
   const Belief expected = belief_now();
   verdict_ = kidnap_watch_.judge(expected, sensed.markers, since_update_, config_.marker_gate,
                                  config_.marker_near_m);
   sensed.verdict = verdict_;
   drift_.move(expected.map_from_base());
-  sensed.drift = drift_.release(observation.beams,
-                                expected.map_from_base().rotation() * sensed.walls.weak_direction,
-                                expected.errors_covariance());
-  const std::vector<Eigen::Vector3d> normals =
-      centred_normals(particles_.weights(), [&](std::size_t particle) {
-        return Random{setup_.seed, kPoseStream, updates_, particle};
-      });
+  sensed.drift = drift_.release(observation.beams, sensed.walls, expected.errors_covariance());
+  const auto normals_of = [&](RandomStream stream) {
+    return centred_normals(particles_.weights(), [&, stream](std::size_t particle) {
+      return Random{setup_.seed, stream, updates_, particle};
+    });
+  };
+  const std::vector<Eigen::Vector3d> normals = normals_of(kPoseStream);
+  const std::vector<Eigen::Vector3d> rests = normals_of(kRestStream);
   std::vector<Outcome> outcomes(particles_.size());
   setup_.parallel_for(particles_.size(), [&](std::size_t i) {
     Random random{setup_.seed, kStartStream, updates_, i};
-    const Chance chance{config_.drawn_spread * normals[i], i == 0 ? 0.0 : random.normal()};
+    const Chance chance{config_.drawn_spread * normals[i], config_.drawn_spread * rests[i],
+                        i == 0 ? 0.0 : random.normal()};
     outcomes[i] = advance(particles_.state(i), sensed, chance);
     particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
   });
@@ -140,10 +151,11 @@ void WaymarkEstimator::process(const Observation& observation) {
   drift_.move(mean_);
   if (verdict_ != KidnapWatch::Verdict::kDoubtful) {
     // The first pose is exact, and what is mapped from there is off by what the scan's noise makes
-    // of it, for ever. Later ones follow the noise of their scans.
-    const bool is_first = updates_ == 0;
-    drift_.map(observation.beams, is_first ? noise_of_walls(observation.beams, config_.matching)
-                                           : Eigen::Matrix3d::Zero());
+    // of it, for ever. Later poses follow the noise of their scans.
+    const Eigen::Matrix3d by_scan = updates_ == 0
+                                        ? noise_of_walls(observation.beams, config_.matching)
+                                        : Eigen::Matrix3d::Zero();
+    drift_.map(observation.beams, by_scan, belief().pose_error(), belief().errors_covariance());
   }
 }
 
@@ -166,6 +178,7 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   const bool is_doubtful = sensed.verdict == KidnapWatch::Verdict::kDoubtful;
   state.previous_map_from_base = state.map_from_base;
   if (updates_ > 0) {
+    if (!sensed.walls.is_degenerate) draw_rest(state, sensed, chance);
     move(state, sensed);
     state.belief.widen(sensed.drift.since);
     const Se2 predicted = state.belief.map_from_base();
@@ -181,6 +194,13 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   }
   if (!is_doubtful) note_absences(state, sensed);
   if (!sensed.observation->beams.empty()) outcome.drawn = draw(state, sensed, chance);
+  if (sensed.walls.is_degenerate) {
+    const Eigen::Vector2d weak =
+        state.belief.map_from_base().rotation() * sensed.walls.weak_direction;
+    Eigen::Matrix3d others = Eigen::Matrix3d::Identity();
+    others.topLeftCorner<2, 2>() -= weak * weak.transpose();
+    outcome.by_noise = others * outcome.by_noise * others;
+  }
   state.map_from_base = state.belief.map_from_base();
   if (is_doubtful) return outcome;
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
@@ -194,6 +214,12 @@ PoseError WaymarkEstimator::draw(State& state, const Sensed& sensed, const Chanc
   state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
   const PoseError after = state.belief.pose_error();
   return {before.covariance - after.covariance, before.by_errors - after.by_errors};
+}
+
+/// What earlier scans have left open of the pose that they were mapped from.
+void WaymarkEstimator::draw_rest(State& state, const Sensed& sensed, const Chance& chance) const {
+  const Eigen::Vector2d weak = state.map_from_base.rotation() * sensed.walls.weak_direction;
+  state.belief.draw_pose(Eigen::Vector3d{weak.x(), weak.y(), 0.0}, chance.rest);
 }
 
 /// By odometry, or to where the markers say that the robot has been carried.
@@ -240,6 +266,7 @@ void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed, doub
         const Eigen::Matrix3d off = uncertainty + sensed.drift.before;
         outcome.walls =
             match_surfaces(sensed.observation->beams, walls, pose, off, config_.matching);
+        if (sensed.walls.is_degenerate) remove_weak_direction(outcome.walls.pose);
         return blurred(outcome.walls.pose, sensed.drift.before);
       },
       deviated(expected, {0.0, 0.0, start * std::sqrt(prior(2, 2))}));

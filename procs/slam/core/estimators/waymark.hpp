@@ -88,7 +88,8 @@ class WaymarkEstimator final : public Estimator {
   /// What one particle draws: standard normal.
   struct Chance {
     Eigen::Vector3d pose{Eigen::Vector3d::Zero()};
-    double start{0.0};  ///< heading that matching begins with
+    Eigen::Vector3d rest{Eigen::Vector3d::Zero()};  ///< of the pose before
+    double start{0.0};                              ///< heading that matching begins with
   };
 
   /// What one particle made of it.
@@ -115,6 +116,7 @@ class WaymarkEstimator final : public Estimator {
   void correct_by_walls(State& state, const Sensed& sensed, double start, Outcome& outcome) const;
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   void note_absences(State& state, const Sensed& sensed) const;
+  void draw_rest(State& state, const Sensed& sensed, const Chance& chance) const;
   PoseError draw(State& state, const Sensed& sensed, const Chance& chance) const;
   void remember(const Observation& observation);
   Statics statics() const;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/mapping/map_drift.hpp"
 
-#include "slam/core/scan/observability.hpp"
-
 #include <cmath>
 #include <set>
 
@@ -31,6 +29,14 @@ Eigen::Matrix3d rest_of(const PoseError& error, const ErrorsCovariance& errors_c
 PoseError with_rest(const Eigen::Matrix3d& rest, const PoseByErrors& by_errors,
                     const ErrorsCovariance& errors_covariance) {
   return {rest + by_errors * errors_covariance * by_errors.transpose(), by_errors};
+}
+
+/// Both at once, one after the other.
+PoseError sum_of(const PoseError& first, const PoseError& then,
+                 const ErrorsCovariance& errors_covariance) {
+  const Eigen::Matrix3d common = first.by_errors * errors_covariance * then.by_errors.transpose();
+  return {first.covariance + then.covariance + common + common.transpose(),
+          first.by_errors + then.by_errors};
 }
 
 /// Of errors; those of many walls that tell a direction a little are none.
@@ -66,8 +72,9 @@ void MapDrift::move(const Se2& map_from_base) {
   map_from_base_ = map_from_base;
 }
 
-DriftFromWalls MapDrift::release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak,
+DriftFromWalls MapDrift::release(std::span<const AnnotatedBeam> beams, const Observability& walls,
                                  const ErrorsCovariance& errors_covariance) {
+  const Eigen::Vector2d weak = map_from_base_.rotation() * walls.weak_direction;
   Average of_strong;
   Average of_weak;
   for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -75,18 +82,19 @@ DriftFromWalls MapDrift::release(std::span<const AnnotatedBeam> beams, const Eig
     if (!region) continue;
     const auto normal = surface_normal(beams, static_cast<int>(i));
     if (!normal) continue;
-    PoseError error = region->error;
-    error.covariance += region->noise / region->scans;
-    error = carried(error, map_from_base_.translation() - region->robot);
+    const auto here = [&](PoseError error) {
+      error.covariance += region->noise / region->scans;
+      return carried(error, map_from_base_.translation() - region->robot);
+    };
     const double told = std::pow(weak.dot(map_from_base_.rotation() * *normal), 2);
-    of_weak.add(told, error);
-    of_strong.add(1.0 - told, error);
+    of_weak.add(told, here(region->whole));
+    of_strong.add(1.0 - told, here(region->drawn));
   }
   Eigen::Matrix3d along_weak = Eigen::Matrix3d::Zero();
   along_weak.topLeftCorner<2, 2>() = weak * weak.transpose();
   const Eigen::Matrix3d others = Eigen::Matrix3d::Identity() - along_weak;
   const PoseError strong = of_strong.mean_or(now_);
-  const PoseError along = of_weak.mean_or(now_);
+  const PoseError along = walls.is_degenerate ? now_ : of_weak.mean_or(now_);
   const Eigen::Matrix3d rest = rest_of(now_, errors_covariance);
   const Eigen::Matrix3d more = others * (rest - rest_of(strong, errors_covariance)) * others +
                                along_weak * (rest - rest_of(along, errors_covariance)) * along_weak;
@@ -99,16 +107,16 @@ DriftFromWalls MapDrift::release(std::span<const AnnotatedBeam> beams, const Eig
   return drift;
 }
 
-/// What was drawn follows errors that the drift has followed already.
 void MapDrift::take(const PoseError& drawn, const Eigen::Matrix3d& by_noise,
                     const ErrorsCovariance& errors_covariance) {
-  const Eigen::Matrix3d common = now_.by_errors * errors_covariance * drawn.by_errors.transpose();
-  now_.covariance += drawn.covariance + common + common.transpose();
-  now_.by_errors += drawn.by_errors;
+  now_ = sum_of(now_, drawn, errors_covariance);
   noise_ = by_noise;
 }
 
-void MapDrift::map(std::span<const AnnotatedBeam> beams, const Eigen::Matrix3d& by_scan) {
+void MapDrift::map(std::span<const AnnotatedBeam> beams, const Eigen::Matrix3d& by_scan,
+                   const PoseError& undrawn, const ErrorsCovariance& errors_covariance) {
+  const PoseError drawn{now_.covariance - noise_ + by_scan, now_.by_errors};
+  const PoseError whole = sum_of(drawn, undrawn, errors_covariance);
   std::set<std::pair<int, int>> seen;
   for (const AnnotatedBeam& annotated : beams)
     seen.insert(key_of(map_from_base_ * annotated.beam.end_in_base));
@@ -116,13 +124,16 @@ void MapDrift::map(std::span<const AnnotatedBeam> beams, const Eigen::Matrix3d& 
     Region& region = regions_[key];
     if (region.scans == 0) region.robot = map_from_base_.translation();
     const Eigen::Vector2d step = region.robot - map_from_base_.translation();
-    const PoseError there = carried({now_.covariance - noise_ + by_scan, now_.by_errors}, step);
     const PoseError noise = carried({noise_, PoseByErrors::Zero()}, step);
     ++region.scans;
     const double share = 1.0 / region.scans;
-    region.error.covariance += share * (there.covariance - region.error.covariance);
+    const auto average = [&](PoseError& mean, const PoseError& there) {
+      mean.covariance += share * (there.covariance - mean.covariance);
+      mean.by_errors += share * (there.by_errors - mean.by_errors);
+    };
+    average(region.drawn, carried(drawn, step));
+    average(region.whole, carried(whole, step));
     region.noise += share * (noise.covariance - region.noise);
-    region.error.by_errors += share * (there.by_errors - region.error.by_errors);
   }
 }
 

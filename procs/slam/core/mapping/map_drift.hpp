@@ -4,6 +4,7 @@
 
 #include "slam/core/belief/belief.hpp"
 #include "slam/core/scan/annotated_scan.hpp"
+#include "slam/core/scan/observability.hpp"
 
 #include <map>
 #include <span>
@@ -33,10 +34,10 @@ class MapDrift {
 
   /// What lies between the walls that a scan shows and the robot. What has come since they were
   /// mapped is taken from the drift: it now belongs to the pose, where matching can tell it.
-  /// @param weak  unit, map frame: each wall counts for this direction, and for the others, as far
-  /// as it can tell them.
+  /// @param walls  of the scan, base frame: each counts for the weak direction, if that is told at
+  /// all, and for the others, as far as it can tell them.
   /// @param errors_covariance  of the systematic errors, as they are known now.
-  DriftFromWalls release(std::span<const AnnotatedBeam> beams, const Eigen::Vector2d& weak,
+  DriftFromWalls release(std::span<const AnnotatedBeam> beams, const Observability& walls,
                          const ErrorsCovariance& errors_covariance);
 
   /// What the pose has lost by drawing.
@@ -46,15 +47,17 @@ class MapDrift {
 
   /// A scan is mapped.
   /// @param by_scan  what its own noise adds to the walls; nothing where the pose has followed it.
-  void map(std::span<const AnnotatedBeam> beams,
-           const Eigen::Matrix3d& by_scan = Eigen::Matrix3d::Zero());
+  /// @param undrawn  error of the pose that has not been drawn: that of the walls, too.
+  void map(std::span<const AnnotatedBeam> beams, const Eigen::Matrix3d& by_scan,
+           const PoseError& undrawn, const ErrorsCovariance& errors_covariance);
 
   /// Of what is being mapped.
   const PoseError& now() const { return now_; }
 
  private:
   struct Region {
-    PoseError error{};                               ///< mean over its scans, without their noise
+    PoseError drawn{};                               ///< mean over its scans, without their noise
+    PoseError whole{};                               ///< the same with what was not drawn
     Eigen::Matrix3d noise{Eigen::Matrix3d::Zero()};  ///< of one scan
     Eigen::Vector2d robot{Eigen::Vector2d::Zero()};  ///< from where it was first seen
     int scans{0};

@@ -95,20 +95,30 @@ void add_clump(const BeamEnd& hit, const Surface& clump, const Eigen::Matrix3d& 
   add({-normal.y(), normal.x()}, clump.along_m2 + range_m2);
 }
 
+using TranslationAxes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>;
+
+TranslationAxes translation_axes(const PoseInformation& pose) {
+  return TranslationAxes{Eigen::Matrix2d{pose.information.topLeftCorner<2, 2>()}};
+}
+
+void remove_direction(const Eigen::Vector2d& direction, PoseInformation& pose) {
+  Eigen::Matrix3d others = Eigen::Matrix3d::Identity();
+  others.topLeftCorner<2, 2>() -= direction * direction.transpose();
+  pose.information = others * pose.information * others;
+  pose.gradient = others * pose.gradient;
+}
+
 }  // namespace
 
+void remove_weak_direction(PoseInformation& pose) {
+  remove_direction(translation_axes(pose).eigenvectors().col(0), pose);
+}
+
 void keep_observed(double weak_share, PoseInformation& pose) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> translation{
-      Eigen::Matrix2d{pose.information.topLeftCorner<2, 2>()}};
+  const TranslationAxes translation = translation_axes(pose);
   const double threshold = weak_share * translation.eigenvalues()[1];
-  if (translation.eigenvalues()[0] <= threshold) {
-    // Exactly: an axis that is off by its noise would tell a little of what no wall tells.
-    const Eigen::Vector2d weak = translation.eigenvectors().col(0);
-    Eigen::Matrix3d others = Eigen::Matrix3d::Identity();
-    others.topLeftCorner<2, 2>() -= weak * weak.transpose();
-    pose.information = others * pose.information * others;
-    pose.gradient = others * pose.gradient;
-  }
+  if (translation.eigenvalues()[0] <= threshold)
+    remove_direction(translation.eigenvectors().col(0), pose);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes{pose.information};
   Eigen::Matrix3d observed = Eigen::Matrix3d::Zero();
   for (int i = 0; i < 3; ++i) {

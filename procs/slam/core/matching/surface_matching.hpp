@@ -50,6 +50,10 @@ SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, SurfaceFinder&
 Eigen::Matrix3d noise_of_walls(std::span<const AnnotatedBeam> beams,
                                const SurfaceMatchingConfig& config);
 
+/// Removes the direction with the least information, exactly: an axis that is off by its noise
+/// would leave a little of what no wall tells.
+void remove_weak_direction(PoseInformation& pose);
+
 /// Removes the directions with little information.
 void keep_observed(double weak_share, PoseInformation& pose);
 
