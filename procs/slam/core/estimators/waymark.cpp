@@ -3,7 +3,6 @@
 
 #include "slam/core/belief/told_axes.hpp"
 #include "slam/core/filter/centred_normals.hpp"
-#include "slam/core/landmark/mean_landmarks.hpp"
 
 #include <algorithm>
 
@@ -195,10 +194,8 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   if (!is_doubtful) note_absences(state, sensed);
   if (!sensed.observation->beams.empty()) outcome.drawn = draw(state, sensed, chance);
   if (sensed.walls.is_degenerate) {
-    const Eigen::Vector2d weak =
-        state.belief.map_from_base().rotation() * sensed.walls.weak_direction;
-    Eigen::Matrix3d others = Eigen::Matrix3d::Identity();
-    others.topLeftCorner<2, 2>() -= weak * weak.transpose();
+    const Eigen::Matrix3d others =
+        without(state.belief.map_from_base().rotation() * sensed.walls.weak_direction);
     outcome.by_noise = others * outcome.by_noise * others;
   }
   state.map_from_base = state.belief.map_from_base();
@@ -337,75 +334,11 @@ Eigen::Matrix3d WaymarkEstimator::covariance_about_mean() const {
          positive_part(between - drift.covariance);
 }
 
-/// Between updates the walls of the best particle hold the heading, which odometry loses fastest.
-/// Nothing of it is kept.
-Estimate WaymarkEstimator::estimate(const Observation& observation) const {
-  const bool has_moved = since_update_.distance_m > 0.0 || since_update_.turn_rad > 0.0;
-  Se2 map_from_base = mean_;
-  Eigen::Matrix3d covariance = covariance_;
-  if (has_moved) {
-    const State& best = particles_.state(particles_.best());
-    const Belief::Prediction predicted = best.belief.predicted(since_update_, noise_);
-    SurfaceFinder walls{best.walls, observation.beams.size()};
-    const PoseProposal now = propose(
-        predicted.map_from_base, predicted.covariance,
-        [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
-          return match_surfaces(observation.beams, walls, pose, uncertainty, config_.matching).pose;
-        });
-    map_from_base = mean_ * (best.map_from_base.inverse() * now.mean);
-    covariance += now.covariance;
-  }
-  Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
-  estimate.covariance = covariance;
-  estimate.num_particles = particles_.size();
-  estimate.effective_particles = effective_particles_;
-  estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
-  const bool is_lost =
-      verdict_ == KidnapWatch::Verdict::kDoubtful || wall_agreement_ < config_.lost_agreement;
-  estimate.health =
-      health_of(updates_, is_lost, !estimate.observability.is_degenerate || markers_told_);
-  return estimate;
-}
-
-std::vector<Landmark> WaymarkEstimator::landmarks() const {
-  std::vector<WeighedLandmarks> known;
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    known.push_back({particles_.state(i).belief.markers(), particles_.weights()[i]});
-  return mean_landmarks(known, particles_.best(), config_.same_marker_within_m);
-}
-
 /// What cannot be mapped where the robot seems to be is not drawn again either.
 void WaymarkEstimator::remember(const Observation& observation) {
   const bool is_mapped = verdict_ != KidnapWatch::Verdict::kDoubtful;
   retrospect_.add_update(belief().pose_by_statics(kStaticMarkers), statics(),
                          is_mapped ? observation : Observation{});
-}
-
-Statics WaymarkEstimator::statics() const {
-  Statics statics;
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    statics.errors += particles_.weights()[i] * particles_.state(i).belief.static_errors();
-  statics.markers = landmarks();
-  return statics;
-}
-
-std::vector<TimedPose> WaymarkEstimator::trajectory() const {
-  return retrospect_.trajectory(statics(), config_.same_marker_within_m);
-}
-
-GridMap WaymarkEstimator::redrawn_map() const {
-  return retrospect_.redrawn_map(setup_.grid, statics(), config_.same_marker_within_m);
-}
-
-std::vector<PublishedParticle> WaymarkEstimator::particles() const {
-  std::vector<PublishedParticle> published;
-  published.reserve(particles_.size());
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const State& state = particles_.state(i);
-    published.push_back({state.belief.predicted(since_update_, noise_).map_from_base,
-                         state.previous_map_from_base, particles_.weights()[i]});
-  }
-  return published;
 }
 
 }  // namespace waymark

@@ -90,9 +90,8 @@ DriftFromWalls MapDrift::release(std::span<const AnnotatedBeam> beams, const Obs
     of_weak.add(told, here(region->whole));
     of_strong.add(1.0 - told, here(region->drawn));
   }
-  Eigen::Matrix3d along_weak = Eigen::Matrix3d::Zero();
-  along_weak.topLeftCorner<2, 2>() = weak * weak.transpose();
-  const Eigen::Matrix3d others = Eigen::Matrix3d::Identity() - along_weak;
+  const Eigen::Matrix3d others = without(weak);
+  const Eigen::Matrix3d along_weak = Eigen::Matrix3d::Identity() - others;
   const PoseError strong = of_strong.mean_or(now_);
   const PoseError along = walls.is_degenerate ? now_ : of_weak.mean_or(now_);
   const Eigen::Matrix3d rest = rest_of(now_, errors_covariance);

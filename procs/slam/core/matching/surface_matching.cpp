@@ -102,8 +102,7 @@ TranslationAxes translation_axes(const PoseInformation& pose) {
 }
 
 void remove_direction(const Eigen::Vector2d& direction, PoseInformation& pose) {
-  Eigen::Matrix3d others = Eigen::Matrix3d::Identity();
-  others.topLeftCorner<2, 2>() -= direction * direction.transpose();
+  const Eigen::Matrix3d others = without(direction);
   pose.information = others * pose.information * others;
   pose.gradient = others * pose.gradient;
 }

@@ -6,6 +6,12 @@
 
 namespace waymark {
 
+Eigen::Matrix3d without(const Eigen::Vector2d& direction) {
+  Eigen::Matrix3d others = Eigen::Matrix3d::Identity();
+  others.topLeftCorner<2, 2>() -= direction * direction.transpose();
+  return others;
+}
+
 Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes{symmetric};
   return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() *

@@ -43,6 +43,9 @@ inline Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map) {
   return by;
 }
 
+/// Projects (x, y, theta) to what has nothing of a unit direction.
+Eigen::Matrix3d without(const Eigen::Vector2d& direction);
+
 /// The part of a symmetric matrix with positive eigenvalues.
 Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
 
