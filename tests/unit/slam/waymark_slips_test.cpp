@@ -2,11 +2,13 @@
 // What waymark does where the odometry is worse than it is said to be.
 #include "common/random/random.hpp"
 #include "slam/core/belief/noise_growth.hpp"
+#include "slam/core/estimators/waymark.hpp"
 #include "slam/core/scan/turn_by_scans.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -75,6 +77,39 @@ TEST(TurnBetween, BelievesGoodOdometry) {
 TEST(TurnBetween, HasNothingToSayWithoutScans) {
   EXPECT_FALSE(turn_between({}, scan_of_room({}), {}));
   EXPECT_FALSE(turn_between(scan_of_room({}), {}, {}));
+}
+
+/// Drives a metre through the room, is pushed while the wheels say that it drives on, and goes on.
+Se2 error_after_push(const Se2& push, std::uint64_t seed) {
+  EstimatorSetup setup;
+  setup.seed = seed;
+  setup.range_sigma_m = 0.01;
+  WaymarkEstimator estimator{setup, {}};
+  const Se2 start{-1.5, -0.6, 0.3};
+  const Motion step{Se2{0.12, 0.0, 0.01}, 0.12, 0.01};
+  Se2 truth = start;
+  Observation observation;
+  Estimate estimate;
+  for (int i = 0; i < 12; ++i) {
+    if (i > 0) {
+      observation.motion = step;
+      truth = truth * (i == 9 ? push : step.start_from_end);
+    }
+    observation.time += std::chrono::milliseconds{200};
+    observation.beams = scan_of_room(truth);
+    estimate = estimator.update(observation);
+  }
+  return (start.inverse() * truth).inverse() * estimate.map_from_base;
+}
+
+TEST(Waymark, FindsItsWallsAgainAfterAPush) {
+  for (const Se2& push : {Se2{-0.1, 0.0, 0.12}, Se2{0.1, 0.18, -0.1}, Se2{0.1, -0.18, -0.15}}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const Se2 error = error_after_push(push, seed);
+      EXPECT_LT(error.translation().norm(), 0.02) << push.x() << ' ' << push.y();
+      EXPECT_LT(std::abs(error.theta()), 0.01) << push.x() << ' ' << push.y();
+    }
+  }
 }
 
 /// Corrections of a walk whose variance is `factor` times the one it is said to have.

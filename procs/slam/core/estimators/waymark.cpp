@@ -13,7 +13,8 @@ enum RandomStream : std::uint64_t {
   kPoseStream = 1,
   kResamplingStream = 2,
   kStartStream = 3,
-  kRestStream = 4
+  kRestStream = 4,
+  kSlipStream = 5
 };
 
 // Cosine: markers that are seen more from the side may be missed.
@@ -24,9 +25,25 @@ constexpr std::size_t kStaticMarkers = 4;                   // that a past pose 
 constexpr double kMinSurfaces = 0.1;     // share of beams; a scan with fewer shows nothing
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
+// Of what wheels that slip, or a push, add to the odometry; twice as much at most is looked for.
+constexpr double kSlip_m = 0.12;
+constexpr double kSlip_rad = 0.12;
+constexpr int kSlipStarts = 30;
+constexpr double kFits = 0.85;      // share of the mapped beams that agree; mostly it is 0.95
+constexpr double kSlipGain = 0.15;  // share of all beams that must agree there and nowhere else
+
+bool is_near(const Eigen::Vector3d& slip) {
+  return slip.head<2>().norm() < 2.0 * kSlip_m && std::abs(slip.z()) < 2.0 * kSlip_rad;
+}
+
 BeliefPrior prior_of(const WaymarkConfig& config) {
   return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma,
           config.markers.standoff_sigma_m};
+}
+
+PoseError by_slip() {
+  const Eigen::Array3d sigma{kSlip_m, kSlip_m, kSlip_rad};
+  return {sigma.square().matrix().asDiagonal(), PoseByErrors::Zero()};
 }
 
 /// Covariance of (x, y, theta) in the map, turned into the base's axes.
@@ -125,6 +142,7 @@ void WaymarkEstimator::process(const Observation& observation) {
   sensed.verdict = verdict_;
   drift_.move(expected.map_from_base());
   sensed.drift = drift_.release(observation.beams, sensed.walls, expected.errors_covariance());
+  sensed.slip = find_slip(expected, sensed);
   const auto normals_of = [&](RandomStream stream) {
     return centred_normals(particles_.weights(), [&, stream](std::size_t particle) {
       return Random{setup_.seed, stream, updates_, particle};
@@ -180,6 +198,7 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
     if (!sensed.walls.is_degenerate) draw_rest(state, sensed, chance);
     move(state, sensed);
     state.belief.widen(sensed.drift.since);
+    if (sensed.slip) state.belief.widen(by_slip());
     const Se2 predicted = state.belief.map_from_base();
     const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
     correct_by_walls(state, sensed, chance.start, outcome);
@@ -249,24 +268,61 @@ void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
   state.belief.note_absences(is_in_view, observation.time - kSightingAge);
 }
 
+/// @param match  out: of the last step.
+PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& belief,
+                                           const Sensed& sensed, const Se2& start,
+                                           SurfaceMatch& match) const {
+  const std::vector<AnnotatedBeam>& beams = sensed.observation->beams;
+  SurfaceFinder walls{state.walls, beams.size()};
+  return propose(
+      belief.map_from_base(), belief.pose_covariance(),
+      [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
+        match =
+            match_surfaces(beams, walls, pose, uncertainty + sensed.drift.before, config_.matching);
+        if (sensed.walls.is_degenerate) remove_weak_direction(match.pose);
+        return blurred(match.pose, sensed.drift.before);
+      },
+      start);
+}
+
+/// Looked for where the best particle's walls do not fit near the expected pose, and believed only
+/// where far more of the scan does: a place that has changed fits nowhere.
+std::optional<Eigen::Vector3d> WaymarkEstimator::find_slip(const Belief& expected,
+                                                           const Sensed& sensed) const {
+  if (updates_ == 0 || sensed.verdict == KidnapWatch::Verdict::kDoubtful) return std::nullopt;
+  const State& best = particles_.state(particles_.best());
+  const Se2& from = expected.map_from_base();
+  SurfaceMatch match;
+  match_walls(best, expected, sensed, from, match);
+  if (match.agreeing >= kFits * match.mapped) return std::nullopt;
+  double most = match.agreeing + kSlipGain * match.beams;
+  std::optional<Eigen::Vector3d> slip;
+  Belief anywhere = expected;
+  anywhere.widen(by_slip());
+  Random random{setup_.seed, kSlipStream, updates_};
+  for (int i = 0; i < kSlipStarts; ++i) {
+    const Eigen::Vector3d start{kSlip_m * random.normal(), kSlip_m * random.normal(),
+                                kSlip_rad * random.normal()};
+    const Se2 found = match_walls(best, anywhere, sensed, deviated(from, start), match).mean;
+    const Eigen::Vector3d away = deviation(from, found);
+    if (match.agreeing < most || match.agreeing < kFits * match.mapped || !is_near(away)) continue;
+    most = match.agreeing;
+    slip = away;
+  }
+  return slip;
+}
+
 /// Matching begins at headings as the particles may have them: where the wheels slip in a turn,
 /// scans fit among clutter in more than one way, and from the expected heading alone all particles
 /// would find the same one.
 void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed, double start,
                                         Outcome& outcome) const {
-  SurfaceFinder walls{state.walls, sensed.observation->beams.size()};
   const Se2 expected = state.belief.map_from_base();
   const Eigen::Matrix3d prior = state.belief.pose_covariance();
-  const PoseProposal by_walls = propose(
-      expected, prior,
-      [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
-        const Eigen::Matrix3d off = uncertainty + sensed.drift.before;
-        outcome.walls =
-            match_surfaces(sensed.observation->beams, walls, pose, off, config_.matching);
-        if (sensed.walls.is_degenerate) remove_weak_direction(outcome.walls.pose);
-        return blurred(outcome.walls.pose, sensed.drift.before);
-      },
-      deviated(expected, {0.0, 0.0, start * std::sqrt(prior(2, 2))}));
+  const Eigen::Vector3d from =
+      sensed.slip.value_or(Eigen::Vector3d{0.0, 0.0, start * std::sqrt(prior(2, 2))});
+  const PoseProposal by_walls =
+      match_walls(state, state.belief, sensed, deviated(expected, from), outcome.walls);
   state.belief.correct_pose(by_walls.mean, by_walls.covariance);
   const Eigen::Matrix3d followed =
       by_walls.covariance * share_left(outcome.walls.pose, sensed.drift.before);

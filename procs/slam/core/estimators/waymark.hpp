@@ -15,6 +15,7 @@
 #include "slam/core/smoothing/retrospect.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace waymark {
@@ -83,6 +84,7 @@ class WaymarkEstimator final : public Estimator {
     Observability walls{};  ///< base frame
     KidnapWatch::Verdict verdict{KidnapWatch::Verdict::kSettled};
     DriftFromWalls drift{};
+    std::optional<Eigen::Vector3d> slip{};  ///< of the wheels: deviation from where odometry leads
   };
 
   /// What one particle draws: standard normal.
@@ -113,6 +115,9 @@ class WaymarkEstimator final : public Estimator {
   void weigh(const std::vector<Outcome>& outcomes);
   Outcome advance(State& state, const Sensed& sensed, const Chance& chance) const;
   void move(State& state, const Sensed& sensed) const;
+  PoseProposal match_walls(const State& state, const Belief& belief, const Sensed& sensed,
+                           const Se2& start, SurfaceMatch& match) const;
+  std::optional<Eigen::Vector3d> find_slip(const Belief& expected, const Sensed& sensed) const;
   void correct_by_walls(State& state, const Sensed& sensed, double start, Outcome& outcome) const;
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   void note_absences(State& state, const Sensed& sensed) const;
