@@ -130,6 +130,30 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
 }
 
 void WaymarkEstimator::process(const Observation& observation) {
+  const Sensed sensed = sense(observation);
+  const std::vector<Chance> chances = draw_chances();
+  std::vector<Outcome> outcomes(particles_.size());
+  setup_.parallel_for(particles_.size(), [&](std::size_t i) {
+    outcomes[i] = advance(particles_.state(i), sensed, chances[i]);
+    particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
+  });
+  weigh(outcomes);
+  if (verdict_ == KidnapWatch::Verdict::kSettled)
+    noise_growth_.learn(outcomes[particles_.best()].correction);
+  noise_ = noise_growth_.applied_to(config_.odometry);
+  const Outcome& best = outcomes[particles_.best()];
+  drift_.take(best.drawn, best.by_noise, belief().errors_covariance());
+  judge(outcomes);
+  drift_.move(mean_);
+  if (verdict_ == KidnapWatch::Verdict::kDoubtful) return;
+  // The first pose is exact, and what is mapped from there is off by what the scan's noise makes of
+  // it, for ever. Later poses follow the noise of their scans.
+  const Eigen::Matrix3d by_scan =
+      updates_ == 0 ? noise_of_walls(observation.beams, config_.matching) : Eigen::Matrix3d::Zero();
+  drift_.map(observation.beams, by_scan, belief().pose_error(), belief().errors_covariance());
+}
+
+WaymarkEstimator::Sensed WaymarkEstimator::sense(const Observation& observation) {
   Sensed sensed{&observation, measured(observation),
                 observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
   if (!sensed.walls.is_degenerate) {
@@ -143,37 +167,24 @@ void WaymarkEstimator::process(const Observation& observation) {
   drift_.move(expected.map_from_base());
   sensed.drift = drift_.release(observation.beams, sensed.walls, expected.errors_covariance());
   sensed.slip = find_slip(expected, sensed);
+  return sensed;
+}
+
+std::vector<WaymarkEstimator::Chance> WaymarkEstimator::draw_chances() const {
   const auto normals_of = [&](RandomStream stream) {
     return centred_normals(particles_.weights(), [&, stream](std::size_t particle) {
       return Random{setup_.seed, stream, updates_, particle};
     });
   };
-  const std::vector<Eigen::Vector3d> normals = normals_of(kPoseStream);
+  const std::vector<Eigen::Vector3d> poses = normals_of(kPoseStream);
   const std::vector<Eigen::Vector3d> rests = normals_of(kRestStream);
-  std::vector<Outcome> outcomes(particles_.size());
-  setup_.parallel_for(particles_.size(), [&](std::size_t i) {
+  std::vector<Chance> chances;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
     Random random{setup_.seed, kStartStream, updates_, i};
-    const Chance chance{config_.drawn_spread * normals[i], config_.drawn_spread * rests[i],
-                        i == 0 ? 0.0 : random.normal()};
-    outcomes[i] = advance(particles_.state(i), sensed, chance);
-    particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
-  });
-  weigh(outcomes);
-  if (verdict_ == KidnapWatch::Verdict::kSettled)
-    noise_growth_.learn(outcomes[particles_.best()].correction);
-  noise_ = noise_growth_.applied_to(config_.odometry);
-  const Outcome& best = outcomes[particles_.best()];
-  drift_.take(best.drawn, best.by_noise, belief().errors_covariance());
-  judge(outcomes);
-  drift_.move(mean_);
-  if (verdict_ != KidnapWatch::Verdict::kDoubtful) {
-    // The first pose is exact, and what is mapped from there is off by what the scan's noise makes
-    // of it, for ever. Later poses follow the noise of their scans.
-    const Eigen::Matrix3d by_scan = updates_ == 0
-                                        ? noise_of_walls(observation.beams, config_.matching)
-                                        : Eigen::Matrix3d::Zero();
-    drift_.map(observation.beams, by_scan, belief().pose_error(), belief().errors_covariance());
+    chances.push_back({config_.drawn_spread * poses[i], config_.drawn_spread * rests[i],
+                       i == 0 ? 0.0 : random.normal()});
   }
+  return chances;
 }
 
 /// Beams err together, so that a few units of evidence are chance: what is less than the knee
@@ -211,12 +222,7 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
     correct_by_markers(state, sensed, outcome);
   }
   if (!is_doubtful) note_absences(state, sensed);
-  if (!sensed.observation->beams.empty()) outcome.drawn = draw(state, sensed, chance);
-  if (sensed.walls.is_degenerate) {
-    const Eigen::Matrix3d others =
-        without(state.belief.map_from_base().rotation() * sensed.walls.weak_direction);
-    outcome.by_noise = others * outcome.by_noise * others;
-  }
+  if (!sensed.observation->beams.empty()) draw(state, sensed, chance, outcome);
   state.map_from_base = state.belief.map_from_base();
   if (is_doubtful) return outcome;
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
@@ -224,12 +230,16 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   return outcome;
 }
 
-/// @return what the belief has lost by it.
-PoseError WaymarkEstimator::draw(State& state, const Sensed& sensed, const Chance& chance) const {
+void WaymarkEstimator::draw(State& state, const Sensed& sensed, const Chance& chance,
+                            Outcome& outcome) const {
   const PoseError before = state.belief.pose_error();
   state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
   const PoseError after = state.belief.pose_error();
-  return {before.covariance - after.covariance, before.by_errors - after.by_errors};
+  outcome.drawn = {before.covariance - after.covariance, before.by_errors - after.by_errors};
+  if (!sensed.walls.is_degenerate) return;
+  const Eigen::Matrix3d told =
+      without(state.belief.map_from_base().rotation() * sensed.walls.weak_direction);
+  outcome.by_noise = told * outcome.by_noise * told;
 }
 
 /// What earlier scans have left open of the pose that they were mapped from.
@@ -366,28 +376,6 @@ void WaymarkEstimator::judge(const std::vector<Outcome>& outcomes) {
   const bool is_mapped = best.walls.mapped > kMinMappedShare * best.walls.beams;
   wall_agreement_ = is_mapped ? best.walls.agreeing / best.walls.mapped : 1.0;
   markers_told_ = best.known_markers > 0;
-}
-
-Se2 WaymarkEstimator::mean_pose() const {
-  const Se2& about = particles_.state(particles_.best()).map_from_base;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    mean += particles_.weights()[i] * deviation(about, particles_.state(i).map_from_base);
-  return deviated(about, mean);
-}
-
-/// Of the mixture: what the particles' Gaussians leave open, and how far the particles disagree, or
-/// should disagree if there were enough of them.
-Eigen::Matrix3d WaymarkEstimator::covariance_about_mean() const {
-  Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    within += particles_.weights()[i] * particles_.state(i).belief.pose_covariance();
-  const PoseError& drift = drift_.now();
-  const Eigen::Matrix3d common =
-      belief().pose_error().by_errors * belief().errors_covariance() * drift.by_errors.transpose();
-  const Eigen::Matrix3d between = covariance_about(mean_, particles_);
-  return within + common + common.transpose() + drift.covariance +
-         positive_part(between - drift.covariance);
 }
 
 /// What cannot be mapped where the robot seems to be is not drawn again either.

@@ -101,7 +101,7 @@ class WaymarkEstimator final : public Estimator {
     SurfaceMatch walls{};
     PoseCorrection correction{};
     PoseError drawn{};  ///< what drawing has taken from the belief
-    /// The part of it that comes from the noise of this scan.
+    /// The part of it that comes from the noise of this scan and its frame.
     Eigen::Matrix3d by_noise{Eigen::Matrix3d::Zero()};
   };
 
@@ -112,6 +112,8 @@ class WaymarkEstimator final : public Estimator {
   Belief belief_now() const;  ///< of the best particle, moved on by odometry
   bool is_contradicted_by(const Observation& observation) const;
   void process(const Observation& observation);
+  Sensed sense(const Observation& observation);
+  std::vector<Chance> draw_chances() const;
   void weigh(const std::vector<Outcome>& outcomes);
   Outcome advance(State& state, const Sensed& sensed, const Chance& chance) const;
   void move(State& state, const Sensed& sensed) const;
@@ -122,7 +124,7 @@ class WaymarkEstimator final : public Estimator {
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   void note_absences(State& state, const Sensed& sensed) const;
   void draw_rest(State& state, const Sensed& sensed, const Chance& chance) const;
-  PoseError draw(State& state, const Sensed& sensed, const Chance& chance) const;
+  void draw(State& state, const Sensed& sensed, const Chance& chance, Outcome& outcome) const;
   void remember(const Observation& observation);
   Statics statics() const;
   void judge(const std::vector<Outcome>& outcomes);

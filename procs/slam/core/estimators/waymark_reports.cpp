@@ -5,6 +5,28 @@
 
 namespace waymark {
 
+Se2 WaymarkEstimator::mean_pose() const {
+  const Se2& about = particles_.state(particles_.best()).map_from_base;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    mean += particles_.weights()[i] * deviation(about, particles_.state(i).map_from_base);
+  return deviated(about, mean);
+}
+
+/// Of the mixture: what the particles' Gaussians leave open, and how far the particles disagree, or
+/// should disagree if there were enough of them.
+Eigen::Matrix3d WaymarkEstimator::covariance_about_mean() const {
+  Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    within += particles_.weights()[i] * particles_.state(i).belief.pose_covariance();
+  const PoseError& drift = drift_.now();
+  const Eigen::Matrix3d common =
+      belief().pose_error().by_errors * belief().errors_covariance() * drift.by_errors.transpose();
+  const Eigen::Matrix3d between = covariance_about(mean_, particles_);
+  return within + common + common.transpose() + drift.covariance +
+         positive_part(between - drift.covariance);
+}
+
 /// Between updates the walls of the best particle hold the heading, which odometry loses fastest.
 /// Nothing of it is kept.
 Estimate WaymarkEstimator::estimate(const Observation& observation) const {
