@@ -54,6 +54,34 @@ TEST(SparseTile, IsAnArrayOfCells) {
   }
 }
 
+TEST(SparseTile, ASquareOfTouchedCellsIsVisitedOverTheTilesBorders) {
+  Random random{21};
+  TileMap<int, SparseTile<int>> cells;
+  std::map<CellIndex, int> plain;
+  const auto any_cell = [&] {
+    return CellIndex{static_cast<int>(any_of(100, random)) - 50,
+                     static_cast<int>(any_of(100, random)) - 50};
+  };
+  for (int i = 1; i <= 2000; ++i) {
+    const CellIndex cell = any_cell();
+    cells.edit(cell) = i;
+    plain[cell] = i;
+  }
+  for (int i = 0; i < 500; ++i) {
+    const CellIndex centre = any_cell();
+    const int reach = static_cast<int>(any_of(6, random));
+    std::map<CellIndex, int> visited;
+    visit_touched_around(cells, centre, reach,
+                         [&](CellIndex cell, int value) { visited[cell] = value; });
+    std::map<CellIndex, int> inside;
+    for (const auto& [cell, value] : plain) {
+      if (std::abs(cell.x - centre.x) <= reach && std::abs(cell.y - centre.y) <= reach)
+        inside[cell] = value;
+    }
+    EXPECT_EQ(visited, inside);
+  }
+}
+
 TEST(HitMap, SharedMapsReadLikePlainCopies) {
   struct Particle {
     HitMap map{};

@@ -2,6 +2,8 @@
 // Unit tests of how knowledge about a pose is put together.
 #include "slam/core/proposal/pose_proposal.hpp"
 
+#include "support/small_world.hpp"
+
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
@@ -11,9 +13,7 @@
 namespace waymark {
 namespace {
 
-Eigen::Matrix3d diagonal(double x, double y, double yaw) {
-  return Eigen::Vector3d{x * x, y * y, yaw * yaw}.asDiagonal();
-}
+using test::diagonal;
 
 // One dimension is enough to integrate by hand: only x is uncertain.
 TEST(PoseProposal, AgreesWithBruteForceIntegration) {

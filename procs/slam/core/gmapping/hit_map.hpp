@@ -8,7 +8,6 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cstdint>
 
 namespace waymark {
@@ -41,31 +40,6 @@ inline void add_hit(const GridFrame& frame, const Eigen::Vector2d& point_in_map,
 inline bool is_hit(const HitMap& map, CellIndex cell) {
   const HitMap::Tile* tile = map.tile(tile_of(cell));
   return tile && tile->is_touched(offset_in_tile(cell));
-}
-
-/// Calls visit(CellIndex, const HitCell&) for the hit cells of the square of side 2 reach + 1
-/// around `centre`, row by row within each tile.
-template <class Visit>
-void visit_hits_around(const HitMap& map, CellIndex centre, int reach, Visit&& visit) {
-  const CellIndex low{centre.x - reach, centre.y - reach};
-  const CellIndex high{centre.x + reach, centre.y + reach};
-  const TileIndex first = tile_of(low);
-  const TileIndex last = tile_of(high);
-  for (int tile_y = first.y; tile_y <= last.y; ++tile_y) {
-    for (int tile_x = first.x; tile_x <= last.x; ++tile_x) {
-      const HitMap::Tile* tile = map.tile({tile_x, tile_y});
-      if (!tile) continue;
-      const CellIndex corner{tile_x * kTileSize, tile_y * kTileSize};
-      const int column_low = std::max(low.x - corner.x, 0);
-      const int column_high = std::min(high.x - corner.x, kTileSize - 1);
-      const int row_high = std::min(high.y - corner.y, kTileSize - 1);
-      for (int row = std::max(low.y - corner.y, 0); row <= row_high; ++row) {
-        tile->visit_row(row, column_low, column_high, [&](int column, const HitCell& cell) {
-          visit(CellIndex{corner.x + column, corner.y + row}, cell);
-        });
-      }
-    }
-  }
 }
 
 }  // namespace waymark

@@ -35,7 +35,7 @@ void Surroundings::read(const BeamCells& beam, std::size_t slot) {
   EightHits* group = cleared(nearest_[slot]);
   std::size_t hits = 0;
   const CellIndex free_offset{beam.before.x - beam.end.x, beam.before.y - beam.end.y};
-  visit_hits_around(map_, beam.end, reach_, [&](CellIndex cell, const HitCell& hit) {
+  visit_touched_around(map_, beam.end, reach_, [&](CellIndex cell, const HitCell& hit) {
     if (needs_free_cell_ && is_hit(map_, {cell.x + free_offset.x, cell.y + free_offset.y})) return;
     if (hits == kHitsPerGroup) {
       group = cleared(more_[slot * max_more_ + key.more++]);

@@ -2,8 +2,9 @@
 // A tile that stores only the cells that were touched: small to keep and quick to copy.
 #pragma once
 
-#include "slam/core/grid/cell_index.hpp"
+#include "slam/core/grid/tile_map.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -79,5 +80,31 @@ class SparseTile {
   std::array<std::uint16_t, kTileSize> first_{};    ///< place of the first touched cell of the row
   std::vector<Cell> cells_{};
 };
+
+/// Calls visit(CellIndex, const Cell&) for the touched cells of the square of side 2 reach + 1
+/// around `centre`, row by row within each tile.
+template <class Cell, class Visit>
+void visit_touched_around(const TileMap<Cell, SparseTile<Cell>>& map, CellIndex centre, int reach,
+                          Visit&& visit) {
+  const CellIndex low{centre.x - reach, centre.y - reach};
+  const CellIndex high{centre.x + reach, centre.y + reach};
+  const TileIndex first = tile_of(low);
+  const TileIndex last = tile_of(high);
+  for (int tile_y = first.y; tile_y <= last.y; ++tile_y) {
+    for (int tile_x = first.x; tile_x <= last.x; ++tile_x) {
+      const SparseTile<Cell>* tile = map.tile({tile_x, tile_y});
+      if (!tile) continue;
+      const CellIndex corner{tile_x * kTileSize, tile_y * kTileSize};
+      const int column_low = std::max(low.x - corner.x, 0);
+      const int column_high = std::min(high.x - corner.x, kTileSize - 1);
+      const int row_high = std::min(high.y - corner.y, kTileSize - 1);
+      for (int row = std::max(low.y - corner.y, 0); row <= row_high; ++row) {
+        tile->visit_row(row, column_low, column_high, [&](int column, const Cell& cell) {
+          visit(CellIndex{corner.x + column, corner.y + row}, cell);
+        });
+      }
+    }
+  }
+}
 
 }  // namespace waymark

@@ -7,8 +7,9 @@
 namespace waymark {
 namespace {
 
-constexpr int kReaches[]{1, 2, 4};      // [cell] squares of 2 reach + 1 cells along each side
-constexpr int kAlwaysTried = 2;         // [cell]
+// [cell] Squares have 2 reach + 1 cells along each side.
+constexpr int kCloseReach = 2;
+constexpr int kFarReach = 4;
 constexpr double kMinPoints = 4.0;      // fewer do not make a line
 constexpr double kMaxThickness = 0.45;  // [cell] standard deviation across the line
 constexpr double kMinLength = 0.6;  // [cell] standard deviation along it; shorter is range noise
@@ -32,14 +33,11 @@ struct Moments {
   }
 };
 
-Moments moments_around(const TileMap<SurfaceCell>& cells, CellIndex middle, int reach) {
+Moments moments_around(const SurfaceCells& cells, CellIndex middle, int reach) {
   Moments moments;
-  for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
-      const SurfaceCell& cell = cells[{middle.x + dx, middle.y + dy}];
-      if (cell.count > 0.0F) moments.add(cell, dx, dy);
-    }
-  }
+  visit_touched_around(cells, middle, reach, [&](CellIndex index, const SurfaceCell& cell) {
+    moments.add(cell, index.x - middle.x, index.y - middle.y);
+  });
   return moments;
 }
 
@@ -51,7 +49,8 @@ std::optional<Surface> fit(const Moments& moments) {
   const double xy = moments.squares(0, 1) / moments.count - mean.x() * mean.y();
   const double yy = moments.squares(1, 1) / moments.count - mean.y() * mean.y();
   const double half_trace = 0.5 * (xx + yy);
-  const double root = std::hypot(0.5 * (xx - yy), xy);
+  const double half_difference = 0.5 * (xx - yy);
+  const double root = std::sqrt(half_difference * half_difference + xy * xy);
   Surface surface;
   surface.point_in_map = mean;
   surface.count = moments.count;
@@ -63,13 +62,17 @@ std::optional<Surface> fit(const Moments& moments) {
                     along_m2 >= kMinLength * kMinLength &&
                     along_m2 >= kMinElongation * kMinElongation * surface.across_m2;
   // Eigenvector of the smaller eigenvalue.
-  const double along_x = 0.5 * (xx - yy) + root;
+  const double along_x = half_difference + root;
   surface.normal_in_map = Eigen::Vector2d{-xy, along_x};
-  if (0.5 * (xx - yy) < 0.0) surface.normal_in_map = {root - 0.5 * (xx - yy), -xy};
+  if (half_difference < 0.0) surface.normal_in_map = {root - half_difference, -xy};
   const double norm = surface.normal_in_map.norm();
   surface.normal_in_map =
       norm > 0.0 ? Eigen::Vector2d{surface.normal_in_map / norm} : Eigen::Vector2d::UnitX();
   return surface;
+}
+
+bool is_line(const std::optional<Surface>& surface) {
+  return surface && surface->is_line;
 }
 
 }  // namespace
@@ -88,19 +91,26 @@ void SurfaceMap::add(const Eigen::Vector2d& point_in_map) {
 }
 
 bool SurfaceMap::looks_far(double reach_m) const {
-  return reach_m > kAlwaysTried * frame_.resolution_m;
+  return reach_m > kCloseReach * frame_.resolution_m;
 }
 
 std::optional<Surface> SurfaceMap::near(CellIndex middle, bool looks_far) const {
+  const std::optional<Surface> close = close_to(middle);
+  return looks_far && !is_line(close) ? line_or(close, middle, kFarReach) : close;
+}
+
+std::optional<Surface> SurfaceMap::close_to(CellIndex middle) const {
   std::optional<Surface> surface;
-  for (const int reach : kReaches) {
-    if (reach > kAlwaysTried && !looks_far) break;
-    const auto here = fit(moments_around(cells_, middle, reach));
-    if (!here) continue;
-    if (here->is_line || !surface) surface = here;
-    if (here->is_line) break;
-  }
-  if (!surface) return std::nullopt;
+  for (int reach = 1; reach <= kCloseReach && !is_line(surface); ++reach)
+    surface = line_or(surface, middle, reach);
+  return surface;
+}
+
+/// What is within the reach if it is a line, or if there is nothing nearer.
+std::optional<Surface> SurfaceMap::line_or(const std::optional<Surface>& nearer, CellIndex middle,
+                                           int reach) const {
+  std::optional<Surface> surface = fit(moments_around(cells_, middle, reach));
+  if (!surface || (nearer && !surface->is_line)) return nearer;
   const double cell_m2 = frame_.resolution_m * frame_.resolution_m;
   surface->point_in_map = frame_.centre_of(middle) + frame_.resolution_m * surface->point_in_map;
   surface->across_m2 *= cell_m2;
@@ -113,10 +123,17 @@ const std::optional<Surface>& SurfaceFinder::near(std::size_t point,
                                                   double reach_m) {
   Found& found = found_[point];
   const CellIndex middle = map_.frame_.cell_of(point_in_map);
-  const bool looks_far = map_.looks_far(reach_m);
-  if (!found.is_known || found.middle != middle || found.looks_far != looks_far)
-    found = {true, looks_far, middle, map_.near(middle, looks_far)};
-  return found.surface;
+  if (!found.middle || *found.middle != middle) {
+    // Neighbours in a scan often end in the same cell.
+    const bool is_known = point > 0 && found_[point - 1].middle == middle;
+    found = is_known ? found_[point - 1] : Found{middle, map_.close_to(middle)};
+  }
+  if (is_line(found.close) || !map_.looks_far(reach_m)) return found.close;
+  if (!found.has_looked_far) {
+    found.far = map_.line_or(found.close, middle, kFarReach);
+    found.has_looked_far = true;
+  }
+  return found.far;
 }
 
 }  // namespace waymark

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "slam/core/grid/grid_frame.hpp"
-#include "slam/core/grid/tile_map.hpp"
+#include "slam/core/grid/sparse_tile.hpp"
 
 #include <Eigen/Core>
 
@@ -22,6 +22,8 @@ struct SurfaceCell {
   float xy{0.0F};
   float yy{0.0F};
 };
+
+using SurfaceCells = TileMap<SurfaceCell, SparseTile<SurfaceCell>>;
 
 /// A piece of wall: the line fitted to the points in a square of cells. Points that do not lie on a
 /// line (corners, legs of tables) are a clump: a place, but no direction.
@@ -55,9 +57,12 @@ class SurfaceMap {
 
   bool looks_far(double reach_m) const;
   std::optional<Surface> near(CellIndex middle, bool looks_far) const;
+  std::optional<Surface> close_to(CellIndex middle) const;
+  std::optional<Surface> line_or(const std::optional<Surface>& nearer, CellIndex middle,
+                                 int reach) const;
 
   GridFrame frame_;
-  TileMap<SurfaceCell> cells_{};
+  SurfaceCells cells_{};
 };
 
 /// SurfaceMap::near() for the points of a scan, again and again while the scan is moved about: what
@@ -71,10 +76,10 @@ class SurfaceFinder {
 
  private:
   struct Found {
-    bool is_known{false};
-    bool looks_far{false};
-    CellIndex middle{};
-    std::optional<Surface> surface{};
+    std::optional<CellIndex> middle{};  ///< nothing: not looked for yet
+    std::optional<Surface> close{};
+    bool has_looked_far{false};
+    std::optional<Surface> far{};
   };
 
   const SurfaceMap& map_;

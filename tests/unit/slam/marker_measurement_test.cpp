@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a sighting of a marker measures, with the walls that the LiDAR sees.
+#include "slam/core/landmark/marker_measurement.hpp"
+
+#include "slam/core/scan/square_perspective.hpp"
+#include "support/small_world.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+using test::corridor_beams;
+using test::diagonal;
+
+TEST(SquarePerspective, TellsTheFocalLengthOfTheCamera) {
+  for (const double error : {-0.01, 0.0, 0.02}) {
+    std::array<Eigen::Vector2d, 4> corners;
+    const double ahead[]{2.4, 2.0, 2.0, 2.4};
+    const double down[]{-0.2, -0.2, 0.2, 0.2};
+    for (std::size_t i = 0; i < 4; ++i)
+      corners[i] = (1.0 + error) * Eigen::Vector2d{-1.0 / ahead[i], down[i] / ahead[i]};
+    const auto focal = focal_error_of(corners, 1e-4);
+    ASSERT_TRUE(focal);
+    EXPECT_NEAR(focal->error, error, 1e-9);
+    EXPECT_GT(focal->sigma, 0.0);
+  }
+}
+
+TEST(SquarePerspective, AViewFromTheFrontTellsNothing) {
+  EXPECT_FALSE(focal_error_of({Eigen::Vector2d{-0.1, -0.1}, Eigen::Vector2d{0.1, -0.1},
+                               Eigen::Vector2d{0.1, 0.1}, Eigen::Vector2d{-0.1, 0.1}},
+                              1e-4));
+}
+
+TEST(WallFit, ExtendsTheWallWithItsUncertainty) {
+  Random random{6};
+  const auto beams = corridor_beams(0.01, random);
+  const auto near = fit_wall(beams, {1.0, 1.02}, radians(-88.0), 0.01, 1.5);
+  const auto far = fit_wall(beams, {2.9, 1.02}, radians(-88.0), 0.01, 1.5);
+  ASSERT_TRUE(near && far);
+  EXPECT_NEAR(near->point.y(), 1.0, 4.0 * near->sigma_m);
+  EXPECT_NEAR(far->point.y(), 1.0, 4.0 * far->sigma_m);
+  EXPECT_GT(far->sigma_m, 1.5 * near->sigma_m);
+  EXPECT_FALSE(fit_wall(beams, {0.0, 0.2}, radians(-90.0), 0.01, 1.5));
+}
+
+TEST(MeasureMarkers, OdometryBetweenFrameAndScanTurnsASightingAboutTheRobot) {
+  Observation observation;  // without walls: what the camera says
+  MarkerSighting sighting;
+  sighting.base_from_marker = {2.0, 1.0, radians(-90.0)};
+  sighting.covariance_in_base = 1e-6 * Eigen::Matrix3d::Identity();
+  observation.sightings = {sighting};
+  const OdometryNoise odometry;
+  const auto covariance_of = [&] {
+    return measure_markers(observation, 0.01, {}, odometry, {}).at(0).covariance;
+  };
+  const Eigen::Matrix3d at_once = covariance_of();
+  observation.sightings[0].carried_m = 0.05;
+  const Eigen::Matrix3d more = covariance_of() - at_once;
+  const double turn_rad2 = odometry.turn_per_sqrt_m * odometry.turn_per_sqrt_m * 0.05;
+  EXPECT_NEAR(more(2, 2), turn_rad2, 1e-12);
+  EXPECT_NEAR(more(0, 0), 1.0 * turn_rad2, 1e-12) << "a metre to the left moves along x";
+  EXPECT_NEAR(more(1, 1), 4.0 * turn_rad2, 1e-12);
+}
+
+TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {
+  Random random{8};
+  Observation observation;
+  observation.beams = corridor_beams(0.01, random);
+  MarkerSighting sighting;
+  sighting.id = 2;
+  sighting.base_from_marker = {2.5, 1.01, radians(-88.0)};
+  sighting.covariance_in_base = diagonal(0.02, 0.01, 0.03);
+  sighting.size_m = 0.4;
+  observation.sightings = {sighting};
+  const auto upright = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {}, {});
+  ASSERT_EQ(upright.size(), 1U);
+  EXPECT_TRUE(upright[0].wall.has_value());
+  EXPECT_NEAR(upright[0].base_from_marker.y(), 1.0, 0.006);
+  EXPECT_LT(upright[0].covariance(0, 0), 2.0 * sighting.covariance_in_base(0, 0));
+  observation.sightings[0].base_from_marker = {2.5, 1.01, radians(-130.0)};
+  const auto flipped = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {}, {});
+  EXPECT_TRUE(flipped.empty());
+}
+
+}  // namespace
+}  // namespace waymark
