@@ -179,6 +179,11 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.field("marker_evidence", marker_evidence, kFraction, "the same of a sighting");
   fields.field("evidence_knee", evidence_knee, kPositive,
                "a particle with this much less evidence [nat] is weighed by half of it");
+  fields.field("id_layer_evidence", id_layer_evidence, kNotNegative,
+               "log weight of a beam whose marker id is that of its cell in the map");
+  fields.field(
+      "markers_in_proposal", markers_in_proposal,
+      "markers correct each particle's pose; else it is drawn before, and they only weigh");
   fields.field("drawn_spread", drawn_spread, kFraction,
                "share of a pose's standard deviations that particles draw");
   fields.field("lost_agreement", lost_agreement, kFraction,

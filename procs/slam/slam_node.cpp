@@ -59,6 +59,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_scan_ = time;
   counters_.add("scans processed");
+  if (estimate.slipped) counters_.add("slips of the wheels");
   outbox_.publish(channels::kSlamScan, to_message(ready.scan, ready.observation, map_from_lidar));
   outbox_.publish(channels::kSlamPose, to_pose_message(time, estimate.map_from_base));
   outbox_.publish(channels::kSlamEstimate, to_message(estimate));

@@ -28,8 +28,8 @@ EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std::uint64
 }
 
 std::vector<Step> run_waymark(const SensorLog& log, const SyntheticCorridor& corridor,
-                              std::uint64_t seed) {
-  WaymarkEstimator estimator{estimator_setup_of(corridor, seed), {}};
+                              std::uint64_t seed, const WaymarkConfig& config = {}) {
+  WaymarkEstimator estimator{estimator_setup_of(corridor, seed), config};
   return run(estimator, log, setup_of(corridor));
 }
 
@@ -135,6 +135,36 @@ TEST(Waymark, AKnownMarkerShrinksTheVarianceAlongTheCorridor) {
     EXPECT_EQ(steps.back().estimate.health, Health::kTracking) << seed;
     EXPECT_EQ(steps.back().estimate.weak_axis_source, WeakAxisSource::kMarkers) << seed;
   }
+}
+
+// For ablations: the pose is drawn whole, and markers only weigh the particles, by what is measured
+// of them or by the ids in the map's cells.
+TEST(Waymark, MarkersThatOnlyWeighHoldTheRobotToo) {
+  WaymarkConfig by_measurement;
+  by_measurement.markers_in_proposal = false;
+  by_measurement.marker_evidence = 1.0;
+  by_measurement.drawn_spread = 1.0;
+  WaymarkConfig by_cells = by_measurement;
+  by_cells.marker_evidence = 0.0;
+  by_cells.id_layer_evidence = 1.0;
+  double measured = 0.0;
+  double in_cells = 0.0;
+  double blind = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SyntheticCorridor corridor = between_two_walls(seed);
+    corridor.scale_error = 0.03;
+    corridor.drive_m = 12.0;
+    const auto square = [](double x) {
+      return x * x;
+    };
+    blind += square(test::along_rmse_m(run_waymark(test::drive(corridor), corridor, seed)));
+    corridor.markers = test::opposite_markers(corridor);
+    const SensorLog log = test::drive(corridor);
+    measured += square(test::along_rmse_m(run_waymark(log, corridor, seed, by_measurement)));
+    in_cells += square(test::along_rmse_m(run_waymark(log, corridor, seed, by_cells)));
+  }
+  EXPECT_LT(std::sqrt(measured), 0.7 * std::sqrt(blind));
+  EXPECT_LT(std::sqrt(in_cells), 0.7 * std::sqrt(blind));
 }
 
 TEST(Waymark, AMirroredWorldGivesAMirroredResult) {

@@ -98,6 +98,7 @@ Se2 error_after_push(const Se2& push, std::uint64_t seed) {
     observation.time += std::chrono::milliseconds{200};
     observation.beams = scan_of_room(truth);
     estimate = estimator.update(observation);
+    EXPECT_EQ(estimate.slipped, i == 9) << i;
   }
   return (start.inverse() * truth).inverse() * estimate.map_from_base;
 }
@@ -108,6 +109,35 @@ TEST(Waymark, FindsItsWallsAgainAfterAPush) {
       const Se2 error = error_after_push(push, seed);
       EXPECT_LT(error.translation().norm(), 0.02) << push.x() << ' ' << push.y();
       EXPECT_LT(std::abs(error.theta()), 0.01) << push.x() << ' ' << push.y();
+    }
+  }
+}
+
+// Each sighting is at odds with the map and is looked at at once, though the robot has not moved
+// and nothing of its pose is open any more.
+TEST(Waymark, StandsStillBeforeAMarkerThatJumpsAbout) {
+  EstimatorSetup setup;
+  setup.range_sigma_m = 0.01;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    setup.seed = seed;
+    WaymarkConfig config;
+    config.markers_in_proposal = seed % 2 == 0;
+    WaymarkEstimator estimator{setup, config};
+    Random random{seed};
+    Observation observation;
+    observation.beams = scan_of_room({-1.5, -0.6, 0.3});
+    MarkerSighting sighting;
+    sighting.covariance_in_base = 1e-4 * Eigen::Matrix3d::Identity();
+    sighting.size_m = 0.4;
+    for (int i = 0; i < 100; ++i) {
+      sighting.base_from_marker = {random.uniform(1.0, 2.0), random.uniform(-0.5, 0.5),
+                                   random.uniform(2.5, 3.5)};
+      sighting.id = static_cast<int>(random.uniform(0.0, 3.0));
+      observation.sightings = {sighting};
+      observation.time += std::chrono::milliseconds{200};
+      const Estimate estimate = estimator.update(observation);
+      ASSERT_LT(estimate.map_from_base.translation().norm(), 0.01) << seed << ' ' << i;
+      ASSERT_TRUE(estimate.covariance.allFinite()) << seed << ' ' << i;
     }
   }
 }

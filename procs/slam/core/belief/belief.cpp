@@ -101,9 +101,7 @@ PoseError Belief::pose_error() const {
 
 void Belief::widen(const PoseError& more) {
   transform_pose(Eigen::Matrix3d::Identity(), more.by_errors);
-  const Eigen::Matrix3d followed =
-      more.by_errors * errors_covariance() * more.by_errors.transpose();
-  covariance_.topLeftCorner<3, 3>() += positive_part(more.covariance - followed);
+  covariance_.topLeftCorner<3, 3>() += positive_part(rest_of(more, errors_covariance()));
 }
 
 /// Everything deviates by gain * deviation, and loses gain * covariance_lost * gain'.
@@ -128,8 +126,7 @@ void Belief::correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covar
   condition(gain, deviation(map_from_base_, map_from_base), before - covariance);
 }
 
-void Belief::draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
-                       const Eigen::Vector3d& standard_normal) {
+void Belief::draw_pose(const PoseAxes& axes, const Eigen::Vector3d& standard_normal) {
   const Eigen::MatrixXd with_axes = covariance_.leftCols<3>() * axes;
   const Eigen::MatrixXd spread = axes.transpose() * with_axes.topRows<3>();
   if (spread.diagonal().minCoeff() < kExact) return;

@@ -3,7 +3,7 @@
 // covariance of all of them together.
 #pragma once
 
-#include "slam/core/belief/odometry_errors.hpp"
+#include "slam/core/belief/pose_error.hpp"
 #include "slam/core/grid/copy_on_write.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/mapping/landmark_map.hpp"
@@ -47,10 +47,6 @@ inline MarkerName name_of(const Landmark& marker) {
   return {marker.id, marker.instance};
 }
 
-/// All systematic errors: those of the odometry, then those of sightings.
-inline constexpr Eigen::Index kStaticErrors = OdometryErrors::SizeAtCompileTime + 3;
-using StaticErrors = Eigen::Matrix<double, kStaticErrors, 1>;
-
 /// How the mean of the pose (x, y, theta; map frame) moves with what stays the same: with the
 /// errors, then with (x, y, yaw) of the markers named.
 struct PoseByStatics {
@@ -58,17 +54,8 @@ struct PoseByStatics {
   Eigen::Matrix<double, 3, Eigen::Dynamic> gain{};
 };
 
-using ErrorsCovariance = Eigen::Matrix<double, kStaticErrors, kStaticErrors>;
-
-/// How (x, y, theta; map frame) follows the systematic errors.
-using PoseByErrors = Eigen::Matrix<double, 3, kStaticErrors>;
-
-/// An error of the pose (x, y, theta; map frame): its covariance, and how it follows the systematic
-/// errors. What follows them is part of the covariance.
-struct PoseError {
-  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
-  PoseByErrors by_errors{PoseByErrors::Zero()};
-};
+/// Linear functions of the pose (x, y, theta; map frame), in columns.
+using PoseAxes = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 /// How a belief begins.
 struct BeliefPrior {
@@ -120,13 +107,12 @@ class Belief {
   /// Takes over what has been found about the pose; everything that is correlated with it follows.
   void correct_pose(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
 
-  /// Draws linear functions of the pose (columns; of (x, y, theta) in map): they are exact from now
-  /// on, and the rest of the pose and the markers follow. What is known of the errors of odometry
-  /// and camera stays as it is: they are the same for ever, and a few particles that are drawn
-  /// again and again would soon agree on a value that nobody measured. Source: Schmidt (1966),
-  /// "Application of state-space methods to navigation problems": considered states.
-  void draw_pose(const Eigen::Matrix<double, 3, Eigen::Dynamic>& axes,
-                 const Eigen::Vector3d& standard_normal);
+  /// Draws what the axes say of the pose: it is exact from now on, and the rest of the pose and the
+  /// markers follow. What is known of the errors of odometry and camera stays as it is: they are
+  /// the same for ever, and a few particles that are drawn again and again would soon agree on a
+  /// value that nobody measured. Source: Schmidt (1966), "Application of state-space methods to
+  /// navigation problems": considered states.
+  void draw_pose(const PoseAxes& axes, const Eigen::Vector3d& standard_normal);
 
   /// Learns what sightings get wrong from what a wall says about one.
   void correct_sighting_errors(const WallInnovation& wall);

@@ -3,8 +3,7 @@
 
 namespace waymark {
 
-Eigen::Matrix<double, 3, Eigen::Dynamic> told_axes(const Observability& walls_in_base,
-                                                   const Belief& belief) {
+PoseAxes told_axes(const Observability& walls_in_base, const Belief& belief) {
   const Eigen::Vector2d weak = belief.map_from_base().rotation() * walls_in_base.weak_direction;
   const Eigen::Vector3d along{weak.x(), weak.y(), 0.0};
   Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, walls_in_base.is_degenerate ? 2 : 3);

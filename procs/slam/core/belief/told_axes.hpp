@@ -12,7 +12,6 @@ namespace waymark {
 /// scan knows the wall's direction to a fraction of a degree only, and drawing the rest of it would
 /// take the uncertainty along the wall away by and by.
 /// @param walls_in_base  of the scan, base frame.
-Eigen::Matrix<double, 3, Eigen::Dynamic> told_axes(const Observability& walls_in_base,
-                                                   const Belief& belief);
+PoseAxes told_axes(const Observability& walls_in_base, const Belief& belief);
 
 }  // namespace waymark

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/marker_matching.hpp"
 
-#include "slam/core/mapping/insert_scan.hpp"
 #include "slam/core/weighting/wall_score.hpp"
 
 #include <algorithm>
@@ -51,7 +50,8 @@ void MarkerMatchingEstimator::propagate() {
 }
 
 void MarkerMatchingEstimator::weigh(const Observation& observation) {
-  const std::vector<JudgedSpot> spots = judged_spots(observation);
+  const std::vector<JudgedSpot> spots = judged_spots(
+      observation, setup_.grid.face_spacing_m, setup_.grid.face_margin_m, config_.sighting_sigma_m);
   const Se2 predicted = mean_pose(particles_);
   const Observability walls_tell =
       observability_of(observation.beams, predicted, setup_.range_sigma_m);
@@ -75,23 +75,6 @@ void MarkerMatchingEstimator::weigh(const Observation& observation) {
   const std::size_t best = particles_.best();
   wall_agreement_ = walls[best].mapped > 0.0 ? walls[best].agreement / walls[best].mapped : 1.0;
   markers_told_ = markers[best] > 0.0;
-}
-
-std::vector<JudgedSpot> MarkerMatchingEstimator::judged_spots(
-    const Observation& observation) const {
-  std::vector<JudgedSpot> spots;
-  for (const AnnotatedBeam& annotated : observation.beams) {
-    if (annotated.sight == Sight::kUnknown) continue;
-    spots.push_back({annotated.beam.end_in_base, annotated.marker_id, 1.0});
-  }
-  for (const MarkerSighting& sighting : observation.sightings) {
-    const double sigma_m = sighting.sigma_along_m() / config_.sighting_sigma_m;
-    const double trust = 1.0 / (1.0 + sigma_m * sigma_m);
-    const auto face = face_points(sighting, setup_.grid.face_spacing_m, setup_.grid.face_margin_m);
-    for (const FacePoint& point : face)
-      spots.push_back({point.in_base, point.marker_id, trust});
-  }
-  return spots;
 }
 
 Estimate MarkerMatchingEstimator::estimate(const Observation& observation) const {

@@ -14,8 +14,9 @@ struct MarkerMatchingConfig {
   int particles{200};
   double resample_threshold{0.5};  ///< share of effective particles below which to resample
   MatchingRewards rewards{};
-  double sighting_sigma_m{0.025};  ///< a sighting with this error along its wall counts half
-  double lost_agreement{0.25};     ///< of the beams with the mapped walls; below: lost
+  double sighting_sigma_m{
+      kSightingSigma_m};        ///< a sighting with this error along its wall counts half
+  double lost_agreement{0.25};  ///< of the beams with the mapped walls; below: lost
 
   void describe(Fields& fields);
 };
@@ -40,7 +41,6 @@ class MarkerMatchingEstimator final : public Estimator {
 
   void propagate();
   void weigh(const Observation& observation);
-  std::vector<JudgedSpot> judged_spots(const Observation& observation) const;
   Estimate estimate(const Observation& observation) const;
 
   EstimatorSetup setup_;

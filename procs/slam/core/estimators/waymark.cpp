@@ -9,41 +9,22 @@
 namespace waymark {
 namespace {
 
-enum RandomStream : std::uint64_t {
-  kPoseStream = 1,
-  kResamplingStream = 2,
-  kStartStream = 3,
-  kRestStream = 4,
-  kSlipStream = 5
-};
-
 // Cosine: markers that are seen more from the side may be missed.
 constexpr double kMinFacing = 0.3;
 constexpr double kWallInSight_m = 0.2;                      // a beam ends this near to the marker
 constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
 constexpr std::size_t kStaticMarkers = 4;                   // that a past pose is corrected by
+constexpr double kExact = 1e-14;                            // [m^2, rad^2] less is rounding
 constexpr double kMinSurfaces = 0.1;     // share of beams; a scan with fewer shows nothing
 constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
-// Of what wheels that slip, or a push, add to the odometry; twice as much at most is looked for.
-constexpr double kSlip_m = 0.12;
-constexpr double kSlip_rad = 0.12;
-constexpr int kSlipStarts = 30;
-constexpr double kFits = 0.85;      // share of the mapped beams that agree; mostly it is 0.95
-constexpr double kSlipGain = 0.15;  // share of all beams that must agree there and nowhere else
-
-bool is_near(const Eigen::Vector3d& slip) {
-  return slip.head<2>().norm() < 2.0 * kSlip_m && std::abs(slip.z()) < 2.0 * kSlip_rad;
+PoseAxes whole_pose() {
+  return Eigen::Matrix3d::Identity();
 }
 
 BeliefPrior prior_of(const WaymarkConfig& config) {
   return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma,
           config.markers.standoff_sigma_m};
-}
-
-PoseError by_slip() {
-  const Eigen::Array3d sigma{kSlip_m, kSlip_m, kSlip_rad};
-  return {sigma.square().matrix().asDiagonal(), PoseByErrors::Zero()};
 }
 
 /// Covariance of (x, y, theta) in the map, turned into the base's axes.
@@ -76,6 +57,7 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
 
 Estimate WaymarkEstimator::update_by(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
+  slipped_ = false;
   believe_scans_about_slips(observation);
   if (updates_ == 0 || is_due() || is_contradicted_by(observation)) {
     process(observation);
@@ -91,14 +73,6 @@ Estimate WaymarkEstimator::update_by(const Observation& observation) {
   const Estimate now = estimate(observation);
   retrospect_.add_scan(observation.time, now.map_from_base);
   return now;
-}
-
-void WaymarkEstimator::believe_scans_about_slips(const Observation& observation) {
-  const auto by_scans = turn_between(updated_beams_, observation.beams, since_update_);
-  if (!by_scans || !by_scans->contradicts_odometry) return;
-  Se2& start_from_end = since_update_.start_from_end;
-  since_update_.turn_rad += std::abs(angle_difference(by_scans->turn_rad, start_from_end.theta()));
-  start_from_end = {start_from_end.translation(), by_scans->turn_rad};
 }
 
 bool WaymarkEstimator::is_due() const {
@@ -154,8 +128,12 @@ void WaymarkEstimator::process(const Observation& observation) {
 }
 
 WaymarkEstimator::Sensed WaymarkEstimator::sense(const Observation& observation) {
-  Sensed sensed{&observation, measured(observation),
-                observability_of(observation.beams, Se2{}, setup_.range_sigma_m)};
+  Sensed sensed;
+  sensed.observation = &observation;
+  sensed.markers = measured(observation);
+  sensed.walls = observability_of(observation.beams, Se2{}, setup_.range_sigma_m);
+  if (config_.id_layer_evidence > 0.0)
+    sensed.spots = judged_spots(observation, setup_.grid.face_spacing_m, setup_.grid.face_margin_m);
   if (!sensed.walls.is_degenerate) {
     // What older scans have left open is the error of their walls, too.
     drift_.take(belief().pose_error(), Eigen::Matrix3d::Zero(), belief().errors_covariance());
@@ -167,6 +145,7 @@ WaymarkEstimator::Sensed WaymarkEstimator::sense(const Observation& observation)
   drift_.move(expected.map_from_base());
   sensed.drift = drift_.release(observation.beams, sensed.walls, expected.errors_covariance());
   sensed.slip = find_slip(expected, sensed);
+  if (sensed.slip) slipped_ = true;
   return sensed;
 }
 
@@ -205,35 +184,43 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   Outcome outcome;
   const bool is_doubtful = sensed.verdict == KidnapWatch::Verdict::kDoubtful;
   state.previous_map_from_base = state.map_from_base;
-  if (updates_ > 0) {
-    if (!sensed.walls.is_degenerate) draw_rest(state, sensed, chance);
-    move(state, sensed);
-    state.belief.widen(sensed.drift.since);
-    if (sensed.slip) state.belief.widen(by_slip());
-    const Se2 predicted = state.belief.map_from_base();
-    const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
-    correct_by_walls(state, sensed, chance.start, outcome);
-    const Eigen::Matrix3d posterior = in_frame_of(predicted, state.belief.pose_covariance());
-    const Se2 moved = predicted.inverse() * state.belief.map_from_base();
-    outcome.correction = {
-        {moved.x(), moved.y(), moved.theta()}, prior.diagonal(), posterior.diagonal()};
-    if (!is_doubtful) correct_by_markers(state, sensed, outcome);
-  } else {
+  if (updates_ > 0) follow(state, sensed, chance, outcome);
+  if (!config_.markers_in_proposal) draw(state, sensed, whole_pose(), chance, outcome);
+  if (!is_doubtful) {
     correct_by_markers(state, sensed, outcome);
+    note_absences(state, sensed);
   }
-  if (!is_doubtful) note_absences(state, sensed);
-  if (!sensed.observation->beams.empty()) draw(state, sensed, chance, outcome);
+  if (config_.markers_in_proposal && !sensed.observation->beams.empty())
+    draw(state, sensed, told_axes(sensed.walls, state.belief), chance, outcome);
   state.map_from_base = state.belief.map_from_base();
   if (is_doubtful) return outcome;
+  outcome.log_evidence += config_.id_layer_evidence *
+                          marker_score(mapper_.map(), sensed.spots, state.map_from_base, {});
   for (const AnnotatedBeam& annotated : sensed.observation->beams)
     state.walls.add(state.map_from_base * annotated.beam.end_in_base);
   return outcome;
 }
 
-void WaymarkEstimator::draw(State& state, const Sensed& sensed, const Chance& chance,
-                            Outcome& outcome) const {
+/// By odometry and walls.
+void WaymarkEstimator::follow(State& state, const Sensed& sensed, const Chance& chance,
+                              Outcome& outcome) const {
+  if (!sensed.walls.is_degenerate) draw_rest(state, sensed, chance);
+  move(state, sensed);
+  state.belief.widen(sensed.drift.since);
+  if (sensed.slip) state.belief.widen(slip_error());
+  const Se2 predicted = state.belief.map_from_base();
+  const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
+  correct_by_walls(state, sensed, chance.start, outcome);
+  const Eigen::Matrix3d posterior = in_frame_of(predicted, state.belief.pose_covariance());
+  const Se2 moved = predicted.inverse() * state.belief.map_from_base();
+  outcome.correction = {
+      {moved.x(), moved.y(), moved.theta()}, prior.diagonal(), posterior.diagonal()};
+}
+
+void WaymarkEstimator::draw(State& state, const Sensed& sensed, const PoseAxes& axes,
+                            const Chance& chance, Outcome& outcome) const {
   const PoseError before = state.belief.pose_error();
-  state.belief.draw_pose(told_axes(sensed.walls, state.belief), chance.pose);
+  state.belief.draw_pose(axes, chance.pose);
   const PoseError after = state.belief.pose_error();
   outcome.drawn = {before.covariance - after.covariance, before.by_errors - after.by_errors};
   if (!sensed.walls.is_degenerate) return;
@@ -295,33 +282,6 @@ PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& bel
       start);
 }
 
-/// Looked for where the best particle's walls do not fit near the expected pose, and believed only
-/// where far more of the scan does: a place that has changed fits nowhere.
-std::optional<Eigen::Vector3d> WaymarkEstimator::find_slip(const Belief& expected,
-                                                           const Sensed& sensed) const {
-  if (updates_ == 0 || sensed.verdict == KidnapWatch::Verdict::kDoubtful) return std::nullopt;
-  const State& best = particles_.state(particles_.best());
-  const Se2& from = expected.map_from_base();
-  SurfaceMatch match;
-  match_walls(best, expected, sensed, from, match);
-  if (match.agreeing >= kFits * match.mapped) return std::nullopt;
-  double most = match.agreeing + kSlipGain * match.beams;
-  std::optional<Eigen::Vector3d> slip;
-  Belief anywhere = expected;
-  anywhere.widen(by_slip());
-  Random random{setup_.seed, kSlipStream, updates_};
-  for (int i = 0; i < kSlipStarts; ++i) {
-    const Eigen::Vector3d start{kSlip_m * random.normal(), kSlip_m * random.normal(),
-                                kSlip_rad * random.normal()};
-    const Se2 found = match_walls(best, anywhere, sensed, deviated(from, start), match).mean;
-    const Eigen::Vector3d away = deviation(from, found);
-    if (match.agreeing < most || match.agreeing < kFits * match.mapped || !is_near(away)) continue;
-    most = match.agreeing;
-    slip = away;
-  }
-  return slip;
-}
-
 /// Matching begins at headings as the particles may have them: where the wheels slip in a turn,
 /// scans fit among clutter in more than one way, and from the expected heading alone all particles
 /// would find the same one.
@@ -360,7 +320,8 @@ void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
   }
   // What markers tell comes with noise of its own: Joseph's form of the update.
   const Eigen::Matrix3d after = state.belief.pose_covariance();
-  const Eigen::Matrix3d kept = before.ldlt().solve(after).transpose();
+  const Eigen::Matrix3d exact = kExact * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d kept = (before + exact).ldlt().solve(after + exact).transpose();
   outcome.by_noise = after - kept * (before - outcome.by_noise) * kept.transpose();
 }
 

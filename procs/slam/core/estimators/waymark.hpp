@@ -13,6 +13,7 @@
 #include "slam/core/proposal/pose_proposal.hpp"
 #include "slam/core/scan/turn_by_scans.hpp"
 #include "slam/core/smoothing/retrospect.hpp"
+#include "slam/core/weighting/marker_score.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -32,6 +33,11 @@ struct WaymarkConfig {
   double scan_evidence{0.1};         ///< share of a scan's log-likelihood that weighs particles
   double marker_evidence{0.02};      ///< the same of a sighting
   double evidence_knee{5.0};         ///< [nat] less than the best: half of it weighs
+  /// Factor on the paper's score of the ids in the map's cells, as log weight.
+  double id_layer_evidence{0.0};
+  /// Markers correct each particle's pose. Else the whole pose is drawn before they are looked at,
+  /// and they only weigh it.
+  bool markers_in_proposal{true};
   /// Share of a pose's standard deviations that is drawn. The map drift knows the variance, and 30
   /// particles that are drawn again and again make a random walk of it.
   double drawn_spread{0.3};
@@ -68,6 +74,14 @@ class WaymarkEstimator final : public Estimator {
   const Belief& belief() const { return particles_.state(particles_.best()).belief; }
 
  private:
+  enum RandomStream : std::uint64_t {
+    kPoseStream = 1,
+    kResamplingStream = 2,
+    kStartStream = 3,
+    kRestStream = 4,
+    kSlipStream = 5
+  };
+
   struct State {
     State(const GridFrame& frame, const BeliefPrior& prior) : walls{frame}, belief{prior} {}
 
@@ -81,7 +95,8 @@ class WaymarkEstimator final : public Estimator {
   struct Sensed {
     const Observation* observation{nullptr};
     std::vector<MarkerMeasurement> markers{};
-    Observability walls{};  ///< base frame
+    std::vector<JudgedSpot> spots{};  ///< for the map's id layer
+    Observability walls{};            ///< base frame
     KidnapWatch::Verdict verdict{KidnapWatch::Verdict::kSettled};
     DriftFromWalls drift{};
     std::optional<Eigen::Vector3d> slip{};  ///< of the wheels: deviation from where odometry leads
@@ -119,12 +134,15 @@ class WaymarkEstimator final : public Estimator {
   void move(State& state, const Sensed& sensed) const;
   PoseProposal match_walls(const State& state, const Belief& belief, const Sensed& sensed,
                            const Se2& start, SurfaceMatch& match) const;
+  static PoseError slip_error();
   std::optional<Eigen::Vector3d> find_slip(const Belief& expected, const Sensed& sensed) const;
+  void follow(State& state, const Sensed& sensed, const Chance& chance, Outcome& outcome) const;
   void correct_by_walls(State& state, const Sensed& sensed, double start, Outcome& outcome) const;
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   void note_absences(State& state, const Sensed& sensed) const;
   void draw_rest(State& state, const Sensed& sensed, const Chance& chance) const;
-  void draw(State& state, const Sensed& sensed, const Chance& chance, Outcome& outcome) const;
+  void draw(State& state, const Sensed& sensed, const PoseAxes& axes, const Chance& chance,
+            Outcome& outcome) const;
   void remember(const Observation& observation);
   Statics statics() const;
   void judge(const std::vector<Outcome>& outcomes);
@@ -151,6 +169,7 @@ class WaymarkEstimator final : public Estimator {
   double effective_particles_{1.0};
   double wall_agreement_{1.0};
   bool markers_told_{false};
+  bool slipped_{false};  ///< at the last scan
   KidnapWatch::Verdict verdict_{KidnapWatch::Verdict::kSettled};
 };
 

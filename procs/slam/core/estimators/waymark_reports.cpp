@@ -16,14 +16,13 @@ Se2 WaymarkEstimator::mean_pose() const {
 /// Of the mixture: what the particles' Gaussians leave open, and how far the particles disagree, or
 /// should disagree if there were enough of them.
 Eigen::Matrix3d WaymarkEstimator::covariance_about_mean() const {
-  Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
+  PoseError within = belief().pose_error();
+  within.covariance.setZero();
   for (std::size_t i = 0; i < particles_.size(); ++i)
-    within += particles_.weights()[i] * particles_.state(i).belief.pose_covariance();
+    within.covariance += particles_.weights()[i] * particles_.state(i).belief.pose_covariance();
   const PoseError& drift = drift_.now();
-  const Eigen::Matrix3d common =
-      belief().pose_error().by_errors * belief().errors_covariance() * drift.by_errors.transpose();
   const Eigen::Matrix3d between = covariance_about(mean_, particles_);
-  return within + common + common.transpose() + drift.covariance +
+  return sum_of(drift, within, belief().errors_covariance()).covariance +
          positive_part(between - drift.covariance);
 }
 
@@ -47,6 +46,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   }
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = covariance;
+  estimate.slipped = slipped_;
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;

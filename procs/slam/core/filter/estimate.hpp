@@ -31,6 +31,7 @@ struct Estimate {
   int markers_in_view{0};
   Observability observability{};
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
+  bool slipped{false};  ///< the scans showed that the wheels had slipped, and were believed
 };
 
 /// What a method can say about itself after `updates` updates.

@@ -21,24 +21,6 @@ PoseError carried(const PoseError& error, const Eigen::Vector2d& step) {
   return {by * error.covariance * by.transpose(), by * error.by_errors};
 }
 
-/// The part of it that does not follow the systematic errors.
-Eigen::Matrix3d rest_of(const PoseError& error, const ErrorsCovariance& errors_covariance) {
-  return error.covariance - error.by_errors * errors_covariance * error.by_errors.transpose();
-}
-
-PoseError with_rest(const Eigen::Matrix3d& rest, const PoseByErrors& by_errors,
-                    const ErrorsCovariance& errors_covariance) {
-  return {rest + by_errors * errors_covariance * by_errors.transpose(), by_errors};
-}
-
-/// Both at once, one after the other.
-PoseError sum_of(const PoseError& first, const PoseError& then,
-                 const ErrorsCovariance& errors_covariance) {
-  const Eigen::Matrix3d common = first.by_errors * errors_covariance * then.by_errors.transpose();
-  return {first.covariance + then.covariance + common + common.transpose(),
-          first.by_errors + then.by_errors};
-}
-
 /// Of errors; those of many walls that tell a direction a little are none.
 class Average {
  public:

@@ -2,6 +2,7 @@
 #include "slam/core/weighting/marker_score.hpp"
 
 #include "slam/core/grid/bilinear.hpp"
+#include "slam/core/mapping/insert_scan.hpp"
 
 namespace waymark {
 
@@ -22,6 +23,22 @@ double marker_score(const GridMap& map, const Eigen::Vector2d& point_in_map, int
   if (marker_id == kNoMarker) return -trust * rewards.penalty * votes_for_markers / votes;
   const double match = votes_for_id / votes;
   return trust * (rewards.strong_reward * match - rewards.penalty * (1.0 - match));
+}
+
+std::vector<JudgedSpot> judged_spots(const Observation& observation, double face_spacing_m,
+                                     double face_margin_m, double sighting_sigma_m) {
+  std::vector<JudgedSpot> spots;
+  for (const AnnotatedBeam& annotated : observation.beams) {
+    if (annotated.sight == Sight::kUnknown) continue;
+    spots.push_back({annotated.beam.end_in_base, annotated.marker_id, 1.0});
+  }
+  for (const MarkerSighting& sighting : observation.sightings) {
+    const double sigmas = sighting.sigma_along_m() / sighting_sigma_m;
+    const double trust = 1.0 / (1.0 + sigmas * sigmas);
+    for (const FacePoint& point : face_points(sighting, face_spacing_m, face_margin_m))
+      spots.push_back({point.in_base, point.marker_id, trust});
+  }
+  return spots;
 }
 
 double marker_score(const GridMap& map, std::span<const JudgedSpot> spots, const Se2& map_from_base,

@@ -4,8 +4,10 @@
 
 #include "common/geometry/se2.hpp"
 #include "slam/core/grid/grid_map.hpp"
+#include "slam/core/scan/observation.hpp"
 
 #include <span>
+#include <vector>
 
 namespace waymark {
 
@@ -36,6 +38,16 @@ struct JudgedSpot {
   int marker_id{kNoMarker};
   double trust{1.0};  ///< factor on the score
 };
+
+/// A sighting with this error along its wall counts half.
+inline constexpr double kSightingSigma_m = 0.025;
+
+/// The ends of beams that the camera has judged, and points all over the sighted markers' faces.
+/// @param face_spacing_m  between the points of a face.
+/// @param face_margin_m  bare wall beside a marker, seen together with it.
+std::vector<JudgedSpot> judged_spots(const Observation& observation, double face_spacing_m,
+                                     double face_margin_m,
+                                     double sighting_sigma_m = kSightingSigma_m);
 
 /// Sum over spots.
 double marker_score(const GridMap& map, std::span<const JudgedSpot> spots, const Se2& map_from_base,
