@@ -57,9 +57,9 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
 
 Estimate WaymarkEstimator::update_by(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
+  turn_by_scans_ = turn_that_contradicts_odometry(observation);
   slipped_ = false;
-  believe_scans_about_slips(observation);
-  if (updates_ == 0 || is_due() || is_contradicted_by(observation)) {
+  if (updates_ == 0 || is_due() || turn_by_scans_ || is_contradicted_by(observation)) {
     process(observation);
     if (verdict_ != KidnapWatch::Verdict::kDoubtful)
       mapper_.insert(observation, mean_, covariance_);
@@ -145,7 +145,7 @@ WaymarkEstimator::Sensed WaymarkEstimator::sense(const Observation& observation)
   drift_.move(expected.map_from_base());
   sensed.drift = drift_.release(observation.beams, sensed.walls, expected.errors_covariance());
   sensed.slip = find_slip(expected, sensed);
-  if (sensed.slip) slipped_ = true;
+  slipped_ = sensed.slip.has_value();
   return sensed;
 }
 
@@ -207,7 +207,7 @@ void WaymarkEstimator::follow(State& state, const Sensed& sensed, const Chance& 
   if (!sensed.walls.is_degenerate) draw_rest(state, sensed, chance);
   move(state, sensed);
   state.belief.widen(sensed.drift.since);
-  if (sensed.slip) state.belief.widen(slip_error());
+  if (sensed.slip) state.belief.widen(slip_error(*sensed.slip));
   const Se2 predicted = state.belief.map_from_base();
   const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
   correct_by_walls(state, sensed, chance.start, outcome);

@@ -121,7 +121,7 @@ class WaymarkEstimator final : public Estimator {
   };
 
   Estimate update_by(const Observation& observation);
-  void believe_scans_about_slips(const Observation& observation);
+  std::optional<double> turn_that_contradicts_odometry(const Observation& observation) const;
   bool is_due() const;
   std::vector<MarkerMeasurement> measured(const Observation& observation) const;
   Belief belief_now() const;  ///< of the best particle, moved on by odometry
@@ -134,7 +134,7 @@ class WaymarkEstimator final : public Estimator {
   void move(State& state, const Sensed& sensed) const;
   PoseProposal match_walls(const State& state, const Belief& belief, const Sensed& sensed,
                            const Se2& start, SurfaceMatch& match) const;
-  static PoseError slip_error();
+  static PoseError slip_error(const Eigen::Vector3d& slip);
   std::optional<Eigen::Vector3d> find_slip(const Belief& expected, const Sensed& sensed) const;
   void follow(State& state, const Sensed& sensed, const Chance& chance, Outcome& outcome) const;
   void correct_by_walls(State& state, const Sensed& sensed, double start, Outcome& outcome) const;
@@ -169,7 +169,10 @@ class WaymarkEstimator final : public Estimator {
   double effective_particles_{1.0};
   double wall_agreement_{1.0};
   bool markers_told_{false};
-  bool slipped_{false};  ///< at the last scan
+
+  // Of the last scan:
+  std::optional<double> turn_by_scans_{};  ///< [rad] more than odometry's, where that seems wrong
+  bool slipped_{false};
   KidnapWatch::Verdict verdict_{KidnapWatch::Verdict::kSettled};
 };
 

@@ -18,18 +18,19 @@ bool is_near(const Eigen::Vector3d& slip) {
 
 }  // namespace
 
-PoseError WaymarkEstimator::slip_error() {
-  const Eigen::Array3d sigma{kSlip_m, kSlip_m, kSlip_rad};
-  return {sigma.square().matrix().asDiagonal(), PoseByErrors::Zero()};
+/// The wheels are as wrong as that, in any direction.
+PoseError WaymarkEstimator::slip_error(const Eigen::Vector3d& slip) {
+  const double squared_m2 = slip.head<2>().squaredNorm();
+  const Eigen::Vector3d variances{squared_m2, squared_m2, slip.z() * slip.z()};
+  return {variances.asDiagonal(), PoseByErrors::Zero()};
 }
 
-void WaymarkEstimator::believe_scans_about_slips(const Observation& observation) {
+/// Since the last update. A scan alone may fit another one by chance: the walls decide.
+std::optional<double> WaymarkEstimator::turn_that_contradicts_odometry(
+    const Observation& observation) const {
   const auto by_scans = turn_between(updated_beams_, observation.beams, since_update_);
-  if (!by_scans || !by_scans->contradicts_odometry) return;
-  Se2& start_from_end = since_update_.start_from_end;
-  since_update_.turn_rad += std::abs(angle_difference(by_scans->turn_rad, start_from_end.theta()));
-  start_from_end = {start_from_end.translation(), by_scans->turn_rad};
-  slipped_ = true;
+  if (!by_scans || !by_scans->contradicts_odometry) return std::nullopt;
+  return angle_difference(by_scans->turn_rad, since_update_.start_from_end.theta());
 }
 
 /// Looked for where the best particle's walls do not fit near the expected pose, and believed only
@@ -45,14 +46,18 @@ std::optional<Eigen::Vector3d> WaymarkEstimator::find_slip(const Belief& expecte
   double most = match.agreeing + kSlipGain * match.beams;
   std::optional<Eigen::Vector3d> slip;
   Belief anywhere = expected;
-  anywhere.widen(slip_error());
+  anywhere.widen(slip_error({kSlip_m, 0.0, kSlip_rad}));
   Random random{setup_.seed, kSlipStream, updates_};
   for (int i = 0; i < kSlipStarts; ++i) {
+    Eigen::Vector3d about = Eigen::Vector3d::Zero();
+    if (turn_by_scans_ && i % 2 == 0) about.z() = *turn_by_scans_;
     const Eigen::Vector3d start{kSlip_m * random.normal(), kSlip_m * random.normal(),
                                 kSlip_rad * random.normal()};
-    const Se2 found = match_walls(best, anywhere, sensed, deviated(from, start), match).mean;
+    const Se2 found =
+        match_walls(best, anywhere, sensed, deviated(from, about + start), match).mean;
     const Eigen::Vector3d away = deviation(from, found);
-    if (match.agreeing < most || match.agreeing < kFits * match.mapped || !is_near(away)) continue;
+    if (match.agreeing < most || match.agreeing < kFits * match.mapped || !is_near(away - about))
+      continue;
     most = match.agreeing;
     slip = away;
   }
