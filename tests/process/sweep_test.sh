@@ -110,7 +110,7 @@ a_killed_sweep_goes_on() {
     local script=$!
     wait_until grep -qs . "$work/pids"
     sleep 0.3
-    if [[ $signal == KILL* ]]; then pkill -KILL -P $script && kill -KILL $script; fi  # parallel, too
+    if [[ $signal == KILL* ]]; then kill -STOP $script && pkill -KILL -P $script; fi  # parallel first
     kill "-${signal%:*}" $script 2>/dev/null || true
     local code=0
     wait $script || code=$?
