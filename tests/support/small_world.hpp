@@ -4,6 +4,7 @@
 
 #include "common/geometry/angle.hpp"
 #include "common/random/random.hpp"
+#include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/scan/annotated_scan.hpp"
 
 #include <Eigen/Core>
@@ -16,6 +17,15 @@ namespace waymark::test {
 /// Covariance of (x, y, yaw) from standard deviations.
 inline Eigen::Matrix3d diagonal(double x, double y, double yaw) {
   return Eigen::Vector3d{x * x, y * y, yaw * yaw}.asDiagonal();
+}
+
+/// With errors of a centimetre along the view, half of it across, and 20 mrad.
+inline MarkerMeasurement measurement_of(const Se2& base_from_marker, int id = 7) {
+  MarkerMeasurement measurement;
+  measurement.id = id;
+  measurement.base_from_marker = base_from_marker;
+  measurement.covariance = diagonal(0.01, 0.005, 0.02);
+  return measurement;
 }
 
 /// A robot in the middle of a corridor of 2 m, walls in sight on both sides.

@@ -4,6 +4,7 @@
 #include "common/random/random.hpp"
 #include "slam/core/belief/belief.hpp"
 #include "slam/core/proposal/pose_proposal.hpp"
+#include "support/small_world.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -16,23 +17,14 @@
 namespace waymark {
 namespace {
 
+using test::diagonal;
+using test::measurement_of;
+
 constexpr int kCases = 20;
 constexpr double kGate = 16.3;  // chi^2, 3 degrees of freedom: 99.9 %
 
-Eigen::Matrix3d diagonal(double x, double y, double yaw) {
-  return Eigen::Vector3d{x * x, y * y, yaw * yaw}.asDiagonal();
-}
-
 Se2 random_pose(Random& random) {
   return {random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), random.uniform(-3.1, 3.1)};
-}
-
-MarkerMeasurement measurement_of(const Se2& base_from_marker, int id = 0) {
-  MarkerMeasurement measurement;
-  measurement.id = id;
-  measurement.base_from_marker = base_from_marker;
-  measurement.covariance = diagonal(0.01, 0.005, 0.02);
-  return measurement;
 }
 
 /// What a robot at a pose finds of a marker that it has first seen from the map's origin.

@@ -43,6 +43,14 @@ SyntheticCorridor between_two_walls(std::uint64_t seed) {
   return corridor;
 }
 
+/// There, with wheels that are 3 % off.
+SyntheticCorridor driven_on_wrong_wheels(std::uint64_t seed) {
+  SyntheticCorridor corridor = between_two_walls(seed);
+  corridor.scale_error = 0.03;
+  corridor.drive_m = 12.0;
+  return corridor;
+}
+
 double along_variance_m2(const Step& step) {
   return step.estimate.covariance(0, 0);
 }
@@ -66,9 +74,7 @@ TEST(Waymark, TheWayIsKnownBetterAtTheEnd) {
   double on_line = 0.0;
   double smoothed = 0.0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    SyntheticCorridor corridor = between_two_walls(seed);
-    corridor.scale_error = 0.03;
-    corridor.drive_m = 12.0;
+    SyntheticCorridor corridor = driven_on_wrong_wheels(seed);
     corridor.markers = test::opposite_markers(corridor);
     WaymarkEstimator estimator{estimator_setup_of(corridor, seed), {}};
     const auto steps = run(estimator, test::drive(corridor), setup_of(corridor));
@@ -151,9 +157,7 @@ TEST(Waymark, MarkersThatOnlyWeighHoldTheRobotToo) {
   double in_cells = 0.0;
   double blind = 0.0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    SyntheticCorridor corridor = between_two_walls(seed);
-    corridor.scale_error = 0.03;
-    corridor.drive_m = 12.0;
+    SyntheticCorridor corridor = driven_on_wrong_wheels(seed);
     const auto square = [](double x) {
       return x * x;
     };

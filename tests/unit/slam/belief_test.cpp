@@ -17,14 +17,7 @@ namespace waymark {
 namespace {
 
 using test::diagonal;
-
-MarkerMeasurement measurement_at(const Se2& base_from_marker, int id = 7) {
-  MarkerMeasurement measurement;
-  measurement.id = id;
-  measurement.base_from_marker = base_from_marker;
-  measurement.covariance = diagonal(0.01, 0.005, 0.02);
-  return measurement;
-}
+using test::measurement_of;
 
 Belief belief_with(const std::vector<MarkerMeasurement>& measurements) {
   Belief belief{{OdometryNoise{}, 0.005, 0.002}};
@@ -64,26 +57,26 @@ TEST(OdometryErrors, ATurnWithinItsNoiseTellsNothingOfTheScaleOfTurns) {
 }
 
 TEST(Belief, IsUnsureAlongTheWayAndAMarkerMakesItSurer) {
-  Belief belief = belief_with({measurement_at({2.0, 1.0, -1.57})});
+  Belief belief = belief_with({measurement_of({2.0, 1.0, -1.57})});
   belief.move(kForward, {});
   const Eigen::Matrix3d before = belief.pose_covariance();
   EXPECT_GT(before(0, 0), 0.0);
   const Se2 base_from_marker = belief.map_from_base().inverse() * Se2{2.0, 1.0, -1.57};
-  const auto nearest = belief.nearest(measurement_at(base_from_marker));
+  const auto nearest = belief.nearest(measurement_of(base_from_marker));
   ASSERT_TRUE(nearest);
   EXPECT_NEAR(nearest->distance, 0.0, 1e-9);
-  belief.correct(nearest->marker, measurement_at(base_from_marker), kGate);
+  belief.correct(nearest->marker, measurement_of(base_from_marker), kGate);
   EXPECT_LT(belief.pose_covariance()(0, 0), before(0, 0));
   EXPECT_EQ(belief.markers()[0].sightings, 2);
 }
 
 TEST(Belief, LearnsTheScaleOfTheOdometryFromAMarker) {
-  Belief belief = belief_with({measurement_at({3.0, 1.0, -1.57})});
+  Belief belief = belief_with({measurement_of({3.0, 1.0, -1.57})});
   double true_x = 0.0;
   for (int i = 0; i < 40; ++i) {
     belief.move({Se2{0.05, 0.0, 0.0}, 0.05, 0.0}, {});
     true_x += 0.05 * 1.01;
-    belief.correct(0, measurement_at({3.0 - true_x, 1.0, -1.57}), kGate);
+    belief.correct(0, measurement_of({3.0 - true_x, 1.0, -1.57}), kGate);
   }
   const double sigma = std::sqrt(belief.odometry_errors_covariance()(0, 0));
   EXPECT_NEAR(belief.odometry_errors()[0], 0.01, 3.0 * sigma);
@@ -92,7 +85,7 @@ TEST(Belief, LearnsTheScaleOfTheOdometryFromAMarker) {
 }
 
 TEST(Belief, DrawingAnAxisMakesItExactAndLeavesTheOthers) {
-  Belief belief = belief_with({measurement_at({2.0, 1.0, -1.57})});
+  Belief belief = belief_with({measurement_of({2.0, 1.0, -1.57})});
   belief.move(kForward, {});
   const Eigen::Matrix3d before = belief.pose_covariance();
   const Se2 mean = belief.map_from_base();
@@ -107,7 +100,7 @@ TEST(Belief, DrawingAnAxisMakesItExactAndLeavesTheOthers) {
 TEST(Belief, CorrectingThePoseMovesTheMarkersThatHangOnIt) {
   Belief belief{{OdometryNoise{}, 0.0, 0.0}};
   belief.move(kForward, {});
-  belief.add(measurement_at({1.5, 1.0, -1.57}));
+  belief.add(measurement_of({1.5, 1.0, -1.57}));
   const Se2 before = belief.map_from_base();
   const double marker_x = belief.markers()[0].map_from_marker.x();
   belief.correct_pose({before.x() + 0.01, before.y(), before.theta()},
@@ -143,18 +136,18 @@ TEST(Belief, APoseThatWasPushedByAnErrorTellsTheErrorWhenItIsCorrected) {
 
 TEST(Belief, AnIdIsAClass) {
   const Belief belief =
-      belief_with({measurement_at({1.0, 1.0, -1.5}, 3), measurement_at({5.0, 1.0, -1.5}, 3)});
+      belief_with({measurement_of({1.0, 1.0, -1.5}, 3), measurement_of({5.0, 1.0, -1.5}, 3)});
   EXPECT_EQ(belief.markers()[1].instance, 1);
-  const auto nearest = belief.nearest(measurement_at({4.98, 1.0, -1.5}, 3));
+  const auto nearest = belief.nearest(measurement_of({4.98, 1.0, -1.5}, 3));
   ASSERT_TRUE(nearest);
   EXPECT_EQ(nearest->marker, 1U);
-  EXPECT_FALSE(belief.nearest(measurement_at({1.0, 1.0, -1.5}, 9)));
+  EXPECT_FALSE(belief.nearest(measurement_of({1.0, 1.0, -1.5}, 9)));
 }
 
 TEST(Belief, SettledMarkersLeaveTheCovarianceAndAreKnownAgain) {
   std::vector<MarkerMeasurement> seen;
   for (int id = 0; id < 6; ++id) {
-    seen.push_back(measurement_at({1.0 + id, 1.0, -1.57}, id));
+    seen.push_back(measurement_of({1.0 + id, 1.0, -1.57}, id));
     seen.back().time = Timestamp{std::chrono::seconds{id}};
   }
   Belief belief = belief_with(seen);
@@ -164,9 +157,9 @@ TEST(Belief, SettledMarkersLeaveTheCovarianceAndAreKnownAgain) {
   EXPECT_EQ(copy.markers().size(), 6U);
   EXPECT_EQ(belief.markers()[0].covariance, copy.markers()[0].covariance);
   EXPECT_EQ(belief.pose_covariance(), copy.pose_covariance());
-  const auto nearest = belief.nearest(measurement_at({1.0, 1.0, -1.57}, 0));
+  const auto nearest = belief.nearest(measurement_of({1.0, 1.0, -1.57}, 0));
   ASSERT_TRUE(nearest);
-  belief.correct(nearest->marker, measurement_at({1.0, 1.0, -1.57}, 0), kGate);
+  belief.correct(nearest->marker, measurement_of({1.0, 1.0, -1.57}, 0), kGate);
   EXPECT_EQ(belief.markers()[0].sightings, 2);
 }
 

@@ -6,7 +6,7 @@ namespace waymark {
 PoseAxes told_axes(const Observability& walls_in_base, const Belief& belief) {
   const Eigen::Vector2d weak = belief.map_from_base().rotation() * walls_in_base.weak_direction;
   const Eigen::Vector3d along{weak.x(), weak.y(), 0.0};
-  Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, walls_in_base.is_degenerate ? 2 : 3);
+  PoseAxes axes(3, walls_in_base.is_degenerate ? 2 : 3);
   axes.col(0) = Eigen::Vector3d::UnitZ();
   axes.col(1) << -weak.y(), weak.x(), 0.0;
   if (!walls_in_base.is_degenerate) {

@@ -94,9 +94,10 @@ bool SurfaceMap::looks_far(double reach_m) const {
   return reach_m > kCloseReach * frame_.resolution_m;
 }
 
-std::optional<Surface> SurfaceMap::near(CellIndex middle, bool looks_far) const {
+std::optional<Surface> SurfaceMap::near(const Eigen::Vector2d& point_in_map, double reach_m) const {
+  const CellIndex middle = frame_.cell_of(point_in_map);
   const std::optional<Surface> close = close_to(middle);
-  return looks_far && !is_line(close) ? line_or(close, middle, kFarReach) : close;
+  return looks_far(reach_m) && !is_line(close) ? line_or(close, middle, kFarReach) : close;
 }
 
 std::optional<Surface> SurfaceMap::close_to(CellIndex middle) const {

@@ -48,15 +48,12 @@ class SurfaceMap {
   /// up exactly over cells, so a wall along a border between cells is not split.
   /// @param reach_m  how far off the surface may be; small reaches are tried first, and a line is
   /// preferred to a nearer clump: what has no direction holds a robot back along a bare wall.
-  std::optional<Surface> near(const Eigen::Vector2d& point_in_map, double reach_m) const {
-    return near(frame_.cell_of(point_in_map), looks_far(reach_m));
-  }
+  std::optional<Surface> near(const Eigen::Vector2d& point_in_map, double reach_m) const;
 
  private:
   friend class SurfaceFinder;
 
   bool looks_far(double reach_m) const;
-  std::optional<Surface> near(CellIndex middle, bool looks_far) const;
   std::optional<Surface> close_to(CellIndex middle) const;
   std::optional<Surface> line_or(const std::optional<Surface>& nearer, CellIndex middle,
                                  int reach) const;
