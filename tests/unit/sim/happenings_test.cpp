@@ -176,9 +176,28 @@ TEST(Bustle, AMovedMarkerIsReportedOnceAndSeenElsewhere) {
 }
 
 TEST(RealCamera, DiffersFromTheNominalOneAsSaid) {
-  const CameraConfig real = real_camera({}, {.focal_share = 0.005, .yaw_deg = 0.3});
+  const CameraConfig real = real_camera({}, {.focal_share = 0.005, .yaw_deg = 0.3}, 1);
   EXPECT_NEAR(real.fx_px, 1.005 * CameraConfig{}.fx_px, 1e-9);
   EXPECT_NEAR(real.yaw_rad, radians(0.3), 1e-12);
+}
+
+TEST(RealCamera, DiffersFromRunToRunByTheSigmas) {
+  constexpr int kRuns = 2000;
+  const CameraErrorConfig errors{.focal_share = 0.002, .focal_sigma = 0.001, .yaw_sigma_deg = 0.5};
+  double focal = 0.0;
+  double focal_squares = 0.0;
+  double yaw_squares = 0.0;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    const CameraConfig real = real_camera({}, errors, seed);
+    EXPECT_EQ(real.fx_px, real_camera({}, errors, seed).fx_px);
+    const double share = real.fx_px / CameraConfig{}.fx_px - 1.0 - errors.focal_share;
+    focal += share / kRuns;
+    focal_squares += share * share / kRuns;
+    yaw_squares += real.yaw_rad * real.yaw_rad / kRuns;
+  }
+  EXPECT_NEAR(focal, 0.0, 0.0001);
+  EXPECT_NEAR(std::sqrt(focal_squares), errors.focal_sigma, 0.00006);
+  EXPECT_NEAR(std::sqrt(yaw_squares), radians(errors.yaw_sigma_deg), radians(0.03));
 }
 
 }  // namespace

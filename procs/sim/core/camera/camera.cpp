@@ -2,6 +2,7 @@
 #include "sim/core/camera/camera.hpp"
 
 #include "common/geometry/angle.hpp"
+#include "sim/core/sensors/random_streams.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -31,13 +32,19 @@ void CameraErrorConfig::describe(Fields& fields) {
                "true focal length is longer by this share");
   fields.field("yaw_deg", yaw_deg, {-45.0, 45.0}, "mounted further to the left by this");
   fields.field("pitch_deg", pitch_deg, {-45.0, 45.0}, "mounted further down by this");
+  fields.field("focal_sigma", focal_sigma, {0.0, 0.1},
+               "standard deviation of focal_share over runs: the seed draws");
+  fields.field("yaw_sigma_deg", yaw_sigma_deg, {0.0, 10.0}, "the same of yaw_deg");
 }
 
-CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors) {
+CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors,
+                         std::int64_t seed) {
+  Random random{static_cast<std::uint64_t>(seed), random_streams::kCameraErrors};
+  const double longer = 1.0 + random.normal(errors.focal_share, errors.focal_sigma);
   CameraConfig real = nominal;
-  real.fx_px *= 1.0 + errors.focal_share;
-  real.fy_px *= 1.0 + errors.focal_share;
-  real.yaw_rad += radians(errors.yaw_deg);
+  real.fx_px *= longer;
+  real.fy_px *= longer;
+  real.yaw_rad += radians(random.normal(errors.yaw_deg, errors.yaw_sigma_deg));
   real.pitch_rad += radians(errors.pitch_deg);
   return real;
 }

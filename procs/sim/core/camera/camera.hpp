@@ -26,17 +26,21 @@ struct CameraNoiseConfig {
   void describe(Fields& fields);
 };
 
-/// How the camera differs from what the robot has been told of it.
+/// How the camera differs from what the robot has been told of it: by what is set here, and by what
+/// each run's seed draws on top, as calibrations differ.
 struct CameraErrorConfig {
   double focal_share{0.0};
   double yaw_deg{0.0};
   double pitch_deg{0.0};
+  double focal_sigma{0.0};
+  double yaw_sigma_deg{0.0};
 
   void describe(Fields& fields);
 };
 
 /// The camera that takes the pictures, given the one that the robot believes in.
-CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors);
+CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors,
+                         std::int64_t seed);
 
 /// One compressed frame.
 struct CameraFrame {

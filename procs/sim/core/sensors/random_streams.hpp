@@ -14,5 +14,6 @@ inline constexpr std::uint64_t kCameraFrame = 5;
 inline constexpr std::uint64_t kMissingMarkers = 6;
 inline constexpr std::uint64_t kLostMeasurements = 7;
 inline constexpr std::uint64_t kGarbage = 8;
+inline constexpr std::uint64_t kCameraErrors = 9;
 
 }  // namespace waymark::random_streams
