@@ -38,6 +38,8 @@ void PreprocessingConfig::describe(Fields& fields) {
                "sightings with a larger standard deviation along their wall are not used");
   fields.field("marker_wait_s", marker_wait_s, {0.0, 10.0},
                "how long a scan waits for the camera frames up to its time");
+  fields.field("scan_wait_s", scan_wait_s, {0.0, 10.0},
+               "how late a scan may be before odometry and camera go on without");
 }
 
 void SlamSection::describe(Fields& fields) {
@@ -84,6 +86,7 @@ SensorSetup sensor_setup(const SlamConfig& config) {
   setup.beam_tolerance_m = config.slam.preprocessing.beam_tolerance_m;
   setup.max_sigma_m = config.slam.preprocessing.max_sigma_m;
   setup.marker_wait = duration_from_seconds(config.slam.preprocessing.marker_wait_s);
+  setup.scan_wait = duration_from_seconds(config.slam.preprocessing.scan_wait_s);
   setup.blank_ids = config.slam.blank_ids;
   const CameraModel camera{config.robot.camera};
   setup.ray_of_pixel = [camera](const Eigen::Vector2d& raw_px) {

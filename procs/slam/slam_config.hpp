@@ -23,6 +23,7 @@ struct PreprocessingConfig {
   double detectable_range_m{3.2};
   double max_sigma_m{0.05};
   double marker_wait_s{0.25};
+  double scan_wait_s{1.0};
 
   void describe(Fields& fields);
 };

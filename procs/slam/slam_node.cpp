@@ -58,9 +58,11 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   const Timestamp time = estimate.time;
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_scan_ = time;
-  counters_.add("scans processed");
+  counters_.add(ready.scan ? "scans processed" : "estimates while the LiDAR was silent");
   if (estimate.slipped) counters_.add("slips of the wheels");
-  outbox_.publish(channels::kSlamScan, to_message(ready.scan, ready.observation, map_from_lidar));
+  if (ready.scan)
+    outbox_.publish(channels::kSlamScan,
+                    to_message(*ready.scan, ready.observation, map_from_lidar));
   outbox_.publish(channels::kSlamPose, to_pose_message(time, estimate.map_from_base));
   outbox_.publish(channels::kSlamEstimate, to_message(estimate));
   outbox_.publish(channels::kSlamParticles, to_message(estimator_->particles(), time));

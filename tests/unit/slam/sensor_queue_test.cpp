@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace waymark {
 namespace {
 
@@ -44,6 +47,101 @@ TEST(SensorQueue, AFrameThatDiffersAtAllIsUsed) {
 
 TEST(SensorQueue, EmptyFramesMayFollowEachOther) {
   EXPECT_TRUE(skips_of({frame_at(0, {}), frame_at(100, {}), frame_at(200, {})}).empty());
+}
+
+OdometrySample odometry_at(int milliseconds) {
+  return {at_ms(milliseconds), Se2{1e-4 * milliseconds, 0.0, 0.0}};
+}
+
+LidarScan scan_at(int milliseconds) {
+  LidarScan scan;
+  scan.time = at_ms(milliseconds);
+  scan.angles_rad = {0.0, 0.1, 0.2};
+  scan.ranges_m = {1.0, 1.0, 1.0};
+  return scan;
+}
+
+/// A metre in 10 s by odometry at 10 Hz, with the scans and frames that there are.
+std::vector<SensorQueue::Ready> all_ready(SensorQueue& queue, int until_ms,
+                                          const std::vector<int>& scans_ms,
+                                          const std::vector<int>& frames_ms = {}) {
+  std::vector<SensorQueue::Ready> all;
+  for (int now_ms = 0; now_ms <= until_ms; now_ms += 100) {
+    if (std::ranges::count(scans_ms, now_ms) > 0) queue.add(scan_at(now_ms));
+    if (std::ranges::count(frames_ms, now_ms) > 0) queue.add(frame_at(now_ms, {}));
+    queue.add(odometry_at(now_ms));
+    while (auto ready = queue.next())
+      all.push_back(std::move(*ready));
+  }
+  return all;
+}
+
+std::vector<int> times_ms(const std::vector<SensorQueue::Ready>& all) {
+  std::vector<int> times;
+  for (const SensorQueue::Ready& ready : all)
+    times.push_back(static_cast<int>(to_us(ready.observation.time) / 1000));
+  return times;
+}
+
+SensorSetup setup_without_waiting() {
+  SensorSetup setup;
+  setup.lidar.range_max_m = 5.0;
+  setup.marker_wait = Duration{0};
+  return setup;
+}
+
+TEST(SensorQueue, WhileTheLidarIsSilentOdometryAndCameraGoOn) {
+  SensorQueue queue{setup_without_waiting()};
+  const auto all = all_ready(queue, 2200, {0, 200, 2100}, {1000});
+  EXPECT_EQ(times_ms(all), (std::vector<int>{0, 200, 400, 600, 800, 1000, 2100}))
+      << "a second after them it is clear that no scan comes";
+  double way_m = 0.0;
+  for (const SensorQueue::Ready& ready : all) {
+    const int ms = static_cast<int>(to_us(ready.observation.time) / 1000);
+    const bool has_scan = ms <= 200 || ms == 2100;
+    EXPECT_EQ(ready.scan.has_value(), has_scan) << ms;
+    EXPECT_EQ(ready.observation.beams.empty(), !has_scan) << ms;
+    EXPECT_EQ(ready.observation.camera_reported, ms == 1000) << ms;
+    way_m += ready.observation.motion.distance_m;
+  }
+  EXPECT_NEAR(way_m, 0.21, 1e-9);
+}
+
+TEST(SensorQueue, WithoutAScanAtAllThereIsNothingToStartFrom) {
+  SensorQueue queue{setup_without_waiting()};
+  EXPECT_TRUE(all_ready(queue, 5000, {}).empty());
+}
+
+TEST(SensorQueue, WhereOdometryStaysAwayTooNothingIsObserved) {
+  SensorQueue queue{setup_without_waiting()};
+  queue.add(scan_at(0));
+  queue.add(odometry_at(0));
+  ASSERT_TRUE(queue.next());
+  queue.add(odometry_at(9000));
+  EXPECT_FALSE(queue.next());
+  queue.add(scan_at(9000));
+  EXPECT_TRUE(queue.next());
+}
+
+TEST(SensorQueue, AScanThatComesTooLateIsRefused) {
+  SensorQueue queue{setup_without_waiting()};
+  EXPECT_EQ(times_ms(all_ready(queue, 2000, {0})).back(), 1000);
+  queue.add(scan_at(900));
+  EXPECT_EQ(queue.take_skips(), std::vector<Skip>{Skip::kScanOutOfOrder});
+  queue.add(scan_at(1500));
+  EXPECT_EQ(to_us(queue.next()->observation.time), 1'500'000);
+}
+
+TEST(SensorQueue, AScanWithoutReturnsIsSaidAndStillAnObservation) {
+  SensorQueue queue{setup_without_waiting()};
+  LidarScan nothing = scan_at(0);
+  nothing.ranges_m.assign(3, std::numeric_limits<double>::infinity());
+  queue.add(nothing);
+  queue.add(odometry_at(0));
+  const auto ready = queue.next();
+  ASSERT_TRUE(ready);
+  EXPECT_TRUE(ready->scan && ready->observation.beams.empty());
+  EXPECT_EQ(queue.take_skips(), std::vector<Skip>{Skip::kScanWithoutReturns});
 }
 
 }  // namespace

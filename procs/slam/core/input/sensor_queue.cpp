@@ -7,6 +7,8 @@
 namespace waymark {
 namespace {
 
+constexpr Duration kStepWithoutScan{200'000};  // a LiDAR's usual period
+
 /// No camera sees the same twice to the last bit, unless it does not look again.
 bool are_repeated(std::span<const MarkerDetection> before, std::span<const MarkerDetection> now) {
   return !now.empty() &&
@@ -63,7 +65,8 @@ void SensorQueue::add(const OdometrySample& sample) {
 }
 
 void SensorQueue::add(LidarScan scan) {
-  if (newest_scan_ && scan.time <= *newest_scan_) {
+  if ((newest_scan_ && scan.time <= *newest_scan_) ||
+      (last_observed_ && scan.time <= *last_observed_)) {
     skips_.push_back(Skip::kScanOutOfOrder);
     return;
   }
@@ -126,17 +129,27 @@ std::optional<SensorQueue::Ready> SensorQueue::next() {
       continue;
     }
     const std::vector<Beam> beams = beams_of(scan, setup_.lidar, odometry_);
-    if (beams.empty()) {
-      skips_.push_back(Skip::kScanWithoutReturns);
-      continue;
-    }
-    Ready ready{observe(scan.time, beams), std::move(scan)};
-    last_observed_ = ready.observation.time;
-    // Camera frames that still belong to the next scan are at most marker_wait older than this one.
-    odometry_.forget_before(*last_observed_ - setup_.marker_wait);
-    return ready;
+    if (beams.empty()) skips_.push_back(Skip::kScanWithoutReturns);
+    return ready(scan.time, beams, std::move(scan));
   }
+  if (const auto time = next_without_scan()) return ready(*time, {}, std::nullopt);
   return std::nullopt;
+}
+
+/// Only where odometry was measured: where it stays away, too, there is nothing to observe.
+std::optional<Timestamp> SensorQueue::next_without_scan() const {
+  if (!last_observed_ || !scans_.empty()) return std::nullopt;
+  const auto time = odometry_.first_from(*last_observed_ + kStepWithoutScan);
+  return time && has_passed(*time + setup_.scan_wait) ? time : std::nullopt;
+}
+
+SensorQueue::Ready SensorQueue::ready(Timestamp time, std::span<const Beam> beams,
+                                      std::optional<LidarScan> scan) {
+  Ready ready{observe(time, beams), std::move(scan)};
+  last_observed_ = time;
+  // Camera frames that still belong to the next scan are at most marker_wait older than this one.
+  odometry_.forget_before(time - setup_.marker_wait);
+  return ready;
 }
 
 Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {

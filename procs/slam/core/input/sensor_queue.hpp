@@ -22,6 +22,7 @@ struct SensorSetup {
   double beam_tolerance_m{0.08};  ///< a beam that ends this near to a marker's segment is on it
   double max_sigma_m{0.05};       ///< sightings less certain than this are not used
   Duration marker_wait{250'000};  ///< how long a scan waits for the camera frames up to its time
+  Duration scan_wait{1'000'000};  ///< how late a scan may be before it is done without
   /// Ray of a pixel: its point at distance 1 in front of a camera without lens errors.
   std::function<Eigen::Vector2d(const Eigen::Vector2d&)> ray_of_pixel{};
   double corner_sigma{1e-4};  ///< of a marker's corner, same unit as ray_of_pixel
@@ -33,7 +34,7 @@ enum class Skip {
   kOdometryOutOfOrder,
   kOdometryJumped,  ///< used as a new beginning, its jump is not
   kScanOutOfOrder,
-  kScanWithoutReturns,
+  kScanWithoutReturns,  ///< odometry and camera are
   kScanBeforeOdometry,
   kScanWithoutOdometry,  ///< the input ended before the odometry for it came
   kScanOverflow,         ///< odometry stays away
@@ -47,8 +48,9 @@ enum class Skip {
 std::string_view to_string(Skip skip);
 
 /// A scan becomes an observation when odometry covers it and the camera frames up to its time have
-/// come (or marker_wait of odometry has passed without them). So the result depends on the values
-/// and not on how they were grouped on their way.
+/// come (or marker_wait of odometry has passed without them). While the LiDAR is silent, so that
+/// scan_wait of odometry has passed without a scan, odometry and camera make observations of their
+/// own. So the result depends on the values and not on how they were grouped on their way.
 class SensorQueue {
  public:
   explicit SensorQueue(const SensorSetup& setup) : setup_{setup} {}
@@ -59,10 +61,10 @@ class SensorQueue {
   /// No more values will come: stop waiting for them.
   void finish();
 
-  /// The next observation that is ready, with its scan; call until there is none.
+  /// The next observation that is ready; call until there is none.
   struct Ready {
     Observation observation{};
-    LidarScan scan{};
+    std::optional<LidarScan> scan{};  ///< nothing while the LiDAR is silent
   };
 
   std::optional<Ready> next();
@@ -73,6 +75,8 @@ class SensorQueue {
  private:
   bool is_ready(const LidarScan& scan) const;
   bool has_passed(Timestamp time) const;
+  std::optional<Timestamp> next_without_scan() const;
+  Ready ready(Timestamp time, std::span<const Beam> beams, std::optional<LidarScan> scan);
   Observation observe(Timestamp time, std::span<const Beam> beams);
   std::optional<FocalSighting> focal_sighting(const MarkerDetection& detection) const;
   void sight_markers(const MarkerDetections& frame, Timestamp time,

@@ -26,11 +26,20 @@ OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
   return outcome;
 }
 
-Se2 OdometryBuffer::pose_at(Timestamp time) const {
-  assert(covers(time));
-  const auto after = std::lower_bound(
+std::deque<OdometrySample>::const_iterator OdometryBuffer::sample_from(Timestamp time) const {
+  return std::lower_bound(
       samples_.begin(), samples_.end(), time,
       [](const OdometrySample& sample, Timestamp wanted) { return sample.time < wanted; });
+}
+
+std::optional<Timestamp> OdometryBuffer::first_from(Timestamp time) const {
+  const auto sample = sample_from(time);
+  return sample == samples_.end() ? std::nullopt : std::optional{sample->time};
+}
+
+Se2 OdometryBuffer::pose_at(Timestamp time) const {
+  assert(covers(time));
+  const auto after = sample_from(time);
   if (after->time == time) return after->odom_from_base;
   const auto before = std::prev(after);
   const double fraction = to_seconds(time - before->time) / to_seconds(after->time - before->time);

@@ -6,6 +6,7 @@
 #include "slam/core/motion/motion.hpp"
 
 #include <deque>
+#include <optional>
 
 namespace waymark {
 
@@ -30,12 +31,17 @@ class OdometryBuffer {
   /// Along the path of the samples; needs both times covered, from <= to.
   Motion motion_between(Timestamp from, Timestamp to) const;
 
+  /// Of the first sample that is not before that time.
+  std::optional<Timestamp> first_from(Timestamp time) const;
+
   Timestamp newest() const { return samples_.back().time; }
 
   /// Forgets what is not needed to read at `time` or later.
   void forget_before(Timestamp time);
 
  private:
+  std::deque<OdometrySample>::const_iterator sample_from(Timestamp time) const;
+
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
   static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
   static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz, if nobody forgets

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything that an estimator is given at one scan.
+// Everything that an estimator is given at one scan, or at one moment without.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -10,9 +10,9 @@
 namespace waymark {
 
 struct Observation {
-  Timestamp time{};  ///< of the scan
-  Motion motion{};   ///< since the observation before; none for the first
-  std::vector<AnnotatedBeam> beams{};
+  Timestamp time{};                         ///< of the scan
+  Motion motion{};                          ///< since the observation before; none for the first
+  std::vector<AnnotatedBeam> beams{};       ///< none while the LiDAR is silent
   std::vector<MarkerSighting> sightings{};  ///< of the camera frames since the observation before
   bool camera_reported{false};              ///< there was such a frame, even if it was empty
 };
