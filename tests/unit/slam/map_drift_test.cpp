@@ -101,7 +101,42 @@ TEST(MapDrift, APlaceHasTheMeanErrorOfItsScans) {
   EXPECT_NEAR(drift.now().covariance(1, 1), 2e-4, 1e-9);
 }
 
-TEST(MapDrift, TheNoiseOfScansAveragesOut) {
+/// Those that end further along than x, and the others.
+std::vector<AnnotatedBeam> part_of_walls(bool is_ahead) {
+  std::vector<AnnotatedBeam> beams = between_walls();
+  std::erase_if(beams, [&](const AnnotatedBeam& annotated) {
+    const double x = annotated.beam.end_in_base.x();
+    return is_ahead ? x < 0.05 : x > -0.05;
+  });
+  return beams;
+}
+
+TEST(MapDrift, OldAndNewWallsPullAsMuchAsTheyTell) {
+  MapDrift drift;
+  drift.map(part_of_walls(false), kNone, {}, kErrors);
+  drift.take(independent(0.0, 1e-4, 0.0), kNone, kErrors);
+  drift.map(part_of_walls(true), kNone, {}, kErrors);
+  drift.release(between_walls(), kTellsAlong, kErrors);
+  const Eigen::Matrix3d now = drift.now().covariance;
+  EXPECT_NEAR(now(1, 1), 0.25e-4, 0.03e-4) << "off by half as much in the middle of both";
+  EXPECT_GT(now(2, 2), 0.03e-4) << "and turned towards the new ones";
+  EXPECT_GT(now(1, 2), 0.0);
+}
+
+TEST(MapDrift, WallsThatWereMappedFromABetterPoseAreNotDoubled) {
+  MapDrift drift;
+  for (int scan = 0; scan < 8; ++scan)
+    drift.map(part_of_walls(false), kNone, {}, kErrors);
+  drift.take(independent(0.0, 0.01 * 0.01, 0.0), kNone, kErrors);
+  drift.release(between_walls(), kTellsAlong, kErrors);
+  EXPECT_FALSE(drift.is_better_known({-1.5, 1.0})) << "10 mm are no reason";
+  drift.take(independent(0.0, 0.05 * 0.05, 0.0), kNone, kErrors);
+  drift.release(between_walls(), kTellsAlong, kErrors);
+  EXPECT_TRUE(drift.is_better_known({-0.5, 1.0}));
+  EXPECT_FALSE(drift.is_better_known({0.5, 1.0})) << "nothing is known there";
+}
+
+TEST(MapDrift, TheNoiseOfAScanStaysOnlyInWhatItWasNotMatchedTo) {
   MapDrift drift;
   drift.take(independent(0.0, 3e-4, 0.0), Eigen::Vector3d{0.0, 1e-4, 0.0}.asDiagonal(), kErrors);
   for (int scan = 0; scan < 4; ++scan)

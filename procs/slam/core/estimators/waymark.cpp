@@ -196,8 +196,10 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
   if (is_doubtful) return outcome;
   outcome.log_evidence += config_.id_layer_evidence *
                           marker_score(mapper_.map(), sensed.spots, state.map_from_base, {});
-  for (const AnnotatedBeam& annotated : sensed.observation->beams)
-    state.walls.add(state.map_from_base * annotated.beam.end_in_base);
+  for (const AnnotatedBeam& annotated : sensed.observation->beams) {
+    const Eigen::Vector2d end = state.map_from_base * annotated.beam.end_in_base;
+    if (!drift_.is_better_known(end)) state.walls.add(end);
+  }
   return outcome;
 }
 

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/mapping/map_drift.hpp"
 
+#include <Eigen/QR>
+
+#include <algorithm>
 #include <cmath>
-#include <set>
+#include <vector>
 
 namespace waymark {
 namespace {
 
 constexpr double kRegion_m = 1.0;
 constexpr double kMinWalls = 3.0;  // number of beams at right angles; less is noise of the normals
-
-std::pair<int, int> key_of(const Eigen::Vector2d& place) {
-  return {static_cast<int>(std::floor(place.x() / kRegion_m)),
-          static_cast<int>(std::floor(place.y() / kRegion_m))};
-}
+constexpr double kRoughness = 0.04;       // of walls, share of the range's variance
+constexpr double kBetterKnown_m2 = 4e-4;  // where walls and robot differ by less, both are used
+constexpr int kWellMapped = 50;           // points in a region
 
 /// Of the rigid motion whose covariance is known at one place, at another.
 PoseError carried(const PoseError& error, const Eigen::Vector2d& step) {
@@ -21,32 +22,34 @@ PoseError carried(const PoseError& error, const Eigen::Vector2d& step) {
   return {by * error.covariance * by.transpose(), by * error.by_errors};
 }
 
-/// Of errors; those of many walls that tell a direction a little are none.
-class Average {
- public:
-  void add(double weight, const PoseError& error) {
-    weight_ += weight;
-    covariance_ += weight * error.covariance;
-    by_errors_ += weight * error.by_errors;
-  }
-
-  /// @param unknown  when nothing is known.
-  PoseError mean_or(const PoseError& unknown) const {
-    if (weight_ < kMinWalls) return unknown;
-    return {covariance_ / weight_, by_errors_ / weight_};
-  }
-
- private:
-  double weight_{0.0};
-  Eigen::Matrix3d covariance_{Eigen::Matrix3d::Zero()};
-  PoseByErrors by_errors_{PoseByErrors::Zero()};
+/// One of the errors that a mean is made of.
+struct Part {
+  Eigen::Matrix3d share{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d rest{Eigen::Matrix3d::Zero()};
 };
+
+/// Rest of sum(share * error), where the errors are those of one random walk at different times: a
+/// larger one contains the smaller ones.
+Eigen::Matrix3d rest_of_mean(std::vector<Part> parts) {
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.rest(2, 2) < b.rest(2, 2); });
+  Eigen::Matrix3d larger = Eigen::Matrix3d::Zero();
+  for (const Part& part : parts)
+    larger += part.share;
+  Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+  for (const Part& part : parts) {
+    larger -= part.share;
+    const Eigen::Matrix3d with_larger = part.share * part.rest * larger.transpose();
+    mean += part.share * part.rest * part.share.transpose() + with_larger + with_larger.transpose();
+  }
+  return mean;
+}
 
 }  // namespace
 
-const MapDrift::Region* MapDrift::region_at(const Eigen::Vector2d& place_in_map) const {
-  const auto region = regions_.find(key_of(place_in_map));
-  return region == regions_.end() ? nullptr : &region->second;
+MapDrift::Place MapDrift::place_of(const Eigen::Vector2d& point_in_map) {
+  return {static_cast<int>(std::floor(point_in_map.x() / kRegion_m)),
+          static_cast<int>(std::floor(point_in_map.y() / kRegion_m))};
 }
 
 void MapDrift::move(const Se2& map_from_base) {
@@ -54,37 +57,88 @@ void MapDrift::move(const Se2& map_from_base) {
   map_from_base_ = map_from_base;
 }
 
+/// What the beams that end in each region tell of the robot's pose, map frame, relative to a range.
+std::map<MapDrift::Place, Eigen::Matrix3d> MapDrift::told_by_regions(
+    std::span<const AnnotatedBeam> beams) const {
+  std::map<Place, Eigen::Matrix3d> told;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const Beam& beam = beams[i].beam;
+    const Eigen::Vector2d lever = map_from_base_.rotation() * beam.end_in_base;
+    const Place place = place_of(map_from_base_.translation() + lever);
+    if (!regions_.contains(place)) continue;
+    const auto normal_in_base = surface_normal(beams, static_cast<int>(i));
+    if (!normal_in_base) continue;
+    const Eigen::Vector2d normal = map_from_base_.rotation() * *normal_in_base;
+    const Eigen::Vector3d row{normal.x(), normal.y(),
+                              normal.y() * lever.x() - normal.x() * lever.y()};
+    const double across = normal_in_base->dot(beam.end_in_base - beam.start_in_base) / beam.range_m;
+    told.try_emplace(place, Eigen::Matrix3d::Zero()).first->second +=
+        row * row.transpose() / (across * across + kRoughness);
+  }
+  return told;
+}
+
+/// The error that the robot has when it has been put to where the walls are that it sees: each
+/// region pulls as much as its beams tell.
+MapDrift::Error MapDrift::error_by(const std::vector<Seen>& seen,
+                                   const ErrorsCovariance& errors_covariance) const {
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
+  for (const Seen& region : seen)
+    all += region.told;
+  const Eigen::Matrix3d inverse = all.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::Matrix3d untold = Eigen::Matrix3d::Identity() - inverse * all;
+  std::vector<Part> parts{{untold, rest_of(now_, errors_covariance)}};
+  PoseByErrors by_errors = untold * now_.by_errors;
+  for (const Seen& region : seen) {
+    const Eigen::Matrix3d share = inverse * region.told;
+    parts.push_back({share, rest_of(region.error, errors_covariance)});
+    by_errors += share * region.error.by_errors;
+  }
+  return {rest_of_mean(std::move(parts)), by_errors};
+}
+
+bool MapDrift::knows_better(const Seen& seen, const Eigen::Matrix3d& axes,
+                            const ErrorsCovariance& errors_covariance) const {
+  const Eigen::Matrix3d since =
+      axes * (rest_of(now_, errors_covariance) - rest_of(seen.error, errors_covariance)) * axes;
+  return since.topLeftCorner<2, 2>().trace() > kBetterKnown_m2 &&
+         regions_.at(seen.place).points >= kWellMapped;
+}
+
 DriftFromWalls MapDrift::release(std::span<const AnnotatedBeam> beams, const Observability& walls,
                                  const ErrorsCovariance& errors_covariance) {
+  better_known_.clear();
+  const auto told = told_by_regions(beams);
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
+  for (const auto& [place, information] : told)
+    all += information;
+  if (all.topLeftCorner<2, 2>().trace() < kMinWalls) return {};
+
   const Eigen::Vector2d weak = map_from_base_.rotation() * walls.weak_direction;
-  Average of_strong;
-  Average of_weak;
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    const Region* region = region_at(map_from_base_ * beams[i].beam.end_in_base);
-    if (!region) continue;
-    const auto normal = surface_normal(beams, static_cast<int>(i));
-    if (!normal) continue;
-    const auto here = [&](PoseError error) {
-      error.covariance += region->noise / region->scans;
-      return carried(error, map_from_base_.translation() - region->robot);
-    };
-    const double told = std::pow(weak.dot(map_from_base_.rotation() * *normal), 2);
-    of_weak.add(told, here(region->whole));
-    of_strong.add(1.0 - told, here(region->drawn));
-  }
   const Eigen::Matrix3d others = without(weak);
   const Eigen::Matrix3d along_weak = Eigen::Matrix3d::Identity() - others;
-  const PoseError strong = of_strong.mean_or(now_);
-  const PoseError along = walls.is_degenerate ? now_ : of_weak.mean_or(now_);
+  const bool is_along_told =
+      !walls.is_degenerate && weak.dot(all.topLeftCorner<2, 2>() * weak) >= kMinWalls;
+  const Eigen::Matrix3d axes =
+      is_along_told ? Eigen::Matrix3d{Eigen::Matrix3d::Identity()} : others;
+  std::vector<Seen> seen;
+  for (const auto& [place, information] : told) {
+    const Region& region = regions_.at(place);
+    seen.push_back({place, axes * information * axes,
+                    carried(is_along_told ? region.whole : region.drawn,
+                            map_from_base_.translation() - region.robot)});
+    if (knows_better(seen.back(), axes, errors_covariance)) better_known_.insert(place);
+  }
+
+  const Error by_walls = error_by(seen, errors_covariance);
   const Eigen::Matrix3d rest = rest_of(now_, errors_covariance);
-  const Eigen::Matrix3d more = others * (rest - rest_of(strong, errors_covariance)) * others +
-                               along_weak * (rest - rest_of(along, errors_covariance)) * along_weak;
-  const PoseByErrors by_errors = others * (now_.by_errors - strong.by_errors) +
-                                 along_weak * (now_.by_errors - along.by_errors);
+  const Eigen::Matrix3d less = rest - by_walls.rest;
+  const Eigen::Matrix3d more = others * less * others + along_weak * less * along_weak;
+  const PoseByErrors by_errors = now_.by_errors - by_walls.by_errors;
   const DriftFromWalls drift{with_rest(positive_part(more), by_errors, errors_covariance),
                              positive_part(-more)};
-  now_ = with_rest(positive_part(rest - positive_part(more)), now_.by_errors - by_errors,
-                   errors_covariance);
+  now_ =
+      with_rest(positive_part(rest - positive_part(more)), by_walls.by_errors, errors_covariance);
   return drift;
 }
 
@@ -96,25 +150,26 @@ void MapDrift::take(const PoseError& drawn, const Eigen::Matrix3d& by_noise,
 
 void MapDrift::map(std::span<const AnnotatedBeam> beams, const Eigen::Matrix3d& by_scan,
                    const PoseError& undrawn, const ErrorsCovariance& errors_covariance) {
-  const PoseError drawn{now_.covariance - noise_ + by_scan, now_.by_errors};
-  const PoseError whole = sum_of(drawn, undrawn, errors_covariance);
-  std::set<std::pair<int, int>> seen;
+  std::map<Place, int> seen;
   for (const AnnotatedBeam& annotated : beams)
-    seen.insert(key_of(map_from_base_ * annotated.beam.end_in_base));
-  for (const auto& key : seen) {
-    Region& region = regions_[key];
-    if (region.scans == 0) region.robot = map_from_base_.translation();
-    const Eigen::Vector2d step = region.robot - map_from_base_.translation();
-    const PoseError noise = carried({noise_, PoseByErrors::Zero()}, step);
-    ++region.scans;
-    const double share = 1.0 / region.scans;
-    const auto average = [&](PoseError& mean, const PoseError& there) {
+    ++seen[place_of(map_from_base_ * annotated.beam.end_in_base)];
+  for (const auto& [place, points] : seen) {
+    if (better_known_.contains(place)) continue;
+    const auto [found, is_new] = regions_.try_emplace(place);
+    Region& region = found->second;
+    if (is_new) region.robot = map_from_base_.translation();
+    // Where the scan was matched the pose has followed its noise, and its points lie right.
+    PoseError drawn{now_.covariance + by_scan, now_.by_errors};
+    if (!is_new) drawn.covariance -= noise_;
+    region.points += points;
+    const double share = static_cast<double>(points) / region.points;
+    const auto average = [&](PoseError& mean, const PoseError& here) {
+      const PoseError there = carried(here, region.robot - map_from_base_.translation());
       mean.covariance += share * (there.covariance - mean.covariance);
       mean.by_errors += share * (there.by_errors - mean.by_errors);
     };
-    average(region.drawn, carried(drawn, step));
-    average(region.whole, carried(whole, step));
-    region.noise += share * (noise.covariance - region.noise);
+    average(region.drawn, drawn);
+    average(region.whole, sum_of(drawn, undrawn, errors_covariance));
   }
 }
 
