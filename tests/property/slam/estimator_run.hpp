@@ -27,14 +27,8 @@ struct Step {
 
 inline std::vector<Step> run(Estimator& estimator, const SensorLog& log, const SensorSetup& setup) {
   SensorQueue queue{setup};
-  for (const OdometrySample& sample : log.odometry)
-    queue.add(sample);
   std::vector<Step> steps;
-  auto frame = log.frames.begin();
-  for (const LidarScan& scan : log.scans) {
-    for (; frame != log.frames.end() && frame->time <= scan.time; ++frame)
-      queue.add(*frame);
-    queue.add(scan);
+  const auto take_ready = [&] {
     while (const auto ready = queue.next()) {
       const auto truth =
           std::lower_bound(log.truth.begin(), log.truth.end(), ready->observation.time,
@@ -42,6 +36,16 @@ inline std::vector<Step> run(Estimator& estimator, const SensorLog& log, const S
       steps.push_back({estimator.update(ready->observation),
                        log.truth.front().world_from_base.inverse() * truth->world_from_base});
     }
+  };
+  auto scan = log.scans.begin();
+  auto frame = log.frames.begin();
+  for (const OdometrySample& sample : log.odometry) {
+    queue.add(sample);
+    for (; frame != log.frames.end() && frame->time <= sample.time; ++frame)
+      queue.add(*frame);
+    for (; scan != log.scans.end() && scan->time <= sample.time; ++scan)
+      queue.add(*scan);
+    take_ready();
   }
   return steps;
 }
