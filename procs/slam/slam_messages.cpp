@@ -13,7 +13,6 @@ using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 constexpr std::size_t kParticlesPerMessage = 1300;  // 48 bytes each
 constexpr std::size_t kLandmarksPerMessage = 500;   // 125 bytes each
 constexpr std::size_t kPosesPerMessage = 3000;      // 20 bytes each
-constexpr int kConfirmingSightings = 3;             // fewer may be a misread marker
 
 std::int8_t to_message(Health health) {
   switch (health) {
@@ -53,8 +52,7 @@ marker_landmark_t to_message(const Landmark& landmark) {
   message.first_seen_utime = to_us(landmark.first_seen);
   message.last_seen_utime = to_us(landmark.last_seen);
   message.state = marker_landmark_t::STATE_TENTATIVE;
-  if (landmark.sightings >= kConfirmingSightings)
-    message.state = marker_landmark_t::STATE_CONFIRMED;
+  if (landmark.is_confirmed()) message.state = marker_landmark_t::STATE_CONFIRMED;
   if (landmark.was_moved) message.state = marker_landmark_t::STATE_MOVED;
   return message;
 }

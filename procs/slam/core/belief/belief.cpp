@@ -206,11 +206,11 @@ std::optional<Innovation> Belief::nearest(const MarkerMeasurement& measurement) 
   return nearest;
 }
 
-std::optional<std::size_t> Belief::only_marker(int id) const {
+std::optional<std::size_t> Belief::witness(int id) const {
   std::optional<std::size_t> only;
   for (std::size_t i = 0; i < num_markers(); ++i) {
     if (marker(i).id != id) continue;
-    if (only) return std::nullopt;
+    if (only || !marker(i).is_confirmed()) return std::nullopt;
     only = i;
   }
   return only;
@@ -343,7 +343,7 @@ void Belief::forget_moved() {
         continue;
       }
       editable(k).instance = marker(i).instance;
-      editable(k).was_moved = true;
+      editable(k).was_moved = marker(i).is_confirmed();
       if (i < active_.size()) {
         remove_active(i);
       } else {

@@ -123,8 +123,8 @@ class Belief {
   /// The marker of that id that fits best; nothing when none is known.
   std::optional<Innovation> nearest(const MarkerMeasurement& measurement) const;
 
-  /// The marker of that id, if there is exactly one.
-  std::optional<std::size_t> only_marker(int id) const;
+  /// The marker of that id, if there is exactly one and it is confirmed.
+  std::optional<std::size_t> witness(int id) const;
 
   /// Where the robot is if the measurement is of that marker.
   Se2 pose_by(std::size_t marker, const MarkerMeasurement& measurement) const;

@@ -244,7 +244,7 @@ void WaymarkEstimator::move(State& state, const Sensed& sensed) const {
     state.belief.relocate(kidnap_watch_.returning_pose());
   } else if (sensed.verdict == KidnapWatch::Verdict::kElsewhere) {
     const MarkerMeasurement& by = kidnap_watch_.relocating_marker();
-    if (const auto marker = state.belief.only_marker(by.id)) state.belief.relocate(*marker, by);
+    if (const auto marker = state.belief.witness(by.id)) state.belief.relocate(*marker, by);
   }
 }
 

@@ -30,8 +30,8 @@ KidnapWatch::Verdict KidnapWatch::judge(const Belief& belief,
     const auto nearest = belief.nearest(measurement);
     if (!nearest || nearest->may_be_it(gate, near_m)) {
       belief_is_confirmed = true;
-    } else if (const auto only = belief.only_marker(measurement.id)) {
-      count_for_elsewhere(measurement.id, belief.pose_by(*only, measurement));
+    } else if (const auto witness = belief.witness(measurement.id)) {
+      count_for_elsewhere(measurement.id, belief.pose_by(*witness, measurement));
       relocating_marker_ = measurement;
     }
   }

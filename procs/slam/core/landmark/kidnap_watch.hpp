@@ -16,9 +16,9 @@ namespace waymark {
 /// was lifted, or slipped), as the known places of those markers tell.
 ///
 /// A marker that is where it is expected, or that is new, speaks for the belief. A marker that is
-/// known, the only one of its id, and not where it is seen speaks for the other place. One such
-/// marker alone is a doubt; two that agree about the other place while none speaks for the belief
-/// settle it.
+/// known, confirmed, the only one of its id, and not where it is seen speaks for the other place.
+/// One such marker alone is a doubt; two that agree about the other place while none speaks for the
+/// belief settle it.
 class KidnapWatch {
  public:
   enum class Verdict {

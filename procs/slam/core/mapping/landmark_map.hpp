@@ -21,6 +21,9 @@ struct Landmark {
   Timestamp last_seen{};
   int misses{0};          ///< updates since the last sighting at which it should have been in view
   bool was_moved{false};  ///< it used to be at another place
+
+  /// Fewer sightings may be of a misread marker.
+  bool is_confirmed() const { return sightings >= 3; }
 };
 
 /// Collects sightings. An id is a class, not a key: sightings of one id that lie apart are
