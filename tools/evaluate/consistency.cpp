@@ -53,6 +53,24 @@ std::vector<StationConsistency> consistency(const std::vector<std::vector<Statio
   return stations;
 }
 
+SquaresOverVariances squares_over_variances(const std::vector<std::vector<Station>>& runs) {
+  SquaresOverVariances sums;
+  double count = 0.0;
+  const auto ratio = [](double error, const std::optional<double>& sigma) {
+    return error * error / (sigma.value() * sigma.value());
+  };
+  for (const std::vector<Station>& run : runs) {
+    for (const Station& station : run) {
+      if (!station.nees) continue;
+      sums.along += ratio(station.along_m, station.sigma_along_m);
+      sums.across += ratio(station.across_m, station.sigma_across_m);
+      sums.heading += ratio(station.heading_rad, station.sigma_heading_rad);
+      count += 1.0;
+    }
+  }
+  return {sums.along / count, sums.across / count, sums.heading / count};
+}
+
 double share_in_band(const std::vector<StationConsistency>& stations) {
   if (stations.empty()) return std::numeric_limits<double>::quiet_NaN();
   double in_band = 0.0;

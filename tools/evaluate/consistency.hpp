@@ -32,6 +32,16 @@ struct StationConsistency {
 /// By travel. Stations that no run reached with a covariance are left out.
 std::vector<StationConsistency> consistency(const std::vector<std::vector<Station>>& runs);
 
+/// Mean over all stations and runs of the squared error over its variance, axis by axis: 1 is
+/// right, below it the covariance is too wide. NaN without a covariance.
+struct SquaresOverVariances {
+  double along{};
+  double across{};
+  double heading{};
+};
+
+SquaresOverVariances squares_over_variances(const std::vector<std::vector<Station>>& runs);
+
 /// NaN without stations.
 double share_in_band(const std::vector<StationConsistency>& stations);
 

@@ -30,10 +30,15 @@ Station station_at(double travel_m, const PosePair& pair, const StampedCovarianc
   if (stamped == nullptr) return station;
   station.health = stamped->health;
   station.nees = nees_of(pair, stamped->covariance, world_from_map);
-  const double heading = pair.map_from_estimate.theta();
-  const Eigen::Vector2d ahead{std::cos(heading), std::sin(heading)};
-  const double variance = ahead.dot(stamped->covariance.topLeftCorner<2, 2>() * ahead);
-  station.sigma_along_m = std::sqrt(std::max(variance, 0.0));
+  const Eigen::Matrix2d turn = pair.map_from_estimate.rotation();
+  const Eigen::Matrix2d of_position =
+      turn.transpose() * stamped->covariance.topLeftCorner<2, 2>() * turn;
+  const auto sigma = [](double variance) {
+    return std::sqrt(std::max(variance, 0.0));
+  };
+  station.sigma_along_m = sigma(of_position(0, 0));
+  station.sigma_across_m = sigma(of_position(1, 1));
+  station.sigma_heading_rad = sigma(stamped->covariance(2, 2));
   return station;
 }
 
@@ -86,20 +91,25 @@ std::optional<double> sigma_growth(const std::vector<Station>& stations, double 
 }
 
 std::string stations_csv(const std::vector<Station>& stations) {
-  std::string text = "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,health\n";
+  std::string text =
+      "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,"
+      "sigma_heading_rad,health\n";
   for (const Station& station : stations)
-    text += fmt::format("{:.0f},{:.6f},{:.6f},{:.6f},{:.7f},{:.4f},{:.6f},{}\n", station.travel_m,
-                        station.t_s, station.along_m, station.across_m, station.heading_rad,
-                        station.nees.value_or(kNone), station.sigma_along_m.value_or(kNone),
-                        static_cast<int>(station.health));
+    text +=
+        fmt::format("{:.0f},{:.6f},{:.6f},{:.6f},{:.7f},{:.4f},{:.6f},{:.6f},{:.7f},{}\n",
+                    station.travel_m, station.t_s, station.along_m, station.across_m,
+                    station.heading_rad, station.nees.value_or(kNone),
+                    station.sigma_along_m.value_or(kNone), station.sigma_across_m.value_or(kNone),
+                    station.sigma_heading_rad.value_or(kNone), static_cast<int>(station.health));
   return text;
 }
 
 std::vector<Station> read_stations(const std::filesystem::path& file, Skipped& skipped) {
-  const CsvTable table = read_csv(
-      file,
-      {"travel_m", "t", "along_m", "across_m", "heading_rad", "nees", "sigma_along_m", "health"},
-      skipped);
+  const CsvTable table =
+      read_csv(file,
+               {"travel_m", "t", "along_m", "across_m", "heading_rad", "nees", "sigma_along_m",
+                "sigma_across_m", "sigma_heading_rad", "health"},
+               skipped);
   std::vector<Station> stations;
   for (const auto& row : table.rows)
     stations.push_back({.travel_m = table.at(row, "travel_m"),
@@ -109,6 +119,8 @@ std::vector<Station> read_stations(const std::filesystem::path& file, Skipped& s
                         .heading_rad = table.at(row, "heading_rad"),
                         .nees = some(table.at(row, "nees")),
                         .sigma_along_m = some(table.at(row, "sigma_along_m")),
+                        .sigma_across_m = some(table.at(row, "sigma_across_m")),
+                        .sigma_heading_rad = some(table.at(row, "sigma_heading_rad")),
                         .health = static_cast<Health>(std::lround(table.at(row, "health")))});
   return stations;
 }

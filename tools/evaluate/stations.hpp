@@ -20,6 +20,8 @@ struct Station {
   double heading_rad{};
   std::optional<double> nees{};  ///< 3 degrees of freedom; absent without a covariance
   std::optional<double> sigma_along_m{};
+  std::optional<double> sigma_across_m{};
+  std::optional<double> sigma_heading_rad{};
   Health health{Health::kUnknown};
 };
 
@@ -39,7 +41,8 @@ std::vector<Station> stations(const std::vector<PosePair>& pairs,
 std::optional<double> sigma_growth(const std::vector<Station>& stations, double from_m,
                                    double to_m);
 
-/// `travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,health`; -1 where there is none.
+/// `travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,sigma_heading_rad,health`;
+/// -1 where there is none.
 std::string stations_csv(const std::vector<Station>& stations);
 
 /// @throws InputError if the file cannot be read.

@@ -43,6 +43,8 @@ TEST(Stations, StandAMetreApartWithErrorsInTheTrueBase) {
   EXPECT_NEAR(found[2].heading_rad, 0.1, 1e-12);
   EXPECT_NEAR(found[2].nees.value(), (0.0004 + 0.0001 + 0.01) / 0.01, 1e-9);
   EXPECT_NEAR(found[2].sigma_along_m.value(), 0.1, 1e-12);
+  EXPECT_NEAR(found[2].sigma_across_m.value(), 0.1, 1e-12);
+  EXPECT_NEAR(found[2].sigma_heading_rad.value(), 0.1, 1e-12);
   EXPECT_EQ(found[2].health, Health::kTracking);
 }
 
@@ -85,6 +87,33 @@ TEST(Stations, TheFileReadsBack) {
   EXPECT_NEAR(with[0].along_m, 0.02, 1e-6);
   EXPECT_FALSE(without.at(0).nees || without.at(0).sigma_along_m);
   EXPECT_TRUE(skipped.empty());
+}
+
+TEST(Stations, SigmasAreAlongAndAcrossTheRobot) {
+  std::vector<PosePair> pairs = drive(12, {});
+  const Se2 turned{0.0, 0.0, std::numbers::pi / 2.0};
+  for (PosePair& pair : pairs) {
+    pair.map_from_estimate = turned * pair.map_from_estimate;
+    pair.world_from_truth = turned * pair.world_from_truth;
+  }
+  auto along_y = covariances(pairs, 0.0);
+  for (StampedCovariance& stamped : along_y)
+    stamped.covariance = Eigen::Vector3d{0.04, 0.09, 0.0001}.asDiagonal();
+  const Station station = stations(pairs, along_y, {}).at(0);
+  EXPECT_NEAR(station.sigma_along_m.value(), 0.3, 1e-9);
+  EXPECT_NEAR(station.sigma_across_m.value(), 0.2, 1e-9);
+  EXPECT_NEAR(station.sigma_heading_rad.value(), 0.01, 1e-9);
+}
+
+TEST(Consistency, SquaredErrorsAreComparedAxisByAxis) {
+  const auto run = [](double heading_rad) {
+    const auto pairs = drive(35, {0.02, -0.01, heading_rad});
+    return stations(pairs, covariances(pairs, 1e-4), {});
+  };
+  const SquaresOverVariances squares = squares_over_variances({run(0.0), run(0.02)});
+  EXPECT_NEAR(squares.along, 4.0, 0.01);
+  EXPECT_NEAR(squares.across, 1.0, 0.01);
+  EXPECT_NEAR(squares.heading, 2.0, 0.01);
 }
 
 TEST(Consistency, QuantilesAreThoseOfTheTables) {

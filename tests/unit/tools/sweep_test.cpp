@@ -40,8 +40,9 @@ struct SweptFolder {
                   R"({"ate_origin_m": 0.4, "accuracy_percent": 99.0, "expectations": []})");
       folder.file(run + "/waymark/metrics.json", metrics(0.04 * seed, 100.1, seed < 3));
       folder.file(run + "/waymark/stations.csv",
-                  "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,health\n"
-                  "1,10,0.1,0,0,3,0.1,2\n2,20,0.1,0,0,99,0.1,2\n");
+                  "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,"
+                  "sigma_heading_rad,health\n"
+                  "1,10,0.1,0,0,3,0.1,0.1,0.1,2\n2,20,0.1,0,0,99,0.1,0.1,0.1,2\n");
     }
     folder.file("dark/seed-1/odometry/metrics.json", metrics(0.5, 98.0, true));
     folder.file("dark/seed-1/waymark/failed", "replay ended with code 139; logs are x/logs/y.*\n");
@@ -102,8 +103,9 @@ std::vector<SweepRow> rows_with(const std::string& expected_of_seeds) {
     json["marker_map_share"] = 0.9 + 0.01 * seed;
     folder.file(run + "/metrics.json", json.dump());
     folder.file(run + "/stations.csv",
-                "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,health\n"
-                "1,10,0.1,0,0,3,0.1,2\n2,20,0.1,0,0,99,0.1,2\n");
+                "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,"
+                "sigma_heading_rad,health\n"
+                "1,10,0.1,0,0,3,0.1,0.1,0.1,2\n2,20,0.1,0,0,99,0.1,0.1,0.1,2\n");
   }
   folder.file("plan/runs.tsv", plan);
   return sweep_rows(read_runs(folder.path()));
