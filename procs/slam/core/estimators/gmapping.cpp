@@ -31,9 +31,8 @@ Estimate GmappingEstimator::update(const Observation& observation) {
   const bool is_first = updates_ == 0;
   propagate(observation.motion);
   since_update_ = since_update_.then(observation.motion);
-  const bool is_due =
-      is_first || config_.gate.is_open(since_update_, observation.time - updated_at_);
-  const bool is_update = is_due && !observation.beams.empty();
+  const bool is_due = config_.gate.is_open(since_update_, observation.time - updated_at_);
+  const bool is_update = is_first || (is_due && !observation.beams.empty());
   trail_.add(observation.time, observation.motion, is_update);
   if (is_update) {
     auto scan = std::make_shared<const StoredScan>(trusted_beams(observation));
