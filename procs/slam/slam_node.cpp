@@ -30,11 +30,12 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
 void SlamNode::finish() {
   queue_.finish();
   process_ready_scans();
-  if (!last_scan_) return;
-  for (const map_tiles_t& part : map_publisher_.complete(estimator_->redrawn_map(), *last_scan_))
+  if (!last_estimate_) return;
+  for (const map_tiles_t& part :
+       map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_))
     outbox_.publish(channels::kSlamMap, part);
-  publish_markers(*last_scan_);
-  publish_grid(*last_scan_);
+  publish_markers(*last_estimate_);
+  publish_grid(*last_estimate_);
   for (const trajectory_t& part : to_messages(estimator_->trajectory()))
     outbox_.publish(channels::kSlamTrajectory, part);
 }
@@ -57,7 +58,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   const Estimate estimate = estimator_->update(ready.observation);
   const Timestamp time = estimate.time;
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
-  last_scan_ = time;
+  last_estimate_ = time;
   counters_.add(ready.scan ? "scans processed" : "estimates while the LiDAR was silent");
   if (estimate.slipped) counters_.add("slips of the wheels");
   if (ready.scan)

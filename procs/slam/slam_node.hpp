@@ -45,7 +45,7 @@ class SlamNode final : public Node {
   SensorQueue queue_;
   std::unique_ptr<Estimator> estimator_;
   MapPublisher map_publisher_{};
-  std::optional<Timestamp> last_scan_{};
+  std::optional<Timestamp> last_estimate_{};
   std::optional<Timestamp> next_map_{};
   std::size_t num_beams_{0};
 };

@@ -5,31 +5,43 @@
 #include "slam/core/input/sensor_queue.hpp"
 #include "support/synthetic_corridor.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace waymark::test {
 
+/// Feeds a drive to the queue in order of time, as sensors do.
+/// @param take  is given each SensorQueue::Ready.
+template <class Take>
+void feed(SensorQueue& queue, const SensorLog& log, Take&& take) {
+  auto scan = log.scans.begin();
+  auto frame = log.frames.begin();
+  for (const OdometrySample& sample : log.odometry) {
+    queue.add(sample);
+    for (; frame != log.frames.end() && frame->time <= sample.time; ++frame)
+      queue.add(*frame);
+    for (; scan != log.scans.end() && scan->time <= sample.time; ++scan)
+      queue.add(*scan);
+    while (auto ready = queue.next())
+      take(std::move(*ready));
+  }
+}
+
 /// Without camera frames.
-inline std::vector<Observation> observations_of(const SensorLog& log,
-                                                const SyntheticCorridor& corridor) {
+inline std::vector<Observation> observations_of(SensorLog log, const SyntheticCorridor& corridor) {
   SensorSetup setup;
   setup.lidar = {{corridor.lidar_x_m, 0.0, 0.0}, 0.05, corridor.range_max_m};
   setup.marker_wait = Duration{0};
   SensorQueue queue{setup};
   std::vector<Observation> observations;
-  const auto take_ready = [&] {
-    while (auto ready = queue.next())
-      observations.push_back(std::move(ready->observation));
+  const auto keep = [&](SensorQueue::Ready ready) {
+    observations.push_back(std::move(ready.observation));
   };
-  auto scan = log.scans.begin();
-  for (const OdometrySample& sample : log.odometry) {
-    queue.add(sample);
-    for (; scan != log.scans.end() && scan->time <= sample.time; ++scan)
-      queue.add(*scan);
-    take_ready();
-  }
+  log.frames.clear();
+  feed(queue, log, keep);
   queue.finish();
-  take_ready();
+  while (auto ready = queue.next())
+    keep(std::move(*ready));
   return observations;
 }
 

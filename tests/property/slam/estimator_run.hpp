@@ -4,6 +4,7 @@
 
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/input/sensor_queue.hpp"
+#include "support/observations.hpp"
 #include "support/synthetic_corridor.hpp"
 
 #include <algorithm>
@@ -28,25 +29,13 @@ struct Step {
 inline std::vector<Step> run(Estimator& estimator, const SensorLog& log, const SensorSetup& setup) {
   SensorQueue queue{setup};
   std::vector<Step> steps;
-  const auto take_ready = [&] {
-    while (const auto ready = queue.next()) {
-      const auto truth =
-          std::lower_bound(log.truth.begin(), log.truth.end(), ready->observation.time,
-                           [](const TruePose& pose, Timestamp time) { return pose.time < time; });
-      steps.push_back({estimator.update(ready->observation),
-                       log.truth.front().world_from_base.inverse() * truth->world_from_base});
-    }
-  };
-  auto scan = log.scans.begin();
-  auto frame = log.frames.begin();
-  for (const OdometrySample& sample : log.odometry) {
-    queue.add(sample);
-    for (; frame != log.frames.end() && frame->time <= sample.time; ++frame)
-      queue.add(*frame);
-    for (; scan != log.scans.end() && scan->time <= sample.time; ++scan)
-      queue.add(*scan);
-    take_ready();
-  }
+  feed(queue, log, [&](const SensorQueue::Ready& ready) {
+    const auto truth =
+        std::lower_bound(log.truth.begin(), log.truth.end(), ready.observation.time,
+                         [](const TruePose& pose, Timestamp time) { return pose.time < time; });
+    steps.push_back({estimator.update(ready.observation),
+                     log.truth.front().world_from_base.inverse() * truth->world_from_base});
+  });
   return steps;
 }
 

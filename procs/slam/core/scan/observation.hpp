@@ -10,7 +10,7 @@
 namespace waymark {
 
 struct Observation {
-  Timestamp time{};                         ///< of the scan
+  Timestamp time{};                         ///< of the scan, else of odometry
   Motion motion{};                          ///< since the observation before; none for the first
   std::vector<AnnotatedBeam> beams{};       ///< none while the LiDAR is silent
   std::vector<MarkerSighting> sightings{};  ///< of the camera frames since the observation before
