@@ -81,6 +81,8 @@ void GmappingConfig::describe(Fields& fields) {
                "ogain: log weights are divided by this times the number of particles");
   fields.field("occupied_threshold", occupied_threshold, kFraction,
                "occ_thresh: share of hits above which a cell is published as occupied");
+  fields.field("watch_turns", watch_turns,
+               "where scans contradict odometry's turn, believe them; the released code: false");
   fields.section("motion", motion);
   fields.section("gate", gate);
   fields.section("matcher", matcher);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/gmapping.hpp"
 #include "support/observations.hpp"
+#include "support/room_with_column.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,6 +62,25 @@ TEST(GmappingInABareCorridor, AScanScoresMoreFurtherBackAlthoughOdometryIsPerfec
   EXPECT_THAT(scores, ::testing::WhenSorted(::testing::ElementsAreArray(scores)));
 }
 
+TEST(GmappingInABareCorridor, PlausibleTurnsAreLeftAlone) {
+  SyntheticCorridor corridor;
+  corridor.drive_m = 10.0;
+  corridor.turn_noise_per_sqrt_m = 0.0175;
+  GmappingConfig as_released;
+  as_released.watch_turns = false;
+  as_released.particles = 5;
+  GmappingConfig watching = as_released;
+  watching.watch_turns = true;
+  GmappingEstimator released{setup_for(corridor), as_released};
+  GmappingEstimator ours{setup_for(corridor), watching};
+  for (const Observation& observation : observations_of(drive(corridor), corridor)) {
+    const Se2 expected = released.update(observation).map_from_base;
+    const Se2 found = ours.update(observation).map_from_base;
+    ASSERT_EQ(found.translation(), expected.translation());
+    ASSERT_EQ(found.theta(), expected.theta());
+  }
+}
+
 /// A room of 6 m by 4 m that the LiDAR sees whole, with odometry that is 5 % too long.
 SyntheticCorridor room() {
   SyntheticCorridor corridor;
@@ -90,6 +110,38 @@ TEST(GmappingEstimator, CorrectsOdometryWhereTheWallsTell) {
   EXPECT_LT((estimate.map_from_base.translation() - truth.translation()).norm(), 0.04);
   EXPECT_EQ(estimate.health, Health::kTracking);
   EXPECT_EQ(estimate.num_particles, 30U);
+}
+
+/// Heading error one step after the wheels have missed 0.45 rad, before the next match is due.
+double heading_error_after_slip(bool watch_turns, std::uint64_t seed) {
+  EstimatorSetup setup;
+  setup.seed = seed;
+  setup.range_max_m = 12.0;
+  GmappingConfig config;
+  config.watch_turns = watch_turns;
+  GmappingEstimator estimator{setup, config};
+  const Se2 start{-1.5, -0.6, 0.3};
+  const Motion step{Se2{0.12, 0.0, 0.0}, 0.12, 0.0};
+  Se2 truth = start;
+  Observation observation;
+  Estimate estimate;
+  for (int i = 0; i < 12; ++i) {
+    if (i > 0) {
+      observation.motion = step;
+      truth = truth * (i == 10 ? Se2{0.12, 0.0, 0.45} : step.start_from_end);
+    }
+    observation.beams = test::scan_of_room(truth);
+    estimate = estimator.update(observation);
+    EXPECT_EQ(estimate.slipped, watch_turns && i == 10) << i;
+  }
+  return std::abs(angle_difference(estimate.map_from_base.theta(), truth.theta() - start.theta()));
+}
+
+TEST(GmappingEstimator, TurnsWithTheScansWhereTheWheelsSlipped) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    EXPECT_LT(heading_error_after_slip(true, seed), 0.03);
+    EXPECT_GT(heading_error_after_slip(false, seed), 0.4);  // the released code
+  }
 }
 
 TEST(GmappingEstimator, FollowsOdometryBetweenUpdates) {

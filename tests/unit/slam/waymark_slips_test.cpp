@@ -3,81 +3,17 @@
 #include "common/random/random.hpp"
 #include "slam/core/belief/noise_growth.hpp"
 #include "slam/core/estimators/waymark.hpp"
-#include "slam/core/scan/turn_by_scans.hpp"
+#include "support/room_with_column.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
-#include <vector>
 
 namespace waymark {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-/// Range from inside a room of 6 m x 4 m with a column, in the map frame.
-double range_in_room(const Eigen::Vector2d& from, double direction_rad) {
-  const Eigen::Vector2d ray{std::cos(direction_rad), std::sin(direction_rad)};
-  double range_m = 100.0;
-  if (ray.x() > 1e-9) range_m = std::min(range_m, (3.0 - from.x()) / ray.x());
-  if (ray.x() < -1e-9) range_m = std::min(range_m, (-3.0 - from.x()) / ray.x());
-  if (ray.y() > 1e-9) range_m = std::min(range_m, (2.0 - from.y()) / ray.y());
-  if (ray.y() < -1e-9) range_m = std::min(range_m, (-2.0 - from.y()) / ray.y());
-  const Eigen::Vector2d to_column = Eigen::Vector2d{1.5, 0.7} - from;
-  const double ahead_m = ray.dot(to_column);
-  const double beside_m = std::abs(ray.x() * to_column.y() - ray.y() * to_column.x());
-  if (ahead_m > 0.0 && beside_m < 0.2)
-    range_m = std::min(range_m, ahead_m - std::sqrt(0.04 - beside_m * beside_m));
-  return range_m;
-}
-
-std::vector<AnnotatedBeam> scan_of_room(const Se2& map_from_base) {
-  std::vector<AnnotatedBeam> beams;
-  Random random{3};
-  for (int i = 0; i < 360; ++i) {
-    const double bearing_rad = i * kDegree;
-    AnnotatedBeam annotated;
-    annotated.beam.range_m =
-        range_in_room(map_from_base.translation(), map_from_base.theta() + bearing_rad) +
-        0.01 * random.normal();
-    annotated.beam.end_in_base =
-        annotated.beam.range_m * Eigen::Vector2d{std::cos(bearing_rad), std::sin(bearing_rad)};
-    beams.push_back(annotated);
-  }
-  return beams;
-}
-
-TEST(TurnBetween, FindsTheTurnThatTheWheelsDidNotMake) {
-  for (const double slip_deg : {-40.0, -12.0, 8.0, 35.0}) {
-    const Se2 start{-0.5, 0.3, 0.2};
-    const Motion told{Se2{0.1, 0.0, 0.05}, 0.1, 0.05};
-    const Se2 end{Eigen::Vector2d{(start * told.start_from_end).translation()},
-                  start.theta() + 0.05 + slip_deg * kDegree};
-    const auto found = turn_between(scan_of_room(start), scan_of_room(end), told);
-    ASSERT_TRUE(found) << slip_deg;
-    EXPECT_TRUE(found->contradicts_odometry) << slip_deg;
-    EXPECT_NEAR(found->turn_rad, 0.05 + slip_deg * kDegree, 1.6 * kDegree) << slip_deg;
-  }
-}
-
-TEST(TurnBetween, BelievesGoodOdometry) {
-  for (const double turn_deg : {-30.0, 0.0, 1.0, 20.0}) {
-    const Se2 start{0.4, -0.3, 1.0};
-    const Motion told{Se2{0.1, 0.0, turn_deg * kDegree}, 0.1, std::abs(turn_deg) * kDegree};
-    const auto found =
-        turn_between(scan_of_room(start), scan_of_room(start * told.start_from_end), told);
-    ASSERT_TRUE(found) << turn_deg;
-    EXPECT_FALSE(found->contradicts_odometry) << turn_deg;
-  }
-}
-
-TEST(TurnBetween, HasNothingToSayWithoutScans) {
-  EXPECT_FALSE(turn_between({}, scan_of_room({}), {}));
-  EXPECT_FALSE(turn_between(scan_of_room({}), {}, {}));
-}
+using test::scan_of_room;
 
 /// Drives a metre through the room, is pushed while the wheels say that it drives on, and goes on.
 Se2 error_after_push(const Se2& push, std::uint64_t seed) {

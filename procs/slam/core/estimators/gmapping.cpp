@@ -2,6 +2,7 @@
 #include "slam/core/estimators/gmapping.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace waymark {
@@ -29,11 +30,12 @@ GmappingEstimator::GmappingEstimator(const EstimatorSetup& setup, const Gmapping
 
 Estimate GmappingEstimator::update(const Observation& observation) {
   const bool is_first = updates_ == 0;
-  propagate(observation.motion);
-  since_update_ = since_update_.then(observation.motion);
+  const Motion motion = checked(observation);
+  propagate(motion);
+  since_update_ = since_update_.then(motion);
   const bool is_due = config_.gate.is_open(since_update_, observation.time - updated_at_);
   const bool is_update = is_first || (is_due && !observation.beams.empty());
-  trail_.add(observation.time, observation.motion, is_update);
+  trail_.add(observation.time, motion, is_update);
   if (is_update) {
     auto scan = std::make_shared<const StoredScan>(trusted_beams(observation));
     if (!is_first) match_and_weigh(*scan);
@@ -44,6 +46,16 @@ Estimate GmappingEstimator::update(const Observation& observation) {
   }
   ++observations_;
   return estimate(observation);
+}
+
+/// The observation's motion, and the turn that odometry has missed.
+Motion GmappingEstimator::checked(const Observation& observation) {
+  slipped_ = false;
+  if (!config_.watch_turns) return observation.motion;
+  const auto missing_rad = turn_watch_.missing_turn(observation.beams, observation.motion);
+  if (!missing_rad) return observation.motion;
+  slipped_ = true;
+  return observation.motion.then({Se2{0.0, 0.0, *missing_rad}, 0.0, std::abs(*missing_rad)});
 }
 
 void GmappingEstimator::propagate(const Motion& motion) {
@@ -139,6 +151,7 @@ Estimate GmappingEstimator::estimate(const Observation& observation) const {
   const Se2 map_from_base = map_from_best_ * since_update_.start_from_end;
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = covariance_about(map_from_base, particles_);
+  estimate.slipped = slipped_;
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = WeakAxisSource::kOdometry;

@@ -9,6 +9,7 @@
 #include "slam/core/gmapping/scan_gate.hpp"
 #include "slam/core/gmapping/scan_matcher.hpp"
 #include "slam/core/gmapping/trajectory.hpp"
+#include "slam/core/scan/turn_watch.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -26,6 +27,9 @@ struct GmappingConfig {
   double resample_threshold{0.5};   ///< resampleThreshold
   double likelihood_gain{3.0};      ///< ogain
   double occupied_threshold{0.25};  ///< occ_thresh
+  /// Where the scans contradict odometry's turn, the particles turn as the scans tell. The released
+  /// code comes through such places by chance.
+  bool watch_turns{true};
   StepNoise motion{};
   ScanGate gate{};
   MatcherConfig matcher{};
@@ -60,6 +64,7 @@ class GmappingEstimator final : public Estimator {
     bool is_matched{true};       ///< the last scan scored enough
   };
 
+  Motion checked(const Observation& observation);
   void propagate(const Motion& motion);
   void match_and_weigh(std::span<const Beam> beams);
   void resample_and_register(const std::shared_ptr<const StoredScan>& scan);
@@ -72,6 +77,8 @@ class GmappingEstimator final : public Estimator {
   MatcherSetting matcher_;
   ParticleSet<State> particles_;
   std::uint64_t observations_{0};
+  TurnWatch turn_watch_{};
+  bool slipped_{false};  ///< the last observation's motion has been put right
   ScanTrail trail_{};
   std::vector<Se2> settled_way_{};  ///< poses at the updates that all particles share
 

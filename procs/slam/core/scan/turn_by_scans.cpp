@@ -73,22 +73,29 @@ std::optional<TurnByScans> turn_between(std::span<const AnnotatedBeam> earlier,
   result.mismatch_m = std::numeric_limits<double>::infinity();
   result.odometry_mismatch_m = std::numeric_limits<double>::infinity();
   int best = 0;
-  for (int turn = -kMaxTurn; turn <= kMaxTurn; ++turn) {
+  const auto look_at = [&](int turn) {
     const Comparison comparison = compare(then, now, turn);
-    if (comparison.common < kMinCommon * static_cast<double>(filled)) continue;
+    if (comparison.common < kMinCommon * static_cast<double>(filled)) return;
     if (std::abs(turn) <= kSameTurn)
       result.odometry_mismatch_m = std::min(result.odometry_mismatch_m, comparison.mismatch_m);
     if (comparison.mismatch_m < result.mismatch_m) {
       result.mismatch_m = comparison.mismatch_m;
       best = turn;
     }
+  };
+  for (int turn = -kSameTurn; turn <= kSameTurn; ++turn)
+    look_at(turn);
+  if (result.odometry_mismatch_m > kMinMismatch_m) {
+    for (int more = kSameTurn + 1; more <= kMaxTurn; ++more) {
+      look_at(-more);
+      look_at(more);
+    }
   }
   if (!std::isfinite(result.odometry_mismatch_m)) return std::nullopt;
   const double extra_rad = best * 2.0 * std::numbers::pi / kBins;
   result.turn_rad = motion.start_from_end.theta() + extra_rad;
-  result.contradicts_odometry = std::abs(best) > kSameTurn &&
-                                result.odometry_mismatch_m > kMinMismatch_m &&
-                                result.mismatch_m < kClearly * result.odometry_mismatch_m;
+  result.contradicts_odometry =
+      std::abs(best) > kSameTurn && result.mismatch_m < kClearly * result.odometry_mismatch_m;
   return result;
 }
 

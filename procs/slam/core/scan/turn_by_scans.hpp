@@ -21,8 +21,9 @@ struct TurnByScans {
 };
 
 /// Compares the range profile of a scan with that of an earlier one, for all turns within 50
-/// degrees of the odometry's. It takes part in no estimate as long as odometry is plausible: it is
-/// coarser than matching with the map, but has no basin of attraction to miss.
+/// degrees of the odometry's, or just near to that if it fits. It takes part in no estimate as long
+/// as odometry is plausible: it is coarser than matching with the map, but has no basin of
+/// attraction to miss.
 /// @param motion  since the earlier scan, by odometry; its way is taken for right.
 /// @return nothing when the scans have too little in common.
 std::optional<TurnByScans> turn_between(std::span<const AnnotatedBeam> earlier,

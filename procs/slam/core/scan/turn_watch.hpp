@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Turns of the robot that its wheels did not tell.
+#pragma once
+
+#include "slam/core/motion/motion.hpp"
+#include "slam/core/scan/annotated_scan.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace waymark {
+
+/// Finds turns that odometry misses, scan by scan: each is compared with one from a short way
+/// before (turn_between).
+class TurnWatch {
+ public:
+  /// The next observation.
+  /// @param beams  of its scan; none: nothing is compared.
+  /// @param motion  since the observation before, by odometry.
+  /// @return [rad] how far the robot turned beyond that; nothing where odometry is plausible. What
+  /// has been returned is not returned again.
+  std::optional<double> missing_turn(std::span<const AnnotatedBeam> beams, const Motion& motion);
+
+ private:
+  std::vector<AnnotatedBeam> reference_{};
+  Motion since_reference_{};
+};
+
+}  // namespace waymark
