@@ -42,6 +42,38 @@ TEST(OdometryBuffer, AResetOfTheOdometryIsNoMotion) {
   EXPECT_NEAR(motion.start_from_end.y(), 0.0, 1e-12);
 }
 
+/// Stands at (5, 1, 0.5) for a second, then tells another pose.
+OdometryBuffer::Outcome outcome_after_standing(const Se2& then, OdometryBuffer& buffer) {
+  for (int ms = 0; ms <= 1000; ms += 50)
+    EXPECT_EQ(buffer.add({at_ms(ms), Se2{5.0, 1.0, 0.5}}), OdometryBuffer::Outcome::kAdded);
+  return buffer.add({at_ms(1050), then});
+}
+
+TEST(OdometryBuffer, AStuckOdometryTellsAtOnceWhatItHasKeptBack) {
+  OdometryBuffer buffer;
+  const Se2 driven{1.5, 0.1, 0.2};
+  EXPECT_EQ(outcome_after_standing(Se2{5.0, 1.0, 0.5} * driven, buffer),
+            OdometryBuffer::Outcome::kCaughtUp);
+
+  EXPECT_NEAR(buffer.motion_between(at_ms(0), at_ms(1050)).distance_m, 0.0, 1e-12);
+  const auto kept_back = buffer.kept_back(at_ms(1000), at_ms(1050));
+  ASSERT_TRUE(kept_back);
+  EXPECT_NEAR((kept_back->start_from_end.translation() - driven.translation()).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(kept_back->start_from_end.theta(), 0.2, 1e-12);
+  EXPECT_FALSE(buffer.kept_back(at_ms(950), at_ms(1000)));
+  EXPECT_FALSE(buffer.kept_back(at_ms(1050), at_ms(1100)));
+}
+
+TEST(OdometryBuffer, AResetOfAParkedRobotIsNoMotion) {
+  const Se2 begins_anew;
+  const Se2 further_than_it_can_drive{12.0, 1.0, 0.5};
+  for (const Se2& then : {begins_anew, further_than_it_can_drive}) {
+    OdometryBuffer buffer;
+    EXPECT_EQ(outcome_after_standing(then, buffer), OdometryBuffer::Outcome::kJumped);
+    EXPECT_FALSE(buffer.kept_back(at_ms(0), at_ms(1050)));
+  }
+}
+
 TEST(OdometryBuffer, MeasuresThePathNotTheDistanceOfItsEnds) {
   OdometryBuffer buffer;
   for (int step = 0; step <= 20; ++step) {

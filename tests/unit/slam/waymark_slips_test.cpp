@@ -3,12 +3,15 @@
 #include "common/random/random.hpp"
 #include "slam/core/belief/noise_growth.hpp"
 #include "slam/core/estimators/waymark.hpp"
+#include "support/observations.hpp"
 #include "support/room_with_column.hpp"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -47,6 +50,49 @@ TEST(Waymark, FindsItsWallsAgainAfterAPush) {
       EXPECT_LT(error.translation().norm(), 0.02) << push.x() << ' ' << push.y();
       EXPECT_LT(std::abs(error.theta()), 0.01) << push.x() << ' ' << push.y();
     }
+  }
+}
+
+/// The odometry repeats itself on the way from `from_m` to `to_m`, and then goes on as it would
+/// have.
+void stick(test::SensorLog& log, double from_m, double to_m) {
+  const double start_m = log.truth.front().world_from_base.x();
+  std::optional<Se2> stuck;
+  for (std::size_t i = 0; i < log.odometry.size(); ++i) {
+    const double travel_m = log.truth[i].world_from_base.x() - start_m;
+    if (travel_m < from_m || travel_m > to_m) continue;
+    if (!stuck) stuck = log.odometry[i].odom_from_base;
+    log.odometry[i].odom_from_base = *stuck;
+  }
+}
+
+TEST(Waymark, CatchesUpWithAnOdometryThatWasStuck) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    test::SyntheticCorridor corridor;
+    corridor.seed = seed;
+    corridor.drive_m = 12.0;
+    corridor.speed_m_s = 0.2;
+    corridor.markers = test::opposite_markers(corridor);
+    test::SensorLog log = test::drive(corridor);
+    stick(log, 6.0, 8.0);
+    SensorSetup sensors;
+    sensors.lidar = {Se2{corridor.lidar_x_m, 0.0, 0.0}, 0.12, corridor.range_max_m};
+    sensors.camera.base_from_camera = {corridor.camera_x_m, 0.0, 0.0};
+    SensorQueue queue{sensors};
+    EstimatorSetup setup;
+    setup.seed = seed;
+    setup.camera = sensors.camera;
+    WaymarkEstimator estimator{setup, {}};
+    Estimate estimate;
+    int caught_up = 0;
+    test::feed(queue, log, [&](const SensorQueue::Ready& ready) {
+      estimate = estimator.update(ready.observation);
+      caught_up += ready.observation.odometry_caught_up;
+    });
+    EXPECT_EQ(caught_up, 1);
+    EXPECT_EQ(queue.take_skips(), std::vector{Skip::kOdometryStuck});
+    // Without it the robot is lost by the way that it drove out of sight of known markers.
+    EXPECT_NEAR(estimate.map_from_base.x(), corridor.drive_m, 0.06) << seed;
   }
 }
 

@@ -320,6 +320,11 @@ void Belief::remove_active(std::size_t marker) {
   covariance_.conservativeResize(covariance_.rows() - 3, covariance_.cols() - 3);
 }
 
+void Belief::forget_since(Timestamp time) {
+  for (std::size_t i = active_.size(); i-- > 0;)
+    if (active_[i].first_seen > time) remove_active(i);
+}
+
 Landmark& Belief::editable(std::size_t index) {
   return index < active_.size() ? active_[index] : settled_.edit()[index - active_.size()];
 }

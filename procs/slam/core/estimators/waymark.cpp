@@ -56,6 +56,7 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
 }
 
 Estimate WaymarkEstimator::update_by(const Observation& observation) {
+  watch_standstill(observation);
   since_update_ = since_update_.then(observation.motion);
   turn_by_scans_ = turn_that_contradicts_odometry(observation);
   slipped_ = false;

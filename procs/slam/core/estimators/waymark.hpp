@@ -87,6 +87,7 @@ class WaymarkEstimator final : public Estimator {
 
     Se2 map_from_base{};  ///< mean of the belief
     Se2 previous_map_from_base{};
+    Se2 map_from_stood{};  ///< where it was when the odometry began to stand still
     SurfaceMap walls;
     Belief belief;
   };
@@ -121,6 +122,14 @@ class WaymarkEstimator final : public Estimator {
   };
 
   Estimate update_by(const Observation& observation);
+  void watch_standstill(const Observation& observation);
+  void undo_standstill();
+
+  /// Of a particle, as odometry has carried it since the last update.
+  Se2 pose_now(std::size_t particle) const {
+    return particles_.state(particle).map_from_base * since_update_.start_from_end;
+  }
+
   std::optional<double> turn_that_contradicts_odometry(const Observation& observation) const;
   bool is_due() const;
   std::vector<MarkerMeasurement> measured(const Observation& observation) const;
@@ -160,6 +169,7 @@ class WaymarkEstimator final : public Estimator {
   MapDrift drift_{};
   Retrospect retrospect_{};
   Motion since_update_{};
+  std::optional<Timestamp> stands_since_{};     ///< what the odometry tells
   std::vector<AnnotatedBeam> updated_beams_{};  ///< those of the last update
   std::uint64_t updates_{0};
 

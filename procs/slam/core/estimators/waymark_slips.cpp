@@ -18,6 +18,30 @@ bool is_near(const Eigen::Vector3d& slip) {
 
 }  // namespace
 
+void WaymarkEstimator::watch_standstill(const Observation& observation) {
+  if (observation.odometry_caught_up && stands_since_) undo_standstill();
+  if (observation.motion.distance_m > 0.0 || observation.motion.turn_rad > 0.0) {
+    stands_since_.reset();
+  } else if (!stands_since_) {
+    stands_since_ = observation.time;
+    for (std::size_t i = 0; i < particles_.size(); ++i)
+      particles_.state(i).map_from_stood = pose_now(i);
+  }
+}
+
+/// Odometry was stuck, and tells now what was driven meanwhile. Known markers have carried the
+/// robot some of that way, which must not count twice; new ones were mapped from where it was not.
+void WaymarkEstimator::undo_standstill() {
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    State& state = particles_.state(i);
+    state.belief.step(pose_now(i).inverse() * state.map_from_stood);
+    state.belief.forget_since(*stands_since_);
+    state.map_from_base = state.belief.map_from_base();
+  }
+  mean_ = mean_pose();
+  kidnap_watch_ = {};
+}
+
 /// The wheels are as wrong as that, in any direction.
 PoseError WaymarkEstimator::slip_error(const Eigen::Vector3d& slip) {
   const double squared_m2 = slip.head<2>().squaredNorm();

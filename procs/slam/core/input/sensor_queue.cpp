@@ -27,6 +27,8 @@ std::string_view to_string(Skip skip) {
       return "odometry out of order";
     case Skip::kOdometryJumped:
       return "odometry jumps";
+    case Skip::kOdometryStuck:
+      return "odometry catching up after it was stuck";
     case Skip::kScanOutOfOrder:
       return "scans out of order";
     case Skip::kScanWithoutReturns:
@@ -60,6 +62,9 @@ void SensorQueue::add(const OdometrySample& sample) {
       break;
     case OdometryBuffer::Outcome::kJumped:
       skips_.push_back(Skip::kOdometryJumped);
+      break;
+    case OdometryBuffer::Outcome::kCaughtUp:
+      skips_.push_back(Skip::kOdometryStuck);
       break;
   }
 }
@@ -155,7 +160,13 @@ SensorQueue::Ready SensorQueue::ready(Timestamp time, std::span<const Beam> beam
 Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {
   Observation observation;
   observation.time = time;
-  if (last_observed_) observation.motion = odometry_.motion_between(*last_observed_, time);
+  if (last_observed_) {
+    observation.motion = odometry_.motion_between(*last_observed_, time);
+    if (const auto kept_back = odometry_.kept_back(*last_observed_, time)) {
+      observation.motion = kept_back->then(observation.motion);
+      observation.odometry_caught_up = true;
+    }
+  }
   while (!frames_.empty() && frames_.front().time <= time) {
     const MarkerDetections frame = std::move(frames_.front());
     frames_.pop_front();

@@ -33,6 +33,7 @@ struct SensorSetup {
 enum class Skip {
   kOdometryOutOfOrder,
   kOdometryJumped,  ///< used as a new beginning, its jump is not
+  kOdometryStuck,   ///< stood still and then told at once what was driven: used when it came
   kScanOutOfOrder,
   kScanWithoutReturns,  ///< odometry and camera are
   kScanBeforeOdometry,

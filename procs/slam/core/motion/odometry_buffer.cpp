@@ -7,6 +7,13 @@
 #include <iterator>
 
 namespace waymark {
+namespace {
+
+bool is_other(const Se2& a, const Se2& b) {
+  return a.translation() != b.translation() || a.theta() != b.theta();
+}
+
+}  // namespace
 
 OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
   Outcome outcome = Outcome::kAdded;
@@ -18,12 +25,30 @@ OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
         !(std::abs(step.theta()) <= kMaxTurnRate_rad_s * elapsed_s)) {
       smooth_from_raw_ = samples_.back().odom_from_base * sample.odom_from_base.inverse();
       outcome = Outcome::kJumped;
+      if (has_kept_back(step, sample)) {
+        outcome = Outcome::kCaughtUp;
+        catch_up_ = {sample.time, Motion::between(last_raw_, sample.odom_from_base)};
+      }
     }
   }
+  if (samples_.empty() || is_other(sample.odom_from_base, last_raw_)) changed_ = sample.time;
   last_raw_ = sample.odom_from_base;
   samples_.push_back({sample.time, smooth_from_raw_ * sample.odom_from_base});
   if (samples_.size() > kMaxSamples) samples_.pop_front();
   return outcome;
+}
+
+/// Odometry that begins anew does so at the origin.
+bool OdometryBuffer::has_kept_back(const Se2& step, const OdometrySample& sample) const {
+  const double stuck_s = to_seconds(newest() - changed_);
+  return is_other(sample.odom_from_base, Se2{}) &&
+         step.translation().norm() <= kMaxDrive_m_s * stuck_s &&
+         std::abs(step.theta()) <= kMaxDrive_rad_s * stuck_s;
+}
+
+std::optional<Motion> OdometryBuffer::kept_back(Timestamp from, Timestamp to) const {
+  if (!catch_up_ || catch_up_->time <= from || catch_up_->time > to) return std::nullopt;
+  return catch_up_->motion;
 }
 
 std::deque<OdometrySample>::const_iterator OdometryBuffer::sample_from(Timestamp time) const {

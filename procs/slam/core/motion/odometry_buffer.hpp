@@ -13,10 +13,11 @@ namespace waymark {
 class OdometryBuffer {
  public:
   /// How a sample was taken.
-  enum class Outcome { kAdded, kOutOfOrder, kJumped };
+  enum class Outcome { kAdded, kOutOfOrder, kJumped, kCaughtUp };
 
   /// A sample that is not newer than the last is refused. A jump that no robot can drive (its
-  /// odometry was reset) counts as no motion.
+  /// odometry was reset) counts as no motion. Odometry that stood still and then jumps as far as
+  /// can be driven meanwhile had been stuck: the jump is what it has kept back.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }
@@ -28,8 +29,12 @@ class OdometryBuffer {
   /// Interpolated; needs covers(time).
   Se2 pose_at(Timestamp time) const;
 
-  /// Along the path of the samples; needs both times covered, from <= to.
+  /// Along the path of the samples; needs both times covered, from <= to. Without what was kept
+  /// back.
   Motion motion_between(Timestamp from, Timestamp to) const;
+
+  /// What a sample after `from`, not after `to`, has told of the time before it.
+  std::optional<Motion> kept_back(Timestamp from, Timestamp to) const;
 
   /// Of the first sample that is not before that time.
   std::optional<Timestamp> first_from(Timestamp time) const;
@@ -40,15 +45,26 @@ class OdometryBuffer {
   void forget_before(Timestamp time);
 
  private:
+  /// What was kept back since the odometry last changed.
+  struct CatchUp {
+    Timestamp time{};  ///< of the sample that told it
+    Motion motion{};
+  };
+
   std::deque<OdometrySample>::const_iterator sample_from(Timestamp time) const;
+  bool has_kept_back(const Se2& step, const OdometrySample& sample) const;
 
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
   static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
+  static constexpr double kMaxDrive_m_s = 2.0;        ///< on average, while it was stuck
+  static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
   static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz, if nobody forgets
 
   std::deque<OdometrySample> samples_{};  ///< without jumps
   Se2 smooth_from_raw_{};
   Se2 last_raw_{};
+  Timestamp changed_{};  ///< when it last told another pose than before
+  std::optional<CatchUp> catch_up_{};
 };
 
 }  // namespace waymark

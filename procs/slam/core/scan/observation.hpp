@@ -14,7 +14,10 @@ struct Observation {
   Motion motion{};                          ///< since the observation before; none for the first
   std::vector<AnnotatedBeam> beams{};       ///< none while the LiDAR is silent
   std::vector<MarkerSighting> sightings{};  ///< of the camera frames since the observation before
-  bool camera_reported{false};              ///< there was such a frame, even if it was empty
+  /// The motion begins with one that odometry has kept back while it stood still, and has told at
+  /// once. Observations meanwhile had no motion.
+  bool odometry_caught_up{false};
+  bool camera_reported{false};  ///< there was such a frame, even if it was empty
 };
 
 }  // namespace waymark
