@@ -36,6 +36,10 @@ test::SyntheticCorridor corridor_of(double length_m, std::uint64_t seed) {
   corridor.speed_m_s = kSpeed_m_s;
   corridor.seed = seed;
   corridor.scale_error = seed % 2 == 0 ? -0.01 : 0.01;
+  Random random{seed};
+  corridor.camera_focal_error = random.normal(0.0, MarkerMeasurementConfig{}.camera_focal_sigma);
+  corridor.camera_yaw_error_rad =
+      random.normal(0.0, MarkerMeasurementConfig{}.camera_yaw_sigma_rad);
   corridor.markers = test::opposite_markers(corridor);
   return corridor;
 }

@@ -3,9 +3,13 @@
 // corridors, so many that chance hardly matters (20 recorded seeds leave the mean square of an
 // error uncertain by a third).
 //
-// usage: synthetic_consistency [SEEDS [DRIVE_M [SILENT_FROM_M SILENT_TO_M]]]
+// The errors of odometry and camera are drawn with the standard deviations that the filter
+// believes.
+//
+// usage: synthetic_consistency [SEEDS [DRIVE_M [SPACING_M [SILENT_FROM_M SILENT_TO_M]]]]
 //   SEEDS          default: 100
 //   DRIVE_M        default: 20
+//   SPACING_M      of the pairs of markers, 0 = none; default: 4
 //   SILENT_FROM_M  the LiDAR is off from there to SILENT_TO_M; default: nowhere
 // Columns, every metre: travel [m], mean NEES (3 is right); then along, across [mm] and heading
 // [mrad]: RMS error, RMS standard deviation, mean of squared error over variance (1 is right).
@@ -23,11 +27,12 @@
 namespace waymark {
 namespace {
 
-constexpr double kSpeed_m_s = 0.1;
+constexpr double kSpeed_m_s = 0.5;
 
 struct Drives {
   int seeds{100};
   double drive_m{20.0};
+  double spacing_m{4.0};
   double silent_from_m{0.0};
   double silent_to_m{0.0};
 };
@@ -51,7 +56,11 @@ test::SyntheticCorridor corridor_of(const Drives& drives, std::uint64_t seed) {
   corridor.seed = seed;
   corridor.scale_error = random.normal(0.0, 0.01);
   corridor.turn_scale_error = random.normal(0.0, 0.005);
-  corridor.markers = test::opposite_markers(corridor);
+  corridor.camera_focal_error = random.normal(0.0, MarkerMeasurementConfig{}.camera_focal_sigma);
+  corridor.camera_yaw_error_rad =
+      random.normal(0.0, MarkerMeasurementConfig{}.camera_yaw_sigma_rad);
+  if (drives.spacing_m > 0.0)
+    corridor.markers = test::opposite_markers(corridor, 4.0, drives.spacing_m);
   return corridor;
 }
 
@@ -128,13 +137,15 @@ int main(int argc, char** argv) {
   waymark::Drives drives;
   if (argc > 1) drives.seeds = std::atoi(argv[1]);
   if (argc > 2) drives.drive_m = std::atof(argv[2]);
-  if (argc == 5) {
-    drives.silent_from_m = std::atof(argv[3]);
-    drives.silent_to_m = std::atof(argv[4]);
+  if (argc > 3) drives.spacing_m = std::atof(argv[3]);
+  if (argc == 6) {
+    drives.silent_from_m = std::atof(argv[4]);
+    drives.silent_to_m = std::atof(argv[5]);
   }
-  if (drives.seeds < 1 || drives.drive_m < 1.0 || argc == 4 || argc > 5) {
+  if (drives.seeds < 1 || drives.drive_m < 1.0 || argc == 5 || argc > 6) {
     std::fprintf(stderr,
-                 "usage: synthetic_consistency [SEEDS [DRIVE_M [SILENT_FROM_M SILENT_TO_M]]]\n");
+                 "usage: synthetic_consistency [SEEDS [DRIVE_M [SPACING_M [SILENT_FROM_M "
+                 "SILENT_TO_M]]]]\n");
     return 2;
   }
   waymark::print(waymark::drive_all(drives), drives.seeds);

@@ -107,10 +107,14 @@ MarkerDetections noisy_frame(const SyntheticCorridor& corridor, const TruePose& 
     MarkerDetection detection = detection_of(marker, world_from_base, corridor);
     Eigen::Isometry3d& pose = detection.base_from_marker;
     const Eigen::Vector3d camera{corridor.camera_x_m, 0.0, pose.translation().z()};
-    const Eigen::Vector3d ray = pose.translation() - camera;
-    pose.translation() = camera + Eigen::AngleAxisd{bearing_noise_rad, Eigen::Vector3d::UnitZ()} *
-                                      (ray * (1.0 + range_noise_m / ray.norm()));
-    pose.linear() = Eigen::AngleAxisd{yaw_noise_rad, Eigen::Vector3d::UnitZ()} * pose.linear();
+    Eigen::Vector3d ray = pose.translation() - camera;
+    ray.x() /= 1.0 + corridor.camera_focal_error;
+    const Eigen::AngleAxisd turned{bearing_noise_rad - corridor.camera_yaw_error_rad,
+                                   Eigen::Vector3d::UnitZ()};
+    pose.translation() = camera + turned * (ray * (1.0 + range_noise_m / ray.norm()));
+    pose.linear() =
+        Eigen::AngleAxisd{yaw_noise_rad - corridor.camera_yaw_error_rad, Eigen::Vector3d::UnitZ()} *
+        pose.linear();
     frame.detections.push_back(detection);
   }
   return frame;

@@ -119,6 +119,18 @@ TEST(Waymark, WithoutMarkersTheVarianceAlongACorridorNeverShrinks) {
   }
 }
 
+// Each scan's direction of the walls is off by its noise. What that lets through of the way along
+// them would tell the scale of distances, falsely and better and better.
+TEST(Waymark, ALongBareCorridorDoesNotTellTheScaleOfDistances) {
+  SyntheticCorridor corridor = between_two_walls(1);
+  corridor.length_m += 50.0;
+  corridor.drive_m += 50.0;
+  corridor.speed_m_s = 0.5;
+  const auto steps = run_waymark(test::drive(corridor), corridor, 1);
+  const double scale_m2 = std::pow(OdometryNoise{}.scale_sigma * corridor.drive_m, 2);
+  EXPECT_GT(along_variance_m2(steps.back()), 0.3 * scale_m2);
+}
+
 // Seen at the start, then hidden, then seen again.
 TEST(Waymark, AKnownMarkerShrinksTheVarianceAlongTheCorridor) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

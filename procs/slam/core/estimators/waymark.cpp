@@ -208,12 +208,13 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
 void WaymarkEstimator::follow(State& state, const Sensed& sensed, const Chance& chance,
                               Outcome& outcome) const {
   if (!sensed.walls.is_degenerate) draw_rest(state, sensed, chance);
+  const Eigen::Matrix3d open = state.belief.pose_covariance();
   move(state, sensed);
   state.belief.widen(sensed.drift.since);
   if (sensed.slip) state.belief.widen(slip_error(*sensed.slip));
   const Se2 predicted = state.belief.map_from_base();
   const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
-  correct_by_walls(state, sensed, chance.start, outcome);
+  correct_by_walls(state, sensed, open, chance.start, outcome);
   const Eigen::Matrix3d posterior = in_frame_of(predicted, state.belief.pose_covariance());
   const Se2 moved = predicted.inverse() * state.belief.map_from_base();
   outcome.correction = {
@@ -268,10 +269,11 @@ void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
   state.belief.note_absences(is_in_view, observation.time - kSightingAge);
 }
 
+/// @param open  covariance of the pose that earlier updates have left.
 /// @param match  out: of the last step.
 PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& belief,
-                                           const Sensed& sensed, const Se2& start,
-                                           SurfaceMatch& match) const {
+                                           const Sensed& sensed, const Eigen::Matrix3d& open,
+                                           const Se2& start, SurfaceMatch& match) const {
   const std::vector<AnnotatedBeam>& beams = sensed.observation->beams;
   SurfaceFinder walls{state.walls, beams.size()};
   return propose(
@@ -279,7 +281,7 @@ PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& bel
       [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
         match =
             match_surfaces(beams, walls, pose, uncertainty + sensed.drift.before, config_.matching);
-        if (sensed.walls.is_degenerate) remove_weak_direction(match.pose);
+        if (sensed.walls.is_degenerate) remove_weak_direction(open, match.pose);
         return blurred(match.pose, sensed.drift.before);
       },
       start);
@@ -288,14 +290,15 @@ PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& bel
 /// Matching begins at headings as the particles may have them: where the wheels slip in a turn,
 /// scans fit among clutter in more than one way, and from the expected heading alone all particles
 /// would find the same one.
-void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed, double start,
+void WaymarkEstimator::correct_by_walls(State& state, const Sensed& sensed,
+                                        const Eigen::Matrix3d& open, double start,
                                         Outcome& outcome) const {
   const Se2 expected = state.belief.map_from_base();
   const Eigen::Matrix3d prior = state.belief.pose_covariance();
   const Eigen::Vector3d from =
       sensed.slip.value_or(Eigen::Vector3d{0.0, 0.0, start * std::sqrt(prior(2, 2))});
   const PoseProposal by_walls =
-      match_walls(state, state.belief, sensed, deviated(expected, from), outcome.walls);
+      match_walls(state, state.belief, sensed, open, deviated(expected, from), outcome.walls);
   state.belief.correct_pose(by_walls.mean, by_walls.covariance);
   const Eigen::Matrix3d followed =
       by_walls.covariance * share_left(outcome.walls.pose, sensed.drift.before);

@@ -142,11 +142,13 @@ class WaymarkEstimator final : public Estimator {
   Outcome advance(State& state, const Sensed& sensed, const Chance& chance) const;
   void move(State& state, const Sensed& sensed) const;
   PoseProposal match_walls(const State& state, const Belief& belief, const Sensed& sensed,
-                           const Se2& start, SurfaceMatch& match) const;
+                           const Eigen::Matrix3d& open, const Se2& start,
+                           SurfaceMatch& match) const;
   static PoseError slip_error(const Eigen::Vector3d& slip);
   std::optional<Eigen::Vector3d> find_slip(const Belief& expected, const Sensed& sensed) const;
   void follow(State& state, const Sensed& sensed, const Chance& chance, Outcome& outcome) const;
-  void correct_by_walls(State& state, const Sensed& sensed, double start, Outcome& outcome) const;
+  void correct_by_walls(State& state, const Sensed& sensed, const Eigen::Matrix3d& open,
+                        double start, Outcome& outcome) const;
   void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
   void note_absences(State& state, const Sensed& sensed) const;
   void draw_rest(State& state, const Sensed& sensed, const Chance& chance) const;

@@ -64,8 +64,9 @@ std::optional<Eigen::Vector3d> WaymarkEstimator::find_slip(const Belief& expecte
   if (updates_ == 0 || sensed.verdict == KidnapWatch::Verdict::kDoubtful) return std::nullopt;
   const State& best = particles_.state(particles_.best());
   const Se2& from = expected.map_from_base();
+  const Eigen::Matrix3d open = best.belief.pose_covariance();
   SurfaceMatch match;
-  match_walls(best, expected, sensed, from, match);
+  match_walls(best, expected, sensed, open, from, match);
   if (match.agreeing >= kFits * match.mapped) return std::nullopt;
   double most = match.agreeing + kSlipGain * match.beams;
   std::optional<Eigen::Vector3d> slip;
@@ -78,7 +79,7 @@ std::optional<Eigen::Vector3d> WaymarkEstimator::find_slip(const Belief& expecte
     const Eigen::Vector3d start{kSlip_m * random.normal(), kSlip_m * random.normal(),
                                 kSlip_rad * random.normal()};
     const Se2 found =
-        match_walls(best, anywhere, sensed, deviated(from, about + start), match).mean;
+        match_walls(best, anywhere, sensed, open, deviated(from, about + start), match).mean;
     const Eigen::Vector3d away = deviation(from, found);
     if (match.agreeing < most || match.agreeing < kFits * match.mapped || !is_near(away - about))
       continue;

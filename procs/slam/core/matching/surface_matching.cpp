@@ -6,6 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include <algorithm>
+
 namespace waymark {
 namespace {
 
@@ -21,6 +23,9 @@ constexpr double kClumpKnee = 3.0;  // [sigma] a beam this far from its clump co
 // and this share when it is certain.
 constexpr double kClumpGuides = 30.0;
 constexpr double kClumpShare = 0.1;
+// How far what moves with a robot along a wall may deviate from the wall; more is something else.
+constexpr double kMaxSlant = 0.03;
+constexpr double kMaxTurn_rad_per_m = 0.01;
 
 /// The end of a beam, with how it moves with the pose (x, y, theta; map frame).
 struct BeamEnd {
@@ -109,8 +114,20 @@ void remove_direction(const Eigen::Vector2d& direction, PoseInformation& pose) {
 
 }  // namespace
 
-void remove_weak_direction(PoseInformation& pose) {
-  remove_direction(translation_axes(pose).eigenvectors().col(0), pose);
+void remove_weak_direction(const Eigen::Matrix3d& open, PoseInformation& pose) {
+  const Eigen::Vector2d weak = translation_axes(pose).eigenvectors().col(0);
+  const Eigen::Vector3d along{weak.x(), weak.y(), 0.0};
+  const Eigen::Vector3d across{-weak.y(), weak.x(), 0.0};
+  const Eigen::Vector3d with_along = open * along;
+  const double variance = along.dot(with_along);
+  Eigen::Vector3d moved = along;
+  if (variance > 0.0) {
+    moved += std::clamp(across.dot(with_along) / variance, -kMaxSlant, kMaxSlant) * across;
+    moved.z() = std::clamp(with_along.z() / variance, -kMaxTurn_rad_per_m, kMaxTurn_rad_per_m);
+  }
+  const Eigen::Matrix3d others = Eigen::Matrix3d::Identity() - moved * along.transpose();
+  pose.information = (others.transpose() * pose.information * others).eval();
+  pose.gradient = (others.transpose() * pose.gradient).eval();
 }
 
 void keep_observed(double weak_share, PoseInformation& pose) {

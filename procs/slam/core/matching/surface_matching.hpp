@@ -50,9 +50,11 @@ SurfaceMatch match_surfaces(std::span<const AnnotatedBeam> beams, SurfaceFinder&
 Eigen::Matrix3d noise_of_walls(std::span<const AnnotatedBeam> beams,
                                const SurfaceMatchingConfig& config);
 
-/// Removes the direction with the least information, exactly: an axis that is off by its noise
-/// would leave a little of what no wall tells.
-void remove_weak_direction(PoseInformation& pose);
+/// Removes the direction with the least information and what is correlated with it, so that
+/// nothing is learnt about it: one scan knows a wall's direction to a fraction of a milliradian
+/// only, and what that leaves would take the uncertainty along the wall away, update by update.
+/// @param open  covariance of the pose that such scans have left.
+void remove_weak_direction(const Eigen::Matrix3d& open, PoseInformation& pose);
 
 /// Removes the directions with little information.
 void keep_observed(double weak_share, PoseInformation& pose);
