@@ -46,12 +46,7 @@ test::SyntheticCorridor corridor_of(double length_m, std::uint64_t seed) {
 
 Errors errors_of(double length_m, std::uint64_t seed) {
   const test::SyntheticCorridor corridor = corridor_of(length_m, seed);
-  EstimatorSetup setup;
-  setup.seed = seed;
-  setup.range_sigma_m = corridor.range_sigma_m;
-  setup.range_max_m = corridor.range_max_m;
-  setup.camera = test::setup_of(corridor).camera;
-  WaymarkEstimator estimator{setup, {}};
+  WaymarkEstimator estimator{test::estimator_setup_of(corridor, seed), {}};
   const auto steps = test::run(estimator, test::drive(corridor), test::setup_of(corridor));
   double across = 0.0;
   for (const test::Step& step : steps)

@@ -76,12 +76,7 @@ test::SensorLog log_of(const Drives& drives, const test::SyntheticCorridor& corr
 
 Stations drive_once(const Drives& drives, std::uint64_t seed) {
   const test::SyntheticCorridor corridor = corridor_of(drives, seed);
-  EstimatorSetup setup;
-  setup.seed = seed;
-  setup.range_sigma_m = corridor.range_sigma_m;
-  setup.range_max_m = corridor.range_max_m;
-  setup.camera = test::setup_of(corridor).camera;
-  WaymarkEstimator estimator{setup, {}};
+  WaymarkEstimator estimator{test::estimator_setup_of(corridor, seed), {}};
   Stations stations;
   for (const test::Step& step :
        test::run(estimator, log_of(drives, corridor), test::setup_of(corridor))) {

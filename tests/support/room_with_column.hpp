@@ -3,9 +3,10 @@
 #pragma once
 
 #include "common/random/random.hpp"
-#include "slam/core/scan/annotated_scan.hpp"
+#include "slam/core/scan/observation.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -43,6 +44,27 @@ inline std::vector<AnnotatedBeam> scan_of_room(const Se2& map_from_base) {
     beams.push_back(annotated);
   }
   return beams;
+}
+
+/// Twelve observations 0.2 s apart. The wheels tell the same step each time, and so the robot goes,
+/// but for one step: there it is pushed instead.
+/// @param take  is given each observation, and whether the push came before it.
+/// @return the way from the first pose to the last.
+template <class Take>
+Se2 drive_through_room(const Motion& step, int pushed_at, const Se2& push, Take&& take) {
+  const Se2 start{-1.5, -0.6, 0.3};
+  Se2 map_from_base = start;
+  Observation observation;
+  for (int i = 0; i < 12; ++i) {
+    if (i > 0) {
+      observation.motion = step;
+      map_from_base = map_from_base * (i == pushed_at ? push : step.start_from_end);
+    }
+    observation.time += std::chrono::milliseconds{200};
+    observation.beams = scan_of_room(map_from_base);
+    take(observation, i == pushed_at);
+  }
+  return start.inverse() * map_from_base;
 }
 
 }  // namespace waymark::test

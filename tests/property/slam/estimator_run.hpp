@@ -21,6 +21,15 @@ inline SensorSetup setup_of(const SyntheticCorridor& corridor) {
   return setup;
 }
 
+inline EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std::uint64_t seed) {
+  EstimatorSetup setup;
+  setup.seed = seed;
+  setup.range_sigma_m = corridor.range_sigma_m;
+  setup.range_max_m = corridor.range_max_m;
+  setup.camera = setup_of(corridor).camera;
+  return setup;
+}
+
 struct Step {
   Estimate estimate{};
   Se2 truth{};  ///< base in the frame of its first pose

@@ -12,20 +12,12 @@
 namespace waymark {
 namespace {
 
+using test::estimator_setup_of;
 using test::run;
 using test::SensorLog;
 using test::setup_of;
 using test::Step;
 using test::SyntheticCorridor;
-
-EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std::uint64_t seed) {
-  EstimatorSetup setup;
-  setup.seed = seed;
-  setup.range_sigma_m = corridor.range_sigma_m;
-  setup.range_max_m = corridor.range_max_m;
-  setup.camera = setup_of(corridor).camera;
-  return setup;
-}
 
 std::vector<Step> run_waymark(const SensorLog& log, const SyntheticCorridor& corridor,
                               std::uint64_t seed, const WaymarkConfig& config = {}) {

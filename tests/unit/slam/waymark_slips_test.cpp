@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What waymark does where the odometry is worse than it is said to be.
 #include "common/random/random.hpp"
+#include "property/slam/estimator_run.hpp"
 #include "slam/core/belief/noise_growth.hpp"
 #include "slam/core/estimators/waymark.hpp"
-#include "support/observations.hpp"
 #include "support/room_with_column.hpp"
 
 #include <gtest/gtest.h>
@@ -24,22 +24,14 @@ Se2 error_after_push(const Se2& push, std::uint64_t seed) {
   setup.seed = seed;
   setup.range_sigma_m = 0.01;
   WaymarkEstimator estimator{setup, {}};
-  const Se2 start{-1.5, -0.6, 0.3};
-  const Motion step{Se2{0.12, 0.0, 0.01}, 0.12, 0.01};
-  Se2 truth = start;
-  Observation observation;
   Estimate estimate;
-  for (int i = 0; i < 12; ++i) {
-    if (i > 0) {
-      observation.motion = step;
-      truth = truth * (i == 9 ? push : step.start_from_end);
-    }
-    observation.time += std::chrono::milliseconds{200};
-    observation.beams = scan_of_room(truth);
-    estimate = estimator.update(observation);
-    EXPECT_EQ(estimate.slipped, i == 9) << i;
-  }
-  return (start.inverse() * truth).inverse() * estimate.map_from_base;
+  const Motion step{Se2{0.12, 0.0, 0.01}, 0.12, 0.01};
+  const Se2 driven =
+      test::drive_through_room(step, 9, push, [&](const Observation& observation, bool is_pushed) {
+        estimate = estimator.update(observation);
+        EXPECT_EQ(estimate.slipped, is_pushed);
+      });
+  return driven.inverse() * estimate.map_from_base;
 }
 
 TEST(Waymark, FindsItsWallsAgainAfterAPush) {
@@ -75,14 +67,8 @@ TEST(Waymark, CatchesUpWithAnOdometryThatWasStuck) {
     corridor.markers = test::opposite_markers(corridor);
     test::SensorLog log = test::drive(corridor);
     stick(log, 6.0, 8.0);
-    SensorSetup sensors;
-    sensors.lidar = {Se2{corridor.lidar_x_m, 0.0, 0.0}, 0.12, corridor.range_max_m};
-    sensors.camera.base_from_camera = {corridor.camera_x_m, 0.0, 0.0};
-    SensorQueue queue{sensors};
-    EstimatorSetup setup;
-    setup.seed = seed;
-    setup.camera = sensors.camera;
-    WaymarkEstimator estimator{setup, {}};
+    SensorQueue queue{test::setup_of(corridor)};
+    WaymarkEstimator estimator{test::estimator_setup_of(corridor, seed), {}};
     Estimate estimate;
     int caught_up = 0;
     test::feed(queue, log, [&](const SensorQueue::Ready& ready) {

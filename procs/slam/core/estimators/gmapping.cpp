@@ -2,7 +2,6 @@
 #include "slam/core/estimators/gmapping.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace waymark {
@@ -30,7 +29,11 @@ GmappingEstimator::GmappingEstimator(const EstimatorSetup& setup, const Gmapping
 
 Estimate GmappingEstimator::update(const Observation& observation) {
   const bool is_first = updates_ == 0;
-  const Motion motion = checked(observation);
+  const auto missing_rad = config_.watch_turns
+                               ? turn_watch_.missing_turn(observation.beams, observation.motion)
+                               : std::nullopt;
+  const Motion missing = Motion::between({}, {0.0, 0.0, missing_rad.value_or(0.0)});
+  const Motion motion = missing_rad ? observation.motion.then(missing) : observation.motion;
   propagate(motion);
   since_update_ = since_update_.then(motion);
   const bool is_due = config_.gate.is_open(since_update_, observation.time - updated_at_);
@@ -45,17 +48,9 @@ Estimate GmappingEstimator::update(const Observation& observation) {
     ++updates_;
   }
   ++observations_;
-  return estimate(observation);
-}
-
-/// The observation's motion, and the turn that odometry has missed.
-Motion GmappingEstimator::checked(const Observation& observation) {
-  slipped_ = false;
-  if (!config_.watch_turns) return observation.motion;
-  const auto missing_rad = turn_watch_.missing_turn(observation.beams, observation.motion);
-  if (!missing_rad) return observation.motion;
-  slipped_ = true;
-  return observation.motion.then({Se2{0.0, 0.0, *missing_rad}, 0.0, std::abs(*missing_rad)});
+  Estimate now = estimate(observation);
+  now.slipped = missing_rad.has_value();
+  return now;
 }
 
 void GmappingEstimator::propagate(const Motion& motion) {
@@ -151,7 +146,6 @@ Estimate GmappingEstimator::estimate(const Observation& observation) const {
   const Se2 map_from_base = map_from_best_ * since_update_.start_from_end;
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = covariance_about(map_from_base, particles_);
-  estimate.slipped = slipped_;
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = WeakAxisSource::kOdometry;

@@ -64,7 +64,6 @@ class GmappingEstimator final : public Estimator {
     bool is_matched{true};       ///< the last scan scored enough
   };
 
-  Motion checked(const Observation& observation);
   void propagate(const Motion& motion);
   void match_and_weigh(std::span<const Beam> beams);
   void resample_and_register(const std::shared_ptr<const StoredScan>& scan);
@@ -78,7 +77,6 @@ class GmappingEstimator final : public Estimator {
   ParticleSet<State> particles_;
   std::uint64_t observations_{0};
   TurnWatch turn_watch_{};
-  bool slipped_{false};  ///< the last observation's motion has been put right
   ScanTrail trail_{};
   std::vector<Se2> settled_way_{};  ///< poses at the updates that all particles share
 
