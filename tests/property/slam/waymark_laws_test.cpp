@@ -19,6 +19,8 @@ using test::setup_of;
 using test::Step;
 using test::SyntheticCorridor;
 
+constexpr Eigen::Index kFocalLength = 5;  // among the systematic errors
+
 std::vector<Step> run_waymark(const SensorLog& log, const SyntheticCorridor& corridor,
                               std::uint64_t seed, const WaymarkConfig& config = {}) {
   WaymarkEstimator estimator{estimator_setup_of(corridor, seed), config};
@@ -121,6 +123,22 @@ TEST(Waymark, ALongBareCorridorDoesNotTellTheScaleOfDistances) {
   const auto steps = run_waymark(test::drive(corridor), corridor, 1);
   const double scale_m2 = std::pow(OdometryNoise{}.scale_sigma * corridor.drive_m, 2);
   EXPECT_GT(along_variance_m2(steps.back()), 0.3 * scale_m2);
+}
+
+// Markers follow the scale of distances, so that they do not tell it either: what one scan has left
+// open must stay open while the robot moves on.
+TEST(Waymark, ALongCorridorWithMarkersDoesNotTellTheScaleOfDistances) {
+  SyntheticCorridor corridor = between_two_walls(3);
+  corridor.length_m = 120.0;
+  corridor.drive_m = 96.0;
+  corridor.speed_m_s = 0.5;
+  corridor.markers = test::opposite_markers(corridor, 13.0);
+  WaymarkConfig config;
+  config.particles = 10;
+  WaymarkEstimator estimator{estimator_setup_of(corridor, 3), config};
+  run(estimator, test::drive(corridor), setup_of(corridor));
+  const double focal_variance = estimator.belief().errors_covariance()(kFocalLength, kFocalLength);
+  EXPECT_GT(focal_variance, 0.5 * std::pow(MarkerMeasurementConfig{}.camera_focal_sigma, 2));
 }
 
 // Seen at the start, then hidden, then seen again.

@@ -208,13 +208,15 @@ WaymarkEstimator::Outcome WaymarkEstimator::advance(State& state, const Sensed& 
 void WaymarkEstimator::follow(State& state, const Sensed& sensed, const Chance& chance,
                               Outcome& outcome) const {
   if (!sensed.walls.is_degenerate) draw_rest(state, sensed, chance);
-  const Eigen::Matrix3d open = state.belief.pose_covariance();
+  const Eigen::Matrix3d left = state.belief.pose_covariance();
+  const Eigen::Vector2d from = state.belief.map_from_base().translation();
   move(state, sensed);
+  const Eigen::Vector2d step = state.belief.map_from_base().translation() - from;
   state.belief.widen(sensed.drift.since);
   if (sensed.slip) state.belief.widen(slip_error(*sensed.slip));
   const Se2 predicted = state.belief.map_from_base();
   const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
-  correct_by_walls(state, sensed, open, chance.start, outcome);
+  correct_by_walls(state, sensed, carried_along(left, step), chance.start, outcome);
   const Eigen::Matrix3d posterior = in_frame_of(predicted, state.belief.pose_covariance());
   const Se2 moved = predicted.inverse() * state.belief.map_from_base();
   outcome.correction = {
@@ -269,7 +271,7 @@ void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
   state.belief.note_absences(is_in_view, observation.time - kSightingAge);
 }
 
-/// @param open  covariance of the pose that earlier updates have left.
+/// @param open  covariance of the pose that earlier updates have left, carried along by the motion.
 /// @param match  out: of the last step.
 PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& belief,
                                            const Sensed& sensed, const Eigen::Matrix3d& open,

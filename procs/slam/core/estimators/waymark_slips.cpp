@@ -64,7 +64,9 @@ std::optional<Eigen::Vector3d> WaymarkEstimator::find_slip(const Belief& expecte
   if (updates_ == 0 || sensed.verdict == KidnapWatch::Verdict::kDoubtful) return std::nullopt;
   const State& best = particles_.state(particles_.best());
   const Se2& from = expected.map_from_base();
-  const Eigen::Matrix3d open = best.belief.pose_covariance();
+  const Eigen::Matrix3d open =
+      carried_along(best.belief.pose_covariance(),
+                    from.translation() - best.belief.map_from_base().translation());
   SurfaceMatch match;
   match_walls(best, expected, sensed, open, from, match);
   if (match.agreeing >= kFits * match.mapped) return std::nullopt;

@@ -53,7 +53,8 @@ Eigen::Matrix3d noise_of_walls(std::span<const AnnotatedBeam> beams,
 /// Removes the direction with the least information and what is correlated with it, so that
 /// nothing is learnt about it: one scan knows a wall's direction to a fraction of a milliradian
 /// only, and what that leaves would take the uncertainty along the wall away, update by update.
-/// @param open  covariance of the pose that such scans have left.
+/// @param open  covariance of the pose that such scans have left, carried along to here: what the
+/// way from there adds is the motion's, and walls that are driven towards or away from tell of it.
 void remove_weak_direction(const Eigen::Matrix3d& open, PoseInformation& pose);
 
 /// Removes the directions with little information.

@@ -43,6 +43,13 @@ inline Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map) {
   return by;
 }
 
+/// The same for the covariance of deviations.
+inline Eigen::Matrix3d carried_along(const Eigen::Matrix3d& covariance,
+                                     const Eigen::Vector2d& step_in_map) {
+  const Eigen::Matrix3d by = carried_along(step_in_map);
+  return by * covariance * by.transpose();
+}
+
 /// Projects (x, y, theta) to what has nothing of a unit direction.
 Eigen::Matrix3d without(const Eigen::Vector2d& direction);
 
