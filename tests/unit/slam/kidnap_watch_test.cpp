@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <numbers>
+#include <set>
 #include <vector>
 
 namespace waymark {
@@ -235,6 +236,33 @@ TEST(Belief, AMisreadMarkerIsForgottenAndNotCalledMoved) {
   const Landmark marker = with_moved_marker(false).markers().front();
   EXPECT_FALSE(marker.was_moved);
   EXPECT_EQ(marker.instance, 0);
+}
+
+TEST(Belief, NamesStayUniqueWhenAMovedMarkerTakesOverItsOldOne) {
+  using std::chrono::seconds;
+  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  const auto marker_4_at = [](double x_m, int second) {
+    MarkerMeasurement seen = seen_from({}, 4, {x_m, 1.0, -1.57});
+    seen.time = Timestamp{seconds{second}};
+    return seen;
+  };
+  add_confirmed(belief, marker_4_at(2.0, 1));
+  belief.add(marker_4_at(3.0, 10));
+  belief.add(marker_4_at(6.0, 10));
+  const auto is_first_place = [](const Se2& base_from_marker) {
+    return base_from_marker.x() < 2.5;
+  };
+  for (int i = 0; i < 5; ++i) {
+    const MarkerMeasurement moved = marker_4_at(3.0, 10);
+    belief.correct(belief.nearest(moved)->marker, moved, kGate);
+    belief.note_absences(is_first_place, Timestamp{seconds{9}});
+  }
+  ASSERT_EQ(belief.markers().size(), 2U);
+  belief.add(marker_4_at(9.0, 11));
+  std::set<MarkerName> names;
+  for (const Landmark& marker : belief.markers())
+    names.insert(name_of(marker));
+  EXPECT_EQ(names.size(), 3U);
 }
 
 TEST(Belief, AMarkerOutOfViewIsNotMissed) {

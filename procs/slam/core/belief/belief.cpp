@@ -16,7 +16,6 @@ namespace {
 constexpr double kExact = 1e-12;
 constexpr double kRelocated_m = 0.5;  // sigma of a pose that is known by one marker only
 constexpr double kRelocated_rad = 0.2;
-constexpr int kMisses = 5;    // updates without a marker that should be in view
 constexpr int kTurnedUp = 3;  // sightings of the one that it may have become
 
 double squared(double x) {
@@ -265,7 +264,7 @@ void Belief::add(const MarkerMeasurement& measurement) {
   Landmark fresh;
   fresh.id = measurement.id;
   for (std::size_t i = 0; i < num_markers(); ++i)
-    if (marker(i).id == fresh.id) ++fresh.instance;
+    if (marker(i).id == fresh.id) fresh.instance = std::max(fresh.instance, marker(i).instance + 1);
   fresh.sightings = 1;
   fresh.first_seen = measurement.time;
   fresh.last_seen = measurement.time;
@@ -340,7 +339,7 @@ void Belief::note_absences(const std::function<bool(const Se2&)>& is_in_view, Ti
 
 void Belief::forget_moved() {
   for (std::size_t i = 0; i < num_markers(); ++i) {
-    if (marker(i).misses < kMisses) continue;
+    if (!marker(i).is_missed()) continue;
     for (std::size_t k = 0; k < num_markers(); ++k) {
       const Landmark& other = marker(k);
       if (k == i || other.id != marker(i).id || other.first_seen <= marker(i).last_seen ||

@@ -3,6 +3,7 @@
 
 #include "slam/core/belief/told_axes.hpp"
 #include "slam/core/filter/centred_normals.hpp"
+#include "slam/core/landmark/misreading.hpp"
 
 #include <algorithm>
 
@@ -322,7 +323,9 @@ void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
       ++outcome.known_markers;
     } else {
       outcome.log_evidence -= config_.marker_evidence * 0.5 * config_.marker_gate;
-      if (!nearest || nearest->distance_m() > config_.same_marker_within_m)
+      const bool is_elsewhere = !nearest || nearest->distance_m() > config_.same_marker_within_m;
+      if (is_elsewhere &&
+          !is_misread(measurement, state.belief.map_from_base(), state.belief.markers()))
         state.belief.add(measurement);
     }
   }

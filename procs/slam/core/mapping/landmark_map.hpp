@@ -24,6 +24,9 @@ struct Landmark {
 
   /// Fewer sightings may be of a misread marker.
   bool is_confirmed() const { return sightings >= 3; }
+
+  /// Fewer misses may be of a marker that is hard to see.
+  bool is_missed() const { return misses >= 5; }
 };
 
 /// Collects sightings. An id is a class, not a key: sightings of one id that lie apart are
