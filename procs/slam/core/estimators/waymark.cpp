@@ -4,6 +4,7 @@
 #include "slam/core/belief/told_axes.hpp"
 #include "slam/core/filter/centred_normals.hpp"
 #include "slam/core/landmark/misreading.hpp"
+#include "slam/core/matching/range_scale.hpp"
 
 #include <algorithm>
 
@@ -16,8 +17,11 @@ constexpr double kWallInSight_m = 0.2;                      // a beam ends this 
 constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
 constexpr std::size_t kStaticMarkers = 4;                   // that a past pose is corrected by
 constexpr double kExact = 1e-14;                            // [m^2, rad^2] less is rounding
-constexpr double kMinSurfaces = 0.1;     // share of beams; a scan with fewer shows nothing
-constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
+constexpr double kWallsOff_m2 = 4e-4;  // of walls, from where the robot is seen to be
+constexpr double kWallsOff_rad2 = 1e-4;
+constexpr double kRangesKnownFor_m = 10.0;  // driven
+constexpr double kMinSurfaces = 0.1;        // share of beams; a scan with fewer shows nothing
+constexpr double kMinMappedShare = 0.2;     // of a scan's beams; fewer say nothing about being lost
 
 PoseAxes whole_pose() {
   return Eigen::Matrix3d::Identity();
@@ -49,11 +53,33 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
 }
 
 Estimate WaymarkEstimator::update(const Observation& observation) {
-  if (surface_share(observation.beams) >= kMinSurfaces) return update_by(observation);
+  watch_ranges(observation);
+  if (surface_share(observation.beams) >= kMinSurfaces && !ranges_wrong_)
+    return update_by(observation);
   // A LiDAR that measures nonsense must neither be matched nor mapped.
   Observation without_beams = observation;
   without_beams.beams.clear();
   return update_by(without_beams);
+}
+
+/// Held to the walls of the best particle. Where these say nothing, what they said last still holds
+/// for some way.
+void WaymarkEstimator::watch_ranges(const Observation& observation) {
+  since_ranges_told_m_ += observation.motion.distance_m;
+  if (since_ranges_told_m_ > kRangesKnownFor_m) ranges_wrong_ = false;
+  if (updates_ == 0) return;
+  const State& best = particles_.state(particles_.best());
+  const auto [expected, added] =
+      best.belief.predicted(since_update_.then(observation.motion), noise_);
+  const Eigen::Vector3d walls_off{kWallsOff_m2, kWallsOff_m2, kWallsOff_rad2};
+  SurfaceFinder walls{best.walls, observation.beams.size()};
+  const auto scale =
+      range_scale(observation.beams, walls, expected,
+                  best.belief.pose_covariance() + added + Eigen::Matrix3d{walls_off.asDiagonal()},
+                  config_.matching);
+  if (!scale || !(scale->is_right() || scale->is_wrong())) return;
+  ranges_wrong_ = scale->is_wrong();
+  since_ranges_told_m_ = 0.0;
 }
 
 Estimate WaymarkEstimator::update_by(const Observation& observation) {

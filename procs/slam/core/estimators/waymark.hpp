@@ -121,6 +121,7 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Matrix3d by_noise{Eigen::Matrix3d::Zero()};
   };
 
+  void watch_ranges(const Observation& observation);
   Estimate update_by(const Observation& observation);
   void watch_standstill(const Observation& observation);
   void undo_standstill();
@@ -185,6 +186,8 @@ class WaymarkEstimator final : public Estimator {
   // Of the last scan:
   std::optional<double> turn_by_scans_{};  ///< [rad] more than odometry's, where that seems wrong
   bool slipped_{false};
+  bool ranges_wrong_{false};
+  double since_ranges_told_m_{0.0};
   KidnapWatch::Verdict verdict_{KidnapWatch::Verdict::kSettled};
 };
 

@@ -47,6 +47,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = covariance;
   estimate.slipped = slipped_;
+  estimate.ranges_wrong = ranges_wrong_;
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;

@@ -31,7 +31,8 @@ struct Estimate {
   int markers_in_view{0};
   Observability observability{};
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
-  bool slipped{false};  ///< the scans showed that the wheels had slipped, and were believed
+  bool slipped{false};       ///< the scans showed that the wheels had slipped, and were believed
+  bool ranges_wrong{false};  ///< the scan shows known walls, but at another scale: it was left out
 };
 
 /// What a method can say about itself after `updates` updates.
