@@ -2,7 +2,11 @@
 // Prints how the error of waymark grows with the length of the corridor: drives of 25 to 200 m down
 // synthetic corridors, markers every 4 m, odometry errors as in the simulator.
 //
-// usage: length_curve [SEEDS]      default: 10
+// usage: length_curve [SEEDS [CAMERA]]
+//   SEEDS   default: 10
+//   CAMERA  drawn: focal length and mounting are off as much as the filter believes; exact: they
+//   are
+//           as told. default: drawn
 // Columns: length [m], RMS over the seeds of: error of the length of the way [m], that per metre,
 // error along the way [m], error across [m]. The last line is the exponent b of length^b that fits
 // the second column best.
@@ -12,6 +16,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 namespace waymark {
 namespace {
@@ -29,7 +34,7 @@ double squared(double x) {
   return x * x;
 }
 
-test::SyntheticCorridor corridor_of(double length_m, std::uint64_t seed) {
+test::SyntheticCorridor corridor_of(double length_m, bool is_exact, std::uint64_t seed) {
   test::SyntheticCorridor corridor;
   corridor.length_m = length_m;
   corridor.drive_m = length_m - 2.0;
@@ -37,15 +42,17 @@ test::SyntheticCorridor corridor_of(double length_m, std::uint64_t seed) {
   corridor.seed = seed;
   corridor.scale_error = seed % 2 == 0 ? -0.01 : 0.01;
   Random random{seed};
-  corridor.camera_focal_error = random.normal(0.0, MarkerMeasurementConfig{}.camera_focal_sigma);
-  corridor.camera_yaw_error_rad =
-      random.normal(0.0, MarkerMeasurementConfig{}.camera_yaw_sigma_rad);
+  const MarkerMeasurementConfig believed;
+  if (!is_exact) {
+    corridor.camera_focal_error = random.normal(0.0, believed.camera_focal_sigma);
+    corridor.camera_yaw_error_rad = random.normal(0.0, believed.camera_yaw_sigma_rad);
+  }
   corridor.markers = test::opposite_markers(corridor);
   return corridor;
 }
 
-Errors errors_of(double length_m, std::uint64_t seed) {
-  const test::SyntheticCorridor corridor = corridor_of(length_m, seed);
+Errors errors_of(double length_m, bool is_exact, std::uint64_t seed) {
+  const test::SyntheticCorridor corridor = corridor_of(length_m, is_exact, seed);
   WaymarkEstimator estimator{test::estimator_setup_of(corridor, seed), {}};
   const auto steps = test::run(estimator, test::drive(corridor), test::setup_of(corridor));
   double across = 0.0;
@@ -57,10 +64,10 @@ Errors errors_of(double length_m, std::uint64_t seed) {
 }
 
 /// Root mean squares over the seeds.
-Errors errors_of_seeds(double length_m, int seeds) {
+Errors errors_of_seeds(double length_m, bool is_exact, int seeds) {
   Errors sums;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const Errors errors = errors_of(length_m, static_cast<std::uint64_t>(seed));
+    const Errors errors = errors_of(length_m, is_exact, static_cast<std::uint64_t>(seed));
     sums.end_m += squared(errors.end_m) / seeds;
     sums.along_m += squared(errors.along_m) / seeds;
     sums.across_m += squared(errors.across_m) / seeds;
@@ -68,13 +75,13 @@ Errors errors_of_seeds(double length_m, int seeds) {
   return {std::sqrt(sums.end_m), std::sqrt(sums.along_m), std::sqrt(sums.across_m)};
 }
 
-void print_curve(int seeds) {
+void print_curve(int seeds, bool is_exact) {
   double x = 0.0;
   double y = 0.0;
   double xx = 0.0;
   double xy = 0.0;
   for (const double length_m : kLengths_m) {
-    const Errors errors = errors_of_seeds(length_m, seeds);
+    const Errors errors = errors_of_seeds(length_m, is_exact, seeds);
     std::printf("%.0f %.4f %.6f %.4f %.4f\n", length_m, errors.end_m, errors.end_m / length_m,
                 errors.along_m, errors.across_m);
     std::fflush(stdout);
@@ -92,9 +99,10 @@ void print_curve(int seeds) {
 
 int main(int argc, char** argv) {
   const int seeds = argc > 1 ? std::atoi(argv[1]) : 10;
-  if (seeds < 1) {
-    std::fprintf(stderr, "usage: length_curve [SEEDS]\n");
+  const std::string_view camera = argc > 2 ? argv[2] : "drawn";
+  if (seeds < 1 || argc > 3 || (camera != "drawn" && camera != "exact")) {
+    std::fprintf(stderr, "usage: length_curve [SEEDS [drawn|exact]]\n");
     return 2;
   }
-  waymark::print_curve(seeds);
+  waymark::print_curve(seeds, camera == "exact");
 }

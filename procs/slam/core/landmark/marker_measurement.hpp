@@ -19,8 +19,8 @@ struct MarkerMeasurementConfig {
   double standoff_sigma_m{0.003};  ///< how far all markers hang before their walls, learnt
   double wall_sigma_rad{0.01};     ///< how skew
   double reach_m{1.5};  ///< wall on both sides of the marker that is believed to be straight
-  double camera_sigma_m{0.001};         ///< what frames have in common, beside their own covariance
-  double camera_sigma_rad{0.0003};      ///< the same as an angle at the camera
+  double camera_sigma_m{0.0003};        ///< what frames have in common, beside their own covariance
+  double camera_sigma_rad{0.0001};      ///< the same at the camera: 0.05 px of a usual one
   double camera_yaw_sigma_rad{0.0087};  ///< how wrong the mounting may be, learnt while driving
   double camera_focal_sigma{0.001};     ///< the same of the focal length, relative
   double perspective_sigma{0.02};       ///< of the focal length by one view; views err alike
