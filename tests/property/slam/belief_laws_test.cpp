@@ -132,6 +132,42 @@ TEST(MarkerMeasurement, DerivativesByTheCamerasErrorsAgreeWithDifferences) {
   }
 }
 
+TEST(MarkerMeasurement, DerivativesWhereItWasMeasuredAreThoseOfTheMeasurement) {
+  const MarkerMeasurement measured = WallScene{}.measured_with({0.0, 0.0});
+  ASSERT_TRUE(measured.wall);
+  const Eigen::Matrix3d there = measured.by_errors_at(measured.base_from_marker.translation());
+  EXPECT_LT((there - measured.by_errors()).norm(), 0.01);
+}
+
+// With derivatives at the measured places, which are as far off as the residuals, the mean of the
+// focal length over many such drives is five standard errors below zero.
+TEST(Belief, TheNoiseOfSightingsPushesNothingToOneSide) {
+  constexpr int kDrives = 400;
+  constexpr int kSightings = 400;
+  constexpr double kNoise_m = 0.05;
+  const Se2 place{3.0, 1.0, radians(-90.0)};
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::uint64_t drive = 0; drive < kDrives; ++drive) {
+    Belief belief{{OdometryNoise{}, 0.0, 0.001, 0.0}};
+    MarkerMeasurement sighting = measurement_of(place);
+    sighting.covariance = 1e-12 * Eigen::Matrix3d::Identity();
+    belief.add(sighting);
+    sighting.held.setIdentity();
+    sighting.covariance = diagonal(kNoise_m, 1e-3, 1e-3);
+    Random random{9, drive};
+    for (int i = 0; i < kSightings; ++i) {
+      sighting.base_from_marker = deviated(place, {random.normal(0.0, kNoise_m), 0.0, 0.0});
+      belief.correct(0, sighting, kGate);
+    }
+    const double focal = belief.sighting_errors().y();
+    sum += focal;
+    squares += focal * focal;
+  }
+  const double standard_error = std::sqrt(squares) / kDrives;
+  EXPECT_LT(std::abs(sum / kDrives), 3.0 * standard_error);
+}
+
 /// The n-th thing that happens to a belief; the same for every belief.
 void happen(int n, Belief& belief) {
   Random random{5, static_cast<std::uint64_t>(n)};

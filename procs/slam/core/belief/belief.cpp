@@ -171,14 +171,16 @@ Innovation Belief::compare(std::size_t index, const MarkerMeasurement& measureme
                            Columns& with_residual) const {
   const Landmark& known = marker(index);
   const Expected expected = expect(map_from_base_, known.map_from_marker);
+  const Eigen::Matrix3d by_errors =
+      measurement.by_errors_at(expected.base_from_marker.translation());
   Innovation innovation;
   innovation.marker = index;
   innovation.by_pose = expected.by_pose;
   innovation.by_marker = expected.by_marker;
   innovation.residual = deviation(expected.base_from_marker, measurement.base_from_marker) -
-                        measurement.by_errors() * sighting_errors_;
+                        by_errors * sighting_errors_;
   with_residual = covariance_.leftCols<3>() * expected.by_pose.transpose() +
-                  covariance_.middleCols<3>(kSighting) * measurement.by_errors().transpose();
+                  covariance_.middleCols<3>(kSighting) * by_errors.transpose();
   innovation.covariance = measurement.covariance;
   if (index < active_.size()) {
     const Eigen::Index place = place_of(index);
@@ -188,7 +190,7 @@ Innovation Belief::compare(std::size_t index, const MarkerMeasurement& measureme
     innovation.covariance += expected.by_marker * known.covariance * expected.by_marker.transpose();
   }
   innovation.covariance += expected.by_pose * with_residual.topRows<3>() +
-                           measurement.by_errors() * with_residual.middleRows<3>(kSighting);
+                           by_errors * with_residual.middleRows<3>(kSighting);
   innovation.distance =
       innovation.residual.dot(innovation.covariance.ldlt().solve(innovation.residual));
   return innovation;

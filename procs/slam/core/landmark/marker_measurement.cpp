@@ -80,9 +80,9 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const Se2& base_f
 
 /// How the camera's errors move what it sees: a camera that is mounted further left than told sees
 /// everything turned to the right; a longer focal length brings everything nearer to the image.
-Eigen::Matrix<double, 3, 2> by_camera_errors(const Se2& base_from_marker,
+Eigen::Matrix<double, 3, 2> by_camera_errors(const Eigen::Vector2d& place_in_base,
                                              const Se2& base_from_camera) {
-  const Eigen::Vector2d ray = base_from_marker.translation() - base_from_camera.translation();
+  const Eigen::Vector2d ray = place_in_base - base_from_camera.translation();
   const Eigen::Vector2d forward = base_from_camera.rotation().col(0);
   Eigen::Matrix<double, 3, 2> by_camera;
   by_camera.col(0) << ray.y(), -ray.x(), -1.0;
@@ -121,6 +121,7 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
   measurement.base_from_marker = deviated(seen, gain * innovation.residual);
   measurement.by_camera += gain * innovation.by_camera;
   measurement.by_standoff = gain * innovation.by_standoff;
+  measurement.held -= gain * rows;
   measurement.covariance -= (gain * rows * measurement.covariance).eval();
   measurement.covariance =
       (0.5 * (measurement.covariance + measurement.covariance.transpose())).eval();
@@ -137,6 +138,12 @@ bool is_surveyed(std::span<const AnnotatedBeam> beams, const MarkerSighting& sig
 }
 
 }  // namespace
+
+Eigen::Matrix3d MarkerMeasurement::by_errors_at(const Eigen::Vector2d& place_in_base) const {
+  return (Eigen::Matrix3d{} << held * by_camera_errors(place_in_base, base_from_camera),
+          by_standoff)
+      .finished();
+}
 
 std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
                                  const Eigen::Vector2d& place_in_base, double normal_rad,
@@ -195,8 +202,10 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation, d
         sighting.time,
         sighting.base_from_marker,
         in_robot_frame(sighting, base_from_camera, odometry, config),
-        by_camera_errors(sighting.base_from_marker, base_from_camera),
+        by_camera_errors(sighting.base_from_marker.translation(), base_from_camera),
         Eigen::Vector3d::Zero(),
+        base_from_camera,
+        Eigen::Matrix3d::Identity(),
         usable(sighting.focal, config)};
     const auto wall = fit_wall(observation.beams, sighting.base_from_marker.translation(),
                                sighting.base_from_marker.theta(), range_sigma_m, config.reach_m);

@@ -68,13 +68,20 @@ struct MarkerMeasurement {
   /// By the camera's errors: mounted further left [rad], longer focal length (relative).
   Eigen::Matrix<double, 3, 2> by_camera{Eigen::Matrix<double, 3, 2>::Zero()};
   Eigen::Vector3d by_standoff{Eigen::Vector3d::Zero()};  ///< by the marker hanging before its wall
-  std::optional<FocalSighting> focal{};                  ///< what the marker's perspective says
-  std::optional<WallInnovation> wall{};                  ///< its error is independent of the pose's
+  Se2 base_from_camera{};
+  Eigen::Matrix3d held{Eigen::Matrix3d::Zero()};  ///< what its wall leaves of an error of the view
+  std::optional<FocalSighting> focal{};           ///< what the marker's perspective says
+  std::optional<WallInnovation> wall{};           ///< its error is independent of the pose's
 
   /// By (camera yaw [rad], focal length (relative), standoff [m]).
   Eigen::Matrix3d by_errors() const {
     return (Eigen::Matrix3d{} << by_camera, by_standoff).finished();
   }
+
+  /// The same if the marker is at another place than it was measured at, base frame: where it is
+  /// known to be. Derivatives that have the measurement's own noise in them are correlated with the
+  /// residual, and what is learnt by them is pushed to one side.
+  Eigen::Matrix3d by_errors_at(const Eigen::Vector2d& place_in_base) const;
 };
 
 /// The last sighting of each marker of an observation as a measurement. The corners tell the
