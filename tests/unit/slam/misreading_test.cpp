@@ -23,6 +23,7 @@ Landmark known_marker() {
 MarkerMeasurement sighting_of(int id, const Se2& map_from_marker) {
   MarkerMeasurement measurement;
   measurement.id = id;
+  measurement.size_m = 0.4;
   measurement.base_from_marker = kMapFromBase.inverse() * map_from_marker;
   return measurement;
 }
@@ -41,6 +42,14 @@ TEST(Misreading, IsNoneBesideAKnownMarkerNorBehindItsWall) {
   EXPECT_FALSE(is_misread(sighting_of(23, beside), known_marker()));
   const Se2 behind{12.0, 1.05, 0.5 * std::numbers::pi};
   EXPECT_FALSE(is_misread(sighting_of(23, behind), known_marker()));
+}
+
+TEST(Misreading, IsNoneOnABoardOfSmallMarkers) {
+  const Se2 beside{12.05, 1.0, kMapFromMarker.theta()};
+  MarkerMeasurement small = sighting_of(23, beside);
+  EXPECT_TRUE(is_misread(small, known_marker()));
+  small.size_m = 0.04;
+  EXPECT_FALSE(is_misread(small, known_marker()));
 }
 
 TEST(Misreading, IsNoneWhereTheKnownMarkerMayBeAMistakeOrIsGone) {

@@ -200,6 +200,7 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation, d
     const MarkerMeasurement measurement{
         sighting.id,
         sighting.time,
+        sighting.size_m,
         sighting.base_from_marker,
         in_robot_frame(sighting, base_from_camera, odometry, config),
         by_camera_errors(sighting.base_from_marker.translation(), base_from_camera),

@@ -63,6 +63,7 @@ struct WallInnovation {
 struct MarkerMeasurement {
   int id{kNoMarker};
   Timestamp time{};
+  double size_m{0.0};  ///< side of the black square
   Se2 base_from_marker{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   /// By the camera's errors: mounted further left [rad], longer focal length (relative).

@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kSamePlace_m = 0.1;
+constexpr double kSamePlace = 0.25;  // of a marker's side; boards have them side by side
 constexpr double kSameFacing_rad = radians(45.0);  // a wall has two sides
 
 }  // namespace
@@ -18,7 +18,8 @@ bool is_misread(const MarkerMeasurement& measurement, const Se2& map_from_base,
   return std::any_of(known.begin(), known.end(), [&](const Landmark& marker) {
     const Eigen::Vector3d away = deviation(marker.map_from_marker, there);
     return marker.id != measurement.id && marker.is_confirmed() && !marker.is_missed() &&
-           away.head<2>().norm() < kSamePlace_m && std::abs(away.z()) < kSameFacing_rad;
+           away.head<2>().norm() < kSamePlace * measurement.size_m &&
+           std::abs(away.z()) < kSameFacing_rad;
   });
 }
 
