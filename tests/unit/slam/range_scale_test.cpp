@@ -73,7 +73,11 @@ TEST(RangeScale, IsNotToldByAnUnknownPlace) {
   EXPECT_FALSE(scale_of(scan_of_room(kPose), empty, kPose));
 }
 
-// For two metres: longer than the LiDAR sees ahead, so that part of it is unknown walls.
+TEST(RangeScale, IsNotToldByASilentLidar) {
+  EXPECT_FALSE(scale_of({}, room(), kPose));
+}
+
+// For two metres, so that more and more of what is seen ahead is not mapped yet.
 TEST(Waymark, LeavesScansOutWhoseRangesAreWrong) {
   for (const double share : {-0.05, 0.05}) {
     test::SyntheticCorridor corridor = test::short_corridor(1);

@@ -76,6 +76,7 @@ bool RangeScale::is_right() const {
 std::optional<RangeScale> range_scale(std::span<const AnnotatedBeam> beams, SurfaceFinder& map,
                                       const Se2& map_from_base, const Eigen::Matrix3d& uncertainty,
                                       const SurfaceMatchingConfig& config) {
+  if (beams.empty()) return std::nullopt;
   Eigen::Matrix4d prior = Eigen::Matrix4d::Zero();
   prior.topLeftCorner<3, 3>() = uncertainty.inverse();
   Eigen::Vector4d found = Eigen::Vector4d::Zero();
