@@ -140,18 +140,7 @@ void SurfaceMatchingConfig::describe(Fields& fields) {
 }
 
 void MarkerMeasurementConfig::describe(Fields& fields) {
-  fields.field("standoff_sigma_m", standoff_sigma_m, kNotNegative,
-               "how far all markers hang before their walls; learnt while driving");
-  fields.field("wall_sigma_m", wall_sigma_m, kNotNegative, "how far they differ in that");
-  fields.field("wall_sigma_rad", wall_sigma_rad, kNotNegative, "how skew they hang");
   fields.field("reach_m", reach_m, kPositive, "wall around a marker that is believed straight");
-  fields.field("camera_sigma_m", camera_sigma_m, kNotNegative,
-               "error that neighbouring frames have in common");
-  fields.field("camera_sigma_rad", camera_sigma_rad, kNotNegative, "the same, of the bearing");
-  fields.field("camera_yaw_sigma_rad", camera_yaw_sigma_rad, kNotNegative,
-               "how wrong the camera's mounting may be; learnt while driving");
-  fields.field("camera_focal_sigma", camera_focal_sigma, kNotNegative,
-               "how wrong its focal length may be, relative; learnt while driving");
   fields.field("perspective_sigma", perspective_sigma, kPositive,
                "of the focal length, as one view of a marker tells it; views err alike");
   fields.field("perspective_max_sigma", perspective_max_sigma, kPositive,

@@ -61,7 +61,8 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   last_estimate_ = time;
   counters_.add(ready.scan ? "scans processed" : "estimates while the LiDAR was silent");
   if (estimate.slipped) counters_.add("slips of the wheels");
-  if (estimate.ranges_wrong) counters_.add("scans with wrong ranges");
+  if (estimate.calibration_widened) counters_.add("calibration found worse than told");
+  if (ready.scan && estimate.ranges_wrong) counters_.add("scans with wrong ranges");
   if (ready.scan)
     outbox_.publish(channels::kSlamScan,
                     to_message(*ready.scan, ready.observation, map_from_lidar));

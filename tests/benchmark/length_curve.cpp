@@ -4,9 +4,8 @@
 //
 // usage: length_curve [SEEDS [CAMERA]]
 //   SEEDS   default: 10
-//   CAMERA  drawn: focal length and mounting are off as much as the filter believes; exact: they
-//   are
-//           as told. default: drawn
+//   CAMERA  drawn: focal length and mounting are off as much as usual calibrations; exact: they are
+//           as told, and the filter knows that they are. default: drawn
 // Columns: length [m], RMS over the seeds of: error of the length of the way [m], that per metre,
 // error along the way [m], error across [m]. The last line is the exponent b of length^b that fits
 // the second column best.
@@ -22,6 +21,9 @@ namespace waymark {
 namespace {
 
 constexpr std::array kLengths_m{25.0, 50.0, 100.0, 200.0};
+/// What the filter is told of an exact camera; markers hang as usual.
+const SightingSigmas kExactCamera{
+    .learnt = {0.0005, 0.0001, 0.003}, .bearing_rad = 0.00003, .position_m = 0.0001};
 constexpr double kSpeed_m_s = 0.5;  // a scan per update: quicker to compute than the robot's 0.1
 
 struct Errors {
@@ -42,10 +44,10 @@ test::SyntheticCorridor corridor_of(double length_m, bool is_exact, std::uint64_
   corridor.seed = seed;
   corridor.scale_error = seed % 2 == 0 ? -0.01 : 0.01;
   Random random{seed};
-  const MarkerMeasurementConfig believed;
+  const Eigen::Vector3d believed = SightingSigmas{}.learnt;
   if (!is_exact) {
-    corridor.camera_focal_error = random.normal(0.0, believed.camera_focal_sigma);
-    corridor.camera_yaw_error_rad = random.normal(0.0, believed.camera_yaw_sigma_rad);
+    corridor.camera_focal_error = random.normal(0.0, believed[1]);
+    corridor.camera_yaw_error_rad = random.normal(0.0, believed[0]);
   }
   corridor.markers = test::opposite_markers(corridor);
   return corridor;
@@ -53,7 +55,9 @@ test::SyntheticCorridor corridor_of(double length_m, bool is_exact, std::uint64_
 
 Errors errors_of(double length_m, bool is_exact, std::uint64_t seed) {
   const test::SyntheticCorridor corridor = corridor_of(length_m, is_exact, seed);
-  WaymarkEstimator estimator{test::estimator_setup_of(corridor, seed), {}};
+  EstimatorSetup setup = test::estimator_setup_of(corridor, seed);
+  if (is_exact) setup.sighting_sigmas = kExactCamera;
+  WaymarkEstimator estimator{setup, {}};
   const auto steps = test::run(estimator, test::drive(corridor), test::setup_of(corridor));
   double across = 0.0;
   for (const test::Step& step : steps)

@@ -55,6 +55,15 @@ void CameraConfig::describe(Fields& fields) {
   fields.field("pitch_rad", pitch_rad, kAngle, "positive looks down");
   fields.field("yaw_rad", yaw_rad, kAngle, "positive looks left");
   fields.field("rate_hz", rate_hz, {0.1, 200.0}, "frames per second");
+  fields.field("focal_sigma", focal_sigma, kNotNegative,
+               "how well fx and fy are known, relative; learnt while driving, unless 0");
+  fields.field("yaw_sigma_rad", yaw_sigma_rad, kNotNegative,
+               "how well yaw_rad is known; learnt while driving, unless 0");
+  fields.field(
+      "bearing_sigma_rad", bearing_sigma_rad, kNotNegative,
+      "error of bearings that neighbouring frames have in common: what is left of the lens");
+  fields.field("position_sigma_m", position_sigma_m, kNotNegative,
+               "the same of places: the mounting's position, stamps that are late");
 }
 
 void CameraConfig::check(Problems& problems) const {
@@ -68,6 +77,10 @@ void MarkerConfig::describe(Fields& fields) {
   fields.field("dictionary", dictionary, "predefined dictionary of OpenCV's aruco module");
   fields.field("size_m", size_m, {0.005, 10.0}, "side of the black square");
   fields.field("ids", ids, {0, 100000}, "ids in use; [] = every id of the dictionary");
+  fields.field("standoff_sigma_m", standoff_sigma_m, kNotNegative,
+               "how far all markers hang before their walls; learnt while driving, unless 0");
+  fields.field("bulge_sigma_m", bulge_sigma_m, kNotNegative, "how far they differ in that");
+  fields.field("skew_sigma_rad", skew_sigma_rad, kNotNegative, "how skew they hang");
 }
 
 void RobotConfig::describe(Fields& fields) {

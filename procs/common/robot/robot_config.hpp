@@ -57,6 +57,10 @@ struct CameraConfig {
   double pitch_rad{0.0};  ///< positive looks down
   double yaw_rad{0.0};
   double rate_hz{10.0};
+  double focal_sigma{0.001};         ///< of the focal lengths, relative; learnt while driving
+  double yaw_sigma_rad{0.0087};      ///< of `yaw_rad`; learnt while driving
+  double bearing_sigma_rad{0.0001};  ///< what neighbouring frames get wrong alike: 0.05 px here
+  double position_sigma_m{0.0003};   ///< the same of places
 
   /// Pose of the optical frame (x right, y down, z forward) in the base frame.
   Eigen::Isometry3d base_from_camera() const;
@@ -64,11 +68,14 @@ struct CameraConfig {
   void check(Problems& problems) const;
 };
 
-/// What the markers look like.
+/// What the markers look like, and how they hang.
 struct MarkerConfig {
   std::string dictionary{"DICT_6X6_250"};
-  double size_m{0.4};      ///< side of the black square
-  std::vector<int> ids{};  ///< ids in use; empty = every id of the dictionary
+  double size_m{0.4};              ///< side of the black square
+  std::vector<int> ids{};          ///< ids in use; empty = every id of the dictionary
+  double standoff_sigma_m{0.003};  ///< how far all hang before their walls; learnt while driving
+  double bulge_sigma_m{0.002};     ///< how far they differ in that
+  double skew_sigma_rad{0.01};
 
   void describe(Fields& fields);
 };

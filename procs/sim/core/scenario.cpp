@@ -4,6 +4,18 @@
 #include <cmath>
 
 namespace waymark {
+
+RobotConfig simulated_robot() {
+  RobotConfig robot;
+  robot.camera.focal_sigma = 0.0001;
+  robot.camera.yaw_sigma_rad = 0.0005;
+  robot.camera.bearing_sigma_rad = 0.00003;
+  robot.camera.position_sigma_m = 0.0001;
+  robot.markers.bulge_sigma_m = 0.0005;
+  robot.markers.skew_sigma_rad = 0.001;
+  return robot;
+}
+
 void RunConfig::describe(Fields& fields) {
   fields.field("seed", seed, {0, 1e15}, "of all randomness");
   fields.field("tick_s", tick_s, {0.01, 10.0}, "simulated time between two TICK messages");

@@ -34,7 +34,7 @@ class Batch {
       walls_.push_back({wall.normal_rad, wall.offset_m});
     add_motions(noise.odometry);
     add_walls();
-    add_markers(noise.markers);
+    add_markers(noise);
     add_priors(noise);
     problem_.SetParameterBlockConstant(poses_.front().data());
   }
@@ -83,7 +83,7 @@ class Batch {
     }
   }
 
-  void add_markers(const MarkerMeasurementConfig& noise) {
+  void add_markers(const BatchNoise& noise) {
     double* const camera = solution_.camera_errors.data();
     for (const Link& link : solution_.scene.marker_links) {
       const MarkerMeasurement& measurement = stops_[link.stop].markers[link.measurement];
@@ -94,10 +94,10 @@ class Batch {
     for (std::size_t i = 0; i < markers_.size(); ++i) {
       const auto& wall = solution_.scene.markers[i].wall;
       if (!wall) continue;
-      add<HangingResidual, 2, 3, 2, 1>({solution_.scene.walls[*wall].anchor,
-                                        std::max(noise.wall_sigma_m, kExact), noise.wall_sigma_rad},
-                                       robust(), markers_[i].data(), walls_[*wall].data(),
-                                       &solution_.standoff_m);
+      add<HangingResidual, 2, 3, 2, 1>(
+          {solution_.scene.walls[*wall].anchor, std::max(noise.sightings.bulge_m, kExact),
+           noise.sightings.skew_rad},
+          robust(), markers_[i].data(), walls_[*wall].data(), &solution_.standoff_m);
     }
     add_perspective(noise.perspective_sigma);
   }
@@ -121,11 +121,10 @@ class Batch {
     add<PriorResidual<4>, 4, 4>({{odometry.scale_sigma, odometry.drift_sigma_rad_per_m,
                                   odometry.turn_scale_sigma, odometry.lidar_ahead_sigma_m}},
                                 nullptr, solution_.odometry_errors.data());
-    const MarkerMeasurementConfig& markers = noise.markers;
-    add<PriorResidual<2>, 2, 2>({{std::max(markers.camera_yaw_sigma_rad, kExact),
-                                  std::max(markers.camera_focal_sigma, kExact)}},
+    add<PriorResidual<2>, 2, 2>({{std::max(noise.sightings.learnt[0], kExact),
+                                  std::max(noise.sightings.learnt[1], kExact)}},
                                 nullptr, solution_.camera_errors.data());
-    add<PriorResidual<1>, 1, 1>({{std::max(markers.standoff_sigma_m, kExact)}}, nullptr,
+    add<PriorResidual<1>, 1, 1>({{std::max(noise.sightings.learnt[2], kExact)}}, nullptr,
                                 &solution_.standoff_m);
   }
 

@@ -11,7 +11,8 @@ namespace waymark::benchmark {
 
 struct BatchNoise {
   OdometryNoise odometry{};
-  MarkerMeasurementConfig markers{};
+  SightingSigmas sightings{};
+  double perspective_sigma{MarkerMeasurementConfig{}.perspective_sigma};
 };
 
 struct BatchSolution {

@@ -93,7 +93,9 @@ int run(const Arguments& arguments) {
   const auto stops = benchmark::recorded_stops(arguments.run_dir / "run.lcm", config);
   const WaymarkConfig& waymark = config.slam.waymark;
   const auto guess = benchmark::associate(stops, waymark.odometry, waymark.same_marker_within_m);
-  const auto solution = benchmark::solve(stops, guess, {waymark.odometry, waymark.markers});
+  const auto solution = benchmark::solve(stops, guess,
+                                         {waymark.odometry, estimator_setup(config).sighting_sigmas,
+                                          waymark.markers.perspective_sigma});
   fmt::print("{} poses, {} walls seen {} times, {} markers seen {} times; chi2 {:.0f} of {}; {}\n",
              stops.size(), guess.walls.size(), guess.wall_links.size(), guess.markers.size(),
              guess.marker_links.size(), solution.chi2, solution.residuals, solution.report);

@@ -32,13 +32,12 @@ constexpr double kNoWall = 1e3;  // [m, rad]: nothing is held to a wall that vag
 /// walls better than one scan does.
 std::vector<MarkerMeasurement> camera_measurements(const Observation& observation,
                                                    const EstimatorSetup& setup,
-                                                   MarkerMeasurementConfig config) {
-  const auto believed =
-      measure_markers(observation, setup.range_sigma_m, setup.camera.base_from_camera, {}, config);
-  config.wall_sigma_m = kNoWall;
-  config.wall_sigma_rad = kNoWall;
-  auto measured =
-      measure_markers(observation, setup.range_sigma_m, setup.camera.base_from_camera, {}, config);
+                                                   const MarkerMeasurementConfig& config) {
+  MarkerSensors sensors{setup.range_sigma_m, setup.camera.base_from_camera, setup.sighting_sigmas};
+  const auto believed = measure_markers(observation, sensors, {}, config);
+  sensors.sigmas.bulge_m = kNoWall;
+  sensors.sigmas.skew_rad = kNoWall;
+  auto measured = measure_markers(observation, sensors, {}, config);
   std::erase_if(measured, [&](const MarkerMeasurement& one) {
     return std::ranges::none_of(believed, [&](const MarkerMeasurement& other) {
       return one.id == other.id &&

@@ -82,6 +82,8 @@ struct WallResidual {
   }
 };
 
+/// Not held to its wall. What the camera's errors do to it is taken where the marker is, not where
+/// it was measured (MarkerMeasurement::by_errors_at).
 struct MarkerResidual {
   MarkerMeasurement measurement;
   Eigen::Matrix3d whiten;
@@ -89,9 +91,14 @@ struct MarkerResidual {
   template <class T>
   bool operator()(const T* pose, const T* marker, const T* camera, T* out) const {
     const Se2& measured = measurement.base_from_marker;
+    const Vector3<T> expected = relative(pose, marker);
+    const Vector2<T> ray =
+        expected.template head<2>() - measurement.base_from_camera.translation().cast<T>();
+    const Vector2<T> ahead = measurement.base_from_camera.rotation().col(0).cast<T>();
+    const Vector2<T> moved =
+        camera[0] * Vector2<T>{ray.y(), -ray.x()} - camera[1] * ahead.dot(ray) * ahead;
     Vector3<T> residual = Vector3<T>{T{measured.x()}, T{measured.y()}, T{measured.theta()}} -
-                          relative(pose, marker) -
-                          measurement.by_camera.cast<T>() * Vector2<T>{camera[0], camera[1]};
+                          expected - Vector3<T>{moved.x(), moved.y(), -camera[0]};
     residual.z() = wrapped(residual.z());
     Eigen::Map<Vector3<T>>{out} = whiten.cast<T>() * residual;
     return true;

@@ -30,7 +30,7 @@ Se2 random_pose(Random& random) {
 /// What a robot at a pose finds of a marker that it has first seen from the map's origin.
 Innovation innovation_of(const Se2& map_from_base, const Se2& map_from_marker,
                          const MarkerMeasurement& measurement) {
-  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
   belief.add(measurement_of(map_from_marker));
   belief.move({map_from_base, map_from_base.translation().norm(), std::abs(map_from_base.theta())},
               {});
@@ -98,8 +98,9 @@ struct WallScene {
   }
 
   MarkerMeasurement measured_with(const Eigen::Vector2d& camera_errors) const {
-    const auto measurements = measure_markers(
-        seen_by_camera_with(camera_errors.x(), camera_errors.y()), 0.01, base_from_camera, {}, {});
+    const auto measurements =
+        measure_markers(seen_by_camera_with(camera_errors.x(), camera_errors.y()),
+                        {0.01, base_from_camera, {}}, {}, {});
     EXPECT_EQ(measurements.size(), 1U);
     return measurements.at(0);
   }
@@ -149,7 +150,7 @@ TEST(Belief, TheNoiseOfSightingsPushesNothingToOneSide) {
   double sum = 0.0;
   double squares = 0.0;
   for (std::uint64_t drive = 0; drive < kDrives; ++drive) {
-    Belief belief{{OdometryNoise{}, 0.0, 0.001, 0.0}};
+    Belief belief{{OdometryNoise{}, {0.0, 0.001, 0.0}}};
     MarkerMeasurement sighting = measurement_of(place);
     sighting.covariance = 1e-12 * Eigen::Matrix3d::Identity();
     belief.add(sighting);
@@ -201,7 +202,7 @@ void expect_equal(const Belief& one, const Belief& other) {
 // Particles share their settled markers until one of them changes hers: nobody may notice.
 TEST(SettledMarkers, SharedAreAsGoodAsCopied) {
   constexpr int kEvents = 40;
-  const Belief fresh{{OdometryNoise{}, 0.005, 0.002}};
+  const Belief fresh{{OdometryNoise{}, {0.005, 0.002, 0.0}}};
   std::vector<Belief> family{fresh};  // each is a copy of the one before, and one event further
   for (int n = 0; n < kEvents; ++n) {
     family.push_back(family.back());

@@ -20,7 +20,7 @@ using test::diagonal;
 using test::measurement_of;
 
 Belief belief_with(const std::vector<MarkerMeasurement>& measurements) {
-  Belief belief{{OdometryNoise{}, 0.005, 0.002}};
+  Belief belief{{OdometryNoise{}, {0.005, 0.002, 0.0}}};
   for (const MarkerMeasurement& measurement : measurements)
     belief.add(measurement);
   return belief;
@@ -98,7 +98,7 @@ TEST(Belief, DrawingAnAxisMakesItExactAndLeavesTheOthers) {
 }
 
 TEST(Belief, CorrectingThePoseMovesTheMarkersThatHangOnIt) {
-  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
   belief.move(kForward, {});
   belief.add(measurement_of({1.5, 1.0, -1.57}));
   const Se2 before = belief.map_from_base();
@@ -110,7 +110,7 @@ TEST(Belief, CorrectingThePoseMovesTheMarkersThatHangOnIt) {
 
 // A pose that is drawn again and again must not make the errors of the odometry known.
 TEST(Belief, DrawingThePoseTellsNothingOfSystematicErrors) {
-  Belief belief{{OdometryNoise{}, 0.005, 0.002, 0.003}};
+  Belief belief{{OdometryNoise{}, {0.005, 0.002, 0.003}}};
   const OdometryErrors errors = belief.odometry_errors();
   const Eigen::Matrix4d covariance = belief.odometry_errors_covariance();
   for (int step = 0; step < 100; ++step) {
@@ -123,7 +123,7 @@ TEST(Belief, DrawingThePoseTellsNothingOfSystematicErrors) {
 }
 
 TEST(Belief, APoseThatWasPushedByAnErrorTellsTheErrorWhenItIsCorrected) {
-  Belief belief{{OdometryNoise{}, 0.0, 0.0, 0.0}};
+  Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
   PoseError pushed;
   pushed.by_errors(0, 0) = 3.0;  // 3 m with the wrong scale
   pushed.covariance(0, 0) = 9.0 * belief.errors_covariance()(0, 0) + 1e-6;

@@ -40,7 +40,7 @@ void add_confirmed(Belief& belief, const MarkerMeasurement& measurement) {
 
 /// Has seen markers 0 to 7, in pairs every 4 m, and believes to stand at x = 15.
 Belief travelled() {
-  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
   for (int id = 0; id < 8; ++id)
     add_confirmed(belief, seen_from({}, id, place_of(id)));
   belief.move({Se2{15.0, 0.0, 0.0}, 15.0, 0.0}, {});
@@ -202,7 +202,7 @@ TEST(Belief, AMarkerThatIsSlightlyOffPullsLessThanOneThatFits) {
 /// Marker 4 is gone from x = 2 m, and has turned up at 3 m.
 Belief with_moved_marker(bool is_confirmed) {
   using std::chrono::seconds;
-  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
   MarkerMeasurement old = seen_from({}, 4, {2.0, 1.0, -1.57});
   old.time = Timestamp{seconds{1}};
   if (is_confirmed)
@@ -240,7 +240,7 @@ TEST(Belief, AMisreadMarkerIsForgottenAndNotCalledMoved) {
 
 TEST(Belief, NamesStayUniqueWhenAMovedMarkerTakesOverItsOldOne) {
   using std::chrono::seconds;
-  Belief belief{{OdometryNoise{}, 0.0, 0.0}};
+  Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
   const auto marker_4_at = [](double x_m, int second) {
     MarkerMeasurement seen = seen_from({}, 4, {x_m, 1.0, -1.57});
     seen.time = Timestamp{seconds{second}};

@@ -53,7 +53,7 @@ TEST(MeasureMarkers, OdometryBetweenFrameAndScanTurnsASightingAboutTheRobot) {
   observation.sightings = {sighting};
   const OdometryNoise odometry;
   const auto covariance_of = [&] {
-    return measure_markers(observation, 0.01, {}, odometry, {}).at(0).covariance;
+    return measure_markers(observation, {}, odometry, {}).at(0).covariance;
   };
   const Eigen::Matrix3d at_once = covariance_of();
   observation.sightings[0].carried_m = 0.05;
@@ -74,14 +74,38 @@ TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {
   sighting.covariance_in_base = diagonal(0.02, 0.01, 0.03);
   sighting.size_m = 0.4;
   observation.sightings = {sighting};
-  const auto upright = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {}, {});
+  MarkerSensors sensors;
+  sensors.base_from_camera = {0.07, 0.0, 0.0};
+  const auto upright = measure_markers(observation, sensors, {}, {});
   ASSERT_EQ(upright.size(), 1U);
   EXPECT_TRUE(upright[0].wall.has_value());
   EXPECT_NEAR(upright[0].base_from_marker.y(), 1.0, 0.006);
   EXPECT_LT(upright[0].covariance(0, 0), 2.0 * sighting.covariance_in_base(0, 0));
   observation.sightings[0].base_from_marker = {2.5, 1.01, radians(-130.0)};
-  const auto flipped = measure_markers(observation, 0.01, {0.07, 0.0, 0.0}, {}, {});
+  const auto flipped = measure_markers(observation, sensors, {}, {});
   EXPECT_TRUE(flipped.empty());
+}
+
+// It could not be learnt from views that are thrown away.
+TEST(MeasureMarkers, AViewByACameraThatIsWorseThanToldIsNoFlippedOne) {
+  Random random{9};
+  Observation observation;
+  observation.beams = corridor_beams(0.01, random);
+  MarkerSensors sensors;
+  sensors.base_from_camera = {0.07, 0.0, 0.0};
+  sensors.sigmas = {.learnt = {0.0005, 0.0001, 0.003},
+                    .bearing_rad = 0.00003,
+                    .position_m = 0.0001,
+                    .bulge_m = 0.0005,
+                    .skew_rad = 0.001};
+  MarkerSighting sighting;
+  sighting.id = 2;
+  sighting.covariance_in_base = diagonal(0.02, 0.01, 0.001);
+  sighting.size_m = 0.4;
+  const Se2 turned{0.0, 0.0, radians(-0.5)};
+  sighting.base_from_marker = turned * Se2{2.5, 1.0, radians(-90.0)};
+  observation.sightings = {sighting};
+  EXPECT_EQ(measure_markers(observation, sensors, {}, {}).size(), 1U);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ Statics statics_of(const Belief& belief) {
 
 // A scale that turns out to be larger by 1 % moves each pose by 1 % of its way.
 TEST(Hindsight, AScaleLearntLaterStretchesTheWay) {
-  Belief belief{{OdometryNoise{}, 0.005, 0.002, 0.003}};
+  Belief belief{{OdometryNoise{}, {0.005, 0.002, 0.003}}};
   Hindsight hindsight;
   for (int metre = 0; metre <= 10; ++metre) {
     if (metre > 0) belief.move({Se2{1.0, 0.0, 0.0}, 1.0, 0.0}, {});
@@ -51,7 +51,7 @@ TEST(Hindsight, AScaleLearntLaterStretchesTheWay) {
 }
 
 TEST(Hindsight, AMarkerCorrectedLaterTakesThePosesThatSawItAlong) {
-  Belief belief{{OdometryNoise{}, 0.0, 0.0, 0.0}};
+  Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
   belief.move({Se2{5.0, 0.0, 0.0}, 5.0, 0.0}, {});
   belief.add(seen_at({2.0, 1.0, radians(-90.0)}));
   Hindsight hindsight;
@@ -69,7 +69,7 @@ TEST(Hindsight, AMarkerCorrectedLaterTakesThePosesThatSawItAlong) {
 }
 
 TEST(Hindsight, CorrectionsGrowEvenlyBetweenUpdatesAndStayBehindTheLast) {
-  Belief belief{{OdometryNoise{}, 0.0, 0.0, 0.0}};
+  Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
   Hindsight hindsight;
   for (int second = 0; second <= 6; ++second) {
     if (second > 0) belief.move({Se2{1.0, 0.0, 0.0}, 1.0, 0.0}, {});

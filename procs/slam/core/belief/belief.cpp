@@ -16,7 +16,7 @@ namespace {
 constexpr double kExact = 1e-12;
 constexpr double kRelocated_m = 0.5;  // sigma of a pose that is known by one marker only
 constexpr double kRelocated_rad = 0.2;
-constexpr int kTurnedUp = 3;  // sightings of the one that it may have become
+constexpr double kSurprise = 4.0;  // standard deviations
 
 double squared(double x) {
   return x * x;
@@ -52,9 +52,7 @@ Belief::Belief(const BeliefPrior& prior) : covariance_{Eigen::MatrixXd::Zero(kMa
   covariance_(kOdometry + 1, kOdometry + 1) = squared(prior.odometry.drift_sigma_rad_per_m);
   covariance_(kOdometry + 2, kOdometry + 2) = squared(prior.odometry.turn_scale_sigma);
   covariance_(kOdometry + 3, kOdometry + 3) = squared(prior.odometry.lidar_ahead_sigma_m);
-  covariance_(kSighting, kSighting) = squared(prior.camera_yaw_sigma_rad);
-  covariance_(kSighting + 1, kSighting + 1) = squared(prior.camera_focal_sigma);
-  covariance_(kSighting + 2, kSighting + 2) = squared(prior.standoff_sigma_m);
+  covariance_.diagonal().segment<3>(kSighting) = prior.sighting_sigmas.cwiseAbs2();
 }
 
 Belief::Prediction Belief::predicted(const Motion& motion, const OdometryNoise& noise) const {
@@ -166,6 +164,25 @@ void Belief::correct_sighting_errors(const Eigen::VectorXd& residual,
   condition(gain, residual, spread);
 }
 
+bool Belief::contradicts(Eigen::Index error, double prior_sigma) const {
+  const Eigen::Index place = kSighting + error;
+  const double learnt = squared(prior_sigma) - covariance_(place, place);
+  return squared(sighting_errors_[error]) > squared(kSurprise) * std::max(learnt, kExact);
+}
+
+/// In information form the priors' parts, which are about 0, are exchanged, one after the other.
+void Belief::widen_prior(const Eigen::Vector3d& from_sigmas, const Eigen::Vector3d& to_sigmas) {
+  for (Eigen::Index error = 0; error < from_sigmas.size(); ++error) {
+    if (!(to_sigmas[error] > from_sigmas[error] && from_sigmas[error] > 0.0)) continue;
+    const Eigen::Index place = kSighting + error;
+    const double less = 1.0 / squared(from_sigmas[error]) - 1.0 / squared(to_sigmas[error]);
+    const double gain = less / (1.0 - less * covariance_(place, place));
+    condition(covariance_.col(place).eval(),
+              Eigen::VectorXd::Constant(1, gain * sighting_errors_[error]),
+              Eigen::MatrixXd::Constant(1, 1, -gain));
+  }
+}
+
 /// @param with_residual  out: covariance of everything with what is expected.
 Innovation Belief::compare(std::size_t index, const MarkerMeasurement& measurement,
                            Columns& with_residual) const {
@@ -252,16 +269,6 @@ double Belief::correct(std::size_t index, const MarkerMeasurement& measurement, 
   return innovation.log_likelihood();
 }
 
-void Belief::augment(const Landmark& landmark, const Columns& with_all,
-                     const Eigen::Matrix3d& own) {
-  const Eigen::Index size = covariance_.rows();
-  covariance_.conservativeResize(size + 3, size + 3);
-  covariance_.topRightCorner(size, 3) = with_all;
-  covariance_.bottomLeftCorner(3, size) = with_all.transpose();
-  covariance_.bottomRightCorner<3, 3>() = own;
-  active_.push_back(landmark);
-}
-
 void Belief::add(const MarkerMeasurement& measurement) {
   Landmark fresh;
   fresh.id = measurement.id;
@@ -286,81 +293,6 @@ void Belief::add(const MarkerMeasurement& measurement) {
   augment(fresh, with_all, own);
 }
 
-/// @return its place among the active ones.
-std::size_t Belief::revive(std::size_t settled_marker) {
-  std::vector<Landmark>& settled = settled_.edit();
-  const Landmark revived = settled[settled_marker];
-  settled.erase(settled.begin() + static_cast<std::ptrdiff_t>(settled_marker));
-  augment(revived, Columns::Zero(covariance_.rows(), 3), revived.covariance);
-  return active_.size() - 1;
-}
-
-void Belief::settle_oldest(std::size_t limit) {
-  while (active_.size() > limit) {
-    const auto oldest = std::min_element(
-        active_.begin(), active_.end(),
-        [](const Landmark& a, const Landmark& b) { return a.last_seen < b.last_seen; });
-    settle(static_cast<std::size_t>(oldest - active_.begin()));
-  }
-}
-
-void Belief::settle(std::size_t marker) {
-  const Eigen::Index place = place_of(marker);
-  Landmark settled = active_[marker];
-  settled.covariance = covariance_.block<3, 3>(place, place);
-  settled_.edit().push_back(settled);
-  remove_active(marker);
-}
-
-void Belief::remove_active(std::size_t marker) {
-  const Eigen::Index place = place_of(marker);
-  active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(marker));
-  const Eigen::Index behind = covariance_.rows() - place - 3;
-  covariance_.middleRows(place, behind) = covariance_.bottomRows(behind).eval();
-  covariance_.middleCols(place, behind) = covariance_.rightCols(behind).eval();
-  covariance_.conservativeResize(covariance_.rows() - 3, covariance_.cols() - 3);
-}
-
-void Belief::forget_since(Timestamp time) {
-  for (std::size_t i = active_.size(); i-- > 0;)
-    if (active_[i].first_seen > time) remove_active(i);
-}
-
-Landmark& Belief::editable(std::size_t index) {
-  return index < active_.size() ? active_[index] : settled_.edit()[index - active_.size()];
-}
-
-void Belief::note_absences(const std::function<bool(const Se2&)>& is_in_view, Timestamp now) {
-  const Se2 base_from_map = map_from_base_.inverse();
-  for (std::size_t i = 0; i < num_markers(); ++i) {
-    if (marker(i).last_seen < now && is_in_view(base_from_map * marker(i).map_from_marker))
-      ++editable(i).misses;
-  }
-  forget_moved();
-}
-
-void Belief::forget_moved() {
-  for (std::size_t i = 0; i < num_markers(); ++i) {
-    if (!marker(i).is_missed()) continue;
-    for (std::size_t k = 0; k < num_markers(); ++k) {
-      const Landmark& other = marker(k);
-      if (k == i || other.id != marker(i).id || other.first_seen <= marker(i).last_seen ||
-          other.sightings < kTurnedUp) {
-        continue;
-      }
-      editable(k).instance = marker(i).instance;
-      editable(k).was_moved = marker(i).is_confirmed();
-      if (i < active_.size()) {
-        remove_active(i);
-      } else {
-        std::vector<Landmark>& settled = settled_.edit();
-        settled.erase(settled.begin() + static_cast<std::ptrdiff_t>(i - active_.size()));
-      }
-      return;  // the others come with the next update
-    }
-  }
-}
-
 PoseByStatics Belief::pose_by_statics(std::size_t most) const {
   std::vector<std::size_t> chosen(active_.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
@@ -381,18 +313,6 @@ PoseByStatics Belief::pose_by_statics(std::size_t most) const {
   const Eigen::MatrixXd with_pose = covariance_(places, Eigen::seqN(0, 3));
   by.gain = statics.ldlt().solve(with_pose).transpose();
   return by;
-}
-
-std::vector<Landmark> Belief::markers() const {
-  std::vector<Landmark> markers = settled();
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    markers.push_back(active_[i]);
-    markers.back().covariance = covariance_.block<3, 3>(place_of(i), place_of(i));
-  }
-  std::stable_sort(markers.begin(), markers.end(), [](const Landmark& a, const Landmark& b) {
-    return a.first_seen < b.first_seen;
-  });
-  return markers;
 }
 
 }  // namespace waymark

@@ -60,9 +60,8 @@ using PoseAxes = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 /// How a belief begins.
 struct BeliefPrior {
   OdometryNoise odometry{};
-  double camera_yaw_sigma_rad{0.0};  ///< of the mounting
-  double camera_focal_sigma{0.0};    ///< relative
-  double standoff_sigma_m{0.0};      ///< of the markers before their walls
+  /// Standard deviations; order as in Belief::sighting_errors().
+  Eigen::Vector3d sighting_sigmas{Eigen::Vector3d::Zero()};
 };
 
 /// A Gaussian over (pose, odometry errors, sighting errors, markers), about a mean that is moved
@@ -119,6 +118,16 @@ class Belief {
 
   /// The same from the perspective of a marker.
   void correct_sighting_errors(const FocalSighting& focal);
+
+  /// Whether a sighting error is further from what was told than chance explains, given its prior
+  /// standard deviation: what it has been found to be is normal with what the prior has lost.
+  /// @param error  index in sighting_errors().
+  bool contradicts(Eigen::Index error, double prior_sigma) const;
+
+  /// As if the priors of the sighting errors had been wider from the beginning: all that has been
+  /// concluded from the narrow ones follows, but for settled markers and drawn poses. What was
+  /// exact (0) stays so.
+  void widen_prior(const Eigen::Vector3d& from_sigmas, const Eigen::Vector3d& to_sigmas);
 
   /// The marker of that id that fits best; nothing when none is known.
   std::optional<Innovation> nearest(const MarkerMeasurement& measurement) const;

@@ -7,6 +7,7 @@
 #include "slam/core/filter/scan_trail.hpp"
 #include "slam/core/filter/update_gate.hpp"
 #include "slam/core/grid/grid_map.hpp"
+#include "slam/core/landmark/sighting_sigmas.hpp"
 #include "slam/core/mapping/landmark_map.hpp"
 #include "slam/core/mapping/mapper.hpp"
 #include "slam/core/motion/motion_model.hpp"
@@ -24,6 +25,7 @@ struct EstimatorSetup {
   UpdateGate gate{};
   double range_sigma_m{0.01};  ///< of the LiDAR
   CameraView camera{};
+  SightingSigmas sighting_sigmas{};
   double range_max_m{3.5};  ///< of the LiDAR
   std::uint64_t seed{1};
   ParallelFor parallel_for{serial_for};

@@ -4,7 +4,6 @@
 #include "slam/core/belief/told_axes.hpp"
 #include "slam/core/filter/centred_normals.hpp"
 #include "slam/core/landmark/misreading.hpp"
-#include "slam/core/matching/range_scale.hpp"
 
 #include <algorithm>
 
@@ -17,19 +16,11 @@ constexpr double kWallInSight_m = 0.2;                      // a beam ends this 
 constexpr Duration kSightingAge = std::chrono::seconds{1};  // a marker seen since is in view
 constexpr std::size_t kStaticMarkers = 4;                   // that a past pose is corrected by
 constexpr double kExact = 1e-14;                            // [m^2, rad^2] less is rounding
-constexpr double kWallsOff_m2 = 4e-4;  // of walls, from where the robot is seen to be
-constexpr double kWallsOff_rad2 = 1e-4;
-constexpr double kRangesKnownFor_m = 10.0;  // driven
-constexpr double kMinSurfaces = 0.1;        // share of beams; a scan with fewer shows nothing
-constexpr double kMinMappedShare = 0.2;     // of a scan's beams; fewer say nothing about being lost
+constexpr double kMinSurfaces = 0.1;     // share of beams; a scan with fewer shows nothing
+constexpr double kMinMappedShare = 0.2;  // of a scan's beams; fewer say nothing about being lost
 
 PoseAxes whole_pose() {
   return Eigen::Matrix3d::Identity();
-}
-
-BeliefPrior prior_of(const WaymarkConfig& config) {
-  return {config.odometry, config.markers.camera_yaw_sigma_rad, config.markers.camera_focal_sigma,
-          config.markers.standoff_sigma_m};
 }
 
 /// Covariance of (x, y, theta) in the map, turned into the base's axes.
@@ -44,9 +35,9 @@ Eigen::Matrix3d in_frame_of(const Se2& map_from_base, const Eigen::Matrix3d& cov
 WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config)
     : setup_{setup},
       config_{config},
-      particles_{
-          static_cast<std::size_t>(config.particles),
-          State{GridFrame::centred_on_map_origin(setup.grid.resolution_m), prior_of(config)}},
+      particles_{static_cast<std::size_t>(config.particles),
+                 State{GridFrame::centred_on_map_origin(setup.grid.resolution_m),
+                       BeliefPrior{config.odometry, setup.sighting_sigmas.learnt}}},
       mapper_{setup.grid} {
   config_.matching.range_sigma_m = setup.range_sigma_m;
   noise_ = config_.odometry;
@@ -62,31 +53,12 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
   return update_by(without_beams);
 }
 
-/// Held to the walls of the best particle. Where these say nothing, what they said last still holds
-/// for some way.
-void WaymarkEstimator::watch_ranges(const Observation& observation) {
-  since_ranges_told_m_ += observation.motion.distance_m;
-  if (since_ranges_told_m_ > kRangesKnownFor_m) ranges_wrong_ = false;
-  if (updates_ == 0) return;
-  const State& best = particles_.state(particles_.best());
-  const auto [expected, added] =
-      best.belief.predicted(since_update_.then(observation.motion), noise_);
-  const Eigen::Vector3d walls_off{kWallsOff_m2, kWallsOff_m2, kWallsOff_rad2};
-  SurfaceFinder walls{best.walls, observation.beams.size()};
-  const auto scale =
-      range_scale(observation.beams, walls, expected,
-                  best.belief.pose_covariance() + added + Eigen::Matrix3d{walls_off.asDiagonal()},
-                  config_.matching);
-  if (!scale || !(scale->is_right() || scale->is_wrong())) return;
-  ranges_wrong_ = scale->is_wrong();
-  since_ranges_told_m_ = 0.0;
-}
-
 Estimate WaymarkEstimator::update_by(const Observation& observation) {
   watch_standstill(observation);
   since_update_ = since_update_.then(observation.motion);
   turn_by_scans_ = turn_that_contradicts_odometry(observation);
   slipped_ = false;
+  calibration_widened_ = false;
   if (updates_ == 0 || is_due() || turn_by_scans_ || is_contradicted_by(observation)) {
     process(observation);
     if (verdict_ != KidnapWatch::Verdict::kDoubtful)
@@ -109,8 +81,9 @@ bool WaymarkEstimator::is_due() const {
 }
 
 std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& observation) const {
-  return measure_markers(observation, setup_.range_sigma_m, setup_.camera.base_from_camera, noise_,
-                         config_.markers);
+  return measure_markers(
+      observation, {setup_.range_sigma_m, setup_.camera.base_from_camera, setup_.sighting_sigmas},
+      noise_, config_.markers);
 }
 
 Belief WaymarkEstimator::belief_now() const {
@@ -143,6 +116,7 @@ void WaymarkEstimator::process(const Observation& observation) {
   if (verdict_ == KidnapWatch::Verdict::kSettled)
     noise_growth_.learn(outcomes[particles_.best()].correction);
   noise_ = noise_growth_.applied_to(config_.odometry);
+  watch_calibration();
   const Outcome& best = outcomes[particles_.best()];
   drift_.take(best.drawn, best.by_noise, belief().errors_covariance());
   judge(outcomes);

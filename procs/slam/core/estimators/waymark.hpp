@@ -15,6 +15,7 @@
 #include "slam/core/smoothing/retrospect.hpp"
 #include "slam/core/weighting/marker_score.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -122,6 +123,7 @@ class WaymarkEstimator final : public Estimator {
   };
 
   void watch_ranges(const Observation& observation);
+  void watch_calibration();
   Estimate update_by(const Observation& observation);
   void watch_standstill(const Observation& observation);
   void undo_standstill();
@@ -175,6 +177,7 @@ class WaymarkEstimator final : public Estimator {
   std::optional<Timestamp> stands_since_{};     ///< what the odometry tells
   std::vector<AnnotatedBeam> updated_beams_{};  ///< those of the last update
   std::uint64_t updates_{0};
+  double since_ranges_told_m_{0.0};  ///< driven
 
   // Of the last update:
   Se2 mean_{};
@@ -187,7 +190,7 @@ class WaymarkEstimator final : public Estimator {
   std::optional<double> turn_by_scans_{};  ///< [rad] more than odometry's, where that seems wrong
   bool slipped_{false};
   bool ranges_wrong_{false};
-  double since_ranges_told_m_{0.0};
+  bool calibration_widened_{false};
   KidnapWatch::Verdict verdict_{KidnapWatch::Verdict::kSettled};
 };
 

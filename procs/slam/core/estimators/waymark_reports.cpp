@@ -48,6 +48,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   estimate.covariance = covariance;
   estimate.slipped = slipped_;
   estimate.ranges_wrong = ranges_wrong_;
+  estimate.calibration_widened = calibration_widened_;
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
   estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;

@@ -33,6 +33,8 @@ struct Estimate {
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
   bool slipped{false};       ///< the scans showed that the wheels had slipped, and were believed
   bool ranges_wrong{false};  ///< the scan shows known walls, but at another scale: it was left out
+  /// Camera or markers are further from what was told of them than their standard deviations allow.
+  bool calibration_widened{false};
 };
 
 /// What a method can say about itself after `updates` updates.

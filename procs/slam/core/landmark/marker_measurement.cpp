@@ -20,6 +20,10 @@ constexpr double kMinExtent_m = 0.1;            // [m] root mean square length o
 constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
 constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
 
+/// A view that is off by what a worse camera would get wrong is no flipped one: it shows that the
+/// calibration is wrong (SightingSigmas::learnt).
+const Eigen::Vector3d kCalibrated{0.01, 0.005, 0.005};
+
 double squared(double x) {
   return x * x;
 }
@@ -59,17 +63,17 @@ LineFit collect(std::span<const AnnotatedBeam> beams, const Line& line,
   return fit;
 }
 
-Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const Se2& base_from_camera,
+Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const MarkerSensors& sensors,
                                const OdometryNoise& odometry,
                                const MarkerMeasurementConfig& config) {
   const Eigen::Vector2d ray =
-      sighting.base_from_marker.translation() - base_from_camera.translation();
+      sighting.base_from_marker.translation() - sensors.base_from_camera.translation();
   const Eigen::Vector2d across{-ray.y(), ray.x()};
   Eigen::Matrix3d covariance = config.covariance_factor * sighting.covariance_in_base;
   covariance.topLeftCorner<2, 2>() +=
-      squared(config.camera_sigma_rad) * across * across.transpose();
-  covariance.topLeftCorner<2, 2>().diagonal().array() += squared(config.camera_sigma_m);
-  covariance(2, 2) += squared(config.camera_sigma_rad);
+      squared(sensors.sigmas.bearing_rad) * across * across.transpose();
+  covariance.topLeftCorner<2, 2>().diagonal().array() += squared(sensors.sigmas.position_m);
+  covariance(2, 2) += squared(sensors.sigmas.bearing_rad);
   // A heading that odometry gets wrong in between turns the sighting about the robot.
   const Eigen::Vector2d place = sighting.base_from_marker.translation();
   const Eigen::Vector3d turned{-place.y(), place.x(), 1.0};
@@ -92,7 +96,7 @@ Eigen::Matrix<double, 3, 2> by_camera_errors(const Eigen::Vector2d& place_in_bas
 
 /// Kalman update of the camera's pose with "it lies in the wall and faces as the wall does".
 std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, const WallLine& wall,
-                                              const MarkerMeasurementConfig& config) {
+                                              const SightingSigmas& sigmas, double gate) {
   Eigen::Matrix<double, 2, 3> rows = Eigen::Matrix<double, 2, 3>::Zero();
   rows.topLeftCorner<1, 2>() = wall.normal.transpose();
   rows(1, 2) = 1.0;
@@ -104,16 +108,14 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
   innovation.by_camera = -rows * measurement.by_camera;
   innovation.by_standoff = -Eigen::Vector2d::UnitX();  // the normal points to the robot
   innovation.covariance = rows * measurement.covariance * rows.transpose();
-  innovation.covariance(0, 0) += squared(wall.sigma_m) + squared(config.wall_sigma_m);
-  innovation.covariance(1, 1) += squared(wall.sigma_rad) + squared(config.wall_sigma_rad);
+  innovation.covariance(0, 0) += squared(wall.sigma_m) + squared(sigmas.bulge_m);
+  innovation.covariance(1, 1) += squared(wall.sigma_rad) + squared(sigmas.skew_rad);
 
-  const Eigen::Vector3d error_variance{squared(config.camera_yaw_sigma_rad),
-                                       squared(config.camera_focal_sigma),
-                                       squared(config.standoff_sigma_m)};
+  const Eigen::Vector3d error_variance = sigmas.learnt.cwiseMax(kCalibrated).cwiseAbs2();
   const Eigen::Matrix2d spread = innovation.covariance + innovation.by_errors() *
                                                              error_variance.asDiagonal() *
                                                              innovation.by_errors().transpose();
-  if (!(innovation.residual.dot(spread.inverse() * innovation.residual) < config.gate))
+  if (!(innovation.residual.dot(spread.inverse() * innovation.residual) < gate))
     return std::nullopt;
 
   const Eigen::Matrix<double, 3, 2> gain =
@@ -186,8 +188,8 @@ std::optional<FocalSighting> usable(std::optional<FocalSighting> focal,
   return focal;
 }
 
-std::vector<MarkerMeasurement> measure_markers(const Observation& observation, double range_sigma_m,
-                                               const Se2& base_from_camera,
+std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
+                                               const MarkerSensors& sensors,
                                                const OdometryNoise& odometry,
                                                const MarkerMeasurementConfig& config) {
   // The newest frame only: what one frame gets wrong, the next gets wrong in the same way.
@@ -202,17 +204,18 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation, d
         sighting.time,
         sighting.size_m,
         sighting.base_from_marker,
-        in_robot_frame(sighting, base_from_camera, odometry, config),
-        by_camera_errors(sighting.base_from_marker.translation(), base_from_camera),
+        in_robot_frame(sighting, sensors, odometry, config),
+        by_camera_errors(sighting.base_from_marker.translation(), sensors.base_from_camera),
         Eigen::Vector3d::Zero(),
-        base_from_camera,
+        sensors.base_from_camera,
         Eigen::Matrix3d::Identity(),
         usable(sighting.focal, config)};
-    const auto wall = fit_wall(observation.beams, sighting.base_from_marker.translation(),
-                               sighting.base_from_marker.theta(), range_sigma_m, config.reach_m);
+    const auto wall =
+        fit_wall(observation.beams, sighting.base_from_marker.translation(),
+                 sighting.base_from_marker.theta(), sensors.range_sigma_m, config.reach_m);
     if (!wall) {
       if (!is_surveyed(observation.beams, sighting)) measurements.push_back(measurement);
-    } else if (const auto held = hold_to_wall(measurement, *wall, config)) {
+    } else if (const auto held = hold_to_wall(measurement, *wall, sensors.sigmas, config.gate)) {
       measurements.push_back(*held);
     }
   }

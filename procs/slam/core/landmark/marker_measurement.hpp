@@ -3,6 +3,7 @@
 #pragma once
 
 #include "slam/core/belief/odometry_errors.hpp"
+#include "slam/core/landmark/sighting_sigmas.hpp"
 #include "slam/core/proposal/pose_information.hpp"
 #include "slam/core/scan/observation.hpp"
 
@@ -15,20 +16,20 @@ namespace waymark {
 class Fields;
 
 struct MarkerMeasurementConfig {
-  double wall_sigma_m{0.002};      ///< how far markers differ in that, bulges
-  double standoff_sigma_m{0.003};  ///< how far all markers hang before their walls, learnt
-  double wall_sigma_rad{0.01};     ///< how skew
-  double reach_m{1.5};  ///< wall on both sides of the marker that is believed to be straight
-  double camera_sigma_m{0.0003};        ///< what frames have in common, beside their own covariance
-  double camera_sigma_rad{0.0001};      ///< the same at the camera: 0.05 px of a usual one
-  double camera_yaw_sigma_rad{0.0087};  ///< how wrong the mounting may be, learnt while driving
-  double camera_focal_sigma{0.001};     ///< the same of the focal length, relative
+  double reach_m{1.5};                  ///< wall around the marker that is believed to be straight
   double perspective_sigma{0.02};       ///< of the focal length by one view; views err alike
   double perspective_max_sigma{0.003};  ///< views that the corners' noise makes worse say nothing
   double covariance_factor{1.0};        ///< on the detector's covariance: corners err together
   double gate{16.3};  ///< chi^2 between camera and wall, 3 degrees of freedom (16.3 = 99.9 %)
 
   void describe(Fields& fields);
+};
+
+/// What markers are measured with.
+struct MarkerSensors {
+  double range_sigma_m{0.01};  ///< of the LiDAR
+  Se2 base_from_camera{};
+  SightingSigmas sigmas{};
 };
 
 /// A piece of straight wall, base frame.
@@ -89,8 +90,8 @@ struct MarkerMeasurement {
 /// bearing best and the range worst; the wall tells where along that bearing the marker is. A view
 /// that the wall contradicts (a flipped pose) gives no measurement.
 /// @param odometry  that carried the sightings from their frames' times to the scan's.
-std::vector<MarkerMeasurement> measure_markers(const Observation& observation, double range_sigma_m,
-                                               const Se2& base_from_camera,
+std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
+                                               const MarkerSensors& sensors,
                                                const OdometryNoise& odometry,
                                                const MarkerMeasurementConfig& config);
 

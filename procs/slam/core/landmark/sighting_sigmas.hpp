@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How good camera and markers are.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+/// How far camera and markers may differ from what the robot has been told of them: standard
+/// deviations. Keys and meanings: [robot.camera] and [robot.markers]; the defaults are theirs.
+struct SightingSigmas {
+  /// Of what all sightings get wrong in the same way: mounting's yaw [rad], focal length
+  /// (relative), standoff of the markers [m]. Learnt while driving, but for what is 0.
+  Eigen::Vector3d learnt{0.0087, 0.001, 0.003};
+  double bearing_rad{0.0001};
+  double position_m{0.0003};
+  double bulge_m{0.002};
+  double skew_rad{0.01};
+
+  /// When what has been learnt shows that one of `learnt` was too small. That one is wider then,
+  /// and nothing is believed to be better than usual.
+  SightingSigmas doubted(Eigen::Index error) const;
+};
+
+}  // namespace waymark

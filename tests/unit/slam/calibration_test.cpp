@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cameras and markers that are worse than the robot has been told.
+#include "property/slam/estimator_run.hpp"
+#include "slam/core/belief/belief.hpp"
+#include "slam/core/estimators/waymark.hpp"
+#include "support/small_world.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+using test::diagonal;
+using test::measurement_of;
+
+constexpr Eigen::Index kYaw = 0;
+constexpr Eigen::Index kFocal = 1;
+constexpr double kGate = 16.3;
+const Eigen::Vector3d kNarrow{0.0005, 0.0001, 0.003};
+const Eigen::Vector3d kWide{0.0087, 0.001, 0.003};
+
+SightingSigmas told_to_be_exact() {
+  SightingSigmas sigmas;
+  sigmas.learnt = kNarrow;
+  sigmas.bearing_rad = 0.00003;
+  sigmas.position_m = 0.0001;
+  return sigmas;
+}
+
+/// Passes a marker twice; what the camera's errors do to each sighting is in it.
+void drive_by(Belief& belief, const Eigen::Vector3d& errors, std::uint64_t seed) {
+  const Se2 map_from_marker{3.0, 1.0, radians(-90.0)};
+  Random random{21, seed};
+  for (int i = 0; i < 40; ++i) {
+    if (i > 0) belief.move({Se2{0.05, 0.0, 0.0}, 0.05, 0.0}, {});
+    const Se2 base_from_marker = Se2{0.05 * i, 0.0, 0.0}.inverse() * map_from_marker;
+    MarkerMeasurement seen = measurement_of(base_from_marker);
+    seen.held.setIdentity();
+    seen.covariance = diagonal(0.002, 0.002, 0.002);
+    seen.by_camera = seen.by_errors_at(base_from_marker.translation()).leftCols<2>();
+    const Eigen::Vector3d noise{random.normal(0.0, 0.002), random.normal(0.0, 0.002),
+                                random.normal(0.0, 0.002)};
+    seen.base_from_marker = deviated(base_from_marker, seen.by_errors() * errors + noise);
+    if (i == 0) {
+      belief.add(seen);
+    } else {
+      belief.correct(0, seen, kGate);
+    }
+  }
+}
+
+TEST(SightingSigmas, ADoubtedErrorIsWiderAndNothingIsBetterThanUsual) {
+  const SightingSigmas usual;
+  const SightingSigmas once = told_to_be_exact().doubted(kFocal);
+  EXPECT_EQ(once.learnt, usual.learnt);
+  EXPECT_EQ(once.bearing_rad, usual.bearing_rad);
+  EXPECT_EQ(once.position_m, usual.position_m);
+  const SightingSigmas twice = once.doubted(kFocal);
+  EXPECT_GT(twice.learnt[kFocal], 2.0 * usual.learnt[kFocal]);
+  EXPECT_EQ(twice.learnt[kYaw], usual.learnt[kYaw]);
+}
+
+TEST(SightingSigmas, WhatIsExactStaysSo) {
+  SightingSigmas sigmas;
+  sigmas.learnt[kYaw] = 0.0;
+  EXPECT_EQ(sigmas.doubted(kFocal).learnt[kYaw], 0.0);
+}
+
+TEST(Belief, WithAPriorWidenedLaterIsTheOneThatBeganWithIt) {
+  const Eigen::Vector3d errors{0.003, 0.0002, 0.0};
+  Belief widened{{OdometryNoise{}, kNarrow}};
+  Belief wide{{OdometryNoise{}, kWide}};
+  drive_by(widened, errors, 1);
+  drive_by(wide, errors, 1);
+  const auto away = [&] {
+    return deviation(widened.markers()[0].map_from_marker, wide.markers()[0].map_from_marker)
+        .norm();
+  };
+  const double away_before = away();
+  EXPECT_GT((widened.sighting_errors() - wide.sighting_errors()).norm(), 5e-4);
+  widened.widen_prior(kNarrow, kWide);
+  EXPECT_LT((widened.sighting_errors() - wide.sighting_errors()).norm(), 5e-5);
+  EXPECT_TRUE(widened.errors_covariance().isApprox(wide.errors_covariance(), 0.02));
+  EXPECT_TRUE(widened.pose_covariance().isApprox(wide.pose_covariance(), 0.02));
+  EXPECT_LT(deviation(widened.map_from_base(), wide.map_from_base()).norm(), 5e-5);
+  EXPECT_LT(away(), 0.05 * away_before);
+}
+
+TEST(Belief, ContradictsAPriorThatIsTooNarrowAndNoOther) {
+  int false_alarms = 0;
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random{22, seed};
+    Belief right{{OdometryNoise{}, kWide}};
+    drive_by(right, {random.normal(0.0, kWide[kYaw]), random.normal(0.0, kWide[kFocal]), 0.0},
+             seed);
+    false_alarms +=
+        right.contradicts(kYaw, kWide[kYaw]) || right.contradicts(kFocal, kWide[kFocal]);
+    Belief wrong{{OdometryNoise{}, kNarrow}};
+    drive_by(wrong, {0.015, 0.0, 0.0}, seed);
+    alarms += wrong.contradicts(kYaw, kNarrow[kYaw]);
+  }
+  EXPECT_EQ(false_alarms, 0);
+  EXPECT_EQ(alarms, 50);
+}
+
+TEST(Waymark, BelievesACameraLessThatIsWorseThanTold) {
+  const auto drive = [](double focal_error, double yaw_error_rad) {
+    test::SyntheticCorridor corridor = test::short_corridor(4);
+    corridor.camera_focal_error = focal_error;
+    corridor.camera_yaw_error_rad = yaw_error_rad;
+    EstimatorSetup setup = test::estimator_setup_of(corridor, 4);
+    setup.sighting_sigmas = told_to_be_exact();
+    WaymarkEstimator estimator{setup, {}};
+    return test::run(estimator, test::drive(corridor), test::setup_of(corridor));
+  };
+  const auto widened = [](const std::vector<test::Step>& steps) {
+    return std::any_of(steps.begin(), steps.end(),
+                       [](const test::Step& step) { return step.estimate.calibration_widened; });
+  };
+  EXPECT_FALSE(widened(drive(0.0, 0.0)));
+  for (const auto& [focal_error, yaw_error_rad] :
+       {std::pair{0.01, 0.0}, std::pair{0.0, radians(0.3)}, std::pair{-0.01, radians(-0.5)}}) {
+    const auto steps = drive(focal_error, yaw_error_rad);
+    EXPECT_TRUE(widened(steps)) << focal_error << " " << yaw_error_rad;
+    const Se2 error = steps.back().truth.inverse() * steps.back().estimate.map_from_base;
+    const Eigen::Matrix3d& covariance = steps.back().estimate.covariance;
+    EXPECT_LT(error.translation().norm(), 0.03) << focal_error << " " << yaw_error_rad;
+    EXPECT_LT(std::abs(error.x()), 4.0 * std::sqrt(covariance(0, 0)));
+  }
+}
+
+}  // namespace
+}  // namespace waymark
