@@ -16,7 +16,7 @@ namespace {
 constexpr double kExact = 1e-12;
 constexpr double kRelocated_m = 0.5;  // sigma of a pose that is known by one marker only
 constexpr double kRelocated_rad = 0.2;
-constexpr double kSurprise = 4.0;  // standard deviations
+constexpr double kSurprise = 3.5;  // standard deviations
 
 double squared(double x) {
   return x * x;

@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kWider = 3.0;
+constexpr double kWider = 5.0;
 
 }  // namespace
 
