@@ -47,6 +47,11 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
 
 }  // namespace
 
+void read_levels(EdgeProfile& profile) {
+  profile.white = mean_between(profile, kWhiteFrom, 1.0);
+  profile.black = mean_between(profile, kBlackFrom, kBlackTo);
+}
+
 double EdgeProfile::step_px() const {
   return 2.0 * reach_px / static_cast<double>(brightness.size() - 1);
 }
@@ -83,6 +88,14 @@ std::optional<double> EdgeProfile::edge_px(double black_level, double half_windo
   return *crossing + half_px * (1.0 - 2.0 * white_share);
 }
 
+std::optional<double> EdgeProfile::blur_px(double black_level) const {
+  constexpr double kQuarters = 1.349;  // of a normal distribution, in standard deviations
+  const auto low = crossing_px(black_level + 0.25 * (white - black_level));
+  const auto high = crossing_px(black_level + 0.75 * (white - black_level));
+  if (!low || !high || *high < *low) return std::nullopt;
+  return (*high - *low) / kQuarters;
+}
+
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
                                          const Side& side, double reach_px) {
   const double length_px = side.length_px();
@@ -104,11 +117,25 @@ std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel&
       profile.brightness.push_back(*value);
     }
     if (std::ssize(profile.brightness) != steps + 1) continue;
-    profile.white = mean_between(profile, kWhiteFrom, 1.0);
-    profile.black = mean_between(profile, kBlackFrom, kBlackTo);
+    read_levels(profile);
     profiles.push_back(std::move(profile));
   }
   return profiles;
+}
+
+std::optional<double> mean_brightness_inside(const cv::Mat& gray, const CameraModel& camera,
+                                             const Side& side, double inside_px) {
+  const int count = std::max(2, static_cast<int>(side.length_px()));
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d place_px =
+        side.start_px + (i + 0.5) / count * (side.end_px - side.start_px);
+    const auto value =
+        brightness_at(gray, camera.raw_from_ideal(place_px - inside_px * side.outward()));
+    if (!value) return std::nullopt;
+    sum += *value / count;
+  }
+  return sum;
 }
 
 }  // namespace waymark

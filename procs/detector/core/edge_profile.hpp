@@ -42,11 +42,21 @@ struct EdgeProfile {
   /// the profile. Unlike the crossing itself, which is up to 0.09 px off in sharp images, it does
   /// not depend on where the pixels lie. nullopt where nothing crosses.
   std::optional<double> edge_px(double black_level, double half_window_px) const;
+  /// Standard deviation of the point spread across the edge, from how far apart a quarter and three
+  /// quarters of its height are crossed; what lies behind the border hardly matters there.
+  std::optional<double> blur_px(double black_level) const;
 };
+
+/// Levels that are read off a profile.
+void read_levels(EdgeProfile& profile);
 
 /// One profile per pixel along the side, away from its corners. Places from which the profile would
 /// leave the image are left out.
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
                                          const Side& side, double reach_px);
+
+/// Mean brightness along a line that far inside of a side; nullopt where it leaves the image.
+std::optional<double> mean_brightness_inside(const cv::Mat& gray, const CameraModel& camera,
+                                             const Side& side, double inside_px);
 
 }  // namespace waymark

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/corner_refinement.hpp"
 
+#include "detector/core/blurred_side.hpp"
 #include "support/marker_image.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace waymark {
@@ -101,6 +104,47 @@ TEST(CornerRefinement, CornersInACorridorAreUnbiasedOnBothWalls) {
       EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.01) << "pixels' own area, wall at " << wall_y_m;
     for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 0.6, 2.7))
       EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.01) << "blurred, wall at " << wall_y_m;
+  }
+}
+
+// Blur mixes the bits behind a thin border into its edge. Without a model of that the corners of
+// the far side are 0.1 px and more off, all to the same side.
+TEST(CornerRefinement, CornersOfABlurredCameraAreNearlyUnbiased) {
+  for (const double wall_y_m : {1.0, -1.0}) {
+    for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 1.0, 3.0))
+      EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.06) << "wall at " << wall_y_m;
+  }
+}
+
+TEST(CornerRefinement, BlurMakesCornersLessCertain) {
+  const auto variance_of = [](double blur_sigma_px) {
+    const Scene scene =
+        scene_with({}, base_from_upright_marker({2.4, 1.0, 0.25}, -0.5 * std::numbers::pi),
+                   {.blur_sigma_px = blur_sigma_px, .noise_sigma = 0.0});
+    const CameraModel camera{scene.robot.camera};
+    return refine_corners(scene.image, camera, pulled_inwards(scene.true_raw_px, 0.7), kModules, {})
+        .covariance.trace();
+  };
+  EXPECT_GT(variance_of(1.0), 1.5 * variance_of(0.3));
+}
+
+TEST(BlurredSide, HasItsEdgeWhereItIsUnlessTheBorderIsThin) {
+  const auto bias_px = [](double border_px, double inner_white) {
+    const BlurredSide side{1.1, border_px, inner_white};
+    const double black = BlurredSide{1.1, 10.0, 0.5}.profile(3.0).black;
+    return side.bias_px(3.0, black, std::clamp(border_px - 1.1, 0.4, 2.0));
+  };
+  EXPECT_LT(std::abs(bias_px(10.0, 1.0)), 0.01);
+  EXPECT_LT(std::abs(bias_px(3.0, 0.0)), 0.01) << "nothing white behind the border";
+  EXPECT_LT(bias_px(3.0, 1.0), -0.05) << "white behind the border: it looks thinner";
+}
+
+TEST(EdgeProfile, MeasuresTheBlurAcrossAnEdge) {
+  for (const double blur_px : {0.6, 1.0, 1.4}) {
+    const EdgeProfile profile = BlurredSide{blur_px, 10.0, 0.5}.profile(5.0);
+    const auto measured_px = profile.blur_px(profile.black);
+    ASSERT_TRUE(measured_px);
+    EXPECT_NEAR(*measured_px, blur_px, 0.05 * blur_px);
   }
 }
 
