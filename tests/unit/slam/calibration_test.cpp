@@ -86,7 +86,10 @@ TEST(Belief, WithAPriorWidenedLaterIsTheOneThatBeganWithIt) {
   EXPECT_LT(away(), 0.05 * away_before);
 }
 
-TEST(Belief, ContradictsAPriorThatIsTooNarrowAndNoOther) {
+TEST(SightingSigmas, AreContradictedWhereTheyAreTooNarrowAndNowhereElse) {
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  SightingSigmas told_wide;
+  told_wide.learnt = kWide;
   int false_alarms = 0;
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -95,10 +98,12 @@ TEST(Belief, ContradictsAPriorThatIsTooNarrowAndNoOther) {
     drive_by(right, {random.normal(0.0, kWide[kYaw]), random.normal(0.0, kWide[kFocal]), 0.0},
              seed);
     false_alarms +=
-        right.contradicts(kYaw, kWide[kYaw]) || right.contradicts(kFocal, kWide[kFocal]);
+        told_wide.contradicted_by(right.sighting_errors(), right.sighting_variances(), none)
+            .has_value();
     Belief wrong{{OdometryNoise{}, kNarrow}};
     drive_by(wrong, {0.015, 0.0, 0.0}, seed);
-    alarms += wrong.contradicts(kYaw, kNarrow[kYaw]);
+    alarms += told_to_be_exact().contradicted_by(wrong.sighting_errors(),
+                                                 wrong.sighting_variances(), none) == kYaw;
   }
   EXPECT_EQ(false_alarms, 0);
   EXPECT_EQ(alarms, 50);

@@ -16,7 +16,6 @@ namespace {
 constexpr double kExact = 1e-12;
 constexpr double kRelocated_m = 0.5;  // sigma of a pose that is known by one marker only
 constexpr double kRelocated_rad = 0.2;
-constexpr double kSurprise = 3.5;  // standard deviations
 
 double squared(double x) {
   return x * x;
@@ -162,12 +161,6 @@ void Belief::correct_sighting_errors(const Eigen::VectorXd& residual,
   const Eigen::MatrixXd spread = covariance + by_errors * with_residual.middleRows<3>(kSighting);
   const Eigen::MatrixXd gain = spread.ldlt().solve(with_residual.transpose()).transpose();
   condition(gain, residual, spread);
-}
-
-bool Belief::contradicts(Eigen::Index error, double prior_sigma) const {
-  const Eigen::Index place = kSighting + error;
-  const double learnt = squared(prior_sigma) - covariance_(place, place);
-  return squared(sighting_errors_[error]) > squared(kSurprise) * std::max(learnt, kExact);
 }
 
 /// In information form the priors' parts, which are about 0, are exchanged, one after the other.

@@ -119,10 +119,10 @@ class Belief {
   /// The same from the perspective of a marker.
   void correct_sighting_errors(const FocalSighting& focal);
 
-  /// Whether a sighting error is further from what was told than chance explains, given its prior
-  /// standard deviation: what it has been found to be is normal with what the prior has lost.
-  /// @param error  index in sighting_errors().
-  bool contradicts(Eigen::Index error, double prior_sigma) const;
+  /// Of the sighting errors, by themselves.
+  Eigen::Vector3d sighting_variances() const {
+    return covariance_.diagonal().segment<3>(kSighting);
+  }
 
   /// As if the priors of the sighting errors had been wider from the beginning: all that has been
   /// concluded from the narrow ones follows, but for settled markers and drawn poses. What was

@@ -36,14 +36,20 @@ void WaymarkEstimator::watch_ranges(const Observation& observation) {
 /// on it would be off.
 void WaymarkEstimator::watch_calibration() {
   const SightingSigmas told = setup_.sighting_sigmas;
-  for (Eigen::Index error = 0; error < told.learnt.size(); ++error) {
-    if (!belief().contradicts(error, told.learnt[error])) continue;
-    setup_.sighting_sigmas = told.doubted(error);
-    for (std::size_t i = 0; i < particles_.size(); ++i)
-      particles_.state(i).belief.widen_prior(told.learnt, setup_.sighting_sigmas.learnt);
-    calibration_widened_ = true;
-    return;
+  Eigen::Vector3d found = Eigen::Vector3d::Zero();
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Eigen::Vector3d& errors = particles_.state(i).belief.sighting_errors();
+    found += particles_.weights()[i] * errors;
+    squares += particles_.weights()[i] * errors.cwiseAbs2();
   }
+  const auto error = told.contradicted_by(found, belief().sighting_variances(),
+                                          (squares - found.cwiseAbs2()).cwiseMax(0.0));
+  if (!error) return;
+  calibration_widened_ = true;
+  setup_.sighting_sigmas = told.doubted(*error);
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    particles_.state(i).belief.widen_prior(told.learnt, setup_.sighting_sigmas.learnt);
 }
 
 }  // namespace waymark

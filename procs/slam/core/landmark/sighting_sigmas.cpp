@@ -7,8 +7,20 @@ namespace waymark {
 namespace {
 
 constexpr double kWider = 5.0;
+constexpr double kSurprise = 3.5;  // standard deviations
+constexpr double kLearnt = 1e-12;  // variance; less is rounding
 
 }  // namespace
+
+std::optional<Eigen::Index> SightingSigmas::contradicted_by(const Eigen::Vector3d& found,
+                                                            const Eigen::Vector3d& variances,
+                                                            const Eigen::Vector3d& scatter) const {
+  for (Eigen::Index error = 0; error < learnt.size(); ++error) {
+    const double lost = std::max(learnt[error] * learnt[error] - variances[error], kLearnt);
+    if (found[error] * found[error] > kSurprise * kSurprise * (lost + scatter[error])) return error;
+  }
+  return std::nullopt;
+}
 
 SightingSigmas SightingSigmas::doubted(Eigen::Index error) const {
   const SightingSigmas usual;

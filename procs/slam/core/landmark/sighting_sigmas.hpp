@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+
 namespace waymark {
 
 /// How far camera and markers may differ from what the robot has been told of them: standard
@@ -16,6 +18,15 @@ struct SightingSigmas {
   double position_m{0.0003};
   double bulge_m{0.002};
   double skew_rad{0.01};
+
+  /// Which of `learnt` is further from what was told than chance explains: what an error has been
+  /// found to be is normal, with the variance that it has lost by that.
+  /// @param found      what has been learnt of the errors,
+  /// @param variances  what is left open of them,
+  /// @param scatter    and how far particles disagree: squares, too.
+  std::optional<Eigen::Index> contradicted_by(const Eigen::Vector3d& found,
+                                              const Eigen::Vector3d& variances,
+                                              const Eigen::Vector3d& scatter) const;
 
   /// When what has been learnt shows that one of `learnt` was too small. That one is wider then,
   /// and nothing is believed to be better than usual.
