@@ -21,9 +21,6 @@ namespace waymark {
 namespace {
 
 constexpr std::array kLengths_m{25.0, 50.0, 100.0, 200.0};
-/// What the filter is told of an exact camera; markers hang as usual.
-const SightingSigmas kExactCamera{
-    .learnt = {0.0005, 0.0001, 0.003}, .bearing_rad = 0.00003, .position_m = 0.0001};
 constexpr double kSpeed_m_s = 0.5;  // a scan per update: quicker to compute than the robot's 0.1
 
 struct Errors {
@@ -46,8 +43,8 @@ test::SyntheticCorridor corridor_of(double length_m, bool is_exact, std::uint64_
   Random random{seed};
   const Eigen::Vector3d believed = SightingSigmas{}.learnt;
   if (!is_exact) {
-    corridor.camera_focal_error = random.normal(0.0, believed[1]);
-    corridor.camera_yaw_error_rad = random.normal(0.0, believed[0]);
+    corridor.camera_focal_error = random.normal(0.0, believed[SightingSigmas::kFocal]);
+    corridor.camera_yaw_error_rad = random.normal(0.0, believed[SightingSigmas::kYaw]);
   }
   corridor.markers = test::opposite_markers(corridor);
   return corridor;
@@ -56,7 +53,7 @@ test::SyntheticCorridor corridor_of(double length_m, bool is_exact, std::uint64_
 Errors errors_of(double length_m, bool is_exact, std::uint64_t seed) {
   const test::SyntheticCorridor corridor = corridor_of(length_m, is_exact, seed);
   EstimatorSetup setup = test::estimator_setup_of(corridor, seed);
-  if (is_exact) setup.sighting_sigmas = kExactCamera;
+  if (is_exact) setup.sighting_sigmas = test::exact_camera();
   WaymarkEstimator estimator{setup, {}};
   const auto steps = test::run(estimator, test::drive(corridor), test::setup_of(corridor));
   double across = 0.0;

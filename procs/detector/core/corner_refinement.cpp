@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/corner_refinement.hpp"
 
-#include "detector/core/blurred_side.hpp"
-#include "detector/core/edge_profile.hpp"
+#include "detector/core/median.hpp"
+#include "detector/core/seen_square.hpp"
 
 #include <Eigen/LU>
 
@@ -25,13 +25,6 @@ constexpr double kSharedNoise = 2.2;
 constexpr double kOutlierSigmas = 2.5;
 // Rounding of grey values: residuals say nothing below this.
 constexpr double kSmallestResidualPx = 0.01;
-// Standard deviation of a point spread that leaves edges in place. Sharp pictures have 0.5 to 0.75:
-// the pixels' own area, and the interpolation between them.
-constexpr double kSharpPx = 0.95;
-constexpr double kMinBorderPx = 2.0;
-constexpr double kCornerBlurs = 3.0;  // a corner reaches that far, in standard deviations of it
-constexpr double kInnerBits = 1.5;    // modules from a side to the middle of the bits behind
-constexpr double kHalfWhite = 0.5;    // of the bits, where it hardly matters
 // What the model of blur may miss: share of the bias, and of the blur itself.
 constexpr double kBiasUnknown = 0.5;
 constexpr double kBlurUnknown = 0.02;
@@ -52,126 +45,23 @@ struct EdgePoint {
   double offset_px{0.0};
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 Sides sides_of(const Corners& corners) {
   return {Side{corners[0], corners[1]}, Side{corners[1], corners[2]}, Side{corners[2], corners[3]},
           Side{corners[3], corners[0]}};
 }
 
-double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  const Eigen::Vector2d ab = b - a;
-  const Eigen::Vector2d ac = c - a;
-  return 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
-}
-
-/// How thick the black border looks along each side. A module of the far side of an oblique marker
-/// looks thinner than one of the near side.
-std::array<double, 4> border_thickness_px(const Corners& corners, int modules_per_side) {
-  // Homogeneous corners of a square: w0 c0 - w1 c1 + w2 c2 - w3 c3 = 0.
-  std::array<double, 4> weights{};
-  for (std::size_t k = 0; k < 4; ++k) {
-    weights[k] = triangle_area(corners[(k + 1) % 4], corners[(k + 2) % 4], corners[(k + 3) % 4]);
-  }
-  const double share = 1.0 / modules_per_side;
-  const auto one_module_from = [&](std::size_t from, std::size_t to) -> Eigen::Vector2d {
-    const double from_weight = (1.0 - share) * weights[from];
-    const double to_weight = share * weights[to];
-    return (from_weight * corners[from] + to_weight * corners[to]) / (from_weight + to_weight);
-  };
-  std::array<double, 4> thickness_px{};
-  for (std::size_t k = 0; k < 4; ++k) {
-    const std::size_t end = (k + 1) % 4;
-    const Eigen::Vector2d inner_px =
-        0.5 * (one_module_from(k, (k + 3) % 4) + one_module_from(end, (k + 2) % 4));
-    const Side side{corners[k], corners[end]};
-    thickness_px[k] = std::abs(side.outward().dot(inner_px - side.start_px));
-  }
-  return thickness_px;
-}
-
-/// A side as the image shows it.
-struct SeenSide {
-  Side side{};
-  double border_px{0.0};  ///< thickness of the black border
-  double reach_px{0.0};   ///< of the profiles
-  std::vector<EdgeProfile> profiles{};
-  double blur_px{0.0};  ///< standard deviation of the point spread across it
-
-  /// Behind a border that is thinner the bits make the edge look wider than it is.
-  bool is_blurred() const { return blur_px > kSharpPx && border_px > kMinBorderPx; }
-};
-
-using SeenSides = std::array<SeenSide, 4>;
-
-/// The first of the two opposite sides with the thicker borders.
-std::size_t thick_side(const SeenSides& seen) {
-  return seen[0].border_px + seen[2].border_px >= seen[1].border_px + seen[3].border_px ? 0 : 1;
-}
-
-/// Black level of the two opposite sides with the thicker borders: where the border looks thin,
-/// blur mixes white in. (The darkest side would be the one whose noise is darkest.)
-double black_level(const SeenSides& seen) {
-  const std::size_t first = thick_side(seen);
-  std::vector<double> levels;
-  for (const std::size_t side : {first, first + 2})
-    for (const EdgeProfile& profile : seen[side].profiles)
-      levels.push_back(profile.black);
-  return levels.empty() ? 0.0 : median(std::move(levels));
-}
-
-/// Wide enough to hold the blur of the edge, narrow enough to stay off the blur of the inner bits.
-double half_window_px(double border_px) {
-  constexpr double kInnerBlurPx = 1.1;
-  return std::clamp(border_px - kInnerBlurPx, 0.4, 2.0);
-}
-
 /// @param corner_px  left out at both ends: there the neighbouring sides' blur bends the edge.
 std::vector<EdgePoint> edge_points(const SeenSide& seen, double black, double corner_px,
                                    double min_contrast) {
+  const double half_window_px = seen.half_window_px();
   std::vector<EdgePoint> points;
   for (const EdgeProfile& profile : seen.profiles) {
     if (profile.white - black < min_contrast) continue;
     if (std::min(profile.along_px, seen.side.length_px() - profile.along_px) < corner_px) continue;
-    const auto offset_px = profile.edge_px(black, half_window_px(seen.border_px));
+    const auto offset_px = profile.edge_px(black, half_window_px);
     if (offset_px) points.push_back({profile.along_px, *offset_px});
   }
   return points;
-}
-
-double blur_of(const std::vector<EdgeProfile>& profiles, double black) {
-  std::vector<double> blurs;
-  for (const EdgeProfile& profile : profiles)
-    if (const auto blur_px = profile.blur_px(black)) blurs.push_back(*blur_px);
-  return blurs.empty() ? 0.0 : median(std::move(blurs));
-}
-
-double mean_white(const std::vector<EdgeProfile>& profiles) {
-  double sum = 0.0;
-  for (const EdgeProfile& profile : profiles)
-    sum += profile.white;
-  return sum / static_cast<double>(profiles.size());
-}
-
-/// How far off edges are found where blur mixes the bits behind a thin border into it.
-double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const SeenSide& seen,
-                    const SeenSide& thickest, double black) {
-  if (seen.profiles.empty()) return 0.0;
-  const double inside_px = kInnerBits * seen.border_px;
-  const auto inner = mean_brightness_inside(gray, camera, seen.side, inside_px);
-  if (!inner) return 0.0;
-  const double inner_white =
-      std::clamp((*inner - black) / (mean_white(seen.profiles) - black), 0.0, 1.0);
-  const double blurred_black =
-      BlurredSide{std::max(kSharpPx, thickest.blur_px), thickest.border_px, kHalfWhite}
-          .profile(thickest.reach_px)
-          .black;
-  return BlurredSide{seen.blur_px, seen.border_px, inner_white}.bias_px(
-      seen.reach_px, blurred_black, half_window_px(seen.border_px));
 }
 
 /// Ordinary least squares: the side's frame makes the slope tiny.
@@ -282,51 +172,29 @@ double common_sigma_px(double border_px, const RefinementConfig& config) {
   return std::hypot(config.side_sigma_px, config.thin_border_sigma_px / std::pow(thickness, 4));
 }
 
-/// What bends the ends of the neighbouring sides' edges.
-double blur_beside(const SeenSide& seen) {
-  return seen.is_blurred() ? seen.blur_px : 0.0;
-}
-
-SeenSides look_at(const cv::Mat& gray, const CameraModel& camera, const Corners& corners,
-                  int modules_per_side, const RefinementConfig& config) {
-  constexpr double kShortestReachPx = 1.5;
-  const Sides sides = sides_of(corners);
-  const std::array<double, 4> border_px = border_thickness_px(corners, modules_per_side);
-  SeenSides seen;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double reach_px = std::min(config.reach_px, std::max(kShortestReachPx, border_px[k]));
-    seen[k] = {sides[k], border_px[k], reach_px, sample_profiles(gray, camera, sides[k], reach_px)};
-  }
-  return seen;
-}
-
 std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camera,
                                    const Corners& corners, int modules_per_side,
                                    const RefinementConfig& config) {
-  SeenSides seen = look_at(gray, camera, corners, modules_per_side, config);
-  const double black = black_level(seen);
-  for (SeenSide& side : seen)
-    side.blur_px = blur_of(side.profiles, black);
-
+  const SeenSquare seen =
+      look_at_square(gray, camera, sides_of(corners), modules_per_side, config.reach_px);
   std::array<EdgeLine, 4> lines;
   for (std::size_t k = 0; k < 4; ++k) {
-    const double corner_px =
-        kCornerBlurs * std::max(blur_beside(seen[(k + 1) % 4]), blur_beside(seen[(k + 3) % 4]));
-    const auto line = fit_line(edge_points(seen[k], black, corner_px, config.min_contrast),
-                               seen[k].side.length_px(), config.min_points);
+    const SeenSide& side = seen.sides[k];
+    const auto line =
+        fit_line(edge_points(side, seen.black, seen.corner_px(k), config.min_contrast),
+                 side.side.length_px(), config.min_points);
     if (!line || line->residual_px > config.max_residual_px) return std::nullopt;
     lines[k] = *line;
-    double sigma_px = common_sigma_px(seen[k].border_px, config);
-    if (seen[k].is_blurred()) {
-      const double bias_px = blur_bias_px(gray, camera, seen[k], seen[thick_side(seen)], black);
+    double sigma_px = common_sigma_px(side.border_px, config);
+    if (side.is_blurred()) {
+      const double bias_px = blur_bias_px(gray, camera, seen, k);
       lines[k].at_start_px -= bias_px;
-      sigma_px = std::hypot(sigma_px, kBiasUnknown * bias_px, kBlurUnknown * seen[k].blur_px);
+      sigma_px = std::hypot(sigma_px, kBiasUnknown * bias_px, kBlurUnknown * side.blur_px);
     }
     lines[k].covariance_at_corners.array() += sigma_px * sigma_px;
   }
   FittedQuad quad = intersect(sides_of(corners), lines);
-  quad.is_blurred =
-      std::ranges::any_of(seen, [](const SeenSide& side) { return side.is_blurred(); });
+  quad.is_blurred = seen.is_blurred();
   return quad;
 }
 

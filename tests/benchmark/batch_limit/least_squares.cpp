@@ -121,11 +121,13 @@ class Batch {
     add<PriorResidual<4>, 4, 4>({{odometry.scale_sigma, odometry.drift_sigma_rad_per_m,
                                   odometry.turn_scale_sigma, odometry.lidar_ahead_sigma_m}},
                                 nullptr, solution_.odometry_errors.data());
-    add<PriorResidual<2>, 2, 2>({{std::max(noise.sightings.learnt[0], kExact),
-                                  std::max(noise.sightings.learnt[1], kExact)}},
-                                nullptr, solution_.camera_errors.data());
-    add<PriorResidual<1>, 1, 1>({{std::max(noise.sightings.learnt[2], kExact)}}, nullptr,
-                                &solution_.standoff_m);
+    add<PriorResidual<2>, 2, 2>(
+        {{std::max(noise.sightings.learnt[SightingSigmas::kYaw], kExact),
+          std::max(noise.sightings.learnt[SightingSigmas::kFocal], kExact)}},
+        nullptr, solution_.camera_errors.data());
+    add<PriorResidual<1>, 1, 1>(
+        {{std::max(noise.sightings.learnt[SightingSigmas::kStandoff], kExact)}}, nullptr,
+        &solution_.standoff_m);
   }
 
   void take_over() {

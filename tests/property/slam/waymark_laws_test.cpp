@@ -138,7 +138,7 @@ TEST(Waymark, ALongCorridorWithMarkersDoesNotTellTheScaleOfDistances) {
   WaymarkEstimator estimator{estimator_setup_of(corridor, 3), config};
   run(estimator, test::drive(corridor), setup_of(corridor));
   const double focal_variance = estimator.belief().errors_covariance()(kFocalLength, kFocalLength);
-  EXPECT_GT(focal_variance, 0.5 * std::pow(SightingSigmas{}.learnt[1], 2));
+  EXPECT_GT(focal_variance, 0.5 * std::pow(SightingSigmas{}.learnt[SightingSigmas::kFocal], 2));
 }
 
 // Seen at the start, then hidden, then seen again.

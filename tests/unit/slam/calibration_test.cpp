@@ -3,6 +3,7 @@
 #include "property/slam/estimator_run.hpp"
 #include "slam/core/belief/belief.hpp"
 #include "slam/core/estimators/waymark.hpp"
+#include "slam/slam_config.hpp"
 #include "support/small_world.hpp"
 
 #include <gtest/gtest.h>
@@ -13,21 +14,13 @@ namespace {
 using test::diagonal;
 using test::measurement_of;
 
-constexpr Eigen::Index kYaw = 0;
-constexpr Eigen::Index kFocal = 1;
+constexpr auto kYaw = SightingSigmas::kYaw;
+constexpr auto kFocal = SightingSigmas::kFocal;
 constexpr double kGate = 16.3;
-const Eigen::Vector3d kNarrow{0.0005, 0.0001, 0.003};
-const Eigen::Vector3d kWide{0.0087, 0.001, 0.003};
+const Eigen::Vector3d kNarrow = test::exact_camera().learnt;
+const Eigen::Vector3d kWide = SightingSigmas{}.learnt;
 
-SightingSigmas told_to_be_exact() {
-  SightingSigmas sigmas;
-  sigmas.learnt = kNarrow;
-  sigmas.bearing_rad = 0.00003;
-  sigmas.position_m = 0.0001;
-  return sigmas;
-}
-
-/// Passes a marker twice; what the camera's errors do to each sighting is in it.
+/// Drives up to a marker; what the camera's errors do to each sighting is in it.
 void drive_by(Belief& belief, const Eigen::Vector3d& errors, std::uint64_t seed) {
   const Se2 map_from_marker{3.0, 1.0, radians(-90.0)};
   Random random{21, seed};
@@ -51,13 +44,23 @@ void drive_by(Belief& belief, const Eigen::Vector3d& errors, std::uint64_t seed)
 
 TEST(SightingSigmas, ADoubtedErrorIsWiderAndNothingIsBetterThanUsual) {
   const SightingSigmas usual;
-  const SightingSigmas once = told_to_be_exact().doubted(kFocal);
+  const SightingSigmas once = test::exact_camera().doubted(kFocal);
   EXPECT_EQ(once.learnt, usual.learnt);
   EXPECT_EQ(once.bearing_rad, usual.bearing_rad);
   EXPECT_EQ(once.position_m, usual.position_m);
   const SightingSigmas twice = once.doubted(kFocal);
   EXPECT_GT(twice.learnt[kFocal], 2.0 * usual.learnt[kFocal]);
   EXPECT_EQ(twice.learnt[kYaw], usual.learnt[kYaw]);
+}
+
+TEST(SightingSigmas, AreThoseOfARobotThatIsToldNothing) {
+  const SightingSigmas told = estimator_setup(SlamConfig{}).sighting_sigmas;
+  const SightingSigmas usual;
+  EXPECT_EQ(told.learnt, usual.learnt);
+  EXPECT_EQ(told.bearing_rad, usual.bearing_rad);
+  EXPECT_EQ(told.position_m, usual.position_m);
+  EXPECT_EQ(told.bulge_m, usual.bulge_m);
+  EXPECT_EQ(told.skew_rad, usual.skew_rad);
 }
 
 TEST(SightingSigmas, WhatIsExactStaysSo) {
@@ -88,8 +91,7 @@ TEST(Belief, WithAPriorWidenedLaterIsTheOneThatBeganWithIt) {
 
 TEST(SightingSigmas, AreContradictedWhereTheyAreTooNarrowAndNowhereElse) {
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-  SightingSigmas told_wide;
-  told_wide.learnt = kWide;
+  const SightingSigmas told_wide;
   int false_alarms = 0;
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -102,8 +104,8 @@ TEST(SightingSigmas, AreContradictedWhereTheyAreTooNarrowAndNowhereElse) {
             .has_value();
     Belief wrong{{OdometryNoise{}, kNarrow}};
     drive_by(wrong, {0.015, 0.0, 0.0}, seed);
-    alarms += told_to_be_exact().contradicted_by(wrong.sighting_errors(),
-                                                 wrong.sighting_variances(), none) == kYaw;
+    alarms += test::exact_camera().contradicted_by(wrong.sighting_errors(),
+                                                   wrong.sighting_variances(), none) == kYaw;
   }
   EXPECT_EQ(false_alarms, 0);
   EXPECT_EQ(alarms, 50);
@@ -115,7 +117,7 @@ TEST(Waymark, BelievesACameraLessThatIsWorseThanTold) {
     corridor.camera_focal_error = focal_error;
     corridor.camera_yaw_error_rad = yaw_error_rad;
     EstimatorSetup setup = test::estimator_setup_of(corridor, 4);
-    setup.sighting_sigmas = told_to_be_exact();
+    setup.sighting_sigmas = test::exact_camera();
     WaymarkEstimator estimator{setup, {}};
     return test::run(estimator, test::drive(corridor), test::setup_of(corridor));
   };

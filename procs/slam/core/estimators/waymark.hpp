@@ -158,6 +158,7 @@ class WaymarkEstimator final : public Estimator {
   void draw(State& state, const Sensed& sensed, const PoseAxes& axes, const Chance& chance,
             Outcome& outcome) const;
   void remember(const Observation& observation);
+  StaticErrors mean_errors() const;
   Statics statics() const;
   void judge(const std::vector<Outcome>& outcomes);
   Se2 mean_pose() const;

@@ -66,10 +66,16 @@ std::vector<Landmark> WaymarkEstimator::landmarks() const {
   return mean_landmarks(known, particles_.best(), config_.same_marker_within_m);
 }
 
+StaticErrors WaymarkEstimator::mean_errors() const {
+  StaticErrors mean = StaticErrors::Zero();
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    mean += particles_.weights()[i] * particles_.state(i).belief.static_errors();
+  return mean;
+}
+
 Statics WaymarkEstimator::statics() const {
   Statics statics;
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    statics.errors += particles_.weights()[i] * particles_.state(i).belief.static_errors();
+  statics.errors = mean_errors();
   statics.markers = landmarks();
   return statics;
 }

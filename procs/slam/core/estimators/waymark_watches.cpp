@@ -36,13 +36,10 @@ void WaymarkEstimator::watch_ranges(const Observation& observation) {
 /// on it would be off.
 void WaymarkEstimator::watch_calibration() {
   const SightingSigmas told = setup_.sighting_sigmas;
-  Eigen::Vector3d found = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d found = mean_errors().tail<3>();
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const Eigen::Vector3d& errors = particles_.state(i).belief.sighting_errors();
-    found += particles_.weights()[i] * errors;
-    squares += particles_.weights()[i] * errors.cwiseAbs2();
-  }
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    squares += particles_.weights()[i] * particles_.state(i).belief.sighting_errors().cwiseAbs2();
   const auto error = told.contradicted_by(found, belief().sighting_variances(),
                                           (squares - found.cwiseAbs2()).cwiseMax(0.0));
   if (!error) return;

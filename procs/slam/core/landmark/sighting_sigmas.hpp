@@ -11,6 +11,11 @@ namespace waymark {
 /// How far camera and markers may differ from what the robot has been told of them: standard
 /// deviations. Keys and meanings: [robot.camera] and [robot.markers]; the defaults are theirs.
 struct SightingSigmas {
+  /// Places in `learnt`.
+  static constexpr Eigen::Index kYaw = 0;
+  static constexpr Eigen::Index kFocal = 1;
+  static constexpr Eigen::Index kStandoff = 2;
+
   /// Of what all sightings get wrong in the same way: mounting's yaw [rad], focal length
   /// (relative), standoff of the markers [m]. Learnt while driving, but for what is 0.
   Eigen::Vector3d learnt{0.0087, 0.001, 0.003};
