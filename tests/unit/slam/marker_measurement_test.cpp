@@ -45,7 +45,7 @@ TEST(WallFit, ExtendsTheWallWithItsUncertainty) {
   EXPECT_FALSE(fit_wall(beams, {0.0, 0.2}, radians(-90.0), 0.01, 1.5));
 }
 
-TEST(MeasureMarkers, OdometryBetweenFrameAndScanTurnsASightingAboutTheRobot) {
+TEST(MeasureMarkers, OdometryBetweenFrameAndScanMovesASighting) {
   Observation observation;  // without walls: what the camera says
   MarkerSighting sighting;
   sighting.base_from_marker = {2.0, 1.0, radians(-90.0)};
@@ -57,11 +57,21 @@ TEST(MeasureMarkers, OdometryBetweenFrameAndScanTurnsASightingAboutTheRobot) {
   };
   const Eigen::Matrix3d at_once = covariance_of();
   observation.sightings[0].carried_m = 0.05;
+  observation.sightings[0].carried_rad = 0.02;
   const Eigen::Matrix3d more = covariance_of() - at_once;
-  const double turn_rad2 = odometry.turn_per_sqrt_m * odometry.turn_per_sqrt_m * 0.05;
-  EXPECT_NEAR(more(2, 2), turn_rad2, 1e-12);
-  EXPECT_NEAR(more(0, 0), 1.0 * turn_rad2, 1e-12) << "a metre to the left moves along x";
-  EXPECT_NEAR(more(1, 1), 4.0 * turn_rad2, 1e-12);
+
+  const Eigen::Matrix3d walk = random_walk({{0.05, 0.0, 0.0}, 0.05, 0.02}, odometry);
+  const auto seen_after = [&](const Eigen::Vector3d& error) {
+    return deviated(Se2{}, error).inverse() * sighting.base_from_marker;
+  };
+  constexpr double kStep = 1e-6;
+  Eigen::Matrix3d by_motion;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(axis);
+    by_motion.col(axis) = deviation(seen_after(-step), seen_after(step)) / (2.0 * kStep);
+  }
+  EXPECT_TRUE(more.isApprox(by_motion * walk * by_motion.transpose(), 1e-6)) << more;
+  EXPECT_GT(more(2, 2), 0.0);
 }
 
 TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {

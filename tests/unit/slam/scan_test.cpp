@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace waymark {
 namespace {
@@ -54,6 +55,52 @@ TEST(Beams, MotionWithinASweepIsUndone) {
   }
   for (const Beam& beam : beams_of(scan, {Se2{}, 0.12, 3.5}, odometry))
     EXPECT_TRUE(beam.end_in_base.isApprox(Eigen::Vector2d{1.0, 0.0}, 1e-9)) << beam.index;
+}
+
+TEST(Beams, AScanIsForTheMiddleOfItsSweep) {
+  LidarScan scan{timestamp_from_us(900'000), {1.0, 2.0, 3.0}, {0.1, 0.2, 0.3}, {}};
+  EXPECT_EQ(at_middle_of_sweep(scan).time, scan.time) << "all beams at once";
+  scan.beam_time_offsets = {Duration{-200'000}, Duration{-150'000}, Duration{0}};
+  const LidarScan middle = at_middle_of_sweep(scan);
+  EXPECT_EQ(middle.time, timestamp_from_us(800'000));
+  EXPECT_EQ(middle.ranges_m, scan.ranges_m);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(middle.time + middle.beam_time_offsets[i], scan.time + scan.beam_time_offsets[i]);
+}
+
+// Odometry walks at random while a sweep is measured: its mean beam is off by as much as a walk of
+// the length of mean_sweep() is at its end.
+TEST(Beams, TheMeanSweepHasTheNoiseOfItsBeams) {
+  constexpr int kSteps = 200;
+  constexpr int kWalks = 4000;
+  for (const int stamp : {0, kSteps / 2, kSteps}) {
+    OdometryBuffer odometry;
+    LidarScan scan{timestamp_from_us(1000 * stamp), {}, {}, {}};
+    for (int i = 0; i <= kSteps; ++i) {
+      odometry.add({timestamp_from_us(1000 * i), Se2{1e-4 * i, 0.0, 2e-4 * i}});
+      scan.beam_time_offsets.emplace_back(1000 * (i - stamp));
+    }
+    const Motion mean = mean_sweep(scan, odometry);
+    EXPECT_NEAR(mean.turn_rad, 2.0 * mean.distance_m, 1e-6) << stamp;
+
+    Random random{4, static_cast<std::uint64_t>(stamp)};
+    double squares = 0.0;
+    for (int walk = 0; walk < kWalks; ++walk) {
+      std::vector<double> at{0.0};
+      for (int i = 0; i < kSteps; ++i)
+        at.push_back(at.back() + 0.01 * random.normal());  // variance 1 per metre
+      const double sum = std::accumulate(at.begin(), at.end(), 0.0);
+      const double off = sum / static_cast<double>(at.size()) - at[static_cast<std::size_t>(stamp)];
+      squares += off * off / kWalks;
+    }
+    EXPECT_NEAR(squares / mean.distance_m, 1.0, 0.1) << stamp;
+  }
+}
+
+TEST(Beams, OfOneMomentHaveNoSweep) {
+  const Motion none = mean_sweep(test::scan_from(kCorridor, {5.0, 0.0, 0.0}, {}), OdometryBuffer{});
+  EXPECT_EQ(none.distance_m, 0.0);
+  EXPECT_EQ(none.turn_rad, 0.0);
 }
 
 TEST(MarkerSighting, IsTheSegmentBetweenTheVerticalEdges) {

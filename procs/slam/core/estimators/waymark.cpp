@@ -113,8 +113,7 @@ void WaymarkEstimator::process(const Observation& observation) {
     particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
   });
   weigh(outcomes);
-  if (verdict_ == KidnapWatch::Verdict::kSettled)
-    noise_growth_.learn(outcomes[particles_.best()].correction);
+  if (verdict_ == KidnapWatch::Verdict::kSettled) learn_noise(outcomes[particles_.best()]);
   noise_ = noise_growth_.applied_to(config_.odometry);
   watch_calibration();
   const Outcome& best = outcomes[particles_.best()];
@@ -127,6 +126,12 @@ void WaymarkEstimator::process(const Observation& observation) {
   const Eigen::Matrix3d by_scan =
       updates_ == 0 ? noise_of_walls(observation.beams, config_.matching) : Eigen::Matrix3d::Zero();
   drift_.map(observation.beams, by_scan, belief().pose_error(), belief().errors_covariance());
+}
+
+void WaymarkEstimator::learn_noise(const Outcome& outcome) {
+  noise_growth_.learn(outcome.correction);
+  if (outcome.surprise)
+    noise_growth_.learn(*outcome.surprise, random_walk(since_update_, noise_)(0, 0));
 }
 
 WaymarkEstimator::Sensed WaymarkEstimator::sense(const Observation& observation) {
@@ -272,6 +277,16 @@ void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
   state.belief.note_absences(is_in_view, observation.time - kSightingAge);
 }
 
+/// How far the scan as a whole is off from the pose, for it was measured while the robot moved.
+/// @return covariance (x, y, theta), map frame.
+Eigen::Matrix3d WaymarkEstimator::error_of_sweep(const Motion& mean_sweep,
+                                                 const Se2& map_from_base) const {
+  if (mean_sweep.distance_m == 0.0 && mean_sweep.turn_rad == 0.0) return Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = map_from_base.rotation();
+  return turn * random_walk(mean_sweep, noise_) * turn.transpose();
+}
+
 /// @param open  covariance of the pose that earlier updates have left, carried along by the motion.
 /// @param match  out: of the last step.
 PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& belief,
@@ -279,12 +294,15 @@ PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& bel
                                            const Se2& start, SurfaceMatch& match) const {
   const std::vector<AnnotatedBeam>& beams = sensed.observation->beams;
   SurfaceFinder walls{state.walls, beams.size()};
+  const Eigen::Matrix3d by_sweep =
+      error_of_sweep(sensed.observation->mean_sweep, belief.map_from_base());
   return propose(
       belief.map_from_base(), belief.pose_covariance(),
       [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {
-        match =
-            match_surfaces(beams, walls, pose, uncertainty + sensed.drift.before, config_.matching);
+        match = match_surfaces(beams, walls, pose, uncertainty + sensed.drift.before + by_sweep,
+                               config_.matching);
         if (sensed.walls.is_degenerate) remove_weak_direction(open, match.pose);
+        match.pose = blurred(match.pose, by_sweep);
         return blurred(match.pose, sensed.drift.before);
       },
       start);
@@ -317,6 +335,7 @@ void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
     if (measurement.focal) state.belief.correct_sighting_errors(*measurement.focal);
     const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->may_be_it(config_.marker_gate, config_.marker_near_m)) {
+      if (!outcome.surprise) outcome.surprise = {nearest->residual.x(), nearest->covariance(0, 0)};
       outcome.log_evidence +=
           config_.marker_evidence *
           state.belief.correct(nearest->marker, measurement, config_.marker_gate);

@@ -117,7 +117,8 @@ class WaymarkEstimator final : public Estimator {
     int known_markers{0};
     SurfaceMatch walls{};
     PoseCorrection correction{};
-    PoseError drawn{};  ///< what drawing has taken from the belief
+    std::optional<MarkerSurprise> surprise{};  ///< of the first marker that was known
+    PoseError drawn{};                         ///< what drawing has taken from the belief
     /// The part of it that comes from the noise of this scan and its frame.
     Eigen::Matrix3d by_noise{Eigen::Matrix3d::Zero()};
   };
@@ -139,11 +140,13 @@ class WaymarkEstimator final : public Estimator {
   Belief belief_now() const;  ///< of the best particle, moved on by odometry
   bool is_contradicted_by(const Observation& observation) const;
   void process(const Observation& observation);
+  void learn_noise(const Outcome& outcome);
   Sensed sense(const Observation& observation);
   std::vector<Chance> draw_chances() const;
   void weigh(const std::vector<Outcome>& outcomes);
   Outcome advance(State& state, const Sensed& sensed, const Chance& chance) const;
   void move(State& state, const Sensed& sensed) const;
+  Eigen::Matrix3d error_of_sweep(const Motion& mean_sweep, const Se2& map_from_base) const;
   PoseProposal match_walls(const State& state, const Belief& belief, const Sensed& sensed,
                            const Eigen::Matrix3d& open, const Se2& start,
                            SurfaceMatch& match) const;

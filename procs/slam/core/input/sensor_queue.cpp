@@ -69,7 +69,8 @@ void SensorQueue::add(const OdometrySample& sample) {
   }
 }
 
-void SensorQueue::add(LidarScan scan) {
+void SensorQueue::add(LidarScan measured) {
+  LidarScan scan = at_middle_of_sweep(std::move(measured));
   if ((newest_scan_ && scan.time <= *newest_scan_) ||
       (last_observed_ && scan.time <= *last_observed_)) {
     skips_.push_back(Skip::kScanOutOfOrder);
@@ -134,10 +135,14 @@ std::optional<SensorQueue::Ready> SensorQueue::next() {
       continue;
     }
     const std::vector<Beam> beams = beams_of(scan, setup_.lidar, odometry_);
+    const Motion sweep = mean_sweep(scan, odometry_);
     if (beams.empty()) skips_.push_back(Skip::kScanWithoutReturns);
-    return ready(scan.time, beams, std::move(scan));
+    Ready ready{observation_at(scan.time, beams), std::nullopt};
+    ready.observation.mean_sweep = sweep;
+    ready.scan = std::move(scan);
+    return ready;
   }
-  if (const auto time = next_without_scan()) return ready(*time, {}, std::nullopt);
+  if (const auto time = next_without_scan()) return Ready{observation_at(*time, {}), std::nullopt};
   return std::nullopt;
 }
 
@@ -148,13 +153,12 @@ std::optional<Timestamp> SensorQueue::next_without_scan() const {
   return time && has_passed(*time + setup_.scan_wait) ? time : std::nullopt;
 }
 
-SensorQueue::Ready SensorQueue::ready(Timestamp time, std::span<const Beam> beams,
-                                      std::optional<LidarScan> scan) {
-  Ready ready{observe(time, beams), std::move(scan)};
+Observation SensorQueue::observation_at(Timestamp time, std::span<const Beam> beams) {
+  Observation observation = observe(time, beams);
   last_observed_ = time;
   // Camera frames that still belong to the next scan are at most marker_wait older than this one.
   odometry_.forget_before(time - setup_.marker_wait);
-  return ready;
+  return observation;
 }
 
 Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {

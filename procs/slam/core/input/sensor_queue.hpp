@@ -77,7 +77,7 @@ class SensorQueue {
   bool is_ready(const LidarScan& scan) const;
   bool has_passed(Timestamp time) const;
   std::optional<Timestamp> next_without_scan() const;
-  Ready ready(Timestamp time, std::span<const Beam> beams, std::optional<LidarScan> scan);
+  Observation observation_at(Timestamp time, std::span<const Beam> beams);
   Observation observe(Timestamp time, std::span<const Beam> beams);
   std::optional<FocalSighting> focal_sighting(const MarkerDetection& detection) const;
   void sight_markers(const MarkerDetections& frame, Timestamp time,

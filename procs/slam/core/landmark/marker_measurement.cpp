@@ -74,12 +74,11 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const MarkerSenso
       squared(sensors.sigmas.bearing_rad) * across * across.transpose();
   covariance.topLeftCorner<2, 2>().diagonal().array() += squared(sensors.sigmas.position_m);
   covariance(2, 2) += squared(sensors.sigmas.bearing_rad);
-  // A heading that odometry gets wrong in between turns the sighting about the robot.
-  const Eigen::Vector2d place = sighting.base_from_marker.translation();
-  const Eigen::Vector3d turned{-place.y(), place.x(), 1.0};
-  covariance += turn_variance(odometry, sighting.carried_m, sighting.carried_rad) * turned *
-                turned.transpose();
-  return covariance;
+  if (sighting.carried_m == 0.0 && sighting.carried_rad == 0.0) return covariance;
+  // What odometry gets wrong in between: its heading turns the sighting about the robot.
+  const Motion carried{{sighting.carried_m, 0.0, 0.0}, sighting.carried_m, sighting.carried_rad};
+  return covariance +
+         carried_along(random_walk(carried, odometry), sighting.base_from_marker.translation());
 }
 
 /// How the camera's errors move what it sees: a camera that is mounted further left than told sees

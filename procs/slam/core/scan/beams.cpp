@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace waymark {
 
@@ -16,6 +17,17 @@ Timestamp first_beam_time(const LidarScan& scan) {
   if (scan.beam_time_offsets.empty()) return scan.time;
   return scan.time + std::min(Duration{0}, *std::min_element(scan.beam_time_offsets.begin(),
                                                              scan.beam_time_offsets.end()));
+}
+
+LidarScan at_middle_of_sweep(LidarScan scan) {
+  if (scan.beam_time_offsets.empty()) return scan;
+  const auto [first, last] =
+      std::minmax_element(scan.beam_time_offsets.begin(), scan.beam_time_offsets.end());
+  const Duration middle = (*first + *last) / 2;
+  scan.time += middle;
+  for (Duration& offset : scan.beam_time_offsets)
+    offset -= middle;
+  return scan;
 }
 
 std::vector<Beam> beams_of(const LidarScan& scan, const LidarSetup& lidar,
@@ -40,6 +52,22 @@ std::vector<Beam> beams_of(const LidarScan& scan, const LidarSetup& lidar,
                      base_from_lidar * end_in_lidar, range_m});
   }
   return beams;
+}
+
+Motion mean_sweep(const LidarScan& scan, const OdometryBuffer& odometry) {
+  const Timestamp first = first_beam_time(scan);
+  const Timestamp last = last_beam_time(scan);
+  Motion mean;
+  if (first == last) return mean;
+  for (const auto& [from, to] : {std::pair{first, scan.time}, std::pair{scan.time, last}}) {
+    const Motion part = odometry.motion_between(from, to);
+    const double share = to_seconds(to - from) / to_seconds(last - first);
+    // The mean of a random walk has a third of the variance of its end.
+    mean.distance_m += share * share * part.distance_m / 3.0;
+    mean.turn_rad += share * share * part.turn_rad / 3.0;
+  }
+  mean.start_from_end = {mean.distance_m, 0.0, 0.0};
+  return mean;
 }
 
 }  // namespace waymark

@@ -27,6 +27,10 @@ struct Beam {
   double range_m{0.0};
 };
 
+/// The same scan, for the middle of its sweep: the pose at that time is the one that odometry's
+/// noise moves its beams off the least.
+LidarScan at_middle_of_sweep(LidarScan scan);
+
 /// Newest moment at which a beam of the scan was measured.
 Timestamp last_beam_time(const LidarScan& scan);
 Timestamp first_beam_time(const LidarScan& scan);
@@ -36,5 +40,9 @@ Timestamp first_beam_time(const LidarScan& scan);
 /// cover the sweep and the scan's time.
 std::vector<Beam> beams_of(const LidarScan& scan, const LidarSetup& lidar,
                            const OdometryBuffer& odometry);
+
+/// The noise of that odometry moves the beams off the scan's pose, on average as far as it would
+/// grow on this motion. None where all beams were measured at once.
+Motion mean_sweep(const LidarScan& scan, const OdometryBuffer& odometry);
 
 }  // namespace waymark
