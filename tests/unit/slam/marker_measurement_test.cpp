@@ -74,6 +74,25 @@ TEST(MeasureMarkers, OdometryBetweenFrameAndScanMovesASighting) {
   EXPECT_GT(more(2, 2), 0.0);
 }
 
+TEST(MeasureMarkers, AWallOfARollingScanIsLessSure) {
+  Random random{8};
+  Observation observation;
+  observation.beams = corridor_beams(0.01, random);
+  MarkerSighting sighting;
+  sighting.base_from_marker = {2.5, 1.0, radians(-90.0)};
+  sighting.covariance_in_base = diagonal(0.02, 0.01, 0.03);
+  observation.sightings = {sighting};
+  const auto wall_covariance = [&] {
+    return measure_markers(observation, {}, {}, {}).at(0).wall->covariance;
+  };
+  const Eigen::Matrix2d at_once = wall_covariance();
+  observation.mean_sweep = {{0.005, 0.0, 0.0}, 0.005, 0.01};
+  const Eigen::Matrix2d more = wall_covariance() - at_once;
+  const double turn_rad2 = turn_variance({}, 0.005, 0.01);
+  EXPECT_GT(more(1, 1), turn_rad2);
+  EXPECT_NEAR(more(0, 0) / more(1, 1), 2.5 * 2.5, 0.5) << "a turn moves what is ahead sideways";
+}
+
 TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {
   Random random{8};
   Observation observation;

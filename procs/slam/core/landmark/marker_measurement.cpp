@@ -20,6 +20,10 @@ constexpr double kMinExtent_m = 0.1;            // [m] root mean square length o
 constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
 constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
 
+// A wall is seen at one time of the sweep, on average a quarter of it away from the middle; the
+// mean over all beams is as uncertain as a twelfth.
+constexpr double kWallOverMeanSweep = 3.0;
+
 /// A view that is off by what a worse camera would get wrong is no flipped one: it shows that the
 /// calibration is wrong (SightingSigmas::learnt).
 const Eigen::Vector3d kCalibrated{0.01, 0.005, 0.005};
@@ -94,7 +98,10 @@ Eigen::Matrix<double, 3, 2> by_camera_errors(const Eigen::Vector2d& place_in_bas
 }
 
 /// Kalman update of the camera's pose with "it lies in the wall and faces as the wall does".
+/// @param by_sweep  how far the wall may be off for its beams were measured at another time than
+/// the scan's: covariance (x, y, theta) about the robot.
 std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, const WallLine& wall,
+                                              const Eigen::Matrix3d& by_sweep,
                                               const SightingSigmas& sigmas, double gate) {
   Eigen::Matrix<double, 2, 3> rows = Eigen::Matrix<double, 2, 3>::Zero();
   rows.topLeftCorner<1, 2>() = wall.normal.transpose();
@@ -106,7 +113,8 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
       angle_difference(normal_rad, seen.theta());
   innovation.by_camera = -rows * measurement.by_camera;
   innovation.by_standoff = -Eigen::Vector2d::UnitX();  // the normal points to the robot
-  innovation.covariance = rows * measurement.covariance * rows.transpose();
+  const Eigen::Matrix3d of_both = measurement.covariance + carried_along(by_sweep, wall.point);
+  innovation.covariance = rows * of_both * rows.transpose();
   innovation.covariance(0, 0) += squared(wall.sigma_m) + squared(sigmas.bulge_m);
   innovation.covariance(1, 1) += squared(wall.sigma_rad) + squared(sigmas.skew_rad);
 
@@ -195,6 +203,10 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
   Timestamp newest{};
   for (const MarkerSighting& sighting : observation.sightings)
     newest = std::max(newest, sighting.time);
+  const Eigen::Matrix3d by_sweep =
+      observation.mean_sweep.distance_m + observation.mean_sweep.turn_rad > 0.0
+          ? Eigen::Matrix3d{kWallOverMeanSweep * random_walk(observation.mean_sweep, odometry)}
+          : Eigen::Matrix3d{Eigen::Matrix3d::Zero()};
   std::vector<MarkerMeasurement> measurements;
   for (const MarkerSighting& sighting : observation.sightings) {
     if (sighting.time != newest) continue;
@@ -214,7 +226,8 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
                  sighting.base_from_marker.theta(), sensors.range_sigma_m, config.reach_m);
     if (!wall) {
       if (!is_surveyed(observation.beams, sighting)) measurements.push_back(measurement);
-    } else if (const auto held = hold_to_wall(measurement, *wall, sensors.sigmas, config.gate)) {
+    } else if (const auto held =
+                   hold_to_wall(measurement, *wall, by_sweep, sensors.sigmas, config.gate)) {
       measurements.push_back(*held);
     }
   }
