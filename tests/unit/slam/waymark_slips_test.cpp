@@ -139,30 +139,6 @@ TEST(NoiseGrowth, IsOneWhereTheConfigurationIsRightOrTooWide) {
   EXPECT_EQ(learnt_from(0.1, 400), Eigen::Vector3d::Ones());
 }
 
-/// Residuals of markers that are uncertain by `by_others_m2` and by a walk whose variance is
-/// `factor` times the one it is said to have.
-double learnt_from_markers(double factor, double by_others_m2) {
-  NoiseGrowth growth;
-  Random random{12};
-  for (int i = 0; i < 2000; ++i) {
-    const double said_m2 = 1e-6 * growth.factors()[0];
-    const double residual_m = std::sqrt(factor * 1e-6 + by_others_m2) * random.normal();
-    growth.learn({residual_m, said_m2 + by_others_m2}, said_m2);
-  }
-  EXPECT_EQ(growth.factors()[1], 1.0);
-  EXPECT_EQ(growth.factors()[2], 1.0);
-  return growth.factors()[0];
-}
-
-TEST(NoiseGrowth, LearnsAlongTheWayFromMarkers) {
-  for (const double factor : {10.0, 100.0}) {
-    EXPECT_GT(learnt_from_markers(factor, 4e-6), 0.3 * factor);
-    EXPECT_LT(learnt_from_markers(factor, 4e-6), 2.0 * factor);
-  }
-  EXPECT_LT(learnt_from_markers(1.0, 4e-6), 2.0);
-  EXPECT_NEAR(learnt_from_markers(10.0, 1.0), 1.0, 0.05) << "hidden by what else is uncertain";
-}
-
 TEST(NoiseGrowth, LeavesAxesAloneThatNothingWasToldAbout) {
   NoiseGrowth growth;
   PoseCorrection correction;

@@ -7,10 +7,8 @@
 namespace waymark {
 namespace {
 
-constexpr double kTold = 0.3;   // share of the variance that an update must take away to count
-constexpr double kRate = 0.05;  // of the log factor, by an update
-constexpr double kMarkerRate = 0.2;
-constexpr int kAlong = 0;
+constexpr double kTold = 0.3;       // share of the variance that an update must take away to count
+constexpr double kRate = 0.05;      // of the log factor, by an update
 constexpr double kExpected = 1.3;   // ratio without growth; 1 would let chance alone inflate
 constexpr double kMaxRatio = 10.0;  // one surprise is no habit
 constexpr double kMaxFactor = 1000.0;
@@ -25,14 +23,6 @@ void NoiseGrowth::learn(const PoseCorrection& correction) {
     factors_[axis] =
         std::clamp(factors_[axis] * std::exp(kRate * (ratio - kExpected)), 1.0, kMaxFactor);
   }
-}
-
-void NoiseGrowth::learn(const MarkerSurprise& surprise, double by_motion_m2) {
-  const double ratio =
-      std::min(surprise.residual_m * surprise.residual_m / surprise.variance_m2, kMaxRatio);
-  const double share = by_motion_m2 / surprise.variance_m2;
-  factors_[kAlong] = std::clamp(
-      factors_[kAlong] * std::exp(kMarkerRate * share * (ratio - kExpected)), 1.0, kMaxFactor);
 }
 
 OdometryNoise NoiseGrowth::applied_to(OdometryNoise noise) const {

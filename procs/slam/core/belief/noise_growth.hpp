@@ -15,12 +15,6 @@ struct PoseCorrection {
   Eigen::Vector3d posterior_variance{Eigen::Vector3d::Zero()};
 };
 
-/// How far along the robot's axis a known marker was from where it was expected.
-struct MarkerSurprise {
-  double residual_m{0.0};
-  double variance_m2{0.0};
-};
-
 /// Factors on the variances of the odometry's random walk. Squared corrections should on average be
 /// what the variance loses by them; where they are larger, the random walk is, too. Wheels that
 /// slip and carpets that pull are so learnt, and forgotten. The configured noise is the least.
@@ -29,11 +23,6 @@ class NoiseGrowth {
  public:
   /// Axes that the update told little about are left alone.
   void learn(const PoseCorrection& correction);
-
-  /// Bare walls tell nothing along the way: markers do, as far as it is the motion that makes them
-  /// uncertain. Climbs the likelihood of the residual.
-  /// @param by_motion_m2  what the random walk has added to the variance since the last update.
-  void learn(const MarkerSurprise& surprise, double by_motion_m2);
 
   /// `noise` as large as it seems to be.
   OdometryNoise applied_to(OdometryNoise noise) const;

@@ -113,7 +113,8 @@ void WaymarkEstimator::process(const Observation& observation) {
     particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
   });
   weigh(outcomes);
-  if (verdict_ == KidnapWatch::Verdict::kSettled) learn_noise(outcomes[particles_.best()]);
+  if (verdict_ == KidnapWatch::Verdict::kSettled)
+    noise_growth_.learn(outcomes[particles_.best()].correction);
   noise_ = noise_growth_.applied_to(config_.odometry);
   watch_calibration();
   const Outcome& best = outcomes[particles_.best()];
@@ -126,12 +127,6 @@ void WaymarkEstimator::process(const Observation& observation) {
   const Eigen::Matrix3d by_scan =
       updates_ == 0 ? noise_of_walls(observation.beams, config_.matching) : Eigen::Matrix3d::Zero();
   drift_.map(observation.beams, by_scan, belief().pose_error(), belief().errors_covariance());
-}
-
-void WaymarkEstimator::learn_noise(const Outcome& outcome) {
-  noise_growth_.learn(outcome.correction);
-  if (outcome.surprise)
-    noise_growth_.learn(*outcome.surprise, random_walk(since_update_, noise_)(0, 0));
 }
 
 WaymarkEstimator::Sensed WaymarkEstimator::sense(const Observation& observation) {
@@ -335,7 +330,6 @@ void WaymarkEstimator::correct_by_markers(State& state, const Sensed& sensed,
     if (measurement.focal) state.belief.correct_sighting_errors(*measurement.focal);
     const auto nearest = state.belief.nearest(measurement);
     if (nearest && nearest->may_be_it(config_.marker_gate, config_.marker_near_m)) {
-      if (!outcome.surprise) outcome.surprise = {nearest->residual.x(), nearest->covariance(0, 0)};
       outcome.log_evidence +=
           config_.marker_evidence *
           state.belief.correct(nearest->marker, measurement, config_.marker_gate);

@@ -117,8 +117,7 @@ class WaymarkEstimator final : public Estimator {
     int known_markers{0};
     SurfaceMatch walls{};
     PoseCorrection correction{};
-    std::optional<MarkerSurprise> surprise{};  ///< of the first marker that was known
-    PoseError drawn{};                         ///< what drawing has taken from the belief
+    PoseError drawn{};  ///< what drawing has taken from the belief
     /// The part of it that comes from the noise of this scan and its frame.
     Eigen::Matrix3d by_noise{Eigen::Matrix3d::Zero()};
   };
@@ -140,7 +139,6 @@ class WaymarkEstimator final : public Estimator {
   Belief belief_now() const;  ///< of the best particle, moved on by odometry
   bool is_contradicted_by(const Observation& observation) const;
   void process(const Observation& observation);
-  void learn_noise(const Outcome& outcome);
   Sensed sense(const Observation& observation);
   std::vector<Chance> draw_chances() const;
   void weigh(const std::vector<Outcome>& outcomes);
