@@ -60,7 +60,7 @@ TEST(MeasureMarkers, OdometryBetweenFrameAndScanMovesASighting) {
   observation.sightings[0].carried_rad = 0.02;
   const Eigen::Matrix3d more = covariance_of() - at_once;
 
-  const Eigen::Matrix3d walk = random_walk({{0.05, 0.0, 0.0}, 0.05, 0.02}, odometry);
+  const Eigen::Matrix3d walk = random_walk(0.05, 0.02, odometry);
   const auto seen_after = [&](const Eigen::Vector3d& error) {
     return deviated(Se2{}, error).inverse() * sighting.base_from_marker;
   };
@@ -86,7 +86,7 @@ TEST(MeasureMarkers, AWallOfARollingScanIsLessSure) {
     return measure_markers(observation, {}, {}, {}).at(0).wall->covariance;
   };
   const Eigen::Matrix2d at_once = wall_covariance();
-  observation.mean_sweep = {{0.005, 0.0, 0.0}, 0.005, 0.01};
+  observation.mean_sweep = {0.005, 0.01};
   const Eigen::Matrix2d more = wall_covariance() - at_once;
   const double turn_rad2 = turn_variance({}, 0.005, 0.01);
   EXPECT_GT(more(1, 1), turn_rad2);

@@ -80,7 +80,7 @@ TEST(Beams, TheMeanSweepHasTheNoiseOfItsBeams) {
       odometry.add({timestamp_from_us(1000 * i), Se2{1e-4 * i, 0.0, 2e-4 * i}});
       scan.beam_time_offsets.emplace_back(1000 * (i - stamp));
     }
-    const Motion mean = mean_sweep(scan, odometry);
+    const MeanSweep mean = mean_sweep(scan, odometry);
     EXPECT_NEAR(mean.turn_rad, 2.0 * mean.distance_m, 1e-6) << stamp;
 
     Random random{4, static_cast<std::uint64_t>(stamp)};
@@ -98,7 +98,8 @@ TEST(Beams, TheMeanSweepHasTheNoiseOfItsBeams) {
 }
 
 TEST(Beams, OfOneMomentHaveNoSweep) {
-  const Motion none = mean_sweep(test::scan_from(kCorridor, {5.0, 0.0, 0.0}, {}), OdometryBuffer{});
+  const MeanSweep none =
+      mean_sweep(test::scan_from(kCorridor, {5.0, 0.0, 0.0}, {}), OdometryBuffer{});
   EXPECT_EQ(none.distance_m, 0.0);
   EXPECT_EQ(none.turn_rad, 0.0);
 }

@@ -15,19 +15,6 @@ double squared(double x) {
   return x * x;
 }
 
-/// The noise is in what was measured: a turn that is mostly noise would show a scale below one
-/// (regression dilution), so only what stands out of the noise is held against the scale.
-double telling_turn(double turn_rad, double noise_rad2) {
-  const double share = 1.0 - squared(kTellingSigmas) * noise_rad2 / squared(turn_rad);
-  return turn_rad != 0.0 ? std::max(0.0, share) * turn_rad : 0.0;
-}
-
-}  // namespace
-
-double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad) {
-  return squared(noise.turn_per_sqrt_m) * distance_m + squared(noise.turn_per_sqrt_rad) * turn_rad;
-}
-
 Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   const double length_m = motion.start_from_end.translation().norm();
   const Eigen::Vector2d along =
@@ -47,6 +34,24 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   covariance.topRightCorner<2, 1>() = 0.5 * length_m * turn_rad2 * left;
   covariance.bottomLeftCorner<1, 2>() = covariance.topRightCorner<2, 1>().transpose();
   return covariance;
+}
+
+/// The noise is in what was measured: a turn that is mostly noise would show a scale below one
+/// (regression dilution), so only what stands out of the noise is held against the scale.
+double telling_turn(double turn_rad, double noise_rad2) {
+  const double share = 1.0 - squared(kTellingSigmas) * noise_rad2 / squared(turn_rad);
+  return turn_rad != 0.0 ? std::max(0.0, share) * turn_rad : 0.0;
+}
+
+}  // namespace
+
+double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad) {
+  return squared(noise.turn_per_sqrt_m) * distance_m + squared(noise.turn_per_sqrt_rad) * turn_rad;
+}
+
+Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNoise& noise) {
+  if (distance_m == 0.0 && turn_rad == 0.0) return Eigen::Matrix3d::Zero();
+  return random_walk({{distance_m, 0.0, 0.0}, distance_m, turn_rad}, noise);
 }
 
 CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& errors,

@@ -27,9 +27,9 @@ struct OdometryNoise {
 /// Variance of the heading's random walk [rad^2] on a way of `distance_m` with turns of `turn_rad`.
 double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad);
 
-/// Covariance of (x, y, theta) at the end of a motion by the random walk, in the frame at its
-/// start.
-Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
+/// Covariance of (x, y, theta) that the random walk adds on a way straight ahead, in the frame at
+/// its start; zero where nothing was driven.
+Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNoise& noise);
 
 /// Systematic errors, as a vector (scale, drift, turn scale, ahead): true distance = (1 + scale)
 /// measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * distance. What

@@ -274,12 +274,11 @@ void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
 
 /// How far the scan as a whole is off from the pose, for it was measured while the robot moved.
 /// @return covariance (x, y, theta), map frame.
-Eigen::Matrix3d WaymarkEstimator::error_of_sweep(const Motion& mean_sweep,
+Eigen::Matrix3d WaymarkEstimator::error_of_sweep(const MeanSweep& sweep,
                                                  const Se2& map_from_base) const {
-  if (mean_sweep.distance_m == 0.0 && mean_sweep.turn_rad == 0.0) return Eigen::Matrix3d::Zero();
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = map_from_base.rotation();
-  return turn * random_walk(mean_sweep, noise_) * turn.transpose();
+  return turn * random_walk(sweep.distance_m, sweep.turn_rad, noise_) * turn.transpose();
 }
 
 /// @param open  covariance of the pose that earlier updates have left, carried along by the motion.

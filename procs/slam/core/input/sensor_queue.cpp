@@ -135,7 +135,7 @@ std::optional<SensorQueue::Ready> SensorQueue::next() {
       continue;
     }
     const std::vector<Beam> beams = beams_of(scan, setup_.lidar, odometry_);
-    const Motion sweep = mean_sweep(scan, odometry_);
+    const MeanSweep sweep = mean_sweep(scan, odometry_);
     if (beams.empty()) skips_.push_back(Skip::kScanWithoutReturns);
     Ready ready{observation_at(scan.time, beams), std::nullopt};
     ready.observation.mean_sweep = sweep;

@@ -78,11 +78,9 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const MarkerSenso
       squared(sensors.sigmas.bearing_rad) * across * across.transpose();
   covariance.topLeftCorner<2, 2>().diagonal().array() += squared(sensors.sigmas.position_m);
   covariance(2, 2) += squared(sensors.sigmas.bearing_rad);
-  if (sighting.carried_m == 0.0 && sighting.carried_rad == 0.0) return covariance;
   // What odometry gets wrong in between: its heading turns the sighting about the robot.
-  const Motion carried{{sighting.carried_m, 0.0, 0.0}, sighting.carried_m, sighting.carried_rad};
-  return covariance +
-         carried_along(random_walk(carried, odometry), sighting.base_from_marker.translation());
+  return covariance + carried_along(random_walk(sighting.carried_m, sighting.carried_rad, odometry),
+                                    sighting.base_from_marker.translation());
 }
 
 /// How the camera's errors move what it sees: a camera that is mounted further left than told sees
@@ -204,9 +202,8 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
   for (const MarkerSighting& sighting : observation.sightings)
     newest = std::max(newest, sighting.time);
   const Eigen::Matrix3d by_sweep =
-      observation.mean_sweep.distance_m + observation.mean_sweep.turn_rad > 0.0
-          ? Eigen::Matrix3d{kWallOverMeanSweep * random_walk(observation.mean_sweep, odometry)}
-          : Eigen::Matrix3d{Eigen::Matrix3d::Zero()};
+      kWallOverMeanSweep *
+      random_walk(observation.mean_sweep.distance_m, observation.mean_sweep.turn_rad, odometry);
   std::vector<MarkerMeasurement> measurements;
   for (const MarkerSighting& sighting : observation.sightings) {
     if (sighting.time != newest) continue;

@@ -54,10 +54,10 @@ std::vector<Beam> beams_of(const LidarScan& scan, const LidarSetup& lidar,
   return beams;
 }
 
-Motion mean_sweep(const LidarScan& scan, const OdometryBuffer& odometry) {
+MeanSweep mean_sweep(const LidarScan& scan, const OdometryBuffer& odometry) {
   const Timestamp first = first_beam_time(scan);
   const Timestamp last = last_beam_time(scan);
-  Motion mean;
+  MeanSweep mean;
   if (first == last) return mean;
   for (const auto& [from, to] : {std::pair{first, scan.time}, std::pair{scan.time, last}}) {
     const Motion part = odometry.motion_between(from, to);
@@ -66,7 +66,6 @@ Motion mean_sweep(const LidarScan& scan, const OdometryBuffer& odometry) {
     mean.distance_m += share * share * part.distance_m / 3.0;
     mean.turn_rad += share * share * part.turn_rad / 3.0;
   }
-  mean.start_from_end = {mean.distance_m, 0.0, 0.0};
   return mean;
 }
 

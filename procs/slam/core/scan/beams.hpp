@@ -27,6 +27,13 @@ struct Beam {
   double range_m{0.0};
 };
 
+/// How far odometry may have put the beams of a sweep off from the scan's pose, on average: as far
+/// as its random walk would grow on such a way. Zero where all beams were measured at once.
+struct MeanSweep {
+  double distance_m{0.0};
+  double turn_rad{0.0};  ///< without sign
+};
+
 /// The same scan, for the middle of its sweep: the pose at that time is the one that odometry's
 /// noise moves its beams off the least.
 LidarScan at_middle_of_sweep(LidarScan scan);
@@ -41,8 +48,7 @@ Timestamp first_beam_time(const LidarScan& scan);
 std::vector<Beam> beams_of(const LidarScan& scan, const LidarSetup& lidar,
                            const OdometryBuffer& odometry);
 
-/// The noise of that odometry moves the beams off the scan's pose, on average as far as it would
-/// grow on this motion. None where all beams were measured at once.
-Motion mean_sweep(const LidarScan& scan, const OdometryBuffer& odometry);
+/// @param odometry  as for beams_of().
+MeanSweep mean_sweep(const LidarScan& scan, const OdometryBuffer& odometry);
 
 }  // namespace waymark

@@ -10,10 +10,10 @@
 namespace waymark {
 
 struct Observation {
-  Timestamp time{};                         ///< of the scan, else of odometry
-  Motion motion{};                          ///< since the observation before; none for the first
-  std::vector<AnnotatedBeam> beams{};       ///< none while the LiDAR is silent
-  Motion mean_sweep{};                      ///< over which odometry has put them together
+  Timestamp time{};                    ///< of the scan, else of odometry
+  Motion motion{};                     ///< since the observation before; none for the first
+  std::vector<AnnotatedBeam> beams{};  ///< none while the LiDAR is silent
+  MeanSweep mean_sweep{};
   std::vector<MarkerSighting> sightings{};  ///< of the camera frames since the observation before
   /// The motion begins with one that odometry has kept back while it stood still, and has told at
   /// once. Observations meanwhile had no motion.
