@@ -23,11 +23,11 @@ PoseAxes whole_pose() {
   return Eigen::Matrix3d::Identity();
 }
 
-/// Covariance of (x, y, theta) in the map, turned into the base's axes.
-Eigen::Matrix3d in_frame_of(const Se2& map_from_base, const Eigen::Matrix3d& covariance_in_map) {
+/// Covariance of (x, y, theta) in the axes of another frame.
+Eigen::Matrix3d in_frame_of(const Se2& from_other, const Eigen::Matrix3d& covariance) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = map_from_base.rotation();
-  return turn.transpose() * covariance_in_map * turn;
+  turn.topLeftCorner<2, 2>() = from_other.rotation();
+  return turn.transpose() * covariance * turn;
 }
 
 }  // namespace
@@ -272,15 +272,6 @@ void WaymarkEstimator::note_absences(State& state, const Sensed& sensed) const {
   state.belief.note_absences(is_in_view, observation.time - kSightingAge);
 }
 
-/// How far the scan as a whole is off from the pose, for it was measured while the robot moved.
-/// @return covariance (x, y, theta), map frame.
-Eigen::Matrix3d WaymarkEstimator::error_of_sweep(const MeanSweep& sweep,
-                                                 const Se2& map_from_base) const {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = map_from_base.rotation();
-  return turn * random_walk(sweep.distance_m, sweep.turn_rad, noise_) * turn.transpose();
-}
-
 /// @param open  covariance of the pose that earlier updates have left, carried along by the motion.
 /// @param match  out: of the last step.
 PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& belief,
@@ -288,8 +279,10 @@ PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& bel
                                            const Se2& start, SurfaceMatch& match) const {
   const std::vector<AnnotatedBeam>& beams = sensed.observation->beams;
   SurfaceFinder walls{state.walls, beams.size()};
-  const Eigen::Matrix3d by_sweep =
-      error_of_sweep(sensed.observation->mean_sweep, belief.map_from_base());
+  // The scan as a whole is off from the pose, for it was measured while the robot moved.
+  const MeanSweep& sweep = sensed.observation->mean_sweep;
+  const Eigen::Matrix3d by_sweep = in_frame_of(
+      belief.map_from_base().inverse(), random_walk(sweep.distance_m, sweep.turn_rad, noise_));
   return propose(
       belief.map_from_base(), belief.pose_covariance(),
       [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {

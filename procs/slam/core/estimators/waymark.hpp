@@ -144,7 +144,6 @@ class WaymarkEstimator final : public Estimator {
   void weigh(const std::vector<Outcome>& outcomes);
   Outcome advance(State& state, const Sensed& sensed, const Chance& chance) const;
   void move(State& state, const Sensed& sensed) const;
-  Eigen::Matrix3d error_of_sweep(const MeanSweep& sweep, const Se2& map_from_base) const;
   PoseProposal match_walls(const State& state, const Belief& belief, const Sensed& sensed,
                            const Eigen::Matrix3d& open, const Se2& start,
                            SurfaceMatch& match) const;
