@@ -249,10 +249,16 @@ supervise() {
   on_sim_end "$code"
 }
 
-# finish: the others end by themselves in lockstep, and are told to in real time.
+# finish: the others end by themselves in lockstep. In real time they are told to, those that speak
+# before those that listen.
 finish() {
-  local name code
-  [[ ${#real_time[@]} -eq 0 ]] || interrupt "${others[@]}"
+  local name code i
+  if [[ ${#real_time[@]} -ne 0 ]]; then
+    for ((i = ${#others[@]} - 1; i >= 0; --i)); do
+      interrupt "${others[i]}"
+      wait_for $kFinish_s "${others[i]}" || break
+    done
+  fi
   wait_for $kFinish_s "${others[@]}" ||
     end_run $kExitFailed "not all processes ended within $kFinish_s s of the simulator"
   for name in "${others[@]}"; do

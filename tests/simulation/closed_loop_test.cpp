@@ -246,7 +246,9 @@ TEST_F(ClosedLoop, OnRealTimeNothingIsLost) {
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
   const auto lockstep = events_by_channel(folder() / "reference/run.lcm");
   const auto real_time = events_by_channel(folder() / "real-time/run.lcm");
-  for (const std::string channel : {"CAMERA", "LIDAR", "ODOMETRY", "MARKERS", "TRUE_POSE"}) {
+  for (const std::string channel :
+       {"CAMERA", "LIDAR", "ODOMETRY", "MARKERS", "TRUE_POSE", "SLAM_POSE", "SLAM_ESTIMATE",
+        "SLAM_MARKERS", "SLAM_TRAJECTORY"}) {
     EXPECT_EQ(real_time.at(channel), lockstep.at(channel)) << channel;
   }
 }

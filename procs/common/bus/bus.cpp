@@ -53,6 +53,8 @@ class Bus::Implementation {
       if (handle == nullptr) throw no_network(url);
       lcm_subscription_set_queue_capacity(handle, kLcmQueueCapacity);
     }
+    // A TCP server that is not there shows nowhere else, and waiting for it would abort.
+    if (!subscriptions.empty() && !is_connected()) throw no_network(url);
     if (!subscriptions.empty())
       receiver_ = std::thread{[this] {
         receive_until_stopped();
@@ -149,9 +151,13 @@ class Bus::Implementation {
     arrived_.notify_one();
   }
 
+  bool is_connected() const { return lcm_get_fileno(lcm_.get()) >= 0; }
+
   void receive_until_stopped() {
-    while (!stop_)
+    while (!stop_ && is_connected())
       lcm_handle_timeout(lcm_.get(), kHandleTimeout_ms);
+    const std::lock_guard lock{mutex_};
+    if (!stop_) counts_.add("connection lost, messages dropped");
   }
 
   std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;

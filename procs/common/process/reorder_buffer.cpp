@@ -4,29 +4,38 @@
 #include <algorithm>
 
 namespace waymark {
-namespace {
-
-// A gap of this length in all channels at once is a broken clock, not a pause.
-constexpr Duration kLongestJump = std::chrono::minutes{10};
-
-}  // namespace
 
 ReorderBuffer::ReorderBuffer(Duration window) : window_{window} {}
 
 std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
-  if (has_any_ && message.time < released_) {
-    counters.add(message.channel + " late, dropped");
-    return {};
+  if (const std::string_view why = misfit(message); !why.empty()) {
+    counters.add(message.channel + std::string{why});
+    if (!clock_watch_.see_misfit(message.time)) return {};
+    counters.add("clock was set");
+    return begin_anew(std::move(message));
   }
-  if (has_any_ && message.time > newest_ + kLongestJump) {
-    counters.add(message.channel + " rejected: time jumps ahead");
-    return {};
-  }
+  clock_watch_.see_fitting();
   newest_ = has_any_ ? std::max(newest_, message.time) : message.time;
   has_any_ = true;
   const std::string channel = message.channel;
   if (!waiting_.insert(std::move(message)).second) counters.add(channel + " duplicates");
   return release_until(newest_ - window_);
+}
+
+std::string_view ReorderBuffer::misfit(const Message& message) const {
+  const auto released = released_.find(message.channel);
+  if (released != released_.end() && message.time < released->second) return " late, dropped";
+  if (has_any_ && message.time > newest_ + ClockWatch::kLongestPause)
+    return " rejected: time jumps ahead";
+  return {};
+}
+
+std::vector<Message> ReorderBuffer::begin_anew(Message message) {
+  std::vector<Message> before = flush();
+  newest_ = message.time;
+  released_.clear();
+  waiting_.insert(std::move(message));
+  return before;
 }
 
 std::vector<Message> ReorderBuffer::flush() {
@@ -37,7 +46,7 @@ std::vector<Message> ReorderBuffer::release_until(Timestamp time) {
   std::vector<Message> released;
   while (!waiting_.empty() && waiting_.begin()->time <= time) {
     released.push_back(std::move(waiting_.extract(waiting_.begin()).value()));
-    released_ = released.back().time;
+    released_[released.back().channel] = released.back().time;
   }
   return released;
 }

@@ -4,15 +4,20 @@
 
 #include "common/messages/message.hpp"
 #include "common/process/node.hpp"
+#include "common/time/clock_watch.hpp"
 
+#include <map>
 #include <set>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace waymark {
 
-/// Holds messages until one is `window` newer, then releases them by (time, channel, payload). What
-/// comes later than something already released is dropped and counted; so is what jumps absurdly
-/// ahead, which would make everything after it late.
+/// Holds messages until one is `window` newer, then releases them by (time, channel, payload). A
+/// channel may lag behind the others by more, as what is computed from them does. Dropped and
+/// counted is what comes later than something newer of its own channel, and what jumps absurdly
+/// ahead, which would let nothing else wait; unless the clock was set.
 class ReorderBuffer {
  public:
   explicit ReorderBuffer(Duration window);
@@ -26,12 +31,16 @@ class ReorderBuffer {
     bool operator()(const Message& a, const Message& b) const { return comes_before(a, b); }
   };
 
+  /// Why a message does not fit what came before; empty: it does.
+  std::string_view misfit(const Message& message) const;
+  std::vector<Message> begin_anew(Message message);
   std::vector<Message> release_until(Timestamp time);
 
   Duration window_;
   std::set<Message, Before> waiting_;
   Timestamp newest_{};
-  Timestamp released_{};
+  std::map<std::string, Timestamp, std::less<>> released_;  ///< newest of each channel
+  ClockWatch clock_watch_;
   bool has_any_{false};
 };
 

@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <optional>
+
 namespace waymark {
 namespace {
 
@@ -23,7 +25,10 @@ using std::chrono::steady_clock;
 constexpr milliseconds kPoll{50};
 // How long a participant stays for re-sent ticks when the simulator's goodbye got lost.
 constexpr seconds kLinger{5};
-constexpr seconds kNoTickHint{10};
+constexpr seconds kNothingHint{10};
+constexpr seconds kSilence{1};  // nothing more comes that could be older
+// How long messages that have come are still worked on after a signal asked to stop.
+constexpr seconds kDrain{2};
 // Longer than the jitter between our processes, shorter than a scan period.
 constexpr Duration kReorderWindow = milliseconds{150};
 
@@ -70,7 +75,7 @@ int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node
       publish_all(bus, participant.take(std::move(*message)));
     }
     if (participant.finished() && steady_clock::now() - last_tick > kLinger) break;
-    if (!hinted && !participant.has_seen_tick() && steady_clock::now() - start > kNoTickHint) {
+    if (!hinted && !participant.has_seen_tick() && steady_clock::now() - start > kNothingHint) {
       spdlog::info("no TICK so far: start waymark-sim, or use --real-time with a real robot");
       hinted = true;
     }
@@ -88,37 +93,77 @@ int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node
   return kExitSignal + stop_signal();
 }
 
+/// What arrives in real time, put in order and given to the node.
+class RealTimeFeed {
+ public:
+  // A node with one input has nothing to put in order.
+  RealTimeFeed(Bus& bus, Inbox& inbox, Outbox& outbox)
+      : bus_{bus},
+        inbox_{inbox},
+        outbox_{outbox},
+        buffer_{inbox.subscriptions().size() > 1 ? kReorderWindow : Duration{0}} {}
+
+  /// Takes one message if one comes in time.
+  bool take(milliseconds timeout) {
+    auto message = bus_.receive(timeout);
+    if (!message) return false;
+    last_arrival_ = steady_clock::now();
+    newest_ = std::max(newest_, message->time);
+    deliver(buffer_.add(std::move(*message), inbox_.counters()));
+    return true;
+  }
+
+  void flush() { deliver(buffer_.flush()); }
+
+  /// No message since then; nothing: there has been none at all.
+  std::optional<steady_clock::time_point> last_arrival() const { return last_arrival_; }
+
+  Timestamp newest() const { return newest_; }
+
+ private:
+  void deliver(const std::vector<Message>& messages) {
+    for (const Message& message : messages)
+      inbox_.deliver(message);
+    publish_all(bus_, outbox_.take());
+  }
+
+  Bus& bus_;
+  Inbox& inbox_;
+  Outbox& outbox_;
+  ReorderBuffer buffer_;
+  std::optional<steady_clock::time_point> last_arrival_{};
+  Timestamp newest_{};
+};
+
 /// Live, on whatever arrives, until a signal asks to stop.
 int run_real_time(const ProcessTraits& traits, const std::string& url, Node& node, Inbox& inbox,
                   Outbox& outbox) {
   Bus bus{url, inbox.subscriptions()};
   StatusReporter reporter{traits.name};
-  // A node with one input has nothing to put in order.
-  ReorderBuffer buffer{inbox.subscriptions().size() > 1 ? kReorderWindow : Duration{0}};
+  RealTimeFeed feed{bus, inbox, outbox};
   spdlog::info("ready, real time on {}", url);
-  Timestamp newest{};
-  const auto process = [&](const std::vector<Message>& messages) {
-    for (const Message& message : messages)
-      inbox.deliver(message);
-    publish_all(bus, outbox.take());
-  };
-  auto last_arrival = steady_clock::now();
+  const auto start = steady_clock::now();
+  bool hinted = false;
   while (stop_signal() == 0) {
-    if (auto message = bus.receive(kPoll)) {
-      last_arrival = steady_clock::now();
-      newest = std::max(newest, message->time);
-      process(buffer.add(std::move(*message), inbox.counters()));
-    } else if (steady_clock::now() - last_arrival > seconds{1}) {
-      process(buffer.flush());
+    const auto last = feed.last_arrival();
+    if (!feed.take(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
+    if (!hinted && !last && steady_clock::now() - start > kNothingHint) {
+      spdlog::warn("nothing has come on {} so far; is it the robot's LCM network?", url);
+      hinted = true;
     }
-    reporter.report(bus, inbox.counters(), newest, "real-time");
+    reporter.report(bus, inbox.counters(), feed.newest(), "real-time");
   }
-  process(buffer.flush());
+  const auto stop = steady_clock::now();
+  while (steady_clock::now() - stop < kDrain && feed.take(milliseconds{0})) {
+  }
+  feed.flush();
   node.finish();
   publish_all(bus, outbox.take());
   bus.collect_counts(inbox.counters());
   log_counters(inbox.counters());
-  return node.failed() ? kExitFailed : kExitOk;
+  if (!feed.last_arrival())
+    spdlog::error("nothing came on {} on the channels of this process", url);
+  return !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
 }
 
 }  // namespace

@@ -111,6 +111,32 @@ TEST(ReorderBuffer, SortsWithinItsWindowAndDropsWhatIsLate) {
   EXPECT_EQ(buffer.flush().size(), 1U);
 }
 
+TEST(ReorderBuffer, AChannelMayLagBehindTheOthers) {
+  Counters counters;
+  ReorderBuffer buffer{Duration{100}};
+  buffer.add(at(1000, "SENSOR"), counters);
+  EXPECT_EQ(buffer.add(at(2000, "SENSOR"), counters).size(), 1U);
+  EXPECT_EQ(buffer.add(at(900, "ANSWER"), counters).size(), 1U);
+  EXPECT_EQ(buffer.add(at(950, "ANSWER"), counters).size(), 1U);
+  EXPECT_TRUE(buffer.add(at(940, "ANSWER"), counters).empty());
+  EXPECT_EQ(counters.get("ANSWER late, dropped"), 1);
+}
+
+TEST(ReorderBuffer, AClockThatWasSetIsFollowed) {
+  constexpr std::int64_t kHour_us = 3'600'000'000;
+  for (const std::int64_t step_us : {-kHour_us, kHour_us}) {
+    Counters counters;
+    ReorderBuffer buffer{Duration{0}};
+    int released = 0;
+    for (std::int64_t i = 0; i < 200; ++i) {
+      const std::int64_t utime = 2 * kHour_us + 100'000 * i + (i < 100 ? 0 : step_us);
+      released += static_cast<int>(buffer.add(at(utime, i % 2 ? "A" : "B"), counters).size());
+    }
+    EXPECT_EQ(counters.get("clock was set"), 1) << step_us;
+    EXPECT_GT(released, 170) << step_us;
+  }
+}
+
 TEST(ReorderBuffer, AJumpOfTheClockDoesNotSilenceEverybodyElse) {
   Counters counters;
   ReorderBuffer buffer{Duration{0}};

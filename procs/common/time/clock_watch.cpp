@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/time/clock_watch.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr int kBelieved = 20;
+constexpr Duration kNear = std::chrono::seconds{2};  // between stamps that follow each other
+
+}  // namespace
+
+bool ClockWatch::see_misfit(Timestamp time) {
+  const bool agrees = misfits_ > 0 && time >= last_misfit_ - kNear && time <= last_misfit_ + kNear;
+  if (!agrees) {
+    misfits_ = 0;
+    first_misfit_ = time;
+  }
+  last_misfit_ = time;
+  if (++misfits_ < kBelieved) return false;
+  misfits_ = 0;
+  return true;
+}
+
+}  // namespace waymark
