@@ -5,10 +5,14 @@
 
 #include <opencv2/core/utility.hpp>
 
+#include <algorithm>
+#include <functional>
 #include <string>
 
 namespace waymark {
 namespace {
+
+constexpr std::size_t kMarkersPerMessage = 130;  // 492 bytes each
 
 PixelFormat format_of(const image_t& image) {
   switch (image.pixelformat) {
@@ -48,6 +52,7 @@ void DetectorNode::handle(const image_t& image) {
   const DecodedFrame frame = decode_image(image);
   if (frame.problem == FrameProblem::kNone) {
     detections.detections = detector_.detect(frame.gray);
+    leave_out_what_does_not_fit(detections.detections);
     if (debug_pictures_ && !debug_pictures_->offer(frame.gray, detections)) {
       inbox_.counters().add("debug pictures not written");
     }
@@ -55,6 +60,15 @@ void DetectorNode::handle(const image_t& image) {
     inbox_.counters().add("CAMERA rejected: " + std::string{to_string(frame.problem)});
   }
   outbox_.publish(channels::kMarkers, to_detections_message(detections));
+}
+
+/// The largest markers tell most.
+void DetectorNode::leave_out_what_does_not_fit(std::vector<MarkerDetection>& markers) {
+  if (markers.size() <= kMarkersPerMessage) return;
+  inbox_.counters().add("markers dropped: more than a message holds",
+                        std::ssize(markers) - std::int64_t{kMarkersPerMessage});
+  std::ranges::stable_sort(markers, std::greater{}, &MarkerDetection::width_px);
+  markers.resize(kMarkersPerMessage);
 }
 
 DecodedFrame DetectorNode::decode_image(const image_t& image) const {

@@ -27,6 +27,7 @@ class DetectorNode final : public Node {
  private:
   /// Answers every frame, an unreadable one with an empty list, so that nobody waits for it.
   void handle(const image_t& image);
+  void leave_out_what_does_not_fit(std::vector<MarkerDetection>& markers);
   DecodedFrame decode_image(const image_t& image) const;
 
   cv::Size image_size_;

@@ -96,6 +96,25 @@ TEST_F(DetectorNodeTest, DebugPicturesAreWrittenOnRequest) {
   std::filesystem::remove_all(folder);
 }
 
+cv::Mat picture_of_a_wall_of_markers() {
+  const RobotConfig robot;
+  std::vector<testing::PlacedMarker> wall;
+  for (int i = 0; i < 15 * 11; ++i) {
+    const Eigen::Vector3d place{8.5, 0.62 * (i % 15 - 7), 0.103 + 0.62 * (i / 15 - 5)};
+    wall.push_back({i, robot.camera.base_from_camera().inverse() *
+                           testing::base_from_upright_marker(place, std::numbers::pi)});
+  }
+  return testing::render_markers(robot, wall, {}, Random{1});
+}
+
+TEST_F(DetectorNodeTest, MoreMarkersThanAMessageHoldsAreCounted) {
+  DetectorNode node{DetectorConfig{}, inbox_, outbox_};
+
+  EXPECT_EQ(answer_to(jpeg_message(picture_of_a_wall_of_markers(), 1000)).num_detections, 130);
+
+  EXPECT_GT(inbox_.counters().get("markers dropped: more than a message holds"), 10);
+}
+
 TEST_F(DetectorNodeTest, AFolderThatCannotBeMadeIsASetupError) {
   DetectorConfig config;
   config.detector.debug_dir = "/proc/no_such_folder";
