@@ -10,6 +10,7 @@ namespace {
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
+constexpr std::size_t kBeamsPerMessage = 5400;      // 12 bytes each
 constexpr std::size_t kParticlesPerMessage = 1300;  // 48 bytes each
 constexpr std::size_t kLandmarksPerMessage = 500;   // 125 bytes each
 constexpr std::size_t kPosesPerMessage = 3000;      // 20 bytes each
@@ -89,14 +90,16 @@ annotated_scan_t to_message(const LidarScan& scan, const Observation& observatio
   message.x_m = map_from_lidar.x();
   message.y_m = map_from_lidar.y();
   message.theta_rad = map_from_lidar.theta();
-  message.num_beams = static_cast<std::int32_t>(scan.ranges_m.size());
-  for (const double range_m : scan.ranges_m)
-    message.ranges.push_back(static_cast<float>(range_m));
-  for (const double angle_rad : scan.angles_rad)
-    message.angles.push_back(static_cast<float>(angle_rad));
-  message.marker_ids.assign(scan.ranges_m.size(), kNoMarker);
+  const std::size_t step = (scan.ranges_m.size() + kBeamsPerMessage - 1) / kBeamsPerMessage;
+  for (std::size_t beam = 0; beam < scan.ranges_m.size(); beam += step) {
+    message.ranges.push_back(static_cast<float>(scan.ranges_m[beam]));
+    message.angles.push_back(static_cast<float>(scan.angles_rad[beam]));
+  }
+  message.num_beams = static_cast<std::int32_t>(message.ranges.size());
+  message.marker_ids.assign(message.ranges.size(), kNoMarker);
   for (const AnnotatedBeam& annotated : observation.beams) {
-    message.marker_ids[static_cast<std::size_t>(annotated.beam.index)] = annotated.marker_id;
+    const auto beam = static_cast<std::size_t>(annotated.beam.index);
+    if (beam % step == 0) message.marker_ids[beam / step] = annotated.marker_id;
   }
   return message;
 }

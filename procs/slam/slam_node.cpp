@@ -5,6 +5,8 @@
 #include "slam/estimator_factory.hpp"
 #include "slam/slam_messages.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <utility>
 
 namespace waymark {
@@ -30,6 +32,7 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
 void SlamNode::finish() {
   queue_.finish();
   process_ready_scans();
+  judge_input();
   if (!last_estimate_) return;
   for (const map_tiles_t& part :
        map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_))
@@ -40,9 +43,29 @@ void SlamNode::finish() {
     outbox_.publish(channels::kSlamTrajectory, part);
 }
 
+/// An input that nothing can be made of shall not look like success.
+void SlamNode::judge_input() {
+  const std::int64_t scans = counters_.get("LIDAR received");
+  const std::int64_t odometry = counters_.get("ODOMETRY received");
+  if (!last_estimate_ && scans + odometry > 0) {
+    failed_ = true;
+    spdlog::error("no pose: of LIDAR {} and of ODOMETRY {} messages could be read; both are needed",
+                  scans, odometry);
+  }
+  const std::int64_t processed = counters_.get("scans processed");
+  if (processed > 0 && counters_.get(to_string(Skip::kScanWithoutReturns)) >= processed) {
+    failed_ = true;
+    spdlog::error(
+        "no map: no scan has a range from {} to {} m; are they in metres, and is [robot.lidar] "
+        "that of "
+        "this robot?",
+        config_.robot.lidar.range_min_m, config_.robot.lidar.range_max_m);
+  }
+}
+
 void SlamNode::take(LidarScan scan) {
-  if (num_beams_ == 0) num_beams_ = scan.ranges_m.size();
-  if (scan.ranges_m.size() != num_beams_) counters_.add("scans with another number of beams");
+  if (std::ssize(scan.ranges_m) != config_.robot.lidar.num_beams)
+    counters_.add("scans with another number of beams than told");
   queue_.add(std::move(scan));
   process_ready_scans();
 }

@@ -31,8 +31,12 @@ class SlamNode final : public Node {
   /// the way there as it is known at the end.
   void finish() override;
 
+  /// True when sensors were heard, but no pose or no map could be made of them.
+  bool failed() const override { return failed_; }
+
  private:
   void take(LidarScan scan);
+  void judge_input();
   void process_ready_scans();
   void process(const SensorQueue::Ready& ready);
   void publish_map_when_due(Timestamp time);
@@ -47,7 +51,7 @@ class SlamNode final : public Node {
   MapPublisher map_publisher_{};
   std::optional<Timestamp> last_estimate_{};
   std::optional<Timestamp> next_map_{};
-  std::size_t num_beams_{0};
+  bool failed_{false};
 };
 
 }  // namespace waymark

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kMaxBeams = 16384;
 constexpr int kMaxImageSide_px = 16384;
+constexpr float kMaxCoordinate = 1e7F;  // [m, rad] no odometry counts up to that
 constexpr std::int64_t kMaxBeamTimeOffset_us = 10'000'000;  // a sweep lasts well below 10 s
 
 template <class Numbers>
@@ -140,7 +141,10 @@ RejectReason validate(const planar_lidar_t& m) {
 }
 
 RejectReason validate(const pose2D_t& m) {
-  return first_of(true, all_finite(m.x, m.y, m.theta));
+  const bool is_finite = all_finite(m.x, m.y, m.theta);
+  const bool is_near = std::abs(m.x) < kMaxCoordinate && std::abs(m.y) < kMaxCoordinate &&
+                       std::abs(m.theta) < kMaxCoordinate;
+  return first_of(is_near || !is_finite, is_finite);
 }
 
 RejectReason validate(const process_status_t& m) {

@@ -205,8 +205,48 @@ TEST(SlamNode, BadScansAndTimesAreCountedAndSkipped) {
   EXPECT_EQ(counters.get("scans without returns"), 1);
   EXPECT_GE(counters.get("scans out of order"), 1);
   EXPECT_EQ(counters.get("odometry out of order"), 1);
-  EXPECT_GE(counters.get("scans with another number of beams"), 2);
+  EXPECT_GE(counters.get("scans with another number of beams than told"), 2);
   EXPECT_GT(count_by_channel(output)["SLAM_POSE"], 5);
+}
+
+TEST(SlamNode, WithoutAPoseOrAMapItHasFailed) {
+  const auto input = messages_of_drive(0.2);
+  Slam slam;
+  slam.feed(input);
+  EXPECT_FALSE(slam.node.failed());
+  for (const std::string missing : {"ODOMETRY", "LIDAR"}) {
+    auto rest = input;
+    std::erase_if(rest, [&](const Message& message) { return message.channel == missing; });
+    Slam without;
+    without.feed(rest);
+    EXPECT_TRUE(without.node.failed()) << missing;
+  }
+  SlamConfig millimetres = small_config();
+  millimetres.robot.lidar.range_max_m = 0.2;
+  Slam blind{millimetres};
+  blind.feed(input);
+  EXPECT_TRUE(blind.node.failed());
+}
+
+TEST(SlamNode, AScanOfMoreBeamsThanSlamScanHoldsIsThinnedThere) {
+  auto input = messages_of_drive(0.2);
+  planar_lidar_t scan{};
+  scan.utime = to_us(input[input.size() / 2].time) + 1;
+  scan.nranges = 6000;
+  scan.ranges.assign(6000, 1.0F);
+  scan.radstep = static_cast<float>(radians(360.0) / 6000.0);
+  input.insert(input.begin() + static_cast<std::ptrdiff_t>(input.size() / 2),
+               encode(channels::kLidar, scan));
+  Slam slam;
+  int thinned = 0;
+  for (const Message& message : slam.feed(input)) {
+    EXPECT_LE(message.payload.size(), kMaxPayloadBytes) << message.channel;
+    if (message.channel != "SLAM_SCAN") continue;
+    const auto answer = decode<annotated_scan_t>(message.payload);
+    ASSERT_TRUE(answer.message);
+    thinned += answer.message->num_beams == 3000;
+  }
+  EXPECT_EQ(thinned, 1);
 }
 
 TEST(SlamNode, ScansWithoutOdometryAreNotUsed) {
@@ -238,27 +278,49 @@ TEST(SlamNode, BlankIdsForgetAllMarkers) {
   EXPECT_FALSE(any_marker(Slam{config}.feed(input)));
 }
 
-TEST(SlamNode, AbsurdOdometryAndMarkersDoNotKillIt) {
-  auto input = messages_of_drive(0.2);
-  const std::int64_t end = to_us(input.back().time);
-  marker_detections_t frame{};
-  frame.utime = end + 1;
-  frame.num_detections = 1;
-  marker_detection_t& detection = frame.detections.emplace_back();
-  detection.id = 3;
-  detection.position_m[0] = 1e300;
-  detection.orientation[0] = 1.0;
-  detection.other_orientation[0] = 1.0;
-  input.push_back(encode(channels::kMarkers, frame));
-  for (int i = 1; i < 20; ++i) {
+TEST(SlamNode, AbsurdOdometryAndMarkersDoNotKillItOrCarryItOff) {
+  auto input = messages_of_drive();
+  for (const float absurd_m : {1e20F, 3e38F, 9e6F}) {
     pose2D_t pose{};
-    pose.utime = end + i * 100'000;
-    pose.x = i % 2 ? 3e38F : -3e38F;
-    input.push_back(encode(channels::kOdometry, pose));
+    const auto middle = input.begin() + static_cast<std::ptrdiff_t>(input.size() / 2);
+    pose.utime = to_us(middle->time) + 1;
+    pose.x = absurd_m;
+    std::vector<std::uint8_t> payload(static_cast<std::size_t>(pose.getEncodedSize()));
+    pose.encode(payload.data(), 0, pose.getEncodedSize());
+    input.insert(middle, {"ODOMETRY", timestamp_from_us(pose.utime), payload});
   }
-  Slam slam;
-  EXPECT_GT(count_by_channel(slam.feed(input))["SLAM_POSE"], 5);
-  EXPECT_GT(slam.inbox.counters().get("odometry jumps"), 5);
+  marker_detections_t frame{};
+  frame.utime = to_us(input[input.size() / 3].time) + 1;
+  frame.num_detections = 2;
+  for (int i = 0; i < frame.num_detections; ++i) {
+    marker_detection_t& detection = frame.detections.emplace_back();
+    detection.id = 3;
+    detection.orientation[0] = detection.other_orientation[0] = 1.0;
+  }
+  frame.detections[0].position_m[0] = 1e300;
+  marker_detection_t& indefinite = frame.detections[1];
+  indefinite.position_m[0] = 1.0;
+  indefinite.orientation[0] = indefinite.orientation[2] = std::sqrt(0.5);  // faces along x
+  for (int i = 0; i < 6; ++i)
+    indefinite.covariance[7 * i] = 1e-4;
+  indefinite.covariance[5] = indefinite.covariance[30] = 1e3;  // x with yaw
+  input.push_back(encode(channels::kMarkers, frame));
+  std::sort(input.begin(), input.end(), comes_before);
+  for (const auto estimator : {EstimatorName::kOdometry, EstimatorName::kWaymark}) {
+    SlamConfig config = small_config();
+    config.slam.estimator = estimator;
+    Slam slam{config};
+    const auto output = slam.feed(input);
+    EXPECT_EQ(slam.inbox.counters().get("ODOMETRY rejected: inconsistent"), 2);
+    EXPECT_EQ(slam.inbox.counters().get("odometry jumps"), 2) << "there and back";
+    EXPECT_EQ(slam.inbox.counters().get("markers not upright"), 2);
+    std::optional<pose2D_t> last;
+    for (const Message& message : output) {
+      if (message.channel == "SLAM_POSE") last = decode<pose2D_t>(message.payload).message;
+    }
+    ASSERT_TRUE(last);
+    EXPECT_LT(std::hypot(last->x, last->y), 1.0);
+  }
 }
 
 }  // namespace

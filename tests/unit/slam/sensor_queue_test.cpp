@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 namespace waymark {
@@ -130,6 +131,79 @@ TEST(SensorQueue, AScanThatComesTooLateIsRefused) {
   EXPECT_EQ(queue.take_skips(), std::vector<Skip>{Skip::kScanOutOfOrder});
   queue.add(scan_at(1500));
   EXPECT_EQ(to_us(queue.next()->observation.time), 1'500'000);
+}
+
+double way_m(const std::vector<SensorQueue::Ready>& all) {
+  double way = 0.0;
+  for (const SensorQueue::Ready& ready : all)
+    way += ready.observation.motion.distance_m;
+  return way;
+}
+
+/// 20 s with odometry, scans and frames at 10 Hz; `stamp_ms` is what the clock tells at a time.
+std::vector<SensorQueue::Ready> all_ready_by(SensorQueue& queue,
+                                             const std::function<int(int)>& stamp_ms) {
+  std::vector<SensorQueue::Ready> all;
+  for (int now_ms = 0; now_ms <= 20'000; now_ms += 100) {
+    queue.add({at_ms(stamp_ms(now_ms)), odometry_at(now_ms).odom_from_base});
+    queue.add(scan_at(stamp_ms(now_ms)));
+    queue.add(frame_at(stamp_ms(now_ms), {}));
+    while (auto ready = queue.next())
+      all.push_back(std::move(*ready));
+  }
+  return all;
+}
+
+constexpr int kHour_ms = 3'600'000;
+
+TEST(SensorQueue, WhenTheClockWasSetMotionGoesOn) {
+  for (const int step_ms : {-kHour_ms, -5000, kHour_ms}) {
+    SensorQueue queue{setup_without_waiting()};
+    const auto all = all_ready_by(queue, [step_ms](int now_ms) {
+      return kHour_ms + now_ms + (now_ms < 10'000 ? 0 : step_ms);
+    });
+    EXPECT_GT(all.size(), 170U) << step_ms;
+    EXPECT_NEAR(way_m(all), 2.0, 1e-9) << step_ms;
+    const auto skips = queue.take_skips();
+    EXPECT_EQ(std::ranges::count(skips, Skip::kClockSet), 1) << step_ms;
+  }
+}
+
+TEST(SensorQueue, AWrongStampCostsItsOwnValueOnly) {
+  for (const int wrong_ms : {60'000, kHour_ms}) {
+    SensorQueue queue{setup_without_waiting()};
+    for (int now_ms = 0; now_ms < 1000; now_ms += 100)
+      queue.add(odometry_at(now_ms));
+    queue.add(scan_at(wrong_ms));
+    queue.add(frame_at(wrong_ms, {}));
+    queue.add(odometry_at(kHour_ms));
+    EXPECT_EQ(queue.take_skips(),
+              (std::vector<Skip>{Skip::kScanAhead, Skip::kFrameAhead, Skip::kOdometryAhead}));
+    queue.add(scan_at(800));
+    queue.add(frame_at(800, {}));
+    queue.add(odometry_at(1000));
+    const auto ready = queue.next();
+    ASSERT_TRUE(ready);
+    EXPECT_TRUE(ready->observation.camera_reported);
+    EXPECT_TRUE(queue.take_skips().empty());
+  }
+}
+
+TEST(SensorQueue, WhatIsFarAheadOfTheFirstOdometryDoesNotBlock) {
+  SensorQueue queue{setup_without_waiting()};
+  queue.add(scan_at(kHour_ms));
+  queue.add(frame_at(kHour_ms, {}));
+  EXPECT_EQ(all_ready(queue, 1000, {200, 400}, {200}).size(), 2U);
+  EXPECT_EQ(queue.take_skips(), (std::vector<Skip>{Skip::kScanAhead, Skip::kFrameAhead}));
+}
+
+TEST(SensorQueue, AFrameThatOdometryHasForgottenIsCounted) {
+  SensorQueue queue{setup_without_waiting()};
+  EXPECT_EQ(all_ready(queue, 1000, {200, 800}).size(), 2U);
+  queue.add(frame_at(300, {}));
+  queue.add(scan_at(1000));
+  EXPECT_TRUE(queue.next());
+  EXPECT_EQ(queue.take_skips(), std::vector<Skip>{Skip::kFrameWithoutOdometry});
 }
 
 TEST(SensorQueue, AScanWithoutReturnsIsSaidAndStillAnObservation) {

@@ -8,6 +8,9 @@ namespace waymark {
 namespace {
 
 constexpr Duration kStepWithoutScan{200'000};  // a LiDAR's usual period
+// Scans and frames may wait for odometry that comes in bursts; what is further ahead is stamped
+// wrong.
+constexpr Duration kLongestLead = std::chrono::seconds{10};
 
 /// No camera sees the same twice to the last bit, unless it does not look again.
 bool are_repeated(std::span<const MarkerDetection> before, std::span<const MarkerDetection> now) {
@@ -19,18 +22,29 @@ bool are_repeated(std::span<const MarkerDetection> before, std::span<const Marke
                     });
 }
 
+bool is_refused(OdometryBuffer::Outcome outcome) {
+  return outcome == OdometryBuffer::Outcome::kOutOfOrder ||
+         outcome == OdometryBuffer::Outcome::kTooFarAhead;
+}
+
 }  // namespace
 
 std::string_view to_string(Skip skip) {
   switch (skip) {
     case Skip::kOdometryOutOfOrder:
       return "odometry out of order";
+    case Skip::kOdometryAhead:
+      return "odometry rejected: time jumps ahead";
+    case Skip::kClockSet:
+      return "clock was set";
     case Skip::kOdometryJumped:
       return "odometry jumps";
     case Skip::kOdometryStuck:
       return "odometry catching up after it was stuck";
     case Skip::kScanOutOfOrder:
       return "scans out of order";
+    case Skip::kScanAhead:
+      return "scans dropped: far ahead of odometry";
     case Skip::kScanWithoutReturns:
       return "scans without returns";
     case Skip::kScanBeforeOdometry:
@@ -41,6 +55,10 @@ std::string_view to_string(Skip skip) {
       return "scans dropped waiting for odometry";
     case Skip::kFrameOutOfOrder:
       return "camera frames out of order";
+    case Skip::kFrameAhead:
+      return "camera frames dropped: far ahead of odometry";
+    case Skip::kFrameWithoutOdometry:
+      return "camera frames dropped: too late, or before the first odometry";
     case Skip::kFrameOverflow:
       return "camera frames dropped waiting for a scan";
     case Skip::kFrameRepeated:
@@ -54,11 +72,27 @@ std::string_view to_string(Skip skip) {
 }
 
 void SensorQueue::add(const OdometrySample& sample) {
-  switch (odometry_.add(sample)) {
+  const bool is_first = odometry_.is_empty();
+  auto outcome = odometry_.add(sample);
+  note(outcome);
+  if (!is_refused(outcome)) {
+    clock_watch_.see_fitting();
+    if (is_first) drop_what_is_ahead();
+  } else if (clock_watch_.see_misfit(sample.time)) {
+    set_clock();
+    note(odometry_.add(sample));
+  }
+}
+
+void SensorQueue::note(OdometryBuffer::Outcome outcome) {
+  switch (outcome) {
     case OdometryBuffer::Outcome::kAdded:
       break;
     case OdometryBuffer::Outcome::kOutOfOrder:
       skips_.push_back(Skip::kOdometryOutOfOrder);
+      break;
+    case OdometryBuffer::Outcome::kTooFarAhead:
+      skips_.push_back(Skip::kOdometryAhead);
       break;
     case OdometryBuffer::Outcome::kJumped:
       skips_.push_back(Skip::kOdometryJumped);
@@ -69,11 +103,45 @@ void SensorQueue::add(const OdometrySample& sample) {
   }
 }
 
+/// What was stamped by the clock as it was is moved to where odometry goes on, so that no motion is
+/// lost.
+void SensorQueue::set_clock() {
+  skips_.push_back(Skip::kClockSet);
+  const Duration later = clock_watch_.first_misfit() - odometry_.newest();
+  odometry_.shift(later);
+  if (last_observed_) *last_observed_ += later;
+  skips_.insert(skips_.end(), scans_.size(), Skip::kScanOutOfOrder);
+  skips_.insert(skips_.end(), frames_.size(), Skip::kFrameOutOfOrder);
+  scans_.clear();
+  frames_.clear();
+  newest_scan_.reset();
+  newest_frame_.reset();
+}
+
+bool SensorQueue::is_ahead(Timestamp time) const {
+  return !odometry_.is_empty() && time > odometry_.newest() + kLongestLead;
+}
+
+/// What came before any odometry could not be judged.
+void SensorQueue::drop_what_is_ahead() {
+  const auto ahead = [this](const auto& waiting) {
+    return is_ahead(waiting.time);
+  };
+  skips_.insert(skips_.end(), std::erase_if(scans_, ahead), Skip::kScanAhead);
+  skips_.insert(skips_.end(), std::erase_if(frames_, ahead), Skip::kFrameAhead);
+  if (newest_scan_ && is_ahead(*newest_scan_)) newest_scan_.reset();
+  if (newest_frame_ && is_ahead(*newest_frame_)) newest_frame_.reset();
+}
+
 void SensorQueue::add(LidarScan measured) {
   LidarScan scan = at_middle_of_sweep(std::move(measured));
   if ((newest_scan_ && scan.time <= *newest_scan_) ||
       (last_observed_ && scan.time <= *last_observed_)) {
     skips_.push_back(Skip::kScanOutOfOrder);
+    return;
+  }
+  if (is_ahead(scan.time)) {
+    skips_.push_back(Skip::kScanAhead);
     return;
   }
   newest_scan_ = scan.time;
@@ -87,6 +155,10 @@ void SensorQueue::add(LidarScan measured) {
 void SensorQueue::add(MarkerDetections frame) {
   if (newest_frame_ && frame.time <= *newest_frame_) {
     skips_.push_back(Skip::kFrameOutOfOrder);
+    return;
+  }
+  if (is_ahead(frame.time)) {
+    skips_.push_back(Skip::kFrameAhead);
     return;
   }
   newest_frame_ = frame.time;
@@ -164,7 +236,7 @@ Observation SensorQueue::observation_at(Timestamp time, std::span<const Beam> be
 Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {
   Observation observation;
   observation.time = time;
-  if (last_observed_) {
+  if (last_observed_ && odometry_.covers(*last_observed_)) {
     observation.motion = odometry_.motion_between(*last_observed_, time);
     if (const auto kept_back = odometry_.kept_back(*last_observed_, time)) {
       observation.motion = kept_back->then(observation.motion);
@@ -174,7 +246,10 @@ Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {
   while (!frames_.empty() && frames_.front().time <= time) {
     const MarkerDetections frame = std::move(frames_.front());
     frames_.pop_front();
-    if (!odometry_.covers(frame.time)) continue;
+    if (!odometry_.covers(frame.time)) {
+      skips_.push_back(Skip::kFrameWithoutOdometry);
+      continue;
+    }
     observation.camera_reported = true;
     if (!setup_.blank_ids) sight_markers(frame, time, observation.sightings);
   }

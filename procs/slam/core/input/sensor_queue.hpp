@@ -2,6 +2,7 @@
 // Turns three streams of sensor values into observations, whatever order they arrive in.
 #pragma once
 
+#include "common/time/clock_watch.hpp"
 #include "slam/core/motion/odometry_buffer.hpp"
 #include "slam/core/scan/observation.hpp"
 
@@ -32,14 +33,19 @@ struct SensorSetup {
 /// Why a value was not used.
 enum class Skip {
   kOdometryOutOfOrder,
+  kOdometryAhead,   ///< by more than any pause
+  kClockSet,        ///< what waits is dropped, motion goes on
   kOdometryJumped,  ///< used as a new beginning, its jump is not
   kOdometryStuck,   ///< stood still and then told at once what was driven: used when it came
   kScanOutOfOrder,
+  kScanAhead,           ///< of odometry
   kScanWithoutReturns,  ///< odometry and camera are
   kScanBeforeOdometry,
   kScanWithoutOdometry,  ///< the input ended before the odometry for it came
   kScanOverflow,         ///< odometry stays away
   kFrameOutOfOrder,
+  kFrameAhead,            ///< of odometry
+  kFrameWithoutOdometry,  ///< it has been forgotten, or begins later
   kFrameOverflow,
   kFrameRepeated,  ///< pixel for pixel the one before: the camera is stuck, or nothing moves
   kMarkerImplausible,
@@ -74,6 +80,10 @@ class SensorQueue {
   std::vector<Skip> take_skips();
 
  private:
+  void note(OdometryBuffer::Outcome outcome);
+  void set_clock();
+  void drop_what_is_ahead();
+  bool is_ahead(Timestamp time) const;
   bool is_ready(const LidarScan& scan) const;
   bool has_passed(Timestamp time) const;
   std::optional<Timestamp> next_without_scan() const;
@@ -88,6 +98,7 @@ class SensorQueue {
 
   SensorSetup setup_;
   OdometryBuffer odometry_{};
+  ClockWatch clock_watch_{};
   std::deque<LidarScan> scans_{};
   std::deque<MarkerDetections> frames_{};
   std::optional<Timestamp> newest_scan_{};

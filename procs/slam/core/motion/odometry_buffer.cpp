@@ -19,6 +19,7 @@ OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
   Outcome outcome = Outcome::kAdded;
   if (!samples_.empty()) {
     if (sample.time <= newest()) return Outcome::kOutOfOrder;
+    if (sample.time > newest() + ClockWatch::kLongestPause) return Outcome::kTooFarAhead;
     const double elapsed_s = to_seconds(sample.time - newest());
     const Se2 step = last_raw_.inverse() * sample.odom_from_base;
     if (!(step.translation().norm() <= kMaxSpeed_m_s * elapsed_s) ||
@@ -80,6 +81,13 @@ Motion OdometryBuffer::motion_between(Timestamp from, Timestamp to) const {
     odom_from_last = sample.odom_from_base;
   }
   return motion.then(Motion::between(odom_from_last, pose_at(to)));
+}
+
+void OdometryBuffer::shift(Duration later) {
+  for (OdometrySample& sample : samples_)
+    sample.time += later;
+  changed_ += later;
+  if (catch_up_) catch_up_->time += later;
 }
 
 void OdometryBuffer::forget_before(Timestamp time) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/sensors/sensors.hpp"
+#include "common/time/clock_watch.hpp"
 #include "slam/core/motion/motion.hpp"
 
 #include <deque>
@@ -13,9 +14,10 @@ namespace waymark {
 class OdometryBuffer {
  public:
   /// How a sample was taken.
-  enum class Outcome { kAdded, kOutOfOrder, kJumped, kCaughtUp };
+  enum class Outcome { kAdded, kOutOfOrder, kTooFarAhead, kJumped, kCaughtUp };
 
-  /// A sample that is not newer than the last is refused. A jump that no robot can drive (its
+  /// A sample that is not newer than the last is refused, and one that is newer by more than any
+  /// pause (ClockWatch::kLongestPause). A jump that no robot can drive (its
   /// odometry was reset) counts as no motion. Odometry that stood still and then jumps as far as
   /// can be driven meanwhile had been stuck: the jump is what it has kept back.
   Outcome add(const OdometrySample& sample);
@@ -40,6 +42,9 @@ class OdometryBuffer {
   std::optional<Timestamp> first_from(Timestamp time) const;
 
   Timestamp newest() const { return samples_.back().time; }
+
+  /// As if every sample had been taken so much later.
+  void shift(Duration later);
 
   /// Forgets what is not needed to read at `time` or later.
   void forget_before(Timestamp time);

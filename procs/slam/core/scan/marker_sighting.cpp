@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/scan/marker_sighting.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <cmath>
 
 namespace waymark {
@@ -9,6 +11,7 @@ namespace {
 constexpr double kMaxTilt_rad = radians(30.0);
 constexpr double kMaxRange_m = 100.0;  // no camera reads a marker from there
 constexpr double kMaxVariance = 1e6;   // nothing is left of a sighting with that
+constexpr double kRounding = 1e-9;     // of a covariance, share of its trace
 
 Eigen::Matrix3d planar_covariance(const Eigen::Matrix<double, 6, 6>& covariance) {
   constexpr int kPlanar[]{0, 1, 5};  // x, y, rotation about z
@@ -21,6 +24,15 @@ Eigen::Matrix3d planar_covariance(const Eigen::Matrix<double, 6, 6>& covariance)
   return planar;
 }
 
+/// Symmetric, and no direction has a negative variance, but for rounding.
+bool is_covariance(const Eigen::Matrix3d& matrix) {
+  const double trace = matrix.trace();
+  if (!(trace >= 0.0 && trace < kMaxVariance)) return false;
+  if (!((matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= kRounding * trace)) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes{matrix, Eigen::EigenvaluesOnly};
+  return axes.eigenvalues()[0] >= -kRounding * trace;
+}
+
 }  // namespace
 
 std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Timestamp time,
@@ -28,11 +40,8 @@ std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Tim
   const Eigen::Vector3d facing = detection.base_from_marker.linear().col(2);
   if (std::abs(facing.z()) > std::sin(kMaxTilt_rad)) return std::nullopt;
   if (!(detection.base_from_marker.translation().norm() < kMaxRange_m)) return std::nullopt;
-  if (!(detection.covariance_in_base.topLeftCorner<2, 2>().determinant() >= 0.0) ||
-      !(detection.covariance_in_base.diagonal().minCoeff() >= 0.0) ||
-      !(detection.covariance_in_base.trace() < kMaxVariance)) {
-    return std::nullopt;
-  }
+  const Eigen::Matrix3d covariance = planar_covariance(detection.covariance_in_base);
+  if (!is_covariance(covariance)) return std::nullopt;
 
   const Se2 frame_base_from_marker{
       Eigen::Vector2d{detection.base_from_marker.translation().head<2>()},
@@ -42,7 +51,7 @@ std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Tim
   return MarkerSighting{detection.id,
                         time,
                         scan_base_from_frame_base * frame_base_from_marker,
-                        turn * planar_covariance(detection.covariance_in_base) * turn.transpose(),
+                        turn * covariance * turn.transpose(),
                         size_m,
                         scan_base_from_frame_base.translation().norm(),
                         std::abs(scan_base_from_frame_base.theta()),
