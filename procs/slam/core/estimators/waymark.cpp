@@ -359,7 +359,7 @@ void WaymarkEstimator::judge(const std::vector<Outcome>& outcomes) {
 void WaymarkEstimator::remember(const Observation& observation) {
   const bool is_mapped = verdict_ != KidnapWatch::Verdict::kDoubtful;
   retrospect_.add_update(belief().pose_by_statics(kStaticMarkers), statics(),
-                         is_mapped ? observation : Observation{});
+                         is_mapped ? observation : Observation{}, mean_);
 }
 
 }  // namespace waymark

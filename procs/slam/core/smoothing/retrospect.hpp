@@ -11,9 +11,10 @@ namespace waymark {
 class Retrospect {
  public:
   /// @param observation  what is to be drawn again of this update; may be empty.
-  void add_update(const PoseByStatics& by, const Statics& then, const Observation& observation) {
+  void add_update(const PoseByStatics& by, const Statics& then, const Observation& observation,
+                  const Se2& map_from_base) {
     hindsight_.add_update(by, then);
-    archive_.add(observation);
+    archive_.add(observation, map_from_base);
   }
 
   void add_scan(Timestamp time, const Se2& map_from_base) {

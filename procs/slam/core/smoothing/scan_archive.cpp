@@ -1,9 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/smoothing/scan_archive.hpp"
 
-namespace waymark {
+#include "common/geometry/angle.hpp"
 
-void ScanArchive::add(const Observation& observation) {
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kPlace_m = 0.25;
+constexpr double kDirection_rad = radians(45.0);
+
+int whole(double number) {
+  return static_cast<int>(std::floor(number));
+}
+
+}  // namespace
+
+ScanArchive::Place ScanArchive::place_of(const Se2& map_from_base) {
+  return {whole(map_from_base.x() / kPlace_m), whole(map_from_base.y() / kPlace_m),
+          whole(map_from_base.theta() / kDirection_rad)};
+}
+
+void ScanArchive::add(const Observation& observation, const Se2& map_from_base) {
   Scan scan;
   scan.beams.reserve(observation.beams.size());
   for (const AnnotatedBeam& annotated : observation.beams) {
@@ -11,7 +30,12 @@ void ScanArchive::add(const Observation& observation) {
         {annotated.beam.start_in_base.cast<float>(), annotated.beam.end_in_base.cast<float>()});
   }
   scan.sightings = observation.sightings;
+  std::deque<std::size_t>& here = at_places_[place_of(map_from_base)];
+  here.push_back(scans_.size());
   scans_.push_back(std::move(scan));
+  if (here.size() <= kScansPerPlace) return;
+  scans_[here.front()] = {};
+  here.pop_front();
 }
 
 Observation ScanArchive::at(std::size_t index) const {

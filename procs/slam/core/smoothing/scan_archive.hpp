@@ -2,24 +2,37 @@
 // The scans of a run, packed, to be drawn again.
 #pragma once
 
+#include "common/geometry/se2.hpp"
 #include "slam/core/scan/observation.hpp"
 
+#include <array>
 #include <cstddef>
+#include <deque>
+#include <map>
 #include <vector>
 
 namespace waymark {
 
-/// 16 bytes a beam: single precision is 0.1 mm at 1 km.
+/// 16 bytes a beam: single precision is 0.1 mm at 1 km. Where the robot comes by again and again,
+/// the newest scans of each place and direction stay and the others are emptied, so that memory
+/// grows with the area and not with time.
 class ScanArchive {
  public:
-  void add(const Observation& observation);
+  /// Scans that stay within a quarter of a metre and an eighth of a turn; one pass makes two or
+  /// three, a turn on the spot nine.
+  static constexpr std::size_t kScansPerPlace = 10;
 
+  void add(const Observation& observation, const Se2& map_from_base);
+
+  /// Also counts those that have been emptied.
   std::size_t size() const { return scans_.size(); }
 
   /// Where its beams went and which markers it showed; nothing else of it is kept.
   Observation at(std::size_t index) const;
 
  private:
+  using Place = std::array<int, 3>;  ///< column, row, direction
+
   struct PackedBeam {
     Eigen::Vector2f start_in_base;
     Eigen::Vector2f end_in_base;
@@ -30,7 +43,10 @@ class ScanArchive {
     std::vector<MarkerSighting> sightings{};
   };
 
+  static Place place_of(const Se2& map_from_base);
+
   std::vector<Scan> scans_{};
+  std::map<Place, std::deque<std::size_t>> at_places_{};  ///< indices, the oldest first
 };
 
 }  // namespace waymark
