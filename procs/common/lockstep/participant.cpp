@@ -14,11 +14,12 @@ constexpr std::size_t kCachedAnswers = 64;
 }  // namespace
 
 LockstepParticipant::LockstepParticipant(std::string name, std::vector<std::string> wanted_channels,
-                                         bool joins_midway, Process process)
+                                         bool joins_midway, Process process, Counters& counters)
     : name_{std::move(name)},
       wanted_channels_{std::move(wanted_channels)},
       joins_midway_{joins_midway},
-      process_{std::move(process)} {}
+      process_{std::move(process)},
+      counters_{counters} {}
 
 std::vector<Message> LockstepParticipant::take(Message message) {
   if (message.channel == channels::kTick.name) {

@@ -25,8 +25,9 @@ class LockstepParticipant {
   /// Processes the messages of one tick, in order, and returns what it publishes for it.
   using Process = std::function<std::vector<Message>(const std::vector<Message>&, bool is_last)>;
 
+  /// @param counters  where refused, strange and repeated messages are counted; outlives this.
   LockstepParticipant(std::string name, std::vector<std::string> wanted_channels, bool joins_midway,
-                      Process process);
+                      Process process, Counters& counters);
 
   /// @return what to publish now.
   /// @throws std::runtime_error when the run is under way and this process cannot join it.
@@ -39,8 +40,6 @@ class LockstepParticipant {
 
   /// The simulator has everybody's last acknowledgement.
   bool closed() const { return closed_; }
-
-  Counters& counters() { return counters_; }
 
  private:
   struct OpenTick {
@@ -62,6 +61,7 @@ class LockstepParticipant {
   std::vector<std::string> wanted_channels_;
   bool joins_midway_;
   Process process_;
+  Counters& counters_;
 
   std::optional<std::int64_t> run_id_;
   std::optional<std::int64_t> next_tick_;
@@ -71,7 +71,6 @@ class LockstepParticipant {
   std::map<std::int64_t, OpenTick> open_ticks_;
   std::map<std::int64_t, std::vector<Message>> answers_;  ///< of the newest ticks, to be sent again
   std::int64_t state_hash_{0};
-  Counters counters_;
 };
 
 }  // namespace waymark

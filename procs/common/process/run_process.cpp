@@ -55,7 +55,8 @@ int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node
                                       inbox.deliver(message);
                                     if (is_last) node.finish();
                                     return outbox.take();
-                                  }};
+                                  },
+                                  inbox.counters()};
   for (auto& subscription : subscriptions)
     subscription.backlog = Backlog::kKeepAll;
   for (const auto name : {channels::kTick.name, channels::kAck.name}) {
@@ -79,12 +80,10 @@ int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node
       spdlog::info("no TICK so far: start waymark-sim, or use --real-time with a real robot");
       hinted = true;
     }
-    reporter.report(bus, participant.counters(), newest, "lockstep");
+    reporter.report(bus, inbox.counters(), newest, "lockstep");
   }
-  bus.collect_counts(participant.counters());
-  for (const auto& [name, count] : inbox.counters().all())
-    participant.counters().add(name, count);
-  log_counters(participant.counters());
+  bus.collect_counts(inbox.counters());
+  log_counters(inbox.counters());
   if (participant.finished()) return node.failed() ? kExitFailed : kExitOk;
   if (stop_signal() == 0) {
     spdlog::error("the simulator ended the run before its last tick");
