@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/sim_node.hpp"
 
+#include "common/lockstep/contents.hpp"
 #include "common/messages/convert.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +10,8 @@
 
 namespace waymark {
 namespace {
+
+static_assert(RunConfig::kMaxWindowTicks <= kMaxWindowTicks);
 
 /// The part of a scenario that the other processes may know.
 struct RobotOnly {

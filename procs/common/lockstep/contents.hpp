@@ -15,6 +15,9 @@
 
 namespace waymark {
 
+/// Ticks in flight at most: so many answers must be at hand to be sent again.
+inline constexpr int kMaxWindowTicks = 100;
+
 /// Lists messages by channel, hashes in the order of comes_before.
 std::vector<channel_content_t> contents_of(std::vector<Message> messages);
 

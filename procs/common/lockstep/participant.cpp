@@ -8,8 +8,7 @@ namespace waymark {
 namespace {
 
 // Wider than any window of ticks in flight; what lies outside is not of this run's present.
-constexpr std::int64_t kHorizon_ticks = 256;
-constexpr std::size_t kCachedAnswers = 64;
+constexpr std::int64_t kHorizon_ticks = 2 * kMaxWindowTicks;
 
 }  // namespace
 
@@ -142,7 +141,7 @@ std::vector<Message> LockstepParticipant::answer(const tick_t& tick,
   }
   published.push_back(acknowledgement(tick, published));
   answers_[tick.tick] = published;
-  if (answers_.size() > kCachedAnswers) answers_.erase(answers_.begin());
+  if (std::ssize(answers_) > kMaxWindowTicks) answers_.erase(answers_.begin());
   return published;
 }
 

@@ -24,7 +24,7 @@ void RunConfig::describe(Fields& fields) {
                "LIDAR as lidar_t, each beam measured at its own time; else planar_lidar_t");
   fields.field("participants", participants,
                "processes that acknowledge every tick; each waits for those before it");
-  fields.field("window_ticks", window_ticks, {1, 100}, "ticks in flight at most");
+  fields.field("window_ticks", window_ticks, {1, kMaxWindowTicks}, "ticks in flight at most");
 }
 
 int Scenario::steps_per(double rate_hz) const {

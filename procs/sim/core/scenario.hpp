@@ -29,6 +29,8 @@ struct RunConfig {
   std::vector<std::string> participants{"detector", "slam", "viewer", "recorder"};
   int window_ticks{4};
 
+  static constexpr int kMaxWindowTicks = 100;
+
   void describe(Fields& fields);
 };
 

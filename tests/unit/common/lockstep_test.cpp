@@ -205,6 +205,22 @@ TEST(Lockstep, ARestartedProcessBeginsWithTheOldestTickOpenNow) {
   EXPECT_TRUE(master.all_acknowledged());
 }
 
+// A process may be a whole window ahead of what the simulator has heard from it.
+TEST(Lockstep, EveryTickOfTheWidestWindowIsAnsweredAgain) {
+  LockstepMaster master{1, {"viewer"}, kMaxWindowTicks};
+  Counters counters;
+  LockstepParticipant viewer{"viewer", {}, true, publish_nothing, counters};
+  for (int end_us = 0; master.has_room(); ++end_us)
+    viewer.take(master.open_tick(timestamp_from_us(end_us), {}, false).back());
+
+  for (const Message& message : master.resend()) {
+    for (const Message& answer : viewer.take(message))
+      master.take(answer);
+  }
+
+  EXPECT_TRUE(master.all_acknowledged());
+}
+
 TEST(Lockstep, AStatefulProcessRefusesToJoinMidway) {
   LockstepMaster master{1, {"slam"}, 1};
   Counters counters;
