@@ -107,10 +107,10 @@ class Writer final : public Fields {
 
   void leave() override { path_.pop_back(); }
 
-  std::size_t list_size(std::string_view key, std::size_t current_size,
-                        std::string_view meaning) override {
+  std::optional<std::size_t> list_size(std::string_view key, std::size_t current_size,
+                                       std::string_view meaning) override {
     if (current_size == 0) text_ += fmt::format("# [[{}]]: none. {}\n", key, meaning);
-    return current_size;
+    return std::nullopt;
   }
 
  private:

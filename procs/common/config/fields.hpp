@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,7 +73,9 @@ class Fields {
   /// An array of tables; each element starts from the struct's defaults.
   template <class Struct>
   void list(std::string_view key, std::vector<Struct>& values, std::string_view meaning) {
-    values.resize(list_size(key, values.size(), meaning));
+    if (const auto new_size = list_size(key, values.size(), meaning)) {
+      values.assign(*new_size, Struct{});
+    }
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!enter_element(key, i)) continue;
       values[i].describe(*this);
@@ -88,9 +91,9 @@ class Fields {
   virtual bool enter(std::string_view key) = 0;
   virtual bool enter_element(std::string_view key, std::size_t index) = 0;
   virtual void leave() = 0;
-  /// Number of elements that the list shall have.
-  virtual std::size_t list_size(std::string_view key, std::size_t current_size,
-                                std::string_view meaning) = 0;
+  /// Number of elements of the list that replaces the current one; nullopt when there is none.
+  virtual std::optional<std::size_t> list_size(std::string_view key, std::size_t current_size,
+                                               std::string_view meaning) = 0;
 };
 
 }  // namespace waymark

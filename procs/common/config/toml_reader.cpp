@@ -144,12 +144,13 @@ class Reader final : public Fields {
     levels_.pop_back();
   }
 
-  std::size_t list_size(std::string_view key, std::size_t current_size, std::string_view) override {
+  std::optional<std::size_t> list_size(std::string_view key, std::size_t,
+                                       std::string_view) override {
     const toml::node* node = find(key);
-    if (node == nullptr) return current_size;
+    if (node == nullptr) return std::nullopt;
     if (const toml::array* array = node->as_array()) return array->size();
     problem(key, *node, "an array of tables");
-    return current_size;
+    return std::nullopt;
   }
 
  private:

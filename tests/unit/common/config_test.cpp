@@ -22,6 +22,26 @@ struct Wrapped {
   void check(Problems& problems) const { robot.check(problems); }
 };
 
+struct Shelf {
+  int books{1};
+  int vases{2};
+
+  void describe(Fields& fields) {
+    fields.field("books", books, kNotNegative, "how many");
+    fields.field("vases", vases, kNotNegative, "how many");
+  }
+};
+
+struct Room {
+  std::vector<Shelf> shelves{};
+  int chairs{4};
+
+  void describe(Fields& fields) {
+    fields.list("shelves", shelves, "along the walls");
+    fields.field("chairs", chairs, kNotNegative, "how many");
+  }
+};
+
 std::string error_of(const ConfigSources& sources) {
   try {
     load_config<Wrapped>(sources);
@@ -52,6 +72,25 @@ TEST(Config, LaterSourcesWin) {
 
   EXPECT_EQ(config.robot.lidar.num_beams, 12);
   EXPECT_EQ(config.robot.lidar.rate_hz, 7.0);
+}
+
+TEST(Config, ALaterListReplacesAnEarlierOne) {
+  const auto file = file_with("[[shelves]]\nbooks = 30\nvases = 0\n[[shelves]]\nbooks = 40\n");
+
+  const auto config = load_config<Room>({{file}, {"shelves=[{books = 50}]"}});
+
+  ASSERT_EQ(config.shelves.size(), 1U);
+  EXPECT_EQ(config.shelves[0].books, 50);
+  EXPECT_EQ(config.shelves[0].vases, Shelf{}.vases);
+}
+
+TEST(Config, AListStandsWhenALaterSourceHasNone) {
+  const auto file = file_with("[[shelves]]\nbooks = 30\n");
+
+  const auto config = load_config<Room>({{file}, {"chairs=2"}});
+
+  ASSERT_EQ(config.shelves.size(), 1U);
+  EXPECT_EQ(config.shelves[0].books, 30);
 }
 
 TEST(Config, AllProblemsAreReportedWithTheirLines) {
