@@ -7,7 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <fstream>
+#include <sstream>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -72,6 +76,17 @@ class Replay : public ::testing::Test {
   std::string heard_;
 };
 
+/// What the lines of progress say, "replay  30 %  ...".
+std::vector<int> shown_percents(const std::string& text) {
+  std::vector<int> percents;
+  std::istringstream lines{text};
+  for (std::string line; std::getline(lines, line);) {
+    int percent = 0;
+    if (std::sscanf(line.c_str(), "replay %d %%", &percent) == 1) percents.push_back(percent);
+  }
+  return percents;
+}
+
 TEST_F(Replay, MergesLogsByTime) {
   const auto a = log("a.lcm", {pose("ODOMETRY", 1, 1), pose("ODOMETRY", 5, 1)});
   const auto b = log("b.lcm", {pose("SLAM_POSE", 3, 2)});
@@ -79,6 +94,24 @@ TEST_F(Replay, MergesLogsByTime) {
   EXPECT_EQ(heard_, "ODOMETRY 1 1\nSLAM_POSE 3 2\nODOMETRY 5 1\nend\n");
   LogReader out{folder_ / "out.lcm"};
   EXPECT_EQ(out.next()->channel, "TRUE_POSE");
+}
+
+TEST_F(Replay, ProgressIsThatOfAllLogsTogether) {
+  std::vector<Message> early;
+  std::vector<Message> late;
+  for (int i = 0; i < 100; ++i) {
+    early.push_back(pose("ODOMETRY", i, 1.0F));
+    late.push_back(pose("SLAM_POSE", 50 + i, 2.0F));
+  }
+  const std::vector logs{log("early.lcm", early), log("late.lcm", late)};
+
+  ::testing::internal::CaptureStderr();
+  replay(logs);
+  const std::vector<int> percents = shown_percents(::testing::internal::GetCapturedStderr());
+
+  EXPECT_TRUE(std::ranges::is_sorted(percents)) << ::testing::PrintToString(percents);
+  EXPECT_EQ(percents.back(), 100);
+  EXPECT_LE(percents.size(), 11U);
 }
 
 TEST_F(Replay, ALaterLogReplacesAChannelAndAllOfSlam) {

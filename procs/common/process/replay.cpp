@@ -70,6 +70,17 @@ Source* oldest(std::vector<Source>& sources) {
   return best;
 }
 
+/// Share of all logs' bytes that has been read, 0..1.
+double share_read(const std::vector<Source>& sources) {
+  std::int64_t read_bytes = 0;
+  std::int64_t all_bytes = 0;
+  for (const Source& source : sources) {
+    read_bytes += source.reader.offset_bytes();
+    all_bytes += source.reader.size_bytes();
+  }
+  return static_cast<double>(read_bytes) / static_cast<double>(all_bytes);
+}
+
 bool report_skipped(const std::vector<Source>& sources) {
   bool any = false;
   for (const Source& source : sources) {
@@ -118,9 +129,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
     inbox.deliver(*source->head);
     write_out();
     ++num_messages;
-    progress.show(static_cast<double>(source->reader.offset_bytes()) /
-                      static_cast<double>(std::max<std::int64_t>(1, source->reader.size_bytes())),
-                  fmt::format("{:.1f} s", to_seconds(last - *first)));
+    progress.show(share_read(sources), fmt::format("{:.1f} s", to_seconds(last - *first)));
     source->advance();
   }
   node.finish();
