@@ -93,8 +93,9 @@ RejectReason validate(const map_tiles_t& m) {
   const bool tiles_agree = std::ranges::all_of(m.tiles, [cells_per_tile](const map_tile_t& tile) {
     constexpr int kMaxTileIndex = 1 << 20;
     return tile.num_cells == cells_per_tile && has_size(tile.occupancy, tile.num_cells) &&
-           has_size(tile.marker_ids, tile.num_cells) && std::abs(tile.tile_x) < kMaxTileIndex &&
-           std::abs(tile.tile_y) < kMaxTileIndex;
+           has_size(tile.marker_ids, tile.num_cells) && tile.tile_x > -kMaxTileIndex &&
+           tile.tile_x < kMaxTileIndex && tile.tile_y > -kMaxTileIndex &&
+           tile.tile_y < kMaxTileIndex;
   });
   const bool parts_agree = m.part >= 0 && m.part < m.num_parts;
   return first_of(has_size(m.tiles, m.num_tiles) && tiles_agree && parts_agree &&

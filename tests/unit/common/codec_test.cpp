@@ -260,6 +260,18 @@ TEST(Codec, SensesNonsense) {
   EXPECT_FALSE(time_of(payload));
 }
 
+TEST(Codec, TilesFarOutAreRefused) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  for (const std::int32_t far_index : {Limits::min(), Limits::max()}) {
+    map_tiles_t map = small_map();
+    map.tiles[0].tile_x = far_index;
+    EXPECT_THROW(encode(channels::kSlamMap, map), std::logic_error) << far_index;
+    map = small_map();
+    map.tiles[0].tile_y = far_index;
+    EXPECT_THROW(encode(channels::kSlamMap, map), std::logic_error) << far_index;
+  }
+}
+
 TEST(Convert, MbotAnglesTurnRoundAndZeroMeansNoReturn) {
   lidar_t m{};
   m.utime = 100;
