@@ -165,6 +165,20 @@ int run_real_time(const ProcessTraits& traits, const std::string& url, Node& nod
   return !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
 }
 
+/// @throws SetupError for an option that would have no effect.
+void check(const ProcessOptions& options, const OptionSet& option_set) {
+  const bool is_recorder = !option_set.log;
+  const bool is_replay = !options.logs.empty();
+  if (!is_recorder && !is_replay && !options.out_log.empty()) {
+    throw SetupError{"--out-log needs --log; live runs are recorded by waymark-recorder"};
+  }
+  if (is_replay && (options.real_time || !options.lcm_url.empty())) {
+    throw SetupError{
+        "--log reads a file and no network, as fast as it can: leave out --real-time and "
+        "--lcm-url"};
+  }
+}
+
 }  // namespace
 
 int run_described_process(int argc, char** argv, const ProcessDescription& description) {
@@ -177,10 +191,7 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
       fmt::print("{}", description.dump_config(options));
       return int{kExitOk};
     }
-    const bool is_recorder = !description.option_set.log;
-    if (!is_recorder && !options.out_log.empty() && options.logs.empty()) {
-      throw SetupError{"--out-log needs --log; live runs are recorded by waymark-recorder"};
-    }
+    check(options, description.option_set);
     Inbox inbox;
     Outbox outbox;
     const auto node = description.make_node(options, inbox, outbox);
