@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 namespace waymark {
 namespace {
@@ -31,6 +32,20 @@ image_t to_image_message(const CameraFrame& frame) {
   message.data = frame.jpeg;
   message.nmetadata = 0;
   return message;
+}
+
+std::string_view counter_of(CommandOutcome outcome) {
+  switch (outcome) {
+    case CommandOutcome::kInTime:
+      return "DRIVE_COMMAND obeyed";
+    case CommandOutcome::kLate:
+      return "DRIVE_COMMAND late";
+    case CommandOutcome::kOutdated:
+      return "DRIVE_COMMAND dropped: a newer one has acted";
+    case CommandOutcome::kTooMany:
+      break;
+  }
+  return "DRIVE_COMMAND dropped: too many wait";
 }
 
 }  // namespace
@@ -73,8 +88,8 @@ std::int64_t SimNode::run_id() const {
 
 void SimNode::obey(const twist2D_t& command) {
   const Velocity velocity{double{command.vx}, double{command.wz}};
-  const bool in_time = simulation_->command(timestamp_from_us(command.utime), velocity);
-  inbox_.counters().add(in_time ? "DRIVE_COMMAND obeyed" : "DRIVE_COMMAND late");
+  inbox_.counters().add(
+      counter_of(simulation_->command(timestamp_from_us(command.utime), velocity)));
 }
 
 std::vector<Message> SimNode::advance(Timestamp& tick_end) {

@@ -70,7 +70,7 @@ Tick Simulation::advance() {
   return tick;
 }
 
-bool Simulation::command(Timestamp stamp, const Velocity& velocity) {
+CommandOutcome Simulation::command(Timestamp stamp, const Velocity& velocity) {
   return commands_.receive(stamp, velocity);
 }
 

@@ -47,8 +47,7 @@ class Simulation {
   Tick advance();
 
   /// A velocity command (route.source = command only).
-  /// @return false when it comes too late for the fixed delay.
-  bool command(Timestamp stamp, const Velocity& velocity);
+  CommandOutcome command(Timestamp stamp, const Velocity& velocity);
 
   /// The robot has arrived and stood long enough, or the time is over.
   bool finished() const;

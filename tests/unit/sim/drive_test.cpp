@@ -134,7 +134,7 @@ TEST(RouteFollower, ProgressEndsAtTheRoutesLength) {
 TEST(CommandFollower, ACommandActsAFixedTimeAfterItsStamp) {
   const Duration delay{500'000};
   CommandFollower follower{{}, delay, kPeriod_s};
-  EXPECT_TRUE(follower.receive(timestamp_from_us(100'000), {0.2, 0.0}));
+  EXPECT_EQ(follower.receive(timestamp_from_us(100'000), {0.2, 0.0}), CommandOutcome::kInTime);
 
   EXPECT_EQ(follower.next(timestamp_from_us(599'999)).forward_mps, 0.0);
   EXPECT_GT(follower.next(timestamp_from_us(600'000)).forward_mps, 0.0);
@@ -143,8 +143,27 @@ TEST(CommandFollower, ACommandActsAFixedTimeAfterItsStamp) {
 TEST(CommandFollower, LateCommandsAreReportedAndObeyed) {
   CommandFollower follower{{}, Duration{500'000}, kPeriod_s};
   follower.next(timestamp_from_us(2'000'000));
-  EXPECT_FALSE(follower.receive(timestamp_from_us(1'000'000), {0.2, 0.0}));
+  EXPECT_EQ(follower.receive(timestamp_from_us(1'000'000), {0.2, 0.0}), CommandOutcome::kLate);
   EXPECT_GT(follower.next(timestamp_from_us(2'010'000)).forward_mps, 0.0);
+}
+
+TEST(CommandFollower, ACommandFromBeforeTheOneObeyedIsIgnored) {
+  CommandFollower follower{{}, Duration{500'000}, kPeriod_s};
+  follower.receive(timestamp_from_us(1'000'000), {0.0, 0.0});
+  follower.next(timestamp_from_us(1'500'000));
+
+  EXPECT_EQ(follower.receive(timestamp_from_us(999'999), {0.2, 0.0}), CommandOutcome::kOutdated);
+  EXPECT_EQ(follower.next(timestamp_from_us(1'510'000)).forward_mps, 0.0);
+}
+
+TEST(CommandFollower, AFloodOfCommandsForLaterStaysBounded) {
+  CommandFollower follower{{}, Duration{500'000}, kPeriod_s};
+  int num_refused = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const auto outcome = follower.receive(timestamp_from_us(1'000'000 + i), {0.2, 0.0});
+    if (outcome == CommandOutcome::kTooMany) ++num_refused;
+  }
+  EXPECT_EQ(num_refused, 90'000);
 }
 
 TEST(CommandFollower, OrderOfArrivalDoesNotMatter) {

@@ -149,12 +149,16 @@ TEST(SimNode, ObeysDriveCommandsWhenTheScenarioSaysSo) {
   Inbox inbox;
   SimNode node{config, inbox};
   twist2D_t command{};
+  command.utime = 1;
   command.vx = 0.2F;
   inbox.deliver(encode(channels::kDriveCommand, command));
   Timestamp tick_end{};
   while (!node.finished())
     node.advance(tick_end);
+  command.utime = 0;
+  inbox.deliver(encode(channels::kDriveCommand, command));
   EXPECT_EQ(inbox.counters().get("DRIVE_COMMAND obeyed"), 1);
+  EXPECT_EQ(inbox.counters().get("DRIVE_COMMAND dropped: a newer one has acted"), 1);
   EXPECT_EQ(node.progress(), "at (1.1, 0.0) m");
 }
 

@@ -109,7 +109,7 @@ TEST(Simulation, ObeysCommandsAFixedTimeLater) {
   scenario.route.source = DriveSource::kCommand;
   scenario.route.duration_s = 2.0;
   Simulation simulation{scenario};
-  EXPECT_TRUE(simulation.command(timestamp_from_us(0), {0.2, 0.0}));
+  EXPECT_EQ(simulation.command(timestamp_from_us(0), {0.2, 0.0}), CommandOutcome::kInTime);
   for (int i = 0; i < 8; ++i)
     simulation.advance();
   EXPECT_NEAR(simulation.world_from_base().x(), 1.0, 1e-4);

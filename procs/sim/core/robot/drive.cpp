@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace waymark {
 namespace {
@@ -16,6 +17,7 @@ constexpr double kTurnAcceleration_per_m = 5.0;  // of the forward one: alike at
 constexpr double kArrived_m = 0.001;
 constexpr double kSlowestShare = 0.1;     // of the speed; creep to the point, do not creep for ever
 constexpr double kSteeringReserve = 0.8;  // share of the turn speed that an arc may take
+constexpr std::size_t kMaxPendingCommands = 10'000;  // minutes of them at any sensible rate
 
 }  // namespace
 
@@ -143,16 +145,18 @@ void RouteFollower::begin_anew() {
 CommandFollower::CommandFollower(const RouteConfig& config, Duration delay, double period_s)
     : config_{config}, delay_{delay}, period_s_{period_s} {}
 
-bool CommandFollower::receive(Timestamp stamp, const Velocity& velocity) {
+CommandOutcome CommandFollower::receive(Timestamp stamp, const Velocity& velocity) {
   const Timestamp acts_at = stamp + delay_;
+  if (acts_at < wanted_since_) return CommandOutcome::kOutdated;
+  if (pending_.size() >= kMaxPendingCommands) return CommandOutcome::kTooMany;
   pending_[acts_at] = velocity;
-  return acts_at > now_;
+  return acts_at > now_ ? CommandOutcome::kInTime : CommandOutcome::kLate;
 }
 
 Velocity CommandFollower::next(Timestamp now) {
   now_ = now;
   while (!pending_.empty() && pending_.begin()->first <= now) {
-    wanted_ = pending_.begin()->second;
+    std::tie(wanted_since_, wanted_) = *pending_.begin();
     pending_.erase(pending_.begin());
   }
   const double max_change_mps = config_.acceleration_mps2 * period_s_;

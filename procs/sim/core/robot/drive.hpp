@@ -97,13 +97,20 @@ class RouteFollower {
   double progress_m_{0.0};
 };
 
+/// What becomes of a velocity command.
+enum class CommandOutcome {
+  kInTime,
+  kLate,      ///< its time to act is over: it acts at once
+  kOutdated,  ///< a newer one has acted already: ignored
+  kTooMany,   ///< too many wait for their time to act: ignored
+};
+
 /// Obeys velocity commands, each a fixed time after its stamp, within the robot's acceleration.
 class CommandFollower {
  public:
   CommandFollower(const RouteConfig& config, Duration delay, double period_s);
 
-  /// Takes a command; returns false when its time to act is already over (it then acts at once).
-  bool receive(Timestamp stamp, const Velocity& velocity);
+  CommandOutcome receive(Timestamp stamp, const Velocity& velocity);
 
   /// What to do now. Call in order of time.
   Velocity next(Timestamp now);
@@ -114,6 +121,7 @@ class CommandFollower {
   double period_s_;
   Timestamp now_{};
   std::map<Timestamp, Velocity> pending_;  ///< by the time at which they act
+  Timestamp wanted_since_{};               ///< time at which `wanted_` was to act
   Velocity wanted_{};
   Velocity current_{};
 };
