@@ -13,10 +13,6 @@ constexpr double kSmallStep = 2e-4;  // [m, rad] well below what a scan tells
 
 }  // namespace
 
-Se2 PoseProposal::at(const Eigen::Vector3d& standard_normal) const {
-  return deviated(mean, covariance.llt().matrixL() * standard_normal);
-}
-
 PoseProposal propose(const Se2& prior_mean, const Eigen::Matrix3d& prior_covariance,
                      const MeasurementModel& measurements, const Se2& start) {
   const Eigen::Matrix3d prior_information = prior_covariance.inverse();

@@ -12,9 +12,6 @@ struct PoseProposal {
   Se2 mean{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< (x, y, theta), map frame
   double log_evidence{0.0};  ///< of the measurements given the prior, up to their constants
-
-  /// The pose at `standard_normal` standard deviations.
-  Se2 at(const Eigen::Vector3d& standard_normal) const;
 };
 
 /// Measurements as a second-order model of their negative log-likelihood about a pose, given how
