@@ -59,7 +59,7 @@ void SlamSection::describe(Fields& fields) {
                 "method");
   fields.field("seed", seed, {0.0, 9e15}, "of all random numbers");
   fields.field("threads", threads, {1.0, 256.0},
-               "for the particles of gmapping; any number gives the same result");
+               "for the particles of gmapping and waymark; any number gives the same result");
   fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
   fields.field("map_period_s", map_period_s, kPositive,
                "message time between two SLAM_MAP and SLAM_MARKERS updates");

@@ -86,9 +86,9 @@ struct MarkerMeasurement {
   Eigen::Matrix3d by_errors_at(const Eigen::Vector2d& place_in_base) const;
 };
 
-/// The last sighting of each marker of an observation as a measurement. The corners tell the
-/// bearing best and the range worst; the wall tells where along that bearing the marker is. A view
-/// that the wall contradicts (a flipped pose) gives no measurement.
+/// The sightings of an observation's newest frame as measurements. The corners tell the bearing
+/// best and the range worst; the wall tells where along that bearing the marker is. A view that the
+/// wall contradicts (a flipped pose) gives no measurement.
 /// @param odometry  that carried the sightings from their frames' times to the scan's.
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
                                                const MarkerSensors& sensors,
