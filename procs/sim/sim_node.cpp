@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/sim_node.hpp"
 
+#include "common/files/whole_file.hpp"
 #include "common/lockstep/contents.hpp"
 #include "common/messages/convert.hpp"
 
@@ -8,6 +9,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <system_error>
 
 namespace waymark {
 namespace {
@@ -53,10 +55,12 @@ std::string_view counter_of(CommandOutcome outcome) {
 SimNode::SimNode(const Config& config, Inbox& inbox) : config_{config}, inbox_{inbox} {
   try {
     simulation_.emplace(config_);
+    if (!config_.out_dir.empty()) write_what_is_known();
   } catch (const SimulatorError& error) {
     throw SetupError{error.what()};
+  } catch (const std::system_error& error) {
+    throw SetupError{error.what()};
   }
-  if (!config_.out_dir.empty()) write_what_is_known();
   if (config_.route.source == DriveSource::kCommand) {
     inbox.on<twist2D_t>(channels::kDriveCommand,
                         [this](const twist2D_t& command) { obey(command); });
@@ -64,12 +68,11 @@ SimNode::SimNode(const Config& config, Inbox& inbox) : config_{config}, inbox_{i
 }
 
 void SimNode::write_what_is_known() {
-  std::error_code error;
-  std::filesystem::create_directories(config_.out_dir, error);
+  std::filesystem::create_directories(config_.out_dir);
   write_whole_file(config_.out_dir / "scenario.toml", dump_config(config_));
   write_whole_file(config_.out_dir / "robot.toml", dump_config(RobotOnly{config_.robot}));
   write_whole_file(config_.out_dir / "truth_markers.csv", truth_markers_csv(simulation_->world()));
-  std::filesystem::remove(config_.out_dir / "truth_marker_moves.csv", error);  // of another run
+  std::filesystem::remove(config_.out_dir / "truth_marker_moves.csv");  // of another run
   if (!config_.markers.moved.empty()) write_moves({});
   truth_.emplace(config_.out_dir / "truth.tum");
 }

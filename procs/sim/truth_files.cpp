@@ -10,10 +10,6 @@
 namespace waymark {
 namespace {
 
-std::filesystem::path unfinished(const std::filesystem::path& path) {
-  return path.string() + ".unfinished";
-}
-
 [[noreturn]] void throw_not_writable(const std::filesystem::path& path) {
   throw SetupError{path.string() + ": cannot be written; does the folder exist, is it writable?"};
 }
@@ -24,16 +20,6 @@ std::string marker_row(const MarkerPlate& marker) {
 }
 
 }  // namespace
-
-void write_whole_file(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path unfinished_path = unfinished(path);
-  std::ofstream stream{unfinished_path, std::ios::binary};
-  stream << text;
-  stream.close();
-  std::error_code error;
-  if (stream) std::filesystem::rename(unfinished_path, path, error);
-  if (!stream || error) throw_not_writable(path);
-}
 
 std::string truth_markers_csv(const World& world) {
   std::string text = "id,instance,x_m,y_m,yaw_rad\n";
@@ -51,7 +37,7 @@ std::string truth_marker_moves_csv(const std::vector<MovedMarker>& moves) {
 }
 
 TruthTrajectory::TruthTrajectory(const std::filesystem::path& path)
-    : path_{path}, unfinished_path_{unfinished(path)}, stream_{unfinished_path_} {
+    : path_{path}, unfinished_path_{path.string() + ".unfinished"}, stream_{unfinished_path_} {
   if (!stream_) throw_not_writable(path);
 }
 

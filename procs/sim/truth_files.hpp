@@ -11,10 +11,6 @@
 
 namespace waymark {
 
-/// Writes a file under another name first and renames it: a file that is there is whole.
-/// @throws SetupError when it cannot be written.
-void write_whole_file(const std::filesystem::path& path, const std::string& text);
-
 /// `id,instance,x_m,y_m,yaw_rad` of every marker, world frame; yaw = direction that it faces.
 std::string truth_markers_csv(const World& world);
 

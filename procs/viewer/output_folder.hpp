@@ -9,11 +9,6 @@
 
 namespace waymark::viewer {
 
-/// Writes to a temporary name in the same folder and renames it, so that a reader finds the old
-/// content or the new, never a part.
-/// @throws std::system_error with the file's name; the old file then still stands.
-void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
-
 class OutputFolder {
  public:
   /// Creates the folder if need be.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/commands.hpp"
 
+#include "common/files/whole_file.hpp"
 #include "evaluate/report.hpp"
 
 #include <fmt/format.h>

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <system_error>
 
 namespace {
 
@@ -179,7 +180,7 @@ int main(int argc, char** argv) {
   } catch (const InputError& error) {
     fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
     return kUsage;
-  } catch (const std::filesystem::filesystem_error& error) {
+  } catch (const std::system_error& error) {
     fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
     return kUsage;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sub-commands about many runs.
+#include "common/files/whole_file.hpp"
 #include "evaluate/commands.hpp"
 #include "evaluate/sweep_report.hpp"
 

@@ -105,20 +105,4 @@ CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::stri
   return table;
 }
 
-void write_whole_file(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path temporary = file.string() + ".tmp";
-  {
-    std::ofstream output{temporary, std::ios::binary};
-    output << text;
-    output.flush();
-    if (!output)
-      throw InputError{
-          fmt::format("{}: cannot be written; check the folder and its rights", file.string())};
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, file, error);
-  if (error)
-    throw InputError{fmt::format("{}: cannot be written: {}", file.string(), error.message())};
-}
-
 }  // namespace waymark::evaluate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text files in and out: lines, numbers, comma-separated tables, whole files written at once.
+// Text files: lines, numbers, comma-separated tables.
 #pragma once
 
 #include <cstddef>
@@ -51,9 +51,5 @@ struct CsvTable {
 /// @throws InputError if the file cannot be read or a column is missing.
 CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns,
                   Skipped& skipped);
-
-/// Writes to a temporary name and renames, so that a file that is there is whole.
-/// @throws InputError if that fails.
-void write_whole_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace waymark::evaluate

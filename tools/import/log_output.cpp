@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/log_output.hpp"
 
+#include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "common/messages/convert.hpp"
 #include "common/process/node.hpp"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 namespace waymark {
 namespace {
@@ -20,15 +20,6 @@ struct RobotFile {
 
   void describe(Fields& fields) { fields.section("robot", robot); }
 };
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path part = path.string() + ".part";
-  std::ofstream file{part, std::ios::binary | std::ios::trunc};
-  file << text;
-  file.close();
-  if (!file) throw SetupError{path.string() + ": cannot be written"};
-  std::filesystem::rename(part, path);
-}
 
 std::string to_tum(const std::vector<ImportedPose>& poses) {
   std::string text;
@@ -87,8 +78,8 @@ void write_imported_log(const ImportedLog& log, const std::filesystem::path& out
   try {
     std::filesystem::create_directories(folder);
     write_log(log, out);
-    write_text(folder / "robot.toml", dump_config(RobotFile{log.robot}));
-    if (!log.reference.empty()) write_text(folder / "reference.tum", to_tum(log.reference));
+    write_whole_file(folder / "robot.toml", dump_config(RobotFile{log.robot}));
+    if (!log.reference.empty()) write_whole_file(folder / "reference.tum", to_tum(log.reference));
   } catch (const std::runtime_error& error) {
     throw SetupError{error.what()};
   }

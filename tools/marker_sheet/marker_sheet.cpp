@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "marker_sheet/marker_sheet.hpp"
 
+#include "common/files/whole_file.hpp"
 #include "detector/core/marker_dictionary.hpp"
-#include "evaluate/text_file.hpp"
 
 #include <fmt/format.h>
 #include <opencv2/aruco.hpp>
@@ -136,7 +136,7 @@ std::filesystem::path write_sheet(const SheetOptions& options, int id,
   bytes.insert(kAfterHeader, size_chunk(sheet.pixels_per_m));
   std::filesystem::create_directories(folder);
   const auto file = folder / fmt::format("marker_{}_{:04}.png", options.dictionary, id);
-  evaluate::write_whole_file(file, bytes);
+  write_whole_file(file, bytes);
   return file;
 }
 

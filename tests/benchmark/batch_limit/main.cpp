@@ -2,6 +2,7 @@
 // Prints how well the data of a recorded run determine its trajectory: the best that any method
 // could do, by least squares over all of the log at once. The truth is used only to measure that.
 #include "batch_limit/least_squares.hpp"
+#include "common/files/whole_file.hpp"
 #include "evaluate/marker_error.hpp"
 #include "evaluate/trajectory_error.hpp"
 
@@ -48,7 +49,7 @@ void write_tum(const fs::path& file, const Trajectory& trajectory) {
   for (const auto& [t_s, pose] : trajectory)
     text += fmt::format("{:.6f} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n", t_s, pose.x(), pose.y(),
                         std::sin(0.5 * pose.theta()), std::cos(0.5 * pose.theta()));
-  evaluate::write_whole_file(file, text);
+  write_whole_file(file, text);
 }
 
 std::vector<evaluate::PosePair> pairs_of(const Trajectory& trajectory, const Trajectory& truth,

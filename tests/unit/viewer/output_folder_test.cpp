@@ -8,14 +8,12 @@
 
 #include <fstream>
 #include <iterator>
-#include <system_error>
 
 namespace waymark::viewer {
 namespace {
 
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 class OutputFolderTest : public ::testing::Test {
  protected:
@@ -49,14 +47,6 @@ TEST_F(OutputFolderTest, CreatesFoldersAndLeavesNothingButTheFiles) {
   EXPECT_TRUE(folder.failed_files().empty());
 }
 
-TEST_F(OutputFolderTest, ReadersOfTheOldFileKeepIt) {
-  OutputFolder folder{root_};
-  folder.write("a", "old content");
-  std::ifstream reader{root_ / "a"};
-  folder.write("a", "new");
-  EXPECT_EQ((std::string{std::istreambuf_iterator<char>{reader}, {}}), "old content");
-}
-
 TEST_F(OutputFolderTest, AFullDiskIsReportedAndLeavesNoFile) {
   // The temporary file's place is taken by a link to the device that is always full.
   OutputFolder folder{root_};
@@ -80,16 +70,6 @@ TEST_F(OutputFolderTest, AFailureKeepsTheOldFileAndTheOthersGoOn) {
   EXPECT_THAT(folder.failed_files(), ElementsAre("map.png"));
   EXPECT_EQ(content_of(root_ / "markers.csv"), "fine");
   EXPECT_FALSE(fs::exists(root_ / ".map.png.part"));
-}
-
-TEST_F(OutputFolderTest, TheErrorNamesFileAndReason) {
-  try {
-    write_file_atomically("/no/such/folder/map.pgm", "");
-    FAIL() << "no error";
-  } catch (const std::system_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("/no/such/folder/map.pgm: cannot be written"));
-    EXPECT_THAT(error.what(), HasSubstr("No such file"));
-  }
 }
 
 TEST_F(OutputFolderTest, APlaceThatCannotBeWrittenIsASetupError) {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files that are whole when they are there.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace waymark {
+
+/// Writes to a temporary name in the same folder and renames it, so that a reader finds the old
+/// content or the new, never a part.
+/// @throws std::system_error with the file's name; the old file then still stands.
+void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace waymark
