@@ -16,13 +16,6 @@ namespace {
 
 static_assert(RunConfig::kMaxWindowTicks <= kMaxWindowTicks);
 
-/// The part of a scenario that the other processes may know.
-struct RobotOnly {
-  RobotConfig robot{};
-
-  void describe(Fields& fields) { fields.section("robot", robot); }
-};
-
 image_t to_image_message(const CameraFrame& frame) {
   image_t message{};
   message.utime = to_us(frame.time);
@@ -70,7 +63,7 @@ SimNode::SimNode(const Config& config, Inbox& inbox) : config_{config}, inbox_{i
 void SimNode::write_what_is_known() {
   std::filesystem::create_directories(config_.out_dir);
   write_whole_file(config_.out_dir / "scenario.toml", dump_config(config_));
-  write_whole_file(config_.out_dir / "robot.toml", dump_config(RobotOnly{config_.robot}));
+  write_whole_file(config_.out_dir / "robot.toml", dump_robot_config(config_.robot));
   write_whole_file(config_.out_dir / "truth_markers.csv", truth_markers_csv(simulation_->world()));
   std::filesystem::remove(config_.out_dir / "truth_marker_moves.csv");  // of another run
   if (!config_.markers.moved.empty()) write_moves({});

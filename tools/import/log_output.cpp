@@ -14,13 +14,6 @@
 namespace waymark {
 namespace {
 
-/// The part of a process's configuration that tells of the robot.
-struct RobotFile {
-  RobotConfig robot{};
-
-  void describe(Fields& fields) { fields.section("robot", robot); }
-};
-
 std::string to_tum(const std::vector<ImportedPose>& poses) {
   std::string text;
   for (const ImportedPose& pose : poses) {
@@ -78,7 +71,7 @@ void write_imported_log(const ImportedLog& log, const std::filesystem::path& out
   try {
     std::filesystem::create_directories(folder);
     write_log(log, out);
-    write_whole_file(folder / "robot.toml", dump_config(RobotFile{log.robot}));
+    write_whole_file(folder / "robot.toml", dump_robot_config(log.robot));
     if (!log.reference.empty()) write_whole_file(folder / "reference.tum", to_tum(log.reference));
   } catch (const std::runtime_error& error) {
     throw SetupError{error.what()};

@@ -57,19 +57,13 @@ template <class SourceType>
 int run_simulator(int argc, char** argv) {
   using Config = typename SourceType::Config;
 
-  struct RobotOnly {
-    RobotConfig robot;
-
-    void describe(Fields& fields) { fields.section("robot", robot); }
-  };
-
   SimulatorDescription description;
   description.traits = SourceType::kTraits;
   description.dump_config = [](const ProcessOptions& options) {
     return dump_config(simulator_config_from<Config>(options));
   };
   description.dump_robot_config = [](const ProcessOptions& options) {
-    return dump_config(RobotOnly{simulator_config_from<Config>(options).robot});
+    return dump_robot_config(simulator_config_from<Config>(options).robot);
   };
   description.make_source = [](const ProcessOptions& options, Inbox& inbox) {
     return std::make_unique<SourceType>(simulator_config_from<Config>(options), inbox);

@@ -100,4 +100,14 @@ void RobotConfig::check(Problems& problems) const {
   }
 }
 
+std::string dump_robot_config(const RobotConfig& robot) {
+  struct RobotOnly {
+    RobotConfig robot;
+
+    void describe(Fields& fields) { fields.section("robot", robot); }
+  };
+
+  return dump_config(RobotOnly{robot});
+}
+
 }  // namespace waymark

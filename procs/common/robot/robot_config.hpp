@@ -90,4 +90,7 @@ struct RobotConfig {
   void check(Problems& problems) const;
 };
 
+/// Section [robot] as TOML.
+std::string dump_robot_config(const RobotConfig& robot);
+
 }  // namespace waymark
