@@ -137,6 +137,24 @@ TEST_F(Replay, AMissingLogIsASetupError) {
   EXPECT_THROW(replay({folder_ / "none.lcm"}), SetupError);
 }
 
+TEST_F(Replay, ALogThatIsReadIsNotOverwritten) {
+  const auto path = log("out.lcm", {pose("ODOMETRY", 1, 1)});
+  const auto link = folder_ / "link.lcm";
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(path, link);
+  EXPECT_THROW(replay({path}), SetupError);
+  EXPECT_THROW(replay({link}), SetupError);
+  EXPECT_EQ(channels_in(path), std::vector<std::string>{"ODOMETRY"});
+}
+
+TEST_F(Replay, AFolderInTheOutputsPlaceIsFoundAtTheStart) {
+  const auto path = log("a.lcm", {pose("ODOMETRY", 1, 1)});
+  std::filesystem::remove(folder_ / "out.lcm");
+  std::filesystem::create_directory(folder_ / "out.lcm");
+  EXPECT_THROW(replay({path}), SetupError);
+  EXPECT_EQ(heard_, "");
+}
+
 TEST_F(Replay, RefusedMessagesFail) {
   Message bad = pose("ODOMETRY", 1, 1);
   bad.payload.push_back(0);

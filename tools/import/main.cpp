@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/log/log_file.hpp"
 #include "common/process/exit_codes.hpp"
 #include "common/process/guard.hpp"
 #include "import/carmen_reader.hpp"
@@ -114,9 +115,8 @@ void tell(const ImportReport& report) {
 }
 
 int import(const Options& options, bool is_carmen) {
-  std::error_code none;
-  if (std::filesystem::equivalent(options.file, options.out, none)) {
-    throw SetupError{"--out is the log to read: give another name"};
+  if (would_overwrite(options.out, options.file)) {
+    throw SetupError{"--out would overwrite the log to read: give another name"};
   }
   ImportReport report{options.file, is_carmen ? AddressUnit::kLine : AddressUnit::kByte};
   try {

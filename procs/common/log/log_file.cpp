@@ -32,6 +32,10 @@ void append_big_endian(std::string& bytes, Unsigned value) {
   }
 }
 
+std::filesystem::path part_path_of(const std::filesystem::path& path) {
+  return path.string() + ".part";
+}
+
 }  // namespace
 
 struct LogReader::Header {
@@ -127,8 +131,18 @@ std::vector<std::string> channels_in(const std::filesystem::path& path) {
   return {channels.begin(), channels.end()};
 }
 
+bool would_overwrite(const std::filesystem::path& out, const std::filesystem::path& file) {
+  std::error_code none;  // a file that is not there is no other's equivalent
+  return std::filesystem::equivalent(out, file, none) ||
+         std::filesystem::equivalent(part_path_of(out), file, none);
+}
+
 LogWriter::LogWriter(const std::filesystem::path& path)
-    : path_{path}, part_path_{path.string() + ".part"}, buffer_(kBufferBytes) {
+    : path_{path}, part_path_{part_path_of(path)}, buffer_(kBufferBytes) {
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
+    throw std::runtime_error{path.string() +
+                             ": is a folder or a device; give the name of a file for the log"};
+  }
   file_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
   file_.open(part_path_, std::ios::binary | std::ios::trunc);
   if (!file_) throw std::runtime_error{part_path_.string() + ": cannot be created"};

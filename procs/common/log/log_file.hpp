@@ -58,10 +58,14 @@ class LogReader {
 /// Channels that occur in a log.
 std::vector<std::string> channels_in(const std::filesystem::path& path);
 
+/// True when a LogWriter on `out` would destroy `file`, by whatever name either is given.
+bool would_overwrite(const std::filesystem::path& out, const std::filesystem::path& file);
+
 /// Writes events to `path` + ".part" and renames it when closed: a log that is there is whole.
 class LogWriter {
  public:
-  /// @throws std::runtime_error when the file cannot be created.
+  /// @throws std::runtime_error when the file cannot be created, or would take the place of
+  /// something that is not a regular file.
   explicit LogWriter(const std::filesystem::path& path);
   ~LogWriter() = default;
   LogWriter(const LogWriter&) = delete;

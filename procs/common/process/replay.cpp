@@ -98,12 +98,24 @@ bool any_rejected(const Counters& counters) {
   });
 }
 
+/// @throws SetupError when writing --out-log would destroy a log that is to be read.
+void protect_logs(const ProcessOptions& options) {
+  for (const std::filesystem::path& log : options.logs) {
+    if (would_overwrite(options.out_log, log)) {
+      throw SetupError{
+          fmt::format("--out-log {} would overwrite {}, which is to be read: give another name",
+                      options.out_log.string(), log.string())};
+    }
+  }
+}
+
 }  // namespace
 
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox) {
   std::vector<Source> sources = open_sources(options.logs, inbox.subscriptions());
   std::optional<LogWriter> writer;
   if (!options.out_log.empty()) {
+    protect_logs(options);
     try {
       writer.emplace(options.out_log);
     } catch (const std::exception& error) {

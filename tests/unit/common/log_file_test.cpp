@@ -128,6 +128,32 @@ TEST_F(LogFile, MissingFilesAreNamed) {
   EXPECT_THROW(LogWriter{"/no/such/folder.lcm"}, std::runtime_error);
 }
 
+TEST_F(LogFile, OnlyARegularFileIsReplaced) {
+  std::filesystem::create_directory(path_);
+  EXPECT_THROW(LogWriter{path_}, std::runtime_error);
+  std::filesystem::remove(path_);
+  std::filesystem::create_symlink("/dev/null", path_);
+  EXPECT_THROW(LogWriter{path_}, std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(path_.string() + ".part"));
+}
+
+TEST_F(LogFile, WhatAWriterWouldOverwriteIsKnownByAnyName) {
+  good_log(1);
+  const auto other_spelling = path_.parent_path() / "." / path_.filename();
+  const std::filesystem::path link = path_.string() + ".link";
+  const std::filesystem::path part = path_.string() + ".part";
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(path_, link);
+  EXPECT_TRUE(would_overwrite(path_, path_));
+  EXPECT_TRUE(would_overwrite(other_spelling, path_));
+  EXPECT_TRUE(would_overwrite(path_, link));
+  EXPECT_FALSE(would_overwrite(path_.string() + ".copy", path_));
+  std::ofstream{part} << "what is left of a recording";
+  EXPECT_TRUE(would_overwrite(path_, part));
+  std::filesystem::remove(part);
+  std::filesystem::remove(link);
+}
+
 TEST_F(LogFile, AFullDiskIsReported) {
   std::filesystem::create_symlink("/dev/full", path_.string() + ".part");
   LogWriter writer{path_};
