@@ -5,6 +5,7 @@
 #include "common/log/log_file.hpp"
 #include "common/process/exit_codes.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +16,8 @@
 
 namespace waymark {
 namespace {
+
+using ::testing::HasSubstr;
 
 Message pose(std::string_view channel, std::int64_t utime_us, float x_m) {
   pose2D_t message{};
@@ -129,8 +132,24 @@ TEST_F(Replay, ADamagedLogIsReadToItsEndAndFails) {
   EXPECT_EQ(heard_, "ODOMETRY 1 1\nend\n");
 }
 
-TEST_F(Replay, ALogWithoutOurChannelsFails) {
-  EXPECT_EQ(replay({log("other.lcm", {pose("TRUE_POSE", 1, 1)})}), kExitFailed);
+TEST_F(Replay, ALogWithoutOurChannelsFailsAndSaysWhatItHas) {
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(replay({log("other.lcm", {pose("TRUE_POSE", 1, 1), pose("LASER", 2, 1)})}),
+            kExitFailed);
+  EXPECT_THAT(::testing::internal::GetCapturedStdout(),
+              HasSubstr("other.lcm: has none of the channels that this process reads (ODOMETRY, "
+                        "SLAM_ESTIMATE, SLAM_POSE), but LASER, TRUE_POSE; logs of other robots are "
+                        "for waymark-import first"));
+}
+
+TEST_F(Replay, WhatIsNoLogFailsAndSaysSo) {
+  const auto text = folder_ / "notes.txt";
+  std::ofstream{text} << "no log";
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(replay({text}), kExitFailed);
+  const std::string said = ::testing::internal::GetCapturedStdout();
+  EXPECT_THAT(said, HasSubstr("notes.txt: 6 bytes from offset 0 on are no events"));
+  EXPECT_THAT(said, HasSubstr("notes.txt: has no LCM event; is it an LCM log?"));
 }
 
 TEST_F(Replay, AMissingLogIsASetupError) {

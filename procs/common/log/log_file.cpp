@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
 namespace waymark {
 namespace {
@@ -32,6 +34,10 @@ void append_big_endian(std::string& bytes, Unsigned value) {
   }
 }
 
+std::string last_system_error() {
+  return std::generic_category().message(errno);
+}
+
 std::filesystem::path part_path_of(const std::filesystem::path& path) {
   return path.string() + ".part";
 }
@@ -44,11 +50,13 @@ struct LogReader::Header {
   std::int64_t data_bytes;
 };
 
-LogReader::LogReader(const std::filesystem::path& path)
-    : path_{path}, file_{path, std::ios::binary} {
-  if (!std::filesystem::is_regular_file(path) || !file_) {
-    throw std::runtime_error{path.string() + ": cannot be read as an LCM log"};
+LogReader::LogReader(const std::filesystem::path& path) : path_{path} {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) && !error) {
+    throw std::runtime_error{path.string() + ": is a folder or a device, not an LCM log"};
   }
+  file_.open(path, std::ios::binary);
+  if (!file_) throw std::runtime_error{path.string() + ": cannot be read: " + last_system_error()};
   size_bytes_ = static_cast<std::int64_t>(std::filesystem::file_size(path));
 }
 
@@ -145,7 +153,9 @@ LogWriter::LogWriter(const std::filesystem::path& path)
   }
   file_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
   file_.open(part_path_, std::ios::binary | std::ios::trunc);
-  if (!file_) throw std::runtime_error{part_path_.string() + ": cannot be created"};
+  if (!file_) {
+    throw std::runtime_error{part_path_.string() + ": cannot be created: " + last_system_error()};
+  }
 }
 
 void LogWriter::write(const Message& message) {

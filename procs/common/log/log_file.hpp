@@ -21,7 +21,7 @@ namespace waymark {
 /// Reads events in file order; skips and counts what is not an event.
 class LogReader {
  public:
-  /// @throws std::runtime_error when the file cannot be opened.
+  /// @throws std::runtime_error saying why the file cannot be opened.
   explicit LogReader(const std::filesystem::path& path);
 
   /// Next event on a channel that `wanted` accepts (others are skipped without being read); nullopt

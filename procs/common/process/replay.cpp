@@ -8,6 +8,7 @@
 #include "common/process/signals.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -92,6 +93,25 @@ bool report_skipped(const std::vector<Source>& sources) {
   return any;
 }
 
+/// Says of each log what it has instead of what is wanted.
+void report_nothing_read(const std::vector<Source>& sources,
+                         const std::vector<Inbox::Subscription>& subscriptions) {
+  std::vector<std::string> wanted;
+  for (const auto& subscription : subscriptions)
+    wanted.push_back(subscription.channel);
+  for (const Source& source : sources) {
+    const std::vector<std::string> found = channels_in(source.path);
+    if (found.empty()) {
+      spdlog::error("{}: has no LCM event; is it an LCM log?", source.path.string());
+    } else {
+      spdlog::error(
+          "{}: has none of the channels that this process reads ({}), but {}; logs of other robots "
+          "are for waymark-import first",
+          source.path.string(), fmt::join(wanted, ", "), fmt::join(found, ", "));
+    }
+  }
+}
+
 bool any_rejected(const Counters& counters) {
   return std::ranges::any_of(counters.all(), [](const auto& counter) {
     return counter.second > 0 && counter.first.find("rejected") != std::string::npos;
@@ -155,11 +175,11 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
       "MB",
       num_messages, log_s, wall_s, log_s / std::max(wall_s, 1e-9), peak_memory_mb());
   log_counters(inbox.counters());
+  const bool skipped = report_skipped(sources);
   if (num_messages == 0) {
-    spdlog::error("none of the channels that this process reads is in the log");
+    report_nothing_read(sources, inbox.subscriptions());
     return kExitFailed;
   }
-  const bool skipped = report_skipped(sources);
   return skipped || any_rejected(inbox.counters()) || node.failed() ? kExitFailed : kExitOk;
 }
 

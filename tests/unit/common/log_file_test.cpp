@@ -122,10 +122,25 @@ TEST_F(LogFile, HostileLengthsSkipOneEventOnly) {
   }
 }
 
-TEST_F(LogFile, MissingFilesAreNamed) {
-  EXPECT_THROW(LogReader{"/no/such.lcm"}, std::runtime_error);
-  EXPECT_THROW(LogReader{"/tmp"}, std::runtime_error);
-  EXPECT_THROW(LogWriter{"/no/such/folder.lcm"}, std::runtime_error);
+/// What opening it says.
+template <class Log>
+std::string problem_of(const std::filesystem::path& path) {
+  try {
+    const Log log{path};
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(LogFile, WhatCannotBeOpenedIsNamedWithTheReason) {
+  EXPECT_EQ(problem_of<LogReader>("/no/such.lcm"),
+            "/no/such.lcm: cannot be read: No such file or directory");
+  EXPECT_EQ(problem_of<LogReader>("/tmp"), "/tmp: is a folder or a device, not an LCM log");
+  EXPECT_EQ(problem_of<LogReader>("/dev/null"),
+            "/dev/null: is a folder or a device, not an LCM log");
+  EXPECT_EQ(problem_of<LogWriter>("/no/such/folder.lcm"),
+            "/no/such/folder.lcm.part: cannot be created: No such file or directory");
 }
 
 TEST_F(LogFile, OnlyARegularFileIsReplaced) {
