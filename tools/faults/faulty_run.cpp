@@ -2,6 +2,7 @@
 #include "faults/faulty_run.hpp"
 
 #include "common/log/log_file.hpp"
+#include "common/process/node.hpp"
 #include "faults/injector.hpp"
 
 #include <fstream>
@@ -32,6 +33,15 @@ struct ExpectFile {
 
   void describe(Fields& fields) { fields.section("expect", expect); }
 };
+
+void check_folders(const fs::path& run_dir, const fs::path& out_dir) {
+  if (!fs::is_regular_file(run_dir / "run.lcm"))
+    throw SetupError{run_dir.string() + ": no run.lcm in it; give the folder of a recorded run"};
+  std::error_code none;  // a folder that is yet to be made is not the run's
+  if (fs::equivalent(run_dir, out_dir, none))
+    throw SetupError{out_dir.string() +
+                     ": is the recorded run itself; give another folder for the faulty one"};
+}
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream{file, std::ios::binary};
@@ -96,6 +106,7 @@ std::string renamed_markers(const std::string& csv, const FaultConfig& faults) {
 std::map<std::string, std::int64_t> write_faulty_run(const fs::path& run_dir,
                                                      const Variant& variant,
                                                      const fs::path& out_dir) {
+  check_folders(run_dir, out_dir);
   const fs::path log = run_dir / "run.lcm";
   fs::create_directories(out_dir);
   copy_truth(run_dir, variant.faults, out_dir);

@@ -15,6 +15,7 @@ namespace waymark::faults {
 /// truth_markers.csv (with the ids that the markers now have), writes expect.toml and, last,
 /// run.lcm. Random numbers: the scenario's run.seed.
 /// @return how often each fault was put in.
+/// @throws SetupError when run_dir holds no run, or is out_dir.
 /// @throws std::runtime_error naming the file that cannot be read or written.
 std::map<std::string, std::int64_t> write_faulty_run(const std::filesystem::path& run_dir,
                                                      const Variant& variant,

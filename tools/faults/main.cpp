@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-faults: a recorded run with faults put into its messages.
+#include "common/process/node.hpp"
 #include "faults/faulty_run.hpp"
 
 #include <CLI/CLI.hpp>
@@ -70,6 +71,9 @@ int main(int argc, char** argv) {
     return run(arguments);
   } catch (const waymark::ConfigError& error) {
     fmt::print(stderr, "{}\n", error.what());
+    return kUsage;
+  } catch (const waymark::SetupError& error) {
+    fmt::print(stderr, "waymark-faults: {}\n", error.what());
     return kUsage;
   } catch (const std::exception& error) {
     fmt::print(stderr, "waymark-faults: {}\n", error.what());

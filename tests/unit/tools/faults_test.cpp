@@ -3,6 +3,7 @@
 #include "common/log/log_file.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
+#include "common/process/node.hpp"
 #include "faults/faulty_run.hpp"
 #include "faults/injector.hpp"
 #include "unit/tools/temporary_folder.hpp"
@@ -195,6 +196,19 @@ TEST(FaultyRun, IsARunFolderOfItsOwn) {
   LogReader reader{out / "run.lcm"};
   const auto first = decode<marker_detections_t>(reader.next()->payload);
   EXPECT_EQ(first.message->detections[1].id, 0);
+}
+
+TEST(FaultyRun, ARecordedRunIsThereAndIsNotOverwritten) {
+  const TemporaryFolder folder;
+  const Variant variant{.name = "equal", .faults = {.every_id = 0}};
+  EXPECT_THROW(write_faulty_run(folder.path() / "none", variant, folder.path() / "out"),
+               SetupError);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+  folder.file("run/run.lcm", "the original");
+  std::filesystem::create_directory(folder.path() / "out");
+  EXPECT_THROW(write_faulty_run(folder.path() / "run", variant, folder.path() / "out/../run/"),
+               SetupError);
+  EXPECT_EQ(std::filesystem::file_size(folder.path() / "run/run.lcm"), 12U);
 }
 
 TEST(Variants, WrongOnesAreNamed) {
