@@ -52,18 +52,15 @@ parse_arguments() {
 
 is_record_only() { ((${#others[@]} == 2)); }
 
-# prepare: everything that can be wrong is found here, before anything runs.
+# prepare: everything that can be wrong is found here, before anything runs or an old run is touched.
 prepare() {
   need_file "$scenario"
   need_programs waymark-sim "${others[@]/#/waymark-}"
-  sim_options=(--config "$scenario")
-  ! is_record_only || sim_options+=(--set 'run.participants=["detector","recorder"]')
-  [[ -z $seed ]] || sim_options+=(--seed "$seed")
-  local effective
-  effective=$(mktemp)
-  "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-config >"$effective" || exit $?
-  seed=$(toml_value "$effective" run seed)
-  rm -f "$effective"
+  checked=$(mktemp -d)  # configurations that programs have accepted
+  trap 'rm -rf -- "$checked"' EXIT
+  check_scenario
+  is_record_only || check_slam
+  [[ -n $lcm_url ]] || take_port
 
   local name
   name=$(basename "${scenario%.toml}")
@@ -73,20 +70,32 @@ prepare() {
   clear_old_run
   mkdir -p "$out/logs"
 
-  "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-robot-config >"$out/robot.toml" || exit $?
+  mv "$checked/robot.toml" "$out/robot.toml"
   row=$out
-  is_record_only || prepare_slam
-  [[ -n $lcm_url ]] || take_port
+  is_record_only || make_row
+  rm -rf -- "$checked"
 }
 
-prepare_slam() {
-  slam_options=(--config "$out/robot.toml" --set "slam.seed=$seed" "${slam_options[@]}")
-  local slam_config=$out/slam.toml
-  "$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config >"$slam_config" || exit $?
-  estimator=$(toml_value "$slam_config" slam estimator)
+check_scenario() {
+  sim_options=(--config "$scenario")
+  ! is_record_only || sim_options+=(--set 'run.participants=["detector","recorder"]')
+  [[ -z $seed ]] || sim_options+=(--seed "$seed")
+  "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-config >"$checked/scenario.toml" || exit $?
+  "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-robot-config >"$checked/robot.toml" || exit $?
+  seed=$(toml_value "$checked/scenario.toml" run seed)
+}
+
+check_slam() {
+  slam_options=(--set "slam.seed=$seed" "${slam_options[@]}")
+  "$bin_dir/waymark-slam" --config "$checked/robot.toml" "${slam_options[@]}" --dump-config >"$checked/slam.toml" ||
+    exit $?
+}
+
+make_row() {
+  estimator=$(toml_value "$checked/slam.toml" slam estimator)
   row=$out/$estimator
   mkdir -p "$row"
-  mv "$slam_config" "$row/config.toml"
+  mv "$checked/slam.toml" "$row/config.toml"
 }
 
 # clear_old_run: a folder holds one run; files of an earlier one must not be taken for results.
@@ -106,7 +115,7 @@ command_of() {
   case $1 in
     recorder) command=(--out-log "$out/run.lcm" "${recorder_options[@]}") ;;
     viewer) command=(--out "$row") ;;
-    slam) command=("${slam_options[@]}") ;;
+    slam) command=(--config "$out/robot.toml" "${slam_options[@]}") ;;
     detector) command=(--config "$out/robot.toml") ;;
     sim) command=("${sim_options[@]}" --out "$out") ;;
   esac

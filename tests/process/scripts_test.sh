@@ -90,6 +90,13 @@ an_old_run_is_replaced() {
   [[ -e $out/mine/notes ]] || fail "somebody's notes are gone"
 }
 
+an_old_run_stays_when_the_new_one_cannot_start() {
+  mkdir -p "$out"
+  touch "$out/run.lcm"
+  expect 2 launch.sh "$scenario" --out "$out" --estimator unknown && expect_output "got 'unknown'"
+  [[ -e $out/run.lcm ]] || fail "the old run is gone"
+}
+
 two_stacks_have_two_ports() {
   FAKE_sim_seconds=1.5 "$deploy/launch.sh" "$scenario" --out "$work/other" >"$work/other_output" 2>&1 &
   wait_until all_started
