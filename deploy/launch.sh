@@ -22,10 +22,15 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 readonly kRestartDelays_s=(0.2 0.5 1 2 4)  # one per allowed restart
 readonly kFinish_s=15                      # after the simulator's end, for files to be written
 readonly kStop_s=7                         # from SIGINT to SIGKILL
+readonly kMark=logs/launch.log             # in a folder without it there is no run of ours
+readonly kRunFiles=(run.lcm run.lcm.part scenario.toml robot.toml truth.tum truth_markers.csv truth_marker_moves.csv
+  results.json results.md)
+readonly kRowFiles=(config.toml map.pgm map.yaml map.png marker_layer.png plain.png scan.png markers.csv
+  trajectory.tum trajectory_final.tum covariance.csv odometry.tum slam.lcm timings.json metrics.json stations.csv)
 
 parse_arguments() {
   scenario='' out='' seed='' real_time=() slam_options=() lcm_url=${LCM_DEFAULT_URL:-}
-  others=(recorder viewer slam detector) recorder_options=()
+  others=(recorder viewer slam detector) recorder_options=() slam_files=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
@@ -36,7 +41,7 @@ parse_arguments() {
       --out) out=$2 ;;
       --seed) need_number "$1" "$2" && seed=$2 ;;
       --estimator) slam_options+=(--set "slam.estimator=$2") ;;
-      --config) need_file "$2" && slam_options+=(--config "$2") ;;
+      --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
       --set) slam_options+=(--set "$2") ;;
       --lcm-url) lcm_url=$2 ;;
       -*) usage_error "unknown option '$1'" ;;
@@ -69,6 +74,7 @@ prepare() {
   flock --nonblock "$out_lock" || die $kExitUsage "another run is writing to '$out'"
   clear_old_run
   mkdir -p "$out/logs"
+  : >"$out/$kMark"
 
   mv "$checked/robot.toml" "$out/robot.toml"
   row=$out
@@ -98,16 +104,36 @@ make_row() {
   mv "$checked/slam.toml" "$row/config.toml"
 }
 
-# clear_old_run: a folder holds one run; files of an earlier one must not be taken for results.
+# clear_old_run: a folder holds one run; files of an earlier one must not be taken for results. What no
+# run has written stays.
 clear_old_run() {
-  [[ -e $out/run.lcm || -e $out/robot.toml ]] || return 0
-  say "replaces the run in $out"
-  local config
-  for config in "$out"/*/config.toml; do
-    [[ ! -f $config ]] || rm -rf -- "${config%/config.toml}"
+  local there=() name old_files old_rows file input
+  for name in "${kRunFiles[@]}"; do [[ ! -e $out/$name ]] || there+=("$name"); done
+  ((${#there[@]} > 0)) || return 0
+  [[ -e $out/$kMark ]] ||
+    die $kExitUsage "'$out' holds ${there[*]}, but no run of launch.sh; give another folder with --out"
+  find_old_run
+  for file in "${old_files[@]}"; do
+    for input in "$scenario" "${slam_files[@]}"; do
+      [[ ! $file -ef $input ]] ||
+        die $kExitUsage "'$input' belongs to the run that would be replaced; copy it, or give another folder with --out"
+    done
   done
-  rm -rf -- "$out"/{run.lcm,scenario.toml,robot.toml,truth.tum,truth_markers.csv} \
-    "$out"/results.{json,md} "$out/logs"
+  say "replaces the run in $out"
+  rm -f -- "${old_files[@]}"
+  ((${#old_rows[@]} == 0)) || rmdir --ignore-fail-on-non-empty -- "${old_rows[@]}"
+}
+
+# find_old_run: sets old_rows, the folders of its rows, and old_files, the names that it, replays of its
+# log and waymark-evaluate write.
+find_old_run() {
+  local row
+  old_rows=() old_files=("${kRunFiles[@]/#/"$out/"}" "$out/logs/"{launch,sim,slam,detector,viewer,recorder}.log)
+  for row in "$out"/*; do
+    [[ -f $row/config.toml && -f $row/trajectory.tum ]] || continue
+    old_rows+=("$row")
+    old_files+=("${kRowFiles[@]/#/"$row/"}" "$out/logs/${row##*/}."{slam,viewer}.log)
+  done
 }
 
 # command_of NAME: sets `command` to its command line.

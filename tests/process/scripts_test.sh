@@ -82,19 +82,44 @@ own_folder_by_default() {
   compgen -G "$work/runs/short-seed7-*/robot.toml" >/dev/null || fail "no folder of its own"
 }
 
+# leftovers_of_case: what an earlier run and a replay have left in $out, and two folders of its owner.
+leftovers_of_case() {
+  mkdir -p "$out"/{logs,old_row,notes,settings}
+  touch "$out"/{run.lcm,robot.toml,results.json,truth_marker_moves.csv} "$out"/logs/{launch,sim,old_row.slam}.log
+  touch "$out"/old_row/{config.toml,trajectory.tum,map.png} "$out/notes/today" "$out/settings/config.toml"
+  touch "$out/logs/notes"
+}
+
 an_old_run_is_replaced() {
-  mkdir -p "$out/old_row" "$out/mine"
-  touch "$out/run.lcm" "$out/results.json" "$out/old_row/config.toml" "$out/mine/notes"
+  leftovers_of_case
   expect 0 launch.sh "$scenario" --out "$out"
-  [[ ! -e $out/results.json && ! -e $out/old_row ]] || fail "old results are left"
-  [[ -e $out/mine/notes ]] || fail "somebody's notes are gone"
+  expect_output "replaces the run in $out"
+  local file
+  for file in results.json truth_marker_moves.csv old_row logs/old_row.slam.log; do
+    [[ ! -e $out/$file ]] || fail "the old $file is left"
+  done
+  for file in notes/today settings/config.toml logs/notes; do
+    [[ -e $out/$file ]] || fail "somebody's $file is gone"
+  done
+  touch "$out/fake_estimator/trajectory.tum" "$out/fake_estimator/notes"
+  expect 0 launch.sh "$scenario" --out "$out" --estimator other
+  [[ -e $out/fake_estimator/notes && ! -e $out/fake_estimator/config.toml ]] || fail "fake_estimator"
+}
+
+what_is_no_run_is_not_replaced() {
+  mkdir -p "$out"/{logs,mine}
+  touch "$out"/{robot.toml,logs/notes,mine/config.toml}
+  expect 2 launch.sh "$scenario" --out "$out"
+  expect_output "'$out' holds robot.toml, but no run of launch.sh; give another folder"
+  [[ -e $out/robot.toml && -e $out/logs/notes && -e $out/mine/config.toml ]] || fail "somebody's files are gone"
 }
 
 an_old_run_stays_when_the_new_one_cannot_start() {
-  mkdir -p "$out"
-  touch "$out/run.lcm"
-  expect 2 launch.sh "$scenario" --out "$out" --estimator unknown && expect_output "got 'unknown'"
-  [[ -e $out/run.lcm ]] || fail "the old run is gone"
+  leftovers_of_case
+  mv "$scenario" "$out/scenario.toml"
+  expect 2 launch.sh "$out/scenario.toml" --out "$out" --estimator unknown && expect_output "got 'unknown'"
+  expect 2 launch.sh "$out/scenario.toml" --out "$out" && expect_output "scenario.toml' belongs to the run"
+  [[ -e $out/run.lcm && -e $out/old_row/map.png && -e $out/logs/sim.log ]] || fail "the old run is gone"
 }
 
 two_stacks_have_two_ports() {
