@@ -38,6 +38,12 @@ bool is_due(std::optional<Timestamp>& last, Timestamp now, double period_s) {
   return true;
 }
 
+/// False when files would only replace those of an earlier run by empty ones.
+bool has_heard_of_slam(const viewer::Scene& scene) {
+  return !scene.estimates.empty() || !scene.map.empty() || !scene.landmarks.empty() ||
+         !scene.final_trajectory.empty();
+}
+
 void tell(const viewer::Change& change) {
   if (change.kind == viewer::Change::Kind::kAlarm) {
     spdlog::warn("{}", change.text);
@@ -130,6 +136,10 @@ void ViewerNode::write_scan_and_plain_map() {
 }
 
 void ViewerNode::finish() {
+  if (!has_heard_of_slam(scene_)) {
+    spdlog::warn("nothing has come from slam: no file is written to {}", folder_.path().string());
+    return;
+  }
   write_data();
   write_final_trajectory();
   write_map_picture();

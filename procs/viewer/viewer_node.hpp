@@ -26,7 +26,7 @@ class ViewerNode final : public Node {
   /// @throws SetupError when there is no folder to write to.
   ViewerNode(const Config& config, Inbox& inbox, Outbox& outbox);
 
-  /// Writes everything once more.
+  /// Writes everything once more, if anything has come from slam.
   void finish() override;
 
   /// True when a file could not be written, now or earlier.

@@ -35,6 +35,10 @@ void RecorderConfig::check(Problems& problems) const {
 RecorderNode::RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox&) {
   if (config.out_log.empty())
     throw SetupError{"--out-log FILE is missing: where shall the log go?"};
+  if (std::filesystem::is_regular_file(config.out_log)) {
+    throw SetupError{config.out_log.string() +
+                     ": is there already; a recording replaces none: give another name"};
+  }
   try {
     writer_.emplace(config.out_log);
   } catch (const std::exception& error) {

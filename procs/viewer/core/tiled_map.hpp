@@ -44,6 +44,9 @@ class TiledMap {
   /// another map: the old tiles go.
   Outcome put(const TileLayout& layout, Timestamp time, const TileUpdate& update);
 
+  /// No tile has come.
+  bool empty() const { return tiles_.empty(); }
+
   /// The smallest rectangle that holds all known cells; empty when there are none.
   GridMap grid() const;
 

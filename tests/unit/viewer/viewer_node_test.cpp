@@ -13,6 +13,7 @@ namespace waymark {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::SizeIs;
@@ -103,12 +104,23 @@ TEST_F(ViewerNodeTest, NeedsAFolder) {
   EXPECT_THROW((ViewerNode{config_, inbox_, outbox_}), SetupError);
 }
 
-TEST_F(ViewerNodeTest, WritesEveryFileAtTheEndEvenWithoutMessages) {
+TEST_F(ViewerNodeTest, WritesEveryFileAtTheEndEvenWithoutAMap) {
   ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
   node.finish();
   EXPECT_THAT(names(),
               IsSupersetOf({"map.pgm", "map.yaml", "map.png", "marker_layer.png", "plain.png",
                             "trajectory.tum", "covariance.csv", "odometry.tum", "markers.csv"}));
+  EXPECT_FALSE(node.failed());
+}
+
+TEST_F(ViewerNodeTest, LeavesTheFilesOfAnEarlierRunWhenNothingCameFromSlam) {
+  ViewerNode node{config_, inbox_, outbox_};
+  std::ofstream{folder_ / "map.pgm"} << "of an earlier run";
+  deliver(channels::kOdometry, pose2D_t{});
+  node.finish();
+  EXPECT_THAT(names(), ElementsAre("map.pgm"));
+  EXPECT_EQ(content_of("map.pgm"), "of an earlier run");
   EXPECT_FALSE(node.failed());
 }
 
@@ -230,6 +242,7 @@ TEST_F(ViewerNodeTest, WritesAFinalTrajectoryWhenOneCameWhole) {
 TEST_F(ViewerNodeTest, AFinalTrajectoryWithoutItsFirstPartIsLeftOut) {
   ViewerNode node{config_, inbox_, outbox_};
   std::ofstream{folder_ / "trajectory_final.tum"} << "of an earlier run";
+  deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
   deliver(channels::kSlamTrajectory, trajectory_part(1, 2));
   node.finish();
   EXPECT_FALSE(fs::exists(folder_ / "trajectory_final.tum"));

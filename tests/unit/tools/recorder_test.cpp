@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recorder/recorder_node.hpp"
+#include "unit/tools/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+using evaluate::TemporaryFolder;
+
+class Recorder : public ::testing::Test {
+ protected:
+  void record(const std::filesystem::path& log) {
+    RecorderNode node{{.recorder = {}, .out_log = log}, inbox_, outbox_};
+    node.finish();
+  }
+
+  const TemporaryFolder folder_;
+  Inbox inbox_;
+  Outbox outbox_;
+};
+
+TEST_F(Recorder, WritesALogEvenWithoutMessages) {
+  record(folder_.path() / "run.lcm");
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "run.lcm"));
+}
+
+TEST_F(Recorder, AnEarlierLogIsNotReplaced) {
+  const auto log = folder_.file("run.lcm", "an hour of driving");
+  EXPECT_THROW(record(log), SetupError);
+  EXPECT_EQ(std::filesystem::file_size(log), 18U);
+}
+
+}  // namespace
+}  // namespace waymark
