@@ -10,9 +10,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 namespace waymark {
 namespace {
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file{path, std::ios::binary};
+  return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+/// @throws SetupError when the file is there with another content: it may be of another log, or
+/// have been completed by hand.
+void check_not_replaced(const std::filesystem::path& path, const std::string& text) {
+  if (!std::filesystem::exists(path) || text_of(path) == text) return;
+  throw SetupError{path.string() +
+                   ": is there already, with another content; give --out in another folder, or "
+                   "move it away"};
+}
 
 std::string to_tum(const std::vector<ImportedPose>& poses) {
   std::string text;
@@ -68,11 +86,16 @@ std::string skipped(const ImportReport& report) {
 void write_imported_log(const ImportedLog& log, const std::filesystem::path& out) {
   check_robot(log.robot);
   const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
+  std::vector<std::pair<std::filesystem::path, std::string>> beside{
+      {folder / "robot.toml", dump_robot_config(log.robot)}};
+  if (!log.reference.empty()) beside.emplace_back(folder / "reference.tum", to_tum(log.reference));
+  for (const auto& [path, text] : beside)
+    check_not_replaced(path, text);
   try {
     std::filesystem::create_directories(folder);
     write_log(log, out);
-    write_whole_file(folder / "robot.toml", dump_robot_config(log.robot));
-    if (!log.reference.empty()) write_whole_file(folder / "reference.tum", to_tum(log.reference));
+    for (const auto& [path, text] : beside)
+      write_whole_file(path, text);
   } catch (const std::runtime_error& error) {
     throw SetupError{error.what()};
   }

@@ -18,11 +18,14 @@ inline std::filesystem::path data_file(const std::string& name) {
   return std::filesystem::path{WAYMARK_SOURCE_DIR} / "tests/data/import" / name;
 }
 
-/// A folder of its own for the running test.
+/// A folder of its own for the running test, empty at first.
 inline std::filesystem::path test_folder() {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
   const auto folder = std::filesystem::path{::testing::TempDir()} / "waymark_import" /
                       (std::string{test->test_suite_name()} + "." + test->name());
+  static std::filesystem::path last;
+  if (folder != last) std::filesystem::remove_all(folder);
+  last = folder;
   std::filesystem::create_directories(folder);
   return folder;
 }

@@ -82,6 +82,20 @@ TEST(LogOutput, AnImpossibleRobotIsRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(LogOutput, AnotherRobotsFileBesideTheLogIsNotReplaced) {
+  ImportReport report{"small.clf", AddressUnit::kLine};
+  ImportedLog log = small_log(report);
+  const auto out = test_folder() / "small.lcm";
+  write_imported_log(log, out);
+  write_imported_log(log, out);
+  const std::string robot = read_file(test_folder() / "robot.toml");
+
+  log.robot.lidar.x_m = 0.5;
+  EXPECT_THROW(write_imported_log(log, test_folder() / "other.lcm"), SetupError);
+  EXPECT_EQ(read_file(test_folder() / "robot.toml"), robot);
+  EXPECT_FALSE(std::filesystem::exists(test_folder() / "other.lcm"));
+}
+
 TEST(LogOutput, SummaryCountsWhatWasImportedAndSkipped) {
   ImportReport report{"small.clf", AddressUnit::kLine};
   const ImportedLog log = small_log(report);
