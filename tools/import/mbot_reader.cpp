@@ -87,10 +87,9 @@ bool MbotReader::ranges_are_good(std::span<const float> ranges, const std::strin
     return false;
   }
   for (std::size_t i = 0; i < ranges.size(); ++i) {
-    if (ranges[i] >= 0.0F) continue;
-    const LineProblem problem{std::isnan(ranges[i]) ? "NaN" : "negative range",
-                              fmt::format("range {} of {} is {}", i, ranges.size(), ranges[i])};
-    skip(problem, channel, at);
+    if (ranges[i] >= 0.0F || std::isnan(ranges[i])) continue;  // NaN = not measured (REP-117)
+    skip({"negative range", fmt::format("range {} of {} is {}", i, ranges.size(), ranges[i])},
+         channel, at);
     return false;
   }
   return true;
