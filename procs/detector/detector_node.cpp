@@ -4,9 +4,11 @@
 #include "common/messages/convert.hpp"
 
 #include <opencv2/core/utility.hpp>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <string>
 
 namespace waymark {
@@ -56,8 +58,9 @@ void DetectorNode::handle(const image_t& image) {
     if (debug_pictures_ && !debug_pictures_->offer(frame.gray, detections)) {
       inbox_.counters().add("debug pictures not written");
     }
+    count(detections);
   } else {
-    inbox_.counters().add("CAMERA rejected: " + std::string{to_string(frame.problem)});
+    reject(frame);
   }
   outbox_.publish(channels::kMarkers, to_detections_message(detections));
 }
@@ -69,6 +72,22 @@ void DetectorNode::leave_out_what_does_not_fit(std::vector<MarkerDetection>& mar
                         std::ssize(markers) - std::int64_t{kMarkersPerMessage});
   std::ranges::stable_sort(markers, std::greater{}, &MarkerDetection::width_px);
   markers.resize(kMarkersPerMessage);
+}
+
+void DetectorNode::count(const MarkerDetections& detections) {
+  const bool any = !detections.detections.empty();
+  inbox_.counters().add(any ? "frames with markers" : "frames without markers");
+  inbox_.counters().add("markers detected", std::ssize(detections.detections));
+}
+
+void DetectorNode::reject(const DecodedFrame& frame) {
+  const std::string name = "CAMERA rejected: " + std::string{to_string(frame.problem)};
+  if (frame.problem == FrameProblem::kWrongSize && inbox_.counters().get(name) == 0) {
+    spdlog::error(
+        "an image of {} x {} px is refused: robot.camera.width_px and height_px say {} x {}",
+        frame.wrong_size.width, frame.wrong_size.height, image_size_.width, image_size_.height);
+  }
+  inbox_.counters().add(name);
 }
 
 DecodedFrame DetectorNode::decode_image(const image_t& image) const {

@@ -28,6 +28,9 @@ class DetectorNode final : public Node {
   /// Answers every frame, an unreadable one with an empty list, so that nobody waits for it.
   void handle(const image_t& image);
   void leave_out_what_does_not_fit(std::vector<MarkerDetection>& markers);
+  void count(const MarkerDetections& detections);
+  /// Counts; says of the first image of another size which one it has.
+  void reject(const DecodedFrame& frame);
   DecodedFrame decode_image(const image_t& image) const;
 
   cv::Size image_size_;

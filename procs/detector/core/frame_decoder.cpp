@@ -20,9 +20,8 @@ cv::Mat view_of(std::span<const std::uint8_t> bytes, int rows, int columns, int 
 DecodedFrame decode_jpeg(std::span<const std::uint8_t> bytes, cv::Size expected_size) {
   const auto header = read_jpeg_header(bytes);
   if (!header) return {{}, FrameProblem::kNotAJpeg};
-  if (cv::Size{header->width_px, header->height_px} != expected_size) {
-    return {{}, FrameProblem::kWrongSize};
-  }
+  const cv::Size size{header->width_px, header->height_px};
+  if (size != expected_size) return {{}, FrameProblem::kWrongSize, size};
   if (!header->complete) return {{}, FrameProblem::kTruncatedJpeg};
   try {
     const cv::Mat gray =
@@ -81,9 +80,8 @@ std::string_view to_string(FrameProblem problem) {
 DecodedFrame decode_frame(const EncodedFrame& frame, cv::Size expected_size) {
   if (frame.bytes.empty()) return {{}, FrameProblem::kEmpty};
   if (frame.format == PixelFormat::kOther) return {{}, FrameProblem::kUnknownFormat};
-  if (cv::Size{frame.width_px, frame.height_px} != expected_size) {
-    return {{}, FrameProblem::kWrongSize};
-  }
+  const cv::Size size{frame.width_px, frame.height_px};
+  if (size != expected_size) return {{}, FrameProblem::kWrongSize, size};
   if (frame.format == PixelFormat::kMjpeg) return decode_jpeg(frame.bytes, expected_size);
   return decode_raw(frame);
 }

@@ -37,6 +37,7 @@ struct EncodedFrame {
 struct DecodedFrame {
   cv::Mat gray{};  ///< 8-bit, one channel; empty when there is a problem; may refer to the bytes
   FrameProblem problem{FrameProblem::kNone};
+  cv::Size wrong_size{};  ///< what kWrongSize was found to be
 };
 
 /// Sizes are checked before anything is allocated for them. Never throws for bad bytes.

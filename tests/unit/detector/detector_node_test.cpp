@@ -3,6 +3,7 @@
 
 #include "support/marker_image.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
@@ -11,6 +12,8 @@
 
 namespace waymark {
 namespace {
+
+using ::testing::HasSubstr;
 
 image_t jpeg_message(const cv::Mat& gray, std::int64_t utime) {
   image_t image{};
@@ -71,13 +74,28 @@ TEST_F(DetectorNodeTest, BadFramesAreCountedAndAnsweredAndTheNextGoodOneIsRead) 
   truncated.size = static_cast<std::int32_t>(truncated.data.size());
   EXPECT_EQ(answer_to(truncated).num_detections, 0);
 
+  ::testing::internal::CaptureStdout();
   const auto small = answer_to(jpeg_message(cv::Mat(48, 64, CV_8UC1, cv::Scalar{0}), 2000));
+  EXPECT_THAT(
+      ::testing::internal::GetCapturedStdout(),
+      HasSubstr("64 x 48 px is refused: robot.camera.width_px and height_px say 640 x 480"));
   EXPECT_EQ(small.utime, 2000);
   EXPECT_EQ(small.num_detections, 0);
 
   EXPECT_EQ(inbox_.counters().get("CAMERA rejected: truncated JPEG"), 1);
   EXPECT_EQ(inbox_.counters().get("CAMERA rejected: image size is not the configured camera's"), 1);
   EXPECT_EQ(answer_to(good).num_detections, 1);
+}
+
+TEST_F(DetectorNodeTest, WhatIsFoundIsCounted) {
+  DetectorNode node{DetectorConfig{}, inbox_, outbox_};
+  answer_to(jpeg_message(picture_of_marker_seven(), 1000));
+  answer_to(jpeg_message(picture_of_marker_seven(), 2000));
+  answer_to(jpeg_message(cv::Mat(480, 640, CV_8UC1, cv::Scalar{77}), 3000));
+
+  EXPECT_EQ(inbox_.counters().get("markers detected"), 2);
+  EXPECT_EQ(inbox_.counters().get("frames with markers"), 2);
+  EXPECT_EQ(inbox_.counters().get("frames without markers"), 1);
 }
 
 TEST_F(DetectorNodeTest, DebugPicturesAreWrittenOnRequest) {
