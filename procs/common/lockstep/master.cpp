@@ -79,9 +79,12 @@ void LockstepMaster::append(const OpenTick& open, std::vector<Message>& messages
 }
 
 std::vector<std::string> LockstepMaster::silent() const {
-  if (open_ticks_.empty()) return {};
+  std::vector<std::string> names;
+  if (open_ticks_.empty()) return names;
   const auto& missing = open_ticks_.front().missing;
-  return {missing.begin(), missing.end()};
+  std::ranges::copy_if(participants_, std::back_inserter(names),
+                       [&missing](const std::string& name) { return missing.contains(name); });
+  return names;
 }
 
 std::int64_t LockstepMaster::oldest_open_tick() const {

@@ -37,7 +37,8 @@ class LockstepMaster {
   bool take(const Message& message);
   /// All open ticks again.
   std::vector<Message> resend() const;
-  /// Who has not acknowledged the oldest open tick.
+  /// Who has not acknowledged the oldest open tick, in the order of the participants. Each waits
+  /// for those before it: the first is to blame, the others may only be waiting.
   std::vector<std::string> silent() const;
   std::int64_t oldest_open_tick() const;
   /// "The run is over", after the last acknowledgement.

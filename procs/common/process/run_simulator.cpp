@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <span>
 #include <thread>
 
 namespace waymark {
@@ -55,7 +56,9 @@ class Run {
         resend_after = kFirstResend;
       }
       const auto now = steady_clock::now();
-      if (now - last_ack > kSilenceTimeout) return name_the_silent(master);
+      if (!master.all_acknowledged() && now - last_ack > kSilenceTimeout) {
+        return name_the_silent(master);
+      }
       if (!may_advance && now - std::max(last_ack, last_sent) > resend_after) {
         publish(master.resend());
         inbox_.counters().add("TICK resent");
@@ -156,9 +159,12 @@ class Run {
   }
 
   int name_the_silent(const LockstepMaster& master) const {
-    spdlog::error("no acknowledgement of tick {} ({:.1f} s simulated) for {} s from: {}",
-                  master.oldest_open_tick(), to_seconds(tick_end_), kSilenceTimeout.count(),
-                  fmt::join(master.silent(), ", "));
+    const std::vector<std::string> silent = master.silent();
+    const std::span waiting = std::span{silent}.subspan(1);
+    spdlog::error(
+        "no acknowledgement of tick {} ({:.1f} s simulated) for {} s from {}{}",
+        master.oldest_open_tick(), to_seconds(tick_end_), kSilenceTimeout.count(), silent.front(),
+        waiting.empty() ? "" : fmt::format("; waiting behind it: {}", fmt::join(waiting, ", ")));
     return kExitTimeout;
   }
 
