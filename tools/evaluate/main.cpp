@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-evaluate: how good a map and a trajectory are.
+#include "common/process/number_checks.hpp"
 #include "evaluate/commands.hpp"
 
 #include <CLI/CLI.hpp>
@@ -52,7 +53,7 @@ void add_true_length(CLI::App& command, Arguments& arguments) {
   command
       .add_option("--true-length-m", arguments.options.true_length_m,
                   "true corridor length between inner faces [m], for the accuracy")
-      ->check(CLI::PositiveNumber);
+      ->check(waymark::positive_number());
 }
 
 void add_length(CLI::App& program, Arguments& arguments, Command& chosen) {
@@ -81,7 +82,7 @@ void add_run(CLI::App& program, Arguments& arguments, Command& chosen) {
   command
       .add_option("--marker-gate-m", arguments.options.marker_gate_m,
                   "a marker estimated further from its true place counts as missing and spurious")
-      ->check(CLI::PositiveNumber)
+      ->check(waymark::positive_number())
       ->capture_default_str();
   add_true_length(command, arguments);
   add_alignment(command, arguments);

@@ -2,6 +2,7 @@
 #include "common/log/log_file.hpp"
 #include "common/process/exit_codes.hpp"
 #include "common/process/guard.hpp"
+#include "common/process/number_checks.hpp"
 #include "import/carmen_reader.hpp"
 #include "import/log_output.hpp"
 #include "import/mbot_reader.hpp"
@@ -39,7 +40,7 @@ void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting
       ->required();
   app.add_flag("--tolerant", options.tolerant, "exit with 0 although lines or events were skipped");
   app.add_option("--min-range-m", range_min_m, "shortest range measured")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonnegative_number())
       ->capture_default_str();
   app.add_option("--lidar-x-m", mounting.x_m, "where the LiDAR sits in the base frame");
   app.add_option("--lidar-y-m", mounting.y_m, "where the LiDAR sits in the base frame");
@@ -64,7 +65,7 @@ CLI::App* add_carmen(CLI::App& app, Options& options) {
   carmen
       ->add_option("--max-range-m", options.carmen.range_max_m,
                    "ranges from here on are no returns (default: as the line says, else 81.9)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   carmen->add_option("--first-angle-deg", options.first_angle_deg,
                      "beam 0 of FLASER and RLASER (default -90)");
   carmen->add_option("--angle-step-deg", options.angle_step_deg,
@@ -87,13 +88,13 @@ CLI::App* add_mbot(CLI::App& app, Options& options) {
   mbot->add_option("--reference-channel", chosen.reference_channel,
                    "poses to write as reference.tum, types as for --odometry-channel");
   mbot->add_option("--meters-per-tick", chosen.wheels.meters_per_tick, "way of a wheel per tick")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   mbot->add_option("--wheel-base-m", chosen.wheels.wheel_base_m, "distance between the wheels")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   mbot->add_option("--max-range-m", chosen.range_max_m, "longest range measured")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   return mbot;
 }

@@ -36,6 +36,20 @@ TEST(EvaluateProgram, WrongUsageAndMissingFilesAreTwo) {
   EXPECT_EQ(exit_code("trajectory " + tum + " " + tum + " --align se2 --json"), 0);
 }
 
+TEST(EvaluateProgram, ALengthIsPositive) {
+  const TemporaryFolder folder;
+  const std::string said = (folder.path() / "said").string();
+  for (const char* wrong : {"-3", "0", "nan", "long"}) {
+    const std::string command = WAYMARK_BUILD_DIR "/waymark-evaluate run " +
+                                folder.path().string() + " --true-length-m " + wrong + " 2> " +
+                                said;
+    EXPECT_NE(std::system(command.c_str()), 0);
+    std::string line;
+    std::getline(std::ifstream{said} >> std::ws, line);
+    EXPECT_EQ(line, "--true-length-m: got " + std::string{wrong} + ", expected a number above 0");
+  }
+}
+
 TEST(EvaluateProgram, SkippedRelationsAreOneUnlessTolerated) {
   const TemporaryFolder folder;
   const std::string tum = folder.file("a.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n").string();
