@@ -44,7 +44,7 @@ parse_arguments() {
       --seeds) seeds=$2 ;;
       --ablation-seeds) ablation_seeds=$2 ;;
       --length-seeds) need_number "$1" "$2" && length_seeds=$2 ;;
-      --jobs) need_number "$1" "$2" && jobs=$2 ;;
+      --jobs) need_count "$1" "$2" && jobs=$2 ;;
       *) usage_error "unknown argument '$1'" ;;
     esac
     shift 2

@@ -39,6 +39,8 @@ need_value() { (($# >= 2)) || usage_error "$1 needs a value"; }
 
 need_number() { [[ $2 =~ ^[0-9]+$ ]] || usage_error "$1 needs a whole number, not '$2'"; }
 
+need_count() { [[ $2 =~ ^0*[1-9][0-9]*$ ]] || usage_error "$1 needs a whole number above 0, not '$2'"; }
+
 need_file() { [[ -f $1 && -r $1 ]] || die $kExitUsage "no readable file '$1'"; }
 
 need_programs() {

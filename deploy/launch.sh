@@ -53,6 +53,8 @@ parse_arguments() {
     shift 2
   done
   [[ -n $scenario ]] || usage_error "no scenario given"
+  ! is_record_only || ((${#slam_options[@]} == 0)) ||
+    usage_error "--record-only runs no slam: give --estimator, --config and --set to deploy/replay.sh"
 }
 
 is_record_only() { ((${#others[@]} == 2)); }

@@ -37,7 +37,7 @@ parse_arguments() {
       --estimators) estimators=$2 ;;
       --variants) need_file "$2" && variants=$2 ;;
       --out) out=$2 ;;
-      --jobs) need_number "$1" "$2" && jobs=$2 ;;
+      --jobs) need_count "$1" "$2" && jobs=$2 ;;
       --sshlogin) parallel_options+=(--sshlogin "$2") ;;
       -*) usage_error "unknown option '$1'" ;;
       *) scenarios+=("$1") && shift && continue ;;

@@ -17,6 +17,7 @@ bad_usage() {
   expect 2 launch.sh "$scenario" --seed seven && expect_output "whole number, not 'seven'"
   expect 2 launch.sh "$work/nowhere.toml" && expect_output "no readable file '.*nowhere.toml'"
   expect 2 launch.sh "$scenario" --estimator unknown --out "$out" && expect_output "got 'unknown'"
+  expect 2 launch.sh "$scenario" --record-only --estimator odometry && expect_output "record-only runs no slam"
   expect 2 replay.sh && expect_output "no log given"
   expect 2 replay.sh "$work/run.lcm" && expect_output "estimator is missing"
   expect 2 replay.sh "$work/run.lcm" --estimator odometry && expect_output "no readable file"

@@ -25,6 +25,7 @@ bad_usage() {
   expect 2 sweep.sh "$scenario" && expect_output "--out is missing"
   expect 2 sweep.sh "$scenario" --out "$sweep" --seeds one && expect_output "needs a list like 1-20"
   expect 2 sweep.sh "$scenario" --out "$sweep" --seeds 5-3 && expect_output "no seed in"
+  expect 2 sweep.sh "$scenario" --out "$sweep" --jobs 0 && expect_output "whole number above 0, not '0'"
   expect 2 sweep.sh "$work/nowhere.toml" --out "$sweep" && expect_output "no readable file '.*nowhere.toml'"
   expect 2 sweep.sh "$scenario" --out "$sweep" --estimators unknown && expect_output "got 'unknown'"
   expect 2 sweep.sh "$scenario" "$scenario" --out "$sweep" && expect_output "two scenarios are called 'short'"
