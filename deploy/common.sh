@@ -4,7 +4,7 @@
 set -euo pipefail
 
 # shellcheck disable=SC2034  # used by the scripts that source this
-readonly kExitFailed=1 kExitUsage=2 kExitDied=3 kExitTimeout=4  # DESIGN.md, section 7
+readonly kExitFailed=1 kExitUsage=2 kExitDied=3 kExitTimeout=4  # as in exit_codes.hpp
 
 script_name=$(basename "${0%.sh}")
 deploy_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)

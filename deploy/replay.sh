@@ -9,9 +9,9 @@
 #   --robot FILE     sensors and their mounting (default: robot.toml beside the log)
 #   --out DIR        (default: the log's folder)
 #
-# Writes the files of DESIGN.md section 7 into DIR/ROW, with slam.lcm (what slam published), config.toml
-# and timings.json. The seed is that of the run when its scenario.toml is beside the log, so that a run
-# and its replay give the same bytes.
+# Writes map, pictures, trajectory and markers into DIR/ROW (README.md, "What a run leaves"), with slam.lcm
+# (what slam published), config.toml and timings.json. The seed is that of the run when its scenario.toml
+# is beside the log, so that a run and its replay give the same bytes.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

@@ -27,7 +27,7 @@ struct SyntheticCorridor {
 
   std::vector<SyntheticMarker> markers{};
 
-  // Odometry errors, as in DESIGN.md section 6.
+  // Odometry errors, as the simulator's defaults.
   double scale_error{0.01};
   double turn_scale_error{0.005};
   double along_noise_per_sqrt_m{0.003};

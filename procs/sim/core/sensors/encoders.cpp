@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-// DESIGN's default errors: what a well-kept TurtleBot3 shows.
+// The default errors: what a well-kept TurtleBot3 shows.
 constexpr double kDrawnScale = 0.01;
 constexpr double kDrawnHeadingScale = 0.005;
 
