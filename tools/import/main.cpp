@@ -104,8 +104,10 @@ void convert_angles(Options& options) {
     return angle_deg ? std::optional{radians(*angle_deg)} : std::nullopt;
   };
   options.carmen.beams = {to_radians(options.first_angle_deg), to_radians(options.angle_step_deg)};
-  options.carmen.mounting.yaw_rad = to_radians(options.lidar_yaw_deg);
-  options.mbot.mounting.yaw_rad = to_radians(options.lidar_yaw_deg);
+  const std::optional<double> yaw_rad = to_radians(options.lidar_yaw_deg);
+  if (yaw_rad) {
+    options.carmen.mounting.yaw_rad = options.mbot.mounting.yaw_rad = wrap_angle(*yaw_rad);
+  }
 }
 
 void tell(const ImportReport& report) {

@@ -5,6 +5,15 @@
 #include <set>
 
 namespace waymark {
+namespace {
+
+// Of sensors: angles in degrees and places in centimetres or millimetres lie outside.
+constexpr Range kAngle{-std::numbers::pi, std::numbers::pi};
+constexpr Range kPlace_m{-5.0, 5.0};
+constexpr Range kHeight_m{0.0, 5.0};
+constexpr Range kLongestRange_m{0.01, 500.0};
+
+}  // namespace
 
 void BaseConfig::describe(Fields& fields) {
   fields.field("wheel_radius_m", wheel_radius_m, {0.001, 1.0}, "radius of a driven wheel");
@@ -14,14 +23,14 @@ void BaseConfig::describe(Fields& fields) {
 }
 
 void LidarConfig::describe(Fields& fields) {
-  fields.field("x_m", x_m, kAnyNumber, "position in the base frame");
-  fields.field("y_m", y_m, kAnyNumber, "position in the base frame");
-  fields.field("z_m", z_m, kAnyNumber, "height of the scan plane over the floor");
-  fields.field("yaw_rad", yaw_rad, kAnyNumber, "direction of the LiDAR's x axis in the base frame");
+  fields.field("x_m", x_m, kPlace_m, "position in the base frame");
+  fields.field("y_m", y_m, kPlace_m, "position in the base frame");
+  fields.field("z_m", z_m, kHeight_m, "height of the scan plane over the floor");
+  fields.field("yaw_rad", yaw_rad, kAngle, "direction of the LiDAR's x axis in the base frame");
   fields.field("num_beams", num_beams, {1, 4000}, "beams in one turn");
   fields.field("rate_hz", rate_hz, {0.1, 100.0}, "turns per second");
   fields.field("range_min_m", range_min_m, kNotNegative, "shortest range measured");
-  fields.field("range_max_m", range_max_m, kPositive, "longest range measured");
+  fields.field("range_max_m", range_max_m, kLongestRange_m, "longest range measured");
   fields.field("range_sigma_m", range_sigma_m, kPositive, "standard deviation of a range");
 }
 
@@ -40,7 +49,6 @@ Eigen::Isometry3d CameraConfig::base_from_camera() const {
 }
 
 void CameraConfig::describe(Fields& fields) {
-  constexpr Range kAngle{-std::numbers::pi, std::numbers::pi};
   fields.field("width_px", width_px, {16, 8192}, "image width");
   fields.field("height_px", height_px, {16, 8192}, "image height");
   fields.field("fx_px", fx_px, {1.0, 1e5}, "focal length along u");
@@ -48,9 +56,9 @@ void CameraConfig::describe(Fields& fields) {
   fields.field("cx_px", cx_px, kAnyNumber, "principal point; pixel centres are integers");
   fields.field("cy_px", cy_px, kAnyNumber, "principal point");
   fields.field("distortion", distortion, kAnyNumber, "OpenCV's k1 k2 p1 p2 k3");
-  fields.field("x_m", x_m, kAnyNumber, "position in the base frame");
-  fields.field("y_m", y_m, kAnyNumber, "position in the base frame");
-  fields.field("z_m", z_m, kAnyNumber, "height over the floor");
+  fields.field("x_m", x_m, kPlace_m, "position in the base frame");
+  fields.field("y_m", y_m, kPlace_m, "position in the base frame");
+  fields.field("z_m", z_m, kHeight_m, "height over the floor");
   fields.field("roll_rad", roll_rad, kAngle, "turn about the viewing direction");
   fields.field("pitch_rad", pitch_rad, kAngle, "positive looks down");
   fields.field("yaw_rad", yaw_rad, kAngle, "positive looks left");

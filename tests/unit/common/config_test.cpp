@@ -95,7 +95,7 @@ TEST(Config, AListStandsWhenALaterSourceHasNone) {
 
 TEST(Config, AllProblemsAreReportedWithTheirLines) {
   const auto file =
-      file_with("[robot.lidar]\nnum_beam = 90\nrate_hz = \"fast\"\nrange_max_m = -1\n");
+      file_with("[robot.lidar]\nnum_beam = 90\nrate_hz = \"fast\"\nrange_sigma_m = -1\n");
 
   const std::string error = error_of({{file}, {}});
 
@@ -106,7 +106,8 @@ TEST(Config, AllProblemsAreReportedWithTheirLines) {
               HasSubstr("config_test.toml:3: robot.lidar.rate_hz: got 'fast', expected a number"));
   EXPECT_THAT(
       error,
-      HasSubstr("config_test.toml:4: robot.lidar.range_max_m: got -1, expected a number above 0"));
+      HasSubstr(
+          "config_test.toml:4: robot.lidar.range_sigma_m: got -1, expected a number above 0"));
 }
 
 TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
