@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/files/whole_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
@@ -46,7 +48,7 @@ class TemporaryFile {
 }  // namespace
 
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes) {
-  TemporaryFile temporary{file.parent_path() / ("." + file.filename().string() + ".part")};
+  TemporaryFile temporary{file.parent_path() / fmt::format(".{}.part", file.filename().string())};
   if (!temporary.write(bytes) || !temporary.rename_to(file)) {
     throw std::system_error{errno, std::generic_category(), file.string() + ": cannot be written"};
   }
