@@ -2,7 +2,7 @@
 #include "marker_sheet/marker_sheet.hpp"
 
 #include "common/files/whole_file.hpp"
-#include "detector/core/marker_dictionary.hpp"
+#include "common/markers/marker_dictionary.hpp"
 
 #include <fmt/format.h>
 #include <opencv2/aruco.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/marker_detector.hpp"
 
-#include "detector/core/marker_dictionary.hpp"
+#include "common/markers/marker_dictionary.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Real photographs, kept outside the project: the detector must read at least what cv::aruco reads
 // and nothing that is not there. Skipped where the photographs are absent.
+#include "common/markers/marker_dictionary.hpp"
 #include "detector/core/marker_detector.hpp"
-#include "detector/core/marker_dictionary.hpp"
 
 #include <gtest/gtest.h>
 #include <opencv2/aruco.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "marker_sheet/marker_sheet.hpp"
 
-#include "detector/core/marker_dictionary.hpp"
+#include "common/markers/marker_dictionary.hpp"
 #include "unit/tools/temporary_folder.hpp"
 
 #include <gmock/gmock.h>

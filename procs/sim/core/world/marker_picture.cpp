@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/world/marker_picture.hpp"
 
+#include "common/markers/marker_dictionary.hpp"
+
 #include <opencv2/aruco.hpp>
 
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 namespace waymark {
 namespace {
@@ -15,37 +15,6 @@ constexpr int kTexelsPerModule = 16;
 constexpr int kBorderModules = 1;  // of the black frame, part of the marker
 constexpr int kPaperWhite = 235;   // leaves room for light and noise below 255
 constexpr int kInkBlack = 20;
-
-constexpr std::array<std::pair<const char*, cv::aruco::PREDEFINED_DICTIONARY_NAME>, 21> kNames{{
-    {"DICT_4X4_50", cv::aruco::DICT_4X4_50},
-    {"DICT_4X4_100", cv::aruco::DICT_4X4_100},
-    {"DICT_4X4_250", cv::aruco::DICT_4X4_250},
-    {"DICT_4X4_1000", cv::aruco::DICT_4X4_1000},
-    {"DICT_5X5_50", cv::aruco::DICT_5X5_50},
-    {"DICT_5X5_100", cv::aruco::DICT_5X5_100},
-    {"DICT_5X5_250", cv::aruco::DICT_5X5_250},
-    {"DICT_5X5_1000", cv::aruco::DICT_5X5_1000},
-    {"DICT_6X6_50", cv::aruco::DICT_6X6_50},
-    {"DICT_6X6_100", cv::aruco::DICT_6X6_100},
-    {"DICT_6X6_250", cv::aruco::DICT_6X6_250},
-    {"DICT_6X6_1000", cv::aruco::DICT_6X6_1000},
-    {"DICT_7X7_50", cv::aruco::DICT_7X7_50},
-    {"DICT_7X7_100", cv::aruco::DICT_7X7_100},
-    {"DICT_7X7_250", cv::aruco::DICT_7X7_250},
-    {"DICT_7X7_1000", cv::aruco::DICT_7X7_1000},
-    {"DICT_ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
-    {"DICT_APRILTAG_16h5", cv::aruco::DICT_APRILTAG_16h5},
-    {"DICT_APRILTAG_25h9", cv::aruco::DICT_APRILTAG_25h9},
-    {"DICT_APRILTAG_36h10", cv::aruco::DICT_APRILTAG_36h10},
-    {"DICT_APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11},
-}};
-
-/// Null when there is none of that name.
-cv::Ptr<cv::aruco::Dictionary> find_dictionary(const std::string& name) {
-  for (const auto& [known, number] : kNames)
-    if (name == known) return cv::aruco::getPredefinedDictionary(number);
-  return {};
-}
 
 int black_square_modules(const MarkerPrint& print) {
   const auto dictionary = find_dictionary(print.dictionary);
@@ -62,7 +31,7 @@ int quiet_zone_texels(const MarkerPrint& print) {
 std::optional<int> dictionary_size(const std::string& dictionary) {
   const auto found = find_dictionary(dictionary);
   if (!found) return std::nullopt;
-  return found->bytesList.rows;
+  return size_of(*found);
 }
 
 double plate_size_m(const MarkerPrint& print) {
@@ -79,7 +48,8 @@ cv::Mat blank_picture(const MarkerPrint& print) {
 cv::Mat marker_picture(const MarkerPrint& print, int id) {
   cv::Mat bits;
   const int square_texels = black_square_modules(print) * kTexelsPerModule;
-  cv::aruco::drawMarker(find_dictionary(print.dictionary), id, square_texels, bits, kBorderModules);
+  const auto dictionary = cv::makePtr<cv::aruco::Dictionary>(*find_dictionary(print.dictionary));
+  cv::aruco::drawMarker(dictionary, id, square_texels, bits, kBorderModules);
   cv::Mat picture = blank_picture(print);
   const int quiet = quiet_zone_texels(print);
   picture(cv::Rect{quiet, quiet, square_texels, square_texels}).setTo(kInkBlack, bits == 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "detector/core/marker_dictionary.hpp"
+#include "common/markers/marker_dictionary.hpp"
 
 #include <array>
 
