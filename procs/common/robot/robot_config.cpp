@@ -108,13 +108,15 @@ void RobotConfig::check(Problems& problems) const {
   }
 }
 
+void RobotOnly::describe(Fields& fields) {
+  fields.section("robot", robot);
+}
+
+void RobotOnly::check(Problems& problems) const {
+  robot.check(problems);
+}
+
 std::string dump_robot_config(const RobotConfig& robot) {
-  struct RobotOnly {
-    RobotConfig robot;
-
-    void describe(Fields& fields) { fields.section("robot", robot); }
-  };
-
   return dump_config(RobotOnly{robot});
 }
 

@@ -90,6 +90,14 @@ struct RobotConfig {
   void check(Problems& problems) const;
 };
 
+/// A configuration of section [robot] alone: a robot.toml.
+struct RobotOnly {
+  RobotConfig robot{};
+
+  void describe(Fields& fields);
+  void check(Problems& problems) const;
+};
+
 /// Section [robot] as TOML.
 std::string dump_robot_config(const RobotConfig& robot);
 

@@ -14,14 +14,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-struct Wrapped {
-  RobotConfig robot{};
-
-  void describe(Fields& fields) { fields.section("robot", robot); }
-
-  void check(Problems& problems) const { robot.check(problems); }
-};
-
 struct Shelf {
   int books{1};
   int vases{2};
@@ -44,7 +36,7 @@ struct Room {
 
 std::string error_of(const ConfigSources& sources) {
   try {
-    load_config<Wrapped>(sources);
+    load_config<RobotOnly>(sources);
   } catch (const ConfigError& error) {
     return error.what();
   }
@@ -62,13 +54,13 @@ std::filesystem::path file_with(const std::string& text) {
 }
 
 TEST(Config, DefaultsStandWhenThereIsNoSource) {
-  EXPECT_EQ(load_config<Wrapped>({}).robot.lidar.num_beams, 360);
+  EXPECT_EQ(load_config<RobotOnly>({}).robot.lidar.num_beams, 360);
 }
 
 TEST(Config, LaterSourcesWin) {
   const auto file = file_with("[robot.lidar]\nnum_beams = 90\nrate_hz = 7\n");
 
-  const auto config = load_config<Wrapped>({{file}, {"robot.lidar.num_beams=12"}});
+  const auto config = load_config<RobotOnly>({{file}, {"robot.lidar.num_beams=12"}});
 
   EXPECT_EQ(config.robot.lidar.num_beams, 12);
   EXPECT_EQ(config.robot.lidar.rate_hz, 7.0);
@@ -117,13 +109,13 @@ TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
 
 TEST(Config, APartOfAFileMayBeRead) {
   const auto file = file_with("[other]\nkey = 1\n[robot.base]\nwheel_radius_m = 0.1\n");
-  EXPECT_EQ(load_part<Wrapped>(file).robot.base.wheel_radius_m, 0.1);
+  EXPECT_EQ(load_part<RobotOnly>(file).robot.base.wheel_radius_m, 0.1);
   const auto wrong = file_with("[other]\nkey = 1\n[robot.base]\nwheel_radius_m = 'a'\n");
-  EXPECT_THROW(load_part<Wrapped>(wrong), ConfigError);
+  EXPECT_THROW(load_part<RobotOnly>(wrong), ConfigError);
 }
 
 TEST(Config, BareWordsOnTheCommandLineAreStrings) {
-  const auto config = load_config<Wrapped>({{}, {"robot.markers.dictionary=DICT_4X4_50"}});
+  const auto config = load_config<RobotOnly>({{}, {"robot.markers.dictionary=DICT_4X4_50"}});
   EXPECT_EQ(config.robot.markers.dictionary, "DICT_4X4_50");
 }
 
@@ -137,13 +129,13 @@ TEST(Config, ChecksAcrossFieldsRunOnTheResult) {
 }
 
 TEST(Config, ADumpReadsBackAsTheSame) {
-  Wrapped config{};
+  RobotOnly config{};
   config.robot.lidar.num_beams = 17;
   config.robot.camera.fx_px = 0.1 + 530.2;
   config.robot.markers.dictionary = "a \"quoted\" \\ name";
   config.robot.markers.ids = {0, 3};
 
-  const auto again = load_config<Wrapped>({{file_with(dump_config(config))}, {}});
+  const auto again = load_config<RobotOnly>({{file_with(dump_config(config))}, {}});
 
   EXPECT_EQ(dump_config(again), dump_config(config));
   EXPECT_EQ(again.robot.camera.fx_px, config.robot.camera.fx_px);

@@ -9,12 +9,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-struct RobotOnly {
-  RobotConfig robot{};
-
-  void describe(Fields& fields) { fields.section("robot", robot); }
-};
-
 /// What is said about one setting; empty when it is taken.
 std::string problem_with(const std::string& setting) {
   try {

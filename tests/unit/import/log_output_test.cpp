@@ -14,14 +14,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-struct RobotOnly {
-  RobotConfig robot{};
-
-  void describe(Fields& fields) { fields.section("robot", robot); }
-
-  void check(Problems& problems) const { robot.check(problems); }
-};
-
 ImportedLog small_log(ImportReport& report) {
   CarmenOptions options{};
   options.beams = {-1.0, 0.5};
