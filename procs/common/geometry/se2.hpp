@@ -58,4 +58,18 @@ inline Se2 interpolate(const Se2& from, const Se2& to, double fraction) {
           from.theta() + fraction * angle_difference(to.theta(), from.theta())};
 }
 
+/// Turns (x, y, theta) in the child's axes into the parent's.
+inline Eigen::Matrix3d turning(const Se2& parent_from_child) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = parent_from_child.rotation();
+  return turn;
+}
+
+/// Covariance of (x, y, theta) in the child's axes, in the parent's.
+inline Eigen::Matrix3d turned(const Se2& parent_from_child,
+                              const Eigen::Matrix3d& covariance_in_child) {
+  const Eigen::Matrix3d turn = turning(parent_from_child);
+  return turn * covariance_in_child * turn.transpose();
+}
+
 }  // namespace waymark

@@ -64,12 +64,6 @@ Eigen::Vector3d step_to_walls(const Stop& stop, const std::vector<std::optional<
   return information.ldlt().solve(pull);
 }
 
-Eigen::Matrix3d in_map(const Eigen::Matrix3d& covariance, const Se2& map_from_base) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = map_from_base.rotation();
-  return turn * covariance * turn.transpose();
-}
-
 Se2 next_pose(const Stop& stop, const Se2& map_from_last, const OdometryNoise& noise,
               const std::vector<Wall>& walls) {
   const CorrectedMotion motion = corrected_motion(stop.motion, OdometryErrors::Zero(), noise);
@@ -78,7 +72,7 @@ Se2 next_pose(const Stop& stop, const Se2& map_from_last, const OdometryNoise& n
   for (const LineOfScan& line : stop.lines)
     seen.push_back(wall_of(line, map_from_base, walls));
   return deviated(map_from_base, step_to_walls(stop, seen, map_from_base, walls,
-                                               in_map(motion.covariance, map_from_last)));
+                                               turned(map_from_last, motion.covariance)));
 }
 
 void link_walls(const Stop& stop, std::size_t index, Scene& scene) {

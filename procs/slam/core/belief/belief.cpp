@@ -56,24 +56,20 @@ Belief::Belief(const BeliefPrior& prior) : covariance_{Eigen::MatrixXd::Zero(kMa
 
 Belief::Prediction Belief::predicted(const Motion& motion, const OdometryNoise& noise) const {
   const CorrectedMotion corrected = corrected_motion(motion, odometry_errors_, noise);
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = map_from_base_.rotation();
   const Eigen::Matrix3d in_base = corrected.covariance + corrected.by_errors *
                                                              odometry_errors_covariance() *
                                                              corrected.by_errors.transpose();
-  return {map_from_base_ * corrected.start_from_end, turn * in_base * turn.transpose()};
+  return {map_from_base_ * corrected.start_from_end, turned(map_from_base_, in_base)};
 }
 
 void Belief::move(const Motion& motion, const OdometryNoise& noise) {
   const CorrectedMotion corrected = corrected_motion(motion, odometry_errors_, noise);
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = map_from_base_.rotation();
   const Eigen::Matrix3d by_pose =
       carried_along(map_from_base_.rotation() * corrected.start_from_end.translation());
-  const Eigen::Matrix<double, 3, 4> by_errors = turn * corrected.by_errors;
+  const Eigen::Matrix<double, 3, 4> by_errors = turning(map_from_base_) * corrected.by_errors;
 
   transform_pose(by_pose, by_errors);
-  covariance_.topLeftCorner<3, 3>() += turn * corrected.covariance * turn.transpose();
+  covariance_.topLeftCorner<3, 3>() += turned(map_from_base_, corrected.covariance);
   map_from_base_ = map_from_base_ * corrected.start_from_end;
 }
 

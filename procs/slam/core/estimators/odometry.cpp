@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/odometry.hpp"
 
+#include "slam/core/proposal/pose_information.hpp"
+
 namespace waymark {
 namespace {
 
@@ -8,9 +10,6 @@ namespace {
 Eigen::Matrix3d propagate(const Eigen::Matrix3d& covariance, const Se2& map_from_start,
                           const Motion& motion, const MotionNoise& noise) {
   const Eigen::Vector2d step = map_from_start.rotation() * motion.start_from_end.translation();
-  Eigen::Matrix3d by_start = Eigen::Matrix3d::Identity();
-  by_start(0, 2) = -step.y();
-  by_start(1, 2) = step.x();
   Eigen::Matrix3d added = Eigen::Matrix3d::Zero();
   const double length_m = step.norm();
   if (length_m > 0.0 && !noise.rotation_only) {
@@ -20,7 +19,7 @@ Eigen::Matrix3d propagate(const Eigen::Matrix3d& covariance, const Se2& map_from
   }
   added(2, 2) = noise.turn_per_sqrt_m * noise.turn_per_sqrt_m * motion.distance_m +
                 noise.turn_per_sqrt_rad * noise.turn_per_sqrt_rad * motion.turn_rad;
-  return by_start * covariance * by_start.transpose() + added;
+  return carried_along(covariance, step) + added;
 }
 
 }  // namespace

@@ -23,13 +23,6 @@ PoseAxes whole_pose() {
   return Eigen::Matrix3d::Identity();
 }
 
-/// Covariance of (x, y, theta) in the axes of another frame.
-Eigen::Matrix3d in_frame_of(const Se2& from_other, const Eigen::Matrix3d& covariance) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = from_other.rotation();
-  return turn.transpose() * covariance * turn;
-}
-
 }  // namespace
 
 WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config)
@@ -215,11 +208,11 @@ void WaymarkEstimator::follow(State& state, const Sensed& sensed, const Chance& 
   const Eigen::Vector2d step = state.belief.map_from_base().translation() - from;
   state.belief.widen(sensed.drift.since);
   if (sensed.slip) state.belief.widen(slip_error(*sensed.slip));
-  const Se2 predicted = state.belief.map_from_base();
-  const Eigen::Matrix3d prior = in_frame_of(predicted, state.belief.pose_covariance());
+  const Se2 predicted_from_map = state.belief.map_from_base().inverse();
+  const Eigen::Matrix3d prior = turned(predicted_from_map, state.belief.pose_covariance());
   correct_by_walls(state, sensed, carried_along(left, step), chance.start, outcome);
-  const Eigen::Matrix3d posterior = in_frame_of(predicted, state.belief.pose_covariance());
-  const Se2 moved = predicted.inverse() * state.belief.map_from_base();
+  const Eigen::Matrix3d posterior = turned(predicted_from_map, state.belief.pose_covariance());
+  const Se2 moved = predicted_from_map * state.belief.map_from_base();
   outcome.correction = {
       {moved.x(), moved.y(), moved.theta()}, prior.diagonal(), posterior.diagonal()};
 }
@@ -281,8 +274,8 @@ PoseProposal WaymarkEstimator::match_walls(const State& state, const Belief& bel
   SurfaceFinder walls{state.walls, beams.size()};
   // The scan as a whole is off from the pose, for it was measured while the robot moved.
   const MeanSweep& sweep = sensed.observation->mean_sweep;
-  const Eigen::Matrix3d by_sweep = in_frame_of(
-      belief.map_from_base().inverse(), random_walk(sweep.distance_m, sweep.turn_rad, noise_));
+  const Eigen::Matrix3d by_sweep =
+      turned(belief.map_from_base(), random_walk(sweep.distance_m, sweep.turn_rad, noise_));
   return propose(
       belief.map_from_base(), belief.pose_covariance(),
       [&](const Se2& pose, const Eigen::Matrix3d& uncertainty) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/mapping/landmark_map.hpp"
 
+#include "slam/core/proposal/pose_information.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -13,19 +15,8 @@ namespace {
 constexpr double kSigmaFloor = 1e-3;
 
 Eigen::Matrix3d in_map(const Eigen::Matrix3d& covariance_in_base, const Se2& map_from_base) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = map_from_base.rotation();
-  return turn * covariance_in_base * turn.transpose() +
+  return turned(map_from_base, covariance_in_base) +
          kSigmaFloor * kSigmaFloor * Eigen::Matrix3d::Identity();
-}
-
-/// Jacobian of a marker's map pose by the robot's pose.
-Eigen::Matrix3d by_robot_pose(const Se2& map_from_marker, const Se2& map_from_base) {
-  const Eigen::Vector2d lever = map_from_marker.translation() - map_from_base.translation();
-  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity();
-  jacobian(0, 2) = -lever.y();
-  jacobian(1, 2) = lever.x();
-  return jacobian;
 }
 
 }  // namespace
@@ -68,10 +59,10 @@ void LandmarkMap::add(const MarkerSighting& sighting, const Se2& map_from_base,
   const Eigen::Vector3d deviation{map_from_marker.x() - first.x(), map_from_marker.y() - first.y(),
                                   angle_difference(map_from_marker.theta(), first.theta())};
   const Eigen::Matrix3d information = in_map(sighting.covariance_in_base, map_from_base).inverse();
-  const Eigen::Matrix3d lever = by_robot_pose(map_from_marker, map_from_base);
   nearest->information += information;
   nearest->weighted_deviation += information * deviation;
-  nearest->pose_covariance_sum += lever * pose_covariance * lever.transpose();
+  nearest->pose_covariance_sum +=
+      carried_along(pose_covariance, map_from_marker.translation() - map_from_base.translation());
   ++nearest->first.sightings;
   nearest->first.last_seen = sighting.time;
 }

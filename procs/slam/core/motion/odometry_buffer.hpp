@@ -17,9 +17,9 @@ class OdometryBuffer {
   enum class Outcome { kAdded, kOutOfOrder, kTooFarAhead, kJumped, kCaughtUp };
 
   /// A sample that is not newer than the last is refused, and one that is newer by more than any
-  /// pause (ClockWatch::kLongestPause). A jump that no robot can drive (its
-  /// odometry was reset) counts as no motion. Odometry that stood still and then jumps as far as
-  /// can be driven meanwhile had been stuck: the jump is what it has kept back.
+  /// pause (ClockWatch::kLongestPause). A jump that no robot can drive (its odometry was reset)
+  /// counts as no motion. Odometry that stood still and then jumps as far as can be driven
+  /// meanwhile had been stuck: the jump is what it has kept back.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }

@@ -46,12 +46,10 @@ std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Tim
   const Se2 frame_base_from_marker{
       Eigen::Vector2d{detection.base_from_marker.translation().head<2>()},
       std::atan2(facing.y(), facing.x())};
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = scan_base_from_frame_base.rotation();
   return MarkerSighting{detection.id,
                         time,
                         scan_base_from_frame_base * frame_base_from_marker,
-                        turn * covariance * turn.transpose(),
+                        turned(scan_base_from_frame_base, covariance),
                         size_m,
                         scan_base_from_frame_base.translation().norm(),
                         std::abs(scan_base_from_frame_base.theta()),
