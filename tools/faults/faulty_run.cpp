@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "faults/faulty_run.hpp"
 
+#include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "common/process/node.hpp"
 #include "faults/injector.hpp"
 
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -43,21 +43,6 @@ void check_folders(const fs::path& run_dir, const fs::path& out_dir) {
                      ": is the recorded run itself; give another folder for the faulty one"};
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream{file, std::ios::binary};
-  std::stringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw std::runtime_error{file.string() + ": cannot be read"};
-  return text.str();
-}
-
-void write(const fs::path& file, const std::string& text) {
-  std::ofstream stream{file, std::ios::binary};
-  stream << text;
-  stream.close();
-  if (!stream) throw std::runtime_error{file.string() + ": cannot be written"};
-}
-
 bool is_output_of_slam(const Message& message) {
   return message.channel.starts_with("SLAM_");
 }
@@ -74,13 +59,13 @@ void copy_truth(const fs::path& run_dir, const FaultConfig& faults, const fs::pa
   if (const fs::path moves = run_dir / "truth_marker_moves.csv"; fs::exists(moves)) {
     if (faults.changes_ids())
       throw std::runtime_error{moves.string() + ": markers that move cannot have other ids, too"};
-    write(out_dir / moves.filename(), text_of(moves));
+    write_whole_file(out_dir / moves.filename(), read_whole_file(moves));
   }
   for (const char* name : {"scenario.toml", "robot.toml", "truth.tum", "truth_markers.csv"}) {
     if (!fs::exists(run_dir / name)) continue;
-    const std::string text = text_of(run_dir / name);
+    const std::string text = read_whole_file(run_dir / name);
     const bool has_ids = std::string_view{name} == "truth_markers.csv" && faults.changes_ids();
-    write(out_dir / name, has_ids ? renamed_markers(text, faults) : text);
+    write_whole_file(out_dir / name, has_ids ? renamed_markers(text, faults) : text);
   }
 }
 
@@ -110,7 +95,7 @@ std::map<std::string, std::int64_t> write_faulty_run(const fs::path& run_dir,
   const fs::path log = run_dir / "run.lcm";
   fs::create_directories(out_dir);
   copy_truth(run_dir, variant.faults, out_dir);
-  write(out_dir / "expect.toml", dump_config(ExpectFile{variant.expect}));
+  write_whole_file(out_dir / "expect.toml", dump_config(ExpectFile{variant.expect}));
 
   const fs::path scenario = run_dir / "scenario.toml";
   const std::int64_t seed = fs::exists(scenario) ? load_part<SeedPart>(scenario).run.seed : 1;

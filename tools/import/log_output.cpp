@@ -10,23 +10,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <utility>
 #include <vector>
 
 namespace waymark {
 namespace {
 
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file{path, std::ios::binary};
-  return {std::istreambuf_iterator<char>{file}, {}};
-}
-
 /// @throws SetupError when the file is there with another content: it may be of another log, or
 /// have been completed by hand.
 void check_not_replaced(const std::filesystem::path& path, const std::string& text) {
-  if (!std::filesystem::exists(path) || text_of(path) == text) return;
+  if (!std::filesystem::exists(path) || read_whole_file(path) == text) return;
   throw SetupError{path.string() +
                    ": is there already, with another content; give --out in another folder, or "
                    "move it away"};
@@ -89,9 +82,9 @@ void write_imported_log(const ImportedLog& log, const std::filesystem::path& out
   std::vector<std::pair<std::filesystem::path, std::string>> beside{
       {folder / "robot.toml", dump_robot_config(log.robot)}};
   if (!log.reference.empty()) beside.emplace_back(folder / "reference.tum", to_tum(log.reference));
-  for (const auto& [path, text] : beside)
-    check_not_replaced(path, text);
   try {
+    for (const auto& [path, text] : beside)
+      check_not_replaced(path, text);
     std::filesystem::create_directories(folder);
     write_log(log, out);
     for (const auto& [path, text] : beside)

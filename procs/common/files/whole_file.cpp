@@ -5,6 +5,8 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -52,6 +54,15 @@ void write_whole_file(const std::filesystem::path& file, std::string_view bytes)
   if (!temporary.write(bytes) || !temporary.rename_to(file)) {
     throw std::system_error{errno, std::generic_category(), file.string() + ": cannot be written"};
   }
+}
+
+std::string read_whole_file(const std::filesystem::path& file) {
+  std::ifstream stream{file, std::ios::binary};
+  std::string bytes{std::istreambuf_iterator<char>{stream}, {}};
+  if (!stream) {
+    throw std::system_error{errno, std::generic_category(), file.string() + ": cannot be read"};
+  }
+  return bytes;
 }
 
 }  // namespace waymark

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace waymark {
@@ -11,5 +12,9 @@ namespace waymark {
 /// content or the new, never a part.
 /// @throws std::system_error with the file's name; the old file then still stands.
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// Its content.
+/// @throws std::system_error with the file's name.
+std::string read_whole_file(const std::filesystem::path& file);
 
 }  // namespace waymark
