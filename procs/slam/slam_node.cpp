@@ -7,9 +7,15 @@
 
 #include <spdlog/spdlog.h>
 
+#include <string_view>
 #include <utility>
 
 namespace waymark {
+namespace {
+
+constexpr std::string_view kScansProcessed = "scans processed";
+
+}  // namespace
 
 SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
     : config_{config},
@@ -45,20 +51,19 @@ void SlamNode::finish() {
 
 /// An input that nothing can be made of shall not look like success.
 void SlamNode::judge_input() {
-  const std::int64_t scans = counters_.get("LIDAR received");
-  const std::int64_t odometry = counters_.get("ODOMETRY received");
+  const std::int64_t scans = counters_.get(received_on(channels::kLidar.name));
+  const std::int64_t odometry = counters_.get(received_on(channels::kOdometry.name));
   if (!last_estimate_ && scans + odometry > 0) {
     failed_ = true;
     spdlog::error("no pose: of LIDAR {} and of ODOMETRY {} messages could be read; both are needed",
                   scans, odometry);
   }
-  const std::int64_t processed = counters_.get("scans processed");
+  const std::int64_t processed = counters_.get(kScansProcessed);
   if (processed > 0 && counters_.get(to_string(Skip::kScanWithoutReturns)) >= processed) {
     failed_ = true;
     spdlog::error(
         "no map: no scan has a range from {} to {} m; are they in metres, and is [robot.lidar] "
-        "that of "
-        "this robot?",
+        "that of this robot?",
         config_.robot.lidar.range_min_m, config_.robot.lidar.range_max_m);
   }
 }
@@ -82,7 +87,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   const Timestamp time = estimate.time;
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_estimate_ = time;
-  counters_.add(ready.scan ? "scans processed" : "estimates while the LiDAR was silent");
+  counters_.add(ready.scan ? kScansProcessed : "estimates while the LiDAR was silent");
   if (estimate.slipped) counters_.add("slips of the wheels");
   if (estimate.calibration_widened) counters_.add("calibration found worse than told");
   if (ready.scan && estimate.ranges_wrong) counters_.add("scans with wrong ranges");

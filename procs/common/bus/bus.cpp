@@ -53,12 +53,12 @@ class Bus::Implementation {
       if (handle == nullptr) throw no_network(url);
       lcm_subscription_set_queue_capacity(handle, kLcmQueueCapacity);
     }
+    if (subscriptions.empty()) return;
     // A TCP server that is not there shows nowhere else, and waiting for it would abort.
-    if (!subscriptions.empty() && !is_connected()) throw no_network(url);
-    if (!subscriptions.empty())
-      receiver_ = std::thread{[this] {
-        receive_until_stopped();
-      }};
+    if (!is_connected()) throw no_network(url);
+    receiver_ = std::thread{[this] {
+      receive_until_stopped();
+    }};
   }
 
   ~Implementation() {

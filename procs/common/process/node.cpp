@@ -19,6 +19,10 @@ std::int64_t Counters::get(std::string_view name) const {
   return found == counts_.end() ? 0 : found->second;
 }
 
+std::string received_on(std::string_view channel) {
+  return std::string{channel} + " received";
+}
+
 void Inbox::on_raw(std::string_view channel, std::function<void(const Message&)> handler) {
   channels_[std::string{channel}].raw = std::move(handler);
 }
@@ -40,7 +44,7 @@ void Inbox::deliver(const Message& message) {
                                   ? RejectReason::kWrongType
                                   : handler->second(message);
   counters_.add(reason == RejectReason::kNone
-                    ? message.channel + " received"
+                    ? received_on(message.channel)
                     : message.channel + " rejected: " + std::string{to_string(reason)});
 }
 

@@ -28,6 +28,9 @@ class Counters {
   std::map<std::string, std::int64_t, std::less<>> counts_;
 };
 
+/// Name of the count of messages that came on a channel and could be read.
+std::string received_on(std::string_view channel);
+
 /// What to do in real time when messages come faster than they are processed.
 enum class Backlog { kKeepAll, kNewestOnly };
 
