@@ -22,7 +22,8 @@ EdgeProfile BlurredSide::profile(double reach_px) const {
     profile.brightness.push_back(normal_cdf(offset_px / blur_px) +
                                  inner_white * normal_cdf((-border_px - offset_px) / blur_px));
   }
-  read_levels(profile);
+  profile.is_white_behind = inner_white > 0.0;
+  read_levels(profile, border_px);
   return profile;
 }
 

@@ -12,11 +12,11 @@ constexpr int kMaxProfilesPerSide = 80;
 // Near a corner the blur of the neighbouring side bends the edge.
 constexpr double kCornerMarginPx = 2.0;
 constexpr double kMaxCornerMarginRate = 0.2;
-// Parts of the reach in which a level is read: far enough from the edge to be past its blur, and
-// inside near enough to stay off the inner bits.
+// Parts of the reach in which levels are read, past the blur of the edge.
 constexpr double kWhiteFrom = 0.6;
-constexpr double kBlackFrom = -0.9;
-constexpr double kBlackTo = -0.6;
+constexpr double kBlackAt = 0.75;
+constexpr double kBlackHalfWidth = 0.15;
+constexpr double kDark = 0.12;  // of the contrast: a bit that is no brighter is black
 
 /// Bilinear; nullopt outside the image.
 std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& raw_px) {
@@ -35,6 +35,11 @@ std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& 
          down * ((1 - right) * lower[0] + right * lower[1]);
 }
 
+bool is_white(const std::optional<double>& level, const std::vector<double>& profile) {
+  const auto [darkest, brightest] = std::ranges::minmax(profile);
+  return level && *level > darkest + kDark * (brightest - darkest);
+}
+
 double mean_between(const EdgeProfile& profile, double from_rate, double to_rate) {
   const double half = 0.5 * static_cast<double>(profile.brightness.size() - 1);
   const auto first = static_cast<std::size_t>(std::lround(half * (1.0 + from_rate)));
@@ -47,9 +52,14 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
 
 }  // namespace
 
-void read_levels(EdgeProfile& profile) {
+/// Before white bits black is read in the middle of a border that is thin, as far from them as from
+/// the edge.
+void read_levels(EdgeProfile& profile, double border_px) {
   profile.white = mean_between(profile, kWhiteFrom, 1.0);
-  profile.black = mean_between(profile, kBlackFrom, kBlackTo);
+  const double middle = 0.5 * border_px / profile.reach_px;
+  const double at = profile.is_white_behind ? std::min(middle, kBlackAt) : kBlackAt;
+  const double half_width = std::max(0.0, kBlackHalfWidth - (kBlackAt - at));
+  profile.black = mean_between(profile, -at - half_width, -at + half_width);
 }
 
 double EdgeProfile::step_px() const {
@@ -97,7 +107,7 @@ std::optional<double> EdgeProfile::blur_px(double black_level) const {
 }
 
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
-                                         const Side& side, double reach_px) {
+                                         const Side& side, double reach_px, double border_px) {
   const double length_px = side.length_px();
   const double margin_px = std::min(kCornerMarginPx, kMaxCornerMarginRate * length_px);
   const int count =
@@ -117,7 +127,10 @@ std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel&
       profile.brightness.push_back(*value);
     }
     if (std::ssize(profile.brightness) != steps + 1) continue;
-    read_levels(profile);
+    const Eigen::Vector2d behind_px = place_px - kInnerBits * border_px * side.outward();
+    profile.is_white_behind =
+        is_white(brightness_at(gray, camera.raw_from_ideal(behind_px)), profile.brightness);
+    read_levels(profile, border_px);
     profiles.push_back(std::move(profile));
   }
   return profiles;

@@ -12,6 +12,9 @@
 
 namespace waymark {
 
+/// Modules from a side to the middle of the bits behind the border.
+inline constexpr double kInnerBits = 1.5;
+
 /// One side of a marker in ideal pixels, from corner to corner, clockwise around the marker.
 struct Side {
   Eigen::Vector2d start_px{};
@@ -30,8 +33,9 @@ struct EdgeProfile {
   double along_px{0.0};  ///< distance from the side's start
   double reach_px{0.0};
   std::vector<double> brightness{};
-  double white{0.0};  ///< mean level outside
-  double black{0.0};  ///< mean level inside, raised where the border is thin
+  bool is_white_behind{false};  ///< the bit behind the border
+  double white{0.0};            ///< mean level outside
+  double black{0.0};            ///< mean level inside, raised where the border is thin
 
   double step_px() const;
   /// Linear between the samples, constant beyond them.
@@ -47,13 +51,13 @@ struct EdgeProfile {
   std::optional<double> blur_px(double black_level) const;
 };
 
-/// Levels that are read off a profile.
-void read_levels(EdgeProfile& profile);
+/// Levels that are read off a profile across a border of that thickness.
+void read_levels(EdgeProfile& profile, double border_px);
 
 /// One profile per pixel along the side, away from its corners. Places from which the profile would
 /// leave the image are left out.
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
-                                         const Side& side, double reach_px);
+                                         const Side& side, double reach_px, double border_px);
 
 /// Mean brightness along a line that far inside of a side; nullopt where it leaves the image.
 std::optional<double> mean_brightness_inside(const cv::Mat& gray, const CameraModel& camera,

@@ -14,9 +14,10 @@ namespace {
 // the pixels' own area, and the interpolation between them.
 constexpr double kSharpPx = 0.95;
 constexpr double kMinBorderPx = 2.0;
-constexpr double kCornerBlurs = 3.0;  // a corner reaches that far, in standard deviations of it
-constexpr double kInnerBits = 1.5;    // modules from a side to the middle of the bits behind
-constexpr double kHalfWhite = 0.5;    // of the bits, where it hardly matters
+constexpr double kCornerBlurs = 3.0;   // a corner reaches that far, in standard deviations of it
+constexpr double kHalfWhite = 0.5;     // of the bits, where it hardly matters
+constexpr double kThickReaches = 1.5;  // of a border behind which bits do not touch its level
+constexpr std::size_t kFewLevels = 4;
 
 double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   const Eigen::Vector2d ab = b - a;
@@ -50,15 +51,22 @@ std::array<double, 4> border_thickness_px(const std::array<Side, 4>& sides, int 
   return thickness_px;
 }
 
-/// Where the border looks thin, blur mixes white in. (The darkest side would be the one whose noise
-/// is darkest.)
+/// Where the border looks thin, blur mixes white in, from the bits behind it, too. (The darkest
+/// side would be the one whose noise is darkest.)
 double black_level(const SeenSquare& square) {
   const std::size_t first = square.thick_side();
   std::vector<double> levels;
-  for (const std::size_t side : {first, first + 2})
-    for (const EdgeProfile& profile : square.sides[side].profiles)
+  std::vector<double> before_black;
+  for (const std::size_t side : {first, first + 2}) {
+    for (const EdgeProfile& profile : square.sides[side].profiles) {
       levels.push_back(profile.black);
-  return levels.empty() ? 0.0 : median(std::move(levels));
+      if (!profile.is_white_behind) before_black.push_back(profile.black);
+    }
+  }
+  if (levels.empty()) return 0.0;
+  const bool is_thin = square.sides[first].border_px < kThickReaches * square.sides[first].reach_px;
+  return median(is_thin && before_black.size() >= kFewLevels ? std::move(before_black)
+                                                             : std::move(levels));
 }
 
 double blur_of(const std::vector<EdgeProfile>& profiles, double black) {
@@ -110,7 +118,7 @@ SeenSquare look_at_square(const cv::Mat& gray, const CameraModel& camera,
   for (std::size_t k = 0; k < 4; ++k) {
     const double side_reach_px = std::min(reach_px, std::max(kShortestReachPx, border_px[k]));
     square.sides[k] = {sides[k], border_px[k], side_reach_px,
-                       sample_profiles(gray, camera, sides[k], side_reach_px)};
+                       sample_profiles(gray, camera, sides[k], side_reach_px, border_px[k])};
   }
   square.black = black_level(square);
   for (SeenSide& side : square.sides)

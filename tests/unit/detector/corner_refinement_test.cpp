@@ -107,6 +107,22 @@ TEST(CornerRefinement, CornersInACorridorAreUnbiasedOnBothWalls) {
   }
 }
 
+// White bits behind a thin border brighten it. Were that taken for its black, all four sides would
+// move outwards, and the marker nearer.
+TEST(CornerRefinement, SmallMarkersLookAsLargeAsTheyAre) {
+  for (const double ahead_m : {8.0, 8.7, 9.4, 10.1, 10.8}) {  // the border is 2.5 to 3.3 px thick
+    for (const double shift_m : {0.0, 0.005, 0.01, 0.015}) {
+      const Scene scene = scene_with(
+          {}, base_from_upright_marker({ahead_m, shift_m, 0.2 + shift_m}, std::numbers::pi),
+          {.noise_sigma = 0.0});
+      const Corners error = refined_error_px(scene, 0.3);
+      const Eigen::Vector2d diagonal = (scene.true_raw_px[2] - scene.true_raw_px[0]).normalized();
+      const double side_outwards_px = 0.5 * diagonal.dot(error[2] - error[0]) / std::numbers::sqrt2;
+      EXPECT_LT(std::abs(side_outwards_px), 0.03) << ahead_m << " m ahead, shift " << shift_m;
+    }
+  }
+}
+
 // Blur mixes the bits behind a thin border into its edge. Without a model of that the corners of
 // the far side are 0.1 px and more off, all to the same side.
 TEST(CornerRefinement, CornersOfABlurredCameraAreNearlyUnbiased) {
