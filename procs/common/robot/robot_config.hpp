@@ -57,7 +57,7 @@ struct CameraConfig {
   double pitch_rad{0.0};  ///< positive looks down
   double yaw_rad{0.0};
   double rate_hz{10.0};
-  double focal_sigma{0.001};         ///< of the focal lengths, relative; learnt while driving
+  double focal_sigma{0.002};         ///< of the focal lengths, relative; learnt while driving
   double yaw_sigma_rad{0.0087};      ///< of `yaw_rad`; learnt while driving
   double bearing_sigma_rad{0.0001};  ///< what neighbouring frames get wrong alike: 0.05 px here
   double position_sigma_m{0.0003};   ///< the same of places

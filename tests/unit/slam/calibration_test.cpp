@@ -42,15 +42,23 @@ void drive_by(Belief& belief, const Eigen::Vector3d& errors, std::uint64_t seed)
   }
 }
 
-TEST(SightingSigmas, ADoubtedErrorIsWiderAndNothingIsBetterThanUsual) {
+TEST(SightingSigmas, ADoubtedErrorIsAsWideAsItSeemsAndNothingIsBetterThanUsual) {
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
   const SightingSigmas usual;
-  const SightingSigmas once = test::exact_camera().doubted(kFocal);
-  EXPECT_EQ(once.learnt, usual.learnt);
-  EXPECT_EQ(once.bearing_rad, usual.bearing_rad);
-  EXPECT_EQ(once.position_m, usual.position_m);
-  const SightingSigmas twice = once.doubted(kFocal);
-  EXPECT_GT(twice.learnt[kFocal], 2.0 * usual.learnt[kFocal]);
-  EXPECT_EQ(twice.learnt[kYaw], usual.learnt[kYaw]);
+  const SightingSigmas told = test::exact_camera();
+  // Sightings that know the focal length as well as it was told find it half as far off as it is.
+  Eigen::Vector3d variances = told.learnt.cwiseAbs2();
+  variances[kFocal] *= 0.5;
+  Eigen::Vector3d found = none;
+  found[kFocal] = 0.5 * 0.01;
+  const auto once = told.doubted_by(found, variances, none);
+  ASSERT_TRUE(once);
+  EXPECT_NEAR(once->learnt[kFocal], 0.01, 1e-9);
+  EXPECT_EQ(once->learnt[kYaw], usual.learnt[kYaw]);
+  EXPECT_EQ(once->bearing_rad, usual.bearing_rad);
+  EXPECT_EQ(once->position_m, usual.position_m);
+  EXPECT_FALSE(once->doubted_by(found, once->learnt.cwiseAbs2() * 0.01, none));
+  EXPECT_FALSE(told.doubted_by(found, variances, Eigen::Vector3d::Constant(1e-5)));
 }
 
 TEST(SightingSigmas, AreThoseOfARobotThatIsToldNothing) {
@@ -66,7 +74,11 @@ TEST(SightingSigmas, AreThoseOfARobotThatIsToldNothing) {
 TEST(SightingSigmas, WhatIsExactStaysSo) {
   SightingSigmas sigmas;
   sigmas.learnt[kYaw] = 0.0;
-  EXPECT_EQ(sigmas.doubted(kFocal).learnt[kYaw], 0.0);
+  const Eigen::Vector3d found{0.0, 0.1, 0.0};
+  const auto doubted = sigmas.doubted_by(found, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  ASSERT_TRUE(doubted);
+  EXPECT_EQ(doubted->learnt[kYaw], 0.0);
+  EXPECT_NEAR(doubted->learnt[kFocal], 0.1, 1e-9);
 }
 
 TEST(Belief, WithAPriorWidenedLaterIsTheOneThatBeganWithIt) {
@@ -85,7 +97,7 @@ TEST(Belief, WithAPriorWidenedLaterIsTheOneThatBeganWithIt) {
   EXPECT_LT((widened.sighting_errors() - wide.sighting_errors()).norm(), 5e-5);
   EXPECT_TRUE(widened.errors_covariance().isApprox(wide.errors_covariance(), 0.02));
   EXPECT_TRUE(widened.pose_covariance().isApprox(wide.pose_covariance(), 0.02));
-  EXPECT_LT(deviation(widened.map_from_base(), wide.map_from_base()).norm(), 5e-5);
+  EXPECT_LT(deviation(widened.map_from_base(), wide.map_from_base()).norm(), 1e-4);
   EXPECT_LT(away(), 0.05 * away_before);
 }
 
@@ -100,12 +112,12 @@ TEST(SightingSigmas, AreContradictedWhereTheyAreTooNarrowAndNowhereElse) {
     drive_by(right, {random.normal(0.0, kWide[kYaw]), random.normal(0.0, kWide[kFocal]), 0.0},
              seed);
     false_alarms +=
-        told_wide.contradicted_by(right.sighting_errors(), right.sighting_variances(), none)
-            .has_value();
+        told_wide.doubted_by(right.sighting_errors(), right.sighting_variances(), none).has_value();
     Belief wrong{{OdometryNoise{}, kNarrow}};
     drive_by(wrong, {0.015, 0.0, 0.0}, seed);
-    alarms += test::exact_camera().contradicted_by(wrong.sighting_errors(),
-                                                   wrong.sighting_variances(), none) == kYaw;
+    const auto doubted =
+        test::exact_camera().doubted_by(wrong.sighting_errors(), wrong.sighting_variances(), none);
+    alarms += doubted && doubted->learnt[kYaw] > kWide[kYaw];
   }
   EXPECT_EQ(false_alarms, 0);
   EXPECT_EQ(alarms, 50);
@@ -127,12 +139,12 @@ TEST(Waymark, BelievesACameraLessThatIsWorseThanTold) {
   };
   EXPECT_FALSE(widened(drive(0.0, 0.0)));
   for (const auto& [focal_error, yaw_error_rad] :
-       {std::pair{0.01, 0.0}, std::pair{0.0, radians(0.3)}, std::pair{-0.01, radians(-0.5)}}) {
+       {std::pair{0.02, 0.0}, std::pair{0.0, radians(0.3)}, std::pair{-0.01, radians(-0.5)}}) {
     const auto steps = drive(focal_error, yaw_error_rad);
     EXPECT_TRUE(widened(steps)) << focal_error << " " << yaw_error_rad;
     const Se2 error = steps.back().truth.inverse() * steps.back().estimate.map_from_base;
     const Eigen::Matrix3d& covariance = steps.back().estimate.covariance;
-    EXPECT_LT(error.translation().norm(), 0.03) << focal_error << " " << yaw_error_rad;
+    EXPECT_LT(error.translation().norm(), 0.04) << focal_error << " " << yaw_error_rad;
     EXPECT_LT(std::abs(error.x()), 4.0 * std::sqrt(covariance(0, 0)));
   }
 }

@@ -40,13 +40,13 @@ void WaymarkEstimator::watch_calibration() {
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < particles_.size(); ++i)
     squares += particles_.weights()[i] * particles_.state(i).belief.sighting_errors().cwiseAbs2();
-  const auto error = told.contradicted_by(found, belief().sighting_variances(),
-                                          (squares - found.cwiseAbs2()).cwiseMax(0.0));
-  if (!error) return;
+  const auto wider = told.doubted_by(found, belief().sighting_variances(),
+                                     (squares - found.cwiseAbs2()).cwiseMax(0.0));
+  if (!wider) return;
   calibration_widened_ = true;
-  setup_.sighting_sigmas = told.doubted(*error);
+  setup_.sighting_sigmas = *wider;
   for (std::size_t i = 0; i < particles_.size(); ++i)
-    particles_.state(i).belief.widen_prior(told.learnt, setup_.sighting_sigmas.learnt);
+    particles_.state(i).belief.widen_prior(told.learnt, wider->learnt);
 }
 
 }  // namespace waymark
