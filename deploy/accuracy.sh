@@ -105,7 +105,7 @@ measure_ablations() {
 
 measure_length() {
   ((length_seeds > 0)) || return 0
-  "$bin_dir/tests/benchmark/length_curve" "$length_seeds" >"$out/length.dat"
+  "$bin_dir/tests/benchmark/length_curve" "$length_seeds" exact >"$out/length.dat"
 }
 
 # ellipses RUN: x y of the way and the covariance's ellipse, every 4 m, for the plot.
