@@ -130,7 +130,7 @@ TEST(MapDrift, WallsThatWereMappedFromABetterPoseAreNotDoubled) {
   drift.take(independent(0.0, 0.01 * 0.01, 0.0), kNone, kErrors);
   drift.release(between_walls(), kTellsAlong, kErrors);
   EXPECT_FALSE(drift.is_better_known({-1.5, 1.0})) << "10 mm are no reason";
-  drift.take(independent(0.0, 0.05 * 0.05, 0.0), kNone, kErrors);
+  drift.take(independent(0.0, 0.015 * 0.015, 0.0), kNone, kErrors);
   drift.release(between_walls(), kTellsAlong, kErrors);
   EXPECT_TRUE(drift.is_better_known({-0.5, 1.0}));
   EXPECT_FALSE(drift.is_better_known({0.5, 1.0})) << "nothing is known there";

@@ -13,7 +13,7 @@ namespace {
 constexpr double kRegion_m = 1.0;
 constexpr double kMinWalls = 3.0;  // number of beams at right angles; less is noise of the normals
 constexpr double kRoughness = 0.04;       // of walls, share of the range's variance
-constexpr double kBetterKnown_m2 = 4e-4;  // where walls and robot differ by less, both are used
+constexpr double kBetterKnown_m2 = 1e-4;  // where walls and robot differ by less, both are used
 constexpr int kWellMapped = 50;           // points in a region
 
 /// Of the rigid motion whose covariance is known at one place, at another.
