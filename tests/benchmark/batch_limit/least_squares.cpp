@@ -69,7 +69,7 @@ class Batch {
     for (std::size_t i = 1; i < stops_.size(); ++i) {
       const CorrectedMotion motion =
           corrected_motion(stops_[i].motion, solution_.odometry_errors, noise);
-      add<MotionResidual, 3, 3, 3, 4>(
+      add<MotionResidual, 3, 3, 3, kOdometryErrors>(
           {motion, solution_.odometry_errors, whitening(motion.covariance)}, nullptr,
           poses_[i - 1].data(), poses_[i].data(), solution_.odometry_errors.data());
     }
@@ -118,9 +118,10 @@ class Batch {
 
   void add_priors(const BatchNoise& noise) {
     const OdometryNoise& odometry = noise.odometry;
-    add<PriorResidual<4>, 4, 4>({{odometry.scale_sigma, odometry.drift_sigma_rad_per_m,
-                                  odometry.turn_scale_sigma, odometry.lidar_ahead_sigma_m}},
-                                nullptr, solution_.odometry_errors.data());
+    add<PriorResidual<kOdometryErrors>, kOdometryErrors, kOdometryErrors>(
+        {{odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
+          odometry.lidar_ahead_sigma_m, odometry.spin_sigma_m_per_rad}},
+        nullptr, solution_.odometry_errors.data());
     add<PriorResidual<2>, 2, 2>(
         {{std::max(noise.sightings.learnt[SightingSigmas::kYaw], kExact),
           std::max(noise.sightings.learnt[SightingSigmas::kFocal], kExact)}},

@@ -54,8 +54,8 @@ struct MotionResidual {
 
   template <class T>
   bool operator()(const T* from, const T* to, const T* errors, T* out) const {
-    const Eigen::Matrix<T, 4, 1> change =
-        Eigen::Map<const Eigen::Matrix<T, 4, 1>>{errors} - about.cast<T>();
+    const Eigen::Matrix<T, kOdometryErrors, 1> change =
+        Eigen::Map<const Eigen::Matrix<T, kOdometryErrors, 1>>{errors} - about.cast<T>();
     const Se2& measured = motion.start_from_end;
     const Vector3<T> expected = Vector3<T>{T{measured.x()}, T{measured.y()}, T{measured.theta()}} +
                                 motion.by_errors.cast<T>() * change;

@@ -19,7 +19,7 @@ using test::setup_of;
 using test::Step;
 using test::SyntheticCorridor;
 
-constexpr Eigen::Index kFocalLength = 5;  // among the systematic errors
+constexpr Eigen::Index kFocalLength = kOdometryErrors + SightingSigmas::kFocal;
 
 std::vector<Step> run_waymark(const SensorLog& log, const SyntheticCorridor& corridor,
                               std::uint64_t seed, const WaymarkConfig& config = {}) {

@@ -32,7 +32,7 @@ const Motion kForward{Se2{0.5, 0.0, 0.02}, 0.5, 0.02};
 TEST(OdometryErrors, DerivativesAgreeWithDifferences) {
   constexpr double kStep = 1e-6;
   const Motion motion{Se2{0.3, 0.05, 0.8}, 0.31, 0.8};
-  const OdometryErrors errors{0.01, 0.02, -0.03, 0.04};
+  const OdometryErrors errors{0.01, 0.02, -0.03, 0.04, 0.0};
   const CorrectedMotion at = corrected_motion(motion, errors, {});
   for (int axis = 0; axis < errors.size(); ++axis) {
     const CorrectedMotion moved =
@@ -46,7 +46,8 @@ TEST(OdometryErrors, DerivativesAgreeWithDifferences) {
 TEST(OdometryErrors, ALidarAheadOfTheWheelsSwingsWhenTheyTurnOnTheSpot) {
   const double quarter_rad = radians(90.0);
   const Motion left{Se2{0.0, 0.0, quarter_rad}, 0.0, quarter_rad};
-  const Se2 moved = corrected_motion(left, {0.0, 0.0, 0.0, 0.2}, {}).start_from_end;
+  const Se2 moved =
+      corrected_motion(left, OdometryErrors{0.0, 0.0, 0.0, 0.2, 0.0}, {}).start_from_end;
   EXPECT_NEAR(moved.x(), -0.2, 2e-3);
   EXPECT_NEAR(moved.y(), 0.2, 2e-3);
 }
@@ -112,7 +113,7 @@ TEST(Belief, CorrectingThePoseMovesTheMarkersThatHangOnIt) {
 TEST(Belief, DrawingThePoseTellsNothingOfSystematicErrors) {
   Belief belief{{OdometryNoise{}, {0.005, 0.002, 0.003}}};
   const OdometryErrors errors = belief.odometry_errors();
-  const Eigen::Matrix4d covariance = belief.odometry_errors_covariance();
+  const Eigen::MatrixXd covariance = belief.odometry_errors_covariance();
   for (int step = 0; step < 100; ++step) {
     belief.move({Se2{0.1, 0.0, 0.0}, 0.1, 0.0}, {});
     belief.draw_pose(Eigen::Matrix3d::Identity(), {1.0, -1.0, 0.5});
@@ -120,6 +121,33 @@ TEST(Belief, DrawingThePoseTellsNothingOfSystematicErrors) {
   }
   EXPECT_EQ(belief.odometry_errors(), errors);
   EXPECT_EQ(belief.odometry_errors_covariance(), covariance);
+}
+
+// Whichever way it turns the robot, and whichever way the robot looks.
+TEST(Belief, WhatASlipCostsAlongTheWayIsLearntAndTakenOffTheNext) {
+  constexpr double kHalfTrack_m = 0.12;
+  for (const double turn_rad : {0.1, -0.1}) {
+    Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
+    belief.step({1.0, 2.0, 0.7});
+    const Motion motion{Se2{0.2, 0.0, 0.0}, 0.2, 0.0};
+    const double expected_m = OdometryNoise{}.spin_sigma_m_per_rad * std::abs(turn_rad);
+    const auto behind = [&](double way_m) {
+      return belief.map_from_base() * Se2{-way_m, 0.0, 0.0};
+    };
+    belief.slip(motion, turn_rad);
+    const Eigen::Matrix3d in_base =
+        turned(belief.map_from_base().inverse(), belief.pose_covariance());
+    EXPECT_NEAR(std::sqrt(in_base(0, 0)), expected_m, 1e-9);
+    EXPECT_NEAR(in_base(1, 1), 0.0, 1e-12);
+
+    const double lost_m = kHalfTrack_m * std::abs(turn_rad);
+    belief.correct_pose(behind(lost_m), 1e-8 * Eigen::Matrix3d::Identity());
+    EXPECT_NEAR(belief.odometry_errors()[kSpin], -kHalfTrack_m, 1e-3);
+
+    const Se2 expected = behind(2.0 * lost_m);
+    belief.slip(motion, -2.0 * turn_rad);
+    EXPECT_LT(deviation(expected, belief.map_from_base()).norm(), 1e-3);
+  }
 }
 
 TEST(Belief, APoseThatWasPushedByAnErrorTellsTheErrorWhenItIsCorrected) {

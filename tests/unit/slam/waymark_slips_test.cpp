@@ -3,6 +3,7 @@
 #include "common/random/random.hpp"
 #include "property/slam/estimator_run.hpp"
 #include "slam/core/belief/noise_growth.hpp"
+#include "slam/core/belief/slip_watch.hpp"
 #include "slam/core/estimators/waymark.hpp"
 #include "support/room_with_column.hpp"
 
@@ -82,6 +83,69 @@ TEST(Waymark, CatchesUpWithAnOdometryThatWasStuck) {
   }
 }
 
+/// One wheel turns further than it rolls, by a share of its way from `from_m` to `to_m`.
+/// @param track_m  positive where it is the left one.
+void spin_wheel(test::SensorLog& log, double from_m, double to_m, double share, double track_m) {
+  const double start_m = log.truth.front().world_from_base.x();
+  Se2 before = log.odometry.front().odom_from_base;
+  for (std::size_t i = 1; i < log.odometry.size(); ++i) {
+    Se2& pose = log.odometry[i].odom_from_base;
+    const Se2 step = before.inverse() * pose;
+    before = pose;
+    const double travel_m = log.truth[i].world_from_base.x() - start_m;
+    const bool spins = travel_m > from_m && travel_m < to_m;
+    const double more_m = spins ? share * step.x() : 0.0;
+    pose = log.odometry[i - 1].odom_from_base *
+           Se2{step.x() + 0.5 * more_m, step.y(), step.theta() - more_m / track_m};
+  }
+}
+
+/// One wheel spins over 3 m of 12 m, so that the way is told 0.15 m too long. Else the odometry is
+/// known well.
+std::vector<test::Step> drive_on_a_spinning_wheel(test::SyntheticCorridor corridor,
+                                                  double track_m) {
+  corridor.drive_m = 12.0;
+  corridor.speed_m_s = 0.2;
+  corridor.scale_error = 0.0;
+  corridor.length_m = 40.0;
+  corridor.start_x_m = 10.0;  // its ends are out of sight
+  test::SensorLog log = test::drive(corridor);
+  spin_wheel(log, 6.0, 9.0, 0.1, track_m);
+  WaymarkConfig config;
+  config.odometry.scale_sigma = 0.001;
+  WaymarkEstimator estimator{test::estimator_setup_of(corridor, corridor.seed), config};
+  return test::run(estimator, log, test::setup_of(corridor));
+}
+
+double along_sigma_m(const test::Step& step) {
+  return std::sqrt(step.estimate.covariance(0, 0));
+}
+
+// The walls show the turn. What the way is off by follows from it, but for the sign of skids.
+TEST(Waymark, AWheelThatSlipsMakesItUnsureOfTheWay) {
+  for (const double track_m : {0.287, -0.287}) {
+    const auto steps = drive_on_a_spinning_wheel({}, track_m);
+    const double error_m = steps.back().estimate.map_from_base.x() - steps.back().truth.x();
+    EXPECT_GT(error_m, 0.1);
+    EXPECT_LT(error_m, 2.0 * along_sigma_m(steps.back()));
+    EXPECT_NEAR(steps.back().estimate.map_from_base.theta(), steps.back().truth.theta(), 0.01);
+  }
+}
+
+TEST(Waymark, MarkersTellWhatASlipCosts) {
+  for (const double track_m : {0.287, -0.287}) {
+    test::SyntheticCorridor corridor;
+    corridor.markers = test::opposite_markers(corridor, 12.0);
+    double worst = 0.0;
+    for (const test::Step& step : drive_on_a_spinning_wheel(corridor, track_m)) {
+      const double error_m = std::abs(step.estimate.map_from_base.x() - step.truth.x());
+      worst = std::max(worst, error_m);
+      EXPECT_LT(error_m, 4.0 * along_sigma_m(step) + 0.002);
+    }
+    EXPECT_LT(worst, 0.04);
+  }
+}
+
 // Each sighting is at odds with the map and is looked at at once, though the robot has not moved
 // and nothing of its pose is open any more.
 TEST(Waymark, StandsStillBeforeAMarkerThatJumpsAbout) {
@@ -109,6 +173,60 @@ TEST(Waymark, StandsStillBeforeAMarkerThatJumpsAbout) {
       ASSERT_TRUE(estimate.covariance.allFinite()) << seed << ' ' << i;
     }
   }
+}
+
+const Motion kStep{Se2{0.1, 0.0, 0.0}, 0.1, 0.0};
+
+/// By walls, of the heading.
+PoseCorrection turned_by(double turn_rad) {
+  PoseCorrection correction;
+  correction.by.z() = turn_rad;
+  correction.posterior_variance.z() = 1e-6;
+  return correction;
+}
+
+double sigma_of_step_rad() {
+  return std::sqrt(turn_variance({}, kStep.distance_m, kStep.turn_rad));
+}
+
+/// Has seen a while of odometry whose turns are `times` as noisy as they are told to be.
+SlipWatch used_to(double times) {
+  SlipWatch watch;
+  Random random{5};
+  for (int i = 0; i < 500; ++i)
+    watch.learn(turned_by(random.normal(0.0, times * sigma_of_step_rad())), kStep, {});
+  return watch;
+}
+
+double slip_found_by(const SlipWatch& watch, double sigmas) {
+  return watch.slipped_turn(turned_by(sigmas * sigma_of_step_rad()), kStep, {});
+}
+
+TEST(SlipWatch, FindsTurnsThatStandOutOfTheNoise) {
+  EXPECT_EQ(slip_found_by({}, 4.0), 0.0);
+  EXPECT_EQ(slip_found_by({}, -8.0), -8.0 * sigma_of_step_rad());
+}
+
+TEST(SlipWatch, IsUsedToAnOdometryThatIsWorseThanTold) {
+  EXPECT_EQ(slip_found_by(used_to(0.3), 4.0), 0.0);
+  EXPECT_NE(slip_found_by(used_to(0.3), 8.0), 0.0);
+  EXPECT_EQ(slip_found_by(used_to(3.0), 10.0), 0.0);
+  EXPECT_NE(slip_found_by(used_to(3.0), 24.0), 0.0);
+}
+
+// Neither where it begins, in the middle of an update, nor for as long as it lasts.
+TEST(SlipWatch, DoesNotGetUsedToASlip) {
+  SlipWatch watch = used_to(1.0);
+  watch.learn(turned_by(4.5 * sigma_of_step_rad()), kStep, {});
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_NE(slip_found_by(watch, 7.0), 0.0) << i;
+    watch.learn(turned_by(7.0 * sigma_of_step_rad()), kStep, {});
+  }
+}
+
+TEST(SlipWatch, LeavesTurnsOnTheSpotAlone) {
+  const Motion on_the_spot{Se2{0.01, 0.0, 1.5}, 0.01, 1.5};
+  EXPECT_EQ(SlipWatch{}.slipped_turn(turned_by(0.5), on_the_spot, {}), 0.0);
 }
 
 /// Corrections of a walk whose variance is `factor` times the one it is said to have.

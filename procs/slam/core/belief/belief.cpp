@@ -51,6 +51,7 @@ Belief::Belief(const BeliefPrior& prior) : covariance_{Eigen::MatrixXd::Zero(kMa
   covariance_(kOdometry + 1, kOdometry + 1) = squared(prior.odometry.drift_sigma_rad_per_m);
   covariance_(kOdometry + 2, kOdometry + 2) = squared(prior.odometry.turn_scale_sigma);
   covariance_(kOdometry + 3, kOdometry + 3) = squared(prior.odometry.lidar_ahead_sigma_m);
+  covariance_(kOdometry + kSpin, kOdometry + kSpin) = squared(prior.odometry.spin_sigma_m_per_rad);
   covariance_.diagonal().segment<3>(kSighting) = prior.sighting_sigmas.cwiseAbs2();
 }
 
@@ -66,7 +67,7 @@ void Belief::move(const Motion& motion, const OdometryNoise& noise) {
   const CorrectedMotion corrected = corrected_motion(motion, odometry_errors_, noise);
   const Eigen::Matrix3d by_pose =
       carried_along(map_from_base_.rotation() * corrected.start_from_end.translation());
-  const Eigen::Matrix<double, 3, 4> by_errors = turning(map_from_base_) * corrected.by_errors;
+  const MotionByErrors by_errors = turning(map_from_base_) * corrected.by_errors;
 
   transform_pose(by_pose, by_errors);
   covariance_.topLeftCorner<3, 3>() += turned(map_from_base_, corrected.covariance);
@@ -83,6 +84,15 @@ void Belief::transform_pose(const Eigen::Matrix3d& by_pose,
   const Eigen::MatrixXd columns = covariance_.leftCols<3>() * by_pose.transpose() +
                                   covariance_.middleCols(kOdometry, errors) * by_errors.transpose();
   covariance_.leftCols<3>() = columns;
+}
+
+void Belief::slip(const Motion& motion, double turn_rad) {
+  const Eigen::Vector2d way = motion.start_from_end.translation();
+  MotionByErrors by_errors = MotionByErrors::Zero();
+  by_errors.col(kSpin).head<2>() =
+      std::abs(turn_rad) * (map_from_base_.rotation() * way.normalized());
+  transform_pose(Eigen::Matrix3d::Identity(), by_errors);
+  map_from_base_ = deviated(map_from_base_, by_errors * odometry_errors_);
 }
 
 PoseError Belief::pose_error() const {
@@ -102,7 +112,7 @@ void Belief::condition(const Eigen::Ref<const Eigen::MatrixXd>& gain,
                        const Eigen::Ref<const Eigen::MatrixXd>& covariance_lost) {
   const Eigen::VectorXd by = gain * deviation;
   map_from_base_ = deviated(map_from_base_, by.head<3>());
-  odometry_errors_ += by.segment<4>(kOdometry);
+  odometry_errors_ += by.segment<kOdometryErrors>(kOdometry);
   sighting_errors_ += by.segment<3>(kSighting);
   for (std::size_t i = 0; i < active_.size(); ++i) {
     active_[i].map_from_marker = deviated(active_[i].map_from_marker, by.segment<3>(place_of(i)));

@@ -79,8 +79,8 @@ class Belief {
 
   const OdometryErrors& odometry_errors() const { return odometry_errors_; }
 
-  Eigen::Matrix4d odometry_errors_covariance() const {
-    return covariance_.block<4, 4>(kOdometry, kOdometry);
+  Eigen::Matrix<double, kOdometryErrors, kOdometryErrors> odometry_errors_covariance() const {
+    return covariance_.block<kOdometryErrors, kOdometryErrors>(kOdometry, kOdometry);
   }
 
   /// What all sightings get wrong in the same way: the camera is mounted `x` [rad] further left
@@ -96,6 +96,9 @@ class Belief {
   Prediction predicted(const Motion& motion, const OdometryNoise& noise) const;
 
   void move(const Motion& motion, const OdometryNoise& noise);
+
+  /// The odometry was off by `turn_rad` on that way, for a wheel slipped: the way is off, too.
+  void slip(const Motion& motion, double turn_rad);
 
   PoseError pose_error() const;
 
@@ -186,7 +189,7 @@ class Belief {
 
  private:
   static constexpr Eigen::Index kOdometry = 3;
-  static constexpr Eigen::Index kSighting = kOdometry + OdometryErrors::SizeAtCompileTime;
+  static constexpr Eigen::Index kSighting = kOdometry + kOdometryErrors;
   static constexpr Eigen::Index kMarkers = kOdometry + kStaticErrors;
 
   static Eigen::Index place_of(std::size_t marker) {

@@ -9,7 +9,7 @@
 namespace waymark {
 
 /// All systematic errors: those of the odometry, then those of sightings.
-inline constexpr Eigen::Index kStaticErrors = OdometryErrors::SizeAtCompileTime + 3;
+inline constexpr Eigen::Index kStaticErrors = kOdometryErrors + 3;
 using StaticErrors = Eigen::Matrix<double, kStaticErrors, 1>;
 
 using ErrorsCovariance = Eigen::Matrix<double, kStaticErrors, kStaticErrors>;

@@ -106,8 +106,11 @@ void WaymarkEstimator::process(const Observation& observation) {
     particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
   });
   weigh(outcomes);
-  if (verdict_ == KidnapWatch::Verdict::kSettled)
-    noise_growth_.learn(outcomes[particles_.best()].correction);
+  if (verdict_ == KidnapWatch::Verdict::kSettled) {
+    const PoseCorrection& correction = outcomes[particles_.best()].correction;
+    noise_growth_.learn(correction);
+    slip_watch_.learn(correction, since_update_, config_.odometry);
+  }
   noise_ = noise_growth_.applied_to(config_.odometry);
   watch_calibration();
   const Outcome& best = outcomes[particles_.best()];
@@ -215,6 +218,9 @@ void WaymarkEstimator::follow(State& state, const Sensed& sensed, const Chance& 
   const Se2 moved = predicted_from_map * state.belief.map_from_base();
   outcome.correction = {
       {moved.x(), moved.y(), moved.theta()}, prior.diagonal(), posterior.diagonal()};
+  if (sensed.slip) return;  // walls tell all of it
+  state.belief.slip(since_update_,
+                    slip_watch_.slipped_turn(outcome.correction, since_update_, config_.odometry));
 }
 
 void WaymarkEstimator::draw(State& state, const Sensed& sensed, const PoseAxes& axes,

@@ -5,6 +5,7 @@
 
 #include "slam/core/belief/belief.hpp"
 #include "slam/core/belief/noise_growth.hpp"
+#include "slam/core/belief/slip_watch.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/filter/particle_set.hpp"
 #include "slam/core/landmark/kidnap_watch.hpp"
@@ -170,6 +171,7 @@ class WaymarkEstimator final : public Estimator {
   ParticleSet<State> particles_;
   KidnapWatch kidnap_watch_{};
   NoiseGrowth noise_growth_{};
+  SlipWatch slip_watch_{};
   OdometryNoise noise_{};  ///< the configured one, grown
   Mapper mapper_;
   MapDrift drift_{};
