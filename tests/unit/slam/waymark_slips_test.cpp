@@ -128,6 +128,13 @@ TEST(Waymark, AWheelThatSlipsMakesItUnsureOfTheWay) {
     const double error_m = steps.back().estimate.map_from_base.x() - steps.back().truth.x();
     EXPECT_GT(error_m, 0.1);
     EXPECT_LT(error_m, 2.0 * along_sigma_m(steps.back()));
+    int slips = 0;
+    for (const test::Step& step : steps) {
+      if (!step.estimate.slipped) continue;
+      ++slips;
+      EXPECT_NEAR(step.truth.x(), 7.5, 1.7);
+    }
+    EXPECT_GT(slips, 20);
     EXPECT_NEAR(steps.back().estimate.map_from_base.theta(), steps.back().truth.theta(), 0.01);
   }
 }

@@ -3,53 +3,18 @@
 // markers and calibration of the odometry.
 #pragma once
 
-#include "slam/core/belief/belief.hpp"
 #include "slam/core/belief/noise_growth.hpp"
-#include "slam/core/belief/slip_watch.hpp"
 #include "slam/core/estimators/estimator.hpp"
+#include "slam/core/estimators/waymark_particle.hpp"
 #include "slam/core/filter/particle_set.hpp"
-#include "slam/core/landmark/kidnap_watch.hpp"
-#include "slam/core/mapping/map_drift.hpp"
-#include "slam/core/matching/surface_matching.hpp"
-#include "slam/core/proposal/pose_proposal.hpp"
 #include "slam/core/scan/turn_by_scans.hpp"
 #include "slam/core/smoothing/retrospect.hpp"
-#include "slam/core/weighting/marker_score.hpp"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace waymark {
-
-struct WaymarkConfig {
-  int particles{30};
-  double resample_threshold{0.5};  ///< share of effective particles below which to resample
-  double update_distance_m{0.1};   ///< scans in between are followed by odometry
-  double update_turn_rad{0.0873};
-  double marker_gate{16.3};          ///< chi^2 of a sighting's innovation, 3 degrees of freedom
-  double marker_near_m{0.25};        ///< off by less, it is believed, too, but counts less
-  double same_marker_within_m{0.5};  ///< no second marker of one id nearer than this
-  int joint_markers{48};             ///< in each particle's covariance; the others are settled
-  double scan_evidence{0.1};         ///< share of a scan's log-likelihood that weighs particles
-  double marker_evidence{0.02};      ///< the same of a sighting
-  double evidence_knee{5.0};         ///< [nat] less than the best: half of it weighs
-  /// Factor on the paper's score of the ids in the map's cells, as log weight.
-  double id_layer_evidence{0.0};
-  /// Markers correct each particle's pose. Else the whole pose is drawn before they are looked at,
-  /// and they only weigh it.
-  bool markers_in_proposal{true};
-  /// Share of a pose's standard deviations that is drawn. The map drift knows the variance, and 30
-  /// particles that are drawn again and again make a random walk of it.
-  double drawn_spread{0.3};
-  double lost_agreement{0.3};  ///< share of the mapped beams; below: lost
-  OdometryNoise odometry{};
-  SurfaceMatchingConfig matching{};
-  MarkerMeasurementConfig markers{};
-
-  void describe(Fields& fields);
-};
 
 /// FastSLAM 2.0 (Montemerlo et al., 2003) on a line-based scan matcher, with delayed drawing: each
 /// particle is a Gaussian over its pose, the errors of odometry and camera, and the markers. Along
@@ -84,44 +49,13 @@ class WaymarkEstimator final : public Estimator {
     kSlipStream = 5
   };
 
-  struct State {
-    State(const GridFrame& frame, const BeliefPrior& prior) : walls{frame}, belief{prior} {}
+  using Sensed = ParticleUpdate::Sensed;
+  using Chance = ParticleUpdate::Chance;
+  using Outcome = ParticleUpdate::Outcome;
 
-    Se2 map_from_base{};  ///< mean of the belief
-    Se2 previous_map_from_base{};
-    Se2 map_from_stood{};  ///< where it was when the odometry began to stand still
-    SurfaceMap walls;
-    Belief belief;
-  };
-
-  /// What is the same for all particles at an update.
-  struct Sensed {
-    const Observation* observation{nullptr};
-    std::vector<MarkerMeasurement> markers{};
-    std::vector<JudgedSpot> spots{};  ///< for the map's id layer
-    Observability walls{};            ///< base frame
-    KidnapWatch::Verdict verdict{KidnapWatch::Verdict::kSettled};
-    DriftFromWalls drift{};
-    std::optional<Eigen::Vector3d> slip{};  ///< of the wheels: deviation from where odometry leads
-  };
-
-  /// What one particle draws: standard normal.
-  struct Chance {
-    Eigen::Vector3d pose{Eigen::Vector3d::Zero()};
-    Eigen::Vector3d rest{Eigen::Vector3d::Zero()};  ///< of the pose before
-    double start{0.0};                              ///< heading that matching begins with
-  };
-
-  /// What one particle made of it.
-  struct Outcome {
-    double log_evidence{0.0};
-    int known_markers{0};
-    SurfaceMatch walls{};
-    PoseCorrection correction{};
-    PoseError drawn{};  ///< what drawing has taken from the belief
-    /// The part of it that comes from the noise of this scan and its frame.
-    Eigen::Matrix3d by_noise{Eigen::Matrix3d::Zero()};
-  };
+  ParticleUpdate::Shared shared() const {
+    return {config_, setup_.camera, mapper_.map(), drift_, slip_watch_};
+  }
 
   void watch_ranges(const Observation& observation);
   void watch_calibration();
@@ -143,21 +77,7 @@ class WaymarkEstimator final : public Estimator {
   Sensed sense(const Observation& observation);
   std::vector<Chance> draw_chances() const;
   void weigh(const std::vector<Outcome>& outcomes);
-  Outcome advance(State& state, const Sensed& sensed, const Chance& chance) const;
-  void move(State& state, const Sensed& sensed) const;
-  PoseProposal match_walls(const State& state, const Belief& belief, const Sensed& sensed,
-                           const Eigen::Matrix3d& open, const Se2& start,
-                           SurfaceMatch& match) const;
-  static PoseError slip_error(const Eigen::Vector3d& slip);
   std::optional<Eigen::Vector3d> find_slip(const Belief& expected, const Sensed& sensed) const;
-  void follow(State& state, const Sensed& sensed, const Chance& chance, Outcome& outcome) const;
-  void correct_by_walls(State& state, const Sensed& sensed, const Eigen::Matrix3d& open,
-                        double start, Outcome& outcome) const;
-  void correct_by_markers(State& state, const Sensed& sensed, Outcome& outcome) const;
-  void note_absences(State& state, const Sensed& sensed) const;
-  void draw_rest(State& state, const Sensed& sensed, const Chance& chance) const;
-  void draw(State& state, const Sensed& sensed, const PoseAxes& axes, const Chance& chance,
-            Outcome& outcome) const;
   void remember(const Observation& observation);
   StaticErrors mean_errors() const;
   Statics statics() const;
@@ -168,7 +88,7 @@ class WaymarkEstimator final : public Estimator {
 
   EstimatorSetup setup_;
   WaymarkConfig config_;
-  ParticleSet<State> particles_;
+  ParticleSet<WaymarkParticle> particles_;
   KidnapWatch kidnap_watch_{};
   NoiseGrowth noise_growth_{};
   SlipWatch slip_watch_{};

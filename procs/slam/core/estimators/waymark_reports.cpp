@@ -33,7 +33,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation) const {
   Se2 map_from_base = mean_;
   Eigen::Matrix3d covariance = covariance_;
   if (has_moved) {
-    const State& best = particles_.state(particles_.best());
+    const WaymarkParticle& best = particles_.state(particles_.best());
     const Belief::Prediction predicted = best.belief.predicted(since_update_, noise_);
     SurfaceFinder walls{best.walls, observation.beams.size()};
     const PoseProposal now = propose(
@@ -92,9 +92,9 @@ std::vector<PublishedParticle> WaymarkEstimator::particles() const {
   std::vector<PublishedParticle> published;
   published.reserve(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const State& state = particles_.state(i);
-    published.push_back({state.belief.predicted(since_update_, noise_).map_from_base,
-                         state.previous_map_from_base, particles_.weights()[i]});
+    const WaymarkParticle& particle = particles_.state(i);
+    published.push_back({particle.belief.predicted(since_update_, noise_).map_from_base,
+                         particle.previous_map_from_base, particles_.weights()[i]});
   }
   return published;
 }

@@ -33,20 +33,13 @@ void WaymarkEstimator::watch_standstill(const Observation& observation) {
 /// robot some of that way, which must not count twice; new ones were mapped from where it was not.
 void WaymarkEstimator::undo_standstill() {
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    State& state = particles_.state(i);
-    state.belief.step(pose_now(i).inverse() * state.map_from_stood);
-    state.belief.forget_since(*stands_since_);
-    state.map_from_base = state.belief.map_from_base();
+    WaymarkParticle& particle = particles_.state(i);
+    particle.belief.step(pose_now(i).inverse() * particle.map_from_stood);
+    particle.belief.forget_since(*stands_since_);
+    particle.map_from_base = particle.belief.map_from_base();
   }
   mean_ = mean_pose();
   kidnap_watch_ = {};
-}
-
-/// The wheels are as wrong as that, in any direction.
-PoseError WaymarkEstimator::slip_error(const Eigen::Vector3d& slip) {
-  const double squared_m2 = slip.head<2>().squaredNorm();
-  const Eigen::Vector3d variances{squared_m2, squared_m2, slip.z() * slip.z()};
-  return {variances.asDiagonal(), PoseByErrors::Zero()};
 }
 
 /// Since the last update. A scan alone may fit another one by chance: the walls decide.
@@ -62,13 +55,14 @@ std::optional<double> WaymarkEstimator::turn_that_contradicts_odometry(
 std::optional<Eigen::Vector3d> WaymarkEstimator::find_slip(const Belief& expected,
                                                            const Sensed& sensed) const {
   if (updates_ == 0 || sensed.verdict == KidnapWatch::Verdict::kDoubtful) return std::nullopt;
-  const State& best = particles_.state(particles_.best());
+  const WaymarkParticle& best = particles_.state(particles_.best());
   const Se2& from = expected.map_from_base();
   const Eigen::Matrix3d open =
       carried_along(best.belief.pose_covariance(),
                     from.translation() - best.belief.map_from_base().translation());
+  const ParticleUpdate update{shared(), sensed};
   SurfaceMatch match;
-  match_walls(best, expected, sensed, open, from, match);
+  update.match_walls(best, expected, open, from, match);
   if (match.agreeing >= kFits * match.mapped) return std::nullopt;
   double most = match.agreeing + kSlipGain * match.beams;
   std::optional<Eigen::Vector3d> slip;
@@ -81,7 +75,7 @@ std::optional<Eigen::Vector3d> WaymarkEstimator::find_slip(const Belief& expecte
     const Eigen::Vector3d start{kSlip_m * random.normal(), kSlip_m * random.normal(),
                                 kSlip_rad * random.normal()};
     const Se2 found =
-        match_walls(best, anywhere, sensed, open, deviated(from, about + start), match).mean;
+        update.match_walls(best, anywhere, open, deviated(from, about + start), match).mean;
     const Eigen::Vector3d away = deviation(from, found);
     if (match.agreeing < most || match.agreeing < kFits * match.mapped || !is_near(away - about))
       continue;

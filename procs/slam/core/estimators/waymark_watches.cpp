@@ -18,7 +18,7 @@ void WaymarkEstimator::watch_ranges(const Observation& observation) {
   since_ranges_told_m_ += observation.motion.distance_m;
   if (since_ranges_told_m_ > kRangesKnownFor_m) ranges_wrong_ = false;
   if (updates_ == 0) return;
-  const State& best = particles_.state(particles_.best());
+  const WaymarkParticle& best = particles_.state(particles_.best());
   const auto [expected, added] =
       best.belief.predicted(since_update_.then(observation.motion), noise_);
   const Eigen::Vector3d walls_off{kWallsOff_m2, kWallsOff_m2, kWallsOff_rad2};
