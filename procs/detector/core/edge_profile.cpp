@@ -14,7 +14,7 @@ constexpr double kCornerMarginPx = 2.0;
 constexpr double kMaxCornerMarginRate = 0.2;
 // Parts of the reach in which levels are read, past the blur of the edge.
 constexpr double kWhiteFrom = 0.6;
-constexpr double kBlackAt = 0.75;
+constexpr double kBlackAt = 0.5 * kThickBorder;
 constexpr double kBlackHalfWidth = 0.15;
 constexpr double kDark = 0.12;  // of the contrast: a bit that is no brighter is black
 

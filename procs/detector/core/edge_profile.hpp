@@ -15,6 +15,10 @@ namespace waymark {
 /// Modules from a side to the middle of the bits behind the border.
 inline constexpr double kInnerBits = 1.5;
 
+/// Thickness of a border, in reaches of its profiles, from which on the bits behind it do not touch
+/// the level of its black.
+inline constexpr double kThickBorder = 1.5;
+
 /// One side of a marker in ideal pixels, from corner to corner, clockwise around the marker.
 struct Side {
   Eigen::Vector2d start_px{};

@@ -14,9 +14,8 @@ namespace {
 // the pixels' own area, and the interpolation between them.
 constexpr double kSharpPx = 0.95;
 constexpr double kMinBorderPx = 2.0;
-constexpr double kCornerBlurs = 3.0;   // a corner reaches that far, in standard deviations of it
-constexpr double kHalfWhite = 0.5;     // of the bits, where it hardly matters
-constexpr double kThickReaches = 1.5;  // of a border behind which bits do not touch its level
+constexpr double kCornerBlurs = 3.0;  // a corner reaches that far, in standard deviations of it
+constexpr double kHalfWhite = 0.5;    // of the bits, where it hardly matters
 constexpr std::size_t kFewLevels = 4;
 
 double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
@@ -64,7 +63,7 @@ double black_level(const SeenSquare& square) {
     }
   }
   if (levels.empty()) return 0.0;
-  const bool is_thin = square.sides[first].border_px < kThickReaches * square.sides[first].reach_px;
+  const bool is_thin = square.sides[first].border_px < kThickBorder * square.sides[first].reach_px;
   return median(is_thin && before_black.size() >= kFewLevels ? std::move(before_black)
                                                              : std::move(levels));
 }
