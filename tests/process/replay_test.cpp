@@ -166,6 +166,13 @@ TEST_F(Replay, ALogThatIsReadIsNotOverwritten) {
   EXPECT_EQ(channels_in(path), std::vector<std::string>{"ODOMETRY"});
 }
 
+TEST_F(Replay, AnEarlierOutLogStaysWhereNothingIsRead) {
+  const auto earlier = log("out.lcm", {pose("SLAM_POSE", 1, 1)});
+  EXPECT_EQ(replay({log("other.lcm", {pose("LASER", 2, 1)})}), kExitFailed);
+  EXPECT_EQ(channels_in(earlier), std::vector<std::string>{"SLAM_POSE"});
+  EXPECT_EQ(heard_, "");
+}
+
 TEST_F(Replay, AFolderInTheOutputsPlaceIsFoundAtTheStart) {
   const auto path = log("a.lcm", {pose("ODOMETRY", 1, 1)});
   std::filesystem::remove(folder_ / "out.lcm");

@@ -23,6 +23,15 @@ std::string received_on(std::string_view channel) {
   return std::string{channel} + " received";
 }
 
+bool is_rejection(std::string_view counter) {
+  return counter.find("rejected") != std::string_view::npos;
+}
+
+bool is_loss(std::string_view counter) {
+  return is_rejection(counter) || counter.find("dropped") != std::string_view::npos ||
+         counter.find("late") != std::string_view::npos;
+}
+
 void Inbox::on_raw(std::string_view channel, std::function<void(const Message&)> handler) {
   channels_[std::string{channel}].raw = std::move(handler);
 }

@@ -31,6 +31,13 @@ class Counters {
 /// Name of the count of messages that came on a channel and could be read.
 std::string received_on(std::string_view channel);
 
+/// Whether a count is one of what was refused for being wrong: its name has the word "rejected".
+bool is_rejection(std::string_view counter);
+
+/// Whether a count is one of what was lost, for that or because it came late or too fast:
+/// "dropped", "late".
+bool is_loss(std::string_view counter);
+
 /// What to do in real time when messages come faster than they are processed.
 enum class Backlog { kKeepAll, kNewestOnly };
 

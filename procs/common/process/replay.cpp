@@ -114,7 +114,7 @@ void report_nothing_read(const std::vector<Source>& sources,
 
 bool any_rejected(const Counters& counters) {
   return std::ranges::any_of(counters.all(), [](const auto& counter) {
-    return counter.second > 0 && counter.first.find("rejected") != std::string::npos;
+    return counter.second > 0 && is_rejection(counter.first);
   });
 }
 
@@ -133,9 +133,14 @@ void protect_logs(const ProcessOptions& options) {
 
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox) {
   std::vector<Source> sources = open_sources(options.logs, inbox.subscriptions());
+  if (!options.out_log.empty()) protect_logs(options);
+  if (oldest(sources) == nullptr) {
+    report_skipped(sources);
+    report_nothing_read(sources, inbox.subscriptions());
+    return kExitFailed;
+  }
   std::optional<LogWriter> writer;
   if (!options.out_log.empty()) {
-    protect_logs(options);
     try {
       writer.emplace(options.out_log);
     } catch (const std::exception& error) {
@@ -148,27 +153,26 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
     }
   };
   Progress progress{"replay"};
-  std::optional<Timestamp> first;
-  Timestamp last{};
+  const Timestamp first = oldest(sources)->head->time;
+  Timestamp last = first;
   std::int64_t num_messages = 0;
   while (Source* source = oldest(sources)) {
     if (stop_signal() != 0) {
       spdlog::warn("interrupted");
       return kExitSignal + stop_signal();
     }
-    if (!first) first = source->head->time;
     last = std::max(last, source->head->time);
     inbox.deliver(*source->head);
     write_out();
     ++num_messages;
-    progress.show(share_read(sources), fmt::format("{:.1f} s", to_seconds(last - *first)));
+    progress.show(share_read(sources), fmt::format("{:.1f} s", to_seconds(last - first)));
     source->advance();
   }
   node.finish();
   write_out();
   if (writer) writer->close();
   progress.done();
-  const double log_s = first ? to_seconds(last - *first) : 0.0;
+  const double log_s = to_seconds(last - first);
   const double wall_s = progress.elapsed_s();
   spdlog::info(
       "replayed {} messages, {:.1f} s of log in {:.2f} s ({:.1f} x real time), peak memory {:.0f} "
@@ -176,10 +180,6 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
       num_messages, log_s, wall_s, log_s / std::max(wall_s, 1e-9), peak_memory_mb());
   log_counters(inbox.counters());
   const bool skipped = report_skipped(sources);
-  if (num_messages == 0) {
-    report_nothing_read(sources, inbox.subscriptions());
-    return kExitFailed;
-  }
   return skipped || any_rejected(inbox.counters()) || node.failed() ? kExitFailed : kExitOk;
 }
 

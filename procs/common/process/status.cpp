@@ -7,14 +7,6 @@
 #include <cctype>
 
 namespace waymark {
-namespace {
-
-bool is_loss(const std::string& counter) {
-  return counter.find("rejected") != std::string::npos ||
-         counter.find("dropped") != std::string::npos || counter.find("late") != std::string::npos;
-}
-
-}  // namespace
 
 StatusReporter::StatusReporter(std::string_view process_name) : name_{process_name} {
   std::ranges::transform(name_, std::back_inserter(channel_),
