@@ -17,7 +17,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 # NAME=ESTIMATOR:KEY=VALUE:... as in deploy/sweep.sh.
-readonly kFixedOdometry='slam.waymark.odometry.scale_sigma=1e-6:slam.waymark.odometry.turn_scale_sigma=1e-6:slam.waymark.odometry.drift_sigma_rad_per_m=1e-6:slam.waymark.odometry.lidar_ahead_sigma_m=1e-6:slam.waymark.odometry.spin_sigma_m_per_rad=1e-6'
+readonly kFixedOdometry='slam.waymark.odometry.scale_sigma=1e-6:slam.waymark.odometry.turn_scale_sigma=1e-6:slam.waymark.odometry.drift_sigma_rad_per_m=1e-6:slam.waymark.odometry.lidar_ahead_sigma_m=1e-6'
 readonly kFixedCamera='robot.camera.yaw_sigma_rad=0:robot.camera.focal_sigma=0'
 readonly kWeightOnly='slam.waymark.markers_in_proposal=false:slam.waymark.marker_evidence=1:slam.waymark.drawn_spread=1'
 ablations=(

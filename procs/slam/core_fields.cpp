@@ -124,8 +124,6 @@ void OdometryNoise::describe(Fields& fields) {
                "how much the heading may drift per metre");
   fields.field("lidar_ahead_sigma_m", lidar_ahead_sigma_m, kPositive,
                "how far the LiDAR may be ahead of where it is told to be");
-  fields.field("spin_sigma_m_per_rad", spin_sigma_m_per_rad, kPositive,
-               "error of the way by a turn that a slipping wheel feigns: about half the track");
 }
 
 void SurfaceMatchingConfig::describe(Fields& fields) {

@@ -110,6 +110,7 @@ EstimatorSetup estimator_setup(const SlamConfig& config) {
   setup.motion = config.slam.motion;
   setup.gate = config.slam.gate;
   setup.range_sigma_m = config.robot.lidar.range_sigma_m;
+  setup.half_track_m = 0.5 * config.robot.base.wheel_separation_m;
   setup.camera = sensor_setup(config).camera;
   setup.sighting_sigmas = sighting_sigmas(config.robot.camera, config.robot.markers);
   setup.range_max_m = config.robot.lidar.range_max_m;

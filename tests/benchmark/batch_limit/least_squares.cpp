@@ -120,7 +120,7 @@ class Batch {
     const OdometryNoise& odometry = noise.odometry;
     add<PriorResidual<kOdometryErrors>, kOdometryErrors, kOdometryErrors>(
         {{odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
-          odometry.lidar_ahead_sigma_m, odometry.spin_sigma_m_per_rad}},
+          odometry.lidar_ahead_sigma_m, odometry.half_track_m}},
         nullptr, solution_.odometry_errors.data());
     add<PriorResidual<2>, 2, 2>(
         {{std::max(noise.sightings.learnt[SightingSigmas::kYaw], kExact),

@@ -130,7 +130,7 @@ TEST(Belief, WhatASlipCostsAlongTheWayIsLearntAndTakenOffTheNext) {
     Belief belief{{OdometryNoise{}, Eigen::Vector3d::Zero()}};
     belief.step({1.0, 2.0, 0.7});
     const Motion motion{Se2{0.2, 0.0, 0.0}, 0.2, 0.0};
-    const double expected_m = OdometryNoise{}.spin_sigma_m_per_rad * std::abs(turn_rad);
+    const double expected_m = OdometryNoise{}.half_track_m * std::abs(turn_rad);
     const auto behind = [&](double way_m) {
       return belief.map_from_base() * Se2{-way_m, 0.0, 0.0};
     };

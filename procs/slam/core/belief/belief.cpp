@@ -51,7 +51,7 @@ Belief::Belief(const BeliefPrior& prior) : covariance_{Eigen::MatrixXd::Zero(kMa
   covariance_(kOdometry + 1, kOdometry + 1) = squared(prior.odometry.drift_sigma_rad_per_m);
   covariance_(kOdometry + 2, kOdometry + 2) = squared(prior.odometry.turn_scale_sigma);
   covariance_(kOdometry + 3, kOdometry + 3) = squared(prior.odometry.lidar_ahead_sigma_m);
-  covariance_(kOdometry + kSpin, kOdometry + kSpin) = squared(prior.odometry.spin_sigma_m_per_rad);
+  covariance_(kOdometry + kSpin, kOdometry + kSpin) = squared(prior.odometry.half_track_m);
   covariance_.diagonal().segment<3>(kSighting) = prior.sighting_sigmas.cwiseAbs2();
 }
 

@@ -20,7 +20,7 @@ struct OdometryNoise {
   double turn_scale_sigma{0.02};       ///< of turns
   double drift_sigma_rad_per_m{0.01};  ///< heading gained per metre
   double lidar_ahead_sigma_m{0.05};    ///< of the place that the LiDAR is told to be at
-  double spin_sigma_m_per_rad{0.15};   ///< of the way that a slip costs: about half the track
+  double half_track_m{0.14};           ///< between the wheels; taken from the robot
 
   void describe(Fields& fields);
 };

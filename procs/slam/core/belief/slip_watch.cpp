@@ -25,7 +25,7 @@ double ratio_of(const PoseCorrection& correction, const Motion& motion,
 double SlipWatch::slipped_turn(const PoseCorrection& correction, const Motion& motion,
                                const OdometryNoise& noise) const {
   const double way_m = motion.start_from_end.translation().norm();
-  if (way_m < noise.spin_sigma_m_per_rad * motion.turn_rad) return 0.0;
+  if (way_m < noise.half_track_m * motion.turn_rad) return 0.0;
   const double ratio = ratio_of(correction, motion, noise);
   return ratio > kSlip * ratio_ ? correction.by.z() : 0.0;
 }

@@ -24,6 +24,7 @@ struct EstimatorSetup {
   MotionNoise motion{};
   UpdateGate gate{};
   double range_sigma_m{0.01};  ///< of the LiDAR
+  double half_track_m{0.14};   ///< half of the distance between the wheels
   CameraView camera{};
   SightingSigmas sighting_sigmas{};
   double range_max_m{3.5};  ///< of the LiDAR

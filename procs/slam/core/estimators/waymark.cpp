@@ -12,16 +12,22 @@ constexpr std::size_t kStaticMarkers = 4;  // that a past pose is corrected by
 constexpr double kMinSurfaces = 0.1;       // share of beams; a scan with fewer shows nothing
 constexpr double kMinMappedShare = 0.2;    // of a scan's beams; fewer say nothing about being lost
 
+/// What the robot's description says is not for the configuration to say again.
+WaymarkConfig on_robot(const EstimatorSetup& setup, WaymarkConfig config) {
+  config.matching.range_sigma_m = setup.range_sigma_m;
+  config.odometry.half_track_m = setup.half_track_m;
+  return config;
+}
+
 }  // namespace
 
 WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config)
     : setup_{setup},
-      config_{config},
+      config_{on_robot(setup, config)},
       particles_{static_cast<std::size_t>(config.particles),
                  WaymarkParticle{GridFrame::centred_on_map_origin(setup.grid.resolution_m),
-                                 BeliefPrior{config.odometry, setup.sighting_sigmas.learnt}}},
+                                 BeliefPrior{config_.odometry, setup.sighting_sigmas.learnt}}},
       mapper_{setup.grid} {
-  config_.matching.range_sigma_m = setup.range_sigma_m;
   noise_ = config_.odometry;
 }
 
