@@ -4,9 +4,13 @@
 #pragma once
 
 #include "slam/core/belief/noise_growth.hpp"
+#include "slam/core/belief/slip_watch.hpp"
 #include "slam/core/estimators/estimator.hpp"
+#include "slam/core/estimators/waymark_config.hpp"
 #include "slam/core/estimators/waymark_particle.hpp"
 #include "slam/core/filter/particle_set.hpp"
+#include "slam/core/landmark/kidnap_watch.hpp"
+#include "slam/core/mapping/map_drift.hpp"
 #include "slam/core/scan/turn_by_scans.hpp"
 #include "slam/core/smoothing/retrospect.hpp"
 
