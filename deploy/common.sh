@@ -105,12 +105,17 @@ build_failed() {
   die $kExitFailed "the build failed; all of its output is in $1"
 }
 
+# make_shared_folder DIR: exists afterwards, for every user, even if another process makes it at the same moment.
+make_shared_folder() {
+  [[ -d $1 ]] || mkdir -m 1777 -- "$1" 2>/dev/null || [[ -d $1 ]] || die $kExitUsage "cannot make the folder '$1'"
+}
+
 # take_port: sets lcm_url to a UDP port that no other stack on this machine has. The lock is a file
 # descriptor that every process started later inherits, so the port is taken as long as one lives.
 # (Multicast groups do not keep stacks apart in liblcm 1.3.1, ports do.)
 take_port() {
   local folder=/tmp/waymark-ports port lock
-  [[ -d $folder ]] || mkdir -m 1777 $folder || die $kExitUsage "cannot make the folder $folder"
+  make_shared_folder $folder
   for ((port = 7700; port < 8700; ++port)); do
     lock=$folder/$port
     [[ -e $lock ]] || : >"$lock" 2>/dev/null || continue

@@ -132,6 +132,19 @@ two_stacks_have_two_ports() {
   ! grep -qF -- "$(cat "$work/other_url")" "$work/sim.arguments" || fail "both use $(cat "$work/other_url")"
 }
 
+# On a machine that is new: the folder of the locks was not there a moment ago. The fake mkdir finds that another stack
+# was faster.
+two_stacks_make_the_folder_of_ports_at_once() {
+  local make="source '$deploy/common.sh'; make_shared_folder"
+  mkdir "$work/path"
+  # shellcheck disable=SC2016  # for the fake to expand
+  printf '#!/bin/sh\n%s "$@"; exec %s "$@"\n' "$(command -v mkdir)" "$(command -v mkdir)" >"$work/path/mkdir"
+  chmod +x "$work/path/mkdir"
+  PATH=$work/path:$PATH bash -c "$make '$work/ports'" >"$output" 2>&1 || fail "the slower one failed"
+  ! bash -c "$make '$work/nowhere/ports'" >"$output" 2>&1 || fail "this cannot be made"
+  expect_output "cannot make the folder '$work/nowhere/ports'"
+}
+
 one_folder_for_one_run() {
   FAKE_sim_seconds=1.5 "$deploy/launch.sh" "$scenario" --out "$out" >/dev/null 2>&1 &
   wait_until all_started
