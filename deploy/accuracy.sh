@@ -12,7 +12,8 @@
 #   --jobs N                jobs at the same time (default: one per core)
 #
 # Results in DIR: corridor.md and corridor_runs.csv (every seed), consistency.txt, ablations.csv,
-# limit.csv (the limit per seed, and waymark's error over it), length.dat, summary.txt.
+# limit.csv (per seed the limit with all of the log and with what came before each pose, and waymark's
+# error), length.dat, summary.txt.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -79,17 +80,22 @@ measure_corridor() {
   "$bin_dir/waymark-evaluate" consistency "${folders[@]/#/$out/sweep/}" >"$out/consistency.txt" || true
 }
 
+# measure_limit: what each log allows, with all of it and with what came before each pose.
 measure_limit() {
-  local folder run
-  echo "seed limit_m along_m across_m heading_deg markers_m waymark_m ratio" >"$out/limit.csv"
+  local folder run place=0
+  echo "seed limit_m along_m across_m heading_deg markers_m on_line_m on_line_along_m on_line_across_m" \
+    "waymark_m waymark_along_m waymark_across_m ratio" >"$out/limit.csv"
   for folder in "${folders[@]}"; do
     run=$out/sweep/$(dirname "$folder")
-    "$bin_dir/tests/benchmark/batch_limit" "$run" --estimate "$run/waymark/trajectory.tum" |
-      awk -v seed="${run##*-}" '
-        $1 == "limit" { text = $3 " " $6 " " $9 " " $12 }
-        $1 == "markers" { markers = $3 }
-        $1 == "estimate" { waymark = $3 }
-        $1 == "ratio" { print seed, text, markers, waymark, $2 }' >>"$out/limit.csv"
+    say "limit of seed ${run##*-}, log $((++place)) of ${#folders[@]}"
+    "$bin_dir/tests/benchmark/batch_limit" "$run" --on-line --estimate "$run/waymark/trajectory.tum" \
+      >"$out/limit.txt" || die $kExitFailed "no limit for $run; see $out/limit.txt"
+    awk -v seed="${run##*-}" '
+      $1 == "limit" { limit = $3 " " $6 " " $9 " " $12 }
+      $1 == "markers" { markers = $3 }
+      $1 == "on_line" { on_line = $3 " " $6 " " $9 }
+      $1 == "estimate" { waymark = $3 " " $6 " " $9 }
+      $1 == "ratio" { print seed, limit, markers, on_line, waymark, $2 }' "$out/limit.txt" >>"$out/limit.csv"
   done
 }
 
@@ -142,9 +148,26 @@ summarise() {
       END { for (i = 7; i in name; ++i) if (n[i]) printf "%s %.4g (%.4g)\n", name[i], w[i], sqrt(s[i] / n[i]) }' \
       "$out/corridor_runs.csv"
     tail -n 1 "$out/consistency.txt"
-    awk 'NR > 1 { ++n; l += $2 ^ 2; w += $7 ^ 2; if ($8 > worst) worst = $8 }
-      END { printf "limit: ATE %.4f m, waymark %.4f m (root mean squares), ratio %.2f, worst of a seed %.2f\n",
-        sqrt(l / n), sqrt(w / n), sqrt(w / l), worst }' "$out/limit.csv"
+    awk '
+      function root_mean_square(i) { return sqrt(squares[i] / n) }
+      function row(name, i) {
+        printf "%s: ATE %.4f m, along %.4f m, across %.4f m (root mean squares)\n",
+          name, root_mean_square(i), root_mean_square(i + 1), root_mean_square(i + 2) }
+      NR == 1 { next }
+      { ++n
+        for (i = 2; i <= NF; ++i) squares[i] += $i ^ 2
+        if ($13 > worst) worst = $13
+        if ($10 / $7 > worst_on_line) worst_on_line = $10 / $7
+        if ($7 / $2 > worst_of_on_line) worst_of_on_line = $7 / $2
+        above += $13 > 1.5; above_on_line += $10 / $7 > 1.5 }
+      END {
+        row("limit", 2); row("limit, on line", 7); row("waymark", 10)
+        printf "waymark over the limit: %.2f, worst of a seed %.2f, %d of %d above 1.5\n",
+          root_mean_square(10) / root_mean_square(2), worst, above, n
+        printf "waymark over the limit on line: %.2f, worst of a seed %.2f, %d above 1.5\n",
+          root_mean_square(10) / root_mean_square(7), worst_on_line, above_on_line
+        printf "limit on line over the limit: %.2f, worst of a seed %.2f\n",
+          root_mean_square(7) / root_mean_square(2), worst_of_on_line }' "$out/limit.csv"
     [[ ! -f $out/length.dat ]] || tail -n 1 "$out/length.dat"
   } >"$out/summary.txt"
   cat "$out/summary.txt"

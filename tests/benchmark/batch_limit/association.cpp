@@ -21,7 +21,7 @@ std::optional<std::size_t> wall_at(const Eigen::Vector2d& place, double normal_r
   double nearest_m = within_m;
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const Wall& wall = walls[i];
-    const double away_m = std::abs(wall.normal().dot(place - wall.anchor) - wall.offset_m);
+    const double away_m = std::abs(wall.normal().dot(place - wall.anchor));
     if (std::abs(angle_difference(normal_rad, wall.normal_rad)) > within_rad) continue;
     if (away_m > nearest_m) continue;
     nearest = i;
@@ -50,8 +50,7 @@ Eigen::Vector3d step_to_walls(const Stop& stop, const std::vector<std::optional<
     const Eigen::Vector2d normal = wall.normal();
     const Eigen::Vector3d by_offset{normal.x(), normal.y(),
                                     normal.dot(Eigen::Vector2d{-arm.y(), arm.x()})};
-    const double off_m =
-        normal.dot(map_from_base.translation() + arm - wall.anchor) - wall.offset_m;
+    const double off_m = normal.dot(map_from_base.translation() + arm - wall.anchor);
     const double off_rad =
         angle_difference(map_from_base.theta() + line.normal_rad, wall.normal_rad);
     const double offset_weight = 1.0 / (line.sigma_m * line.sigma_m);
@@ -83,7 +82,7 @@ void link_walls(const Stop& stop, std::size_t index, Scene& scene) {
     if (!wall) {
       wall = scene.walls.size();
       scene.walls.push_back(
-          {map_from_base * line.middle, wrap_angle(map_from_base.theta() + line.normal_rad), 0.0});
+          {map_from_base * line.middle, wrap_angle(map_from_base.theta() + line.normal_rad), {}});
     }
     scene.wall_links.push_back({index, i, *wall});
   }
@@ -112,7 +111,7 @@ void link_markers(const Stop& stop, std::size_t index, double same_within_m, Sce
 
 }  // namespace
 
-Scene associate(const std::vector<Stop>& stops, const OdometryNoise& noise,
+Scene associate(std::span<const Stop> stops, const OdometryNoise& noise,
                 double same_marker_within_m) {
   Scene scene;
   for (std::size_t i = 0; i < stops.size(); ++i) {

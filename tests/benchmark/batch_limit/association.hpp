@@ -4,18 +4,28 @@
 
 #include "batch_limit/recorded_drive.hpp"
 
+#include <cmath>
+#include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace waymark::benchmark {
 
-/// A straight wall: normal' (point - anchor) = offset, map frame.
+/// A wall, map frame: a polyline about the line through `anchor`, bent by a little where two of its
+/// pieces meet. Piece i lies between knot i and knot i + 1; the anchor is in the middle of piece 0.
 struct Wall {
   Eigen::Vector2d anchor{Eigen::Vector2d::Zero()};  ///< on it when first seen; fixed
-  double normal_rad{0.0};
-  double offset_m{0.0};
+  double normal_rad{0.0};                           ///< of the line; fixed
+  std::map<int, double> knots_m{};                  ///< how far off the line, along the normal
 
   Eigen::Vector2d normal() const { return {std::cos(normal_rad), std::sin(normal_rad)}; }
+
+  Eigen::Vector2d along() const { return {-std::sin(normal_rad), std::cos(normal_rad)}; }
+
+  int piece_at(const Eigen::Vector2d& place, double piece_m) const {
+    return static_cast<int>(std::floor(along().dot(place - anchor) / piece_m + 0.5));
+  }
 };
 
 struct Marker {
@@ -42,7 +52,7 @@ struct Scene {
 
 /// Dead reckoning that keeps to the walls; walls by place and direction, markers by id and place.
 /// @param same_marker_within_m  sightings of an id further apart are of different markers.
-Scene associate(const std::vector<Stop>& stops, const OdometryNoise& noise,
+Scene associate(std::span<const Stop> stops, const OdometryNoise& noise,
                 double same_marker_within_m);
 
 }  // namespace waymark::benchmark

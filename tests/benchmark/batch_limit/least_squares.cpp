@@ -24,18 +24,18 @@ Se2 pose_of(const std::array<double, 3>& values) {
 /// The unknowns in the form that Ceres edits, and the problem over them.
 class Batch {
  public:
-  Batch(const std::vector<Stop>& stops, const BatchSolution& start, const BatchNoise& noise)
+  Batch(std::span<const Stop> stops, const BatchSolution& start, const BatchModel& model)
       : stops_{stops}, solution_{start} {
     for (const Se2& pose : start.scene.map_from_base)
       poses_.push_back(values_of(pose));
     for (const Marker& marker : start.scene.markers)
       markers_.push_back(values_of(marker.map_from_marker));
-    for (const Wall& wall : start.scene.walls)
-      walls_.push_back({wall.normal_rad, wall.offset_m});
-    add_motions(noise.odometry);
-    add_walls();
-    add_markers(noise);
-    add_priors(noise);
+    add_motions(model.odometry);
+    add_walls(model.straight_over_m);
+    add_markers();
+    add_hanging(model);
+    add_perspective(model.perspective_sigma);
+    add_priors(model);
     problem_.SetParameterBlockConstant(poses_.front().data());
   }
 
@@ -75,15 +75,27 @@ class Batch {
     }
   }
 
-  void add_walls() {
+  /// Each line in the parts that lie on one piece of its wall each, as far as is known before.
+  void add_walls(double piece_m) {
     for (const Link& link : solution_.scene.wall_links) {
-      add<WallResidual, 2, 3, 2>(
-          {stops_[link.stop].lines[link.measurement], solution_.scene.walls[link.landmark].anchor},
-          robust(), poses_[link.stop].data(), walls_[link.landmark].data());
+      const LineOfScan& line = stops_[link.stop].lines[link.measurement];
+      const Se2 map_from_base = pose_of(poses_[link.stop]);
+      Wall& wall = solution_.scene.walls[link.landmark];
+      const auto piece_of = [&](std::size_t point) {
+        return wall.piece_at(map_from_base * line.points[point].end, piece_m);
+      };
+      for (std::size_t from = 0, to = 0; from < line.points.size(); from = to) {
+        const int piece = piece_of(from);
+        while (to < line.points.size() && piece_of(to) == piece)
+          ++to;
+        add<WallResidual, 2, 3, 1, 1>({line.part(from, to), {wall, piece, piece_m}}, robust(),
+                                      poses_[link.stop].data(), &wall.knots_m[piece],
+                                      &wall.knots_m[piece + 1]);
+      }
     }
   }
 
-  void add_markers(const BatchNoise& noise) {
+  void add_markers() {
     double* const camera = solution_.camera_errors.data();
     for (const Link& link : solution_.scene.marker_links) {
       const MarkerMeasurement& measurement = stops_[link.stop].markers[link.measurement];
@@ -91,15 +103,20 @@ class Batch {
                                       poses_[link.stop].data(), markers_[link.landmark].data(),
                                       camera);
     }
+  }
+
+  void add_hanging(const BatchModel& model) {
     for (std::size_t i = 0; i < markers_.size(); ++i) {
-      const auto& wall = solution_.scene.markers[i].wall;
-      if (!wall) continue;
-      add<HangingResidual, 2, 3, 2, 1>(
-          {solution_.scene.walls[*wall].anchor, std::max(noise.sightings.bulge_m, kExact),
-           noise.sightings.skew_rad},
-          robust(), markers_[i].data(), walls_[*wall].data(), &solution_.standoff_m);
+      const Marker& marker = solution_.scene.markers[i];
+      if (!marker.wall) continue;
+      Wall& wall = solution_.scene.walls[*marker.wall];
+      const int piece = wall.piece_at(marker.map_from_marker.translation(), model.straight_over_m);
+      add<HangingResidual, 2, 3, 1, 1, 1>({{wall, piece, model.straight_over_m},
+                                           std::max(model.sightings.bulge_m, kExact),
+                                           model.sightings.skew_rad},
+                                          robust(), markers_[i].data(), &wall.knots_m[piece],
+                                          &wall.knots_m[piece + 1], &solution_.standoff_m);
     }
-    add_perspective(noise.perspective_sigma);
   }
 
   /// Views err alike, so that all of them together count as one.
@@ -116,18 +133,18 @@ class Batch {
       add<FocalResidual, 1, 2>({{sum / weight, sigma}}, nullptr, solution_.camera_errors.data());
   }
 
-  void add_priors(const BatchNoise& noise) {
-    const OdometryNoise& odometry = noise.odometry;
+  void add_priors(const BatchModel& model) {
+    const OdometryNoise& odometry = model.odometry;
     add<PriorResidual<kOdometryErrors>, kOdometryErrors, kOdometryErrors>(
         {{odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
           odometry.lidar_ahead_sigma_m, odometry.half_track_m}},
         nullptr, solution_.odometry_errors.data());
     add<PriorResidual<2>, 2, 2>(
-        {{std::max(noise.sightings.learnt[SightingSigmas::kYaw], kExact),
-          std::max(noise.sightings.learnt[SightingSigmas::kFocal], kExact)}},
+        {{std::max(model.sightings.learnt[SightingSigmas::kYaw], kExact),
+          std::max(model.sightings.learnt[SightingSigmas::kFocal], kExact)}},
         nullptr, solution_.camera_errors.data());
     add<PriorResidual<1>, 1, 1>(
-        {{std::max(noise.sightings.learnt[SightingSigmas::kStandoff], kExact)}}, nullptr,
+        {{std::max(model.sightings.learnt[SightingSigmas::kStandoff], kExact)}}, nullptr,
         &solution_.standoff_m);
   }
 
@@ -137,27 +154,22 @@ class Batch {
       scene.map_from_base[i] = pose_of(poses_[i]);
     for (std::size_t i = 0; i < markers_.size(); ++i)
       scene.markers[i].map_from_marker = pose_of(markers_[i]);
-    for (std::size_t i = 0; i < walls_.size(); ++i) {
-      scene.walls[i].normal_rad = walls_[i][0];
-      scene.walls[i].offset_m = walls_[i][1];
-    }
   }
 
-  const std::vector<Stop>& stops_;
-  BatchSolution solution_;
+  std::span<const Stop> stops_;
+  BatchSolution solution_;  ///< systematic errors and walls are edited in place
   std::vector<std::array<double, 3>> poses_{};
   std::vector<std::array<double, 3>> markers_{};
-  std::vector<std::array<double, 2>> walls_{};
   ceres::Problem problem_{};
 };
 
 }  // namespace
 
-BatchSolution solve(const std::vector<Stop>& stops, const Scene& guess, const BatchNoise& noise) {
+BatchSolution solve(std::span<const Stop> stops, const BatchModel& model) {
   BatchSolution solution;
-  solution.scene = guess;
+  solution.scene = associate(stops, model.odometry, model.same_marker_within_m);
   for (int round = 0; round < kRounds; ++round)
-    solution = Batch{stops, solution, noise}.solve();
+    solution = Batch{stops, solution, model}.solve();
   return solution;
 }
 

@@ -9,10 +9,12 @@
 
 namespace waymark::benchmark {
 
-struct BatchNoise {
+struct BatchModel {
   OdometryNoise odometry{};
   SightingSigmas sightings{};
   double perspective_sigma{MarkerMeasurementConfig{}.perspective_sigma};
+  double same_marker_within_m{0.0};  ///< sightings of an id further apart are of different markers
+  double straight_over_m{1.0};       ///< walls may bend from one such piece to the next
 };
 
 struct BatchSolution {
@@ -28,6 +30,6 @@ struct BatchSolution {
 
 /// Poses, odometry's and camera's systematic errors, walls and markers that fit best.
 /// Source: Ceres Solver; noise models and derivatives by errors are those of the estimator.
-BatchSolution solve(const std::vector<Stop>& stops, const Scene& guess, const BatchNoise& noise);
+BatchSolution solve(std::span<const Stop> stops, const BatchModel& model);
 
 }  // namespace waymark::benchmark

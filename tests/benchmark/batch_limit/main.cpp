@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints how well the data of a recorded run determine its trajectory: the best that any method
-// could do, by least squares over all of the log at once. The truth is used only to measure that.
+// could do, by least squares over all of the log at once, or on line over what came before each
+// pose. The truth is used only to measure that.
 #include "batch_limit/least_squares.hpp"
 #include "common/files/whole_file.hpp"
 #include "evaluate/marker_error.hpp"
@@ -29,6 +30,8 @@ struct Arguments {
   fs::path run_dir{};
   fs::path estimate{};
   fs::path out{};
+  double straight_over_m{benchmark::BatchModel{}.straight_over_m};
+  bool is_on_line{false};
   std::vector<std::string> settings{};
 };
 
@@ -41,6 +44,28 @@ Trajectory trajectory_of(const benchmark::Scene& scene, const std::vector<benchm
   Trajectory trajectory;
   for (std::size_t i = 0; i < stops.size(); ++i)
     trajectory.push_back({to_seconds(stops[i].time), scene.map_from_base[i]});
+  return trajectory;
+}
+
+benchmark::BatchModel model_of(const SlamConfig& config, const Arguments& arguments) {
+  const WaymarkConfig& waymark = config.slam.waymark;
+  return {waymark.odometry, estimator_setup(config).sighting_sigmas,
+          waymark.markers.perspective_sigma, waymark.same_marker_within_m,
+          arguments.straight_over_m};
+}
+
+constexpr std::size_t kOnLineEvery = 10;  // poses
+
+/// The newest pose of all that came so far, at the first pose and at every tenth.
+/// @param[out] has_converged  false when one of them has not.
+Trajectory newest_poses(const std::vector<benchmark::Stop>& stops,
+                        const benchmark::BatchModel& model, bool& has_converged) {
+  Trajectory trajectory{{to_seconds(stops.front().time), Se2{}}};
+  for (std::size_t count = kOnLineEvery; count <= stops.size(); count += kOnLineEvery) {
+    const auto solution = benchmark::solve(std::span{stops}.first(count), model);
+    has_converged = has_converged && solution.has_converged;
+    trajectory.push_back({to_seconds(stops[count - 1].time), solution.scene.map_from_base.back()});
+  }
   return trajectory;
 }
 
@@ -88,39 +113,52 @@ void print_errors_found(const benchmark::BatchSolution& solution) {
              1e3 * solution.standoff_m);
 }
 
+void print_solution(const benchmark::BatchSolution& solution) {
+  const benchmark::Scene& scene = solution.scene;
+  fmt::print("{} poses, {} walls seen {} times, {} markers seen {} times; chi2 {:.0f} of {}; {}\n",
+             scene.map_from_base.size(), scene.walls.size(), scene.wall_links.size(),
+             scene.markers.size(), scene.marker_links.size(), solution.chi2, solution.residuals,
+             solution.report);
+  print_errors_found(solution);
+}
+
+/// Prints the error of a trajectory. Returns its ATE [m].
+double print_against(const Trajectory& truth, const Trajectory& trajectory, const char* name) {
+  const TrajectoryError error =
+      evaluate::trajectory_error(pairs_of(trajectory, truth, name), Alignment::kOrigin);
+  print_error(name, error);
+  return error.ate_origin_m;
+}
+
 int run(const Arguments& arguments) {
   const SlamConfig config = configuration(arguments);
   Skipped skipped;
-  const auto stops = benchmark::recorded_stops(arguments.run_dir / "run.lcm", config);
-  const WaymarkConfig& waymark = config.slam.waymark;
-  const auto guess = benchmark::associate(stops, waymark.odometry, waymark.same_marker_within_m);
-  const auto solution = benchmark::solve(stops, guess,
-                                         {waymark.odometry, estimator_setup(config).sighting_sigmas,
-                                          waymark.markers.perspective_sigma});
-  fmt::print("{} poses, {} walls seen {} times, {} markers seen {} times; chi2 {:.0f} of {}; {}\n",
-             stops.size(), guess.walls.size(), guess.wall_links.size(), guess.markers.size(),
-             guess.marker_links.size(), solution.chi2, solution.residuals, solution.report);
-  print_errors_found(solution);
-  const Trajectory limit = trajectory_of(solution.scene, stops);
-  if (!arguments.out.empty()) write_tum(arguments.out, limit);
-
+  const auto drive = benchmark::recorded_drive(arguments.run_dir / "run.lcm", config);
   const Trajectory truth = evaluate::read_tum(arguments.run_dir / "truth.tum", skipped);
-  const auto pairs = pairs_of(limit, truth, "the limit");
-  const TrajectoryError limit_error = evaluate::trajectory_error(pairs, Alignment::kOrigin);
-  print_error("limit", limit_error);
+  const benchmark::BatchModel model = model_of(config, arguments);
+  const auto solution = benchmark::solve(drive.stops, model);
+  bool has_converged = solution.has_converged;
+  print_solution(solution);
+
+  const Trajectory limit = trajectory_of(solution.scene, drive.stops);
+  const double limit_m = print_against(truth, limit, "limit");
   print_markers(solution.scene, arguments.run_dir / "truth_markers.csv",
-                evaluate::align(pairs, Alignment::kOrigin));
+                evaluate::align(pairs_of(limit, truth, "limit"), Alignment::kOrigin));
+  if (!arguments.out.empty()) write_tum(arguments.out, limit);
+  if (arguments.is_on_line)
+    print_against(truth, newest_poses(drive.stops, model, has_converged), "on_line");
   if (!arguments.estimate.empty()) {
     const Trajectory estimate = evaluate::read_tum(arguments.estimate, skipped);
-    const TrajectoryError error = evaluate::trajectory_error(
-        pairs_of(estimate, truth, arguments.estimate.string()), Alignment::kOrigin);
-    print_error("estimate", error);
-    fmt::print("ratio     {:.3f}\n", error.ate_origin_m / limit_error.ate_origin_m);
+    fmt::print("ratio     {:.3f}\n", print_against(truth, estimate, "estimate") / limit_m);
   }
+
   for (const std::string& line : skipped)
     fmt::print(stderr, "skipped: {}\n", line);
-  if (!solution.has_converged) fmt::print(stderr, "batch_limit: has not converged\n");
-  return solution.has_converged && skipped.empty() ? kFine : kFailed;
+  if (drive.skipped_bytes > 0)
+    fmt::print(stderr, "batch_limit: the log is damaged, {} bytes of it are no event\n",
+               drive.skipped_bytes);
+  if (!has_converged) fmt::print(stderr, "batch_limit: has not converged\n");
+  return has_converged && skipped.empty() && drive.skipped_bytes == 0 ? kFine : kFailed;
 }
 
 }  // namespace
@@ -129,7 +167,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App program{
       "The best trajectory that the data of a run allow, against the truth.\n"
-      "Exit code: 0 fine; 1 not converged, or lines were skipped; 2 wrong usage or files."};
+      "Exit code: 0 fine; 1 not converged, or parts of files were skipped; 2 wrong usage or "
+      "files."};
   program.add_option("RUN_DIR", arguments.run_dir, "with run.lcm, robot.toml, truth.tum")
       ->required()
       ->check(CLI::ExistingDirectory);
@@ -138,6 +177,14 @@ int main(int argc, char** argv) {
                   "trajectory.tum of an estimator: prints its ATE over the limit's")
       ->check(CLI::ExistingFile);
   program.add_option("--out", arguments.out, "write the limit's trajectory there (TUM)");
+  program
+      .add_option("--straight-over", arguments.straight_over_m,
+                  "walls may bend every so many metres; 1000 = straight all the way")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str();
+  program.add_flag("--on-line", arguments.is_on_line,
+                   "print also the error of the newest pose of all that came before it, every ten "
+                   "poses: what a perfect filter would say");
   program.add_option("--set", arguments.settings,
                      "key=value, as waymark-slam's; the noise is that of [slam.waymark]");
   try {

@@ -86,7 +86,7 @@ class StopCollector {
 
 }  // namespace
 
-std::vector<Stop> recorded_stops(const std::filesystem::path& log, const SlamConfig& config) {
+RecordedDrive recorded_drive(const std::filesystem::path& log, const SlamConfig& config) {
   LogReader reader{log};
   SensorQueue queue{sensor_setup(config)};
   StopCollector collector{config};
@@ -104,12 +104,12 @@ std::vector<Stop> recorded_stops(const std::filesystem::path& log, const SlamCon
   }
   queue.finish();
   take_ready();
-  std::vector<Stop> stops = collector.finish();
-  if (stops.empty())
+  RecordedDrive drive{collector.finish(), reader.skipped_bytes()};
+  if (drive.stops.empty())
     throw std::runtime_error{log.string() +
                              ": no LIDAR scan with ODOMETRY around it; is this the "
                              "log of a run?"};
-  return stops;
+  return drive;
 }
 
 }  // namespace waymark::benchmark

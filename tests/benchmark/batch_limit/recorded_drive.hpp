@@ -7,6 +7,7 @@
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/slam_config.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -20,9 +21,14 @@ struct Stop {
   std::vector<MarkerMeasurement> markers{};  ///< by the camera alone
 };
 
+struct RecordedDrive {
+  std::vector<Stop> stops{};
+  std::int64_t skipped_bytes{0};  ///< of a damaged log
+};
+
 /// Stops at the first scan, after every update_distance_m or update_turn_rad of [slam.waymark], and
 /// at the last scan.
 /// @throws std::runtime_error if the log cannot be read or holds no scan that odometry covers.
-std::vector<Stop> recorded_stops(const std::filesystem::path& log, const SlamConfig& config);
+RecordedDrive recorded_drive(const std::filesystem::path& log, const SlamConfig& config);
 
 }  // namespace waymark::benchmark

@@ -2,7 +2,7 @@
 // What each measurement says, in standard deviations, in the form that Ceres differentiates.
 #pragma once
 
-#include "batch_limit/wall_lines.hpp"
+#include "batch_limit/association.hpp"
 #include "slam/core/belief/odometry_errors.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 
@@ -66,18 +66,48 @@ struct MotionResidual {
   }
 };
 
+/// One straight piece of a wall between two knots, map frame.
+struct WallPiece {
+  Eigen::Vector2d begin;  ///< where its first knot would be without an offset
+  Eigen::Vector2d along;  ///< the wall's line
+  Eigen::Vector2d normal;
+  double normal_rad;
+  double length_m;
+
+  WallPiece(const Wall& wall, int piece, double piece_m)
+      : begin{wall.anchor + piece_m * (piece - 0.5) * wall.along()},
+        along{wall.along()},
+        normal{wall.normal()},
+        normal_rad{wall.normal_rad},
+        length_m{piece_m} {}
+
+  /// How far `place` lies before the piece [m], along the normal of the wall's line; the offsets
+  /// are its two knots'.
+  template <class T>
+  T before(const Vector2<T>& place, const T& begin_m, const T& end_m) const {
+    const Vector2<T> from_begin = place - begin.cast<T>();
+    const T share = along.cast<T>().dot(from_begin) / length_m;
+    return normal.cast<T>().dot(from_begin) - (begin_m + share * (end_m - begin_m));
+  }
+
+  /// The direction of the piece's own normal.
+  template <class T>
+  T direction_rad(const T& begin_m, const T& end_m) const {
+    return normal_rad - (end_m - begin_m) / length_m;
+  }
+};
+
 struct WallResidual {
-  LineOfScan line;
-  Eigen::Vector2d anchor;
+  LineOfScan line;  ///< of beams that ended on the piece
+  WallPiece piece;
 
   template <class T>
-  bool operator()(const T* pose, const T* wall, T* out) const {
+  bool operator()(const T* pose, const T* begin_m, const T* end_m, T* out) const {
     const Vector2<T> middle =
         turned<T>(line.middle.cast<T>(), pose[2]) + Vector2<T>{pose[0], pose[1]};
-    const Vector2<T> normal{ceres::cos(wall[0]), ceres::sin(wall[0])};
-    const Vector2<T> from_anchor = middle - anchor.cast<T>();
-    out[0] = (normal.dot(from_anchor) - wall[1]) / line.sigma_m;
-    out[1] = wrapped<T>(pose[2] + line.normal_rad - wall[0]) / line.sigma_rad;
+    out[0] = piece.before(middle, *begin_m, *end_m) / line.sigma_m;
+    out[1] = wrapped<T>(pose[2] + line.normal_rad - piece.direction_rad(*begin_m, *end_m)) /
+             line.sigma_rad;
     return true;
   }
 };
@@ -107,16 +137,16 @@ struct MarkerResidual {
 
 /// A marker hangs on its wall, all of them equally far off it.
 struct HangingResidual {
-  Eigen::Vector2d anchor;
+  WallPiece piece;
   double sigma_m;
   double sigma_rad;
 
   template <class T>
-  bool operator()(const T* marker, const T* wall, const T* standoff, T* out) const {
-    const Vector2<T> normal{ceres::cos(wall[0]), ceres::sin(wall[0])};
-    const Vector2<T> from_anchor = Vector2<T>{marker[0], marker[1]} - anchor.cast<T>();
-    out[0] = (normal.dot(from_anchor) - wall[1] - standoff[0]) / sigma_m;
-    out[1] = wrapped<T>(marker[2] - wall[0]) / sigma_rad;
+  bool operator()(const T* marker, const T* begin_m, const T* end_m, const T* standoff,
+                  T* out) const {
+    const Vector2<T> place{marker[0], marker[1]};
+    out[0] = (piece.before(place, *begin_m, *end_m) - *standoff) / sigma_m;
+    out[1] = wrapped<T>(marker[2] - piece.direction_rad(*begin_m, *end_m)) / sigma_rad;
     return true;
   }
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace waymark::benchmark {
@@ -102,7 +103,6 @@ class Grower {
     line.normal_rad = std::atan2(across.y(), across.x());
     line.sigma_m = std::sqrt(1.0 / weight);
     line.sigma_rad = std::sqrt(1.0 / (weight * axes.eigenvalues()[1]));
-    line.beams = run.count;
     return line;
   }
 
@@ -133,8 +133,11 @@ class Grower {
     }
     const double extent_m = gap_m(run.first, run.first + run.count - 1);
     if (extent_m < kMinExtent_m) return std::nullopt;
-    for (int i = run.first; i < run.first + run.count; ++i)
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      const Beam& beam = beams_[at(i)];
       taken_[at(i)] = true;
+      line.points.push_back({beam.end_in_base, 1.0 / variance_across(beam, line.normal())});
+    }
     return line;
   }
 
@@ -148,6 +151,35 @@ class Grower {
 };
 
 }  // namespace
+
+LineOfScan LineOfScan::part(std::size_t from, std::size_t to) const {
+  const Eigen::Vector2d across = normal();
+  const Eigen::Vector2d along{-across.y(), across.x()};
+  const std::span<const WallPoint> chosen{points.data() + from, to - from};
+  double weight = 0.0;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const WallPoint& point : chosen) {
+    weight += point.weight;
+    mean += point.weight * point.end;
+  }
+  mean /= weight;
+  double spread = 0.0;
+  double rise = 0.0;
+  for (const WallPoint& point : chosen) {
+    const Eigen::Vector2d offset = point.end - mean;
+    spread += point.weight * squared(along.dot(offset));
+    rise += point.weight * along.dot(offset) * across.dot(offset);
+  }
+  LineOfScan part;
+  part.middle = mean;
+  const bool has_direction = chosen.size() > 1 && spread > 0.0;
+  part.normal_rad = normal_rad - (has_direction ? rise / spread : 0.0);
+  part.sigma_m = std::sqrt(1.0 / weight);
+  part.sigma_rad =
+      has_direction ? std::sqrt(1.0 / spread) : std::numeric_limits<double>::infinity();
+  part.points.assign(chosen.begin(), chosen.end());
+  return part;
+}
 
 std::vector<LineOfScan> wall_lines(std::span<const AnnotatedBeam> beams, const LineNoise& noise) {
   return Grower{beams, noise}.lines();
