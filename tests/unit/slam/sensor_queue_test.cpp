@@ -119,6 +119,7 @@ TEST(SensorQueue, WhereOdometryStaysAwayTooNothingIsObserved) {
   queue.add(odometry_at(0));
   ASSERT_TRUE(queue.next());
   queue.add(odometry_at(9000));
+  queue.add(odometry_at(9100));
   EXPECT_FALSE(queue.next());
   queue.add(scan_at(9000));
   EXPECT_TRUE(queue.next());
@@ -185,6 +186,153 @@ TEST(SensorQueue, AWrongStampCostsItsOwnValueOnly) {
     const auto ready = queue.next();
     ASSERT_TRUE(ready);
     EXPECT_TRUE(ready->observation.camera_reported);
+    EXPECT_TRUE(queue.take_skips().empty());
+  }
+}
+
+/// One message of each of these sensors is stamped wrong.
+struct WrongStamp {
+  int at_ms{12'000};
+  int by_ms{0};
+  bool odometry{false};
+  bool scan{false};
+  bool frame{false};
+};
+
+struct Drive {
+  std::vector<int> times_ms{};  ///< of observations
+  double way_m{0.0};
+  int camera_reports{0};
+  int longest_wait_ms{0};  ///< from a scan's time until it was observed
+  std::vector<Skip> skips{};
+};
+
+/// 25 s with odometry, scans and frames at 10 Hz.
+Drive drive_with(const WrongStamp& wrong) {
+  SensorSetup setup;
+  setup.lidar.range_max_m = 5.0;
+  SensorQueue queue{setup};
+  Drive drive;
+  for (int now_ms = 0; now_ms <= 25'000; now_ms += 100) {
+    const auto stamp_ms = [&](bool is_wrong) {
+      return now_ms + (is_wrong && now_ms == wrong.at_ms ? wrong.by_ms : 0);
+    };
+    queue.add({at_ms(stamp_ms(wrong.odometry)), odometry_at(now_ms).odom_from_base});
+    queue.add(scan_at(stamp_ms(wrong.scan)));
+    queue.add(frame_at(stamp_ms(wrong.frame), {}));
+    while (const auto ready = queue.next()) {
+      drive.times_ms.push_back(static_cast<int>(to_us(ready->observation.time) / 1000));
+      drive.way_m += ready->observation.motion.distance_m;
+      drive.camera_reports += ready->observation.camera_reported ? 1 : 0;
+      drive.longest_wait_ms = std::max(drive.longest_wait_ms, now_ms - drive.times_ms.back());
+    }
+  }
+  drive.skips = queue.take_skips();
+  return drive;
+}
+
+std::vector<int> without(std::vector<int> times_ms, int time_ms) {
+  std::erase(times_ms, time_ms);
+  return times_ms;
+}
+
+constexpr int kAheadOrPast_ms[] = {-9950, -3000, -450, -250, 250, 300, 450, 3000, 9950};
+constexpr int kSoon_ms = 300;
+
+TEST(SensorQueue, AScanThatIsStampedWrongCostsItselfOnly) {
+  const Drive clean = drive_with({});
+  EXPECT_TRUE(clean.skips.empty());
+  for (const int by_ms : kAheadOrPast_ms) {
+    const Drive drive = drive_with({.by_ms = by_ms, .scan = true});
+    EXPECT_EQ(drive.times_ms, without(clean.times_ms, 12'000)) << by_ms;
+    EXPECT_NEAR(drive.way_m, clean.way_m, 1e-9) << by_ms;
+    EXPECT_EQ(drive.skips, std::vector{by_ms > 0 ? Skip::kScanAhead : Skip::kScanOutOfOrder})
+        << by_ms;
+    EXPECT_LE(drive.longest_wait_ms, kSoon_ms) << by_ms;
+  }
+}
+
+TEST(SensorQueue, AFrameThatIsStampedWrongCostsItselfOnly) {
+  const Drive clean = drive_with({});
+  for (const int by_ms : kAheadOrPast_ms) {
+    const Drive drive = drive_with({.by_ms = by_ms, .frame = true});
+    EXPECT_EQ(drive.times_ms, clean.times_ms) << by_ms;
+    EXPECT_EQ(drive.skips, std::vector{by_ms > 0 ? Skip::kFrameAhead : Skip::kFrameOutOfOrder})
+        << by_ms;
+    // The frame after it waits for the next one, too, and is used with it.
+    EXPECT_GE(drive.camera_reports, clean.camera_reports - 2) << by_ms;
+    EXPECT_LE(drive.longest_wait_ms, kSoon_ms) << by_ms;
+  }
+}
+
+TEST(SensorQueue, OdometryThatIsStampedWrongCostsItselfOnly) {
+  const Drive clean = drive_with({});
+  for (const int by_ms : kAheadOrPast_ms) {
+    const Drive drive = drive_with({.by_ms = by_ms, .odometry = true});
+    EXPECT_EQ(drive.times_ms, clean.times_ms) << by_ms;
+    EXPECT_NEAR(drive.way_m, clean.way_m, 1e-9) << by_ms;
+    EXPECT_EQ(drive.skips,
+              std::vector{by_ms > 0 ? Skip::kOdometryAhead : Skip::kOdometryOutOfOrder})
+        << by_ms;
+    EXPECT_LE(drive.longest_wait_ms, kSoon_ms) << by_ms;
+  }
+}
+
+TEST(SensorQueue, AMomentInWhichAllStampsAreWrongCostsThatMomentOnly) {
+  const Drive clean = drive_with({});
+  for (const int by_ms : kAheadOrPast_ms) {
+    const Drive drive = drive_with({.by_ms = by_ms, .odometry = true, .scan = true, .frame = true});
+    EXPECT_EQ(drive.times_ms, without(clean.times_ms, 12'000)) << by_ms;
+    EXPECT_NEAR(drive.way_m, clean.way_m, 1e-9) << by_ms;
+    EXPECT_EQ(drive.skips.size(), 3U) << by_ms;
+    EXPECT_LE(drive.longest_wait_ms, kSoon_ms) << by_ms;
+  }
+}
+
+TEST(SensorQueue, TheFirstOfASensorMayBeStampedAhead) {
+  const Drive clean = drive_with({});
+  const auto from_second = without(clean.times_ms, 0);
+  for (const int by_ms : {250, 3000, 9950}) {
+    const WrongStamp at_start{.at_ms = 0, .by_ms = by_ms};
+    WrongStamp scan = at_start;
+    scan.scan = true;
+    EXPECT_EQ(drive_with(scan).times_ms, from_second) << by_ms;
+    WrongStamp frame = at_start;
+    frame.frame = true;
+    EXPECT_EQ(drive_with(frame).times_ms, clean.times_ms) << by_ms;
+    WrongStamp odometry = at_start;
+    odometry.odometry = true;
+    EXPECT_EQ(drive_with(odometry).times_ms, from_second) << by_ms << ": nothing covers 0";
+  }
+}
+
+TEST(SensorQueue, AScanThatLeadsHoldsNothingUpWhileTheLidarIsSilent) {
+  SensorQueue queue{setup_without_waiting()};
+  std::vector<SensorQueue::Ready> all = all_ready(queue, 200, {0, 200});
+  queue.add(scan_at(9000));
+  for (int now_ms = 300; now_ms <= 3000; now_ms += 100) {
+    queue.add(odometry_at(now_ms));
+    while (auto ready = queue.next())
+      all.push_back(std::move(*ready));
+  }
+  EXPECT_EQ(times_ms(all).back(), 2000);
+}
+
+TEST(SensorQueue, OdometryThatGoesOnAfterAPauseIsUsedWithItsNextOrAtTheEnd) {
+  for (const bool ends : {false, true}) {
+    SensorQueue queue{setup_without_waiting()};
+    EXPECT_EQ(all_ready(queue, 1000, {0, 1000}).size(), 2U);
+    queue.add(scan_at(6000));
+    queue.add(odometry_at(6000));
+    EXPECT_FALSE(queue.next());
+    if (ends) {
+      queue.finish();
+    } else {
+      queue.add(odometry_at(6100));
+    }
+    const auto ready = queue.next();
+    ASSERT_TRUE(ready);
+    EXPECT_NEAR(ready->observation.motion.distance_m, 0.5, 1e-9);
     EXPECT_TRUE(queue.take_skips().empty());
   }
 }

@@ -44,7 +44,7 @@ std::string_view to_string(Skip skip) {
     case Skip::kScanOutOfOrder:
       return "scans out of order";
     case Skip::kScanAhead:
-      return "scans dropped: far ahead of odometry";
+      return "scans dropped: stamped ahead";
     case Skip::kScanWithoutReturns:
       return "scans without returns";
     case Skip::kScanBeforeOdometry:
@@ -56,7 +56,7 @@ std::string_view to_string(Skip skip) {
     case Skip::kFrameOutOfOrder:
       return "camera frames out of order";
     case Skip::kFrameAhead:
-      return "camera frames dropped: far ahead of odometry";
+      return "camera frames dropped: stamped ahead";
     case Skip::kFrameWithoutOdometry:
       return "camera frames dropped: too late, or before the first odometry";
     case Skip::kFrameOverflow:
@@ -71,11 +71,48 @@ std::string_view to_string(Skip skip) {
   return "unknown";
 }
 
+/// A sample that leads counts once another one is newer still: until then nothing has reached its
+/// time.
 void SensorQueue::add(const OdometrySample& sample) {
+  if (const auto leading = std::exchange(leading_odometry_, std::nullopt)) {
+    if (sample.time > leading->time) {
+      take(*leading);
+    } else if (sample.time > odometry_.newest()) {
+      skip(Skip::kOdometryAhead);
+    } else {
+      leading_odometry_ = leading;
+    }
+  }
+  if (shows_first_was_ahead(sample)) {
+    skip(Skip::kOdometryAhead);
+    odometry_ = {};
+  }
+  if (leads(sample)) {
+    leading_odometry_ = sample;
+  } else {
+    take(sample);
+  }
+}
+
+bool SensorQueue::leads(const OdometrySample& sample) const {
+  if (odometry_.is_empty()) return false;
+  const Duration step = sample.time - odometry_.newest();
+  return step > 2 * usual_step_ && step <= ClockWatch::kLongestPause;
+}
+
+/// Nothing before it could tell.
+bool SensorQueue::shows_first_was_ahead(const OdometrySample& sample) const {
+  return odometry_.has_one() && !last_observed_ && sample.time < odometry_.newest() &&
+         sample.time >= odometry_.newest() - kLongestLead;
+}
+
+void SensorQueue::take(const OdometrySample& sample) {
   const bool is_first = odometry_.is_empty();
-  auto outcome = odometry_.add(sample);
+  const Duration step = is_first ? kLongestStep : sample.time - odometry_.newest();
+  const auto outcome = odometry_.add(sample);
   note(outcome);
   if (!is_refused(outcome)) {
+    usual_step_ = std::min(step, 2 * usual_step_);
     clock_watch_.see_fitting();
     if (is_first) drop_what_is_ahead();
   } else if (clock_watch_.see_misfit(sample.time)) {
@@ -84,21 +121,25 @@ void SensorQueue::add(const OdometrySample& sample) {
   }
 }
 
+void SensorQueue::skip(Skip reason, std::size_t times) {
+  skips_.insert(skips_.end(), times, reason);
+}
+
 void SensorQueue::note(OdometryBuffer::Outcome outcome) {
   switch (outcome) {
     case OdometryBuffer::Outcome::kAdded:
       break;
     case OdometryBuffer::Outcome::kOutOfOrder:
-      skips_.push_back(Skip::kOdometryOutOfOrder);
+      skip(Skip::kOdometryOutOfOrder);
       break;
     case OdometryBuffer::Outcome::kTooFarAhead:
-      skips_.push_back(Skip::kOdometryAhead);
+      skip(Skip::kOdometryAhead);
       break;
     case OdometryBuffer::Outcome::kJumped:
-      skips_.push_back(Skip::kOdometryJumped);
+      skip(Skip::kOdometryJumped);
       break;
     case OdometryBuffer::Outcome::kCaughtUp:
-      skips_.push_back(Skip::kOdometryStuck);
+      skip(Skip::kOdometryStuck);
       break;
   }
 }
@@ -106,77 +147,79 @@ void SensorQueue::note(OdometryBuffer::Outcome outcome) {
 /// What was stamped by the clock as it was is moved to where odometry goes on, so that no motion is
 /// lost.
 void SensorQueue::set_clock() {
-  skips_.push_back(Skip::kClockSet);
+  skip(Skip::kClockSet);
   const Duration later = clock_watch_.first_misfit() - odometry_.newest();
   odometry_.shift(later);
   if (last_observed_) *last_observed_ += later;
-  skips_.insert(skips_.end(), scans_.size(), Skip::kScanOutOfOrder);
-  skips_.insert(skips_.end(), frames_.size(), Skip::kFrameOutOfOrder);
-  scans_.clear();
-  frames_.clear();
-  newest_scan_.reset();
-  newest_frame_.reset();
+  if (std::exchange(leading_odometry_, std::nullopt)) skip(Skip::kOdometryAhead);
+  skip(Skip::kScanOutOfOrder, scans_.clear());
+  skip(Skip::kFrameOutOfOrder, frames_.clear());
+}
+
+Timestamp SensorQueue::newest_odometry() const {
+  return leading_odometry_ ? leading_odometry_->time : odometry_.newest();
 }
 
 bool SensorQueue::is_ahead(Timestamp time) const {
-  return !odometry_.is_empty() && time > odometry_.newest() + kLongestLead;
+  return !odometry_.is_empty() && time > newest_odometry() + kLongestLead;
 }
 
 /// What came before any odometry could not be judged.
 void SensorQueue::drop_what_is_ahead() {
-  const auto ahead = [this](const auto& waiting) {
-    return is_ahead(waiting.time);
+  const auto drop_from = [this](auto& line, Skip reason) {
+    const auto ahead = [this](const auto& waiting) {
+      return is_ahead(waiting.time);
+    };
+    skip(reason, std::erase_if(line.values, ahead));
+    if (line.newest && is_ahead(*line.newest)) line.newest.reset();
   };
-  skips_.insert(skips_.end(), std::erase_if(scans_, ahead), Skip::kScanAhead);
-  skips_.insert(skips_.end(), std::erase_if(frames_, ahead), Skip::kFrameAhead);
-  if (newest_scan_ && is_ahead(*newest_scan_)) newest_scan_.reset();
-  if (newest_frame_ && is_ahead(*newest_frame_)) newest_frame_.reset();
+  drop_from(scans_, Skip::kScanAhead);
+  drop_from(frames_, Skip::kFrameAhead);
 }
 
 void SensorQueue::add(LidarScan measured) {
   LidarScan scan = at_middle_of_sweep(std::move(measured));
-  if ((newest_scan_ && scan.time <= *newest_scan_) ||
-      (last_observed_ && scan.time <= *last_observed_)) {
-    skips_.push_back(Skip::kScanOutOfOrder);
-    return;
-  }
-  if (is_ahead(scan.time)) {
-    skips_.push_back(Skip::kScanAhead);
-    return;
-  }
-  newest_scan_ = scan.time;
-  scans_.push_back(std::move(scan));
-  if (scans_.size() > kMaxScans) {
-    scans_.pop_front();
-    skips_.push_back(Skip::kScanOverflow);
-  }
+  if (last_observed_ && scan.time <= *last_observed_) return skip(Skip::kScanOutOfOrder);
+  if (is_ahead(scan.time)) return skip(Skip::kScanAhead);
+  auto judgement = scans_.judge(std::move(scan));
+  skip(Skip::kScanAhead, judgement.ahead);
+  skip(Skip::kScanOutOfOrder, judgement.late);
+  for (LidarScan& fitting : judgement.fitting)
+    line_up(std::move(fitting));
+}
+
+void SensorQueue::line_up(LidarScan scan) {
+  scans_.push(std::move(scan));
+  if (scans_.values.size() <= kMaxScans) return;
+  scans_.values.pop_front();
+  skip(Skip::kScanOverflow);
 }
 
 void SensorQueue::add(MarkerDetections frame) {
-  if (newest_frame_ && frame.time <= *newest_frame_) {
-    skips_.push_back(Skip::kFrameOutOfOrder);
-    return;
-  }
-  if (is_ahead(frame.time)) {
-    skips_.push_back(Skip::kFrameAhead);
-    return;
-  }
-  newest_frame_ = frame.time;
+  if (is_ahead(frame.time)) return skip(Skip::kFrameAhead);
+  auto judgement = frames_.judge(std::move(frame));
+  skip(Skip::kFrameAhead, judgement.ahead);
+  skip(Skip::kFrameOutOfOrder, judgement.late);
+  for (MarkerDetections& fitting : judgement.fitting)
+    line_up(std::move(fitting));
+}
+
+void SensorQueue::line_up(MarkerDetections frame) {
   const bool is_repeated = are_repeated(newest_detections_, frame.detections);
   newest_detections_ = frame.detections;
   if (is_repeated) {
-    skips_.push_back(Skip::kFrameRepeated);
-    return;
+    frames_.newest = frame.time;
+    return skip(Skip::kFrameRepeated);
   }
-  frames_.push_back(std::move(frame));
-  if (frames_.size() > kMaxFrames) {
-    frames_.pop_front();
-    skips_.push_back(Skip::kFrameOverflow);
-  }
+  frames_.push(std::move(frame));
+  if (frames_.values.size() <= kMaxFrames) return;
+  frames_.values.pop_front();
+  skip(Skip::kFrameOverflow);
 }
 
 void SensorQueue::finish() {
   has_finished_ = true;
+  if (const auto leading = std::exchange(leading_odometry_, std::nullopt)) take(*leading);
 }
 
 std::vector<Skip> SensorQueue::take_skips() {
@@ -190,25 +233,27 @@ bool SensorQueue::has_passed(Timestamp time) const {
 bool SensorQueue::is_ready(const LidarScan& scan) const {
   if (has_finished_) return true;
   if (!has_passed(last_beam_time(scan))) return false;
-  return (newest_frame_ && *newest_frame_ >= scan.time) ||
+  const bool is_doubtful = scans_.aside && scan.time > scans_.aside->time;
+  if (is_doubtful && !has_passed(scan.time + setup_.scan_wait)) return false;
+  return (frames_.newest && *frames_.newest >= scan.time) ||
          has_passed(scan.time + setup_.marker_wait);
 }
 
 std::optional<SensorQueue::Ready> SensorQueue::next() {
-  while (!scans_.empty() && is_ready(scans_.front())) {
-    LidarScan scan = std::move(scans_.front());
-    scans_.pop_front();
+  while (!scans_.values.empty() && is_ready(scans_.values.front())) {
+    LidarScan scan = std::move(scans_.values.front());
+    scans_.values.pop_front();
     if (!has_passed(last_beam_time(scan))) {
-      skips_.push_back(Skip::kScanWithoutOdometry);
+      skip(Skip::kScanWithoutOdometry);
       continue;
     }
     if (!odometry_.covers(first_beam_time(scan))) {
-      skips_.push_back(Skip::kScanBeforeOdometry);
+      skip(Skip::kScanBeforeOdometry);
       continue;
     }
     const std::vector<Beam> beams = beams_of(scan, setup_.lidar, odometry_);
     const MeanSweep sweep = mean_sweep(scan, odometry_);
-    if (beams.empty()) skips_.push_back(Skip::kScanWithoutReturns);
+    if (beams.empty()) skip(Skip::kScanWithoutReturns);
     Ready ready{observation_at(scan.time, beams), std::nullopt};
     ready.observation.mean_sweep = sweep;
     ready.scan = std::move(scan);
@@ -218,9 +263,15 @@ std::optional<SensorQueue::Ready> SensorQueue::next() {
   return std::nullopt;
 }
 
+/// One that is further ahead may be stamped wrong, and holds nothing up.
+bool SensorQueue::scan_is_due() const {
+  return !scans_.values.empty() &&
+         scans_.values.front().time <= newest_odometry() + setup_.scan_wait;
+}
+
 /// Only where odometry was measured: where it stays away, too, there is nothing to observe.
 std::optional<Timestamp> SensorQueue::next_without_scan() const {
-  if (!last_observed_ || !scans_.empty()) return std::nullopt;
+  if (!last_observed_ || scan_is_due()) return std::nullopt;
   const auto time = odometry_.first_from(*last_observed_ + kStepWithoutScan);
   return time && has_passed(*time + setup_.scan_wait) ? time : std::nullopt;
 }
@@ -228,6 +279,10 @@ std::optional<Timestamp> SensorQueue::next_without_scan() const {
 Observation SensorQueue::observation_at(Timestamp time, std::span<const Beam> beams) {
   Observation observation = observe(time, beams);
   last_observed_ = time;
+  if (scans_.aside && scans_.aside->time <= time) {
+    scans_.aside.reset();
+    skip(Skip::kScanOutOfOrder);
+  }
   // Camera frames that still belong to the next scan are at most marker_wait older than this one.
   odometry_.forget_before(time - setup_.marker_wait);
   return observation;
@@ -243,11 +298,11 @@ Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {
       observation.odometry_caught_up = true;
     }
   }
-  while (!frames_.empty() && frames_.front().time <= time) {
-    const MarkerDetections frame = std::move(frames_.front());
-    frames_.pop_front();
+  while (!frames_.values.empty() && frames_.values.front().time <= time) {
+    const MarkerDetections frame = std::move(frames_.values.front());
+    frames_.values.pop_front();
     if (!odometry_.covers(frame.time)) {
-      skips_.push_back(Skip::kFrameWithoutOdometry);
+      skip(Skip::kFrameWithoutOdometry);
       continue;
     }
     observation.camera_reported = true;
@@ -275,9 +330,9 @@ void SensorQueue::sight_markers(const MarkerDetections& frame, Timestamp time,
     auto sighting =
         sight_marker(detection, frame.time, scan_base_from_frame_base, setup_.marker_size_m);
     if (!sighting) {
-      skips_.push_back(Skip::kMarkerImplausible);
+      skip(Skip::kMarkerImplausible);
     } else if (sighting->sigma_along_m() > setup_.max_sigma_m) {
-      skips_.push_back(Skip::kMarkerUncertain);
+      skip(Skip::kMarkerUncertain);
     } else {
       sighting->focal = focal_sighting(detection);
       sightings.push_back(*sighting);

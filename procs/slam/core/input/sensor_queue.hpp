@@ -3,10 +3,10 @@
 #pragma once
 
 #include "common/time/clock_watch.hpp"
+#include "slam/core/input/waiting_line.hpp"
 #include "slam/core/motion/odometry_buffer.hpp"
 #include "slam/core/scan/observation.hpp"
 
-#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
@@ -33,18 +33,18 @@ struct SensorSetup {
 /// Why a value was not used.
 enum class Skip {
   kOdometryOutOfOrder,
-  kOdometryAhead,   ///< by more than any pause
+  kOdometryAhead,   ///< by more than any pause, or of the odometry that followed it
   kClockSet,        ///< what waits is dropped, motion goes on
   kOdometryJumped,  ///< used as a new beginning, its jump is not
   kOdometryStuck,   ///< stood still and then told at once what was driven: used when it came
   kScanOutOfOrder,
-  kScanAhead,           ///< of odometry
+  kScanAhead,           ///< of odometry by far, or of the scans that followed it
   kScanWithoutReturns,  ///< odometry and camera are
   kScanBeforeOdometry,
   kScanWithoutOdometry,  ///< the input ended before the odometry for it came
   kScanOverflow,         ///< odometry stays away
   kFrameOutOfOrder,
-  kFrameAhead,            ///< of odometry
+  kFrameAhead,            ///< of odometry by far, or of the frames that followed it
   kFrameWithoutOdometry,  ///< it has been forgotten, or begins later
   kFrameOverflow,
   kFrameRepeated,  ///< pixel for pixel the one before: the camera is stuck, or nothing moves
@@ -58,6 +58,9 @@ std::string_view to_string(Skip skip);
 /// come (or marker_wait of odometry has passed without them). While the LiDAR is silent, so that
 /// scan_wait of odometry has passed without a scan, odometry and camera make observations of their
 /// own. So the result depends on the values and not on how they were grouped on their way.
+///
+/// A value that is stamped wrong costs itself: what it leads or lags behind is judged by the values
+/// of its own sensor that follow it. Only when the clock was set do all stamps count anew.
 class SensorQueue {
  public:
   explicit SensorQueue(const SensorSetup& setup) : setup_{setup} {}
@@ -80,12 +83,20 @@ class SensorQueue {
   std::vector<Skip> take_skips();
 
  private:
+  void take(const OdometrySample& sample);
+  bool leads(const OdometrySample& sample) const;
+  bool shows_first_was_ahead(const OdometrySample& sample) const;
+  Timestamp newest_odometry() const;
   void note(OdometryBuffer::Outcome outcome);
+  void skip(Skip reason, std::size_t times = 1);
   void set_clock();
   void drop_what_is_ahead();
   bool is_ahead(Timestamp time) const;
+  void line_up(LidarScan scan);
+  void line_up(MarkerDetections frame);
   bool is_ready(const LidarScan& scan) const;
   bool has_passed(Timestamp time) const;
+  bool scan_is_due() const;
   std::optional<Timestamp> next_without_scan() const;
   Observation observation_at(Timestamp time, std::span<const Beam> beams);
   Observation observe(Timestamp time, std::span<const Beam> beams);
@@ -93,16 +104,17 @@ class SensorQueue {
   void sight_markers(const MarkerDetections& frame, Timestamp time,
                      std::vector<MarkerSighting>& sightings);
 
+  static constexpr Duration kLongestStep{500'000};
   static constexpr std::size_t kMaxScans = 100;
   static constexpr std::size_t kMaxFrames = 200;
 
   SensorSetup setup_;
   OdometryBuffer odometry_{};
   ClockWatch clock_watch_{};
-  std::deque<LidarScan> scans_{};
-  std::deque<MarkerDetections> frames_{};
-  std::optional<Timestamp> newest_scan_{};
-  std::optional<Timestamp> newest_frame_{};
+  Duration usual_step_{kLongestStep};  ///< of odometry, twice as long may be usual, too
+  std::optional<OdometrySample> leading_odometry_{};  ///< after a longer one, until the next comes
+  WaitingLine<LidarScan> scans_{};
+  WaitingLine<MarkerDetections> frames_{};
   std::vector<MarkerDetection> newest_detections_{};
   std::optional<Timestamp> last_observed_{};
   std::vector<Skip> skips_{};

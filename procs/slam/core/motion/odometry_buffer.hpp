@@ -24,6 +24,8 @@ class OdometryBuffer {
 
   bool is_empty() const { return samples_.empty(); }
 
+  bool has_one() const { return samples_.size() == 1; }
+
   bool covers(Timestamp time) const {
     return !samples_.empty() && samples_.front().time <= time && time <= samples_.back().time;
   }
