@@ -26,6 +26,16 @@ Belief belief_with(const std::vector<MarkerMeasurement>& measurements) {
   return belief;
 }
 
+/// Markers 0 to 5 in a row, a metre and a second apart.
+Belief belief_with_six_markers() {
+  std::vector<MarkerMeasurement> seen;
+  for (int id = 0; id < 6; ++id) {
+    seen.push_back(measurement_of({1.0 + id, 1.0, -1.57}, id));
+    seen.back().time = Timestamp{std::chrono::seconds{id}};
+  }
+  return belief_with(seen);
+}
+
 constexpr double kGate = 16.3;  // chi^2, 3 degrees of freedom: 99.9 %
 const Motion kForward{Se2{0.5, 0.0, 0.02}, 0.5, 0.02};
 
@@ -173,12 +183,7 @@ TEST(Belief, AnIdIsAClass) {
 }
 
 TEST(Belief, SettledMarkersLeaveTheCovarianceAndAreKnownAgain) {
-  std::vector<MarkerMeasurement> seen;
-  for (int id = 0; id < 6; ++id) {
-    seen.push_back(measurement_of({1.0 + id, 1.0, -1.57}, id));
-    seen.back().time = Timestamp{std::chrono::seconds{id}};
-  }
-  Belief belief = belief_with(seen);
+  Belief belief = belief_with_six_markers();
   Belief copy = belief;
   belief.settle_oldest(2);
   EXPECT_EQ(belief.markers().size(), 6U);
@@ -189,6 +194,22 @@ TEST(Belief, SettledMarkersLeaveTheCovarianceAndAreKnownAgain) {
   ASSERT_TRUE(nearest);
   belief.correct(nearest->marker, measurement_of({1.0, 1.0, -1.57}, 0), kGate);
   EXPECT_EQ(belief.markers()[0].sightings, 2);
+}
+
+TEST(Belief, ForgetsWhatIsNewWhetherItHasSettledOrNot) {
+  for (const std::size_t active : {6U, 2U, 0U}) {
+    Belief belief = belief_with_six_markers();
+    belief.settle_oldest(active);
+    const Belief copy = belief;
+    belief.forget_since(Timestamp{std::chrono::seconds{2}});
+    std::vector<int> ids;
+    for (const Landmark& marker : belief.markers())
+      ids.push_back(marker.id);
+    EXPECT_EQ(ids, (std::vector{0, 1, 2})) << active << " have not settled";
+    EXPECT_EQ(copy.markers().size(), 6U);
+    EXPECT_FALSE(belief.nearest(measurement_of({4.0, 1.0, -1.57}, 3)));
+    EXPECT_TRUE(belief.nearest(measurement_of({3.0, 1.0, -1.57}, 2)));
+  }
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ class Belief {
   /// The robot is off by a step in its own frame, which is known as well as it is itself.
   void step(const Se2& base_from_there) { map_from_base_ = map_from_base_ * base_from_there; }
 
-  /// Markers that were first seen after that are no longer known.
+  /// Markers that were first seen after that are no longer known, settled or not.
   void forget_since(Timestamp time);
 
   /// Kalman update with a measurement of a known marker. One that is off by more than the gate

@@ -57,8 +57,12 @@ void Belief::remove_active(std::size_t marker) {
 }
 
 void Belief::forget_since(Timestamp time) {
+  const auto is_new = [time](const Landmark& marker) {
+    return marker.first_seen > time;
+  };
   for (std::size_t i = active_.size(); i-- > 0;)
-    if (active_[i].first_seen > time) remove_active(i);
+    if (is_new(active_[i])) remove_active(i);
+  if (std::ranges::any_of(settled(), is_new)) std::erase_if(settled_.edit(), is_new);
 }
 
 Landmark& Belief::editable(std::size_t index) {
