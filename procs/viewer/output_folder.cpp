@@ -2,27 +2,17 @@
 #include "viewer/output_folder.hpp"
 
 #include "common/files/whole_file.hpp"
-#include "common/process/node.hpp"
+#include "common/files/writable_folder.hpp"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <system_error>
+#include <utility>
 
 namespace waymark::viewer {
 
 OutputFolder::OutputFolder(std::filesystem::path folder) : folder_{std::move(folder)} {
-  const std::filesystem::path probe = folder_ / ".writable";
-  try {
-    std::filesystem::create_directories(folder_);
-    write_whole_file(probe, "");
-    std::filesystem::remove(probe);
-  } catch (const std::system_error& error) {
-    throw SetupError{
-        fmt::format("--out {}: files cannot be written there ({}); give a folder that you may "
-                    "write to",
-                    folder_.string(), error.code().message())};
-  }
+  make_writable_folder(folder_);
 }
 
 void OutputFolder::write(const std::string& name, std::string_view bytes) {

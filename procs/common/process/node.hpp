@@ -5,11 +5,11 @@
 #pragma once
 
 #include "common/messages/codec.hpp"
+#include "common/process/setup_error.hpp"
 
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -121,12 +121,6 @@ struct ProcessTraits {
   std::string_view name;     ///< "slam": name in ACKs, statuses and logs
   std::string_view purpose;  ///< one sentence for --help
   bool joins_midway;         ///< can be restarted during a lockstep run
-};
-
-/// A usage or set-up problem (exit code 2): what, where, what to do.
-class SetupError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
 };
 
 }  // namespace waymark

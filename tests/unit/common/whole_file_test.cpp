@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/files/whole_file.hpp"
 
+#include "common/files/writable_folder.hpp"
+#include "common/process/setup_error.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,6 +33,26 @@ TEST(WholeFile, TheErrorNamesFileAndReason) {
     EXPECT_THAT(error.what(), HasSubstr("/no/such/folder/map.pgm: cannot be written"));
     EXPECT_THAT(error.what(), HasSubstr("No such file"));
   }
+}
+
+TEST(WritableFolder, IsMadeAndLeftEmpty) {
+  const auto folder = std::filesystem::path{::testing::TempDir()} / "writable_folder_test";
+  std::filesystem::remove_all(folder);
+  make_writable_folder(folder / "deeper");
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "deeper"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WritableFolder, WhereNoneCanBeTheErrorNamesFolderAndReason) {
+  const auto file = std::filesystem::path{::testing::TempDir()} / "writable_folder_test_file";
+  write_whole_file(file, "");
+  try {
+    make_writable_folder(file);
+    FAIL() << "no error";
+  } catch (const SetupError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(file.string() + ": files cannot be written there ("));
+  }
+  std::filesystem::remove(file);
 }
 
 }  // namespace

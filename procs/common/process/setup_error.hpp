@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a user has to put right before a program can do its work.
+#pragma once
+
+#include <stdexcept>
+
+namespace waymark {
+
+/// A usage or set-up problem (exit code 2): what, where, what to do.
+class SetupError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace waymark
