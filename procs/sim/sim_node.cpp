@@ -2,6 +2,7 @@
 #include "sim/sim_node.hpp"
 
 #include "common/files/whole_file.hpp"
+#include "common/files/writable_folder.hpp"
 #include "common/lockstep/contents.hpp"
 #include "common/messages/convert.hpp"
 
@@ -46,12 +47,10 @@ std::string_view counter_of(CommandOutcome outcome) {
 }  // namespace
 
 SimNode::SimNode(const Config& config, Inbox& inbox) : config_{config}, inbox_{inbox} {
+  if (!config_.out_dir.empty()) make_writable_folder(config_.out_dir);
   try {
     simulation_.emplace(config_);
-    if (!config_.out_dir.empty()) write_what_is_known();
   } catch (const SimulatorError& error) {
-    throw SetupError{error.what()};
-  } catch (const std::system_error& error) {
     throw SetupError{error.what()};
   }
   if (config_.route.source == DriveSource::kCommand) {
@@ -60,8 +59,16 @@ SimNode::SimNode(const Config& config, Inbox& inbox) : config_{config}, inbox_{i
   }
 }
 
+void SimNode::begin() {
+  if (config_.out_dir.empty()) return;
+  try {
+    write_what_is_known();
+  } catch (const std::system_error& error) {
+    throw SetupError{error.what()};
+  }
+}
+
 void SimNode::write_what_is_known() {
-  std::filesystem::create_directories(config_.out_dir);
   write_whole_file(config_.out_dir / "scenario.toml", dump_config(config_));
   write_whole_file(config_.out_dir / "robot.toml", dump_robot_config(config_.robot));
   write_whole_file(config_.out_dir / "truth_markers.csv", truth_markers_csv(simulation_->world()));

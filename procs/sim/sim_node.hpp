@@ -7,8 +7,10 @@
 #include "sim/sim_config.hpp"
 #include "sim/truth_files.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace waymark {
@@ -22,6 +24,9 @@ class SimNode final : public TickSource {
   static constexpr ProcessTraits kTraits{
       "sim", "Simulates a TurtleBot3 Waffle Pi in a corridor: wheels, LiDAR, camera.", false};
 
+  static constexpr std::array<std::string_view, 5> kFiles{
+      "scenario.toml", "robot.toml", "truth_markers.csv", "truth_marker_moves.csv", "truth.tum"};
+
   /// @throws SetupError when the output folder or the renderer cannot be used.
   SimNode(const Config& config, Inbox& inbox);
 
@@ -30,6 +35,9 @@ class SimNode final : public TickSource {
   int window_ticks() const override { return config_.run.window_ticks; }
 
   std::int64_t run_id() const override;
+
+  /// @throws SetupError when the output folder's files cannot be written.
+  void begin() override;
 
   bool finished() const override { return simulation_->finished(); }
 

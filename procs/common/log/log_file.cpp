@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/log/log_file.hpp"
 
+#include "common/process/setup_error.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -36,10 +38,6 @@ void append_big_endian(std::string& bytes, Unsigned value) {
 
 std::string last_system_error() {
   return std::generic_category().message(errno);
-}
-
-std::filesystem::path part_path_of(const std::filesystem::path& path) {
-  return path.string() + ".part";
 }
 
 }  // namespace
@@ -139,10 +137,23 @@ std::vector<std::string> channels_in(const std::filesystem::path& path) {
   return {channels.begin(), channels.end()};
 }
 
+std::filesystem::path part_path_of(const std::filesystem::path& path) {
+  return path.string() + ".part";
+}
+
 bool would_overwrite(const std::filesystem::path& out, const std::filesystem::path& file) {
   std::error_code none;  // a file that is not there is no other's equivalent
   return std::filesystem::equivalent(out, file, none) ||
          std::filesystem::equivalent(part_path_of(out), file, none);
+}
+
+void protect_inputs(std::string_view option, const std::filesystem::path& out,
+                    const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    if (!would_overwrite(out, input)) continue;
+    throw SetupError{std::string{option} + ": " + out.string() + " would overwrite " +
+                     input.string() + ", which is to be read: give another name"};
+  }
 }
 
 LogWriter::LogWriter(const std::filesystem::path& path)
@@ -156,6 +167,13 @@ LogWriter::LogWriter(const std::filesystem::path& path)
   if (!file_) {
     throw std::runtime_error{part_path_.string() + ": cannot be created: " + last_system_error()};
   }
+}
+
+LogWriter::~LogWriter() {
+  if (!file_.is_open() || next_event_number_ > 0) return;
+  file_.close();
+  std::error_code ignored;
+  std::filesystem::remove(part_path_, ignored);
 }
 
 void LogWriter::write(const Message& message) {

@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -58,16 +59,25 @@ class LogReader {
 /// Channels that occur in a log.
 std::vector<std::string> channels_in(const std::filesystem::path& path);
 
+/// Where a LogWriter on `path` writes until it is closed.
+std::filesystem::path part_path_of(const std::filesystem::path& path);
+
 /// True when a LogWriter on `out` would destroy `file`, by whatever name either is given.
 bool would_overwrite(const std::filesystem::path& out, const std::filesystem::path& file);
 
-/// Writes events to `path` + ".part" and renames it when closed: a log that is there is whole.
+/// @param option  that named `out`, for the message.
+/// @throws SetupError when writing `out` would destroy one of the files that are to be read.
+void protect_inputs(std::string_view option, const std::filesystem::path& out,
+                    const std::vector<std::filesystem::path>& inputs);
+
+/// Writes events to part_path_of(path) and renames it when closed: a log that is there is whole.
 class LogWriter {
  public:
   /// @throws std::runtime_error when the file cannot be created, or would take the place of
   /// something that is not a regular file.
   explicit LogWriter(const std::filesystem::path& path);
-  ~LogWriter() = default;
+  /// Leaves what was written where it is, and nothing where nothing was.
+  ~LogWriter();
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 

@@ -7,6 +7,13 @@
 
 namespace waymark {
 
+std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options) {
+  std::vector<std::filesystem::path> inputs = options.logs;
+  const auto& files = options.config_sources.files;
+  inputs.insert(inputs.end(), files.begin(), files.end());
+  return inputs;
+}
+
 ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
                             const OptionSet& option_set) {
   ParsedOptions parsed;

@@ -25,6 +25,9 @@ struct ProcessOptions {
   std::optional<std::int64_t> seed{};
 };
 
+/// The files that a process is told to read.
+std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options);
+
 /// Which of the optional options a process has.
 struct OptionSet {
   bool log{false};

@@ -21,7 +21,8 @@ namespace {
 struct Source {
   std::filesystem::path path;
   LogReader reader;
-  std::vector<std::string> channels;
+  std::vector<std::string> all_channels;  ///< that occur in it
+  std::vector<std::string> channels{};    ///< that are taken
   std::optional<Message> head{};
 
   void advance() {
@@ -44,12 +45,12 @@ std::vector<Source> open_sources(const std::vector<std::filesystem::path>& paths
   std::vector<Source> sources;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     try {
-      for (const std::string& channel : channels_in(paths[i]))
-        source_of_group[group_of(channel)] = i;
-      sources.push_back({paths[i], LogReader{paths[i]}, {}, {}});
+      sources.push_back({paths[i], LogReader{paths[i]}, channels_in(paths[i])});
     } catch (const std::exception& error) {
       throw SetupError{error.what()};
     }
+    for (const std::string& channel : sources[i].all_channels)
+      source_of_group[group_of(channel)] = i;
   }
   for (const auto& subscription : subscriptions) {
     const auto found = source_of_group.find(group_of(subscription.channel));
@@ -93,23 +94,28 @@ bool report_skipped(const std::vector<Source>& sources) {
   return any;
 }
 
-/// Says of each log what it has instead of what is wanted.
-void report_nothing_read(const std::vector<Source>& sources,
-                         const std::vector<Inbox::Subscription>& subscriptions) {
+/// Says of each log that has nothing for this process what it has instead. (One whose channels are
+/// all in later logs, too, has.)
+bool report_useless(const std::vector<Source>& sources,
+                    const std::vector<Inbox::Subscription>& subscriptions) {
   std::vector<std::string> wanted;
   for (const auto& subscription : subscriptions)
     wanted.push_back(subscription.channel);
+  bool any = false;
   for (const Source& source : sources) {
-    const std::vector<std::string> found = channels_in(source.path);
-    if (found.empty()) {
+    if (std::ranges::find_first_of(source.all_channels, wanted) != source.all_channels.end())
+      continue;
+    any = true;
+    if (source.all_channels.empty()) {
       spdlog::error("{}: has no LCM event; is it an LCM log?", source.path.string());
     } else {
       spdlog::error(
           "{}: has none of the channels that this process reads ({}), but {}; logs of other robots "
           "are for waymark-import first",
-          source.path.string(), fmt::join(wanted, ", "), fmt::join(found, ", "));
+          source.path.string(), fmt::join(wanted, ", "), fmt::join(source.all_channels, ", "));
     }
   }
+  return any;
 }
 
 bool any_rejected(const Counters& counters) {
@@ -118,25 +124,13 @@ bool any_rejected(const Counters& counters) {
   });
 }
 
-/// @throws SetupError when writing --out-log would destroy a log that is to be read.
-void protect_logs(const ProcessOptions& options) {
-  for (const std::filesystem::path& log : options.logs) {
-    if (would_overwrite(options.out_log, log)) {
-      throw SetupError{
-          fmt::format("--out-log {} would overwrite {}, which is to be read: give another name",
-                      options.out_log.string(), log.string())};
-    }
-  }
-}
-
 }  // namespace
 
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox) {
   std::vector<Source> sources = open_sources(options.logs, inbox.subscriptions());
-  if (!options.out_log.empty()) protect_logs(options);
+  const bool useless = report_useless(sources, inbox.subscriptions());
   if (oldest(sources) == nullptr) {
     report_skipped(sources);
-    report_nothing_read(sources, inbox.subscriptions());
     return kExitFailed;
   }
   std::optional<LogWriter> writer;
@@ -180,7 +174,8 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
       num_messages, log_s, wall_s, log_s / std::max(wall_s, 1e-9), peak_memory_mb());
   log_counters(inbox.counters());
   const bool skipped = report_skipped(sources);
-  return skipped || any_rejected(inbox.counters()) || node.failed() ? kExitFailed : kExitOk;
+  return useless || skipped || any_rejected(inbox.counters()) || node.failed() ? kExitFailed
+                                                                               : kExitOk;
 }
 
 }  // namespace waymark

@@ -3,6 +3,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/lockstep/participant.hpp"
+#include "common/log/log_file.hpp"
 #include "common/process/exit_codes.hpp"
 #include "common/process/guard.hpp"
 #include "common/process/reorder_buffer.hpp"
@@ -165,7 +166,7 @@ int run_real_time(const ProcessTraits& traits, const std::string& url, Node& nod
   return !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
 }
 
-/// @throws SetupError for an option that would have no effect.
+/// @throws SetupError for an option that would have no effect, or destroy what is to be read.
 void check(const ProcessOptions& options, const OptionSet& option_set) {
   const bool is_recorder = !option_set.log;
   const bool is_replay = !options.logs.empty();
@@ -177,6 +178,7 @@ void check(const ProcessOptions& options, const OptionSet& option_set) {
         "--log reads a file and no network, as fast as it can: leave out --real-time and "
         "--lcm-url"};
   }
+  if (!options.out_log.empty()) protect_inputs("--out-log", options.out_log, inputs_of(options));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/lockstep/master.hpp"
+#include "common/log/log_file.hpp"
 #include "common/process/exit_codes.hpp"
 #include "common/process/guard.hpp"
 #include "common/process/progress.hpp"
@@ -203,9 +204,12 @@ int run_described_simulator(int argc, char** argv, const SimulatorDescription& d
                                            : description.dump_robot_config(options));
       return int{kExitOk};
     }
+    for (const std::string_view file : description.files)
+      protect_inputs("--out", options.out_dir / file, inputs_of(options));
     Inbox inbox;
     const auto source = description.make_source(options, inbox);
     Run run{description.traits, lcm_url_or_default(options.lcm_url), *source, inbox};
+    source->begin();
     const int code = options.real_time ? run.in_real_time() : run.in_lockstep();
     source->finish();
     run.close();

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace waymark {
@@ -24,6 +25,8 @@ class TickSource {
   virtual int window_ticks() const = 0;
   /// Hash of everything that determines the run.
   virtual std::int64_t run_id() const = 0;
+  /// The network has been joined and the run begins: only now may files be written.
+  virtual void begin() = 0;
   /// The last tick has been made.
   virtual bool finished() const = 0;
   /// Simulates one tick. @return its messages; `tick_end` is the time up to which they reach.
@@ -40,6 +43,7 @@ struct SimulatorDescription {
   std::function<std::string(const ProcessOptions&)> dump_config{};
   std::function<std::string(const ProcessOptions&)> dump_robot_config{};
   std::function<std::unique_ptr<TickSource>(const ProcessOptions&, Inbox&)> make_source{};
+  std::vector<std::string_view> files{};  ///< that the source writes into --out
 };
 
 int run_described_simulator(int argc, char** argv, const SimulatorDescription& description);
@@ -59,6 +63,7 @@ int run_simulator(int argc, char** argv) {
 
   SimulatorDescription description;
   description.traits = SourceType::kTraits;
+  description.files = {SourceType::kFiles.begin(), SourceType::kFiles.end()};
   description.dump_config = [](const ProcessOptions& options) {
     return dump_config(simulator_config_from<Config>(options));
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/log/log_file.hpp"
 
+#include "common/process/setup_error.hpp"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -71,6 +73,15 @@ TEST_F(LogFile, OnlyAClosedLogHasItsName) {
   }
   EXPECT_TRUE(std::filesystem::exists(path_));
   EXPECT_FALSE(std::filesystem::exists(path_.string() + ".part"));
+}
+
+TEST_F(LogFile, AWriterThatIsNotClosedLeavesWhatItHasWritten) {
+  const std::filesystem::path part = part_path_of(path_);
+  { const LogWriter unused{path_}; }
+  EXPECT_FALSE(std::filesystem::exists(part));
+  { LogWriter{path_}.write(event(1)); }
+  EXPECT_TRUE(std::filesystem::exists(part));
+  std::filesystem::remove(part);
 }
 
 TEST_F(LogFile, UnwantedChannelsAreSkippedAndListed) {
@@ -167,6 +178,19 @@ TEST_F(LogFile, WhatAWriterWouldOverwriteIsKnownByAnyName) {
   EXPECT_TRUE(would_overwrite(path_, part));
   std::filesystem::remove(part);
   std::filesystem::remove(link);
+}
+
+TEST_F(LogFile, InputsAreProtectedAndNamed) {
+  good_log(1);
+  const std::filesystem::path elsewhere = path_.string() + ".other";
+  EXPECT_NO_THROW(protect_inputs("--out-log", elsewhere, {path_}));
+  try {
+    protect_inputs("--out-log", path_, {elsewhere, path_});
+    FAIL() << "it would be overwritten";
+  } catch (const SetupError& error) {
+    EXPECT_EQ(error.what(), "--out-log: " + path_.string() + " would overwrite " + path_.string() +
+                                ", which is to be read: give another name");
+  }
 }
 
 TEST_F(LogFile, AFullDiskIsReported) {

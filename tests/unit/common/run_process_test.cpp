@@ -3,13 +3,18 @@
 #include "common/process/run_process.hpp"
 
 #include "common/process/exit_codes.hpp"
+#include "common/process/run_simulator.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 namespace waymark {
 namespace {
 
+namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 struct Refused {
@@ -48,6 +53,131 @@ TEST(RunProcess, AnOutputLogNeedsAnInputLog) {
   const Refused live = run("live", {"--out-log", "out.lcm"});
   EXPECT_EQ(live.exit_code, kExitUsage);
   EXPECT_THAT(live.output, HasSubstr("--out-log needs --log"));
+}
+
+class ProtectedInputs : public ::testing::Test {
+ protected:
+  ProtectedInputs() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "deeper");
+    for (const char* name : {"run.lcm", "slam.toml"})
+      std::ofstream{folder_ / name} << "precious";
+    fs::create_symlink(folder_ / "run.lcm", folder_ / "link.lcm");
+    fs::create_symlink(folder_ / "slam.toml", folder_ / "link.toml");
+  }
+
+  ~ProtectedInputs() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Writing to `out` is refused as it is `input`, and that stays as it is.
+  void expect_refused(const std::string& process, const std::string& out,
+                      const std::string& input) const {
+    const Refused refused = run(
+        process, {"--log", path("run.lcm"), "--config", path("slam.toml"), "--out-log", path(out)});
+    EXPECT_EQ(refused.exit_code, kExitUsage) << out;
+    EXPECT_THAT(refused.output, HasSubstr("would overwrite " + path(input))) << out;
+    std::string content;
+    std::ifstream{folder_ / input} >> content;
+    EXPECT_EQ(content, "precious") << out;
+  }
+
+  const fs::path folder_ = fs::path{::testing::TempDir()} /
+                           ::testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+TEST_F(ProtectedInputs, ALogIsNotOverwrittenByAnyName) {
+  expect_refused("log", "run.lcm", "run.lcm");
+  expect_refused("log_spelt", "deeper/../run.lcm", "run.lcm");
+  expect_refused("log_linked", "link.lcm", "run.lcm");
+}
+
+TEST_F(ProtectedInputs, NorIsAConfigurationFile) {
+  expect_refused("file", "slam.toml", "slam.toml");
+  expect_refused("file_spelt", "./deeper/../slam.toml", "slam.toml");
+  expect_refused("file_linked", "link.toml", "slam.toml");
+}
+
+TEST_F(ProtectedInputs, ThatAreLinksThemselvesAreTheSameFile) {
+  const Refused refused = run("links", {"--log", path("link.lcm"), "--out-log", path("run.lcm")});
+  EXPECT_EQ(refused.exit_code, kExitUsage);
+  EXPECT_THAT(refused.output, HasSubstr("would overwrite " + path("link.lcm")));
+}
+
+/// Writes down what is asked of it.
+class Source final : public TickSource {
+ public:
+  explicit Source(std::string& asked) : asked_{asked} {}
+
+  std::vector<std::string> participants() const override { return {}; }
+
+  int window_ticks() const override { return 1; }
+
+  std::int64_t run_id() const override { return 1; }
+
+  void begin() override { asked_ += "begin "; }
+
+  bool finished() const override { return finished_; }
+
+  std::vector<Message> advance(Timestamp&) override {
+    asked_ += "advance ";
+    finished_ = true;
+    return {};
+  }
+
+  double progress_fraction() const override { return 1.0; }
+
+  std::string progress() const override { return ""; }
+
+  void finish() override { asked_ += "finish "; }
+
+ private:
+  std::string& asked_;
+  bool finished_{false};
+};
+
+struct Simulated {
+  Refused result{};
+  std::string asked{};
+};
+
+Simulated simulate(std::string_view name, std::vector<std::string> words) {
+  words.insert(words.begin(), "program");
+  std::vector<char*> arguments;
+  for (std::string& word : words)
+    arguments.push_back(word.data());
+  Simulated simulated;
+  ::testing::internal::CaptureStderr();
+  simulated.result.exit_code = run_described_simulator(
+      static_cast<int>(arguments.size()), arguments.data(),
+      {.traits = {name, "Does nothing.", false},
+       .make_source = [&](const ProcessOptions&,
+                          Inbox&) { return std::make_unique<Source>(simulated.asked); },
+       .files = {"scenario.toml"}});
+  simulated.result.output = ::testing::internal::GetCapturedStderr();
+  return simulated;
+}
+
+TEST(RunSimulator, BeginsOnceItHasJoinedTheNetwork) {
+  const Simulated simulated = simulate("joined", {"--lcm-url", "memq://"});
+  EXPECT_EQ(simulated.result.exit_code, kExitOk) << simulated.result.output;
+  EXPECT_EQ(simulated.asked, "begin advance finish ");
+}
+
+TEST(RunSimulator, WithoutANetworkItDoesNotBegin) {
+  const Simulated simulated = simulate("alone", {"--lcm-url", "no-such-scheme://"});
+  EXPECT_EQ(simulated.result.exit_code, kExitUsage);
+  EXPECT_EQ(simulated.asked, "");
+}
+
+TEST_F(ProtectedInputs, AScenarioIsNotOverwrittenByTheEffectiveOne) {
+  std::ofstream{folder_ / "scenario.toml"} << "precious";
+  const Simulated simulated =
+      simulate("over", {"--lcm-url", "memq://", "--config", path("deeper/../scenario.toml"),
+                        "--out", folder_.string()});
+  EXPECT_EQ(simulated.result.exit_code, kExitUsage);
+  EXPECT_THAT(simulated.result.output, HasSubstr("--out: " + path("scenario.toml") + " would"));
+  EXPECT_EQ(simulated.asked, "");
 }
 
 }  // namespace

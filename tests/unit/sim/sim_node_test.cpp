@@ -77,6 +77,7 @@ TEST(SimNode, WritesWhatIsTrueAndTellsTheOthersOnlyOfTheRobot) {
   std::filesystem::remove_all(config.out_dir);
   Inbox inbox;
   SimNode node{config, inbox};
+  node.begin();
   Timestamp tick_end{};
   int ticks = 0;
   while (!node.finished() && ++ticks < 100)
@@ -97,6 +98,20 @@ TEST(SimNode, WritesWhatIsTrueAndTellsTheOthersOnlyOfTheRobot) {
   EXPECT_THAT(truth, ::testing::StartsWith("0.000000 1.0000"));
 }
 
+TEST(SimNode, AStartThatFailsLeavesWhatIsThere) {
+  SimConfig config = short_run();
+  config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_start_test";
+  std::filesystem::remove_all(config.out_dir);
+  std::filesystem::create_directories(config.out_dir);
+  for (const std::string_view file : SimNode::kFiles)
+    std::ofstream{config.out_dir / file} << "of an earlier run";
+  Inbox inbox;
+  { const SimNode never_begun{config, inbox}; }
+  for (const std::string_view file : SimNode::kFiles)
+    EXPECT_EQ(content(config.out_dir / file), "of an earlier run") << file;
+  std::filesystem::remove_all(config.out_dir);
+}
+
 TEST(SimNode, MovedMarkersAreWrittenDown) {
   SimConfig config = short_run();
   config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_moves_test";
@@ -104,6 +119,7 @@ TEST(SimNode, MovedMarkersAreWrittenDown) {
   config.markers.moved = {{1, {.at_s = 0.15}, 1.0, 0.0}};
   Inbox inbox;
   SimNode node{config, inbox};
+  node.begin();
   const std::filesystem::path moves = config.out_dir / "truth_marker_moves.csv";
   EXPECT_EQ(content(moves), "t_s,id,instance,x_m,y_m,yaw_rad\n");
   Timestamp tick_end{};
@@ -121,6 +137,7 @@ TEST(SimNode, TheRobotIsToldOfTheNominalCameraOnly) {
   config.camera_errors.focal_share = 0.005;
   Inbox inbox;
   SimNode node{config, inbox};
+  node.begin();
   const std::string told = content(config.out_dir / "robot.toml");
   EXPECT_THAT(told, HasSubstr("fx_px = 530.4663 "));
   EXPECT_THAT(told, Not(HasSubstr("camera_errors")));
