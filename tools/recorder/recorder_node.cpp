@@ -18,6 +18,21 @@ constexpr std::array kDataChannels{
     channels::kSlamGrid.name,     channels::kSlamMarkers.name,   channels::kSlamParticles.name,
     channels::kSlamScan.name,     channels::kSlamTrajectory.name};
 
+/// @throws SetupError when there is a recording of that name, or what is left of one.
+void protect_recordings(const std::filesystem::path& log) {
+  if (std::filesystem::is_regular_file(log)) {
+    throw SetupError{log.string() +
+                     ": is there already; a recording replaces none: give another name"};
+  }
+  const std::filesystem::path part = part_path_of(log);
+  if (std::filesystem::exists(part)) {
+    throw SetupError{
+        part.string() +
+        ": is what a recording left that was cut short or still goes on; it can be read "
+        "like any log: give it another name, or this recording"};
+  }
+}
+
 }  // namespace
 
 void RecorderSection::describe(Fields& fields) {
@@ -35,10 +50,7 @@ void RecorderConfig::check(Problems& problems) const {
 RecorderNode::RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox&) {
   if (config.out_log.empty())
     throw SetupError{"--out-log FILE is missing: where shall the log go?"};
-  if (std::filesystem::is_regular_file(config.out_log)) {
-    throw SetupError{config.out_log.string() +
-                     ": is there already; a recording replaces none: give another name"};
-  }
+  protect_recordings(config.out_log);
   try {
     writer_.emplace(config.out_log);
   } catch (const std::exception& error) {

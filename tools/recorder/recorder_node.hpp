@@ -39,7 +39,7 @@ class RecorderNode final : public Node {
                                          "acknowledgements are not data.",
                                          false};
 
-  /// @throws SetupError when the log is there already, or cannot be created.
+  /// @throws SetupError when the log, or a part of it, is there already or cannot be created.
   RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox& outbox);
 
   void finish() override;

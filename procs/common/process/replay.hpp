@@ -7,7 +7,8 @@
 
 namespace waymark {
 
-/// @return exit code: 1 when a log held bytes that are not events or messages were refused.
+/// @return exit code: 1 when a log held bytes that are not events or nothing for this process, or
+/// messages were refused.
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox);
 
 }  // namespace waymark
