@@ -25,6 +25,14 @@ void check_not_replaced(const std::filesystem::path& path, const std::string& te
                    "move it away"};
 }
 
+/// @throws SetupError
+void check_is_new(const std::filesystem::path& log) {
+  if (!std::filesystem::is_regular_file(log)) return;  // LogWriter says what else may be there
+  throw SetupError{log.string() +
+                   ": is there already; an import replaces no log: give --out another name, or "
+                   "move it away"};
+}
+
 std::string to_tum(const std::vector<ImportedPose>& poses) {
   std::string text;
   for (const ImportedPose& pose : poses) {
@@ -83,6 +91,7 @@ void write_imported_log(const ImportedLog& log, const std::filesystem::path& out
       {folder / "robot.toml", dump_robot_config(log.robot)}};
   if (!log.reference.empty()) beside.emplace_back(folder / "reference.tum", to_tum(log.reference));
   try {
+    check_is_new(out);
     for (const auto& [path, text] : beside)
       check_not_replaced(path, text);
     std::filesystem::create_directories(folder);

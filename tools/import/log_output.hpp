@@ -11,7 +11,7 @@
 namespace waymark {
 
 /// Events ordered by (time, channel), log time = message time. Every file is written whole or not
-/// at all. What lies beside the log is not replaced by anything else.
+/// at all. A log that is there is not replaced, nor is what lies beside it by anything else.
 /// @throws SetupError when the output cannot be written or the robot's configuration is invalid.
 void write_imported_log(const ImportedLog& log, const std::filesystem::path& out);
 

@@ -42,9 +42,12 @@ void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting
   app.add_option("--min-range-m", range_min_m, "shortest range measured")
       ->check(nonnegative_number())
       ->capture_default_str();
-  app.add_option("--lidar-x-m", mounting.x_m, "where the LiDAR sits in the base frame");
-  app.add_option("--lidar-y-m", mounting.y_m, "where the LiDAR sits in the base frame");
-  app.add_option("--lidar-yaw-deg", options.lidar_yaw_deg, "direction of the LiDAR's x axis");
+  app.add_option("--lidar-x-m", mounting.x_m, "where the LiDAR sits in the base frame")
+      ->check(finite_number());
+  app.add_option("--lidar-y-m", mounting.y_m, "where the LiDAR sits in the base frame")
+      ->check(finite_number());
+  app.add_option("--lidar-yaw-deg", options.lidar_yaw_deg, "direction of the LiDAR's x axis")
+      ->check(angle_deg());
 }
 
 CLI::App* add_carmen(CLI::App& app, Options& options) {
@@ -66,11 +69,15 @@ CLI::App* add_carmen(CLI::App& app, Options& options) {
       ->add_option("--max-range-m", options.carmen.range_max_m,
                    "ranges from here on are no returns (default: as the line says, else 81.9)")
       ->check(positive_number());
-  carmen->add_option("--first-angle-deg", options.first_angle_deg,
-                     "beam 0 of FLASER and RLASER (default -90)");
-  carmen->add_option("--angle-step-deg", options.angle_step_deg,
-                     "between beams of FLASER and RLASER (default 1 for 180 and 181 beams, 0.5 for "
-                     "360 and 361)");
+  carmen
+      ->add_option("--first-angle-deg", options.first_angle_deg,
+                   "beam 0 of FLASER and RLASER (default -90)")
+      ->check(angle_deg());
+  carmen
+      ->add_option("--angle-step-deg", options.angle_step_deg,
+                   "between beams of FLASER and RLASER (default 1 for 180 and 181 beams, 0.5 for "
+                   "360 and 361)")
+      ->check(angle_deg());
   return carmen;
 }
 
@@ -118,9 +125,7 @@ void tell(const ImportReport& report) {
 }
 
 int import(const Options& options, bool is_carmen) {
-  if (would_overwrite(options.out, options.file)) {
-    throw SetupError{"--out would overwrite the log to read: give another name"};
-  }
+  protect_inputs("--out", options.out, {options.file});
   ImportReport report{options.file, is_carmen ? AddressUnit::kLine : AddressUnit::kByte};
   try {
     const ImportedLog log = is_carmen ? read_carmen_log(options.file, options.carmen, report)

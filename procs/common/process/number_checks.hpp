@@ -30,4 +30,14 @@ inline CLI::Validator nonnegative_number() {
                      "NONNEGATIVE");
 }
 
+inline CLI::Validator finite_number() {
+  return number_that([](double) { return true; }, "a finite number", "NUMBER");
+}
+
+/// Beyond a turn it is no direction.
+inline CLI::Validator angle_deg() {
+  return number_that([](double number) { return std::abs(number) <= 360.0; },
+                     "an angle from -360 to 360 degrees", "DEGREES");
+}
+
 }  // namespace waymark

@@ -79,13 +79,29 @@ TEST(LogOutput, AnotherRobotsFileBesideTheLogIsNotReplaced) {
   ImportedLog log = small_log(report);
   const auto out = test_folder() / "small.lcm";
   write_imported_log(log, out);
-  write_imported_log(log, out);
+  write_imported_log(log, test_folder() / "again.lcm");
   const std::string robot = read_file(test_folder() / "robot.toml");
 
   log.robot.lidar.x_m = 0.5;
   EXPECT_THROW(write_imported_log(log, test_folder() / "other.lcm"), SetupError);
   EXPECT_EQ(read_file(test_folder() / "robot.toml"), robot);
   EXPECT_FALSE(std::filesystem::exists(test_folder() / "other.lcm"));
+}
+
+TEST(LogOutput, AnEarlierLogIsNotReplaced) {
+  ImportReport report{"small.clf", AddressUnit::kLine};
+  const ImportedLog log = small_log(report);
+  const auto out = write_file("small.lcm", "an hour of driving");
+  try {
+    write_imported_log(log, out);
+    FAIL() << "it was replaced";
+  } catch (const SetupError& error) {
+    EXPECT_EQ(error.what(), out.string() +
+                                ": is there already; an import replaces no log: give --out "
+                                "another name, or move it away");
+  }
+  EXPECT_EQ(read_file(out), "an hour of driving");
+  EXPECT_FALSE(std::filesystem::exists(test_folder() / "robot.toml"));
 }
 
 TEST(LogOutput, SummaryCountsWhatWasImportedAndSkipped) {

@@ -2,12 +2,15 @@
 // The program's exit codes.
 #include "import_files.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
 namespace waymark {
 namespace {
+
+using ::testing::HasSubstr;
 
 int exit_code(const std::string& arguments) {
   const std::string command = std::string{WAYMARK_BUILD_DIR} + "/waymark-import " + arguments +
@@ -29,7 +32,29 @@ TEST(ImportProgram, AGoodLogGives0) {
 
 TEST(ImportProgram, SkippedLinesGive1UnlessTolerated) {
   EXPECT_EQ(exit_code(carmen(data_file("bad.clf"))), 1);
+  std::filesystem::remove(test_folder() / "out.lcm");
   EXPECT_EQ(exit_code(carmen(data_file("bad.clf")) + " --tolerant"), 0);
+}
+
+TEST(ImportProgram, ALogThatIsThereGives2) {
+  EXPECT_EQ(exit_code(carmen(data_file("small.clf"))), 0);
+  EXPECT_EQ(exit_code(carmen(data_file("small.clf"))), 2);
+  EXPECT_THAT(read_file(test_folder() / "stdout.txt"), HasSubstr("out.lcm: is there already"));
+}
+
+TEST(ImportProgram, NumbersThatAreNoneGive2) {
+  for (const char* option : {"--lidar-x-m", "--lidar-y-m", "--lidar-yaw-deg", "--first-angle-deg",
+                             "--angle-step-deg", "--min-range-m", "--max-range-m"}) {
+    for (const char* number : {"nan", "inf", "-inf"}) {
+      const std::string arguments = "carmen " + data_file("small.clf").string() + " --out " +
+                                    (test_folder() / "out.lcm").string() + " " + option + "=" +
+                                    number;
+      EXPECT_EQ(exit_code(arguments), 2) << option << " " << number;
+      EXPECT_THAT(read_file(test_folder() / "stdout.txt"),
+                  HasSubstr(std::string{option} + ": got " + number + ", expected"));
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(test_folder() / "out.lcm"));
 }
 
 TEST(ImportProgram, EmptyUnreadableAndUnknownGive2) {
