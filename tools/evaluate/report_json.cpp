@@ -183,6 +183,7 @@ Json results_json(const RunTruth& truth, const std::vector<EstimatorResult>& res
   json["true_trajectory"] = truth.trajectory.has_value();
   json["true_markers"] = truth.markers ? Json(truth.markers->size()) : Json{};
   json["scenario_toml"] = text_or_null(truth.scenario_toml);
+  json["faults_toml"] = text_or_null(truth.faults_toml);
   json["skipped"] = truth.skipped;
   json["estimators"] = Json::array();
   for (const EstimatorResult& result : results) {

@@ -142,6 +142,8 @@ std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorR
       "all true markers that were mapped. NEES: 3 is right. Expected: by the scenario, its limit "
       "in parentheses. "
       "Trajectories are the poses given during the run; `final`: corrected until its end.\n";
+  if (truth.faults_toml)
+    text += "\nFaults were put into the messages of this run: variant_applied.toml says which.\n";
   if (!truth.is_one_corridor)
     text += "\nNot one straight corridor: no length.\n";
   else if (!truth.length_m)

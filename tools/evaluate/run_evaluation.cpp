@@ -55,6 +55,15 @@ ScenarioPart read_scenario(const fs::path& file) {
   }
 }
 
+/// The whole file is expectations: a key that is not known is one that nobody would check.
+ExpectConfig read_expectations(const fs::path& file) {
+  try {
+    return load_config<ExpectFile>({{file}, {}}).expect;
+  } catch (const ConfigError& error) {
+    throw InputError{error.what()};
+  }
+}
+
 /// @throws InputError if the file is there and is not JSON.
 std::optional<std::string> json_if_there(const fs::path& file) {
   std::optional<std::string> text = text_if_there(file);
@@ -153,8 +162,9 @@ RunTruth read_truth(const fs::path& run_dir, const EvaluationOptions& options) {
     if (truth.is_one_corridor) truth.length_m = scenario.world.length_m;
     truth.expect = scenario.expect;
   }
+  truth.faults_toml = text_if_there(run_dir / "variant_applied.toml");
   if (fs::exists(run_dir / "expect.toml"))
-    truth.expect = read_scenario(run_dir / "expect.toml").expect;
+    truth.expect = read_expectations(run_dir / "expect.toml");
   if (options.true_length_m) {
     truth.length_m = options.true_length_m;
     truth.is_one_corridor = true;

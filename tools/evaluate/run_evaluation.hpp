@@ -25,6 +25,7 @@ struct EvaluationOptions {
 /// What the simulator knows; each part only if the run folder has it.
 struct RunTruth {
   std::optional<std::string> scenario_toml{};
+  std::optional<std::string> faults_toml{};  ///< that waymark-faults put into its messages
   std::optional<double> length_m{};
   bool is_one_corridor{true};  ///< an L or a ring has no length from end wall to end wall
   ExpectConfig expect{};

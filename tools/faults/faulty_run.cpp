@@ -2,8 +2,9 @@
 #include "faults/faulty_run.hpp"
 
 #include "common/files/whole_file.hpp"
+#include "common/files/writable_folder.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/node.hpp"
+#include "common/process/setup_error.hpp"
 #include "faults/injector.hpp"
 
 #include <sstream>
@@ -27,13 +28,6 @@ struct SeedPart {
   void describe(Fields& fields) { fields.section("run", run); }
 };
 
-/// What the sweep's evaluation reads in place of the scenario's section.
-struct ExpectFile {
-  ExpectConfig expect{};
-
-  void describe(Fields& fields) { fields.section("expect", expect); }
-};
-
 void check_folders(const fs::path& run_dir, const fs::path& out_dir) {
   if (!fs::is_regular_file(run_dir / "run.lcm"))
     throw SetupError{run_dir.string() + ": no run.lcm in it; give the folder of a recorded run"};
@@ -41,6 +35,13 @@ void check_folders(const fs::path& run_dir, const fs::path& out_dir) {
   if (fs::equivalent(run_dir, out_dir, none))
     throw SetupError{out_dir.string() +
                      ": is the recorded run itself; give another folder for the faulty one"};
+  if (fs::exists(run_dir / kMark))
+    throw SetupError{
+        (run_dir / kMark).string() +
+        ": says that this run has faults already; give the folder of the recorded run"};
+  if (fs::exists(out_dir / "run.lcm") && !fs::exists(out_dir / kMark))
+    throw SetupError{(out_dir / "run.lcm").string() +
+                     ": is there already, and not of a faulty run; give another folder"};
 }
 
 bool is_output_of_slam(const Message& message) {
@@ -93,7 +94,8 @@ std::map<std::string, std::int64_t> write_faulty_run(const fs::path& run_dir,
                                                      const fs::path& out_dir) {
   check_folders(run_dir, out_dir);
   const fs::path log = run_dir / "run.lcm";
-  fs::create_directories(out_dir);
+  make_writable_folder(out_dir);
+  write_whole_file(out_dir / kMark, dump_config(VariantsFile{{variant}}));
   copy_truth(run_dir, variant.faults, out_dir);
   write_whole_file(out_dir / "expect.toml", dump_config(ExpectFile{variant.expect}));
 

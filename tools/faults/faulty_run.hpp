@@ -4,18 +4,35 @@
 
 #include "faults/fault_config.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace waymark::faults {
 
-/// Copies scenario.toml, robot.toml, truth.tum, truth_marker_moves.csv (if there) and
-/// truth_markers.csv (with the ids that the markers now have), writes expect.toml and, last,
+/// What a faulty run has beside its log, and a recorded one has not: the variant that was applied,
+/// as a file of variants.
+inline constexpr std::string_view kMark = "variant_applied.toml";
+
+/// All files that may be written.
+inline constexpr std::array<std::string_view, 8> kFiles{kMark,
+                                                        "scenario.toml",
+                                                        "robot.toml",
+                                                        "expect.toml",
+                                                        "truth.tum",
+                                                        "truth_markers.csv",
+                                                        "truth_marker_moves.csv",
+                                                        "run.lcm"};
+
+/// Writes the mark, copies scenario.toml, robot.toml, truth.tum, truth_marker_moves.csv (if there)
+/// and truth_markers.csv (with the ids that the markers now have), writes expect.toml and, last,
 /// run.lcm. Random numbers: the scenario's run.seed.
 /// @return how often each fault was put in.
-/// @throws SetupError when run_dir holds no run, or is out_dir.
+/// @throws SetupError when run_dir holds no run or one that has faults already, when it is out_dir,
+/// or when another recorded run is there.
 /// @throws std::runtime_error naming the file that cannot be read or written.
 std::map<std::string, std::int64_t> write_faulty_run(const std::filesystem::path& run_dir,
                                                      const Variant& variant,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-faults: a recorded run with faults put into its messages.
-#include "common/process/node.hpp"
+#include "common/log/log_file.hpp"
+#include "common/process/setup_error.hpp"
 #include "faults/faulty_run.hpp"
 
 #include <CLI/CLI.hpp>
@@ -36,6 +37,8 @@ int run(const Arguments& arguments) {
     return 0;
   }
   const Variant& variant = file.named(arguments.variant);
+  for (const std::string_view name : kFiles)
+    protect_inputs("--out", arguments.out / name, {arguments.variants});
   for (const auto& [name, count] : write_faulty_run(arguments.run_dir, variant, arguments.out))
     fmt::print("{}: {}\n", name, count);
   return 0;
@@ -47,7 +50,9 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App program{
       "Writes a recorded run once more, with faults in its messages: wrong ids, ghosts, flipped "
-      "poses, lost messages, wrong odometry. The same run and variant give the same bytes."};
+      "poses, lost messages, wrong odometry. The same run and variant give the same bytes. What "
+      "was "
+      "put in stands in variant_applied.toml beside the log."};
   program.set_version_flag("--version", "waymark-faults " WAYMARK_VERSION);
   program.add_option("RUN_DIR", arguments.run_dir,
                      "folder with run.lcm, robot.toml, scenario.toml and the truth");

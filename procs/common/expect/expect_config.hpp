@@ -36,4 +36,11 @@ struct ExpectConfig {
   void describe(Fields& fields);
 };
 
+/// expect.toml beside a recorded run: stands for the section of its scenario.
+struct ExpectFile {
+  ExpectConfig expect{};
+
+  void describe(Fields& fields) { fields.section("expect", expect); }
+};
+
 }  // namespace waymark

@@ -191,6 +191,8 @@ TEST(FaultyRun, IsARunFolderOfItsOwn) {
     return stream.str();
   };
   EXPECT_EQ(text("truth_markers.csv"), "id,instance,x_m\n0,0,1\n");
+  const auto applied = load_config<VariantsFile>({{out / kMark}, {}});
+  EXPECT_EQ(applied.named("equal").faults.every_id, 0);
   EXPECT_EQ(text("scenario.toml"), "[run]\nseed = 3\n");
   EXPECT_THAT(text("expect.toml"), HasSubstr("ate_origin_m = 0.15"));
   LogReader reader{out / "run.lcm"};
@@ -209,6 +211,38 @@ TEST(FaultyRun, ARecordedRunIsThereAndIsNotOverwritten) {
   EXPECT_THROW(write_faulty_run(folder.path() / "run", variant, folder.path() / "out/../run/"),
                SetupError);
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "run/run.lcm"), 12U);
+}
+
+/// What refuses to put the faults in; empty: nothing does.
+std::string problem_of(const std::filesystem::path& run_dir, const std::filesystem::path& out_dir) {
+  try {
+    write_faulty_run(run_dir, {.name = "equal", .faults = {.every_id = 0}}, out_dir);
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FaultyRun, GetsNoFaultsTwice) {
+  const TemporaryFolder folder;
+  folder.file("run/run.lcm", "");
+  const auto faulty = folder.path() / "faulty";
+  EXPECT_EQ(problem_of(folder.path() / "run", faulty), "");
+  EXPECT_EQ(problem_of(folder.path() / "run", faulty), "") << "made anew";
+  EXPECT_EQ(problem_of(faulty, folder.path() / "twice"),
+            (faulty / "variant_applied.toml").string() +
+                ": says that this run has faults already; give the folder of the recorded run");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "twice"));
+}
+
+TEST(FaultyRun, TakesNoOtherRunsPlace) {
+  const TemporaryFolder folder;
+  folder.file("run/run.lcm", "");
+  const auto other = folder.file("other/run.lcm", "another recording");
+  EXPECT_THAT(problem_of(folder.path() / "run", folder.path() / "other"),
+              HasSubstr("run.lcm: is there already, and not of a faulty run"));
+  EXPECT_EQ(std::filesystem::file_size(other), 17U);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "other" / kMark));
 }
 
 TEST(Variants, WrongOnesAreNamed) {

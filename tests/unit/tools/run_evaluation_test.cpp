@@ -96,6 +96,21 @@ TEST(Run, WritesMetricsAndTheTable) {
                                "| 10.00 m    | 100.00 % | 0.023 m    | 0.50 "));
 }
 
+TEST(Run, AFaultyRunIsNotTakenForACleanOne) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "waymark", 200, 1.0);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_THAT(read_text(run.path() / "results.md"), Not(HasSubstr("Faults")));
+  EXPECT_TRUE(json_in(run.path() / "results.json")["faults_toml"].is_null());
+
+  run.file("variant_applied.toml", "[[variant]]\nname = \"ghosts\"\n");
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("Faults were put into"));
+  EXPECT_EQ(json_in(run.path() / "results.json")["faults_toml"],
+            "[[variant]]\nname = \"ghosts\"\n");
+}
+
 TEST(Run, AFinalTrajectoryHasItsOwnFiguresAndRow) {
   const TemporaryFolder run;
   add_truth(run);
@@ -183,6 +198,32 @@ TEST(Run, AWorldWithCornersHasNoLength) {
   options.true_length_m = 10.0;  // whoever says so wants it
   EXPECT_EQ(run_run(run.path(), {}, options, kQuietly), kFine);
   EXPECT_EQ(json_in(run.path() / "waymark/metrics.json")["accuracy_percent"], 100.0);
+}
+
+TEST(Run, ExpectationsThatAreNoneAreNamedWithFileAndKey) {
+  const TemporaryFolder run;
+  add_estimator(run, "odometry", 200, 1.0);
+  const auto problem_of = [&](const std::string& text) -> std::string {
+    run.file("expect.toml", text);
+    try {
+      run_run(run.path(), {}, {}, kQuietly);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(problem_of(""), "") << "nothing is expected";
+  EXPECT_EQ(problem_of("[expect]\nate_origin_m = 0.1\n"), "");
+  const std::string file = (run.path() / "expect.toml").string();
+  EXPECT_EQ(problem_of("[expect]\nate_orgin_m = 0.1\n"),
+            file + ":2: expect.ate_orgin_m: unknown key; did you mean expect.ate_origin_m?");
+  EXPECT_EQ(problem_of("[expected]\nate_origin_m = 0.1\n"),
+            file + ":1: expected: unknown key; did you mean expect?");
+  EXPECT_THAT(problem_of("[expect]\nate_origin_m = true\n"),
+              HasSubstr(file + ":2: expect.ate_origin_m: got true, expected a number"));
+  for (const std::string number : {"nan", "inf", "-inf"})
+    EXPECT_THAT(problem_of("[expect]\nate_origin_m = " + number + "\n"),
+                HasSubstr(file + ":2: expect.ate_origin_m: got " + number));
 }
 
 TEST(Run, WhatCannotBeEvaluatedAtAllIsAUsageError) {
