@@ -6,6 +6,11 @@ set -euo pipefail
 # shellcheck disable=SC2034  # used by the scripts that source this
 readonly kExitFailed=1 kExitUsage=2 kExitDied=3 kExitTimeout=4  # as in exit_codes.hpp
 
+# What programs write into the folder of a row.
+# shellcheck disable=SC2034
+readonly kRowFiles=(config.toml map.pgm map.yaml map.png marker_layer.png plain.png scan.png markers.csv
+  trajectory.tum trajectory_final.tum covariance.csv odometry.tum slam.lcm timings.json metrics.json stations.csv)
+
 script_name=$(basename "${0%.sh}")
 deploy_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 if [[ -f $deploy_dir/../CMakeLists.txt ]]; then  # in the source tree
@@ -57,6 +62,17 @@ make_folder() {
   error=$(mkdir -p -- "$1" 2>&1) || die $kExitUsage "cannot make the folder '$1': ${error##*: }"
   [[ -w $1 ]] || die $kExitUsage "cannot write to the folder '$1'"
   (cd -- "$1" && pwd)
+}
+
+# protect_inputs INPUT...: refuses to read what is among old_files, which will be removed.
+protect_inputs() {
+  local file input
+  for file in "${old_files[@]}"; do
+    for input in "$@"; do
+      [[ ! $file -ef $input ]] ||
+        die $kExitUsage "'$input' belongs to the run that would be replaced; copy it, or give another folder with --out"
+    done
+  done
 }
 
 # toml_value FILE SECTION KEY: one value of a configuration that a program has printed.

@@ -25,11 +25,9 @@ readonly kStop_s=7                         # from SIGINT to SIGKILL
 readonly kMark=logs/launch.log             # in a folder without it there is no run of ours
 readonly kRunFiles=(run.lcm run.lcm.part scenario.toml robot.toml truth.tum truth_markers.csv truth_marker_moves.csv
   results.json results.md)
-readonly kRowFiles=(config.toml map.pgm map.yaml map.png marker_layer.png plain.png scan.png markers.csv
-  trajectory.tum trajectory_final.tum covariance.csv odometry.tum slam.lcm timings.json metrics.json stations.csv)
 
 parse_arguments() {
-  scenario='' out='' seed='' real_time=() slam_options=() lcm_url=${LCM_DEFAULT_URL:-}
+  scenario='' out='' seed='' estimator='' real_time=() slam_options=() lcm_url=${LCM_DEFAULT_URL:-}
   others=(recorder viewer slam detector) recorder_options=() slam_files=()
   while (($# > 0)); do
     case $1 in
@@ -68,18 +66,20 @@ prepare() {
   check_scenario
   is_record_only || check_slam
   [[ -n $lcm_url ]] || take_port
+  check_programs
 
   local name
   name=$(basename "${scenario%.toml}")
   out=$(make_folder "${out:-runs/$name-seed$seed-$(date +%Y%m%d-%H%M%S)}")
   exec {out_lock}<"$out"
   flock --nonblock "$out_lock" || die $kExitUsage "another run is writing to '$out'"
+  find_old_run
+  make_folder "$out/logs" >/dev/null
+  row=$(make_folder "$out/$estimator")  # the same folder without an estimator
   clear_old_run
-  mkdir -p "$out/logs"
   : >"$out/$kMark"
 
   mv "$checked/robot.toml" "$out/robot.toml"
-  row=$out
   is_record_only || make_row
   rm -rf -- "$checked"
 }
@@ -97,54 +97,59 @@ check_slam() {
   slam_options=(--set "slam.seed=$seed" "${slam_options[@]}")
   "$bin_dir/waymark-slam" --config "$checked/robot.toml" "${slam_options[@]}" --dump-config >"$checked/slam.toml" ||
     exit $?
+  estimator=$(toml_value "$checked/slam.toml" slam estimator)
+}
+
+# check_programs: each takes the options that it will be started with, and can join the network. (Where
+# they will write is not known yet, and none writes.)
+check_programs() {
+  local name command row=
+  for name in sim "${others[@]}"; do
+    command_of "$name" "$checked/robot.toml"
+    "${command[@]}" --check || die $? "$name refuses its settings or the LCM network (see above)"
+  done
 }
 
 make_row() {
-  estimator=$(toml_value "$checked/slam.toml" slam estimator)
-  row=$out/$estimator
   mkdir -p "$row"
   mv "$checked/slam.toml" "$row/config.toml"
+}
+
+# find_old_run: sets old_rows, the folders of the rows of a run that is in the way, and old_files, the names
+# that it, replays of its log and waymark-evaluate write. Refuses what is no run of ours.
+find_old_run() {
+  local there=() name folder
+  old_rows=() old_files=()
+  for name in "${kRunFiles[@]}"; do [[ ! -e $out/$name ]] || there+=("$name"); done
+  ((${#there[@]} > 0)) || return 0
+  [[ -e $out/$kMark ]] ||
+    die $kExitUsage "'$out' holds ${there[*]}, but no run of launch.sh; give another folder with --out"
+  old_files=("${kRunFiles[@]/#/"$out/"}" "$out/logs/"{launch,sim,slam,detector,viewer,recorder}.log)
+  for folder in "$out"/*; do
+    [[ -f $folder/config.toml && -f $folder/trajectory.tum ]] || continue
+    old_rows+=("$folder")
+    old_files+=("${kRowFiles[@]/#/"$folder/"}" "$out/logs/${folder##*/}."{slam,viewer}.log)
+  done
+  protect_inputs "$scenario" "${slam_files[@]}"
 }
 
 # clear_old_run: a folder holds one run; files of an earlier one must not be taken for results. What no
 # run has written stays.
 clear_old_run() {
-  local there=() name old_files old_rows file input
-  for name in "${kRunFiles[@]}"; do [[ ! -e $out/$name ]] || there+=("$name"); done
-  ((${#there[@]} > 0)) || return 0
-  [[ -e $out/$kMark ]] ||
-    die $kExitUsage "'$out' holds ${there[*]}, but no run of launch.sh; give another folder with --out"
-  find_old_run
-  for file in "${old_files[@]}"; do
-    for input in "$scenario" "${slam_files[@]}"; do
-      [[ ! $file -ef $input ]] ||
-        die $kExitUsage "'$input' belongs to the run that would be replaced; copy it, or give another folder with --out"
-    done
-  done
+  ((${#old_files[@]} > 0)) || return 0
   say "replaces the run in $out"
   rm -f -- "${old_files[@]}"
   ((${#old_rows[@]} == 0)) || rmdir --ignore-fail-on-non-empty -- "${old_rows[@]}"
 }
 
-# find_old_run: sets old_rows, the folders of its rows, and old_files, the names that it, replays of its
-# log and waymark-evaluate write.
-find_old_run() {
-  local row
-  old_rows=() old_files=("${kRunFiles[@]/#/"$out/"}" "$out/logs/"{launch,sim,slam,detector,viewer,recorder}.log)
-  for row in "$out"/*; do
-    [[ -f $row/config.toml && -f $row/trajectory.tum ]] || continue
-    old_rows+=("$row")
-    old_files+=("${kRowFiles[@]/#/"$row/"}" "$out/logs/${row##*/}."{slam,viewer}.log)
-  done
-}
-
-# command_of NAME: sets `command` to its command line.
+# command_of NAME ROBOT: sets `command` to its command line.
 command_of() {
+  local robot=$2
   case $1 in
     recorder) command=(--out-log "$out/run.lcm" "${recorder_options[@]}") ;;
     viewer) command=(--out "$row") ;;
-    slam) command=(--config "$out/robot.toml" "${slam_options[@]}") ;;
-    detector) command=(--config "$out/robot.toml") ;;
+    slam) command=(--config "$robot" "${slam_options[@]}") ;;
+    detector) command=(--config "$robot") ;;
     sim) command=("${sim_options[@]}" --out "$out") ;;
   esac
   command=("$bin_dir/waymark-$1" "${command[@]}" --lcm-url "$lcm_url" "${real_time[@]}")
@@ -160,7 +165,7 @@ tell() { echo "$script_name: $*" >&"$terminal"; }
 # then stops things in order; should the script itself be killed, the kernel ends its processes.
 start() {
   local name=$1 delay=${2:-} command log=$out/logs/$1.log
-  command_of "$name"
+  command_of "$name" "$out/robot.toml"
   (
     [[ -z $delay ]] || sleep "$delay"
     if [[ $name == sim ]]; then  # its progress is for the terminal, too

@@ -5,6 +5,7 @@
 #   FAKE_sim_seconds      length of the run (default 0.5)
 #   FAKE_NAME_exit=CODE   NAME ends at once with this code; `crash` kills itself
 #   FAKE_NAME_fails=WORDS NAME ends with code 1, as a replay, too, when its arguments have these words
+#   FAKE_NAME_refuses=WORDS NAME --check ends with code 2 when its arguments have these words
 #   FAKE_NAME_stays=1     NAME ignores both the end of the run and SIGINT
 # With --real-time all but the simulator run until SIGINT and then end well.
 name=${0##*/waymark-}
@@ -28,6 +29,9 @@ if [[ -n $(setting fails) && " $* " == *"$(setting fails)"* ]]; then
   exit 1
 fi
 case " $* " in
+  *" --check "*)
+    [[ -z $(setting refuses) || " $* " != *"$(setting refuses)"* ]] || { echo "$name refuses" >&2 && exit 2; }
+    exit ;;
   *" --list "*) echo wrong_ids && exit ;;
   *" --variant "*) touch "$(argument --out "$@")"/{run.lcm,robot.toml} && exit ;;
   " run "* | " sweep "*) echo "$*" >>"$FAKE_DIR/$name.calls" && exit ;;
@@ -46,15 +50,6 @@ case " $* " in
     exit ;;
 esac
 
-echo $$ >>"$FAKE_DIR/pids"
-echo $$ >>"$FAKE_DIR/pids.$name"
-echo "$*" >"$FAKE_DIR/$name.arguments"
-echo "$name says something" >&2
-case $(setting exit) in
-  '') ;;
-  crash) kill -SEGV $$ ;;
-  *) exit "$(setting exit)" ;;
-esac
 real_time=
 [[ " $* " != *" --real-time "* || $name == sim ]] || real_time=1
 on_signal() {
@@ -63,6 +58,15 @@ on_signal() {
   exit 0
 }
 if [[ -n $(setting stays) ]]; then trap '' INT TERM; else trap on_signal INT TERM; fi
+echo "$*" >"$FAKE_DIR/$name.arguments"
+echo "$name says something" >&2
+echo $$ >>"$FAKE_DIR/pids.$name"
+echo $$ >>"$FAKE_DIR/pids"  # last: whoever waits for it finds the rest
+case $(setting exit) in
+  '') ;;
+  crash) kill -SEGV $$ ;;
+  *) exit "$(setting exit)" ;;
+esac
 end=$((${EPOCHREALTIME/./} + $(awk "BEGIN { print int(1e6 * ${FAKE_sim_seconds:-0.5}) }")))
 while [[ -n $real_time$(setting stays) || ! -e $FAKE_DIR/closed ]]; do
   if [[ $name == sim ]] && ((${EPOCHREALTIME/./} > end)); then

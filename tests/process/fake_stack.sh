@@ -38,17 +38,19 @@ expect() {
 
 expect_output() { grep -qE -- "$1" "$output" || fail "no line like '$1'"; }
 
-expect_nothing_left() {
+nothing_left() {
   local pid
   while read -r pid; do
-    grep -qsE '^State:\s+Z' "/proc/$pid/status" || [[ ! -d /proc/$pid ]] || fail "process $pid is left"
+    grep -qsE '^State:\s+Z' "/proc/$pid/status" || [[ ! -d /proc/$pid ]] || return 1
   done <"$work/pids"
 }
 
-# wait_until COMMAND...: for at most 10 s.
+expect_nothing_left() { nothing_left || fail "a process is left of: $(tr '\n' ' ' <"$work/pids")"; }
+
+# wait_until COMMAND...: for at most a minute.
 wait_until() {
   local i
-  for ((i = 0; i < 200; ++i)); do
+  for ((i = 0; i < 1200; ++i)); do
     "$@" && return
     sleep 0.05
   done
@@ -57,7 +59,7 @@ wait_until() {
 
 all_started() { [[ -e $work/pids ]] && (($(wc -l <"$work/pids") >= 5)); }
 
-all_cases() { sed -nE 's/^([a-z_]+)\(\) \{$/\1/p' "$0" | grep -vxE '[a-z]+_of_case'; }
+all_cases() { sed -nE 's/^([a-z_]+)\(\) \{$/\1/p' "$0" | grep -vxE '[a-z_]+_of_case'; }
 
 # run_cases [--list | CASE...]: all without arguments.
 run_cases() {

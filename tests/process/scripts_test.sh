@@ -91,6 +91,10 @@ leftovers_of_case() {
   touch "$out/logs/notes"
 }
 
+expect_intact_of_case() {
+  [[ -e $out/run.lcm && -e $out/old_row/map.png && -e $out/logs/sim.log ]] || fail "the old run is gone"
+}
+
 an_old_run_is_replaced() {
   leftovers_of_case
   expect 0 launch.sh "$scenario" --out "$out"
@@ -120,11 +124,34 @@ an_old_run_stays_when_the_new_one_cannot_start() {
   mv "$scenario" "$out/scenario.toml"
   expect 2 launch.sh "$out/scenario.toml" --out "$out" --estimator unknown && expect_output "got 'unknown'"
   expect 2 launch.sh "$out/scenario.toml" --out "$out" && expect_output "scenario.toml' belongs to the run"
-  [[ -e $out/run.lcm && -e $out/old_row/map.png && -e $out/logs/sim.log ]] || fail "the old run is gone"
+  expect_intact_of_case
 }
 
+an_old_run_stays_when_a_program_refuses() {
+  leftovers_of_case
+  FAKE_sim_refuses="--config $scenario" expect 2 launch.sh "$scenario" --out "$out"
+  expect_output "sim refuses its settings or the LCM network" && expect_intact_of_case
+  FAKE_detector_refuses="--config /" expect 2 launch.sh "$scenario" --out "$out"
+  expect_output "detector refuses its settings" && expect_intact_of_case
+  FAKE_slam_refuses="--set slam.a=1" expect 2 launch.sh "$scenario" --out "$out" --set slam.a=1
+  expect_output "slam refuses its settings" && expect_intact_of_case
+  FAKE_viewer_refuses="--real-time" expect 2 launch.sh "$scenario" --out "$out" --real-time
+  expect_output "viewer refuses its settings" && expect_intact_of_case
+  FAKE_recorder_refuses="--lcm-url nonsense://" expect 2 launch.sh "$scenario" --out "$out" --record-only --lcm-url nonsense://
+  expect_output "recorder refuses its settings" && expect_intact_of_case
+  [[ ! -e $work/pids ]] || fail "something ran"
+}
+
+an_old_run_stays_when_there_is_no_place_for_the_new_one() {
+  leftovers_of_case
+  touch "$out/fake_estimator"
+  expect 2 launch.sh "$scenario" --out "$out" && expect_output "cannot make the folder '$out/fake_estimator'"
+  expect_intact_of_case
+}
+
+# The second one's end ends the first.
 two_stacks_have_two_ports() {
-  FAKE_sim_seconds=1.5 "$deploy/launch.sh" "$scenario" --out "$work/other" >"$work/other_output" 2>&1 &
+  FAKE_sim_seconds=300 "$deploy/launch.sh" "$scenario" --out "$work/other" >"$work/other_output" 2>&1 &
   wait_until all_started
   sed -E 's/.*--lcm-url ([^ ]+).*/\1/' "$work/sim.arguments" >"$work/other_url"
   expect 0 launch.sh "$scenario" --out "$out"
@@ -146,9 +173,10 @@ two_stacks_make_the_folder_of_ports_at_once() {
 }
 
 one_folder_for_one_run() {
-  FAKE_sim_seconds=1.5 "$deploy/launch.sh" "$scenario" --out "$out" >/dev/null 2>&1 &
+  FAKE_sim_seconds=300 "$deploy/launch.sh" "$scenario" --out "$out" >/dev/null 2>&1 &
   wait_until all_started
   expect 2 launch.sh "$scenario" --out "$out" && expect_output "another run is writing"
+  touch "$work/closed"
   wait $! || fail "the first one failed"
 }
 
@@ -217,7 +245,6 @@ signals_stop_everything() {
     # By way of env: bash starts background jobs with SIGINT ignored.
     FAKE_sim_seconds=30 env --default-signal=INT "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
     wait_until all_started
-    sleep 0.2
     kill "-${signal%:*}" $!
     local code=0
     wait $! || code=$?
@@ -233,8 +260,7 @@ killed_script_leaves_nothing() {
   wait_until all_started
   kill -KILL $!
   wait $! 2>/dev/null || true
-  sleep 1
-  expect_nothing_left
+  wait_until nothing_left
 }
 
 stubborn_process_is_killed() {

@@ -37,9 +37,9 @@ fail() {
   exit 1
 }
 
-# begin NAME: a run in the background into $work/NAME; its pid is $!.
+# begin NAME OPTION...: a run in the background into $work/NAME; its pid is $!.
 begin() {
-  env --default-signal=INT "$launch" "$work/short.toml" --out "$work/$1" >"$work/$1.output" 2>&1 &
+  env --default-signal=INT "$launch" "$work/short.toml" --out "$work/$1" "${@:2}" >"$work/$1.output" 2>&1 &
 }
 
 # until_under_way NAME: ticks are going round.
@@ -89,6 +89,33 @@ bad_scenario() {
   expect_code 2 $!
   grep -q "length_m" "$work/run.output" || fail "the nearest key is not named"
   [[ ! -e $work/run ]] || fail "a folder for nothing"
+}
+
+every_program_checks_without_running() {
+  local name code
+  for name in sim detector slam viewer recorder; do
+    "$work/bin/waymark-$name" --check --lcm-url memq:// >"$work/check.output" 2>&1 || fail "$name: exit code $?"
+    [[ ! -s $work/check.output ]] || fail "$name is not silent"
+    code=0
+    "$work/bin/waymark-$name" --check --lcm-url nonsense:// >"$work/check.output" 2>&1 || code=$?
+    ((code == 2)) || fail "$name: exit code $code"
+    grep -q "cannot join the LCM network nonsense://" "$work/check.output" || fail "$name does not say why"
+  done
+}
+
+# The simulator has a marker 400; the detector's dictionary has not.
+an_old_run_stays_when_the_new_one_cannot_start() {
+  mkdir -p "$work/run/logs"
+  touch "$work/run/"{run.lcm,logs/launch.log}
+  begin run --lcm-url nonsense://
+  expect_code 2 $!
+  grep -q "cannot join the LCM network nonsense://" "$work/run.output" || fail "the network is not named"
+  printf '[robot.markers]\nids = [400]\n' >>"$work/short.toml"
+  begin run --lcm-url memq://
+  expect_code 2 $!
+  grep -q "got 400, but DICT_6X6_250 has the ids 0 to 249" "$work/run.output" || fail "the id is not named"
+  grep -q "detector refuses its settings" "$work/run.output" || fail "the detector is not named"
+  [[ -e $work/run/run.lcm ]] || fail "the old run is gone"
 }
 
 # A sweep with real programs: figures, an expectation that cannot be reached, and going on.

@@ -14,6 +14,8 @@ arguments=(sweep.sh "$scenario" --seeds 1-2 --estimators "odometry,mine=waymark:
 # evaluations_of_case: how often a run folder was evaluated so far.
 evaluations_of_case() { grep -c '^run ' "$work/evaluate.calls"; }
 
+no_script_left_of_case() { ! pgrep -f -- "$deploy/" >/dev/null; }
+
 # path_of_case: a folder in front of PATH for fakes of the system's programs.
 path_of_case() {
   mkdir -p "$work/path"
@@ -106,22 +108,21 @@ a_killed_sweep_goes_on() {
   expect 0 sweep_job.sh "$sweep" short 1
   local signal
   for signal in TERM:143 KILL:137; do
-    rm -f "$work"/pids "$work/closed"
+    rm -f "$work"/pids* "$work/closed"
     FAKE_sim_seconds=30 "$deploy/${arguments[0]}" "${arguments[@]:1}" >"$output" 2>&1 &
     local script=$!
-    wait_until grep -qs . "$work/pids"
-    sleep 0.3
+    wait_until grep -qs . "$work/pids.sim"  # the last one to be started
     if [[ $signal == KILL* ]]; then kill -STOP $script && pkill -KILL -P $script; fi  # parallel first
     kill "-${signal%:*}" $script 2>/dev/null || true
     local code=0
     wait $script || code=$?
     ((code == ${signal#*:})) || fail "exit code $code after SIG${signal%:*}"
     [[ $signal == KILL* ]] && break
-    wait_until expect_nothing_left
+    wait_until nothing_left
     [[ ! -e $sweep/short/seed-2/finished ]] || fail "seed 2 counts as done"
   done
-  touch "$work/closed"  # ends the fake programs that SIGKILL has left behind
-  sleep 1
+  touch "$work/closed"  # ends the programs and scripts that SIGKILL has left behind
+  wait_until no_script_left_of_case
   expect 0 "${arguments[@]}"
   [[ -e $sweep/short/seed-2/mine/done ]] || fail "seed 2 was not done"
   [[ $(evaluations_of_case) == 2 ]] || fail "seed 1 was done twice"
@@ -156,9 +157,10 @@ variants_are_rows_of_the_same_log() {
 }
 
 one_sweep_for_one_folder() {
-  FAKE_sim_seconds=2 "$deploy/${arguments[0]}" "${arguments[@]:1}" >/dev/null 2>&1 &
+  FAKE_sim_seconds=300 "$deploy/${arguments[0]}" "${arguments[@]:1}" >/dev/null 2>&1 &
   wait_until grep -qs . "$work/pids"
   expect 2 "${arguments[@]}" && expect_output "another sweep is writing"
+  touch "$work/closed"
   wait $! || fail "the first one failed"
 }
 

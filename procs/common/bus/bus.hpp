@@ -16,6 +16,10 @@ namespace waymark {
 /// `--lcm-url`, else $LCM_DEFAULT_URL, else the loopback default.
 std::string lcm_url_or_default(const std::string& given_url);
 
+/// Joins the network for a moment.
+/// @throws SetupError as Bus does.
+void check_network(const std::string& url);
+
 /// Messages in and out over one LCM instance.
 ///
 /// A thread of its own takes everything from LCM at once (LCM's queues drop the newest message when

@@ -17,6 +17,7 @@ struct ProcessOptions {
   ConfigSources config_sources{};
   bool dump_config{false};
   bool dump_robot_config{false};
+  bool check{false};
   std::string lcm_url{};
   bool real_time{false};
   std::vector<std::filesystem::path> logs{};

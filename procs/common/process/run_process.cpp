@@ -189,6 +189,11 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
   if (parsed.exit_code) return *parsed.exit_code;
   const ProcessOptions& options = parsed.options;
   return run_guarded(description.traits, [&] {
+    if (options.check) {
+      description.dump_config(options);
+      check_network(lcm_url_or_default(options.lcm_url));
+      return int{kExitOk};
+    }
     if (options.dump_config) {
       fmt::print("{}", description.dump_config(options));
       return int{kExitOk};

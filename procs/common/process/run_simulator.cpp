@@ -191,6 +191,15 @@ class Run {
   Timestamp tick_end_{};
 };
 
+/// Makes the world, too, but writes nothing.
+int check(ProcessOptions options, const SimulatorDescription& description) {
+  options.out_dir.clear();
+  Inbox inbox;
+  description.make_source(options, inbox);
+  check_network(lcm_url_or_default(options.lcm_url));
+  return kExitOk;
+}
+
 }  // namespace
 
 int run_described_simulator(int argc, char** argv, const SimulatorDescription& description) {
@@ -199,6 +208,7 @@ int run_described_simulator(int argc, char** argv, const SimulatorDescription& d
   if (parsed.exit_code) return *parsed.exit_code;
   const ProcessOptions& options = parsed.options;
   return run_guarded(description.traits, [&] {
+    if (options.check) return check(options, description);
     if (options.dump_config || options.dump_robot_config) {
       fmt::print("{}", options.dump_config ? description.dump_config(options)
                                            : description.dump_robot_config(options));
