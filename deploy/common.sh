@@ -46,6 +46,15 @@ need_number() { [[ $2 =~ ^[0-9]+$ ]] || usage_error "$1 needs a whole number, no
 
 need_count() { [[ $2 =~ ^0*[1-9][0-9]*$ ]] || usage_error "$1 needs a whole number above 0, not '$2'"; }
 
+# need_row_name NAME: a folder of that name fits beside a run's own files.
+need_row_name() {
+  [[ $1 =~ ^[A-Za-z0-9_][A-Za-z0-9_-]{0,99}$ ]] ||
+    usage_error "'$1' is no name for a row: letters, digits, _ and -, at most 100, the first one no -"
+  case $1 in
+    logs | recorded | finished | failed) usage_error "'$1' is no name for a row: a run's folder has a '$1' of its own" ;;
+  esac
+}
+
 need_file() { [[ -f $1 && -r $1 ]] || die $kExitUsage "no readable file '$1'"; }
 
 need_programs() {
@@ -67,6 +76,7 @@ make_folder() {
 # protect_inputs INPUT...: refuses to read what is among old_files, which will be removed.
 protect_inputs() {
   local file input
+  # shellcheck disable=SC2154  # the script's
   for file in "${old_files[@]}"; do
     for input in "$@"; do
       [[ ! $file -ef $input ]] ||

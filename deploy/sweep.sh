@@ -24,6 +24,9 @@ readonly kSimSpeed=4       # times real time: simulator, camera pictures, detect
 readonly kReplaySpeed=40   # times real time: one estimator, viewer and evaluation
 readonly kLog_MB_per_s=0.04 kImages_MB_per_s=0.4 kRow_MB=3
 
+readonly kMaxSeedDigits=15  # run.seed goes up to 1e15
+readonly kMaxSeeds=100000   # more is a slip of the keys
+
 parse_arguments() {
   scenarios=() seeds=1-20 estimators=odometry,waymark variants='' out='' jobs=$(nproc) images=0
   plan_only='' parallel_options=()
@@ -47,17 +50,82 @@ parse_arguments() {
   ((${#scenarios[@]} > 0)) || usage_error "no scenario given"
   [[ -n $out ]] || usage_error "--out is missing"
   expand_seeds
+  expand_rows
 }
+
+# split LIST: sets `parts`, which are between commas or blanks.
+split() { IFS=$', \t\n' read -r -d '' -a parts < <(printf '%s\0' "$1"); }
 
 # expand_seeds: sets seed_list.
 expand_seeds() {
+  local part parts
+  local -A seen=()
   seed_list=()
-  local part
-  for part in ${seeds//,/ }; do
+  split "$seeds"
+  for part in "${parts[@]}"; do
     [[ $part =~ ^([0-9]+)(-([0-9]+))?$ ]] || usage_error "--seeds needs a list like 1-20 or 1,3,7-9, not '$seeds'"
-    mapfile -t -O ${#seed_list[@]} seed_list < <(seq "${BASH_REMATCH[1]}" "${BASH_REMATCH[3]:-${BASH_REMATCH[1]}}")
+    add_seeds "${BASH_REMATCH[1]}" "${BASH_REMATCH[3]:-${BASH_REMATCH[1]}}"
   done
   ((${#seed_list[@]} > 0)) || usage_error "no seed in --seeds '$seeds'"
+}
+
+# add_seeds FIRST LAST: none twice, for two jobs would write to one folder.
+add_seeds() {
+  local seed
+  ((${#1} <= kMaxSeedDigits && ${#2} <= kMaxSeedDigits)) ||
+    usage_error "--seeds: a seed has at most $kMaxSeedDigits digits, unlike one in '$seeds'"
+  ((10#$1 <= 10#$2)) || usage_error "--seeds: '$1-$2' goes backwards; the smaller one comes first"
+  ((10#$2 - 10#$1 < kMaxSeeds)) || usage_error "--seeds: '$1-$2' are more than $kMaxSeeds seeds"
+  for ((seed = 10#$1; seed <= 10#$2; ++seed)); do
+    [[ ! -v seen[$seed] ]] || usage_error "--seeds: $seed is there twice"
+    seen[$seed]=1 seed_list+=("$seed")
+  done
+}
+
+# expand_rows: sets rows, lines of NAME ESTIMATOR KEY=VALUE...
+expand_rows() {
+  local part parts name
+  local -A seen=()
+  rows=()
+  split "$estimators"
+  for part in "${parts[@]}"; do
+    name=${part%%=*} part=${part#*=}
+    need_row_name "$name"
+    [[ ! -v seen[$name] ]] ||
+      usage_error "--estimators: two rows are called '$name'; name one of them: NAME=ESTIMATOR:KEY=VALUE:..."
+    seen[$name]=1 rows+=("$name ${part//:/ }")
+  done
+  ((${#rows[@]} > 0)) || usage_error "no row in --estimators '$estimators'"
+}
+
+# check_scenarios: each will have a folder beside the plan and the table.
+check_scenarios() {
+  local file name
+  local -A seen=()
+  for file in "${scenarios[@]}"; do
+    need_file "$file"
+    name=$(basename "${file%.toml}")
+    [[ $name =~ ^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}$ ]] ||
+      die $kExitUsage "'$name': names of scenarios are letters, digits, _ . -, at most 100, the first one no . or -"
+    case $name in
+      plan | plan.* | plots | results.* | runs.csv | index.html)
+        die $kExitUsage "'$name': a sweep's folder has a '$name' of its own; give the scenario another name"
+        ;;
+    esac
+    [[ ! -v seen[$name] ]] || die $kExitUsage "two scenarios are called '$name'"
+    seen[$name]=1
+  done
+}
+
+# check_rows: wrong estimators and settings are found now, not after an hour.
+check_rows() {
+  local row words setting options
+  for row in "${rows[@]}"; do
+    read -r -a words <<<"$row"
+    options=(--set "slam.estimator=${words[1]:-}")
+    for setting in "${words[@]:2}"; do options+=(--set "$setting"); done
+    "$bin_dir/waymark-slam" "${options[@]}" --dump-config >/dev/null || exit $?
+  done
 }
 
 # write_plan: DIR/plan holds all that a job needs, so that it can be done alone and anywhere.
@@ -66,52 +134,50 @@ expand_seeds() {
 #   variants    names, one per line
 #   jobs        SCENARIO SEED per line
 #   runs.tsv    scenario, seed, folder, row, command that does it again: for waymark-evaluate sweep
+# It is made in plan.new, and takes the place of an earlier one (adopt_plan) when nothing can be wrong any more.
 write_plan() {
-  local file name row
-  plan=$out/plan
+  local file name seed
+  plan=$out/plan.new
+  trap 'rm -rf -- "$out/plan.new"' EXIT
+  rm -rf -- "$plan"
   mkdir -p "$plan/scenarios"
-  rm -f "$plan"/scenarios/*.toml "$plan"/{rows,variants,variants.toml,jobs,jobs.tmp,runs.tsv}
   for file in "${scenarios[@]}"; do
-    need_file "$file"
     name=$(basename "${file%.toml}")
-    [[ $name =~ ^[A-Za-z0-9_.-]+$ ]] || die $kExitUsage "'$name': names of scenarios are letters, digits, _ . -"
-    [[ ! -e $plan/scenarios/$name.toml ]] || die $kExitUsage "two scenarios are called '$name'"
     "$bin_dir/waymark-sim" --config "$file" --dump-config >"$plan/effective.toml" || exit $?
     cost_of_scenario "$plan/effective.toml"
     cp "$file" "$plan/scenarios/$name.toml"
-    for seed in "${seed_list[@]}"; do echo "$name $seed" >>"$plan/jobs.tmp"; done
+    for seed in "${seed_list[@]}"; do echo "$name $seed"; done >>"$plan/jobs"
   done
   rm -f "$plan/effective.toml"
-  for row in ${estimators//,/ }; do
-    name=${row%%=*} row=${row#*=}
-    [[ $name =~ ^[A-Za-z0-9_-]+$ ]] || die $kExitUsage "'$name': names of rows are letters, digits, _ -"
-    echo "$name ${row//:/ }" >>"$plan/rows"
-  done
-  check_rows
+  printf '%s\n' "${rows[@]}" >"$plan/rows"
   : >"$plan/variants"
   if [[ -n $variants ]]; then
-    need_programs waymark-faults
     "$bin_dir/waymark-faults" --variants "$variants" --list >"$plan/variants" || exit $?
     cp "$variants" "$plan/variants.toml"
   fi
   echo "$images" >"$plan/images"
   write_runs
-  mv "$plan/jobs.tmp" "$plan/jobs"  # last: a plan with jobs is whole
 }
 
-# check_rows: wrong estimators and settings are found now, not after an hour.
-check_rows() {
-  local name estimator settings setting options
-  while read -r name estimator settings; do
-    options=(--set "slam.estimator=$estimator")
-    for setting in $settings; do options+=(--set "$setting"); done
-    "$bin_dir/waymark-slam" "${options[@]}" --dump-config >/dev/null || exit $?
-  done <"$plan/rows"
+# find_old_plan: the sweep's folder has a plan of ours or none.
+find_old_plan() {
+  # Killed while its plans were changed.
+  [[ -e $out/plan || ! -e $out/plan.old ]] || mv -T -- "$out/plan.old" "$out/plan"
+  [[ ! -e $out/plan || -d $out/plan/scenarios ]] ||
+    die $kExitUsage "'$out/plan' is no plan of a sweep; give another folder with --out"
+}
+
+adopt_plan() {
+  rm -rf -- "$out/plan.old"
+  [[ ! -e $out/plan ]] || mv -T -- "$out/plan" "$out/plan.old"
+  mv -T -- "$plan" "$out/plan"
+  plan=$out/plan
+  rm -rf -- "$out/plan.old"
 }
 
 write_runs() {
   local name seed variant row rest again
-  for name in $(cut -d ' ' -f 1 "$plan/jobs.tmp" | uniq); do
+  for name in $(cut -d ' ' -f 1 "$plan/jobs" | uniq); do
     for variant in '' $(cat "$plan/variants"); do
       while read -r row rest; do
         for seed in "${seed_list[@]}"; do
@@ -193,12 +259,17 @@ summarise() {
 
 parse_arguments "$@"
 need_programs waymark-{sim,detector,slam,viewer,recorder,evaluate}
+[[ -z $variants ]] || need_programs waymark-faults
 command -v parallel >/dev/null || die $kExitUsage "GNU parallel is missing; install it with $deploy_dir/install-deps.sh"
+check_scenarios
+check_rows
 out=$(make_folder "$out")
 exec {sweep_lock}<"$out"
 flock --nonblock "$sweep_lock" || die $kExitUsage "another sweep is writing to '$out'"
+find_old_plan
 write_plan
 state_cost
+adopt_plan
 [[ -z $plan_only ]] || exit 0
 trap 'on_signal INT 2' INT
 trap 'on_signal TERM 15' TERM

@@ -5,6 +5,7 @@
 #   FAKE_sim_seconds      length of the run (default 0.5)
 #   FAKE_NAME_exit=CODE   NAME ends at once with this code; `crash` kills itself
 #   FAKE_NAME_fails=WORDS NAME ends with code 1, as a replay, too, when its arguments have these words
+#   FAKE_NAME_kills=WORDS the same, and NAME kills whoever called it
 #   FAKE_NAME_refuses=WORDS NAME --check ends with code 2 when its arguments have these words
 #   FAKE_NAME_stays=1     NAME ignores both the end of the run and SIGINT
 # With --real-time all but the simulator run until SIGINT and then end well.
@@ -26,6 +27,10 @@ argument() {
 
 if [[ -n $(setting fails) && " $* " == *"$(setting fails)"* ]]; then
   echo "$name fails" >&2
+  exit 1
+fi
+if [[ -n $(setting kills) && " $* " == *"$(setting kills)"* ]]; then
+  kill -KILL $PPID
   exit 1
 fi
 case " $* " in

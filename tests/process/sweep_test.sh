@@ -26,7 +26,6 @@ bad_usage() {
   expect 2 sweep.sh && expect_output "no scenario given"
   expect 2 sweep.sh "$scenario" && expect_output "--out is missing"
   expect 2 sweep.sh "$scenario" --out "$sweep" --seeds one && expect_output "needs a list like 1-20"
-  expect 2 sweep.sh "$scenario" --out "$sweep" --seeds 5-3 && expect_output "no seed in"
   expect 2 sweep.sh "$scenario" --out "$sweep" --jobs 0 && expect_output "whole number above 0, not '0'"
   expect 2 sweep.sh "$work/nowhere.toml" --out "$sweep" && expect_output "no readable file '.*nowhere.toml'"
   expect 2 sweep.sh "$scenario" --out "$sweep" --estimators unknown && expect_output "got 'unknown'"
@@ -35,6 +34,76 @@ bad_usage() {
   expect 0 "${arguments[@]}" --plan-only
   expect 2 sweep_job.sh "$sweep" short 3 && expect_output "no job 'short 3'"
   expect 0 sweep.sh --help && expect_output "usage: deploy/sweep.sh SCENARIO"
+}
+
+seeds_that_cannot_be() {
+  local seeds
+  for seeds in 5-2:"'5-2' goes backwards" 1,3-1:"'3-1' goes backwards" 1,2,1:"1 is there twice" 1-4,03:"3 is there twice" \
+    1234567890123456:"at most 15 digits" 1-12345678901234567890:"at most 15 digits" 1-999999999:"more than 100000" \
+    1--2:"a list like" -1:"a list like" 1.5:"a list like" ',:a list like' ':no seed in'; do
+    expect 2 sweep.sh "$scenario" --out "$sweep" --seeds "${seeds%%:*}" && expect_output "${seeds#*:}"
+  done
+  [[ ! -e $sweep ]] || fail "something was written"
+  expect 0 sweep.sh "$scenario" --out "$sweep" --seeds 007,08-9,123456789012345 --plan-only
+  [[ $(cut -d ' ' -f 2 "$sweep/plan/jobs" | tr '\n' ' ') == "7 8 9 123456789012345 " ]] || fail "jobs"
+}
+
+rows_that_cannot_be() {
+  local name
+  for name in ../run a/b . .. a.b -x "a'b" logs failed recorded finished "$(printf 'x%.0s' {1..101})"; do
+    expect 2 sweep.sh "$scenario" --out "$sweep" --estimators "odometry,$name=waymark"
+    expect_output "'$name' is no name for a row"
+  done
+  expect 2 sweep.sh "$scenario" --out "$sweep" --estimators odometry,waymark,odometry
+  expect_output "two rows are called 'odometry'"
+  expect 2 sweep.sh "$scenario" --out "$sweep" --estimators a=waymark,a=odometry
+  expect_output "two rows are called 'a'"
+  expect 2 sweep.sh "$scenario" --out "$sweep" --estimators '' && expect_output "no row in --estimators"
+  [[ ! -e $sweep ]] || fail "something was written"
+}
+
+scenarios_that_cannot_be() {
+  local name
+  for name in plan plots plan.new .hidden -x 'a b'; do
+    touch "$work/$name.toml"
+    expect 2 sweep.sh "$work/$name.toml" --out "$sweep" && expect_output "'$name': "
+  done
+  [[ ! -e $sweep ]] || fail "something was written"
+}
+
+# plan_of_case: all that the sweep's plan says.
+plan_of_case() { (cd "$sweep/plan" && find . -type f | sort | xargs tail -n +1); }
+
+an_earlier_plan_survives_a_call_that_comes_to_nothing() {
+  expect 0 "${arguments[@]}" --plan-only
+  local plan other
+  plan=$(plan_of_case)
+  cp "$scenario" "$work/other.toml"
+  other=(sweep.sh "$scenario" "$work/other.toml" --seeds 5 --estimators waymark --out "$sweep" --jobs 1)
+  expect 2 "${other[@]}" --estimators unknown
+  [[ $(plan_of_case) == "$plan" ]] || fail "the plan is another after a wrong estimator"
+  FAKE_sim_fails=other.toml expect 1 "${other[@]}"
+  [[ $(plan_of_case) == "$plan" && ! -e $sweep/plan.new ]] || fail "the plan is another after a wrong scenario"
+  touch "$work/faults.toml"
+  FAKE_faults_fails=--list expect 1 "${other[@]}" --variants "$work/faults.toml"
+  [[ $(plan_of_case) == "$plan" && ! -e $sweep/plan.new ]] || fail "the plan is another after wrong variants"
+  WAYMARK_MIN_FREE_MB=999999999 expect 2 "${other[@]}" && expect_output "not enough disk"
+  [[ $(plan_of_case) == "$plan" && ! -e $sweep/plan.new ]] || fail "the plan is another after a lack of disk"
+  FAKE_sim_kills=other.toml expect 137 "${other[@]}"
+  [[ $(plan_of_case) == "$plan" && -e $sweep/plan.new ]] || fail "the plan is another after SIGKILL"
+  mv "$sweep/plan" "$sweep/plan.old"  # killed between the two
+  FAKE_sim_fails=other.toml expect 1 "${other[@]}"
+  [[ $(plan_of_case) == "$plan" ]] || fail "the plan did not come back"
+  expect 0 "${other[@]}" --plan-only
+  [[ $(cat "$sweep/plan/jobs") == $'short 5\nother 5' ]] || fail "no new plan"
+  [[ ! -e $sweep/plan.new && ! -e $sweep/plan.old ]] || fail "leftovers"
+}
+
+a_folder_of_somebody_is_no_plan() {
+  mkdir -p "$sweep/plan"
+  touch "$sweep/plan/notes"
+  expect 2 "${arguments[@]}" && expect_output "'$sweep/plan' is no plan of a sweep"
+  [[ -e $sweep/plan/notes ]] || fail "somebody's notes are gone"
 }
 
 the_cost_is_stated_and_the_plan_is_written() {
