@@ -6,9 +6,9 @@ set -euo pipefail
 # shellcheck disable=SC2034  # used by the scripts that source this
 readonly kExitFailed=1 kExitUsage=2 kExitDied=3 kExitTimeout=4  # as in exit_codes.hpp
 
-# What programs write into the folder of a row.
+# What the programs make in the folder of a row, beside config.toml.
 # shellcheck disable=SC2034
-readonly kRowFiles=(config.toml map.pgm map.yaml map.png marker_layer.png plain.png scan.png markers.csv
+readonly kRowResults=(map.pgm map.yaml map.png marker_layer.png plain.png scan.png markers.csv
   trajectory.tum trajectory_final.tum covariance.csv odometry.tum slam.lcm timings.json metrics.json stations.csv)
 
 script_name=$(basename "${0%.sh}")

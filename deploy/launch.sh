@@ -128,7 +128,7 @@ find_old_run() {
   for folder in "$out"/*; do
     [[ -f $folder/config.toml && -f $folder/trajectory.tum ]] || continue
     old_rows+=("$folder")
-    old_files+=("${kRowFiles[@]/#/"$folder/"}" "$out/logs/${folder##*/}."{slam,viewer}.log)
+    old_files+=("$folder/config.toml" "${kRowResults[@]/#/"$folder/"}" "$out/logs/${folder##*/}."{slam,viewer}.log)
   done
   protect_inputs "$scenario" "${slam_files[@]}"
 }

@@ -9,6 +9,7 @@
 #   --robot FILE     sensors and their mounting (default: robot.toml beside the log)
 #   --out DIR        (default: the log's folder)
 #
+# What an earlier replay has left in DIR/ROW goes. A damaged log gives what is left of it, and exit code 1.
 # Writes map, pictures, trajectory and markers into DIR/ROW (README.md, "What a run leaves"), with slam.lcm
 # (what slam published), config.toml and timings.json. The seed is that of the run when its scenario.toml
 # is beside the log, so that a run and its replay give the same bytes.
@@ -16,15 +17,15 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 parse_arguments() {
-  log='' estimator='' row='' robot='' out='' slam_options=()
+  log='' estimator='' row='' robot='' out='' slam_options=() slam_files=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
       --estimator | --config | --set | --row | --robot | --out) need_value "$@" ;;&
       --estimator) estimator=$2 ;;
-      --config) need_file "$2" && slam_options+=(--config "$2") ;;
+      --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
       --set) slam_options+=(--set "$2") ;;
-      --row) row=$2 ;;
+      --row) need_row_name "$2" && row=$2 ;;
       --robot) robot=$2 ;;
       --out) out=$2 ;;
       -*) usage_error "unknown option '$1'" ;;
@@ -39,6 +40,7 @@ parse_arguments() {
   [[ -n $estimator ]] || usage_error "--estimator is missing"
 }
 
+# prepare: everything that can be wrong is found here, before an earlier replay's results go.
 prepare() {
   need_file "$log"
   need_programs waymark-{slam,viewer}
@@ -47,42 +49,70 @@ prepare() {
   log=$log_folder/$(basename "$log")
   robot=${robot:-$log_folder/robot.toml}
   [[ -f $robot ]] || die $kExitUsage "no '$robot'; say with --robot which sensors the log is from"
-  local seed=()
-  if [[ -f $log_folder/scenario.toml ]]; then
-    seed=(--set "slam.seed=$(toml_value "$log_folder/scenario.toml" run seed)")
-  fi
-  slam_options=(--config "$robot" "${seed[@]}" --set "slam.estimator=$estimator" "${slam_options[@]}")
+  check_slam
   row=${row:-$estimator}
+  need_row_name "$row"
   out=$(make_folder "${out:-$log_folder}")
   folder=$(make_folder "$out/$row")
   logs=$(make_folder "$out/logs")
+  clear_old_results
 }
 
+# check_slam: sets slam_options, and config to what they come to.
+check_slam() {
+  local seed=()
+  local scenario=${log%/*}/scenario.toml
+  [[ ! -f $scenario ]] || seed=(--set "slam.seed=$(toml_value "$scenario" run seed)")
+  slam_options=(--config "$robot" "${seed[@]}" --set "slam.estimator=$estimator" "${slam_options[@]}")
+  config=$("$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config) || exit $?
+}
+
+# clear_old_results: so that a replay that fails leaves none that look new. config.toml stays until it is
+# replaced, for it may be a --config of this replay.
+clear_old_results() {
+  old_files=("${kRowResults[@]/#/"$folder/"}" "$folder/slam.lcm.part" "$logs/$row."{slam,viewer}.log)
+  protect_inputs "$log" "$robot" "${slam_files[@]}"
+  rm -f -- "${old_files[@]}"
+}
+
+# write FILE TEXT: whole or not at all.
+write() { printf '%s\n' "$2" >"$1.tmp" && mv "$1.tmp" "$1"; }
+
 # run NAME ARGUMENTS...: one program; its words go to the log file and, being progress, to the terminal.
+# One that has come to the end of a damaged log has made what can be made of it.
 run() {
   local name=$1 program=$bin_dir/waymark-$1 log_file=$logs/$row.$1.log code=0
   shift
   # A pipe, for a process substitution may still be writing when its timing is read.
   { "$program" "$@" 2>&1 >&3 | tee -i "$log_file" >&2; } 3>&1 || code=$?
-  ((code == 0)) || die "$code" "$name ended with code $code; its log is $log_file"
+  ((code == 0)) && return
+  ((code == kExitFailed)) && timing "$name" >/dev/null && incomplete+=("$log_file") && return
+  die "$code" "$name ended with code $code; its log is $log_file"
 }
 
 # timing NAME: the closing line "replayed N messages, S s of log in W s (F x real time), peak memory M MB"
 # of a program's log as JSON.
 timing() {
   sed -nE 's/.*replayed ([0-9]+) messages, ([0-9.]+) s of log in ([0-9.]+) s \(([0-9.]+) x real time\), peak memory ([0-9.]+) MB.*/{"messages": \1, "log_s": \2, "wall_s": \3, "real_time_factor": \4, "peak_memory_mb": \5}/p' \
-    "$logs/$row.$1.log" | grep . || die $kExitFailed "no timing in $logs/$row.$1.log"
+    "$logs/$row.$1.log" | grep .
+}
+
+write_timings() {
+  local slam viewer
+  slam=$(timing slam) || die $kExitFailed "no timing in $logs/$row.slam.log"
+  viewer=$(timing viewer) || die $kExitFailed "no timing in $logs/$row.viewer.log"
+  write "$folder/timings.json" "{\"slam\": $slam,"$'\n'" \"viewer\": $viewer}"
 }
 
 parse_arguments "$@"
 prepare
 show_progress_bars
-"$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config >"$folder/config.toml.tmp" || exit $?
-mv "$folder/config.toml.tmp" "$folder/config.toml"
+write "$folder/config.toml" "$config"
+incomplete=()
 run slam "${slam_options[@]}" --log "$log" --out-log "$folder/slam.lcm"
 run viewer --log "$log" --log "$folder/slam.lcm" --out "$folder"
-slam_timing=$(timing slam)
-viewer_timing=$(timing viewer)
-printf '{"slam": %s,\n "viewer": %s}\n' "$slam_timing" "$viewer_timing" >"$folder/timings.json.tmp"
-mv "$folder/timings.json.tmp" "$folder/timings.json"
+[[ -f $folder/map.pgm ]] || die $kExitFailed "the log has given no map; see $logs/$row.slam.log"
+write_timings
+((${#incomplete[@]} == 0)) ||
+  die $kExitFailed "$row is in $folder, of a log that is damaged or was not understood in part; see ${incomplete[*]}"
 say "$row is in $folder"

@@ -7,6 +7,8 @@
 #   FAKE_NAME_fails=WORDS NAME ends with code 1, as a replay, too, when its arguments have these words
 #   FAKE_NAME_kills=WORDS the same, and NAME kills whoever called it
 #   FAKE_NAME_refuses=WORDS NAME --check ends with code 2 when its arguments have these words
+#   FAKE_NAME_replayed=CODE a replay comes to its end with this code
+#   FAKE_viewer_mute=1    a replay leaves no map
 #   FAKE_NAME_stays=1     NAME ignores both the end of the run and SIGINT
 # With --real-time all but the simulator run until SIGINT and then end well.
 name=${0##*/waymark-}
@@ -52,7 +54,10 @@ case " $* " in
   *" --log "*) # replay
     echo "replayed 12 messages, 3.5 s of log in 0.5 s (7.0 x real time), peak memory 20 MB" >&2
     echo "$*" >"$FAKE_DIR/$name.replay"
-    exit ;;
+    [[ $name != slam ]] || touch "$(argument --out-log "$@")"
+    [[ $name != viewer || -n $(setting mute) ]] || touch "$(argument --out "$@")"/{map.pgm,trajectory.tum}
+    code=$(setting replayed)
+    exit "${code:-0}" ;;
 esac
 
 real_time=

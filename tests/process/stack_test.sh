@@ -118,6 +118,20 @@ an_old_run_stays_when_the_new_one_cannot_start() {
   [[ -e $work/run/run.lcm ]] || fail "the old run is gone"
 }
 
+# The last event of the log is cut short.
+replay_of_a_damaged_log() {
+  local file code=0
+  begin run --record-only --no-images
+  expect_code 0 $!
+  truncate --size=-1 "$work/run/run.lcm"
+  "${launch%launch.sh}replay.sh" "$work/run/run.lcm" --estimator odometry >"$work/replay.output" 2>&1 || code=$?
+  ((code == 1)) || fail "exit code $code"
+  grep -q "odometry is in .*, of a log that is damaged" "$work/replay.output" || fail "the damage is not named"
+  for file in map.pgm map.yaml trajectory.tum timings.json; do
+    [[ -s $work/run/odometry/$file ]] || fail "no $file"
+  done
+}
+
 # A sweep with real programs: figures, an expectation that cannot be reached, and going on.
 sweep() {
   command -v parallel >/dev/null || exit 77
