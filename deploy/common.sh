@@ -31,7 +31,16 @@ die() {
   exit "$code"
 }
 
-usage_error() { die $kExitUsage "$* (see $script_name.sh --help)"; }
+usage_error() { die $kExitUsage "$* (see ${0##*/} --help)"; }
+
+# no_arguments [ARGUMENT...]: of a script that takes none but --help.
+no_arguments() {
+  (($# > 0)) || return 0
+  case $1 in
+    --help | -h) print_usage && exit 0 ;;
+    *) usage_error "unknown argument '$1'; there are none" ;;
+  esac
+}
 
 # print_usage: the comment block at the top of the script is its manual.
 print_usage() { sed -nE '3,/^(# shellcheck|[^#])/{/^# shellcheck/q; s/^# ?//p}' "$0"; }

@@ -6,7 +6,7 @@
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../deploy/common.sh"
 
-(($# == 0)) || usage_error "no arguments, please"
+no_arguments "$@"
 
 # with_network COMMAND...: in a network of its own when this one has no way for multicast.
 with_network() {

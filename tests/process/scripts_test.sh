@@ -27,6 +27,26 @@ bad_usage() {
   expect 0 launch.sh --help && expect_output "usage: deploy/launch.sh SCENARIO"
 }
 
+# In a tree in which nothing can be installed, should they try.
+test_scripts_explain_themselves() {
+  local tree=$work/tree script option
+  mkdir -p "$tree"/{tests,.ci}
+  touch "$tree/CMakeLists.txt"
+  cp -r "$source_dir/deploy" "$tree/deploy"
+  cp "$source_dir/tests/run.sh" "$tree/tests/run.sh"
+  cp "$source_dir/.ci/run" "$tree/.ci/run"
+  printf '#!/bin/sh\necho "it began"; exit 1\n' >"$tree/deploy/install-deps.sh"
+  for script in tests/run.sh .ci/run; do
+    for option in --help -h; do
+      expect 0 "../../../tree/$script" $option && expect_output "^usage: $script"
+    done
+    for option in --bogus again ''; do
+      expect 2 "../../../tree/$script" "$option" && expect_output "unknown argument '$option'; .*see ${script##*/} --help"
+    done
+    expect 1 "../../../tree/$script" && expect_output "it began"
+  done
+}
+
 bad_out_folder() {
   touch "$work/file"
   expect 2 launch.sh "$scenario" --out "$work/file/run" && expect_output "cannot make the folder"
