@@ -126,7 +126,8 @@ find_old_run() {
     die $kExitUsage "'$out' holds ${there[*]}, but no run of launch.sh; give another folder with --out"
   old_files=("${kRunFiles[@]/#/"$out/"}" "$out/logs/"{launch,sim,slam,detector,viewer,recorder}.log)
   for folder in "$out"/*; do
-    [[ -f $folder/config.toml && -f $folder/trajectory.tum ]] || continue
+    # A replay that has failed leaves no trajectory.
+    [[ -f $folder/config.toml && (-f $folder/trajectory.tum || -f $out/logs/${folder##*/}.slam.log) ]] || continue
     old_rows+=("$folder")
     old_files+=("$folder/config.toml" "${kRowResults[@]/#/"$folder/"}" "$out/logs/${folder##*/}."{slam,viewer}.log)
   done

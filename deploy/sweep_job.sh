@@ -190,12 +190,19 @@ report_count() {
   say "$finished of $all jobs done$left; $scenario seed $seed took $SECONDS s"
 }
 
+# done_by_somebody_else: good enough, unless it was to be done again.
+done_by_somebody_else() {
+  [[ -z $again ]] || die $kExitUsage "$scenario seed $seed is being done by somebody else; wait for that, then do it again"
+  say "$scenario seed $seed is being done by somebody else"
+  exit 0
+}
+
 parse_arguments "$@"
-if [[ -n $again ]]; then rm -rf -- "$base" "$sweep/$scenario+"*"/seed-$seed"; fi
-if [[ $(cat "$base/finished" 2>/dev/null) == "$(everything)" ]] && [[ ! -e $base/failed ]]; then exit 0; fi
 mkdir -p "$sweep/$scenario"
 exec {job_lock}>>"$sweep/$scenario/.seed-$seed.lock"
-flock --nonblock "$job_lock" || { say "$scenario seed $seed is being done by somebody else" && exit 0; }
+flock --nonblock "$job_lock" || done_by_somebody_else
+if [[ -n $again ]]; then rm -rf -- "$base" "$sweep/$scenario+"*"/seed-$seed"; fi
+if [[ $(cat "$base/finished" 2>/dev/null) == "$(everything)" ]] && [[ ! -e $base/failed ]]; then exit 0; fi
 do_job
 put "$base/finished" "$(everything)"
 [[ -z $count ]] || report_count

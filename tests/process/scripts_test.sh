@@ -105,7 +105,8 @@ own_folder_by_default() {
 
 # leftovers_of_case: what an earlier run and a replay have left in $out, and two folders of its owner.
 leftovers_of_case() {
-  mkdir -p "$out"/{logs,old_row,notes,settings}
+  mkdir -p "$out"/{logs,old_row,failed_row,notes,settings}
+  touch "$out/failed_row/config.toml" "$out/logs/failed_row.slam.log"
   touch "$out"/{run.lcm,robot.toml,results.json,truth_marker_moves.csv} "$out"/logs/{launch,sim,old_row.slam}.log
   touch "$out"/old_row/{config.toml,trajectory.tum,map.png} "$out/notes/today" "$out/settings/config.toml"
   touch "$out/logs/notes"
@@ -120,7 +121,7 @@ an_old_run_is_replaced() {
   expect 0 launch.sh "$scenario" --out "$out"
   expect_output "replaces the run in $out"
   local file
-  for file in results.json truth_marker_moves.csv old_row logs/old_row.slam.log; do
+  for file in results.json truth_marker_moves.csv {old,failed}_row logs/{old,failed}_row.slam.log; do
     [[ ! -e $out/$file ]] || fail "the old $file is left"
   done
   for file in notes/today settings/config.toml logs/notes; do

@@ -225,6 +225,18 @@ variants_are_rows_of_the_same_log() {
   [[ $(evaluations_of_case) == 4 ]] || fail "variants were done twice"
 }
 
+a_job_that_is_being_done_is_left_alone() {
+  expect 0 "${arguments[@]}" --plan-only
+  FAKE_sim_seconds=300 "$deploy/sweep_job.sh" "$sweep" short 1 >/dev/null 2>&1 &
+  wait_until grep -qs . "$work/pids.sim"
+  expect 0 sweep_job.sh "$sweep" short 1 && expect_output "is being done by somebody else"
+  expect 2 sweep_job.sh "$sweep" short 1 --again && expect_output "is being done by somebody else; wait for that"
+  [[ -e $sweep/short/seed-1/robot.toml ]] || fail "its files are gone"
+  touch "$work/closed"
+  wait $! || fail "the first one failed"
+  [[ -e $sweep/short/seed-1/mine/done ]] || fail "it was not done"
+}
+
 one_sweep_for_one_folder() {
   FAKE_sim_seconds=300 "$deploy/${arguments[0]}" "${arguments[@]:1}" >/dev/null 2>&1 &
   wait_until grep -qs . "$work/pids"
