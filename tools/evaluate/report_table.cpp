@@ -24,6 +24,11 @@ std::string cell(const std::optional<double>& value, int decimals, std::string_v
   return fmt::format("{:.{}f}{}", *value, decimals, unit);
 }
 
+/// Two decimals; from 1000 on, where only the size tells anything, a power of ten.
+std::string nees_cell(double nees) {
+  return nees < 1000.0 || !std::isfinite(nees) ? cell(nees, 2, "") : fmt::format("{:.0e}", nees);
+}
+
 /// Whole numbers bare, as the paper writes them.
 std::string pixel_count(double pixels) {
   const bool whole = std::abs(pixels - std::round(pixels)) < 0.05;
@@ -75,7 +80,7 @@ Row row_of(const EstimatorResult& result, std::optional<double> odometry_m) {
     row[12] = cell(result.markers->mean_position_m, 3, " m");
     row[13] = fmt::format("{}/{}", result.markers->missing, result.markers->spurious);
   }
-  if (result.nees) row[14] = cell(result.nees->mean, 2, "");
+  if (result.nees) row[14] = nees_cell(result.nees->mean);
   row[15] = text_of(result.expectations);
   row[16] = flags_of(result);
   return row;
@@ -139,7 +144,8 @@ std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorR
   text +=
       "; `x odometry`: along RMSE over that of the row `odometry`. Marker error: mean distance "
       "over "
-      "all true markers that were mapped. NEES: 3 is right. Expected: by the scenario, its limit "
+      "all true markers that were mapped. NEES: 3 is right, far more is a "
+      "covariance that is far too small. Expected: by the scenario, its limit "
       "in parentheses. "
       "Trajectories are the poses given during the run; `final`: corrected until its end.\n";
   if (truth.faults_toml)

@@ -111,6 +111,16 @@ TEST(Run, AFaultyRunIsNotTakenForACleanOne) {
             "[[variant]]\nname = \"ghosts\"\n");
 }
 
+TEST(Run, ANeesThatSaysOnlyThatItIsHugeIsAPowerOfTen) {
+  EstimatorResult calibrated{};
+  calibrated.nees = Nees{.poses = 1, .mean = 999.0, .share_in_band = 0.0};
+  EstimatorResult overconfident{};
+  overconfident.nees = Nees{.poses = 1, .mean = 12'581'008'748.5, .share_in_band = 0.0};
+  const std::string table = results_table({calibrated, overconfident});
+  EXPECT_THAT(table, HasSubstr("| 999.00 |"));
+  EXPECT_THAT(table, HasSubstr("| 1e+10  |"));
+}
+
 TEST(Run, AFinalTrajectoryHasItsOwnFiguresAndRow) {
   const TemporaryFolder run;
   add_truth(run);
