@@ -8,12 +8,15 @@ function(waymark_library name)
   target_link_libraries(${name} PUBLIC ${ARG_LIBRARIES} PRIVATE waymark_warnings)
 endfunction()
 
+add_custom_target(programs COMMENT "All installed programs")
+
 # waymark_program(NAME SOURCES ... LIBRARIES ...): an installed program, built into the top of the build folder.
 function(waymark_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} waymark_warnings)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}")
+  add_dependencies(programs ${name})
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 

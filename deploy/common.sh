@@ -70,7 +70,7 @@ need_programs() {
   local name
   for name in "$@"; do
     [[ -x $bin_dir/$name ]] ||
-      die $kExitUsage "no program $bin_dir/$name; build with: cmake --preset release && cmake --build --preset release"
+      die $kExitUsage "no program $bin_dir/$name; build with: cmake --preset release && cmake --build --preset release --target ${name##*/}"
   done
 }
 

@@ -77,7 +77,7 @@ report_times() {
 
 parse_arguments "$@"
 step "install packages" "$deploy_dir/install-deps.sh"
-step "build" build release
+step "build" build release programs
 step "drive" "$deploy_dir/launch.sh" "$scenario" --out "$out" --estimator $live_estimator "${seed[@]}"
 live=$(fingerprint)
 for row in "${rows[@]}"; do step "replay ${row%% *}" replay_row "$row"; done

@@ -11,7 +11,8 @@ packages=(
   libmujoco-dev libosmesa6-dev             # sim: physics, rendering without a display
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   zlib1g-dev                               # import of compressed CARMEN logs
-  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libceres-dev  # tests, benchmarks
+  libgtest-dev libgmock-dev libceres-dev    # tests, benchmarks
+  clang-format shellcheck                  # tests/lint
   parallel gnuplot-nox                     # sweeps: many runs at once, plots
   iproute2                                 # `ip`: a route for multicast where there is none
 )

@@ -42,4 +42,8 @@ breaks short_files procs/detector/b.hpp "$(printf '\\n%.0s' {1..400})"
 breaks no_loose_ends procs/detector/b.hpp '// TO''DO: finish'
 clean_tree && echo 'int x;' >tools/c.cpp
 ! "$lint" licence_in_every_file "$work/tree" >/dev/null || { echo "FAILED: licence_in_every_file" && exit 1; }
+clean_tree && mkdir "$work/bin" && for tool in bash find sort dirname cat; do ln -s "$(command -v $tool)" "$work/bin"; done
+for rule in formatted scripts_checked; do
+  ! PATH=$work/bin "$lint" $rule "$work/tree" >/dev/null || { echo "FAILED: $rule holds without its tool" && exit 1; }
+done
 echo "all rules bite"
