@@ -2,6 +2,7 @@
 // How the core's parameters stand in a configuration. The core itself knows no files.
 #include "common/config/fields.hpp"
 #include "slam/core/estimators/gmapping.hpp"
+#include "slam/core/estimators/graph.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
@@ -182,6 +183,57 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.section("odometry", odometry);
   fields.section("matching", matching);
   fields.section("markers", markers);
+}
+
+void ScanMatchConfig::describe(Fields& fields) {
+  fields.field("cell_spacing_m", cell_spacing_m, kPositive, "between the submaps' NDT cells");
+  fields.field("kernel_sigmas", kernel_sigmas, kPositive,
+               "robust kernel: a beam this far from its wall counts a quarter");
+  fields.field("information_share", information_share, kFraction,
+               "of independent beams: those on one wall err together");
+  fields.field("roughness_m", roughness_m, kNotNegative, "of walls, beside the noise of ranges");
+  fields.field("weak_share", weak_share, kFraction,
+               "directions with less than this share of the strongest are unobserved");
+  fields.field("min_inliers", min_inliers, {1, 100000}, "beams; a scan with fewer is not used");
+}
+
+void LoopConfig::describe(Fields& fields) {
+  fields.field("enabled", enabled, "whether places are recognised");
+  fields.field("every_m", every_m, kPositive, "driven between two attempts");
+  fields.field("reach_m", reach_m, kPositive, "how far from its keyframes a submap is tried");
+  fields.field("max_search_m", max_search_m, kPositive, "half of the widest search");
+  fields.field("min_inlier_share", min_inlier_share, kFraction, "of the beams on mapped surfaces");
+  fields.field("min_mapped_share", min_mapped_share, kFraction, "of all beams");
+  fields.field("min_score", min_score, kFraction, "of the wide search");
+  fields.field("runner_up_share", runner_up_share, kFraction,
+               "of the best score: a runner-up above makes a loop ambiguous");
+  fields.field("gate", gate, kPositive, "chi^2 of a loop against the graph's covariance");
+  fields.field("surprise_share", surprise_share, kFraction,
+               "what both shares have to be of a loop beyond the gate");
+}
+
+void GraphConfig::describe(Fields& fields) {
+  fields.field("keyframe_distance_m", keyframe_distance_m, kPositive,
+               "a scan becomes a keyframe after this much driving");
+  fields.field("keyframe_turn_rad", keyframe_turn_rad, kPositive, "or this much turning");
+  fields.field("insert_distance_m", insert_distance_m, kNotNegative,
+               "scans in between enter the submaps after this much driving");
+  fields.field("window_keyframes", window_keyframes, {2, 100000},
+               "keyframes that are solved for at each update");
+  fields.field("submap_keyframes", submap_keyframes, {2, 100000}, "keyframes of a submap");
+  fields.field("learn_noise", learn_noise, "whether odometry may be found worse than described");
+  fields.field("marker_gate", marker_gate, kPositive,
+               "chi^2 of a marker's innovation that is still believed");
+  fields.field("marker_near_m", marker_near_m, kNotNegative,
+               "a known marker that is off by less is believed, but counts less");
+  fields.field("same_marker_within_m", same_marker_within_m, kPositive,
+               "no second marker of one id nearer than this");
+  fields.field("lost_inlier_share", lost_inlier_share, kFraction,
+               "share of the mapped beams that must agree with the walls, else the robot is lost");
+  fields.section("odometry", odometry);
+  fields.section("scan", scan);
+  fields.section("markers", markers);
+  fields.section("loops", loops);
 }
 
 }  // namespace waymark

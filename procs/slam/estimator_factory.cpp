@@ -2,6 +2,7 @@
 #include "slam/estimator_factory.hpp"
 
 #include "slam/core/estimators/gmapping.hpp"
+#include "slam/core/estimators/graph.hpp"
 #include "slam/core/estimators/odometry.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
@@ -16,6 +17,8 @@ std::unique_ptr<Estimator> make_estimator(const SlamConfig& config) {
       return std::make_unique<GmappingEstimator>(setup, config.slam.gmapping);
     case EstimatorName::kMarkerMatching:
       return std::make_unique<MarkerMatchingEstimator>(setup, config.slam.marker_matching);
+    case EstimatorName::kGraph:
+      return std::make_unique<GraphEstimator>(setup, config.slam.graph);
     case EstimatorName::kWaymark:
       return std::make_unique<WaymarkEstimator>(setup, config.slam.waymark);
   }

@@ -55,7 +55,8 @@ void SlamSection::describe(Fields& fields) {
                 {{"odometry", EstimatorName::kOdometry},
                  {"gmapping", EstimatorName::kGmapping},
                  {"marker_matching", EstimatorName::kMarkerMatching},
-                 {"waymark", EstimatorName::kWaymark}},
+                 {"waymark", EstimatorName::kWaymark},
+                 {"graph", EstimatorName::kGraph}},
                 "method");
   fields.field("seed", seed, {0.0, 9e15}, "of all random numbers");
   fields.field("threads", threads, {1.0, 256.0},
@@ -71,6 +72,7 @@ void SlamSection::describe(Fields& fields) {
   fields.section("gmapping", gmapping);
   fields.section("marker_matching", marker_matching);
   fields.section("waymark", waymark);
+  fields.section("graph", graph);
 }
 
 void SlamConfig::describe(Fields& fields) {

@@ -1,0 +1,539 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/estimators/graph.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]: the map's frame is the first pose
+constexpr std::size_t kMaxReferences = 4;  // keyframes that stand for all that saw a scan's walls
+constexpr double kSamePlace_m = 0.5;       // two markers this near hang in one place
+constexpr double kReturned_m = 0.3;        // sigma of a pose that a relocalisation is taken back to
+constexpr double kReturned_rad = 0.1;
+
+constexpr double kLoopSlack_m = 0.05;  // of old poses, whose covariance is not known any more
+constexpr double kLoopSlack_rad = 0.01;
+
+// Wide search of a scan that fits badly.
+constexpr double kUsualFit = 0.93;   // share of the usual fit; below, a scan fits badly
+constexpr double kFitMemory = 0.05;  // weight of the newest scan in what is usual
+constexpr double kSearchReach_m = 0.5;
+constexpr double kSearchReach_rad = 0.6;
+constexpr std::size_t kSearchBeams = 120;
+constexpr double kClearlyMore = 1.05;              // inliers than the plain match has
+const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
+
+constexpr double kLoopMargin = 4.0;  // on the covariance of the pose: it is a model
+constexpr int kSolveSteps = 12;
+constexpr std::size_t kSolveEvery = 10;  // keyframes; and as the graph grows
+constexpr std::size_t kRoutineShare = 8;  // the same of loops that only confirm the pose
+constexpr double kLoopMatters = 3.0;      // chi^2 of a loop that does more
+constexpr std::size_t kRedrawShare = 4;  // of all keyframes are new before the map is drawn again
+constexpr double kBlurred_m = 0.25;      // poses that moved so far have it drawn again at once
+constexpr double kNear_m = 12.0;         // landmarks nearer than this stay in the window
+constexpr std::size_t kSolveShare = 40;  // a share of all, so that the cost per keyframe is bounded
+
+// A marker counts as missed if it faces the camera, the LiDAR sees its wall, and no frame of the
+// last moments has shown it.
+constexpr double kMinFacing = 0.3;
+constexpr double kWallInSight_m = 0.2;
+constexpr Duration kSightingAge = std::chrono::seconds{1};
+
+Calibration calibration_sigmas(const EstimatorSetup& setup, const OdometryNoise& odometry) {
+  Calibration sigmas;
+  sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
+      odometry.lidar_ahead_sigma_m, setup.sighting_sigmas.learnt;
+  return sigmas;
+}
+
+Points points_of(const Observation& observation) {
+  Points points;
+  points.reserve(observation.beams.size());
+  for (const AnnotatedBeam& annotated : observation.beams)
+    points.push_back(annotated.beam.end_in_base);
+  return points;
+}
+
+/// Of (x, y, theta) in other axes.
+Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& information) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = rotation;
+  return turn * information * turn.transpose();
+}
+
+GraphNoise graph_noise(const EstimatorSetup& setup, const GraphConfig& config) {
+  GraphNoise noise;
+  noise.odometry = config.odometry;
+  noise.odometry.half_track_m = setup.half_track_m;
+  noise.marker_gate = config.marker_gate;
+  return noise;
+}
+
+}  // namespace
+
+GraphEstimator::GraphEstimator(const EstimatorSetup& setup, const GraphConfig& config)
+    : setup_{setup},
+      config_{config},
+      graph_{graph_noise(setup, config), calibration_sigmas(setup, config.odometry)},
+      range_noise_{setup.range_sigma_m},
+      loop_finder_{config.loops, config.scan},
+      mapper_{setup.grid} {}
+
+Estimate GraphEstimator::update(const Observation& observation) {
+  motion_ = motion_.then(observation.motion);
+  const bool is_keyframe = is_keyframe_due();
+  if (is_keyframe) add_keyframe(observation);
+  since_insertion_m_ += observation.motion.distance_m;
+  const Estimate now = is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation);
+  scan_poses_.push_back({observation.time, newest(),
+                         graph_.state().keyframes.back().inverse() * now.map_from_base});
+  return now;
+}
+
+bool GraphEstimator::is_keyframe_due() const {
+  return graph_.state().keyframes.empty() || motion_.distance_m >= config_.keyframe_distance_m ||
+         motion_.turn_rad >= config_.keyframe_turn_rad;
+}
+
+GraphEstimator::Prediction GraphEstimator::prediction() const {
+  const CorrectedMotion moved = corrected_motion(
+      motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
+  const Se2& from = graph_.state().keyframes.back();
+  return {from * moved.start_from_end, in_axes(from.rotation(), moved.covariance)};
+}
+
+std::optional<GraphEstimator::MatchedScan> GraphEstimator::matched(
+    const Points& points, const Prediction& prediction) const {
+  if (submaps_.empty() || points.empty()) return std::nullopt;
+  MatchedScan scan;
+  scan.submap = submaps_.size() > 1 ? &submaps_[submaps_.size() - 2] : &submaps_.back();
+  scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
+  const Se2 submap_from_map = scan.map_from_submap.inverse();
+  const Se2 guess = submap_from_map * prediction.map_from_base;
+  const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), prediction.covariance);
+  scan.match = match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_,
+                          config_.scan);
+  return scan;
+}
+
+/// Odometry may be off by more than plain matching can find: where a scan fits worse than the scans
+/// before, the best place in a wide window is tried, too.
+void GraphEstimator::search_widely(const Points& points, const Prediction& prediction,
+                                   MatchedScan& scan) const {
+  if (!is_bad_fit(scan.match)) return;
+  const Se2 guess = scan.map_from_submap.inverse() * prediction.map_from_base;
+  const CorrelativeField field{scan.submap->points()};
+  const auto best = field.best(thinned(points, kSearchBeams), guess,
+                               {kSearchReach_m, kSearchReach_rad}, config_.loops.min_score);
+  if (!best) return;
+  const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
+  const ScanMatch other = match_scan(points, scan.submap->surfaces(), best->submap_from_base, near,
+                                     range_noise_, config_.scan);
+  if (other.inliers > kClearlyMore * scan.match.inliers) scan.match = other;
+}
+
+void GraphEstimator::add_first_keyframe() {
+  graph_.add_keyframe({});
+  graph_.add(PosePrior{0, {}, Eigen::Matrix3d::Identity() / kFirstPoseSigma});
+}
+
+void GraphEstimator::add_keyframe(const Observation& observation) {
+  const Points points = points_of(observation);
+  inlier_share_ = 1.0;
+  if (graph_.state().keyframes.empty()) {
+    add_first_keyframe();
+  } else {
+    const Prediction expected = prediction();
+    auto scan = matched(points, expected);
+    if (scan) search_widely(points, expected, *scan);
+    const std::size_t keyframe = graph_.add_keyframe(expected.map_from_base);
+    graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_});
+    if (scan && scan->match.is_usable(config_.scan)) {
+      learn_noise(expected, scan->match);
+      add_scan_factor(keyframe, *scan->submap, scan->match, false);
+      inlier_share_ = scan->match.inlier_share;
+      usual_fit_ += kFitMemory * (inlier_share_ * scan->match.mapped_share - usual_fit_);
+    }
+    unobserved_m_ += motion_.distance_m;
+  }
+  graph_.optimise();
+  const std::vector<MarkerMeasurement> measurements = measured(observation);
+  verdict_ = relocalisation_.judge(graph_.state().keyframes.back(), hints(measurements), motion_);
+  if (verdict_ == RelocalisationMonitor::Verdict::kElsewhere ||
+      verdict_ == RelocalisationMonitor::Verdict::kBack) {
+    relocate(relocalisation_.map_from_base());
+  }
+  const bool is_doubtful = verdict_ == RelocalisationMonitor::Verdict::kDoubtful;
+  markers_known_ = false;
+  if (!is_doubtful) {
+    use_markers(measurements);
+    note_misses(observation);
+    if (config_.loops.enabled) close_loops(points);
+    mapper_.insert(observation, graph_.state().keyframes.back(),
+                   graph_.covariance_of({VariableKind::kKeyframe, newest()}));
+  }
+  insert_scan(is_doubtful ? Points{} : points);
+  archive_.add(is_doubtful ? Observation{} : observation, graph_.state().keyframes.back());
+  drawn_at_.push_back(graph_.state().keyframes.back());
+  while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
+    graph_.marginalise_oldest(kNear_m);
+  motion_ = {};
+}
+
+void GraphEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
+                                     const ScanMatch& match, bool is_loop) {
+  ScanFactor factor;
+  factor.is_loop = is_loop;
+  factor.keyframe = keyframe;
+  // Neighbouring keyframes are put together: their middle one stands for them.
+  const std::size_t count = match.keyframe_shares.size();
+  const std::size_t groups = std::min(count, kMaxReferences);
+  for (std::size_t group = 0; group < groups; ++group) {
+    const std::size_t begin = group * count / groups;
+    const std::size_t end = (group + 1) * count / groups;
+    double share = 0.0;
+    for (std::size_t i = begin; i < end; ++i)
+      share += match.keyframe_shares[i];
+    const std::size_t reference =
+        static_cast<std::size_t>(match.first_keyframe) + (begin + end - 1) / 2;
+    const bool is_open = is_loop || graph_.is_active({VariableKind::kKeyframe, reference});
+    if (share <= 0.0 || !is_open) continue;
+    factor.references.push_back(
+        {reference, share,
+         submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
+  }
+  double sum = 0.0;
+  for (const ScanFactor::Reference& reference : factor.references)
+    sum += reference.share;
+  if (sum <= 0.0) return;
+  for (ScanFactor::Reference& reference : factor.references)
+    reference.share /= sum;
+  factor.root_information =
+      root_of(in_axes(match.map_from_base.rotation().transpose(), match.observed.information));
+  graph_.add(factor);
+}
+
+/// What the scan says about the motion since the keyframe before, against what odometry says.
+void GraphEstimator::learn_noise(const Prediction& expected, const ScanMatch& match) {
+  if (!config_.learn_noise) return;
+  const OdometryNoise described = scaled(graph_.noise().odometry, {});
+  const Se2 map_from_submap = graph_.state().keyframes[submaps_.size() > 1
+                                  ? submaps_[submaps_.size() - 2].first_keyframe()
+                                  : submaps_.back().first_keyframe()];
+  const Se2 found = map_from_submap * match.map_from_base;
+  const Eigen::Matrix2d to_base = found.rotation().transpose();
+  Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
+  off.head<2>() = (to_base * off.head<2>()).eval();
+  const Eigen::Matrix3d information =
+      in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
+  // Two scans err, this one and the one before.
+  noise_learner_.observe_turn({off.z(), turn_variance(described, motion_.distance_m, motion_.turn_rad),
+                               2.0 / information(2, 2)});
+  if (!match.observed.is_degenerate) {
+    const Eigen::Matrix3d covariance = information.inverse();
+    noise_learner_.observe_along(
+        {off.x(), described.along_per_sqrt_m * described.along_per_sqrt_m * motion_.distance_m,
+         2.0 * covariance(0, 0)});
+    unobserved_m_ = -motion_.distance_m;
+  }
+  graph_.set_odometry_scale(noise_learner_.scale());
+}
+
+std::vector<MarkerMeasurement> GraphEstimator::measured(const Observation& observation) const {
+  return measure_markers(
+      observation, {setup_.range_sigma_m, setup_.camera.base_from_camera, setup_.sighting_sigmas},
+      graph_.odometry_noise(), config_.markers);
+}
+
+std::vector<PoseHint> GraphEstimator::hints(std::span<const MarkerMeasurement> measurements) const {
+  std::vector<PoseHint> hints;
+  for (const MarkerMeasurement& measurement : measurements) {
+    PoseHint hint;
+    hint.id = measurement.id;
+    const Se2 there = map_from_measured(graph_.state(), newest(), measurement);
+    const auto nearest = book_.nearest(graph_, newest(), measurement);
+    if (!nearest) {
+      hint.kind = PoseHint::Kind::kNew;
+      hint.is_in_known_place =
+          book_.has_one_near(graph_.state(), there.translation(), kSamePlace_m);
+    } else if (nearest->chi2 < config_.marker_gate ||
+               nearest->distance_m() < config_.marker_near_m) {
+      hint.kind = PoseHint::Kind::kAgrees;
+    } else if (const auto unique = book_.unique(measurement.id)) {
+      hint.kind = PoseHint::Kind::kElsewhere;
+      const Se2 base_from_marker = graph_.state().keyframes.back().inverse() * there;
+      hint.map_from_base = graph_.state().landmarks[*unique] * base_from_marker.inverse();
+    } else {
+      hint.kind = PoseHint::Kind::kAmbiguous;
+    }
+    hints.push_back(hint);
+  }
+  return hints;
+}
+
+void GraphEstimator::use_markers(std::span<const MarkerMeasurement> measurements) {
+  struct Match {
+    std::size_t landmark;
+    const MarkerMeasurement* measurement;
+  };
+  std::vector<Match> matches;
+  std::vector<std::size_t> returning;
+  for (const MarkerMeasurement& measurement : measurements) {
+    const auto nearest = book_.nearest(graph_, newest(), measurement);
+    const bool is_it = nearest && (nearest->chi2 < config_.marker_gate ||
+                                   nearest->distance_m() < config_.same_marker_within_m);
+    if (!is_it && book_.is_misread(graph_.state(), newest(), measurement)) continue;
+    if (measurement.wall) graph_.calibration_knowledge().observe(*measurement.wall);
+    if (measurement.focal) graph_.calibration_knowledge().observe(*measurement.focal);
+    std::size_t landmark = 0;
+    if (is_it) {
+      landmark = nearest->landmark;
+      book_.note_sighting(landmark, measurement.time);
+      if (!markers_known_ && unobserved_m_ > 0.0 && config_.learn_noise) {
+        const OdometryNoise& described = graph_.noise().odometry;
+        const double by_odometry =
+            described.along_per_sqrt_m * described.along_per_sqrt_m * unobserved_m_;
+        const double scale = graph_.noise().scale.along;
+        noise_learner_.observe_along(
+            {nearest->residual.x(), by_odometry,
+             std::max(nearest->covariance(0, 0) - scale * scale * by_odometry,
+                      measurement.covariance(0, 0))});
+        graph_.set_odometry_scale(noise_learner_.scale());
+      }
+      markers_known_ = true;
+      if (!graph_.is_active({VariableKind::kLandmark, landmark})) returning.push_back(landmark);
+    } else {
+      landmark = graph_.add_landmark(map_from_measured(graph_.state(), newest(), measurement));
+      book_.add(measurement.id, measurement.time);
+    }
+    matches.push_back({landmark, &measurement});
+  }
+  if (markers_known_) unobserved_m_ = 0.0;
+  if (!returning.empty()) solve_everything(returning);
+  for (const Match& match : matches) {
+    MarkerFactor factor;
+    factor.keyframe = newest();
+    factor.landmark = match.landmark;
+    factor.measurement = *match.measurement;
+    factor.root_information = root_of(match.measurement->covariance.inverse());
+    graph_.add(factor);
+  }
+  if (!matches.empty()) graph_.optimise();
+}
+
+/// Absence is evidence where the camera could have seen the marker, and nothing stood before it:
+/// the LiDAR sees its wall.
+void GraphEstimator::note_misses(const Observation& observation) {
+  if (!observation.camera_reported) return;
+  const auto is_in_view = [&](const Se2& base_from_marker) {
+    const Eigen::Vector2d place = base_from_marker.translation();
+    const Eigen::Vector2d to_camera =
+        (setup_.camera.base_from_camera.translation() - place).normalized();
+    const Eigen::Vector2d facing = base_from_marker.rotation().col(0);
+    return facing.dot(to_camera) > kMinFacing && setup_.camera.would_show(place) &&
+           std::any_of(observation.beams.begin(), observation.beams.end(),
+                       [&](const AnnotatedBeam& annotated) {
+                         return (annotated.beam.end_in_base - place).norm() < kWallInSight_m;
+                       });
+  };
+  book_.note_misses(graph_.state(), newest(), is_in_view, observation.time - kSightingAge);
+}
+
+void GraphEstimator::close_loops(const Points& points) {
+  since_loop_search_m_ += motion_.distance_m;
+  if (since_loop_search_m_ >= config_.loops.every_m) {
+    since_loop_search_m_ = 0.0;
+    LoopSearch search;
+    search.map_from_base = graph_.state().keyframes.back();
+    search.covariance = kLoopMargin * graph_.covariance_of({VariableKind::kKeyframe, newest()});
+    search.covariance.diagonal() += Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
+    search.first_recent_keyframe = graph_.first_active_keyframe();
+    for (const LoopFinder::Found& found : loop_finder_.find(newest(), points, search, submaps_,
+                                                            graph_.state(), range_noise_)) {
+      add_scan_factor(found.keyframe, submaps_[found.loop.submap], found.loop.match, true);
+      has_new_loops_ = true;
+      loops_matter_ |= found.chi2 > kLoopMatters;
+    }
+  }
+  const std::size_t all = graph_.state().keyframes.size();
+  const std::size_t since = all - solved_keyframes_;
+  if (has_new_loops_ &&
+      since >= std::max(kSolveEvery, all / (loops_matter_ ? kSolveShare : kRoutineShare))) {
+    solve_everything({});
+  }
+}
+
+void GraphEstimator::solve_everything(const std::vector<std::size_t>& returning_landmarks) {
+  std::vector<std::size_t> activated = returning_landmarks;
+  for (std::size_t i = 0; i < book_.entries().size(); ++i) {
+    const double away_m = (graph_.state().landmarks[i].translation() -
+                           graph_.state().keyframes.back().translation())
+                              .norm();
+    if (!book_.is_retired(i) && away_m < kNear_m) activated.push_back(i);
+  }
+  graph_.optimise_all(has_new_loops_ ? kSolveSteps : 0, activated);
+  graph_.optimise();
+  if (has_new_loops_) redraw_if_moved();
+  solved_keyframes_ = graph_.state().keyframes.size();
+  has_new_loops_ = false;
+  loops_matter_ = false;
+}
+
+/// The published map follows a closed loop.
+void GraphEstimator::redraw_if_moved() {
+  double farthest_m = 0.0;
+  for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
+    farthest_m = std::max(farthest_m, (drawn_at_[i].translation() -
+                                       graph_.state().keyframes[i].translation())
+                                          .norm());
+  }
+  const std::size_t since = drawn_at_.size() - redrawn_keyframes_;
+  const double blur_m = since < drawn_at_.size() / kRedrawShare ? kBlurred_m : setup_.grid.resolution_m;
+  if (farthest_m < blur_m) return;
+  redrawn_keyframes_ = drawn_at_.size();
+  mapper_ = Mapper{setup_.grid};
+  for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
+    drawn_at_[i] = graph_.state().keyframes[i];
+    mapper_.insert(archive_.at(i), drawn_at_[i], Eigen::Matrix3d::Zero());
+  }
+}
+
+void GraphEstimator::relocate(const Se2& map_from_base) {
+  graph_.relocate_newest(map_from_base);
+  if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
+    const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
+    graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
+  }
+  graph_.optimise();
+  submaps_.clear();
+}
+
+/// Two submaps are filled at a time, one half a length behind the other: the older one is matched,
+/// and holds half a length of scans at least.
+void GraphEstimator::insert_scan(const Points& points) {
+  const auto half = static_cast<std::size_t>(std::max(1, config_.submap_keyframes / 2));
+  if (submaps_.empty() || submaps_.back().num_keyframes() >= half)
+    submaps_.emplace_back(config_.scan.cell_spacing_m, newest());
+  since_insertion_m_ = 0.0;
+  for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
+    submaps_[i].insert(points, submap_from_map(i) * graph_.state().keyframes.back());
+}
+
+Estimate GraphEstimator::estimate_at_keyframe(const Observation& observation) const {
+  return estimate(observation, graph_.state().keyframes.back(),
+                  graph_.covariance_of({VariableKind::kKeyframe, newest()}));
+}
+
+/// Scans in between average the noise of the submaps. One that fits worse than usual might be in the
+/// wrong place, and would confirm that to the next ones.
+void GraphEstimator::insert_between(const Points& points, const ScanMatch& match,
+                                    const Se2& map_from_base) {
+  if (since_insertion_m_ < config_.insert_distance_m || is_bad_fit(match) ||
+      verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
+    return;
+  }
+  since_insertion_m_ = 0.0;
+  for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
+    submaps_[i].add(points, submap_from_map(i) * map_from_base);
+}
+
+bool GraphEstimator::is_bad_fit(const ScanMatch& match) const {
+  return match.inlier_share * match.mapped_share < kUsualFit * usual_fit_;
+}
+
+std::size_t GraphEstimator::first_filled_submap() const {
+  return submaps_.size() > 1 ? submaps_.size() - 2 : 0;
+}
+
+Se2 GraphEstimator::submap_from_map(std::size_t submap) const {
+  return graph_.state().keyframes[submaps_[submap].first_keyframe()].inverse();
+}
+
+Estimate GraphEstimator::estimate_between(const Observation& observation) {
+  const Prediction expected = prediction();
+  Se2 map_from_base = expected.map_from_base;
+  Eigen::Matrix3d added = expected.covariance;
+  const Points points = points_of(observation);
+  const auto scan = matched(points, expected);
+  if (scan && scan->match.is_usable(config_.scan)) {
+    const Se2 found = scan->map_from_submap * scan->match.map_from_base;
+    const Eigen::Matrix3d information =
+        in_axes(scan->map_from_submap.rotation(), scan->match.observed.information);
+    added = (expected.covariance.inverse() + information).inverse();
+    const Eigen::Vector3d step =
+        added * information * pose_difference(found, expected.map_from_base);
+    map_from_base = {map_from_base.x() + step.x(), map_from_base.y() + step.y(),
+                     map_from_base.theta() + step.z()};
+    insert_between(points, scan->match, map_from_base);
+  }
+  const Eigen::Vector2d way =
+      map_from_base.translation() - graph_.state().keyframes.back().translation();
+  Eigen::Matrix3d carried = Eigen::Matrix3d::Identity();
+  carried.topRightCorner<2, 1>() << -way.y(), way.x();  // d(x, y) / d(theta)
+  const Eigen::Matrix3d covariance =
+      carried * graph_.covariance_of({VariableKind::kKeyframe, newest()}) * carried.transpose() +
+      added;
+  return estimate(observation, map_from_base, covariance);
+}
+
+Estimate GraphEstimator::estimate(const Observation& observation, const Se2& map_from_base,
+                                  const Eigen::Matrix3d& covariance) const {
+  Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
+  estimate.covariance = 0.5 * (covariance + covariance.transpose());
+  if (relocalisation_.alternative()) {
+    const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
+    estimate.covariance += away * away.transpose();
+  }
+  estimate.calibration_widened = graph_.is_calibration_doubted();
+  estimate.weak_axis_source = markers_known_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
+  const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kDoubtful ||
+                       inlier_share_ < config_.lost_inlier_share;
+  estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
+                              !estimate.observability.is_degenerate || markers_known_);
+  return estimate;
+}
+
+std::vector<Landmark> GraphEstimator::landmarks() const {
+  std::vector<Landmark> known;
+  for (std::size_t i = 0; i < book_.entries().size(); ++i) {
+    if (book_.is_retired(i)) continue;
+    known.push_back(book_.entries()[i]);
+    known.back().map_from_marker = graph_.state().landmarks[i];
+    known.back().covariance = graph_.landmark_covariance(i);
+  }
+  std::stable_sort(known.begin(), known.end(), [](const Landmark& a, const Landmark& b) {
+    return std::pair{a.id, a.instance} < std::pair{b.id, b.instance};
+  });
+  return known;
+}
+
+std::vector<PublishedParticle> GraphEstimator::particles() const {
+  return {};
+}
+
+std::vector<TimedPose> GraphEstimator::trajectory() const {
+  Graph graph = graph_;
+  graph.optimise_all(kSolveSteps);
+  std::vector<TimedPose> trajectory;
+  trajectory.reserve(scan_poses_.size());
+  for (const ScanPose& scan : scan_poses_)
+    trajectory.push_back(
+        {scan.time, graph.state().keyframes[scan.keyframe] * scan.keyframe_from_base});
+  return trajectory;
+}
+
+GridMap GraphEstimator::redrawn_map() const {
+  Graph graph = graph_;
+  graph.optimise_all(kSolveSteps);
+  Mapper mapper{setup_.grid};
+  for (std::size_t i = 0; i < archive_.size(); ++i)
+    mapper.insert(archive_.at(i), graph.state().keyframes[i], Eigen::Matrix3d::Zero());
+  return mapper.map();
+}
+
+}  // namespace waymark

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Our method: a smoother over keyframes, markers and calibration.
+#pragma once
+
+#include "slam/core/estimators/estimator.hpp"
+#include "slam/core/graph/association.hpp"
+#include "slam/core/graph/graph.hpp"
+#include "slam/core/graph/loop_finder.hpp"
+#include "slam/core/graph/odometry_noise_learner.hpp"
+#include "slam/core/graph/relocalisation.hpp"
+#include "slam/core/landmark/marker_measurement.hpp"
+#include "slam/core/registration/submap.hpp"
+#include "slam/core/smoothing/scan_archive.hpp"
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace waymark {
+
+class Fields;
+
+struct GraphConfig {
+  double keyframe_distance_m{0.15};
+  double keyframe_turn_rad{0.15};
+  double insert_distance_m{0.04};  ///< scans in between enter the submaps after this much driving
+  int window_keyframes{48};
+  int submap_keyframes{40};
+  bool learn_noise{true};
+  double marker_gate{16.3};          ///< chi^2 of a marker's innovation, 3 degrees of freedom
+  double marker_near_m{0.25};        ///< off by less, it is the same one all the same
+  double same_marker_within_m{0.5};  ///< no second marker of one id nearer than this
+  double lost_inlier_share{0.3};     ///< of the beams that end on mapped surfaces; below: lost
+  OdometryNoise odometry{};
+  ScanMatchConfig scan{};
+  MarkerMeasurementConfig markers{};
+  LoopConfig loops{};
+
+  void describe(Fields& fields);
+};
+
+class GraphEstimator final : public Estimator {
+ public:
+  GraphEstimator(const EstimatorSetup& setup, const GraphConfig& config);
+
+  Estimate update(const Observation& observation) override;
+
+  const GridMap& map() const override { return mapper_.map(); }
+  std::vector<Landmark> landmarks() const override;
+  std::vector<PublishedParticle> particles() const override;
+  std::vector<TimedPose> trajectory() const override;
+  GridMap redrawn_map() const override;
+
+ private:
+  struct Prediction {
+    Se2 map_from_base{};
+    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes
+  };
+
+  struct MatchedScan {
+    ScanMatch match{};  ///< submap frame
+    const Submap* submap{nullptr};
+    Se2 map_from_submap{};
+  };
+
+  /// A scan hangs on the keyframe before it.
+  struct ScanPose {
+    Timestamp time{};
+    std::size_t keyframe{0};
+    Se2 keyframe_from_base{};
+  };
+
+  bool is_keyframe_due() const;
+  Prediction prediction() const;
+  std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
+  void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;
+  void add_keyframe(const Observation& observation);
+  void add_first_keyframe();
+  void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
+                       bool is_loop);
+  void close_loops(const Points& points);
+  void solve_everything(const std::vector<std::size_t>& returning_landmarks);
+  void redraw_if_moved();
+  void learn_noise(const Prediction& prediction, const ScanMatch& match);
+  std::vector<MarkerMeasurement> measured(const Observation& observation) const;
+  std::vector<PoseHint> hints(std::span<const MarkerMeasurement> measurements) const;
+  void use_markers(std::span<const MarkerMeasurement> measurements);
+  void note_misses(const Observation& observation);
+  void relocate(const Se2& map_from_base);
+  void insert_scan(const Points& points);
+  Estimate estimate(const Observation& observation, const Se2& map_from_base,
+                    const Eigen::Matrix3d& covariance) const;
+  Estimate estimate_at_keyframe(const Observation& observation) const;
+  Estimate estimate_between(const Observation& observation);
+  void insert_between(const Points& points, const ScanMatch& match, const Se2& map_from_base);
+  bool is_bad_fit(const ScanMatch& match) const;
+  std::size_t first_filled_submap() const;
+  Se2 submap_from_map(std::size_t submap) const;
+  std::size_t newest() const { return graph_.state().keyframes.size() - 1; }
+
+  EstimatorSetup setup_;
+  GraphConfig config_;
+  Graph graph_;
+  MarkerBook book_{};
+  RelocalisationMonitor relocalisation_{};
+  RangeNoise range_noise_;
+  OdometryNoiseLearner noise_learner_{};
+  LoopFinder loop_finder_;
+  double since_loop_search_m_{0.0};
+  std::size_t solved_keyframes_{0};  ///< of the whole graph, when it was solved last
+  bool has_new_loops_{false};         ///< since then
+  bool loops_matter_{false};          ///< one of them contradicts the pose
+  std::size_t redrawn_keyframes_{0};  ///< when the map was drawn again last
+  std::deque<Submap> submaps_{};  ///< the last two are being filled, the last but one is matched
+  Motion motion_{};               ///< since the newest keyframe
+  double since_insertion_m_{0.0};
+  double unobserved_m_{0.0};      ///< driven since markers or walls showed the way
+  Mapper mapper_;
+  std::vector<ScanPose> scan_poses_{};
+  ScanArchive archive_{};
+  std::vector<Se2> drawn_at_{};  ///< poses of the keyframes in the map
+
+  // Of the newest keyframe:
+  RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kSettled};
+  double inlier_share_{1.0};
+  double usual_fit_{0.0};  ///< mean of inlier share times mapped share
+  bool markers_known_{false};
+};
+
+}  // namespace waymark

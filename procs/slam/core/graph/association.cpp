@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/association.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace waymark {
+namespace {
+
+constexpr int kTurnedUp = 3;         // sightings of a marker that another one may have become
+constexpr double kSamePlace = 0.25;  // of a marker's side; boards have them side by side
+constexpr double kSameFacing_rad = radians(45.0);  // a wall has two sides
+
+}  // namespace
+
+MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t landmark,
+                         const MarkerMeasurement& measurement) {
+  MarkerFactor factor;
+  factor.keyframe = keyframe;
+  factor.landmark = landmark;
+  factor.measurement = measurement;
+  const LinearFactor linear = factor.linearise(graph.state(), std::numeric_limits<double>::infinity());
+  MarkerInnovation innovation;
+  innovation.landmark = landmark;
+  innovation.residual = -linear.residual;
+  innovation.covariance = measurement.covariance;
+  for (const LinearFactor::Block& row : linear.blocks) {
+    if (!graph.is_active(row.variable)) {
+      innovation.covariance +=
+          row.jacobian * graph.landmark_covariance(landmark) * row.jacobian.transpose();
+      continue;
+    }
+    for (const LinearFactor::Block& column : linear.blocks) {
+      if (graph.is_active(column.variable)) {
+        innovation.covariance += row.jacobian * graph.covariance(row.variable, column.variable) *
+                                 column.jacobian.transpose();
+      }
+    }
+  }
+  innovation.chi2 =
+      innovation.residual.dot(innovation.covariance.ldlt().solve(innovation.residual));
+  return innovation;
+}
+
+Se2 map_from_measured(const State& state, std::size_t keyframe,
+                      const MarkerMeasurement& measurement) {
+  const Eigen::Vector3d off = measurement.by_errors() * camera_part(state.calibration);
+  const Se2& seen = measurement.base_from_marker;
+  return state.keyframes[keyframe] *
+         Se2{seen.x() - off.x(), seen.y() - off.y(), seen.theta() - off.z()};
+}
+
+void MarkerBook::add(int id, Timestamp time) {
+  Landmark fresh;
+  fresh.id = id;
+  for (const Landmark& known : entries_)
+    if (known.id == id) fresh.instance = std::max(fresh.instance, known.instance + 1);
+  fresh.sightings = 1;
+  fresh.first_seen = time;
+  fresh.last_seen = time;
+  entries_.push_back(fresh);
+  is_retired_.push_back(false);
+}
+
+void MarkerBook::note_sighting(std::size_t landmark, Timestamp time) {
+  ++entries_[landmark].sightings;
+  entries_[landmark].misses = 0;
+  entries_[landmark].last_seen = time;
+}
+
+void MarkerBook::note_misses(const State& state, std::size_t keyframe,
+                             const std::function<bool(const Se2&)>& is_in_view, Timestamp now) {
+  const Se2 base_from_map = state.keyframes[keyframe].inverse();
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (is_retired_[i] || entries_[i].last_seen >= now ||
+        !is_in_view(base_from_map * state.landmarks[i])) {
+      continue;
+    }
+    ++entries_[i].misses;
+    if (!entries_[i].is_missed()) continue;
+    for (std::size_t k = 0; k < entries_.size(); ++k) {
+      Landmark& other = entries_[k];
+      if (k == i || is_retired_[k] || other.id != entries_[i].id ||
+          other.first_seen <= entries_[i].last_seen || other.sightings < kTurnedUp) {
+        continue;
+      }
+      other.instance = entries_[i].instance;
+      other.was_moved = entries_[i].is_confirmed();
+      is_retired_[i] = true;
+      break;
+    }
+  }
+}
+
+void MarkerBook::retire_since(Timestamp time) {
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (entries_[i].first_seen > time) is_retired_[i] = true;
+}
+
+bool MarkerBook::has_one_near(const State& state, const Eigen::Vector2d& place,
+                              double near_m) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (!is_retired_[i] && (state.landmarks[i].translation() - place).norm() < near_m) return true;
+  return false;
+}
+
+std::optional<MarkerInnovation> MarkerBook::nearest(const Graph& graph, std::size_t keyframe,
+                                                    const MarkerMeasurement& measurement) const {
+  std::optional<MarkerInnovation> nearest;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].id != measurement.id || is_retired_[i]) continue;
+    const MarkerInnovation innovation = compare(graph, keyframe, i, measurement);
+    if (!nearest || innovation.chi2 < nearest->chi2) nearest = innovation;
+  }
+  return nearest;
+}
+
+std::optional<std::size_t> MarkerBook::unique(int id) const {
+  std::optional<std::size_t> only;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].id != id || is_retired_[i]) continue;
+    if (only || !entries_[i].is_confirmed()) return std::nullopt;
+    only = i;
+  }
+  return only;
+}
+
+bool MarkerBook::is_misread(const State& state, std::size_t keyframe,
+                            const MarkerMeasurement& measurement) const {
+  const Se2 there = map_from_measured(state, keyframe, measurement);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const Eigen::Vector3d away = pose_difference(there, state.landmarks[i]);
+    if (!is_retired_[i] && entries_[i].id != measurement.id && entries_[i].is_confirmed() &&
+        !entries_[i].is_missed() && away.head<2>().norm() < kSamePlace * measurement.size_m &&
+        std::abs(away.z()) < kSameFacing_rad) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace waymark

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/factors.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace waymark {
+namespace {
+
+const Eigen::Matrix2d kQuarterTurn = (Eigen::Matrix2d{} << 0.0, -1.0, 1.0, 0.0).finished();
+
+/// Pose of one frame in another, and how it follows both (additive, map frame).
+struct Relative {
+  Eigen::Vector3d pose{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d by_from{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d by_to{Eigen::Matrix3d::Zero()};
+};
+
+Relative relative(const Se2& map_from_from, const Se2& map_from_to) {
+  const Eigen::Matrix2d turn = map_from_from.rotation().transpose();
+  const Eigen::Vector2d there = turn * (map_from_to.translation() - map_from_from.translation());
+  Relative result;
+  result.pose << there, angle_difference(map_from_to.theta(), map_from_from.theta());
+  result.by_to = Eigen::Matrix3d::Identity();
+  result.by_to.topLeftCorner<2, 2>() = turn;
+  result.by_from = -result.by_to;
+  result.by_from.topRightCorner<2, 1>() = -kQuarterTurn * there;
+  return result;
+}
+
+Eigen::Vector3d vector_of(const Se2& pose) {
+  return {pose.x(), pose.y(), pose.theta()};
+}
+
+Eigen::Vector3d pose_residual(Eigen::Vector3d difference) {
+  difference.z() = wrap_angle(difference.z());
+  return difference;
+}
+
+Variable keyframe_variable(std::size_t index) {
+  return {VariableKind::kKeyframe, index};
+}
+
+struct Rolling {
+  Eigen::Vector3d residual;  ///< not whitened
+  CorrectedMotion motion;
+  Relative relative;
+  Eigen::Matrix3d root_information;
+};
+
+Rolling rolling(const OdometryFactor& factor, const State& state, const OdometryNoise& noise) {
+  const CorrectedMotion motion =
+      corrected_motion(factor.motion, odometry_part(state.calibration), noise);
+  const Relative moved = relative(state.keyframes[factor.from], state.keyframes[factor.to]);
+  return {pose_residual(moved.pose - vector_of(motion.start_from_end)), motion, moved,
+          root_of(motion.covariance.inverse())};
+}
+
+}  // namespace
+
+void State::retract(const Variable& variable, const Eigen::Ref<const Eigen::VectorXd>& step) {
+  if (variable.kind == VariableKind::kCalibration) {
+    calibration += step;
+    return;
+  }
+  Se2& pose = variable.kind == VariableKind::kKeyframe ? keyframes[variable.index]
+                                                       : landmarks[variable.index];
+  pose = {pose.x() + step.x(), pose.y() + step.y(), pose.theta() + step.z()};
+}
+
+Eigen::Matrix3d root_of(const Eigen::Matrix3d& information) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes{information};
+  return axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         axes.eigenvectors().transpose();
+}
+
+OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {
+  noise.along_per_sqrt_m *= scale.along;
+  noise.across_per_sqrt_m *= scale.along;
+  noise.turn_per_sqrt_m *= scale.turn;
+  noise.turn_per_sqrt_rad *= scale.turn;
+  return noise;
+}
+
+const OdometryMixture::Component& OdometryMixture::likeliest(double chi2) {
+  // Shares of 0.97, 0.02, 0.007, 0.003: slips are rare, and nothing is impossible.
+  static const std::array<Component, 4> kComponents{
+      {{1.0, 0.0}, {5.0, 7.8}, {25.0, 9.9}, {125.0, 11.6}}};
+  constexpr double kDimensions = 3.0;
+  const auto cost = [chi2](const Component& component) {
+    return chi2 / (component.factor * component.factor) +
+           2.0 * kDimensions * std::log(component.factor) + component.penalty;
+  };
+  return *std::min_element(
+      kComponents.begin(), kComponents.end(),
+      [&](const Component& a, const Component& b) { return cost(a) < cost(b); });
+}
+
+double OdometryFactor::chi2(const State& state, const OdometryNoise& noise) const {
+  if (is_cut) return 0.0;
+  const Rolling rolls = rolling(*this, state, noise);
+  return (rolls.root_information * rolls.residual).squaredNorm();
+}
+
+LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise) const {
+  LinearFactor linear;
+  Rolling rolls = rolling(*this, state, noise);
+  if (is_cut) {  // as good as nothing; keeps the normal equations regular
+    constexpr double kCarried_m = 1000.0;
+    rolls.root_information = Eigen::Matrix3d::Identity() / kCarried_m;
+  }
+  linear.residual = rolls.root_information * rolls.residual;
+  const double factor = is_cut ? 1.0 : OdometryMixture::likeliest(linear.residual.squaredNorm()).factor;
+  const Eigen::Matrix3d root = rolls.root_information / factor;
+  linear.residual /= factor;
+  linear.blocks = {
+      {keyframe_variable(from), root * rolls.relative.by_from},
+      {keyframe_variable(to), root * rolls.relative.by_to},
+  };
+  LinearFactor::Jacobian by_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
+  if (!is_cut) {
+    by_calibration.leftCols<kOdometryTerms>() =
+        -root * rolls.motion.by_errors.leftCols<kOdometryTerms>();
+  }
+  linear.blocks.push_back({{VariableKind::kCalibration, 0}, by_calibration});
+  return linear;
+}
+
+void ScanFactor::reweigh(const State& state) {
+  constexpr double kKernel = 25.0;  // chi^2: loops are known to centimetres, submaps bend by some
+  const double chi2 = linearise(state).residual.squaredNorm() / (weight * weight);
+  weight = std::min(1.0, 2.0 * kKernel / (kKernel + chi2));
+}
+
+LinearFactor ScanFactor::linearise(const State& state) const {
+  const Se2& map_from_keyframe = state.keyframes[keyframe];
+  const Eigen::Matrix3d root_information = weight * this->root_information;
+  LinearFactor linear;
+  linear.blocks.reserve(references.size() + 1);
+  Eigen::Matrix3d by_keyframe = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d residual = Eigen::Vector3d::Zero();
+  for (const Reference& reference : references) {
+    const Se2& map_from_reference = state.keyframes[reference.keyframe];
+    const Se2 expected = map_from_reference * reference.reference_from_keyframe;
+    const Relative off = relative(expected, map_from_keyframe);
+    residual += reference.share * off.pose;
+    by_keyframe += reference.share * off.by_to;
+    // The expected pose swings about the reference.
+    Eigen::Matrix3d expected_by_reference = Eigen::Matrix3d::Identity();
+    expected_by_reference.topRightCorner<2, 1>() =
+        kQuarterTurn * (expected.translation() - map_from_reference.translation());
+    linear.blocks.push_back(
+        {keyframe_variable(reference.keyframe),
+         reference.share * root_information * off.by_from * expected_by_reference});
+  }
+  linear.residual = root_information * residual;
+  linear.blocks.push_back({keyframe_variable(keyframe), root_information * by_keyframe});
+  return linear;
+}
+
+LinearFactor MarkerFactor::linearise(const State& state, double gate) const {
+  const Relative expected = relative(state.keyframes[keyframe], state.landmarks[landmark]);
+  const Eigen::Matrix3d by_camera = measurement.by_errors_at(expected.pose.head<2>());
+  LinearFactor linear;
+  linear.residual = root_information *
+                    pose_residual(expected.pose + by_camera * camera_part(state.calibration) -
+                                  vector_of(measurement.base_from_marker));
+  const double chi2 = linear.residual.squaredNorm();
+  const double weight = chi2 > gate ? gate / chi2 : 1.0;  // of the root: squared in the cost
+  const Eigen::Matrix3d root = weight * root_information;
+  linear.residual *= weight;
+  LinearFactor::Jacobian by_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
+  by_calibration.rightCols<kCameraTerms>() = root * by_camera;
+  linear.blocks = {{keyframe_variable(keyframe), root * expected.by_from},
+                   {{VariableKind::kLandmark, landmark}, root * expected.by_to},
+                   {{VariableKind::kCalibration, 0}, by_calibration}};
+  return linear;
+}
+
+LinearFactor PosePrior::linearise(const State& state) const {
+  LinearFactor linear;
+  linear.residual =
+      root_information * pose_difference(state.keyframes[keyframe], map_from_base);
+  linear.blocks = {{keyframe_variable(keyframe), root_information}};
+  return linear;
+}
+
+}  // namespace waymark

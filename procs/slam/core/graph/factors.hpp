@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is known about the unknowns: one residual each, in standard deviations, with its Jacobians.
+#pragma once
+
+#include "slam/core/graph/state.hpp"
+#include "slam/core/landmark/marker_measurement.hpp"
+#include "slam/core/motion/motion.hpp"
+
+#include <Eigen/Core>
+
+#include <variant>
+#include <vector>
+
+namespace waymark {
+
+/// residual + sum of jacobian * step, whitened and robustly weighted.
+struct LinearFactor {
+  using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kCalibrationSize>;
+
+  struct Block {
+    Variable variable{};
+    Jacobian jacobian{};
+  };
+
+  Eigen::Vector3d residual{Eigen::Vector3d::Zero()};
+  std::vector<Block> blocks{};
+};
+
+/// How much worse than configured the random walk of odometry is: factors on standard deviations.
+struct OdometryScale {
+  double along{1.0};
+  double turn{1.0};
+};
+
+/// Noise of the odometry, times the scale.
+OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
+
+/// The wheels roll, or they slip, or worse: the odometry's noise is a mixture of normal
+/// distributions with these factors on the standard deviation. The likeliest one counts
+/// (Olson and Agarwal 2013, "Inference on networks of mixtures").
+struct OdometryMixture {
+  struct Component {
+    double factor{1.0};
+    double penalty{0.0};  ///< -2 log of its share, minus that of rolling
+  };
+
+  static const Component& likeliest(double chi2);
+};
+
+/// From one keyframe to the next, by the wheels.
+struct OdometryFactor {
+  std::size_t from{0};
+  std::size_t to{0};
+  Motion motion{};
+  bool is_cut{false};  ///< the robot was carried: it says nothing
+
+  /// @param noise  scaled.
+  LinearFactor linearise(const State& state, const OdometryNoise& noise) const;
+
+  /// chi^2 under "the wheels roll".
+  double chi2(const State& state, const OdometryNoise& noise) const;
+};
+
+/// A scan against surfaces that other keyframes have seen: the mean of what these keyframes say.
+struct ScanFactor {
+  struct Reference {
+    std::size_t keyframe{0};
+    double share{0.0};  ///< all shares sum to 1
+    Se2 reference_from_keyframe{};
+  };
+
+  std::size_t keyframe{0};
+  std::vector<Reference> references{};
+  Eigen::Matrix3d root_information{Eigen::Matrix3d::Zero()};  ///< base axes of `keyframe`
+  bool is_loop{false};
+  /// Of a loop: how far it is believed, 0..1, on its residual; see reweigh().
+  double weight{1.0};
+
+  LinearFactor linearise(const State& state) const;
+
+  /// Dynamic covariance scaling (Agarwal et al. 2013): a loop that the others contradict loses its
+  /// weight. A new one has all of it, so that the graph follows it before it is judged.
+  void reweigh(const State& state);
+};
+
+/// A marker as it was measured from a keyframe.
+struct MarkerFactor {
+  std::size_t keyframe{0};
+  std::size_t landmark{0};
+  MarkerMeasurement measurement{};
+  Eigen::Matrix3d root_information{Eigen::Matrix3d::Identity()};
+
+  /// Beyond `gate` (chi^2) the weight falls off with its square.
+  LinearFactor linearise(const State& state, double gate) const;
+};
+
+/// A pose is known: the first one, or one of a map.
+struct PosePrior {
+  std::size_t keyframe{0};
+  Se2 map_from_base{};
+  Eigen::Matrix3d root_information{Eigen::Matrix3d::Identity()};
+
+  LinearFactor linearise(const State& state) const;
+};
+
+using Factor = std::variant<OdometryFactor, ScanFactor, MarkerFactor, PosePrior>;
+
+/// Upper triangular R with R' R = information; information may be singular.
+Eigen::Matrix3d root_of(const Eigen::Matrix3d& information);
+
+}  // namespace waymark

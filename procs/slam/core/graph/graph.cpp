@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/graph.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <set>
+
+namespace waymark {
+namespace {
+
+constexpr int kMaxIterations = 5;
+constexpr double kConverged = 1e-5;  // [m, rad]
+
+}  // namespace
+
+Graph::Graph(const GraphNoise& noise, const Calibration& calibration_sigmas)
+    : noise_{noise}, calibration_{calibration_sigmas} {
+  push_variable({VariableKind::kCalibration, 0});
+}
+
+void Graph::push_variable(const Variable& variable) {
+  const Eigen::Index size = prior_.g.size();
+  const Eigen::Index grown = size + variable.size();
+  layout_.push_back(variable);
+  offsets_[variable] = size;
+  prior_.h.conservativeResize(grown, grown);
+  prior_.h.bottomRows(variable.size()).setZero();
+  prior_.h.rightCols(variable.size()).setZero();
+  prior_.g.conservativeResize(grown);
+  prior_.g.tail(variable.size()).setZero();
+}
+
+std::size_t Graph::add_keyframe(const Se2& map_from_base) {
+  state_.keyframes.push_back(map_from_base);
+  push_variable({VariableKind::kKeyframe, state_.keyframes.size() - 1});
+  return state_.keyframes.size() - 1;
+}
+
+std::size_t Graph::add_landmark(const Se2& map_from_marker) {
+  state_.landmarks.push_back(map_from_marker);
+  landmark_covariances_.push_back(Eigen::Matrix3d::Zero());
+  push_variable({VariableKind::kLandmark, state_.landmarks.size() - 1});
+  return state_.landmarks.size() - 1;
+}
+
+std::vector<Variable> Graph::variables_of(const Factor& factor) const {
+  struct Visitor {
+    std::vector<Variable> operator()(const OdometryFactor& f) const {
+      return {{VariableKind::kKeyframe, f.from}, {VariableKind::kKeyframe, f.to}};
+    }
+    std::vector<Variable> operator()(const ScanFactor& f) const {
+      std::vector<Variable> variables{{VariableKind::kKeyframe, f.keyframe}};
+      for (const ScanFactor::Reference& reference : f.references)
+        variables.push_back({VariableKind::kKeyframe, reference.keyframe});
+      return variables;
+    }
+    std::vector<Variable> operator()(const MarkerFactor& f) const {
+      return {{VariableKind::kKeyframe, f.keyframe}, {VariableKind::kLandmark, f.landmark}};
+    }
+    std::vector<Variable> operator()(const PosePrior& f) const {
+      return {{VariableKind::kKeyframe, f.keyframe}};
+    }
+  };
+  return std::visit(Visitor{}, factor);
+}
+
+bool Graph::is_within_window(const Factor& factor) const {
+  const std::vector<Variable> variables = variables_of(factor);
+  return std::all_of(variables.begin(), variables.end(),
+                     [this](const Variable& variable) { return is_active(variable); });
+}
+
+void Graph::add(const Factor& factor) {
+  factors_.push_back(factor);
+  if (is_within_window(factor)) active_factors_.push_back(factors_.size() - 1);
+}
+
+void Graph::relocate_newest(const Se2& map_from_base) {
+  const std::size_t newest = state_.keyframes.size() - 1;
+  const auto is_about_it = [&](const Factor& factor) {
+    const std::vector<Variable> variables = variables_of(factor);
+    return std::find(variables.begin(), variables.end(),
+                     Variable{VariableKind::kKeyframe, newest}) != variables.end();
+  };
+  while (!factors_.empty() && is_about_it(factors_.back())) {  // they came last
+    std::erase(active_factors_, factors_.size() - 1);
+    factors_.pop_back();
+  }
+  state_.keyframes.back() = map_from_base;
+  OdometryFactor cut;
+  cut.from = newest - 1;
+  cut.to = newest;
+  cut.is_cut = true;
+  add(cut);
+}
+
+LinearFactor Graph::linearised(const Factor& factor) const {
+  struct Visitor {
+    const Graph& graph;
+    LinearFactor operator()(const OdometryFactor& f) const {
+      return f.linearise(graph.state_, graph.odometry_noise());
+    }
+    LinearFactor operator()(const ScanFactor& f) const { return f.linearise(graph.state_); }
+    LinearFactor operator()(const MarkerFactor& f) const {
+      return f.linearise(graph.state_, graph.noise_.marker_gate);
+    }
+    LinearFactor operator()(const PosePrior& f) const { return f.linearise(graph.state_); }
+  };
+  return std::visit(Visitor{*this}, factor);
+}
+
+void Graph::add_to(NormalEquations& equations, const LinearFactor& linear) const {
+  for (const LinearFactor::Block& row : linear.blocks) {
+    const Eigen::Index at = offsets_.at(row.variable);
+    equations.g.segment(at, row.variable.size()).noalias() +=
+        row.jacobian.transpose() * linear.residual;
+    for (const LinearFactor::Block& column : linear.blocks) {
+      const Eigen::Index beside = offsets_.at(column.variable);
+      if (beside > at) continue;
+      equations.h.block(at, beside, row.variable.size(), column.variable.size()).noalias() +=
+          row.jacobian.transpose() * column.jacobian;
+    }
+  }
+}
+
+Graph::NormalEquations Graph::window_equations() const {
+  NormalEquations equations = prior_;
+  calibration_.add_to(state_.calibration, equations.h.topLeftCorner<kCalibrationSize, kCalibrationSize>(),
+                      equations.g.head<kCalibrationSize>());
+  for (const std::size_t index : active_factors_)
+    add_to(equations, linearised(factors_[index]));
+  return equations;
+}
+
+void Graph::retract_window(const Eigen::VectorXd& step) {
+  for (const Variable& variable : layout_)
+    state_.retract(variable, step.segment(offsets_.at(variable), variable.size()));
+  prior_.g += prior_.h.selfadjointView<Eigen::Lower>() * step;
+}
+
+void Graph::update_covariance(const Eigen::MatrixXd& h) {
+  covariance_ = Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>{h}.solve(
+      Eigen::MatrixXd::Identity(h.rows(), h.cols()));
+  for (const Variable& variable : layout_)
+    if (variable.kind == VariableKind::kLandmark)
+      landmark_covariances_[variable.index] = covariance_of(variable);
+}
+
+void Graph::optimise() {
+  NormalEquations equations;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    equations = window_equations();
+    const Eigen::VectorXd step =
+        Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>{equations.h}.solve(-equations.g);
+    retract_window(step);
+    if (step.cwiseAbs().maxCoeff() < kConverged) break;
+  }
+  update_covariance(equations.h);
+}
+
+Eigen::MatrixXd Graph::covariance(const Variable& a, const Variable& b) const {
+  return covariance_.block(offsets_.at(a), offsets_.at(b), a.size(), b.size());
+}
+
+Eigen::Matrix3d Graph::landmark_covariance(std::size_t landmark) const {
+  return landmark_covariances_[landmark];
+}
+
+/// Schur complement (of prior and factors that touch it).
+void Graph::eliminate(const Variable& variable) {
+  std::vector<std::size_t> kept;
+  for (const std::size_t index : active_factors_) {
+    const std::vector<Variable> touched = variables_of(factors_[index]);
+    if (std::find(touched.begin(), touched.end(), variable) == touched.end())
+      kept.push_back(index);
+    else
+      add_to(prior_, linearised(factors_[index]));
+  }
+  active_factors_ = std::move(kept);
+
+  const Eigen::Index at = offsets_.at(variable);
+  const Eigen::Index size = variable.size();
+  prior_.h = Eigen::MatrixXd{prior_.h.selfadjointView<Eigen::Lower>()};
+  const Eigen::MatrixXd own = prior_.h.block(at, at, size, size);
+  const Eigen::MatrixXd column = prior_.h.middleCols(at, size);
+  // What was never measured has no information to pass on.
+  const Eigen::MatrixXd gain =
+      own.llt().info() == Eigen::Success ? Eigen::MatrixXd{own.llt().solve(column.transpose()).transpose()}
+                                         : Eigen::MatrixXd::Zero(column.rows(), size);
+  prior_.g -= gain * prior_.g.segment(at, size).eval();
+  prior_.h.noalias() -= gain * column.transpose();
+  remove_from_layout(variable);
+}
+
+void Graph::remove_from_layout(const Variable& variable) {
+  const Eigen::Index at = offsets_.at(variable);
+  const Eigen::Index size = variable.size();
+  const Eigen::Index behind = prior_.g.size() - at - size;
+  const auto shrink = [&](Eigen::MatrixXd& matrix) {
+    matrix.middleRows(at, behind) = matrix.bottomRows(behind).eval();
+    matrix.middleCols(at, behind) = matrix.rightCols(behind).eval();
+    matrix.conservativeResize(matrix.rows() - size, matrix.cols() - size);
+  };
+  shrink(prior_.h);
+  if (covariance_.rows() == prior_.g.size()) shrink(covariance_);
+  prior_.g.segment(at, behind) = prior_.g.tail(behind).eval();
+  prior_.g.conservativeResize(prior_.g.size() - size);
+  layout_.erase(std::find(layout_.begin(), layout_.end(), variable));
+  offsets_.erase(variable);
+  for (auto& [other, offset] : offsets_)
+    if (offset > at) offset -= size;
+}
+
+void Graph::marginalise_oldest(double far_m) {
+  eliminate({VariableKind::kKeyframe, first_keyframe_++});
+  std::set<std::size_t> seen;
+  for (const std::size_t index : active_factors_)
+    if (const auto* marker = std::get_if<MarkerFactor>(&factors_[index]))
+      seen.insert(marker->landmark);
+  const std::vector<Variable> layout = layout_;
+  for (const Variable& variable : layout) {
+    if (variable.kind != VariableKind::kLandmark || seen.contains(variable.index)) continue;
+    const double away_m = (state_.landmarks[variable.index].translation() -
+                           state_.keyframes.back().translation())
+                              .norm();
+    if (away_m > far_m) eliminate(variable);
+  }
+}
+
+}  // namespace waymark

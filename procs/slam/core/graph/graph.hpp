@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The factor graph: a window of the newest keyframes that is solved at every update, and the whole
+// of it, which is solved when a loop closes.
+#pragma once
+
+#include "slam/core/graph/calibration_knowledge.hpp"
+#include "slam/core/graph/factors.hpp"
+
+#include <Eigen/Core>
+
+#include <map>
+#include <vector>
+
+namespace waymark {
+
+struct GraphNoise {
+  OdometryNoise odometry{};
+  OdometryScale scale{};
+  double marker_gate{16.3};  ///< chi^2, 3 degrees of freedom
+};
+
+class Graph {
+ public:
+  Graph(const GraphNoise& noise, const Calibration& calibration_sigmas);
+
+  const State& state() const { return state_; }
+  const std::vector<Factor>& factors() const { return factors_; }
+  const GraphNoise& noise() const { return noise_; }
+  OdometryNoise odometry_noise() const { return scaled(noise_.odometry, noise_.scale); }
+  void set_odometry_scale(const OdometryScale& scale) { noise_.scale = scale; }
+  CalibrationKnowledge& calibration_knowledge() { return calibration_; }
+  bool is_calibration_doubted() const { return calibration_.is_doubted(state_.calibration); }
+
+  std::size_t add_keyframe(const Se2& map_from_base);
+  std::size_t add_landmark(const Se2& map_from_marker);
+
+  /// All its variables are in the window, or it waits for optimise_all().
+  void add(const Factor& factor);
+
+  /// Puts the newest keyframe elsewhere: what has been said about it is forgotten.
+  void relocate_newest(const Se2& map_from_base);
+
+  bool is_active(const Variable& variable) const { return offsets_.contains(variable); }
+  std::size_t first_active_keyframe() const { return first_keyframe_; }
+  std::size_t num_active_keyframes() const { return state_.keyframes.size() - first_keyframe_; }
+
+  /// Gauss-Newton over the window.
+  void optimise();
+
+  /// Gauss-Newton over everything; then what lies behind the window becomes its prior anew.
+  /// @param activated  landmarks that come back into the window.
+  void optimise_all(int iterations, const std::vector<std::size_t>& activated = {});
+
+  /// Takes the oldest keyframe out of the window, and landmarks that nothing in it has seen and
+  /// that are `far_m` from the newest one.
+  void marginalise_oldest(double far_m);
+
+  /// Joint covariance of two variables of the window, after optimise().
+  Eigen::MatrixXd covariance(const Variable& a, const Variable& b) const;
+  Eigen::Matrix3d covariance_of(const Variable& a) const { return covariance(a, a); }
+
+  /// The last one that was known: of landmarks behind the window, from when they left it.
+  Eigen::Matrix3d landmark_covariance(std::size_t landmark) const;
+
+ private:
+  struct NormalEquations {
+    Eigen::MatrixXd h;  ///< lower triangle
+    Eigen::VectorXd g;
+  };
+
+  LinearFactor linearised(const Factor& factor) const;
+  bool is_within_window(const Factor& factor) const;
+  void push_variable(const Variable& variable);
+  void add_to(NormalEquations& equations, const LinearFactor& linear) const;
+  NormalEquations window_equations() const;
+  void retract_window(const Eigen::VectorXd& step);
+  void eliminate(const Variable& variable);
+  void remove_from_layout(const Variable& variable);
+  void update_covariance(const Eigen::MatrixXd& h);
+  std::vector<Variable> variables_of(const Factor& factor) const;
+
+  GraphNoise noise_;
+  CalibrationKnowledge calibration_;
+  State state_{};
+  std::vector<Factor> factors_{};
+  std::vector<std::size_t> active_factors_{};  ///< within the window
+  std::size_t first_keyframe_{0};              ///< of the window
+
+  std::vector<Variable> layout_{};
+  std::map<Variable, Eigen::Index> offsets_{};
+  NormalEquations prior_{};  ///< of the window; its gradient is that at the present state
+  Eigen::MatrixXd covariance_{};
+  std::vector<Eigen::Matrix3d> landmark_covariances_{};
+};
+
+}  // namespace waymark

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/loop_finder.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace waymark {
+namespace {
+
+constexpr double kSigmas = 3.0;        // of the pose that a search covers
+constexpr double kDirectReach_m = 0.3; // below, plain matching finds it
+constexpr double kDirectReach_rad = 0.15;
+constexpr std::size_t kSearchBeams = 120;
+constexpr std::size_t kFields = 8;     // kept
+constexpr double kApart_m = 0.3;       // of a runner-up
+constexpr double kApart_rad = 0.35;
+constexpr double kAgree_m = 0.3;       // two candidates' corrections
+constexpr double kAgree_rad = 0.05;
+constexpr double kAgreeWithin_m = 5.0; // driven between them
+
+double reach_m(const Eigen::Matrix3d& covariance) {
+  return kSigmas * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+}
+
+double reach_rad(const Eigen::Matrix3d& covariance) {
+  return kSigmas * std::sqrt(covariance(2, 2));
+}
+
+}  // namespace
+
+std::optional<std::size_t> LoopFinder::nearest_submap(const LoopSearch& search,
+                                                      const std::deque<Submap>& submaps,
+                                                      const State& state) const {
+  std::optional<std::size_t> nearest;
+  double least_m = config_.reach_m + std::min(config_.max_search_m, reach_m(search.covariance));
+  for (std::size_t i = 0; i < submaps.size(); ++i) {
+    const Submap& submap = submaps[i];
+    if (submap.last_keyframe() >= search.first_recent_keyframe) break;
+    const Se2& map_from_submap = state.keyframes[submap.first_keyframe()];
+    for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k) {
+      const double distance_m =
+          ((map_from_submap * submap.submap_from_keyframe(k)).translation() -
+           search.map_from_base.translation())
+              .norm();
+      if (distance_m >= least_m) continue;
+      least_m = distance_m;
+      nearest = i;
+    }
+  }
+  return nearest;
+}
+
+const CorrelativeField& LoopFinder::field_of(std::size_t submap, const Submap& old) {
+  const auto found = fields_.find(submap);
+  if (found != fields_.end()) return found->second;
+  if (fields_.size() >= kFields) fields_.erase(fields_.begin());
+  return fields_.emplace(submap, CorrelativeField{old.points()}).first->second;
+}
+
+std::optional<LoopMatch> LoopFinder::match(std::size_t submap, const Points& points,
+                                           const LoopSearch& search,
+                                           const std::deque<Submap>& submaps, const State& state,
+                                           const RangeNoise& noise) {
+  const Submap& old = submaps[submap];
+  const Se2 submap_from_map = state.keyframes[old.first_keyframe()].inverse();
+  Se2 guess = submap_from_map * search.map_from_base;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = submap_from_map.rotation();
+  Eigen::Matrix3d covariance = turn * search.covariance * turn.transpose();
+  // The nearest place that fits is the likeliest; a search is for those that have drifted.
+  LoopMatch direct{submap, match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
+  if (is_good(direct.match)) return direct;
+  const double wide_m = std::min(config_.max_search_m, reach_m(covariance));
+  const double wide_rad = std::min(std::numbers::pi, reach_rad(covariance));
+  if (wide_m < kDirectReach_m && wide_rad < kDirectReach_rad) return std::nullopt;
+  {
+    const Points beams = thinned(points, kSearchBeams);
+    const CorrelativeField& field = field_of(submap, old);
+    const SearchWindow window{wide_m, wide_rad};
+    const auto best = field.best(beams, guess, window, config_.min_score);
+    if (!best) return std::nullopt;
+    const auto other = field.best_apart_from(best->submap_from_base, kApart_m, kApart_rad, beams,
+                                             guess, window, config_.runner_up_share * best->score);
+    guess = best->submap_from_base;
+    covariance = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
+    if (other) {
+      // Along a bare corridor the score is flat, and the match will not use that direction.
+      const ScanMatch at_best = match_scan(points, old.surfaces(), guess, covariance, noise, scan_);
+      const Eigen::Vector2d apart = other->submap_from_base.translation() - guess.translation();
+      const double along_weak =
+          at_best.observed.is_degenerate
+              ? std::abs(at_best.observed.weak_direction.dot(apart.normalized()))
+              : 0.0;
+      if (along_weak < 0.98 || apart.norm() < kApart_m) {
+        ++num_ambiguous_;
+        return std::nullopt;
+      }
+    }
+  }
+  LoopMatch loop{submap, match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
+  if (!is_good(loop.match)) return std::nullopt;
+  return loop;
+}
+
+bool LoopFinder::is_good(const ScanMatch& match) const {
+  return match.is_usable(scan_) && match.inlier_share >= config_.min_inlier_share &&
+         match.mapped_share >= config_.min_mapped_share;
+}
+
+std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Points& points,
+                                                const LoopSearch& search,
+                                                const std::deque<Submap>& submaps,
+                                                const State& state, const RangeNoise& noise) {
+  const auto submap = nearest_submap(search, submaps, state);
+  if (!submap) return {};
+  const auto loop = match(*submap, points, search, submaps, state, noise);
+  if (!loop) return {};
+  const Se2 map_from_base =
+      state.keyframes[submaps[*submap].first_keyframe()] * loop->match.map_from_base;
+  const Eigen::Vector3d off = pose_difference(map_from_base, search.map_from_base);
+  const double chi2 = off.dot(search.covariance.ldlt().solve(off));
+  const Found found{keyframe, *loop, chi2};
+  const bool is_surprise = chi2 > config_.gate;
+  if (is_surprise && (loop->match.inlier_share < config_.surprise_share ||
+                      loop->match.mapped_share < config_.surprise_share)) {
+    return {};
+  }
+  if (!is_surprise && off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad) {
+    candidate_.reset();
+    return {found};
+  }
+  const Candidate candidate{found, map_from_base * search.map_from_base.inverse(),
+                            search.map_from_base};
+  const auto agrees = [&](const Candidate& earlier) {
+    // Both corrections, applied to the pose now.
+    const Eigen::Vector3d apart =
+        pose_difference(earlier.correction * search.map_from_base, map_from_base);
+    return (earlier.map_from_base.translation() - search.map_from_base.translation()).norm() <
+               kAgreeWithin_m &&
+           apart.head<2>().norm() < kAgree_m && std::abs(apart.z()) < kAgree_rad;
+  };
+  std::vector<Found> both;
+  if (candidate_ && agrees(*candidate_)) {
+    both = {candidate_->found, found};
+    candidate_.reset();
+  } else {
+    num_unconfirmed_ += candidate_.has_value();
+    candidate_ = candidate;
+  }
+  return both;
+}
+
+}  // namespace waymark

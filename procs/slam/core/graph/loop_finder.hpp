@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Finds where the robot is in what it mapped long ago.
+#pragma once
+
+#include "slam/core/graph/factors.hpp"
+#include "slam/core/registration/correlative_search.hpp"
+#include "slam/core/registration/submap.hpp"
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace waymark {
+
+class Fields;
+
+struct LoopConfig {
+  bool enabled{true};
+  double every_m{0.5};          ///< driven between two attempts
+  double reach_m{4.0};          ///< of a submap about its keyframes
+  double max_search_m{15.0};    ///< half of the widest window
+  double min_inlier_share{0.8}; ///< of the beams on mapped surfaces
+  double min_mapped_share{0.6}; ///< of all beams
+  double min_score{0.4};        ///< of the wide search
+  double runner_up_share{0.85}; ///< of the best score; a runner-up above makes it ambiguous
+  double gate{16.3};            ///< chi^2 against the graph's own covariance
+  double surprise_share{0.85};  ///< what both shares have to be of a loop beyond the gate
+
+  void describe(Fields& fields);
+};
+
+/// A scan of the newest keyframe found in an old submap.
+struct LoopMatch {
+  std::size_t submap{0};  ///< index
+  ScanMatch match{};      ///< submap frame
+};
+
+struct LoopSearch {
+  Se2 map_from_base{};
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< of it, relative to what is old
+  std::size_t first_recent_keyframe{0};  ///< submaps with later ones are not old
+};
+
+class LoopFinder {
+ public:
+  LoopFinder(const LoopConfig& config, const ScanMatchConfig& scan)
+      : config_{config}, scan_{scan} {}
+
+  /// Matches that two scans agree about, or that what is known of the pose supports. May be empty;
+  /// the older ones of a pair were found from an earlier keyframe.
+  /// @param keyframe  the newest.
+  struct Found {
+    std::size_t keyframe{0};
+    LoopMatch loop{};
+    double chi2{0.0};  ///< against the pose as it was believed
+  };
+  std::vector<Found> find(std::size_t keyframe, const Points& points, const LoopSearch& search,
+                          const std::deque<Submap>& submaps, const State& state,
+                          const RangeNoise& noise);
+
+  int num_ambiguous() const { return num_ambiguous_; }
+  int num_unconfirmed() const { return num_unconfirmed_; }
+
+ private:
+  /// Found from one scan alone, far from where the robot was believed to be.
+  struct Candidate {
+    Found found{};
+    Se2 correction{};  ///< map_from_base as found, relative to map_from_base as believed
+    Se2 map_from_base{};
+  };
+
+  std::optional<std::size_t> nearest_submap(const LoopSearch& search,
+                                            const std::deque<Submap>& submaps,
+                                            const State& state) const;
+  std::optional<LoopMatch> match(std::size_t submap, const Points& points,
+                                 const LoopSearch& search, const std::deque<Submap>& submaps,
+                                 const State& state, const RangeNoise& noise);
+  bool is_good(const ScanMatch& match) const;
+  const CorrelativeField& field_of(std::size_t submap, const Submap& old);
+
+  LoopConfig config_;
+  ScanMatchConfig scan_;
+  std::map<std::size_t, CorrelativeField> fields_{};  ///< of the submaps searched last
+  std::optional<Candidate> candidate_{};
+  int num_ambiguous_{0};
+  int num_unconfirmed_{0};
+};
+
+}  // namespace waymark

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/relocalisation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kMarkersNeeded = 2;  // that agree
+constexpr int kSightingsNeeded = 2;        // of each of them: misread ids do not repeat
+constexpr double kSamePlace_m = 0.5;
+constexpr double kSameHeading_rad = 0.35;
+constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
+constexpr double kMisread_m = 0.15;  // driven without another sighting that ends such a doubt
+constexpr double kPatience_m = 5.0;  // the same for a marker that was really there
+constexpr double kReturn_m = 30.0;   // driven after which a relocalisation is final
+
+}  // namespace
+
+RelocalisationMonitor::Verdict RelocalisationMonitor::judge(const Se2& map_from_base,
+                                                            std::span<const PoseHint> hints,
+                                                            const Motion& motion) {
+  follow(motion);
+  if (is_twin_place(hints)) {
+    relocated_ = *given_up_;
+    given_up_.reset();
+    forget_doubt();
+    return Verdict::kBack;
+  }
+  bool is_confirmed = false;
+  for (const PoseHint& hint : hints) {
+    if (hint.kind == PoseHint::Kind::kElsewhere) support_alternative(hint);
+    is_confirmed |= hint.kind == PoseHint::Kind::kAgrees || hint.kind == PoseHint::Kind::kNew;
+  }
+  if (is_confirmed) forget_doubt();
+  if (!alternative_) return Verdict::kSettled;
+  if (!is_supported()) return Verdict::kDoubtful;
+  relocated_ = *alternative_;
+  forget_doubt();
+  given_up_ = map_from_base;
+  unexpected_ids_.clear();
+  relocated_m_ = 0.0;
+  return Verdict::kElsewhere;
+}
+
+void RelocalisationMonitor::follow(const Motion& motion) {
+  if (alternative_) {
+    alternative_ = *alternative_ * motion.start_from_end;
+    unsupported_m_ += motion.distance_m;
+    if (unsupported_m_ > (num_sightings() < kRealSightings ? kMisread_m : kPatience_m))
+      forget_doubt();
+  }
+  if (given_up_) {
+    given_up_ = *given_up_ * motion.start_from_end;
+    relocated_m_ += motion.distance_m;
+    if (relocated_m_ > kReturn_m) given_up_.reset();
+  }
+}
+
+bool RelocalisationMonitor::is_twin_place(std::span<const PoseHint> hints) {
+  if (!given_up_) return false;
+  for (const PoseHint& hint : hints)
+    if (hint.kind == PoseHint::Kind::kNew && hint.is_in_known_place)
+      unexpected_ids_.insert(hint.id);
+  return unexpected_ids_.size() >= kMarkersNeeded;
+}
+
+void RelocalisationMonitor::support_alternative(const PoseHint& hint) {
+  const bool agrees =
+      alternative_ &&
+      (hint.map_from_base.translation() - alternative_->translation()).norm() < kSamePlace_m &&
+      std::abs(angle_difference(hint.map_from_base.theta(), alternative_->theta())) <
+          kSameHeading_rad;
+  if (!agrees) sightings_.clear();
+  ++sightings_[hint.id];
+  unsupported_m_ = 0.0;
+  alternative_ = hint.map_from_base;
+}
+
+int RelocalisationMonitor::num_sightings() const {
+  int sum = 0;
+  for (const auto& [id, count] : sightings_)
+    sum += count;
+  return sum;
+}
+
+bool RelocalisationMonitor::is_supported() const {
+  return std::count_if(sightings_.begin(), sightings_.end(), [](const auto& seen) {
+           return seen.second >= kSightingsNeeded;
+         }) >= static_cast<std::ptrdiff_t>(kMarkersNeeded);
+}
+
+void RelocalisationMonitor::forget_doubt() {
+  alternative_.reset();
+  sightings_.clear();
+  unsupported_m_ = 0.0;
+}
+
+}  // namespace waymark

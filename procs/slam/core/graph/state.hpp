@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The unknowns of the graph.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "slam/core/belief/odometry_errors.hpp"
+
+#include <Eigen/Core>
+
+#include <compare>
+#include <cstddef>
+#include <vector>
+
+namespace waymark {
+
+/// What odometry and camera get wrong in the same way all the time. Odometry: scale of distances,
+/// drift [rad/m], scale of turns, LiDAR ahead of the wheels' axis [m] (OdometryErrors). Camera: yaw
+/// of its mounting [rad], focal length (relative), standoff of the markers from their walls [m].
+inline constexpr Eigen::Index kOdometryTerms = 4;
+inline constexpr Eigen::Index kCameraTerms = 3;
+inline constexpr Eigen::Index kCalibrationSize = kOdometryTerms + kCameraTerms;
+using Calibration = Eigen::Matrix<double, kCalibrationSize, 1>;
+
+inline OdometryErrors odometry_part(const Calibration& calibration) {
+  OdometryErrors errors = OdometryErrors::Zero();
+  errors.head<kOdometryTerms>() = calibration.head<kOdometryTerms>();
+  return errors;
+}
+
+inline Eigen::Vector3d camera_part(const Calibration& calibration) {
+  return calibration.tail<kCameraTerms>();
+}
+
+enum class VariableKind { kCalibration, kKeyframe, kLandmark };
+
+struct Variable {
+  VariableKind kind{VariableKind::kCalibration};
+  std::size_t index{0};
+
+  auto operator<=>(const Variable&) const = default;
+  Eigen::Index size() const { return kind == VariableKind::kCalibration ? kCalibrationSize : 3; }
+};
+
+/// Map frame. Poses move by additive (x, y, theta).
+struct State {
+  std::vector<Se2> keyframes{};  ///< map_from_base
+  std::vector<Se2> landmarks{};  ///< map_from_marker
+  Calibration calibration{Calibration::Zero()};
+
+  void retract(const Variable& variable, const Eigen::Ref<const Eigen::VectorXd>& step);
+};
+
+/// (x, y, theta) of one pose minus those of another.
+inline Eigen::Vector3d pose_difference(const Se2& to, const Se2& from) {
+  return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
+}
+
+}  // namespace waymark

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/registration/ndt_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr int kMinPoints = 4;            // of a cell that says something
+constexpr double kPriorPoints = 6.0;     // that the pooled point noise counts as in a cell
+constexpr double kLineRatio = 0.1;       // of a line's variances, across to along
+constexpr double kDescribedPoints = 2000.0;  // that the description of the LiDAR counts as
+constexpr double kMaxPooled = 2e5;           // older points are forgotten beyond
+
+}  // namespace
+
+bool NdtSurface::is_line() const {
+  return across_m2 < kLineRatio * along_m2;
+}
+
+RangeNoise::RangeNoise(double described_sigma_m)
+    : sum_m2_{kDescribedPoints * described_sigma_m * described_sigma_m}, weight_{kDescribedPoints} {}
+
+void RangeNoise::observe(double across_m2, int count) {
+  sum_m2_ += count * across_m2;
+  weight_ += count;
+  if (weight_ <= kMaxPooled) return;
+  sum_m2_ *= kMaxPooled / weight_;
+  weight_ = kMaxPooled;
+}
+
+std::uint64_t NdtMap::key(int column, int row) {
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(column)) << 32) |
+         static_cast<std::uint32_t>(row);
+}
+
+void NdtMap::add(const Eigen::Vector2d& point, int keyframe) {
+  const auto column = static_cast<int>(std::floor(point.x() / spacing_m_));
+  const auto row = static_cast<int>(std::floor(point.y() / spacing_m_));
+  for (int i = column; i <= column + 1; ++i) {
+    for (int k = row; k <= row + 1; ++k) {
+      Cell& cell = cells_[key(i, k)];
+      const Eigen::Vector2d offset = point - spacing_m_ * Eigen::Vector2d{i, k};
+      if (cell.count == 0.0) cell.surface.first_keyframe = keyframe;
+      cell.surface.last_keyframe = keyframe;
+      cell.count += 1.0;
+      cell.sum += offset;
+      cell.xx += offset.x() * offset.x();
+      cell.xy += offset.x() * offset.y();
+      cell.yy += offset.y() * offset.y();
+      cell.is_stale = true;
+    }
+  }
+}
+
+void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const {
+  const Eigen::Vector2d mean = cell.sum / cell.count;
+  const double xx = cell.xx / cell.count - mean.x() * mean.x();
+  const double xy = cell.xy / cell.count - mean.x() * mean.y();
+  const double yy = cell.yy / cell.count - mean.y() * mean.y();
+  const double half_trace = 0.5 * (xx + yy);
+  const double radius = std::hypot(0.5 * (xx - yy), xy);
+  const double along_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  // Two parameters of the line were fitted to the points.
+  const double across_m2 =
+      std::max(0.0, half_trace - radius) * cell.count / std::max(1.0, cell.count - 2.0);
+  NdtSurface& surface = cell.surface;
+  surface.mean = centre + mean;
+  surface.normal = {-std::sin(along_rad), std::cos(along_rad)};
+  surface.across_m2 = (cell.count * across_m2 + kPriorPoints * point_variance_m2) /
+                      (cell.count + kPriorPoints);
+  surface.along_m2 = half_trace + radius;
+  surface.count = static_cast<int>(cell.count);
+  cell.is_stale = false;
+}
+
+const NdtSurface* NdtMap::at(const Eigen::Vector2d& point, double point_variance_m2) const {
+  const auto column = static_cast<int>(std::lround(point.x() / spacing_m_));
+  const auto row = static_cast<int>(std::lround(point.y() / spacing_m_));
+  const auto found = cells_.find(key(column, row));
+  if (found == cells_.end() || found->second.count < kMinPoints) return nullptr;
+  Cell& cell = found->second;
+  if (cell.is_stale) refresh(cell, spacing_m_ * Eigen::Vector2d{column, row}, point_variance_m2);
+  return &cell.surface;
+}
+
+}  // namespace waymark

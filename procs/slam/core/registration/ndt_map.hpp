@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Walls as a grid of normal distributions (NDT; Biber and Strasser 2003).
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <unordered_map>
+
+namespace waymark {
+
+/// What the points of one cell look like.
+struct NdtSurface {
+  Eigen::Vector2d mean{Eigen::Vector2d::Zero()};
+  Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< direction of least variance; unit, any sign
+  double across_m2{0.0};                             ///< variance along `normal`
+  double along_m2{0.0};                              ///< and at right angles to it
+  int count{0};                                      ///< points
+  int first_keyframe{0};  ///< the points came from keyframes in [first, last]
+  int last_keyframe{0};
+
+  /// A piece of wall; else a corner, a leg, clutter: a place without a direction.
+  bool is_line() const;
+};
+
+/// How far LiDAR points scatter across walls: the description, corrected by what the walls show.
+class RangeNoise {
+ public:
+  explicit RangeNoise(double described_sigma_m);
+
+  /// @param across_m2  mean square of points about a fitted line, `count` of them.
+  void observe(double across_m2, int count);
+
+  double variance_m2() const { return sum_m2_ / weight_; }
+
+ private:
+  double sum_m2_;
+  double weight_;
+};
+
+/// Square cells of side `2 spacing` whose centres are `spacing` apart, so that each point lies in
+/// four of them and is compared with the one that it is most central to: the cost has no steps at
+/// the borders of cells.
+class NdtMap {
+ public:
+  explicit NdtMap(double spacing_m) : spacing_m_{spacing_m} {}
+
+  void add(const Eigen::Vector2d& point, int keyframe);
+
+  /// The surface at a point, nullptr where too few points were seen.
+  /// @param point_variance_m2  of single points across a wall: what few points cannot show.
+  const NdtSurface* at(const Eigen::Vector2d& point, double point_variance_m2) const;
+
+  std::size_t num_cells() const { return cells_.size(); }
+
+ private:
+  struct Cell {
+    double count{0.0};
+    Eigen::Vector2d sum{Eigen::Vector2d::Zero()};  ///< about the cell's centre
+    double xx{0.0};
+    double xy{0.0};
+    double yy{0.0};
+    NdtSurface surface{};
+    bool is_stale{true};
+  };
+
+  static std::uint64_t key(int column, int row);
+  void refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const;
+
+  double spacing_m_;
+  mutable std::unordered_map<std::uint64_t, Cell> cells_{};  ///< never iterated over in an order
+};
+
+}  // namespace waymark

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/registration/scan_match.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace waymark {
+namespace {
+
+constexpr double kBlurStep = 1.0 / 3.0;     // from one stage to the next finer one
+constexpr double kFinestBlur_m = 0.01;      // below: none
+constexpr int kStepsPerStage = 3;
+constexpr int kFinalSteps = 6;
+constexpr double kConverged_m = 2e-5;       // or radians
+constexpr double kMaxBlur_m = 0.25;         // a cell knows no more than its own half
+constexpr double kInlierWeight = 0.25;      // robust weight at the kernel's width
+
+double squared(double x) {
+  return x * x;
+}
+
+/// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
+struct Quadratic {
+  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
+  Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
+};
+
+/// What one beam that ended on a surface says, in standard deviations.
+struct BeamTerm {
+  Eigen::Matrix2d weight{Eigen::Matrix2d::Zero()};  ///< inverse covariance of the distance
+  Eigen::Vector2d distance{Eigen::Vector2d::Zero()};
+  double robust{0.0};  ///< Geman-McClure weight
+};
+
+BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point, double blur_m2,
+                 const ScanMatchConfig& config) {
+  BeamTerm term;
+  term.distance = point - surface.mean;
+  const double across =
+      1.0 / (surface.across_m2 + squared(config.roughness_m) + blur_m2);
+  const Eigen::Vector2d& normal = surface.normal;
+  term.weight = across * normal * normal.transpose();
+  if (!surface.is_line()) {
+    const Eigen::Vector2d along{-normal.y(), normal.x()};
+    term.weight += along * along.transpose() / (surface.along_m2 + blur_m2);
+  }
+  const double chi2 = term.distance.dot(term.weight * term.distance);
+  const double kernel2 = squared(config.kernel_sigmas);
+  term.robust = squared(kernel2 / (kernel2 + chi2));
+  return term;
+}
+
+Quadratic quadratic_about(std::span<const Eigen::Vector2d> points, const NdtMap& map,
+                          const Se2& pose, double blur_m2, double point_variance_m2,
+                          const ScanMatchConfig& config) {
+  Quadratic sum;
+  const Eigen::Matrix2d rotation = pose.rotation();
+  for (const Eigen::Vector2d& point : points) {
+    const Eigen::Vector2d lever = rotation * point;
+    const Eigen::Vector2d there = lever + pose.translation();
+    const NdtSurface* surface = map.at(there, point_variance_m2);
+    if (surface == nullptr) continue;
+    const BeamTerm term = compare(*surface, there, blur_m2, config);
+    const Eigen::Matrix2d weight = term.robust * term.weight;
+    const Eigen::Vector2d by_turn{-lever.y(), lever.x()};  // d(x, y) / d(theta)
+    const Eigen::Vector2d pull = weight * term.distance;
+    const Eigen::Vector2d weight_turn = weight * by_turn;
+    sum.information.topLeftCorner<2, 2>() += weight;
+    sum.information.topRightCorner<2, 1>() += weight_turn;
+    sum.information(2, 2) += by_turn.dot(weight_turn);
+    sum.gradient.head<2>() += pull;
+    sum.gradient.z() += by_turn.dot(pull);
+  }
+  sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
+  return sum;
+}
+
+Se2 moved(const Se2& pose, const Eigen::Vector3d& step) {
+  return {Eigen::Vector2d{pose.translation() + step.head<2>()}, pose.theta() + step.z()};
+}
+
+Eigen::Vector3d difference(const Se2& to, const Se2& from) {
+  return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
+}
+
+void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map,
+               double point_variance_m2, const ScanMatchConfig& config, ScanMatch& match) {
+  int mapped = 0;
+  std::map<int, double> shares;
+  for (const Eigen::Vector2d& point : points) {
+    const NdtSurface* surface = map.at(match.map_from_base * point, point_variance_m2);
+    if (surface == nullptr) continue;
+    ++mapped;
+    const BeamTerm term = compare(*surface, match.map_from_base * point, 0.0, config);
+    if (term.robust < kInlierWeight) continue;
+    ++match.inliers;
+    const int keyframes = surface->last_keyframe - surface->first_keyframe + 1;
+    for (int k = surface->first_keyframe; k <= surface->last_keyframe; ++k)
+      shares[k] += 1.0 / keyframes;
+  }
+  match.mapped_share = points.empty() ? 0.0 : mapped / static_cast<double>(points.size());
+  match.inlier_share = mapped == 0 ? 0.0 : match.inliers / static_cast<double>(mapped);
+  if (shares.empty()) return;
+  match.first_keyframe = shares.begin()->first;
+  match.keyframe_shares.assign(
+      static_cast<std::size_t>(shares.rbegin()->first - match.first_keyframe + 1), 0.0);
+  for (const auto& [keyframe, share] : shares)
+    match.keyframe_shares[static_cast<std::size_t>(keyframe - match.first_keyframe)] =
+        share / match.inliers;
+}
+
+}  // namespace
+
+Points thinned(const Points& points, std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, (points.size() + most - 1) / most);
+  Points kept;
+  for (std::size_t i = 0; i < points.size(); i += step)
+    kept.push_back(points[i]);
+  return kept;
+}
+
+ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share) {
+  ObservedAxes observed;
+  observed.information = information;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
+      Eigen::Matrix2d{information.topLeftCorner<2, 2>()}};
+  observed.weak_direction = axes.eigenvectors().col(0);
+  observed.is_degenerate = axes.eigenvalues()[0] <= weak_share * axes.eigenvalues()[1];
+  if (!observed.is_degenerate) return observed;
+  Eigen::Matrix3d keep = Eigen::Matrix3d::Identity();
+  keep.topLeftCorner<2, 2>() -= observed.weak_direction * observed.weak_direction.transpose();
+  observed.information = keep * information * keep;
+  return observed;
+}
+
+ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtMap& map,
+                     const Se2& guess, const Eigen::Matrix3d& guess_covariance,
+                     const RangeNoise& noise, const ScanMatchConfig& config) {
+  const double point_variance_m2 = noise.variance_m2();
+  double lever2_m2 = 0.0;
+  for (const Eigen::Vector2d& point : points_in_base)
+    lever2_m2 += point.squaredNorm();
+  if (!points_in_base.empty()) lever2_m2 /= static_cast<double>(points_in_base.size());
+
+  const Eigen::Matrix3d guess_information = guess_covariance.inverse();
+  ScanMatch match;
+  match.map_from_base = guess;
+  double blur_m = std::min(
+      kMaxBlur_m, std::sqrt(0.5 * guess_covariance.topLeftCorner<2, 2>().trace() +
+                            lever2_m2 * guess_covariance(2, 2)));
+  Quadratic model;
+  ObservedAxes observed;
+  for (bool is_final = false; !is_final; blur_m *= kBlurStep) {
+    is_final = blur_m < kFinestBlur_m;
+    if (is_final) blur_m = 0.0;
+    const int steps = is_final ? kFinalSteps : kStepsPerStage;
+    for (int i = 0; i < steps; ++i) {
+      model = quadratic_about(points_in_base, map, match.map_from_base, squared(blur_m),
+                              point_variance_m2, config);
+      observed = observed_axes(model.information, config.weak_share);
+      Eigen::Vector3d gradient = model.gradient;
+      if (observed.is_degenerate) {
+        gradient.head<2>() -=
+            observed.weak_direction * observed.weak_direction.dot(gradient.head<2>());
+      }
+      const Eigen::Vector3d off = difference(match.map_from_base, guess);
+      const Eigen::Vector3d step =
+          -(observed.information + guess_information).ldlt().solve(gradient + guess_information * off);
+      match.map_from_base = moved(match.map_from_base, step);
+      if (step.cwiseAbs().maxCoeff() < kConverged_m) break;
+    }
+  }
+  // The optimum without the guess, along what the scan shows.
+  model = quadratic_about(points_in_base, map, match.map_from_base, 0.0, point_variance_m2, config);
+  match.observed = observed_axes(model.information, config.weak_share);
+  Eigen::Vector3d gradient = model.gradient;
+  if (match.observed.is_degenerate) {
+    const Eigen::Vector2d& weak = match.observed.weak_direction;
+    gradient.head<2>() -= weak * weak.dot(gradient.head<2>());
+  }
+  Eigen::Matrix3d full_rank = match.observed.information;
+  if (match.observed.is_degenerate) {
+    const Eigen::Vector2d& weak = match.observed.weak_direction;
+    full_rank.topLeftCorner<2, 2>() += full_rank.topLeftCorner<2, 2>().trace() * weak * weak.transpose();
+  }
+  if (full_rank.topLeftCorner<2, 2>().determinant() > 0.0 && full_rank(2, 2) > 0.0)
+    match.map_from_base = moved(match.map_from_base, -full_rank.ldlt().solve(gradient));
+  match.observed.information *= config.information_share;
+  summarise(points_in_base, map, point_variance_m2, config, match);
+  return match;
+}
+
+}  // namespace waymark

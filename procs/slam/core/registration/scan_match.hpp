@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a scan fits into a map of normal distributions.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "slam/core/registration/ndt_map.hpp"
+
+#include <Eigen/Core>
+
+#include <span>
+#include <vector>
+
+namespace waymark {
+
+class Fields;
+
+using Points = std::vector<Eigen::Vector2d>;
+
+/// At most so many of them, evenly spread.
+Points thinned(const Points& points, std::size_t most);
+
+struct ScanMatchConfig {
+  double cell_spacing_m{0.25};     ///< of the submaps' cells
+  double kernel_sigmas{3.0};       ///< a beam this far from its wall counts a quarter
+  double information_share{0.3};   ///< of independent beams: those on one wall err together
+  double roughness_m{0.003};       ///< of walls, beside the noise of ranges
+  double weak_share{0.03};         ///< directions below this share of the strongest are unobserved
+  int min_inliers{15};             ///< beams; a scan with fewer is not used
+
+  void describe(Fields& fields);
+};
+
+/// Information about a pose, and which directions it leaves open.
+struct ObservedAxes {
+  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};  ///< nothing along weak_direction
+  Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit
+  bool is_degenerate{false};
+};
+
+/// Cuts off what noise of the walls' normals has leaked into a direction that they do not show
+/// (Zhang, Kaess, Singh 2016). Frame: that of the information, origin at the robot.
+ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share);
+
+struct ScanMatch {
+  /// Where the scan alone would put the base: along unobserved axes, where the guess was.
+  Se2 map_from_base{};
+  ObservedAxes observed{};      ///< information about (x, y, theta), map's axes
+  double inlier_share{0.0};     ///< of the beams that ended on something mapped
+  double mapped_share{0.0};     ///< of all beams
+  int inliers{0};
+  /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the surfaces that the
+  /// inliers lie on; sums to 1.
+  int first_keyframe{0};
+  std::vector<double> keyframe_shares{};
+
+  bool is_usable(const ScanMatchConfig& config) const {
+    return inliers >= config.min_inliers && observed.information(2, 2) > 0.0;
+  }
+};
+
+/// Gauss-Newton on robust point-to-distribution distances, from coarse to fine.
+/// @param points_in_base   ends of beams.
+/// @param guess            map_from_base.
+/// @param guess_covariance of (x, y, theta), map's axes: how far the optimum may be. Only the way
+///                         there depends on it, and where the scan is silent, the result.
+ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtMap& map,
+                     const Se2& guess, const Eigen::Matrix3d& guess_covariance,
+                     const RangeNoise& noise, const ScanMatchConfig& config);
+
+}  // namespace waymark

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A few metres of scans, anchored to a keyframe.
+#pragma once
+
+#include "slam/core/registration/scan_match.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace waymark {
+
+class Submap {
+ public:
+  /// Its frame is the first keyframe's base.
+  Submap(double cell_spacing_m, std::size_t first_keyframe)
+      : first_keyframe_{first_keyframe}, surfaces_{cell_spacing_m} {}
+
+  /// Keyframes come one after the other, without a gap.
+  void insert(const Points& points_in_base, const Se2& submap_from_base) {
+    poses_.push_back(submap_from_base);
+    add(points_in_base, submap_from_base);
+  }
+
+  /// A scan that hangs on the newest keyframe.
+  void add(const Points& points_in_base, const Se2& submap_from_base) {
+    const auto keyframe = static_cast<int>(last_keyframe());
+    for (const Eigen::Vector2d& point : points_in_base) {
+      const Eigen::Vector2d there = submap_from_base * point;
+      surfaces_.add(there, keyframe);
+      const std::pair cell{std::lround(there.x() / kThinned_m), std::lround(there.y() / kThinned_m)};
+      if (occupied_.insert(cell).second) points_.push_back(there);
+    }
+  }
+
+  std::size_t first_keyframe() const { return first_keyframe_; }
+  std::size_t last_keyframe() const { return first_keyframe_ + poses_.size() - 1; }
+  std::size_t num_keyframes() const { return poses_.size(); }
+  const NdtMap& surfaces() const { return surfaces_; }
+
+  /// One for each occupied cell of 5 cm.
+  const Points& points() const { return points_; }
+
+  /// As it was inserted.
+  const Se2& submap_from_keyframe(std::size_t keyframe) const {
+    return poses_[keyframe - first_keyframe_];
+  }
+
+ private:
+  static constexpr double kThinned_m = 0.05;
+
+  std::size_t first_keyframe_;
+  NdtMap surfaces_;
+  std::vector<Se2> poses_{};
+  std::set<std::pair<long, long>> occupied_{};
+  Points points_{};
+};
+
+}  // namespace waymark
