@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]: the map's frame is the first pose
+constexpr double kFirstPoseSigma = 1e-5;   // [m, rad]: the map's frame is the first pose
 constexpr std::size_t kMaxReferences = 4;  // keyframes that stand for all that saw a scan's walls
 constexpr double kSamePlace_m = 0.5;       // two markers this near hang in one place
 constexpr double kReturned_m = 0.3;        // sigma of a pose that a relocalisation is taken back to
@@ -25,17 +25,17 @@ constexpr double kFitMemory = 0.05;  // weight of the newest scan in what is usu
 constexpr double kSearchReach_m = 0.5;
 constexpr double kSearchReach_rad = 0.6;
 constexpr std::size_t kSearchBeams = 120;
-constexpr double kClearlyMore = 1.05;              // inliers than the plain match has
+constexpr double kClearlyMore = 1.05;                  // inliers than the plain match has
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
 
 constexpr double kLoopMargin = 4.0;  // on the covariance of the pose: it is a model
 constexpr int kSolveSteps = 12;
-constexpr std::size_t kSolveEvery = 10;  // keyframes; and as the graph grows
+constexpr std::size_t kSolveEvery = 10;   // keyframes; and as the graph grows
 constexpr std::size_t kRoutineShare = 8;  // the same of loops that only confirm the pose
 constexpr double kLoopMatters = 3.0;      // chi^2 of a loop that does more
-constexpr std::size_t kRedrawShare = 4;  // of all keyframes are new before the map is drawn again
-constexpr double kBlurred_m = 0.25;      // poses that moved so far have it drawn again at once
-constexpr double kNear_m = 12.0;         // landmarks nearer than this stay in the window
+constexpr std::size_t kRedrawShare = 4;   // of all keyframes are new before the map is drawn again
+constexpr double kBlurred_m = 0.25;       // poses that moved so far have it drawn again at once
+constexpr double kNear_m = 12.0;          // landmarks nearer than this stay in the window
 constexpr std::size_t kSolveShare = 40;  // a share of all, so that the cost per keyframe is bounded
 
 // A marker counts as missed if it faces the camera, the LiDAR sees its wall, and no frame of the
@@ -89,9 +89,10 @@ Estimate GraphEstimator::update(const Observation& observation) {
   const bool is_keyframe = is_keyframe_due();
   if (is_keyframe) add_keyframe(observation);
   since_insertion_m_ += observation.motion.distance_m;
-  const Estimate now = is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation);
-  scan_poses_.push_back({observation.time, newest(),
-                         graph_.state().keyframes.back().inverse() * now.map_from_base});
+  const Estimate now =
+      is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation);
+  scan_poses_.push_back(
+      {observation.time, newest(), graph_.state().keyframes.back().inverse() * now.map_from_base});
   return now;
 }
 
@@ -101,8 +102,8 @@ bool GraphEstimator::is_keyframe_due() const {
 }
 
 GraphEstimator::Prediction GraphEstimator::prediction() const {
-  const CorrectedMotion moved = corrected_motion(
-      motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
+  const CorrectedMotion moved =
+      corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
   const Se2& from = graph_.state().keyframes.back();
   return {from * moved.start_from_end, in_axes(from.rotation(), moved.covariance)};
 }
@@ -116,8 +117,8 @@ std::optional<GraphEstimator::MatchedScan> GraphEstimator::matched(
   const Se2 submap_from_map = scan.map_from_submap.inverse();
   const Se2 guess = submap_from_map * prediction.map_from_base;
   const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), prediction.covariance);
-  scan.match = match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_,
-                          config_.scan);
+  scan.match =
+      match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_, config_.scan);
   return scan;
 }
 
@@ -204,8 +205,7 @@ void GraphEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
     const bool is_open = is_loop || graph_.is_active({VariableKind::kKeyframe, reference});
     if (share <= 0.0 || !is_open) continue;
     factor.references.push_back(
-        {reference, share,
-         submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
+        {reference, share, submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
   }
   double sum = 0.0;
   for (const ScanFactor::Reference& reference : factor.references)
@@ -222,9 +222,9 @@ void GraphEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
 void GraphEstimator::learn_noise(const Prediction& expected, const ScanMatch& match) {
   if (!config_.learn_noise) return;
   const OdometryNoise described = scaled(graph_.noise().odometry, {});
-  const Se2 map_from_submap = graph_.state().keyframes[submaps_.size() > 1
-                                  ? submaps_[submaps_.size() - 2].first_keyframe()
-                                  : submaps_.back().first_keyframe()];
+  const Se2 map_from_submap =
+      graph_.state().keyframes[submaps_.size() > 1 ? submaps_[submaps_.size() - 2].first_keyframe()
+                                                   : submaps_.back().first_keyframe()];
   const Se2 found = map_from_submap * match.map_from_base;
   const Eigen::Matrix2d to_base = found.rotation().transpose();
   Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
@@ -232,7 +232,8 @@ void GraphEstimator::learn_noise(const Prediction& expected, const ScanMatch& ma
   const Eigen::Matrix3d information =
       in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
   // Two scans err, this one and the one before.
-  noise_learner_.observe_turn({off.z(), turn_variance(described, motion_.distance_m, motion_.turn_rad),
+  noise_learner_.observe_turn({off.z(),
+                               turn_variance(described, motion_.distance_m, motion_.turn_rad),
                                2.0 / information(2, 2)});
   if (!match.observed.is_degenerate) {
     const Eigen::Matrix3d covariance = information.inverse();
@@ -281,6 +282,7 @@ void GraphEstimator::use_markers(std::span<const MarkerMeasurement> measurements
     std::size_t landmark;
     const MarkerMeasurement* measurement;
   };
+
   std::vector<Match> matches;
   std::vector<std::size_t> returning;
   for (const MarkerMeasurement& measurement : measurements) {
@@ -351,10 +353,11 @@ void GraphEstimator::close_loops(const Points& points) {
     LoopSearch search;
     search.map_from_base = graph_.state().keyframes.back();
     search.covariance = kLoopMargin * graph_.covariance_of({VariableKind::kKeyframe, newest()});
-    search.covariance.diagonal() += Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
+    search.covariance.diagonal() +=
+        Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
     search.first_recent_keyframe = graph_.first_active_keyframe();
-    for (const LoopFinder::Found& found : loop_finder_.find(newest(), points, search, submaps_,
-                                                            graph_.state(), range_noise_)) {
+    for (const LoopFinder::Found& found :
+         loop_finder_.find(newest(), points, search, submaps_, graph_.state(), range_noise_)) {
       add_scan_factor(found.keyframe, submaps_[found.loop.submap], found.loop.match, true);
       has_new_loops_ = true;
       loops_matter_ |= found.chi2 > kLoopMatters;
@@ -371,9 +374,9 @@ void GraphEstimator::close_loops(const Points& points) {
 void GraphEstimator::solve_everything(const std::vector<std::size_t>& returning_landmarks) {
   std::vector<std::size_t> activated = returning_landmarks;
   for (std::size_t i = 0; i < book_.entries().size(); ++i) {
-    const double away_m = (graph_.state().landmarks[i].translation() -
-                           graph_.state().keyframes.back().translation())
-                              .norm();
+    const double away_m =
+        (graph_.state().landmarks[i].translation() - graph_.state().keyframes.back().translation())
+            .norm();
     if (!book_.is_retired(i) && away_m < kNear_m) activated.push_back(i);
   }
   graph_.optimise_all(has_new_loops_ ? kSolveSteps : 0, activated);
@@ -388,12 +391,13 @@ void GraphEstimator::solve_everything(const std::vector<std::size_t>& returning_
 void GraphEstimator::redraw_if_moved() {
   double farthest_m = 0.0;
   for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
-    farthest_m = std::max(farthest_m, (drawn_at_[i].translation() -
-                                       graph_.state().keyframes[i].translation())
-                                          .norm());
+    farthest_m =
+        std::max(farthest_m,
+                 (drawn_at_[i].translation() - graph_.state().keyframes[i].translation()).norm());
   }
   const std::size_t since = drawn_at_.size() - redrawn_keyframes_;
-  const double blur_m = since < drawn_at_.size() / kRedrawShare ? kBlurred_m : setup_.grid.resolution_m;
+  const double blur_m =
+      since < drawn_at_.size() / kRedrawShare ? kBlurred_m : setup_.grid.resolution_m;
   if (farthest_m < blur_m) return;
   redrawn_keyframes_ = drawn_at_.size();
   mapper_ = Mapper{setup_.grid};
@@ -429,8 +433,8 @@ Estimate GraphEstimator::estimate_at_keyframe(const Observation& observation) co
                   graph_.covariance_of({VariableKind::kKeyframe, newest()}));
 }
 
-/// Scans in between average the noise of the submaps. One that fits worse than usual might be in the
-/// wrong place, and would confirm that to the next ones.
+/// Scans in between average the noise of the submaps. One that fits worse than usual might be in
+/// the wrong place, and would confirm that to the next ones.
 void GraphEstimator::insert_between(const Points& points, const ScanMatch& match,
                                     const Se2& map_from_base) {
   if (since_insertion_m_ < config_.insert_distance_m || is_bad_fit(match) ||

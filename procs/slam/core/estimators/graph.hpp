@@ -46,6 +46,7 @@ class GraphEstimator final : public Estimator {
   Estimate update(const Observation& observation) override;
 
   const GridMap& map() const override { return mapper_.map(); }
+
   std::vector<Landmark> landmarks() const override;
   std::vector<PublishedParticle> particles() const override;
   std::vector<TimedPose> trajectory() const override;
@@ -96,6 +97,7 @@ class GraphEstimator final : public Estimator {
   bool is_bad_fit(const ScanMatch& match) const;
   std::size_t first_filled_submap() const;
   Se2 submap_from_map(std::size_t submap) const;
+
   std::size_t newest() const { return graph_.state().keyframes.size() - 1; }
 
   EstimatorSetup setup_;
@@ -107,14 +109,14 @@ class GraphEstimator final : public Estimator {
   OdometryNoiseLearner noise_learner_{};
   LoopFinder loop_finder_;
   double since_loop_search_m_{0.0};
-  std::size_t solved_keyframes_{0};  ///< of the whole graph, when it was solved last
+  std::size_t solved_keyframes_{0};   ///< of the whole graph, when it was solved last
   bool has_new_loops_{false};         ///< since then
   bool loops_matter_{false};          ///< one of them contradicts the pose
   std::size_t redrawn_keyframes_{0};  ///< when the map was drawn again last
   std::deque<Submap> submaps_{};  ///< the last two are being filled, the last but one is matched
   Motion motion_{};               ///< since the newest keyframe
   double since_insertion_m_{0.0};
-  double unobserved_m_{0.0};      ///< driven since markers or walls showed the way
+  double unobserved_m_{0.0};  ///< driven since markers or walls showed the way
   Mapper mapper_;
   std::vector<ScanPose> scan_poses_{};
   ScanArchive archive_{};

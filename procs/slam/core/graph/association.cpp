@@ -22,7 +22,8 @@ MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t l
   factor.keyframe = keyframe;
   factor.landmark = landmark;
   factor.measurement = measurement;
-  const LinearFactor linear = factor.linearise(graph.state(), std::numeric_limits<double>::infinity());
+  const LinearFactor linear =
+      factor.linearise(graph.state(), std::numeric_limits<double>::infinity());
   MarkerInnovation innovation;
   innovation.landmark = landmark;
   innovation.residual = -linear.residual;

@@ -28,7 +28,8 @@ MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t l
                          const MarkerMeasurement& measurement);
 
 /// Where the marker is if the keyframe's pose and the calibration are right, map frame.
-Se2 map_from_measured(const State& state, std::size_t keyframe, const MarkerMeasurement& measurement);
+Se2 map_from_measured(const State& state, std::size_t keyframe,
+                      const MarkerMeasurement& measurement);
 
 /// The markers that are known, by the index of their landmark in the graph.
 class MarkerBook {
@@ -41,7 +42,8 @@ class MarkerBook {
   void note_sighting(std::size_t landmark, Timestamp time);
 
   /// Counts one more missed detection for every marker that should be in view and was not sighted
-  /// since `now`. One that is missed while another of its id has turned up was moved: it is retired.
+  /// since `now`. One that is missed while another of its id has turned up was moved: it is
+  /// retired.
   void note_misses(const State& state, std::size_t keyframe,
                    const std::function<bool(const Se2& base_from_marker)>& is_in_view,
                    Timestamp now);

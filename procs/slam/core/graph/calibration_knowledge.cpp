@@ -33,8 +33,7 @@ void CalibrationKnowledge::observe(const FocalSighting& focal) {
 /// An exact value stays exact.
 double CalibrationKnowledge::prior_weight(Eigen::Index term, double value) const {
   const double chi2 = (value / sigmas_[term]) * (value / sigmas_[term]);
-  const double robust =
-      sigmas_[term] > kExactSigma ? (kDegrees + 1.0) / (kDegrees + chi2) : 1.0;
+  const double robust = sigmas_[term] > kExactSigma ? (kDegrees + 1.0) / (kDegrees + chi2) : 1.0;
   return std::min(1.0, robust) / (sigmas_[term] * sigmas_[term]);
 }
 

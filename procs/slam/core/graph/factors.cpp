@@ -116,7 +116,8 @@ LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& 
     rolls.root_information = Eigen::Matrix3d::Identity() / kCarried_m;
   }
   linear.residual = rolls.root_information * rolls.residual;
-  const double factor = is_cut ? 1.0 : OdometryMixture::likeliest(linear.residual.squaredNorm()).factor;
+  const double factor =
+      is_cut ? 1.0 : OdometryMixture::likeliest(linear.residual.squaredNorm()).factor;
   const Eigen::Matrix3d root = rolls.root_information / factor;
   linear.residual /= factor;
   linear.blocks = {
@@ -140,7 +141,7 @@ void ScanFactor::reweigh(const State& state) {
 
 LinearFactor ScanFactor::linearise(const State& state) const {
   const Se2& map_from_keyframe = state.keyframes[keyframe];
-  const Eigen::Matrix3d root_information = weight * this->root_information;
+  const Eigen::Matrix3d root = weight * root_information;
   LinearFactor linear;
   linear.blocks.reserve(references.size() + 1);
   Eigen::Matrix3d by_keyframe = Eigen::Matrix3d::Zero();
@@ -155,12 +156,11 @@ LinearFactor ScanFactor::linearise(const State& state) const {
     Eigen::Matrix3d expected_by_reference = Eigen::Matrix3d::Identity();
     expected_by_reference.topRightCorner<2, 1>() =
         kQuarterTurn * (expected.translation() - map_from_reference.translation());
-    linear.blocks.push_back(
-        {keyframe_variable(reference.keyframe),
-         reference.share * root_information * off.by_from * expected_by_reference});
+    linear.blocks.push_back({keyframe_variable(reference.keyframe),
+                             reference.share * root * off.by_from * expected_by_reference});
   }
-  linear.residual = root_information * residual;
-  linear.blocks.push_back({keyframe_variable(keyframe), root_information * by_keyframe});
+  linear.residual = root * residual;
+  linear.blocks.push_back({keyframe_variable(keyframe), root * by_keyframe});
   return linear;
 }
 
@@ -168,9 +168,9 @@ LinearFactor MarkerFactor::linearise(const State& state, double gate) const {
   const Relative expected = relative(state.keyframes[keyframe], state.landmarks[landmark]);
   const Eigen::Matrix3d by_camera = measurement.by_errors_at(expected.pose.head<2>());
   LinearFactor linear;
-  linear.residual = root_information *
-                    pose_residual(expected.pose + by_camera * camera_part(state.calibration) -
-                                  vector_of(measurement.base_from_marker));
+  linear.residual =
+      root_information * pose_residual(expected.pose + by_camera * camera_part(state.calibration) -
+                                       vector_of(measurement.base_from_marker));
   const double chi2 = linear.residual.squaredNorm();
   const double weight = chi2 > gate ? gate / chi2 : 1.0;  // of the root: squared in the cost
   const Eigen::Matrix3d root = weight * root_information;
@@ -185,8 +185,7 @@ LinearFactor MarkerFactor::linearise(const State& state, double gate) const {
 
 LinearFactor PosePrior::linearise(const State& state) const {
   LinearFactor linear;
-  linear.residual =
-      root_information * pose_difference(state.keyframes[keyframe], map_from_base);
+  linear.residual = root_information * pose_difference(state.keyframes[keyframe], map_from_base);
   linear.blocks = {{keyframe_variable(keyframe), root_information}};
   return linear;
 }

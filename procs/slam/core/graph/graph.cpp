@@ -50,19 +50,23 @@ std::vector<Variable> Graph::variables_of(const Factor& factor) const {
     std::vector<Variable> operator()(const OdometryFactor& f) const {
       return {{VariableKind::kKeyframe, f.from}, {VariableKind::kKeyframe, f.to}};
     }
+
     std::vector<Variable> operator()(const ScanFactor& f) const {
       std::vector<Variable> variables{{VariableKind::kKeyframe, f.keyframe}};
       for (const ScanFactor::Reference& reference : f.references)
         variables.push_back({VariableKind::kKeyframe, reference.keyframe});
       return variables;
     }
+
     std::vector<Variable> operator()(const MarkerFactor& f) const {
       return {{VariableKind::kKeyframe, f.keyframe}, {VariableKind::kLandmark, f.landmark}};
     }
+
     std::vector<Variable> operator()(const PosePrior& f) const {
       return {{VariableKind::kKeyframe, f.keyframe}};
     }
   };
+
   return std::visit(Visitor{}, factor);
 }
 
@@ -99,15 +103,20 @@ void Graph::relocate_newest(const Se2& map_from_base) {
 LinearFactor Graph::linearised(const Factor& factor) const {
   struct Visitor {
     const Graph& graph;
+
     LinearFactor operator()(const OdometryFactor& f) const {
       return f.linearise(graph.state_, graph.odometry_noise());
     }
+
     LinearFactor operator()(const ScanFactor& f) const { return f.linearise(graph.state_); }
+
     LinearFactor operator()(const MarkerFactor& f) const {
       return f.linearise(graph.state_, graph.noise_.marker_gate);
     }
+
     LinearFactor operator()(const PosePrior& f) const { return f.linearise(graph.state_); }
   };
+
   return std::visit(Visitor{*this}, factor);
 }
 
@@ -127,7 +136,8 @@ void Graph::add_to(NormalEquations& equations, const LinearFactor& linear) const
 
 Graph::NormalEquations Graph::window_equations() const {
   NormalEquations equations = prior_;
-  calibration_.add_to(state_.calibration, equations.h.topLeftCorner<kCalibrationSize, kCalibrationSize>(),
+  calibration_.add_to(state_.calibration,
+                      equations.h.topLeftCorner<kCalibrationSize, kCalibrationSize>(),
                       equations.g.head<kCalibrationSize>());
   for (const std::size_t index : active_factors_)
     add_to(equations, linearised(factors_[index]));
@@ -187,8 +197,9 @@ void Graph::eliminate(const Variable& variable) {
   const Eigen::MatrixXd column = prior_.h.middleCols(at, size);
   // What was never measured has no information to pass on.
   const Eigen::MatrixXd gain =
-      own.llt().info() == Eigen::Success ? Eigen::MatrixXd{own.llt().solve(column.transpose()).transpose()}
-                                         : Eigen::MatrixXd::Zero(column.rows(), size);
+      own.llt().info() == Eigen::Success
+          ? Eigen::MatrixXd{own.llt().solve(column.transpose()).transpose()}
+          : Eigen::MatrixXd::Zero(column.rows(), size);
   prior_.g -= gain * prior_.g.segment(at, size).eval();
   prior_.h.noalias() -= gain * column.transpose();
   remove_from_layout(variable);
@@ -222,9 +233,9 @@ void Graph::marginalise_oldest(double far_m) {
   const std::vector<Variable> layout = layout_;
   for (const Variable& variable : layout) {
     if (variable.kind != VariableKind::kLandmark || seen.contains(variable.index)) continue;
-    const double away_m = (state_.landmarks[variable.index].translation() -
-                           state_.keyframes.back().translation())
-                              .norm();
+    const double away_m =
+        (state_.landmarks[variable.index].translation() - state_.keyframes.back().translation())
+            .norm();
     if (away_m > far_m) eliminate(variable);
   }
 }

@@ -24,11 +24,17 @@ class Graph {
   Graph(const GraphNoise& noise, const Calibration& calibration_sigmas);
 
   const State& state() const { return state_; }
+
   const std::vector<Factor>& factors() const { return factors_; }
+
   const GraphNoise& noise() const { return noise_; }
+
   OdometryNoise odometry_noise() const { return scaled(noise_.odometry, noise_.scale); }
+
   void set_odometry_scale(const OdometryScale& scale) { noise_.scale = scale; }
+
   CalibrationKnowledge& calibration_knowledge() { return calibration_; }
+
   bool is_calibration_doubted() const { return calibration_.is_doubted(state_.calibration); }
 
   std::size_t add_keyframe(const Se2& map_from_base);
@@ -41,7 +47,9 @@ class Graph {
   void relocate_newest(const Se2& map_from_base);
 
   bool is_active(const Variable& variable) const { return offsets_.contains(variable); }
+
   std::size_t first_active_keyframe() const { return first_keyframe_; }
+
   std::size_t num_active_keyframes() const { return state_.keyframes.size() - first_keyframe_; }
 
   /// Gauss-Newton over the window.
@@ -57,6 +65,7 @@ class Graph {
 
   /// Joint covariance of two variables of the window, after optimise().
   Eigen::MatrixXd covariance(const Variable& a, const Variable& b) const;
+
   Eigen::Matrix3d covariance_of(const Variable& a) const { return covariance(a, a); }
 
   /// The last one that was known: of landmarks behind the window, from when they left it.

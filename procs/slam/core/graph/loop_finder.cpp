@@ -11,16 +11,16 @@
 namespace waymark {
 namespace {
 
-constexpr double kSigmas = 3.0;        // of the pose that a search covers
-constexpr double kDirectReach_m = 0.3; // below, plain matching finds it
+constexpr double kSigmas = 3.0;         // of the pose that a search covers
+constexpr double kDirectReach_m = 0.3;  // below, plain matching finds it
 constexpr double kDirectReach_rad = 0.15;
 constexpr std::size_t kSearchBeams = 120;
-constexpr std::size_t kFields = 8;     // kept
-constexpr double kApart_m = 0.3;       // of a runner-up
+constexpr std::size_t kFields = 8;  // kept
+constexpr double kApart_m = 0.3;    // of a runner-up
 constexpr double kApart_rad = 0.35;
-constexpr double kAgree_m = 0.3;       // two candidates' corrections
+constexpr double kAgree_m = 0.3;  // two candidates' corrections
 constexpr double kAgree_rad = 0.05;
-constexpr double kAgreeWithin_m = 5.0; // driven between them
+constexpr double kAgreeWithin_m = 5.0;  // driven between them
 
 double reach_m(const Eigen::Matrix3d& covariance) {
   return kSigmas * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
@@ -42,10 +42,9 @@ std::optional<std::size_t> LoopFinder::nearest_submap(const LoopSearch& search,
     if (submap.last_keyframe() >= search.first_recent_keyframe) break;
     const Se2& map_from_submap = state.keyframes[submap.first_keyframe()];
     for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k) {
-      const double distance_m =
-          ((map_from_submap * submap.submap_from_keyframe(k)).translation() -
-           search.map_from_base.translation())
-              .norm();
+      const double distance_m = ((map_from_submap * submap.submap_from_keyframe(k)).translation() -
+                                 search.map_from_base.translation())
+                                    .norm();
       if (distance_m >= least_m) continue;
       least_m = distance_m;
       nearest = i;
@@ -129,7 +128,8 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
                       loop->match.mapped_share < config_.surprise_share)) {
     return {};
   }
-  if (!is_surprise && off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad) {
+  if (!is_surprise && off.head<2>().norm() < kDirectReach_m &&
+      std::abs(off.z()) < kDirectReach_rad) {
     candidate_.reset();
     return {found};
   }

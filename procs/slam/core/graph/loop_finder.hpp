@@ -17,15 +17,15 @@ class Fields;
 
 struct LoopConfig {
   bool enabled{true};
-  double every_m{0.5};          ///< driven between two attempts
-  double reach_m{4.0};          ///< of a submap about its keyframes
-  double max_search_m{15.0};    ///< half of the widest window
-  double min_inlier_share{0.8}; ///< of the beams on mapped surfaces
-  double min_mapped_share{0.6}; ///< of all beams
-  double min_score{0.4};        ///< of the wide search
-  double runner_up_share{0.85}; ///< of the best score; a runner-up above makes it ambiguous
-  double gate{16.3};            ///< chi^2 against the graph's own covariance
-  double surprise_share{0.85};  ///< what both shares have to be of a loop beyond the gate
+  double every_m{0.5};           ///< driven between two attempts
+  double reach_m{4.0};           ///< of a submap about its keyframes
+  double max_search_m{15.0};     ///< half of the widest window
+  double min_inlier_share{0.8};  ///< of the beams on mapped surfaces
+  double min_mapped_share{0.6};  ///< of all beams
+  double min_score{0.4};         ///< of the wide search
+  double runner_up_share{0.85};  ///< of the best score; a runner-up above makes it ambiguous
+  double gate{16.3};             ///< chi^2 against the graph's own covariance
+  double surprise_share{0.85};   ///< what both shares have to be of a loop beyond the gate
 
   void describe(Fields& fields);
 };
@@ -39,7 +39,7 @@ struct LoopMatch {
 struct LoopSearch {
   Se2 map_from_base{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< of it, relative to what is old
-  std::size_t first_recent_keyframe{0};  ///< submaps with later ones are not old
+  std::size_t first_recent_keyframe{0};                 ///< submaps with later ones are not old
 };
 
 class LoopFinder {
@@ -55,11 +55,13 @@ class LoopFinder {
     LoopMatch loop{};
     double chi2{0.0};  ///< against the pose as it was believed
   };
+
   std::vector<Found> find(std::size_t keyframe, const Points& points, const LoopSearch& search,
                           const std::deque<Submap>& submaps, const State& state,
                           const RangeNoise& noise);
 
   int num_ambiguous() const { return num_ambiguous_; }
+
   int num_unconfirmed() const { return num_unconfirmed_; }
 
  private:
@@ -73,9 +75,9 @@ class LoopFinder {
   std::optional<std::size_t> nearest_submap(const LoopSearch& search,
                                             const std::deque<Submap>& submaps,
                                             const State& state) const;
-  std::optional<LoopMatch> match(std::size_t submap, const Points& points,
-                                 const LoopSearch& search, const std::deque<Submap>& submaps,
-                                 const State& state, const RangeNoise& noise);
+  std::optional<LoopMatch> match(std::size_t submap, const Points& points, const LoopSearch& search,
+                                 const std::deque<Submap>& submaps, const State& state,
+                                 const RangeNoise& noise);
   bool is_good(const ScanMatch& match) const;
   const CorrelativeField& field_of(std::size_t submap, const Submap& old);
 

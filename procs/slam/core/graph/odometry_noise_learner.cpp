@@ -8,10 +8,10 @@
 namespace waymark {
 namespace {
 
-constexpr double kMemory = 0.99;         // of an innovation, at the next one
-constexpr double kPriorDecades = 3.0;    // log-odds of the description against any worse scale
-constexpr double kCoupling = 0.7;        // standard deviation of log(along / turn)
-constexpr double kSlipFactor = 5.0;      // as the second component of OdometryMixture
+constexpr double kMemory = 0.99;       // of an innovation, at the next one
+constexpr double kPriorDecades = 3.0;  // log-odds of the description against any worse scale
+constexpr double kCoupling = 0.7;      // standard deviation of log(along / turn)
+constexpr double kSlipFactor = 5.0;    // as the second component of OdometryMixture
 const double kLogSlipShare = std::log(0.03);
 
 double squared(double x) {
@@ -31,11 +31,10 @@ double OdometryNoiseLearner::scale_at(std::size_t i) {
 void OdometryNoiseLearner::add(const OdometryInnovation& innovation, LogLikelihoods& to) {
   for (std::size_t i = 0; i < kScales; ++i) {
     const double by_odometry = squared(scale_at(i)) * innovation.odometry_variance;
-    const double rolls =
-        log_normal(innovation.value, innovation.other_variance + by_odometry);
+    const double rolls = log_normal(innovation.value, innovation.other_variance + by_odometry);
     const double slips =
-        kLogSlipShare + log_normal(innovation.value, innovation.other_variance +
-                                                         squared(kSlipFactor) * by_odometry);
+        kLogSlipShare + log_normal(innovation.value,
+                                   innovation.other_variance + squared(kSlipFactor) * by_odometry);
     to[i] = kMemory * to[i] + std::max(rolls, slips);
   }
 }

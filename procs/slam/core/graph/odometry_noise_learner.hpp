@@ -18,12 +18,13 @@ struct OdometryInnovation {
 
 /// Maximum a posteriori over a grid of noise scales, each with the log-likelihood of what was seen;
 /// old innovations are forgotten slowly. A single slip is no noise: innovations may come from the
-/// wide components of OdometryMixture. Wheels that are bad in the turn, which walls show everywhere,
-/// are probably as bad along the way, which a bare corridor does not show.
-/// Source: innovation-based adaptive estimation (Mehra 1972), as a bank of models (Magill 1965).
+/// wide components of OdometryMixture. Wheels that are bad in the turn, which walls show
+/// everywhere, are probably as bad along the way, which a bare corridor does not show. Source:
+/// innovation-based adaptive estimation (Mehra 1972), as a bank of models (Magill 1965).
 class OdometryNoiseLearner {
  public:
   void observe_along(const OdometryInnovation& innovation) { add(innovation, along_); }
+
   void observe_turn(const OdometryInnovation& innovation) { add(innovation, turn_); }
 
   OdometryScale scale() const;

@@ -38,6 +38,7 @@ struct Variable {
   std::size_t index{0};
 
   auto operator<=>(const Variable&) const = default;
+
   Eigen::Index size() const { return kind == VariableKind::kCalibration ? kCalibrationSize : 3; }
 };
 

@@ -161,7 +161,8 @@ void Graph::optimise_all(int iterations, const std::vector<std::size_t>& activat
   for (std::size_t i = 0; i < linked.size(); ++i) {
     prior_.g[linked[i]] -= pull[static_cast<Eigen::Index>(i)];
     for (std::size_t k = 0; k < linked.size(); ++k)
-      prior_.h(linked[i], linked[k]) -= lost(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      prior_.h(linked[i], linked[k]) -=
+          lost(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
   }
 }
 

@@ -7,9 +7,9 @@
 namespace waymark {
 namespace {
 
-constexpr int kMinPoints = 4;            // of a cell that says something
-constexpr double kPriorPoints = 6.0;     // that the pooled point noise counts as in a cell
-constexpr double kLineRatio = 0.1;       // of a line's variances, across to along
+constexpr int kMinPoints = 4;                // of a cell that says something
+constexpr double kPriorPoints = 6.0;         // that the pooled point noise counts as in a cell
+constexpr double kLineRatio = 0.1;           // of a line's variances, across to along
 constexpr double kDescribedPoints = 2000.0;  // that the description of the LiDAR counts as
 constexpr double kMaxPooled = 2e5;           // older points are forgotten beyond
 
@@ -20,7 +20,8 @@ bool NdtSurface::is_line() const {
 }
 
 RangeNoise::RangeNoise(double described_sigma_m)
-    : sum_m2_{kDescribedPoints * described_sigma_m * described_sigma_m}, weight_{kDescribedPoints} {}
+    : sum_m2_{kDescribedPoints * described_sigma_m * described_sigma_m},
+      weight_{kDescribedPoints} {}
 
 void RangeNoise::observe(double across_m2, int count) {
   sum_m2_ += count * across_m2;
@@ -68,8 +69,8 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   NdtSurface& surface = cell.surface;
   surface.mean = centre + mean;
   surface.normal = {-std::sin(along_rad), std::cos(along_rad)};
-  surface.across_m2 = (cell.count * across_m2 + kPriorPoints * point_variance_m2) /
-                      (cell.count + kPriorPoints);
+  surface.across_m2 =
+      (cell.count * across_m2 + kPriorPoints * point_variance_m2) / (cell.count + kPriorPoints);
   surface.along_m2 = half_trace + radius;
   surface.count = static_cast<int>(cell.count);
   cell.is_stale = false;

@@ -12,11 +12,12 @@ namespace waymark {
 /// What the points of one cell look like.
 struct NdtSurface {
   Eigen::Vector2d mean{Eigen::Vector2d::Zero()};
-  Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< direction of least variance; unit, any sign
-  double across_m2{0.0};                             ///< variance along `normal`
-  double along_m2{0.0};                              ///< and at right angles to it
-  int count{0};                                      ///< points
-  int first_keyframe{0};  ///< the points came from keyframes in [first, last]
+  Eigen::Vector2d normal{
+      Eigen::Vector2d::UnitX()};  ///< direction of least variance; unit, any sign
+  double across_m2{0.0};          ///< variance along `normal`
+  double along_m2{0.0};           ///< and at right angles to it
+  int count{0};                   ///< points
+  int first_keyframe{0};          ///< the points came from keyframes in [first, last]
   int last_keyframe{0};
 
   /// A piece of wall; else a corner, a leg, clutter: a place without a direction.

@@ -12,13 +12,13 @@
 namespace waymark {
 namespace {
 
-constexpr double kBlurStep = 1.0 / 3.0;     // from one stage to the next finer one
-constexpr double kFinestBlur_m = 0.01;      // below: none
+constexpr double kBlurStep = 1.0 / 3.0;  // from one stage to the next finer one
+constexpr double kFinestBlur_m = 0.01;   // below: none
 constexpr int kStepsPerStage = 3;
 constexpr int kFinalSteps = 6;
-constexpr double kConverged_m = 2e-5;       // or radians
-constexpr double kMaxBlur_m = 0.25;         // a cell knows no more than its own half
-constexpr double kInlierWeight = 0.25;      // robust weight at the kernel's width
+constexpr double kConverged_m = 2e-5;   // or radians
+constexpr double kMaxBlur_m = 0.25;     // a cell knows no more than its own half
+constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
 
 double squared(double x) {
   return x * x;
@@ -41,8 +41,7 @@ BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point, double
                  const ScanMatchConfig& config) {
   BeamTerm term;
   term.distance = point - surface.mean;
-  const double across =
-      1.0 / (surface.across_m2 + squared(config.roughness_m) + blur_m2);
+  const double across = 1.0 / (surface.across_m2 + squared(config.roughness_m) + blur_m2);
   const Eigen::Vector2d& normal = surface.normal;
   term.weight = across * normal * normal.transpose();
   if (!surface.is_line()) {
@@ -88,8 +87,8 @@ Eigen::Vector3d difference(const Se2& to, const Se2& from) {
   return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
 }
 
-void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map,
-               double point_variance_m2, const ScanMatchConfig& config, ScanMatch& match) {
+void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
+               const ScanMatchConfig& config, ScanMatch& match) {
   int mapped = 0;
   std::map<int, double> shares;
   for (const Eigen::Vector2d& point : points) {
@@ -150,9 +149,9 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
   const Eigen::Matrix3d guess_information = guess_covariance.inverse();
   ScanMatch match;
   match.map_from_base = guess;
-  double blur_m = std::min(
-      kMaxBlur_m, std::sqrt(0.5 * guess_covariance.topLeftCorner<2, 2>().trace() +
-                            lever2_m2 * guess_covariance(2, 2)));
+  double blur_m =
+      std::min(kMaxBlur_m, std::sqrt(0.5 * guess_covariance.topLeftCorner<2, 2>().trace() +
+                                     lever2_m2 * guess_covariance(2, 2)));
   Quadratic model;
   ObservedAxes observed;
   for (bool is_final = false; !is_final; blur_m *= kBlurStep) {
@@ -169,8 +168,9 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
             observed.weak_direction * observed.weak_direction.dot(gradient.head<2>());
       }
       const Eigen::Vector3d off = difference(match.map_from_base, guess);
-      const Eigen::Vector3d step =
-          -(observed.information + guess_information).ldlt().solve(gradient + guess_information * off);
+      const Eigen::Vector3d step = -(observed.information + guess_information)
+                                        .ldlt()
+                                        .solve(gradient + guess_information * off);
       match.map_from_base = moved(match.map_from_base, step);
       if (step.cwiseAbs().maxCoeff() < kConverged_m) break;
     }
@@ -186,7 +186,8 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
   Eigen::Matrix3d full_rank = match.observed.information;
   if (match.observed.is_degenerate) {
     const Eigen::Vector2d& weak = match.observed.weak_direction;
-    full_rank.topLeftCorner<2, 2>() += full_rank.topLeftCorner<2, 2>().trace() * weak * weak.transpose();
+    full_rank.topLeftCorner<2, 2>() +=
+        full_rank.topLeftCorner<2, 2>().trace() * weak * weak.transpose();
   }
   if (full_rank.topLeftCorner<2, 2>().determinant() > 0.0 && full_rank(2, 2) > 0.0)
     match.map_from_base = moved(match.map_from_base, -full_rank.ldlt().solve(gradient));

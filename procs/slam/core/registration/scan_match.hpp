@@ -20,19 +20,19 @@ using Points = std::vector<Eigen::Vector2d>;
 Points thinned(const Points& points, std::size_t most);
 
 struct ScanMatchConfig {
-  double cell_spacing_m{0.25};     ///< of the submaps' cells
-  double kernel_sigmas{3.0};       ///< a beam this far from its wall counts a quarter
-  double information_share{0.3};   ///< of independent beams: those on one wall err together
-  double roughness_m{0.003};       ///< of walls, beside the noise of ranges
-  double weak_share{0.03};         ///< directions below this share of the strongest are unobserved
-  int min_inliers{15};             ///< beams; a scan with fewer is not used
+  double cell_spacing_m{0.25};    ///< of the submaps' cells
+  double kernel_sigmas{3.0};      ///< a beam this far from its wall counts a quarter
+  double information_share{0.3};  ///< of independent beams: those on one wall err together
+  double roughness_m{0.003};      ///< of walls, beside the noise of ranges
+  double weak_share{0.03};        ///< directions below this share of the strongest are unobserved
+  int min_inliers{15};            ///< beams; a scan with fewer is not used
 
   void describe(Fields& fields);
 };
 
 /// Information about a pose, and which directions it leaves open.
 struct ObservedAxes {
-  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};  ///< nothing along weak_direction
+  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};     ///< nothing along weak_direction
   Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit
   bool is_degenerate{false};
 };
@@ -44,9 +44,9 @@ ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share
 struct ScanMatch {
   /// Where the scan alone would put the base: along unobserved axes, where the guess was.
   Se2 map_from_base{};
-  ObservedAxes observed{};      ///< information about (x, y, theta), map's axes
-  double inlier_share{0.0};     ///< of the beams that ended on something mapped
-  double mapped_share{0.0};     ///< of all beams
+  ObservedAxes observed{};   ///< information about (x, y, theta), map's axes
+  double inlier_share{0.0};  ///< of the beams that ended on something mapped
+  double mapped_share{0.0};  ///< of all beams
   int inliers{0};
   /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the surfaces that the
   /// inliers lie on; sums to 1.

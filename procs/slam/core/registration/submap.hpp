@@ -30,14 +30,18 @@ class Submap {
     for (const Eigen::Vector2d& point : points_in_base) {
       const Eigen::Vector2d there = submap_from_base * point;
       surfaces_.add(there, keyframe);
-      const std::pair cell{std::lround(there.x() / kThinned_m), std::lround(there.y() / kThinned_m)};
+      const std::pair cell{std::lround(there.x() / kThinned_m),
+                           std::lround(there.y() / kThinned_m)};
       if (occupied_.insert(cell).second) points_.push_back(there);
     }
   }
 
   std::size_t first_keyframe() const { return first_keyframe_; }
+
   std::size_t last_keyframe() const { return first_keyframe_ + poses_.size() - 1; }
+
   std::size_t num_keyframes() const { return poses_.size(); }
+
   const NdtMap& surfaces() const { return surfaces_; }
 
   /// One for each occupied cell of 5 cm.
