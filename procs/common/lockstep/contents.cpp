@@ -7,9 +7,10 @@ namespace waymark {
 namespace {
 
 // Far above what a window of ticks holds (about 1 MB), far below what hurts.
-constexpr std::size_t kMaxPoolBytes = std::size_t{32} << 20;
-constexpr std::size_t kMaxPoolMessages = 20000;
-constexpr std::size_t kRememberedMessages = 2000;
+constexpr std::size_t kMaxWaitingBytes = std::size_t{32} << 20;
+constexpr std::size_t kMaxWaitingMessages = 40000;
+constexpr std::size_t kMaxTakenBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxTakenMessages = 2000;
 
 }  // namespace
 
@@ -30,35 +31,35 @@ std::vector<channel_content_t> contents_of(std::vector<Message> messages) {
 
 bool MessagePool::add(Message message) {
   const std::int64_t hash = content_hash(message);
-  if (messages_.contains(hash) || recently_taken_.contains(hash)) return false;
-  bytes_ += message.payload.size();
-  messages_.emplace(hash, std::move(message));
-  by_arrival_.push_back(hash);
-  while (bytes_ > kMaxPoolBytes || messages_.size() > kMaxPoolMessages)
-    forget_oldest();
-  // Hashes of taken messages stay in the arrival order until they are passed over.
-  while (by_arrival_.size() > 2 * kMaxPoolMessages)
-    forget_oldest();
+  if (messages_.contains(hash)) return false;
+  waiting_.bytes += message.payload.size();
+  waiting_.hashes.push_back(hash);
+  messages_.emplace(hash, Entry{std::move(message)});
+  while (waiting_.bytes > kMaxWaitingBytes || waiting_.hashes.size() > kMaxWaitingMessages)
+    forget_oldest(waiting_);
   return true;
 }
 
 Message MessagePool::take(std::int64_t hash) {
-  auto node = messages_.extract(hash);
-  bytes_ -= node.mapped().payload.size();
-  recently_taken_.insert(hash);
-  recently_taken_by_age_.push_back(hash);
-  if (recently_taken_by_age_.size() > kRememberedMessages) {
-    recently_taken_.erase(recently_taken_by_age_.front());
-    recently_taken_by_age_.pop_front();
+  Entry& entry = messages_.at(hash);
+  if (!entry.is_taken) {
+    entry.is_taken = true;
+    waiting_.bytes -= entry.message.payload.size();
+    taken_.bytes += entry.message.payload.size();
+    taken_.hashes.push_back(hash);
   }
-  return std::move(node.mapped());
+  Message message = entry.message;
+  while (taken_.bytes > kMaxTakenBytes || taken_.hashes.size() > kMaxTakenMessages)
+    forget_oldest(taken_);
+  return message;
 }
 
-void MessagePool::forget_oldest() {
-  const auto oldest = messages_.find(by_arrival_.front());
-  by_arrival_.pop_front();
-  if (oldest == messages_.end()) return;
-  bytes_ -= oldest->second.payload.size();
+void MessagePool::forget_oldest(Queue& queue) {
+  const auto oldest = messages_.find(queue.hashes.front());
+  queue.hashes.pop_front();
+  const bool is_of_taken = &queue == &taken_;
+  if (oldest == messages_.end() || oldest->second.is_taken != is_of_taken) return;
+  queue.bytes -= oldest->second.message.payload.size();
   messages_.erase(oldest);
 }
 

@@ -9,7 +9,6 @@
 #include <deque>
 #include <functional>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -21,24 +20,37 @@ inline constexpr int kMaxWindowTicks = 100;
 /// Lists messages by channel, hashes in the order of comes_before.
 std::vector<channel_content_t> contents_of(std::vector<Message> messages);
 
-/// Received messages that wait for the tick that names them. Bounded: the oldest go first.
+/// Received messages by their content. A message has no number of its own: two ticks may name the
+/// same bytes (a marker map that did not change), and the copy that comes second cannot be told
+/// from one that was sent again. So what was taken stays for a while, and satisfies whoever names
+/// it next. Bounded: the oldest go first, and come back when their tick is sent again.
 class MessagePool {
  public:
-  /// False when the message is here already or was taken a short while ago.
+  /// False when the same message is here already.
   bool add(Message message);
 
   bool has(std::int64_t hash) const { return messages_.contains(hash); }
 
+  /// Needs has(hash).
   Message take(std::int64_t hash);
 
  private:
-  void forget_oldest();
+  /// Messages in the order in which they are to be forgotten.
+  struct Queue {
+    std::deque<std::int64_t> hashes{};
+    std::size_t bytes{0};
+  };
 
-  std::map<std::int64_t, Message> messages_;
-  std::deque<std::int64_t> by_arrival_;
-  std::set<std::int64_t> recently_taken_;
-  std::deque<std::int64_t> recently_taken_by_age_;
-  std::size_t bytes_{0};
+  struct Entry {
+    Message message{};
+    bool is_taken{false};
+  };
+
+  void forget_oldest(Queue& queue);
+
+  std::map<std::int64_t, Entry> messages_{};
+  Queue waiting_{};  ///< also holds hashes that have been taken since
+  Queue taken_{};
 };
 
 }  // namespace waymark

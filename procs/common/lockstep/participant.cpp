@@ -127,8 +127,6 @@ std::optional<std::vector<std::int64_t>> LockstepParticipant::needed_messages(
     if (ack == open.acks.end()) return std::nullopt;
     add_wanted(ack->second.channels);
   }
-  std::ranges::sort(hashes);
-  hashes.erase(std::ranges::unique(hashes).begin(), hashes.end());
   return hashes;
 }
 

@@ -52,7 +52,8 @@ class LockstepParticipant {
   bool is_of_this_run(std::int64_t run_id);
   void start_at(const tick_t& tick);
   std::vector<Message> advance();
-  /// Hashes of the wanted messages of the tick; nullopt while an acknowledgement is missing.
+  /// Hashes of the wanted messages of the tick, one that was sent twice two times; nullopt while an
+  /// acknowledgement is missing.
   std::optional<std::vector<std::int64_t>> needed_messages(const OpenTick& open) const;
   std::vector<Message> answer(const tick_t& tick, std::vector<Message> published);
   Message acknowledgement(const tick_t& tick, const std::vector<Message>& published) const;

@@ -13,6 +13,7 @@ namespace {
 constexpr double kFirstPoseSigma = 1e-5;   // [m, rad]: the map's frame is the first pose
 constexpr std::size_t kMaxReferences = 4;  // keyframes that stand for all that saw a scan's walls
 constexpr double kSamePlace_m = 0.5;       // two markers this near hang in one place
+constexpr double kContradicts_m = 0.5;     // a marker this far from all of its id
 constexpr double kReturned_m = 0.3;        // sigma of a pose that a relocalisation is taken back to
 constexpr double kReturned_rad = 0.1;
 
@@ -86,7 +87,7 @@ GraphEstimator::GraphEstimator(const EstimatorSetup& setup, const GraphConfig& c
 
 Estimate GraphEstimator::update(const Observation& observation) {
   motion_ = motion_.then(observation.motion);
-  const bool is_keyframe = is_keyframe_due();
+  const bool is_keyframe = is_keyframe_due() || is_contradicted_by(observation);
   if (is_keyframe) add_keyframe(observation);
   since_insertion_m_ += observation.motion.distance_m;
   const Estimate now =
@@ -99,6 +100,19 @@ Estimate GraphEstimator::update(const Observation& observation) {
 bool GraphEstimator::is_keyframe_due() const {
   return graph_.state().keyframes.empty() || motion_.distance_m >= config_.keyframe_distance_m ||
          motion_.turn_rad >= config_.keyframe_turn_rad;
+}
+
+/// A marker where none of its id should be may mean that the robot was carried away: that cannot
+/// wait until it has driven on.
+bool GraphEstimator::is_contradicted_by(const Observation& observation) const {
+  if (observation.sightings.empty()) return false;
+  const Se2 map_from_base = prediction().map_from_base;
+  return std::any_of(
+      observation.sightings.begin(), observation.sightings.end(), [&](const MarkerSighting& seen) {
+        const Eigen::Vector2d place = map_from_base * seen.base_from_marker.translation();
+        return book_.knows(seen.id) &&
+               !book_.has_one_near(graph_.state(), place, kContradicts_m, seen.id);
+      });
 }
 
 GraphEstimator::Prediction GraphEstimator::prediction() const {

@@ -72,6 +72,7 @@ class GraphEstimator final : public Estimator {
   };
 
   bool is_keyframe_due() const;
+  bool is_contradicted_by(const Observation& observation) const;
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;

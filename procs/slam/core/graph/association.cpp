@@ -101,10 +101,20 @@ void MarkerBook::retire_since(Timestamp time) {
     if (entries_[i].first_seen > time) is_retired_[i] = true;
 }
 
-bool MarkerBook::has_one_near(const State& state, const Eigen::Vector2d& place,
-                              double near_m) const {
+bool MarkerBook::knows(int id) const {
   for (std::size_t i = 0; i < entries_.size(); ++i)
-    if (!is_retired_[i] && (state.landmarks[i].translation() - place).norm() < near_m) return true;
+    if (!is_retired_[i] && entries_[i].id == id) return true;
+  return false;
+}
+
+bool MarkerBook::has_one_near(const State& state, const Eigen::Vector2d& place, double near_m,
+                              int id) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (!is_retired_[i] && (id == kNoMarker || entries_[i].id == id) &&
+        (state.landmarks[i].translation() - place).norm() < near_m) {
+      return true;
+    }
+  }
   return false;
 }
 

@@ -53,8 +53,12 @@ class MarkerBook {
   /// Markers that were first seen after that are no longer known.
   void retire_since(Timestamp time);
 
-  /// Some marker that is known to hang within `near_m` of a place.
-  bool has_one_near(const State& state, const Eigen::Vector2d& place, double near_m) const;
+  bool knows(int id) const;
+
+  /// Some marker is known to hang within `near_m` of a place.
+  /// @param id  of it; kNoMarker for any.
+  bool has_one_near(const State& state, const Eigen::Vector2d& place, double near_m,
+                    int id = kNoMarker) const;
 
   /// The landmark of that id that fits best.
   std::optional<MarkerInnovation> nearest(const Graph& graph, std::size_t keyframe,

@@ -47,21 +47,6 @@ Variable keyframe_variable(std::size_t index) {
   return {VariableKind::kKeyframe, index};
 }
 
-struct Rolling {
-  Eigen::Vector3d residual;  ///< not whitened
-  CorrectedMotion motion;
-  Relative relative;
-  Eigen::Matrix3d root_information;
-};
-
-Rolling rolling(const OdometryFactor& factor, const State& state, const OdometryNoise& noise) {
-  const CorrectedMotion motion =
-      corrected_motion(factor.motion, odometry_part(state.calibration), noise);
-  const Relative moved = relative(state.keyframes[factor.from], state.keyframes[factor.to]);
-  return {pose_residual(moved.pose - vector_of(motion.start_from_end)), motion, moved,
-          root_of(motion.covariance.inverse())};
-}
-
 }  // namespace
 
 void State::retract(const Variable& variable, const Eigen::Ref<const Eigen::VectorXd>& step) {
@@ -88,48 +73,50 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {
   return noise;
 }
 
-const OdometryMixture::Component& OdometryMixture::likeliest(double chi2) {
-  // Shares of 0.97, 0.02, 0.007, 0.003: slips are rare, and nothing is impossible.
-  static const std::array<Component, 4> kComponents{
-      {{1.0, 0.0}, {5.0, 7.8}, {25.0, 9.9}, {125.0, 11.6}}};
-  constexpr double kDimensions = 3.0;
-  const auto cost = [chi2](const Component& component) {
-    return chi2 / (component.factor * component.factor) +
-           2.0 * kDimensions * std::log(component.factor) + component.penalty;
+Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
+                                     const Eigen::Matrix3d& rolling, double half_track_m) {
+  struct Component {
+    Eigen::Matrix3d covariance;
+    double penalty;  // -2 log of its share: 0.95, 0.03, 0.015, 0.005
   };
-  return *std::min_element(
-      kComponents.begin(), kComponents.end(),
-      [&](const Component& a, const Component& b) { return cost(a) < cost(b); });
-}
 
-double OdometryFactor::chi2(const State& state, const OdometryNoise& noise) const {
-  if (is_cut) return 0.0;
-  const Rolling rolls = rolling(*this, state, noise);
-  return (rolls.root_information * rolls.residual).squaredNorm();
+  constexpr double kSpinning = 25.0;  // turn by a spinning wheel, in standard deviations of rolling
+  // A wheel that spins is counted too far: its side is shorter than measured, and with that the
+  // way.
+  const Eigen::Vector3d spin{residual.z() > 0.0 ? -half_track_m : half_track_m, 0.0, 1.0};
+  const double spin_rad2 = kSpinning * kSpinning * rolling(2, 2);
+  const std::array<Component, 4> components{{{rolling, 0.1},
+                                             {rolling + spin_rad2 * spin * spin.transpose(), 7.0},
+                                             {Eigen::Matrix3d{25.0 * 25.0 * rolling}, 8.4},
+                                             {Eigen::Matrix3d{125.0 * 125.0 * rolling}, 10.6}}};
+  const auto cost = [&](const Component& component) {
+    const Eigen::LLT<Eigen::Matrix3d> root{component.covariance};
+    return residual.dot(root.solve(residual)) + component.penalty +
+           2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
+  };
+  return std::min_element(components.begin(), components.end(),
+                          [&](const Component& a, const Component& b) { return cost(a) < cost(b); })
+      ->covariance;
 }
 
 LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise) const {
   LinearFactor linear;
-  Rolling rolls = rolling(*this, state, noise);
-  if (is_cut) {  // as good as nothing; keeps the normal equations regular
-    constexpr double kCarried_m = 1000.0;
-    rolls.root_information = Eigen::Matrix3d::Identity() / kCarried_m;
-  }
-  linear.residual = rolls.root_information * rolls.residual;
-  const double factor =
-      is_cut ? 1.0 : OdometryMixture::likeliest(linear.residual.squaredNorm()).factor;
-  const Eigen::Matrix3d root = rolls.root_information / factor;
-  linear.residual /= factor;
-  linear.blocks = {
-      {keyframe_variable(from), root * rolls.relative.by_from},
-      {keyframe_variable(to), root * rolls.relative.by_to},
-  };
+  const CorrectedMotion moved = corrected_motion(motion, odometry_part(state.calibration), noise);
+  const Relative found = relative(state.keyframes[from], state.keyframes[to]);
+  const Eigen::Vector3d residual = pose_residual(found.pose - vector_of(moved.start_from_end));
+  constexpr double kCarried_m = 1000.0;  // as good as nothing; keeps the normal equations regular
+  const Eigen::Matrix3d root =
+      is_cut
+          ? Eigen::Matrix3d{Eigen::Matrix3d::Identity() / kCarried_m}
+          : root_of(likeliest_covariance(residual, moved.covariance, noise.half_track_m).inverse());
+  linear.residual = root * residual;
   LinearFactor::Jacobian by_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
   if (!is_cut) {
-    by_calibration.leftCols<kOdometryTerms>() =
-        -root * rolls.motion.by_errors.leftCols<kOdometryTerms>();
+    by_calibration.leftCols<kOdometryTerms>() = -root * moved.by_errors.leftCols<kOdometryTerms>();
   }
-  linear.blocks.push_back({{VariableKind::kCalibration, 0}, by_calibration});
+  linear.blocks = {{keyframe_variable(from), root * found.by_from},
+                   {keyframe_variable(to), root * found.by_to},
+                   {{VariableKind::kCalibration, 0}, by_calibration}};
   return linear;
 }
 

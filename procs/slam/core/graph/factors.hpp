@@ -35,17 +35,15 @@ struct OdometryScale {
 /// Noise of the odometry, times the scale.
 OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
 
-/// The wheels roll, or they slip, or worse: the odometry's noise is a mixture of normal
-/// distributions with these factors on the standard deviation. The likeliest one counts
-/// (Olson and Agarwal 2013, "Inference on networks of mixtures").
-struct OdometryMixture {
-  struct Component {
-    double factor{1.0};
-    double penalty{0.0};  ///< -2 log of its share, minus that of rolling
-  };
-
-  static const Component& likeliest(double chi2);
-};
+/// The odometry's noise is a mixture of normal distributions: the wheels roll; one of them spins,
+/// which errs in the way as it errs in the turn; or something worse has happened. The likeliest
+/// component counts (Olson and Agarwal 2013, "Inference on networks of mixtures").
+/// @param residual       observed minus measured (x, y, theta), in the frame at the start.
+/// @param rolling        covariance of it while the wheels roll.
+/// @param half_track_m   half of the distance between the wheels.
+/// @return the covariance of the likeliest component.
+Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
+                                     const Eigen::Matrix3d& rolling, double half_track_m);
 
 /// From one keyframe to the next, by the wheels.
 struct OdometryFactor {
@@ -56,9 +54,6 @@ struct OdometryFactor {
 
   /// @param noise  scaled.
   LinearFactor linearise(const State& state, const OdometryNoise& noise) const;
-
-  /// chi^2 under "the wheels roll".
-  double chi2(const State& state, const OdometryNoise& noise) const;
 };
 
 /// A scan against surfaces that other keyframes have seen: the mean of what these keyframes say.

@@ -12,7 +12,7 @@ constexpr int kSightingsNeeded = 2;        // of each of them: misread ids do no
 constexpr double kSamePlace_m = 0.5;
 constexpr double kSameHeading_rad = 0.35;
 constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
-constexpr double kMisread_m = 0.15;  // driven without another sighting that ends such a doubt
+constexpr double kMisread_m = 0.5;   // driven without another sighting that ends such a doubt
 constexpr double kPatience_m = 5.0;  // the same for a marker that was really there
 constexpr double kReturn_m = 30.0;   // driven after which a relocalisation is final
 
