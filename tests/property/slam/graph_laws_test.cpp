@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Laws of the whole graph estimator over simulated drives and seeds.
+#include "estimator_run.hpp"
+#include "slam/core/estimators/graph.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+using test::estimator_setup_of;
+using test::run;
+using test::SensorLog;
+using test::setup_of;
+using test::Step;
+using test::SyntheticCorridor;
+
+std::vector<Step> run_graph(const SensorLog& log, const SyntheticCorridor& corridor) {
+  GraphEstimator estimator{estimator_setup_of(corridor, 1), {}};
+  return run(estimator, log, setup_of(corridor));
+}
+
+SyntheticCorridor corridor_with_markers(std::uint64_t seed) {
+  SyntheticCorridor corridor = test::short_corridor(seed);
+  corridor.markers = test::opposite_markers(corridor, 2.0, 2.0);
+  return corridor;
+}
+
+/// In the middle of a corridor whose ends are out of sight.
+SyntheticCorridor between_two_walls(std::uint64_t seed) {
+  SyntheticCorridor corridor = test::short_corridor(seed);
+  corridor.length_m = 40.0;
+  corridor.start_x_m = 10.0;
+  corridor.drive_m = 6.0;
+  corridor.markers.clear();
+  return corridor;
+}
+
+TEST(GraphEstimator, VarianceAlongABareCorridorNeverShrinks) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const SyntheticCorridor corridor = between_two_walls(seed);
+    const std::vector<Step> steps = run_graph(drive(corridor), corridor);
+    double most = 0.0;
+    for (const Step& step : steps) {
+      const double variance_m2 = step.estimate.covariance(0, 0);
+      // By the turn of the heading a little of across is in it: a part in a thousand.
+      EXPECT_GT(variance_m2, 0.999 * most - 1e-7);
+      most = std::max(most, variance_m2);
+    }
+    EXPECT_GT(std::sqrt(most), 0.02);  // the odometry's scale is known to 2 %
+  }
+}
+
+TEST(GraphEstimator, MarkersBoundTheErrorAndItsCovarianceIsHonest) {
+  double nees = 0.0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const SyntheticCorridor corridor = corridor_with_markers(seed);
+    const std::vector<Step> steps = run_graph(drive(corridor), corridor);
+    EXPECT_LT(test::along_rmse_m(steps), 0.02) << "seed " << seed;
+    for (std::size_t i = steps.size() / 4; i < steps.size(); ++i) {
+      Eigen::Vector3d error{
+          steps[i].estimate.map_from_base.x() - steps[i].truth.x(),
+          steps[i].estimate.map_from_base.y() - steps[i].truth.y(),
+          angle_difference(steps[i].estimate.map_from_base.theta(), steps[i].truth.theta())};
+      nees += error.dot(steps[i].estimate.covariance.ldlt().solve(error));
+      ++count;
+    }
+  }
+  EXPECT_LT(nees / count, 8.0);  // 3 degrees of freedom; four drives are few
+}
+
+TEST(GraphEstimator, EqualLogsGiveEqualResultsToTheLastBit) {
+  const SyntheticCorridor corridor = corridor_with_markers(2);
+  const SensorLog log = drive(corridor);
+  const std::vector<Step> one = run_graph(log, corridor);
+  const std::vector<Step> other = run_graph(log, corridor);
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].estimate.map_from_base.x(), other[i].estimate.map_from_base.x());
+    EXPECT_EQ(one[i].estimate.covariance, other[i].estimate.covariance);
+  }
+}
+
+TEST(GraphEstimator, AMirroredWorldGivesAMirroredResult) {
+  const SyntheticCorridor corridor = corridor_with_markers(3);
+  const SensorLog log = drive(corridor);
+  const std::vector<Step> left = run_graph(log, corridor);
+  const std::vector<Step> right = run_graph(mirrored(log), corridor);
+  ASSERT_EQ(left.size(), right.size());
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    EXPECT_NEAR(left[i].estimate.map_from_base.x(), right[i].estimate.map_from_base.x(), 1e-3);
+    EXPECT_NEAR(left[i].estimate.map_from_base.y(), -right[i].estimate.map_from_base.y(), 1e-3);
+  }
+}
+
+TEST(GraphEstimator, CovariancesAreSymmetricAndPositive) {
+  const SyntheticCorridor corridor = corridor_with_markers(1);
+  for (const Step& step : run_graph(drive(corridor), corridor)) {
+    const Eigen::Matrix3d& covariance = step.estimate.covariance;
+    EXPECT_EQ(covariance, covariance.transpose());
+    EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{covariance}.eigenvalues()[0], 0.0);
+  }
+}
+
+TEST(GraphEstimator, AnEmptyScanNeitherCrashesNorMoves) {
+  const SyntheticCorridor corridor = corridor_with_markers(1);
+  GraphEstimator estimator{estimator_setup_of(corridor, 1), {}};
+  run(estimator, drive(corridor), setup_of(corridor));
+  Observation nothing;
+  const Se2 before = estimator.update(nothing).map_from_base;
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(estimator.update(nothing).map_from_base.x(), before.x());
+}
+
+TEST(GraphEstimator, TheFinalTrajectoryIsNoWorseThanTheOneOnLine) {
+  const SyntheticCorridor corridor = corridor_with_markers(4);
+  GraphEstimator estimator{estimator_setup_of(corridor, 1), {}};
+  const std::vector<Step> steps = run(estimator, drive(corridor), setup_of(corridor));
+  const std::vector<TimedPose> trajectory = estimator.trajectory();
+  ASSERT_EQ(trajectory.size(), steps.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    sum += std::pow(trajectory[i].map_from_base.x() - steps[i].truth.x(), 2);
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(steps.size())), test::along_rmse_m(steps) + 0.005);
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Factors against numeric derivatives, the window against the whole graph.
+#include "slam/core/graph/graph.hpp"
+
+#include "common/random/random.hpp"
+#include "slam/core/graph/odometry_noise_learner.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+constexpr double kStep = 1e-6;
+constexpr double kGate = 16.3;
+
+Motion straight(double distance_m, double turn_rad = 0.0) {
+  return {{distance_m, 0.0, turn_rad}, distance_m, std::abs(turn_rad)};
+}
+
+State some_state() {
+  State state;
+  state.keyframes = {{0.3, -0.2, 0.4}, {0.5, -0.1, 0.5}, {0.75, 0.02, 0.55}};
+  state.landmarks = {{2.0, 1.0, -1.5}};
+  state.calibration << 0.01, 0.005, -0.01, 0.02, 0.003, -0.002, 0.001;
+  return state;
+}
+
+MarkerMeasurement some_measurement() {
+  MarkerMeasurement measurement;
+  measurement.id = 3;
+  measurement.base_from_marker = {1.7, 0.4, -1.9};
+  measurement.covariance = Eigen::Vector3d{1e-4, 2e-4, 4e-4}.asDiagonal();
+  measurement.base_from_camera = {0.08, 0.0, 0.0};
+  measurement.held = 0.4 * Eigen::Matrix3d::Identity();
+  measurement.by_standoff = {0.1, 0.9, 0.0};
+  return measurement;
+}
+
+/// Each Jacobian column is the central difference of the residual.
+void expect_jacobians_hold(const State& state,
+                           const std::function<LinearFactor(const State&)>& linearise) {
+  const LinearFactor linear = linearise(state);
+  for (const LinearFactor::Block& block : linear.blocks) {
+    for (Eigen::Index i = 0; i < block.variable.size(); ++i) {
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(block.variable.size());
+      step[i] = kStep;
+      State ahead = state;
+      State behind = state;
+      ahead.retract(block.variable, step);
+      behind.retract(block.variable, -step);
+      const Eigen::Vector3d numeric =
+          (linearise(ahead).residual - linearise(behind).residual) / (2.0 * kStep);
+      EXPECT_LT((numeric - block.jacobian.col(i)).norm(), 1e-4 * (1.0 + numeric.norm()))
+          << "variable kind " << static_cast<int>(block.variable.kind) << " index "
+          << block.variable.index << " column " << i;
+    }
+  }
+}
+
+TEST(Factors, JacobianOfOdometryIsTheDerivativeOfItsResidual) {
+  const State state = some_state();
+  const OdometryFactor factor{0, 1, straight(0.22, 0.09)};
+  // By the calibration it is the derivative at the measured motion, so only poses are compared.
+  LinearFactor linear = factor.linearise(state, {});
+  ASSERT_EQ(linear.blocks.size(), 3U);
+  expect_jacobians_hold(state, [&](const State& at) {
+    LinearFactor poses = factor.linearise(at, {});
+    poses.blocks.pop_back();
+    return poses;
+  });
+}
+
+TEST(Factors, JacobianOfAScanIsTheDerivativeOfItsResidual) {
+  ScanFactor factor;
+  factor.keyframe = 2;
+  factor.references = {{0, 0.3, {0.5, 0.1, 0.1}}, {1, 0.7, {0.3, 0.0, 0.1}}};
+  factor.root_information = root_of(Eigen::Vector3d{1e4, 4e4, 1e5}.asDiagonal());
+  expect_jacobians_hold(some_state(), [&](const State& at) { return factor.linearise(at); });
+}
+
+TEST(Factors, JacobianOfAMarkerByPosesIsTheDerivativeOfItsResidual) {
+  MarkerFactor factor;
+  factor.keyframe = 1;
+  factor.measurement = some_measurement();
+  factor.root_information = root_of(factor.measurement.covariance.inverse());
+  State state = some_state();
+  state.calibration.setZero();  // what it does is taken where the marker is: second order in both
+  expect_jacobians_hold(state, [&](const State& at) { return factor.linearise(at, 1e12); });
+}
+
+TEST(Factors, AMarkerFarBeyondTheGateHardlyPulls) {
+  MarkerFactor factor;
+  factor.keyframe = 1;
+  factor.measurement = some_measurement();
+  factor.root_information = root_of(factor.measurement.covariance.inverse());
+  State near = some_state();
+  near.calibration.setZero();
+  near.landmarks[0] = near.keyframes[1] * factor.measurement.base_from_marker;
+  State far = near;
+  near.landmarks[0] = {near.landmarks[0].x() + 0.03, near.landmarks[0].y(),
+                       near.landmarks[0].theta()};
+  far.landmarks[0] = {far.landmarks[0].x() + 3.0, far.landmarks[0].y(), far.landmarks[0].theta()};
+  const auto pull = [&](const State& state) {
+    const LinearFactor linear = factor.linearise(state, kGate);
+    const Eigen::VectorXd gradient = linear.blocks[1].jacobian.transpose() * linear.residual;
+    return gradient.norm();
+  };
+  EXPECT_LT(pull(far), 0.01 * pull(near));
+}
+
+TEST(OdometryMixture, ATurnThatRollingCannotExplainShortensTheWay) {
+  const Eigen::Matrix3d rolling = Eigen::Vector3d{1e-6, 1e-6, 1e-5}.asDiagonal();
+  for (const double turn_rad : {0.05, -0.05}) {
+    const Eigen::Matrix3d spins = likeliest_covariance({0.0, 0.0, turn_rad}, rolling, 0.14);
+    // What the turn says about the way: negative, whichever wheel spins.
+    EXPECT_LT(spins(0, 2) / spins(2, 2) * turn_rad, -0.1 * std::abs(turn_rad));
+  }
+  EXPECT_EQ(likeliest_covariance({0.0005, 0.0, 0.002}, rolling, 0.14), rolling);
+}
+
+TEST(OdometryNoiseLearner, BelievesTheDescriptionUntilInnovationsSayOtherwise) {
+  OdometryNoiseLearner described;
+  OdometryNoiseLearner worse;
+  Random random{{7}};
+  for (int i = 0; i < 200; ++i) {
+    const double normal = random.normal();
+    described.observe_turn({1e-3 * normal, 1e-6, 1e-8});
+    worse.observe_turn({8e-3 * normal, 1e-6, 1e-8});
+  }
+  EXPECT_EQ(described.scale().turn, 1.0);
+  EXPECT_NEAR(worse.scale().turn, 8.0, 3.0);
+  EXPECT_GT(worse.scale().along, 1.5);  // wheels that are bad in the turn are so along the way
+}
+
+/// A drive of short steps past two markers, with noise; every keyframe is tied to the two before.
+class Drive {
+ public:
+  explicit Drive(std::size_t window) : graph_{GraphNoise{}, sigmas()} {
+    Random random{{11}};
+    graph_.add_keyframe({});
+    graph_.add(PosePrior{0, {}, Eigen::Matrix3d::Identity() * 1e4});
+    const std::vector<Se2> markers{{2.0, 1.0, -1.5}, {4.0, -1.0, 1.6}};
+    Se2 truth;
+    for (const Se2& marker : markers)
+      graph_.add_landmark({marker.x() + 0.02, marker.y() - 0.01, marker.theta() + 0.01});
+    for (std::size_t k = 1; k <= 24; ++k) {
+      const Se2 step{0.2, 0.001, 0.01};
+      truth = truth * step;
+      const Se2 measured{0.2 + 0.001 * random.normal(), 0.001, 0.01 + 0.002 * random.normal()};
+      graph_.add_keyframe(graph_.state().keyframes.back() * measured);
+      graph_.add(OdometryFactor{k - 1, k, {measured, 0.2, 0.01}});
+      for (std::size_t m = 0; m < markers.size(); ++m) {
+        MarkerFactor seen;
+        seen.keyframe = k;
+        seen.landmark = m;
+        seen.measurement = some_measurement();
+        seen.measurement.base_from_marker = truth.inverse() * markers[m];
+        seen.root_information = root_of(seen.measurement.covariance.inverse());
+        graph_.add(seen);
+      }
+      graph_.optimise();
+      while (graph_.num_active_keyframes() > window)
+        graph_.marginalise_oldest(1e9);
+    }
+    graph_.optimise();
+  }
+
+  static Calibration sigmas() {
+    Calibration sigmas;
+    sigmas << 0.02, 0.01, 0.02, 0.05, 0.0087, 0.002, 0.003;
+    return sigmas;
+  }
+
+  Graph& graph() { return graph_; }
+
+  Variable newest() const { return {VariableKind::kKeyframe, graph_.state().keyframes.size() - 1}; }
+
+ private:
+  Graph graph_;
+};
+
+TEST(Graph, AWindowKnowsWhatTheWholeGraphKnows) {
+  Drive whole{100};
+  Drive window{6};
+  const Eigen::Vector3d apart = pose_difference(window.graph().state().keyframes.back(),
+                                                whole.graph().state().keyframes.back());
+  const Eigen::Matrix3d covariance = whole.graph().covariance_of(whole.newest());
+  // Linearised once and not again: off by a small part of a standard deviation.
+  EXPECT_LT(apart.dot(covariance.inverse() * apart), 0.05);
+  const Eigen::Matrix3d windowed = window.graph().covariance_of(window.newest());
+  EXPECT_LT((windowed - covariance).norm(), 0.05 * covariance.norm());
+}
+
+TEST(Graph, SolvingEverythingRebuildsTheWindowsPrior) {
+  Drive window{6};
+  Drive whole{100};
+  const Se2 before = window.graph().state().keyframes.back();
+  window.graph().optimise_all(20);
+  window.graph().optimise();
+  EXPECT_LT(pose_difference(window.graph().state().keyframes.back(), before).norm(), 2e-3);
+  const Eigen::Matrix3d rebuilt = window.graph().covariance_of(window.newest());
+  const Eigen::Matrix3d expected = whole.graph().covariance_of(whole.newest());
+  EXPECT_LT((rebuilt - expected).norm(), 0.01 * expected.norm());
+}
+
+TEST(Graph, CovariancesAreSymmetricAndPositive) {
+  Drive drive{6};
+  const Eigen::Matrix3d covariance = drive.graph().covariance_of(drive.newest());
+  EXPECT_LT((covariance - covariance.transpose()).norm(), 1e-9 * covariance.norm());
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{covariance}.eigenvalues()[0], 0.0);
+}
+
+TEST(Graph, AWrongLoopAmongRightOnesLosesItsWeight) {
+  Graph graph{GraphNoise{}, Drive::sigmas()};
+  graph.add_keyframe({});
+  graph.add(PosePrior{0, {}, Eigen::Matrix3d::Identity() * 1e4});
+  for (std::size_t k = 1; k <= 40; ++k) {
+    graph.add_keyframe(Se2{0.2 * static_cast<double>(k), 0.0, 0.0});
+    graph.add(OdometryFactor{k - 1, k, straight(0.2)});
+  }
+  const auto loop = [&](std::size_t from, std::size_t to, double off_m) {
+    ScanFactor factor;
+    factor.keyframe = to;
+    factor.references = {{from, 1.0, {0.2 * static_cast<double>(to - from), off_m, 0.0}}};
+    factor.root_information = root_of(Eigen::Vector3d{1e4, 1e4, 1e5}.asDiagonal());
+    factor.is_loop = true;
+    graph.add(factor);
+  };
+  for (const std::size_t k : {30U, 32U, 34U, 36U, 38U, 40U})
+    loop(2, k, 0.0);
+  loop(3, 35, 1.5);
+  graph.optimise_all(20);
+  EXPECT_NEAR(graph.state().keyframes[35].y(), 0.0, 0.05);
+}
+
+}  // namespace
+}  // namespace waymark

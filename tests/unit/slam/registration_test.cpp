@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Submaps of normal distributions, and where scans fit into them.
+#include "common/random/random.hpp"
+#include "slam/core/registration/scan_match.hpp"
+#include "slam/core/registration/submap.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kSigma_m = 0.01;
+
+Eigen::Matrix3d sigmas(double m, double rad) {
+  return Eigen::Vector3d{m * m, m * m, rad * rad}.asDiagonal();
+}
+
+/// Points on both walls of a bare corridor of 2 m, as seen from `map_from_base`.
+Points corridor_from(const Se2& map_from_base, std::uint64_t seed) {
+  Random random{{seed}};
+  Points points;
+  for (double x = -3.0; x <= 3.0; x += 0.05) {
+    for (const double y : {-1.0, 1.0}) {
+      const Eigen::Vector2d place{map_from_base.x() + x, y + kSigma_m * random.normal()};
+      points.push_back(map_from_base.inverse() * place);
+    }
+  }
+  return points;
+}
+
+/// The walls of a room of 6 m x 4 m about the map's origin.
+Points room_from(const Se2& map_from_base, std::uint64_t seed) {
+  Random random{{seed}};
+  Points points;
+  const auto add = [&](double x, double y) {
+    points.push_back(map_from_base.inverse() * Eigen::Vector2d{x + kSigma_m * random.normal(),
+                                                               y + kSigma_m * random.normal()});
+  };
+  for (double x = -3.0; x <= 3.0; x += 0.08) {
+    add(x, -2.0);
+    add(x, 2.0);
+  }
+  for (double y = -2.0; y <= 2.0; y += 0.08) {
+    add(-3.0, y);
+    add(3.0, y);
+  }
+  return points;
+}
+
+template <class View>
+Submap submap_of(View view) {
+  Submap submap{0.25, 0};
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    const Se2 pose{0.1 * static_cast<double>(k), 0.0, 0.0};
+    submap.insert(view(pose, k + 1), pose);
+  }
+  return submap;
+}
+
+TEST(ScanMatch, FindsThePoseInARoom) {
+  const Submap room = submap_of(room_from);
+  const Se2 truth{1.2, 0.3, 0.2};
+  const Se2 guess{1.28, 0.22, 0.26};
+  const ScanMatch match = match_scan(room_from(truth, 99), room.surfaces(), guess,
+                                     sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
+  EXPECT_NEAR(match.map_from_base.x(), truth.x(), 0.005);
+  EXPECT_NEAR(match.map_from_base.y(), truth.y(), 0.005);
+  EXPECT_NEAR(match.map_from_base.theta(), truth.theta(), 0.002);
+  EXPECT_FALSE(match.observed.is_degenerate);
+  EXPECT_GT(match.inlier_share, 0.9);
+}
+
+TEST(ScanMatch, ABareCorridorSaysExactlyNothingAlongItsAxis) {
+  const Submap corridor = submap_of(corridor_from);
+  const Se2 truth{1.0, 0.1, 0.05};
+  const Se2 guess{1.4, 0.05, 0.03};
+  const ScanMatch match = match_scan(corridor_from(truth, 99), corridor.surfaces(), guess,
+                                     sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
+  ASSERT_TRUE(match.observed.is_degenerate);
+  const Eigen::Vector3d weak{match.observed.weak_direction.x(), match.observed.weak_direction.y(),
+                             0.0};
+  EXPECT_GT(std::abs(weak.x()), 0.999);
+  const Eigen::Matrix3d& information = match.observed.information;
+  EXPECT_LT((information * weak).norm(), 1e-9 * information.norm());
+  EXPECT_NEAR(match.map_from_base.x(), guess.x(), 0.01);  // stays where it was believed to be
+  EXPECT_NEAR(match.map_from_base.y(), truth.y(), 0.005);
+  EXPECT_NEAR(match.map_from_base.theta(), truth.theta(), 0.002);
+}
+
+TEST(ScanMatch, SharesOfKeyframesSumToOne) {
+  const Submap room = submap_of(room_from);
+  const ScanMatch match = match_scan(room_from({1.0, 0.0, 0.0}, 99), room.surfaces(),
+                                     {1.0, 0.0, 0.0}, sigmas(0.02, 0.01), RangeNoise{kSigma_m}, {});
+  double sum = 0.0;
+  for (const double share : match.keyframe_shares)
+    sum += share;
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+}
+
+TEST(ScanMatch, AScanOfNothingIsNotUsable) {
+  const Submap room = submap_of(room_from);
+  const ScanMatch match =
+      match_scan({}, room.surfaces(), {}, sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
+  EXPECT_FALSE(match.is_usable({}));
+}
+
+TEST(ObservedAxes, TwoWallsAtRightAnglesObserveEverything) {
+  Eigen::Matrix3d information = Eigen::Vector3d{100.0, 80.0, 300.0}.asDiagonal();
+  EXPECT_FALSE(observed_axes(information, 0.03).is_degenerate);
+  information(1, 1) = 1.0;
+  EXPECT_TRUE(observed_axes(information, 0.03).is_degenerate);
+}
+
+}  // namespace
+}  // namespace waymark
