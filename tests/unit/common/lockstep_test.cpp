@@ -244,6 +244,73 @@ TEST(Lockstep, TheMasterNamesTheSilentInTheOrderInWhichTheyWaitForEachOther) {
   EXPECT_FALSE(master.has_room());
 }
 
+/// slam publishes each marker map up to three times, in one tick or in several: the last tick of a
+/// run repeats the one before it whenever no scan came in between.
+TEST(Lockstep, RepeatedBytesAreProcessedAsOftenAsTheyWerePublished) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random{{seed}};
+    const double loss = seed % 2 == 0 ? 0.2 : 0.0;
+    const int num_ticks = 1 + static_cast<int>(random() % 30);
+    const int period_ticks = 1 + static_cast<int>(random() % 5);
+    const int copies = 1 + static_cast<int>(random() % 3);
+    Counters counters;
+    std::vector<Message> published;
+    std::vector<Message> received;
+    int tick = 0;
+    LockstepParticipant slam{"slam",
+                             {"ODOMETRY"},
+                             false,
+                             [&](const std::vector<Message>&, bool) {
+                               std::vector<Message> now(
+                                   static_cast<std::size_t>(copies),
+                                   marker_answer(odometry(1000 * (tick++ / period_ticks), 0.0F)));
+                               published.insert(published.end(), now.begin(), now.end());
+                               return now;
+                             },
+                             counters};
+    LockstepParticipant viewer{"viewer",
+                               {"MARKERS"},
+                               false,
+                               [&](const std::vector<Message>& messages, bool) {
+                                 received.insert(received.end(), messages.begin(), messages.end());
+                                 return std::vector<Message>{};
+                               },
+                               counters};
+    LockstepMaster master{77, {"slam", "viewer"}, 4};
+    const auto send = [&](std::vector<Message> wave) {
+      while (!wave.empty()) {
+        std::vector<Message> answers;
+        for (const Message& message : wave) {
+          if (message.channel == "ACK" && random.uniform() >= loss) master.take(message);
+          for (LockstepParticipant* participant : {&slam, &viewer}) {
+            if (random.uniform() < loss) continue;
+            const std::vector<Message> more = participant->take(message);
+            answers.insert(answers.end(), more.begin(), more.end());
+          }
+        }
+        wave = std::move(answers);
+      }
+    };
+    while (!master.all_ready())
+      send({master.probe()});
+    int sent = 0;
+    for (int guard = 0; guard < 10000 && !(sent == num_ticks && master.all_acknowledged());
+         ++guard) {
+      if (sent < num_ticks && master.has_room()) {
+        const std::int64_t base_us = 1000 * sent;
+        send(master.open_tick(timestamp_from_us(base_us + 999), {odometry(base_us, 1.0F)},
+                              ++sent == num_ticks));
+      } else {
+        send(master.resend());
+      }
+    }
+    EXPECT_TRUE(master.all_acknowledged())
+        << "seed " << seed << ": " << num_ticks << " ticks, the same bytes for " << period_ticks
+        << ", " << copies << " copies";
+    EXPECT_EQ(received, published) << "seed " << seed;
+  }
+}
+
 TEST(MessagePool, ForgetsTheOldestInAFloodAndStaysSmall) {
   MessagePool pool;
   Message large = odometry(0, 0.0F);
