@@ -12,13 +12,6 @@ namespace {
 
 constexpr double kFirstPoseSigma = 1e-5;   // [m, rad]: the map's frame is the first pose
 constexpr std::size_t kMaxReferences = 4;  // keyframes that stand for all that saw a scan's walls
-constexpr double kSamePlace_m = 0.5;       // two markers this near hang in one place
-constexpr double kContradicts_m = 0.5;     // a marker this far from all of its id
-constexpr double kReturned_m = 0.3;        // sigma of a pose that a relocalisation is taken back to
-constexpr double kReturned_rad = 0.1;
-
-constexpr double kLoopSlack_m = 0.05;  // of old poses, whose covariance is not known any more
-constexpr double kLoopSlack_rad = 0.01;
 
 // Wide search of a scan that fits badly.
 constexpr double kUsualFit = 0.93;   // share of the usual fit; below, a scan fits badly
@@ -28,22 +21,6 @@ constexpr double kSearchReach_rad = 0.6;
 constexpr std::size_t kSearchBeams = 120;
 constexpr double kClearlyMore = 1.05;                  // inliers than the plain match has
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
-
-constexpr double kLoopMargin = 4.0;  // on the covariance of the pose: it is a model
-constexpr int kSolveSteps = 12;
-constexpr std::size_t kSolveEvery = 10;   // keyframes; and as the graph grows
-constexpr std::size_t kRoutineShare = 8;  // the same of loops that only confirm the pose
-constexpr double kLoopMatters = 3.0;      // chi^2 of a loop that does more
-constexpr std::size_t kRedrawShare = 4;   // of all keyframes are new before the map is drawn again
-constexpr double kBlurred_m = 0.25;       // poses that moved so far have it drawn again at once
-constexpr double kNear_m = 12.0;          // landmarks nearer than this stay in the window
-constexpr std::size_t kSolveShare = 40;  // a share of all, so that the cost per keyframe is bounded
-
-// A marker counts as missed if it faces the camera, the LiDAR sees its wall, and no frame of the
-// last moments has shown it.
-constexpr double kMinFacing = 0.3;
-constexpr double kWallInSight_m = 0.2;
-constexpr Duration kSightingAge = std::chrono::seconds{1};
 
 Calibration calibration_sigmas(const EstimatorSetup& setup, const OdometryNoise& odometry) {
   Calibration sigmas;
@@ -100,19 +77,6 @@ Estimate GraphEstimator::update(const Observation& observation) {
 bool GraphEstimator::is_keyframe_due() const {
   return graph_.state().keyframes.empty() || motion_.distance_m >= config_.keyframe_distance_m ||
          motion_.turn_rad >= config_.keyframe_turn_rad;
-}
-
-/// A marker where none of its id should be may mean that the robot was carried away: that cannot
-/// wait until it has driven on.
-bool GraphEstimator::is_contradicted_by(const Observation& observation) const {
-  if (observation.sightings.empty()) return false;
-  const Se2 map_from_base = prediction().map_from_base;
-  return std::any_of(
-      observation.sightings.begin(), observation.sightings.end(), [&](const MarkerSighting& seen) {
-        const Eigen::Vector2d place = map_from_base * seen.base_from_marker.translation();
-        return book_.knows(seen.id) &&
-               !book_.has_one_near(graph_.state(), place, kContradicts_m, seen.id);
-      });
 }
 
 GraphEstimator::Prediction GraphEstimator::prediction() const {
@@ -259,178 +223,6 @@ void GraphEstimator::learn_noise(const Prediction& expected, const ScanMatch& ma
   graph_.set_odometry_scale(noise_learner_.scale());
 }
 
-std::vector<MarkerMeasurement> GraphEstimator::measured(const Observation& observation) const {
-  return measure_markers(
-      observation, {setup_.range_sigma_m, setup_.camera.base_from_camera, setup_.sighting_sigmas},
-      graph_.odometry_noise(), config_.markers);
-}
-
-std::vector<PoseHint> GraphEstimator::hints(std::span<const MarkerMeasurement> measurements) const {
-  std::vector<PoseHint> hints;
-  for (const MarkerMeasurement& measurement : measurements) {
-    PoseHint hint;
-    hint.id = measurement.id;
-    const Se2 there = map_from_measured(graph_.state(), newest(), measurement);
-    const auto nearest = book_.nearest(graph_, newest(), measurement);
-    if (!nearest) {
-      hint.kind = PoseHint::Kind::kNew;
-      hint.is_in_known_place =
-          book_.has_one_near(graph_.state(), there.translation(), kSamePlace_m);
-    } else if (nearest->chi2 < config_.marker_gate ||
-               nearest->distance_m() < config_.marker_near_m) {
-      hint.kind = PoseHint::Kind::kAgrees;
-    } else if (const auto unique = book_.unique(measurement.id)) {
-      hint.kind = PoseHint::Kind::kElsewhere;
-      const Se2 base_from_marker = graph_.state().keyframes.back().inverse() * there;
-      hint.map_from_base = graph_.state().landmarks[*unique] * base_from_marker.inverse();
-    } else {
-      hint.kind = PoseHint::Kind::kAmbiguous;
-    }
-    hints.push_back(hint);
-  }
-  return hints;
-}
-
-void GraphEstimator::use_markers(std::span<const MarkerMeasurement> measurements) {
-  struct Match {
-    std::size_t landmark;
-    const MarkerMeasurement* measurement;
-  };
-
-  std::vector<Match> matches;
-  std::vector<std::size_t> returning;
-  for (const MarkerMeasurement& measurement : measurements) {
-    const auto nearest = book_.nearest(graph_, newest(), measurement);
-    const bool is_it = nearest && (nearest->chi2 < config_.marker_gate ||
-                                   nearest->distance_m() < config_.same_marker_within_m);
-    if (!is_it && book_.is_misread(graph_.state(), newest(), measurement)) continue;
-    if (measurement.wall) graph_.calibration_knowledge().observe(*measurement.wall);
-    if (measurement.focal) graph_.calibration_knowledge().observe(*measurement.focal);
-    std::size_t landmark = 0;
-    if (is_it) {
-      landmark = nearest->landmark;
-      book_.note_sighting(landmark, measurement.time);
-      if (!markers_known_ && unobserved_m_ > 0.0 && config_.learn_noise) {
-        const OdometryNoise& described = graph_.noise().odometry;
-        const double by_odometry =
-            described.along_per_sqrt_m * described.along_per_sqrt_m * unobserved_m_;
-        const double scale = graph_.noise().scale.along;
-        noise_learner_.observe_along(
-            {nearest->residual.x(), by_odometry,
-             std::max(nearest->covariance(0, 0) - scale * scale * by_odometry,
-                      measurement.covariance(0, 0))});
-        graph_.set_odometry_scale(noise_learner_.scale());
-      }
-      markers_known_ = true;
-      if (!graph_.is_active({VariableKind::kLandmark, landmark})) returning.push_back(landmark);
-    } else {
-      landmark = graph_.add_landmark(map_from_measured(graph_.state(), newest(), measurement));
-      book_.add(measurement.id, measurement.time);
-    }
-    matches.push_back({landmark, &measurement});
-  }
-  if (markers_known_) unobserved_m_ = 0.0;
-  if (!returning.empty()) solve_everything(returning);
-  for (const Match& match : matches) {
-    MarkerFactor factor;
-    factor.keyframe = newest();
-    factor.landmark = match.landmark;
-    factor.measurement = *match.measurement;
-    factor.root_information = root_of(match.measurement->covariance.inverse());
-    graph_.add(factor);
-  }
-  if (!matches.empty()) graph_.optimise();
-}
-
-/// Absence is evidence where the camera could have seen the marker, and nothing stood before it:
-/// the LiDAR sees its wall.
-void GraphEstimator::note_misses(const Observation& observation) {
-  if (!observation.camera_reported) return;
-  const auto is_in_view = [&](const Se2& base_from_marker) {
-    const Eigen::Vector2d place = base_from_marker.translation();
-    const Eigen::Vector2d to_camera =
-        (setup_.camera.base_from_camera.translation() - place).normalized();
-    const Eigen::Vector2d facing = base_from_marker.rotation().col(0);
-    return facing.dot(to_camera) > kMinFacing && setup_.camera.would_show(place) &&
-           std::any_of(observation.beams.begin(), observation.beams.end(),
-                       [&](const AnnotatedBeam& annotated) {
-                         return (annotated.beam.end_in_base - place).norm() < kWallInSight_m;
-                       });
-  };
-  book_.note_misses(graph_.state(), newest(), is_in_view, observation.time - kSightingAge);
-}
-
-void GraphEstimator::close_loops(const Points& points) {
-  since_loop_search_m_ += motion_.distance_m;
-  if (since_loop_search_m_ >= config_.loops.every_m) {
-    since_loop_search_m_ = 0.0;
-    LoopSearch search;
-    search.map_from_base = graph_.state().keyframes.back();
-    search.covariance = kLoopMargin * graph_.covariance_of({VariableKind::kKeyframe, newest()});
-    search.covariance.diagonal() +=
-        Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
-    search.first_recent_keyframe = graph_.first_active_keyframe();
-    for (const LoopFinder::Found& found :
-         loop_finder_.find(newest(), points, search, submaps_, graph_.state(), range_noise_)) {
-      add_scan_factor(found.keyframe, submaps_[found.loop.submap], found.loop.match, true);
-      has_new_loops_ = true;
-      loops_matter_ |= found.chi2 > kLoopMatters;
-    }
-  }
-  const std::size_t all = graph_.state().keyframes.size();
-  const std::size_t since = all - solved_keyframes_;
-  if (has_new_loops_ &&
-      since >= std::max(kSolveEvery, all / (loops_matter_ ? kSolveShare : kRoutineShare))) {
-    solve_everything({});
-  }
-}
-
-void GraphEstimator::solve_everything(const std::vector<std::size_t>& returning_landmarks) {
-  std::vector<std::size_t> activated = returning_landmarks;
-  for (std::size_t i = 0; i < book_.entries().size(); ++i) {
-    const double away_m =
-        (graph_.state().landmarks[i].translation() - graph_.state().keyframes.back().translation())
-            .norm();
-    if (!book_.is_retired(i) && away_m < kNear_m) activated.push_back(i);
-  }
-  graph_.optimise_all(has_new_loops_ ? kSolveSteps : 0, activated);
-  graph_.optimise();
-  if (has_new_loops_) redraw_if_moved();
-  solved_keyframes_ = graph_.state().keyframes.size();
-  has_new_loops_ = false;
-  loops_matter_ = false;
-}
-
-/// The published map follows a closed loop.
-void GraphEstimator::redraw_if_moved() {
-  double farthest_m = 0.0;
-  for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
-    farthest_m =
-        std::max(farthest_m,
-                 (drawn_at_[i].translation() - graph_.state().keyframes[i].translation()).norm());
-  }
-  const std::size_t since = drawn_at_.size() - redrawn_keyframes_;
-  const double blur_m =
-      since < drawn_at_.size() / kRedrawShare ? kBlurred_m : setup_.grid.resolution_m;
-  if (farthest_m < blur_m) return;
-  redrawn_keyframes_ = drawn_at_.size();
-  mapper_ = Mapper{setup_.grid};
-  for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
-    drawn_at_[i] = graph_.state().keyframes[i];
-    mapper_.insert(archive_.at(i), drawn_at_[i], Eigen::Matrix3d::Zero());
-  }
-}
-
-void GraphEstimator::relocate(const Se2& map_from_base) {
-  graph_.relocate_newest(map_from_base);
-  if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
-    const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
-    graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
-  }
-  graph_.optimise();
-  submaps_.clear();
-}
-
 /// Two submaps are filled at a time, one half a length behind the other: the older one is matched,
 /// and holds half a length of scans at least.
 void GraphEstimator::insert_scan(const Points& points) {
@@ -532,26 +324,6 @@ std::vector<Landmark> GraphEstimator::landmarks() const {
 
 std::vector<PublishedParticle> GraphEstimator::particles() const {
   return {};
-}
-
-std::vector<TimedPose> GraphEstimator::trajectory() const {
-  Graph graph = graph_;
-  graph.optimise_all(kSolveSteps);
-  std::vector<TimedPose> trajectory;
-  trajectory.reserve(scan_poses_.size());
-  for (const ScanPose& scan : scan_poses_)
-    trajectory.push_back(
-        {scan.time, graph.state().keyframes[scan.keyframe] * scan.keyframe_from_base});
-  return trajectory;
-}
-
-GridMap GraphEstimator::redrawn_map() const {
-  Graph graph = graph_;
-  graph.optimise_all(kSolveSteps);
-  Mapper mapper{setup_.grid};
-  for (std::size_t i = 0; i < archive_.size(); ++i)
-    mapper.insert(archive_.at(i), graph.state().keyframes[i], Eigen::Matrix3d::Zero());
-  return mapper.map();
 }
 
 }  // namespace waymark

@@ -53,6 +53,8 @@ class GraphEstimator final : public Estimator {
   GridMap redrawn_map() const override;
 
  private:
+  static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
+
   struct Prediction {
     Se2 map_from_base{};
     Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The whole graph: loops, the trajectory, and the map drawn along it.
+#include "slam/core/estimators/graph.hpp"
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+constexpr double kLoopMargin = 4.0;  // on the covariance of the pose: it is a model
+constexpr int kSolveSteps = 12;
+constexpr std::size_t kSolveEvery = 10;  // keyframes; and as the graph grows
+constexpr std::size_t kSolveShare = 40;  // a share of all, so that the cost per keyframe is bounded
+constexpr std::size_t kRoutineShare = 8;  // the same of loops that only confirm the pose
+constexpr double kLoopMatters = 3.0;      // chi^2 of a loop that does more
+constexpr std::size_t kRedrawShare = 4;   // of all keyframes are new before the map is drawn again
+constexpr double kBlurred_m = 0.25;       // poses that moved so far have it drawn again at once
+constexpr double kLoopSlack_m = 0.05;     // of old poses, whose covariance is not known any more
+constexpr double kLoopSlack_rad = 0.01;
+
+}  // namespace
+
+void GraphEstimator::close_loops(const Points& points) {
+  since_loop_search_m_ += motion_.distance_m;
+  if (since_loop_search_m_ >= config_.loops.every_m) {
+    since_loop_search_m_ = 0.0;
+    LoopSearch search;
+    search.map_from_base = graph_.state().keyframes.back();
+    search.covariance = kLoopMargin * graph_.covariance_of({VariableKind::kKeyframe, newest()});
+    search.covariance.diagonal() +=
+        Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
+    search.first_recent_keyframe = graph_.first_active_keyframe();
+    for (const LoopFinder::Found& found :
+         loop_finder_.find(newest(), points, search, submaps_, graph_.state(), range_noise_)) {
+      add_scan_factor(found.keyframe, submaps_[found.loop.submap], found.loop.match, true);
+      has_new_loops_ = true;
+      loops_matter_ |= found.chi2 > kLoopMatters;
+    }
+  }
+  const std::size_t all = graph_.state().keyframes.size();
+  const std::size_t since = all - solved_keyframes_;
+  if (has_new_loops_ &&
+      since >= std::max(kSolveEvery, all / (loops_matter_ ? kSolveShare : kRoutineShare))) {
+    solve_everything({});
+  }
+}
+
+void GraphEstimator::solve_everything(const std::vector<std::size_t>& returning_landmarks) {
+  std::vector<std::size_t> activated = returning_landmarks;
+  for (std::size_t i = 0; i < book_.entries().size(); ++i) {
+    const double away_m =
+        (graph_.state().landmarks[i].translation() - graph_.state().keyframes.back().translation())
+            .norm();
+    if (!book_.is_retired(i) && away_m < kNear_m) activated.push_back(i);
+  }
+  graph_.optimise_all(has_new_loops_ ? kSolveSteps : 0, activated);
+  graph_.optimise();
+  if (has_new_loops_) redraw_if_moved();
+  solved_keyframes_ = graph_.state().keyframes.size();
+  has_new_loops_ = false;
+  loops_matter_ = false;
+}
+
+/// The published map follows a closed loop.
+void GraphEstimator::redraw_if_moved() {
+  double farthest_m = 0.0;
+  for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
+    farthest_m =
+        std::max(farthest_m,
+                 (drawn_at_[i].translation() - graph_.state().keyframes[i].translation()).norm());
+  }
+  const std::size_t since = drawn_at_.size() - redrawn_keyframes_;
+  const double blur_m =
+      since < drawn_at_.size() / kRedrawShare ? kBlurred_m : setup_.grid.resolution_m;
+  if (farthest_m < blur_m) return;
+  redrawn_keyframes_ = drawn_at_.size();
+  mapper_ = Mapper{setup_.grid};
+  for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
+    drawn_at_[i] = graph_.state().keyframes[i];
+    mapper_.insert(archive_.at(i), drawn_at_[i], Eigen::Matrix3d::Zero());
+  }
+}
+
+std::vector<TimedPose> GraphEstimator::trajectory() const {
+  Graph graph = graph_;
+  graph.optimise_all(kSolveSteps);
+  std::vector<TimedPose> trajectory;
+  trajectory.reserve(scan_poses_.size());
+  for (const ScanPose& scan : scan_poses_)
+    trajectory.push_back(
+        {scan.time, graph.state().keyframes[scan.keyframe] * scan.keyframe_from_base});
+  return trajectory;
+}
+
+GridMap GraphEstimator::redrawn_map() const {
+  Graph graph = graph_;
+  graph.optimise_all(kSolveSteps);
+  Mapper mapper{setup_.grid};
+  for (std::size_t i = 0; i < archive_.size(); ++i)
+    mapper.insert(archive_.at(i), graph.state().keyframes[i], Eigen::Matrix3d::Zero());
+  return mapper.map();
+}
+
+}  // namespace waymark

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the graph estimator uses markers.
+#include "slam/core/estimators/graph.hpp"
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+constexpr double kSamePlace_m = 0.5;    // two markers this near hang in one place
+constexpr double kContradicts_m = 0.5;  // a marker this far from all of its id
+constexpr double kReturned_m = 0.3;     // sigma of a pose that a relocalisation is taken back to
+constexpr double kReturned_rad = 0.1;
+// A marker counts as missed if it faces the camera, the LiDAR sees its wall, and no frame of the
+// last moments has shown it.
+constexpr double kMinFacing = 0.3;
+constexpr double kWallInSight_m = 0.2;
+constexpr Duration kSightingAge = std::chrono::seconds{1};
+
+}  // namespace
+
+/// A marker where none of its id should be may mean that the robot was carried away: that cannot
+/// wait until it has driven on.
+bool GraphEstimator::is_contradicted_by(const Observation& observation) const {
+  if (observation.sightings.empty()) return false;
+  const Se2 map_from_base = prediction().map_from_base;
+  return std::any_of(
+      observation.sightings.begin(), observation.sightings.end(), [&](const MarkerSighting& seen) {
+        const Eigen::Vector2d place = map_from_base * seen.base_from_marker.translation();
+        return book_.knows(seen.id) &&
+               !book_.has_one_near(graph_.state(), place, kContradicts_m, seen.id);
+      });
+}
+
+std::vector<MarkerMeasurement> GraphEstimator::measured(const Observation& observation) const {
+  return measure_markers(
+      observation, {setup_.range_sigma_m, setup_.camera.base_from_camera, setup_.sighting_sigmas},
+      graph_.odometry_noise(), config_.markers);
+}
+
+std::vector<PoseHint> GraphEstimator::hints(std::span<const MarkerMeasurement> measurements) const {
+  std::vector<PoseHint> hints;
+  for (const MarkerMeasurement& measurement : measurements) {
+    PoseHint hint;
+    hint.id = measurement.id;
+    const Se2 there = map_from_measured(graph_.state(), newest(), measurement);
+    const auto nearest = book_.nearest(graph_, newest(), measurement);
+    if (!nearest) {
+      hint.kind = PoseHint::Kind::kNew;
+      hint.is_in_known_place =
+          book_.has_one_near(graph_.state(), there.translation(), kSamePlace_m);
+    } else if (nearest->chi2 < config_.marker_gate ||
+               nearest->distance_m() < config_.marker_near_m) {
+      hint.kind = PoseHint::Kind::kAgrees;
+    } else if (const auto unique = book_.unique(measurement.id)) {
+      hint.kind = PoseHint::Kind::kElsewhere;
+      const Se2 base_from_marker = graph_.state().keyframes.back().inverse() * there;
+      hint.map_from_base = graph_.state().landmarks[*unique] * base_from_marker.inverse();
+    } else {
+      hint.kind = PoseHint::Kind::kAmbiguous;
+    }
+    hints.push_back(hint);
+  }
+  return hints;
+}
+
+void GraphEstimator::use_markers(std::span<const MarkerMeasurement> measurements) {
+  struct Match {
+    std::size_t landmark;
+    const MarkerMeasurement* measurement;
+  };
+
+  std::vector<Match> matches;
+  std::vector<std::size_t> returning;
+  for (const MarkerMeasurement& measurement : measurements) {
+    const auto nearest = book_.nearest(graph_, newest(), measurement);
+    const bool is_it = nearest && (nearest->chi2 < config_.marker_gate ||
+                                   nearest->distance_m() < config_.same_marker_within_m);
+    if (!is_it && book_.is_misread(graph_.state(), newest(), measurement)) continue;
+    if (measurement.wall) graph_.calibration_knowledge().observe(*measurement.wall);
+    if (measurement.focal) graph_.calibration_knowledge().observe(*measurement.focal);
+    std::size_t landmark = 0;
+    if (is_it) {
+      landmark = nearest->landmark;
+      book_.note_sighting(landmark, measurement.time);
+      if (!markers_known_ && unobserved_m_ > 0.0 && config_.learn_noise) {
+        const OdometryNoise& described = graph_.noise().odometry;
+        const double by_odometry =
+            described.along_per_sqrt_m * described.along_per_sqrt_m * unobserved_m_;
+        const double scale = graph_.noise().scale.along;
+        noise_learner_.observe_along(
+            {nearest->residual.x(), by_odometry,
+             std::max(nearest->covariance(0, 0) - scale * scale * by_odometry,
+                      measurement.covariance(0, 0))});
+        graph_.set_odometry_scale(noise_learner_.scale());
+      }
+      markers_known_ = true;
+      if (!graph_.is_active({VariableKind::kLandmark, landmark})) returning.push_back(landmark);
+    } else {
+      landmark = graph_.add_landmark(map_from_measured(graph_.state(), newest(), measurement));
+      book_.add(measurement.id, measurement.time);
+    }
+    matches.push_back({landmark, &measurement});
+  }
+  if (markers_known_) unobserved_m_ = 0.0;
+  if (!returning.empty()) solve_everything(returning);
+  for (const Match& match : matches) {
+    MarkerFactor factor;
+    factor.keyframe = newest();
+    factor.landmark = match.landmark;
+    factor.measurement = *match.measurement;
+    factor.root_information = root_of(match.measurement->covariance.inverse());
+    graph_.add(factor);
+  }
+  if (!matches.empty()) graph_.optimise();
+}
+
+/// Absence is evidence where the camera could have seen the marker, and nothing stood before it:
+/// the LiDAR sees its wall.
+void GraphEstimator::note_misses(const Observation& observation) {
+  if (!observation.camera_reported) return;
+  const auto is_in_view = [&](const Se2& base_from_marker) {
+    const Eigen::Vector2d place = base_from_marker.translation();
+    const Eigen::Vector2d to_camera =
+        (setup_.camera.base_from_camera.translation() - place).normalized();
+    const Eigen::Vector2d facing = base_from_marker.rotation().col(0);
+    return facing.dot(to_camera) > kMinFacing && setup_.camera.would_show(place) &&
+           std::any_of(observation.beams.begin(), observation.beams.end(),
+                       [&](const AnnotatedBeam& annotated) {
+                         return (annotated.beam.end_in_base - place).norm() < kWallInSight_m;
+                       });
+  };
+  book_.note_misses(graph_.state(), newest(), is_in_view, observation.time - kSightingAge);
+}
+
+void GraphEstimator::relocate(const Se2& map_from_base) {
+  graph_.relocate_newest(map_from_base);
+  if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
+    const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
+    graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
+  }
+  graph_.optimise();
+  submaps_.clear();
+}
+
+}  // namespace waymark
