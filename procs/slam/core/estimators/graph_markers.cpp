@@ -141,6 +141,7 @@ void GraphEstimator::relocate(const Se2& map_from_base) {
   }
   graph_.optimise();
   submaps_.clear();
+  loop_finder_ = LoopFinder{config_.loops, config_.scan};  // it remembers submaps by their index
 }
 
 }  // namespace waymark
