@@ -47,6 +47,7 @@ Estimate WaymarkEstimator::update_by(const Observation& observation) {
   turn_by_scans_ = turn_that_contradicts_odometry(observation);
   slipped_ = false;
   calibration_widened_ = false;
+  const std::uint64_t updates_before = updates_;
   if (updates_ == 0 || is_due() || turn_by_scans_ || is_contradicted_by(observation)) {
     process(observation);
     if (verdict_ != KidnapWatch::Verdict::kDoubtful)
@@ -58,7 +59,8 @@ Estimate WaymarkEstimator::update_by(const Observation& observation) {
     if (!observation.beams.empty()) updated_beams_ = observation.beams;
     ++updates_;
   }
-  const Estimate now = estimate(observation);
+  Estimate now = estimate(observation);
+  now.updated = updates_ > updates_before;
   retrospect_.add_scan(observation.time, now.map_from_base);
   return now;
 }
