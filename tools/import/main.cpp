@@ -3,9 +3,10 @@
 #include "common/process/exit_codes.hpp"
 #include "common/process/guard.hpp"
 #include "common/process/number_checks.hpp"
-#include "import/carmen_reader.hpp"
-#include "import/log_output.hpp"
-#include "import/mbot_reader.hpp"
+#include "import/carmen/carmen_reader.hpp"
+#include "import/findings/findings.hpp"
+#include "import/log/log_output.hpp"
+#include "import/mbot/mbot_reader.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,6 +25,7 @@ struct Options {
   std::filesystem::path file{};
   std::filesystem::path out{};
   bool tolerant{false};
+  bool fix_reversed_odometry{false};
   std::optional<double> first_angle_deg{};
   std::optional<double> angle_step_deg{};
   std::optional<double> lidar_yaw_deg{};
@@ -39,6 +41,8 @@ void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting
                  "LCM log to write; robot.toml (and reference.tum) go beside it")
       ->required();
   app.add_flag("--tolerant", options.tolerant, "exit with 0 although lines or events were skipped");
+  app.add_flag("--fix-reversed-odometry", options.fix_reversed_odometry,
+               "where scans show that odometry counts backing up as driving forward, turn it round");
   app.add_option("--min-range-m", range_min_m, "shortest range measured")
       ->check(nonnegative_number())
       ->capture_default_str();
@@ -52,8 +56,7 @@ void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting
 
 CLI::App* add_carmen(CLI::App& app, Options& options) {
   CLI::App* carmen = app.add_subcommand(
-      "carmen",
-      "CARMEN text log: FLASER, RLASER, ROBOTLASER1, ROBOTLASER2, ODOM; gzip, bzip2 or not");
+      "carmen", "CARMEN text log: FLASER, RLASER, ROBOTLASER1, ROBOTLASER2, ODOM; gzip, bzip2 or not");
   add_common_options(*carmen, options, options.carmen.mounting, options.carmen.range_min_m);
   carmen
       ->add_option("--lidar", options.carmen.lidar,
@@ -68,7 +71,8 @@ CLI::App* add_carmen(CLI::App& app, Options& options) {
                                                       {"odom", CarmenOdometrySource::kOdomLines}}));
   carmen
       ->add_option("--max-range-m", options.carmen.range_max_m,
-                   "ranges from here on are no returns (default: as the line says, else 81.9)")
+                   "ranges from here on are no returns (default: as the line says or a pile-up shows, "
+                   "else 81.9)")
       ->check(positive_number());
   carmen
       ->add_option("--first-angle-deg", options.first_angle_deg,
@@ -95,12 +99,12 @@ CLI::App* add_mbot(CLI::App& app, Options& options) {
                    "left and right ticks of a MAEBot, instead of --odometry-channel");
   mbot->add_option("--reference-channel", chosen.reference_channel,
                    "poses to write as reference.tum, types as for --odometry-channel");
-  mbot->add_option("--meters-per-tick", chosen.wheels.meters_per_tick, "way of a wheel per tick")
-      ->check(positive_number())
-      ->capture_default_str();
-  mbot->add_option("--wheel-base-m", chosen.wheels.wheel_base_m, "distance between the wheels")
-      ->check(positive_number())
-      ->capture_default_str();
+  mbot->add_option("--meters-per-tick", chosen.meters_per_tick,
+                   "way of a wheel per tick (default: the MAEBot's whose messages they are)")
+      ->check(positive_number());
+  mbot->add_option("--wheel-base-m", chosen.wheel_base_m,
+                   "distance between the wheels (default: the MAEBot's)")
+      ->check(positive_number());
   mbot->add_option("--max-range-m", chosen.range_max_m, "longest range measured")
       ->check(positive_number())
       ->capture_default_str();
@@ -129,9 +133,12 @@ int import(const Options& options, bool is_carmen) {
   protect_inputs("--out", options.out, {options.file});
   ImportReport report{options.file, is_carmen ? AddressUnit::kLine : AddressUnit::kByte};
   try {
-    const ImportedLog log = is_carmen ? read_carmen_log(options.file, options.carmen, report)
-                                      : read_mbot_log(options.file, options.mbot, report);
-    write_imported_log(log, options.out);
+    ImportedLog log = is_carmen ? read_carmen_log(options.file, options.carmen, report)
+                                : read_mbot_log(options.file, options.mbot, report);
+    examine(log,
+            options.fix_reversed_odometry ? ReversedOdometry::kMend : ReversedOdometry::kName,
+            report);
+    write_imported_log(log, report, options.out);
     tell(report);
     fmt::print("{}", summary(log, report));
   } catch (...) {

@@ -4,9 +4,9 @@
 #include "common/messages/convert.hpp"
 #include "common/process/node.hpp"
 #include "foreign_payloads.hpp"
-#include "import/carmen_reader.hpp"
-#include "import/log_output.hpp"
-#include "import/mbot_reader.hpp"
+#include "import/carmen/carmen_reader.hpp"
+#include "import/log/log_output.hpp"
+#include "import/mbot/mbot_reader.hpp"
 #include "import_files.hpp"
 
 #include <gtest/gtest.h>

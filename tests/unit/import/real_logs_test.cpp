@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Real logs, which are third-party data and lie outside the project; skipped where they are absent.
 #include "common/messages/convert.hpp"
-#include "import/carmen_reader.hpp"
-#include "import/mbot_reader.hpp"
+#include "import/carmen/carmen_reader.hpp"
+#include "import/mbot/mbot_reader.hpp"
 #include "import_files.hpp"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/findings/reversed_odometry.hpp"
+
+#include "import/findings/findings.hpp"
+#include "synthetic_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+TEST(ReversedOdometry, BackingUpThatIsCountedAsForwardIsFound) {
+  const ImportedLog log = drive(to_and_fro(), CountedAs::kForward);
+
+  const std::vector<ReversedStep> steps = find_reversed_steps(log);
+
+  ASSERT_THAT(steps, SizeIs(20));
+  EXPECT_EQ(steps.front().after, log.scans[20].time);
+  EXPECT_EQ(steps.back().until, log.scans[40].time);
+  EXPECT_NEAR(steps.front().distance_m, 0.05, 1e-9);
+}
+
+TEST(ReversedOdometry, RightOdometryIsLeftInPeace) {
+  EXPECT_THAT(find_reversed_steps(drive(to_and_fro(), CountedAs::kDriven)), IsEmpty());
+}
+
+TEST(ReversedOdometry, ABareCorridorDecidesNothing) {
+  ImportedLog log = drive(to_and_fro(), CountedAs::kForward, Walls::kCorridor);
+  EXPECT_THAT(find_reversed_steps(log), IsEmpty());
+}
+
+TEST(ReversedOdometry, IsMendedOnRequestAndSaidAlways) {
+  ImportedLog log = drive(to_and_fro(), CountedAs::kForward);
+  const Se2 wrong_end = log.odometry.back().pose;
+  ImportReport named{"log", AddressUnit::kLine};
+  examine(log, ReversedOdometry::kName, named);
+  EXPECT_EQ(log.odometry.back().pose.x(), wrong_end.x());
+  EXPECT_THAT(named.notes(), Contains(HasSubstr("--fix-reversed-odometry mends it")));
+
+  ImportReport mended{"log", AddressUnit::kLine};
+  examine(log, ReversedOdometry::kMend, mended);
+  EXPECT_THAT(mended.notes(), Contains(HasSubstr("20 steps between scans, 1.0 m")));
+  const Se2 end = drive(to_and_fro(), CountedAs::kDriven).odometry.back().pose;
+  EXPECT_NEAR(log.odometry.back().pose.x(), end.x(), 1e-6);
+  EXPECT_NEAR(log.odometry.back().pose.y(), end.y(), 1e-6);
+  EXPECT_NEAR(log.odometry.back().pose.theta(), end.theta(), 1e-6);
+
+  ImportReport again{"log", AddressUnit::kLine};
+  examine(log, ReversedOdometry::kName, again);
+  EXPECT_THAT(again.notes(), Not(Contains(HasSubstr("backing up"))));
+}
+
+}  // namespace
+}  // namespace waymark
