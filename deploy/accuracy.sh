@@ -20,15 +20,14 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 # NAME=ESTIMATOR:KEY=VALUE:... as in deploy/sweep.sh.
 readonly kFixedOdometry='slam.waymark.odometry.scale_sigma=1e-6:slam.waymark.odometry.turn_scale_sigma=1e-6:slam.waymark.odometry.drift_sigma_rad_per_m=1e-6:slam.waymark.odometry.lidar_ahead_sigma_m=1e-6'
 readonly kFixedCamera='robot.camera.yaw_sigma_rad=0:robot.camera.focal_sigma=0'
-readonly kWeightOnly='slam.waymark.markers_in_proposal=false:slam.waymark.marker_evidence=1:slam.waymark.drawn_spread=1'
 ablations=(
   odometry
   waymark
   the_paper=marker_matching
-  "weight_only=waymark:$kWeightOnly"
-  proposal_only=waymark:slam.waymark.marker_evidence=0
-  id_layer=waymark:slam.waymark.id_layer_evidence=1
-  "id_layer_weight_only=waymark:$kWeightOnly:slam.waymark.id_layer_evidence=1"
+  no_loops=waymark:slam.waymark.loops.enabled=false
+  noise_not_learnt=waymark:slam.waymark.learn_noise=false
+  window_10=waymark:slam.waymark.window_keyframes=10
+  window_all=waymark:slam.waymark.window_keyframes=100000
   "odometry_not_learnt=waymark:$kFixedOdometry"
   "camera_not_learnt=waymark:$kFixedCamera"
   no_ids=waymark:slam.blank_ids=true

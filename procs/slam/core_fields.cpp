@@ -2,7 +2,6 @@
 // How the core's parameters stand in a configuration. The core itself knows no files.
 #include "common/config/fields.hpp"
 #include "slam/core/estimators/gmapping.hpp"
-#include "slam/core/estimators/graph.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
@@ -127,19 +126,6 @@ void OdometryNoise::describe(Fields& fields) {
                "how far the LiDAR may be ahead of where it is told to be");
 }
 
-void SurfaceMatchingConfig::describe(Fields& fields) {
-  fields.field("surface_sigma_m", surface_sigma_m, kPositive,
-               "roughness of walls, and errors of the beams' angles");
-  fields.field("outlier_sigmas", outlier_sigmas, kPositive,
-               "a beam this far from its wall counts a quarter");
-  fields.field("information_share", information_share, kFraction,
-               "of independent beams on an exact map");
-  fields.field("clump_weight", clump_weight, kNotNegative,
-               "of beams that hit no line but a clump of points; 0: not matched");
-  fields.field("weak_share", weak_share, kFraction,
-               "directions with less than this share of the strongest are unobserved");
-}
-
 void MarkerMeasurementConfig::describe(Fields& fields) {
   fields.field("reach_m", reach_m, kPositive, "wall around a marker that is believed straight");
   fields.field("perspective_sigma", perspective_sigma, kPositive,
@@ -149,40 +135,6 @@ void MarkerMeasurementConfig::describe(Fields& fields) {
   fields.field("covariance_factor", covariance_factor, kPositive,
                "on the detector's covariances: neighbouring frames err alike");
   fields.field("gate", gate, kPositive, "chi^2 between camera and wall that is still believed");
-}
-
-void WaymarkConfig::describe(Fields& fields) {
-  fields.field("particles", particles, {1, 100000}, "number of hypotheses");
-  fields.field("resample_threshold", resample_threshold, kFraction,
-               "share of effective particles below which to resample");
-  fields.field("update_distance_m", update_distance_m, kNotNegative,
-               "a scan is used after this much driving");
-  fields.field("update_turn_rad", update_turn_rad, kNotNegative, "or this much turning");
-  fields.field("marker_gate", marker_gate, kPositive,
-               "chi^2 of a sighting of a known marker that is still believed");
-  fields.field("marker_near_m", marker_near_m, kNotNegative,
-               "a known marker that is off by less is believed, but counts less");
-  fields.field("same_marker_within_m", same_marker_within_m, kPositive,
-               "no second marker of one id nearer than this");
-  fields.field("joint_markers", joint_markers, {2, 1000},
-               "markers that each particle knows together with its pose; the others are settled");
-  fields.field("scan_evidence", scan_evidence, kFraction,
-               "share of a scan's log-likelihood that weighs particles");
-  fields.field("marker_evidence", marker_evidence, kFraction, "the same of a sighting");
-  fields.field("evidence_knee", evidence_knee, kPositive,
-               "a particle with this much less evidence [nat] is weighed by half of it");
-  fields.field("id_layer_evidence", id_layer_evidence, kNotNegative,
-               "log weight of a beam whose marker id is that of its cell in the map");
-  fields.field(
-      "markers_in_proposal", markers_in_proposal,
-      "markers correct each particle's pose; else it is drawn before, and they only weigh");
-  fields.field("drawn_spread", drawn_spread, kFraction,
-               "share of a pose's standard deviations that particles draw");
-  fields.field("lost_agreement", lost_agreement, kFraction,
-               "share of the mapped beams that must agree with the walls, else the robot is lost");
-  fields.section("odometry", odometry);
-  fields.section("matching", matching);
-  fields.section("markers", markers);
 }
 
 void ScanMatchConfig::describe(Fields& fields) {
@@ -212,10 +164,12 @@ void LoopConfig::describe(Fields& fields) {
                "what both shares have to be of a loop beyond the gate");
 }
 
-void GraphConfig::describe(Fields& fields) {
+void WaymarkConfig::describe(Fields& fields) {
   fields.field("keyframe_distance_m", keyframe_distance_m, kPositive,
                "a scan becomes a keyframe after this much driving");
   fields.field("keyframe_turn_rad", keyframe_turn_rad, kPositive, "or this much turning");
+  fields.field("marker_keyframe_distance_m", marker_keyframe_distance_m, kPositive,
+               "the same of a scan with sighted markers");
   fields.field("insert_distance_m", insert_distance_m, kNotNegative,
                "scans in between enter the submaps after this much driving");
   fields.field("window_keyframes", window_keyframes, {2, 100000},
@@ -230,6 +184,8 @@ void GraphConfig::describe(Fields& fields) {
                "no second marker of one id nearer than this");
   fields.field("lost_inlier_share", lost_inlier_share, kFraction,
                "share of the mapped beams that must agree with the walls, else the robot is lost");
+  fields.field("min_inlier_share", min_inlier_share, kFraction,
+               "the same of a scan that is used and mapped");
   fields.section("odometry", odometry);
   fields.section("scan", scan);
   fields.section("markers", markers);

@@ -2,7 +2,6 @@
 #include "slam/estimator_factory.hpp"
 
 #include "slam/core/estimators/gmapping.hpp"
-#include "slam/core/estimators/graph.hpp"
 #include "slam/core/estimators/odometry.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
@@ -17,8 +16,6 @@ std::unique_ptr<Estimator> make_estimator(const SlamConfig& config) {
       return std::make_unique<GmappingEstimator>(setup, config.slam.gmapping);
     case EstimatorName::kMarkerMatching:
       return std::make_unique<MarkerMatchingEstimator>(setup, config.slam.marker_matching);
-    case EstimatorName::kGraph:
-      return std::make_unique<GraphEstimator>(setup, config.slam.graph);
     case EstimatorName::kWaymark:
       return std::make_unique<WaymarkEstimator>(setup, config.slam.waymark);
   }

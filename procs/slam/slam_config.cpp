@@ -55,12 +55,11 @@ void SlamSection::describe(Fields& fields) {
                 {{"odometry", EstimatorName::kOdometry},
                  {"gmapping", EstimatorName::kGmapping},
                  {"marker_matching", EstimatorName::kMarkerMatching},
-                 {"waymark", EstimatorName::kWaymark},
-                 {"graph", EstimatorName::kGraph}},
+                 {"waymark", EstimatorName::kWaymark}},
                 "method");
   fields.field("seed", seed, {0.0, 9e15}, "of all random numbers");
   fields.field("threads", threads, {1.0, 256.0},
-               "for the particles of gmapping and waymark; any number gives the same result");
+               "for the particles of gmapping; any number gives the same result");
   fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
   fields.field("map_period_s", map_period_s, kPositive,
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
@@ -72,7 +71,6 @@ void SlamSection::describe(Fields& fields) {
   fields.section("gmapping", gmapping);
   fields.section("marker_matching", marker_matching);
   fields.section("waymark", waymark);
-  fields.section("graph", graph);
 }
 
 void SlamConfig::describe(Fields& fields) {

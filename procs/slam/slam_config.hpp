@@ -6,7 +6,6 @@
 #include "common/robot/robot_config.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/estimators/gmapping.hpp"
-#include "slam/core/estimators/graph.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/waymark.hpp"
 #include "slam/core/input/sensor_queue.hpp"
@@ -15,7 +14,7 @@
 
 namespace waymark {
 
-enum class EstimatorName { kOdometry, kGmapping, kMarkerMatching, kWaymark, kGraph };
+enum class EstimatorName { kOdometry, kGmapping, kMarkerMatching, kWaymark };
 
 /// How marker sightings are put on beams, and which beams may say "no marker here".
 struct PreprocessingConfig {
@@ -43,7 +42,6 @@ struct SlamSection {
   GmappingConfig gmapping{};
   MarkerMatchingConfig marker_matching{};
   WaymarkConfig waymark{};
-  GraphConfig graph{};
 
   void describe(Fields& fields);
 };

@@ -53,14 +53,14 @@ class StopCollector {
  public:
   explicit StopCollector(const SlamConfig& config)
       : waymark_{config.slam.waymark}, setup_{estimator_setup(config)} {
-    noise_ = {setup_.range_sigma_m, waymark_.matching.surface_sigma_m, setup_.range_max_m};
+    noise_ = {setup_.range_sigma_m, waymark_.scan.roughness_m, setup_.range_max_m};
   }
 
   void add(const Observation& observation) {
     since_stop_ = since_stop_.then(observation.motion);
     newest_ = observation;
-    if (stops_.empty() || since_stop_.distance_m >= waymark_.update_distance_m ||
-        since_stop_.turn_rad >= waymark_.update_turn_rad)
+    if (stops_.empty() || since_stop_.distance_m >= kStopDistance_m ||
+        since_stop_.turn_rad >= kStopTurn_rad)
       stop();
   }
 

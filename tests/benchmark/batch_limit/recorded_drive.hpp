@@ -21,13 +21,15 @@ struct Stop {
   std::vector<MarkerMeasurement> markers{};  ///< by the camera alone
 };
 
+inline constexpr double kStopDistance_m = 0.1;
+inline constexpr double kStopTurn_rad = 0.0873;
+
 struct RecordedDrive {
   std::vector<Stop> stops{};
   std::int64_t skipped_bytes{0};  ///< of a damaged log
 };
 
-/// Stops at the first scan, after every update_distance_m or update_turn_rad of [slam.waymark], and
-/// at the last scan.
+/// Stops at the first scan, after every kStopDistance_m or kStopTurn_rad, and at the last scan.
 /// @throws std::runtime_error if the log cannot be read or holds no scan that odometry covers.
 RecordedDrive recorded_drive(const std::filesystem::path& log, const SlamConfig& config);
 

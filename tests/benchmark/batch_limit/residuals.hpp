@@ -3,8 +3,8 @@
 #pragma once
 
 #include "batch_limit/association.hpp"
-#include "slam/core/belief/odometry_errors.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
+#include "slam/core/motion/odometry_errors.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

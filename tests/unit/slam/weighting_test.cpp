@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/random/random.hpp"
-#include "slam/core/filter/centred_normals.hpp"
 #include "slam/core/mapping/insert_scan.hpp"
 #include "slam/core/resampling/systematic.hpp"
 #include "slam/core/scan/observability.hpp"
@@ -209,30 +208,6 @@ TEST(Resampling, CountsAreTheRoundedShares) {
 TEST(Resampling, EffectiveNumberGoesFromOneToAll) {
   EXPECT_NEAR(effective_number(std::vector{0.25, 0.25, 0.25, 0.25}), 4.0, 1e-12);
   EXPECT_NEAR(effective_number(std::vector{1.0, 0.0, 0.0, 0.0}), 1.0, 1e-12);
-}
-
-TEST(CentredNormals, TheirWeightedMeanIsZeroAndTheirSpreadOne) {
-  const std::vector<double> weights{0.1, 0.1, 0.2, 0.1, 0.1, 0.1, 0.1, 0.2};
-  double square = 0.0;
-  constexpr int kDraws = 2000;
-  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
-    const auto normals = centred_normals(weights, [&](std::size_t i) {
-      return Random{1, draw, i};
-    });
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      mean += weights[i] * normals[i];
-      square += weights[i] * normals[i].squaredNorm() / 3.0;
-    }
-    ASSERT_LT(mean.norm(), 1e-12);
-  }
-  EXPECT_NEAR(square / kDraws, 1.0, 0.05);
-}
-
-TEST(CentredNormals, OneParticleWithAllTheWeightStillDraws) {
-  const std::vector<double> weights{1.0, 0.0};
-  const auto normals = centred_normals(weights, [](std::size_t i) { return Random{1, i}; });
-  EXPECT_GT(normals[0].norm(), 0.0);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct GmappingConfig {
   double occupied_threshold{0.25};  ///< occ_thresh
   /// Where the scans contradict odometry's turn, the particles turn as the scans tell. The released
   /// code comes through such places by chance.
-  bool watch_turns{true};
+  bool watch_turns{false};
   StepNoise motion{};
   ScanGate gate{};
   MatcherConfig matcher{};

@@ -1,204 +1,389 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/waymark.hpp"
 
-#include "slam/core/filter/centred_normals.hpp"
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 
 namespace waymark {
 namespace {
 
-constexpr std::size_t kStaticMarkers = 4;  // that a past pose is corrected by
-constexpr double kMinSurfaces = 0.1;       // share of beams; a scan with fewer shows nothing
-constexpr double kMinMappedShare = 0.2;    // of a scan's beams; fewer say nothing about being lost
+constexpr double kFirstPoseSigma = 1e-5;   // [m, rad]: the map's frame is the first pose
+constexpr std::size_t kMaxReferences = 4;  // keyframes that stand for all that saw a scan's walls
 
-/// What the robot's description says is not for the configuration to say again.
-WaymarkConfig on_robot(const EstimatorSetup& setup, WaymarkConfig config) {
-  config.matching.range_sigma_m = setup.range_sigma_m;
-  config.odometry.half_track_m = setup.half_track_m;
-  return config;
+// Wide search of a scan that fits badly.
+constexpr double kUsualFit = 0.93;   // share of the usual fit; below, a scan fits badly
+constexpr double kFitMemory = 0.05;  // weight of the newest scan in what is usual
+constexpr double kSearchReach_m = 0.5;
+constexpr double kSearchReach_rad = 0.6;
+constexpr std::size_t kSearchBeams = 120;
+constexpr double kClearlyMore = 1.05;                  // inliers than the plain match has
+const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
+
+// A scan that odometry contradicts becomes a keyframe, where a slip is weighed.
+constexpr double kContradiction = 25.0;  // chi^2
+constexpr double kContradiction_m = 0.03;
+constexpr double kContradiction_rad = 0.02;
+
+Calibration calibration_sigmas(const EstimatorSetup& setup, const OdometryNoise& odometry) {
+  Calibration sigmas;
+  sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
+      odometry.lidar_ahead_sigma_m, setup.sighting_sigmas.learnt;
+  return sigmas;
+}
+
+Points points_of(const Observation& observation) {
+  Points points;
+  points.reserve(observation.beams.size());
+  for (const AnnotatedBeam& annotated : observation.beams)
+    points.push_back(annotated.beam.end_in_base);
+  return points;
+}
+
+/// Of (x, y, theta) in other axes.
+Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& information) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = rotation;
+  return turn * information * turn.transpose();
+}
+
+GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config) {
+  GraphNoise noise;
+  noise.odometry = config.odometry;
+  noise.odometry.half_track_m = setup.half_track_m;
+  noise.marker_gate = config.marker_gate;
+  return noise;
 }
 
 }  // namespace
 
 WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config)
     : setup_{setup},
-      config_{on_robot(setup, config)},
-      particles_{static_cast<std::size_t>(config.particles),
-                 WaymarkParticle{GridFrame::centred_on_map_origin(setup.grid.resolution_m),
-                                 BeliefPrior{config_.odometry, setup.sighting_sigmas.learnt}}},
-      mapper_{setup.grid} {
-  noise_ = config_.odometry;
-}
+      config_{config},
+      graph_{graph_noise(setup, config), calibration_sigmas(setup, config.odometry)},
+      range_noise_{setup.range_sigma_m},
+      loop_finder_{config.loops, config.scan},
+      mapper_{setup.grid} {}
 
 Estimate WaymarkEstimator::update(const Observation& observation) {
-  watch_ranges(observation);
-  if (surface_share(observation.beams) >= kMinSurfaces && !ranges_wrong_)
-    return update_by(observation);
-  // A LiDAR that measures nonsense must neither be matched nor mapped.
-  Observation without_beams = observation;
-  without_beams.beams.clear();
-  return update_by(without_beams);
-}
-
-Estimate WaymarkEstimator::update_by(const Observation& observation) {
-  watch_standstill(observation);
-  since_update_ = since_update_.then(observation.motion);
-  turn_by_scans_ = turn_that_contradicts_odometry(observation);
-  slipped_ = false;
-  calibration_widened_ = false;
-  if (updates_ == 0 || is_due() || turn_by_scans_ || is_contradicted_by(observation)) {
-    process(observation);
-    if (verdict_ != KidnapWatch::Verdict::kDoubtful)
-      mapper_.insert(observation, mean_, covariance_);
-    remember(observation);
-    Random random{setup_.seed, kResamplingStream, updates_};
-    particles_.resample_if_needed(config_.resample_threshold, random);
-    since_update_ = {};
-    if (!observation.beams.empty()) updated_beams_ = observation.beams;
-    ++updates_;
+  follow_odometry(observation);
+  const Points points = points_of(observation);
+  bool is_keyframe = is_keyframe_due(observation) || is_contradicted_by(observation);
+  BetweenKeyframes between;
+  if (!is_keyframe) {
+    between = between_keyframes(points);
+    is_keyframe = between.contradicts_odometry;
   }
-  const Estimate now = estimate(observation);
-  retrospect_.add_scan(observation.time, now.map_from_base);
+  if (is_keyframe) {
+    add_keyframe(observation, points);
+    since_insertion_m_ = observation.motion.distance_m;
+  } else {
+    since_insertion_m_ += observation.motion.distance_m;
+    if (between.match) insert_between(points, *between.match, between.map_from_base);
+  }
+  const Estimate now =
+      is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation, between);
+  scan_poses_.push_back(
+      {observation.time, newest(), graph_.state().keyframes.back().inverse() * now.map_from_base});
   return now;
 }
 
-bool WaymarkEstimator::is_due() const {
-  return since_update_.distance_m >= config_.update_distance_m ||
-         since_update_.turn_rad >= config_.update_turn_rad;
+/// Odometry that was stuck tells at once what was driven meanwhile. Keyframes that were made in
+/// between, because markers or walls said that the robot moves, hang on those alone then.
+void WaymarkEstimator::follow_odometry(const Observation& observation) {
+  if (observation.odometry_caught_up && standstill_ &&
+      graph_.is_active({VariableKind::kKeyframe, standstill_->keyframe})) {
+    graph_.cut_odometry_since(standstill_->keyframe);
+    moved_from_ = standstill_->keyframe;
+    motion_ = standstill_->motion;
+  }
+  motion_ = motion_.then(observation.motion);
+  const bool is_standing =
+      observation.motion.distance_m == 0.0 && observation.motion.turn_rad == 0.0;
+  if (!is_standing) {
+    standstill_.reset();
+    keyframes_standing_ = 0;
+  } else if (!standstill_ && !graph_.state().keyframes.empty()) {
+    standstill_ = Standstill{moved_from_, motion_};
+  }
 }
 
-std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& observation) const {
-  return measure_markers(
-      observation, {setup_.range_sigma_m, setup_.camera.base_from_camera, setup_.sighting_sigmas},
-      noise_, config_.markers);
+bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
+  const double distance_m = observation.sightings.empty() ? config_.keyframe_distance_m
+                                                          : config_.marker_keyframe_distance_m;
+  return graph_.state().keyframes.empty() || motion_.distance_m >= distance_m ||
+         motion_.turn_rad >= config_.keyframe_turn_rad;
 }
 
-Belief WaymarkEstimator::belief_now() const {
-  Belief now = belief();
-  now.move(since_update_, noise_);
-  return now;
+WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
+  const CorrectedMotion moved =
+      corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
+  const Se2& from = graph_.state().keyframes[moved_from_];
+  return {from * moved.start_from_end, in_axes(from.rotation(), moved.covariance)};
 }
 
-/// A marker where none of its id should be may mean that the robot was carried away: that cannot
-/// wait until it has driven on.
-bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const {
-  if (observation.sightings.empty()) return false;
-  const Belief expected = belief_now();
-  const auto seen = measured(observation);
-  return std::any_of(seen.begin(), seen.end(), [&](const MarkerMeasurement& measurement) {
-    const auto nearest = expected.nearest(measurement);
-    return nearest && !nearest->may_be_it(config_.marker_gate, config_.marker_near_m);
+std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
+    const Points& points, const Prediction& prediction) const {
+  if (submaps_.empty() || points.empty()) return std::nullopt;
+  MatchedScan scan;
+  scan.submap = submaps_.size() > 1 ? &submaps_[submaps_.size() - 2] : &submaps_.back();
+  scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
+  const Se2 submap_from_map = scan.map_from_submap.inverse();
+  const Se2 guess = submap_from_map * prediction.map_from_base;
+  const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), prediction.covariance);
+  scan.match =
+      match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_, config_.scan);
+  return scan;
+}
+
+/// Odometry may be off by more than plain matching can find: where a scan fits worse than the scans
+/// before, the best place in a wide window is tried, too.
+void WaymarkEstimator::search_widely(const Points& points, const Prediction& prediction,
+                                     MatchedScan& scan) const {
+  if (!is_bad_fit(scan.match)) return;
+  const Se2 guess = scan.map_from_submap.inverse() * prediction.map_from_base;
+  const CorrelativeField field{scan.submap->points()};
+  const auto best = field.best(thinned(points, kSearchBeams), guess,
+                               {kSearchReach_m, kSearchReach_rad}, config_.loops.min_score);
+  if (!best) return;
+  const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
+  const ScanMatch other = match_scan(points, scan.submap->surfaces(), best->submap_from_base, near,
+                                     range_noise_, config_.scan);
+  if (other.inliers > kClearlyMore * scan.match.inliers) scan.match = other;
+}
+
+void WaymarkEstimator::add_first_keyframe() {
+  graph_.add_keyframe({});
+  graph_.add(PosePrior{0, {}, Eigen::Matrix3d::Identity() / kFirstPoseSigma});
+}
+
+void WaymarkEstimator::add_keyframe(const Observation& observation, const Points& points) {
+  inlier_share_ = 1.0;
+  bool is_refuted_scan = false;
+  if (graph_.state().keyframes.empty()) {
+    add_first_keyframe();
+  } else {
+    const Prediction expected = prediction();
+    auto scan = matched(points, expected);
+    if (scan) search_widely(points, expected, *scan);
+    const std::size_t keyframe = graph_.add_keyframe(expected.map_from_base);
+    graph_.add(OdometryFactor{moved_from_, keyframe, motion_});
+    if (standstill_) ++keyframes_standing_;
+    is_refuted_scan = scan && is_refuted(scan->match);
+    if (scan) inlier_share_ = scan->match.inlier_share;
+    if (scan && !is_refuted_scan && scan->match.is_usable(config_.scan)) {
+      learn_noise(expected, scan->match);
+      add_scan_factor(keyframe, *scan->submap, scan->match, false);
+      usual_fit_ += kFitMemory * (inlier_share_ * scan->match.mapped_share - usual_fit_);
+    }
+    unobserved_m_ += motion_.distance_m;
+  }
+  graph_.optimise();
+  const std::vector<MarkerMeasurement> measurements = measured(observation);
+  verdict_ = relocalisation_.judge(graph_.state().keyframes.back(), hints(measurements), motion_);
+  if (verdict_ == RelocalisationMonitor::Verdict::kElsewhere ||
+      verdict_ == RelocalisationMonitor::Verdict::kBack) {
+    relocate(relocalisation_.map_from_base());
+  }
+  const bool is_doubtful = verdict_ == RelocalisationMonitor::Verdict::kDoubtful;
+  markers_known_ = false;
+  if (!is_doubtful) {
+    use_markers(measurements);
+    note_misses(observation);
+    if (config_.loops.enabled && !is_refuted_scan) close_loops(points);
+  }
+  // What cannot be placed is not mapped.
+  const bool is_mapped = !is_doubtful && !is_refuted_scan;
+  if (is_mapped) {
+    mapper_.insert(observation, graph_.state().keyframes.back(),
+                   graph_.covariance_of({VariableKind::kKeyframe, newest()}));
+  }
+  insert_scan(is_mapped ? points : Points{});
+  archive_.add(is_mapped ? observation : Observation{}, graph_.state().keyframes.back());
+  drawn_at_.push_back(graph_.state().keyframes.back());
+  while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
+    graph_.marginalise_oldest(kNear_m);
+  motion_ = {};
+  moved_from_ = newest();
+  if (standstill_ && standstill_->keyframe == moved_from_) standstill_->motion = {};
+}
+
+void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
+                                       const ScanMatch& match, bool is_loop) {
+  ScanFactor factor;
+  factor.is_loop = is_loop;
+  factor.keyframe = keyframe;
+  // Neighbouring keyframes are put together: their middle one stands for them.
+  const std::size_t count = match.keyframe_shares.size();
+  const std::size_t groups = std::min(count, kMaxReferences);
+  for (std::size_t group = 0; group < groups; ++group) {
+    const std::size_t begin = group * count / groups;
+    const std::size_t end = (group + 1) * count / groups;
+    double share = 0.0;
+    for (std::size_t i = begin; i < end; ++i)
+      share += match.keyframe_shares[i];
+    const std::size_t reference =
+        static_cast<std::size_t>(match.first_keyframe) + (begin + end - 1) / 2;
+    const bool is_open = is_loop || graph_.is_active({VariableKind::kKeyframe, reference});
+    if (share <= 0.0 || !is_open) continue;
+    factor.references.push_back(
+        {reference, share, submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
+  }
+  double sum = 0.0;
+  for (const ScanFactor::Reference& reference : factor.references)
+    sum += reference.share;
+  if (sum <= 0.0) return;
+  for (ScanFactor::Reference& reference : factor.references)
+    reference.share /= sum;
+  factor.root_information =
+      root_of(in_axes(match.map_from_base.rotation().transpose(), match.observed.information));
+  graph_.add(factor);
+}
+
+/// What the scan says about the motion since the keyframe before, against what odometry says.
+void WaymarkEstimator::learn_noise(const Prediction& expected, const ScanMatch& match) {
+  if (!config_.learn_noise) return;
+  const OdometryNoise described = scaled(graph_.noise().odometry, {});
+  const Se2 map_from_submap =
+      graph_.state().keyframes[submaps_.size() > 1 ? submaps_[submaps_.size() - 2].first_keyframe()
+                                                   : submaps_.back().first_keyframe()];
+  const Se2 found = map_from_submap * match.map_from_base;
+  const Eigen::Matrix2d to_base = found.rotation().transpose();
+  Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
+  off.head<2>() = (to_base * off.head<2>()).eval();
+  const Eigen::Matrix3d information =
+      in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
+  // Two scans err, this one and the one before.
+  noise_learner_.observe_turn({off.z(),
+                               turn_variance(described, motion_.distance_m, motion_.turn_rad),
+                               2.0 / information(2, 2)});
+  if (!match.observed.is_degenerate) {
+    const Eigen::Matrix3d covariance = information.inverse();
+    noise_learner_.observe_along(
+        {off.x(), described.along_per_sqrt_m * described.along_per_sqrt_m * motion_.distance_m,
+         2.0 * covariance(0, 0)});
+    unobserved_m_ = -motion_.distance_m;
+  }
+  graph_.set_odometry_scale(noise_learner_.scale());
+}
+
+/// Two submaps are filled at a time, one half a length behind the other: the older one is matched,
+/// and holds half a length of scans at least.
+void WaymarkEstimator::insert_scan(const Points& points) {
+  const auto half = static_cast<std::size_t>(std::max(1, config_.submap_keyframes / 2));
+  if (submaps_.empty() || submaps_.back().num_keyframes() >= half)
+    submaps_.emplace_back(config_.scan.cell_spacing_m, newest());
+  for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
+    submaps_[i].insert(points, submap_from_map(i) * graph_.state().keyframes.back());
+}
+
+Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) const {
+  return estimate(observation, graph_.state().keyframes.back(),
+                  graph_.covariance_of({VariableKind::kKeyframe, newest()}));
+}
+
+/// Scans in between average the noise of the submaps. One that fits worse than usual might be in
+/// the wrong place, and would confirm that to the next ones.
+void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
+                                      const Se2& map_from_base) {
+  if (since_insertion_m_ < config_.insert_distance_m || is_bad_fit(match) ||
+      verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
+    return;
+  }
+  since_insertion_m_ = 0.0;
+  for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
+    submaps_[i].add(points, submap_from_map(i) * map_from_base);
+}
+
+bool WaymarkEstimator::is_bad_fit(const ScanMatch& match) const {
+  return match.inlier_share * match.mapped_share < kUsualFit * usual_fit_;
+}
+
+/// Most of what it shows stands where the map has something else, so that it is no view of a place
+/// that is new: the sensor is wrong, or the pose.
+bool WaymarkEstimator::is_refuted(const ScanMatch& match) const {
+  return match.num_mapped >= config_.scan.min_inliers &&
+         match.inlier_share < config_.min_inlier_share;
+}
+
+std::size_t WaymarkEstimator::first_filled_submap() const {
+  return submaps_.size() > 1 ? submaps_.size() - 2 : 0;
+}
+
+Se2 WaymarkEstimator::submap_from_map(std::size_t submap) const {
+  return graph_.state().keyframes[submaps_[submap].first_keyframe()].inverse();
+}
+
+WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Points& points) const {
+  const Prediction expected = prediction();
+  BetweenKeyframes between{expected.map_from_base, expected.covariance};
+  const auto scan = matched(points, expected);
+  if (!scan || !scan->match.is_usable(config_.scan) || is_refuted(scan->match)) return between;
+  const Se2 found = scan->map_from_submap * scan->match.map_from_base;
+  const Eigen::Matrix3d information =
+      in_axes(scan->map_from_submap.rotation(), scan->match.observed.information);
+  const Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
+  between.covariance = (expected.covariance.inverse() + information).inverse();
+  const Eigen::Vector3d pull = information * off;
+  const Eigen::Vector3d step = between.covariance * pull;
+  between.map_from_base = {expected.map_from_base.x() + step.x(),
+                           expected.map_from_base.y() + step.y(),
+                           expected.map_from_base.theta() + step.z()};
+  between.match = scan->match;
+  const double chi2 = off.dot(pull) - pull.dot(between.covariance * pull);
+  between.contradicts_odometry =
+      chi2 > kContradiction &&
+      (off.head<2>().norm() > kContradiction_m || std::abs(off.z()) > kContradiction_rad);
+  return between;
+}
+
+Estimate WaymarkEstimator::estimate_between(const Observation& observation,
+                                            const BetweenKeyframes& between) const {
+  const Eigen::Vector2d way =
+      between.map_from_base.translation() - graph_.state().keyframes.back().translation();
+  Eigen::Matrix3d carried = Eigen::Matrix3d::Identity();
+  carried.topRightCorner<2, 1>() << -way.y(), way.x();  // d(x, y) / d(theta)
+  const Eigen::Matrix3d covariance =
+      carried * graph_.covariance_of({VariableKind::kKeyframe, newest()}) * carried.transpose() +
+      between.covariance;
+  return estimate(observation, between.map_from_base, covariance);
+}
+
+Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& map_from_base,
+                                    const Eigen::Matrix3d& covariance) const {
+  Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
+  estimate.covariance = 0.5 * (covariance + covariance.transpose());
+  if (relocalisation_.alternative()) {
+    const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
+    estimate.covariance += away * away.transpose();
+  }
+  estimate.calibration_widened = graph_.is_calibration_doubted();
+  estimate.weak_axis_source = markers_known_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
+  const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kDoubtful ||
+                       inlier_share_ < config_.lost_inlier_share;
+  estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
+                              !estimate.observability.is_degenerate || markers_known_);
+  return estimate;
+}
+
+std::vector<Landmark> WaymarkEstimator::landmarks() const {
+  std::vector<Landmark> known;
+  for (std::size_t i = 0; i < book_.entries().size(); ++i) {
+    if (book_.is_retired(i)) continue;
+    known.push_back(book_.entries()[i]);
+    known.back().map_from_marker = graph_.state().landmarks[i];
+    known.back().covariance = graph_.landmark_covariance(i);
+  }
+  std::stable_sort(known.begin(), known.end(), [](const Landmark& a, const Landmark& b) {
+    return std::pair{a.id, a.instance} < std::pair{b.id, b.instance};
   });
+  return known;
 }
 
-void WaymarkEstimator::process(const Observation& observation) {
-  const Sensed sensed = sense(observation);
-  const std::vector<Chance> chances = draw_chances();
-  std::vector<Outcome> outcomes(particles_.size());
-  const ParticleUpdate update{shared(), sensed};
-  setup_.parallel_for(particles_.size(), [&](std::size_t i) {
-    outcomes[i] = update.advance(particles_.state(i), chances[i]);
-    particles_.state(i).belief.settle_oldest(static_cast<std::size_t>(config_.joint_markers));
-  });
-  weigh(outcomes);
-  if (verdict_ == KidnapWatch::Verdict::kSettled) {
-    const PoseCorrection& correction = outcomes[particles_.best()].correction;
-    noise_growth_.learn(correction);
-    slip_watch_.learn(correction, since_update_, config_.odometry);
-  }
-  noise_ = noise_growth_.applied_to(config_.odometry);
-  watch_calibration();
-  const Outcome& best = outcomes[particles_.best()];
-  slipped_ = sensed.slip || best.slipped_turn_rad != 0.0;
-  drift_.take(best.drawn, best.by_noise, belief().errors_covariance());
-  judge(outcomes);
-  drift_.move(mean_);
-  if (verdict_ == KidnapWatch::Verdict::kDoubtful) return;
-  // The first pose is exact, and what is mapped from there is off by what the scan's noise makes of
-  // it, for ever. Later poses follow the noise of their scans.
-  const Eigen::Matrix3d by_scan =
-      updates_ == 0 ? noise_of_walls(observation.beams, config_.matching) : Eigen::Matrix3d::Zero();
-  drift_.map(observation.beams, by_scan, belief().pose_error(), belief().errors_covariance());
-}
-
-WaymarkEstimator::Sensed WaymarkEstimator::sense(const Observation& observation) {
-  Sensed sensed;
-  sensed.observation = &observation;
-  sensed.is_first = updates_ == 0;
-  sensed.motion = since_update_;
-  sensed.noise = noise_;
-  sensed.markers = measured(observation);
-  sensed.walls = observability_of(observation.beams, Se2{}, setup_.range_sigma_m);
-  if (config_.id_layer_evidence > 0.0)
-    sensed.spots = judged_spots(observation, setup_.grid.face_spacing_m, setup_.grid.face_margin_m);
-  if (!sensed.walls.is_degenerate) {
-    // What older scans have left open is the error of their walls, too.
-    drift_.take(belief().pose_error(), Eigen::Matrix3d::Zero(), belief().errors_covariance());
-  }
-  const Belief expected = belief_now();
-  verdict_ = kidnap_watch_.judge(expected, sensed.markers, since_update_, config_.marker_gate,
-                                 config_.marker_near_m);
-  sensed.verdict = verdict_;
-  if (verdict_ == KidnapWatch::Verdict::kBack)
-    sensed.returning_pose = kidnap_watch_.returning_pose();
-  if (verdict_ == KidnapWatch::Verdict::kElsewhere)
-    sensed.relocating_marker = kidnap_watch_.relocating_marker();
-  drift_.move(expected.map_from_base());
-  sensed.drift = drift_.release(observation.beams, sensed.walls, expected.errors_covariance());
-  sensed.slip = find_slip(expected, sensed);
-  return sensed;
-}
-
-std::vector<WaymarkEstimator::Chance> WaymarkEstimator::draw_chances() const {
-  const auto normals_of = [&](RandomStream stream) {
-    return centred_normals(particles_.weights(), [&, stream](std::size_t particle) {
-      return Random{setup_.seed, stream, updates_, particle};
-    });
-  };
-  const std::vector<Eigen::Vector3d> poses = normals_of(kPoseStream);
-  const std::vector<Eigen::Vector3d> rests = normals_of(kRestStream);
-  std::vector<Chance> chances;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    Random random{setup_.seed, kStartStream, updates_, i};
-    chances.push_back({config_.drawn_spread * poses[i], config_.drawn_spread * rests[i],
-                       i == 0 ? 0.0 : random.normal()});
-  }
-  return chances;
-}
-
-/// Beams err together, so that a few units of evidence are chance: what is less than the knee
-/// counts with its square. A particle that has lost its walls has less by far more than that.
-void WaymarkEstimator::weigh(const std::vector<Outcome>& outcomes) {
-  double most = outcomes.front().log_evidence;
-  for (const Outcome& outcome : outcomes)
-    most = std::max(most, outcome.log_evidence);
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const double less = most - outcomes[i].log_evidence;
-    particles_.add_log_weight(i, -less / (1.0 + config_.evidence_knee / less));
-  }
-  particles_.normalise();
-}
-
-void WaymarkEstimator::judge(const std::vector<Outcome>& outcomes) {
-  mean_ = mean_pose();
-  covariance_ = covariance_about_mean();
-  if (kidnap_watch_.elsewhere()) {
-    const Eigen::Vector3d away = deviation(mean_, *kidnap_watch_.elsewhere());
-    covariance_ += away * away.transpose();
-  }
-  effective_particles_ = particles_.effective_number();
-  const Outcome& best = outcomes[particles_.best()];
-  const bool is_mapped = best.walls.mapped > kMinMappedShare * best.walls.beams;
-  wall_agreement_ = is_mapped ? best.walls.agreeing / best.walls.mapped : 1.0;
-  markers_told_ = best.known_markers > 0;
-}
-
-/// What cannot be mapped where the robot seems to be is not drawn again either.
-void WaymarkEstimator::remember(const Observation& observation) {
-  const bool is_mapped = verdict_ != KidnapWatch::Verdict::kDoubtful;
-  retrospect_.add_update(belief().pose_by_statics(kStaticMarkers), statics(),
-                         is_mapped ? observation : Observation{}, mean_);
+std::vector<PublishedParticle> WaymarkEstimator::particles() const {
+  return {};
 }
 
 }  // namespace waymark

@@ -1,31 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Our method: particles drawn from odometry, walls and markers fused; each with its own walls,
-// markers and calibration of the odometry.
+// Our method: a smoother over keyframes, markers and calibration.
 #pragma once
 
-#include "slam/core/belief/noise_growth.hpp"
-#include "slam/core/belief/slip_watch.hpp"
 #include "slam/core/estimators/estimator.hpp"
-#include "slam/core/estimators/waymark_config.hpp"
-#include "slam/core/estimators/waymark_particle.hpp"
-#include "slam/core/filter/particle_set.hpp"
-#include "slam/core/landmark/kidnap_watch.hpp"
-#include "slam/core/mapping/map_drift.hpp"
-#include "slam/core/scan/turn_by_scans.hpp"
-#include "slam/core/smoothing/retrospect.hpp"
+#include "slam/core/graph/association.hpp"
+#include "slam/core/graph/graph.hpp"
+#include "slam/core/graph/loop_finder.hpp"
+#include "slam/core/graph/odometry_noise_learner.hpp"
+#include "slam/core/graph/relocalisation.hpp"
+#include "slam/core/landmark/marker_measurement.hpp"
+#include "slam/core/mapping/scan_archive.hpp"
+#include "slam/core/registration/submap.hpp"
 
-#include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
 namespace waymark {
 
-/// FastSLAM 2.0 (Montemerlo et al., 2003) on a line-based scan matcher, with delayed drawing: each
-/// particle is a Gaussian over its pose, the errors of odometry and camera, and the markers. Along
-/// the axes that walls can tell, the pose is drawn at each update from the fusion of odometry,
-/// walls and markers, for the particle's walls are mapped from there; along the others nothing is
-/// mapped that could tell later, so the Gaussian stays whole and no particles are spent on it.
-/// Weights are the evidence of what was measured.
+class Fields;
+
+struct WaymarkConfig {
+  double keyframe_distance_m{0.15};
+  double keyframe_turn_rad{0.15};
+  double marker_keyframe_distance_m{0.05};  ///< the same of a scan with sighted markers
+  double insert_distance_m{0.04};  ///< scans in between enter the submaps after this much driving
+  int window_keyframes{48};
+  int submap_keyframes{40};
+  bool learn_noise{true};
+  double marker_gate{16.3};          ///< chi^2 of a marker's innovation, 3 degrees of freedom
+  double marker_near_m{0.25};        ///< off by less, it is the same one all the same
+  double same_marker_within_m{0.5};  ///< no second marker of one id nearer than this
+  double lost_inlier_share{0.3};     ///< of the beams that end on mapped surfaces; below: lost
+  double min_inlier_share{0.5};      ///< the same of a scan that is used and mapped
+  OdometryNoise odometry{};
+  ScanMatchConfig scan{};
+  MarkerMeasurementConfig markers{};
+  LoopConfig loops{};
+
+  void describe(Fields& fields);
+};
+
 class WaymarkEstimator final : public Estimator {
  public:
   WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config);
@@ -36,89 +51,107 @@ class WaymarkEstimator final : public Estimator {
 
   std::vector<Landmark> landmarks() const override;
   std::vector<PublishedParticle> particles() const override;
-
-  /// Smoothed: what has been learnt of the systematic errors and the markers corrects the past.
   std::vector<TimedPose> trajectory() const override;
   GridMap redrawn_map() const override;
 
-  /// Of the best particle.
-  const Belief& belief() const { return particles_.state(particles_.best()).belief; }
-
  private:
-  enum RandomStream : std::uint64_t {
-    kPoseStream = 1,
-    kResamplingStream = 2,
-    kStartStream = 3,
-    kRestStream = 4,
-    kSlipStream = 5
+  static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
+
+  struct Prediction {
+    Se2 map_from_base{};
+    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes
   };
 
-  using Sensed = ParticleUpdate::Sensed;
-  using Chance = ParticleUpdate::Chance;
-  using Outcome = ParticleUpdate::Outcome;
+  struct MatchedScan {
+    ScanMatch match{};  ///< submap frame
+    const Submap* submap{nullptr};
+    Se2 map_from_submap{};
+  };
 
-  ParticleUpdate::Shared shared() const {
-    return {config_, setup_.camera, mapper_.map(), drift_, slip_watch_};
-  }
+  /// A scan hangs on the keyframe before it.
+  struct ScanPose {
+    Timestamp time{};
+    std::size_t keyframe{0};
+    Se2 keyframe_from_base{};
+  };
 
-  void watch_ranges(const Observation& observation);
-  void watch_calibration();
-  Estimate update_by(const Observation& observation);
-  void watch_standstill(const Observation& observation);
-  void undo_standstill();
+  /// Where the robot is at a scan that is no keyframe.
+  struct BetweenKeyframes {
+    Se2 map_from_base{};
+    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes
+    std::optional<ScanMatch> match{};
+    bool contradicts_odometry{false};
+  };
 
-  /// Of a particle, as odometry has carried it since the last update.
-  Se2 pose_now(std::size_t particle) const {
-    return particles_.state(particle).map_from_base * since_update_.start_from_end;
-  }
+  /// Odometry tells nothing new; it may be stuck.
+  struct Standstill {
+    std::size_t keyframe{0};
+    Motion motion{};  ///< since that keyframe
+  };
 
-  std::optional<double> turn_that_contradicts_odometry(const Observation& observation) const;
-  bool is_due() const;
-  std::vector<MarkerMeasurement> measured(const Observation& observation) const;
-  Belief belief_now() const;  ///< of the best particle, moved on by odometry
+  void follow_odometry(const Observation& observation);
+  bool is_keyframe_due(const Observation& observation) const;
   bool is_contradicted_by(const Observation& observation) const;
-  void process(const Observation& observation);
-  Sensed sense(const Observation& observation);
-  std::vector<Chance> draw_chances() const;
-  void weigh(const std::vector<Outcome>& outcomes);
-  std::optional<Eigen::Vector3d> find_slip(const Belief& expected, const Sensed& sensed) const;
-  void remember(const Observation& observation);
-  StaticErrors mean_errors() const;
-  Statics statics() const;
-  void judge(const std::vector<Outcome>& outcomes);
-  Se2 mean_pose() const;
-  Eigen::Matrix3d covariance_about_mean() const;
-  Estimate estimate(const Observation& observation) const;
+  Prediction prediction() const;
+  std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
+  void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;
+  void add_keyframe(const Observation& observation, const Points& points);
+  void add_first_keyframe();
+  void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
+                       bool is_loop);
+  void close_loops(const Points& points);
+  void solve_everything(const std::vector<std::size_t>& returning_landmarks);
+  void redraw_if_moved();
+  void learn_noise(const Prediction& prediction, const ScanMatch& match);
+  std::vector<MarkerMeasurement> measured(const Observation& observation) const;
+  std::vector<PoseHint> hints(std::span<const MarkerMeasurement> measurements) const;
+  void use_markers(std::span<const MarkerMeasurement> measurements);
+  void note_misses(const Observation& observation);
+  void relocate(const Se2& map_from_base);
+  void insert_scan(const Points& points);
+  Estimate estimate(const Observation& observation, const Se2& map_from_base,
+                    const Eigen::Matrix3d& covariance) const;
+  Estimate estimate_at_keyframe(const Observation& observation) const;
+  BetweenKeyframes between_keyframes(const Points& points) const;
+  Estimate estimate_between(const Observation& observation, const BetweenKeyframes& between) const;
+  void insert_between(const Points& points, const ScanMatch& match, const Se2& map_from_base);
+  bool is_bad_fit(const ScanMatch& match) const;
+  bool is_refuted(const ScanMatch& match) const;
+  std::size_t first_filled_submap() const;
+  Se2 submap_from_map(std::size_t submap) const;
+
+  std::size_t newest() const { return graph_.state().keyframes.size() - 1; }
 
   EstimatorSetup setup_;
   WaymarkConfig config_;
-  ParticleSet<WaymarkParticle> particles_;
-  KidnapWatch kidnap_watch_{};
-  NoiseGrowth noise_growth_{};
-  SlipWatch slip_watch_{};
-  OdometryNoise noise_{};  ///< the configured one, grown
+  Graph graph_;
+  MarkerBook book_{};
+  RelocalisationMonitor relocalisation_{};
+  RangeNoise range_noise_;
+  OdometryNoiseLearner noise_learner_{};
+  LoopFinder loop_finder_;
+  double since_loop_search_m_{0.0};
+  std::size_t solved_keyframes_{0};   ///< of the whole graph, when it was solved last
+  bool has_new_loops_{false};         ///< since then
+  bool loops_matter_{false};          ///< one of them contradicts the pose
+  std::size_t redrawn_keyframes_{0};  ///< when the map was drawn again last
+  std::deque<Submap> submaps_{};  ///< the last two are being filled, the last but one is matched
+  Motion motion_{};               ///< since the keyframe `moved_from_`
+  std::size_t moved_from_{0};     ///< the newest one, unless odometry was stuck
+  std::optional<Standstill> standstill_{};
+  int keyframes_standing_{0};  ///< in a row
+  double since_insertion_m_{0.0};
+  double unobserved_m_{0.0};  ///< driven since markers or walls showed the way
   Mapper mapper_;
-  MapDrift drift_{};
-  Retrospect retrospect_{};
-  Motion since_update_{};
-  std::optional<Timestamp> stands_since_{};     ///< what the odometry tells
-  std::vector<AnnotatedBeam> updated_beams_{};  ///< those of the last update
-  std::uint64_t updates_{0};
-  double since_ranges_told_m_{0.0};  ///< driven
+  std::vector<ScanPose> scan_poses_{};
+  ScanArchive archive_{};
+  std::vector<Se2> drawn_at_{};  ///< poses of the keyframes in the map
 
-  // Of the last update:
-  Se2 mean_{};
-  Eigen::Matrix3d covariance_{Eigen::Matrix3d::Zero()};
-  double effective_particles_{1.0};
-  double wall_agreement_{1.0};
-  bool markers_told_{false};
-
-  // Of the last scan:
-  std::optional<double> turn_by_scans_{};  ///< [rad] more than odometry's, where that seems wrong
-  bool slipped_{false};
-  bool ranges_wrong_{false};
-  bool calibration_widened_{false};
-  KidnapWatch::Verdict verdict_{KidnapWatch::Verdict::kSettled};
+  // Of the newest keyframe:
+  RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kSettled};
+  double inlier_share_{1.0};
+  double usual_fit_{0.0};  ///< mean of inlier share times mapped share
+  bool markers_known_{false};
 };
 
 }  // namespace waymark

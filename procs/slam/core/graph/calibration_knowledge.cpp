@@ -3,14 +3,22 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace waymark {
 namespace {
 
-constexpr double kDegrees = 5.0;      // of freedom of the Student-t distribution
+constexpr double kWidest = 256.0;     // component of the mixture
+constexpr double kTail = 2.0;         // a component k times as wide has 1 / k^2 of the probability
+constexpr double kLeastShare = 1e-9;  // of the prior's information; with less nothing is measured
 constexpr double kDoubtSigmas = 5.0;  // beyond, the description is called wrong
 constexpr double kExactSigma = 1e-9;  // instead of 0
+
+double squared(double x) {
+  return x * x;
+}
 
 }  // namespace
 
@@ -30,20 +38,46 @@ void CalibrationKnowledge::observe(const FocalSighting& focal) {
   camera_vector_[SightingSigmas::kFocal] += information * focal.error;
 }
 
-/// An exact value stays exact.
-double CalibrationKnowledge::prior_weight(Eigen::Index term, double value) const {
-  const double chi2 = (value / sigmas_[term]) * (value / sigmas_[term]);
-  const double robust = sigmas_[term] > kExactSigma ? (kDegrees + 1.0) / (kDegrees + chi2) : 1.0;
-  return std::min(1.0, robust) / (sigmas_[term] * sigmas_[term]);
+void CalibrationKnowledge::weigh(const Calibration& value, const Calibration& variances) {
+  for (Eigen::Index term = 0; term < kOdometryTerms; ++term)
+    weigh({term}, value, variances);
+  weigh({kOdometryTerms, kOdometryTerms + 1, kOdometryTerms + 2}, value, variances);
+  const Eigen::Vector3d usual = SightingSigmas{}.learnt;
+  for (Eigen::Index i = 0; i < kCameraTerms; ++i) {
+    double& widened = widened_[kOdometryTerms + i];
+    if (widened > kDoubtSigmas) widened = std::max(widened, usual[i] / sigmas_[kOdometryTerms + i]);
+  }
+}
+
+/// What measurements alone say follows from the estimate, for the prior's mean is 0. An exact value
+/// stays exact.
+void CalibrationKnowledge::weigh(std::initializer_list<Eigen::Index> terms,
+                                 const Calibration& value, const Calibration& variances) {
+  const Calibration prior = prior_information();
+  double least = std::numeric_limits<double>::infinity();
+  double likeliest = 1.0;
+  for (double factor = 1.0; factor <= kWidest; factor *= 2.0) {
+    double cost = 2.0 * kTail * std::log(factor);
+    for (const Eigen::Index term : terms) {
+      const double information = 1.0 / variances[term] - prior[term];
+      if (sigmas_[term] <= kExactSigma || information <= kLeastShare * prior[term]) continue;
+      const double measured = value[term] / (variances[term] * information);
+      const double variance = squared(factor * sigmas_[term]) + 1.0 / information;
+      cost += std::log(variance) + squared(measured) / variance;
+    }
+    if (cost >= least) continue;
+    least = cost;
+    likeliest = factor;
+  }
+  for (const Eigen::Index term : terms)
+    if (sigmas_[term] > kExactSigma) widened_[term] = likeliest;
 }
 
 void CalibrationKnowledge::add_to(const Calibration& value, Eigen::Ref<Eigen::MatrixXd> h,
                                   Eigen::Ref<Eigen::VectorXd> g) const {
-  for (Eigen::Index term = 0; term < kCalibrationSize; ++term) {
-    const double weight = prior_weight(term, value[term]);
-    h(term, term) += weight;
-    g[term] += weight * value[term];
-  }
+  const Calibration prior = prior_information();
+  h.diagonal() += prior;
+  g += prior.cwiseProduct(value);
   h.block<3, 3>(kOdometryTerms, kOdometryTerms) += camera_information_;
   g.segment<3>(kOdometryTerms) += camera_information_ * camera_part(value) - camera_vector_;
 }

@@ -81,15 +81,19 @@ Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
   };
 
   constexpr double kSpinning = 25.0;  // turn by a spinning wheel, in standard deviations of rolling
+  constexpr double kPushed_m = 0.1;   // while the odometry stands still
+  constexpr double kPushed_rad = 0.1;
   // A wheel that spins is counted too far: its side is shorter than measured, and with that the
   // way.
   const Eigen::Vector3d spin{residual.z() > 0.0 ? -half_track_m : half_track_m, 0.0, 1.0};
+  const Eigen::Matrix3d anything =
+      Eigen::Vector3d{kPushed_m, kPushed_m, kPushed_rad}.cwiseAbs2().asDiagonal();
   const double spin_rad2 = kSpinning * kSpinning * rolling(2, 2);
   const std::array<Component, 4> components{
       {{rolling, 0.1},
        {Eigen::Matrix3d{9.0 * rolling + spin_rad2 * spin * spin.transpose()}, 7.0},
        {Eigen::Matrix3d{25.0 * 25.0 * rolling}, 8.4},
-       {Eigen::Matrix3d{125.0 * 125.0 * rolling}, 10.6}}};
+       {Eigen::Matrix3d{125.0 * 125.0 * rolling + anything}, 10.6}}};
   const auto cost = [&](const Component& component) {
     const Eigen::LLT<Eigen::Matrix3d> root{component.covariance};
     return residual.dot(root.solve(residual)) + component.penalty +

@@ -11,7 +11,7 @@ namespace waymark {
 namespace {
 
 constexpr int kMaxIterations = 5;
-constexpr double kConverged = 1e-5;  // [m, rad]
+constexpr double kConverged = 1e-4;  // [m, rad]; what is left is that squared
 
 }  // namespace
 
@@ -100,6 +100,13 @@ void Graph::relocate_newest(const Se2& map_from_base) {
   add(cut);
 }
 
+void Graph::cut_odometry_since(std::size_t keyframe) {
+  for (const std::size_t index : active_factors_) {
+    auto* odometry = std::get_if<OdometryFactor>(&factors_[index]);
+    if (odometry != nullptr && odometry->from >= keyframe) odometry->is_cut = true;
+  }
+}
+
 LinearFactor Graph::linearised(const Factor& factor) const {
   struct Visitor {
     const Graph& graph;
@@ -150,28 +157,48 @@ void Graph::retract_window(const Eigen::VectorXd& step) {
   prior_.g += prior_.h.selfadjointView<Eigen::Lower>() * step;
 }
 
-void Graph::update_covariance(const Eigen::MatrixXd& h) {
-  covariance_ = Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>{h}.solve(
-      Eigen::MatrixXd::Identity(h.rows(), h.cols()));
-  for (const Variable& variable : layout_)
+/// Columns of the inverse: of all but the older keyframes, which nobody asks for.
+void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root) {
+  covariance_offsets_.clear();
+  Eigen::Index size = 0;
+  for (const Variable& variable : layout_) {
+    if (variable.kind == VariableKind::kKeyframe && variable.index + 1 < state_.keyframes.size())
+      continue;
+    covariance_offsets_[variable] = size;
+    size += variable.size();
+  }
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(root.rows(), size);
+  for (const auto& [variable, offset] : covariance_offsets_) {
+    half.block(offsets_.at(variable), offset, variable.size(), variable.size()).setIdentity();
+  }
+  root.matrixL().solveInPlace(half);
+  covariance_.noalias() = half.transpose() * half;
+  for (const auto& [variable, offset] : covariance_offsets_)
     if (variable.kind == VariableKind::kLandmark)
-      landmark_covariances_[variable.index] = covariance_of(variable);
+      landmark_covariances_[variable.index] = covariance_.block<3, 3>(offset, offset);
 }
 
 void Graph::optimise() {
-  NormalEquations equations;
   for (int i = 0; i < kMaxIterations; ++i) {
-    equations = window_equations();
-    const Eigen::VectorXd step =
-        Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>{equations.h}.solve(-equations.g);
+    const NormalEquations equations = window_equations();
+    const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root{equations.h};
+    const Eigen::VectorXd step = root.solve(-equations.g);
     retract_window(step);
-    if (step.cwiseAbs().maxCoeff() < kConverged) break;
+    const bool is_last = i + 1 == kMaxIterations || step.cwiseAbs().maxCoeff() < kConverged;
+    if (!is_last) continue;
+    update_covariance(root);
+    break;
   }
-  update_covariance(equations.h);
+  const Variable calibration{};
+  calibration_.weigh(state_.calibration, covariance(calibration, calibration).diagonal());
 }
 
 Eigen::MatrixXd Graph::covariance(const Variable& a, const Variable& b) const {
-  return covariance_.block(offsets_.at(a), offsets_.at(b), a.size(), b.size());
+  const auto row = covariance_offsets_.find(a);
+  const auto column = covariance_offsets_.find(b);
+  if (row == covariance_offsets_.end() || column == covariance_offsets_.end())
+    return Eigen::MatrixXd::Zero(a.size(), b.size());
+  return covariance_.block(row->second, column->second, a.size(), b.size());
 }
 
 Eigen::Matrix3d Graph::landmark_covariance(std::size_t landmark) const {
@@ -215,7 +242,6 @@ void Graph::remove_from_layout(const Variable& variable) {
     matrix.conservativeResize(matrix.rows() - size, matrix.cols() - size);
   };
   shrink(prior_.h);
-  if (covariance_.rows() == prior_.g.size()) shrink(covariance_);
   prior_.g.segment(at, behind) = prior_.g.tail(behind).eval();
   prior_.g.conservativeResize(prior_.g.size() - size);
   layout_.erase(std::find(layout_.begin(), layout_.end(), variable));

@@ -6,6 +6,7 @@
 #include "slam/core/graph/calibration_knowledge.hpp"
 #include "slam/core/graph/factors.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <map>
@@ -46,6 +47,9 @@ class Graph {
   /// Puts the newest keyframe elsewhere: what has been said about it is forgotten.
   void relocate_newest(const Se2& map_from_base);
 
+  /// Odometry from that keyframe on has turned out to say nothing.
+  void cut_odometry_since(std::size_t keyframe);
+
   bool is_active(const Variable& variable) const { return offsets_.contains(variable); }
 
   std::size_t first_active_keyframe() const { return first_keyframe_; }
@@ -63,7 +67,8 @@ class Graph {
   /// that are `far_m` from the newest one.
   void marginalise_oldest(double far_m);
 
-  /// Joint covariance of two variables of the window, after optimise().
+  /// Joint covariance of two variables of the window as of optimise(): the calibration, landmarks
+  /// and the newest keyframe. Zero for those that have come since.
   Eigen::MatrixXd covariance(const Variable& a, const Variable& b) const;
 
   Eigen::Matrix3d covariance_of(const Variable& a) const { return covariance(a, a); }
@@ -85,7 +90,7 @@ class Graph {
   void retract_window(const Eigen::VectorXd& step);
   void eliminate(const Variable& variable);
   void remove_from_layout(const Variable& variable);
-  void update_covariance(const Eigen::MatrixXd& h);
+  void update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root);
   std::vector<Variable> variables_of(const Factor& factor) const;
 
   GraphNoise noise_;
@@ -97,8 +102,9 @@ class Graph {
 
   std::vector<Variable> layout_{};
   std::map<Variable, Eigen::Index> offsets_{};
-  NormalEquations prior_{};  ///< of the window; its gradient is that at the present state
-  Eigen::MatrixXd covariance_{};
+  NormalEquations prior_{};       ///< of the window; its gradient is that at the present state
+  Eigen::MatrixXd covariance_{};  ///< of the variables in covariance_offsets_
+  std::map<Variable, Eigen::Index> covariance_offsets_{};
   std::vector<Eigen::Matrix3d> landmark_covariances_{};
 };
 

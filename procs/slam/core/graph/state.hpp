@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/geometry/se2.hpp"
-#include "slam/core/belief/odometry_errors.hpp"
+#include "slam/core/motion/odometry_errors.hpp"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/mapping/landmark_map.hpp"
 
-#include "slam/core/proposal/pose_information.hpp"
+#include "slam/core/motion/pose_deviation.hpp"
 
 #include <Eigen/LU>
 

@@ -102,6 +102,7 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
     for (int k = surface->first_keyframe; k <= surface->last_keyframe; ++k)
       shares[k] += 1.0 / keyframes;
   }
+  match.num_mapped = mapped;
   match.mapped_share = points.empty() ? 0.0 : mapped / static_cast<double>(points.size());
   match.inlier_share = mapped == 0 ? 0.0 : match.inliers / static_cast<double>(mapped);
   if (shares.empty()) return;

@@ -47,7 +47,8 @@ struct ScanMatch {
   ObservedAxes observed{};   ///< information about (x, y, theta), map's axes
   double inlier_share{0.0};  ///< of the beams that ended on something mapped
   double mapped_share{0.0};  ///< of all beams
-  int inliers{0};
+  int num_mapped{0};         ///< beams that ended on something mapped
+  int inliers{0};            ///< of these
   /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the surfaces that the
   /// inliers lie on; sums to 1.
   int first_keyframe{0};

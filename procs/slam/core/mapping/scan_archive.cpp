@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/smoothing/scan_archive.hpp"
+#include "slam/core/mapping/scan_archive.hpp"
 
 #include "common/geometry/angle.hpp"
 

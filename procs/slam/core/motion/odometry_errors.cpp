@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/belief/odometry_errors.hpp"
+#include "slam/core/motion/odometry_errors.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole graph: loops, the trajectory, and the map drawn along it.
-#include "slam/core/estimators/graph.hpp"
+#include "slam/core/estimators/waymark.hpp"
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ constexpr double kLoopSlack_rad = 0.01;
 
 }  // namespace
 
-void GraphEstimator::close_loops(const Points& points) {
+void WaymarkEstimator::close_loops(const Points& points) {
   since_loop_search_m_ += motion_.distance_m;
   if (since_loop_search_m_ >= config_.loops.every_m) {
     since_loop_search_m_ = 0.0;
@@ -45,7 +45,7 @@ void GraphEstimator::close_loops(const Points& points) {
   }
 }
 
-void GraphEstimator::solve_everything(const std::vector<std::size_t>& returning_landmarks) {
+void WaymarkEstimator::solve_everything(const std::vector<std::size_t>& returning_landmarks) {
   std::vector<std::size_t> activated = returning_landmarks;
   for (std::size_t i = 0; i < book_.entries().size(); ++i) {
     const double away_m =
@@ -62,7 +62,7 @@ void GraphEstimator::solve_everything(const std::vector<std::size_t>& returning_
 }
 
 /// The published map follows a closed loop.
-void GraphEstimator::redraw_if_moved() {
+void WaymarkEstimator::redraw_if_moved() {
   double farthest_m = 0.0;
   for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
     farthest_m =
@@ -81,7 +81,7 @@ void GraphEstimator::redraw_if_moved() {
   }
 }
 
-std::vector<TimedPose> GraphEstimator::trajectory() const {
+std::vector<TimedPose> WaymarkEstimator::trajectory() const {
   Graph graph = graph_;
   graph.optimise_all(kSolveSteps);
   std::vector<TimedPose> trajectory;
@@ -92,7 +92,7 @@ std::vector<TimedPose> GraphEstimator::trajectory() const {
   return trajectory;
 }
 
-GridMap GraphEstimator::redrawn_map() const {
+GridMap WaymarkEstimator::redrawn_map() const {
   Graph graph = graph_;
   graph.optimise_all(kSolveSteps);
   Mapper mapper{setup_.grid};

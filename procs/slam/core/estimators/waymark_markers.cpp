@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the graph estimator uses markers.
-#include "slam/core/estimators/graph.hpp"
+#include "slam/core/estimators/waymark.hpp"
 
 #include <algorithm>
 
@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSamePlace_m = 0.5;    // two markers this near hang in one place
 constexpr double kContradicts_m = 0.5;  // a marker this far from all of its id
+constexpr int kMaxStanding = 20;        // keyframes of a robot that does not move
 constexpr double kReturned_m = 0.3;     // sigma of a pose that a relocalisation is taken back to
 constexpr double kReturned_rad = 0.1;
 // A marker counts as missed if it faces the camera, the LiDAR sees its wall, and no frame of the
@@ -21,8 +22,8 @@ constexpr Duration kSightingAge = std::chrono::seconds{1};
 
 /// A marker where none of its id should be may mean that the robot was carried away: that cannot
 /// wait until it has driven on.
-bool GraphEstimator::is_contradicted_by(const Observation& observation) const {
-  if (observation.sightings.empty()) return false;
+bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const {
+  if (observation.sightings.empty() || keyframes_standing_ >= kMaxStanding) return false;
   const Se2 map_from_base = prediction().map_from_base;
   return std::any_of(
       observation.sightings.begin(), observation.sightings.end(), [&](const MarkerSighting& seen) {
@@ -32,13 +33,13 @@ bool GraphEstimator::is_contradicted_by(const Observation& observation) const {
       });
 }
 
-std::vector<MarkerMeasurement> GraphEstimator::measured(const Observation& observation) const {
+std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& observation) const {
   return measure_markers(
       observation, {setup_.range_sigma_m, setup_.camera.base_from_camera, setup_.sighting_sigmas},
       graph_.odometry_noise(), config_.markers);
 }
 
-std::vector<PoseHint> GraphEstimator::hints(std::span<const MarkerMeasurement> measurements) const {
+std::vector<PoseHint> WaymarkEstimator::hints(std::span<const MarkerMeasurement> measurements) const {
   std::vector<PoseHint> hints;
   for (const MarkerMeasurement& measurement : measurements) {
     PoseHint hint;
@@ -64,7 +65,7 @@ std::vector<PoseHint> GraphEstimator::hints(std::span<const MarkerMeasurement> m
   return hints;
 }
 
-void GraphEstimator::use_markers(std::span<const MarkerMeasurement> measurements) {
+void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measurements) {
   struct Match {
     std::size_t landmark;
     const MarkerMeasurement* measurement;
@@ -117,7 +118,7 @@ void GraphEstimator::use_markers(std::span<const MarkerMeasurement> measurements
 
 /// Absence is evidence where the camera could have seen the marker, and nothing stood before it:
 /// the LiDAR sees its wall.
-void GraphEstimator::note_misses(const Observation& observation) {
+void WaymarkEstimator::note_misses(const Observation& observation) {
   if (!observation.camera_reported) return;
   const auto is_in_view = [&](const Se2& base_from_marker) {
     const Eigen::Vector2d place = base_from_marker.translation();
@@ -133,7 +134,7 @@ void GraphEstimator::note_misses(const Observation& observation) {
   book_.note_misses(graph_.state(), newest(), is_in_view, observation.time - kSightingAge);
 }
 
-void GraphEstimator::relocate(const Se2& map_from_base) {
+void WaymarkEstimator::relocate(const Se2& map_from_base) {
   graph_.relocate_newest(map_from_base);
   if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
     const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};

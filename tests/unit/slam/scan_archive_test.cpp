@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Unit tests of the scans that are kept for a new map.
+#include "slam/core/mapping/scan_archive.hpp"
+
+#include "slam/map_publisher.hpp"
+#include "support/observations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+Timestamp at_s(int seconds) {
+  return Timestamp{std::chrono::seconds{seconds}};
+}
+
+TEST(ScanArchive, GivesBackWhereBeamsWent) {
+  const test::SyntheticCorridor corridor = test::bare_corridor();
+  const Observation scan = test::observations_of(test::drive(corridor), corridor).front();
+  ScanArchive archive;
+  archive.add(scan, Se2{});
+  const Observation again = archive.at(0);
+  ASSERT_EQ(again.beams.size(), scan.beams.size());
+  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+    EXPECT_NEAR(again.beams[i].beam.range_m, scan.beams[i].beam.range_m, 1e-6);
+    EXPECT_LT((again.beams[i].beam.end_in_base - scan.beams[i].beam.end_in_base).norm(), 1e-6);
+  }
+}
+
+TEST(ScanArchive, KeepsTheNewestScansOfAPlace) {
+  const test::SyntheticCorridor corridor = test::bare_corridor();
+  const Observation scan = test::observations_of(test::drive(corridor), corridor).front();
+  ScanArchive archive;
+  archive.add(scan, Se2{5.0, 0.1, 0.1});
+  for (std::size_t i = 0; i < 3 * ScanArchive::kScansPerPlace; ++i)
+    archive.add(scan, Se2{1.1, 0.1, 0.1});
+  EXPECT_FALSE(archive.at(0).beams.empty());
+  for (std::size_t i = 1; i < archive.size(); ++i) {
+    EXPECT_EQ(archive.at(i).beams.empty(), i + ScanArchive::kScansPerPlace < archive.size()) << i;
+  }
+}
+
+TEST(MapPublisher, TilesThatAreGoneAreSentEmpty) {
+  GridMap map{GridFrame::centred_on_map_origin(0.05), {}, {}};
+  map.occupancy.edit(map.frame.cell_of(Eigen::Vector2d{0.0, 0.0})) = {1, 1};
+  MapPublisher publisher;
+  ASSERT_EQ(publisher.complete(map, at_s(0))[0].num_tiles, 1);
+  GridMap elsewhere{map.frame, {}, {}};
+  elsewhere.occupancy.edit(map.frame.cell_of(Eigen::Vector2d{20.0, 0.0})) = {1, 1};
+  const auto parts = publisher.complete(elsewhere, at_s(1));
+  ASSERT_EQ(parts[0].num_tiles, 2);
+  int emptied = 0;
+  for (const map_tile_t& tile : parts[0].tiles) {
+    emptied += std::all_of(tile.occupancy.begin(), tile.occupancy.end(),
+                           [](std::int8_t percent) { return percent == -1; });
+  }
+  EXPECT_EQ(emptied, 1);
+}
+
+}  // namespace
+}  // namespace waymark
