@@ -10,6 +10,7 @@ packages=(
   libeigen3-dev libtbb-dev                 # slam: algebra, threads
   libmujoco-dev libosmesa6-dev             # sim: physics, rendering without a display
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  libcpp-httplib-dev pkg-config            # viewer: the live page
   zlib1g-dev                               # import of compressed CARMEN logs
   libgtest-dev libgmock-dev libceres-dev    # tests, benchmarks
   clang-format shellcheck                  # tests/lint

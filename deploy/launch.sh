@@ -11,6 +11,7 @@
 #   --estimator NAME  slam.estimator (default: what waymark-slam's configuration says)
 #   --config FILE     configuration of slam; may be given several times, later files win
 #   --set KEY=VALUE   the same for one value; may be given several times
+#   --http HOST:PORT  show the run as a live page there, e.g. 127.0.0.1:8080
 #   --lcm-url URL     LCM network (default: $LCM_DEFAULT_URL, else a UDP port of its own)
 #
 # detector and viewer are restarted when they die, at most five times; the death of simulator, slam or
@@ -28,19 +29,20 @@ readonly kRunFiles=(run.lcm run.lcm.part scenario.toml robot.toml truth.tum trut
 
 parse_arguments() {
   scenario='' out='' seed='' estimator='' real_time=() slam_options=() lcm_url=${LCM_DEFAULT_URL:-}
-  others=(recorder viewer slam detector) recorder_options=() slam_files=()
+  others=(recorder viewer slam detector) recorder_options=() slam_files=() viewer_options=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
       --real-time) real_time=(--real-time) && shift && continue ;;
       --record-only) others=(recorder detector) && shift && continue ;;
       --no-images) recorder_options=(--set 'recorder.exclude=["CAMERA"]') && shift && continue ;;
-      --out | --seed | --estimator | --config | --set | --lcm-url) need_value "$@" ;;&
+      --out | --seed | --estimator | --config | --set | --http | --lcm-url) need_value "$@" ;;&
       --out) out=$2 ;;
       --seed) need_number "$1" "$2" && seed=$2 ;;
       --estimator) slam_options+=(--set "slam.estimator=$2") ;;
       --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
       --set) slam_options+=(--set "$2") ;;
+      --http) viewer_options=(--http "$2") ;;
       --lcm-url) lcm_url=$2 ;;
       -*) usage_error "unknown option '$1'" ;;
       *)
@@ -53,6 +55,7 @@ parse_arguments() {
   [[ -n $scenario ]] || usage_error "no scenario given"
   ! is_record_only || ((${#slam_options[@]} == 0)) ||
     usage_error "--record-only runs no slam: give --estimator, --config and --set to deploy/replay.sh"
+  ! is_record_only || ((${#viewer_options[@]} == 0)) || usage_error "--record-only runs no viewer: leave out --http"
 }
 
 is_record_only() { ((${#others[@]} == 2)); }
@@ -148,7 +151,7 @@ command_of() {
   local robot=$2
   case $1 in
     recorder) command=(--out-log "$out/run.lcm" "${recorder_options[@]}") ;;
-    viewer) command=(--out "$row") ;;
+    viewer) command=(--out "$row" "${viewer_options[@]}") ;;
     slam) command=(--config "$robot" "${slam_options[@]}") ;;
     detector) command=(--config "$robot") ;;
     sim) command=("${sim_options[@]}" --out "$out") ;;
@@ -329,6 +332,7 @@ show_progress_bars
 exec {terminal}>&2 2>>"$out/logs/launch.log"
 tell "$(basename "$scenario"), seed $seed, ${estimator:-no estimator}, into $out"
 for name in "${others[@]}" sim; do start "$name"; done
+((${#viewer_options[@]} == 0)) || tell "the live page is http://${viewer_options[1]}/"
 supervise
 finish
 tell "finished in $SECONDS s; results are in $row, logs in $out/logs"

@@ -48,6 +48,7 @@ Landmark to_landmark(const marker_landmark_t& message) {
           .map_from_marker = {message.x_m, message.y_m, message.yaw_rad},
           .covariance = to_matrix(message.covariance),
           .sightings = message.sightings,
+          .last_seen = timestamp_from_us(message.last_seen_utime),
           .state = to_state(message.state)};
 }
 

@@ -25,6 +25,8 @@ struct ViewerSection {
 struct ViewerConfig {
   ViewerSection viewer{};
   std::filesystem::path out_dir{};  ///< from the command line (--out)
+  std::string http{};               ///< HOST:PORT of the live page (--http); empty = none
+  bool is_replay{false};            ///< there is a --log
 
   void describe(Fields& fields);
 };

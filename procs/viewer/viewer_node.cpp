@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/viewer_node.hpp"
 
+#include "common/process/signals.hpp"
 #include "viewer/core/layer_painter.hpp"
 #include "viewer/core/map_painter.hpp"
 #include "viewer/core/plain_painter.hpp"
@@ -14,6 +15,7 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
+#include <thread>
 
 namespace waymark {
 namespace {
@@ -60,26 +62,62 @@ ViewerNode::ViewerNode(const Config& config, Inbox& inbox, Outbox& /*outbox*/)
       folder_{required_folder(config.out_dir)},
       pacer_{config.viewer.max_write_share} {
   scene_.title = config_.viewer.title.empty() ? folder_name(folder_.path()) : config_.viewer.title;
+  if (!config_.http.empty()) start_page();
   subscribe(inbox);
 }
 
+void ViewerNode::start_page() {
+  using Pace = viewer::LiveFeed::Pace;
+  const viewer::HttpAddress address = viewer::parse_http_address(config_.http);
+  live_feed_.emplace(board_, scene_.title,
+                     config_.is_replay ? Pace::kMessageTime : Pace::kWallClock);
+  page_server_ = std::make_unique<viewer::PageServer>(address, board_, folder_.path());
+  spdlog::info("the live page is {}", address.url());
+  if (!address.is_loopback())
+    spdlog::warn("everybody who reaches {} can look at the live page", address.host);
+}
+
+template <class Type>
+void ViewerNode::subscribe_both(Inbox& inbox, Channel<Type> channel, Backlog backlog) {
+  inbox.on<Type>(
+      channel,
+      [this](const Type& message) {
+        updater_.add(message);
+        if (live_feed_) live_feed_->add(message);
+      },
+      backlog);
+}
+
+void ViewerNode::subscribe_page(Inbox& inbox) {
+  const auto feed = [this](const auto& message) {
+    live_feed_->add(message);
+  };
+  inbox.on<image_t>(channels::kCamera, feed, Backlog::kNewestOnly);
+  inbox.on<marker_detections_t>(channels::kMarkers, feed);
+  for (const auto& channel : {channels::kSimStatus, channels::kDetectorStatus,
+                              channels::kSlamStatus, channels::kRecorderStatus})
+    inbox.on<process_status_t>(channel, feed);
+}
+
 void ViewerNode::subscribe(Inbox& inbox) {
-  inbox.on<map_tiles_t>(channels::kSlamMap, [this](const auto& m) { updater_.add(m); });
+  if (live_feed_) subscribe_page(inbox);
+  subscribe_both(inbox, channels::kSlamMap);
   inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) {
     updater_.add(m);
     for (const auto& change : change_watch_.see(timestamp_from_us(m.utime), scene_.landmarks))
       tell(change);
+    if (live_feed_) live_feed_->add_markers(timestamp_from_us(m.utime), scene_.landmarks);
   });
-  inbox.on<annotated_scan_t>(channels::kSlamScan, [this](const auto& m) { updater_.add(m); });
+  subscribe_both(inbox, channels::kSlamScan);
   inbox.on<trajectory_t>(channels::kSlamTrajectory, [this](const auto& m) { updater_.add(m); });
-  inbox.on<particles_t>(
-      channels::kSlamParticles, [this](const auto& m) { updater_.add(m); }, Backlog::kNewestOnly);
+  subscribe_both(inbox, channels::kSlamParticles, Backlog::kNewestOnly);
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) { updater_.add_odometry(m); });
   inbox.on<pose2D_t>(channels::kTruePose, [this](const auto& m) { updater_.add_truth(m); });
   inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) {
     updater_.add(m);
     if (!scene_.estimates.empty()) {
       if (const auto change = change_watch_.see(scene_.estimates.back())) tell(*change);
+      if (live_feed_) live_feed_->add(m, scene_.estimates.back());
     }
     write_when_due(timestamp_from_us(m.utime));
   });
@@ -136,6 +174,16 @@ void ViewerNode::write_scan_and_plain_map() {
 }
 
 void ViewerNode::finish() {
+  write_files();
+  if (!live_feed_) return;
+  live_feed_->post_last();
+  if (!config_.is_replay) return;
+  spdlog::info("the log is at its end; the page stays until Ctrl-C");
+  while (stop_signal() == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds{50});
+}
+
+void ViewerNode::write_files() {
   if (!has_heard_of_slam(scene_)) {
     spdlog::warn("nothing has come from slam: no file is written to {}", folder_.path().string());
     return;

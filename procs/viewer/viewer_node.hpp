@@ -5,12 +5,16 @@
 #include "common/process/node.hpp"
 #include "viewer/core/change_watch.hpp"
 #include "viewer/core/scene.hpp"
+#include "viewer/http/board.hpp"
+#include "viewer/http/live_feed.hpp"
+#include "viewer/http/page_server.hpp"
 #include "viewer/output_folder.hpp"
 #include "viewer/pacer.hpp"
 #include "viewer/scene_updater.hpp"
 #include "viewer/viewer_config.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 namespace waymark {
@@ -34,6 +38,13 @@ class ViewerNode final : public Node {
 
  private:
   void subscribe(Inbox& inbox);
+  /// What slam says goes into the scene, and to the page if there is one.
+  template <class Type>
+  void subscribe_both(Inbox& inbox, Channel<Type> channel, Backlog backlog = Backlog::kKeepAll);
+  /// What only the page shows.
+  void subscribe_page(Inbox& inbox);
+  void start_page();
+  void write_files();
   /// Writes the data files when a period has passed, and with them one of the pictures: all at
   /// once would hold up a lockstep run. Large maps, which cost more, are written less often.
   void write_when_due(Timestamp time);
@@ -51,6 +62,9 @@ class ViewerNode final : public Node {
   viewer::Pacer pacer_;
   std::optional<Timestamp> last_write_time_{};
   std::size_t next_picture_{0};
+  viewer::Board board_{};
+  std::optional<viewer::LiveFeed> live_feed_{};
+  std::unique_ptr<viewer::PageServer> page_server_{};
 };
 
 }  // namespace waymark

@@ -50,6 +50,11 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
   if (option_set.out_dir) {
     app.add_option("--out", options.out_dir, "folder for the output files");
   }
+  if (option_set.http) {
+    app.add_option("--http", options.http,
+                   "HOST:PORT: show the run as a live page there, e.g. 127.0.0.1:8080; with --log, "
+                   "until Ctrl-C");
+  }
   if (option_set.seed) {
     app.add_option("--seed", options.seed, "seed of everything random (default: run.seed)");
   }

@@ -23,6 +23,7 @@ struct ProcessOptions {
   std::vector<std::filesystem::path> logs{};
   std::filesystem::path out_log{};
   std::filesystem::path out_dir{};
+  std::string http{};
   std::optional<std::int64_t> seed{};
 };
 
@@ -34,6 +35,7 @@ struct OptionSet {
   bool log{false};
   bool out_log{false};
   bool out_dir{false};
+  bool http{false};
   bool seed{false};
   bool dump_robot_config{false};
 };

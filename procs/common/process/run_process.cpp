@@ -38,10 +38,16 @@ void publish_all(Bus& bus, const std::vector<Message>& messages) {
     bus.publish(message);
 }
 
-std::vector<std::string> names_of(const std::vector<Inbox::Subscription>& subscriptions) {
+/// Statuses belong to no tick: they come when they come.
+bool is_status(std::string_view channel) {
+  return channel.ends_with("_STATUS");
+}
+
+std::vector<std::string> names_in_ticks(const std::vector<Inbox::Subscription>& subscriptions) {
   std::vector<std::string> names;
-  for (const auto& subscription : subscriptions)
-    names.push_back(subscription.channel);
+  for (const auto& subscription : subscriptions) {
+    if (!is_status(subscription.channel)) names.push_back(subscription.channel);
+  }
   return names;
 }
 
@@ -49,7 +55,7 @@ std::vector<std::string> names_of(const std::vector<Inbox::Subscription>& subscr
 int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node, Inbox& inbox,
                  Outbox& outbox) {
   std::vector<Inbox::Subscription> subscriptions = inbox.subscriptions();
-  LockstepParticipant participant{std::string{traits.name}, names_of(subscriptions),
+  LockstepParticipant participant{std::string{traits.name}, names_in_ticks(subscriptions),
                                   traits.joins_midway,
                                   [&](const std::vector<Message>& messages, bool is_last) {
                                     for (const Message& message : messages)
@@ -71,7 +77,10 @@ int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node
   Timestamp newest{};
   bool hinted = false;
   while (!participant.closed() && stop_signal() == 0) {
-    if (auto message = bus.receive(kPoll)) {
+    auto message = bus.receive(kPoll);
+    if (message && is_status(message->channel)) {
+      inbox.deliver(*message);
+    } else if (message) {
       last_tick = steady_clock::now();
       newest = std::max(newest, message->time);
       publish_all(bus, participant.take(std::move(*message)));

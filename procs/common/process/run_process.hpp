@@ -23,13 +23,15 @@ struct ProcessDescription {
 
 int run_described_process(int argc, char** argv, const ProcessDescription& description);
 
-/// Configuration from files and command line, with --out and --out-log where the struct has members
-/// for them.
+/// Configuration from files and command line, with --out, --out-log and --http where the struct has
+/// members for them.
 template <class Config>
 Config config_from(const ProcessOptions& options) {
   Config config = load_config<Config>(options.config_sources);
   if constexpr (requires { config.out_dir; }) config.out_dir = options.out_dir;
   if constexpr (requires { config.out_log; }) config.out_log = options.out_log;
+  if constexpr (requires { config.http; }) config.http = options.http;
+  if constexpr (requires { config.is_replay; }) config.is_replay = !options.logs.empty();
   return config;
 }
 
@@ -42,10 +44,15 @@ int run_process(int argc, char** argv) {
   constexpr bool kIsRecorder = requires(Config c) {
     c.out_log;
   };
+  constexpr bool kServesPage = requires(Config c) {
+    c.http;
+  };
   ProcessDescription description;
   description.traits = NodeType::kTraits;
-  description.option_set = {
-      .log = !kIsRecorder, .out_log = !kWritesFolder, .out_dir = kWritesFolder};
+  description.option_set = {.log = !kIsRecorder,
+                            .out_log = !kWritesFolder,
+                            .out_dir = kWritesFolder,
+                            .http = kServesPage};
   description.dump_config = [](const ProcessOptions& options) {
     return dump_config(config_from<Config>(options));
   };

@@ -57,6 +57,7 @@ struct Landmark {
   Se2 map_from_marker{};  ///< heading = direction that the marker faces
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< order x y yaw, map frame
   int sightings{0};
+  Timestamp last_seen{};
   LandmarkState state{LandmarkState::kUnknown};
 };
 

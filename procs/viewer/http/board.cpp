@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/http/board.hpp"
+
+#include <algorithm>
+
+namespace waymark::viewer {
+namespace {
+
+constexpr Duration kFirstSpacing = std::chrono::milliseconds{200};
+
+}  // namespace
+
+void Board::post(ViewPtr view, std::span<const PathPoint> path_growth) {
+  {
+    const std::scoped_lock lock{mutex_};
+    store(view, path_growth);
+  }
+  changed_.notify_all();
+}
+
+bool Board::try_post(const ViewPtr& view, std::span<const PathPoint> path_growth) {
+  {
+    const std::unique_lock lock{mutex_, std::try_to_lock};
+    if (!lock) return false;
+    store(view, path_growth);
+  }
+  changed_.notify_all();
+  return true;
+}
+
+void Board::store(const ViewPtr& view, std::span<const PathPoint> path_growth) {
+  newest_ = view;
+  path_.insert(path_.end(), path_growth.begin(), path_growth.end());
+  // Message time that jumps back begins another history.
+  if (!history_.empty() && view->time < history_.back()->time) history_.clear();
+  if (history_.empty()) history_spacing_ = kFirstSpacing;
+  if (!history_.empty() && view->time - history_.back()->time < history_spacing_) return;
+  history_.push_back(view);
+  if (history_.size() <= kMaxHistory) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < history_.size(); i += 2)
+    history_[kept++] = history_[i];
+  history_.resize(kept);
+  history_spacing_ = (history_.back()->time - history_.front()->time) / static_cast<int>(kept - 1);
+}
+
+ViewPtr Board::newest() const {
+  const std::scoped_lock lock{mutex_};
+  return newest_;
+}
+
+ViewPtr Board::at(Timestamp time) const {
+  const std::scoped_lock lock{mutex_};
+  if (!newest_ || newest_->time <= time) return newest_;
+  const auto after = std::ranges::upper_bound(history_, time, {}, &LiveView::time);
+  if (after != history_.begin()) return *std::prev(after);
+  return history_.empty() ? newest_ : history_.front();
+}
+
+ViewPtr Board::wait_for_newer(std::uint64_t number, std::chrono::milliseconds timeout) const {
+  std::unique_lock lock{mutex_};
+  const auto is_newer = [&] {
+    return newest_ && newest_->number > number;
+  };
+  changed_.wait_for(lock, timeout, [&] { return closed_ || is_newer(); });
+  return !closed_ && is_newer() ? newest_ : nullptr;
+}
+
+std::vector<PathPoint> Board::path(std::size_t first, std::size_t last) const {
+  const std::scoped_lock lock{mutex_};
+  last = std::min(last, path_.size());
+  first = std::min(first, last);
+  return {path_.begin() + static_cast<std::ptrdiff_t>(first),
+          path_.begin() + static_cast<std::ptrdiff_t>(last)};
+}
+
+Board::Span Board::history() const {
+  const std::scoped_lock lock{mutex_};
+  if (!newest_) return {};
+  return {history_.empty() ? newest_->time : history_.front()->time, newest_->time};
+}
+
+void Board::close() {
+  {
+    const std::scoped_lock lock{mutex_};
+    closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+bool Board::closed() const {
+  const std::scoped_lock lock{mutex_};
+  return closed_;
+}
+
+}  // namespace waymark::viewer

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/http/health_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark::viewer {
+namespace {
+
+// The slowest camera in use sends one frame a second.
+constexpr double kCameraSilent_s = 2.0;
+// A marker every 4 m at walking pace.
+constexpr double kMarkerOverdue_s = 5.0;
+
+bool is_turn(const WeakAxis& axis) {
+  return std::abs(axis.direction.z()) > axis.direction.head<2>().norm();
+}
+
+std::string weak_axis_sentence(const WeakAxis& axis) {
+  const std::string_view where = is_turn(axis) ? "how the robot is turned" : "one direction";
+  const auto sentence = [&](std::string_view rest) {
+    return fmt::format("The walls say little about {}; {}.", where, rest);
+  };
+  switch (axis.source) {
+    case WeakAxisSource::kMarkers:
+      return sentence("markers measure it");
+    case WeakAxisSource::kOdometry:
+      return sentence("only odometry measures it, so its error grows with the distance");
+    case WeakAxisSource::kNothing:
+      return sentence("nothing else measures it");
+    case WeakAxisSource::kUnknown:
+      break;
+  }
+  return sentence("what else measures it is not known");
+}
+
+std::string state_sentence(const EstimatedPose& estimate) {
+  switch (estimate.health) {
+    case Health::kLost:
+      return "What the sensors see does not fit the map at this place.";
+    case Health::kInitialising:
+      return "Slam has not found its place in the map yet.";
+    case Health::kUnknown:
+      return "Slam does not say how sure it is.";
+    case Health::kTracking:
+    case Health::kDegenerate:
+      break;
+  }
+  if (estimate.weak_axis) return weak_axis_sentence(*estimate.weak_axis);
+  return "The walls fix the position in every direction.";
+}
+
+}  // namespace
+
+std::string_view health_name(Health health) {
+  switch (health) {
+    case Health::kInitialising:
+      return "initialising";
+    case Health::kTracking:
+      return "tracking";
+    case Health::kDegenerate:
+      return "degenerate";
+    case Health::kLost:
+      return "lost";
+    case Health::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::string_view source_name(WeakAxisSource source) {
+  switch (source) {
+    case WeakAxisSource::kOdometry:
+      return "odometry";
+    case WeakAxisSource::kMarkers:
+      return "markers";
+    case WeakAxisSource::kNothing:
+      return "nothing";
+    case WeakAxisSource::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::optional<double> seconds_since(const std::optional<Timestamp>& then, Timestamp now) {
+  if (!then) return std::nullopt;
+  return std::max(0.0, to_seconds(now - *then));
+}
+
+std::string health_reason(const LiveView& view) {
+  if (!view.estimate) return "Nothing has come from slam yet.";
+  std::string reason = state_sentence(*view.estimate);
+  const auto since_camera_s = seconds_since(view.last_camera, view.time);
+  const auto since_marker_s = seconds_since(view.last_marker, view.time);
+  if (since_camera_s && *since_camera_s > kCameraSilent_s) {
+    reason += fmt::format(" The camera has been silent for {:.0f} s.", *since_camera_s);
+  } else if (since_marker_s && *since_marker_s > kMarkerOverdue_s) {
+    reason += fmt::format(" No marker for {:.0f} s.", *since_marker_s);
+  } else if (!since_marker_s) {
+    reason += " No marker so far.";
+  }
+  return reason;
+}
+
+}  // namespace waymark::viewer

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Messages -> views on the board, at the pace of people's eyes.
+#pragma once
+
+#include "common/messages/channels.hpp"
+#include "viewer/http/board.hpp"
+
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace waymark::viewer {
+
+/// Lives on the node's thread. Live, five views a second of wall-clock time are posted, and none
+/// when a reader is in the way; of a log, five a second of message time.
+class LiveFeed {
+ public:
+  enum class Pace { kWallClock, kMessageTime };
+
+  LiveFeed(Board& board, std::string title, Pace pace);
+
+  void add(const map_tiles_t& message);
+  void add(const annotated_scan_t& message);
+  void add(const particles_t& message);
+  void add(const image_t& message);
+  void add(const marker_detections_t& message);
+  void add(const process_status_t& message);
+  void add(const slam_estimate_t& message, const EstimatedPose& estimate);
+  /// @param landmarks  all markers in the map.
+  void add_markers(Timestamp time, const std::vector<Landmark>& landmarks);
+
+  /// Posts what there is, whoever is in the way.
+  void post_last();
+
+ private:
+  void advance_to(Timestamp time);
+  void post_when_due();
+  ViewPtr snapshot();
+  void grow_path(const Se2& map_from_base);
+
+  Board& board_;
+  Pace pace_;
+  LiveView current_{};
+  LiveMap map_{};
+  bool map_changed_{false};
+  std::map<std::pair<int, int>, std::size_t> tile_index_{};  ///< into map_.tiles
+  std::map<std::string, ProcessState> processes_{};
+  std::vector<PathPoint> path_growth_{};  ///< not posted yet
+  PathPoint last_path_point_{};
+  std::chrono::steady_clock::time_point last_post_wall_{};
+  Timestamp last_post_{};
+};
+
+}  // namespace waymark::viewer

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the page shows of one moment. A view never changes once it is on the board, so that it can
+// be read by any thread.
+#pragma once
+
+#include "viewer/core/scene.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace waymark::viewer {
+
+/// One block of the map, with the number of the change that made it.
+struct LiveTile {
+  int x{0};
+  int y{0};
+  std::uint32_t version{0};
+  std::vector<std::int8_t> occupancy_percent{};  ///< 0..100, -1 = unknown; from the lower left
+};
+
+/// Tiles are shared between views: only those that have changed are new.
+struct LiveMap {
+  TileLayout layout{};
+  std::uint32_t generation{0};  ///< another one = another map: forget the tiles so far
+  std::uint32_t version{0};     ///< of the newest tile
+  std::vector<std::shared_ptr<const LiveTile>> tiles{};
+};
+
+struct CameraFrame {
+  Timestamp time{};
+  std::string jpeg{};
+};
+
+/// A marker in the camera's image; corners [px], clockwise from the marker's top left.
+struct SeenMarker {
+  int id{0};
+  std::array<std::array<double, 2>, 4> corners_px{};
+};
+
+struct SeenMarkers {
+  Timestamp time{};
+  int image_width{0};
+  int image_height{0};
+  std::vector<SeenMarker> markers{};
+};
+
+struct ProcessState {
+  std::string name{};
+  std::string state{};
+  std::vector<std::pair<std::string, std::int64_t>> losses{};  ///< what was dropped or refused
+};
+
+using PathPoint = std::array<float, 2>;  ///< (x, y) [m], map frame
+
+struct LiveView {
+  std::uint64_t number{0};  ///< counts the views of a run
+  Timestamp time{};         ///< newest message
+  std::string title{};
+  std::optional<EstimatedPose> estimate{};
+  std::shared_ptr<const LiveMap> map{std::make_shared<LiveMap>()};
+  std::vector<Landmark> markers{};
+  std::vector<Se2> particles{};
+  std::vector<PathPoint> scan{};  ///< ends of the beams
+  std::shared_ptr<const CameraFrame> camera{};
+  std::optional<SeenMarkers> seen_markers{};
+  std::optional<Timestamp> last_camera{};  ///< last frame or detections, with markers or without
+  std::optional<Timestamp> last_marker{};  ///< last estimate that used one
+  std::vector<ProcessState> processes{};
+  std::size_t path_length{0};  ///< points of the board's path up to here
+};
+
+}  // namespace waymark::viewer

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Views -> what travels to the page.
+#pragma once
+
+#include "viewer/http/board.hpp"
+
+#include <span>
+#include <string>
+
+namespace waymark::viewer {
+
+/// One JSON object, without the path and the map's cells. Numbers that are not finite become null.
+std::string view_json(const LiveView& view, const Board::Span& history);
+
+/// The same with the points from `first` on by which the path has grown: {"first":..,"xy":[..]}.
+std::string view_json(const LiveView& view, const Board::Span& history, std::size_t first,
+                      std::span<const PathPoint> path_growth);
+
+/// Tiles newer than a version, little-endian: u32 generation, version, side [cells], number of
+/// tiles; f64 origin x, y, resolution [m]; for each tile i32 x, y and its cells (one byte each, 255
+/// = unknown).
+std::string tile_bytes(const LiveMap& map, std::uint32_t since_version);
+
+}  // namespace waymark::viewer

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/http/page_server.hpp"
+
+#include "common/process/setup_error.hpp"
+#include "viewer/http/page_html.hpp"
+#include "viewer/http/page_json.hpp"
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+namespace waymark::viewer {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kEventPeriod{200};
+constexpr milliseconds kSlowestClient{2000};
+constexpr milliseconds kKeepAlive{2000};
+constexpr int kMaxStreams = 8;
+constexpr std::size_t kThreads = 2 * kMaxStreams;  // so that streams leave room for the rest
+constexpr int kSendBufferBytes = 256 * 1024;       // what may wait for a client that does not read
+constexpr int kNiceness = 10;
+
+struct Download {
+  const char* name;
+  const char* type;
+};
+
+constexpr std::array kDownloads{
+    Download{"map.png", "image/png"},    Download{"map.pgm", "image/x-portable-graymap"},
+    Download{"map.yaml", "text/plain"},  Download{"trajectory.tum", "text/plain"},
+    Download{"markers.csv", "text/csv"},
+};
+
+/// Without SO_REUSEPORT, httplib's default, under which two viewers could share a port.
+void set_socket_options(int socket) {
+  const int on = 1;
+  ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &kSendBufferBytes, sizeof kSendBufferBytes);
+}
+
+/// A number of the query; nothing when there is none.
+/// @throws std::invalid_argument when it is no number.
+template <class Number>
+std::optional<Number> number_of(const httplib::Request& request, const char* key) {
+  if (!request.has_param(key)) return std::nullopt;
+  const std::string text = request.get_param_value(key);
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) throw std::invalid_argument{key};
+  return number;
+}
+
+void refuse(httplib::Response& response, int status, const std::string& reason) {
+  response.status = status;
+  response.set_content(reason + "\n", "text/plain");
+}
+
+/// One client's stream of views.
+class EventStream {
+ public:
+  EventStream(const Board& board, std::atomic<int>& num_streams)
+      : board_{board}, num_streams_{num_streams} {}
+
+  EventStream(const EventStream&) = delete;
+  EventStream& operator=(const EventStream&) = delete;
+
+  ~EventStream() { --num_streams_; }
+
+  /// Waits for something to send, and sends it. @return false to end the connection.
+  bool send_next(httplib::DataSink& sink) {
+    wait_for_period();
+    const ViewPtr view = board_.wait_for_newer(number_, kKeepAlive);
+    if (board_.closed()) return false;
+    const auto start = steady_clock::now();
+    const std::string text = view ? event(*view) : ":\n\n";  // a comment: is anybody there?
+    const bool sent = sink.write(text.data(), text.size());
+    last_ = steady_clock::now();
+    return sent && last_ - start < kSlowestClient;
+  }
+
+ private:
+  /// In pieces, so that the end of the program need not wait.
+  void wait_for_period() const {
+    while (steady_clock::now() - last_ < kEventPeriod && !board_.closed())
+      std::this_thread::sleep_for(milliseconds{20});
+  }
+
+  std::string event(const LiveView& view) {
+    // A path that is shorter than what was sent belongs to another run.
+    if (view.path_length < path_sent_) path_sent_ = 0;
+    const auto growth = board_.path(path_sent_, view.path_length);
+    const std::string json = view_json(view, board_.history(), path_sent_, growth);
+    path_sent_ += growth.size();
+    number_ = view.number;
+    return "data: " + json + "\n\n";
+  }
+
+  const Board& board_;
+  std::atomic<int>& num_streams_;
+  std::uint64_t number_{0};
+  std::size_t path_sent_{0};
+  steady_clock::time_point last_{};
+};
+
+}  // namespace
+
+class PageServer::Implementation {
+ public:
+  Implementation(const HttpAddress& address, Board& board, std::filesystem::path folder)
+      : address_{address}, board_{board}, folder_{std::move(folder)} {
+    set_limits();
+    add_routes();
+    errno = 0;
+    if (!server_.bind_to_port(address.host, address.port)) {
+      const std::string why = errno == 0 ? "the host is not known" : std::strerror(errno);
+      throw SetupError{fmt::format(
+          "--http: cannot listen on {}:{}: {}; give an address of this machine and a free port",
+          address.host, address.port, why)};
+    }
+    thread_ = std::thread{[this] {
+      // Of this thread and those that it starts: the run comes first.
+      ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
+      server_.listen_after_bind();
+      has_ended_ = true;
+    }};
+  }
+
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  ~Implementation() {
+    board_.close();
+    // stop() does nothing to a server whose thread has not got as far as listening.
+    while (!server_.is_running() && !has_ended_)
+      std::this_thread::sleep_for(milliseconds{1});
+    server_.stop();
+    thread_.join();
+  }
+
+ private:
+  void set_limits() {
+    server_.new_task_queue = [] {
+      return new httplib::ThreadPool{kThreads};
+    };
+    server_.set_socket_options(set_socket_options);
+    server_.set_read_timeout(kSlowestClient);
+    server_.set_write_timeout(kSlowestClient);
+    server_.set_keep_alive_timeout(2);
+    server_.set_payload_max_length(1024);
+    server_.set_default_headers({{"Cache-Control", "no-store"},
+                                 {"X-Content-Type-Options", "nosniff"},
+                                 {"Content-Security-Policy",
+                                  "default-src 'self' 'unsafe-inline'; img-src 'self' blob: data:; "
+                                  "frame-ancestors 'none'"}});
+    server_.set_pre_routing_handler([this](const auto& request, auto& response) {
+      return refuse_strangers(request, response);
+    });
+    server_.set_exception_handler([](const auto&, auto& response, std::exception_ptr) {
+      refuse(response, 400, "the query is not understood");
+    });
+  }
+
+  httplib::Server::HandlerResponse refuse_strangers(const httplib::Request& request,
+                                                    httplib::Response& response) const {
+    using Outcome = httplib::Server::HandlerResponse;
+    if (request.method != "GET" && request.method != "HEAD") {
+      refuse(response, 405, "read-only: GET and HEAD");
+      return Outcome::Handled;
+    }
+    const std::string host = request.get_header_value("Host");
+    if (address_.is_loopback() && !host.empty() && !names_loopback(host)) {
+      refuse(response, 403, "this page is for this machine only");
+      return Outcome::Handled;
+    }
+    return Outcome::Unhandled;
+  }
+
+  void add_routes() {
+    server_.Get("/", [](const auto&, auto& response) {
+      response.set_content(kPageHtml.data(), kPageHtml.size(), "text/html; charset=utf-8");
+    });
+    server_.Get("/events", [this](const auto&, auto& response) { serve_events(response); });
+    server_.Get("/view", [this](const auto& request, auto& response) {
+      if (const ViewPtr view = view_for(request, response))
+        response.set_content(view_json(*view, board_.history()), "application/json");
+    });
+    server_.Get("/tiles", [this](const auto& request, auto& response) {
+      const auto since = number_of<std::uint32_t>(request, "since").value_or(0);
+      if (const ViewPtr view = view_for(request, response))
+        response.set_content(tile_bytes(*view->map, since), "application/octet-stream");
+    });
+    server_.Get("/camera.jpg", [this](const auto& request, auto& response) {
+      const ViewPtr view = view_for(request, response);
+      if (view && view->camera) {
+        response.set_content(view->camera->jpeg, "image/jpeg");
+      } else if (view) {
+        refuse(response, 404, "no camera image so far");
+      }
+    });
+    for (const Download& download : kDownloads)
+      server_.Get(fmt::format("/{}", download.name), [this, download](const auto&, auto& response) {
+        serve_file(download, response);
+      });
+  }
+
+  /// The newest view, or that of `time_s`. Before the first there is none: 404.
+  ViewPtr view_for(const httplib::Request& request, httplib::Response& response) const {
+    const auto time_s = number_of<double>(request, "time_s");
+    constexpr double kLatest_s = 1e12;  // far outside of all message times, far inside of int64 us
+    if (time_s && !(std::abs(*time_s) < kLatest_s)) throw std::invalid_argument{"time_s"};
+    // Half a microsecond of rounding must not lead to the view before.
+    const ViewPtr view =
+        time_s ? board_.at(Timestamp{duration_from_seconds(*time_s + 1e-6)}) : board_.newest();
+    if (!view) refuse(response, 404, "nothing has come so far");
+    return view;
+  }
+
+  void serve_events(httplib::Response& response) {
+    if (++num_streams_ > kMaxStreams) {
+      --num_streams_;
+      refuse(response, 503, fmt::format("{} pages are open already; close one", kMaxStreams));
+      return;
+    }
+    const auto stream = std::make_shared<EventStream>(board_, num_streams_);
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [stream](std::size_t, httplib::DataSink& sink) { return stream->send_next(sink); });
+  }
+
+  void serve_file(const Download& download, httplib::Response& response) const {
+    std::ifstream file{folder_ / download.name, std::ios::binary};
+    if (!file) return refuse(response, 404, "not written so far");
+    response.set_content(std::string{std::istreambuf_iterator<char>{file}, {}}, download.type);
+    response.set_header("Content-Disposition",
+                        fmt::format("attachment; filename=\"{}\"", download.name));
+  }
+
+  HttpAddress address_;
+  Board& board_;
+  std::filesystem::path folder_;
+  std::atomic<int> num_streams_{0};
+  std::atomic<bool> has_ended_{false};
+  httplib::Server server_;
+  std::thread thread_;
+};
+
+PageServer::PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder)
+    : implementation_{std::make_unique<Implementation>(address, board, std::move(folder))} {}
+
+PageServer::~PageServer() = default;
+
+}  // namespace waymark::viewer

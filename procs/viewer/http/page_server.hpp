@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The web server of the live page: reads the board and the output folder, changes nothing.
+#pragma once
+
+#include "viewer/http/board.hpp"
+#include "viewer/http/http_address.hpp"
+
+#include <filesystem>
+#include <memory>
+
+namespace waymark::viewer {
+
+/// Serves from threads of its own, which run at a lower priority than the node.
+///
+/// `/` the page; `/events` server-sent events, a view each, five a second at most; `/view`,
+/// `/tiles` and `/camera.jpg` with `time_s=T` for a moment of the past; the files of the output
+/// folder as they were last written. A client that takes longer than two seconds for a view is cut.
+class PageServer {
+ public:
+  /// @param board  closed when this ends; outlives this.
+  /// @throws SetupError when the address cannot be listened on.
+  PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder);
+  ~PageServer();
+  PageServer(const PageServer&) = delete;
+  PageServer& operator=(const PageServer&) = delete;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace waymark::viewer

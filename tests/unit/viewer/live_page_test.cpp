@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/setup_error.hpp"
+#include "viewer/http/health_text.hpp"
+#include "viewer/http/http_address.hpp"
+#include "viewer/http/live_feed.hpp"
+#include "viewer/http/page_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace waymark::viewer {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+using Json = nlohmann::json;
+
+Timestamp at_s(double time_s) {
+  return Timestamp{duration_from_seconds(time_s)};
+}
+
+TEST(HttpAddress, IsHostAndPort) {
+  EXPECT_EQ(parse_http_address("127.0.0.1:8080").url(), "http://127.0.0.1:8080/");
+  EXPECT_EQ(parse_http_address(":80").host, "127.0.0.1");
+  EXPECT_EQ(parse_http_address("[::1]:8080").url(), "http://[::1]:8080/");
+  EXPECT_TRUE(parse_http_address("[::1]:8080").is_loopback());
+  EXPECT_TRUE(parse_http_address("localhost:8080").is_loopback());
+  EXPECT_FALSE(parse_http_address("0.0.0.0:8080").is_loopback());
+}
+
+TEST(HttpAddress, RefusesAnythingElse) {
+  for (const auto* text : {"", "8080", "localhost", "a:0", "a:65536", "a:-1", "a:80x", "a b:80",
+                           "::1:80", "http://a:80", "[]:80", "a:"})
+    EXPECT_THROW(parse_http_address(text), SetupError) << text;
+}
+
+TEST(HttpAddress, ANameOfAnotherSiteIsNotThisMachine) {
+  for (const auto* host : {"localhost", "localhost:8080", "127.0.0.1:1", "[::1]:8080"})
+    EXPECT_TRUE(names_loopback(host)) << host;
+  for (const auto* host : {"", "robot", "localhost.evil.example:8080", "[", "[::2]:1", ":80"})
+    EXPECT_FALSE(names_loopback(host)) << host;
+}
+
+class HealthText : public ::testing::Test {
+ protected:
+  HealthText() {
+    view_.time = at_s(100.0);
+    view_.estimate = EstimatedPose{.time = view_.time, .health = Health::kTracking};
+    view_.last_camera = view_.time;
+    view_.last_marker = view_.time;
+  }
+
+  LiveView view_{};
+};
+
+TEST_F(HealthText, NamesWhatHoldsTheWeakAxis) {
+  EXPECT_EQ(health_reason(view_), "The walls fix the position in every direction.");
+  view_.estimate->weak_axis = WeakAxis{.direction = {1, 0, 0}, .source = WeakAxisSource::kMarkers};
+  EXPECT_THAT(health_reason(view_), EndsWith("markers measure it."));
+  view_.estimate->weak_axis->source = WeakAxisSource::kOdometry;
+  EXPECT_THAT(health_reason(view_), HasSubstr("only odometry measures it"));
+  view_.estimate->weak_axis->direction = {0, 0, 1};
+  EXPECT_THAT(health_reason(view_), HasSubstr("how the robot is turned"));
+}
+
+TEST_F(HealthText, SaysSinceWhenTheCameraIsSilentOrNoMarkerHasCome) {
+  view_.last_marker = at_s(88.0);
+  EXPECT_THAT(health_reason(view_), EndsWith(" No marker for 12 s."));
+  view_.last_camera = at_s(91.0);
+  EXPECT_THAT(health_reason(view_), EndsWith(" The camera has been silent for 9 s."));
+  view_.last_camera = view_.last_marker = std::nullopt;
+  EXPECT_THAT(health_reason(view_), EndsWith(" No marker so far."));
+}
+
+TEST_F(HealthText, LostIsSaidPlainly) {
+  view_.estimate->health = Health::kLost;
+  EXPECT_THAT(health_reason(view_), HasSubstr("does not fit the map"));
+  view_.estimate.reset();
+  EXPECT_EQ(health_reason(view_), "Nothing has come from slam yet.");
+}
+
+ViewPtr view_at(double time_s, std::uint64_t number) {
+  LiveView view;
+  view.time = at_s(time_s);
+  view.number = number;
+  return std::make_shared<LiveView>(view);
+}
+
+TEST(Board, KeepsAnEvenHistoryOfBoundedSize) {
+  Board board;
+  for (int i = 0; i <= 10'000; ++i)
+    board.post(view_at(i, static_cast<std::uint64_t>(i) + 1), {});
+  EXPECT_EQ(board.history().last, at_s(10'000));
+  for (double time_s = 0.0; time_s <= 10'000.0; time_s += 123.4) {
+    const double shown_s = to_seconds(board.at(at_s(time_s))->time);
+    EXPECT_LE(shown_s, time_s);
+    // Evenly spread, the sparsest history of 10 000 s has half the largest number of views.
+    EXPECT_GT(shown_s, time_s - 2.0 * 10'000.0 / Board::kMaxHistory - 1.0);
+  }
+}
+
+TEST(Board, WaitsForWhatIsNewerAndNotLonger) {
+  Board board;
+  EXPECT_EQ(board.wait_for_newer(0, std::chrono::milliseconds{1}), nullptr);
+  board.post(view_at(1.0, 7), {});
+  EXPECT_EQ(board.wait_for_newer(6, std::chrono::milliseconds{1})->number, 7U);
+  EXPECT_EQ(board.wait_for_newer(7, std::chrono::milliseconds{1}), nullptr);
+}
+
+map_tiles_t tile(int x, std::int8_t occupancy, double origin_x_m = 0.0) {
+  map_tiles_t message{};
+  message.num_parts = 1;
+  message.origin_x_m = origin_x_m;
+  message.resolution_m = 0.05;
+  message.tile_size_cells = 2;
+  message.num_tiles = 1;
+  message.tiles.resize(1);
+  message.tiles[0].tile_x = x;
+  message.tiles[0].num_cells = 4;
+  message.tiles[0].occupancy.assign(4, occupancy);
+  message.tiles[0].marker_ids.assign(4, -1);
+  return message;
+}
+
+constexpr std::size_t kHeaderBytes = 40;
+constexpr std::size_t kTileBytes = 8 + 4;
+
+TEST(LiveFeed, OnlyTilesThatChangedAreNew) {
+  Board board;
+  LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
+  feed.add(tile(0, 10));
+  feed.add(tile(1, 20));
+  feed.post_last();
+  const std::uint32_t version = board.newest()->map->version;
+  EXPECT_THAT(tile_bytes(*board.newest()->map, 0), SizeIs(kHeaderBytes + 2 * kTileBytes));
+  feed.add(tile(0, 10));
+  feed.post_last();
+  EXPECT_THAT(tile_bytes(*board.newest()->map, version), SizeIs(kHeaderBytes));
+  feed.add(tile(1, 99));
+  feed.post_last();
+  const std::string bytes = tile_bytes(*board.newest()->map, version);
+  ASSERT_THAT(bytes, SizeIs(kHeaderBytes + kTileBytes));
+  EXPECT_EQ(bytes.substr(bytes.size() - 4), std::string(4, 99));
+}
+
+TEST(LiveFeed, AnotherLayoutIsAnotherMap) {
+  Board board;
+  LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
+  feed.add(tile(0, 10));
+  feed.post_last();
+  const std::uint32_t generation = board.newest()->map->generation;
+  feed.add(tile(1, 20, 5.0));
+  feed.post_last();
+  EXPECT_NE(board.newest()->map->generation, generation);
+  EXPECT_THAT(board.newest()->map->tiles, SizeIs(1));
+}
+
+TEST(LiveFeed, ShowsTheStateThatWasAtATimeOfALog) {
+  Board board;
+  LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
+  for (int i = 0; i <= 100; ++i) {
+    slam_estimate_t message{};
+    message.markers_in_view = i == 40 ? 1 : 0;
+    feed.add(message, {.time = at_s(i), .map_from_base = {0.1 * i, 0.0, 0.0}});
+  }
+  const auto json = Json::parse(view_json(*board.at(at_s(50.5)), board.history()));
+  EXPECT_EQ(json["time_s"], 50.0);
+  EXPECT_EQ(json["since_marker_s"], 10.0);
+  EXPECT_EQ(json["estimate"]["pose"][0], 5.0);
+  EXPECT_EQ(json["path_length"], 51);
+  EXPECT_EQ(json["history_s"], Json::parse("[0.0, 100.0]"));
+}
+
+TEST(PageJson, IsJsonWhateverTheStringsAndNumbers) {
+  LiveView view;
+  view.title = "\xff\"</script>";
+  view.estimate = EstimatedPose{};
+  view.estimate->covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+  view.estimate->map_from_base = {std::numeric_limits<double>::infinity(), 0.0, 0.0};
+  const auto json = Json::parse(view_json(view, {}));
+  EXPECT_TRUE(json["estimate"]["covariance_xy"][0].is_null());
+  EXPECT_TRUE(json["estimate"]["pose"][0].is_null());
+}
+
+}  // namespace
+}  // namespace waymark::viewer

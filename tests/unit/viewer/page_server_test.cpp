@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The web server over the loopback network, with clients that behave and clients that do not.
+#include "viewer/http/page_server.hpp"
+
+#include "common/process/setup_error.hpp"
+#include "viewer/http/page_html.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <random>
+
+namespace waymark::viewer {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+sockaddr_in loopback(int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return address;
+}
+
+int free_port() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address = loopback(0);
+  socklen_t size = sizeof address;
+  ::bind(socket, reinterpret_cast<sockaddr*>(&address), size);
+  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
+  ::close(socket);
+  return ntohs(address.sin_port);
+}
+
+class PageServerTest : public ::testing::Test {
+ protected:
+  PageServerTest() { post(1); }
+
+  void post(std::uint64_t number) {
+    LiveView view;
+    view.number = number;
+    view.title = std::string(kTitleBytes, 't');
+    board_.post(std::make_shared<LiveView>(view), {});
+  }
+
+  int status_of(const std::string& path) {
+    const auto result = client_.Get(path);
+    return result ? result->status : 0;
+  }
+
+  /// A connection of our own, for what no client library would send.
+  int connect() const {
+    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+    const sockaddr_in address = loopback(port_);
+    const timeval patience{.tv_sec = 10, .tv_usec = 0};
+    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    EXPECT_EQ(::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    return socket;
+  }
+
+  /// The beginning of what comes back; empty when the server only closes the connection.
+  std::string answer_to(const std::string& request) const {
+    const int socket = connect();
+    ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
+    char buffer[4096];
+    const ssize_t n = ::recv(socket, buffer, sizeof buffer, 0);
+    ::close(socket);
+    return {buffer, static_cast<std::size_t>(std::max<ssize_t>(0, n))};
+  }
+
+  static constexpr std::size_t kTitleBytes = 100'000;  // so that few views fill a socket's buffers
+  const int port_ = free_port();
+  Board board_{};
+  PageServer server_{{.host = "127.0.0.1", .port = port_}, board_, ::testing::TempDir()};
+  httplib::Client client_{"127.0.0.1", port_};
+};
+
+TEST_F(PageServerTest, ThePageIsOneFileThatLoadsNothingFromElsewhere) {
+  const auto result = client_.Get("/");
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->status, 200);
+  EXPECT_EQ(result->body, kPageHtml);
+  EXPECT_LT(result->body.size(), 150'000U);
+  EXPECT_THAT(result->body, Not(HasSubstr("http://")));
+  EXPECT_THAT(result->body, Not(HasSubstr("https://")));
+}
+
+TEST_F(PageServerTest, SendsAViewAsAnEvent) {
+  std::string received;
+  client_.Get("/events", [&](const char* data, std::size_t size) {
+    received.append(data, size);
+    return received.find("\n\n") == std::string::npos;
+  });
+  EXPECT_THAT(received, StartsWith("data: {"));
+}
+
+TEST_F(PageServerTest, RefusesWhatItDoesNotHave) {
+  EXPECT_EQ(status_of("/view"), 200);
+  EXPECT_EQ(status_of("/view?time_s=12.5"), 200);
+  EXPECT_EQ(status_of("/tiles?since=0"), 200);
+  EXPECT_EQ(status_of("/nothing"), 404);
+  EXPECT_EQ(status_of("/camera.jpg"), 404);
+  EXPECT_EQ(status_of("/../../etc/passwd"), 404);
+  EXPECT_EQ(status_of("/view?time_s=now"), 400);
+  EXPECT_EQ(status_of("/view?time_s=nan"), 400);
+  EXPECT_EQ(status_of("/view?time_s=1e300"), 400);
+  EXPECT_EQ(status_of("/tiles?since=-1"), 400);
+}
+
+TEST_F(PageServerTest, IsReadOnlyAndForThisMachine) {
+  EXPECT_EQ(client_.Post("/", "x", "text/plain")->status, 405);
+  EXPECT_EQ(client_.Delete("/map.png")->status, 405);
+  EXPECT_EQ(client_.Get("/", {{"Host", "robot.example"}})->status, 403);
+}
+
+TEST_F(PageServerTest, ATakenPortIsASetupError) {
+  Board board;
+  EXPECT_THROW((PageServer{{.host = "127.0.0.1", .port = port_}, board, "."}), SetupError);
+}
+
+TEST_F(PageServerTest, AnswersGarbageWith4xxAndLivesOn) {
+  std::mt19937 random{5};
+  const std::string good =
+      "GET /view?time_s=1 HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  ASSERT_THAT(answer_to(good), StartsWith("HTTP/1.1 200 "));
+  std::vector<std::string> requests{
+      "\r\n\r\n",
+      "GET\r\n\r\n",
+      "GET / HTTP/9.9\r\n\r\n",
+      "BREW / HTTP/1.1\r\n\r\n",
+      "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\n\r\n",
+      "GET / HTTP/1.1\r\nRange: bytes=" + std::string(8000, '0') + "\r\n\r\n",
+      "POST / HTTP/1.1\r\nContent-Length: 99999999999999999999\r\n\r\n",
+      "POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nFFFFFFFFFFFFFFFF\r\n"};
+  for (int i = 0; i < 200; ++i) {
+    std::string& request = requests.emplace_back(good);
+    for (int flips = 0; flips < 4; ++flips)
+      request[random() % (good.size() - 4)] = static_cast<char>(random());
+  }
+  for (const std::string& request : requests) {
+    const std::string answer = answer_to(request);
+    // A connection that is closed without a word is an answer, too; some changes do no harm.
+    const bool is_fine =
+        answer.empty() || answer.starts_with("HTTP/1.1 4") || answer.starts_with("HTTP/1.1 2");
+    EXPECT_TRUE(is_fine) << request.substr(0, 200) << " -> " << answer.substr(0, 200);
+  }
+  EXPECT_EQ(status_of("/view"), 200);
+}
+
+TEST_F(PageServerTest, AClientThatNeverReadsIsCutAndNobodyWaits) {
+  const int deaf = connect();
+  const std::string request = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  ::send(deaf, request.data(), request.size(), MSG_NOSIGNAL);
+  // Until the server has closed the connection, which a client sees only when it sends.
+  bool is_cut = false;
+  std::uint64_t number = 1;
+  for (int i = 0; i < 600 && !is_cut; ++i) {
+    post(++number);
+    std::this_thread::sleep_for(std::chrono::milliseconds{100});
+    EXPECT_EQ(status_of("/view"), 200);
+    is_cut = i > 20 && ::send(deaf, "\r\n", 2, MSG_NOSIGNAL) < 0;
+  }
+  EXPECT_TRUE(is_cut);
+  ::close(deaf);
+}
+
+}  // namespace
+}  // namespace waymark::viewer
