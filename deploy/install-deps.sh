@@ -11,7 +11,7 @@ packages=(
   libmujoco-dev libosmesa6-dev             # sim: physics, rendering without a display
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libcpp-httplib-dev pkg-config            # viewer: the live page
-  zlib1g-dev                               # import of compressed CARMEN logs
+  zlib1g-dev libbz2-dev                    # import of compressed CARMEN logs
   libgtest-dev libgmock-dev libceres-dev    # tests, benchmarks
   clang-format shellcheck                  # tests/lint
   parallel gnuplot-nox                     # sweeps: many runs at once, plots

@@ -47,6 +47,7 @@ void SlamNode::finish() {
   publish_grid(*last_estimate_);
   for (const trajectory_t& part : to_messages(estimator_->trajectory()))
     outbox_.publish(channels::kSlamTrajectory, part);
+  spdlog::info("{}", timer_.summary());
 }
 
 /// An input that nothing can be made of shall not look like success.
@@ -83,7 +84,9 @@ void SlamNode::process_ready_scans() {
 }
 
 void SlamNode::process(const SensorQueue::Ready& ready) {
+  timer_.start();
   const Estimate estimate = estimator_->update(ready.observation);
+  timer_.stop(estimate.updated);
   const Timestamp time = estimate.time;
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_estimate_ = time;

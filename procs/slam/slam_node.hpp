@@ -7,6 +7,7 @@
 #include "slam/core/input/sensor_queue.hpp"
 #include "slam/map_publisher.hpp"
 #include "slam/slam_config.hpp"
+#include "slam/update_timer.hpp"
 
 #include <memory>
 #include <optional>
@@ -51,6 +52,7 @@ class SlamNode final : public Node {
   MapPublisher map_publisher_{};
   std::optional<Timestamp> last_estimate_{};
   std::optional<Timestamp> next_map_{};
+  UpdateTimer timer_{};
   bool failed_{false};
 };
 

@@ -62,4 +62,20 @@ fr079() {
     expect_at_most translation_mean_m 0.058
 }
 
+# The benchmark's table: every figure of a log with a reference, and the same again from the cache.
+benchmark() {
+  need_log mbot_convex.lcm
+  local script=$work/share/waymark/deploy/real_logs.sh imported
+  "$script" "$data" --logs mbot_convex --estimators gmapping,dead=odometry --out "$work/bench" >"$work/output" 2>&1 ||
+    { cat "$work/output" >&2 && exit 1; }
+  awk -F, '
+    $1 == "mbot_convex" && $2 == "gmapping" { good = $4 == "ate" && $5 > 0 && $5 < 0.007 && $9 >= $5 && $14 == 459 && $15 > 0 && $16 > 0 && $18 > 0 }
+    $2 == "dead" { worse = $5 > 0.05 }
+    END { exit !(good && worse && NR == 3) }' "$work/bench/results.csv" ||
+    { cat "$work/bench/results.csv" && echo "FAILED: not the figures of this log" && exit 1; }
+  imported=$(stat -c %y "$work/bench/mbot_convex/run.lcm")
+  "$script" "$data" --logs mbot_convex --estimators dead=odometry --out "$work/bench" >/dev/null 2>&1
+  [[ $(stat -c %y "$work/bench/mbot_convex/run.lcm") == "$imported" ]] || { echo "FAILED: imported again" && exit 1; }
+}
+
 "${2:?usage: real_log_test.sh BUILD_DIR CASE}"

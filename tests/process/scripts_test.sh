@@ -23,6 +23,9 @@ bad_usage() {
   expect 2 replay.sh "$work/run.lcm" --estimator odometry && expect_output "no readable file"
   expect 2 demo.sh --scenario "$work/nowhere.toml" && expect_output "no readable file"
   expect 2 demo.sh --bogus && expect_output "unknown option"
+  expect 2 real_logs.sh && expect_output "out is missing"
+  expect 2 real_logs.sh --out "$out" --import fr079 && expect_output "import needs NAME:OPTIONS, not 'fr079'"
+  expect 2 real_logs.sh --out "$out" --seeds 3-1 && expect_output "goes backwards"
   expect 2 install-deps.sh --bogus && expect_output "unknown option"
   expect 0 launch.sh --help && expect_output "usage: deploy/launch.sh SCENARIO"
 }

@@ -74,7 +74,7 @@ int run_relations(const fs::path& trajectory_file, const fs::path& relations_fil
   json["skipped"] = skipped.size();
   print(json, output);
   const int skipped_code = report_skipped(skipped, output);
-  if (error.count > 0) return skipped_code;
+  if (error.all.count > 0) return skipped_code;
   fmt::print(stderr, "{}: no relation lies within the trajectory\n", relations_file.string());
   return kFailed;
 }

@@ -25,6 +25,20 @@ MeanAndSigma mean_and_sigma(const std::vector<double>& values) {
   return {mean, std::sqrt(squares / count)};
 }
 
+struct Errors {
+  std::vector<double> translations_m{};
+  std::vector<double> rotations_deg{};
+
+  void add(const Se2& error) {
+    translations_m.push_back(error.translation().norm());
+    rotations_deg.push_back(std::abs(degrees(error.theta())));
+  }
+
+  RelationsSummary summary() const {
+    return {translations_m.size(), mean_and_sigma(translations_m), mean_and_sigma(rotations_deg)};
+  }
+};
+
 }  // namespace
 
 std::vector<Relation> read_relations(const std::filesystem::path& file, Skipped& skipped) {
@@ -54,8 +68,7 @@ std::vector<Relation> read_relations(const std::filesystem::path& file, Skipped&
 
 RelationsError relations_error(const Trajectory& trajectory, const std::vector<Relation>& relations,
                                const std::filesystem::path& relations_file, Skipped& skipped) {
-  std::vector<double> translations_m;
-  std::vector<double> rotations_deg;
+  Errors all, near, far;
   for (const Relation& relation : relations) {
     const auto map_from_base1 = pose_at(trajectory, relation.t1_s);
     const auto map_from_base2 = pose_at(trajectory, relation.t2_s);
@@ -69,10 +82,12 @@ RelationsError relations_error(const Trajectory& trajectory, const std::vector<R
     }
     const Se2 estimated_base1_from_base2 = map_from_base1->inverse() * *map_from_base2;
     const Se2 error = relation.base1_from_base2.inverse() * estimated_base1_from_base2;
-    translations_m.push_back(error.translation().norm());
-    rotations_deg.push_back(std::abs(degrees(error.theta())));
+    const double apart_s = std::abs(relation.t2_s - relation.t1_s);
+    all.add(error);
+    if (apart_s < kNear_s) near.add(error);
+    if (apart_s > kFar_s) far.add(error);
   }
-  return {translations_m.size(), mean_and_sigma(translations_m), mean_and_sigma(rotations_deg)};
+  return {all.summary(), near.summary(), far.summary()};
 }
 
 }  // namespace waymark::evaluate

@@ -21,10 +21,21 @@ struct MeanAndSigma {
   double sigma{};  ///< square root of the mean squared deviation from the mean
 };
 
-struct RelationsError {
+struct RelationsSummary {
   std::size_t count{};
   MeanAndSigma translation_m{};
   MeanAndSigma rotation_deg{};
+};
+
+/// Relations between poses less than kNear_s apart say how good the scan matching is; between poses
+/// that are more than kFar_s apart, whether loops were closed.
+inline constexpr double kNear_s = 5.0;
+inline constexpr double kFar_s = 60.0;
+
+struct RelationsError {
+  RelationsSummary all{};
+  RelationsSummary near{};
+  RelationsSummary far{};
 };
 
 /// Lines `t1 t2 x y z roll pitch yaw`; '#' starts a comment. Lines of another form or out of the

@@ -141,11 +141,16 @@ Json json_of(const TrajectoryError& error) {
 
 Json json_of(const RelationsError& error) {
   Json json;
-  json["count"] = error.count;
-  json["translation_mean_m"] = number(error.translation_m.mean);
-  json["translation_sigma_m"] = number(error.translation_m.sigma);
-  json["rotation_mean_deg"] = number(error.rotation_deg.mean);
-  json["rotation_sigma_deg"] = number(error.rotation_deg.sigma);
+  const auto add = [&json](const std::string& prefix, const RelationsSummary& summary) {
+    json[prefix + "count"] = summary.count;
+    json[prefix + "translation_mean_m"] = number(summary.translation_m.mean);
+    json[prefix + "translation_sigma_m"] = number(summary.translation_m.sigma);
+    json[prefix + "rotation_mean_deg"] = number(summary.rotation_deg.mean);
+    json[prefix + "rotation_sigma_deg"] = number(summary.rotation_deg.sigma);
+  };
+  add("", error.all);
+  add("near_", error.near);
+  add("far_", error.far);
   return json;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A CARMEN log (.clf, .log; gzip or not) -> scans and odometry.
+// A CARMEN log (.clf, .log; gzip, bzip2 or not) -> scans and odometry.
 #pragma once
 
 #include "import/carmen_line.hpp"

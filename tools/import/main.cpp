@@ -52,7 +52,8 @@ void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting
 
 CLI::App* add_carmen(CLI::App& app, Options& options) {
   CLI::App* carmen = app.add_subcommand(
-      "carmen", "CARMEN text log: FLASER, RLASER, ROBOTLASER1, ROBOTLASER2, ODOM; gzip or not");
+      "carmen",
+      "CARMEN text log: FLASER, RLASER, ROBOTLASER1, ROBOTLASER2, ODOM; gzip, bzip2 or not");
   add_common_options(*carmen, options, options.carmen.mounting, options.carmen.range_min_m);
   carmen
       ->add_option("--lidar", options.carmen.lidar,

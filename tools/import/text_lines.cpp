@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/text_lines.hpp"
 
-#include "common/process/node.hpp"
-
-#include <zlib.h>
-
 #include <algorithm>
 
 namespace waymark {
@@ -15,19 +11,8 @@ constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
 }  // namespace
 
-void TextLines::Close::operator()(gzFile_s* file) const {
-  gzclose(file);
-}
-
-TextLines::TextLines(const std::filesystem::path& path) : buffer_(kBufferBytes) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw SetupError{path.string() + ": there is no such file"};
-  }
-  if (std::filesystem::file_size(path, error) == 0) throw SetupError{path.string() + ": is empty"};
-  file_.reset(gzopen(path.c_str(), "rb"));
-  if (!file_) throw SetupError{path.string() + ": cannot be read"};
-}
+TextLines::TextLines(const std::filesystem::path& path)
+    : bytes_{open_bytes(path)}, buffer_(kBufferBytes) {}
 
 std::optional<std::string_view> TextLines::next() {
   line_.clear();
@@ -45,17 +30,10 @@ std::optional<std::string_view> TextLines::next() {
   return line_;
 }
 
-std::string TextLines::fault() const {
-  int code = Z_OK;
-  const char* text = gzerror(file_.get(), &code);
-  return code == Z_OK || code == Z_STREAM_END ? std::string{} : std::string{text};
-}
-
 /// False at the end of what can be read.
 bool TextLines::fill() {
-  const int size = gzread(file_.get(), buffer_.data(), static_cast<unsigned>(buffer_.size()));
-  unread_ = {buffer_.data(), static_cast<std::size_t>(std::max(size, 0))};
-  return size > 0;
+  unread_ = {buffer_.data(), bytes_->read(buffer_)};
+  return !unread_.empty();
 }
 
 }  // namespace waymark

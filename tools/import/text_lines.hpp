@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lines of a text file, compressed with gzip or not.
+// The lines of a text file, compressed with gzip or bzip2 or not.
 #pragma once
+
+#include "import/byte_source.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -9,8 +11,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-struct gzFile_s;
 
 namespace waymark {
 
@@ -27,16 +27,12 @@ class TextLines {
   std::int64_t line_number() const { return line_number_; }
 
   /// Why the file ended before its end (cut off or damaged compressed data); empty when it did not.
-  std::string fault() const;
+  std::string fault() const { return bytes_->fault(); }
 
  private:
   bool fill();
 
-  struct Close {
-    void operator()(gzFile_s* file) const;
-  };
-
-  std::unique_ptr<gzFile_s, Close> file_;
+  std::unique_ptr<ByteSource> bytes_;
   std::vector<char> buffer_;
   std::string_view unread_{};  ///< part of buffer_
   std::string line_{};

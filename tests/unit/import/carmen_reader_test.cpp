@@ -5,6 +5,7 @@
 #include "common/process/node.hpp"
 #include "import_files.hpp"
 
+#include <bzlib.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -146,6 +147,41 @@ TEST(CarmenReader, CompressedIsTheSame) {
 
   EXPECT_THAT(log.scans, SizeIs(3));
   EXPECT_EQ(report.num_skipped(), 0);
+}
+
+std::filesystem::path write_bzip2(const std::string& name, const std::string& text) {
+  const auto file = test_folder() / name;
+  BZFILE* bz = BZ2_bzopen(file.c_str(), "wb");
+  std::string bytes = text;
+  BZ2_bzwrite(bz, bytes.data(), static_cast<int>(bytes.size()));
+  BZ2_bzclose(bz);
+  return file;
+}
+
+TEST(CarmenReader, Bzip2IsTheSameAlsoInSeveralStreams) {
+  const std::string stream =
+      read_file(write_bzip2("small.clf.bz2", read_file(data_file("small.clf"))));
+  const std::string second =
+      read_file(write_bzip2("second.bz2", "FLASER 4 1 1 1 1 0 0 0 0 0 0 99 host 0\n"));
+  const auto file = write_file("both.clf", stream + second);
+  ImportReport report{file, AddressUnit::kLine};
+
+  const ImportedLog log = read_carmen_log(file, four_beams(), report);
+
+  EXPECT_THAT(log.scans, SizeIs(4));
+  EXPECT_EQ(report.num_skipped(), 0);
+}
+
+TEST(CarmenReader, ACutOffBzip2FileIsNamed) {
+  const std::string stream =
+      read_file(write_bzip2("small.clf.bz2", read_file(data_file("small.clf"))));
+  const auto file = write_file("cut.clf.bz2", stream + stream.substr(0, stream.size() / 2));
+  ImportReport report{file, AddressUnit::kLine};
+
+  const ImportedLog log = read_carmen_log(file, four_beams(), report);
+
+  EXPECT_THAT(log.scans, SizeIs(3));
+  EXPECT_EQ(report.skipped_by_kind().at("damaged file"), 1);
 }
 
 TEST(CarmenReader, OfACutOffGzipFileTheWholeLinesAreRead) {

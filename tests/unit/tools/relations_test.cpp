@@ -29,13 +29,14 @@ TEST(Relations, ErrorsAreThoseComputedByHand) {
 
   const RelationsError error = relations_error(trajectory, relations, "r", skipped);
 
-  EXPECT_EQ(error.count, 3u);
+  EXPECT_EQ(error.all.count, 3u);
   const double first = 0.1 * std::sqrt(2.0);
   const double mean = (first + 0.0 + 0.3) / 3;
-  EXPECT_NEAR(error.translation_m.mean, mean, kExact);
-  EXPECT_NEAR(error.translation_m.sigma, std::sqrt((0.02 + 0.0 + 0.09) / 3 - mean * mean), kExact);
-  EXPECT_NEAR(error.rotation_deg.mean, 4.0, kExact);
-  EXPECT_NEAR(error.rotation_deg.sigma, std::sqrt((4.0 + 0.0 + 100.0) / 3 - 16.0), kExact);
+  EXPECT_NEAR(error.all.translation_m.mean, mean, kExact);
+  EXPECT_NEAR(error.all.translation_m.sigma, std::sqrt((0.02 + 0.0 + 0.09) / 3 - mean * mean),
+              kExact);
+  EXPECT_NEAR(error.all.rotation_deg.mean, 4.0, kExact);
+  EXPECT_NEAR(error.all.rotation_deg.sigma, std::sqrt((4.0 + 0.0 + 100.0) / 3 - 16.0), kExact);
   EXPECT_THAT(skipped, IsEmpty());
 }
 
@@ -45,10 +46,28 @@ TEST(Relations, TimesOutsideTheTrajectoryAreNamed) {
   const RelationsError error = relations_error(
       trajectory, {{4, 9.5, 10.5, Se2{}}, {5, 10.0, 11.0, Se2{}}, {6, 10.5, 11.5, Se2{}}}, "r",
       skipped);
-  EXPECT_EQ(error.count, 1u);
+  EXPECT_EQ(error.all.count, 1u);
   EXPECT_THAT(skipped,
               ElementsAre(HasSubstr("r:4: time 9.500000 is outside the trajectory (10.000000 to"),
                           HasSubstr("r:6: time 11.500000 is outside")));
+}
+
+TEST(Relations, NearAndFarAreToldApartByTheTimeBetween) {
+  const Trajectory trajectory{{0, Se2{}}, {100, Se2{}}};
+  Skipped skipped;
+  const RelationsError error = relations_error(trajectory,
+                                               {{1, 0.0, 4.9, Se2{1, 0, 0}},
+                                                {2, 4.0, 0.0, Se2{3, 0, 0}},  // backwards in time
+                                                {3, 0.0, 5.0, Se2{7, 0, 0}},  // neither
+                                                {4, 0.0, 60.0, Se2{9, 0, 0}},
+                                                {5, 99.0, 30.0, Se2{5, 0, radians(6)}}},
+                                               "r", skipped);
+  EXPECT_EQ(error.all.count, 5u);
+  EXPECT_EQ(error.near.count, 2u);
+  EXPECT_NEAR(error.near.translation_m.mean, 2.0, kExact);
+  EXPECT_EQ(error.far.count, 1u);
+  EXPECT_NEAR(error.far.translation_m.mean, 5.0, kExact);
+  EXPECT_NEAR(error.far.rotation_deg.mean, 6.0, kExact);
 }
 
 TEST(Relations, BadLinesAreNamed) {

@@ -21,6 +21,7 @@ MarkerMatchingEstimator::MarkerMatchingEstimator(const EstimatorSetup& setup,
 
 Estimate MarkerMatchingEstimator::update(const Observation& observation) {
   since_update_ = since_update_.then(observation.motion);
+  const std::uint64_t updates_before = updates_;
   if (updates_ == 0) {
     mapper_.insert(observation, best_, covariance_);
     ++updates_;
@@ -37,7 +38,9 @@ Estimate MarkerMatchingEstimator::update(const Observation& observation) {
     since_update_ = {};
     ++updates_;
   }
-  return estimate(observation);
+  Estimate now = estimate(observation);
+  now.updated = updates_ > updates_before;
+  return now;
 }
 
 void MarkerMatchingEstimator::propagate() {

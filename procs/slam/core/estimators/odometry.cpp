@@ -32,7 +32,8 @@ Estimate OdometryEstimator::update(const Observation& observation) {
   map_from_base_before_ = map_from_base_;
   map_from_base_ = map_from_base_ * observation.motion.start_from_end;
   since_mapping_ = since_mapping_.then(observation.motion);
-  if (!has_started_ || setup_.gate.is_open(since_mapping_)) {
+  const bool is_update = !has_started_ || setup_.gate.is_open(since_mapping_);
+  if (is_update) {
     mapper_.insert(observation, map_from_base_, covariance_);
     since_mapping_ = {};
     has_started_ = true;
@@ -43,6 +44,7 @@ Estimate OdometryEstimator::update(const Observation& observation) {
   estimate.covariance = covariance_;
   estimate.health = Health::kDegenerate;  // nothing ever corrects dead reckoning
   estimate.weak_axis_source = WeakAxisSource::kOdometry;
+  estimate.updated = is_update;
   return estimate;
 }
 

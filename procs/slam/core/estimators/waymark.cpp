@@ -83,8 +83,9 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
     since_insertion_m_ += observation.motion.distance_m;
     if (between.match) insert_between(points, *between.match, between.map_from_base);
   }
-  const Estimate now =
+  Estimate now =
       is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation, between);
+  now.updated = is_keyframe;
   scan_poses_.push_back(
       {observation.time, newest(), graph_.state().keyframes.back().inverse() * now.map_from_base});
   return now;

@@ -31,6 +31,7 @@ struct Estimate {
   int markers_in_view{0};
   Observability observability{};
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
+  bool updated{false};       ///< the scan was weighed and mapped, not only followed by odometry
   bool slipped{false};       ///< the scans showed that the wheels had slipped, and were believed
   bool ranges_wrong{false};  ///< the scan shows known walls, but at another scale: it was left out
   /// Camera or markers are further from what was told of them than their standard deviations allow.
