@@ -39,7 +39,8 @@ std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& obs
       graph_.odometry_noise(), config_.markers);
 }
 
-std::vector<PoseHint> WaymarkEstimator::hints(std::span<const MarkerMeasurement> measurements) const {
+std::vector<PoseHint> WaymarkEstimator::hints(
+    std::span<const MarkerMeasurement> measurements) const {
   std::vector<PoseHint> hints;
   for (const MarkerMeasurement& measurement : measurements) {
     PoseHint hint;
