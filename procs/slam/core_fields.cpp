@@ -18,6 +18,14 @@ void MotionNoise::describe(Fields& fields) {
                "the paper to the letter: no noise along the motion");
 }
 
+void StartPose::describe(Fields& fields) {
+  fields.field("x_m", x_m, kAnyNumber, "of the robot in the map");
+  fields.field("y_m", y_m, kAnyNumber, "of the robot in the map");
+  fields.field("yaw_rad", yaw_rad, kAnyNumber, "direction of the robot in the map");
+  fields.field("sigma_m", sigma_m, kPositive, "how far it may be off, in x and in y");
+  fields.field("sigma_rad", sigma_rad, kPositive, "and in the heading");
+}
+
 void UpdateGate::describe(Fields& fields) {
   fields.field("distance_m", distance_m, kNotNegative, "a scan is used after this much driving");
   fields.field("turn_rad", turn_rad, kNotNegative, "or this much turning");

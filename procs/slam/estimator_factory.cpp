@@ -5,10 +5,14 @@
 #include "slam/core/estimators/odometry.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
+#include <utility>
+
 namespace waymark {
 
-std::unique_ptr<Estimator> make_estimator(const SlamConfig& config) {
-  const EstimatorSetup setup = estimator_setup(config);
+std::unique_ptr<Estimator> make_estimator(const SlamConfig& config,
+                                          std::shared_ptr<const MapSnapshot> loaded_map) {
+  EstimatorSetup setup = estimator_setup(config);
+  setup.loaded_map = std::move(loaded_map);
   switch (config.slam.estimator) {
     case EstimatorName::kOdometry:
       return std::make_unique<OdometryEstimator>(setup);

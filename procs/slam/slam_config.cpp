@@ -64,6 +64,17 @@ void SlamSection::describe(Fields& fields) {
   fields.field("map_period_s", map_period_s, kPositive,
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
   fields.field("publish_grid", publish_grid, "also send the whole map on SLAM_GRID if it fits");
+  fields.choice("mode", mode,
+                {{"map", MapMode::kMap},
+                 {"localise", MapMode::kLocalise},
+                 {"extend", MapMode::kExtend}},
+                "draw a new map, or use the one of --load-map: as it is, or to add to it");
+  fields.choice("start", start.kind,
+                {{"origin", StartKind::kOrigin},
+                 {"pose", StartKind::kPose},
+                 {"anywhere", StartKind::kAnywhere}},
+                "where in the loaded map: where mapping began, at start_pose, or unknown");
+  fields.section("start_pose", start);
   fields.section("preprocessing", preprocessing);
   fields.section("motion", motion);
   fields.section("gate", gate);
@@ -80,6 +91,8 @@ void SlamConfig::describe(Fields& fields) {
 
 void SlamConfig::check(Problems& problems) const {
   robot.check(problems);
+  if (slam.mode == MapMode::kMap && slam.start.kind != StartKind::kOrigin)
+    problems.add("slam.start", "only a loaded map has another start than \"origin\": set slam.mode");
   if (slam.grid.face_spacing_m > slam.grid.resolution_m) {
     problems.add("slam.grid.face_spacing_m", "must not be above resolution_m");
   }
@@ -116,6 +129,13 @@ EstimatorSetup estimator_setup(const SlamConfig& config) {
   setup.range_max_m = config.robot.lidar.range_max_m;
   setup.parallel_for = parallel_for_with(config.slam.threads);
   setup.seed = static_cast<std::uint64_t>(config.slam.seed);
+  setup.map_mode = config.slam.mode;
+  setup.start = config.slam.start;
+  if (setup.start.kind == StartKind::kOrigin) {
+    setup.start.x_m = 0.0;
+    setup.start.y_m = 0.0;
+    setup.start.yaw_rad = 0.0;
+  }
   return setup;
 }
 

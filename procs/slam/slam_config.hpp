@@ -11,6 +11,7 @@
 #include "slam/core/input/sensor_queue.hpp"
 
 #include <cstdint>
+#include <filesystem>
 
 namespace waymark {
 
@@ -35,6 +36,8 @@ struct SlamSection {
   bool blank_ids{false};
   double map_period_s{1.0};
   bool publish_grid{false};
+  MapMode mode{MapMode::kMap};
+  StartPose start{};
   PreprocessingConfig preprocessing{};
   MotionNoise motion{};
   UpdateGate gate{};
@@ -49,6 +52,8 @@ struct SlamSection {
 struct SlamConfig {
   RobotConfig robot{};
   SlamSection slam{};
+  std::filesystem::path load_map{};  ///< from the command line; empty: none
+  std::filesystem::path save_map{};
 
   void describe(Fields& fields);
   void check(Problems& problems) const;

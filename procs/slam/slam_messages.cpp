@@ -63,6 +63,7 @@ marker_landmark_t to_message(const Landmark& landmark) {
 slam_estimate_t to_message(const Estimate& estimate) {
   slam_estimate_t message{};
   message.utime = to_us(estimate.time);
+  message.has_pose = estimate.has_pose ? 1 : 0;
   message.x_m = estimate.map_from_base.x();
   message.y_m = estimate.map_from_base.y();
   message.theta_rad = estimate.map_from_base.theta();

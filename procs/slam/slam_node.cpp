@@ -3,10 +3,13 @@
 
 #include "common/messages/convert.hpp"
 #include "slam/estimator_factory.hpp"
+#include "slam/map_file.hpp"
 #include "slam/slam_messages.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -15,6 +18,55 @@ namespace {
 
 constexpr std::string_view kScansProcessed = "scans processed";
 
+MapFileInfo map_info(const SlamConfig& config) {
+  MapFileInfo info;
+  info.marker_dictionary = config.robot.markers.dictionary;
+  info.marker_size_m = config.robot.markers.size_m;
+  return info;
+}
+
+void check_map_options(const SlamConfig& config) {
+  const bool is_loaded = !config.load_map.empty();
+  const bool is_used = is_loaded || !config.save_map.empty();
+  if (is_used && config.slam.estimator != EstimatorName::kWaymark)
+    throw SetupError{"only the estimator 'waymark' loads and saves maps: set slam.estimator"};
+  if (is_loaded && config.slam.mode == MapMode::kMap) {
+    throw SetupError{
+        "--load-map needs to know what for: --set slam.mode=localise (the map stays as it is) or "
+        "--set slam.mode=extend"};
+  }
+  if (!is_loaded && config.slam.mode != MapMode::kMap)
+    throw SetupError{"slam.mode = localise and extend need a map: --load-map FILE"};
+  if (config.slam.mode == MapMode::kLocalise && !config.save_map.empty())
+    throw SetupError{"slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
+}
+
+/// @throws SetupError  also where the map does not suit this robot.
+std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config) {
+  check_map_options(config);
+  if (config.load_map.empty()) return nullptr;
+  MapFile file = read_map_file(config.load_map);
+  const MarkerConfig& markers = config.robot.markers;
+  const auto refuse = [&](const std::string& why) {
+    throw SetupError{fmt::format("map '{}' {}", config.load_map.string(), why)};
+  };
+  if (file.info.marker_dictionary != markers.dictionary ||
+      file.info.marker_size_m != markers.size_m) {
+    refuse(fmt::format("was made with markers {} of {} m, but robot.markers says {} of {} m",
+                       file.info.marker_dictionary, file.info.marker_size_m, markers.dictionary,
+                       markers.size_m));
+  }
+  if (file.map.grid.frame.resolution_m != config.slam.grid.resolution_m) {
+    refuse(fmt::format("has cells of {} m: set slam.grid.resolution_m, which is {}, to that",
+                       file.map.grid.frame.resolution_m, config.slam.grid.resolution_m));
+  }
+  const bool has_markers = std::any_of(file.map.landmarks.begin(), file.map.landmarks.end(),
+                                       [](const Landmark& landmark) { return landmark.is_confirmed(); });
+  if (config.slam.start.kind == StartKind::kAnywhere && !has_markers)
+    refuse("has no markers, so that slam.start = anywhere cannot find the robot in it");
+  return std::make_shared<const MapSnapshot>(std::move(file.map));
+}
+
 }  // namespace
 
 SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
@@ -22,7 +74,9 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
       counters_{inbox.counters()},
       outbox_{outbox},
       queue_{sensor_setup(config)},
-      estimator_{make_estimator(config)} {
+      loaded_map_{load_map(config)},
+      map_id_{loaded_map_ && config.slam.mode == MapMode::kLocalise ? loaded_map_->map_id : 0},
+      estimator_{make_estimator(config, loaded_map_)} {
   inbox.on<planar_lidar_t>(channels::kLidar, [this](const auto& m) { take(to_scan(m)); });
   inbox.on<lidar_t>(channels::kMbotLidar, [this](const auto& m) { take(to_scan(m)); });
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) {
@@ -39,15 +93,37 @@ void SlamNode::finish() {
   queue_.finish();
   process_ready_scans();
   judge_input();
+  if (!config_.save_map.empty()) save_map();
   if (!last_estimate_) return;
-  for (const map_tiles_t& part :
-       map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_))
+  for (map_tiles_t part :
+       map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_)) {
+    part.map_id = map_id_;
     outbox_.publish(channels::kSlamMap, part);
+  }
   publish_markers(*last_estimate_);
   publish_grid(*last_estimate_);
-  for (const trajectory_t& part : to_messages(estimator_->trajectory()))
+  for (trajectory_t part : to_messages(estimator_->trajectory())) {
+    part.map_id = map_id_;
     outbox_.publish(channels::kSlamTrajectory, part);
+  }
   spdlog::info("{}", timer_.summary());
+}
+
+void SlamNode::save_map() {
+  const auto map = estimator_->snapshot();
+  if (!map) {
+    failed_ = true;
+    spdlog::error("no map to save: no scan could be placed");
+    return;
+  }
+  try {
+    const std::int64_t map_id = write_map_file(config_.save_map, *map, map_info(config_));
+    spdlog::info("map {:016x} is in '{}': {} markers, {} keyframes", map_id,
+                 config_.save_map.string(), map->landmarks.size(), map->graph.poses.size());
+  } catch (const std::exception& error) {
+    failed_ = true;
+    spdlog::error("{}", error.what());
+  }
 }
 
 /// An input that nothing can be made of shall not look like success.
@@ -88,9 +164,16 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   const Estimate estimate = estimator_->update(ready.observation);
   timer_.stop(estimate.updated);
   const Timestamp time = estimate.time;
+  counters_.add(ready.scan ? kScansProcessed : "estimates while the LiDAR was silent");
+  slam_estimate_t message = to_message(estimate);
+  message.map_id = map_id_;
+  if (!estimate.has_pose) {
+    counters_.add("estimates before the place in the map was known");
+    outbox_.publish(channels::kSlamEstimate, message);
+    return;
+  }
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_estimate_ = time;
-  counters_.add(ready.scan ? kScansProcessed : "estimates while the LiDAR was silent");
   if (estimate.slipped) counters_.add("slips of the wheels");
   if (estimate.calibration_widened) counters_.add("calibration found worse than told");
   if (ready.scan && estimate.ranges_wrong) counters_.add("scans with wrong ranges");
@@ -98,7 +181,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
     outbox_.publish(channels::kSlamScan,
                     to_message(*ready.scan, ready.observation, map_from_lidar));
   outbox_.publish(channels::kSlamPose, to_pose_message(time, estimate.map_from_base));
-  outbox_.publish(channels::kSlamEstimate, to_message(estimate));
+  outbox_.publish(channels::kSlamEstimate, message);
   outbox_.publish(channels::kSlamParticles, to_message(estimator_->particles(), time));
   publish_map_when_due(time);
 }
@@ -106,15 +189,19 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
 void SlamNode::publish_map_when_due(Timestamp time) {
   if (next_map_ && time < *next_map_) return;
   next_map_ = time + duration_from_seconds(config_.slam.map_period_s);
-  for (const map_tiles_t& part : map_publisher_.changes(estimator_->map(), time))
+  for (map_tiles_t part : map_publisher_.changes(estimator_->map(), time)) {
+    part.map_id = map_id_;
     outbox_.publish(channels::kSlamMap, part);
+  }
   publish_markers(time);
   publish_grid(time);
 }
 
 void SlamNode::publish_markers(Timestamp time) {
-  for (const marker_map_t& part : to_messages(estimator_->landmarks(), time))
+  for (marker_map_t part : to_messages(estimator_->landmarks(), time)) {
+    part.map_id = map_id_;
     outbox_.publish(channels::kSlamMarkers, part);
+  }
 }
 
 void SlamNode::publish_grid(Timestamp time) {

@@ -36,6 +36,7 @@ class SlamNode final : public Node {
   bool failed() const override { return failed_; }
 
  private:
+  void save_map();
   void take(LidarScan scan);
   void judge_input();
   void process_ready_scans();
@@ -48,6 +49,8 @@ class SlamNode final : public Node {
   Counters& counters_;
   Outbox& outbox_;
   SensorQueue queue_;
+  std::shared_ptr<const MapSnapshot> loaded_map_;
+  std::int64_t map_id_;  ///< 0: of no file
   std::unique_ptr<Estimator> estimator_;
   MapPublisher map_publisher_{};
   std::optional<Timestamp> last_estimate_{};

@@ -114,8 +114,8 @@ void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) { updater_.add_odometry(m); });
   inbox.on<pose2D_t>(channels::kTruePose, [this](const auto& m) { updater_.add_truth(m); });
   inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) {
-    updater_.add(m);
-    if (!scene_.estimates.empty()) {
+    if (m.has_pose != 0) updater_.add(m);
+    if (m.has_pose != 0 && !scene_.estimates.empty()) {
       if (const auto change = change_watch_.see(scene_.estimates.back())) tell(*change);
       if (live_feed_) live_feed_->add(m, scene_.estimates.back());
     }

@@ -4,15 +4,19 @@
 
 #include <waymark/ack_t.hpp>
 #include <waymark/annotated_scan_t.hpp>
+#include <waymark/calibration_t.hpp>
 #include <waymark/image_t.hpp>
 #include <waymark/lidar_t.hpp>
+#include <waymark/map_header_t.hpp>
 #include <waymark/map_tiles_t.hpp>
+#include <waymark/map_walls_t.hpp>
 #include <waymark/marker_detections_t.hpp>
 #include <waymark/marker_map_t.hpp>
 #include <waymark/occupancy_grid_t.hpp>
 #include <waymark/particles_t.hpp>
 #include <waymark/planar_lidar_t.hpp>
 #include <waymark/pose2D_t.hpp>
+#include <waymark/pose_graph_t.hpp>
 #include <waymark/process_status_t.hpp>
 #include <waymark/slam_estimate_t.hpp>
 #include <waymark/tick_t.hpp>
@@ -48,6 +52,12 @@ inline constexpr Channel<marker_map_t> kSlamMarkers{"SLAM_MARKERS"};
 inline constexpr Channel<particles_t> kSlamParticles{"SLAM_PARTICLES"};
 inline constexpr Channel<annotated_scan_t> kSlamScan{"SLAM_SCAN"};
 inline constexpr Channel<trajectory_t> kSlamTrajectory{"SLAM_TRAJECTORY"};
+
+// Only in map files.
+inline constexpr Channel<map_header_t> kMapHeader{"MAP_HEADER"};
+inline constexpr Channel<map_walls_t> kMapWalls{"MAP_WALLS"};
+inline constexpr Channel<pose_graph_t> kMapGraph{"MAP_GRAPH"};
+inline constexpr Channel<calibration_t> kMapCalibration{"MAP_CALIBRATION"};
 
 inline constexpr Channel<process_status_t> kSimStatus{"SIM_STATUS"};
 inline constexpr Channel<process_status_t> kDetectorStatus{"DETECTOR_STATUS"};

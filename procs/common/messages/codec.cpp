@@ -119,15 +119,19 @@ Message encode(Channel<Type> channel, const Type& message) {
   template Message encode<Type>(Channel<Type>, const Type&)
 WAYMARK_INSTANTIATE(ack_t);
 WAYMARK_INSTANTIATE(annotated_scan_t);
+WAYMARK_INSTANTIATE(calibration_t);
 WAYMARK_INSTANTIATE(image_t);
 WAYMARK_INSTANTIATE(lidar_t);
+WAYMARK_INSTANTIATE(map_header_t);
 WAYMARK_INSTANTIATE(map_tiles_t);
+WAYMARK_INSTANTIATE(map_walls_t);
 WAYMARK_INSTANTIATE(marker_detections_t);
 WAYMARK_INSTANTIATE(marker_map_t);
 WAYMARK_INSTANTIATE(occupancy_grid_t);
 WAYMARK_INSTANTIATE(particles_t);
 WAYMARK_INSTANTIATE(planar_lidar_t);
 WAYMARK_INSTANTIATE(pose2D_t);
+WAYMARK_INSTANTIATE(pose_graph_t);
 WAYMARK_INSTANTIATE(process_status_t);
 WAYMARK_INSTANTIATE(slam_estimate_t);
 WAYMARK_INSTANTIATE(tick_t);

@@ -121,27 +121,40 @@ constexpr FieldLayout kOccupancyGrid[] = {fixed(kInt64), fixed(kFloat, 3), fixed
                                           fixed(kInt32), fixed(kInt32),    fixed_array(kByte, 4)};
 constexpr FieldLayout kParticle[] = {one(kPose2D), one(kPose2D), fixed(kDouble)};
 constexpr FieldLayout kParticles[] = {fixed(kInt64), fixed(kInt32), many(kParticle, 1)};
-constexpr FieldLayout kTrajectory[] = {fixed(kInt64), fixed(kInt32), fixed(kInt32), fixed(kInt32),
-                                       many(kPose2D, 3)};
+constexpr FieldLayout kTrajectory[] = {fixed(kInt64, 2), fixed(kInt32), fixed(kInt32),
+                                       fixed(kInt32), many(kPose2D, 3)};
 constexpr FieldLayout kMarkerDetection[] = {
     fixed(kInt32),  fixed(kDouble, 8), fixed(kDouble, 3), fixed(kDouble, 4), fixed(kDouble, 36),
     fixed(kDouble), fixed(kDouble, 3), fixed(kDouble, 4), fixed(kDouble),    fixed(kDouble)};
 constexpr FieldLayout kMarkerDetections[] = {fixed(kInt64), fixed(kInt32), fixed(kInt32),
                                              fixed(kInt32), many(kMarkerDetection, 3)};
-constexpr FieldLayout kSlamEstimate[] = {fixed(kInt64),     fixed(kDouble, 3), fixed(kDouble, 9),
-                                         fixed(kByte),      fixed(kInt32),     fixed(kDouble),
-                                         fixed(kInt32),     fixed(kInt32),     fixed(kDouble, 9),
-                                         fixed(kDouble, 3), fixed(kDouble),    fixed(kByte)};
+constexpr FieldLayout kSlamEstimate[] = {
+    fixed(kInt64, 2), fixed(kByte),      fixed(kDouble, 3), fixed(kDouble, 9), fixed(kByte),
+    fixed(kInt32),    fixed(kDouble),    fixed(kInt32),     fixed(kInt32),     fixed(kDouble, 9),
+    fixed(kDouble, 3), fixed(kDouble), fixed(kByte)};
 constexpr FieldLayout kMapTile[] = {fixed(kInt32), fixed(kInt32), fixed(kInt32),
                                     fixed_array(kByte, 2), fixed_array(kInt16, 2)};
-constexpr FieldLayout kMapTiles[] = {fixed(kInt64),     fixed(kInt32), fixed(kInt32),
+constexpr FieldLayout kMapTiles[] = {fixed(kInt64, 2),  fixed(kInt32), fixed(kInt32),
                                      fixed(kDouble, 3), fixed(kInt32), fixed(kInt32),
                                      many(kMapTile, 5)};
 constexpr FieldLayout kMarkerLandmark[] = {fixed(kInt32),     fixed(kInt32), fixed(kDouble, 3),
                                            fixed(kDouble, 9), fixed(kInt32), fixed(kInt64, 2),
                                            fixed(kByte)};
-constexpr FieldLayout kMarkerMap[] = {fixed(kInt64), fixed(kInt32), fixed(kInt32), fixed(kInt32),
+constexpr FieldLayout kMarkerMap[] = {fixed(kInt64, 2), fixed(kInt32), fixed(kInt32), fixed(kInt32),
                                       many(kMarkerLandmark, 3)};
+constexpr FieldLayout kMapHeader[] = {fixed(kInt64, 3), fixed(kInt32), fixed(kInt32),
+                                      fixed(kDouble, 2), text(), text()};
+constexpr FieldLayout kWallCell[] = {fixed(kInt32), fixed(kInt32), fixed(kDouble),
+                                     fixed(kDouble, 2), fixed(kDouble, 3)};
+constexpr FieldLayout kMapWalls[] = {fixed(kInt64),  fixed(kInt32), fixed(kInt32),
+                                     fixed(kDouble), fixed(kInt32), many(kWallCell, 4)};
+constexpr FieldLayout kVertex[] = {fixed(kDouble, 3)};
+constexpr FieldLayout kGraphEdge[] = {fixed(kInt32), fixed(kInt32), fixed(kDouble, 3),
+                                      fixed(kDouble, 6)};
+constexpr FieldLayout kPoseGraph[] = {fixed(kInt64), fixed(kInt32),    fixed(kInt32),
+                                      fixed(kInt32), many(kVertex, 3), fixed(kInt32),
+                                      many(kGraphEdge, 5)};
+constexpr FieldLayout kCalibration[] = {fixed(kInt64, 2), fixed(kDouble, 7), fixed(kDouble, 49)};
 constexpr FieldLayout kAnnotatedScan[] = {fixed(kInt64),          fixed(kDouble, 3),
                                           fixed(kInt32),          fixed_array(kFloat, 2),
                                           fixed_array(kFloat, 2), fixed_array(kInt32, 2)};
@@ -182,6 +195,26 @@ StructLayout layout_of<image_t>() {
 template <>
 StructLayout layout_of<lidar_t>() {
   return kLidar;
+}
+
+template <>
+StructLayout layout_of<calibration_t>() {
+  return kCalibration;
+}
+
+template <>
+StructLayout layout_of<map_header_t>() {
+  return kMapHeader;
+}
+
+template <>
+StructLayout layout_of<map_walls_t>() {
+  return kMapWalls;
+}
+
+template <>
+StructLayout layout_of<pose_graph_t>() {
+  return kPoseGraph;
 }
 
 template <>

@@ -67,6 +67,10 @@ RejectReason validate(const annotated_scan_t& m) {
                   all_finite(m.x_m, m.y_m, m.theta_rad) && finite(m.angles));
 }
 
+RejectReason validate(const calibration_t& m) {
+  return first_of(true, finite(m.mean) && finite(m.covariance));
+}
+
 RejectReason validate(const image_t& m) {
   const auto is_side = [](int side_px) {
     return side_px > 0 && side_px <= kMaxImageSide_px;
@@ -88,6 +92,11 @@ RejectReason validate(const lidar_t& m) {
   return first_of(true, finite(m.thetas));
 }
 
+RejectReason validate(const map_header_t& m) {
+  return first_of(m.num_messages >= 0 && m.resolution_m > 0.0 && m.marker_size_m > 0.0,
+                  all_finite(m.resolution_m, m.marker_size_m));
+}
+
 RejectReason validate(const map_tiles_t& m) {
   const std::int64_t cells_per_tile = std::int64_t{m.tile_size_cells} * m.tile_size_cells;
   const bool tiles_agree = std::ranges::all_of(m.tiles, [cells_per_tile](const map_tile_t& tile) {
@@ -101,6 +110,19 @@ RejectReason validate(const map_tiles_t& m) {
   return first_of(has_size(m.tiles, m.num_tiles) && tiles_agree && parts_agree &&
                       m.tile_size_cells > 0 && m.tile_size_cells <= 1024 && m.resolution_m > 0.0,
                   all_finite(m.origin_x_m, m.origin_y_m, m.resolution_m));
+}
+
+RejectReason validate(const map_walls_t& m) {
+  const auto is_cell = [](const wall_cell_t& cell) {
+    constexpr int kMaxCell = 1 << 24;
+    return cell.count > 0.0 && std::abs(cell.column) < kMaxCell && std::abs(cell.row) < kMaxCell;
+  };
+  const bool cells_finite = std::ranges::all_of(m.cells, [](const wall_cell_t& cell) {
+    return std::isfinite(cell.count) && finite(cell.sum_m) && finite(cell.squares_m2);
+  });
+  return first_of(has_size(m.cells, m.num_cells) && std::ranges::all_of(m.cells, is_cell) &&
+                      m.part >= 0 && m.part < m.num_parts && m.spacing_m > 0.0,
+                  cells_finite && std::isfinite(m.spacing_m));
 }
 
 RejectReason validate(const marker_detections_t& m) {
@@ -146,6 +168,19 @@ RejectReason validate(const pose2D_t& m) {
   const bool is_near = std::abs(m.x) < kMaxCoordinate && std::abs(m.y) < kMaxCoordinate &&
                        std::abs(m.theta) < kMaxCoordinate;
   return first_of(is_near || !is_finite, is_finite);
+}
+
+RejectReason validate(const pose_graph_t& m) {
+  const bool vertices_finite =
+      std::ranges::all_of(m.vertices, [](const auto& vertex) { return finite(vertex); });
+  const bool edges_finite = std::ranges::all_of(m.edges, [](const graph_edge_t& edge) {
+    return finite(edge.pose) && finite(edge.information);
+  });
+  const bool edges_agree = std::ranges::all_of(
+      m.edges, [](const graph_edge_t& edge) { return edge.from >= 0 && edge.to >= 0; });
+  return first_of(has_size(m.vertices, m.num_vertices) && has_size(m.edges, m.num_edges) &&
+                      edges_agree && m.part >= 0 && m.part < m.num_parts,
+                  vertices_finite && edges_finite);
 }
 
 RejectReason validate(const process_status_t& m) {

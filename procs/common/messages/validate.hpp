@@ -10,15 +10,19 @@ namespace waymark {
 /// Holds for decoded messages and, with the sizes of the arrays, for messages about to be encoded.
 RejectReason validate(const ack_t& message);
 RejectReason validate(const annotated_scan_t& message);
+RejectReason validate(const calibration_t& message);
 RejectReason validate(const image_t& message);
 RejectReason validate(const lidar_t& message);
+RejectReason validate(const map_header_t& message);
 RejectReason validate(const map_tiles_t& message);
+RejectReason validate(const map_walls_t& message);
 RejectReason validate(const marker_detections_t& message);
 RejectReason validate(const marker_map_t& message);
 RejectReason validate(const occupancy_grid_t& message);
 RejectReason validate(const particles_t& message);
 RejectReason validate(const planar_lidar_t& message);
 RejectReason validate(const pose2D_t& message);
+RejectReason validate(const pose_graph_t& message);
 RejectReason validate(const process_status_t& message);
 RejectReason validate(const slam_estimate_t& message);
 RejectReason validate(const tick_t& message);

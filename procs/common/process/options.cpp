@@ -11,6 +11,7 @@ std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options) {
   std::vector<std::filesystem::path> inputs = options.logs;
   const auto& files = options.config_sources.files;
   inputs.insert(inputs.end(), files.begin(), files.end());
+  if (!options.load_map.empty()) inputs.push_back(options.load_map);
   return inputs;
 }
 
@@ -54,6 +55,12 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
     app.add_option("--http", options.http,
                    "HOST:PORT: show the run as a live page there, e.g. 127.0.0.1:8080; with --log, "
                    "until Ctrl-C");
+  }
+  if (option_set.maps) {
+    app.add_option("--load-map", options.load_map,
+                   "map file of an earlier run; needs slam.mode = localise or extend");
+    app.add_option("--save-map", options.save_map,
+                   "write the map there at the end (NAME.map.lcm)");
   }
   if (option_set.seed) {
     app.add_option("--seed", options.seed, "seed of everything random (default: run.seed)");

@@ -24,6 +24,8 @@ struct ProcessOptions {
   std::filesystem::path out_log{};
   std::filesystem::path out_dir{};
   std::string http{};
+  std::filesystem::path load_map{};
+  std::filesystem::path save_map{};
   std::optional<std::int64_t> seed{};
 };
 
@@ -36,6 +38,7 @@ struct OptionSet {
   bool out_log{false};
   bool out_dir{false};
   bool http{false};
+  bool maps{false};
   bool seed{false};
   bool dump_robot_config{false};
 };

@@ -188,6 +188,13 @@ void check(const ProcessOptions& options, const OptionSet& option_set) {
         "--lcm-url"};
   }
   if (!options.out_log.empty()) protect_inputs("--out-log", options.out_log, inputs_of(options));
+  if (options.save_map.empty()) return;
+  std::vector<std::filesystem::path> inputs = inputs_of(options);
+  std::erase(inputs, options.load_map);  // a map may be extended in its place
+  protect_inputs("--save-map", options.save_map, inputs);
+  const std::filesystem::path folder = options.save_map.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder))
+    throw SetupError{"--save-map: there is no folder '" + folder.string() + "'"};
 }
 
 }  // namespace

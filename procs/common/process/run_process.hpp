@@ -31,6 +31,8 @@ Config config_from(const ProcessOptions& options) {
   if constexpr (requires { config.out_dir; }) config.out_dir = options.out_dir;
   if constexpr (requires { config.out_log; }) config.out_log = options.out_log;
   if constexpr (requires { config.http; }) config.http = options.http;
+  if constexpr (requires { config.load_map; }) config.load_map = options.load_map;
+  if constexpr (requires { config.save_map; }) config.save_map = options.save_map;
   if constexpr (requires { config.is_replay; }) config.is_replay = !options.logs.empty();
   return config;
 }
@@ -47,12 +49,16 @@ int run_process(int argc, char** argv) {
   constexpr bool kServesPage = requires(Config c) {
     c.http;
   };
+  constexpr bool kHasMaps = requires(Config c) {
+    c.save_map;
+  };
   ProcessDescription description;
   description.traits = NodeType::kTraits;
   description.option_set = {.log = !kIsRecorder,
                             .out_log = !kWritesFolder,
                             .out_dir = kWritesFolder,
-                            .http = kServesPage};
+                            .http = kServesPage,
+                            .maps = kHasMaps};
   description.dump_config = [](const ProcessOptions& options) {
     return dump_config(config_from<Config>(options));
   };

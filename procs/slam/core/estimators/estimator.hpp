@@ -9,11 +9,14 @@
 #include "slam/core/grid/grid_map.hpp"
 #include "slam/core/landmark/sighting_sigmas.hpp"
 #include "slam/core/mapping/landmark_map.hpp"
+#include "slam/core/mapping/map_snapshot.hpp"
 #include "slam/core/mapping/mapper.hpp"
 #include "slam/core/motion/motion_model.hpp"
 #include "slam/core/scan/observation.hpp"
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace waymark {
@@ -30,6 +33,9 @@ struct EstimatorSetup {
   double range_max_m{3.5};  ///< of the LiDAR
   std::uint64_t seed{1};
   ParallelFor parallel_for{serial_for};
+  std::shared_ptr<const MapSnapshot> loaded_map{};  ///< null: none
+  MapMode map_mode{MapMode::kMap};
+  StartPose start{};
 };
 
 /// A hypothesis, for pictures.
@@ -59,6 +65,9 @@ class Estimator {
 
   /// The map as it is when drawn along trajectory(). O(scans).
   virtual GridMap redrawn_map() const { return map(); }
+
+  /// All that another run needs to go on in this map, of methods that can. O(scans).
+  virtual std::optional<MapSnapshot> snapshot() const { return std::nullopt; }
 };
 
 }  // namespace waymark

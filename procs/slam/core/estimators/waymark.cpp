@@ -65,11 +65,16 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       graph_{graph_noise(setup, config), calibration_sigmas(setup, config.odometry)},
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
-      mapper_{setup.grid} {}
+      mapper_{setup.grid},
+      start_{setup.start} {
+  if (setup_.loaded_map) load(*setup_.loaded_map);
+}
 
 Estimate WaymarkEstimator::update(const Observation& observation) {
+  newest_time_ = observation.time;
   follow_odometry(observation);
   const Points points = points_of(observation);
+  if (place_finder_ && !place(observation)) return unplaced(observation);
   bool is_keyframe = is_keyframe_due(observation) || is_contradicted_by(observation);
   BetweenKeyframes between;
   if (!is_keyframe) {
@@ -86,8 +91,10 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
   Estimate now =
       is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation, between);
   now.updated = is_keyframe;
-  scan_poses_.push_back(
-      {observation.time, newest(), graph_.state().keyframes.back().inverse() * now.map_from_base});
+  if (!is_frozen()) {
+    scan_poses_.push_back({observation.time, newest(),
+                           graph_.state().keyframes.back().inverse() * now.map_from_base});
+  }
   return now;
 }
 
@@ -127,8 +134,14 @@ WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
 
 std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
     const Points& points, const Prediction& prediction) const {
-  if (submaps_.empty() || points.empty()) return std::nullopt;
+  if (points.empty()) return std::nullopt;
   MatchedScan scan;
+  if (setup_.loaded_map) {
+    scan.match = match_scan(points, setup_.loaded_map->walls, prediction.map_from_base,
+                            prediction.covariance, range_noise_, config_.scan);
+    if (is_frozen() || is_in_loaded_map(scan.match)) return scan;
+  }
+  if (submaps_.empty()) return std::nullopt;
   scan.submap = submaps_.size() > 1 ? &submaps_[submaps_.size() - 2] : &submaps_.back();
   scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
   const Se2 submap_from_map = scan.map_from_submap.inverse();
@@ -145,19 +158,24 @@ void WaymarkEstimator::search_widely(const Points& points, const Prediction& pre
                                      MatchedScan& scan) const {
   if (!is_bad_fit(scan.match)) return;
   const Se2 guess = scan.map_from_submap.inverse() * prediction.map_from_base;
-  const CorrelativeField field{scan.submap->points()};
+  const CorrelativeField field{points_near(scan, guess)};
   const auto best = field.best(thinned(points, kSearchBeams), guess,
                                {kSearchReach_m, kSearchReach_rad}, config_.loops.min_score);
   if (!best) return;
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
-  const ScanMatch other = match_scan(points, scan.submap->surfaces(), best->submap_from_base, near,
+  const ScanMatch other = match_scan(points, surfaces_of(scan), best->submap_from_base, near,
                                      range_noise_, config_.scan);
   if (other.inliers > kClearlyMore * scan.match.inliers) scan.match = other;
 }
 
 void WaymarkEstimator::add_first_keyframe() {
-  graph_.add_keyframe({});
-  graph_.add(PosePrior{0, {}, Eigen::Matrix3d::Identity() / kFirstPoseSigma});
+  const Se2 map_from_base{start_.x_m, start_.y_m, start_.yaw_rad};
+  graph_.add_keyframe(map_from_base);
+  const bool defines_frame = !setup_.loaded_map;
+  const Eigen::Vector3d sigmas =
+      defines_frame ? Eigen::Vector3d::Constant(kFirstPoseSigma)
+                    : Eigen::Vector3d{start_.sigma_m, start_.sigma_m, start_.sigma_rad};
+  graph_.add(PosePrior{0, map_from_base, sigmas.cwiseInverse().asDiagonal()});
 }
 
 void WaymarkEstimator::add_keyframe(const Observation& observation, const Points& points) {
@@ -175,8 +193,10 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
     is_refuted_scan = scan && is_refuted(scan->match);
     if (scan) inlier_share_ = scan->match.inlier_share;
     if (scan && !is_refuted_scan && scan->match.is_usable(config_.scan)) {
-      learn_noise(expected, scan->match);
-      add_scan_factor(keyframe, *scan->submap, scan->match, false);
+      learn_noise(expected, *scan);
+      confirm_place(*scan);
+      if (scan->submap != nullptr) add_scan_factor(keyframe, *scan->submap, scan->match, false);
+      else add_map_factor(keyframe, scan->match);
       usual_fit_ += kFitMemory * (inlier_share_ * scan->match.mapped_share - usual_fit_);
     }
     unobserved_m_ += motion_.distance_m;
@@ -193,22 +213,26 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
   if (!is_doubtful) {
     use_markers(measurements);
     note_misses(observation);
-    if (config_.loops.enabled && !is_refuted_scan) close_loops(points);
+    if (config_.loops.enabled && !is_refuted_scan && !is_frozen()) close_loops(points);
   }
   // What cannot be placed is not mapped.
-  const bool is_mapped = !is_doubtful && !is_refuted_scan;
-  if (is_mapped) {
-    mapper_.insert(observation, graph_.state().keyframes.back(),
-                   graph_.covariance_of({VariableKind::kKeyframe, newest()}));
-  }
-  insert_scan(is_mapped ? points : Points{});
-  archive_.add(is_mapped ? observation : Observation{}, graph_.state().keyframes.back());
-  drawn_at_.push_back(graph_.state().keyframes.back());
+  const bool is_mapped = !is_doubtful && !is_refuted_scan && is_confirmed_;
+  if (!is_frozen()) map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? points : Points{});
   while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
     graph_.marginalise_oldest(kNear_m);
+  if (is_frozen()) graph_.forget_behind_window();
   motion_ = {};
   moved_from_ = newest();
   if (standstill_ && standstill_->keyframe == moved_from_) standstill_->motion = {};
+}
+
+void WaymarkEstimator::map_keyframe(const Observation& observation, const Points& points) {
+  const Se2& map_from_base = graph_.state().keyframes.back();
+  mapper_.insert(observation, map_from_base,
+                 graph_.covariance_of({VariableKind::kKeyframe, newest()}));
+  insert_scan(points);
+  archive_.add(observation, map_from_base);
+  drawn_at_.push_back(map_from_base);
 }
 
 void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
@@ -244,13 +268,11 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
 }
 
 /// What the scan says about the motion since the keyframe before, against what odometry says.
-void WaymarkEstimator::learn_noise(const Prediction& expected, const ScanMatch& match) {
+void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
   if (!config_.learn_noise) return;
   const OdometryNoise described = scaled(graph_.noise().odometry, {});
-  const Se2 map_from_submap =
-      graph_.state().keyframes[submaps_.size() > 1 ? submaps_[submaps_.size() - 2].first_keyframe()
-                                                   : submaps_.back().first_keyframe()];
-  const Se2 found = map_from_submap * match.map_from_base;
+  const ScanMatch& match = scan.match;
+  const Se2 found = scan.map_from_submap * match.map_from_base;
   const Eigen::Matrix2d to_base = found.rotation().transpose();
   Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
   off.head<2>() = (to_base * off.head<2>()).eval();
@@ -289,7 +311,7 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
 /// the wrong place, and would confirm that to the next ones.
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
-  if (since_insertion_m_ < config_.insert_distance_m || is_bad_fit(match) ||
+  if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m || is_bad_fit(match) ||
       verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
     return;
   }
@@ -356,6 +378,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                     const Eigen::Matrix3d& covariance) const {
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = 0.5 * (covariance + covariance.transpose());
+  if (setup_.loaded_map) estimate.covariance += loaded_map_covariance(map_from_base);
   if (relocalisation_.alternative()) {
     const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
     estimate.covariance += away * away.transpose();
@@ -370,12 +393,16 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
 }
 
 std::vector<Landmark> WaymarkEstimator::landmarks() const {
+  return landmarks_of(graph_);
+}
+
+std::vector<Landmark> WaymarkEstimator::landmarks_of(const Graph& graph) const {
   std::vector<Landmark> known;
   for (std::size_t i = 0; i < book_.entries().size(); ++i) {
     if (book_.is_retired(i)) continue;
     known.push_back(book_.entries()[i]);
-    known.back().map_from_marker = graph_.state().landmarks[i];
-    known.back().covariance = graph_.landmark_covariance(i);
+    known.back().map_from_marker = graph.state().landmarks[i];
+    known.back().covariance = graph.landmark_covariance(i);
   }
   std::stable_sort(known.begin(), known.end(), [](const Landmark& a, const Landmark& b) {
     return std::pair{a.id, a.instance} < std::pair{b.id, b.instance};

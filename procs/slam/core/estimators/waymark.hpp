@@ -7,6 +7,7 @@
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/loop_finder.hpp"
 #include "slam/core/graph/odometry_noise_learner.hpp"
+#include "slam/core/graph/place_finder.hpp"
 #include "slam/core/graph/relocalisation.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/mapping/scan_archive.hpp"
@@ -53,6 +54,7 @@ class WaymarkEstimator final : public Estimator {
   std::vector<PublishedParticle> particles() const override;
   std::vector<TimedPose> trajectory() const override;
   GridMap redrawn_map() const override;
+  std::optional<MapSnapshot> snapshot() const override;
 
  private:
   static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
@@ -64,7 +66,7 @@ class WaymarkEstimator final : public Estimator {
 
   struct MatchedScan {
     ScanMatch match{};  ///< submap frame
-    const Submap* submap{nullptr};
+    const Submap* submap{nullptr};  ///< null: the loaded map, in its own frame
     Se2 map_from_submap{};
   };
 
@@ -89,6 +91,16 @@ class WaymarkEstimator final : public Estimator {
     Motion motion{};  ///< since that keyframe
   };
 
+  bool place(const Observation& observation);
+  Estimate unplaced(const Observation& observation) const;
+  void load(const MapSnapshot& map);
+  std::vector<Landmark> landmarks_of(const Graph& graph) const;
+  bool is_frozen() const { return setup_.map_mode == MapMode::kLocalise; }
+  const NdtMap& surfaces_of(const MatchedScan& scan) const;
+  Points points_near(const MatchedScan& scan, const Se2& submap_from_base) const;
+  bool is_in_loaded_map(const ScanMatch& match) const;
+  void confirm_place(const MatchedScan& scan);
+  Eigen::Matrix3d loaded_map_covariance(const Se2& map_from_base) const;
   void follow_odometry(const Observation& observation);
   bool is_keyframe_due(const Observation& observation) const;
   bool is_contradicted_by(const Observation& observation) const;
@@ -97,17 +109,20 @@ class WaymarkEstimator final : public Estimator {
   void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;
   void add_keyframe(const Observation& observation, const Points& points);
   void add_first_keyframe();
+  void add_map_factor(std::size_t keyframe, const ScanMatch& match);
   void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
   void close_loops(const Points& points);
   void solve_everything(const std::vector<std::size_t>& returning_landmarks);
   void redraw_if_moved();
-  void learn_noise(const Prediction& prediction, const ScanMatch& match);
+  Mapper empty_mapper() const;
+  void learn_noise(const Prediction& prediction, const MatchedScan& scan);
   std::vector<MarkerMeasurement> measured(const Observation& observation) const;
   std::vector<PoseHint> hints(std::span<const MarkerMeasurement> measurements) const;
   void use_markers(std::span<const MarkerMeasurement> measurements);
   void note_misses(const Observation& observation);
   void relocate(const Se2& map_from_base);
+  void map_keyframe(const Observation& observation, const Points& points);
   void insert_scan(const Points& points);
   Estimate estimate(const Observation& observation, const Se2& map_from_base,
                     const Eigen::Matrix3d& covariance) const;
@@ -146,6 +161,12 @@ class WaymarkEstimator final : public Estimator {
   std::vector<ScanPose> scan_poses_{};
   ScanArchive archive_{};
   std::vector<Se2> drawn_at_{};  ///< poses of the keyframes in the map
+
+  StartPose start_;
+  std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
+  Points loaded_points_{};                     ///< of the loaded map's walls
+  bool is_confirmed_{true};  ///< the place in the loaded map, by markers or by walls
+  Timestamp newest_time_{};
 
   // Of the newest keyframe:
   RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kSettled};

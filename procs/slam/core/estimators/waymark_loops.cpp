@@ -51,7 +51,7 @@ void WaymarkEstimator::solve_everything(const std::vector<std::size_t>& returnin
     const double away_m =
         (graph_.state().landmarks[i].translation() - graph_.state().keyframes.back().translation())
             .norm();
-    if (!book_.is_retired(i) && away_m < kNear_m) activated.push_back(i);
+    if (!book_.is_retired(i) && !graph_.is_fixed(i) && away_m < kNear_m) activated.push_back(i);
   }
   graph_.optimise_all(has_new_loops_ ? kSolveSteps : 0, activated);
   graph_.optimise();
@@ -74,14 +74,20 @@ void WaymarkEstimator::redraw_if_moved() {
       since < drawn_at_.size() / kRedrawShare ? kBlurred_m : setup_.grid.resolution_m;
   if (farthest_m < blur_m) return;
   redrawn_keyframes_ = drawn_at_.size();
-  mapper_ = Mapper{setup_.grid};
+  mapper_ = empty_mapper();
   for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
     drawn_at_[i] = graph_.state().keyframes[i];
     mapper_.insert(archive_.at(i), drawn_at_[i], Eigen::Matrix3d::Zero());
   }
 }
 
+/// With nothing but the loaded map in it.
+Mapper WaymarkEstimator::empty_mapper() const {
+  return setup_.loaded_map ? Mapper{setup_.grid, setup_.loaded_map->grid} : Mapper{setup_.grid};
+}
+
 std::vector<TimedPose> WaymarkEstimator::trajectory() const {
+  if (is_frozen()) return {};
   Graph graph = graph_;
   graph.optimise_all(kSolveSteps);
   std::vector<TimedPose> trajectory;
@@ -93,9 +99,10 @@ std::vector<TimedPose> WaymarkEstimator::trajectory() const {
 }
 
 GridMap WaymarkEstimator::redrawn_map() const {
+  if (is_frozen()) return map();
   Graph graph = graph_;
   graph.optimise_all(kSolveSteps);
-  Mapper mapper{setup_.grid};
+  Mapper mapper = empty_mapper();
   for (std::size_t i = 0; i < archive_.size(); ++i)
     mapper.insert(archive_.at(i), graph.state().keyframes[i], Eigen::Matrix3d::Zero());
   return mapper.map();

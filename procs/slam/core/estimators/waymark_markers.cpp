@@ -12,10 +12,7 @@ constexpr double kContradicts_m = 0.5;  // a marker this far from all of its id
 constexpr int kMaxStanding = 20;        // keyframes of a robot that does not move
 constexpr double kReturned_m = 0.3;     // sigma of a pose that a relocalisation is taken back to
 constexpr double kReturned_rad = 0.1;
-// A marker counts as missed if it faces the camera, the LiDAR sees its wall, and no frame of the
-// last moments has shown it.
-constexpr double kMinFacing = 0.3;
-constexpr double kWallInSight_m = 0.2;
+// A marker counts as missed if no frame of the last moments has shown it.
 constexpr Duration kSightingAge = std::chrono::seconds{1};
 
 }  // namespace
@@ -97,7 +94,8 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
         graph_.set_odometry_scale(noise_learner_.scale());
       }
       markers_known_ = true;
-      if (!graph_.is_active({VariableKind::kLandmark, landmark})) returning.push_back(landmark);
+      if (graph_.is_fixed(landmark)) is_confirmed_ = true;
+      else if (!graph_.is_active({VariableKind::kLandmark, landmark})) returning.push_back(landmark);
     } else {
       landmark = graph_.add_landmark(map_from_measured(graph_.state(), newest(), measurement));
       book_.add(measurement.id, measurement.time);
@@ -122,15 +120,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
 void WaymarkEstimator::note_misses(const Observation& observation) {
   if (!observation.camera_reported) return;
   const auto is_in_view = [&](const Se2& base_from_marker) {
-    const Eigen::Vector2d place = base_from_marker.translation();
-    const Eigen::Vector2d to_camera =
-        (setup_.camera.base_from_camera.translation() - place).normalized();
-    const Eigen::Vector2d facing = base_from_marker.rotation().col(0);
-    return facing.dot(to_camera) > kMinFacing && setup_.camera.would_show(place) &&
-           std::any_of(observation.beams.begin(), observation.beams.end(),
-                       [&](const AnnotatedBeam& annotated) {
-                         return (annotated.beam.end_in_base - place).norm() < kWallInSight_m;
-                       });
+    return is_expected_in_view(base_from_marker, setup_.camera, observation.beams);
   };
   book_.note_misses(graph_.state(), newest(), is_in_view, observation.time - kSightingAge);
 }

@@ -21,6 +21,7 @@ enum class WeakAxisSource { kUnknown, kOdometry, kMarkers };
 
 struct Estimate {
   Timestamp time{};
+  bool has_pose{true};  ///< false: where the robot is in the loaded map is not known yet
   Se2 map_from_base{};
   /// [m^2, m rad, rad^2] order x y theta, map frame.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};

@@ -66,6 +66,15 @@ void MarkerBook::add(int id, Timestamp time) {
   is_retired_.push_back(false);
 }
 
+/// Times of another run mean nothing in this one.
+void MarkerBook::add_known(const Landmark& landmark) {
+  entries_.push_back(landmark);
+  entries_.back().first_seen = {};
+  entries_.back().last_seen = {};
+  entries_.back().misses = 0;
+  is_retired_.push_back(false);
+}
+
 void MarkerBook::note_sighting(std::size_t landmark, Timestamp time) {
   ++entries_[landmark].sightings;
   entries_[landmark].misses = 0;

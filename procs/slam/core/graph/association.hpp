@@ -39,6 +39,9 @@ class MarkerBook {
   /// A marker that was met for the first time.
   void add(int id, Timestamp time);
 
+  /// One of a loaded map.
+  void add_known(const Landmark& landmark);
+
   void note_sighting(std::size_t landmark, Timestamp time);
 
   /// Counts one more missed detection for every marker that should be in view and was not sighted

@@ -41,12 +41,23 @@ std::size_t Graph::add_keyframe(const Se2& map_from_base) {
 std::size_t Graph::add_landmark(const Se2& map_from_marker) {
   state_.landmarks.push_back(map_from_marker);
   landmark_covariances_.push_back(Eigen::Matrix3d::Zero());
+  is_fixed_.push_back(false);
   push_variable({VariableKind::kLandmark, state_.landmarks.size() - 1});
+  return state_.landmarks.size() - 1;
+}
+
+std::size_t Graph::add_fixed_landmark(const Se2& map_from_marker,
+                                      const Eigen::Matrix3d& covariance) {
+  state_.landmarks.push_back(map_from_marker);
+  landmark_covariances_.push_back(covariance);
+  is_fixed_.push_back(true);
   return state_.landmarks.size() - 1;
 }
 
 std::vector<Variable> Graph::variables_of(const Factor& factor) const {
   struct Visitor {
+    const std::vector<bool>& is_fixed;
+
     std::vector<Variable> operator()(const OdometryFactor& f) const {
       return {{VariableKind::kKeyframe, f.from}, {VariableKind::kKeyframe, f.to}};
     }
@@ -59,6 +70,7 @@ std::vector<Variable> Graph::variables_of(const Factor& factor) const {
     }
 
     std::vector<Variable> operator()(const MarkerFactor& f) const {
+      if (is_fixed[f.landmark]) return {{VariableKind::kKeyframe, f.keyframe}};
       return {{VariableKind::kKeyframe, f.keyframe}, {VariableKind::kLandmark, f.landmark}};
     }
 
@@ -67,7 +79,7 @@ std::vector<Variable> Graph::variables_of(const Factor& factor) const {
     }
   };
 
-  return std::visit(Visitor{}, factor);
+  return std::visit(Visitor{is_fixed_}, factor);
 }
 
 bool Graph::is_within_window(const Factor& factor) const {
@@ -118,7 +130,13 @@ LinearFactor Graph::linearised(const Factor& factor) const {
     LinearFactor operator()(const ScanFactor& f) const { return f.linearise(graph.state_); }
 
     LinearFactor operator()(const MarkerFactor& f) const {
-      return f.linearise(graph.state_, graph.noise_.marker_gate);
+      LinearFactor linear = f.linearise(graph.state_, graph.noise_.marker_gate);
+      if (graph.is_fixed_[f.landmark]) {
+        std::erase_if(linear.blocks, [](const LinearFactor::Block& block) {
+          return block.variable.kind == VariableKind::kLandmark;
+        });
+      }
+      return linear;
     }
 
     LinearFactor operator()(const PosePrior& f) const { return f.linearise(graph.state_); }
@@ -248,6 +266,19 @@ void Graph::remove_from_layout(const Variable& variable) {
   offsets_.erase(variable);
   for (auto& [other, offset] : offsets_)
     if (offset > at) offset -= size;
+}
+
+void Graph::forget_behind_window() {
+  std::vector<Factor> kept;
+  kept.reserve(active_factors_.size());
+  for (std::size_t& index : active_factors_) {
+    kept.push_back(std::move(factors_[index]));
+    index = kept.size() - 1;
+  }
+  factors_ = std::move(kept);
+  state_.keyframes.forget_before(first_keyframe_);
+  for (std::size_t i = 0; i < is_fixed_.size(); ++i)
+    if (!is_active({VariableKind::kLandmark, i})) is_fixed_[i] = true;
 }
 
 void Graph::marginalise_oldest(double far_m) {

@@ -41,6 +41,11 @@ class Graph {
   std::size_t add_keyframe(const Se2& map_from_base);
   std::size_t add_landmark(const Se2& map_from_marker);
 
+  /// One of a loaded map, which does not move.
+  std::size_t add_fixed_landmark(const Se2& map_from_marker, const Eigen::Matrix3d& covariance);
+
+  bool is_fixed(std::size_t landmark) const { return is_fixed_[landmark]; }
+
   /// All its variables are in the window, or it waits for optimise_all().
   void add(const Factor& factor);
 
@@ -66,6 +71,10 @@ class Graph {
   /// Takes the oldest keyframe out of the window, and landmarks that nothing in it has seen and
   /// that are `far_m` from the newest one.
   void marginalise_oldest(double far_m);
+
+  /// Keeps nothing but the window and its prior: keyframes and factors behind it are dropped,
+  /// landmarks behind it do not move any more. After that optimise_all() must not be called.
+  void forget_behind_window();
 
   /// Joint covariance of two variables of the window as of optimise(): the calibration, landmarks
   /// and the newest keyframe. Zero for those that have come since.
@@ -106,6 +115,7 @@ class Graph {
   Eigen::MatrixXd covariance_{};  ///< of the variables in covariance_offsets_
   std::map<Variable, Eigen::Index> covariance_offsets_{};
   std::vector<Eigen::Matrix3d> landmark_covariances_{};
+  std::vector<bool> is_fixed_{};  ///< landmarks
 };
 
 }  // namespace waymark

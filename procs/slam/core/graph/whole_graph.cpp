@@ -75,10 +75,20 @@ void Graph::optimise_all(int iterations, const std::vector<std::size_t>& activat
       for (Eigen::Index k = 0; k <= i; ++k)
         equations.triplets.emplace_back(calibration_at + i, calibration_at + k, h(i, k));
   };
+  // Landmarks that do not move keep the equations regular.
+  const auto with_fixed = [&](SparseEquations& equations) {
+    for (std::size_t k = 0; k < whole.landmarks; ++k) {
+      if (!is_fixed_[k]) continue;
+      const Eigen::Index at = whole.offset({VariableKind::kLandmark, k});
+      for (Eigen::Index i = 0; i < 3; ++i)
+        equations.triplets.emplace_back(at + i, at + i, 1.0);
+    }
+  };
   for (int i = 0; i < iterations; ++i) {
     SparseEquations equations;
     equations.g = Eigen::VectorXd::Zero(whole.size());
     with_calibration(equations);
+    with_fixed(equations);
     for (const Factor& factor : factors_)
       equations.add(linearised(factor), whole);
     const Solver solver{equations.matrix()};
@@ -109,6 +119,7 @@ void Graph::optimise_all(int iterations, const std::vector<std::size_t>& activat
     is_active_factor[index] = true;
   SparseEquations behind;
   behind.g = Eigen::VectorXd::Zero(whole.size());
+  with_fixed(behind);
   for (std::size_t index = 0; index < factors_.size(); ++index)
     if (!is_active_factor[index]) behind.add(linearised(factors_[index]), whole);
 

@@ -55,6 +55,29 @@ void NdtMap::add(const Eigen::Vector2d& point, int keyframe) {
   }
 }
 
+std::vector<NdtCellSums> NdtMap::sums() const {
+  std::vector<NdtCellSums> all;
+  all.reserve(cells_.size());
+  for (const auto& [where, cell] : cells_) {
+    all.push_back({static_cast<std::int32_t>(where >> 32), static_cast<std::int32_t>(where),
+                   cell.count, cell.sum, Eigen::Vector3d{cell.xx, cell.xy, cell.yy}});
+  }
+  std::sort(all.begin(), all.end(), [](const NdtCellSums& a, const NdtCellSums& b) {
+    return std::pair{a.column, a.row} < std::pair{b.column, b.row};
+  });
+  return all;
+}
+
+void NdtMap::add(const NdtCellSums& sums) {
+  Cell& cell = cells_[key(sums.column, sums.row)];
+  cell.count += sums.count;
+  cell.sum += sums.sum_m;
+  cell.xx += sums.squares_m2[0];
+  cell.xy += sums.squares_m2[1];
+  cell.yy += sums.squares_m2[2];
+  cell.is_stale = true;
+}
+
 void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const {
   const Eigen::Vector2d mean = cell.sum / cell.count;
   const double xx = cell.xx / cell.count - mean.x() * mean.x();

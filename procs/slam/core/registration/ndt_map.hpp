@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <unordered_map>
+#include <vector>
 
 namespace waymark {
 
@@ -39,6 +40,15 @@ class RangeNoise {
   double weight_;
 };
 
+/// The points of one cell, summed up about its centre.
+struct NdtCellSums {
+  int column{0};
+  int row{0};
+  double count{0.0};
+  Eigen::Vector2d sum_m{Eigen::Vector2d::Zero()};
+  Eigen::Vector3d squares_m2{Eigen::Vector3d::Zero()};  ///< xx, xy, yy
+};
+
 /// Square cells of side `2 spacing` whose centres are `spacing` apart, so that each point lies in
 /// four of them and is compared with the one that it is most central to: the cost has no steps at
 /// the borders of cells.
@@ -53,6 +63,14 @@ class NdtMap {
   const NdtSurface* at(const Eigen::Vector2d& point, double point_variance_m2) const;
 
   std::size_t num_cells() const { return cells_.size(); }
+
+  double spacing_m() const { return spacing_m_; }
+
+  /// Every cell, in order of (column, row).
+  std::vector<NdtCellSums> sums() const;
+
+  /// Adds the points of one cell.
+  void add(const NdtCellSums& sums);
 
  private:
   struct Cell {

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the graph estimator uses a loaded map, and makes one to be saved.
+#include "slam/core/estimators/waymark.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <variant>
+
+namespace waymark {
+namespace {
+
+constexpr double kFound_m = 0.1;  // sigmas of a place that markers and walls have shown
+constexpr double kFound_rad = 0.05;
+constexpr double kLeastMapped = 0.6;  // share of the beams on walls of the loaded map, to be in it
+constexpr double kWallPoint = 0.5;    // occupancy
+constexpr double kNearPoints_m = 15.0;
+constexpr double kMostPoints = 400.0;  // of a wall's cell: newer ones outweigh older ones in time
+constexpr double kGone = 0.1;          // occupancy about a wall that is not there any more
+constexpr int kSolveSteps = 12;
+
+Points wall_points(const GridMap& grid) {
+  Points points;
+  grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset)
+      if (cells[offset].occupancy() > kWallPoint)
+        points.push_back(grid.frame.centre_of(cell_at(index, offset)));
+  });
+  return points;
+}
+
+/// The map's cells there are free by now.
+bool is_gone(const GridMap& grid, const Eigen::Vector2d& place) {
+  const CellIndex centre = grid.frame.cell_of(place);
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      const OccupancyCell& cell = grid.occupancy[{centre.x + x, centre.y + y}];
+      if (!cell.is_mapped() || cell.occupancy() > kGone) return false;
+    }
+  }
+  return true;
+}
+
+GraphEdge edge_of(const ScanFactor& factor) {
+  const auto main = std::max_element(
+      factor.references.begin(), factor.references.end(),
+      [](const auto& a, const auto& b) { return a.share < b.share; });
+  const Eigen::Matrix2d turn = main->reference_from_keyframe.rotation();
+  Eigen::Matrix3d in_reference = Eigen::Matrix3d::Identity();
+  in_reference.topLeftCorner<2, 2>() = turn;
+  const Eigen::Matrix3d root = factor.weight * factor.root_information * in_reference.transpose();
+  return {main->keyframe, factor.keyframe, main->reference_from_keyframe, root.transpose() * root};
+}
+
+}  // namespace
+
+void WaymarkEstimator::load(const MapSnapshot& map) {
+  for (const Landmark& landmark : map.landmarks) {
+    graph_.add_fixed_landmark(landmark.map_from_marker, landmark.covariance);
+    book_.add_known(landmark);
+  }
+  mapper_ = empty_mapper();
+  loaded_points_ = wall_points(map.grid);
+  is_confirmed_ = false;
+  if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);
+}
+
+/// @return whether the robot's place in the loaded map is known by now.
+bool WaymarkEstimator::place(const Observation& observation) {
+  const auto found = place_finder_->update(observation.motion, observation, measured(observation),
+                                           setup_.camera, range_noise_);
+  if (!found) return false;
+  start_ = {StartKind::kPose, found->x(), found->y(), found->theta(), kFound_m, kFound_rad};
+  place_finder_.reset();
+  is_confirmed_ = true;
+  motion_ = {};
+  return true;
+}
+
+Estimate WaymarkEstimator::unplaced(const Observation& observation) const {
+  Estimate estimate = describe_observation(observation, {}, setup_.range_sigma_m);
+  estimate.has_pose = false;
+  estimate.health = Health::kInitialising;
+  return estimate;
+}
+
+const NdtMap& WaymarkEstimator::surfaces_of(const MatchedScan& scan) const {
+  return scan.submap != nullptr ? scan.submap->surfaces() : setup_.loaded_map->walls;
+}
+
+Points WaymarkEstimator::points_near(const MatchedScan& scan, const Se2& submap_from_base) const {
+  if (scan.submap != nullptr) return scan.submap->points();
+  Points near;
+  for (const Eigen::Vector2d& point : loaded_points_)
+    if ((point - submap_from_base.translation()).norm() < kNearPoints_m) near.push_back(point);
+  return near;
+}
+
+bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
+  return match.is_usable(config_.scan) && !is_refuted(match) &&
+         match.mapped_share >= kLeastMapped;
+}
+
+/// Walls that show every direction confirm a place.
+void WaymarkEstimator::confirm_place(const MatchedScan& scan) {
+  if (scan.submap == nullptr && !scan.match.observed.is_degenerate && is_in_loaded_map(scan.match))
+    is_confirmed_ = true;
+}
+
+/// The loaded map does not move.
+void WaymarkEstimator::add_map_factor(std::size_t keyframe, const ScanMatch& match) {
+  graph_.add(PosePrior{keyframe, match.map_from_base, root_of(match.observed.information)});
+}
+
+/// Of the map at a place: that of its nearest marker.
+Eigen::Matrix3d WaymarkEstimator::loaded_map_covariance(const Se2& map_from_base) const {
+  const Landmark* nearest = nullptr;
+  const auto away = [&](const Landmark& landmark) {
+    return (landmark.map_from_marker.translation() - map_from_base.translation()).norm();
+  };
+  for (const Landmark& landmark : setup_.loaded_map->landmarks)
+    if (nearest == nullptr || away(landmark) < away(*nearest)) nearest = &landmark;
+  return nearest == nullptr ? Eigen::Matrix3d::Zero() : nearest->covariance;
+}
+
+std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
+  if (is_frozen() || graph_.state().keyframes.empty()) return std::nullopt;
+  Graph graph = graph_;
+  graph.optimise_all(kSolveSteps);
+  graph.optimise();
+  MapSnapshot snapshot;
+  if (setup_.loaded_map) snapshot.parent_map_id = setup_.loaded_map->map_id;
+  snapshot.time = newest_time_;
+  Mapper mapper = empty_mapper();
+  snapshot.walls = setup_.loaded_map ? setup_.loaded_map->walls : NdtMap{config_.scan.cell_spacing_m};
+  for (std::size_t i = 0; i < archive_.size(); ++i) {
+    const Observation observation = archive_.at(i);
+    const Se2& map_from_base = graph.state().keyframes[i];
+    mapper.insert(observation, map_from_base, Eigen::Matrix3d::Zero());
+    for (const AnnotatedBeam& annotated : observation.beams)
+      snapshot.walls.add(map_from_base * annotated.beam.end_in_base, 0);
+  }
+  snapshot.grid = mapper.map();
+  NdtMap kept{snapshot.walls.spacing_m()};
+  for (NdtCellSums cell : snapshot.walls.sums()) {
+    const Eigen::Vector2d mean =
+        kept.spacing_m() * Eigen::Vector2d{cell.column, cell.row} + cell.sum_m / cell.count;
+    if (is_gone(snapshot.grid, mean)) continue;
+    const double share = std::min(1.0, kMostPoints / cell.count);
+    cell.count *= share;
+    cell.sum_m *= share;
+    cell.squares_m2 *= share;
+    kept.add(cell);
+  }
+  snapshot.walls = std::move(kept);
+  for (Landmark landmark : landmarks_of(graph))
+    if (!landmark.is_missed()) snapshot.landmarks.push_back(landmark);
+  for (std::size_t i = 0; i < graph.state().keyframes.size(); ++i)
+    snapshot.graph.poses.push_back(graph.state().keyframes[i]);
+  const OdometryNoise noise = graph.odometry_noise();
+  for (const Factor& factor : graph.factors()) {
+    if (const auto* odometry = std::get_if<OdometryFactor>(&factor)) {
+      if (odometry->is_cut || odometry->motion.distance_m + odometry->motion.turn_rad <= 0.0) continue;
+      const CorrectedMotion moved = corrected_motion(
+          odometry->motion, odometry_part(graph.state().calibration), noise);
+      snapshot.graph.edges.push_back(
+          {odometry->from, odometry->to, moved.start_from_end, moved.covariance.inverse()});
+    } else if (const auto* scan = std::get_if<ScanFactor>(&factor)) {
+      if (!scan->references.empty()) snapshot.graph.edges.push_back(edge_of(*scan));
+    }
+  }
+  snapshot.calibration.mean = graph.state().calibration;
+  snapshot.calibration.covariance = graph.covariance({}, {});
+  return snapshot;
+}
+
+}  // namespace waymark

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/place_finder.hpp"
+
+#include "slam/core/grid/line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace waymark {
+namespace {
+
+// One hypothesis.
+constexpr double kSame_m = 0.5;  // two hypotheses nearer than this are one
+constexpr double kSame_rad = 0.3;
+constexpr std::size_t kMaxHypotheses = 500;
+constexpr double kHopeless = 12.0;  // score below the best at which one is given up
+
+// Scores of markers; a third of what decides, for one frame may be wrong.
+constexpr double kSighting = 1.0;    // a marker is seen where the map has it
+constexpr double kUnexpected = -1.0;  // it is seen where the map has none of its id
+constexpr double kMissed = -0.5;     // it should be seen and is not
+constexpr double kMostOfOne = 3.0;   // what one marker can add or take
+constexpr double kAtMarker_m = 0.5;  // off by less, it is that marker
+constexpr double kInItsPlace_m = 0.25;
+constexpr double kPassed_m = 1.0;  // driven without a clue: the next is another one
+
+// Scores of walls.
+constexpr double kWallsEvery_m = 0.1;
+constexpr double kUsualMisfit = 0.15;  // share of beams, from what has changed and from noise
+constexpr double kMisfit = 3.0;        // per share
+constexpr int kLeastBeams = 20;
+constexpr double kLeastMapped = 0.3;  // share of beams on mapped walls of a place that is right
+constexpr double kMostMisfit = 0.3;
+constexpr std::size_t kBeams = 120;
+constexpr double kBeforeEnd_m = 0.3;
+constexpr double kOccupied = 0.4;  // share of beams that ended in a cell
+constexpr double kFree = 0.1;
+const Eigen::Vector3d kMatchSigmas{0.15, 0.15, 0.06};  // of a place by one marker [m, m, rad]
+
+constexpr double kDecided = 2.5;
+
+constexpr double kMinFacing = 0.3;
+constexpr double kWallInSight_m = 0.2;
+
+}  // namespace
+
+bool is_expected_in_view(const Se2& base_from_marker, const CameraView& view,
+                         std::span<const AnnotatedBeam> beams) {
+  const Eigen::Vector2d place = base_from_marker.translation();
+  const Eigen::Vector2d to_camera = (view.base_from_camera.translation() - place).normalized();
+  return base_from_marker.rotation().col(0).dot(to_camera) > kMinFacing && view.would_show(place) &&
+         std::any_of(beams.begin(), beams.end(), [&](const AnnotatedBeam& annotated) {
+           return (annotated.beam.end_in_base - place).norm() < kWallInSight_m;
+         });
+}
+
+double PlaceFinder::Hypothesis::score() const {
+  double sum = settled + wall_score;
+  for (const auto& [clue, episode] : clues)
+    sum += episode.score;
+  return sum;
+}
+
+void PlaceFinder::Hypothesis::add(Clue clue, int index, double score) {
+  Episode& episode = clues[{clue, index}];
+  episode.score = std::clamp(episode.score + score, -kMostOfOne, kMostOfOne);
+  episode.idle_m = 0.0;
+}
+
+void PlaceFinder::Hypothesis::drive(double distance_m) {
+  for (auto it = clues.begin(); it != clues.end();) {
+    it->second.idle_m += distance_m;
+    if (it->second.idle_m <= kPassed_m) {
+      ++it;
+      continue;
+    }
+    settled += it->second.score;
+    it = clues.erase(it);
+  }
+}
+
+PlaceFinder::PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan)
+    : map_{std::move(map)}, scan_{scan} {}
+
+std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& observation,
+                                       std::span<const MarkerMeasurement> measurements,
+                                       const CameraView& view, const RangeNoise& noise) {
+  since_walls_m_ += motion.distance_m;
+  for (Hypothesis& place : hypotheses_) {
+    place.map_from_base = place.map_from_base * motion.start_from_end;
+    place.drive(motion.distance_m);
+  }
+  propose(measurements);
+  const bool weighs_walls = !observation.beams.empty() && since_walls_m_ >= kWallsEvery_m;
+  if (weighs_walls) since_walls_m_ = 0.0;
+  for (Hypothesis& place : hypotheses_) {
+    weigh_markers(place, observation, measurements, view);
+    if (weighs_walls || (place.wall_score == 0.0 && place.score() >= kDecided))
+      weigh_walls(place, observation, noise);
+  }
+  if (hypotheses_.empty()) return std::nullopt;
+  std::stable_sort(
+      hypotheses_.begin(), hypotheses_.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.score() > b.score(); });
+  const Hypothesis& best = hypotheses_.front();
+  const double next = hypotheses_.size() > 1 ? std::max(0.0, hypotheses_[1].score()) : 0.0;
+  if (best.score() - next >= kDecided && best.fits_walls) return best.map_from_base;
+  const double least = best.score() - kHopeless;
+  std::erase_if(hypotheses_, [&](const Hypothesis& place) { return place.score() < least; });
+  if (hypotheses_.size() > kMaxHypotheses) hypotheses_.resize(kMaxHypotheses);
+  return std::nullopt;
+}
+
+void PlaceFinder::propose(std::span<const MarkerMeasurement> measurements) {
+  for (const MarkerMeasurement& measurement : measurements) {
+    for (const Landmark& landmark : map_->landmarks) {
+      if (landmark.id != measurement.id || !landmark.is_confirmed()) continue;
+      const Se2 there = landmark.map_from_marker * measurement.base_from_marker.inverse();
+      const auto same = std::find_if(
+          hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& place) {
+            const Eigen::Vector3d off = pose_difference(place.map_from_base, there);
+            return off.head<2>().norm() < kSame_m && std::abs(off.z()) < kSame_rad;
+          });
+      if (same != hypotheses_.end()) continue;
+      hypotheses_.emplace_back();
+      hypotheses_.back().map_from_base = there;
+    }
+  }
+}
+
+std::optional<int> PlaceFinder::landmark_at(int id, const Eigen::Vector2d& place) const {
+  std::optional<int> nearest;
+  double least_m = kAtMarker_m;
+  for (std::size_t i = 0; i < map_->landmarks.size(); ++i) {
+    const Landmark& landmark = map_->landmarks[i];
+    const double away_m = (landmark.map_from_marker.translation() - place).norm();
+    if (landmark.id != id || !landmark.is_confirmed() || away_m >= least_m) continue;
+    least_m = away_m;
+    nearest = static_cast<int>(i);
+  }
+  return nearest;
+}
+
+void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observation,
+                                std::span<const MarkerMeasurement> measurements,
+                                const CameraView& view) const {
+  std::vector<int> seen;
+  for (const MarkerMeasurement& measurement : measurements) {
+    const Eigen::Vector2d there =
+        (place.map_from_base * measurement.base_from_marker).translation();
+    if (const auto landmark = landmark_at(measurement.id, there)) {
+      place.add(Clue::kLandmark, *landmark, kSighting);
+      seen.push_back(*landmark);
+      continue;
+    }
+    const bool contradicts = std::any_of(
+        map_->landmarks.begin(), map_->landmarks.end(), [&](const Landmark& landmark) {
+          return landmark.id == measurement.id ||
+                 (landmark.map_from_marker.translation() - there).norm() < kInItsPlace_m;
+        });
+    if (contradicts) place.add(Clue::kUnexpectedId, measurement.id, kUnexpected);
+  }
+  if (!observation.camera_reported) return;
+  const Se2 base_from_map = place.map_from_base.inverse();
+  for (std::size_t i = 0; i < map_->landmarks.size(); ++i) {
+    const Landmark& landmark = map_->landmarks[i];
+    const int index = static_cast<int>(i);
+    const bool is_near = (landmark.map_from_marker.translation() -
+                          place.map_from_base.translation())
+                             .norm() < view.range_max_m + kSame_m;
+    const bool is_sighted = std::any_of(
+        observation.sightings.begin(), observation.sightings.end(),
+        [&](const MarkerSighting& sighting) {
+          const Se2 there = place.map_from_base * sighting.base_from_marker;
+          return sighting.id == landmark.id &&
+                 (there.translation() - landmark.map_from_marker.translation()).norm() <
+                     kAtMarker_m;
+        });
+    if (is_near && !is_sighted && landmark.is_confirmed() &&
+        std::find(seen.begin(), seen.end(), index) == seen.end() &&
+        is_expected_in_view(base_from_map * landmark.map_from_marker, view, observation.beams)) {
+      place.add(Clue::kLandmark, index, kMissed);
+    }
+  }
+}
+
+bool PlaceFinder::is_occupied(const Eigen::Vector2d& point) const {
+  const CellIndex centre = map_->grid.frame.cell_of(point);
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      if (map_->grid.occupancy[{centre.x + x, centre.y + y}].occupancy() > kOccupied) return true;
+  return false;
+}
+
+bool PlaceFinder::is_free(const Eigen::Vector2d& point) const {
+  const OccupancyCell& cell = map_->grid.occupancy[map_->grid.frame.cell_of(point)];
+  return cell.is_mapped() && cell.occupancy() < kFree;
+}
+
+/// A wall stands between them.
+bool PlaceFinder::is_crossed(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
+  const double length_m = (to - from).norm();
+  if (length_m <= kBeforeEnd_m) return false;
+  const Eigen::Vector2d before = to - kBeforeEnd_m / length_m * (to - from);
+  bool is_crossed = false;
+  visit_line(map_->grid.frame.cell_of(from), map_->grid.frame.cell_of(before),
+             [&](CellIndex cell) {
+               is_crossed |= map_->grid.occupancy[cell].occupancy() > kOccupied;
+             });
+  return is_crossed;
+}
+
+void PlaceFinder::weigh_walls(Hypothesis& place, const Observation& observation,
+                              const RangeNoise& noise) const {
+  Points points;
+  for (const AnnotatedBeam& annotated : observation.beams)
+    points.push_back(annotated.beam.end_in_base);
+  const Eigen::Matrix3d near = kMatchSigmas.cwiseAbs2().asDiagonal();
+  const ScanMatch match = match_scan(points, map_->walls, place.map_from_base, near, noise, scan_);
+  if (match.is_usable(scan_)) place.map_from_base = match.map_from_base;
+  const std::size_t step = 1 + observation.beams.size() / kBeams;
+  int all = 0;
+  int fitting = 0;
+  int contradicting = 0;
+  for (std::size_t i = 0; i < observation.beams.size(); i += step) {
+    const Beam& beam = observation.beams[i].beam;
+    const Eigen::Vector2d end = place.map_from_base * beam.end_in_base;
+    ++all;
+    if (is_crossed(place.map_from_base * beam.start_in_base, end)) {
+      ++contradicting;
+    } else if (is_occupied(end)) {
+      ++fitting;
+    } else if (is_free(end)) {
+      ++contradicting;
+    }
+  }
+  const double misfit =
+      static_cast<double>(contradicting) / std::max(1, fitting + contradicting);
+  place.fits_walls =
+      all < kLeastBeams || (fitting >= kLeastMapped * all && misfit < kMostMisfit);
+  if (fitting + contradicting >= kLeastBeams)
+    place.wall_score -= kMisfit * std::max(0.0, misfit - kUsualMisfit);
+}
+
+}  // namespace waymark

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where in a loaded map the robot is when nothing is known of it.
+#pragma once
+
+#include "slam/core/landmark/marker_measurement.hpp"
+#include "slam/core/mapping/map_snapshot.hpp"
+#include "slam/core/registration/scan_match.hpp"
+#include "slam/core/scan/observation.hpp"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace waymark {
+
+/// Follows every place that a sighted marker allows, until the sensors have refuted all but one.
+///
+/// Each hypothesis has a score, in natural logarithms of likelihood ratios: what one marker or one
+/// stretch of wall can add or take is bounded, for markers are taken down and doors are opened. The
+/// best hypothesis is the place once it beats both the next best and the empty one (the robot is
+/// nowhere in the map) clearly. So a marker whose id is unique is enough if nothing speaks against
+/// it; twins have to wait until their surroundings differ.
+class PlaceFinder {
+ public:
+  PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
+
+  /// @param motion        since the last call.
+  /// @param measurements  of the markers in the newest frame.
+  /// @param view          of the camera; what it should show and does not speaks against a place.
+  /// @return map_from_base, once it is decided.
+  std::optional<Se2> update(const Motion& motion, const Observation& observation,
+                            std::span<const MarkerMeasurement> measurements, const CameraView& view,
+                            const RangeNoise& noise);
+
+  std::size_t num_hypotheses() const { return hypotheses_.size(); }
+
+ private:
+  enum class Clue { kLandmark, kUnexpectedId };
+
+  struct Hypothesis {
+    struct Episode {
+      double score{0.0};
+      double idle_m{0.0};  ///< driven since it was added to
+    };
+
+    Se2 map_from_base{};
+    double settled{0.0};  ///< score of what has been passed
+    std::map<std::pair<Clue, int>, Episode> clues{};
+    double wall_score{0.0};
+    bool fits_walls{true};
+
+    double score() const;
+    void add(Clue clue, int index, double score);
+    void drive(double distance_m);
+  };
+
+  void propose(std::span<const MarkerMeasurement> measurements);
+  void weigh_markers(Hypothesis& place, const Observation& observation,
+                     std::span<const MarkerMeasurement> measurements, const CameraView& view) const;
+  void weigh_walls(Hypothesis& place, const Observation& observation, const RangeNoise& noise) const;
+  bool is_occupied(const Eigen::Vector2d& point) const;
+  bool is_free(const Eigen::Vector2d& point) const;
+  bool is_crossed(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
+  std::optional<int> landmark_at(int id, const Eigen::Vector2d& place) const;
+
+  std::shared_ptr<const MapSnapshot> map_;
+  ScanMatchConfig scan_;
+  std::vector<Hypothesis> hypotheses_{};
+  double since_walls_m_{0.0};
+};
+
+/// The markers that should be in a camera's view: they face it, and the LiDAR sees their wall.
+bool is_expected_in_view(const Se2& base_from_marker, const CameraView& view,
+                         std::span<const AnnotatedBeam> beams);
+
+}  // namespace waymark

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A map that outlives its run: all that another run needs to know the place again.
+#pragma once
+
+#include "slam/core/graph/state.hpp"
+#include "slam/core/grid/grid_map.hpp"
+#include "slam/core/mapping/landmark_map.hpp"
+#include "slam/core/registration/ndt_map.hpp"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+namespace waymark {
+
+class Fields;
+
+/// One pose of a graph as it was measured from another.
+struct GraphEdge {
+  std::size_t from{0};
+  std::size_t to{0};
+  Se2 from_from_to{};
+  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};  ///< order x y theta, frame of `from`
+};
+
+/// The poses that a map was drawn along, and what ties them.
+struct PoseGraph {
+  std::vector<Se2> poses{};  ///< map_from_base
+  std::vector<GraphEdge> edges{};
+};
+
+/// What a drive has shown about the robot's description.
+struct LearntCalibration {
+  Calibration mean{Calibration::Zero()};
+  Eigen::Matrix<double, kCalibrationSize, kCalibrationSize> covariance{
+      Eigen::Matrix<double, kCalibrationSize, kCalibrationSize>::Zero()};
+};
+
+struct MapSnapshot {
+  std::int64_t map_id{0};         ///< of the content; 0 while it is not saved
+  std::int64_t parent_map_id{0};  ///< of the map that it extends; 0: none
+  Timestamp time{};               ///< of the newest observation in it
+  GridMap grid{};
+  std::vector<Landmark> landmarks{};
+  NdtMap walls{0.25};
+  PoseGraph graph{};
+  LearntCalibration calibration{};
+};
+
+/// What a run does with a loaded map.
+enum class MapMode {
+  kMap,       ///< none is loaded: a new one is drawn
+  kLocalise,  ///< it stays as it is; memory is constant
+  kExtend,    ///< it stays where it is, and what is new is added in its frame
+};
+
+/// Where the robot is in a loaded map at first.
+enum class StartKind {
+  kOrigin,    ///< where mapping began, set down by hand
+  kPose,      ///< at a given pose
+  kAnywhere,  ///< unknown
+};
+
+struct StartPose {
+  StartKind kind{StartKind::kOrigin};
+  double x_m{0.0};  ///< of the base in the map; of kOrigin: 0
+  double y_m{0.0};
+  double yaw_rad{0.0};
+  double sigma_m{0.1};  ///< in x and in y
+  double sigma_rad{0.05};
+
+  void describe(Fields& fields);
+};
+
+}  // namespace waymark
