@@ -11,6 +11,10 @@
 #   --estimator NAME  slam.estimator (default: what waymark-slam's configuration says)
 #   --config FILE     configuration of slam; may be given several times, later files win
 #   --set KEY=VALUE   the same for one value; may be given several times
+#   --load-map FILE  map of an earlier run (NAME.map.lcm); needs --mode
+#   --mode NAME      what for: localise (it stays as it is) or extend (what is new is added)
+#   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), anywhere
+#   --save-map FILE  write the map there at the end
 #   --http HOST:PORT  show the run as a live page there, e.g. 127.0.0.1:8080
 #   --lcm-url URL     LCM network (default: $LCM_DEFAULT_URL, else a UDP port of its own)
 #
@@ -28,7 +32,7 @@ readonly kRunFiles=(run.lcm run.lcm.part scenario.toml robot.toml truth.tum trut
   results.json results.md)
 
 parse_arguments() {
-  scenario='' out='' seed='' estimator='' real_time=() slam_options=() lcm_url=${LCM_DEFAULT_URL:-}
+  scenario='' out='' seed='' estimator='' real_time=() slam_options=() map_options=() lcm_url=${LCM_DEFAULT_URL:-}
   others=(recorder viewer slam detector) recorder_options=() slam_files=() viewer_options=()
   while (($# > 0)); do
     case $1 in
@@ -36,12 +40,18 @@ parse_arguments() {
       --real-time) real_time=(--real-time) && shift && continue ;;
       --record-only) others=(recorder detector) && shift && continue ;;
       --no-images) recorder_options=(--set 'recorder.exclude=["CAMERA"]') && shift && continue ;;
-      --out | --seed | --estimator | --config | --set | --http | --lcm-url) need_value "$@" ;;&
+      --out | --seed | --estimator | --config | --set | --http | --lcm-url | --load-map | --save-map | --mode | --start)
+        need_value "$@"
+        ;;&
       --out) out=$2 ;;
       --seed) need_number "$1" "$2" && seed=$2 ;;
       --estimator) slam_options+=(--set "slam.estimator=$2") ;;
       --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
       --set) slam_options+=(--set "$2") ;;
+      --load-map) need_file "$2" && map_options+=(--load-map "$2") ;;
+      --save-map) map_options+=(--save-map "$2") ;;
+      --mode) slam_options+=(--set "slam.mode=$2") ;;
+      --start) slam_options+=(--set "slam.start=$2") ;;
       --http) viewer_options=(--http "$2") ;;
       --lcm-url) lcm_url=$2 ;;
       -*) usage_error "unknown option '$1'" ;;
@@ -53,7 +63,7 @@ parse_arguments() {
     shift 2
   done
   [[ -n $scenario ]] || usage_error "no scenario given"
-  ! is_record_only || ((${#slam_options[@]} == 0)) ||
+  ! is_record_only || ((${#slam_options[@]} + ${#map_options[@]} == 0)) ||
     usage_error "--record-only runs no slam: give --estimator, --config and --set to deploy/replay.sh"
   ! is_record_only || ((${#viewer_options[@]} == 0)) || usage_error "--record-only runs no viewer: leave out --http"
 }
@@ -152,7 +162,7 @@ command_of() {
   case $1 in
     recorder) command=(--out-log "$out/run.lcm" "${recorder_options[@]}") ;;
     viewer) command=(--out "$row" "${viewer_options[@]}") ;;
-    slam) command=(--config "$robot" "${slam_options[@]}") ;;
+    slam) command=(--config "$robot" "${slam_options[@]}" "${map_options[@]}") ;;
     detector) command=(--config "$robot") ;;
     sim) command=("${sim_options[@]}" --out "$out") ;;
   esac

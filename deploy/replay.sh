@@ -5,6 +5,10 @@
 # usage: deploy/replay.sh LOG --estimator NAME [options]
 #   --config FILE    configuration of slam; may be given several times, later files win
 #   --set KEY=VALUE  the same for one value; may be given several times
+#   --load-map FILE  map of an earlier run (NAME.map.lcm); needs --mode
+#   --mode NAME      what for: localise (it stays as it is) or extend (what is new is added)
+#   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), anywhere
+#   --save-map FILE  write the map there at the end
 #   --row NAME       folder for the results inside DIR (default: the estimator's name)
 #   --robot FILE     sensors and their mounting (default: robot.toml beside the log)
 #   --out DIR        (default: the log's folder)
@@ -17,14 +21,20 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 parse_arguments() {
-  log='' estimator='' row='' robot='' out='' slam_options=() slam_files=()
+  log='' estimator='' row='' robot='' out='' slam_options=() slam_files=() map_options=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
-      --estimator | --config | --set | --row | --robot | --out) need_value "$@" ;;&
+      --estimator | --config | --set | --row | --robot | --out | --load-map | --save-map | --mode | --start)
+        need_value "$@"
+        ;;&
       --estimator) estimator=$2 ;;
       --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
       --set) slam_options+=(--set "$2") ;;
+      --load-map) need_file "$2" && map_options+=(--load-map "$2") ;;
+      --save-map) map_options+=(--save-map "$2") ;;
+      --mode) slam_options+=(--set "slam.mode=$2") ;;
+      --start) slam_options+=(--set "slam.start=$2") ;;
       --row) need_row_name "$2" && row=$2 ;;
       --robot) robot=$2 ;;
       --out) out=$2 ;;
@@ -65,6 +75,8 @@ check_slam() {
   [[ ! -f $scenario ]] || seed=(--set "slam.seed=$(toml_value "$scenario" run seed)")
   slam_options=(--config "$robot" "${seed[@]}" --set "slam.estimator=$estimator" "${slam_options[@]}")
   config=$("$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config) || exit $?
+  ((${#map_options[@]} == 0)) ||
+    "$bin_dir/waymark-slam" "${slam_options[@]}" "${map_options[@]}" --log "$log" --check || exit $?
 }
 
 # clear_old_results: so that a replay that fails leaves none that look new. config.toml stays until it is
@@ -109,7 +121,7 @@ prepare
 show_progress_bars
 write "$folder/config.toml" "$config"
 incomplete=()
-run slam "${slam_options[@]}" --log "$log" --out-log "$folder/slam.lcm"
+run slam "${slam_options[@]}" "${map_options[@]}" --log "$log" --out-log "$folder/slam.lcm"
 run viewer --log "$log" --log "$folder/slam.lcm" --out "$folder"
 [[ -f $folder/map.pgm ]] || die $kExitFailed "the log has given no map; see $logs/$row.slam.log"
 write_timings

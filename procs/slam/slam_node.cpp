@@ -17,6 +17,7 @@ namespace waymark {
 namespace {
 
 constexpr std::string_view kScansProcessed = "scans processed";
+constexpr std::string_view kUnplaced = "estimates before the place in the map was known";
 
 MapFileInfo map_info(const SlamConfig& config) {
   MapFileInfo info;
@@ -130,7 +131,14 @@ void SlamNode::save_map() {
 void SlamNode::judge_input() {
   const std::int64_t scans = counters_.get(received_on(channels::kLidar.name));
   const std::int64_t odometry = counters_.get(received_on(channels::kOdometry.name));
-  if (!last_estimate_ && scans + odometry > 0) {
+  const std::int64_t unplaced = counters_.get(kUnplaced);
+  if (!last_estimate_ && unplaced > 0) {
+    failed_ = true;
+    spdlog::error(
+        "no pose: in {} estimates the robot's place in '{}' was never certain; more than one place, "
+        "or none, agrees with what was seen",
+        unplaced, config_.load_map.string());
+  } else if (!last_estimate_ && scans + odometry > 0) {
     failed_ = true;
     spdlog::error("no pose: of LIDAR {} and of ODOMETRY {} messages could be read; both are needed",
                   scans, odometry);
@@ -168,7 +176,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   slam_estimate_t message = to_message(estimate);
   message.map_id = map_id_;
   if (!estimate.has_pose) {
-    counters_.add("estimates before the place in the map was known");
+    counters_.add(kUnplaced);
     outbox_.publish(channels::kSlamEstimate, message);
     return;
   }

@@ -31,7 +31,8 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
   app.add_flag("--dump-config", options.dump_config,
                "print the effective configuration with every key explained, and exit");
   app.add_flag("--check", options.check,
-               "check the configuration and that the LCM network can be joined, and exit");
+               "check the configuration, the map to load, and (without --log) that the LCM "
+               "network can be joined, and exit");
   app.add_option("--lcm-url", options.lcm_url,
                  "LCM network (default: $LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
   app.add_flag(

@@ -197,6 +197,15 @@ void check(const ProcessOptions& options, const OptionSet& option_set) {
     throw SetupError{"--save-map: there is no folder '" + folder.string() + "'"};
 }
 
+/// Reads the map that is to be loaded.
+void check_maps(const ProcessDescription& description, const ProcessOptions& options) {
+  if (options.load_map.empty() && options.save_map.empty()) return;
+  check(options, description.option_set);
+  Inbox inbox;
+  Outbox outbox;
+  description.make_node(options, inbox, outbox);
+}
+
 }  // namespace
 
 int run_described_process(int argc, char** argv, const ProcessDescription& description) {
@@ -207,7 +216,8 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
   return run_guarded(description.traits, [&] {
     if (options.check) {
       description.dump_config(options);
-      check_network(lcm_url_or_default(options.lcm_url));
+      check_maps(description, options);
+      if (options.logs.empty()) check_network(lcm_url_or_default(options.lcm_url));
       return int{kExitOk};
     }
     if (options.dump_config) {

@@ -19,6 +19,7 @@ constexpr double kHopeless = 12.0;  // score below the best at which one is give
 // Scores of markers; a third of what decides, for one frame may be wrong.
 constexpr double kSighting = 1.0;    // a marker is seen where the map has it
 constexpr double kUnexpected = -1.0;  // it is seen where the map has none of its id
+constexpr double kFollowed = 0.5;     // share of its offset that a sighting moves a hypothesis by
 constexpr double kMissed = -0.5;     // it should be seen and is not
 constexpr double kMostOfOne = 3.0;   // what one marker can add or take
 constexpr double kAtMarker_m = 0.5;  // off by less, it is that marker
@@ -151,6 +152,11 @@ void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observatio
         (place.map_from_base * measurement.base_from_marker).translation();
     if (const auto landmark = landmark_at(measurement.id, there)) {
       place.add(Clue::kLandmark, *landmark, kSighting);
+      const Eigen::Vector2d off =
+          map_->landmarks[static_cast<std::size_t>(*landmark)].map_from_marker.translation() -
+          there;
+      place.map_from_base = {place.map_from_base.translation() + kFollowed * off,
+                             place.map_from_base.theta()};
       seen.push_back(*landmark);
       continue;
     }
