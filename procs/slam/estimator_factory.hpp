@@ -8,7 +8,7 @@
 
 namespace waymark {
 
-std::unique_ptr<Estimator> make_estimator(
-    const SlamConfig& config, std::shared_ptr<const MapSnapshot> loaded_map = nullptr);
+std::unique_ptr<Estimator> make_estimator(const SlamConfig& config,
+                                          std::shared_ptr<const MapSnapshot> loaded_map = nullptr);
 
 }  // namespace waymark

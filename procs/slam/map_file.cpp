@@ -271,7 +271,8 @@ class MapBuilder {
 
   std::string on_calibration(calibration_t calibration) {
     file_.map.calibration.mean = Eigen::Map<const Calibration>{calibration.mean};
-    file_.map.calibration.covariance = Eigen::Map<const RowMajorCalibration>{calibration.covariance};
+    file_.map.calibration.covariance =
+        Eigen::Map<const RowMajorCalibration>{calibration.covariance};
     return {};
   }
 

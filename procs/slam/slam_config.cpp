@@ -64,11 +64,10 @@ void SlamSection::describe(Fields& fields) {
   fields.field("map_period_s", map_period_s, kPositive,
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
   fields.field("publish_grid", publish_grid, "also send the whole map on SLAM_GRID if it fits");
-  fields.choice("mode", mode,
-                {{"map", MapMode::kMap},
-                 {"localise", MapMode::kLocalise},
-                 {"extend", MapMode::kExtend}},
-                "draw a new map, or use the one of --load-map: as it is, or to add to it");
+  fields.choice(
+      "mode", mode,
+      {{"map", MapMode::kMap}, {"localise", MapMode::kLocalise}, {"extend", MapMode::kExtend}},
+      "draw a new map, or use the one of --load-map: as it is, or to add to it");
   fields.choice("start", start.kind,
                 {{"origin", StartKind::kOrigin},
                  {"pose", StartKind::kPose},
@@ -92,7 +91,8 @@ void SlamConfig::describe(Fields& fields) {
 void SlamConfig::check(Problems& problems) const {
   robot.check(problems);
   if (slam.mode == MapMode::kMap && slam.start.kind != StartKind::kOrigin)
-    problems.add("slam.start", "only a loaded map has another start than \"origin\": set slam.mode");
+    problems.add("slam.start",
+                 "only a loaded map has another start than \"origin\": set slam.mode");
   if (slam.grid.face_spacing_m > slam.grid.resolution_m) {
     problems.add("slam.grid.face_spacing_m", "must not be above resolution_m");
   }

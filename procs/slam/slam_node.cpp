@@ -39,7 +39,8 @@ void check_map_options(const SlamConfig& config) {
   if (!is_loaded && config.slam.mode != MapMode::kMap)
     throw SetupError{"slam.mode = localise and extend need a map: --load-map FILE"};
   if (config.slam.mode == MapMode::kLocalise && !config.save_map.empty())
-    throw SetupError{"slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
+    throw SetupError{
+        "slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
 }
 
 /// @throws SetupError  also where the map does not suit this robot.
@@ -61,8 +62,9 @@ std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config) {
     refuse(fmt::format("has cells of {} m: set slam.grid.resolution_m, which is {}, to that",
                        file.map.grid.frame.resolution_m, config.slam.grid.resolution_m));
   }
-  const bool has_markers = std::any_of(file.map.landmarks.begin(), file.map.landmarks.end(),
-                                       [](const Landmark& landmark) { return landmark.is_confirmed(); });
+  const bool has_markers =
+      std::any_of(file.map.landmarks.begin(), file.map.landmarks.end(),
+                  [](const Landmark& landmark) { return landmark.is_confirmed(); });
   if (config.slam.start.kind == StartKind::kAnywhere && !has_markers)
     refuse("has no markers, so that slam.start = anywhere cannot find the robot in it");
   return std::make_shared<const MapSnapshot>(std::move(file.map));
@@ -96,8 +98,7 @@ void SlamNode::finish() {
   judge_input();
   if (!config_.save_map.empty()) save_map();
   if (!last_estimate_) return;
-  for (map_tiles_t part :
-       map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_)) {
+  for (map_tiles_t part : map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_)) {
     part.map_id = map_id_;
     outbox_.publish(channels::kSlamMap, part);
   }
@@ -119,8 +120,9 @@ void SlamNode::save_map() {
   }
   try {
     const std::int64_t map_id = write_map_file(config_.save_map, *map, map_info(config_));
-    spdlog::info("map {:016x} is in '{}': {} markers, {} keyframes", map_id,
-                 config_.save_map.string(), map->landmarks.size(), map->graph.poses.size());
+    spdlog::info("map {:016x} is in '{}': {} markers, {} keyframes",
+                 static_cast<std::uint64_t>(map_id), config_.save_map.string(),
+                 map->landmarks.size(), map->graph.poses.size());
   } catch (const std::exception& error) {
     failed_ = true;
     spdlog::error("{}", error.what());
@@ -135,7 +137,8 @@ void SlamNode::judge_input() {
   if (!last_estimate_ && unplaced > 0) {
     failed_ = true;
     spdlog::error(
-        "no pose: in {} estimates the robot's place in '{}' was never certain; more than one place, "
+        "no pose: in {} estimates the robot's place in '{}' was never certain; more than one "
+        "place, "
         "or none, agrees with what was seen",
         unplaced, config_.load_map.string());
   } else if (!last_estimate_ && scans + odometry > 0) {

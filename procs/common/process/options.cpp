@@ -60,8 +60,7 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
   if (option_set.maps) {
     app.add_option("--load-map", options.load_map,
                    "map file of an earlier run; needs slam.mode = localise or extend");
-    app.add_option("--save-map", options.save_map,
-                   "write the map there at the end (NAME.map.lcm)");
+    app.add_option("--save-map", options.save_map, "write the map there at the end (NAME.map.lcm)");
   }
   if (option_set.seed) {
     app.add_option("--seed", options.seed, "seed of everything random (default: run.seed)");

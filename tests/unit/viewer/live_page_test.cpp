@@ -163,6 +163,7 @@ TEST(LiveFeed, ShowsTheStateThatWasAtATimeOfALog) {
   LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
   for (int i = 0; i <= 100; ++i) {
     slam_estimate_t message{};
+    message.has_pose = 1;
     message.markers_in_view = i == 40 ? 1 : 0;
     feed.add(message, {.time = at_s(i), .map_from_base = {0.1 * i, 0.0, 0.0}});
   }

@@ -20,6 +20,7 @@ using ::testing::SizeIs;
 
 slam_estimate_t estimate_at(double time_s, double x_m) {
   slam_estimate_t message{};
+  message.has_pose = 1;
   message.utime = to_us(Timestamp{duration_from_seconds(time_s)});
   message.x_m = x_m;
   message.health = slam_estimate_t::HEALTH_TRACKING;

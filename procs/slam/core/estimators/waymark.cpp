@@ -195,8 +195,10 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
     if (scan && !is_refuted_scan && scan->match.is_usable(config_.scan)) {
       learn_noise(expected, *scan);
       confirm_place(*scan);
-      if (scan->submap != nullptr) add_scan_factor(keyframe, *scan->submap, scan->match, false);
-      else add_map_factor(keyframe, scan->match);
+      if (scan->submap != nullptr)
+        add_scan_factor(keyframe, *scan->submap, scan->match, false);
+      else
+        add_map_factor(keyframe, scan->match);
       usual_fit_ += kFitMemory * (inlier_share_ * scan->match.mapped_share - usual_fit_);
     }
     unobserved_m_ += motion_.distance_m;
@@ -217,7 +219,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
   }
   // What cannot be placed is not mapped.
   const bool is_mapped = !is_doubtful && !is_refuted_scan && is_confirmed_;
-  if (!is_frozen()) map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? points : Points{});
+  if (!is_frozen())
+    map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? points : Points{});
   while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
     graph_.marginalise_oldest(kNear_m);
   if (is_frozen()) graph_.forget_behind_window();
@@ -311,8 +314,8 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
 /// the wrong place, and would confirm that to the next ones.
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
-  if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m || is_bad_fit(match) ||
-      verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
+  if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||
+      is_bad_fit(match) || verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
     return;
   }
   since_insertion_m_ = 0.0;

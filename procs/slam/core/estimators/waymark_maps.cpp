@@ -43,9 +43,9 @@ bool is_gone(const GridMap& grid, const Eigen::Vector2d& place) {
 }
 
 GraphEdge edge_of(const ScanFactor& factor) {
-  const auto main = std::max_element(
-      factor.references.begin(), factor.references.end(),
-      [](const auto& a, const auto& b) { return a.share < b.share; });
+  const auto main =
+      std::max_element(factor.references.begin(), factor.references.end(),
+                       [](const auto& a, const auto& b) { return a.share < b.share; });
   const Eigen::Matrix2d turn = main->reference_from_keyframe.rotation();
   Eigen::Matrix3d in_reference = Eigen::Matrix3d::Identity();
   in_reference.topLeftCorner<2, 2>() = turn;
@@ -98,8 +98,7 @@ Points WaymarkEstimator::points_near(const MatchedScan& scan, const Se2& submap_
 }
 
 bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
-  return match.is_usable(config_.scan) && !is_refuted(match) &&
-         match.mapped_share >= kLeastMapped;
+  return match.is_usable(config_.scan) && !is_refuted(match) && match.mapped_share >= kLeastMapped;
 }
 
 /// Walls that show every direction confirm a place.
@@ -133,7 +132,8 @@ std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   if (setup_.loaded_map) snapshot.parent_map_id = setup_.loaded_map->map_id;
   snapshot.time = newest_time_;
   Mapper mapper = empty_mapper();
-  snapshot.walls = setup_.loaded_map ? setup_.loaded_map->walls : NdtMap{config_.scan.cell_spacing_m};
+  snapshot.walls =
+      setup_.loaded_map ? setup_.loaded_map->walls : NdtMap{config_.scan.cell_spacing_m};
   for (std::size_t i = 0; i < archive_.size(); ++i) {
     const Observation observation = archive_.at(i);
     const Se2& map_from_base = graph.state().keyframes[i];
@@ -161,9 +161,10 @@ std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   const OdometryNoise noise = graph.odometry_noise();
   for (const Factor& factor : graph.factors()) {
     if (const auto* odometry = std::get_if<OdometryFactor>(&factor)) {
-      if (odometry->is_cut || odometry->motion.distance_m + odometry->motion.turn_rad <= 0.0) continue;
-      const CorrectedMotion moved = corrected_motion(
-          odometry->motion, odometry_part(graph.state().calibration), noise);
+      if (odometry->is_cut || odometry->motion.distance_m + odometry->motion.turn_rad <= 0.0)
+        continue;
+      const CorrectedMotion moved =
+          corrected_motion(odometry->motion, odometry_part(graph.state().calibration), noise);
       snapshot.graph.edges.push_back(
           {odometry->from, odometry->to, moved.start_from_end, moved.covariance.inverse()});
     } else if (const auto* scan = std::get_if<ScanFactor>(&factor)) {

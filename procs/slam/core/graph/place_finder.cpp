@@ -17,12 +17,12 @@ constexpr std::size_t kMaxHypotheses = 500;
 constexpr double kHopeless = 12.0;  // score below the best at which one is given up
 
 // Scores of markers; a third of what decides, for one frame may be wrong.
-constexpr double kSighting = 1.0;    // a marker is seen where the map has it
+constexpr double kSighting = 1.0;     // a marker is seen where the map has it
 constexpr double kUnexpected = -1.0;  // it is seen where the map has none of its id
 constexpr double kFollowed = 0.5;     // share of its offset that a sighting moves a hypothesis by
-constexpr double kMissed = -0.5;     // it should be seen and is not
-constexpr double kMostOfOne = 3.0;   // what one marker can add or take
-constexpr double kAtMarker_m = 0.5;  // off by less, it is that marker
+constexpr double kMissed = -0.5;      // it should be seen and is not
+constexpr double kMostOfOne = 3.0;    // what one marker can add or take
+constexpr double kAtMarker_m = 0.5;   // off by less, it is that marker
 constexpr double kInItsPlace_m = 0.25;
 constexpr double kPassed_m = 1.0;  // driven without a clue: the next is another one
 
@@ -101,9 +101,8 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
       weigh_walls(place, observation, noise);
   }
   if (hypotheses_.empty()) return std::nullopt;
-  std::stable_sort(
-      hypotheses_.begin(), hypotheses_.end(),
-      [](const Hypothesis& a, const Hypothesis& b) { return a.score() > b.score(); });
+  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.score() > b.score(); });
   const Hypothesis& best = hypotheses_.front();
   const double next = hypotheses_.size() > 1 ? std::max(0.0, hypotheses_[1].score()) : 0.0;
   if (best.score() - next >= kDecided && best.fits_walls) return best.map_from_base;
@@ -118,8 +117,8 @@ void PlaceFinder::propose(std::span<const MarkerMeasurement> measurements) {
     for (const Landmark& landmark : map_->landmarks) {
       if (landmark.id != measurement.id || !landmark.is_confirmed()) continue;
       const Se2 there = landmark.map_from_marker * measurement.base_from_marker.inverse();
-      const auto same = std::find_if(
-          hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& place) {
+      const auto same =
+          std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& place) {
             const Eigen::Vector3d off = pose_difference(place.map_from_base, there);
             return off.head<2>().norm() < kSame_m && std::abs(off.z()) < kSame_rad;
           });
@@ -160,8 +159,8 @@ void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observatio
       seen.push_back(*landmark);
       continue;
     }
-    const bool contradicts = std::any_of(
-        map_->landmarks.begin(), map_->landmarks.end(), [&](const Landmark& landmark) {
+    const bool contradicts =
+        std::any_of(map_->landmarks.begin(), map_->landmarks.end(), [&](const Landmark& landmark) {
           return landmark.id == measurement.id ||
                  (landmark.map_from_marker.translation() - there).norm() < kInItsPlace_m;
         });
@@ -172,17 +171,17 @@ void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observatio
   for (std::size_t i = 0; i < map_->landmarks.size(); ++i) {
     const Landmark& landmark = map_->landmarks[i];
     const int index = static_cast<int>(i);
-    const bool is_near = (landmark.map_from_marker.translation() -
-                          place.map_from_base.translation())
-                             .norm() < view.range_max_m + kSame_m;
-    const bool is_sighted = std::any_of(
-        observation.sightings.begin(), observation.sightings.end(),
-        [&](const MarkerSighting& sighting) {
-          const Se2 there = place.map_from_base * sighting.base_from_marker;
-          return sighting.id == landmark.id &&
-                 (there.translation() - landmark.map_from_marker.translation()).norm() <
-                     kAtMarker_m;
-        });
+    const bool is_near =
+        (landmark.map_from_marker.translation() - place.map_from_base.translation()).norm() <
+        view.range_max_m + kSame_m;
+    const bool is_sighted =
+        std::any_of(observation.sightings.begin(), observation.sightings.end(),
+                    [&](const MarkerSighting& sighting) {
+                      const Se2 there = place.map_from_base * sighting.base_from_marker;
+                      return sighting.id == landmark.id &&
+                             (there.translation() - landmark.map_from_marker.translation()).norm() <
+                                 kAtMarker_m;
+                    });
     if (is_near && !is_sighted && landmark.is_confirmed() &&
         std::find(seen.begin(), seen.end(), index) == seen.end() &&
         is_expected_in_view(base_from_map * landmark.map_from_marker, view, observation.beams)) {
@@ -210,10 +209,9 @@ bool PlaceFinder::is_crossed(const Eigen::Vector2d& from, const Eigen::Vector2d&
   if (length_m <= kBeforeEnd_m) return false;
   const Eigen::Vector2d before = to - kBeforeEnd_m / length_m * (to - from);
   bool is_crossed = false;
-  visit_line(map_->grid.frame.cell_of(from), map_->grid.frame.cell_of(before),
-             [&](CellIndex cell) {
-               is_crossed |= map_->grid.occupancy[cell].occupancy() > kOccupied;
-             });
+  visit_line(map_->grid.frame.cell_of(from), map_->grid.frame.cell_of(before), [&](CellIndex cell) {
+    is_crossed |= map_->grid.occupancy[cell].occupancy() > kOccupied;
+  });
   return is_crossed;
 }
 
@@ -241,10 +239,8 @@ void PlaceFinder::weigh_walls(Hypothesis& place, const Observation& observation,
       ++contradicting;
     }
   }
-  const double misfit =
-      static_cast<double>(contradicting) / std::max(1, fitting + contradicting);
-  place.fits_walls =
-      all < kLeastBeams || (fitting >= kLeastMapped * all && misfit < kMostMisfit);
+  const double misfit = static_cast<double>(contradicting) / std::max(1, fitting + contradicting);
+  place.fits_walls = all < kLeastBeams || (fitting >= kLeastMapped * all && misfit < kMostMisfit);
   if (fitting + contradicting >= kLeastBeams)
     place.wall_score -= kMisfit * std::max(0.0, misfit - kUsualMisfit);
 }

@@ -36,7 +36,7 @@ std::uint64_t NdtMap::key(int column, int row) {
          static_cast<std::uint32_t>(row);
 }
 
-void NdtMap::add(const Eigen::Vector2d& point, int keyframe) {
+void NdtMap::add(const Eigen::Vector2d& point, int keyframe, double weight) {
   const auto column = static_cast<int>(std::floor(point.x() / spacing_m_));
   const auto row = static_cast<int>(std::floor(point.y() / spacing_m_));
   for (int i = column; i <= column + 1; ++i) {
@@ -45,11 +45,11 @@ void NdtMap::add(const Eigen::Vector2d& point, int keyframe) {
       const Eigen::Vector2d offset = point - spacing_m_ * Eigen::Vector2d{i, k};
       if (cell.count == 0.0) cell.surface.first_keyframe = keyframe;
       cell.surface.last_keyframe = keyframe;
-      cell.count += 1.0;
-      cell.sum += offset;
-      cell.xx += offset.x() * offset.x();
-      cell.xy += offset.x() * offset.y();
-      cell.yy += offset.y() * offset.y();
+      cell.count += weight;
+      cell.sum += weight * offset;
+      cell.xx += weight * offset.x() * offset.x();
+      cell.xy += weight * offset.x() * offset.y();
+      cell.yy += weight * offset.y() * offset.y();
       cell.is_stale = true;
     }
   }

@@ -56,7 +56,9 @@ class NdtMap {
  public:
   explicit NdtMap(double spacing_m) : spacing_m_{spacing_m} {}
 
-  void add(const Eigen::Vector2d& point, int keyframe);
+  /// @param keyframe  that saw it.
+  /// @param weight    points that it counts as.
+  void add(const Eigen::Vector2d& point, int keyframe, double weight = 1.0);
 
   /// The surface at a point, nullptr where too few points were seen.
   /// @param point_variance_m2  of single points across a wall: what few points cannot show.

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/mapping/map_merge.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace waymark {
+namespace {
+
+constexpr double kAgree_m = 0.3;  // two maps' places of one marker
+constexpr double kLeastApart_m = 1.0;
+constexpr int kSamplesAlong = 6;  // of a wall's cell
+constexpr double kSameMarker_m = 0.5;
+
+Eigen::Matrix3d rotated(const Eigen::Matrix3d& covariance, const Eigen::Matrix2d& rotation) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = rotation;
+  return turn * covariance * turn.transpose();
+}
+
+/// Each cell takes the content of the old one at its centre.
+GridMap transformed(const GridMap& grid, const Se2& new_from_old) {
+  GridMap result;
+  result.frame = grid.frame;
+  const Se2 old_from_new = new_from_old.inverse();
+  std::set<TileIndex> tiles;  // of the new grid that old cells fall into
+  const auto note = [&](TileIndex index, const auto&) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset)
+      tiles.insert(
+          tile_of(grid.frame.cell_of(new_from_old * grid.frame.centre_of(cell_at(index, offset)))));
+  };
+  grid.occupancy.for_each_tile(note);
+  grid.markers.for_each_tile(note);
+  for (const TileIndex tile : tiles) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset) {
+      const CellIndex cell = cell_at(tile, offset);
+      const CellIndex old = grid.frame.cell_of(old_from_new * grid.frame.centre_of(cell));
+      if (grid.occupancy[old].is_mapped()) result.occupancy.edit(cell) = grid.occupancy[old];
+      if (grid.markers[old].votes() > 0.0F) result.markers.edit(cell) = grid.markers[old];
+    }
+  }
+  return result;
+}
+
+/// Every second cell of every second row holds each point once. Its points are put on the line
+/// that has their mean and covariance.
+void add_transformed(const NdtMap& walls, const Se2& new_from_old, NdtMap& result) {
+  for (const NdtCellSums& cell : walls.sums()) {
+    if (cell.column % 2 != 0 || cell.row % 2 != 0) continue;
+    const Eigen::Vector2d mean = cell.sum_m / cell.count;
+    const double xx = cell.squares_m2[0] / cell.count - mean.x() * mean.x();
+    const double xy = cell.squares_m2[1] / cell.count - mean.x() * mean.y();
+    const double yy = cell.squares_m2[2] / cell.count - mean.y() * mean.y();
+    const double radius = std::hypot(0.5 * (xx - yy), xy);
+    const double direction_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
+    const Eigen::Vector2d along{std::cos(direction_rad), std::sin(direction_rad)};
+    const Eigen::Vector2d across{-along.y(), along.x()};
+    const double along_sigma_m = std::sqrt(std::max(0.0, 0.5 * (xx + yy) + radius));
+    const double across_sigma_m = std::sqrt(std::max(0.0, 0.5 * (xx + yy) - radius));
+    const Eigen::Vector2d centre = walls.spacing_m() * Eigen::Vector2d{cell.column, cell.row};
+    // Evenly spaced samples at -a..a have the variance a^2 (n + 1) / (3 (n - 1)).
+    const double reach = std::sqrt(3.0 * (kSamplesAlong - 1) / (kSamplesAlong + 1));
+    for (int i = 0; i < kSamplesAlong; ++i) {
+      const double place = reach * along_sigma_m * (2.0 * i / (kSamplesAlong - 1) - 1.0);
+      for (const double side : {-1.0, 1.0}) {
+        const Eigen::Vector2d point =
+            centre + mean + place * along + side * across_sigma_m * across;
+        result.add(new_from_old * point, 0, cell.count / (2.0 * kSamplesAlong));
+      }
+    }
+  }
+}
+
+/// The only confirmed marker of its id.
+const Landmark* only_one(const MapSnapshot& map, int id) {
+  const Landmark* only = nullptr;
+  for (const Landmark& landmark : map.landmarks) {
+    if (landmark.id != id || !landmark.is_confirmed()) continue;
+    if (only != nullptr) return nullptr;
+    only = &landmark;
+  }
+  return only;
+}
+
+using Pairs = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;  ///< in a, in b
+
+/// Best rigid fit (Umeyama 1991, in the plane, without scale).
+Se2 fitted(const Pairs& pairs) {
+  Eigen::Vector2d mean_a = Eigen::Vector2d::Zero();
+  Eigen::Vector2d mean_b = Eigen::Vector2d::Zero();
+  for (const auto& [a, b] : pairs) {
+    mean_a += a / static_cast<double>(pairs.size());
+    mean_b += b / static_cast<double>(pairs.size());
+  }
+  double cosine = 0.0;
+  double sine = 0.0;
+  for (const auto& [a, b] : pairs) {
+    const Eigen::Vector2d from = b - mean_b;
+    const Eigen::Vector2d to = a - mean_a;
+    cosine += from.dot(to);
+    sine += from.x() * to.y() - from.y() * to.x();
+  }
+  const Se2 turn{0.0, 0.0, std::atan2(sine, cosine)};
+  return {mean_a - turn * mean_b, turn.theta()};
+}
+
+double distance_m(const Se2& a_from_b, const std::pair<Eigen::Vector2d, Eigen::Vector2d>& pair) {
+  return (a_from_b * pair.second - pair.first).norm();
+}
+
+Pairs agreeing(const Pairs& pairs, const Se2& a_from_b) {
+  Pairs agree;
+  for (const auto& pair : pairs)
+    if (distance_m(a_from_b, pair) < kAgree_m) agree.push_back(pair);
+  return agree;
+}
+
+/// Mean by information.
+Landmark mean_of(const Landmark& a, const Landmark& b) {
+  Landmark mean = a;
+  const Eigen::Matrix3d gain = a.covariance * (a.covariance + b.covariance).inverse();
+  const Eigen::Vector3d step = gain * pose_difference(b.map_from_marker, a.map_from_marker);
+  mean.map_from_marker = {a.map_from_marker.x() + step.x(), a.map_from_marker.y() + step.y(),
+                          a.map_from_marker.theta() + step.z()};
+  mean.covariance = a.covariance - gain * a.covariance;
+  mean.sightings = a.sightings + b.sightings;
+  return mean;
+}
+
+void add_landmark(std::vector<Landmark>& landmarks, Landmark landmark) {
+  int instance = 0;
+  for (Landmark& known : landmarks) {
+    if (known.id != landmark.id) continue;
+    if ((known.map_from_marker.translation() - landmark.map_from_marker.translation()).norm() <
+        kSameMarker_m) {
+      known = mean_of(known, landmark);
+      return;
+    }
+    instance = std::max(instance, known.instance + 1);
+  }
+  landmark.instance = instance;
+  landmarks.push_back(landmark);
+}
+
+template <class Cell, class Add>
+void add_cells(const TileMap<Cell>& from, TileMap<Cell>& to, Add&& add) {
+  from.for_each_tile([&](TileIndex index, const auto& cells) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset)
+      if (cells[offset] != Cell{}) add(cells[offset], to.edit(cell_at(index, offset)));
+  });
+}
+
+}  // namespace
+
+MapSnapshot transformed(const MapSnapshot& map, const Se2& new_from_old) {
+  MapSnapshot result = map;
+  result.grid = transformed(map.grid, new_from_old);
+  result.walls = NdtMap{map.walls.spacing_m()};
+  add_transformed(map.walls, new_from_old, result.walls);
+  for (Landmark& landmark : result.landmarks) {
+    landmark.map_from_marker = new_from_old * landmark.map_from_marker;
+    landmark.covariance = rotated(landmark.covariance, new_from_old.rotation());
+  }
+  for (Se2& pose : result.graph.poses)
+    pose = new_from_old * pose;
+  return result;
+}
+
+std::optional<MapAlignment> align_by_markers(const MapSnapshot& a, const MapSnapshot& b) {
+  Pairs pairs;
+  for (const Landmark& landmark : a.landmarks) {
+    const Landmark* other = only_one(b, landmark.id);
+    if (other == nullptr || only_one(a, landmark.id) != &landmark) continue;
+    pairs.emplace_back(landmark.map_from_marker.translation(),
+                       other->map_from_marker.translation());
+  }
+  Pairs best;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (std::size_t k = i + 1; k < pairs.size(); ++k) {
+      if ((pairs[i].first - pairs[k].first).norm() < kLeastApart_m) continue;
+      const Pairs agree = agreeing(pairs, fitted({pairs[i], pairs[k]}));
+      if (agree.size() > best.size()) best = agree;
+    }
+  }
+  if (best.size() < 2) return std::nullopt;
+  MapAlignment alignment{fitted(best), best.size(), 0.0};
+  for (const auto& pair : best)
+    alignment.rms_m += std::pow(distance_m(alignment.a_from_b, pair), 2);
+  alignment.rms_m = std::sqrt(alignment.rms_m / static_cast<double>(best.size()));
+  return alignment;
+}
+
+MapSnapshot merged(const MapSnapshot& a, const MapSnapshot& b, const Se2& a_from_b) {
+  MapSnapshot result = a;
+  const MapSnapshot other = transformed(b, a_from_b);
+  result.parent_map_id = a.map_id;
+  result.time = std::max(a.time, b.time);
+  add_cells(other.grid.occupancy, result.grid.occupancy,
+            [](const OccupancyCell& from, OccupancyCell& to) {
+              to.hits += from.hits;
+              to.visits += from.visits;
+            });
+  add_cells(other.grid.markers, result.grid.markers, [](const MarkerCell& from, MarkerCell& to) {
+    to.vote(kNoMarker, from.none);
+    for (const MarkerCell::Votes& votes : from.ids)
+      if (votes.id != kNoMarker) to.vote(votes.id, votes.count);
+  });
+  for (const NdtCellSums& cell : other.walls.sums())
+    result.walls.add(cell);
+  for (const Landmark& landmark : other.landmarks)
+    add_landmark(result.landmarks, landmark);
+  std::stable_sort(result.landmarks.begin(), result.landmarks.end(),
+                   [](const Landmark& x, const Landmark& y) {
+                     return std::pair{x.id, x.instance} < std::pair{y.id, y.instance};
+                   });
+  const std::size_t offset = result.graph.poses.size();
+  result.graph.poses.insert(result.graph.poses.end(), other.graph.poses.begin(),
+                            other.graph.poses.end());
+  for (GraphEdge edge : other.graph.edges) {
+    edge.from += offset;
+    edge.to += offset;
+    result.graph.edges.push_back(edge);
+  }
+  return result;
+}
+
+}  // namespace waymark

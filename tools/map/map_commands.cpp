@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/map_commands.hpp"
+
+#include "common/files/whole_file.hpp"
+#include "common/log/log_file.hpp"
+#include "map/g2o_text.hpp"
+#include "slam/core/mapping/map_merge.hpp"
+#include "slam/map_file.hpp"
+#include "viewer/viewer_node.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+std::string hex(std::int64_t map_id) {
+  return fmt::format("{:016x}", static_cast<std::uint64_t>(map_id));
+}
+
+struct Extent {
+  Eigen::Vector2d least{Eigen::Vector2d::Zero()};
+  Eigen::Vector2d most{Eigen::Vector2d::Zero()};
+  std::size_t mapped_cells{0};
+};
+
+Extent extent_of(const GridMap& grid) {
+  Extent extent;
+  grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset) {
+      if (!cells[offset].is_mapped()) continue;
+      const Eigen::Vector2d centre = grid.frame.centre_of(cell_at(index, offset));
+      extent.least = extent.mapped_cells == 0 ? centre : extent.least.cwiseMin(centre);
+      extent.most = extent.mapped_cells == 0 ? centre : extent.most.cwiseMax(centre);
+      ++extent.mapped_cells;
+    }
+  });
+  return extent;
+}
+
+void need_same_markers(const MapFile& a, const MapFile& b) {
+  if (a.info.marker_dictionary != b.info.marker_dictionary ||
+      a.info.marker_size_m != b.info.marker_size_m) {
+    throw SetupError{fmt::format("the maps have other markers: {} of {} m and {} of {} m",
+                                 a.info.marker_dictionary, a.info.marker_size_m,
+                                 b.info.marker_dictionary, b.info.marker_size_m)};
+  }
+  const double cell_a_m = a.map.grid.frame.resolution_m;
+  const double cell_b_m = b.map.grid.frame.resolution_m;
+  if (cell_a_m != cell_b_m)
+    throw SetupError{fmt::format("the maps have other cells: {} m and {} m", cell_a_m, cell_b_m)};
+}
+
+}  // namespace
+
+std::string map_info(const std::filesystem::path& file, bool as_json) {
+  const auto [map, info] = read_map_file(file);
+  const Extent extent = extent_of(map.grid);
+  const Eigen::Vector2d size = extent.most - extent.least;
+  const auto confirmed =
+      std::count_if(map.landmarks.begin(), map.landmarks.end(),
+                    [](const Landmark& marker) { return marker.is_confirmed(); });
+  const double cell_m = map.grid.frame.resolution_m;
+  const double area_m2 = cell_m * cell_m * static_cast<double>(extent.mapped_cells);
+  if (as_json) {
+    return nlohmann::json{{"map_id", hex(map.map_id)},
+                          {"parent_map_id", hex(map.parent_map_id)},
+                          {"frame", info.frame},
+                          {"cell_m", cell_m},
+                          {"size_x_m", size.x()},
+                          {"size_y_m", size.y()},
+                          {"mapped_m2", area_m2},
+                          {"marker_dictionary", info.marker_dictionary},
+                          {"marker_size_m", info.marker_size_m},
+                          {"markers", map.landmarks.size()},
+                          {"confirmed_markers", confirmed},
+                          {"keyframes", map.graph.poses.size()},
+                          {"edges", map.graph.edges.size()},
+                          {"bytes", std::filesystem::file_size(file)}}
+               .dump(2) +
+           "\n";
+  }
+  return fmt::format(
+      "map      {} (parent: {}), frame '{}'\n"
+      "area     {:.1f} m x {:.1f} m, {:.1f} m2 mapped, cells of {} m\n"
+      "markers  {} of {} m: {}, {} of them confirmed\n"
+      "graph    {} keyframes, {} edges\n"
+      "file     {:.1f} kB\n",
+      hex(map.map_id), map.parent_map_id == 0 ? "none" : hex(map.parent_map_id), info.frame,
+      size.x(), size.y(), area_m2, cell_m, info.marker_dictionary, info.marker_size_m,
+      map.landmarks.size(), confirmed, map.graph.poses.size(), map.graph.edges.size(),
+      1e-3 * static_cast<double>(std::filesystem::file_size(file)));
+}
+
+void export_map(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  const MapFile map = read_map_file(file);
+  std::filesystem::create_directories(folder);
+  ViewerConfig config;
+  config.out_dir = folder;
+  config.is_replay = true;
+  Inbox inbox;
+  Outbox outbox;
+  ViewerNode viewer{config, inbox, outbox};
+  LogReader reader{file};
+  while (const auto message = reader.next())
+    inbox.deliver(*message);
+  viewer.finish();
+  if (viewer.failed()) throw std::runtime_error{"not everything could be written"};
+  write_whole_file(folder / "graph.g2o", g2o_text(map.map.graph));
+}
+
+std::string transform_map(const std::filesystem::path& file, const Se2& new_from_old,
+                          const std::string& frame, const std::filesystem::path& out) {
+  MapFile map = read_map_file(file);
+  MapSnapshot moved = transformed(map.map, new_from_old);
+  moved.parent_map_id = map.map.map_id;
+  if (!frame.empty()) map.info.frame = frame;
+  const std::int64_t map_id = write_map_file(out, moved, map.info);
+  return fmt::format("map {} in frame '{}' is in '{}'", hex(map_id), map.info.frame, out.string());
+}
+
+std::string merge_maps(const std::filesystem::path& a, const std::filesystem::path& b,
+                       const std::filesystem::path& out) {
+  const MapFile first = read_map_file(a);
+  const MapFile second = read_map_file(b);
+  need_same_markers(first, second);
+  const auto alignment = align_by_markers(first.map, second.map);
+  if (!alignment) {
+    throw SetupError{fmt::format(
+        "'{}' and '{}' share no two markers that lie alike in both, so nothing says how they fit",
+        a.string(), b.string())};
+  }
+  const std::int64_t map_id =
+      write_map_file(out, merged(first.map, second.map, alignment->a_from_b), first.info);
+  return fmt::format("map {} of both is in '{}': {} shared markers agree to {:.3f} m", hex(map_id),
+                     out.string(), alignment->shared_markers, alignment->rms_m);
+}
+
+}  // namespace waymark
