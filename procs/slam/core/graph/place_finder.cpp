@@ -67,6 +67,7 @@ void PlaceFinder::Hypothesis::add(Clue clue, int index, double score) {
   Episode& episode = clues[{clue, index}];
   episode.score = std::clamp(episode.score + score, -kMostOfOne, kMostOfOne);
   episode.idle_m = 0.0;
+  if (clue == Clue::kLandmark && episode.score >= kMostOfOne) agreed.insert(index);
 }
 
 void PlaceFinder::Hypothesis::drive(double distance_m) {
@@ -104,8 +105,11 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score() > b.score(); });
   const Hypothesis& best = hypotheses_.front();
-  const double next = hypotheses_.size() > 1 ? std::max(0.0, hypotheses_[1].score()) : 0.0;
-  if (best.score() - next >= kDecided && best.fits_walls) return best.map_from_base;
+  const bool beats_others =
+      hypotheses_.size() == 1 || best.score() - hypotheses_[1].score() >= kDecided;
+  // Two markers do not lie to each other as in the map by chance, whatever others are missing.
+  const bool beats_none = best.score() >= kDecided || best.agreed.size() >= 2;
+  if (beats_others && beats_none && best.fits_walls) return best.map_from_base;
   const double least = best.score() - kHopeless;
   std::erase_if(hypotheses_, [&](const Hypothesis& place) { return place.score() < least; });
   if (hypotheses_.size() > kMaxHypotheses) hypotheses_.resize(kMaxHypotheses);

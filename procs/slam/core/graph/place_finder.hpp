@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -49,6 +50,7 @@ class PlaceFinder {
     Se2 map_from_base{};
     double settled{0.0};  ///< score of what has been passed
     std::map<std::pair<Clue, int>, Episode> clues{};
+    std::set<int> agreed{};  ///< landmarks that have surely been seen where they should be
     double wall_score{0.0};
     bool fits_walls{true};
 
