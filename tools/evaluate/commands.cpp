@@ -80,7 +80,7 @@ int run_relations(const fs::path& trajectory_file, const fs::path& relations_fil
 }
 
 int run_run(const fs::path& run_dir, const std::vector<std::string>& wanted,
-            const EvaluationOptions& options, const Output& output) {
+            const EvaluationOptions& given, const Output& output) {
   if (!fs::is_directory(run_dir))
     throw InputError{run_dir.string() + ": not a folder; give the output folder of a run"};
   const std::vector<std::string> found = estimators_in(run_dir);
@@ -92,9 +92,16 @@ int run_run(const fs::path& run_dir, const std::vector<std::string>& wanted,
       throw InputError{fmt::format("{}: no estimator '{}' (with a trajectory.tum); there are: {}",
                                    run_dir.string(), name, fmt::join(found, ", "))};
   }
-  const RunTruth truth = read_truth(run_dir, options);
+  const RunTruth truth = read_truth(run_dir, given);
   std::vector<EstimatorResult> results;
   Skipped skipped = truth.skipped;
+  EvaluationOptions options = given;
+  if (!given.mapped_in.empty()) {
+    const fs::path file = given.mapped_in / "truth.tum";
+    const Trajectory mapping = read_tum(file, skipped);
+    if (mapping.empty()) throw InputError{file.string() + ": no pose, so no frame of the map"};
+    options.world_from_map = mapping.front().parent_from_base;
+  }
   bool complete = true;
   for (const std::string& name : found) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;

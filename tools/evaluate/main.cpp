@@ -84,6 +84,9 @@ void add_run(CLI::App& program, Arguments& arguments, Command& chosen) {
                   "a marker estimated further from its true place counts as missing and spurious")
       ->check(waymark::positive_number())
       ->capture_default_str();
+  command.add_option("--mapped-in", arguments.options.mapped_in,
+                     "run folder that made the map which this run has loaded: errors are in that "
+                     "map's frame (ate_frame_m), without alignment");
   add_true_length(command, arguments);
   add_alignment(command, arguments);
   add_output(command, arguments, "print results.json instead of the table");

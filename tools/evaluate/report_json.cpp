@@ -121,6 +121,7 @@ Json json_of(const TrajectoryError& error) {
   json["duration_s"] = number(error.duration_s);
   json["ate_origin_m"] = number(error.ate_origin_m);
   json["ate_se2_m"] = number(error.ate_se2_m);
+  if (error.ate_frame_m) json["ate_frame_m"] = number(*error.ate_frame_m);
   json["alignment"] = name_of(error.alignment);  // of the keys that follow, but for RPE
   json["along_rmse_m"] = rms_of(error.along_m);
   json["along_max_m"] = max_of(error.along_m);

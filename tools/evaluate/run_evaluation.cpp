@@ -98,8 +98,9 @@ void add_trajectory(const fs::path& dir, const RunTruth& truth, const Evaluation
     result.problems.push_back(fmt::format("{}: {} of {} poses are outside the truth's time span",
                                           (dir / "trajectory.tum").string(),
                                           result.poses_outside_truth, estimate.size()));
-  result.trajectory = trajectory_error(pairs, options.alignment);
-  world_from_map = align(pairs, Alignment::kOrigin);
+  result.trajectory = trajectory_error(pairs, options.alignment, options.world_from_map);
+  world_from_map =
+      options.world_from_map ? *options.world_from_map : align(pairs, Alignment::kOrigin);
   const fs::path covariance_file = dir / "covariance.csv";
   std::vector<StampedCovariance> covariances;
   if (fs::exists(covariance_file)) {
@@ -117,7 +118,8 @@ void add_final_trajectory(const fs::path& dir, const Trajectory& truth,
   const fs::path file = dir / "trajectory_final.tum";
   if (!fs::exists(file)) return;
   const Trajectory estimate = read_tum(file, result.skipped);
-  result.final_trajectory = trajectory_error(pairs_of(file, estimate, truth), options.alignment);
+  result.final_trajectory =
+      trajectory_error(pairs_of(file, estimate, truth), options.alignment, options.world_from_map);
 }
 
 /// slam.peak_memory_mb of timings.json.

@@ -18,6 +18,8 @@ namespace waymark::evaluate {
 
 struct EvaluationOptions {
   Alignment alignment{Alignment::kOrigin};
+  std::filesystem::path mapped_in{};  ///< run that made the map; its first true pose is the origin
+  std::optional<Se2> world_from_map{};    ///< of that map
   std::optional<double> true_length_m{};  ///< wins over the scenario's
   double marker_gate_m{5.0};              ///< an estimate further from its marker is another one
 };

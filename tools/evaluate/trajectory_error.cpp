@@ -84,7 +84,15 @@ void add_rpe(const std::vector<PosePair>& pairs, TrajectoryError& error) {
 }  // namespace
 
 std::string_view name_of(Alignment alignment) {
-  return alignment == Alignment::kOrigin ? "origin" : "se2";
+  switch (alignment) {
+    case Alignment::kOrigin:
+      return "origin";
+    case Alignment::kSe2:
+      return "se2";
+    case Alignment::kFrame:
+      break;
+  }
+  return "frame";
 }
 
 std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth) {
@@ -101,15 +109,18 @@ Se2 align(const std::vector<PosePair>& pairs, Alignment alignment) {
   return pairs.front().world_from_truth * pairs.front().map_from_estimate.inverse();
 }
 
-TrajectoryError trajectory_error(const std::vector<PosePair>& pairs, Alignment alignment) {
+TrajectoryError trajectory_error(const std::vector<PosePair>& pairs, Alignment alignment,
+                                 const std::optional<Se2>& known_frame) {
   TrajectoryError error{};
-  error.alignment = alignment;
+  error.alignment = known_frame ? Alignment::kFrame : alignment;
   error.poses = pairs.size();
   error.duration_s = pairs.back().t_s - pairs.front().t_s;
   error.ate_origin_m = ate_m(pairs, align(pairs, Alignment::kOrigin));
   error.ate_se2_m = ate_m(pairs, align(pairs, Alignment::kSe2));
 
-  const Se2 world_from_map = align(pairs, alignment);
+  if (known_frame) error.ate_frame_m = ate_m(pairs, *known_frame);
+
+  const Se2 world_from_map = known_frame ? *known_frame : align(pairs, alignment);
   const Vector2d whole =
       pairs.back().world_from_truth.translation() - pairs.front().world_from_truth.translation();
   const Vector2d axis = whole.normalized();

@@ -22,12 +22,13 @@ std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& tr
 
 enum class Alignment {
   kOrigin,  ///< the first poses coincide: simulation, where the map starts at the first pose
-  kSe2      ///< best rigid fit of the positions: real logs
+  kSe2,     ///< best rigid fit of the positions: real logs
+  kFrame    ///< none: where the map lies in the world is known
 };
 
 std::string_view name_of(Alignment alignment);
 
-/// world_from_map. @param pairs not empty.
+/// world_from_map. @param pairs not empty. @param alignment not kFrame.
 /// Source of the fit: Umeyama (1991) in the plane, without scale.
 Se2 align(const std::vector<PosePair>& pairs, Alignment alignment);
 
@@ -41,8 +42,9 @@ struct TrajectoryError {
   Alignment alignment{};
   std::size_t poses{};
   double duration_s{};
-  double ate_origin_m{};  ///< RMS distance after alignment on the first pose
-  double ate_se2_m{};     ///< RMS distance after the best rigid fit
+  double ate_origin_m{};                ///< RMS distance after alignment on the first pose
+  double ate_se2_m{};                   ///< RMS distance after the best rigid fit
+  std::optional<double> ate_frame_m{};  ///< RMS distance in a known frame, without alignment
   /// The rest is after `alignment`.
   Spread distance_m{};
   std::optional<Spread> along_m{};   ///< along the line from the first to the last true pose
@@ -55,7 +57,9 @@ struct TrajectoryError {
   std::optional<Spread> rpe_rotation_deg{};
 };
 
-/// @param pairs not empty.
-TrajectoryError trajectory_error(const std::vector<PosePair>& pairs, Alignment alignment);
+/// @param pairs           not empty.
+/// @param world_from_map  if the map's frame is known: then nothing is aligned.
+TrajectoryError trajectory_error(const std::vector<PosePair>& pairs, Alignment alignment,
+                                 const std::optional<Se2>& world_from_map = std::nullopt);
 
 }  // namespace waymark::evaluate

@@ -62,7 +62,8 @@ class PlaceFinder {
   void propose(std::span<const MarkerMeasurement> measurements);
   void weigh_markers(Hypothesis& place, const Observation& observation,
                      std::span<const MarkerMeasurement> measurements, const CameraView& view) const;
-  void weigh_walls(Hypothesis& place, const Observation& observation, const RangeNoise& noise) const;
+  void weigh_walls(Hypothesis& place, const Observation& observation,
+                   const RangeNoise& noise) const;
   bool is_occupied(const Eigen::Vector2d& point) const;
   bool is_free(const Eigen::Vector2d& point) const;
   bool is_crossed(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
