@@ -129,8 +129,8 @@ constexpr FieldLayout kMarkerDetection[] = {
 constexpr FieldLayout kMarkerDetections[] = {fixed(kInt64), fixed(kInt32), fixed(kInt32),
                                              fixed(kInt32), many(kMarkerDetection, 3)};
 constexpr FieldLayout kSlamEstimate[] = {
-    fixed(kInt64, 2), fixed(kByte),      fixed(kDouble, 3), fixed(kDouble, 9), fixed(kByte),
-    fixed(kInt32),    fixed(kDouble),    fixed(kInt32),     fixed(kInt32),     fixed(kDouble, 9),
+    fixed(kInt64, 2),  fixed(kByte),   fixed(kDouble, 3), fixed(kDouble, 9), fixed(kByte),
+    fixed(kInt32),     fixed(kDouble), fixed(kInt32),     fixed(kInt32),     fixed(kDouble, 9),
     fixed(kDouble, 3), fixed(kDouble), fixed(kByte)};
 constexpr FieldLayout kMapTile[] = {fixed(kInt32), fixed(kInt32), fixed(kInt32),
                                     fixed_array(kByte, 2), fixed_array(kInt16, 2)};
@@ -142,8 +142,8 @@ constexpr FieldLayout kMarkerLandmark[] = {fixed(kInt32),     fixed(kInt32), fix
                                            fixed(kByte)};
 constexpr FieldLayout kMarkerMap[] = {fixed(kInt64, 2), fixed(kInt32), fixed(kInt32), fixed(kInt32),
                                       many(kMarkerLandmark, 3)};
-constexpr FieldLayout kMapHeader[] = {fixed(kInt64, 3), fixed(kInt32), fixed(kInt32),
-                                      fixed(kDouble, 2), text(), text()};
+constexpr FieldLayout kMapHeader[] = {fixed(kInt64, 3),  fixed(kInt32), fixed(kInt32),
+                                      fixed(kDouble, 2), text(),        text()};
 constexpr FieldLayout kWallCell[] = {fixed(kInt32), fixed(kInt32), fixed(kDouble),
                                      fixed(kDouble, 2), fixed(kDouble, 3)};
 constexpr FieldLayout kMapWalls[] = {fixed(kInt64),  fixed(kInt32), fixed(kInt32),
@@ -151,8 +151,8 @@ constexpr FieldLayout kMapWalls[] = {fixed(kInt64),  fixed(kInt32), fixed(kInt32
 constexpr FieldLayout kVertex[] = {fixed(kDouble, 3)};
 constexpr FieldLayout kGraphEdge[] = {fixed(kInt32), fixed(kInt32), fixed(kDouble, 3),
                                       fixed(kDouble, 6)};
-constexpr FieldLayout kPoseGraph[] = {fixed(kInt64), fixed(kInt32),    fixed(kInt32),
-                                      fixed(kInt32), many(kVertex, 3), fixed(kInt32),
+constexpr FieldLayout kPoseGraph[] = {fixed(kInt64),      fixed(kInt32),    fixed(kInt32),
+                                      fixed(kInt32),      many(kVertex, 3), fixed(kInt32),
                                       many(kGraphEdge, 5)};
 constexpr FieldLayout kCalibration[] = {fixed(kInt64, 2), fixed(kDouble, 7), fixed(kDouble, 49)};
 constexpr FieldLayout kAnnotatedScan[] = {fixed(kInt64),          fixed(kDouble, 3),

@@ -220,7 +220,8 @@ TEST_F(SavedMap, OfTwinsGivesNoPoseThatIsWrong) {
   twins.seed = 5;
   const test::SensorLog today = test::drive(twins);
   for (const double from_s : {0.0, 8.0, 16.0}) {
-    const Drive found = drive_through(config_for(MapMode::kLocalise, map), messages_of(today, from_s));
+    const Drive found =
+        drive_through(config_for(MapMode::kLocalise, map), messages_of(today, from_s));
     EXPECT_LT(worst_error_m(found, today, map_from_world(mapping)), 0.3) << "from " << from_s;
   }
   fs::remove(map);
@@ -230,7 +231,8 @@ TEST_F(SavedMap, IsExtendedInItsFrame) {
   const fs::path half = other_file("half");
   const fs::path whole = other_file("whole");
   const test::SensorLog today = test::drive(corridor_of(6));
-  ASSERT_FALSE(drive_through(config_for(MapMode::kMap, half), messages_of(today, 0.0, 20.0)).failed);
+  ASSERT_FALSE(
+      drive_through(config_for(MapMode::kMap, half), messages_of(today, 0.0, 20.0)).failed);
   SlamConfig config = config_for(MapMode::kExtend, half);
   config.save_map = whole;
   const Drive rest = drive_through(config, messages_of(today, 15.0));
@@ -263,7 +265,8 @@ TEST_F(SavedMap, IsRefusedWhereItDoesNotSuit) {
   config = config_for(MapMode::kLocalise, *file_);
   config.slam.estimator = EstimatorName::kGmapping;
   EXPECT_THROW(drive_through(config, {}), SetupError);
-  EXPECT_THROW(drive_through(config_for(MapMode::kLocalise, other_file("nowhere")), {}), SetupError);
+  EXPECT_THROW(drive_through(config_for(MapMode::kLocalise, other_file("nowhere")), {}),
+               SetupError);
 }
 
 TEST_F(SavedMap, InAnotherFrameIsTheSamePlace) {

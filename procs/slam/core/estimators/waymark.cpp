@@ -10,17 +10,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kFirstPoseSigma = 1e-5;   // [m, rad]: the map's frame is the first pose
-constexpr std::size_t kMaxReferences = 4;  // keyframes that stand for all that saw a scan's walls
-
-// Wide search of a scan that fits badly.
-constexpr double kUsualFit = 0.93;   // share of the usual fit; below, a scan fits badly
-constexpr double kFitMemory = 0.05;  // weight of the newest scan in what is usual
-constexpr double kSearchReach_m = 0.5;
-constexpr double kSearchReach_rad = 0.6;
-constexpr std::size_t kSearchBeams = 120;
-constexpr double kClearlyMore = 1.05;                  // inliers than the plain match has
-const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
+constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]: the map's frame is the first pose
 
 // A scan that odometry contradicts becomes a keyframe, where a slip is weighed.
 constexpr double kContradiction = 25.0;  // chi^2
@@ -40,13 +30,6 @@ Points points_of(const Observation& observation) {
   for (const AnnotatedBeam& annotated : observation.beams)
     points.push_back(annotated.beam.end_in_base);
   return points;
-}
-
-/// Of (x, y, theta) in other axes.
-Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& information) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = rotation;
-  return turn * information * turn.transpose();
 }
 
 GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config) {
@@ -132,42 +115,6 @@ WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
   return {from * moved.start_from_end, in_axes(from.rotation(), moved.covariance)};
 }
 
-std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
-    const Points& points, const Prediction& prediction) const {
-  if (points.empty()) return std::nullopt;
-  MatchedScan scan;
-  if (setup_.loaded_map) {
-    scan.match = match_scan(points, setup_.loaded_map->walls, prediction.map_from_base,
-                            prediction.covariance, range_noise_, config_.scan);
-    if (is_frozen() || is_in_loaded_map(scan.match)) return scan;
-  }
-  if (submaps_.empty()) return std::nullopt;
-  scan.submap = submaps_.size() > 1 ? &submaps_[submaps_.size() - 2] : &submaps_.back();
-  scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
-  const Se2 submap_from_map = scan.map_from_submap.inverse();
-  const Se2 guess = submap_from_map * prediction.map_from_base;
-  const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), prediction.covariance);
-  scan.match =
-      match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_, config_.scan);
-  return scan;
-}
-
-/// Odometry may be off by more than plain matching can find: where a scan fits worse than the scans
-/// before, the best place in a wide window is tried, too.
-void WaymarkEstimator::search_widely(const Points& points, const Prediction& prediction,
-                                     MatchedScan& scan) const {
-  if (!is_bad_fit(scan.match)) return;
-  const Se2 guess = scan.map_from_submap.inverse() * prediction.map_from_base;
-  const CorrelativeField field{points_near(scan, guess)};
-  const auto best = field.best(thinned(points, kSearchBeams), guess,
-                               {kSearchReach_m, kSearchReach_rad}, config_.loops.min_score);
-  if (!best) return;
-  const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
-  const ScanMatch other = match_scan(points, surfaces_of(scan), best->submap_from_base, near,
-                                     range_noise_, config_.scan);
-  if (other.inliers > kClearlyMore * scan.match.inliers) scan.match = other;
-}
-
 void WaymarkEstimator::add_first_keyframe() {
   const Se2 map_from_base{start_.x_m, start_.y_m, start_.yaw_rad};
   graph_.add_keyframe(map_from_base);
@@ -199,7 +146,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
         add_scan_factor(keyframe, *scan->submap, scan->match, false);
       else
         add_map_factor(keyframe, scan->match);
-      usual_fit_ += kFitMemory * (inlier_share_ * scan->match.mapped_share - usual_fit_);
+      learn_usual_fit(scan->match);
     }
     unobserved_m_ += motion_.distance_m;
   }
@@ -238,73 +185,6 @@ void WaymarkEstimator::map_keyframe(const Observation& observation, const Points
   drawn_at_.push_back(map_from_base);
 }
 
-void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
-                                       const ScanMatch& match, bool is_loop) {
-  ScanFactor factor;
-  factor.is_loop = is_loop;
-  factor.keyframe = keyframe;
-  // Neighbouring keyframes are put together: their middle one stands for them.
-  const std::size_t count = match.keyframe_shares.size();
-  const std::size_t groups = std::min(count, kMaxReferences);
-  for (std::size_t group = 0; group < groups; ++group) {
-    const std::size_t begin = group * count / groups;
-    const std::size_t end = (group + 1) * count / groups;
-    double share = 0.0;
-    for (std::size_t i = begin; i < end; ++i)
-      share += match.keyframe_shares[i];
-    const std::size_t reference =
-        static_cast<std::size_t>(match.first_keyframe) + (begin + end - 1) / 2;
-    const bool is_open = is_loop || graph_.is_active({VariableKind::kKeyframe, reference});
-    if (share <= 0.0 || !is_open) continue;
-    factor.references.push_back(
-        {reference, share, submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
-  }
-  double sum = 0.0;
-  for (const ScanFactor::Reference& reference : factor.references)
-    sum += reference.share;
-  if (sum <= 0.0) return;
-  for (ScanFactor::Reference& reference : factor.references)
-    reference.share /= sum;
-  factor.root_information =
-      root_of(in_axes(match.map_from_base.rotation().transpose(), match.observed.information));
-  graph_.add(factor);
-}
-
-/// What the scan says about the motion since the keyframe before, against what odometry says.
-void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
-  if (!config_.learn_noise) return;
-  const OdometryNoise described = scaled(graph_.noise().odometry, {});
-  const ScanMatch& match = scan.match;
-  const Se2 found = scan.map_from_submap * match.map_from_base;
-  const Eigen::Matrix2d to_base = found.rotation().transpose();
-  Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
-  off.head<2>() = (to_base * off.head<2>()).eval();
-  const Eigen::Matrix3d information =
-      in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
-  // Two scans err, this one and the one before.
-  noise_learner_.observe_turn({off.z(),
-                               turn_variance(described, motion_.distance_m, motion_.turn_rad),
-                               2.0 / information(2, 2)});
-  if (!match.observed.is_degenerate) {
-    const Eigen::Matrix3d covariance = information.inverse();
-    noise_learner_.observe_along(
-        {off.x(), described.along_per_sqrt_m * described.along_per_sqrt_m * motion_.distance_m,
-         2.0 * covariance(0, 0)});
-    unobserved_m_ = -motion_.distance_m;
-  }
-  graph_.set_odometry_scale(noise_learner_.scale());
-}
-
-/// Two submaps are filled at a time, one half a length behind the other: the older one is matched,
-/// and holds half a length of scans at least.
-void WaymarkEstimator::insert_scan(const Points& points) {
-  const auto half = static_cast<std::size_t>(std::max(1, config_.submap_keyframes / 2));
-  if (submaps_.empty() || submaps_.back().num_keyframes() >= half)
-    submaps_.emplace_back(config_.scan.cell_spacing_m, newest());
-  for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
-    submaps_[i].insert(points, submap_from_map(i) * graph_.state().keyframes.back());
-}
-
 Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) const {
   return estimate(observation, graph_.state().keyframes.back(),
                   graph_.covariance_of({VariableKind::kKeyframe, newest()}));
@@ -321,25 +201,6 @@ void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& mat
   since_insertion_m_ = 0.0;
   for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
     submaps_[i].add(points, submap_from_map(i) * map_from_base);
-}
-
-bool WaymarkEstimator::is_bad_fit(const ScanMatch& match) const {
-  return match.inlier_share * match.mapped_share < kUsualFit * usual_fit_;
-}
-
-/// Most of what it shows stands where the map has something else, so that it is no view of a place
-/// that is new: the sensor is wrong, or the pose.
-bool WaymarkEstimator::is_refuted(const ScanMatch& match) const {
-  return match.num_mapped >= config_.scan.min_inliers &&
-         match.inlier_share < config_.min_inlier_share;
-}
-
-std::size_t WaymarkEstimator::first_filled_submap() const {
-  return submaps_.size() > 1 ? submaps_.size() - 2 : 0;
-}
-
-Se2 WaymarkEstimator::submap_from_map(std::size_t submap) const {
-  return graph_.state().keyframes[submaps_[submap].first_keyframe()].inverse();
 }
 
 WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Points& points) const {

@@ -65,7 +65,7 @@ class WaymarkEstimator final : public Estimator {
   };
 
   struct MatchedScan {
-    ScanMatch match{};  ///< submap frame
+    ScanMatch match{};              ///< submap frame
     const Submap* submap{nullptr};  ///< null: the loaded map, in its own frame
     Se2 map_from_submap{};
   };
@@ -95,7 +95,9 @@ class WaymarkEstimator final : public Estimator {
   Estimate unplaced(const Observation& observation) const;
   void load(const MapSnapshot& map);
   std::vector<Landmark> landmarks_of(const Graph& graph) const;
+
   bool is_frozen() const { return setup_.map_mode == MapMode::kLocalise; }
+
   const NdtMap& surfaces_of(const MatchedScan& scan) const;
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
@@ -130,6 +132,7 @@ class WaymarkEstimator final : public Estimator {
   BetweenKeyframes between_keyframes(const Points& points) const;
   Estimate estimate_between(const Observation& observation, const BetweenKeyframes& between) const;
   void insert_between(const Points& points, const ScanMatch& match, const Se2& map_from_base);
+  void learn_usual_fit(const ScanMatch& match);
   bool is_bad_fit(const ScanMatch& match) const;
   bool is_refuted(const ScanMatch& match) const;
   std::size_t first_filled_submap() const;

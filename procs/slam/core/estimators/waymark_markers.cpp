@@ -94,8 +94,10 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
         graph_.set_odometry_scale(noise_learner_.scale());
       }
       markers_known_ = true;
-      if (graph_.is_fixed(landmark)) is_confirmed_ = true;
-      else if (!graph_.is_active({VariableKind::kLandmark, landmark})) returning.push_back(landmark);
+      if (graph_.is_fixed(landmark))
+        is_confirmed_ = true;
+      else if (!graph_.is_active({VariableKind::kLandmark, landmark}))
+        returning.push_back(landmark);
     } else {
       landmark = graph_.add_landmark(map_from_measured(graph_.state(), newest(), measurement));
       book_.add(measurement.id, measurement.time);

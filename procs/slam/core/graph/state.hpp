@@ -90,4 +90,11 @@ inline Eigen::Vector3d pose_difference(const Se2& to, const Se2& from) {
   return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
 }
 
+/// Covariance or information of (x, y, theta) in axes that are turned by `rotation`.
+inline Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = rotation;
+  return turn * matrix * turn.transpose();
+}
+
 }  // namespace waymark

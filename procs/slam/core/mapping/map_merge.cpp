@@ -16,12 +16,6 @@ constexpr double kLeastApart_m = 1.0;
 constexpr int kSamplesAlong = 6;  // of a wall's cell
 constexpr double kSameMarker_m = 0.5;
 
-Eigen::Matrix3d rotated(const Eigen::Matrix3d& covariance, const Eigen::Matrix2d& rotation) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = rotation;
-  return turn * covariance * turn.transpose();
-}
-
 /// Each cell takes the content of the old one at its centre.
 GridMap transformed(const GridMap& grid, const Se2& new_from_old) {
   GridMap result;
@@ -163,7 +157,7 @@ MapSnapshot transformed(const MapSnapshot& map, const Se2& new_from_old) {
   add_transformed(map.walls, new_from_old, result.walls);
   for (Landmark& landmark : result.landmarks) {
     landmark.map_from_marker = new_from_old * landmark.map_from_marker;
-    landmark.covariance = rotated(landmark.covariance, new_from_old.rotation());
+    landmark.covariance = in_axes(new_from_old.rotation(), landmark.covariance);
   }
   for (Se2& pose : result.graph.poses)
     pose = new_from_old * pose;

@@ -27,7 +27,6 @@ class Mapper {
   Mapper(const MapperConfig& config, const GridMap& map)
       : config_{config}, map_{map}, landmarks_{config.same_marker_within_m} {}
 
-
   void insert(const Observation& observation, const Se2& map_from_base,
               const Eigen::Matrix3d& pose_covariance);
 
