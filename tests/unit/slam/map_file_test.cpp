@@ -294,9 +294,10 @@ TEST_F(SavedMap, AndOneThatOverlapsAreMergedIntoOne) {
   ASSERT_TRUE(alignment);
   EXPECT_GE(alignment->shared_markers, 2U);
   const MapSnapshot both = merged(a.map, b.map, alignment->a_from_b);
-  EXPECT_EQ(both.landmarks.size(), corridor_of(8).markers.size());
+  const std::vector<test::SyntheticMarker> markers = corridor_of(8).markers;
+  EXPECT_EQ(both.landmarks.size(), markers.size());
   for (const Landmark& landmark : both.landmarks) {
-    const auto& marker = corridor_of(8).markers[static_cast<std::size_t>(landmark.id)];
+    const auto& marker = markers.at(static_cast<std::size_t>(landmark.id));
     const Eigen::Vector2d truth = map_from_world(day1) * marker.position_m;
     EXPECT_LT((landmark.map_from_marker.translation() - truth).norm(), 0.08) << landmark.id;
   }
