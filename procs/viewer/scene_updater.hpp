@@ -4,7 +4,7 @@
 
 #include "common/messages/channels.hpp"
 #include "common/process/node.hpp"
-#include "viewer/core/scene.hpp"
+#include "viewer/core/scene/scene.hpp"
 
 #include <cstdint>
 #include <map>

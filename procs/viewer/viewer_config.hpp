@@ -3,8 +3,8 @@
 #pragma once
 
 #include "common/config/config.hpp"
-#include "viewer/core/plain_painter.hpp"
-#include "viewer/core/style.hpp"
+#include "viewer/core/page/style.hpp"
+#include "viewer/core/painters/plain_painter.hpp"
 
 #include <filesystem>
 #include <string>

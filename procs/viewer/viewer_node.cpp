@@ -2,13 +2,13 @@
 #include "viewer/viewer_node.hpp"
 
 #include "common/process/signals.hpp"
-#include "viewer/core/layer_painter.hpp"
-#include "viewer/core/map_painter.hpp"
-#include "viewer/core/plain_painter.hpp"
-#include "viewer/core/scan_painter.hpp"
-#include "viewer/map_files.hpp"
-#include "viewer/png.hpp"
-#include "viewer/text_files.hpp"
+#include "viewer/core/painters/layer_painter.hpp"
+#include "viewer/core/painters/map_painter.hpp"
+#include "viewer/core/painters/plain_painter.hpp"
+#include "viewer/core/painters/scan_painter.hpp"
+#include "viewer/files/map_files.hpp"
+#include "viewer/files/png.hpp"
+#include "viewer/files/text_files.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -104,7 +104,7 @@ void ViewerNode::subscribe(Inbox& inbox) {
   subscribe_both(inbox, channels::kSlamMap);
   inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) {
     updater_.add(m);
-    for (const auto& change : change_watch_.see(timestamp_from_us(m.utime), scene_.landmarks))
+    for (const auto& change : change_monitor_.see(timestamp_from_us(m.utime), scene_.landmarks))
       tell(change);
     if (live_feed_) live_feed_->add_markers(timestamp_from_us(m.utime), scene_.landmarks);
   });
@@ -116,7 +116,7 @@ void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) {
     if (m.has_pose != 0) updater_.add(m);
     if (m.has_pose != 0 && !scene_.estimates.empty()) {
-      if (const auto change = change_watch_.see(scene_.estimates.back())) tell(*change);
+      if (const auto change = change_monitor_.see(scene_.estimates.back())) tell(*change);
       if (live_feed_) live_feed_->add(m, scene_.estimates.back());
     }
     write_when_due(timestamp_from_us(m.utime));

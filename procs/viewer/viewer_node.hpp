@@ -3,12 +3,12 @@
 #pragma once
 
 #include "common/process/node.hpp"
-#include "viewer/core/change_watch.hpp"
-#include "viewer/core/scene.hpp"
+#include "viewer/core/scene/change_monitor.hpp"
+#include "viewer/core/scene/scene.hpp"
+#include "viewer/files/output_folder.hpp"
 #include "viewer/http/board.hpp"
 #include "viewer/http/live_feed.hpp"
 #include "viewer/http/page_server.hpp"
-#include "viewer/output_folder.hpp"
 #include "viewer/pacer.hpp"
 #include "viewer/scene_updater.hpp"
 #include "viewer/viewer_config.hpp"
@@ -57,7 +57,7 @@ class ViewerNode final : public Node {
   Config config_;
   viewer::Scene scene_{};
   viewer::SceneUpdater updater_;
-  viewer::ChangeWatch change_watch_{};
+  viewer::ChangeMonitor change_monitor_{};
   viewer::OutputFolder folder_;
   viewer::Pacer pacer_;
   std::optional<Timestamp> last_write_time_{};

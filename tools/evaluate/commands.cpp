@@ -2,7 +2,7 @@
 #include "evaluate/commands.hpp"
 
 #include "common/files/whole_file.hpp"
-#include "evaluate/report.hpp"
+#include "evaluate/run/report.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 // InputError for what makes it impossible.
 #pragma once
 
-#include "evaluate/run_evaluation.hpp"
+#include "evaluate/run/run_evaluation.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -2,7 +2,7 @@
 // The sub-commands about many runs.
 #include "common/files/whole_file.hpp"
 #include "evaluate/commands.hpp"
-#include "evaluate/sweep_report.hpp"
+#include "evaluate/sweep/sweep_report.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 // be read by any thread.
 #pragma once
 
-#include "viewer/core/scene.hpp"
+#include "viewer/core/scene/scene.hpp"
 
 #include <array>
 #include <cstdint>

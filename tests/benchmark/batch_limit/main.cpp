@@ -4,8 +4,8 @@
 // pose. The truth is used only to measure that.
 #include "batch_limit/least_squares.hpp"
 #include "common/files/whole_file.hpp"
-#include "evaluate/marker_error.hpp"
-#include "evaluate/trajectory_error.hpp"
+#include "evaluate/map/marker_error.hpp"
+#include "evaluate/trajectory/trajectory_error.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/random/random.hpp"
-#include "viewer/core/scene.hpp"
+#include "viewer/core/scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/core/annotations/map_annotations.hpp"
+
+#include "viewer/core/drawing/canvas.hpp"
+#include "viewer/core/drawing/palette.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+namespace waymark::viewer {
+namespace {
+
+constexpr double kText_px = 17.0;
+
+/// Cells below count as free in the heading's extent.
+constexpr int kFreeBelow_percent = 50;
+
+/// Counts free cells per bin of one cell along one axis; answers the extent of the well-filled
+/// bins.
+class ExtentCounter {
+ public:
+  void add(double position_m, double resolution_m) {
+    ++counts_[static_cast<long>(std::floor(position_m / resolution_m + 1e-6))];
+  }
+
+  double extent_cells() const {
+    constexpr int kStray = 3;  // bins with fewer free cells are noise
+    long first = 0, last = -1;
+    for (const auto& [bin, count] : counts_) {
+      if (count < kStray) continue;
+      if (last < first) first = bin;
+      last = bin;
+    }
+    return static_cast<double>(last - first + 1);
+  }
+
+ private:
+  std::map<long, int> counts_;
+};
+
+/// 1, 2 or 5 times a power of ten: the largest that is not longer than the limit.
+double round_length(double limit) {
+  const double power = std::pow(10.0, std::floor(std::log10(limit)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= limit) return factor * power;
+  }
+  return power;
+}
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(std::lround(seconds));
+  return whole < 60 ? fmt::format("{} s", whole)
+                    : fmt::format("{} min {:02d} s", whole / 60, whole % 60);
+}
+
+double path_length_m(const std::vector<EstimatedPose>& path) {
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    length_m +=
+        (path[i].map_from_base.translation() - path[i - 1].map_from_base.translation()).norm();
+  }
+  return length_m;
+}
+
+std::string summary(const PageContent& content, const Se2& view_from_map) {
+  std::string text = "no map yet";
+  if (const auto extent = free_extent(content.map, view_from_map)) {
+    text =
+        fmt::format("free space {:.2f} m long, {:.2f} m wide ({:.0f} px of {:g} m)",
+                    extent->length_m, extent->width_m, extent->length_px, content.map.resolution_m);
+  }
+  text += fmt::format("   |   {} markers", content.landmarks.size());
+  if (!content.estimates.empty()) {
+    text += fmt::format(
+        "   |   path {:.2f} m in {}", path_length_m(content.estimates),
+        duration_text(to_seconds(content.estimates.back().time - content.estimates.front().time)));
+  }
+  return text;
+}
+
+std::string share_text(std::string_view name, std::size_t count, std::size_t of) {
+  const double percent = 100.0 * static_cast<double>(count) / static_cast<double>(of);
+  return percent < 0.95 ? fmt::format("{} {:.1f} %", name, percent)
+                        : fmt::format("{} {:.0f} %", name, percent);
+}
+
+/// "degenerate 12 %, lost 0.4 %": the names that occur, with their shares.
+template <class Kind, std::size_t N>
+std::string shares_text(const std::array<std::pair<Kind, std::string_view>, N>& names,
+                        const std::map<Kind, std::size_t>& counts, std::size_t of) {
+  std::string text;
+  for (const auto& [kind, name] : names) {
+    const auto count = counts.find(kind);
+    if (count == counts.end()) continue;
+    text += (text.empty() ? "" : ", ") + share_text(name, count->second, of);
+  }
+  return text;
+}
+
+/// Shares of the updates; empty without any.
+std::string health_summary(const std::vector<EstimatedPose>& estimates) {
+  constexpr std::array<std::pair<Health, std::string_view>, 5> kHealths{
+      {{Health::kInitialising, "initialising"},
+       {Health::kTracking, "tracking"},
+       {Health::kDegenerate, "degenerate"},
+       {Health::kLost, "lost"},
+       {Health::kUnknown, "unknown"}}};
+  constexpr std::array<std::pair<WeakAxisSource, std::string_view>, 4> kSources{
+      {{WeakAxisSource::kOdometry, "odometry"},
+       {WeakAxisSource::kMarkers, "markers"},
+       {WeakAxisSource::kNothing, "nothing"},
+       {WeakAxisSource::kUnknown, "something unknown"}}};
+  if (estimates.empty()) return "";
+  std::map<Health, std::size_t> healths;
+  std::map<WeakAxisSource, std::size_t> sources;
+  for (const EstimatedPose& pose : estimates) {
+    ++healths[pose.health];
+    if (pose.weak_axis) ++sources[pose.weak_axis->source];
+  }
+  std::string text = "health: " + shares_text(kHealths, healths, estimates.size());
+  if (!sources.empty()) {
+    text += "   |   weak axis told by " + shares_text(kSources, sources, estimates.size());
+  }
+  return text + " of the updates";
+}
+
+/// A line that becomes smaller rather than leave the area.
+void draw_fitting(cv::Mat& page, const std::string& text, const cv::Rect& area_px, double y_px) {
+  Font font{.height_px = 18.0, .colour = palette::kFaintInk};
+  const double width_px = text_width_px(text, font);
+  if (width_px > area_px.width) font.height_px *= area_px.width / width_px;
+  draw_text(page, text, {area_px.x + 0.0, area_px.y + y_px}, Anchor::kLeft, font);
+}
+
+}  // namespace
+
+std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_map) {
+  ExtentCounter along, across;
+  for (int row = 0; row < map.occupancy_percent.rows; ++row) {
+    for (int column = 0; column < map.occupancy_percent.cols; ++column) {
+      const int percent = map.occupancy_percent(row, column);
+      if (percent < 0 || percent >= kFreeBelow_percent) continue;
+      // Relative to the first cell, so that unrotated cells fall in the middle of their bins.
+      const Eigen::Vector2d point =
+          view_from_map.rotation() * (map.cell_centre_m(row, column) - map.origin_m);
+      along.add(point.x(), map.resolution_m);
+      across.add(point.y(), map.resolution_m);
+    }
+  }
+  const double length_px = along.extent_cells();
+  const double width_px = across.extent_cells();
+  if (length_px <= 0.0 || width_px <= 0.0) return std::nullopt;
+  return FreeExtent{length_px * map.resolution_m, width_px * map.resolution_m, length_px};
+}
+
+void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& title,
+                  const PageContent& content, const Se2& view_from_map) {
+  draw_text(page, title, {area_px.x + 0.0, area_px.y + 46.0}, Anchor::kLeft,
+            {.height_px = 32.0, .colour = palette::kInk, .bold = true});
+  draw_fitting(page, summary(content, view_from_map), area_px, 94.0);
+  draw_fitting(page, health_summary(content.estimates), area_px, 128.0);
+}
+
+void draw_ruler(cv::Mat& page, const Panel& panel) {
+  const cv::Rect& area = panel.page_px;
+  const double y = area.br().y;
+  const Box& box = panel.view.box;
+  const double label_step_m = round_length(std::max(2.2 * 110.0 / panel.view.px_per_m, 1e-3));
+  const double tick_step_m = label_step_m / 5.0;
+  draw_line(page, {area.x + 0.0, y}, {area.br().x + 0.0, y}, {palette::kFaintInk, 2});
+  const auto first = static_cast<int>(std::ceil(box.left_m / tick_step_m));
+  const auto last = static_cast<int>(std::floor(box.right_m / tick_step_m));
+  for (int tick = first; tick <= last; ++tick) {
+    const double x = area.x + panel.view.px_per_m * (tick * tick_step_m - box.left_m);
+    const bool has_label = tick % 5 == 0;
+    draw_line(page, {x, y}, {x, y + (has_label ? 14.0 : 7.0)}, {palette::kFaintInk, 2});
+    if (!has_label) continue;
+    const Font font{.height_px = 15.0, .colour = palette::kFaintInk};
+    const std::string text = fmt::format("{:g} m", tick * tick_step_m);
+    const double half_px = text_width_px(text, font) / 2;
+    const double middle = std::clamp(x, area.x + half_px, area.br().x - half_px);
+    draw_text(page, text, {middle, y + 30.0}, Anchor::kCentre, font);
+  }
+}
+
+void draw_strip_marks(cv::Mat& page, const MapPage& layout) {
+  const cv::Rect& overview_px = layout.overview->page_px;
+  const View& overview = layout.overview->view;
+  const Font font{.height_px = 17.0, .colour = palette::kFaintInk, .bold = true};
+  char letter = 'A';
+  for (const Panel& strip : layout.strips) {
+    const double scale = overview.px_per_m;
+    const double left = overview_px.x + scale * (strip.view.box.left_m - overview.box.left_m);
+    const double right = overview_px.x + scale * (strip.view.box.right_m - overview.box.left_m);
+    const double y = overview_px.br().y + 12.0;
+    draw_line(page, {left + 4, y}, {right - 4, y}, {palette::kFaintInk, 2});
+    draw_line(page, {left + 4, y - 7}, {left + 4, y}, {palette::kFaintInk, 2});
+    draw_line(page, {right - 4, y - 7}, {right - 4, y}, {palette::kFaintInk, 2});
+    draw_text(page, std::string(1, letter), {(left + right) / 2, y + 17.0}, Anchor::kCentre, font);
+    draw_text(page, std::string(1, letter),
+              {strip.page_px.x - 30.0, strip.page_px.y + strip.page_px.height / 2.0},
+              Anchor::kCentre, {.height_px = 24.0, .colour = palette::kFaintInk, .bold = true});
+    ++letter;
+  }
+}
+
+void draw_scale_bar(cv::Mat& page, cv::Point2d right_end_px, double px_per_m) {
+  const double length_m = round_length(320.0 / px_per_m);
+  const double length_px = length_m * px_per_m;
+  constexpr int kPieces = 4;
+  for (int piece = 0; piece < kPieces; ++piece) {
+    const double left = right_end_px.x - length_px + piece * length_px / kPieces;
+    const cv::Rect2d box{left, right_end_px.y - 5, length_px / kPieces, 10};
+    fill_box(page, box, 0, palette::kInk);
+    if (piece % 2 == 1)
+      fill_box(page, {box.x + 2, box.y + 2, box.width - 4, box.height - 4}, 0, palette::kPage);
+  }
+  draw_text(page, fmt::format("{:g} m", length_m),
+            {right_end_px.x - length_px - 14, right_end_px.y}, Anchor::kRight,
+            {.height_px = kText_px, .colour = palette::kInk});
+}
+
+}  // namespace waymark::viewer

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/core/layers/map_layers.hpp"
+
+#include "viewer/core/drawing/canvas.hpp"
+#include "viewer/core/drawing/palette.hpp"
+#include "viewer/core/layers/marker_labels.hpp"
+#include "viewer/core/layers/path_points.hpp"
+
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace waymark::viewer {
+cv::Mat colour_cells(const GridMap& map) {
+  std::array<Colour, 101> colours;
+  for (int percent = 0; percent <= 100; ++percent)
+    colours[static_cast<std::size_t>(percent)] =
+        to_colour(blend(palette::kFree, palette::kOccupied, percent / 100.0));
+  const Colour unknown = to_colour(palette::kUnknown);
+  cv::Mat_<Colour> image(map.occupancy_percent.size());
+  for (int row = 0; row < image.rows; ++row) {
+    for (int column = 0; column < image.cols; ++column) {
+      const int percent = map.occupancy_percent(row, column);
+      image(row, column) =
+          percent < 0 ? unknown : colours[static_cast<std::size_t>(std::min(percent, 100))];
+    }
+  }
+  return image;
+}
+
+void draw_cells(cv::Mat& panel, const View& view, const GridMap& map, const cv::Mat& cell_colours) {
+  panel.setTo(palette::kUnknown);
+  if (map.empty()) return;
+  cv::warpAffine(cell_colours, panel, cv::Mat{view.page_from_cells(map)}, panel.size(),
+                 view.px_per_m * map.resolution_m < 1.0 ? cv::INTER_LINEAR : cv::INTER_NEAREST,
+                 cv::BORDER_CONSTANT, palette::kUnknown);
+}
+
+void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,
+                const StrokeWidths& widths) {
+  draw_polyline(panel, points_on_page(view, content.truth_in_map),
+                {palette::kTrue, widths.true_px});
+  draw_polyline(panel, points_on_page(view, content.odometry_in_map),
+                {palette::kOdometry, widths.odometry_px});
+  draw_polyline(panel, points_on_page(view, content.estimates),
+                {palette::kEstimated, widths.estimated_px});
+  draw_dashed_polyline(panel, points_on_page(view, content.final_in_map),
+                       {palette::kFinal, widths.estimated_px}, kDash_px, kDashGap_px);
+}
+
+void draw_particles(cv::Mat& panel, const View& view, const std::vector<Se2>& particles) {
+  for (const Se2& particle : particles)
+    fill_circle(panel, view(particle.translation()), 2.0, palette::kParticle);
+}
+
+void draw_ends(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates) {
+  if (estimates.empty()) return;
+  const cv::Point2d start = view(estimates.front().map_from_base.translation());
+  fill_circle(panel, start, 12.0, palette::kPage);
+  draw_circle(panel, start, 11.0, {palette::kEstimated, 5});
+  const Se2& last = estimates.back().map_from_base;
+  const cv::Point2d end = view(last.translation());
+  const cv::Point2d ahead = view.direction(last.theta());
+  const cv::Point2d left{ahead.y, -ahead.x};
+  const auto arrow = [&](double size_px) {
+    return std::array<cv::Point2d, 4>{
+        end + 1.3 * size_px * ahead, end - size_px * ahead + size_px * left,
+        end - 0.5 * size_px * ahead, end - size_px * ahead - size_px * left};
+  };
+  fill_polygon(panel, arrow(21.0), palette::kPage);
+  fill_polygon(panel, arrow(16.0), palette::kEstimated);
+}
+
+void draw_plates(cv::Mat& panel, const View& view, const std::vector<Landmark>& landmarks,
+                 double marker_size_m, int width_px) {
+  for (const Landmark& landmark : landmarks) {
+    const cv::Point2d centre = view(landmark.map_from_marker.translation());
+    const cv::Point2d facing = view.direction(landmark.map_from_marker.theta());
+    const cv::Point2d along{-facing.y, facing.x};
+    const double half_px = std::max(0.5 * marker_size_m * view.px_per_m, 3.0);
+    const cv::Scalar colour = colour_of(landmark.state);
+    draw_line(panel, centre - half_px * along, centre + half_px * along, {colour, width_px});
+    // A short peg tells the side that the marker faces.
+    draw_line(panel, centre, centre + 1.8 * width_px * facing, {colour, std::max(1, width_px / 2)});
+  }
+}
+
+}  // namespace waymark::viewer

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the path tells along its way: its health, how far it may be off, and which direction the
+// scans left open.
+#pragma once
+
+#include "viewer/core/drawing/view.hpp"
+#include "viewer/core/scene/scene.hpp"
+
+#include <opencv2/core.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace waymark::viewer {
+
+/// Semi-axes [m], longer first, and the longer one's direction in the map.
+struct Ellipse {
+  double major_m{0.0}, minor_m{0.0}, angle_rad{0.0};
+};
+
+/// Of the position; nullopt for what is no covariance: not finite, or a negative variance.
+std::optional<Ellipse> two_sigma_ellipse(const Eigen::Matrix3d& covariance);
+
+/// The poses that get a mark, and how large the marks are drawn.
+struct PathMarks {
+  int magnification{1};   ///< of the ellipses and weak axes, so that they can be seen
+  double px_per_m{1.0};   ///< of the page that the marks were chosen for
+  double spacing_m{1.0};  ///< along the path
+  std::vector<EstimatedPose> ellipses{};   ///< in order of time; each has an ellipse
+  std::vector<EstimatedPose> weak_axes{};  ///< in order of time; each has a weak axis
+};
+
+/// Ellipses every round number of metres and at the end; weak axes likewise and wherever another
+/// source begins to tell them. Where marks would lie on each other, as on a way back, the less
+/// certain one stays. O(n) in the path, O(m^2) in the marks that find room.
+PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
+                       double spacing_px);
+
+/// Two-sigma ellipses, magnified.
+void draw_ellipses(cv::Mat& panel, const View& view, const PathMarks& marks);
+
+/// A bar along each weak axis in the colour of what told the motion along it; its half length is
+/// two sigma of one scan along it, magnified and kept between two visible lengths. A ring where
+/// the heading is what is weak.
+void draw_weak_axes(cv::Mat& panel, const View& view, const PathMarks& marks);
+
+/// One bar from left to right (or along any line), as draw_weak_axes() draws them.
+void draw_weak_axis_bar(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px,
+                        WeakAxisSource source);
+
+/// A broad band, to lie below the path, wherever its health is not `tracking`.
+void draw_health(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates,
+                 int width_px);
+
+cv::Scalar colour_of(Health health);
+
+}  // namespace waymark::viewer

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/core/page/map_page.hpp"
+
+#include "viewer/core/scene/alignment.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark::viewer {
+namespace {
+
+constexpr int kMargin_px = 60;
+constexpr int kHeadingHeight_px = 158;
+constexpr int kLegendHeight_px = 320;
+constexpr int kGap_px = 30;
+constexpr int kMinPageWidth_px = 1700;  // for the legend
+/// Room around the map for the markers' labels.
+constexpr double kLabelRoom_px = 74.0;
+/// Neighbouring strips share this much, so that nothing is cut in both.
+constexpr double kStripOverlap_m = 0.5;
+
+class BoxBuilder {
+ public:
+  void add(const Eigen::Vector2d& point) { box_.extend(point); }
+
+  /// Only when the point is not too far from what has been added so far with add().
+  void add_if_near(const Eigen::Vector2d& point, const Eigen::AlignedBox2d& reach) {
+    if (reach.contains(point)) box_.extend(point);
+  }
+
+  bool empty() const { return box_.isEmpty(); }
+
+  Eigen::AlignedBox2d reach() const {
+    if (box_.isEmpty()) return {Eigen::Vector2d{-50.0, -50.0}, Eigen::Vector2d{50.0, 50.0}};
+    const double margin_m = std::max(3.0, 0.1 * box_.sizes().maxCoeff());
+    Eigen::AlignedBox2d reach = box_;
+    reach.extend(Eigen::Vector2d{box_.min().array() - margin_m});
+    reach.extend(Eigen::Vector2d{box_.max().array() + margin_m});
+    return reach;
+  }
+
+  Box box() const {
+    if (box_.isEmpty()) return {-1.0, -1.0, 1.0, 1.0};
+    return {box_.min().x(), box_.min().y(), box_.max().x(), box_.max().y()};
+  }
+
+ private:
+  Eigen::AlignedBox2d box_{};
+};
+
+/// The outermost known cells of each row, which hold the bounds of all of them.
+void add_known_cells(const GridMap& map, const Se2& view_from_map, BoxBuilder& bounds) {
+  for (int row = 0; row < map.occupancy_percent.rows; ++row) {
+    const schar* cells = map.occupancy_percent[row];
+    const auto is_known = [&](int column) {
+      return cells[column] >= 0;
+    };
+    int first = 0;
+    int last = map.occupancy_percent.cols - 1;
+    while (first <= last && !is_known(first))
+      ++first;
+    while (last > first && !is_known(last))
+      --last;
+    if (first > last) continue;
+    bounds.add(view_from_map * map.cell_centre_m(row, first));
+    bounds.add(view_from_map * map.cell_centre_m(row, last));
+  }
+}
+
+Box padded(const Box& box, double margin_m) {
+  return {box.left_m - margin_m, box.bottom_m - margin_m, box.right_m + margin_m,
+          box.top_m + margin_m};
+}
+
+struct Folding {
+  int num_strips{1};
+  double px_per_m{0.0};
+
+  double strip_width_m(const Box& box) const {
+    return (box.width_m() + (num_strips - 1) * kStripOverlap_m) / num_strips;
+  }
+};
+
+/// The number of strips with the largest scale.
+Folding best_folding(const Box& box, const MapPageStyle& style) {
+  Folding best;
+  const double width_px = style.page_width_px - 2 * kMargin_px;
+  for (int n = 1; n <= style.max_strips; ++n) {
+    Folding folding{n, 0.0};
+    const double height_px = style.page_height_px - (n - 1) * (kGap_px + kRulerHeight_px);
+    folding.px_per_m = std::min({width_px / folding.strip_width_m(box),
+                                 height_px / (n * box.height_m()), style.max_scale_px_per_m});
+    // A fold must pay: it breaks the picture.
+    if (folding.px_per_m > 1.25 * best.px_per_m) best = folding;
+  }
+  return best;
+}
+
+Box with_label_room(const Box& tight, const MapPageStyle& style) {
+  const double rough_px_per_m = best_folding(padded(tight, 0.5), style).px_per_m;
+  return padded(tight, kLabelRoom_px / rough_px_per_m);
+}
+
+Panel panel_at(const View& view, int left_px, int top_px) {
+  return {view, cv::Rect{cv::Point{left_px, top_px}, view.size_px()}};
+}
+
+}  // namespace
+
+PageContent content_of(const Scene& scene) {
+  return {.map = scene.map.grid(),
+          .landmarks = scene.landmarks,
+          .estimates = scene.estimates,
+          .final_in_map = scene.final_trajectory,
+          .truth_in_map = aligned_on_first(scene.estimates, scene.truth),
+          .odometry_in_map = aligned_on_first(scene.estimates, scene.odometry),
+          .particles = scene.particles};
+}
+
+Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry) {
+  BoxBuilder bounds;
+  add_known_cells(content.map, view_from_map, bounds);
+  const auto reach = bounds.reach();
+  const auto add = [&](const Se2& pose) {
+    bounds.add_if_near(view_from_map * pose.translation(), reach);
+  };
+  for (const Landmark& landmark : content.landmarks)
+    add(landmark.map_from_marker);
+  for (const EstimatedPose& pose : content.estimates)
+    add(pose.map_from_base);
+  for (const TimedPose& pose : content.final_in_map)
+    add(pose.frame_from_base);
+  for (const TimedPose& pose : content.truth_in_map)
+    add(pose.frame_from_base);
+  if (odometry == Odometry::kIncluded) {
+    for (const TimedPose& pose : content.odometry_in_map)
+      add(pose.frame_from_base);
+  }
+  return bounds.box();
+}
+
+Se2 view_from_map(const GridMap& map) {
+  constexpr double kLong = 5.0;  // length / width from which on a map is long
+  const double kNearlyLying_rad = radians(20);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d sum_of_squares = Eigen::Matrix2d::Zero();
+  double count = 0.0;
+  for (int row = 0; row < map.occupancy_percent.rows; ++row) {
+    for (int column = 0; column < map.occupancy_percent.cols; ++column) {
+      if (map.occupancy_percent(row, column) < 0) continue;
+      const Eigen::Vector2d point = map.cell_centre_m(row, column);
+      sum += point;
+      sum_of_squares += point * point.transpose();
+      count += 1.0;
+    }
+  }
+  if (count < 2.0) return {};
+  const Eigen::Vector2d mean = sum / count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{sum_of_squares / count -
+                                                            mean * mean.transpose()};
+  if (axes.eigenvalues()(1) < kLong * kLong * std::max(axes.eigenvalues()(0), 1e-9)) return {};
+  Eigen::Vector2d axis = axes.eigenvectors().col(1);
+  if (axis.x() < 0.0) axis = -axis;
+  const double angle_rad = std::atan2(axis.y(), axis.x());
+  return std::abs(angle_rad) < kNearlyLying_rad ? Se2{} : Se2{0.0, 0.0, -angle_rad};
+}
+
+MapPage lay_out(const PageContent& content, const MapPageStyle& style) {
+  const Se2 view_from_map = viewer::view_from_map(content.map);
+  const Box whole_box = with_label_room(bounds(content, view_from_map, Odometry::kIncluded), style);
+  // Strips stay close to the map: odometry may leave them, the overview shows where it goes.
+  const bool is_folded = best_folding(whole_box, style).num_strips > 1;
+  const Box box = is_folded
+                      ? with_label_room(bounds(content, view_from_map, Odometry::kLeftOut), style)
+                      : whole_box;
+  const Folding folding = best_folding(box, style);
+
+  MapPage page;
+  int y_px = kHeadingHeight_px;
+  const int inner_px = style.page_width_px - 2 * kMargin_px;
+  if (folding.num_strips > 1) {
+    const View whole{view_from_map, whole_box, inner_px / whole_box.width_m()};
+    page.overview = panel_at(whole, kMargin_px, y_px);
+    y_px = page.overview->page_px.br().y + 2 * kGap_px;
+  }
+  const double strip_m = folding.strip_width_m(box);
+  int right_px = std::min(kMinPageWidth_px, style.page_width_px) - kMargin_px;
+  for (int k = 0; k < folding.num_strips; ++k) {
+    Box part = box;
+    part.left_m = box.left_m + k * (strip_m - kStripOverlap_m);
+    part.right_m = part.left_m + strip_m;
+    page.strips.push_back(panel_at({view_from_map, part, folding.px_per_m}, kMargin_px, y_px));
+    y_px = page.strips.back().page_px.br().y + kRulerHeight_px + kGap_px;
+    right_px = std::max(right_px, page.strips.back().page_px.br().x);
+  }
+  if (page.overview) right_px = std::max(right_px, page.overview->page_px.br().x);
+  if (folding.num_strips == 1) {  // a single small map stands in the middle
+    cv::Rect& only = page.strips.front().page_px;
+    only.x += (right_px - only.br().x) / 2;
+  }
+  page.heading_px = {kMargin_px, 0, right_px - kMargin_px, kHeadingHeight_px};
+  page.legend_px = {kMargin_px, y_px - kGap_px, right_px - kMargin_px, kLegendHeight_px};
+  page.size_px = {right_px + kMargin_px, page.legend_px.br().y};
+  return page;
+}
+
+}  // namespace waymark::viewer

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything the pictures and files are made of: what the messages have said so far.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "common/sensors/sensors.hpp"
+#include "common/time/time.hpp"
+#include "viewer/core/scene/tiled_map.hpp"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark::viewer {
+
+/// Largest rectangle of cells that a map may span: 200 m x 200 m in cells of 0.05 m. Keeps the
+/// process far below 300 MB whatever the tiles claim.
+constexpr std::int64_t kMaxMapCells = 16'000'000;
+
+/// How well an estimate is known; values as in lcmtypes/slam_estimate_t.lcm.
+enum class Health { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
+
+/// What the map thinks of a marker; values as in lcmtypes/marker_landmark_t.lcm.
+enum class LandmarkState { kUnknown, kConfirmed, kTentative, kMoved };
+
+/// What tells the motion along the weakest axis; values as in lcmtypes/slam_estimate_t.lcm.
+enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
+
+/// A direction that the scan alone tells little about.
+struct WeakAxis {
+  /// Unit vector; order x y theta (scaled by 1 m), map frame.
+  Eigen::Vector3d direction{Eigen::Vector3d::Zero()};
+  double information{0.0};  ///< [1/m^2] of one scan along it
+  WeakAxisSource source{WeakAxisSource::kUnknown};
+};
+
+/// Pose of the base in a frame that the path's name tells.
+struct TimedPose {
+  Timestamp time{};
+  Se2 frame_from_base{};
+};
+
+struct EstimatedPose {
+  Timestamp time{};
+  Se2 map_from_base{};
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< order x y theta, map frame
+  Health health{Health::kUnknown};
+  std::optional<WeakAxis> weak_axis{};  ///< none where the scan tells every direction
+};
+
+struct Landmark {
+  int id{kNoMarker};
+  int instance{0};
+  Se2 map_from_marker{};  ///< heading = direction that the marker faces
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< order x y yaw, map frame
+  int sightings{0};
+  Timestamp last_seen{};
+  LandmarkState state{LandmarkState::kUnknown};
+};
+
+/// A scan whose beams carry the ids of the markers that they hit.
+struct AnnotatedScan {
+  Timestamp time{};
+  Se2 map_from_lidar{};
+  std::vector<double> ranges_m{};    ///< +inf = no return, NaN = invalid
+  std::vector<double> angles_rad{};  ///< counter-clockwise, LiDAR frame
+  std::vector<int> marker_ids{};     ///< kNoMarker = none
+
+  bool has_marker() const;
+};
+
+/// Plain state. Paths are in order of time, without repeats.
+struct Scene {
+  std::string title{};  ///< what made the map, e.g. the estimator's name
+  TiledMap map{kMaxMapCells};
+  std::vector<Landmark> landmarks{};
+  std::vector<EstimatedPose> estimates{};
+  std::vector<TimedPose> final_trajectory{};  ///< as the estimator knows it at the end
+  std::vector<TimedPose> odometry{};          ///< odom_from_base
+  std::vector<TimedPose> truth{};             ///< world_from_base; empty on a real robot
+  std::vector<Se2> particles{};               ///< map_from_base of each
+  std::optional<AnnotatedScan> scan{};
+};
+
+}  // namespace waymark::viewer

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/files/text_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <tuple>
+
+namespace waymark::viewer {
+namespace {
+
+/// Seconds from whole microseconds, without a detour over floating point.
+struct Seconds {
+  std::int64_t whole;
+  std::int64_t micro;
+
+  explicit Seconds(Timestamp time)
+      : whole{to_us(time) / 1'000'000}, micro{to_us(time) % 1'000'000} {}
+};
+
+void append_tum_line(std::string& text, Timestamp time, const Se2& frame_from_base) {
+  const Seconds t{time};
+  fmt::format_to(std::back_inserter(text), "{}.{:06d} {:.9f} {:.9f} 0 0 0 {:.12f} {:.12f}\n",
+                 t.whole, t.micro, frame_from_base.x(), frame_from_base.y(),
+                 std::sin(frame_from_base.theta() / 2), std::cos(frame_from_base.theta() / 2));
+}
+
+double sigma(double variance) {
+  return std::sqrt(std::max(variance, 0.0));
+}
+
+}  // namespace
+
+std::string tum_text(std::span<const TimedPose> path) {
+  std::string text;
+  for (const TimedPose& pose : path)
+    append_tum_line(text, pose.time, pose.frame_from_base);
+  return text;
+}
+
+std::string tum_text(std::span<const EstimatedPose> path) {
+  std::string text;
+  for (const EstimatedPose& pose : path)
+    append_tum_line(text, pose.time, pose.map_from_base);
+  return text;
+}
+
+std::string covariance_csv_text(std::span<const EstimatedPose> path) {
+  std::string text = "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n";
+  for (const EstimatedPose& pose : path) {
+    const Seconds t{pose.time};
+    const Eigen::Matrix3d& c = pose.covariance;
+    fmt::format_to(std::back_inserter(text),
+                   "{}.{:06d},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{}\n", t.whole, t.micro,
+                   c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2),
+                   static_cast<int>(pose.health));
+  }
+  return text;
+}
+
+std::string markers_csv_text(std::vector<Landmark> landmarks) {
+  std::sort(landmarks.begin(), landmarks.end(), [](const Landmark& a, const Landmark& b) {
+    return std::tie(a.id, a.instance) < std::tie(b.id, b.instance);
+  });
+  std::string text =
+      "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,"
+      "state\n";
+  for (const Landmark& landmark : landmarks) {
+    const Se2& pose = landmark.map_from_marker;
+    const Eigen::Matrix3d& c = landmark.covariance;
+    fmt::format_to(
+        std::back_inserter(text), "{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n",
+        landmark.id, landmark.instance, pose.x(), pose.y(), pose.theta(), sigma(c(0, 0)),
+        sigma(c(1, 1)), sigma(c(2, 2)), landmark.sightings, static_cast<int>(landmark.state));
+  }
+  return text;
+}
+
+}  // namespace waymark::viewer

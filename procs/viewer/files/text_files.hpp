@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Trajectories and markers as text, for people's scripts and for the evaluation.
+#pragma once
+
+#include "viewer/core/scene/scene.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace waymark::viewer {
+
+/// TUM format: `t x y z qx qy qz qw`, one line per pose, z = 0, t [s] with six decimals.
+std::string tum_text(std::span<const TimedPose> path);
+std::string tum_text(std::span<const EstimatedPose> path);
+
+/// `t,cxx,cxy,cxt,cyy,cyt,ctt,health`: covariance of (x, y, theta) in the map for each line of the
+/// trajectory [m^2, m rad, rad^2]; health as the number
+/// in lcmtypes/slam_estimate_t.lcm, so that all columns are numbers.
+std::string covariance_csv_text(std::span<const EstimatedPose> path);
+
+/// `id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state`, by id and
+/// instance.
+std::string markers_csv_text(std::vector<Landmark> landmarks);
+
+}  // namespace waymark::viewer

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The run sub-command on a folder as a run leaves it.
+#include "evaluate/commands.hpp"
+#include "evaluate/run/report.hpp"
+#include "unit/tools/evaluate/map/drawn_map.hpp"
+#include "unit/tools/temporary_folder.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace waymark::evaluate {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const Output kQuietly{false, false};
+
+/// A drive of 8 m from x = 1 m; the estimate's steps are longer by a factor.
+std::string tum(double x0_m, double factor) {
+  std::string text;
+  for (int i = 0; i <= 80; ++i)
+    text += fmt::format("{:.6f} {:.6f} 0 0 0 0 0 1\n", 0.2 * i, x0_m + factor * 0.1 * i);
+  return text;
+}
+
+std::string pgm(const MapImage& map) {
+  std::string text = fmt::format("P5\n{} {}\n255\n", map.width_px, map.height_px);
+  for (int y = map.height_px - 1; y >= 0; --y) {
+    for (int x = 0; x < map.width_px; ++x)
+      text += map.at(x, y) == Cell::kFree       ? '\xfe'
+              : map.at(x, y) == Cell::kOccupied ? '\0'
+                                                : '\xcd';
+  }
+  return text;
+}
+
+void add_estimator(const TemporaryFolder& run, const std::string& name, double length_px,
+                   double factor) {
+  run.file(name + "/trajectory.tum", tum(0.0, factor));
+  run.file(name + "/map.pgm", pgm(draw({230, 61, length_px}, straight_shape(7, 30, 0))));
+  run.file(name + "/map.yaml",
+           "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
+           "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+}
+
+void add_truth(const TemporaryFolder& run) {
+  run.file("scenario.toml", "[world]\nlength_m = 10\n");
+  run.file("truth.tum", tum(1.0, 1.0));
+  run.file("truth_markers.csv", "id,instance,x_m,y_m,yaw_rad\n0,0,4,1,-1.5708\n1,0,8,1,-1.5708\n");
+}
+
+Json json_in(const std::filesystem::path& file) {
+  return Json::parse(read_text(file));
+}
+
+TEST(Run, WritesMetricsAndTheTable) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "waymark", 200, 1.0);
+  add_estimator(run, "odometry", 202, 1.01);
+  add_estimator(run, "marker_matching", 200, 1.005);
+  run.file("waymark/markers.csv",
+           "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings\n"
+           "0,0,3.02,1,-1.5708,0.1,0.1,0.1,7\n");
+  run.file("waymark/config.toml", "[slam]\nseed = 7\n");
+  run.file("waymark/timings.json", "{\"scan_ms\": 1.5}");
+  run.file("waymark/covariance.csv",
+           "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n0.2,0.01,0,0,0.01,0,0.01,2\n");
+
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+
+  const Json waymark = json_in(run.path() / "waymark/metrics.json");
+  EXPECT_EQ(waymark["length_px"], 200.0);
+  EXPECT_EQ(waymark["accuracy_percent"], 100.0);
+  EXPECT_EQ(waymark["ate_origin_m"], 0.0);
+  EXPECT_EQ(waymark["marker_error_mean_m"], 0.02);
+  EXPECT_EQ(waymark["markers_missing"], 1);
+  EXPECT_EQ(waymark["nees_poses"], 1);
+  EXPECT_EQ(waymark["timings"]["scan_ms"], 1.5);
+  const Json odometry = json_in(run.path() / "odometry/metrics.json");
+  EXPECT_EQ(odometry["accuracy_percent"], 99.0);
+  EXPECT_EQ(odometry["along_max_m"], 0.08);
+  EXPECT_TRUE(odometry["nees_mean"].is_null());
+
+  const Json results = json_in(run.path() / "results.json");
+  ASSERT_EQ(results["estimators"].size(), 3u);
+  EXPECT_EQ(results["estimators"][0]["estimator"], "odometry");
+  EXPECT_EQ(results["estimators"][1]["estimator"], "marker_matching");
+  EXPECT_EQ(results["estimators"][2]["config_toml"], "[slam]\nseed = 7\n");
+  EXPECT_EQ(results["scenario_toml"], "[world]\nlength_m = 10\n");
+  const std::string table = read_text(run.path() / "results.md");
+  EXPECT_THAT(table, HasSubstr("| marker_matching | 0.05 m/pixel | 10.0 m          | 200 pixel   "
+                               "| 10.00 m    | 100.00 % | 0.023 m    | 0.50 "));
+}
+
+TEST(Run, AFaultyRunIsNotTakenForACleanOne) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "waymark", 200, 1.0);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_THAT(read_text(run.path() / "results.md"), Not(HasSubstr("Faults")));
+  EXPECT_TRUE(json_in(run.path() / "results.json")["faults_toml"].is_null());
+
+  run.file("variant_applied.toml", "[[variant]]\nname = \"ghosts\"\n");
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("Faults were put into"));
+  EXPECT_EQ(json_in(run.path() / "results.json")["faults_toml"],
+            "[[variant]]\nname = \"ghosts\"\n");
+}
+
+TEST(Run, ANeesThatSaysOnlyThatItIsHugeIsAPowerOfTen) {
+  EstimatorResult calibrated{};
+  calibrated.nees = Nees{.poses = 1, .mean = 999.0, .share_in_band = 0.0};
+  EstimatorResult overconfident{};
+  overconfident.nees = Nees{.poses = 1, .mean = 12'581'008'748.5, .share_in_band = 0.0};
+  const std::string table = results_table({calibrated, overconfident});
+  EXPECT_THAT(table, HasSubstr("| 999.00 |"));
+  EXPECT_THAT(table, HasSubstr("| 1e+10  |"));
+}
+
+TEST(Run, AFinalTrajectoryHasItsOwnFiguresAndRow) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "gmapping", 200, 1.01);
+  add_estimator(run, "odometry", 202, 1.02);
+  run.file("gmapping/trajectory_final.tum", tum(0.0, 1.0));
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  const Json gmapping = json_in(run.path() / "gmapping/metrics.json");
+  EXPECT_GT(gmapping["ate_origin_m"], 0.01);
+  EXPECT_EQ(gmapping["final_ate_origin_m"], 0.0);
+  EXPECT_EQ(gmapping["final_poses"], 81);
+  EXPECT_TRUE(json_in(run.path() / "odometry/metrics.json")["final_ate_origin_m"].is_null());
+  const std::string table = read_text(run.path() / "results.md");
+  EXPECT_THAT(table, HasSubstr("| gmapping, final |"));
+  EXPECT_THAT(table, Not(HasSubstr("odometry, final")));
+}
+
+TEST(Run, RowsStandInTheTablesOrder) {
+  const TemporaryFolder run;
+  for (const char* name : {"zeta", "waymark", "marker_matching_blank", "marker_matching", "alpha",
+                           "gmapping_turtlebot3", "gmapping", "odometry"})
+    run.file(std::string{name} + "/trajectory.tum", "");
+  run.file("logs/slam.log", "");
+  EXPECT_THAT(estimators_in(run.path()),
+              ElementsAre("odometry", "gmapping", "gmapping_turtlebot3", "marker_matching",
+                          "marker_matching_blank", "waymark", "alpha", "zeta"));
+}
+
+TEST(Run, WithoutTruthThereAreLengthsOnly) {
+  const TemporaryFolder run;
+  add_estimator(run, "odometry", 200, 1.0);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  const Json metrics = json_in(run.path() / "odometry/metrics.json");
+  EXPECT_EQ(metrics["length_m"], 10.0);
+  EXPECT_TRUE(metrics["accuracy_percent"].is_null());
+  EXPECT_TRUE(metrics["ate_origin_m"].is_null());
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("No truth.tum: lengths only"));
+}
+
+TEST(Run, AnEstimatorWithoutAMapIsAFailureOfThatRowOnly) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "odometry", 200, 1.0);
+  run.file("waymark/trajectory.tum", tum(0.0, 1.0));
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
+  const Json waymark = json_in(run.path() / "waymark/metrics.json");
+  EXPECT_TRUE(waymark["length_px"].is_null());
+  EXPECT_EQ(waymark["ate_origin_m"], 0.0);
+  EXPECT_THAT(waymark["problems"][0].get<std::string>(), HasSubstr("map.yaml: cannot be read"));
+  EXPECT_EQ(run_run(run.path(), {"odometry"}, {}, kQuietly), kFine);
+}
+
+TEST(Run, SkippedLinesFailUnlessTolerated) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "odometry", 200, 1.0);
+  run.file("odometry/trajectory.tum", tum(0.0, 1.0) + "garbage\n");
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
+  EXPECT_EQ(run_run(run.path(), {}, {}, Output{false, true}), kFine);
+  EXPECT_EQ(json_in(run.path() / "odometry/metrics.json")["skipped"].size(), 1u);
+}
+
+TEST(Run, TruthOfAnotherRunIsAProblem) {
+  const TemporaryFolder run;
+  add_estimator(run, "odometry", 200, 1.0);
+  run.file("truth.tum", "1000 0 0 0 0 0 0 1\n1001 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("within the truth's time span"));
+  EXPECT_THAT(read_text(run.path() / "results.json"), Not(HasSubstr("nan")));
+}
+
+TEST(Run, AWorldWithCornersHasNoLength) {
+  const TemporaryFolder run;
+  add_truth(run);
+  run.file("scenario.toml", "[world]\nlayout = \"L\"\nlength_m = 10\n");
+  add_estimator(run, "waymark", 200, 1.0);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  const Json metrics = json_in(run.path() / "waymark/metrics.json");
+  EXPECT_TRUE(metrics["length_m"].is_null());
+  EXPECT_TRUE(metrics["accuracy_percent"].is_null());
+  EXPECT_EQ(metrics["ate_origin_m"], 0.0);
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("Not one straight corridor"));
+
+  EvaluationOptions options{};
+  options.true_length_m = 10.0;  // whoever says so wants it
+  EXPECT_EQ(run_run(run.path(), {}, options, kQuietly), kFine);
+  EXPECT_EQ(json_in(run.path() / "waymark/metrics.json")["accuracy_percent"], 100.0);
+}
+
+TEST(Run, ExpectationsThatAreNoneAreNamedWithFileAndKey) {
+  const TemporaryFolder run;
+  add_estimator(run, "odometry", 200, 1.0);
+  const auto problem_of = [&](const std::string& text) -> std::string {
+    run.file("expect.toml", text);
+    try {
+      run_run(run.path(), {}, {}, kQuietly);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(problem_of(""), "") << "nothing is expected";
+  EXPECT_EQ(problem_of("[expect]\nate_origin_m = 0.1\n"), "");
+  const std::string file = (run.path() / "expect.toml").string();
+  EXPECT_EQ(problem_of("[expect]\nate_orgin_m = 0.1\n"),
+            file + ":2: expect.ate_orgin_m: unknown key; did you mean expect.ate_origin_m?");
+  EXPECT_EQ(problem_of("[expected]\nate_origin_m = 0.1\n"),
+            file + ":1: expected: unknown key; did you mean expect?");
+  EXPECT_THAT(problem_of("[expect]\nate_origin_m = true\n"),
+              HasSubstr(file + ":2: expect.ate_origin_m: got true, expected a number"));
+  for (const std::string number : {"nan", "inf", "-inf"})
+    EXPECT_THAT(problem_of("[expect]\nate_origin_m = " + number + "\n"),
+                HasSubstr(file + ":2: expect.ate_origin_m: got " + number));
+}
+
+TEST(Run, WhatCannotBeEvaluatedAtAllIsAUsageError) {
+  const TemporaryFolder run;
+  EXPECT_THROW(run_run(run.path() / "none", {}, {}, kQuietly), InputError);
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+  add_estimator(run, "odometry", 200, 1.0);
+  EXPECT_THROW(run_run(run.path(), {"gmapping"}, {}, kQuietly), InputError);
+  run.file("scenario.toml", "[world\n");
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+  run.file("scenario.toml", "[world]\nlength_m = \"long\"\n");
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+}
+
+}  // namespace
+}  // namespace waymark::evaluate

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The summary of a sweep's folder, with runs that were reached, missed, failed and never done.
+#include "evaluate/commands.hpp"
+#include "evaluate/sweep/sweep_report.hpp"
+#include "unit/tools/temporary_folder.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace waymark::evaluate {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string metrics(double ate_m, double accuracy_percent, bool hit) {
+  return fmt::format(
+      R"({{"ate_origin_m": {}, "accuracy_percent": {}, "along_rmse_m": null,
+           "expectations": [{{"figure": "ate_origin_m", "limit": 0.1, "got": {}, "hit": {}}}]}})",
+      ate_m, accuracy_percent, ate_m, hit);
+}
+
+/// Two scenarios; seed 3 of `dark` failed to be recorded, seed 2 of its row was never done.
+struct SweptFolder {
+  TemporaryFolder folder{};
+
+  SweptFolder() {
+    std::string plan;
+    for (const char* scenario : {"plain", "dark"}) {
+      for (const char* row : {"odometry", "waymark"}) {
+        for (const char* seed : {"1", "2", "3"})
+          plan += fmt::format("{0}\t{2}\t{0}/seed-{2}\t{1}\tagain {0} {2}\n", scenario, row, seed);
+      }
+    }
+    folder.file("plan/runs.tsv", plan);
+    for (int seed = 1; seed <= 3; ++seed) {
+      const std::string run = fmt::format("plain/seed-{}", seed);
+      folder.file(run + "/odometry/metrics.json",
+                  R"({"ate_origin_m": 0.4, "accuracy_percent": 99.0, "expectations": []})");
+      folder.file(run + "/waymark/metrics.json", metrics(0.04 * seed, 100.1, seed < 3));
+      folder.file(run + "/waymark/stations.csv",
+                  "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,"
+                  "sigma_heading_rad,health\n"
+                  "1,10,0.1,0,0,3,0.1,0.1,0.1,2\n2,20,0.1,0,0,99,0.1,0.1,0.1,2\n");
+    }
+    folder.file("dark/seed-1/odometry/metrics.json", metrics(0.5, 98.0, true));
+    folder.file("dark/seed-1/waymark/failed", "replay ended with code 139; logs are x/logs/y.*\n");
+    folder.file("dark/seed-2/odometry/metrics.json", metrics(0.5, 98.0, true));
+    folder.file("dark/seed-3/failed", "recording ended with code 3; logs are z\n");
+  }
+
+  std::vector<SweepRow> rows() const { return sweep_rows(read_runs(folder.path())); }
+};
+
+TEST(Sweep, RowsHaveMedianWorstFailuresAndMisses) {
+  const SweptFolder sweep;
+  const auto rows = sweep.rows();
+  ASSERT_EQ(rows.size(), 4u);
+  const SweepRow& waymark = rows[1];
+  EXPECT_EQ(waymark.row, "waymark");
+  EXPECT_EQ(waymark.failures(), 0u);
+  EXPECT_EQ(waymark.misses(), 1u);
+  EXPECT_NEAR(waymark.figures("ate_origin_m").median.value(), 0.08, 1e-12);
+  EXPECT_NEAR(waymark.figures("ate_origin_m").worst.value(), 0.12, 1e-12);
+  EXPECT_NEAR(waymark.figures("length_error_percent").worst.value(), 0.1, 1e-9);
+  EXPECT_NEAR(waymark.figures("ate_over_odometry").worst.value(), 0.3, 1e-12);
+  EXPECT_FALSE(waymark.figures("along_rmse_m").median);
+  EXPECT_EQ(waymark.worst_run()->plan.seed, "3");
+  EXPECT_EQ(share_in_band(waymark.stations), 0.5);
+}
+
+TEST(Sweep, FailedAndUnfinishedRunsAreCountedAndExplained) {
+  const SweptFolder sweep;
+  const SweepRow dark = sweep.rows()[3];
+  EXPECT_EQ(dark.failures(), 3u);
+  EXPECT_EQ(dark.worst_run(), nullptr);
+  EXPECT_THAT(dark.runs[0].failure, HasSubstr("code 139; logs are x/logs/y"));
+  EXPECT_THAT(dark.runs[1].failure, HasSubstr("not finished; logs are in"));
+  EXPECT_THAT(dark.runs[2].failure, HasSubstr("recording ended with code 3"));
+}
+
+TEST(Sweep, TheTableNamesOneCommandPerSeedToLookAt) {
+  const SweptFolder sweep;
+  const std::string table = sweep_markdown(sweep.rows());
+  EXPECT_THAT(table, HasSubstr("| plain | waymark | 3 | 0.10 / 0.10 | 0.080 / 0.120 |"));
+  EXPECT_THAT(table, HasSubstr("| 0 | 1 | ate_origin_m 0.1 | MISS |"));
+  EXPECT_THAT(table, HasSubstr("# plain, waymark, seed 3: ate_origin_m 0.12 (limit 0.1)\n"
+                               "again plain 3\n"));
+  EXPECT_THAT(table, HasSubstr("seed 1: FAILED: replay ended with code 139"));
+  EXPECT_THAT(table, Not(HasSubstr("again plain 1")));
+}
+
+/// Four seeds of `plain`; the last misses. What is expected of all seeds is in every run's file.
+std::vector<SweepRow> rows_with(const std::string& expected_of_seeds) {
+  const TemporaryFolder folder;
+  std::string plan;
+  for (int seed = 1; seed <= 4; ++seed) {
+    plan += fmt::format("plain\t{0}\tplain/seed-{0}\twaymark\tagain\n", seed);
+    const std::string run = fmt::format("plain/seed-{}/waymark", seed);
+    nlohmann::json json = nlohmann::json::parse(metrics(0.05, 100.1, seed < 4));
+    json["expected_of_seeds"] = nlohmann::json::parse(expected_of_seeds);
+    json["marker_map_share"] = 0.9 + 0.01 * seed;
+    folder.file(run + "/metrics.json", json.dump());
+    folder.file(run + "/stations.csv",
+                "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,"
+                "sigma_heading_rad,health\n"
+                "1,10,0.1,0,0,3,0.1,0.1,0.1,2\n2,20,0.1,0,0,99,0.1,0.1,0.1,2\n");
+  }
+  folder.file("plan/runs.tsv", plan);
+  return sweep_rows(read_runs(folder.path()));
+}
+
+TEST(Sweep, AllSeedsCountUnlessTheScenarioSaysHowMany) {
+  EXPECT_FALSE(rows_with("{}")[0].is_hit());
+  EXPECT_TRUE(rows_with(R"({"seeds_share": 0.75})")[0].is_hit());
+  EXPECT_FALSE(rows_with(R"({"seeds_share": 0.8})")[0].is_hit());
+  EXPECT_THAT(sweep_markdown(rows_with(R"({"seeds_share": 0.75})")),
+              HasSubstr("| ate_origin_m 0.1, seeds_share 0.75 | hit |"));
+}
+
+TEST(Sweep, StationsOutsideOfTheirBandAreAMiss) {
+  const std::string wanted = R"({{"seeds_share": 0.75, "nees_in_band_share": {}}})";
+  EXPECT_TRUE(rows_with(fmt::format(fmt::runtime(wanted), 0.5))[0].is_hit());
+  EXPECT_FALSE(rows_with(fmt::format(fmt::runtime(wanted), 0.6))[0].is_hit());
+}
+
+TEST(Sweep, TheWorstIsTheSmallestWhereMoreIsBetter) {
+  const Figures figures = rows_with("{}")[0].figures("marker_map_share");
+  EXPECT_NEAR(figures.worst.value(), 0.91, 1e-12);
+  EXPECT_NEAR(figures.median.value(), 0.925, 1e-12);
+}
+
+TEST(Sweep, AllFilesAreWritten) {
+  const SweptFolder sweep;
+  EXPECT_EQ(run_sweep(sweep.folder.path(), {}), kFine);
+  const std::string csv = read_text(sweep.folder.path() / "results.csv");
+  EXPECT_THAT(csv, HasSubstr("\nplain,waymark,3,0,1,0.5,"));
+  EXPECT_THAT(read_text(sweep.folder.path() / "runs.csv"),
+              HasSubstr("\ndark,waymark,3,dark/seed-3/waymark,1,0,"));
+  EXPECT_THAT(read_text(sweep.folder.path() / "index.html"),
+              HasSubstr("src=\"plain/seed-3/waymark/map.png\""));
+  EXPECT_TRUE(std::filesystem::exists(sweep.folder.path() / "plots/plots.gp"));
+}
+
+TEST(Sweep, WithoutAPlanThereIsNoSweep) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(read_runs(folder.path()), InputError);
+  folder.file("plan/runs.tsv", "plain 1 x\n");
+  EXPECT_THROW(read_runs(folder.path()), InputError);
+}
+
+}  // namespace
+}  // namespace waymark::evaluate

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "unit/viewer/drawn_scene.hpp"
+#include "viewer/core/annotations/map_annotations.hpp"
+#include "viewer/core/drawing/palette.hpp"
+#include "viewer/core/layers/map_layers.hpp"
+#include "viewer/core/layers/marker_labels.hpp"
+#include "viewer/core/painters/layer_painter.hpp"
+#include "viewer/core/painters/map_painter.hpp"
+#include "viewer/core/painters/plain_painter.hpp"
+#include "viewer/core/painters/scan_painter.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace waymark::viewer {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Ge;
+using ::testing::Le;
+using ::testing::SizeIs;
+
+constexpr MapPageStyle kStyle{};
+
+Scene scene_of(const GridMap& map) {
+  Scene scene;
+  if (!map.empty()) put_cells(scene.map, map);
+  return scene;
+}
+
+bool contains_colour(const cv::Mat& image, const cv::Scalar& colour) {
+  cv::Mat mask;
+  cv::inRange(image, colour, colour, mask);
+  return cv::countNonZero(mask) > 0;
+}
+
+TEST(PaintMap, ALongCorridorIsFoldedIntoReadableStrips) {
+  const Scene scene = corridor_scene(50.0);
+
+  const MapPage page = lay_out(content_of(scene), kStyle);
+
+  EXPECT_THAT(page.strips, SizeIs(AllOf(Ge(2U), Le(4U))));
+  EXPECT_TRUE(page.overview);
+  EXPECT_GE(page.strips.front().view.px_per_m, 110.0);
+  EXPECT_LE(page.size_px.width, kStyle.page_width_px);
+  EXPECT_LE(page.size_px.height, kStyle.page_height_px + 800);
+}
+
+TEST(PaintMap, StripsCoverTheWholeMap) {
+  const PageContent content = content_of(corridor_scene(50.0));
+  const MapPage page = lay_out(content, kStyle);
+  const Box box = bounds(content, Se2{}, Odometry::kLeftOut);
+
+  EXPECT_LT(page.strips.front().view.box.left_m, box.left_m);
+  EXPECT_GT(page.strips.back().view.box.right_m, box.right_m);
+  for (std::size_t i = 1; i < page.strips.size(); ++i)
+    EXPECT_LT(page.strips[i].view.box.left_m, page.strips[i - 1].view.box.right_m);
+  for (const Panel& strip : page.strips) {
+    EXPECT_GE(strip.page_px.x, 0);
+    EXPECT_LE(strip.page_px.br().x, page.size_px.width);
+    EXPECT_LE(strip.page_px.br().y, page.legend_px.y);
+  }
+}
+
+TEST(PaintMap, ShortCorridorsRoomsAndRingsStayInOnePiece) {
+  EXPECT_THAT(lay_out(content_of(corridor_scene(10.0)), kStyle).strips, SizeIs(1));
+  EXPECT_THAT(lay_out(content_of(scene_of(room(-2, -2, 3, 3))), kStyle).strips, SizeIs(1));
+  EXPECT_THAT(lay_out(content_of(scene_of(room(-1, -1, 49, 49))), kStyle).strips, SizeIs(1));
+}
+
+TEST(PaintMap, AStandingCorridorIsLaidDown) {
+  const GridMap standing = room(-1, -1, 1, 49);
+  EXPECT_NEAR(std::abs(view_from_map(standing).theta()), std::numbers::pi / 2, 1e-3);
+  EXPECT_GT(lay_out(content_of(scene_of(standing)), kStyle).strips.size(), 1U);
+  EXPECT_EQ(view_from_map(room(-1, -1, 49, 1)).theta(), 0.0);
+}
+
+TEST(PaintMap, ShowsEverythingInItsColour) {
+  const cv::Mat page = paint_map(corridor_scene(50.0), kStyle);
+  for (const cv::Scalar& colour :
+       {palette::kEstimated, palette::kTrue, palette::kOdometry, palette::kMarker,
+        palette::kInitialising, palette::kDegenerate}) {
+    EXPECT_TRUE(contains_colour(page, colour)) << colour;
+  }
+  EXPECT_FALSE(contains_colour(page, palette::kLost));
+}
+
+TEST(PaintMap, ShowsLostStretchesAndMovedMarkersInMapAndLegend) {
+  Scene scene = corridor_scene(50.0);
+  EXPECT_FALSE(contains_colour(paint_map(scene, kStyle), palette::kMoved));
+  scene.estimates[1000].health = Health::kLost;
+  scene.landmarks[3].state = LandmarkState::kMoved;
+  const cv::Mat page = paint_map(scene, kStyle);
+  EXPECT_TRUE(contains_colour(page, palette::kLost));
+  EXPECT_TRUE(contains_colour(page, palette::kMoved));
+}
+
+TEST(PaintMap, TheLegendNamesWhatIsThereAndIsNoLongerThanNeeded) {
+  const int height_px = paint_map(corridor_scene(50.0), kStyle).rows;
+  Scene scene = corridor_scene(50.0);
+  for (EstimatedPose& pose : scene.estimates)
+    pose.weak_axis = WeakAxis{.direction = {1, 0, 0}, .source = WeakAxisSource::kNothing};
+  scene.final_trajectory = {{scene.estimates.front().time, {0, 0, 0}},
+                            {scene.estimates.back().time, {48, 0, 0}}};
+  scene.landmarks[0].state = LandmarkState::kTentative;
+  scene.landmarks[3].state = LandmarkState::kMoved;
+  scene.estimates[1000].health = Health::kLost;
+  const cv::Mat page = paint_map(scene, kStyle);
+  EXPECT_GT(page.rows, height_px);
+  EXPECT_LT(page.rows, height_px + 200);
+}
+
+TEST(Heading, StaysInItsAreaHoweverMuchThereIsToTell) {
+  PageContent content = content_of(corridor_scene(50.0));
+  for (std::size_t i = 0; i < content.estimates.size(); ++i) {
+    content.estimates[i].health = static_cast<Health>(i % 5);
+    content.estimates[i].weak_axis =
+        WeakAxis{.direction = {1, 0, 0}, .source = static_cast<WeakAxisSource>(i % 4)};
+  }
+  cv::Mat_<Colour> page(160, 1200, Colour{255, 255, 255});
+  const cv::Rect area{60, 0, 1080, 158};
+  draw_heading(page, area, "corridor", content, Se2{});
+  cv::Mat drawn;
+  cv::inRange(page, cv::Scalar{0, 0, 0}, cv::Scalar{250, 250, 250}, drawn);
+  const cv::Rect box = cv::boundingRect(drawn);
+  EXPECT_GT(box.width, 1000);
+  EXPECT_GE(box.x, area.x - 2);
+  EXPECT_LE(box.br().x, area.br().x + 2);
+}
+
+TEST(PaintMap, TheFinalTrajectoryIsDashedOverTheOthers) {
+  const View view{.box = {0, -1, 4, 1}, .px_per_m = 50.0};
+  PageContent content;
+  content.estimates = {{.map_from_base = {0, 0, 0}}, {.map_from_base = {4, 0, 0}}};
+  content.final_in_map = {{{}, {0, 0, 0}}, {{}, {4, 0, 0}}};
+  cv::Mat_<Colour> panel(100, 200, Colour{255, 255, 255});
+  draw_paths(panel, view, content, {});
+  int dashes = 0, gaps = 0;
+  for (int x = 0; x < panel.cols; ++x) {
+    dashes += panel(50, x) == to_colour(palette::kFinal) ? 1 : 0;
+    gaps += panel(50, x) == to_colour(palette::kEstimated) ? 1 : 0;
+  }
+  EXPECT_GT(dashes, 60);
+  EXPECT_GT(gaps, 30);
+}
+
+TEST(PaintMap, WorksWithoutAnything) {
+  const cv::Mat page = paint_map(Scene{}, kStyle);
+  EXPECT_GE(page.cols, 800);
+  EXPECT_FALSE(contains_colour(page, palette::kTrue)) << "no truth, no entry in the legend";
+}
+
+TEST(PaintMap, WorksForOneCellAndForWildNumbers) {
+  EXPECT_FALSE(paint_map(scene_of(drawn_map({"#"})), kStyle).empty());
+
+  Scene scene = corridor_scene(10.0);
+  const Timestamp later = scene.estimates.back().time + Duration{1};
+  scene.estimates.push_back({.time = later, .map_from_base = {1e300, -1e300, 0}});
+  scene.estimates.back().covariance.diagonal() << 1e200, -1.0, 0.0;
+  scene.final_trajectory = {{later, {1e300, std::nan(""), 0}}, {later, {0, -1e300, 0}}};
+  scene.landmarks.push_back({.id = 1 << 30, .map_from_marker = {-1e12, 3, 0}});
+  scene.particles.emplace_back(1e30, 0, 0);
+  const cv::Mat page = paint_map(scene, kStyle);
+  EXPECT_LE(page.cols, kStyle.page_width_px);
+}
+
+TEST(PaintMap, PosesFarFromTheMapDoNotShrinkIt) {
+  Scene scene = corridor_scene(10.0);
+  const double px_per_m = lay_out(content_of(scene), kStyle).strips.front().view.px_per_m;
+  scene.landmarks.push_back({.id = 99, .map_from_marker = {500.0, 0.0, 0.0}});
+  EXPECT_EQ(lay_out(content_of(scene), kStyle).strips.front().view.px_per_m, px_per_m);
+}
+
+TEST(Labels, LieInsideThePanelOffTheCorridorAndApart) {
+  const PageContent content = content_of(corridor_scene(50.0));
+  const MapPage page = lay_out(content, kStyle);
+  std::size_t count = 0;
+  for (const Panel& strip : page.strips) {
+    const auto labels = place_labels(content.landmarks, content.map, strip.view, 20.0);
+    const cv::Rect2d panel{cv::Point2d{0, 0}, cv::Size2d{strip.page_px.size()}};
+    const cv::Point2d lower_left = strip.view({-1.0, -1.0});
+    const cv::Point2d upper_right = strip.view({49.0, 1.0});
+    const cv::Rect2d corridor{lower_left, upper_right};
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      EXPECT_NEAR((labels[i].box_px & panel).area(), labels[i].box_px.area(), 1e-6);
+      EXPECT_LT((labels[i].box_px & corridor).area(), 0.02 * labels[i].box_px.area());
+      for (std::size_t k = 0; k < i; ++k)
+        EXPECT_EQ((labels[i].box_px & labels[k].box_px).area(), 0.0);
+    }
+    count += labels.size();
+  }
+  EXPECT_GE(count, content.landmarks.size()) << "each marker has a label in some strip";
+}
+
+TEST(Labels, MarkersSideBySideGetLabelsSideBySide) {
+  std::vector<Landmark> landmarks;
+  for (int i = 0; i < 6; ++i)
+    landmarks.push_back({.id = 100 + i, .map_from_marker = {0.1 * i, 1.0, -1.5707963}});
+  const GridMap map = room(-3, -1, 3, 1);
+  const View view{.box = {-3.5, -2.0, 3.5, 2.5}, .px_per_m = 100.0};
+  const auto labels = place_labels(landmarks, map, view, 16.0);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_EQ((labels[i].box_px & labels[k].box_px).area(), 0.0) << i << " " << k;
+  }
+}
+
+TEST(Labels, TellInstancesApart) {
+  EXPECT_EQ(label_text({.id = 0, .instance = 0}), "0");
+  EXPECT_EQ(label_text({.id = 7, .instance = 2}), "7.2");
+  EXPECT_EQ(label_text({.id = 7, .state = LandmarkState::kMoved}), "7 moved");
+}
+
+TEST(FreeExtent, CountsCellsBetweenTheWalls) {
+  const auto extent = free_extent(drawn_map({
+                                      "########",
+                                      "#......#",
+                                      "#......#",
+                                      "#......#",
+                                      "########",
+                                  }),
+                                  Se2{});
+  ASSERT_TRUE(extent);
+  EXPECT_EQ(extent->length_px, 6.0);
+  EXPECT_NEAR(extent->length_m, 0.3, 1e-12);
+  EXPECT_NEAR(extent->width_m, 0.15, 1e-12);
+  EXPECT_FALSE(free_extent(GridMap{}, Se2{}));
+}
+
+TEST(FreeExtent, OfTheDefaultCorridorIsItsLength) {
+  const auto extent = free_extent(room(-1, -1, 49, 1), Se2{});
+  EXPECT_NEAR(extent->length_m, 50.0, 1e-9);
+  EXPECT_NEAR(extent->width_m, 2.0, 1e-9);
+}
+
+TEST(MarkerLayer, FindsTheGroupsOfCells) {
+  const GridMap map = drawn_map({
+      "#000####33##",
+      "#..........#",
+      "#..........#",
+      "##5####33###",
+  });
+  const auto landmarks = landmarks_of_cells(map);
+  ASSERT_THAT(landmarks, SizeIs(2)) << "a lone 5 is noise; the 3s are too near to tell apart";
+  EXPECT_EQ(landmarks[0].id, 0);
+  EXPECT_NEAR(landmarks[0].map_from_marker.x(), 2.5 * kCell_m, 1e-9);
+  EXPECT_LT(landmarks[0].map_from_marker.theta(), 0.0) << "faces the free cells below";
+  EXPECT_EQ(landmarks[1].id, 3);
+}
+
+TEST(MarkerLayer, PaintsEachIdInItsColour) {
+  GridMap map = room(-1, -1, 9, 1);
+  mark_cells(map, {3, 1.02, 0}, 0);
+  mark_cells(map, {7, 1.02, 0}, 17);
+  const cv::Mat picture = paint_marker_layer(map, "test", kStyle);
+  EXPECT_TRUE(contains_colour(picture, colour_of_id(0)));
+  EXPECT_TRUE(contains_colour(picture, colour_of_id(17)));
+  EXPECT_FALSE(contains_colour(picture, colour_of_id(1)));
+  EXPECT_FALSE(paint_marker_layer({}, "empty", kStyle).empty());
+}
+
+TEST(Palette, IdsDifferInColour) {
+  for (int a = 0; a < 60; ++a) {
+    for (int b = 0; b < a; ++b)
+      EXPECT_GT(cv::norm(colour_of_id(a) - colour_of_id(b)), 8.0) << a << " " << b;
+  }
+}
+
+TEST(PaintPlain, HasOnePixelPerCellHighestYFirst) {
+  const auto image = paint_plain(drawn_map({"#. ", "..."}), {});
+  ASSERT_EQ(image.size(), (cv::Size{3, 2}));
+  EXPECT_EQ(image(0, 0), kOccupiedGrey);
+  EXPECT_EQ(image(1, 0), kFreeGrey);
+  EXPECT_EQ(image(0, 2), kUnknownGrey);
+}
+
+TEST(PaintScan, HasTheWishedSizeAndTheMarkersColours) {
+  const cv::Mat picture = paint_scan(corridor_scan(), 700);
+  EXPECT_EQ(picture.size(), (cv::Size{700, 700}));
+  EXPECT_TRUE(contains_colour(picture, colour_of_id(4)));
+  EXPECT_TRUE(contains_colour(picture, colour_of_id(5)));
+  EXPECT_EQ(paint_scan({}, 200).size(), (cv::Size{200, 200}));
+}
+
+}  // namespace
+}  // namespace waymark::viewer

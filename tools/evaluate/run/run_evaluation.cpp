@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/run/run_evaluation.hpp"
+
+#include "common/config/config.hpp"
+#include "evaluate/map/wall_thickness.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+namespace waymark::evaluate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// More than the last scan or two outside the truth means that the files are not of one run.
+constexpr double kOutsideShare = 0.05;
+
+std::optional<std::string> text_if_there(const fs::path& file) {
+  if (!fs::exists(file)) return std::nullopt;
+  return read_text(file);
+}
+
+constexpr const char* kOneCorridor = "straight";
+
+/// What the evaluation reads of a scenario.
+struct ScenarioPart {
+  struct World {
+    std::string layout{kOneCorridor};
+    double length_m{50.0};  ///< the default world's
+
+    void describe(Fields& fields) {
+      fields.field("layout", layout, "only a straight corridor has a length");
+      fields.field("length_m", length_m, kPositive, "between the inner faces of the end walls");
+    }
+  };
+
+  World world{};
+  ExpectConfig expect{};
+
+  void describe(Fields& fields) {
+    fields.section("world", world);
+    fields.section("expect", expect);
+  }
+};
+
+ScenarioPart read_scenario(const fs::path& file) {
+  try {
+    return load_part<ScenarioPart>(file);
+  } catch (const ConfigError& error) {
+    throw InputError{error.what()};
+  }
+}
+
+/// The whole file is expectations: a key that is not known is one that nobody would check.
+ExpectConfig read_expectations(const fs::path& file) {
+  try {
+    return load_config<ExpectFile>({{file}, {}}).expect;
+  } catch (const ConfigError& error) {
+    throw InputError{error.what()};
+  }
+}
+
+/// @throws InputError if the file is there and is not JSON.
+std::optional<std::string> json_if_there(const fs::path& file) {
+  std::optional<std::string> text = text_if_there(file);
+  if (text && !nlohmann::json::accept(*text)) throw InputError{file.string() + ": not JSON"};
+  return text;
+}
+
+/// Runs one part of the evaluation; what goes wrong becomes a problem.
+void attempt(std::vector<std::string>& problems, const std::function<void()>& part) {
+  try {
+    part();
+  } catch (const InputError& error) {
+    problems.emplace_back(error.what());
+  }
+}
+
+/// @throws InputError when no pose has a true one.
+std::vector<PosePair> pairs_of(const fs::path& file, const Trajectory& estimate,
+                               const Trajectory& truth) {
+  std::vector<PosePair> pairs = associate(estimate, truth);
+  if (pairs.empty()) throw InputError{file.string() + ": no pose within the truth's time span"};
+  return pairs;
+}
+
+void add_trajectory(const fs::path& dir, const RunTruth& truth, const EvaluationOptions& options,
+                    EstimatorResult& result, Se2& world_from_map) {
+  const Trajectory estimate = read_tum(dir / "trajectory.tum", result.skipped);
+  const std::vector<PosePair> pairs = pairs_of(dir / "trajectory.tum", estimate, *truth.trajectory);
+  result.poses_outside_truth = estimate.size() - pairs.size();
+  if (static_cast<double>(result.poses_outside_truth) >
+      kOutsideShare * static_cast<double>(estimate.size()))
+    result.problems.push_back(fmt::format("{}: {} of {} poses are outside the truth's time span",
+                                          (dir / "trajectory.tum").string(),
+                                          result.poses_outside_truth, estimate.size()));
+  result.trajectory = trajectory_error(pairs, options.alignment, options.world_from_map);
+  world_from_map =
+      options.world_from_map ? *options.world_from_map : align(pairs, Alignment::kOrigin);
+  const fs::path covariance_file = dir / "covariance.csv";
+  std::vector<StampedCovariance> covariances;
+  if (fs::exists(covariance_file)) {
+    covariances = read_covariances(covariance_file, result.skipped);
+    result.nees = nees(pairs, covariances, world_from_map);
+  }
+  result.driven_m = driven_m(pairs);
+  result.stations = stations(pairs, covariances, world_from_map);
+  result.timeline =
+      timeline(pairs, covariances, world_from_map, truth.lifted_t_s, truth.sightings_s);
+}
+
+void add_final_trajectory(const fs::path& dir, const Trajectory& truth,
+                          const EvaluationOptions& options, EstimatorResult& result) {
+  const fs::path file = dir / "trajectory_final.tum";
+  if (!fs::exists(file)) return;
+  const Trajectory estimate = read_tum(file, result.skipped);
+  result.final_trajectory =
+      trajectory_error(pairs_of(file, estimate, truth), options.alignment, options.world_from_map);
+}
+
+/// slam.peak_memory_mb of timings.json.
+std::optional<double> peak_memory_mb(const std::optional<std::string>& timings_json) {
+  if (!timings_json) return std::nullopt;
+  const auto timings = nlohmann::json::parse(*timings_json);
+  const auto pointer = nlohmann::json::json_pointer{"/slam/peak_memory_mb"};
+  if (!timings.contains(pointer) || !timings.at(pointer).is_number()) return std::nullopt;
+  return timings.at(pointer).get<double>();
+}
+
+/// What the figures need that are about the scenario.
+void add_figures_of_scenario(const ExpectConfig& expect, EstimatorResult& result) {
+  const auto memory_mb = peak_memory_mb(result.timings_json);
+  if (memory_mb && result.driven_m.value_or(0.0) > 0.0)
+    result.memory_mb_per_m = *memory_mb / *result.driven_m;
+  if (expect.sigma_growth_to_m > expect.sigma_growth_from_m)
+    result.sigma_growth =
+        sigma_growth(result.stations, expect.sigma_growth_from_m, expect.sigma_growth_to_m);
+  if (is_expected_of(expect, result.name)) result.expect = expect;
+  result.expectations = check_expectations(expect, result);
+}
+
+/// Position in the table.
+std::size_t rank_of(const std::string& name) {
+  constexpr std::array<std::string_view, 4> kFirst{"odometry", "gmapping", "gmapping_turtlebot3",
+                                                   "marker_matching"};
+  const auto found = std::find(kFirst.begin(), kFirst.end(), name);
+  if (found != kFirst.end()) return static_cast<std::size_t>(found - kFirst.begin());
+  if (name.starts_with("marker_matching_")) return kFirst.size();
+  return name == "waymark" ? kFirst.size() + 1 : kFirst.size() + 2;
+}
+
+}  // namespace
+
+RunTruth read_truth(const fs::path& run_dir, const EvaluationOptions& options) {
+  RunTruth truth{};
+  truth.scenario_toml = text_if_there(run_dir / "scenario.toml");
+  if (truth.scenario_toml) {
+    const ScenarioPart scenario = read_scenario(run_dir / "scenario.toml");
+    truth.is_one_corridor = scenario.world.layout == kOneCorridor;
+    if (truth.is_one_corridor) truth.length_m = scenario.world.length_m;
+    truth.expect = scenario.expect;
+  }
+  truth.faults_toml = text_if_there(run_dir / "variant_applied.toml");
+  if (fs::exists(run_dir / "expect.toml"))
+    truth.expect = read_expectations(run_dir / "expect.toml");
+  if (options.true_length_m) {
+    truth.length_m = options.true_length_m;
+    truth.is_one_corridor = true;
+  }
+  if (fs::exists(run_dir / "truth.tum"))
+    truth.trajectory = read_tum(run_dir / "truth.tum", truth.skipped);
+  if (truth.trajectory) truth.lifted_t_s = lifted_t_s(*truth.trajectory);
+  if (truth.lifted_t_s && fs::exists(run_dir / "run.lcm"))
+    truth.sightings_s = sighting_times(run_dir / "run.lcm");
+  if (fs::exists(run_dir / "truth_markers.csv"))
+    truth.markers = read_markers(run_dir / "truth_markers.csv", truth.skipped);
+  if (truth.markers && fs::exists(run_dir / "truth_marker_moves.csv"))
+    truth.markers = with_moves(*truth.markers, run_dir / "truth_marker_moves.csv", truth.skipped);
+  return truth;
+}
+
+std::vector<std::string> estimators_in(const fs::path& run_dir) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator{run_dir}) {
+    if (fs::exists(entry.path() / "trajectory.tum"))
+      names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
+    return std::pair{rank_of(a), a} < std::pair{rank_of(b), b};
+  });
+  return names;
+}
+
+EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
+                                   const EvaluationOptions& options) {
+  EstimatorResult result{};
+  result.name = dir.filename().string();
+  result.true_length_m = truth.length_m;
+  attempt(result.problems, [&] {
+    const fs::path map_file = dir / "map.yaml";
+    const MapImage map = read_map(map_file);
+    result.wall_cells = wall_thickness_cells(map);
+    if (!truth.is_one_corridor) return;
+    try {
+      result.length = measure_corridor(map);
+    } catch (const InputError& error) {
+      throw InputError{fmt::format("{}: {}", map_file.string(), error.what())};
+    }
+  });
+  std::optional<Se2> world_from_map;
+  if (truth.trajectory) {
+    attempt(result.problems, [&] {
+      Se2 aligned;
+      add_trajectory(dir, truth, options, result, aligned);
+      world_from_map = aligned;
+    });
+    attempt(result.problems,
+            [&] { add_final_trajectory(dir, *truth.trajectory, options, result); });
+  }
+  if (truth.markers && world_from_map && fs::exists(dir / "markers.csv")) {
+    attempt(result.problems, [&] {
+      result.markers = marker_error(read_markers(dir / "markers.csv", result.skipped),
+                                    *truth.markers, *world_from_map, options.marker_gate_m);
+    });
+  }
+  attempt(result.problems, [&] { result.config_toml = text_if_there(dir / "config.toml"); });
+  attempt(result.problems, [&] { result.timings_json = json_if_there(dir / "timings.json"); });
+  attempt(result.problems, [&] { result.counters_json = json_if_there(dir / "counters.json"); });
+  add_figures_of_scenario(truth.expect, result);
+  return result;
+}
+
+}  // namespace waymark::evaluate

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/sweep/sweep_report.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace waymark::evaluate {
+namespace {
+
+struct Column {
+  std::string_view name;
+  const char* key;  ///< of metrics.json
+  int decimals;
+};
+
+constexpr std::array kColumns{Column{"length error [%]", "length_error_percent", 2},
+                              Column{"ATE [m]", "ate_origin_m", 3},
+                              Column{"along [m]", "along_rmse_m", 3},
+                              Column{"heading [deg]", "heading_rmse_deg", 3},
+                              Column{"markers [m]", "marker_error_mean_m", 3},
+                              Column{"x odometry", "ate_over_odometry", 2}};
+
+/// Further figures that only results.csv has.
+constexpr std::array kMoreKeys{
+    "length_px",     "marker_map_share", "moved_named_share", "max_jump_m",       "wall_cells",
+    "found_again_s", "says_lost_s",      "confident_wrong_s", "share_degenerate", "share_lost",
+    "nees_mean",     "sigma_growth",     "memory_mb_per_m",   "across_rmse_m",    "distance_max_m"};
+
+std::string shown(const std::optional<double>& value, int decimals) {
+  return value && std::isfinite(*value) ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+std::string for_csv(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "";
+}
+
+std::string label_of(const SweepRow& row) {
+  return row.scenario + ", " + row.row;
+}
+
+std::string with(std::string text, std::string_view key, double limit) {
+  return limit <= 0.0 ? text
+                      : fmt::format("{}{}{} {:g}", text, text.empty() ? "" : ", ", key, limit);
+}
+
+/// Those of all seeds together.
+std::string expected_of_seeds(const SweepRow& row, std::string text) {
+  for (const char* key : {"nees_in_band_share", "seeds_share"})
+    text = with(std::move(text), key, row.limit(key));
+  return text;
+}
+
+/// The limits are those of the first run that has any.
+std::string expected_of(const SweepRow& row) {
+  if (!row.expects_anything()) return "-";
+  for (const SweptRun& run : row.runs) {
+    if (run.has_failed() || run.metrics.value("expectations", nlohmann::ordered_json{}).empty())
+      continue;
+    std::string text;
+    for (const auto& figure : run.metrics["expectations"])
+      text =
+          with(std::move(text), figure["figure"].get<std::string>(), figure["limit"].get<double>());
+    return expected_of_seeds(row, text);
+  }
+  return expected_of_seeds(row, "");
+}
+
+std::string verdict_of(const SweepRow& row) {
+  if (row.failures() > 0) return "FAIL";
+  if (expected_of(row) == "-") return "-";
+  return row.is_hit() ? "hit" : "MISS";
+}
+
+std::string row_line(const SweepRow& row) {
+  std::string line = fmt::format("| {} | {} | {} |", row.scenario, row.row, row.runs.size());
+  for (const Column& column : kColumns) {
+    const Figures figures = row.figures(column.key);
+    line += fmt::format(" {} / {} |", shown(figures.median, column.decimals),
+                        shown(figures.worst, column.decimals));
+  }
+  return line + fmt::format(" {} | {} | {} | {} | {} |\n",
+                            shown(100.0 * share_in_band(row.stations), 0), row.failures(),
+                            row.misses(), expected_of(row), verdict_of(row));
+}
+
+std::string missed_of(const SweptRun& run) {
+  std::string text;
+  for (const auto& figure : run.metrics["expectations"]) {
+    if (figure.value("hit", false)) continue;
+    const auto& got = figure["got"];
+    text += fmt::format("{}{} {} (limit {:g})", text.empty() ? "" : ", ",
+                        figure["figure"].get<std::string>(),
+                        got.is_number() ? fmt::format("{:.3g}", got.get<double>()) : "none",
+                        figure["limit"].get<double>());
+  }
+  return text;
+}
+
+std::string page_of(const SweepRow& row) {
+  std::string text = fmt::format("<section><h2>{} &mdash; {}</h2>\n", row.scenario, row.row);
+  for (const SweptRun& run : row.runs) {
+    if (run.has_failed())
+      text += fmt::format("<p class=fail>seed {}: {}</p>\n", run.plan.seed, run.failure);
+  }
+  const SweptRun* const worst = row.worst_run();
+  if (worst == nullptr) return text + "</section>\n";
+  const std::string folder = worst->plan.folder + "/" + worst->plan.row;
+  return text + fmt::format(
+                    "<p>worst: seed {}, ATE {} m, length error {} %{}</p>\n"
+                    "<a href=\"{}/map.png\"><img loading=lazy src=\"{}/map.png\"></a>\n"
+                    "</section>\n",
+                    worst->plan.seed, shown(worst->figure("ate_origin_m"), 3),
+                    shown(worst->figure("length_error_percent"), 2),
+                    worst->misses() ? fmt::format("; missed: {}", missed_of(*worst)) : "", folder,
+                    folder);
+}
+
+}  // namespace
+
+std::string sweep_markdown(const std::vector<SweepRow>& rows) {
+  std::string text = "# Sweep\n\n| scenario | estimator | runs |";
+  for (const Column& column : kColumns)
+    text += fmt::format(" {} |", column.name);
+  text += " NEES in band [%] | failures | misses | expected | verdict |\n|---|---|---|";
+  for (std::size_t i = 0; i < kColumns.size() + 5; ++i)
+    text += "---|";
+  text += "\n";
+  for (const SweepRow& row : rows)
+    text += row_line(row);
+  text +=
+      "\nTwo numbers: median / worst over the seeds. NEES in band: stations, one every metre, "
+      "where "
+      "the mean over the seeds lies in its 95 % band. Misses: seeds that do not reach what the "
+      "scenario expects. Failures: runs without a result.\n";
+  std::string commands;
+  for (const SweepRow& row : rows) {
+    for (const SweptRun& run : row.runs) {
+      if (!run.has_failed() && !run.misses()) continue;
+      commands +=
+          fmt::format("\n# {}, seed {}: {}\n{}\n", label_of(row), run.plan.seed,
+                      run.has_failed() ? fmt::format("FAILED: {}", run.failure) : missed_of(run),
+                      run.plan.again);
+    }
+  }
+  if (commands.empty()) return text;
+  return text + "\nAgain, alone:\n\n```" + commands + "```\n";
+}
+
+std::string sweep_csv(const std::vector<SweepRow>& rows) {
+  std::string text = "scenario,estimator,runs,failures,misses,nees_in_band_share";
+  for (const Column& column : kColumns)
+    text += fmt::format(",{0}_median,{0}_worst", column.key);
+  for (const char* key : kMoreKeys)
+    text += fmt::format(",{0}_median,{0}_worst", key);
+  text += "\n";
+  for (const SweepRow& row : rows) {
+    text += fmt::format("{},{},{},{},{},{}", row.scenario, row.row, row.runs.size(), row.failures(),
+                        row.misses(), for_csv(share_in_band(row.stations)));
+    const auto add = [&](const char* key) {
+      const Figures figures = row.figures(key);
+      text += fmt::format(",{},{}", for_csv(figures.median), for_csv(figures.worst));
+    };
+    for (const Column& column : kColumns)
+      add(column.key);
+    for (const char* key : kMoreKeys)
+      add(key);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string sweep_runs_csv(const std::vector<SweepRow>& rows) {
+  std::string text = "scenario,estimator,seed,folder,failed,missed";
+  for (const Column& column : kColumns)
+    text += fmt::format(",{}", column.key);
+  for (const char* key : kMoreKeys)
+    text += fmt::format(",{}", key);
+  text += "\n";
+  for (const SweepRow& row : rows) {
+    for (const SweptRun& run : row.runs) {
+      text += fmt::format("{},{},{},{}/{},{},{}", row.scenario, row.row, run.plan.seed,
+                          run.plan.folder, row.row, run.has_failed() ? 1 : 0, run.misses() ? 1 : 0);
+      for (const Column& column : kColumns)
+        text += fmt::format(",{}", for_csv(run.figure(column.key)));
+      for (const char* key : kMoreKeys)
+        text += fmt::format(",{}", for_csv(run.figure(key)));
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+std::string sweep_page(const std::vector<SweepRow>& rows) {
+  std::string text =
+      "<!doctype html><html lang=en><meta charset=utf-8><title>Sweep</title>\n"
+      "<style>body{font-family:sans-serif;max-width:1200px;margin:2em auto}img{max-width:100%}"
+      ".fail{color:#a00}</style>\n<h1>Sweep: the worst map of every row</h1>\n"
+      "<p>The table is in <a href=results.md>results.md</a>.</p>\n"
+      "<img src=plots/errors.png>\n<img src=plots/along.png>\n<img src=plots/nees.png>\n";
+  for (const SweepRow& row : rows)
+    text += page_of(row);
+  return text + "</html>\n";
+}
+
+PlotFiles sweep_plots(const std::vector<SweepRow>& rows) {
+  PlotFiles files;
+  std::string labels;
+  std::string titles;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const SweepRow& row = rows[i];
+    const std::string comment = fmt::format("# {}\n", label_of(row));
+    files.errors_dat += comment;
+    files.stations_dat += comment;
+    for (const SweptRun& run : row.runs) {
+      if (const auto ate_m = run.figure("ate_origin_m"))
+        files.errors_dat += fmt::format("{} {:.6f} {}\n", i, *ate_m, run.misses() ? 1 : 0);
+    }
+    for (const StationConsistency& station : row.stations)
+      files.stations_dat +=
+          fmt::format("{:.0f} {:.6f} {:.4f} {:.4f} {:.4f}\n", station.travel_m, station.rms_along_m,
+                      station.mean_nees, station.band_low, station.band_high);
+    if (row.stations.empty()) files.stations_dat += "nan nan nan nan nan\n";  // keeps the count
+    files.errors_dat += "\n\n";
+    files.stations_dat += "\n\n";
+    titles += fmt::format("{}'{}'", i == 0 ? "" : ", ", label_of(row));
+    labels += fmt::format("{}\"{}\" {}", i == 0 ? "" : ", ", label_of(row), i);
+  }
+  files.program = fmt::format(
+      "set encoding utf8\nset grid\nset key noenhanced outside right top\n"
+      "set terminal pngcairo size {0},{1} font 'sans,11'\n"
+      "set output 'errors.png'\nset title 'ATE of every seed (crosses: expectation missed)'\n"
+      "set ylabel 'ATE [m]'\nset logscale y\nset xrange [-0.5:{2}.5]\n"
+      "set xtics rotate by -60 noenhanced ({3})\n"
+      "plot 'errors.dat' using 1:($3==0 ? $2 : NaN) with points pt 7 notitle, "
+      "'' using 1:($3==1 ? $2 : NaN) with points pt 2 ps 1.5 notitle\n"
+      "unset logscale y\nset xrange [*:*]\nset xtics norotate autofreq\n"
+      "set terminal pngcairo size 1400,700 font 'sans,11'\n"
+      "set xlabel 'driven [m]'\narray titles[{4}] = [{5}]\n"
+      "set output 'along.png'\nset title 'Error along the way, RMS over the seeds'\n"
+      "set ylabel 'along [m]'\n"
+      "plot for [i=0:{2}] 'stations.dat' index i using 1:2 with lines lw 2 title titles[i+1]\n"
+      "set output 'nees.png'\nset title 'Mean NEES over the seeds'\n"
+      "set ylabel 'NEES (3 is right)'\nset logscale y\n"
+      "plot 'stations.dat' index 0 using 1:4:5 with filledcurves lc rgb '#dddddd' title '95 % "
+      "band', "
+      "for [i=0:{2}] '' index i using 1:3 with lines lw 2 title titles[i+1]\n",
+      700 + 40 * rows.size(), 700, rows.size() - 1, labels, rows.size(), titles);
+  return files;
+}
+
+}  // namespace waymark::evaluate

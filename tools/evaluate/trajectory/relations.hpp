@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A trajectory against known relative poses.
+#pragma once
+
+#include "evaluate/files/tum.hpp"
+
+#include <vector>
+
+namespace waymark::evaluate {
+
+/// Known pose of the base at t2 as seen from the base at t1.
+struct Relation {
+  std::size_t line{};
+  double t1_s{};
+  double t2_s{};
+  Se2 base1_from_base2{};
+};
+
+struct MeanAndSigma {
+  double mean{};
+  double sigma{};  ///< square root of the mean squared deviation from the mean
+};
+
+struct RelationsSummary {
+  std::size_t count{};
+  MeanAndSigma translation_m{};
+  MeanAndSigma rotation_deg{};
+};
+
+/// Relations between poses less than kNear_s apart say how good the scan matching is; between poses
+/// that are more than kFar_s apart, whether loops were closed.
+inline constexpr double kNear_s = 5.0;
+inline constexpr double kFar_s = 60.0;
+
+struct RelationsError {
+  RelationsSummary all{};
+  RelationsSummary near{};
+  RelationsSummary far{};
+};
+
+/// Lines `t1 t2 x y z roll pitch yaw`; '#' starts a comment. Lines of another form or out of the
+/// plane are left out and named. @throws InputError if the file cannot be read or has no relation.
+std::vector<Relation> read_relations(const std::filesystem::path& file, Skipped& skipped);
+
+/// Mean absolute error of the relative poses; relations that name a time outside the trajectory are
+/// left out and named. Source: Kümmerle et al., "On measuring the accuracy of SLAM algorithms"
+/// (2009), equation 3, with the translation and the rotation kept apart.
+RelationsError relations_error(const Trajectory& trajectory, const std::vector<Relation>& relations,
+                               const std::filesystem::path& relations_file, Skipped& skipped);
+
+}  // namespace waymark::evaluate

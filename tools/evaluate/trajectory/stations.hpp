@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The error along the way: one station every metre of travel, so that runs can be compared there.
+#pragma once
+
+#include "evaluate/trajectory/nees.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace waymark::evaluate {
+
+/// Errors are estimate minus truth in the true base's frame: along = ahead, across = to the left.
+struct Station {
+  double travel_m{};  ///< driven by the true robot since the first pose; a whole number
+  double t_s{};
+  double along_m{};
+  double across_m{};
+  double heading_rad{};
+  std::optional<double> nees{};  ///< 3 degrees of freedom; absent without a covariance
+  std::optional<double> sigma_along_m{};
+  std::optional<double> sigma_across_m{};
+  std::optional<double> sigma_heading_rad{};
+  Health health{Health::kUnknown};
+};
+
+/// Truth moves further than this between two poses of a trajectory only when the robot is lifted.
+inline constexpr double kLifted_m = 0.3;
+
+/// Length of the true way [m], without being lifted.
+double driven_m(const std::vector<PosePair>& pairs);
+
+/// The first pose at or behind each metre; metres without a pose are left out. Where the robot is
+/// lifted it does not travel.
+std::vector<Station> stations(const std::vector<PosePair>& pairs,
+                              const std::vector<StampedCovariance>& covariances,
+                              const Se2& world_from_map);
+
+/// Standard deviation along at one station over that at another; absent if either has none.
+std::optional<double> sigma_growth(const std::vector<Station>& stations, double from_m,
+                                   double to_m);
+
+/// `travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,sigma_heading_rad,health`;
+/// -1 where there is none.
+std::string stations_csv(const std::vector<Station>& stations);
+
+/// @throws InputError if the file cannot be read.
+std::vector<Station> read_stations(const std::filesystem::path& file, Skipped& skipped);
+
+}  // namespace waymark::evaluate

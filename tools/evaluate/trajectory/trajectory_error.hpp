@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far an estimated trajectory is from a reference.
+#pragma once
+
+#include "evaluate/files/tum.hpp"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace waymark::evaluate {
+
+/// An estimated pose and the reference at its time, in the frames they were written in.
+struct PosePair {
+  double t_s{};
+  Se2 map_from_estimate{};
+  Se2 world_from_truth{};
+};
+
+/// Estimates inside the reference's time span, each with the reference interpolated.
+std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth);
+
+enum class Alignment {
+  kOrigin,  ///< the first poses coincide: simulation, where the map starts at the first pose
+  kSe2,     ///< best rigid fit of the positions: real logs
+  kFrame    ///< none: where the map lies in the world is known
+};
+
+std::string_view name_of(Alignment alignment);
+
+/// world_from_map. @param pairs not empty. @param alignment not kFrame.
+/// Source of the fit: Umeyama (1991) in the plane, without scale.
+Se2 align(const std::vector<PosePair>& pairs, Alignment alignment);
+
+/// Root mean square and largest absolute value.
+struct Spread {
+  double rms{};
+  double max{};
+};
+
+struct TrajectoryError {
+  Alignment alignment{};
+  std::size_t poses{};
+  double duration_s{};
+  double ate_origin_m{};                ///< RMS distance after alignment on the first pose
+  double ate_se2_m{};                   ///< RMS distance after the best rigid fit
+  std::optional<double> ate_frame_m{};  ///< RMS distance in a known frame, without alignment
+  /// The rest is after `alignment`.
+  Spread distance_m{};
+  std::optional<Spread> along_m{};   ///< along the line from the first to the last true pose
+  std::optional<Spread> across_m{};  ///< absent if that line is shorter than a metre
+  Spread heading_deg{};
+  double end_distance_m{};
+  double end_heading_deg{};
+  std::size_t rpe_pairs{};  ///< pairs of poses a metre of true travel apart
+  std::optional<Spread> rpe_translation_m{};
+  std::optional<Spread> rpe_rotation_deg{};
+};
+
+/// @param pairs           not empty.
+/// @param world_from_map  if the map's frame is known: then nothing is aligned.
+TrajectoryError trajectory_error(const std::vector<PosePair>& pairs, Alignment alignment,
+                                 const std::optional<Se2>& world_from_map = std::nullopt);
+
+}  // namespace waymark::evaluate
