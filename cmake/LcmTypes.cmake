@@ -30,6 +30,4 @@ function(waymark_add_lcm_types target)
   add_dependencies(${target} ${target}_generate)
   target_include_directories(${target} SYSTEM INTERFACE "${generated_dir}")
   target_link_libraries(${target} INTERFACE lcm::lcm)
-  # The generated decoders write floats through pointers to integers; inlined, GCC may read them before.
-  target_compile_options(${target} INTERFACE -fno-strict-aliasing)
 endfunction()

@@ -1,11 +1,17 @@
 # Short forms, so that every folder's CMakeLists.txt reads the same way.
 
-# waymark_library(NAME SOURCES ... LIBRARIES ...): a static library of ours; headers are included from procs/.
+# waymark_library(NAME [PICTURES] SOURCES ... LIBRARIES ...): a static library of ours; headers are included from procs/.
+# PICTURES: most of its files include OpenCV.
 function(waymark_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "PICTURES" "" "SOURCES;LIBRARIES" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}/procs")
   target_link_libraries(${name} PUBLIC ${ARG_LIBRARIES} PRIVATE waymark_warnings)
+  if(ARG_PICTURES)
+    target_precompile_headers(${name} REUSE_FROM precompiled_pictures)
+  else()
+    target_precompile_headers(${name} REUSE_FROM precompiled_plain)
+  endif()
 endfunction()
 
 add_custom_target(programs COMMENT "All installed programs")
@@ -15,6 +21,7 @@ function(waymark_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} waymark_warnings)
+  target_precompile_headers(${name} REUSE_FROM precompiled_plain)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}")
   add_dependencies(programs ${name})
   install(TARGETS ${name} RUNTIME DESTINATION bin)
@@ -31,6 +38,7 @@ function(waymark_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock_main waymark_warnings)
+  target_precompile_headers(${name} REUSE_FROM precompiled_tests)
   target_compile_definitions(${name} PRIVATE
     WAYMARK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WAYMARK_BUILD_DIR="${PROJECT_BINARY_DIR}")
   add_dependencies(${ARG_LABEL}_tests ${name})

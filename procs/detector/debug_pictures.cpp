@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/debug_pictures.hpp"
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>

@@ -2,7 +2,7 @@
 // The detector as a process: CAMERA in, MARKERS out, one for one.
 #pragma once
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "detector/core/frame_decoder.hpp"
 #include "detector/debug_pictures.hpp"
 #include "detector/detector_config.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-detector
-#include "common/process/run_process.hpp"
+#include "common/runtime/run_process.hpp"
 #include "detector/detector_node.hpp"
 
 int main(int argc, char** argv) {

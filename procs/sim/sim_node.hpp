@@ -2,7 +2,7 @@
 // The simulator as the runner sees it: messages of one tick after another.
 #pragma once
 
-#include "common/process/run_simulator.hpp"
+#include "common/runtime/run_simulator.hpp"
 #include "sim/core/simulation.hpp"
 #include "sim/sim_config.hpp"
 #include "sim/truth_files.hpp"

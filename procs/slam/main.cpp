@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/run_process.hpp"
+#include "common/runtime/run_process.hpp"
 #include "slam/slam_node.hpp"
 
 int main(int argc, char** argv) {

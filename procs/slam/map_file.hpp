@@ -3,9 +3,9 @@
 // and MAP_CALIBRATION, so that every reader of our logs reads maps, too.
 #pragma once
 
+#include "common/errors/setup_error.hpp"
 #include "common/messages/message.hpp"
-#include "common/process/setup_error.hpp"
-#include "slam/core/mapping/map_snapshot.hpp"
+#include "slam/core/graph/map_snapshot.hpp"
 
 #include <filesystem>
 #include <string>

@@ -2,7 +2,7 @@
 // The slam process: sensors in, pose and map out.
 #pragma once
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/input/sensor_queue.hpp"
 #include "slam/map_publisher.hpp"

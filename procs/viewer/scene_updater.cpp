@@ -10,7 +10,7 @@ namespace {
 
 /// Poses kept per path: 9 hours at 30 Hz. Bounds the memory that a flood of messages can take.
 constexpr std::size_t kMaxPathPoses = 1'000'000;
-/// Parts of one marker map: far more than 65 000 markers.
+/// Parts of one marker map, of up to 500 markers each.
 constexpr std::int32_t kMaxMarkerParts = 256;
 
 Eigen::Matrix3d to_matrix(const double (&row_major)[9]) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/messages/channels.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "viewer/core/scene/scene.hpp"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/viewer_node.hpp"
 
-#include "common/process/signals.hpp"
+#include "common/runtime/signals.hpp"
 #include "viewer/core/painters/layer_painter.hpp"
 #include "viewer/core/painters/map_painter.hpp"
 #include "viewer/core/painters/plain_painter.hpp"

@@ -2,7 +2,7 @@
 // The headless viewer: listens to everything that slam publishes, and writes it as files.
 #pragma once
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "viewer/core/scene/change_monitor.hpp"
 #include "viewer/core/scene/scene.hpp"
 #include "viewer/files/output_folder.hpp"

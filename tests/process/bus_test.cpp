@@ -3,7 +3,7 @@
 #include "common/bus/bus.hpp"
 
 #include "common/messages/codec.hpp"
-#include "common/process/progress.hpp"
+#include "common/runtime/progress.hpp"
 #include "support/lcm_network.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // A process in lockstep over real LCM: what it says of itself while it runs.
 #include "common/bus/bus.hpp"
 #include "common/lockstep/master.hpp"
-#include "common/process/run_process.hpp"
+#include "common/runtime/run_process.hpp"
 #include "support/lcm_network.hpp"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Nodes on logs: order, which log a channel is taken from, and what is said about damaged logs.
-#include "common/process/replay.hpp"
+#include "common/runtime/replay.hpp"
 
+#include "common/errors/exit_codes.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/exit_codes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

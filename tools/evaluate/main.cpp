@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-evaluate: how good a map and a trajectory are.
-#include "common/process/number_checks.hpp"
+#include "common/runtime/number_checks.hpp"
 #include "evaluate/commands.hpp"
 
 #include <CLI/CLI.hpp>

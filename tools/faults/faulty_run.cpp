@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "faults/faulty_run.hpp"
 
+#include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
 #include "common/files/writable_folder.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/setup_error.hpp"
 #include "faults/injector.hpp"
 
 #include <sstream>

@@ -67,23 +67,23 @@ bool Injector::is_off(const std::vector<double>& times_s, Timestamp time) const 
 Message Injector::with_faulty_markers(const Message& message) {
   const auto decoded = decode<marker_detections_t>(message.payload);
   if (!decoded.message) return message;
-  marker_detections_t spoilt = *decoded.message;
+  marker_detections_t corrupted = *decoded.message;
   std::vector<marker_detection_t> kept;
   const bool is_dark = is_off(config_.markers_off_s, message.time);
-  for (std::size_t i = 0; i < spoilt.detections.size(); ++i) {
-    marker_detection_t detection = spoilt.detections[i];
+  for (std::size_t i = 0; i < corrupted.detections.size(); ++i) {
+    marker_detection_t detection = corrupted.detections[i];
     if (is_dark)
       ++counts_["sightings in the dark"];
-    else if (spoil(detection, i))
+    else if (corrupt(detection, i))
       kept.push_back(detection);
   }
-  spoilt.detections = std::move(kept);
-  if (!is_dark) add_ghost(spoilt);
-  spoilt.num_detections = static_cast<std::int32_t>(spoilt.detections.size());
-  return encode(channels::kMarkers, spoilt);
+  corrupted.detections = std::move(kept);
+  if (!is_dark) add_ghost(corrupted);
+  corrupted.num_detections = static_cast<std::int32_t>(corrupted.detections.size());
+  return encode(channels::kMarkers, corrupted);
 }
 
-bool Injector::spoil(marker_detection_t& detection, std::uint64_t index) {
+bool Injector::corrupt(marker_detection_t& detection, std::uint64_t index) {
   // Always the same draws in the same order, whatever is switched on.
   Random random{seed_, kSightings, frame_, index};
   const bool is_dropped = random.uniform() < config_.dropped_share;

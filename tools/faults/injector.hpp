@@ -41,7 +41,7 @@ class Injector {
   Message with_faulty_markers(const Message& message);
   Message with_faulty_odometry(const Message& message);
   /// False if the sighting is dropped.
-  bool spoil(marker_detection_t& detection, std::uint64_t index);
+  bool corrupt(marker_detection_t& detection, std::uint64_t index);
   void add_ghost(marker_detections_t& message);
   int another_id(int id, double uniform) const;
 

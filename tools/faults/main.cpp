@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-faults: a recorded run with faults put into its messages.
+#include "common/errors/setup_error.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/setup_error.hpp"
 #include "faults/faulty_run.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/byte_source.hpp"
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <bzlib.h>
 #include <zlib.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/imported_log.hpp"
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "import/time_order.hpp"
 
 #include <fmt/format.h>

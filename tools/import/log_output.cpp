@@ -4,7 +4,7 @@
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "common/messages/convert.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/errors/exit_codes.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/exit_codes.hpp"
-#include "common/process/guard.hpp"
-#include "common/process/number_checks.hpp"
+#include "common/runtime/guard.hpp"
+#include "common/runtime/number_checks.hpp"
 #include "import/carmen_reader.hpp"
 #include "import/log_output.hpp"
 #include "import/mbot_reader.hpp"

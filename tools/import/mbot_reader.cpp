@@ -3,7 +3,7 @@
 
 #include "common/log/log_file.hpp"
 #include "common/messages/codec.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "import/time_order.hpp"
 
 #include <fmt/format.h>

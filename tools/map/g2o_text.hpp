@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "slam/core/mapping/map_snapshot.hpp"
+#include "slam/core/graph/map_snapshot.hpp"
 
 #include <string>
 

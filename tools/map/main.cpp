@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-map: looks into map files, and makes new ones of them.
-#include "common/process/number_checks.hpp"
+#include "common/runtime/number_checks.hpp"
 #include "map/map_commands.hpp"
 #include "slam/map_file.hpp"
 

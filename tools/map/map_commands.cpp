@@ -4,7 +4,7 @@
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "map/g2o_text.hpp"
-#include "slam/core/mapping/map_merge.hpp"
+#include "slam/core/graph/map_merge.hpp"
 #include "slam/map_file.hpp"
 #include "viewer/viewer_node.hpp"
 

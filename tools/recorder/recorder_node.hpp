@@ -6,7 +6,7 @@
 
 #include "common/config/config.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <filesystem>
 #include <optional>

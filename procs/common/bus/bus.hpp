@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/messages/message.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <chrono>
 #include <memory>

@@ -33,9 +33,10 @@ void ExpectConfig::describe(Fields& fields) {
                "thickness of the walls on the map image [cells], at most");
   fields.field("memory_mb_per_m", memory_mb_per_m, kAnyNumber,
                "peak memory of the estimator over the distance driven, at most");
-  fields.field("sigma_growth", sigma_growth, kAnyNumber,
-               "factor by which the standard deviation along the way grows between the next two, "
-               "at least");
+  fields.field(
+      "sigma_growth", sigma_growth, kAnyNumber,
+      "factor by which the standard deviation along the corridor grows between the next two, "
+      "at least");
   fields.field("sigma_growth_from_m", sigma_growth_from_m, kAnyNumber, "driven");
   fields.field("sigma_growth_to_m", sigma_growth_to_m, kAnyNumber, "driven");
   fields.field("nees_in_band_share", nees_in_band_share, kAnyNumber,

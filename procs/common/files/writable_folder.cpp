@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/files/writable_folder.hpp"
 
+#include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
-#include "common/process/setup_error.hpp"
 
 #include <fmt/format.h>
 

@@ -21,9 +21,10 @@ inline constexpr int kMaxWindowTicks = 100;
 std::vector<channel_content_t> contents_of(std::vector<Message> messages);
 
 /// Received messages by their content. A message has no number of its own: two ticks may name the
-/// same bytes (a marker map that did not change), and the copy that comes second cannot be told
-/// from one that was sent again. So what was taken stays for a while, and satisfies whoever names
-/// it next. Bounded: the oldest go first, and come back when their tick is sent again.
+/// same bytes (a marker map that did not change), and the copy that comes second cannot be
+/// distinguished from one that was sent again. So what was taken stays for a while, and satisfies
+/// whoever names it next. Bounded: the oldest go first, and come back when their tick is sent
+/// again.
 class MessagePool {
  public:
   /// False when the same message is here already.

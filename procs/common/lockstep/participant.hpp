@@ -4,7 +4,7 @@
 #pragma once
 
 #include "common/lockstep/contents.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <functional>
 #include <map>
@@ -30,7 +30,7 @@ class LockstepParticipant {
                       Process process, Counters& counters);
 
   /// @return what to publish now.
-  /// @throws std::runtime_error when the run is under way and this process cannot join it.
+  /// @throws std::runtime_error when the run has begun and this process cannot join it.
   std::vector<Message> take(Message message);
 
   bool has_seen_tick() const { return run_id_.has_value(); }

@@ -29,7 +29,7 @@ inline bool comes_before(const Message& a, const Message& b) {
   return a.payload < b.payload;
 }
 
-/// 64-bit hash of channel and payload: tells messages apart, is no protection against forgery.
+/// 64-bit hash of channel and payload: identifies a message; no protection against forgery.
 std::int64_t content_hash(const Message& message);
 
 }  // namespace waymark

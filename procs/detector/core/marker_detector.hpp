@@ -18,8 +18,8 @@
 namespace waymark {
 
 /// What the camera's calibration adds to every pose: it is wrong in the same way in all frames, so
-/// no corner tells. Zero = intrinsics and mounting are exact, as in simulation. A carefully
-/// calibrated real camera: 0.005, 0.005 rad (0.3 degrees), 0.017 rad (1 degree).
+/// no single frame shows it. Zero = intrinsics and mounting are exact, as in simulation. A
+/// carefully calibrated real camera: 0.005, 0.005 rad (0.3 degrees), 0.017 rad (1 degree).
 struct CalibrationErrorConfig {
   double range_rate{0.0};
   double bearing_rad{0.0};

@@ -20,7 +20,7 @@ struct SeenSide {
   std::vector<EdgeProfile> profiles{};
   double blur_px{0.0};  ///< standard deviation of the point spread across it
 
-  /// More than the pixels' own area. Not told behind a thin border, where the bits make the edge
+  /// More than the pixels' own area. Unknown behind a thin border, where the bits make the edge
   /// look wider than it is.
   bool is_blurred() const;
 

@@ -179,7 +179,7 @@ std::optional<SquarePoses> solve_square(const MeasuredCorners& corners, const Ca
   if (starts.size() != 2 || !refiner.usable()) return std::nullopt;
 
   std::array refined{refiner.refine(starts[0]), refiner.refine(starts[1])};
-  // A shallow second minimum can vanish in the first one; the flipped start still tells where it
+  // A shallow second minimum can vanish in the first one; the flipped start still shows where it
   // was.
   if (are_the_same(refined[0], refined[1])) refined[1] = starts[1];
 

@@ -7,8 +7,8 @@
 #include "common/robot/robot_config.hpp"
 #include "sim/core/camera/camera.hpp"
 #include "sim/core/faults/fault_config.hpp"
-#include "sim/core/happenings.hpp"
 #include "sim/core/robot/drive.hpp"
+#include "sim/core/scene_dynamics.hpp"
 #include "sim/core/sensors/encoders.hpp"
 #include "sim/core/sensors/lidar.hpp"
 #include "sim/core/world/marker_picture.hpp"
@@ -34,7 +34,7 @@ struct RunConfig {
   void describe(Fields& fields);
 };
 
-/// The simulated robot knows that its camera is as it is told, and that markers hang straight:
+/// The simulated robot knows that its camera is as described, and that markers hang straight:
 /// what rendering and detection leave, 0.02 px, is all that is wrong. [camera_errors] makes its
 /// camera another one than that; what it then believes is for the scenario to say.
 RobotConfig simulated_robot();

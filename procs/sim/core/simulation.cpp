@@ -48,7 +48,7 @@ Simulation::Simulation(const Scenario& scenario)
       lidar_{scenario.robot.lidar, scenario.lidar_noise, scenario.run.seed},
       renderer_{world_, scenario.marker_print(), plate_print(scenario), camera_.pinhole(),
                 physics_},
-      bustle_{world_},
+      scene_dynamics_{world_},
       kidnapper_{scenario.kidnaps},
       odometry_outlet_{Faults{Sensor::kOdometry, scenario.faults}, scenario.run.seed},
       lidar_outlet_{Faults{Sensor::kLidar, scenario.faults}, scenario.run.seed},
@@ -56,7 +56,7 @@ Simulation::Simulation(const Scenario& scenario)
 
 Tick Simulation::advance() {
   Tick tick;
-  tick.moved_markers = bustle_.update(now(), moment(), physics_);
+  tick.moved_markers = scene_dynamics_.update(now(), moment(), physics_);
   for (int i = 0; i < scenario_.steps_per_tick(); ++i) {
     sense(tick);
     physics_.step(wheel_speeds(scenario_.robot.base, decide()));

@@ -6,12 +6,12 @@
 #include "common/sensors/sensors.hpp"
 #include "sim/core/camera/camera.hpp"
 #include "sim/core/camera/renderer.hpp"
+#include "sim/core/faults/corruption.hpp"
 #include "sim/core/faults/faulty_outlet.hpp"
-#include "sim/core/faults/spoil.hpp"
-#include "sim/core/happenings.hpp"
 #include "sim/core/robot/drive.hpp"
 #include "sim/core/robot/physics.hpp"
 #include "sim/core/scenario.hpp"
+#include "sim/core/scene_dynamics.hpp"
 #include "sim/core/sensors/encoders.hpp"
 #include "sim/core/sensors/lidar.hpp"
 #include "sim/core/world/world.hpp"
@@ -85,7 +85,7 @@ class Simulation {
   Encoders encoders_;
   Lidar lidar_;
   Renderer renderer_;
-  Bustle bustle_;
+  SceneDynamics scene_dynamics_;
   Kidnapper kidnapper_;
   SpinningWheels spinning_wheels_{};
   FaultyOutlet<OdometrySample> odometry_outlet_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When something happens in a run: by the clock, by the way that the robot has come, or both.
+// When something happens in a run: by time, by distance driven, or both.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -15,7 +15,7 @@ struct Moment {
 /// Far beyond every run, and a number that TOML and a reader can take.
 constexpr double kNever = 1e9;
 
-/// As long as both clock and way are within; by default always.
+/// While both time and distance driven are within bounds; by default always.
 struct Span {
   double from_s{0.0};
   double to_s{kNever};

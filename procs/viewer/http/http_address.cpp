@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/http/http_address.hpp"
 
-#include "common/process/setup_error.hpp"
+#include "common/errors/setup_error.hpp"
 
 #include <fmt/format.h>
 

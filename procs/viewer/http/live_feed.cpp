@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/http/live_feed.hpp"
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/http/page_server.hpp"
 
-#include "common/process/setup_error.hpp"
+#include "common/errors/setup_error.hpp"
 #include "viewer/http/page_html.hpp"
 #include "viewer/http/page_json.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/geometry/se2.hpp"
-#include "common/process/reorder_buffer.hpp"
 #include "common/random/random.hpp"
 #include "common/robot/robot_config.hpp"
+#include "common/runtime/reorder_buffer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/log/log_file.hpp"
 
-#include "common/process/setup_error.hpp"
+#include "common/errors/setup_error.hpp"
 
 #include <gtest/gtest.h>
 

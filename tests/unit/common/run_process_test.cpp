@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Command lines that ask for what cannot be: refused before anything is done.
-#include "common/process/run_process.hpp"
+#include "common/runtime/run_process.hpp"
 
-#include "common/process/exit_codes.hpp"
-#include "common/process/run_simulator.hpp"
+#include "common/errors/exit_codes.hpp"
+#include "common/runtime/run_simulator.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

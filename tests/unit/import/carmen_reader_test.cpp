@@ -2,7 +2,7 @@
 #include "import/carmen_reader.hpp"
 
 #include "common/messages/codec.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "import_files.hpp"
 
 #include <bzlib.h>

@@ -2,7 +2,7 @@
 #include "import/log_output.hpp"
 
 #include "common/messages/convert.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "import/carmen_reader.hpp"
 #include "import_files.hpp"
 

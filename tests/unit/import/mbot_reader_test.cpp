@@ -2,7 +2,7 @@
 #include "import/mbot_reader.hpp"
 
 #include "common/messages/convert.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "foreign_payloads.hpp"
 #include "import_files.hpp"
 

@@ -2,7 +2,7 @@
 // Random damage to good logs: the importers return or say what is wrong; they never crash, and what
 // they give is always in order and valid.
 #include "common/messages/convert.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "foreign_payloads.hpp"
 #include "import/carmen_reader.hpp"
 #include "import/log_output.hpp"

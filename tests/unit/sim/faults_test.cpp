@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/core/faults/corruption.hpp"
 #include "sim/core/faults/faulty_outlet.hpp"
-#include "sim/core/faults/spoil.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -101,7 +101,7 @@ TEST(FaultyOutlet, IntermittentLosesItsShare) {
   EXPECT_NEAR(static_cast<double>(outlet.release(timestamp_from_us(1000)).size()), 700.0, 58.0);
 }
 
-TEST(Spoil, ScaledRangesBeyondTheGreatestHaveNoReturn) {
+TEST(Corruption, ScaledRangesBeyondTheGreatestHaveNoReturn) {
   LidarScan scan{};
   scan.ranges_m = {1.0, 3.4, std::nan("")};
   scale_ranges(scan, {}, 0.05);
@@ -110,7 +110,7 @@ TEST(Spoil, ScaledRangesBeyondTheGreatestHaveNoReturn) {
   EXPECT_TRUE(std::isnan(scan.ranges_m[2]));
 }
 
-TEST(Spoil, OneWheelSpinsForAWhileAndItsTurnsStayCounted) {
+TEST(Corruption, OneWheelSpinsForAWhileAndEncodersKeepWhatItCounted) {
   FaultConfig config = fault(FaultKind::kWrong, {.from_s = 1.0, .to_s = 2.0});
   config.sensor = Sensor::kOdometry;
   config.share = 0.1;

@@ -5,7 +5,7 @@
 #include "common/files/whole_file.hpp"
 #include "common/messages/convert.hpp"
 #include "common/random/random.hpp"
-#include "slam/core/mapping/map_merge.hpp"
+#include "slam/core/graph/map_merge.hpp"
 #include "slam/slam_node.hpp"
 #include "support/synthetic_corridor.hpp"
 

@@ -64,9 +64,9 @@ struct EstimatorResult {
   Skipped skipped{};                    ///< lines that were left out
 };
 
-/// Reads scenario.toml (world.layout and length_m, 50 if it does not say; [expect], which
-/// expect.toml beside it replaces), truth.tum, truth_markers.csv, and the log run.lcm if the robot
-/// was lifted.
+/// Reads scenario.toml (world.layout, length_m, 50 if it does not say, and [expect], which an
+/// expect.toml beside it replaces), truth.tum and truth_markers.csv; with --mapped-in, the truth of
+/// that run, too; and run.lcm for the times at which a robot was lifted.
 /// @throws InputError for files that are there and cannot be understood.
 RunTruth read_truth(const std::filesystem::path& run_dir, const EvaluationOptions& options);
 

@@ -2,7 +2,7 @@
 #include "sim/core/camera/camera.hpp"
 
 #include "common/geometry/angle.hpp"
-#include "sim/core/sensors/random_streams.hpp"
+#include "sim/core/random_streams.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>

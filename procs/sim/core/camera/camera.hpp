@@ -26,7 +26,7 @@ struct CameraNoiseConfig {
   void describe(Fields& fields);
 };
 
-/// How the camera differs from what the robot has been told of it: by what is set here, and by what
+/// How the camera differs from the robot's description of it: by what is set here, and by what
 /// each run's seed draws on top, as calibrations differ.
 struct CameraErrorConfig {
   double focal_share{0.0};

@@ -2,7 +2,7 @@
 #include "sim/core/camera/image_noise.hpp"
 
 #include "common/random/random.hpp"
-#include "sim/core/sensors/random_streams.hpp"
+#include "sim/core/random_streams.hpp"
 
 #include <algorithm>
 #include <cmath>

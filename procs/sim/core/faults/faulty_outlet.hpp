@@ -5,7 +5,7 @@
 #include "common/random/random.hpp"
 #include "common/time/time.hpp"
 #include "sim/core/faults/fault_config.hpp"
-#include "sim/core/sensors/random_streams.hpp"
+#include "sim/core/random_streams.hpp"
 
 #include <algorithm>
 #include <cstdint>

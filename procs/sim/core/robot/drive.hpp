@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the robot is told to go: by the route follower, which stands for the operator.
+// Drive commands: from the route follower, which stands for the operator.
 #pragma once
 
 #include "common/config/config.hpp"

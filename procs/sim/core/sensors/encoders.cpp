@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/sensors/encoders.hpp"
 
-#include "sim/core/sensors/random_streams.hpp"
+#include "sim/core/random_streams.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -10,8 +10,8 @@ namespace waymark {
 namespace {
 
 // The default errors: what a well-kept TurtleBot3 shows.
-constexpr double kDrawnScale = 0.01;
-constexpr double kDrawnHeadingScale = 0.005;
+constexpr double kScaleOfOddSeeds = 0.01;
+constexpr double kMaxHeadingScale = 0.005;
 
 }  // namespace
 
@@ -35,8 +35,8 @@ OdometryErrorConfig errors_of_seed(const OdometryErrorConfig& config, std::int64
   OdometryErrorConfig errors = config;
   if (!config.draw_from_seed) return errors;
   Random random{static_cast<std::uint64_t>(seed), random_streams::kOdometryConstants};
-  errors.scale = seed % 2 != 0 ? kDrawnScale : -kDrawnScale;
-  errors.heading_scale = random.uniform(-kDrawnHeadingScale, kDrawnHeadingScale);
+  errors.scale = seed % 2 != 0 ? kScaleOfOddSeeds : -kScaleOfOddSeeds;
+  errors.heading_scale = random.uniform(-kMaxHeadingScale, kMaxHeadingScale);
   return errors;
 }
 

@@ -11,7 +11,7 @@
 
 namespace waymark {
 
-/// What is wrong with the ranges; the noise that a user is told of is RobotConfig's.
+/// Errors of the ranges beyond the noise that the robot's description states.
 struct LidarNoiseConfig {
   double range_sigma_m{0.01};
   double dropout_probability{0.005};

@@ -2,8 +2,8 @@
 // Where in a loaded map the robot is when nothing is known of it.
 #pragma once
 
+#include "slam/core/graph/map_snapshot.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
-#include "slam/core/mapping/map_snapshot.hpp"
 #include "slam/core/registration/scan_match.hpp"
 #include "slam/core/scan/observation.hpp"
 

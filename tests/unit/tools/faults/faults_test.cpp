@@ -3,7 +3,7 @@
 #include "common/log/log_file.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 #include "faults/faulty_run.hpp"
 #include "faults/injector.hpp"
 #include "unit/tools/temporary_folder.hpp"

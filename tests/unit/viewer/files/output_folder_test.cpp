@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/files/output_folder.hpp"
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/setup_error.hpp"
+#include "common/errors/setup_error.hpp"
 #include "viewer/http/health_text.hpp"
 #include "viewer/http/http_address.hpp"
 #include "viewer/http/live_feed.hpp"

@@ -2,7 +2,7 @@
 // The web server over the loopback network, with clients that behave and clients that do not.
 #include "viewer/http/page_server.hpp"
 
-#include "common/process/setup_error.hpp"
+#include "common/errors/setup_error.hpp"
 #include "viewer/http/page_html.hpp"
 
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 // Maps in other frames, and two maps as one.
 #pragma once
 
-#include "slam/core/mapping/map_snapshot.hpp"
+#include "slam/core/graph/map_snapshot.hpp"
 
 #include <cstddef>
 #include <optional>

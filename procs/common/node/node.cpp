@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <utility>
 

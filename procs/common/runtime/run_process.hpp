@@ -4,8 +4,8 @@
 #pragma once
 
 #include "common/config/config.hpp"
-#include "common/process/node.hpp"
-#include "common/process/options.hpp"
+#include "common/node/node.hpp"
+#include "common/runtime/options.hpp"
 
 #include <functional>
 #include <memory>

@@ -2,8 +2,8 @@
 // A node on logs instead of the network: in order, nothing lost, as fast as it can.
 #pragma once
 
-#include "common/process/node.hpp"
-#include "common/process/options.hpp"
+#include "common/node/node.hpp"
+#include "common/runtime/options.hpp"
 
 namespace waymark {
 

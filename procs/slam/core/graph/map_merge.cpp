@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/mapping/map_merge.hpp"
+#include "slam/core/graph/map_merge.hpp"
 
 #include <Eigen/LU>
 

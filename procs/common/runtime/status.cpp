@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/status.hpp"
+#include "common/runtime/status.hpp"
 
 #include <spdlog/spdlog.h>
 

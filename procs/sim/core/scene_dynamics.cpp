@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/core/happenings.hpp"
+#include "sim/core/scene_dynamics.hpp"
 
 #include "sim/core/world/mjcf.hpp"
 
@@ -21,14 +21,15 @@ void KidnapConfig::describe(Fields& fields) {
   fields.field("to_yaw_rad", to_yaw_rad, {-7.0, 7.0}, "heading there");
 }
 
-Bustle::Bustle(const World& world)
+SceneDynamics::SceneDynamics(const World& world)
     : markers_{world.markers},
       moved_by_m_(world.markers.size(), Eigen::Vector2d::Zero()),
       moves_{world.moves},
       boxes_{world.boxes},
       is_shown_(world.boxes.size(), true) {}
 
-std::vector<MovedMarker> Bustle::update(Timestamp time, const Moment& moment, Physics& physics) {
+std::vector<MovedMarker> SceneDynamics::update(Timestamp time, const Moment& moment,
+                                               Physics& physics) {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const bool is_present = boxes_[i].present.covers(moment);
     if (is_present == is_shown_[i]) continue;

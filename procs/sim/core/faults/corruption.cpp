@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/core/faults/spoil.hpp"
+#include "sim/core/faults/corruption.hpp"
 
 #include <cmath>
 #include <limits>

@@ -2,10 +2,10 @@
 // main() of the simulator: it makes the ticks that the others follow.
 #pragma once
 
-#include "common/process/node.hpp"
-#include "common/process/options.hpp"
-#include "common/process/run_process.hpp"
+#include "common/node/node.hpp"
 #include "common/robot/robot_config.hpp"
+#include "common/runtime/options.hpp"
+#include "common/runtime/run_process.hpp"
 
 #include <functional>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/options.hpp"
+#include "common/runtime/options.hpp"
 
-#include "common/process/exit_codes.hpp"
+#include "common/errors/exit_codes.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/guard.hpp"
+#include "common/runtime/guard.hpp"
 
 #include "common/config/config.hpp"
-#include "common/process/exit_codes.hpp"
-#include "common/process/signals.hpp"
+#include "common/errors/exit_codes.hpp"
+#include "common/runtime/signals.hpp"
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/reorder_buffer.hpp"
+#include "common/runtime/reorder_buffer.hpp"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/replay.hpp"
+#include "common/runtime/replay.hpp"
 
+#include "common/errors/exit_codes.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/exit_codes.hpp"
-#include "common/process/guard.hpp"
-#include "common/process/progress.hpp"
-#include "common/process/signals.hpp"
+#include "common/runtime/guard.hpp"
+#include "common/runtime/progress.hpp"
+#include "common/runtime/signals.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

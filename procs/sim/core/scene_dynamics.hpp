@@ -33,9 +33,9 @@ struct MovedMarker {
 };
 
 /// Boxes that come and go, markers that move.
-class Bustle {
+class SceneDynamics {
  public:
-  explicit Bustle(const World& world);
+  explicit SceneDynamics(const World& world);
 
   /// Brings the model up to date. Returns the markers that have just moved, as they hang now.
   std::vector<MovedMarker> update(Timestamp time, const Moment& moment, Physics& physics);

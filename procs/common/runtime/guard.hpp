@@ -2,7 +2,7 @@
 // Exceptions -> one clear line and an exit code.
 #pragma once
 
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <functional>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/progress.hpp"
+#include "common/runtime/progress.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/signals.hpp"
+#include "common/runtime/signals.hpp"
 
 #include <unistd.h>
 

@@ -4,8 +4,8 @@
 // on a log.
 #pragma once
 
+#include "common/errors/setup_error.hpp"
 #include "common/messages/codec.hpp"
-#include "common/process/setup_error.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -42,8 +42,8 @@ bool is_loss(std::string_view counter);
 enum class Backlog { kKeepAll, kNewestOnly };
 
 /// Decodes messages and hands them to the node's typed handlers. Several types may share a channel
-/// name; the fingerprint tells them apart. What cannot be decoded is counted as "CHANNEL rejected:
-/// reason".
+/// name; the fingerprint distinguishes them. What cannot be decoded is counted as "CHANNEL
+/// rejected: reason".
 class Inbox {
  public:
   struct Subscription {
@@ -113,7 +113,7 @@ class Node {
   virtual void finish() = 0;
 
   /// Something that was asked for could not be done (say, a file not written); the process goes on,
-  /// and its exit code tells. The node has logged what it was.
+  /// and its exit code says so. The node has logged what it was.
   virtual bool failed() const { return false; }
 };
 

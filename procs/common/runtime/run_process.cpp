@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/run_process.hpp"
+#include "common/runtime/run_process.hpp"
 
 #include "common/bus/bus.hpp"
+#include "common/errors/exit_codes.hpp"
 #include "common/lockstep/participant.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/exit_codes.hpp"
-#include "common/process/guard.hpp"
-#include "common/process/reorder_buffer.hpp"
-#include "common/process/replay.hpp"
-#include "common/process/signals.hpp"
-#include "common/process/status.hpp"
+#include "common/runtime/guard.hpp"
+#include "common/runtime/reorder_buffer.hpp"
+#include "common/runtime/replay.hpp"
+#include "common/runtime/signals.hpp"
+#include "common/runtime/status.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/process/run_simulator.hpp"
+#include "common/runtime/run_simulator.hpp"
 
 #include "common/bus/bus.hpp"
+#include "common/errors/exit_codes.hpp"
 #include "common/lockstep/master.hpp"
 #include "common/log/log_file.hpp"
-#include "common/process/exit_codes.hpp"
-#include "common/process/guard.hpp"
-#include "common/process/progress.hpp"
-#include "common/process/signals.hpp"
-#include "common/process/status.hpp"
+#include "common/runtime/guard.hpp"
+#include "common/runtime/progress.hpp"
+#include "common/runtime/signals.hpp"
+#include "common/runtime/status.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -133,7 +133,7 @@ TEST(Faults, NoFaultsNoDifference) {
   }
 }
 
-TEST(Bustle, ABoxIsThereOnlyWhileItIsPresent) {
+TEST(SceneDynamics, ABoxIsThereOnlyWhileItIsPresent) {
   Scenario scenario = small_scenario();
   BoxConfig box{};
   box.x_m = 4.4;
@@ -154,7 +154,7 @@ TEST(Bustle, ABoxIsThereOnlyWhileItIsPresent) {
   }
 }
 
-TEST(Bustle, AMovedMarkerIsReportedOnceAndSeenElsewhere) {
+TEST(SceneDynamics, AMovedMarkerIsReportedOnceAndSeenElsewhere) {
   Scenario scenario = small_scenario();
   scenario.camera_noise.sigma_grey_levels = 0.0;
   scenario.route.start_x_m = 1.0;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/config/config.hpp"
-#include "common/process/node.hpp"
+#include "common/node/node.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -29,7 +29,7 @@ struct ProcessOptions {
   std::optional<std::int64_t> seed{};
 };
 
-/// The files that a process is told to read.
+/// The log files that a process reads instead of the network.
 std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options);
 
 /// Which of the optional options a process has.

@@ -1,0 +1,22 @@
+# Precompiled headers: what most files of a kind open to anyway. Sources go on including what they use, and compile
+# without these as well (-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON). One per kind: every other code, code with pictures, tests.
+
+# GCC takes a precompiled header only where the definitions are the same as where it was made.
+add_compile_definitions(FMT_SHARED)
+
+function(waymark_precompiled name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
+  file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp" CONTENT "")
+  add_library(${name} OBJECT "${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp")
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} waymark_warnings)
+  target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
+endfunction()
+
+set(headers
+  <algorithm> <array> <cmath> <cstdint> <deque> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional>
+  <set> <span> <sstream> <string> <string_view> <utility> <variant> <vector>
+  <Eigen/Cholesky> <Eigen/Core> <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/LU> <fmt/format.h>)
+waymark_precompiled(precompiled_plain HEADERS ${headers} LIBRARIES Eigen3::Eigen fmt::fmt)
+waymark_precompiled(precompiled_pictures
+  HEADERS ${headers} <opencv2/core.hpp> <opencv2/imgproc.hpp>
+  LIBRARIES Eigen3::Eigen fmt::fmt opencv_core opencv_imgproc)
