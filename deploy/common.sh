@@ -125,6 +125,7 @@ build() {
   [[ $preset != ci ]] || folder=$source_dir/build/release
   if command -v ccache >/dev/null && [[ ! -v CMAKE_CXX_COMPILER_LAUNCHER ]]; then
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$source_dir
+    export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime  # as precompiled headers need
   fi
   mkdir -p "$folder"
   local log=$folder/build.log
