@@ -31,8 +31,8 @@ foreach(label unit property process simulation)
   add_custom_target(${label}_tests)
 endforeach()
 
-# waymark_test(NAME LABEL unit|property|process|simulation SOURCES ... LIBRARIES ...): one GoogleTest program;
-# the target LABEL_tests builds all of a label.
+# waymark_test(NAME LABEL unit|property|process|simulation SOURCES ... LIBRARIES ...): one GoogleTest program,
+# which is one test of CTest; the target LABEL_tests builds all of a label.
 function(waymark_test name)
   cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -42,5 +42,6 @@ function(waymark_test name)
   target_compile_definitions(${name} PRIVATE
     WAYMARK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WAYMARK_BUILD_DIR="${PROJECT_BINARY_DIR}")
   add_dependencies(${ARG_LABEL}_tests ${name})
-  gtest_discover_tests(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 600)
 endfunction()
