@@ -174,7 +174,7 @@ summarise() {
 
 parse_arguments "$@"
 need_programs waymark-{sim,detector,slam,viewer,recorder,evaluate} tests/benchmark/{batch_limit,length_curve}
-command -v gnuplot >/dev/null || die $kExitUsage "gnuplot is missing; install it with $deploy_dir/install-deps.sh"
+command -v gnuplot >/dev/null || die $kExitUsage "gnuplot is missing; install it with $deploy_dir/install-deps.sh --tests"
 out=$(make_folder "$out")
 measure_corridor
 measure_limit

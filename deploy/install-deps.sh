@@ -1,6 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that Waymark is built with; does nothing when none is missing.
+#
+# usage: install-deps.sh [--tests] [--list]
+#   --tests  also what only tests, benchmarks and sweeps need
+#   --list   prints the packages, installs nothing
 set -euo pipefail
 
 packages=(
@@ -12,21 +16,27 @@ packages=(
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libcpp-httplib-dev pkg-config            # viewer: the live page
   zlib1g-dev libbz2-dev                    # import of compressed CARMEN logs
-  libgtest-dev libgmock-dev libceres-dev    # tests, benchmarks
-  clang-format shellcheck                  # tests/lint
-  parallel gnuplot-nox                     # sweeps: many runs at once, plots
+  libgtest-dev libgmock-dev                # the build is configured with its tests
   iproute2                                 # `ip`: a route for multicast where there is none
 )
+packages_for_tests=(
+  clang-format clang-tidy shellcheck       # tests/lint
+  libceres-dev                             # tests/benchmark/batch_limit
+  parallel gnuplot-nox                     # sweeps: many runs at once, plots
+)
 
-if [[ ${1:-} == --help || ${1:-} == -h ]]; then
-  printf 'usage: deploy/install-deps.sh [--list]\nInstalls what is missing of: %s\n' "${packages[*]}"
-  exit 0
-elif [[ ${1:-} == --list && $# -eq 1 ]]; then
+list=false
+for option in "$@"; do
+  case $option in
+    --help | -h) sed -n '3,/^[^#]/s/^# \?//p' "$0" && exit 0 ;;
+    --tests) packages+=("${packages_for_tests[@]}") ;;
+    --list) list=true ;;
+    *) echo "install-deps: unknown option '$option'; see --help" >&2 && exit 2 ;;
+  esac
+done
+if $list; then
   printf '%s\n' "${packages[@]}"
   exit 0
-elif (($# > 0)); then
-  echo "install-deps: unknown option '$1'; the only ones are --list and --help" >&2
-  exit 2
 fi
 
 fail() {

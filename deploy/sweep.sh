@@ -203,7 +203,7 @@ summarise() {
 parse_arguments "$@"
 need_programs waymark-{sim,detector,slam,viewer,recorder,evaluate}
 [[ -z $variants ]] || need_programs waymark-faults
-command -v parallel >/dev/null || die $kExitUsage "GNU parallel is missing; install it with $deploy_dir/install-deps.sh"
+command -v parallel >/dev/null || die $kExitUsage "GNU parallel is missing; install it with $deploy_dir/install-deps.sh --tests"
 check_scenarios
 check_rows
 out=$(make_folder "$out")

@@ -19,7 +19,7 @@ with_network() {
   fi
 }
 
-"$deploy_dir/install-deps.sh"
+"$deploy_dir/install-deps.sh" --tests
 build ci
 cd "$source_dir"
 with_network ctest --preset ci --parallel 2 </dev/null

@@ -72,12 +72,12 @@ channel_names() {
 }
 
 formatted() {
-  command -v clang-format >/dev/null || { echo "no clang-format here; deploy/install-deps.sh installs it" && exit 1; }
+  command -v clang-format >/dev/null || { echo "no clang-format here; deploy/install-deps.sh --tests installs it" && exit 1; }
   files "procs tools tests" '*.hpp' '*.cpp' | xargs -r -P 2 -n 20 clang-format --dry-run --Werror
 }
 
 scripts_checked() {
-  command -v shellcheck >/dev/null || { echo "no shellcheck here; deploy/install-deps.sh installs it" && exit 1; }
+  command -v shellcheck >/dev/null || { echo "no shellcheck here; deploy/install-deps.sh --tests installs it" && exit 1; }
   files "deploy tests tools" '*.sh' | xargs -r shellcheck -x .ci/run
 }
 

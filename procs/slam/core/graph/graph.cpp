@@ -40,7 +40,7 @@ std::size_t Graph::add_keyframe(const Se2& map_from_base) {
 
 std::size_t Graph::add_landmark(const Se2& map_from_marker) {
   state_.landmarks.push_back(map_from_marker);
-  landmark_covariances_.push_back(Eigen::Matrix3d::Zero());
+  landmark_covariances_.emplace_back(Eigen::Matrix3d::Zero());
   is_fixed_.push_back(false);
   push_variable({VariableKind::kLandmark, state_.landmarks.size() - 1});
   return state_.landmarks.size() - 1;
