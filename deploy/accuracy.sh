@@ -14,6 +14,7 @@
 # Results in DIR: corridor.md and corridor_runs.csv (every seed), consistency.txt, ablations.csv,
 # limit.csv (per seed the limit with all of the log and with what came before each pose, and waymark's
 # error), length.dat, summary.txt.
+# Replaces these files; in DIR/sweep it deletes what deploy/sweep.sh does (see its --help).
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

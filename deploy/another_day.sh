@@ -9,6 +9,7 @@
 #
 # Writes DIR/mapping (a run that draws the map), DIR/corridor.map.lcm, DIR/localising (a run in that map), and prints
 # the table of the second day, whose errors are in the map's frame (ate_frame_m in DIR/localising/results.json).
+# Deletes an earlier run in both folders, and replaces the map.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

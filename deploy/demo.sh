@@ -8,6 +8,8 @@
 #   --scenario FILE  (default: deploy/scenarios/corridor.toml, 50 m)
 #   --seed N         seed of everything random (default: the scenario's run.seed)
 #   --fast           deploy/scenarios/corridor_fast.toml: 10 m, driven faster than the real robot can
+#
+# Installs Debian packages (as root). Deletes an earlier run in the --out folder, with the rows of all replays of it.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

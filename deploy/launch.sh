@@ -18,6 +18,8 @@
 #   --http HOST:PORT  show the run as a live page there, e.g. 127.0.0.1:8080
 #   --lcm-url URL     LCM network (default: $LCM_DEFAULT_URL, else a UDP port of its own)
 #
+# Deletes an earlier run in the --out folder: its log, truth, robot.toml, logs/, tables, and the rows of all replays of
+# it. Files that no run or replay writes stay; a folder with such names that is no run of launch.sh is refused.
 # detector and viewer are restarted when they die, at most five times; the death of simulator, slam or
 # recorder ends the run. Exit codes: 0 fine, 1 the run failed, 2 bad usage or set-up, 3 a process died,
 # 4 time-out, 128+n signal n.

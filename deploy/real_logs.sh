@@ -16,6 +16,8 @@
 #
 # NAME_ANYTHING without relations of its own takes those of NAME. Results: DIR/results.md, results.csv, and per run
 # DIR/NAME/ROW-sSEED as from deploy/replay.sh. Exit code 1 when a run failed; its row is in the table.
+# Deletes, in DIR, an imported log that is out of date, and the results of an earlier run of the same row; the logs in
+# FOLDER are only read.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 # shellcheck source=deploy/lists.sh

@@ -13,7 +13,8 @@
 #   --robot FILE     sensors and their mounting (default: robot.toml beside the log)
 #   --out DIR        (default: the log's folder)
 #
-# What an earlier replay has left in DIR/ROW goes. A damaged log gives what is left of it, and exit code 1.
+# Deletes the results of an earlier replay in DIR/ROW, and its logs DIR/logs/ROW.slam.log and .viewer.log; other
+# files there stay. A damaged log gives what is left of it, and exit code 1.
 # Writes map, pictures, trajectory and markers into DIR/ROW (README.md, "What a run leaves"), with slam.lcm
 # (what slam published), config.toml and timings.json. The seed is that of the run when its scenario.toml
 # is beside the log, so that a run and its replay give the same bytes.

@@ -16,6 +16,9 @@
 # A job records the log of one scenario and seed, live and in lockstep, replays every estimator on it and
 # evaluates. A run that fails is a failure in the table and stops nobody; a full disk stops the sweep.
 # Results: DIR/results.md, results.csv, runs.csv, index.html (the worst map of every row), plots/.
+# Deletes, in DIR, the runs whose scenario, faults or programs' settings have changed and the rows whose estimator or
+# settings have; slam.lcm of every row, and the logs that waymark-faults made, once they have been evaluated. Runs and
+# rows that are no longer in the plan stay, and are not in the table.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 # shellcheck source=deploy/lists.sh

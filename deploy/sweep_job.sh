@@ -10,6 +10,8 @@
 # What is done is marked by files that appear by renaming, so that a job may be killed at any time.
 # Exit code 0 also when a run failed (its row's or folder's file `failed` says how, and the table does);
 # 1 when no job can do any better: a full disk.
+# Deletes what it makes anew: with --again the whole run of that scenario and seed with its faulty variants, else runs
+# and rows whose plan has changed; and slam.lcm of each row once it is evaluated.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
