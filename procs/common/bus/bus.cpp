@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/bus/bus.hpp"
 
+#include "common/bus/datagram_filter.hpp"
+
 #include <lcm/lcm.h>
 
 #include <atomic>
@@ -19,6 +21,7 @@ constexpr std::string_view kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 constexpr std::size_t kMaxQueuedBytesPerChannel = std::size_t{16} << 20;
 // Small messages cost more than their payload; 10000 of them are minutes of any of our channels.
 constexpr std::size_t kMaxQueuedMessagesPerChannel = 10000;
+constexpr std::size_t kMaxLargePayloadBytes = std::size_t{4} << 20;
 constexpr int kHandleTimeout_ms = 50;
 // LCM's own queue only bridges the moments in which our thread is not scheduled.
 constexpr int kLcmQueueCapacity = 200;
@@ -42,8 +45,11 @@ std::string lcm_url_or_default(const std::string& given_url) {
 
 class Bus::Implementation {
  public:
-  Implementation(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions)
-      : lcm_{lcm_create(url.c_str()), &lcm_destroy} {
+  Implementation(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
+                 LargeMessages large_messages)
+      : max_payload_bytes_{large_messages == LargeMessages::kAccepted ? kMaxLargePayloadBytes
+                                                                      : kMaxPayloadBytes},
+        lcm_{lcm_create(url.c_str()), &lcm_destroy} {
     if (lcm_ == nullptr) throw no_network(url);
     for (const Inbox::Subscription& subscription : subscriptions) {
       Queue& queue = queues_[subscription.channel];
@@ -56,6 +62,7 @@ class Bus::Implementation {
     if (subscriptions.empty()) return;
     // A TCP server that is not there shows nowhere else, and waiting for it would abort.
     if (!is_connected()) throw no_network(url);
+    if (large_messages == LargeMessages::kRefused) filter_.emplace(url);
     receiver_ = std::thread{[this] {
       receive_until_stopped();
     }};
@@ -94,6 +101,8 @@ class Bus::Implementation {
 
   void collect_counts(Counters& counters) {
     const std::lock_guard lock{mutex_};
+    if (const std::int64_t dropped = filter_ ? filter_->take_dropped() : 0; dropped > 0)
+      counts_.add("datagrams dropped: no whole message of LCM, or too many at once", dropped);
     for (const auto& [name, count] : counts_.all())
       counters.add(name, count);
     counts_ = {};
@@ -119,7 +128,7 @@ class Bus::Implementation {
     const auto found = queues_.find(std::string_view{channel});
     if (found == queues_.end()) return;  // a channel name without end, from a broken datagram
     // liblcm 1.3.1 reports size -1 for a datagram without a channel end.
-    if (buffer->data == nullptr || buffer->data_size > kMaxPayloadBytes) {
+    if (buffer->data == nullptr || buffer->data_size > max_payload_bytes_) {
       counts_.add(found->first + " rejected: too large");
       return;
     }
@@ -160,7 +169,9 @@ class Bus::Implementation {
     if (!stop_) counts_.add("connection lost, messages dropped");
   }
 
+  std::size_t max_payload_bytes_;
   std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;
+  std::optional<DatagramFilter> filter_;
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::map<std::string, Queue, std::less<>> queues_;
@@ -175,8 +186,9 @@ void check_network(const std::string& url) {
   const Bus bus{url, {{"CHECK"}}};
 }
 
-Bus::Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions)
-    : implementation_{std::make_unique<Implementation>(url, subscriptions)} {}
+Bus::Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
+         LargeMessages large_messages)
+    : implementation_{std::make_unique<Implementation>(url, subscriptions, large_messages)} {}
 
 Bus::~Bus() = default;
 

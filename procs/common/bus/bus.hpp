@@ -13,6 +13,12 @@
 
 namespace waymark {
 
+/// Messages of several datagrams: none of ours is one, but a robot's camera driver may send them.
+enum class LargeMessages {
+  kRefused,
+  kAccepted,  ///< up to 4 MiB; who can send to the network can crash liblcm 1.3.1 then
+};
+
 /// `--lcm-url`, else $LCM_DEFAULT_URL, else the loopback default.
 std::string lcm_url_or_default(const std::string& given_url);
 
@@ -24,11 +30,13 @@ void check_network(const std::string& url);
 ///
 /// A thread of its own takes everything from LCM at once (LCM's queues drop the newest message when
 /// full), refuses what cannot be a message (size, time), and keeps a bounded queue per channel.
+/// What is no whole datagram of LCM is dropped in the kernel (DatagramFilter), and counted.
 /// Nothing is decoded here, and nothing is thrown through LCM's C frames.
 class Bus {
  public:
   /// @throws SetupError when there is no multicast route or the URL is not one, with the cure.
-  Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions);
+  Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
+      LargeMessages large_messages = LargeMessages::kRefused);
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;

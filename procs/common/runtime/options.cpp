@@ -39,6 +39,10 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
       "--real-time", options.real_time,
       "process what arrives when it arrives (a real robot) instead of in lockstep with the "
       "simulator");
+  app.add_flag(
+      "--large-messages", options.large_messages,
+      "with --real-time: also take messages of several datagrams, such as large images of a "
+      "camera driver; only in a network that you trust (see docs/reference.md, Limits)");
   if (option_set.log) {
     app.add_option(
            "--log", options.logs,

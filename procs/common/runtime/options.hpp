@@ -20,6 +20,7 @@ struct ProcessOptions {
   bool check{false};
   std::string lcm_url{};
   bool real_time{false};
+  bool large_messages{false};
   std::vector<std::filesystem::path> logs{};
   std::filesystem::path out_log{};
   std::filesystem::path out_dir{};

@@ -145,9 +145,9 @@ class RealTimeFeed {
 };
 
 /// Live, on whatever arrives, until a signal asks to stop.
-int run_real_time(const ProcessTraits& traits, const std::string& url, Node& node, Inbox& inbox,
-                  Outbox& outbox) {
-  Bus bus{url, inbox.subscriptions()};
+int run_real_time(const ProcessTraits& traits, const std::string& url, LargeMessages large_messages,
+                  Node& node, Inbox& inbox, Outbox& outbox) {
+  Bus bus{url, inbox.subscriptions(), large_messages};
   StatusReporter reporter{traits.name};
   RealTimeFeed feed{bus, inbox, outbox};
   spdlog::info("ready, real time on {}", url);
@@ -230,8 +230,10 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
     const auto node = description.make_node(options, inbox, outbox);
     if (!options.logs.empty()) return run_replay(options, *node, inbox, outbox);
     const std::string url = lcm_url_or_default(options.lcm_url);
-    const auto run = options.real_time ? run_real_time : run_lockstep;
-    return run(description.traits, url, *node, inbox, outbox);
+    if (!options.real_time) return run_lockstep(description.traits, url, *node, inbox, outbox);
+    const auto large_messages =
+        options.large_messages ? LargeMessages::kAccepted : LargeMessages::kRefused;
+    return run_real_time(description.traits, url, large_messages, *node, inbox, outbox);
   });
 }
 
