@@ -7,6 +7,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -54,6 +56,9 @@ class Replay : public ::testing::Test {
     folder_ = std::filesystem::path{::testing::TempDir()} /
               ::testing::UnitTest::GetInstance()->current_test_info()->name();
     std::filesystem::create_directories(folder_);
+    // The tests of processes before leave their own.
+    spdlog::drop("replay_test");
+    spdlog::set_default_logger(spdlog::stdout_logger_mt("replay_test"));
   }
 
   std::filesystem::path log(const std::string& name, const std::vector<Message>& messages) const {
