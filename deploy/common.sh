@@ -94,13 +94,6 @@ protect_inputs() {
   done
 }
 
-# toml_value FILE SECTION KEY: one value of a configuration that a program has printed.
-toml_value() {
-  awk -v section="[$2]" -v key="$3" '
-    /^\[/ { inside = $0 == section }
-    inside && $1 == key && $2 == "=" { gsub(/^"|"$/, "", $3); print $3; exit }' "$1"
-}
-
 # count_down_ninja LOG: ninja's output as one line of progress, everything into LOG.
 count_down_ninja() {
   local line last=$SECONDS

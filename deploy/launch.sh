@@ -105,14 +105,14 @@ check_scenario() {
   [[ -z $seed ]] || sim_options+=(--seed "$seed")
   "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-config >"$checked/scenario.toml" || exit $?
   "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-robot-config >"$checked/robot.toml" || exit $?
-  seed=$(toml_value "$checked/scenario.toml" run seed)
+  seed=$("$bin_dir/waymark-sim" "${sim_options[@]}" --print-config run.seed) || exit $?
 }
 
 check_slam() {
   slam_options=(--set "slam.seed=$seed" "${slam_options[@]}")
-  "$bin_dir/waymark-slam" --config "$checked/robot.toml" "${slam_options[@]}" --dump-config >"$checked/slam.toml" ||
-    exit $?
-  estimator=$(toml_value "$checked/slam.toml" slam estimator)
+  local slam=("$bin_dir/waymark-slam" --config "$checked/robot.toml" "${slam_options[@]}")
+  "${slam[@]}" --dump-config >"$checked/slam.toml" || exit $?
+  estimator=$("${slam[@]}" --print-config slam.estimator) || exit $?
 }
 
 # check_programs: each takes the options that it will be started with, and can join the network. (Where

@@ -71,10 +71,12 @@ prepare() {
 
 # check_slam: sets slam_options, and config to what they come to.
 check_slam() {
-  local seed=()
-  local scenario=${log%/*}/scenario.toml
-  [[ ! -f $scenario ]] || seed=(--set "slam.seed=$(toml_value "$scenario" run seed)")
-  slam_options=(--config "$robot" "${seed[@]}" --set "slam.estimator=$estimator" "${slam_options[@]}")
+  local seed='' scenario=${log%/*}/scenario.toml
+  if [[ -f $scenario ]]; then
+    need_programs waymark-sim
+    seed=$("$bin_dir/waymark-sim" --config "$scenario" --print-config run.seed) || exit $?
+  fi
+  slam_options=(--config "$robot" ${seed:+--set "slam.seed=$seed"} --set "slam.estimator=$estimator" "${slam_options[@]}")
   config=$("$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config) || exit $?
   ((${#map_options[@]} == 0)) ||
     "$bin_dir/waymark-slam" "${slam_options[@]}" "${map_options[@]}" --log "$log" --check || exit $?
@@ -83,7 +85,8 @@ check_slam() {
 # clear_old_results: so that a replay that fails leaves none that look new. config.toml stays until it is
 # replaced, for it may be a --config of this replay.
 clear_old_results() {
-  old_files=("${kRowResults[@]/#/"$folder/"}" "$folder/slam.lcm.part" "$logs/$row."{slam,viewer}.log)
+  old_files=("${kRowResults[@]/#/"$folder/"}" "$folder/"{slam.lcm.part,slam.report,viewer.report}
+    "$logs/$row."{slam,viewer}.log)
   protect_inputs "$log" "$robot" "${slam_files[@]}"
   rm -f -- "${old_files[@]}"
 }
@@ -91,30 +94,22 @@ clear_old_results() {
 # write FILE TEXT: whole or not at all.
 write() { printf '%s\n' "$2" >"$1.tmp" && mv "$1.tmp" "$1"; }
 
-# run NAME ARGUMENTS...: one program; its words go to the log file and, being progress, to the terminal.
-# One that has come to the end of a damaged log has made what can be made of it.
+# run NAME ARGUMENTS...: one program; its words go to the log file and, being progress, to the terminal; what
+# the replay took and counted to a report. One that has come to the end of a damaged log, and so has written
+# one, has made what can be made of it.
 run() {
-  local name=$1 program=$bin_dir/waymark-$1 log_file=$logs/$row.$1.log code=0
+  local name=$1 program=$bin_dir/waymark-$1 log_file=$logs/$row.$1.log report=$folder/$1.report code=0
   shift
-  # A pipe, for a process substitution may still be writing when its timing is read.
-  { "$program" "$@" 2>&1 >&3 | tee -i "$log_file" >&2; } 3>&1 || code=$?
+  # A pipe, for a process substitution may still be writing when the log is read.
+  { "$program" "$@" --report "$report" 2>&1 >&3 | tee -i "$log_file" >&2; } 3>&1 || code=$?
   ((code == 0)) && return
-  ((code == kExitFailed)) && timing "$name" >/dev/null && incomplete+=("$log_file") && return
+  ((code == kExitFailed)) && [[ -f $report ]] && incomplete+=("$log_file") && return
   die "$code" "$name ended with code $code; its log is $log_file"
 }
 
-# timing NAME: the closing line "replayed N messages, S s of log in W s (F x real time), peak memory M MB"
-# of a program's log as JSON.
-timing() {
-  sed -nE 's/.*replayed ([0-9]+) messages, ([0-9.]+) s of log in ([0-9.]+) s \(([0-9.]+) x real time\), peak memory ([0-9.]+) MB.*/{"messages": \1, "log_s": \2, "wall_s": \3, "real_time_factor": \4, "peak_memory_mb": \5}/p' \
-    "$logs/$row.$1.log" | grep .
-}
-
 write_timings() {
-  local slam viewer
-  slam=$(timing slam) || die $kExitFailed "no timing in $logs/$row.slam.log"
-  viewer=$(timing viewer) || die $kExitFailed "no timing in $logs/$row.viewer.log"
-  write "$folder/timings.json" "{\"slam\": $slam,"$'\n'" \"viewer\": $viewer}"
+  write "$folder/timings.json" "{\"slam\": $(<"$folder/slam.report"),"$'\n'"\"viewer\": $(<"$folder/viewer.report")}"
+  rm -f -- "$folder/"{slam,viewer}.report
 }
 
 parse_arguments "$@"

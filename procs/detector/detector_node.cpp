@@ -56,7 +56,7 @@ void DetectorNode::handle(const image_t& image) {
     detections.detections = detector_.detect(frame.gray);
     leave_out_what_does_not_fit(detections.detections);
     if (debug_pictures_ && !debug_pictures_->offer(frame.gray, detections)) {
-      inbox_.counters().add("debug pictures not written");
+      inbox_.counters().add("debug pictures not written", CountKind::kLoss);
     }
     count(detections);
   } else {
@@ -68,7 +68,7 @@ void DetectorNode::handle(const image_t& image) {
 /// The largest markers tell most.
 void DetectorNode::leave_out_what_does_not_fit(std::vector<MarkerDetection>& markers) {
   if (markers.size() <= kMarkersPerMessage) return;
-  inbox_.counters().add("markers dropped: more than a message holds",
+  inbox_.counters().add("markers dropped: more than a message holds", CountKind::kLoss,
                         std::ssize(markers) - std::int64_t{kMarkersPerMessage});
   std::ranges::stable_sort(markers, std::greater{}, &MarkerDetection::width_px);
   markers.resize(kMarkersPerMessage);
@@ -77,7 +77,7 @@ void DetectorNode::leave_out_what_does_not_fit(std::vector<MarkerDetection>& mar
 void DetectorNode::count(const MarkerDetections& detections) {
   const bool any = !detections.detections.empty();
   inbox_.counters().add(any ? "frames with markers" : "frames without markers");
-  inbox_.counters().add("markers detected", std::ssize(detections.detections));
+  inbox_.counters().add("markers detected", CountKind::kEvent, std::ssize(detections.detections));
 }
 
 void DetectorNode::reject(const DecodedFrame& frame) {
@@ -87,7 +87,7 @@ void DetectorNode::reject(const DecodedFrame& frame) {
         "an image of {} x {} px is refused: robot.camera.width_px and height_px say {} x {}",
         frame.wrong_size.width, frame.wrong_size.height, image_size_.width, image_size_.height);
   }
-  inbox_.counters().add(name);
+  inbox_.counters().add(name, CountKind::kRejection);
 }
 
 DecodedFrame DetectorNode::decode_image(const image_t& image) const {

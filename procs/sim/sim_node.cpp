@@ -91,8 +91,9 @@ std::int64_t SimNode::run_id() const {
 
 void SimNode::obey(const twist2D_t& command) {
   const Velocity velocity{double{command.vx}, double{command.wz}};
-  inbox_.counters().add(
-      counter_of(simulation_->command(timestamp_from_us(command.utime), velocity)));
+  const CommandOutcome outcome = simulation_->command(timestamp_from_us(command.utime), velocity);
+  inbox_.counters().add(counter_of(outcome),
+                        outcome == CommandOutcome::kInTime ? CountKind::kEvent : CountKind::kLoss);
 }
 
 std::vector<Message> SimNode::advance(Timestamp& tick_end) {

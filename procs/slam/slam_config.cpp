@@ -4,7 +4,13 @@
 #include "common/robot/camera_model.hpp"
 #include "slam/parallel.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -50,37 +56,67 @@ void PreprocessingConfig::describe(Fields& fields) {
                "how late a scan may be before odometry and camera go on without");
 }
 
+namespace {
+
+std::string_view name_of(EstimatorName estimator) {
+  switch (estimator) {
+    case EstimatorName::kOdometry:
+      return "odometry";
+    case EstimatorName::kGmapping:
+      return "gmapping";
+    case EstimatorName::kMarkerMatching:
+      return "marker_matching";
+    case EstimatorName::kWaymark:
+      break;
+  }
+  return "waymark";
+}
+
+}  // namespace
+
 void SlamSection::describe(Fields& fields) {
+  const auto named = [](EstimatorName name) {
+    return std::pair{name_of(name), name};
+  };
   fields.choice("estimator", estimator,
-                {{"odometry", EstimatorName::kOdometry},
-                 {"gmapping", EstimatorName::kGmapping},
-                 {"marker_matching", EstimatorName::kMarkerMatching},
-                 {"waymark", EstimatorName::kWaymark}},
-                "method");
+                {named(EstimatorName::kOdometry), named(EstimatorName::kGmapping),
+                 named(EstimatorName::kMarkerMatching), named(EstimatorName::kWaymark)},
+                "method; each has options of its own, which --dump-config shows");
+  const std::string unused = fmt::format("slam.estimator = {} does not use it", name_of(estimator));
+  const auto of = [&](std::initializer_list<EstimatorName> users, auto visit) {
+    fields.when(std::ranges::find(users, estimator) != users.end(), unused, visit);
+  };
   fields.field("seed", seed, {0.0, 9e15}, "of all random numbers");
-  fields.field("threads", threads, {1.0, 256.0},
-               "for the particles of gmapping; any number gives the same result");
+  of({EstimatorName::kGmapping}, [&] {
+    fields.field("threads", threads, {1.0, 256.0},
+                 "for the particles; any number gives the same result");
+  });
   fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
   fields.field("map_period_s", map_period_s, kPositive,
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
   fields.field("publish_grid", publish_grid, "also send the whole map on SLAM_GRID if it fits");
-  fields.choice(
-      "mode", mode,
-      {{"map", MapMode::kMap}, {"localise", MapMode::kLocalise}, {"extend", MapMode::kExtend}},
-      "draw a new map, or use the one of --load-map: as it is, or to add to it");
-  fields.choice("start", start.kind,
-                {{"origin", StartKind::kOrigin},
-                 {"pose", StartKind::kPose},
-                 {"anywhere", StartKind::kAnywhere}},
-                "where in the loaded map: where mapping began, at start_pose, or unknown");
-  fields.section("start_pose", start);
+  of({EstimatorName::kWaymark}, [&] {
+    fields.choice(
+        "mode", mode,
+        {{"map", MapMode::kMap}, {"localise", MapMode::kLocalise}, {"extend", MapMode::kExtend}},
+        "draw a new map, or use the one of --load-map: as it is, or to add to it");
+    fields.choice("start", start.kind,
+                  {{"origin", StartKind::kOrigin},
+                   {"pose", StartKind::kPose},
+                   {"anywhere", StartKind::kAnywhere}},
+                  "where in the loaded map: where mapping began, at start_pose, or unknown");
+    fields.when(start.kind == StartKind::kPose, "only slam.start = pose uses it",
+                [&] { fields.section("start_pose", start); });
+  });
   fields.section("preprocessing", preprocessing);
-  fields.section("motion", motion);
-  fields.section("gate", gate);
+  of({EstimatorName::kOdometry, EstimatorName::kMarkerMatching}, [&] {
+    fields.section("motion", motion);
+    fields.section("gate", gate);
+  });
   fields.section("grid", grid);
-  fields.section("gmapping", gmapping);
-  fields.section("marker_matching", marker_matching);
-  fields.section("waymark", waymark);
+  of({EstimatorName::kGmapping}, [&] { fields.section("gmapping", gmapping); });
+  of({EstimatorName::kMarkerMatching}, [&] { fields.section("marker_matching", marker_matching); });
+  of({EstimatorName::kWaymark}, [&] { fields.section("waymark", waymark); });
 }
 
 void SlamConfig::describe(Fields& fields) {

@@ -70,6 +70,33 @@ std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config) {
   return std::make_shared<const MapSnapshot>(std::move(file.map));
 }
 
+CountKind kind_of(Skip skip) {
+  switch (skip) {
+    case Skip::kOdometryAhead:
+      return CountKind::kRejection;
+    case Skip::kOdometryOutOfOrder:
+    case Skip::kScanOutOfOrder:
+    case Skip::kScanAhead:
+    case Skip::kScanOverflow:
+    case Skip::kFrameOutOfOrder:
+    case Skip::kFrameAhead:
+    case Skip::kFrameWithoutOdometry:
+    case Skip::kFrameOverflow:
+      return CountKind::kLoss;
+    case Skip::kClockSet:
+    case Skip::kOdometryJumped:
+    case Skip::kOdometryStuck:
+    case Skip::kScanWithoutReturns:
+    case Skip::kScanBeforeOdometry:
+    case Skip::kScanWithoutOdometry:
+    case Skip::kFrameRepeated:
+    case Skip::kMarkerImplausible:
+    case Skip::kMarkerUncertain:
+      break;
+  }
+  return CountKind::kEvent;
+}
+
 }  // namespace
 
 SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
@@ -158,7 +185,7 @@ void SlamNode::judge_input() {
 
 void SlamNode::take(LidarScan scan) {
   if (std::ssize(scan.ranges_m) != config_.robot.lidar.num_beams)
-    counters_.add("scans with another number of beams than told");
+    counters_.add("scans with another number of beams than configured");
   queue_.add(std::move(scan));
   process_ready_scans();
 }
@@ -167,7 +194,7 @@ void SlamNode::process_ready_scans() {
   while (const auto ready = queue_.next())
     process(*ready);
   for (const Skip skip : queue_.take_skips())
-    counters_.add(to_string(skip));
+    counters_.add(to_string(skip), kind_of(skip));
 }
 
 void SlamNode::process(const SensorQueue::Ready& ready) {
@@ -186,7 +213,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_estimate_ = time;
   if (estimate.slipped) counters_.add("slips of the wheels");
-  if (estimate.calibration_widened) counters_.add("calibration found worse than told");
+  if (estimate.calibration_widened) counters_.add("calibration found worse than configured");
   if (ready.scan && estimate.ranges_wrong) counters_.add("scans with wrong ranges");
   if (ready.scan)
     outbox_.publish(channels::kSlamScan,

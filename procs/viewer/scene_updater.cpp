@@ -71,9 +71,9 @@ std::string_view problem_of(TiledMap::Outcome outcome) {
 template <class Pose>
 void SceneUpdater::append(std::vector<Pose>& path, const Pose& pose, std::string_view path_name) {
   if (!path.empty() && pose.time <= path.back().time) {
-    counters_.add(fmt::format("{} left out: not newer", path_name));
+    counters_.add(fmt::format("{} left out: not newer", path_name), CountKind::kLoss);
   } else if (path.size() >= kMaxPathPoses) {
-    counters_.add(fmt::format("{} left out: path is full", path_name));
+    counters_.add(fmt::format("{} left out: path is full", path_name), CountKind::kLoss);
   } else {
     path.push_back(pose);
   }
@@ -87,14 +87,15 @@ void SceneUpdater::add(const map_tiles_t& message) {
         scene_.map.put(layout, timestamp_from_us(message.utime),
                        {tile.tile_x, tile.tile_y, tile.occupancy, tile.marker_ids});
     if (outcome != TiledMap::Outcome::kStored)
-      counters_.add(fmt::format("SLAM_MAP tiles left out: {}", problem_of(outcome)));
+      counters_.add(fmt::format("SLAM_MAP tiles left out: {}", problem_of(outcome)),
+                    CountKind::kLoss);
   }
 }
 
 void SceneUpdater::add(const marker_map_t& message) {
   const bool is_part = message.part >= 0 && message.part < message.num_parts;
   if (!is_part || message.num_parts > kMaxMarkerParts || message.utime < marker_parts_utime_) {
-    counters_.add("SLAM_MARKERS left out: not a part of the newest map");
+    counters_.add("SLAM_MARKERS left out: not a part of the newest map", CountKind::kLoss);
     return;
   }
   if (message.utime != marker_parts_utime_ || message.num_parts != num_marker_parts_) {
@@ -145,7 +146,7 @@ void SceneUpdater::add(const trajectory_t& message) {
     trajectory_parts_.clear();
   }
   if (message.part != num_trajectory_parts_) {
-    counters_.add("SLAM_TRAJECTORY left out: an earlier part is missing");
+    counters_.add("SLAM_TRAJECTORY left out: an earlier part is missing", CountKind::kLoss);
     return;
   }
   for (const pose2D_t& pose : message.poses)

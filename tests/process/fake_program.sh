@@ -42,6 +42,13 @@ case " $* " in
   *" --list "*) echo wrong_ids && exit ;;
   *" --variant "*) touch "$(argument --out "$@")"/{run.lcm,robot.toml} && exit ;;
   " run "* | " sweep "*) echo "$*" >>"$FAKE_DIR/$name.calls" && exit ;;
+  *" --print-config run.seed "*)
+    seed=$(sed -nE 's/^seed = ([0-9]+).*/\1/p' "$(argument --config "$@")")
+    echo "${seed:-7}"
+    exit ;;
+  *" --print-config slam.estimator "*)
+    sed -E 's/.*slam.estimator=([a-z_]+).*/\1/' <<<"slam.estimator=fake_estimator $*"
+    exit ;;
   *" --dump-config "*)
     estimator=$(sed -E 's/.*slam.estimator=([a-z_]+).*/\1/' <<<"slam.estimator=fake_estimator $*")
     if [[ $estimator == unknown ]]; then
@@ -52,7 +59,8 @@ case " $* " in
     exit ;;
   *" --dump-robot-config "*) echo "[robot]" && exit ;;
   *" --log "*) # replay
-    echo "replayed 12 messages, 3.5 s of log in 0.5 s (7.0 x real time), peak memory 20 MB" >&2
+    echo "replayed" >&2
+    echo '{"messages": 12, "wall_s": 0.5}' >"$(argument --report "$@")"
     echo "$*" >"$FAKE_DIR/$name.replay"
     [[ $name != slam ]] || touch "$(argument --out-log "$@")"
     [[ $name != viewer || -n $(setting mute) ]] || touch "$(argument --out "$@")"/{map.pgm,trajectory.tum}

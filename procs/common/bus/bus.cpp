@@ -102,9 +102,10 @@ class Bus::Implementation {
   void collect_counts(Counters& counters) {
     const std::lock_guard lock{mutex_};
     if (const std::int64_t dropped = filter_ ? filter_->take_dropped() : 0; dropped > 0)
-      counts_.add("datagrams dropped: no whole message of LCM, or too many at once", dropped);
+      counts_.add("datagrams dropped: no whole message of LCM, or too many at once",
+                  CountKind::kLoss, dropped);
     for (const auto& [name, count] : counts_.all())
-      counters.add(name, count);
+      counters.add(name, count.kind, count.value);
     counts_ = {};
   }
 
@@ -129,13 +130,13 @@ class Bus::Implementation {
     if (found == queues_.end()) return;  // a channel name without end, from a broken datagram
     // liblcm 1.3.1 reports size -1 for a datagram without a channel end.
     if (buffer->data == nullptr || buffer->data_size > max_payload_bytes_) {
-      counts_.add(found->first + " rejected: too large");
+      counts_.add(found->first + " rejected: too large", CountKind::kRejection);
       return;
     }
     const std::span bytes{static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
     const auto time = time_of(bytes);
     if (!time) {
-      counts_.add(found->first + " rejected: bad time");
+      counts_.add(found->first + " rejected: bad time", CountKind::kRejection);
       return;
     }
     push(found->first, found->second, {found->first, *time, {bytes.begin(), bytes.end()}});
@@ -143,7 +144,7 @@ class Bus::Implementation {
 
   void push(const std::string& channel, Queue& queue, Message message) {
     if (queue.backlog == Backlog::kNewestOnly && !queue.messages.empty()) {
-      counts_.add(channel + " skipped: newer one came",
+      counts_.add(channel + " skipped: newer one came", CountKind::kEvent,
                   static_cast<std::int64_t>(queue.messages.size()));
       std::erase(order_, &queue);
       queue.messages.clear();
@@ -151,7 +152,7 @@ class Bus::Implementation {
     }
     if (queue.bytes + message.payload.size() > kMaxQueuedBytesPerChannel ||
         queue.messages.size() >= kMaxQueuedMessagesPerChannel) {
-      counts_.add(channel + " dropped: queue full");
+      counts_.add(channel + " dropped: queue full", CountKind::kLoss);
       return;
     }
     queue.bytes += message.payload.size();
@@ -166,7 +167,7 @@ class Bus::Implementation {
     while (!stop_ && is_connected())
       lcm_handle_timeout(lcm_.get(), kHandleTimeout_ms);
     const std::lock_guard lock{mutex_};
-    if (!stop_) counts_.add("connection lost, messages dropped");
+    if (!stop_) counts_.add("connection lost, messages dropped", CountKind::kLoss);
   }
 
   std::size_t max_payload_bytes_;

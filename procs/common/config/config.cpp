@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace waymark {
@@ -39,33 +40,48 @@ std::string toml_string(const std::string& value) {
   return text + '"';
 }
 
-class Writer final : public Fields {
+/// A line of a described configuration.
+struct Entry {
+  enum class Kind { kTable, kElement, kValue, kEmptyList };
+
+  Kind kind{Kind::kValue};
+  std::string key{};      ///< "slam.estimator", "path.waypoints[0].x_m"
+  std::string heading{};  ///< of a table or element, e.g. "path.waypoints"
+  std::string value{};    ///< as TOML
+  std::string text{};     ///< the same, strings bare
+  std::string meaning{};
+  std::string unused{};  ///< why; empty = it is used
+};
+
+/// Lists all that a configuration describes, in file order.
+class Lister final : public Fields {
  public:
   using Fields::field;
 
   void field(std::string_view key, bool& value, std::string_view meaning) override {
-    line(key, value ? "true" : "false", meaning);
+    add(key, value ? "true" : "false", meaning);
   }
 
   void field(std::string_view key, std::string& value, std::string_view meaning) override {
-    line(key, toml_string(value), meaning);
+    add(key, toml_string(value), meaning);
+    entries_.back().text = value;
   }
 
   void field(std::string_view key, int& value, Range, std::string_view meaning) override {
-    line(key, fmt::format("{}", value), meaning);
+    add(key, fmt::format("{}", value), meaning);
   }
 
   void field(std::string_view key, std::int64_t& value, Range, std::string_view meaning) override {
-    line(key, fmt::format("{}", value), meaning);
+    add(key, fmt::format("{}", value), meaning);
   }
 
   void field(std::string_view key, double& value, Range, std::string_view meaning) override {
-    line(key, float_text(value), meaning);
+    add(key, float_text(value), meaning);
   }
 
   void field(std::string_view key, std::vector<int>& value, Range,
              std::string_view meaning) override {
-    line(key, fmt::format("[{}]", fmt::join(value, ", ")), meaning);
+    add(key, fmt::format("[{}]", fmt::join(value, ", ")), meaning);
   }
 
   void field(std::string_view key, std::vector<double>& value, Range,
@@ -73,7 +89,7 @@ class Writer final : public Fields {
     std::vector<std::string> texts;
     for (const double v : value)
       texts.push_back(float_text(v));
-    line(key, fmt::format("[{}]", fmt::join(texts, ", ")), meaning);
+    add(key, fmt::format("[{}]", fmt::join(texts, ", ")), meaning);
   }
 
   void field(std::string_view key, std::vector<std::string>& value,
@@ -81,46 +97,123 @@ class Writer final : public Fields {
     std::vector<std::string> texts;
     for (const std::string& v : value)
       texts.push_back(toml_string(v));
-    line(key, fmt::format("[{}]", fmt::join(texts, ", ")), meaning);
+    add(key, fmt::format("[{}]", fmt::join(texts, ", ")), meaning);
   }
 
-  const std::string& text() const { return text_; }
+  const std::vector<Entry>& entries() const { return entries_; }
 
  protected:
   void word(std::string_view key, std::span<const std::string_view> words, std::size_t& index,
             std::string_view meaning) override {
-    line(key, toml_string(std::string{words[index]}),
-         fmt::format("{} ({})", meaning, fmt::join(words, " | ")));
+    add(key, toml_string(std::string{words[index]}),
+        fmt::format("{} ({})", meaning, fmt::join(words, " | ")));
+    entries_.back().text = words[index];
   }
 
   bool enter(std::string_view key) override {
-    path_.emplace_back(key);
-    text_ += fmt::format("\n[{}]\n", fmt::join(path_, "."));
+    tables_.push_back({std::string{key}, std::string{key}});
+    entries_.push_back({.kind = Entry::Kind::kTable, .heading = heading(), .unused = unused()});
     return true;
   }
 
-  bool enter_element(std::string_view key, std::size_t) override {
-    path_.emplace_back(key);
-    text_ += fmt::format("\n[[{}]]\n", fmt::join(path_, "."));
+  bool enter_element(std::string_view key, std::size_t index) override {
+    tables_.push_back({std::string{key}, fmt::format("{}[{}]", key, index)});
+    entries_.push_back({.kind = Entry::Kind::kElement, .heading = heading(), .unused = unused()});
     return true;
   }
 
-  void leave() override { path_.pop_back(); }
+  void leave() override { tables_.pop_back(); }
+
+  bool enter_use(bool is_used, std::string_view unused) override {
+    unused_.emplace_back(is_used ? "" : unused);
+    return true;
+  }
+
+  void leave_use() override { unused_.pop_back(); }
 
   std::optional<std::size_t> list_size(std::string_view key, std::size_t current_size,
                                        std::string_view meaning) override {
-    if (current_size == 0) text_ += fmt::format("# [[{}]]: none. {}\n", key, meaning);
+    if (current_size == 0) {
+      entries_.push_back({.kind = Entry::Kind::kEmptyList,
+                          .heading = std::string{key},
+                          .meaning = std::string{meaning},
+                          .unused = unused()});
+    }
     return std::nullopt;
   }
 
  private:
-  void line(std::string_view key, const std::string& value, std::string_view meaning) {
-    text_ += fmt::format("{} = {}  # {}\n", key, value, meaning);
+  struct Table {
+    std::string name;     ///< as in a heading
+    std::string element;  ///< as in a key
+  };
+
+  void add(std::string_view key, const std::string& value, std::string_view meaning) {
+    std::string path;
+    for (const Table& table : tables_)
+      path += table.element + ".";
+    entries_.push_back({.key = path + std::string{key},
+                        .value = value,
+                        .text = value,
+                        .meaning = std::string{meaning},
+                        .unused = unused()});
   }
 
-  std::vector<std::string> path_;
-  std::string text_;
+  std::string heading() const {
+    std::string text;
+    for (const Table& table : tables_)
+      text += (text.empty() ? "" : ".") + table.name;
+    return text;
+  }
+
+  std::string unused() const {
+    for (const std::string& reason : unused_) {
+      if (!reason.empty()) return reason;
+    }
+    return "";
+  }
+
+  std::vector<Table> tables_;
+  std::vector<std::string> unused_;
+  std::vector<Entry> entries_;
 };
+
+std::vector<Entry> entries_of(const config_detail::Describe& describe) {
+  Lister lister;
+  describe(lister);
+  return lister.entries();
+}
+
+std::string last_word(const std::string& key) {
+  return key.substr(key.rfind('.') + 1);
+}
+
+/// The key that is used and looks most like another one.
+std::string nearest_used(const std::string& key, const std::vector<Entry>& entries) {
+  std::vector<std::string> candidates;
+  for (const Entry& entry : entries) {
+    if (entry.kind == Entry::Kind::kValue && entry.unused.empty()) candidates.push_back(entry.key);
+  }
+  // One of the same name stands for the same thing.
+  for (const std::string& candidate : candidates) {
+    if (last_word(candidate) == last_word(key)) return candidate;
+  }
+  return config_detail::nearest(key, candidates);
+}
+
+std::string hint(const std::string& meant) {
+  return meant.empty() ? "" : fmt::format("; did you mean {}?", meant);
+}
+
+void add_unused_keys(const config_detail::Describe& describe, config_detail::ReadLog& log) {
+  const std::vector<Entry> entries = entries_of(describe);
+  for (const Entry& entry : entries) {
+    const auto set_by = log.set_by.find(entry.key);
+    if (entry.unused.empty() || entry.key.empty() || set_by == log.set_by.end()) continue;
+    log.problems.push_back(fmt::format("{}: {}: {}{}", set_by->second, entry.key, entry.unused,
+                                       hint(nearest_used(entry.key, entries))));
+  }
+}
 
 }  // namespace
 
@@ -133,27 +226,53 @@ void Problems::add(std::string key, std::string problem) {
 
 std::vector<std::string> config_detail::read(const ConfigSources& sources,
                                              const Describe& describe) {
-  std::vector<std::string> problems;
+  ReadLog log;
   for (const auto& file : sources.files)
-    read_toml_file(file, describe, problems);
+    read_toml_file(file, describe, log);
   for (const auto& text : sources.overrides)
-    read_toml_override(text, describe, problems);
-  return problems;
+    read_toml_override(text, describe, log);
+  add_unused_keys(describe, log);
+  return log.problems;
 }
 
 std::vector<std::string> config_detail::read_part(const std::filesystem::path& file,
                                                   const Describe& describe) {
-  std::vector<std::string> problems;
-  read_toml_file(file, describe, problems, UnknownKeys::kIgnored);
-  return problems;
+  ReadLog log;
+  read_toml_file(file, describe, log, UnknownKeys::kIgnored);
+  return log.problems;
 }
 
 std::string config_detail::dump(const Describe& describe) {
-  Writer writer;
-  describe(writer);
-  const std::string& text = writer.text();
-  return text.substr(
-      text.find_first_not_of('\n') == std::string::npos ? 0 : text.find_first_not_of('\n'));
+  std::string text;
+  for (const Entry& entry : entries_of(describe)) {
+    if (!entry.unused.empty()) continue;
+    switch (entry.kind) {
+      case Entry::Kind::kTable:
+        text += fmt::format("\n[{}]\n", entry.heading);
+        break;
+      case Entry::Kind::kElement:
+        text += fmt::format("\n[[{}]]\n", entry.heading);
+        break;
+      case Entry::Kind::kEmptyList:
+        text += fmt::format("# [[{}]]: none. {}\n", entry.heading, entry.meaning);
+        break;
+      case Entry::Kind::kValue:
+        text += fmt::format("{} = {}  # {}\n", last_word(entry.key), entry.value, entry.meaning);
+        break;
+    }
+  }
+  return text.substr(std::min(text.find_first_not_of('\n'), text.size()));
+}
+
+std::string config_detail::value(const Describe& describe, const std::string& key) {
+  const std::vector<Entry> entries = entries_of(describe);
+  for (const Entry& entry : entries) {
+    if (entry.key != key || entry.kind != Entry::Kind::kValue) continue;
+    if (entry.unused.empty()) return entry.text;
+    throw ConfigError{
+        {fmt::format("{}: {}{}", key, entry.unused, hint(nearest_used(key, entries)))}};
+  }
+  throw ConfigError{{fmt::format("{}: unknown key{}", key, hint(nearest_used(key, entries)))}};
 }
 
 }  // namespace waymark

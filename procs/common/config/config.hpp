@@ -44,11 +44,13 @@ std::vector<std::string> read(const ConfigSources& sources, const Describe& desc
 /// Reads one file, of which the struct describes only a part.
 std::vector<std::string> read_part(const std::filesystem::path& file, const Describe& describe);
 std::string dump(const Describe& describe);
+std::string value(const Describe& describe, const std::string& key);
 }  // namespace config_detail
 
 /// The struct's defaults, overlaid by the sources, checked.
 /// @throws ConfigError with all problems: unreadable files, syntax, unknown keys (with the nearest
-/// known one), types, ranges, and what the struct's own check() finds.
+/// known one), keys that the other settings do not use, types, ranges, and what the struct's own
+/// check() finds.
 template <class Config>
 Config load_config(const ConfigSources& sources) {
   Config config{};
@@ -76,12 +78,21 @@ Config load_part(const std::filesystem::path& file) {
   return config;
 }
 
-/// The effective configuration as TOML, each key with its meaning as a comment. Reading it back
-/// gives the same struct.
+/// The effective configuration as TOML, each key that is used with its meaning as a comment.
+/// Reading it back gives the same.
 template <class Config>
 std::string dump_config(const Config& config) {
   Config copy = config;
   return config_detail::dump([&copy](Fields& fields) { copy.describe(fields); });
+}
+
+/// One value of the effective configuration as TOML, strings bare.
+/// @param key  as in messages, e.g. "slam.estimator".
+/// @throws ConfigError if there is no such key, or nothing uses it.
+template <class Config>
+std::string config_value(const Config& config, const std::string& key) {
+  Config copy = config;
+  return config_detail::value([&copy](Fields& fields) { copy.describe(fields); }, key);
 }
 
 }  // namespace waymark

@@ -62,6 +62,16 @@ class Fields {
     value = (words.begin() + index)->second;
   }
 
+  /// Fields that only some settings use: visited where the struct is read, so that their types are
+  /// checked; left out of a dump, and an error if set, where they are not used.
+  /// @param unused  says why, after the key: "slam.estimator = waymark does not use it".
+  template <class Describe>
+  void when(bool is_used, std::string_view unused, Describe describe) {
+    if (!enter_use(is_used, unused)) return;
+    describe();
+    leave_use();
+  }
+
   /// A nested table.
   template <class Struct>
   void section(std::string_view key, Struct& value) {
@@ -91,6 +101,9 @@ class Fields {
   virtual bool enter(std::string_view key) = 0;
   virtual bool enter_element(std::string_view key, std::size_t index) = 0;
   virtual void leave() = 0;
+  /// False when unused fields are not to be visited.
+  virtual bool enter_use(bool is_used, std::string_view unused) = 0;
+  virtual void leave_use() = 0;
   /// Number of elements of the list that replaces the current one; nullopt when there is none.
   virtual std::optional<std::size_t> list_size(std::string_view key, std::size_t current_size,
                                                std::string_view meaning) = 0;

@@ -43,9 +43,8 @@ std::string shown(const toml::node& node) {
 /// Reads one table tree into a described struct.
 class Reader final : public Fields {
  public:
-  Reader(const toml::table& root, std::string source, std::vector<std::string>& problems,
-         UnknownKeys unknown_keys)
-      : source_{std::move(source)}, problems_{problems}, unknown_keys_{unknown_keys} {
+  Reader(const toml::table& root, std::string source, ReadLog& log, UnknownKeys unknown_keys)
+      : source_{std::move(source)}, log_{log}, unknown_keys_{unknown_keys} {
     levels_.push_back({&root, "", {}});
   }
 
@@ -144,6 +143,10 @@ class Reader final : public Fields {
     levels_.pop_back();
   }
 
+  bool enter_use(bool, std::string_view) override { return true; }
+
+  void leave_use() override {}
+
   std::optional<std::size_t> list_size(std::string_view key, std::size_t,
                                        std::string_view) override {
     const toml::node* node = find(key);
@@ -162,7 +165,9 @@ class Reader final : public Fields {
 
   const toml::node* find(std::string_view key) {
     levels_.back().known_keys.emplace(key);
-    return levels_.back().table->get(key);
+    const toml::node* node = levels_.back().table->get(key);
+    if (node != nullptr && !node->is_table()) log_.set_by[path_of(key)] = where(*node);
+    return node;
   }
 
   std::string path_of(std::string_view key) const {
@@ -176,8 +181,8 @@ class Reader final : public Fields {
   }
 
   void problem(std::string_view key, const toml::node& node, std::string_view expected) {
-    problems_.push_back(fmt::format("{}: {}: got {}, expected {}", where(node), path_of(key),
-                                    shown(node), expected));
+    log_.problems.push_back(fmt::format("{}: {}: got {}, expected {}", where(node), path_of(key),
+                                        shown(node), expected));
   }
 
   template <class T>
@@ -256,30 +261,25 @@ class Reader final : public Fields {
     const Level& level = levels_.back();
     for (const auto& [key, node] : *level.table) {
       if (level.known_keys.contains(key.str())) continue;
-      std::string hint;
-      std::size_t best = key.str().size() / 2 + 2;
-      for (const std::string& known : level.known_keys) {
-        const std::size_t distance = edit_distance(key.str(), known);
-        if (distance < best) {
-          best = distance;
-          hint = fmt::format("; did you mean {}{}?", level.prefix, known);
-        }
-      }
-      problems_.push_back(
+      const std::string meant =
+          nearest(std::string{key.str()}, {level.known_keys.begin(), level.known_keys.end()});
+      const std::string hint =
+          meant.empty() ? "" : fmt::format("; did you mean {}{}?", level.prefix, meant);
+      log_.problems.push_back(
           fmt::format("{}: {}: unknown key{}", where(node), path_of(key.str()), hint));
     }
   }
 
   std::string source_;
-  std::vector<std::string>& problems_;
+  ReadLog& log_;
   UnknownKeys unknown_keys_;
   std::vector<Level> levels_;
 };
 
 void read_table(const toml::table& table, const std::string& source,
-                const std::function<void(Fields&)>& describe, std::vector<std::string>& problems,
+                const std::function<void(Fields&)>& describe, ReadLog& log,
                 UnknownKeys unknown_keys = UnknownKeys::kProblem) {
-  Reader reader{table, source, problems, unknown_keys};
+  Reader reader{table, source, log, unknown_keys};
   describe(reader);
   reader.finish();
 }
@@ -291,44 +291,57 @@ std::string described(const toml::parse_error& error) {
 }  // namespace
 
 void read_toml_file(const std::filesystem::path& file, const std::function<void(Fields&)>& describe,
-                    std::vector<std::string>& problems, UnknownKeys unknown_keys) {
+                    ReadLog& log, UnknownKeys unknown_keys) {
   std::ifstream stream{file};
   std::stringstream text;
   if (std::filesystem::is_directory(file) || !stream || !(text << stream.rdbuf())) {
     if (!std::filesystem::is_regular_file(file) || std::filesystem::file_size(file) > 0) {
-      problems.push_back(fmt::format("{}: cannot be read as a configuration file", file.string()));
+      log.problems.push_back(
+          fmt::format("{}: cannot be read as a configuration file", file.string()));
     }
     return;
   }
   try {
-    read_table(toml::parse(text.str(), file.string()), file.string(), describe, problems,
-               unknown_keys);
+    read_table(toml::parse(text.str(), file.string()), file.string(), describe, log, unknown_keys);
   } catch (const toml::parse_error& error) {
-    problems.push_back(fmt::format("{}:{}: not TOML: {}", file.string(), error.source().begin.line,
-                                   described(error)));
+    log.problems.push_back(fmt::format("{}:{}: not TOML: {}", file.string(),
+                                       error.source().begin.line, described(error)));
   }
 }
 
 void read_toml_override(const std::string& text, const std::function<void(Fields&)>& describe,
-                        std::vector<std::string>& problems) {
+                        ReadLog& log) {
   const std::string source = fmt::format("--set {}", text);
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    problems.push_back(source + ": expected key=value");
+    log.problems.push_back(source + ": expected key=value");
     return;
   }
   try {
-    read_table(toml::parse(text), source, describe, problems);
+    read_table(toml::parse(text), source, describe, log);
     return;
   } catch (const toml::parse_error&) {
     // Not a TOML value: a bare word is taken as a string, so that shells need no nested quotes.
   }
   try {
     const std::string quoted = text.substr(0, equals + 1) + "'''" + text.substr(equals + 1) + "'''";
-    read_table(toml::parse(quoted), source, describe, problems);
+    read_table(toml::parse(quoted), source, describe, log);
   } catch (const toml::parse_error& error) {
-    problems.push_back(fmt::format("{}: {}", source, described(error)));
+    log.problems.push_back(fmt::format("{}: {}", source, described(error)));
   }
+}
+
+std::string nearest(const std::string& key, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t best_distance = key.size() / 2 + 2;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(key, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
 }
 
 }  // namespace waymark::config_detail

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,21 @@ enum class UnknownKeys {
   kIgnored  ///< the file holds more than the struct describes
 };
 
-/// Overlays the described struct with a file; appends one line per problem.
+/// What came of reading sources one after the other.
+struct ReadLog {
+  std::vector<std::string> problems{};          ///< one line each
+  std::map<std::string, std::string> set_by{};  ///< key -> the last source that set it, with line
+};
+
+/// Overlays the described struct with a file.
 void read_toml_file(const std::filesystem::path& file, const std::function<void(Fields&)>& describe,
-                    std::vector<std::string>& problems,
-                    UnknownKeys unknown_keys = UnknownKeys::kProblem);
+                    ReadLog& log, UnknownKeys unknown_keys = UnknownKeys::kProblem);
 
 /// The same for one `key.subkey=value` of the command line.
 void read_toml_override(const std::string& text, const std::function<void(Fields&)>& describe,
-                        std::vector<std::string>& problems);
+                        ReadLog& log);
+
+/// The candidate that `key` may have been meant for; empty if none is near.
+std::string nearest(const std::string& key, const std::vector<std::string>& candidates);
 
 }  // namespace waymark::config_detail

@@ -24,13 +24,13 @@ std::vector<Message> LockstepParticipant::take(Message message) {
   if (message.channel == channels::kTick.name) {
     const auto tick = decode<tick_t>(message.payload);
     if (tick.message) return take_tick(*tick.message);
-    counters_.add("TICK rejected: " + std::string{to_string(tick.reason)});
+    counters_.add("TICK rejected: " + std::string{to_string(tick.reason)}, CountKind::kRejection);
     return {};
   }
   if (message.channel == channels::kAck.name) {
     const auto ack = decode<ack_t>(message.payload);
     if (!ack.message) {
-      counters_.add("ACK rejected: " + std::string{to_string(ack.reason)});
+      counters_.add("ACK rejected: " + std::string{to_string(ack.reason)}, CountKind::kRejection);
       return {};
     }
     take_ack(*ack.message);
@@ -59,7 +59,7 @@ std::vector<Message> LockstepParticipant::take_tick(const tick_t& tick) {
     return cached == answers_.end() ? std::vector<Message>{} : cached->second;
   }
   if (tick.tick > *next_tick_ + kHorizon_ticks) {
-    counters_.add("TICK rejected: out of order");
+    counters_.add("TICK rejected: out of order", CountKind::kRejection);
     return {};
   }
   open_ticks_[tick.tick].tick = tick;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/messages/codec.hpp"
 
+#include "common/messages/bounds.hpp"
 #include "common/messages/layout.hpp"
 #include "common/messages/validate.hpp"
 
@@ -13,7 +14,6 @@ namespace {
 constexpr std::size_t kFingerprintBytes = 8;
 constexpr std::size_t kMaxDecodedBytes = std::size_t{16}
                                          << 20;  // logs of other robots hold raw images
-constexpr std::int64_t kLatestTime_us = 4'102'444'800'000'000;  // the year 2100
 
 std::int64_t read_int64(std::span<const std::uint8_t> bytes, std::size_t offset) {
   std::uint64_t value = 0;
@@ -29,7 +29,7 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
 }
 
 bool is_sane_time(std::int64_t utime_us) {
-  return utime_us >= 0 && utime_us <= kLatestTime_us;
+  return utime_us >= 0 && utime_us <= bounds::kTime_us;
 }
 
 }  // namespace
@@ -52,6 +52,8 @@ std::string_view to_string(RejectReason reason) {
       return "not finite";
     case RejectReason::kInconsistent:
       return "inconsistent";
+    case RejectReason::kOutOfBounds:
+      return "out of bounds";
     case RejectReason::kBadTime:
       return "bad time";
   }

@@ -21,7 +21,8 @@ enum class RejectReason {
   kBadLength,  ///< negative or absurd length field
   kTrailingBytes,
   kNotFinite,     ///< NaN or infinity where none may be
-  kInconsistent,  ///< arrays that must agree in size do not, or a value is out of its range
+  kInconsistent,  ///< arrays that must agree in size do not, or a field has no such value
+  kOutOfBounds,   ///< a number beyond bounds.hpp, which no robot has
   kBadTime,       ///< utime negative or absurdly far in the future
 };
 

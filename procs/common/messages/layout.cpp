@@ -158,7 +158,7 @@ constexpr FieldLayout kCalibration[] = {fixed(kInt64, 2), fixed(kDouble, 7), fix
 constexpr FieldLayout kAnnotatedScan[] = {fixed(kInt64),          fixed(kDouble, 3),
                                           fixed(kInt32),          fixed_array(kFloat, 2),
                                           fixed_array(kFloat, 2), fixed_array(kInt32, 2)};
-constexpr FieldLayout kCounter[] = {text(), fixed(kInt64)};
+constexpr FieldLayout kCounter[] = {text(), fixed(kByte), fixed(kInt64)};
 constexpr FieldLayout kProcessStatus[] = {fixed(kInt64), text(), text(), fixed(kInt32),
                                           many(kCounter, 3)};
 constexpr FieldLayout kChannelContent[] = {text(), fixed(kInt32), fixed_array(kInt64, 1)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The semantic check of each message type: array sizes agree, numbers are finite where they must
-// be.
+// be and within bounds.hpp.
 #pragma once
 
 #include "common/messages/codec.hpp"

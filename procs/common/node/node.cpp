@@ -5,31 +5,8 @@
 
 namespace waymark {
 
-void Counters::add(std::string_view name, std::int64_t count) {
-  const auto found = counts_.find(name);
-  if (found == counts_.end()) {
-    counts_.emplace(name, count);
-  } else {
-    found->second += count;
-  }
-}
-
-std::int64_t Counters::get(std::string_view name) const {
-  const auto found = counts_.find(name);
-  return found == counts_.end() ? 0 : found->second;
-}
-
 std::string received_on(std::string_view channel) {
   return std::string{channel} + " received";
-}
-
-bool is_rejection(std::string_view counter) {
-  return counter.find("rejected") != std::string_view::npos;
-}
-
-bool is_loss(std::string_view counter) {
-  return is_rejection(counter) || counter.find("dropped") != std::string_view::npos ||
-         counter.find("late") != std::string_view::npos;
 }
 
 void Inbox::on_raw(std::string_view channel, std::function<void(const Message&)> handler) {
@@ -52,9 +29,12 @@ void Inbox::deliver(const Message& message) {
   const RejectReason reason = handler == found->second.by_fingerprint.end()
                                   ? RejectReason::kWrongType
                                   : handler->second(message);
-  counters_.add(reason == RejectReason::kNone
-                    ? received_on(message.channel)
-                    : message.channel + " rejected: " + std::string{to_string(reason)});
+  if (reason == RejectReason::kNone) {
+    counters_.add(received_on(message.channel));
+  } else {
+    counters_.add(message.channel + " rejected: " + std::string{to_string(reason)},
+                  CountKind::kRejection);
+  }
 }
 
 std::vector<Inbox::Subscription> Inbox::subscriptions() const {

@@ -6,6 +6,7 @@
 
 #include "common/errors/setup_error.hpp"
 #include "common/messages/codec.hpp"
+#include "common/node/counters.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -16,27 +17,8 @@
 
 namespace waymark {
 
-/// Named counts, in a fixed order.
-class Counters {
- public:
-  void add(std::string_view name, std::int64_t count = 1);
-  std::int64_t get(std::string_view name) const;
-
-  const std::map<std::string, std::int64_t, std::less<>>& all() const { return counts_; }
-
- private:
-  std::map<std::string, std::int64_t, std::less<>> counts_;
-};
-
 /// Name of the count of messages that came on a channel and could be read.
 std::string received_on(std::string_view channel);
-
-/// Whether a count is one of what was refused for being wrong: its name has the word "rejected".
-bool is_rejection(std::string_view counter);
-
-/// Whether a count is one of what was lost, for that or because it came late or too fast:
-/// "dropped", "late".
-bool is_loss(std::string_view counter);
 
 /// What to do in real time when messages come faster than they are processed.
 enum class Backlog { kKeepAll, kNewestOnly };

@@ -5,8 +5,12 @@
 #include "common/errors/exit_codes.hpp"
 #include "common/runtime/signals.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+
+#include <map>
+#include <utility>
 
 namespace waymark {
 
@@ -30,11 +34,18 @@ int run_guarded(const ProcessTraits& traits, const std::function<int()>& body) {
 }
 
 void log_counters(const Counters& counters) {
-  std::string text;
+  std::map<CountKind, std::string> texts;
   for (const auto& [name, count] : counters.all()) {
-    if (count != 0) text += (text.empty() ? "" : ", ") + name + " " + std::to_string(count);
+    std::string& text = texts[count.kind];
+    if (count.value != 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, count.value);
   }
-  spdlog::info("counted: {}", text.empty() ? "nothing" : text);
+  spdlog::info("counted: {}",
+               texts[CountKind::kEvent].empty() ? "nothing" : texts[CountKind::kEvent]);
+  for (const auto& [kind, name] :
+       {std::pair{CountKind::kLoss, "lost"}, std::pair{CountKind::kRejection, "rejected"}}) {
+    if (!texts[kind].empty()) spdlog::warn("{}: {}", name, texts[kind]);
+  }
 }
 
 }  // namespace waymark

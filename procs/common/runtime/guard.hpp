@@ -11,7 +11,7 @@ namespace waymark {
 /// Runs `body` with signals and logging set up; says what went wrong on standard error.
 int run_guarded(const ProcessTraits& traits, const std::function<int()>& body);
 
-/// Prints all counters that are not zero, one line.
+/// Prints all counters that are not zero, one line per kind; losses and rejections as warnings.
 void log_counters(const Counters& counters);
 
 }  // namespace waymark

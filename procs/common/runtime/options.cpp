@@ -30,6 +30,8 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
       ->take_all();
   app.add_flag("--dump-config", options.dump_config,
                "print the effective configuration with every key explained, and exit");
+  app.add_option("--print-config", options.print_config,
+                 "print the effective value of this key alone, e.g. run.seed, and exit");
   app.add_flag("--check", options.check,
                "check the configuration, the map to load, and (without --log) that the LCM "
                "network can be joined, and exit");
@@ -49,6 +51,8 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
            "replay this LCM log instead of listening; may be given several times: a channel is "
            "taken from the last log that has it")
         ->take_all();
+    app.add_option("--report", options.report,
+                   "after a replay, write its timing, memory and counts there (JSON)");
   }
   if (option_set.out_log) {
     app.add_option("--out-log", options.out_log, "write what is published to this LCM log");

@@ -17,6 +17,7 @@ struct ProcessOptions {
   ConfigSources config_sources{};
   bool dump_config{false};
   bool dump_robot_config{false};
+  std::string print_config{};  ///< key; empty: none
   bool check{false};
   std::string lcm_url{};
   bool real_time{false};
@@ -24,13 +25,14 @@ struct ProcessOptions {
   std::vector<std::filesystem::path> logs{};
   std::filesystem::path out_log{};
   std::filesystem::path out_dir{};
+  std::filesystem::path report{};
   std::string http{};
   std::filesystem::path load_map{};
   std::filesystem::path save_map{};
   std::optional<std::int64_t> seed{};
 };
 
-/// The log files that a process reads instead of the network.
+/// The files that a process reads.
 std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options);
 
 /// Which of the optional options a process has.

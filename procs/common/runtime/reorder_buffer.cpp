@@ -8,8 +8,12 @@ namespace waymark {
 ReorderBuffer::ReorderBuffer(Duration window) : window_{window} {}
 
 std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
-  if (const std::string_view why = misfit(message); !why.empty()) {
-    counters.add(message.channel + std::string{why});
+  if (const Misfit why = misfit(message); why != Misfit::kNone) {
+    if (why == Misfit::kLate) {
+      counters.add(message.channel + " late, dropped", CountKind::kLoss);
+    } else {
+      counters.add(message.channel + " rejected: time jumps ahead", CountKind::kRejection);
+    }
     if (!clock_watch_.see_misfit(message.time)) return {};
     counters.add("clock was set");
     return begin_anew(std::move(message));
@@ -22,12 +26,11 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
   return release_until(newest_ - window_);
 }
 
-std::string_view ReorderBuffer::misfit(const Message& message) const {
+ReorderBuffer::Misfit ReorderBuffer::misfit(const Message& message) const {
   const auto released = released_.find(message.channel);
-  if (released != released_.end() && message.time < released->second) return " late, dropped";
-  if (has_any_ && message.time > newest_ + ClockWatch::kLongestPause)
-    return " rejected: time jumps ahead";
-  return {};
+  if (released != released_.end() && message.time < released->second) return Misfit::kLate;
+  if (has_any_ && message.time > newest_ + ClockWatch::kLongestPause) return Misfit::kAhead;
+  return Misfit::kNone;
 }
 
 std::vector<Message> ReorderBuffer::begin_anew(Message message) {

@@ -9,7 +9,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace waymark {
@@ -31,8 +30,10 @@ class ReorderBuffer {
     bool operator()(const Message& a, const Message& b) const { return comes_before(a, b); }
   };
 
-  /// Why a message does not fit what came before; empty: it does.
-  std::string_view misfit(const Message& message) const;
+  /// How a message does not fit what came before.
+  enum class Misfit { kNone, kLate, kAhead };
+
+  Misfit misfit(const Message& message) const;
   std::vector<Message> begin_anew(Message message);
   std::vector<Message> release_until(Timestamp time);
 

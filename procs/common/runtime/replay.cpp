@@ -2,9 +2,11 @@
 #include "common/runtime/replay.hpp"
 
 #include "common/errors/exit_codes.hpp"
+#include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/progress.hpp"
+#include "common/runtime/replay_report.hpp"
 #include "common/runtime/signals.hpp"
 
 #include <fmt/format.h>
@@ -94,8 +96,8 @@ bool report_skipped(const std::vector<Source>& sources) {
   return any;
 }
 
-/// Says of each log that has nothing for this process what it has instead. (One whose channels are
-/// all in later logs, too, has.)
+/// Reports of each log that has nothing for this process what it has instead. (One whose channels
+/// are all in later logs, too, has.)
 bool report_useless(const std::vector<Source>& sources,
                     const std::vector<Inbox::Subscription>& subscriptions) {
   std::vector<std::string> wanted;
@@ -116,12 +118,6 @@ bool report_useless(const std::vector<Source>& sources,
     }
   }
   return any;
-}
-
-bool any_rejected(const Counters& counters) {
-  return std::ranges::any_of(counters.all(), [](const auto& counter) {
-    return counter.second > 0 && is_rejection(counter.first);
-  });
 }
 
 }  // namespace
@@ -166,16 +162,21 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
   write_out();
   if (writer) writer->close();
   progress.done();
-  const double log_s = to_seconds(last - first);
-  const double wall_s = progress.elapsed_s();
+  const ReplayReport report{.messages = num_messages,
+                            .log_s = to_seconds(last - first),
+                            .wall_s = progress.elapsed_s(),
+                            .peak_memory_mb = peak_memory_mb()};
   spdlog::info(
       "replayed {} messages, {:.1f} s of log in {:.2f} s ({:.1f} x real time), peak memory {:.0f} "
       "MB",
-      num_messages, log_s, wall_s, log_s / std::max(wall_s, 1e-9), peak_memory_mb());
+      report.messages, report.log_s, report.wall_s, report.real_time_factor(),
+      report.peak_memory_mb);
+  if (!options.report.empty()) write_whole_file(options.report, to_json(report, inbox.counters()));
   log_counters(inbox.counters());
   const bool skipped = report_skipped(sources);
-  return useless || skipped || any_rejected(inbox.counters()) || node.failed() ? kExitFailed
-                                                                               : kExitOk;
+  return useless || skipped || inbox.counters().total(CountKind::kRejection) > 0 || node.failed()
+             ? kExitFailed
+             : kExitOk;
 }
 
 }  // namespace waymark

@@ -187,6 +187,10 @@ void check(const ProcessOptions& options, const OptionSet& option_set) {
         "--log reads a file and no network, as fast as it can: leave out --real-time and "
         "--lcm-url"};
   }
+  if (!is_replay && !options.report.empty()) {
+    throw SetupError{"--report needs --log: it is about a replay"};
+  }
+  if (!options.report.empty()) protect_inputs("--report", options.report, inputs_of(options));
   if (!options.out_log.empty()) protect_inputs("--out-log", options.out_log, inputs_of(options));
   if (options.save_map.empty()) return;
   std::vector<std::filesystem::path> inputs = inputs_of(options);
@@ -218,6 +222,10 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
       description.dump_config(options);
       check_maps(description, options);
       if (options.logs.empty()) check_network(lcm_url_or_default(options.lcm_url));
+      return int{kExitOk};
+    }
+    if (!options.print_config.empty()) {
+      fmt::print("{}\n", description.config_value(options, options.print_config));
       return int{kExitOk};
     }
     if (options.dump_config) {

@@ -18,6 +18,7 @@ struct ProcessDescription {
   ProcessTraits traits{};
   OptionSet option_set{};
   std::function<std::string(const ProcessOptions&)> dump_config{};
+  std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
   std::function<std::unique_ptr<Node>(const ProcessOptions&, Inbox&, Outbox&)> make_node{};
 };
 
@@ -61,6 +62,9 @@ int run_process(int argc, char** argv) {
                             .maps = kHasMaps};
   description.dump_config = [](const ProcessOptions& options) {
     return dump_config(config_from<Config>(options));
+  };
+  description.config_value = [](const ProcessOptions& options, const std::string& key) {
+    return config_value(config_from<Config>(options), key);
   };
   description.make_node = [](const ProcessOptions& options, Inbox& inbox, Outbox& outbox) {
     return std::make_unique<NodeType>(config_from<Config>(options), inbox, outbox);

@@ -209,6 +209,10 @@ int run_described_simulator(int argc, char** argv, const SimulatorDescription& d
   const ProcessOptions& options = parsed.options;
   return run_guarded(description.traits, [&] {
     if (options.check) return check(options, description);
+    if (!options.print_config.empty()) {
+      fmt::print("{}\n", description.config_value(options, options.print_config));
+      return int{kExitOk};
+    }
     if (options.dump_config || options.dump_robot_config) {
       fmt::print("{}", options.dump_config ? description.dump_config(options)
                                            : description.dump_robot_config(options));

@@ -42,6 +42,7 @@ struct SimulatorDescription {
   ProcessTraits traits{};
   std::function<std::string(const ProcessOptions&)> dump_config{};
   std::function<std::string(const ProcessOptions&)> dump_robot_config{};
+  std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
   std::function<std::unique_ptr<TickSource>(const ProcessOptions&, Inbox&)> make_source{};
   std::vector<std::string_view> files{};  ///< that the source writes into --out
 };
@@ -69,6 +70,9 @@ int run_simulator(int argc, char** argv) {
   };
   description.dump_robot_config = [](const ProcessOptions& options) {
     return dump_robot_config(simulator_config_from<Config>(options).robot);
+  };
+  description.config_value = [](const ProcessOptions& options, const std::string& key) {
+    return config_value(simulator_config_from<Config>(options), key);
   };
   description.make_source = [](const ProcessOptions& options, Inbox& inbox) {
     return std::make_unique<SourceType>(simulator_config_from<Config>(options), inbox);

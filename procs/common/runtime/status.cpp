@@ -24,10 +24,11 @@ void StatusReporter::report(Bus& bus, Counters& counters, Timestamp newest,
   status.utime = to_us(newest);
   status.process = name_;
   status.state = state;
-  for (const auto& [name, value] : counters.all()) {
+  for (const auto& [name, count] : counters.all()) {
     counter_t counter{};
     counter.name = name;
-    counter.value = value;
+    counter.kind = static_cast<std::int8_t>(count.kind);
+    counter.value = count.value;
     status.counters.push_back(counter);
   }
   status.num_counters = static_cast<int>(status.counters.size());
@@ -40,9 +41,10 @@ void StatusReporter::report(Bus& bus, Counters& counters, Timestamp newest,
 void StatusReporter::warn_of_new_losses(const Counters& counters) {
   for (const auto& [name, count] : counters.all()) {
     const std::int64_t warned = warned_.get(name);
-    if (!is_loss(name) || count < std::max<std::int64_t>(1, 2 * warned)) continue;
-    spdlog::warn("{}: {} so far", name, count);
-    warned_.add(name, count - warned);
+    if (count.kind == CountKind::kEvent || count.value < std::max<std::int64_t>(1, 2 * warned))
+      continue;
+    spdlog::warn("{}: {} so far", name, count.value);
+    warned_.add(name, count.kind, count.value - warned);
   }
 }
 

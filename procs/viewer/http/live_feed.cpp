@@ -104,7 +104,7 @@ void LiveFeed::add(const process_status_t& message) {
   ProcessState& process = processes_[message.process];
   process = {.name = message.process, .state = message.state};
   for (const counter_t& counter : message.counters) {
-    if (is_loss(counter.name) && counter.value > 0)
+    if (counter.kind != counter_t::KIND_EVENT && counter.value > 0)
       process.losses.emplace_back(counter.name, counter.value);
   }
   post_when_due();

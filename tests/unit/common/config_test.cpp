@@ -13,6 +13,7 @@ namespace waymark {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Shelf {
   int books{1};
@@ -126,6 +127,65 @@ TEST(Config, OverridesWithoutValueAreRefused) {
 TEST(Config, ChecksAcrossFieldsRunOnTheResult) {
   EXPECT_THAT(error_of({{}, {"robot.lidar.range_min_m=4"}}),
               HasSubstr("must be below range_max_m"));
+}
+
+enum class Heating { kStove, kCentral };
+
+struct House {
+  Heating heating{Heating::kCentral};
+  int radiators{4};
+  Shelf wood{};
+
+  void describe(Fields& fields) {
+    fields.choice("heating", heating, {{"stove", Heating::kStove}, {"central", Heating::kCentral}},
+                  "with what");
+    fields.when(heating == Heating::kCentral, "only heating = central uses it",
+                [&] { fields.field("radiators", radiators, kNotNegative, "how many"); });
+    fields.when(heating == Heating::kStove, "only heating = stove uses it",
+                [&] { fields.section("wood", wood); });
+  }
+};
+
+std::string house_error_of(const ConfigSources& sources) {
+  try {
+    load_config<House>(sources);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Config, AKeyThatTheOtherSettingsDoNotUseIsAnError) {
+  const auto file = file_with("[wood]\nbooks = 2\n");
+  EXPECT_THAT(house_error_of({{file}, {}}),
+              HasSubstr("config_test.toml:2: wood.books: only heating = stove uses it"));
+  EXPECT_EQ(house_error_of({{}, {"radiators=2", "heating=stove"}}),
+            "--set radiators=2: radiators: only heating = central uses it");
+  EXPECT_EQ(house_error_of({{file}, {"heating=stove"}}), "no error");
+  EXPECT_EQ(house_error_of({{}, {"radiators=2"}}), "no error");
+}
+
+TEST(Config, ADumpLeavesOutWhatIsNotUsed) {
+  House house{};
+  EXPECT_THAT(dump_config(house), HasSubstr("radiators = 4"));
+  EXPECT_THAT(dump_config(house), Not(HasSubstr("wood")));
+  house.heating = Heating::kStove;
+  EXPECT_THAT(dump_config(house), Not(HasSubstr("radiators")));
+  EXPECT_EQ(house_error_of({{file_with(dump_config(house))}, {}}), "no error");
+}
+
+TEST(Config, OneValueCanBeAskedFor) {
+  const Room room{.shelves = {{.books = 3, .vases = 5}}};
+  EXPECT_EQ(config_value(room, "chairs"), "4");
+  EXPECT_EQ(config_value(room, "shelves[0].vases"), "5");
+  EXPECT_EQ(config_value(House{}, "heating"), "central") << "bare, not in quotes";
+  EXPECT_THROW(config_value(House{}, "wood.books"), ConfigError) << "nothing uses it";
+  try {
+    config_value(room, "chair");
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(), "chair: unknown key; did you mean chairs?");
+  }
 }
 
 TEST(Config, ADumpReadsBackAsTheSame) {

@@ -97,6 +97,18 @@ Message at(std::int64_t utime_us, std::string channel = "A") {
   return {std::move(channel), timestamp_from_us(utime_us), {}};
 }
 
+TEST(Counters, TheKindIsNotInTheName) {
+  Counters counters;
+  counters.add("late rejected words that were dropped");
+  EXPECT_EQ(counters.total(CountKind::kEvent), 1);
+  EXPECT_EQ(counters.total(CountKind::kLoss) + counters.total(CountKind::kRejection), 0);
+  counters.add("nothing suspicious", CountKind::kRejection, 3);
+  counters.add("nothing suspicious", CountKind::kRejection);
+  EXPECT_EQ(counters.total(CountKind::kRejection), 4);
+  EXPECT_EQ(counters.get("nothing suspicious"), 4);
+  EXPECT_EQ(counters.get("something else"), 0);
+}
+
 TEST(ReorderBuffer, SortsWithinItsWindowAndDropsWhatIsLate) {
   Counters counters;
   ReorderBuffer buffer{Duration{100}};
@@ -108,6 +120,7 @@ TEST(ReorderBuffer, SortsWithinItsWindowAndDropsWhatIsLate) {
   EXPECT_EQ(released[1].time, timestamp_from_us(1020));
   EXPECT_TRUE(buffer.add(at(1040), counters).empty());
   EXPECT_EQ(counters.get("A late, dropped"), 1);
+  EXPECT_EQ(counters.total(CountKind::kLoss), 1);
   EXPECT_EQ(buffer.flush().size(), 1U);
 }
 
@@ -143,6 +156,7 @@ TEST(ReorderBuffer, AJumpOfTheClockDoesNotSilenceEverybodyElse) {
   EXPECT_EQ(buffer.add(at(1000), counters).size(), 1U);
   EXPECT_TRUE(buffer.add(at(3'600'000'000), counters).empty());
   EXPECT_EQ(counters.get("A rejected: time jumps ahead"), 1);
+  EXPECT_EQ(counters.total(CountKind::kRejection), 1);
   EXPECT_EQ(buffer.add(at(2000), counters).size(), 1U);
 }
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a corridor ends, seen along its middle from the inside.
+#pragma once
+
+#include "common/corridor/map_image.hpp"
+
+#include <Eigen/Core>
+
+#include <map>
+
+namespace waymark::corridor {
+
+/// A line of sight towards one end. Distances are measured from `origin_px` along `outward`; row r
+/// holds the cells whose centres are within half a pixel of r along `across`.
+struct EndView {
+  Eigen::Vector2d origin_px{};
+  Eigen::Vector2d outward{};
+  Eigen::Vector2d across{};
+  double begin_px{};  ///< distance of a place that is inside the corridor
+};
+
+struct CorridorEnd {
+  bool has_wall{};
+  /// Distance of the centre of the end wall's innermost cell in each central row that has one.
+  std::map<int, double> wall_px{};
+  double median_wall_px{};
+  double free_extent_px{};  ///< distance of the outer edge of the free space
+};
+
+/// The end wall is the innermost line of occupied cells, within one corridor width of the end of
+/// the free space and turned less than 20 degrees, that covers two fifths of the central rows (the
+/// middle two thirds): false cells inside the corridor and holes in the wall do not matter.
+CorridorEnd find_corridor_end(const MapImage& map, const EndView& view, double width_px);
+
+/// @param values not empty; the mean of the two middle ones if even.
+double median(std::vector<double> values);
+
+}  // namespace waymark::corridor

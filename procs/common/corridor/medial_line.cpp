@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/corridor/medial_line.hpp"
+
+#include "common/corridor/not_a_corridor.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace waymark::corridor {
+namespace {
+
+using Eigen::Vector2d;
+
+// All in corridor widths, so that nothing depends on the size of a cell.
+constexpr double kSpacing = 1.0 / 8.0;    ///< between slices
+constexpr double kSmoothing = 1.5;        ///< half window of the local fit: noise goes, bends stay
+constexpr double kExtension = 1.0;        ///< slices tried beyond the ends of the line so far
+constexpr double kWidthTolerance = 0.15;  ///< of an inlier slice from the median
+constexpr double kReach = 1.5;            ///< how far a slice looks to each side
+constexpr double kWidthRounding_px = 2.0;
+constexpr double kSpeck_px = 3.0;  ///< a shorter break in a slice is a false cell, not a wall
+constexpr std::size_t kFewestSlices = 5;
+constexpr std::size_t kFewestCells = 50;
+
+/// A slice's middle at its place along the line so far.
+struct Station {
+  double at_px{};
+  Vector2d middle_px{};
+  double width_px{};
+};
+
+double median_width(std::vector<Station> stations) {
+  const auto middle = stations.begin() + static_cast<std::ptrdiff_t>(stations.size() / 2);
+  std::nth_element(stations.begin(), middle, stations.end(),
+                   [](const Station& a, const Station& b) { return a.width_px < b.width_px; });
+  return middle->width_px;
+}
+
+/// Stations of about the median width. @throws NotACorridor if they are too few.
+std::vector<Station> inliers(const std::vector<Station>& stations, double tolerance) {
+  std::vector<Station> kept;
+  if (!stations.empty()) {
+    const double width_px = median_width(stations);
+    for (const Station& station : stations) {
+      if (std::abs(station.width_px - width_px) <=
+          std::max(kWidthRounding_px, tolerance * width_px))
+        kept.push_back(station);
+    }
+  }
+  if (kept.size() < kFewestSlices)
+    throw NotACorridor{"the free space is not a corridor: too few slices of equal width"};
+  return kept;
+}
+
+/// Value of the weighted quadratic fit to the stations near `at_px`.
+Vector2d local_fit(const std::vector<Station>& stations, double at_px, double half_window_px) {
+  std::vector<std::pair<double, const Station*>> near;
+  for (const Station& station : stations) {
+    const double distance = std::abs(station.at_px - at_px) / half_window_px;
+    if (distance < 1.0) near.emplace_back(std::pow(1.0 - std::pow(distance, 3), 3), &station);
+  }
+  if (near.size() < kFewestSlices) return local_fit(stations, at_px, 2.0 * half_window_px);
+  Eigen::MatrixX3d terms(near.size(), 3);
+  Eigen::MatrixX2d middles(near.size(), 2);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto& [weight, station] = near[i];
+    const double root = std::sqrt(weight);
+    const double u = (station->at_px - at_px) / half_window_px;
+    terms.row(static_cast<Eigen::Index>(i)) << root, root * u, root * u * u;
+    middles.row(static_cast<Eigen::Index>(i)) = root * station->middle_px.transpose();
+  }
+  return terms.colPivHouseholderQr().solve(middles).row(0).transpose();
+}
+
+std::vector<Vector2d> smoothed(const std::vector<Station>& stations, double width_px) {
+  std::vector<Vector2d> points;
+  const double spacing_px = kSpacing * width_px;
+  for (double at_px = stations.front().at_px; at_px <= stations.back().at_px; at_px += spacing_px)
+    points.push_back(local_fit(stations, at_px, kSmoothing * width_px));
+  return points;
+}
+
+/// Middles of the region's cells in bins along the principal axis.
+std::vector<Station> slices_across_axis(const std::vector<Vector2d>& region) {
+  const Axis axis = principal_axis(region);
+  const auto along = [&axis](const Vector2d& cell) {
+    return (cell - axis.centre_px).dot(axis.direction);
+  };
+  double low = 0.0;
+  double high = 0.0;
+  for (const Vector2d& cell : region) {
+    low = std::min(low, along(cell));
+    high = std::max(high, along(cell));
+  }
+  const double rough_width_px = static_cast<double>(region.size()) / (high - low + 1.0);
+  const double bin_px = std::max(1.0, kSpacing * rough_width_px);
+  std::vector<Station> bins(static_cast<std::size_t>((high - low) / bin_px) + 1);
+  for (const Vector2d& cell : region) {
+    Station& bin = bins[static_cast<std::size_t>((along(cell) - low) / bin_px)];
+    bin.middle_px += cell;
+    bin.width_px += 1.0;
+  }
+  std::vector<Station> filled;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    if (bins[i].width_px > 0.0)
+      filled.push_back({(static_cast<double>(i) + 0.5) * bin_px,
+                        bins[i].middle_px / bins[i].width_px, bins[i].width_px / bin_px});
+  }
+  return filled;
+}
+
+/// Length of free space from a point in a direction, over specks.
+double free_reach(const MapImage& map, const Vector2d& from_px, const Vector2d& direction,
+                  double limit_px) {
+  constexpr double kStep_px = 0.25;
+  double reach_px = 0.0;
+  for (double at_px = 0.0; at_px <= limit_px && at_px <= reach_px + kSpeck_px; at_px += kStep_px) {
+    const Vector2d place = from_px + at_px * direction;
+    if (map.at(static_cast<int>(std::lround(place.x())),
+               static_cast<int>(std::lround(place.y()))) == Cell::kFree)
+      reach_px = at_px;
+  }
+  return reach_px;
+}
+
+std::vector<Station> slices_across_line(const MapImage& map, const std::vector<Vector2d>& line,
+                                        double width_px) {
+  const double spacing_px = kSpacing * width_px;
+  const auto extra = static_cast<std::ptrdiff_t>(kExtension / kSpacing);
+  const auto last = static_cast<std::ptrdiff_t>(line.size()) - 1;
+  std::vector<Station> stations;
+  double at_px = 0.0;
+  for (std::ptrdiff_t i = -extra; i <= last + extra; ++i) {
+    const auto near = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 1, last - 1));
+    const Vector2d step = (line[near + 1] - line[near - 1]) / 2.0;
+    const Vector2d place =
+        line[near] + static_cast<double>(i - static_cast<std::ptrdiff_t>(near)) * step;
+    const Vector2d across{-step.y() / step.norm(), step.x() / step.norm()};
+    const double left_px = free_reach(map, place, across, kReach * width_px);
+    const double right_px = free_reach(map, place, -across, kReach * width_px);
+    if (left_px + right_px > 0.0)
+      stations.push_back({at_px, place + 0.5 * (left_px - right_px) * across, left_px + right_px});
+    at_px += spacing_px;
+  }
+  return stations;
+}
+
+}  // namespace
+
+std::vector<Vector2d> largest_free_region(const MapImage& map) {
+  std::vector<bool> seen(map.cells.size(), false);
+  std::vector<std::size_t> largest;
+  const auto width = static_cast<std::size_t>(map.width_px);
+  for (std::size_t seed = 0; seed < map.cells.size(); ++seed) {
+    if (seen[seed] || map.cells[seed] != Cell::kFree) continue;
+    std::vector<std::size_t> region{seed};
+    seen[seed] = true;
+    for (std::size_t next = 0; next < region.size(); ++next) {
+      const int x = static_cast<int>(region[next] % width);
+      const int y = static_cast<int>(region[next] / width);
+      for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+        if (map.at(x + dx, y + dy) != Cell::kFree) continue;
+        const std::size_t cell = static_cast<std::size_t>(y + dy) * width + (x + dx);
+        if (seen[cell]) continue;
+        seen[cell] = true;
+        region.push_back(cell);
+      }
+    }
+    if (region.size() > largest.size()) largest.swap(region);
+  }
+  std::vector<Vector2d> centres;
+  centres.reserve(largest.size());
+  for (const std::size_t cell : largest)
+    centres.emplace_back(static_cast<double>(cell % width), static_cast<double>(cell / width));
+  return centres;
+}
+
+Axis principal_axis(const std::vector<Vector2d>& points) {
+  Vector2d sum = Vector2d::Zero();
+  for (const Vector2d& point : points)
+    sum += point;
+  const Vector2d centre = sum / static_cast<double>(points.size());
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Vector2d& point : points)
+    spread += (point - centre) * (point - centre).transpose();
+  Vector2d direction = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>{spread}.eigenvectors().col(1);
+  Eigen::Index main{};
+  direction.cwiseAbs().maxCoeff(&main);
+  if (direction[main] < 0.0) direction = -direction;
+  return {centre, direction};
+}
+
+MedialLine medial_line(const MapImage& map, const std::vector<Vector2d>& region) {
+  if (region.size() < kFewestCells)
+    throw NotACorridor{
+        "the map has no free space to measure (free cells that touch: fewer than 50)"};
+  constexpr double kRoughTolerance = 0.5;  // slices across the axis are oblique where it bends
+  std::vector<Station> stations = inliers(slices_across_axis(region), kRoughTolerance);
+  double width_px = median_width(stations);
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::vector<Vector2d> line = smoothed(stations, width_px);
+    if (line.size() < kFewestSlices)
+      throw NotACorridor{"the free space is not a corridor: it is not longer than wide"};
+    stations = inliers(slices_across_line(map, line, width_px), kWidthTolerance);
+  }
+  return {smoothed(stations, width_px), kSpacing * width_px, median_width(stations)};
+}
+
+}  // namespace waymark::corridor

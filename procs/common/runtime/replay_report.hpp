@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a replay took and counted, for scripts.
+#pragma once
+
+#include "common/node/counters.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+namespace waymark {
+
+struct ReplayReport {
+  std::int64_t messages{};
+  double log_s{};   ///< from the first to the last message
+  double wall_s{};  ///< that the replay took
+  double peak_memory_mb{};
+
+  double real_time_factor() const { return log_s / std::max(wall_s, 1e-9); }
+};
+
+/// One object: the figures, and "counters", a list of {"name", "kind", "value"} in order of name,
+/// without those that are zero.
+std::string to_json(const ReplayReport& report, const Counters& counters);
+
+}  // namespace waymark
