@@ -10,9 +10,9 @@ void ViewerSection::describe(Fields& fields) {
   fields.field("max_write_share", max_write_share, {0.001, 1.0},
                "of the wall-clock time that these writes may take; what is due more often waits, "
                "the end is always written");
-  fields.field("occupied_threshold", thresholds.occupied, kFraction,
+  fields.field("occupied_threshold", map_page.thresholds.occupied, kFraction,
                "occupancy from which on a cell is written as occupied");
-  fields.field("free_threshold", thresholds.free, kFraction,
+  fields.field("free_threshold", map_page.thresholds.free, kFraction,
                "occupancy up to which a cell is written as free");
   fields.field("scan_size_px", scan_size_px, {200, 4000}, "side of scan.png");
   fields.field("page_width_px", map_page.page_width_px, {800, 8000}, "width of map.png");

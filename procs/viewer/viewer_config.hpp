@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the viewer can be told.
+// Configuration of the viewer: section [viewer], and what comes from the command line.
 #pragma once
 
 #include "common/config/config.hpp"
 #include "viewer/core/page/style.hpp"
-#include "viewer/core/painters/plain_painter.hpp"
 
 #include <filesystem>
 #include <string>
@@ -15,7 +14,6 @@ struct ViewerSection {
   std::string title{};  ///< empty = name of the output folder
   double write_period_s{5.0};
   double max_write_share{0.05};
-  viewer::MapThresholds thresholds{};
   viewer::MapPageStyle map_page{};
   int scan_size_px{1000};
 

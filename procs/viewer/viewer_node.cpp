@@ -46,7 +46,7 @@ bool has_heard_of_slam(const viewer::Scene& scene) {
          !scene.final_trajectory.empty();
 }
 
-void tell(const viewer::Change& change) {
+void log_change(const viewer::Change& change) {
   if (change.kind == viewer::Change::Kind::kAlarm) {
     spdlog::warn("{}", change.text);
   } else {
@@ -104,8 +104,8 @@ void ViewerNode::subscribe(Inbox& inbox) {
   subscribe_both(inbox, channels::kSlamMap);
   inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) {
     updater_.add(m);
-    for (const auto& change : change_monitor_.see(timestamp_from_us(m.utime), scene_.landmarks))
-      tell(change);
+    for (const auto& change : change_monitor_.update(timestamp_from_us(m.utime), scene_.landmarks))
+      log_change(change);
     if (live_feed_) live_feed_->add_markers(timestamp_from_us(m.utime), scene_.landmarks);
   });
   subscribe_both(inbox, channels::kSlamScan);
@@ -116,7 +116,7 @@ void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) {
     if (m.has_pose != 0) updater_.add(m);
     if (m.has_pose != 0 && !scene_.estimates.empty()) {
-      if (const auto change = change_monitor_.see(scene_.estimates.back())) tell(*change);
+      if (const auto change = change_monitor_.update(scene_.estimates.back())) log_change(*change);
       if (live_feed_) live_feed_->add(m, scene_.estimates.back());
     }
     write_when_due(timestamp_from_us(m.utime));
@@ -137,8 +137,9 @@ void ViewerNode::write_when_due(Timestamp time) {
 
 void ViewerNode::write_data() {
   const viewer::GridMap map = scene_.map.grid();
-  folder_.write("map.pgm", viewer::pgm_text(map, config_.viewer.thresholds));
-  folder_.write("map.yaml", viewer::map_yaml_text(map, config_.viewer.thresholds, "map.pgm"));
+  folder_.write("map.pgm", viewer::pgm_text(map, config_.viewer.map_page.thresholds));
+  folder_.write("map.yaml",
+                viewer::map_yaml_text(map, config_.viewer.map_page.thresholds, "map.pgm"));
   folder_.write("trajectory.tum", viewer::tum_text(scene_.estimates));
   folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
   folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
@@ -166,7 +167,7 @@ void ViewerNode::write_marker_layer() {
 }
 
 void ViewerNode::write_scan_and_plain_map() {
-  const cv::Mat plain = viewer::paint_plain(scene_.map.grid(), config_.viewer.thresholds);
+  const cv::Mat plain = viewer::paint_plain(scene_.map.grid(), config_.viewer.map_page.thresholds);
   folder_.write("plain.png", viewer::png_bytes(plain));
   if (!scene_.scan) return;
   const cv::Mat scan = viewer::paint_scan(*scene_.scan, config_.viewer.scan_size_px);

@@ -2,6 +2,7 @@
 #include "evaluate/commands.hpp"
 
 #include "common/files/whole_file.hpp"
+#include "evaluate/files/map_image.hpp"
 #include "evaluate/run/report.hpp"
 
 #include <fmt/format.h>
@@ -44,7 +45,11 @@ std::string file_text(const Json& json) {
 int run_length(const fs::path& map_yaml, std::optional<double> true_length_m,
                const Output& output) {
   const MapImage map = read_map(map_yaml);
-  print(json_of(measure_corridor(map), true_length_m), output);
+  try {
+    print(json_of(corridor::measure_corridor(map), true_length_m), output);
+  } catch (const corridor::NotACorridor& error) {
+    throw InputError{fmt::format("{}: {}", map_yaml.string(), error.what())};
+  }
   return kFine;
 }
 

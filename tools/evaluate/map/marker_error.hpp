@@ -14,7 +14,7 @@ namespace waymark::evaluate {
 struct Marker {
   int id{};
   Se2 parent_from_marker{};
-  int instance{0};           ///< tells markers of equal id apart
+  int instance{0};           ///< distinguishes markers of equal id
   bool has_moved{false};     ///< true: it was moved; estimated: it is said to have been
   bool is_tentative{false};  ///< estimated: the map does not vouch for it
 };

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kGap_cells = 3;
 constexpr double kThickestShare = 0.005;
-constexpr int kThickest_cells = 20;  ///< a metre at 5 cm; nothing thicker is told apart
+constexpr int kThickest_cells = 20;  ///< a metre at 5 cm; nothing thicker is distinguished
 
 class Mask {
  public:

@@ -3,8 +3,6 @@
 
 #include "evaluate/run/run_evaluation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +13,8 @@ using Figure = std::optional<double>;
 
 Figure length_error_percent(const EstimatorResult& result) {
   if (!result.length || !result.true_length_m) return std::nullopt;
-  return std::abs(100.0 - accuracy_percent(result.length->length_m, *result.true_length_m));
+  return std::abs(100.0 -
+                  corridor::accuracy_percent(result.length->length_m, *result.true_length_m));
 }
 
 Figure ate_origin_m(const EstimatorResult& result) {
@@ -89,8 +88,6 @@ Figure growth(const EstimatorResult& result) {
 /// 998 pixels instead of 1000 are 0.2 %, whatever binary fractions make of it.
 constexpr double kRounding = 1e-9;
 
-enum class Limit { kAtMost, kAtLeast };
-
 struct Rule {
   const char* key;
   double ExpectConfig::*limit;
@@ -136,18 +133,9 @@ std::vector<ExpectedFigure> check_expectations(const ExpectConfig& expect,
     const Figure got = rule.figure(result);
     const bool is_hit = got && (rule.kind == Limit::kAtMost ? *got <= limit + kRounding
                                                             : *got >= limit - kRounding);
-    figures.push_back({rule.key, limit, got, is_hit});
+    figures.push_back({rule.key, limit, rule.kind, got, is_hit});
   }
   return figures;
-}
-
-std::string text_of(const std::vector<ExpectedFigure>& figures) {
-  std::string text;
-  for (const ExpectedFigure& figure : figures)
-    text += fmt::format("{}{} {} {} ({})", text.empty() ? "" : "; ", figure.is_hit ? "hit" : "MISS",
-                        figure.key, figure.got ? fmt::format("{:.3g}", *figure.got) : "none",
-                        figure.limit);
-  return text.empty() ? "-" : text;
 }
 
 }  // namespace waymark::evaluate

@@ -12,10 +12,13 @@ namespace waymark::evaluate {
 
 struct EstimatorResult;
 
+enum class Limit { kAtMost, kAtLeast };
+
 /// One figure of a scenario's section [expect].
 struct ExpectedFigure {
   std::string key{};  ///< as in the scenario
   double limit{};
+  Limit kind{};
   std::optional<double> got{};  ///< absent = could not be had, or never happened
   bool is_hit{};
 };
@@ -26,8 +29,5 @@ bool is_expected_of(const ExpectConfig& expect, const std::string& row);
 /// One entry for each figure that is expected, in the order of the section; empty for other rows.
 std::vector<ExpectedFigure> check_expectations(const ExpectConfig& expect,
                                                const EstimatorResult& result);
-
-/// "hit" or "MISS" with both numbers, one after the other; "-" without any.
-std::string text_of(const std::vector<ExpectedFigure>& figures);
 
 }  // namespace waymark::evaluate

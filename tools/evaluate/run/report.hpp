@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as JSON for scripts and as a table for people.
+// Results as JSON for scripts and as tables for people.
 #pragma once
 
 #include "evaluate/run/run_evaluation.hpp"
@@ -15,7 +15,7 @@ namespace waymark::evaluate {
 /// Keys stay in the order in which they are written. What is unknown is null.
 using Json = nlohmann::ordered_json;
 
-Json json_of(const CorridorLength& length, std::optional<double> true_length_m);
+Json json_of(const corridor::CorridorLength& length, std::optional<double> true_length_m);
 Json json_of(const TrajectoryError& error);
 Json json_of(const RelationsError& error);
 
@@ -25,10 +25,17 @@ Json metrics_json(const EstimatorResult& result);
 /// Content of results.json: the truth, and each estimator's metrics with its configuration.
 Json results_json(const RunTruth& truth, const std::vector<EstimatorResult>& results);
 
-/// Table I of the paper with our columns beside it, as Markdown.
-std::string results_table(const std::vector<EstimatorResult>& results);
+/// Table I of the paper, as Markdown.
+std::string length_table(const std::vector<EstimatorResult>& results);
 
-/// Content of results.md: the table and what is to be said about it.
+/// Errors of trajectory and markers, NEES, flags; a trajectory as known at the end has a row of its
+/// own.
+std::string error_table(const std::vector<EstimatorResult>& results);
+
+/// One row per figure that the scenario expects; empty if it expects none.
+std::string expectation_table(const std::vector<EstimatorResult>& results);
+
+/// Content of results.md: the three tables and what is to be said about them.
 std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorResult>& results);
 
 }  // namespace waymark::evaluate

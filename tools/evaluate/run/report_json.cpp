@@ -101,7 +101,7 @@ Json as_final(const Json& json) {
 
 }  // namespace
 
-Json json_of(const CorridorLength& length, std::optional<double> true_length_m) {
+Json json_of(const corridor::CorridorLength& length, std::optional<double> true_length_m) {
   Json json;
   json["length_px"] = number(length.length_px);
   json["pixel_length_m"] = number(length.length_m / length.length_px);
@@ -111,7 +111,7 @@ Json json_of(const CorridorLength& length, std::optional<double> true_length_m) 
   json["length_flags"] = length.flags;
   json["true_length_m"] = number(true_length_m);
   json["accuracy_percent"] =
-      true_length_m ? number(accuracy_percent(length.length_m, *true_length_m)) : Json{};
+      true_length_m ? number(corridor::accuracy_percent(length.length_m, *true_length_m)) : Json{};
   return json;
 }
 
@@ -159,7 +159,7 @@ Json metrics_json(const EstimatorResult& result) {
   Json json;
   json["estimator"] = result.name;
   json.update(result.length ? json_of(*result.length, result.true_length_m)
-                            : nulls_like(json_of(CorridorLength{}, std::nullopt)));
+                            : nulls_like(json_of(corridor::CorridorLength{}, std::nullopt)));
   json["true_length_m"] = number(result.true_length_m);
   json.update(result.trajectory ? json_of(*result.trajectory)
                                 : nulls_like(json_of(TrajectoryError{})));
@@ -177,7 +177,6 @@ Json metrics_json(const EstimatorResult& result) {
   json["expected_of_seeds"] = {{"nees_in_band_share", number(result.expect.nees_in_band_share)},
                                {"seeds_share", number(result.expect.seeds_share)}};
   json["timings"] = parsed(result.timings_json);
-  json["counters"] = parsed(result.counters_json);
   json["problems"] = result.problems;
   json["skipped"] = result.skipped;
   return json;

@@ -4,29 +4,46 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace waymark::evaluate {
 namespace {
 
-constexpr std::array<std::string_view, 17> kColumns{
-    "Case",      "Pixel Length", "Corridor Length", "Pixel Count",      "Map Length",
-    "Accuracy",  "along RMSE",   "x odometry",      "across RMSE",      "ate_origin_m",
-    "ate_se2_m", "heading RMSE", "marker error",    "missing/spurious", "NEES",
-    "expected",  "flags"};
+using Row = std::vector<std::string>;
 
-using Row = std::array<std::string, kColumns.size()>;
+/// Markdown with columns of even width; empty without rows. @param names as many as in each row.
+std::string table_of(const Row& names, const std::vector<Row>& rows) {
+  if (rows.empty()) return "";
+  std::vector<std::size_t> widths;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    widths.push_back(names[i].size());
+    for (const Row& row : rows)
+      widths[i] = std::max(widths[i], row[i].size());
+  }
+  const auto line = [&widths](const Row& row) {
+    std::string text = "|";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      text += fmt::format(" {:<{}} |", row[i], widths[i]);
+    return text + "\n";
+  };
+  std::string text = line(names) + "|";
+  for (const std::size_t width : widths)
+    text += std::string(width + 2, '-') + "|";
+  text += "\n";
+  for (const Row& row : rows)
+    text += line(row);
+  return text;
+}
 
-/// The value in a unit, or a dash.
-std::string cell(const std::optional<double>& value, int decimals, std::string_view unit) {
+/// The value with its unit, or a dash.
+std::string cell(const std::optional<double>& value, int decimals, std::string_view unit = "") {
   if (!value || !std::isfinite(*value)) return "-";
   return fmt::format("{:.{}f}{}", *value, decimals, unit);
 }
 
-/// Two decimals; from 1000 on, where only the size tells anything, a power of ten.
+/// Two decimals; from 1000 on, where only the size matters, a power of ten.
 std::string nees_cell(double nees) {
-  return nees < 1000.0 || !std::isfinite(nees) ? cell(nees, 2, "") : fmt::format("{:.0e}", nees);
+  return nees < 1000.0 || !std::isfinite(nees) ? cell(nees, 2) : fmt::format("{:.0e}", nees);
 }
 
 /// Whole numbers bare, as the paper writes them.
@@ -35,9 +52,19 @@ std::string pixel_count(double pixels) {
   return fmt::format("{:.{}f} pixel", pixels, whole ? 0 : 1);
 }
 
-std::optional<double> along_rmse_m(const EstimatorResult& result) {
-  if (!result.trajectory || !result.trajectory->along_m) return std::nullopt;
-  return result.trajectory->along_m->rms;
+std::optional<double> rms_of(const std::optional<Spread>& spread) {
+  return spread ? std::optional{spread->rms} : std::nullopt;
+}
+
+/// Whether slam has counted any message of a kind ("loss", "rejection") in timings.json.
+bool has_counted(const EstimatorResult& result, std::string_view kind) {
+  if (!result.timings_json) return false;
+  const Json timings = Json::parse(*result.timings_json);
+  const auto counters = Json::json_pointer{"/slam/counters"};
+  if (!timings.contains(counters)) return false;
+  const Json& list = timings.at(counters);
+  return std::any_of(list.begin(), list.end(),
+                     [kind](const Json& counter) { return counter.value("kind", "") == kind; });
 }
 
 std::string flags_of(const EstimatorResult& result) {
@@ -45,109 +72,118 @@ std::string flags_of(const EstimatorResult& result) {
       result.length ? result.length->flags : std::vector<std::string>{};
   if (!result.problems.empty()) flags.emplace_back("incomplete");
   if (!result.skipped.empty()) flags.emplace_back("lines_skipped");
+  if (has_counted(result, "loss")) flags.emplace_back("messages_lost");
+  if (has_counted(result, "rejection")) flags.emplace_back("messages_rejected");
   return flags.empty() ? "-" : fmt::format("{}", fmt::join(flags, " "));
 }
 
-void add_length(const EstimatorResult& result, Row& row) {
-  row[2] = cell(result.true_length_m, 1, " m");
-  if (!result.length) return;
-  const CorridorLength& length = *result.length;
+/// A row of the paper's Table I.
+Row length_row(const EstimatorResult& result) {
+  Row row{result.name, "-", cell(result.true_length_m, 1, " m"), "-", "-", "-"};
+  if (!result.length) return row;
+  const corridor::CorridorLength& length = *result.length;
   row[1] = fmt::format("{:.4g} m/pixel", length.length_m / length.length_px);
   row[3] = pixel_count(length.length_px);
   row[4] = cell(length.length_m, 2, " m");
   if (result.true_length_m)
-    row[5] = cell(accuracy_percent(length.length_m, *result.true_length_m), 2, " %");
+    row[5] = cell(corridor::accuracy_percent(length.length_m, *result.true_length_m), 2, " %");
+  return row;
 }
 
-void add_trajectory(const TrajectoryError& error, std::optional<double> odometry_m, Row& row) {
-  if (error.along_m) {
-    row[6] = cell(error.along_m->rms, 3, " m");
-    if (odometry_m && *odometry_m > 0.0) row[7] = cell(error.along_m->rms / *odometry_m, 2, "");
-  }
-  if (error.across_m) row[8] = cell(error.across_m->rms, 3, " m");
-  row[9] = cell(error.ate_origin_m, 3, " m");
-  row[10] = cell(error.ate_se2_m, 3, " m");
-  row[11] = cell(error.heading_deg.rms, 2, " deg");
+const Row kErrorColumns{"Row",         "along [m]",     "x odometry",
+                        "across [m]",  "heading [deg]", "ate_origin [m]",
+                        "ate_se2 [m]", "markers [m]",   "missing/spurious",
+                        "NEES",        "flags"};
+
+/// A row of trajectory errors, with dashes for what is not of the trajectory.
+Row error_row(const std::string& name, const TrajectoryError& error,
+              std::optional<double> odometry_along_m) {
+  const std::optional<double> along_m = rms_of(error.along_m);
+  std::optional<double> ratio;
+  if (along_m && odometry_along_m.value_or(0.0) > 0.0) ratio = *along_m / *odometry_along_m;
+  return {name,
+          cell(along_m, 3),
+          cell(ratio, 2),
+          cell(rms_of(error.across_m), 3),
+          cell(error.heading_deg.rms, 2),
+          cell(error.ate_origin_m, 3),
+          cell(error.ate_se2_m, 3),
+          "-",
+          "-",
+          "-",
+          "-"};
 }
 
-Row row_of(const EstimatorResult& result, std::optional<double> odometry_m) {
-  Row row;
-  row.fill("-");
+Row error_row(const EstimatorResult& result, std::optional<double> odometry_along_m) {
+  Row row(kErrorColumns.size(), "-");
+  if (result.trajectory) row = error_row(result.name, *result.trajectory, odometry_along_m);
   row[0] = result.name;
-  add_length(result, row);
-  if (result.trajectory) add_trajectory(*result.trajectory, odometry_m, row);
   if (result.markers) {
-    row[12] = cell(result.markers->mean_position_m, 3, " m");
-    row[13] = fmt::format("{}/{}", result.markers->missing, result.markers->spurious);
+    row[7] = cell(result.markers->mean_position_m, 3);
+    row[8] = fmt::format("{}/{}", result.markers->missing, result.markers->spurious);
   }
-  if (result.nees) row[14] = nees_cell(result.nees->mean);
-  row[15] = text_of(result.expectations);
-  row[16] = flags_of(result);
+  if (result.nees) row[9] = nees_cell(result.nees->mean);
+  row[10] = flags_of(result);
   return row;
 }
 
-/// The way as corrected until the end of the run.
-Row final_row_of(const std::string& name, const TrajectoryError& error,
-                 std::optional<double> odometry_m) {
-  Row row;
-  row.fill("-");
-  row[0] = name + ", final";
-  add_trajectory(error, odometry_m, row);
-  return row;
-}
-
-std::string line_of(const Row& row, const std::array<std::size_t, kColumns.size()>& widths) {
-  std::string line = "|";
-  for (std::size_t i = 0; i < row.size(); ++i)
-    line += fmt::format(" {:<{}} |", row[i], widths[i]);
-  return line + "\n";
+std::string explanation(const std::vector<EstimatorResult>& results) {
+  std::string text =
+      "Length: measured on the map image from end wall to end wall. Errors: RMSE of the base's "
+      "position and heading against the truth";
+  if (!results.empty() && results.front().trajectory)
+    text += fmt::format(", aligned by `{}`", name_of(results.front().trajectory->alignment));
+  return text +
+         "; `x odometry`: along RMSE over that of the row `odometry`. Markers: mean distance "
+         "over all true markers that were mapped. NEES: 3 is right, far more is a covariance that "
+         "is far too small. Trajectories are the poses given during the run; `final`: corrected "
+         "until its end.\n";
 }
 
 }  // namespace
 
-std::string results_table(const std::vector<EstimatorResult>& results) {
-  std::optional<double> odometry_m;
-  for (const EstimatorResult& result : results) {
-    if (result.name == "odometry") odometry_m = along_rmse_m(result);
-  }
-  Row names;
-  std::copy(kColumns.begin(), kColumns.end(), names.begin());
-  std::vector<Row> rows{names};
-  for (const EstimatorResult& result : results) {
-    rows.push_back(row_of(result, odometry_m));
-    if (result.final_trajectory)
-      rows.push_back(final_row_of(result.name, *result.final_trajectory, odometry_m));
-  }
+std::string length_table(const std::vector<EstimatorResult>& results) {
+  std::vector<Row> rows;
+  for (const EstimatorResult& result : results)
+    rows.push_back(length_row(result));
+  return table_of(
+      {"Case", "Pixel Length", "Corridor Length", "Pixel Count", "Map Length", "Accuracy"}, rows);
+}
 
-  std::array<std::size_t, kColumns.size()> widths{};
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], row[i].size());
+std::string error_table(const std::vector<EstimatorResult>& results) {
+  std::optional<double> odometry_along_m;
+  for (const EstimatorResult& result : results) {
+    if (result.name == "odometry" && result.trajectory)
+      odometry_along_m = rms_of(result.trajectory->along_m);
   }
-  Row rule;
-  for (std::size_t i = 0; i < rule.size(); ++i)
-    rule[i] = std::string(widths[i], '-');
-  rows.insert(rows.begin() + 1, rule);
-  std::string table;
-  for (const Row& row : rows)
-    table += line_of(row, widths);
-  return table;
+  std::vector<Row> rows;
+  for (const EstimatorResult& result : results) {
+    rows.push_back(error_row(result, odometry_along_m));
+    if (result.final_trajectory)
+      rows.push_back(
+          error_row(result.name + ", final", *result.final_trajectory, odometry_along_m));
+  }
+  return table_of(kErrorColumns, rows);
+}
+
+std::string expectation_table(const std::vector<EstimatorResult>& results) {
+  std::vector<Row> rows;
+  for (const EstimatorResult& result : results) {
+    for (const ExpectedFigure& figure : result.expectations)
+      rows.push_back(
+          {result.name, figure.key,
+           fmt::format("{} {}", figure.kind == Limit::kAtMost ? "<=" : ">=", figure.limit),
+           figure.got ? fmt::format("{:.3g}", *figure.got) : "none",
+           figure.is_hit ? "hit" : "MISS"});
+  }
+  return table_of({"Row", "figure", "expected", "got", ""}, rows);
 }
 
 std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorResult>& results) {
-  std::string text = "# Results\n\n" + results_table(results) + "\n";
-  text +=
-      "Length: measured on the map image from end wall to end wall. RMSE: position of the base "
-      "against the truth";
-  if (!results.empty() && results.front().trajectory)
-    text += fmt::format(", aligned by `{}`", name_of(results.front().trajectory->alignment));
-  text +=
-      "; `x odometry`: along RMSE over that of the row `odometry`. Marker error: mean distance "
-      "over "
-      "all true markers that were mapped. NEES: 3 is right, far more is a "
-      "covariance that is far too small. Expected: by the scenario, its limit "
-      "in parentheses. "
-      "Trajectories are the poses given during the run; `final`: corrected until its end.\n";
+  std::string text = "# Results\n\n" + length_table(results) + "\n" + error_table(results) + "\n";
+  if (const std::string expected = expectation_table(results); !expected.empty())
+    text += expected + "\n";
+  text += explanation(results);
   if (truth.faults_toml)
     text += "\nFaults were put into the messages of this run: variant_applied.toml says which.\n";
   if (!truth.is_one_corridor)

@@ -206,8 +206,8 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
     result.wall_cells = wall_thickness_cells(map);
     if (!truth.is_one_corridor) return;
     try {
-      result.length = measure_corridor(map);
-    } catch (const InputError& error) {
+      result.length = corridor::measure_corridor(map);
+    } catch (const corridor::NotACorridor& error) {
       throw InputError{fmt::format("{}: {}", map_file.string(), error.what())};
     }
   });
@@ -229,7 +229,6 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
   }
   attempt(result.problems, [&] { result.config_toml = text_if_there(dir / "config.toml"); });
   attempt(result.problems, [&] { result.timings_json = json_if_there(dir / "timings.json"); });
-  attempt(result.problems, [&] { result.counters_json = json_if_there(dir / "counters.json"); });
   add_figures_of_scenario(truth.expect, result);
   return result;
 }

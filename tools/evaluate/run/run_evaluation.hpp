@@ -2,7 +2,7 @@
 // One run folder: what is known of the truth, and every estimator's files against it.
 #pragma once
 
-#include "evaluate/map/corridor_length.hpp"
+#include "common/corridor/corridor_length.hpp"
 #include "evaluate/map/marker_error.hpp"
 #include "evaluate/run/expectation.hpp"
 #include "evaluate/trajectory/stations.hpp"
@@ -42,7 +42,7 @@ struct RunTruth {
 /// truth says why.
 struct EstimatorResult {
   std::string name{};
-  std::optional<CorridorLength> length{};
+  std::optional<corridor::CorridorLength> length{};
   std::optional<double> true_length_m{};
   std::optional<int> wall_cells{};                    ///< thickness
   std::optional<TrajectoryError> trajectory{};        ///< poses as given during the run
@@ -59,7 +59,6 @@ struct EstimatorResult {
   ExpectConfig expect{};  ///< of this row; all zero if nothing is expected of it
   std::optional<std::string> config_toml{};
   std::optional<std::string> timings_json{};
-  std::optional<std::string> counters_json{};
   std::vector<std::string> problems{};  ///< figures that should be there and are not
   Skipped skipped{};                    ///< lines that were left out
 };

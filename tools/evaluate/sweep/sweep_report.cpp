@@ -239,7 +239,7 @@ PlotFiles sweep_plots(const std::vector<SweepRow>& rows) {
       "unset logscale y\nset xrange [*:*]\nset xtics norotate autofreq\n"
       "set terminal pngcairo size 1400,700 font 'sans,11'\n"
       "set xlabel 'driven [m]'\narray titles[{4}] = [{5}]\n"
-      "set output 'along.png'\nset title 'Error along the way, RMS over the seeds'\n"
+      "set output 'along.png'\nset title 'Error along the route, RMS over the seeds'\n"
       "set ylabel 'along [m]'\n"
       "plot for [i=0:{2}] 'stations.dat' index i using 1:2 with lines lw 2 title titles[i+1]\n"
       "set output 'nees.png'\nset title 'Mean NEES over the seeds'\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether covariances tell the truth on average over many runs: the mean NEES at each station
+// Whether covariances are consistent over many runs: the mean NEES at each station
 // against the band that chance allows.
 #pragma once
 

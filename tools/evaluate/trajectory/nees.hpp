@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the reported covariances tell the truth.
+// Whether the reported covariances are consistent with the errors.
 #pragma once
 
 #include "evaluate/trajectory/trajectory_error.hpp"

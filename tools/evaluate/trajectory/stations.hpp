@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The error along the way: one station every metre of travel, so that runs can be compared there.
+// The error along the trajectory: one station every metre of travel, so that runs can be compared
+// there.
 #pragma once
 
 #include "evaluate/trajectory/nees.hpp"
@@ -28,7 +29,7 @@ struct Station {
 /// Truth moves further than this between two poses of a trajectory only when the robot is lifted.
 inline constexpr double kLifted_m = 0.3;
 
-/// Length of the true way [m], without being lifted.
+/// Length of the true trajectory [m], without being lifted.
 double driven_m(const std::vector<PosePair>& pairs);
 
 /// The first pose at or behind each metre; metres without a pose are left out. Where the robot is

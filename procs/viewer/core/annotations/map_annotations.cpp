@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/core/annotations/map_annotations.hpp"
 
+#include "viewer/core/annotations/map_size.hpp"
 #include "viewer/core/drawing/canvas.hpp"
 #include "viewer/core/drawing/palette.hpp"
 
@@ -17,32 +18,6 @@ namespace waymark::viewer {
 namespace {
 
 constexpr double kText_px = 17.0;
-
-/// Cells below count as free in the heading's extent.
-constexpr int kFreeBelow_percent = 50;
-
-/// Counts free cells per bin of one cell along one axis; answers the extent of the well-filled
-/// bins.
-class ExtentCounter {
- public:
-  void add(double position_m, double resolution_m) {
-    ++counts_[static_cast<long>(std::floor(position_m / resolution_m + 1e-6))];
-  }
-
-  double extent_cells() const {
-    constexpr int kStray = 3;  // bins with fewer free cells are noise
-    long first = 0, last = -1;
-    for (const auto& [bin, count] : counts_) {
-      if (count < kStray) continue;
-      if (last < first) first = bin;
-      last = bin;
-    }
-    return static_cast<double>(last - first + 1);
-  }
-
- private:
-  std::map<long, int> counts_;
-};
 
 /// 1, 2 or 5 times a power of ten: the largest that is not longer than the limit.
 double round_length(double limit) {
@@ -68,13 +43,9 @@ double path_length_m(const std::vector<EstimatedPose>& path) {
   return length_m;
 }
 
-std::string summary(const PageContent& content, const Se2& view_from_map) {
-  std::string text = "no map yet";
-  if (const auto extent = free_extent(content.map, view_from_map)) {
-    text =
-        fmt::format("free space {:.2f} m long, {:.2f} m wide ({:.0f} px of {:g} m)",
-                    extent->length_m, extent->width_m, extent->length_px, content.map.resolution_m);
-  }
+std::string summary(const PageContent& content, const Se2& view_from_map,
+                    const MapThresholds& thresholds) {
+  std::string text = size_text(content.map, view_from_map, thresholds);
   text += fmt::format("   |   {} markers", content.landmarks.size());
   if (!content.estimates.empty()) {
     text += fmt::format(
@@ -125,7 +96,7 @@ std::string health_summary(const std::vector<EstimatedPose>& estimates) {
   }
   std::string text = "health: " + shares_text(kHealths, healths, estimates.size());
   if (!sources.empty()) {
-    text += "   |   weak axis told by " + shares_text(kSources, sources, estimates.size());
+    text += "   |   weak axis observed by " + shares_text(kSources, sources, estimates.size());
   }
   return text + " of the updates";
 }
@@ -140,30 +111,12 @@ void draw_fitting(cv::Mat& page, const std::string& text, const cv::Rect& area_p
 
 }  // namespace
 
-std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_map) {
-  ExtentCounter along, across;
-  for (int row = 0; row < map.occupancy_percent.rows; ++row) {
-    for (int column = 0; column < map.occupancy_percent.cols; ++column) {
-      const int percent = map.occupancy_percent(row, column);
-      if (percent < 0 || percent >= kFreeBelow_percent) continue;
-      // Relative to the first cell, so that unrotated cells fall in the middle of their bins.
-      const Eigen::Vector2d point =
-          view_from_map.rotation() * (map.cell_centre_m(row, column) - map.origin_m);
-      along.add(point.x(), map.resolution_m);
-      across.add(point.y(), map.resolution_m);
-    }
-  }
-  const double length_px = along.extent_cells();
-  const double width_px = across.extent_cells();
-  if (length_px <= 0.0 || width_px <= 0.0) return std::nullopt;
-  return FreeExtent{length_px * map.resolution_m, width_px * map.resolution_m, length_px};
-}
-
 void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& title,
-                  const PageContent& content, const Se2& view_from_map) {
+                  const PageContent& content, const Se2& view_from_map,
+                  const MapThresholds& thresholds) {
   draw_text(page, title, {area_px.x + 0.0, area_px.y + 46.0}, Anchor::kLeft,
             {.height_px = 32.0, .colour = palette::kInk, .bold = true});
-  draw_fitting(page, summary(content, view_from_map), area_px, 94.0);
+  draw_fitting(page, summary(content, view_from_map, thresholds), area_px, 94.0);
   draw_fitting(page, health_summary(content.estimates), area_px, 128.0);
 }
 
@@ -190,6 +143,7 @@ void draw_ruler(cv::Mat& page, const Panel& panel) {
 }
 
 void draw_strip_marks(cv::Mat& page, const MapPage& layout) {
+  if (layout.strips.size() < 2) return;
   const cv::Rect& overview_px = layout.overview->page_px;
   const View& overview = layout.overview->view;
   const Font font{.height_px = 17.0, .colour = palette::kFaintInk, .bold = true};

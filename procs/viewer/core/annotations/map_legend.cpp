@@ -100,9 +100,9 @@ class LegendWriter {
   double y_px_;
 };
 
-void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content) {
+void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content, Odometry odometry) {
   const StrokeWidths widths{};
-  legend.add_line("estimated path, as it was known on the way",
+  legend.add_line("estimated path, as known during the run",
                   {palette::kEstimated, widths.estimated_px});
   if (!content.final_in_map.empty()) {
     legend.add("the same as known at the end", [&](cv::Point2d left, cv::Point2d right) {
@@ -111,8 +111,10 @@ void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content) 
     });
   }
   if (!content.truth_in_map.empty()) legend.add_line("true path", {palette::kTrue, widths.true_px});
-  if (!content.odometry_in_map.empty())
-    legend.add_line("odometry", {palette::kOdometry, widths.odometry_px});
+  if (!content.odometry_in_map.empty()) {
+    legend.add_line(odometry == Odometry::kIncluded ? "odometry" : "odometry, above only",
+                    {palette::kOdometry, widths.odometry_px});
+  }
   legend.add("start", [&](cv::Point2d left, cv::Point2d right) {
     draw_circle(page, 0.5 * (left + right), 11.0, {palette::kEstimated, 5});
   });
@@ -135,14 +137,14 @@ void add_marks(LegendWriter& legend, cv::Mat& page, const PathMarks& marks) {
       draw_circle(page, 0.5 * (left + right), 13.0, {palette::kEllipse, 2});
     });
   }
-  std::string meaning = "weak axis of the scan (longer = weaker), the motion along it told by ";
+  std::string meaning = "weak axis of the scan (longer = weaker), the motion along it observed by ";
   for (const auto& [source, name] : {std::pair{WeakAxisSource::kOdometry, "odometry"},
                                      std::pair{WeakAxisSource::kMarkers, "markers"},
                                      std::pair{WeakAxisSource::kNothing, "nothing"},
                                      std::pair{WeakAxisSource::kUnknown, "something unknown"}}) {
     if (!has_source(marks, source)) continue;
     legend.add(meaning + name, [&page, which = source](cv::Point2d left, cv::Point2d right) {
-      draw_weak_axis_bar(page, {left.x + 6, left.y}, {right.x - 6, right.y}, which);
+      draw_weak_axis_bar(page, {left.x + 6, left.y}, {right.x - 6, right.y}, which, 1.0);
     });
     meaning = "by ";
   }
@@ -174,10 +176,10 @@ void add_markers(LegendWriter& legend, cv::Mat& page, const PageContent& content
 
 }  // namespace
 
-int draw_legend(cv::Mat& page, const cv::Rect& area_px, const PageContent& content,
+int draw_legend(cv::Mat& page, const MapPage& layout, const PageContent& content,
                 const PathMarks& marks) {
-  LegendWriter legend{page, area_px};
-  add_paths(legend, page, content);
+  LegendWriter legend{page, layout.legend_px};
+  add_paths(legend, page, content, layout.odometry_in_strips);
   legend.new_line();
   add_marks(legend, page, marks);
   legend.new_line();

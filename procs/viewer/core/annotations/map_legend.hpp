@@ -9,7 +9,7 @@ namespace waymark::viewer {
 
 /// Writes entries from left to right, line by line.
 /// @return the first row of the page below the legend.
-int draw_legend(cv::Mat& page, const cv::Rect& area_px, const PageContent& content,
+int draw_legend(cv::Mat& page, const MapPage& layout, const PageContent& content,
                 const PathMarks& marks);
 
 }  // namespace waymark::viewer

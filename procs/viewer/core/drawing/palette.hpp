@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours of the pictures. Paths and states: Okabe & Ito (2008), told apart with any colour vision.
+// Colours of the pictures. Paths and states: Okabe & Ito (2008), distinct with any colour vision.
 #pragma once
 
 #include <opencv2/core.hpp>

@@ -3,8 +3,8 @@
 
 #include "viewer/core/drawing/canvas.hpp"
 #include "viewer/core/drawing/palette.hpp"
+#include "viewer/core/drawing/path_points.hpp"
 #include "viewer/core/layers/marker_labels.hpp"
-#include "viewer/core/layers/path_points.hpp"
 
 #include <opencv2/imgproc.hpp>
 
@@ -13,6 +13,20 @@
 #include <cmath>
 
 namespace waymark::viewer {
+
+StrokeWidths strokes_at(double px_per_m) {
+  const double scale = mark_scale(px_per_m);
+  const auto scaled = [scale](int width_px, int least_px) {
+    return std::max(least_px, static_cast<int>(std::lround(scale * width_px)));
+  };
+  const StrokeWidths full{};
+  return {.health_px = scaled(full.health_px, 8),
+          .true_px = scaled(full.true_px, 4),
+          .odometry_px = scaled(full.odometry_px, 2),
+          .estimated_px = scaled(full.estimated_px, 2),
+          .plate_px = scaled(full.plate_px, 4)};
+}
+
 cv::Mat colour_cells(const GridMap& map) {
   std::array<Colour, 101> colours;
   for (int percent = 0; percent <= 100; ++percent)
@@ -39,11 +53,13 @@ void draw_cells(cv::Mat& panel, const View& view, const GridMap& map, const cv::
 }
 
 void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,
-                const StrokeWidths& widths) {
+                const StrokeWidths& widths, Odometry odometry) {
   draw_polyline(panel, points_on_page(view, content.truth_in_map),
                 {palette::kTrue, widths.true_px});
-  draw_polyline(panel, points_on_page(view, content.odometry_in_map),
-                {palette::kOdometry, widths.odometry_px});
+  if (odometry == Odometry::kIncluded) {
+    draw_polyline(panel, points_on_page(view, content.odometry_in_map),
+                  {palette::kOdometry, widths.odometry_px});
+  }
   draw_polyline(panel, points_on_page(view, content.estimates),
                 {palette::kEstimated, widths.estimated_px});
   draw_dashed_polyline(panel, points_on_page(view, content.final_in_map),
@@ -58,8 +74,10 @@ void draw_particles(cv::Mat& panel, const View& view, const std::vector<Se2>& pa
 void draw_ends(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates) {
   if (estimates.empty()) return;
   const cv::Point2d start = view(estimates.front().map_from_base.translation());
-  fill_circle(panel, start, 12.0, palette::kPage);
-  draw_circle(panel, start, 11.0, {palette::kEstimated, 5});
+  const double scale = std::max(0.6, mark_scale(view.px_per_m));
+  fill_circle(panel, start, 12.0 * scale, palette::kPage);
+  draw_circle(panel, start, 11.0 * scale,
+              {palette::kEstimated, static_cast<int>(std::lround(5.0 * scale))});
   const Se2& last = estimates.back().map_from_base;
   const cv::Point2d end = view(last.translation());
   const cv::Point2d ahead = view.direction(last.theta());
@@ -69,8 +87,8 @@ void draw_ends(cv::Mat& panel, const View& view, const std::vector<EstimatedPose
         end + 1.3 * size_px * ahead, end - size_px * ahead + size_px * left,
         end - 0.5 * size_px * ahead, end - size_px * ahead - size_px * left};
   };
-  fill_polygon(panel, arrow(21.0), palette::kPage);
-  fill_polygon(panel, arrow(16.0), palette::kEstimated);
+  fill_polygon(panel, arrow(21.0 * scale), palette::kPage);
+  fill_polygon(panel, arrow(16.0 * scale), palette::kEstimated);
 }
 
 void draw_plates(cv::Mat& panel, const View& view, const std::vector<Landmark>& landmarks,
@@ -82,7 +100,7 @@ void draw_plates(cv::Mat& panel, const View& view, const std::vector<Landmark>& 
     const double half_px = std::max(0.5 * marker_size_m * view.px_per_m, 3.0);
     const cv::Scalar colour = colour_of(landmark.state);
     draw_line(panel, centre - half_px * along, centre + half_px * along, {colour, width_px});
-    // A short peg tells the side that the marker faces.
+    // A short peg on the side that the marker faces.
     draw_line(panel, centre, centre + 1.8 * width_px * facing, {colour, std::max(1, width_px / 2)});
   }
 }

@@ -8,7 +8,7 @@
 
 namespace waymark::viewer {
 
-/// Widths of the strokes; the overview has finer ones.
+/// Widths of the strokes where a corridor is large on the page.
 struct StrokeWidths {
   int health_px{30};
   int true_px{8};
@@ -16,6 +16,9 @@ struct StrokeWidths {
   int estimated_px{3};
   int plate_px{7};
 };
+
+/// Finer where a building is small on the page, so that the map stays the main thing.
+StrokeWidths strokes_at(double px_per_m);
 
 constexpr double kDash_px = 14.0;
 constexpr double kDashGap_px = 12.0;
@@ -28,7 +31,7 @@ void draw_cells(cv::Mat& panel, const View& view, const GridMap& map, const cv::
 /// All paths, so that coinciding ones all stay visible: the broadest at the bottom, and what is
 /// known at the end in dashes on top.
 void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,
-                const StrokeWidths& widths);
+                const StrokeWidths& widths, Odometry odometry);
 
 void draw_particles(cv::Mat& panel, const View& view, const std::vector<Se2>& particles);
 

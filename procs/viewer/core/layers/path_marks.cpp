@@ -3,7 +3,7 @@
 
 #include "viewer/core/drawing/canvas.hpp"
 #include "viewer/core/drawing/palette.hpp"
-#include "viewer/core/layers/path_points.hpp"
+#include "viewer/core/drawing/path_points.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -16,9 +16,12 @@
 namespace waymark::viewer {
 namespace {
 
+// At full size; see mark_scale().
 constexpr double kLongestBar_px = 34.0;   // half length
 constexpr double kShortestBar_px = 11.0;  // half length
 constexpr int kBarWidth_px = 6;
+/// More of one kind hide the map.
+constexpr std::size_t kMostMarks = 60;
 
 bool is_finite(const EstimatedPose& pose) {
   return pose.map_from_base.translation().allFinite();
@@ -88,12 +91,9 @@ std::vector<EstimatedPose> weak_axis_candidates(const std::vector<EstimatedPose>
   return chosen;
 }
 
-/// Keeps, from the highest rank down, the marks that have room; in order of time.
-std::vector<EstimatedPose> thinned_out(std::vector<EstimatedPose> candidates, double clearance_m,
-                                       const std::function<double(const EstimatedPose&)>& rank) {
-  std::stable_sort(
-      candidates.begin(), candidates.end(),
-      [&](const EstimatedPose& a, const EstimatedPose& b) { return rank(a) > rank(b); });
+/// Those that have room, in the order given.
+std::vector<EstimatedPose> with_clearance(const std::vector<EstimatedPose>& candidates,
+                                          double clearance_m) {
   std::vector<EstimatedPose> kept;
   for (const EstimatedPose& candidate : candidates) {
     const bool has_room = std::none_of(kept.begin(), kept.end(), [&](const EstimatedPose& other) {
@@ -101,12 +101,27 @@ std::vector<EstimatedPose> thinned_out(std::vector<EstimatedPose> candidates, do
     });
     if (has_room) kept.push_back(candidate);
   }
+  return kept;
+}
+
+/// Keeps, from the highest rank down, the marks that have room, kMostMarks at most; in order of
+/// time.
+std::vector<EstimatedPose> thinned_out(std::vector<EstimatedPose> candidates, double clearance_m,
+                                       const std::function<double(const EstimatedPose&)>& rank) {
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [&](const EstimatedPose& a, const EstimatedPose& b) { return rank(a) > rank(b); });
+  std::vector<EstimatedPose> kept = with_clearance(candidates, clearance_m);
+  while (kept.size() > kMostMarks) {
+    clearance_m *= 1.2;
+    kept = with_clearance(kept, clearance_m);
+  }
   std::sort(kept.begin(), kept.end(),
             [](const EstimatedPose& a, const EstimatedPose& b) { return a.time < b.time; });
   return kept;
 }
 
-/// What is told by nothing matters most.
+/// An axis that nothing observes matters most.
 double rank_of(WeakAxisSource source) {
   switch (source) {
     case WeakAxisSource::kNothing:
@@ -123,8 +138,8 @@ double rank_of(WeakAxisSource source) {
 
 /// Large enough that the middle one can be seen, but not so large that the largest cover the page.
 int magnification_of(const std::vector<EstimatedPose>& ellipses, double px_per_m) {
-  constexpr double kVisible_px = 26.0;
-  constexpr double kTooLarge_px = 100.0;
+  const double visible_px = 26.0 * mark_scale(px_per_m);
+  const double too_large_px = 100.0 * mark_scale(px_per_m);
   constexpr double kLargeShare = 0.95;
   if (ellipses.empty()) return 1;
   std::vector<double> radii_px;
@@ -136,7 +151,7 @@ int magnification_of(const std::vector<EstimatedPose>& ellipses, double px_per_m
   const double large_px = radii_px[static_cast<std::size_t>(std::lround(kLargeShare * last))];
   int chosen = 1;
   for (const int magnification : {2, 5, 10, 20, 50}) {
-    if (chosen * middle_px >= kVisible_px || magnification * large_px > kTooLarge_px) break;
+    if (chosen * middle_px >= visible_px || magnification * large_px > too_large_px) break;
     chosen = magnification;
   }
   return chosen;
@@ -169,6 +184,10 @@ cv::Scalar colour_of(WeakAxisSource source) {
       break;
   }
   return palette::kFaintInk;
+}
+
+int bar_width_px(double scale) {
+  return std::max(3, static_cast<int>(std::lround(scale * kBarWidth_px)));
 }
 
 }  // namespace
@@ -219,39 +238,43 @@ void draw_ellipses(cv::Mat& panel, const View& view, const PathMarks& marks) {
 }
 
 void draw_weak_axis_bar(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px,
-                        WeakAxisSource source) {
-  constexpr double kCap_px = 10.0;
+                        WeakAxisSource source, double scale) {
+  const double cap_px = 10.0 * scale;
+  const int width_px = bar_width_px(scale);
+  const int rim_px = width_px + 2 * std::max(1, width_px / 3);
   const cv::Point2d span = to_px - from_px;
   const double length_px = cv::norm(span);
   if (!(length_px > 0.0)) return;
-  const cv::Point2d cap = kCap_px / length_px * cv::Point2d{-span.y, span.x};
+  const cv::Point2d cap = cap_px / length_px * cv::Point2d{-span.y, span.x};
   const std::array<std::pair<cv::Point2d, cv::Point2d>, 3> strokes{
       {{from_px, to_px}, {from_px - cap, from_px + cap}, {to_px - cap, to_px + cap}}};
   // A white rim keeps the bar apart from the path, which it often lies on.
   for (const auto& [from, to] : strokes)
-    draw_line(image, from, to, {palette::kPage, kBarWidth_px + 4});
+    draw_line(image, from, to, {palette::kPage, rim_px});
   for (const auto& [from, to] : strokes)
-    draw_line(image, from, to, {colour_of(source), kBarWidth_px});
+    draw_line(image, from, to, {colour_of(source), width_px});
 }
 
 void draw_weak_axes(cv::Mat& panel, const View& view, const PathMarks& marks) {
   constexpr double kMostlyHeading = 0.7;  // share of a unit vector
+  const double scale = mark_scale(view.px_per_m);
+  const int width_px = bar_width_px(scale);
   for (const EstimatedPose& pose : marks.weak_axes) {
     if (!has_weak_axis(pose)) continue;
     const WeakAxis& axis = *pose.weak_axis;
     const cv::Point2d centre = view(pose.map_from_base.translation());
     if (std::abs(axis.direction.z()) > kMostlyHeading) {
-      draw_circle(panel, centre, kShortestBar_px, {palette::kPage, kBarWidth_px + 4});
-      draw_circle(panel, centre, kShortestBar_px, {colour_of(axis.source), kBarWidth_px});
+      draw_circle(panel, centre, scale * kShortestBar_px, {palette::kPage, 2 * width_px});
+      draw_circle(panel, centre, scale * kShortestBar_px, {colour_of(axis.source), width_px});
       continue;
     }
     const double two_sigma_m = axis.information > 0.0 ? 2.0 / std::sqrt(axis.information)
                                                       : std::numeric_limits<double>::infinity();
     const double half_px = std::clamp(marks.magnification * marks.px_per_m * two_sigma_m,
-                                      kShortestBar_px, kLongestBar_px);
+                                      scale * kShortestBar_px, scale * kLongestBar_px);
     const cv::Point2d along =
         half_px * view.direction(std::atan2(axis.direction.y(), axis.direction.x()));
-    draw_weak_axis_bar(panel, centre - along, centre + along, axis.source);
+    draw_weak_axis_bar(panel, centre - along, centre + along, axis.source, scale);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the path tells along its way: its health, how far it may be off, and which direction the
-// scans left open.
+// Marks along the path: its health, its covariance, and the direction that the scans do not
+// observe.
 #pragma once
 
 #include "viewer/core/drawing/view.hpp"
@@ -31,22 +31,24 @@ struct PathMarks {
 };
 
 /// Ellipses every round number of metres and at the end; weak axes likewise and wherever another
-/// source begins to tell them. Where marks would lie on each other, as on a way back, the less
-/// certain one stays. O(n) in the path, O(m^2) in the marks that find room.
+/// source begins to observe them. Where marks would lie on each other, as where the robot drives
+/// back, the less certain one stays; so it does until no more than a page can take are left.
+/// O(n) in the path, O(m^2) in the marks that find room.
 PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
                        double spacing_px);
 
 /// Two-sigma ellipses, magnified.
 void draw_ellipses(cv::Mat& panel, const View& view, const PathMarks& marks);
 
-/// A bar along each weak axis in the colour of what told the motion along it; its half length is
-/// two sigma of one scan along it, magnified and kept between two visible lengths. A ring where
+/// A bar along each weak axis in the colour of what observed the motion along it; its half length
+/// is two sigma of one scan along it, magnified and kept between two visible lengths. A ring where
 /// the heading is what is weak.
 void draw_weak_axes(cv::Mat& panel, const View& view, const PathMarks& marks);
 
 /// One bar from left to right (or along any line), as draw_weak_axes() draws them.
+/// @param scale  1 = full size; of width and caps.
 void draw_weak_axis_bar(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px,
-                        WeakAxisSource source);
+                        WeakAxisSource source, double scale);
 
 /// A broad band, to lie below the path, wherever its health is not `tracking`.
 void draw_health(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/core/page/map_page.hpp"
 
+#include "viewer/core/drawing/path_points.hpp"
 #include "viewer/core/scene/alignment.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -15,6 +16,9 @@ constexpr int kMargin_px = 60;
 constexpr int kHeadingHeight_px = 158;
 constexpr int kLegendHeight_px = 320;
 constexpr int kGap_px = 30;
+constexpr double kOverviewHeight_px = 600.0;
+/// Of the map without odometry's path; below, the path is left out of the strips.
+constexpr double kLeastScale = 0.85;
 constexpr int kMinPageWidth_px = 1700;  // for the legend
 /// Room around the map for the markers' labels.
 constexpr double kLabelRoom_px = 74.0;
@@ -25,20 +29,17 @@ class BoxBuilder {
  public:
   void add(const Eigen::Vector2d& point) { box_.extend(point); }
 
-  /// Only when the point is not too far from what has been added so far with add().
-  void add_if_near(const Eigen::Vector2d& point, const Eigen::AlignedBox2d& reach) {
+  /// Only when the point is not further than this from what has been added so far with add().
+  void add_within(const Eigen::AlignedBox2d& reach, const Eigen::Vector2d& point) {
     if (reach.contains(point)) box_.extend(point);
   }
 
-  bool empty() const { return box_.isEmpty(); }
-
-  Eigen::AlignedBox2d reach() const {
-    if (box_.isEmpty()) return {Eigen::Vector2d{-50.0, -50.0}, Eigen::Vector2d{50.0, 50.0}};
-    const double margin_m = std::max(3.0, 0.1 * box_.sizes().maxCoeff());
-    Eigen::AlignedBox2d reach = box_;
-    reach.extend(Eigen::Vector2d{box_.min().array() - margin_m});
-    reach.extend(Eigen::Vector2d{box_.max().array() + margin_m});
-    return reach;
+  /// What has been added so far with `share` of its size, but at least `least_m`, on each side.
+  Eigen::AlignedBox2d reach(double share, double least_m) const {
+    if (box_.isEmpty())
+      return {Eigen::Vector2d::Constant(-least_m), Eigen::Vector2d::Constant(least_m)};
+    const double margin_m = std::max(least_m, share * box_.sizes().maxCoeff());
+    return {box_.min().array() - margin_m, box_.max().array() + margin_m};
   }
 
   Box box() const {
@@ -122,22 +123,18 @@ PageContent content_of(const Scene& scene) {
 Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry) {
   BoxBuilder bounds;
   add_known_cells(content.map, view_from_map, bounds);
-  const auto reach = bounds.reach();
-  const auto add = [&](const Se2& pose) {
-    bounds.add_if_near(view_from_map * pose.translation(), reach);
-  };
+  const Eigen::AlignedBox2d reach_of_markers = bounds.reach(0.1, 3.0);
+  const Eigen::AlignedBox2d reach_of_paths = bounds.reach(2.0, 100.0);
   for (const Landmark& landmark : content.landmarks)
-    add(landmark.map_from_marker);
-  for (const EstimatedPose& pose : content.estimates)
-    add(pose.map_from_base);
-  for (const TimedPose& pose : content.final_in_map)
-    add(pose.frame_from_base);
-  for (const TimedPose& pose : content.truth_in_map)
-    add(pose.frame_from_base);
-  if (odometry == Odometry::kIncluded) {
-    for (const TimedPose& pose : content.odometry_in_map)
-      add(pose.frame_from_base);
-  }
+    bounds.add_within(reach_of_markers, view_from_map * landmark.map_from_marker.translation());
+  const auto add_path = [&](const auto& path) {
+    for (const auto& pose : path)
+      bounds.add_within(reach_of_paths, view_from_map * pose_of(pose).translation());
+  };
+  add_path(content.estimates);
+  add_path(content.final_in_map);
+  add_path(content.truth_in_map);
+  if (odometry == Odometry::kIncluded) add_path(content.odometry_in_map);
   return bounds.box();
 }
 
@@ -169,20 +166,21 @@ Se2 view_from_map(const GridMap& map) {
 
 MapPage lay_out(const PageContent& content, const MapPageStyle& style) {
   const Se2 view_from_map = viewer::view_from_map(content.map);
+  // The map is the main thing: odometry that would shrink it is in the overview only.
   const Box whole_box = with_label_room(bounds(content, view_from_map, Odometry::kIncluded), style);
-  // Strips stay close to the map: odometry may leave them, the overview shows where it goes.
-  const bool is_folded = best_folding(whole_box, style).num_strips > 1;
-  const Box box = is_folded
-                      ? with_label_room(bounds(content, view_from_map, Odometry::kLeftOut), style)
-                      : whole_box;
+  Box box = with_label_room(bounds(content, view_from_map, Odometry::kLeftOut), style);
+  const bool odometry_fits =
+      best_folding(whole_box, style).px_per_m >= kLeastScale * best_folding(box, style).px_per_m;
+  if (odometry_fits) box = whole_box;
   const Folding folding = best_folding(box, style);
 
-  MapPage page;
+  MapPage page{.odometry_in_strips = odometry_fits ? Odometry::kIncluded : Odometry::kLeftOut};
   int y_px = kHeadingHeight_px;
   const int inner_px = style.page_width_px - 2 * kMargin_px;
-  if (folding.num_strips > 1) {
-    const View whole{view_from_map, whole_box, inner_px / whole_box.width_m()};
-    page.overview = panel_at(whole, kMargin_px, y_px);
+  if (folding.num_strips > 1 || !odometry_fits) {
+    const double px_per_m =
+        std::min(inner_px / whole_box.width_m(), kOverviewHeight_px / whole_box.height_m());
+    page.overview = panel_at({view_from_map, whole_box, px_per_m}, kMargin_px, y_px);
     y_px = page.overview->page_px.br().y + 2 * kGap_px;
   }
   const double strip_m = folding.strip_width_m(box);

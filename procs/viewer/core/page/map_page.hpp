@@ -17,11 +17,15 @@ struct Panel {
   cv::Rect page_px{};
 };
 
+/// Whether a path that may drift far away from the map is drawn.
+enum class Odometry { kIncluded, kLeftOut };
+
 struct MapPage {
   cv::Size size_px{};
   cv::Rect heading_px{};
   std::optional<Panel> overview{};
   std::vector<Panel> strips{};
+  Odometry odometry_in_strips{Odometry::kIncluded};  ///< left out where it would leave them
   cv::Rect legend_px{};  ///< as high as the longest legend; what it leaves free can be cut off
 };
 
@@ -41,10 +45,8 @@ struct PageContent {
 
 PageContent content_of(const Scene& scene);
 
-enum class Odometry { kIncluded, kLeftOut };
-
-/// The smallest upright box around the content after a rotation, without poses that are far away
-/// from the map. Never empty.
+/// The smallest upright box around the map and all paths after a rotation; markers and poses that
+/// are absurdly far away from the map are left aside. Never empty.
 Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry);
 
 /// Turns long maps so that they lie; leaves the others, and those that nearly lie, as they are.

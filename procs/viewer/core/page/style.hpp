@@ -2,9 +2,12 @@
 // Sizes and distances that the user may choose for map.png.
 #pragma once
 
+#include "viewer/core/scene/grid_map.hpp"
+
 namespace waymark::viewer {
 
 struct MapPageStyle {
+  MapThresholds thresholds{};  ///< of map.pgm, which the heading measures
   int page_width_px{2400};
   int page_height_px{2000};  ///< for the map; heading, overview and legend come on top
   int max_strips{8};

@@ -101,7 +101,8 @@ cv::Mat paint_marker_layer(const GridMap& map, const std::string& title,
   const MapPage layout = lay_out(content, style);
   const cv::Mat cell_colours = colour_ids(map);
   cv::Mat page{layout.size_px, CV_8UC3, palette::kPage};
-  draw_heading(page, layout.heading_px, title, content, layout.strips.front().view.view_from_map);
+  draw_heading(page, layout.heading_px, title, content, layout.strips.front().view.view_from_map,
+               style.thresholds);
   if (layout.overview) {
     cv::Mat panel = page(layout.overview->page_px);
     draw_cells(panel, layout.overview->view, map, cell_colours);

@@ -3,13 +3,6 @@
 
 namespace waymark::viewer {
 
-CellKind kind_of(int occupancy_percent, const MapThresholds& thresholds) {
-  if (occupancy_percent < 0) return CellKind::kUnknown;
-  const double occupancy = occupancy_percent / 100.0;
-  if (occupancy >= thresholds.occupied) return CellKind::kOccupied;
-  return occupancy <= thresholds.free ? CellKind::kFree : CellKind::kUnknown;
-}
-
 cv::Mat_<uchar> paint_plain(const GridMap& map, const MapThresholds& thresholds) {
   if (map.empty()) return cv::Mat_<uchar>(1, 1, kUnknownGrey);
   const int rows = map.occupancy_percent.rows;

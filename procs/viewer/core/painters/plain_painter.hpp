@@ -12,17 +12,6 @@ constexpr uchar kOccupiedGrey = 0;
 constexpr uchar kFreeGrey = 254;
 constexpr uchar kUnknownGrey = 205;
 
-/// Occupancies from which on, and below which, a cell counts as occupied and free. Defaults: those
-/// of ROS's map_saver.
-struct MapThresholds {
-  double occupied{0.65};
-  double free{0.196};
-};
-
-enum class CellKind { kUnknown, kFree, kOccupied };
-
-CellKind kind_of(int occupancy_percent, const MapThresholds& thresholds);
-
 /// Highest y in the first row. An empty map becomes one unknown pixel.
 cv::Mat_<uchar> paint_plain(const GridMap& map, const MapThresholds& thresholds);
 

@@ -48,7 +48,7 @@ ChangeMonitor::Phase ChangeMonitor::phase_of(Health health) {
   return Phase::kUnknown;
 }
 
-std::optional<Change> ChangeMonitor::see(const EstimatedPose& estimate) {
+std::optional<Change> ChangeMonitor::update(const EstimatedPose& estimate) {
   const Phase before = std::exchange(phase_, phase_of(estimate.health));
   if (phase_ == before) return std::nullopt;
   const double time_s = to_seconds(estimate.time);
@@ -73,13 +73,13 @@ std::optional<Change> ChangeMonitor::see(const EstimatedPose& estimate) {
   return Change{Change::Kind::kNote, fmt::format("{:.1f} s: health unknown at {}", time_s, where)};
 }
 
-std::vector<Change> ChangeMonitor::see(Timestamp time, const std::vector<Landmark>& landmarks) {
+std::vector<Change> ChangeMonitor::update(Timestamp time, const std::vector<Landmark>& landmarks) {
   std::map<std::pair<int, int>, Sighting> now;
   for (const Landmark& landmark : landmarks)
     now[{landmark.id, landmark.instance}] = {landmark.state,
                                              landmark.map_from_marker.translation()};
   std::vector<Change> changes;
-  const auto tell = [&](Change::Kind kind, const std::string& what) {
+  const auto add = [&](Change::Kind kind, const std::string& what) {
     changes.push_back({kind, fmt::format("{:.1f} s: {}", to_seconds(time), what)});
   };
   for (const auto& [key, sighting] : now) {
@@ -87,14 +87,14 @@ std::vector<Change> ChangeMonitor::see(Timestamp time, const std::vector<Landmar
     const bool is_new = before == known_.end();
     if (!is_new && before->second.state == sighting.state) continue;
     const bool has_moved = sighting.state == LandmarkState::kMoved;
-    tell(has_moved ? Change::Kind::kAlarm : Change::Kind::kNote,
-         fmt::format("{} at {} is {}{}", name_of(key), place(sighting.position_m),
-                     is_new ? "new and " : "", name_of(sighting.state)));
+    add(has_moved ? Change::Kind::kAlarm : Change::Kind::kNote,
+        fmt::format("{} at {} is {}{}", name_of(key), place(sighting.position_m),
+                    is_new ? "new and " : "", name_of(sighting.state)));
   }
   for (const auto& [key, sighting] : known_) {
     if (now.contains(key)) continue;
-    tell(Change::Kind::kNote,
-         fmt::format("{}, last at {}, is gone", name_of(key), place(sighting.position_m)));
+    add(Change::Kind::kNote,
+        fmt::format("{}, last at {}, is gone", name_of(key), place(sighting.position_m)));
   }
   known_ = std::move(now);
   return changes;

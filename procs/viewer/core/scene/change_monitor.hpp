@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What people want to be told once, when it happens: lost, found again, a marker that has moved.
+// Changes that are reported once, when they happen: lost, found again, a marker that has moved.
 #pragma once
 
 #include "viewer/core/scene/scene.hpp"
@@ -21,15 +21,15 @@ struct Change {
   bool operator==(const Change&) const = default;
 };
 
-/// Sees everything, and speaks only when something differs from what it saw before.
+/// Takes every estimate and marker map, and reports what differs from the one before.
 class ChangeMonitor {
  public:
-  /// Initialising, localised or lost. An axis that comes and goes is no news in a corridor: the
-  /// map shows where.
-  std::optional<Change> see(const EstimatedPose& estimate);
+  /// Initialising, localised or lost. An axis that comes and goes in a corridor is not reported:
+  /// the map shows where.
+  std::optional<Change> update(const EstimatedPose& estimate);
 
   /// Markers that are new, gone, or in another state than before; by id and instance.
-  std::vector<Change> see(Timestamp time, const std::vector<Landmark>& landmarks);
+  std::vector<Change> update(Timestamp time, const std::vector<Landmark>& landmarks);
 
  private:
   enum class Phase { kUnknown, kInitialising, kLocalised, kLost };

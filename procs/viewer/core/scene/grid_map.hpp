@@ -9,6 +9,22 @@ namespace waymark::viewer {
 
 constexpr int kUnknownOccupancy = -1;
 
+/// Occupancies from which on, and up to which, a cell counts as occupied and free. Defaults: those
+/// of ROS's map_saver.
+struct MapThresholds {
+  double occupied{0.65};
+  double free{0.196};
+};
+
+enum class CellKind { kUnknown, kFree, kOccupied };
+
+inline CellKind kind_of(int occupancy_percent, const MapThresholds& thresholds) {
+  if (occupancy_percent < 0) return CellKind::kUnknown;
+  const double occupancy = occupancy_percent / 100.0;
+  if (occupancy >= thresholds.occupied) return CellKind::kOccupied;
+  return occupancy <= thresholds.free ? CellKind::kFree : CellKind::kUnknown;
+}
+
 /// Occupancy and marker id per cell. Row 0 is the lowest y, column 0 the lowest x.
 struct GridMap {
   cv::Mat_<schar> occupancy_percent{};                ///< 0..100, -1 = unknown

@@ -26,10 +26,10 @@ enum class Health { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
 /// What the map thinks of a marker; values as in lcmtypes/marker_landmark_t.lcm.
 enum class LandmarkState { kUnknown, kConfirmed, kTentative, kMoved };
 
-/// What tells the motion along the weakest axis; values as in lcmtypes/slam_estimate_t.lcm.
+/// What observes the motion along the weakest axis; values as in lcmtypes/slam_estimate_t.lcm.
 enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
 
-/// A direction that the scan alone tells little about.
+/// A direction that the scan alone hardly observes.
 struct WeakAxis {
   /// Unit vector; order x y theta (scaled by 1 m), map frame.
   Eigen::Vector3d direction{Eigen::Vector3d::Zero()};
@@ -37,7 +37,7 @@ struct WeakAxis {
   WeakAxisSource source{WeakAxisSource::kUnknown};
 };
 
-/// Pose of the base in a frame that the path's name tells.
+/// Pose of the base in the frame of its path.
 struct TimedPose {
   Timestamp time{};
   Se2 frame_from_base{};
@@ -48,7 +48,7 @@ struct EstimatedPose {
   Se2 map_from_base{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< order x y theta, map frame
   Health health{Health::kUnknown};
-  std::optional<WeakAxis> weak_axis{};  ///< none where the scan tells every direction
+  std::optional<WeakAxis> weak_axis{};  ///< none where the scan observes every direction
 };
 
 struct Landmark {

@@ -4,19 +4,16 @@
 
 #include "evaluate/run/run_evaluation.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace waymark::evaluate {
 namespace {
 
-using ::testing::HasSubstr;
-
 EstimatorResult result_of(const std::string& row) {
   EstimatorResult result{};
   result.name = row;
   result.true_length_m = 50.0;
-  result.length = CorridorLength{};
+  result.length = corridor::CorridorLength{};
   result.length->length_m = 50.2;  // 0.4 %
   result.trajectory = TrajectoryError{};
   result.trajectory->ate_origin_m = 0.1;
@@ -43,7 +40,6 @@ bool hits(const ExpectConfig& expect, const EstimatorResult& result) {
 
 TEST(Expectation, NothingIsExpectedByDefault) {
   EXPECT_TRUE(check_expectations({}, result_of("waymark")).empty());
-  EXPECT_EQ(text_of({}), "-");
 }
 
 TEST(Expectation, EachFigureHasItsSideOfTheLimit) {
@@ -103,7 +99,7 @@ TEST(Expectation, AFigureThatIsNotThereIsMissed) {
   const auto figures = check_expectations({.ate_origin_m = 0.1, .found_again_s = 3.0}, result);
   ASSERT_EQ(figures.size(), 2u);
   EXPECT_FALSE(figures[0].is_hit || figures[1].is_hit);
-  EXPECT_THAT(text_of(figures), HasSubstr("MISS ate_origin_m none (0.1)"));
+  EXPECT_FALSE(figures[0].got || figures[1].got);
 }
 
 TEST(Expectation, WhoIsFoundNeedNotSayThatItIsLost) {

@@ -2,7 +2,7 @@
 // The run sub-command on a folder as a run leaves it.
 #include "evaluate/commands.hpp"
 #include "evaluate/run/report.hpp"
-#include "unit/tools/evaluate/map/drawn_map.hpp"
+#include "support/drawn_map.hpp"
 #include "unit/tools/temporary_folder.hpp"
 
 #include <fmt/format.h>
@@ -40,7 +40,8 @@ std::string pgm(const MapImage& map) {
 void add_estimator(const TemporaryFolder& run, const std::string& name, double length_px,
                    double factor) {
   run.file(name + "/trajectory.tum", tum(0.0, factor));
-  run.file(name + "/map.pgm", pgm(draw({230, 61, length_px}, straight_shape(7, 30, 0))));
+  run.file(name + "/map.pgm",
+           pgm(corridor::draw({230, 61, length_px}, corridor::straight_shape(7, 30, 0))));
   run.file(name + "/map.yaml",
            "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
            "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
@@ -92,8 +93,52 @@ TEST(Run, WritesMetricsAndTheTable) {
   EXPECT_EQ(results["estimators"][2]["config_toml"], "[slam]\nseed = 7\n");
   EXPECT_EQ(results["scenario_toml"], "[world]\nlength_m = 10\n");
   const std::string table = read_text(run.path() / "results.md");
-  EXPECT_THAT(table, HasSubstr("| marker_matching | 0.05 m/pixel | 10.0 m          | 200 pixel   "
-                               "| 10.00 m    | 100.00 % | 0.023 m    | 0.50 "));
+  EXPECT_THAT(table, HasSubstr("| Case            | Pixel Length | Corridor Length | Pixel Count | "
+                               "Map Length | Accuracy |\n"));
+  EXPECT_THAT(table, HasSubstr("| marker_matching | 0.05 m/pixel | 10.0 m          | 200 pixel   | "
+                               "10.00 m    | 100.00 % |\n"))
+      << "the paper's columns stand alone";
+  EXPECT_THAT(table, HasSubstr("| marker_matching | 0.023     | 0.50 "));
+}
+
+TEST(Run, NoLineOfTheTablesIsTooLongForATerminal) {
+  const TemporaryFolder run;
+  add_truth(run);
+  run.file("scenario.toml",
+           "[world]\nlength_m = 10\n[expect]\nate_origin_m = 0.01\nmarker_map_share = 0.9\n");
+  add_estimator(run, "marker_matching_rotation_only", 200, 1.0);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  for (const std::string& line : read_lines(run.path() / "results.md")) {
+    if (line.starts_with("|")) EXPECT_LE(line.size(), 180U) << line;
+  }
+}
+
+TEST(Run, RejectedAndLostMessagesAreFlaggedByTheirKind) {
+  EstimatorResult result{};
+  result.name = "waymark";
+  const auto table_with = [&result](const std::string& counters) {
+    result.timings_json = R"({"slam": {"counters": [)" + counters + "]}}";
+    return error_table({result});
+  };
+  EXPECT_THAT(table_with(R"({"name": "rejected, dropped, late", "kind": "event", "value": 1})"),
+              Not(HasSubstr("messages_")));
+  EXPECT_THAT(table_with(R"({"name": "scans", "kind": "loss", "value": 1})"),
+              HasSubstr("messages_lost"));
+  EXPECT_THAT(table_with(R"({"name": "scans", "kind": "rejection", "value": 1})"),
+              HasSubstr("messages_rejected"));
+}
+
+TEST(Run, ExpectationsHaveATableOfTheirOwn) {
+  EstimatorResult result{};
+  result.name = "waymark";
+  EXPECT_EQ(expectation_table({result}), "");
+  result.expectations = {{"ate_origin_m", 0.1, Limit::kAtMost, 0.02, true},
+                         {"marker_map_share", 0.9, Limit::kAtLeast, std::nullopt, false}};
+  EXPECT_EQ(expectation_table({result}),
+            "| Row     | figure           | expected | got  |      |\n"
+            "|---------|------------------|----------|------|------|\n"
+            "| waymark | ate_origin_m     | <= 0.1   | 0.02 | hit  |\n"
+            "| waymark | marker_map_share | >= 0.9   | none | MISS |\n");
 }
 
 TEST(Run, AFaultyRunIsNotTakenForACleanOne) {
@@ -116,7 +161,7 @@ TEST(Run, ANeesThatSaysOnlyThatItIsHugeIsAPowerOfTen) {
   calibrated.nees = Nees{.poses = 1, .mean = 999.0, .share_in_band = 0.0};
   EstimatorResult overconfident{};
   overconfident.nees = Nees{.poses = 1, .mean = 12'581'008'748.5, .share_in_band = 0.0};
-  const std::string table = results_table({calibrated, overconfident});
+  const std::string table = error_table({calibrated, overconfident});
   EXPECT_THAT(table, HasSubstr("| 999.00 |"));
   EXPECT_THAT(table, HasSubstr("| 1e+10  |"));
 }

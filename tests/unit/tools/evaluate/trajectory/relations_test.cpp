@@ -52,7 +52,7 @@ TEST(Relations, TimesOutsideTheTrajectoryAreNamed) {
                           HasSubstr("r:6: time 11.500000 is outside")));
 }
 
-TEST(Relations, NearAndFarAreToldApartByTheTimeBetween) {
+TEST(Relations, NearAndFarAreDistinguishedByTheTimeBetween) {
   const Trajectory trajectory{{0, Se2{}}, {100, Se2{}}};
   Skipped skipped;
   const RelationsError error = relations_error(trajectory,

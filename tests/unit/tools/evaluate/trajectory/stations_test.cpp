@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors along the way, consistency over runs, and what happens after a kidnap.
+// Errors along the trajectory, consistency over runs, and what happens after a kidnap.
 #include "common/log/log_file.hpp"
 #include "common/messages/codec.hpp"
 #include "common/random/random.hpp"
@@ -144,7 +144,7 @@ double share_for(double sigma_m) {
   return share_in_band(stations);
 }
 
-TEST(Consistency, HonestCovariancesAreInTheBandAndOthersAreNot) {
+TEST(Consistency, ConsistentCovariancesAreInTheBandAndOthersAreNot) {
   EXPECT_NEAR(share_for(0.1), 0.95, 0.04);
   EXPECT_LT(share_for(0.07), 0.1);  // overconfident
   EXPECT_LT(share_for(0.15), 0.1);  // timid
@@ -185,7 +185,7 @@ TEST(Timeline, TimesCountFromTheFirstSightingAfterTheKidnap) {
   EXPECT_NEAR(result.max_jump_m, 0.0, 1e-9);                 // relocalising is no jump
 }
 
-TEST(Timeline, AConfidentWrongPoseThatNeverEndsIsSeen) {
+TEST(Timeline, AConfidentWrongPoseThatNeverEndsIsCounted) {
   Kidnapped run;
   for (std::size_t i = 0; i < run.pairs.size(); ++i) {
     run.pairs[i].map_from_estimate = Se2{0.1 * static_cast<double>(i), 0.0, 0.0};
@@ -211,7 +211,7 @@ TEST(Timeline, AJumpIsWhatOdometryCannotExplain) {
   EXPECT_NEAR(timeline(pairs, {}, {}, std::nullopt, {}).max_jump_m, 0.25, 1e-9);
 }
 
-TEST(Timeline, TheTruthTellsWhenTheRobotWasLifted) {
+TEST(Timeline, TheTruthShowsWhenTheRobotWasLifted) {
   Trajectory truth;
   for (int i = 0; i < 30; ++i)
     truth.push_back({0.1 * i, Se2{0.05 * i, 0.0, 0.0}});

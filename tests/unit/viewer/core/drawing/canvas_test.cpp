@@ -20,7 +20,7 @@ bool is_blank(const Image& image) {
   return cv::countNonZero(cv::Mat(image).reshape(1) < 255) == 0;
 }
 
-TEST(DashedPolyline, AlternatesAlongTheWholeWay) {
+TEST(DashedPolyline, AlternatesAlongTheWholePath) {
   Image image = white();
   // The second dash goes around the corner.
   const std::array<cv::Point2d, 3> path{{{0, 10}, {50, 10}, {50, 90}}};
@@ -33,7 +33,7 @@ TEST(DashedPolyline, AlternatesAlongTheWholeWay) {
   EXPECT_EQ(image(60, 10)[0], 255);
 }
 
-TEST(DashedPolyline, NothingForNoPathOnePointAndNoWay) {
+TEST(DashedPolyline, NothingForNoPathOnePointAndNoLength) {
   Image image = white();
   draw_dashed_polyline(image, {}, {kBlack, 1}, 5.0, 5.0);
   draw_dashed_polyline(image, std::array<cv::Point2d, 1>{{{5, 5}}}, {kBlack, 1}, 5.0, 5.0);

@@ -169,6 +169,15 @@ TEST(ChooseMarks, NoTwoEllipsesOnAWildPathAreCloserThanTheirClearance) {
   }
 }
 
+TEST(ChooseMarks, ALongPathHasNoMoreMarksThanAPageCanTake) {
+  std::vector<EstimatedPose> path = straight_path(400.0, 0.05);
+  for (EstimatedPose& pose : path)
+    pose.weak_axis = axis_along(1, 0, 0, WeakAxisSource::kOdometry);
+  const auto marks = choose_marks(path, kPxPerM, kSpacing_px);
+  EXPECT_THAT(marks.ellipses, SizeIs(AllOf(Ge(30U), Le(60U))));
+  EXPECT_THAT(marks.weak_axes, SizeIs(AllOf(Ge(30U), Le(60U))));
+}
+
 TEST(ChooseMarks, MagnifiesSmallEllipsesOnly) {
   const auto magnification = [](double sigma_m) {
     return choose_marks(straight_path(9.0, sigma_m), kPxPerM, kSpacing_px).magnification;
@@ -203,7 +212,7 @@ TEST(ChooseMarks, EachSourceOfTheWeakAxisIsSeen) {
   EXPECT_EQ(by_odometry, 1) << "a stretch of half a metre, too";
 }
 
-TEST(ChooseMarks, AnAxisThatNothingTellsIsNeverHidden) {
+TEST(ChooseMarks, AnUnobservedAxisIsNeverHidden) {
   std::vector<EstimatedPose> path;
   for (const auto source :
        {WeakAxisSource::kMarkers, WeakAxisSource::kNothing, WeakAxisSource::kOdometry}) {

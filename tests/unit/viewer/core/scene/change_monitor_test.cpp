@@ -31,61 +31,62 @@ Change alarm(const std::string& text) {
 constexpr Timestamp kNow{Duration{5'000'000}};
 
 TEST(ChangeMonitorOfHealth, SpeaksOncePerChange) {
-  ChangeMonitor watch;
-  EXPECT_EQ(watch.see(estimate(1, Health::kInitialising)),
+  ChangeMonitor monitor;
+  EXPECT_EQ(monitor.update(estimate(1, Health::kInitialising)),
             note("1.0 s: initialising at (1.00, -1.00) m"));
-  EXPECT_EQ(watch.see(estimate(2, Health::kInitialising)), std::nullopt);
-  EXPECT_EQ(watch.see(estimate(3, Health::kTracking)), note("3.0 s: localised at (3.00, -1.00) m"));
-  EXPECT_EQ(watch.see(estimate(4, Health::kTracking)), std::nullopt);
+  EXPECT_EQ(monitor.update(estimate(2, Health::kInitialising)), std::nullopt);
+  EXPECT_EQ(monitor.update(estimate(3, Health::kTracking)),
+            note("3.0 s: localised at (3.00, -1.00) m"));
+  EXPECT_EQ(monitor.update(estimate(4, Health::kTracking)), std::nullopt);
 }
 
 TEST(ChangeMonitorOfHealth, TellsLostAndFoundAgain) {
-  ChangeMonitor watch;
-  watch.see(estimate(1, Health::kTracking));
-  EXPECT_EQ(watch.see(estimate(2, Health::kLost)), alarm("2.0 s: lost at (2.00, -1.00) m"));
-  EXPECT_EQ(watch.see(estimate(3, Health::kLost)), std::nullopt);
-  EXPECT_EQ(watch.see(estimate(4.5, Health::kDegenerate)),
+  ChangeMonitor monitor;
+  monitor.update(estimate(1, Health::kTracking));
+  EXPECT_EQ(monitor.update(estimate(2, Health::kLost)), alarm("2.0 s: lost at (2.00, -1.00) m"));
+  EXPECT_EQ(monitor.update(estimate(3, Health::kLost)), std::nullopt);
+  EXPECT_EQ(monitor.update(estimate(4.5, Health::kDegenerate)),
             note("4.5 s: re-localised at (4.50, -1.00) m after 2.5 s"));
 }
 
 TEST(ChangeMonitorOfHealth, AnAxisThatComesAndGoesIsNoNews) {
-  ChangeMonitor watch;
-  watch.see(estimate(1, Health::kTracking));
-  EXPECT_EQ(watch.see(estimate(2, Health::kDegenerate)), std::nullopt);
-  EXPECT_EQ(watch.see(estimate(3, Health::kTracking)), std::nullopt);
+  ChangeMonitor monitor;
+  monitor.update(estimate(1, Health::kTracking));
+  EXPECT_EQ(monitor.update(estimate(2, Health::kDegenerate)), std::nullopt);
+  EXPECT_EQ(monitor.update(estimate(3, Health::kTracking)), std::nullopt);
 }
 
 TEST(ChangeMonitorOfHealth, UnknownHealthFromTheStartIsNoChange) {
-  ChangeMonitor watch;
-  EXPECT_EQ(watch.see(estimate(1, Health::kUnknown)), std::nullopt);
+  ChangeMonitor monitor;
+  EXPECT_EQ(monitor.update(estimate(1, Health::kUnknown)), std::nullopt);
 }
 
 TEST(ChangeMonitorOfMarkers, TellsNewAndChangedMarkersOnce) {
-  ChangeMonitor watch;
+  ChangeMonitor monitor;
   const std::vector tentative{landmark(7, 0, LandmarkState::kTentative)};
   const std::vector moved{landmark(7, 0, LandmarkState::kMoved)};
-  EXPECT_THAT(watch.see(kNow, tentative),
+  EXPECT_THAT(monitor.update(kNow, tentative),
               ElementsAre(note("5.0 s: marker 7 at (7.00, 2.00) m is new and tentative")));
-  EXPECT_THAT(watch.see(kNow, tentative), IsEmpty());
-  EXPECT_THAT(watch.see(kNow, moved),
+  EXPECT_THAT(monitor.update(kNow, tentative), IsEmpty());
+  EXPECT_THAT(monitor.update(kNow, moved),
               ElementsAre(alarm("5.0 s: marker 7 at (7.00, 2.00) m is moved")));
-  EXPECT_THAT(watch.see(kNow, moved), IsEmpty());
+  EXPECT_THAT(monitor.update(kNow, moved), IsEmpty());
 }
 
 TEST(ChangeMonitorOfMarkers, InstancesAreMarkersOfTheirOwn) {
-  ChangeMonitor watch;
-  watch.see(kNow, {landmark(7, 0, LandmarkState::kConfirmed)});
-  EXPECT_THAT(watch.see(kNow, {landmark(7, 1, LandmarkState::kConfirmed),
-                               landmark(7, 0, LandmarkState::kConfirmed)}),
+  ChangeMonitor monitor;
+  monitor.update(kNow, {landmark(7, 0, LandmarkState::kConfirmed)});
+  EXPECT_THAT(monitor.update(kNow, {landmark(7, 1, LandmarkState::kConfirmed),
+                                    landmark(7, 0, LandmarkState::kConfirmed)}),
               ElementsAre(note("5.0 s: marker 7.1 at (7.00, 2.00) m is new and confirmed")));
 }
 
 TEST(ChangeMonitorOfMarkers, TellsWhenOneIsGone) {
-  ChangeMonitor watch;
-  watch.see(kNow, {landmark(0, 0, LandmarkState::kConfirmed)});
-  EXPECT_THAT(watch.see(kNow, {}),
+  ChangeMonitor monitor;
+  monitor.update(kNow, {landmark(0, 0, LandmarkState::kConfirmed)});
+  EXPECT_THAT(monitor.update(kNow, {}),
               ElementsAre(note("5.0 s: marker 0, last at (0.00, 2.00) m, is gone")));
-  EXPECT_THAT(watch.see(kNow, {}), IsEmpty());
+  EXPECT_THAT(monitor.update(kNow, {}), IsEmpty());
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How large the mapped space is, in the words of map.png's heading.
+#pragma once
+
+#include "common/corridor/corridor_length.hpp"
+#include "common/geometry/se2.hpp"
+#include "viewer/core/scene/grid_map.hpp"
+
+#include <optional>
+#include <string>
+
+namespace waymark::viewer {
+
+/// Between the outermost free cells, along x and y of the view frame.
+struct FreeExtent {
+  double length_m{0.0};
+  double width_m{0.0};
+};
+
+/// A few stray cells do not count; nullopt without any free cell.
+std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_map,
+                                      const MapThresholds& thresholds);
+
+/// The length that waymark-evaluate measures on map.pgm; nullopt where the free space is no single
+/// corridor.
+std::optional<corridor::CorridorLength> corridor_length(const GridMap& map,
+                                                        const MapThresholds& thresholds);
+
+/// The corridor's length in metres and pixels; the extent of the free space where there is none.
+std::string size_text(const GridMap& map, const Se2& view_from_map,
+                      const MapThresholds& thresholds);
+
+}  // namespace waymark::viewer
