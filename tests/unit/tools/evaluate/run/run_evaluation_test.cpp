@@ -26,13 +26,13 @@ std::string tum(double x0_m, double factor) {
   return text;
 }
 
-std::string pgm(const MapImage& map) {
+std::string pgm(const corridor::MapImage& map) {
   std::string text = fmt::format("P5\n{} {}\n255\n", map.width_px, map.height_px);
   for (int y = map.height_px - 1; y >= 0; --y) {
     for (int x = 0; x < map.width_px; ++x)
-      text += map.at(x, y) == Cell::kFree       ? '\xfe'
-              : map.at(x, y) == Cell::kOccupied ? '\0'
-                                                : '\xcd';
+      text += map.at(x, y) == corridor::Cell::kFree       ? '\xfe'
+              : map.at(x, y) == corridor::Cell::kOccupied ? '\0'
+                                                          : '\xcd';
   }
   return text;
 }
@@ -109,7 +109,9 @@ TEST(Run, NoLineOfTheTablesIsTooLongForATerminal) {
   add_estimator(run, "marker_matching_rotation_only", 200, 1.0);
   EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
   for (const std::string& line : read_lines(run.path() / "results.md")) {
-    if (line.starts_with("|")) EXPECT_LE(line.size(), 180U) << line;
+    if (line.starts_with("|")) {
+      EXPECT_LE(line.size(), 180U) << line;
+    }
   }
 }
 
