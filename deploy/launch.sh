@@ -15,6 +15,7 @@
 #   --mode NAME      what for: localise (it stays as it is) or extend (what is new is added)
 #   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), anywhere
 #   --save-map FILE  write the map there at the end
+#   --channels FILE   section [channels], for every process: other names on the network, e.g. deploy/mbot.toml
 #   --http HOST:PORT  show the run as a live page there, e.g. 127.0.0.1:8080
 #   --lcm-url URL     LCM network (default: $LCM_DEFAULT_URL, else a UDP port of its own)
 #
@@ -35,14 +36,14 @@ readonly kRunFiles=(run.lcm run.lcm.part scenario.toml robot.toml truth.tum trut
 
 parse_arguments() {
   scenario='' out='' seed='' estimator='' real_time=() slam_options=() map_options=() lcm_url=${LCM_DEFAULT_URL:-}
-  others=(recorder viewer slam detector) recorder_options=() slam_files=() viewer_options=()
+  others=(recorder viewer slam detector) recorder_options=() slam_files=() viewer_options=() channel_options=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
       --real-time) real_time=(--real-time) && shift && continue ;;
       --record-only) others=(recorder detector) && shift && continue ;;
       --no-images) recorder_options=(--set 'recorder.exclude=["CAMERA"]') && shift && continue ;;
-      --out | --seed | --estimator | --config | --set | --http | --lcm-url | --load-map | --save-map | --mode | --start)
+      --out | --seed | --estimator | --config | --set | --http | --channels | --lcm-url | --load-map | --save-map | --mode | --start)
         need_value "$@"
         ;;&
       --out) out=$2 ;;
@@ -54,6 +55,7 @@ parse_arguments() {
       --save-map) map_options+=(--save-map "$2") ;;
       --mode) slam_options+=(--set "slam.mode=$2") ;;
       --start) slam_options+=(--set "slam.start=$2") ;;
+      --channels) need_file "$2" && channel_options=(--config "$2") ;;
       --http) viewer_options=(--http "$2") ;;
       --lcm-url) lcm_url=$2 ;;
       -*) usage_error "unknown option '$1'" ;;
@@ -100,7 +102,7 @@ prepare() {
 }
 
 check_scenario() {
-  sim_options=(--config "$scenario")
+  sim_options=(--config "$scenario" "${channel_options[@]}")
   ! is_record_only || sim_options+=(--set 'run.participants=["detector","recorder"]')
   [[ -z $seed ]] || sim_options+=(--seed "$seed")
   "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-config >"$checked/scenario.toml" || exit $?
@@ -109,7 +111,7 @@ check_scenario() {
 }
 
 check_slam() {
-  slam_options=(--set "slam.seed=$seed" "${slam_options[@]}")
+  slam_options=("${channel_options[@]}" --set "slam.seed=$seed" "${slam_options[@]}")
   local slam=("$bin_dir/waymark-slam" --config "$checked/robot.toml" "${slam_options[@]}")
   "${slam[@]}" --dump-config >"$checked/slam.toml" || exit $?
   estimator=$("${slam[@]}" --print-config slam.estimator) || exit $?
@@ -146,7 +148,7 @@ find_old_run() {
     old_rows+=("$folder")
     old_files+=("$folder/config.toml" "${kRowResults[@]/#/"$folder/"}" "$out/logs/${folder##*/}."{slam,viewer}.log)
   done
-  protect_inputs "$scenario" "${slam_files[@]}"
+  protect_inputs "$scenario" "${slam_files[@]}" "${channel_options[@]:1}"
 }
 
 # clear_old_run: a folder holds one run; files of an earlier one must not be taken for results. What no
@@ -162,10 +164,10 @@ clear_old_run() {
 command_of() {
   local robot=$2
   case $1 in
-    recorder) command=(--out-log "$out/run.lcm" "${recorder_options[@]}") ;;
-    viewer) command=(--out "$row" "${viewer_options[@]}") ;;
+    recorder) command=(--out-log "$out/run.lcm" "${recorder_options[@]}" "${channel_options[@]}") ;;
+    viewer) command=(--out "$row" "${viewer_options[@]}" "${channel_options[@]}") ;;
     slam) command=(--config "$robot" "${slam_options[@]}" "${map_options[@]}") ;;
-    detector) command=(--config "$robot") ;;
+    detector) command=(--config "$robot" "${channel_options[@]}") ;;
     sim) command=("${sim_options[@]}" --out "$out") ;;
   esac
   command=("$bin_dir/waymark-$1" "${command[@]}" --lcm-url "$lcm_url" "${real_time[@]}")

@@ -58,8 +58,8 @@ std::vector<map_walls_t> wall_messages(const NdtMap& walls, Timestamp time) {
 
 graph_edge_t to_message(const GraphEdge& edge) {
   graph_edge_t message{};
-  message.from = static_cast<std::int32_t>(edge.from);
-  message.to = static_cast<std::int32_t>(edge.to);
+  message.from_vertex = static_cast<std::int32_t>(edge.from);
+  message.to_vertex = static_cast<std::int32_t>(edge.to);
   message.pose[0] = edge.from_from_to.x();
   message.pose[1] = edge.from_from_to.y();
   message.pose[2] = edge.from_from_to.theta();
@@ -258,8 +258,8 @@ class MapBuilder {
       file_.map.graph.poses.emplace_back(vertex[0], vertex[1], vertex[2]);
     for (const graph_edge_t& message : graph.edges) {
       GraphEdge edge;
-      edge.from = static_cast<std::size_t>(message.from);
-      edge.to = static_cast<std::size_t>(message.to);
+      edge.from = static_cast<std::size_t>(message.from_vertex);
+      edge.to = static_cast<std::size_t>(message.to_vertex);
       edge.from_from_to = {message.pose[0], message.pose[1], message.pose[2]};
       const auto& upper = message.information;
       edge.information << upper[0], upper[1], upper[2], upper[1], upper[3], upper[4], upper[2],

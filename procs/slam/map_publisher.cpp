@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -71,6 +72,46 @@ std::int8_t log_odds(const OccupancyCell& cell) {
   return static_cast<std::int8_t>(std::clamp(std::lround(odds), -127L, 127L));
 }
 
+/// The smallest rectangle of cells around everything that is mapped.
+struct CellBox {
+  int left{std::numeric_limits<int>::max()};
+  int right{std::numeric_limits<int>::min()};
+  int bottom{std::numeric_limits<int>::max()};
+  int top{std::numeric_limits<int>::min()};
+
+  int width() const { return right - left + 1; }
+
+  int height() const { return top - bottom + 1; }
+};
+
+std::optional<CellBox> known_cells(const GridMap& map) {
+  std::optional<CellBox> box;
+  map.occupancy.for_each_tile([&box](TileIndex index, const auto& tile) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset) {
+      if (!tile[offset].is_mapped()) continue;
+      const CellIndex cell = cell_at(index, offset);
+      if (!box) box.emplace();
+      box->left = std::min(box->left, cell.x);
+      box->right = std::max(box->right, cell.x);
+      box->bottom = std::min(box->bottom, cell.y);
+      box->top = std::max(box->top, cell.y);
+    }
+  });
+  return box;
+}
+
+/// Log odds of the most occupied one of a square of cells; 0 when none is mapped.
+std::int8_t most_occupied(const GridMap& map, CellIndex first, int side) {
+  std::optional<std::int8_t> most;
+  for (int y = first.y; y < first.y + side; ++y) {
+    for (int x = first.x; x < first.x + side; ++x) {
+      const OccupancyCell& cell = map.occupancy[{x, y}];
+      if (cell.is_mapped()) most = std::max(most.value_or(std::int8_t{-127}), log_odds(cell));
+    }
+  }
+  return most.value_or(std::int8_t{0});
+}
+
 }  // namespace
 
 bool MapPublisher::has_changed(const GridMap& map, TileIndex index) const {
@@ -100,30 +141,31 @@ std::vector<map_tiles_t> MapPublisher::complete(const GridMap& map, Timestamp ti
 }
 
 std::optional<occupancy_grid_t> to_occupancy_grid(const GridMap& map, Timestamp time) {
-  const std::vector<TileIndex> tiles = tiles_of(map);
-  if (tiles.empty()) return std::nullopt;
-  const auto [left, right] = std::minmax_element(
-      tiles.begin(), tiles.end(), [](TileIndex a, TileIndex b) { return a.x < b.x; });
-  const CellIndex first = cell_at({left->x, tiles.front().y}, 0);
-  const int width = (right->x - left->x + 1) * kTileSize;
-  const int height = (tiles.back().y - tiles.front().y + 1) * kTileSize;
+  const std::optional<CellBox> known = known_cells(map);
+  if (!known) return std::nullopt;
   constexpr std::int64_t kHeaderBytes = 64;
-  if (std::int64_t{width} * height + kHeaderBytes > std::int64_t{kMaxPayloadBytes}) {
-    return std::nullopt;
-  }
+  const auto cells_at = [&known](int merged) {
+    return std::int64_t{(known->width() - 1) / merged + 1} * ((known->height() - 1) / merged + 1);
+  };
+  int merged = 1;  // cells of the map along the side of one that is sent
+  while (cells_at(merged) + kHeaderBytes > std::int64_t{kMaxPayloadBytes})
+    ++merged;
+
   occupancy_grid_t grid{};
   grid.utime = to_us(time);
   const Eigen::Vector2d corner =
-      map.frame.origin_m + map.frame.resolution_m * Eigen::Vector2d{first.x, first.y};
+      map.frame.origin_m + map.frame.resolution_m * Eigen::Vector2d{known->left, known->bottom};
   grid.origin_x = static_cast<float>(corner.x());
   grid.origin_y = static_cast<float>(corner.y());
-  grid.meters_per_cell = static_cast<float>(map.frame.resolution_m);
-  grid.width = width;
-  grid.height = height;
-  grid.num_cells = width * height;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x)
-      grid.cells.push_back(log_odds(map.occupancy[{first.x + x, first.y + y}]));
+  grid.meters_per_cell = static_cast<float>(merged * map.frame.resolution_m);
+  grid.width = (known->width() - 1) / merged + 1;
+  grid.height = (known->height() - 1) / merged + 1;
+  grid.num_cells = grid.width * grid.height;
+  for (int y = 0; y < grid.height; ++y) {
+    for (int x = 0; x < grid.width; ++x) {
+      const CellIndex first{known->left + merged * x, known->bottom + merged * y};
+      grid.cells.push_back(most_occupied(map, first, merged));
+    }
   }
   return grid;
 }

@@ -29,7 +29,8 @@ class MapPublisher {
   std::size_t next_refreshed_{0};
 };
 
-/// The whole map, cropped to what is known; nothing when it does not fit one message.
+/// The whole map, cropped to what is known; nothing of an empty one. A map that does not fit one
+/// message gets larger cells, each with the most occupied of its parts.
 std::optional<occupancy_grid_t> to_occupancy_grid(const GridMap& map, Timestamp time);
 
 }  // namespace waymark

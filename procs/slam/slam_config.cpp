@@ -94,7 +94,6 @@ void SlamSection::describe(Fields& fields) {
   fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
   fields.field("map_period_s", map_period_s, kPositive,
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
-  fields.field("publish_grid", publish_grid, "also send the whole map on SLAM_GRID if it fits");
   of({EstimatorName::kWaymark}, [&] {
     fields.choice(
         "mode", mode,

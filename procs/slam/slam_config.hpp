@@ -2,6 +2,7 @@
 // Configuration of the slam process: the robot, and [slam]. Nothing about the world.
 #pragma once
 
+#include "common/bus/channel_names.hpp"
 #include "common/config/config.hpp"
 #include "common/robot/robot_config.hpp"
 #include "slam/core/estimators/estimator.hpp"
@@ -35,7 +36,6 @@ struct SlamSection {
   int threads{1};
   bool blank_ids{false};
   double map_period_s{1.0};
-  bool publish_grid{false};
   MapMode mode{MapMode::kMap};
   StartPose start{};
   PreprocessingConfig preprocessing{};
@@ -52,6 +52,7 @@ struct SlamSection {
 struct SlamConfig {
   RobotConfig robot{};
   SlamSection slam{};
+  ChannelNames channels{};           ///< [channels], which every program has
   std::filesystem::path load_map{};  ///< from the command line; empty: none
   std::filesystem::path save_map{};
 

@@ -19,6 +19,11 @@ namespace {
 constexpr std::string_view kScansProcessed = "scans processed";
 constexpr std::string_view kUnplaced = "estimates before the place in the map was known";
 
+std::int32_t mbot_mode(MapMode mode) {
+  if (mode == MapMode::kLocalise) return slam_status_t::MODE_LOCALISATION_ONLY;
+  return slam_status_t::MODE_FULL;
+}
+
 MapFileInfo map_info(const SlamConfig& config) {
   MapFileInfo info;
   info.marker_dictionary = config.robot.markers.dictionary;
@@ -117,6 +122,9 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
     queue_.add(to_detections(m));
     process_ready_scans();
   });
+  if (config.channels.uses(channels::kMbotSystemReset.name)) {
+    inbox.on<mbot_slam_reset_t>(channels::kMbotSystemReset, [this](const auto& m) { obey(m); });
+  }
 }
 
 void SlamNode::finish() {
@@ -205,6 +213,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   counters_.add(ready.scan ? kScansProcessed : "estimates while the LiDAR was silent");
   slam_estimate_t message = to_message(estimate);
   message.map_id = map_id_;
+  publish_mbot_status(time);
   if (!estimate.has_pose) {
     counters_.add(kUnplaced);
     outbox_.publish(channels::kSlamEstimate, message);
@@ -243,13 +252,46 @@ void SlamNode::publish_markers(Timestamp time) {
 }
 
 void SlamNode::publish_grid(Timestamp time) {
-  if (!config_.slam.publish_grid) return;
-  const auto grid = to_occupancy_grid(estimator_->map(), time);
-  if (grid) {
+  if (!config_.channels.uses(channels::kSlamGrid.name)) return;
+  if (const auto grid = to_occupancy_grid(estimator_->map(), time))
     outbox_.publish(channels::kSlamGrid, *grid);
-  } else {
-    counters_.add("SLAM_GRID not sent: larger than a datagram");
+}
+
+void SlamNode::publish_mbot_status(Timestamp time) {
+  if (!config_.channels.uses(channels::kMbotSlamStatus.name)) return;
+  slam_status_t status{};
+  status.utime = to_us(time);
+  status.slam_mode = mbot_mode(config_.slam.mode);
+  status.map_path = config_.load_map.string();
+  outbox_.publish(channels::kMbotSlamStatus, status);
+}
+
+void SlamNode::obey(const mbot_slam_reset_t& reset) {
+  const std::int32_t mode = mbot_mode(config_.slam.mode);
+  if (reset.slam_mode != mode || reset.retain_pose != 0) {
+    counters_.add("MBOT_SYSTEM_RESET refused");
+    spdlog::warn(
+        "MBOT_SYSTEM_RESET refused: it asks for mode {}{}, but this slam was started for mode {} "
+        "and begins at slam.start",
+        reset.slam_mode, reset.retain_pose != 0 ? " at the present pose" : "", mode);
+    return;
   }
+  counters_.add("MBOT_SYSTEM_RESET obeyed");
+  spdlog::info("MBOT_SYSTEM_RESET: begins anew");
+  begin_anew();
+}
+
+void SlamNode::begin_anew() {
+  queue_ = SensorQueue{sensor_setup(config_)};
+  estimator_ = make_estimator(config_, loaded_map_);
+  next_map_.reset();
+  if (!last_estimate_) return;
+  // Viewers shall not draw the new map over the old one.
+  for (map_tiles_t part : map_publisher_.complete(estimator_->map(), *last_estimate_)) {
+    part.map_id = map_id_;
+    outbox_.publish(channels::kSlamMap, part);
+  }
+  publish_markers(*last_estimate_);
 }
 
 }  // namespace waymark

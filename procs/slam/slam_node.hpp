@@ -2,6 +2,7 @@
 // The slam process: sensors in, pose and map out.
 #pragma once
 
+#include "common/messages/channels.hpp"
 #include "common/node/node.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/input/sensor_queue.hpp"
@@ -44,6 +45,11 @@ class SlamNode final : public Node {
   void publish_map_when_due(Timestamp time);
   void publish_markers(Timestamp time);
   void publish_grid(Timestamp time);
+  void publish_mbot_status(Timestamp time);
+  /// An MBot's web app wants a new map, or to be found anew in the loaded one.
+  void obey(const mbot_slam_reset_t& reset);
+  /// Forgets everything but the loaded map.
+  void begin_anew();
 
   SlamConfig config_;
   Counters& counters_;

@@ -4,6 +4,7 @@
 
 #include "common/messages/codec.hpp"
 #include "common/runtime/progress.hpp"
+#include "common/runtime/run_process.hpp"
 #include "support/lcm_network.hpp"
 
 #include <gtest/gtest.h>
@@ -17,6 +18,10 @@ using std::chrono::milliseconds;
 using testing_support::lcm_datagram;
 using testing_support::lcm_fragment;
 using testing_support::PrivateNetwork;
+
+struct NoConfig {
+  void describe(Fields&) {}
+};
 
 Message pose(std::int64_t utime_us) {
   pose2D_t message{};
@@ -151,6 +156,50 @@ TEST_F(BusTest, AFloodStaysBounded) {
   const auto messages = drain();
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0], pose(7));
+}
+
+ChannelNames named(const std::vector<std::string>& settings) {
+  ProcessConfig<NoConfig> config = load_config<ProcessConfig<NoConfig>>({{}, settings});
+  return config.channels;
+}
+
+TEST(BusNames, OfTheNetworkStayOutOfTheMessages) {
+  const PrivateNetwork network;
+  Bus mapped{network.url(),
+             {{"ODOMETRY"}},
+             LargeMessages::kRefused,
+             named({"channels.odometry=MBOT_ODOMETRY"})};
+  Bus plain{network.url(), {{"MBOT_ODOMETRY"}, {"ODOMETRY"}}};
+  mapped.publish(pose(1));
+  const auto heard = plain.receive(milliseconds{1000});
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->channel, "MBOT_ODOMETRY");
+  EXPECT_EQ(mapped.receive(milliseconds{1000}), pose(1));
+}
+
+TEST(BusNames, ThatAreSharedAreToldApartByType) {
+  const PrivateNetwork network;
+  const ChannelNames names = named({"channels.slam_grid=SLAM_MAP"});
+  Bus bus{network.url(), {{"SLAM_GRID"}, {"SLAM_MAP"}}, LargeMessages::kRefused, names};
+  occupancy_grid_t grid{};
+  grid.meters_per_cell = 0.1F;
+  map_tiles_t tiles{};
+  tiles.num_parts = 1;
+  tiles.resolution_m = 0.1;
+  tiles.tile_size_cells = 1;
+  bus.publish(encode(channels::kSlamGrid, grid));
+  bus.publish(encode(channels::kSlamMap, tiles));
+  const auto first = bus.receive(milliseconds{1000});
+  const auto second = bus.receive(milliseconds{1000});
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->channel, "SLAM_GRID");
+  EXPECT_EQ(second->channel, "SLAM_MAP");
+}
+
+TEST(BusNames, ThereIsNoSendingOnAChannelWithoutOne) {
+  const PrivateNetwork network;
+  Bus bus{network.url(), {}};
+  EXPECT_THROW(bus.publish(encode(channels::kMbotSlamStatus, slam_status_t{})), std::logic_error);
 }
 
 TEST(BusSetup, AnUnusableUrlIsASetupError) {

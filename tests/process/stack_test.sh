@@ -151,5 +151,71 @@ sweep() {
   expect_nothing_left
 }
 
+# A program with an MBot's own types reads a live run by an MBot's names, and resets it.
+mbot_client() {
+  local url="udpm://239.255.76.67:$((8700 + $$ % 200))?ttl=0"
+  sed -i 's/^length_m.*/length_m = 14.0/; s/^end_x_m.*/end_x_m = 12.0/' "$work/short.toml"
+  printf '[run]\nrolling_scan = true\n' >>"$work/short.toml"  # an MBot's lidar_t
+  begin run --real-time --channels "$source_dir/deploy/mbot.toml" --lcm-url "$url"
+  local run=$! code=0
+  "$build_dir/tests/process/mbot_client" "$url" >"$work/client.output" || code=$?
+  kill -INT $run
+  wait $run || true
+  ((code == 0)) || fail "the client is not content: exit code $code"
+  grep -q "MBOT_SYSTEM_RESET refused 1" "$work/run/logs/slam.log" || fail "the refusal is not counted"
+  expect_nothing_left
+}
+
+# A real browser looks at a run whose camera goes off.
+live_page() {
+  local address="127.0.0.1:$((20000 + $$ % 10000))" code=0
+  sed -i 's/^length_m.*/length_m = 14.0/; s/^end_x_m.*/end_x_m = 12.0/' "$work/short.toml"
+  printf '[[faults]]\nsensor = "camera"\nkind = "off"\nfrom_m = 5.0\n' >>"$work/short.toml"
+  command -v chromium >/dev/null && command -v chromedriver >/dev/null || exit 77
+  begin run --real-time --http "$address"
+  local run=$!
+  /usr/bin/python3 -B "$source_dir/tests/browser/live_page_test.py" "http://$address/" >"$work/page.output" 2>&1 || code=$?
+  kill -INT $run
+  wait $run || true
+  ((code == 0)) || fail "the page: exit code $code"
+  expect_nothing_left
+}
+
+# never_reads ADDRESS: a client that asks for the stream of views, and takes nothing of it.
+never_reads() {
+  exec 8<>"/dev/tcp/${1/://}"
+  printf 'GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n' >&8
+  sleep 300 8<&8
+}
+
+# The same run without the page, and with two clients of which one never reads.
+live_page_changes_no_byte() {
+  local address="127.0.0.1:$((20000 + $$ % 10000))" file reader deaf i
+  begin plain
+  expect_code 0 $!
+  begin watched --http "$address"
+  local run=$!
+  for ((i = 0; i < 300; ++i)); do
+    ! (: <>"/dev/tcp/${address/://}") 2>/dev/null || break
+    sleep 0.1
+  done
+  never_reads "$address" &
+  deaf=$!
+  (
+    exec 8<>"/dev/tcp/${address/://}"
+    printf 'GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n' >&8
+    cat <&8 >"$work/events"
+  ) &
+  reader=$!
+  expect_code 0 $run
+  kill $deaf $reader 2>/dev/null || true
+  grep -q '^data: {"time_s"' "$work/events" || fail "the client that reads has got nothing"
+  for file in run.lcm waymark/{map.pgm,trajectory.tum,markers.csv}; do
+    cmp "$work/plain/$file" "$work/watched/$file" || fail "$file is not the same"
+  done
+  grep -h 'x real time' "$work/plain/logs/sim.log" "$work/watched/logs/sim.log" | grep simulated || true
+  expect_nothing_left
+}
+
 declare -F "${2:?no case given}" >/dev/null || { echo "no case '$2'" >&2 && exit 2; }
 "$2"

@@ -46,16 +46,19 @@ std::string lcm_url_or_default(const std::string& given_url) {
 class Bus::Implementation {
  public:
   Implementation(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
-                 LargeMessages large_messages)
+                 LargeMessages large_messages, const ChannelNames& names)
       : max_payload_bytes_{large_messages == LargeMessages::kAccepted ? kMaxLargePayloadBytes
                                                                       : kMaxPayloadBytes},
+        names_{names},
         lcm_{lcm_create(url.c_str()), &lcm_destroy} {
     if (lcm_ == nullptr) throw no_network(url);
     for (const Inbox::Subscription& subscription : subscriptions) {
-      Queue& queue = queues_[subscription.channel];
-      queue.backlog = subscription.backlog;
-      lcm_subscription_t* handle =
-          lcm_subscribe(lcm_.get(), subscription.channel.c_str(), &on_receive, this);
+      queues_[subscription.channel].backlog = subscription.backlog;
+      const std::string name{names_.on_network(subscription.channel)};
+      std::vector<std::string>& channels = channels_of_[name];
+      channels.push_back(subscription.channel);
+      if (channels.size() > 1) continue;  // several channels on one name, told apart by type
+      lcm_subscription_t* handle = lcm_subscribe(lcm_.get(), name.c_str(), &on_receive, this);
       if (handle == nullptr) throw no_network(url);
       lcm_subscription_set_queue_capacity(handle, kLcmQueueCapacity);
     }
@@ -94,8 +97,10 @@ class Bus::Implementation {
                              std::to_string(message.payload.size()) +
                              " bytes does not fit one datagram"};
     }
+    const std::string name{names_.on_network(message.channel)};
+    if (name.empty()) throw std::logic_error{message.channel + ": has no name on this network"};
     // The sender never learns of loss: lockstep and counters find it.
-    lcm_publish(lcm_.get(), message.channel.c_str(), message.payload.data(),
+    lcm_publish(lcm_.get(), name.c_str(), message.payload.data(),
                 static_cast<unsigned>(message.payload.size()));
   }
 
@@ -124,22 +129,23 @@ class Bus::Implementation {
     }
   }
 
-  void enqueue(const lcm_recv_buf_t* buffer, const char* channel) {
+  void enqueue(const lcm_recv_buf_t* buffer, const char* name) {
     const std::lock_guard lock{mutex_};
-    const auto found = queues_.find(std::string_view{channel});
-    if (found == queues_.end()) return;  // a channel name without end, from a broken datagram
+    const auto found = channels_of_.find(std::string_view{name});
+    if (found == channels_of_.end()) return;  // a name without end, from a broken datagram
     // liblcm 1.3.1 reports size -1 for a datagram without a channel end.
     if (buffer->data == nullptr || buffer->data_size > max_payload_bytes_) {
-      counts_.add(found->first + " rejected: too large", CountKind::kRejection);
+      counts_.add(found->second.front() + " rejected: too large", CountKind::kRejection);
       return;
     }
     const std::span bytes{static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
+    const std::string& channel = ChannelNames::of_type(found->second, fingerprint_of(bytes));
     const auto time = time_of(bytes);
     if (!time) {
-      counts_.add(found->first + " rejected: bad time", CountKind::kRejection);
+      counts_.add(channel + " rejected: bad time", CountKind::kRejection);
       return;
     }
-    push(found->first, found->second, {found->first, *time, {bytes.begin(), bytes.end()}});
+    push(channel, queues_[channel], {channel, *time, {bytes.begin(), bytes.end()}});
   }
 
   void push(const std::string& channel, Queue& queue, Message message) {
@@ -171,6 +177,8 @@ class Bus::Implementation {
   }
 
   std::size_t max_payload_bytes_;
+  ChannelNames names_;
+  std::map<std::string, std::vector<std::string>, std::less<>> channels_of_;  ///< network -> ours
   std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;
   std::optional<DatagramFilter> filter_;
   std::mutex mutex_;
@@ -188,8 +196,9 @@ void check_network(const std::string& url) {
 }
 
 Bus::Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
-         LargeMessages large_messages)
-    : implementation_{std::make_unique<Implementation>(url, subscriptions, large_messages)} {}
+         LargeMessages large_messages, const ChannelNames& names)
+    : implementation_{std::make_unique<Implementation>(url, subscriptions, large_messages, names)} {
+}
 
 Bus::~Bus() = default;
 

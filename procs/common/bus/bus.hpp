@@ -2,6 +2,7 @@
 // The network: the only code that includes LCM.
 #pragma once
 
+#include "common/bus/channel_names.hpp"
 #include "common/messages/message.hpp"
 #include "common/node/node.hpp"
 
@@ -31,12 +32,13 @@ void check_network(const std::string& url);
 /// A thread of its own takes everything from LCM at once (LCM's queues drop the newest message when
 /// full), refuses what cannot be a message (size, time), and keeps a bounded queue per channel.
 /// What is no whole datagram of LCM is dropped in the kernel (DatagramFilter), and counted.
-/// Nothing is decoded here, and nothing is thrown through LCM's C frames.
+/// Nothing is decoded here, and nothing is thrown through LCM's C frames. Messages carry our names
+/// of channels; only the network has those of [channels].
 class Bus {
  public:
   /// @throws SetupError when there is no multicast route or the URL is not one, with the cure.
   Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
-      LargeMessages large_messages = LargeMessages::kRefused);
+      LargeMessages large_messages = LargeMessages::kRefused, const ChannelNames& names = {});
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
@@ -44,7 +46,8 @@ class Bus {
   /// Oldest queued message, waiting for one up to `timeout`.
   std::optional<Message> receive(std::chrono::milliseconds timeout);
 
-  /// @throws std::logic_error when the payload does not fit one datagram.
+  /// @throws std::logic_error when the payload does not fit one datagram, or its channel is not
+  /// used.
   void publish(const Message& message);
 
   /// Adds what was refused or dropped since the last call to the counters.

@@ -220,18 +220,21 @@ void add_unused_keys(const config_detail::Describe& describe, config_detail::Rea
 ConfigError::ConfigError(const std::vector<std::string>& problems)
     : std::runtime_error{join_lines(problems)} {}
 
-void Problems::add(std::string key, std::string problem) {
-  lines_.push_back(std::move(key) + ": " + std::move(problem));
+void Problems::add(const std::string& key, const std::string& problem) {
+  const auto found = locations_.find(key);
+  const std::string where = found == locations_.end() ? "" : found->second + ": ";
+  lines_.push_back(where + key + ": " + problem);
 }
 
-std::vector<std::string> config_detail::read(const ConfigSources& sources,
-                                             const Describe& describe) {
+std::vector<std::string> config_detail::read(const ConfigSources& sources, const Describe& describe,
+                                             Locations& locations) {
   ReadLog log;
   for (const auto& file : sources.files)
     read_toml_file(file, describe, log);
   for (const auto& text : sources.overrides)
     read_toml_override(text, describe, log);
   add_unused_keys(describe, log);
+  locations = std::move(log.set_by);
   return log.problems;
 }
 

@@ -6,8 +6,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace waymark {
@@ -26,21 +28,33 @@ struct ConfigSources {
   std::vector<std::string> overrides{};  ///< "key.subkey=value", value as in TOML or a bare word
 };
 
+namespace config_detail {
+/// Where each key was set last, e.g. "robot.lidar.rate_hz" -> "robot.toml:7".
+using Locations = std::map<std::string, std::string, std::less<>>;
+}  // namespace config_detail
+
 /// Problems that concern several fields at once, found by a struct's `check(Problems&)`.
 class Problems {
  public:
-  void add(std::string key, std::string problem);
+  Problems() = default;
+
+  explicit Problems(config_detail::Locations locations) : locations_{std::move(locations)} {}
+
+  /// @param key  as in "robot.lidar.range_min_m"; its line in a file is put before it.
+  void add(const std::string& key, const std::string& problem);
 
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:
-  std::vector<std::string> lines_;
+  config_detail::Locations locations_{};
+  std::vector<std::string> lines_{};
 };
 
 namespace config_detail {
 using Describe = std::function<void(Fields&)>;
-/// Reads all sources into the described struct; returns all problems.
-std::vector<std::string> read(const ConfigSources& sources, const Describe& describe);
+/// Reads all sources into the described struct; returns all problems, and where keys were set.
+std::vector<std::string> read(const ConfigSources& sources, const Describe& describe,
+                              Locations& locations);
 /// Reads one file, of which the struct describes only a part.
 std::vector<std::string> read_part(const std::filesystem::path& file, const Describe& describe);
 std::string dump(const Describe& describe);
@@ -54,11 +68,12 @@ std::string value(const Describe& describe, const std::string& key);
 template <class Config>
 Config load_config(const ConfigSources& sources) {
   Config config{};
-  auto problems =
-      config_detail::read(sources, [&config](Fields& fields) { config.describe(fields); });
+  config_detail::Locations locations;
+  auto problems = config_detail::read(
+      sources, [&config](Fields& fields) { config.describe(fields); }, locations);
   if (problems.empty()) {
     if constexpr (requires(Problems & p) { config.check(p); }) {
-      Problems found;
+      Problems found{std::move(locations)};
       config.check(found);
       problems = found.lines();
     }

@@ -2,7 +2,7 @@
 // One TOML source -> one described struct. The only code that includes toml++.
 #pragma once
 
-#include "common/config/fields.hpp"
+#include "common/config/config.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -19,8 +19,8 @@ enum class UnknownKeys {
 
 /// What came of reading sources one after the other.
 struct ReadLog {
-  std::vector<std::string> problems{};          ///< one line each
-  std::map<std::string, std::string> set_by{};  ///< key -> the last source that set it, with line
+  std::vector<std::string> problems{};  ///< one line each
+  Locations set_by{};                   ///< key -> the last source that set it, with line
 };
 
 /// Overlays the described struct with a file.

@@ -12,6 +12,7 @@
 #include <waymark/map_walls_t.hpp>
 #include <waymark/marker_detections_t.hpp>
 #include <waymark/marker_map_t.hpp>
+#include <waymark/mbot_slam_reset_t.hpp>
 #include <waymark/occupancy_grid_t.hpp>
 #include <waymark/particles_t.hpp>
 #include <waymark/planar_lidar_t.hpp>
@@ -19,6 +20,7 @@
 #include <waymark/pose_graph_t.hpp>
 #include <waymark/process_status_t.hpp>
 #include <waymark/slam_estimate_t.hpp>
+#include <waymark/slam_status_t.hpp>
 #include <waymark/tick_t.hpp>
 #include <waymark/trajectory_t.hpp>
 #include <waymark/twist2D_t.hpp>
@@ -52,6 +54,10 @@ inline constexpr Channel<marker_map_t> kSlamMarkers{"SLAM_MARKERS"};
 inline constexpr Channel<particles_t> kSlamParticles{"SLAM_PARTICLES"};
 inline constexpr Channel<annotated_scan_t> kSlamScan{"SLAM_SCAN"};
 inline constexpr Channel<trajectory_t> kSlamTrajectory{"SLAM_TRAJECTORY"};
+
+// Only where [channels] names them: an MBot's.
+inline constexpr Channel<slam_status_t> kMbotSlamStatus{"MBOT_SLAM_STATUS"};
+inline constexpr Channel<mbot_slam_reset_t> kMbotSystemReset{"MBOT_SYSTEM_RESET"};
 
 // Only in map files.
 inline constexpr Channel<map_header_t> kMapHeader{"MAP_HEADER"};

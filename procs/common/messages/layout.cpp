@@ -161,6 +161,8 @@ constexpr FieldLayout kAnnotatedScan[] = {fixed(kInt64),          fixed(kDouble,
 constexpr FieldLayout kCounter[] = {text(), fixed(kByte), fixed(kInt64)};
 constexpr FieldLayout kProcessStatus[] = {fixed(kInt64), text(), text(), fixed(kInt32),
                                           many(kCounter, 3)};
+constexpr FieldLayout kSlamStatus[] = {fixed(kInt64), fixed(kInt32), text()};
+constexpr FieldLayout kMbotSlamReset[] = {fixed(kInt64), fixed(kInt32), text(), fixed(kByte)};
 constexpr FieldLayout kChannelContent[] = {text(), fixed(kInt32), fixed_array(kInt64, 1)};
 constexpr FieldLayout kTick[] = {fixed(kInt64), fixed(kInt64), fixed(kInt64),
                                  fixed(kInt64), fixed(kByte),  fixed(kInt32),
@@ -233,6 +235,11 @@ StructLayout layout_of<marker_map_t>() {
 }
 
 template <>
+StructLayout layout_of<mbot_slam_reset_t>() {
+  return kMbotSlamReset;
+}
+
+template <>
 StructLayout layout_of<occupancy_grid_t>() {
   return kOccupancyGrid;
 }
@@ -260,6 +267,11 @@ StructLayout layout_of<process_status_t>() {
 template <>
 StructLayout layout_of<slam_estimate_t>() {
   return kSlamEstimate;
+}
+
+template <>
+StructLayout layout_of<slam_status_t>() {
+  return kSlamStatus;
 }
 
 template <>

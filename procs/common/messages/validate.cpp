@@ -183,6 +183,10 @@ RejectReason validate(const marker_map_t& m) {
                   landmarks_finite, landmarks_within);
 }
 
+RejectReason validate(const mbot_slam_reset_t& m) {
+  return first_of(m.retain_pose == 0 || m.retain_pose == 1, true);
+}
+
 RejectReason validate(const occupancy_grid_t& m) {
   const bool sizes_agree = m.width >= 0 && m.height >= 0 &&
                            std::int64_t{m.width} * m.height == m.num_cells &&
@@ -229,8 +233,9 @@ RejectReason validate(const pose_graph_t& m) {
   const bool edges_within = std::ranges::all_of(m.edges, [](const graph_edge_t& edge) {
     return is_pose_within(edge.pose[0], edge.pose[1], edge.pose[2]);
   });
-  const bool edges_agree = std::ranges::all_of(
-      m.edges, [](const graph_edge_t& edge) { return edge.from >= 0 && edge.to >= 0; });
+  const bool edges_agree = std::ranges::all_of(m.edges, [](const graph_edge_t& edge) {
+    return edge.from_vertex >= 0 && edge.to_vertex >= 0;
+  });
   return first_of(has_size(m.vertices, m.num_vertices) && has_size(m.edges, m.num_edges) &&
                       edges_agree && m.part >= 0 && m.part < m.num_parts,
                   vertices_finite && edges_finite, vertices_within && edges_within);
@@ -250,6 +255,10 @@ RejectReason validate(const slam_estimate_t& m) {
       all_finite(m.x_m, m.y_m, m.theta_rad, m.effective_particles, m.weak_information) &&
           finite(m.covariance) && finite(m.information) && finite(m.weak_axis),
       is_pose_within(m.x_m, m.y_m, m.theta_rad));
+}
+
+RejectReason validate(const slam_status_t&) {
+  return RejectReason::kNone;
 }
 
 RejectReason validate(const tick_t& m) {

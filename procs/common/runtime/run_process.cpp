@@ -38,23 +38,37 @@ void publish_all(Bus& bus, const std::vector<Message>& messages) {
     bus.publish(message);
 }
 
-/// Statuses belong to no tick: they come when they come.
-bool is_status(std::string_view channel) {
-  return channel.ends_with("_STATUS");
+bool is_command(std::string_view channel) {
+  return channel == channels::kMbotSystemReset.name;
+}
+
+/// Statuses and commands belong to no tick, and their time is not that of a sensor: they come when
+/// they come.
+bool is_untimed(std::string_view channel) {
+  return channel.ends_with("_STATUS") || is_command(channel);
 }
 
 std::vector<std::string> names_in_ticks(const std::vector<Inbox::Subscription>& subscriptions) {
   std::vector<std::string> names;
   for (const auto& subscription : subscriptions) {
-    if (!is_status(subscription.channel)) names.push_back(subscription.channel);
+    if (!is_untimed(subscription.channel)) names.push_back(subscription.channel);
   }
   return names;
 }
 
+struct Network {
+  std::string url;
+  ChannelNames names;
+  LargeMessages large_messages;  ///< in real time: in lockstep nobody sends them
+};
+
 /// Live, in step with the simulator, until its last tick.
-int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node, Inbox& inbox,
+int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node, Inbox& inbox,
                  Outbox& outbox) {
   std::vector<Inbox::Subscription> subscriptions = inbox.subscriptions();
+  if (std::erase_if(subscriptions, [](const auto& s) { return is_command(s.channel); }) > 0)
+    spdlog::warn("{} is not heard in lockstep: it belongs to no tick",
+                 channels::kMbotSystemReset.name);
   LockstepParticipant participant{std::string{traits.name}, names_in_ticks(subscriptions),
                                   traits.joins_midway,
                                   [&](const std::vector<Message>& messages, bool is_last) {
@@ -69,16 +83,16 @@ int run_lockstep(const ProcessTraits& traits, const std::string& url, Node& node
   for (const auto name : {channels::kTick.name, channels::kAck.name}) {
     subscriptions.push_back({std::string{name}});
   }
-  Bus bus{url, subscriptions};
+  Bus bus{network.url, subscriptions, LargeMessages::kRefused, network.names};
   StatusReporter reporter{traits.name};
-  spdlog::info("ready, waits for ticks on {}", url);
+  spdlog::info("ready, waits for ticks on {}", network.url);
   const auto start = steady_clock::now();
   auto last_tick = start;
   Timestamp newest{};
   bool hinted = false;
   while (!participant.closed() && stop_signal() == 0) {
     auto message = bus.receive(kPoll);
-    if (message && is_status(message->channel)) {
+    if (message && is_untimed(message->channel)) {
       inbox.deliver(*message);
     } else if (message) {
       last_tick = steady_clock::now();
@@ -117,6 +131,10 @@ class RealTimeFeed {
     auto message = bus_.receive(timeout);
     if (!message) return false;
     last_arrival_ = steady_clock::now();
+    if (is_untimed(message->channel)) {
+      deliver({*message});
+      return true;
+    }
     newest_ = std::max(newest_, message->time);
     deliver(buffer_.add(std::move(*message), inbox_.counters()));
     return true;
@@ -145,19 +163,19 @@ class RealTimeFeed {
 };
 
 /// Live, on whatever arrives, until a signal asks to stop.
-int run_real_time(const ProcessTraits& traits, const std::string& url, LargeMessages large_messages,
-                  Node& node, Inbox& inbox, Outbox& outbox) {
-  Bus bus{url, inbox.subscriptions(), large_messages};
+int run_real_time(const ProcessTraits& traits, const Network& network, Node& node, Inbox& inbox,
+                  Outbox& outbox) {
+  Bus bus{network.url, inbox.subscriptions(), network.large_messages, network.names};
   StatusReporter reporter{traits.name};
   RealTimeFeed feed{bus, inbox, outbox};
-  spdlog::info("ready, real time on {}", url);
+  spdlog::info("ready, real time on {}", network.url);
   const auto start = steady_clock::now();
   bool hinted = false;
   while (stop_signal() == 0) {
     const auto last = feed.last_arrival();
     if (!feed.take(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
     if (!hinted && !last && steady_clock::now() - start > kNothingHint) {
-      spdlog::warn("nothing has come on {} so far; is it the robot's LCM network?", url);
+      spdlog::warn("nothing has come on {} so far; is it the robot's LCM network?", network.url);
       hinted = true;
     }
     reporter.report(bus, inbox.counters(), feed.newest(), "real-time");
@@ -171,7 +189,7 @@ int run_real_time(const ProcessTraits& traits, const std::string& url, LargeMess
   bus.collect_counts(inbox.counters());
   log_counters(inbox.counters());
   if (!feed.last_arrival())
-    spdlog::error("nothing came on {} on the channels of this process", url);
+    spdlog::error("nothing came on {} on the channels of this process", network.url);
   return !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
 }
 
@@ -237,11 +255,12 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
     Outbox outbox;
     const auto node = description.make_node(options, inbox, outbox);
     if (!options.logs.empty()) return run_replay(options, *node, inbox, outbox);
-    const std::string url = lcm_url_or_default(options.lcm_url);
-    if (!options.real_time) return run_lockstep(description.traits, url, *node, inbox, outbox);
-    const auto large_messages =
-        options.large_messages ? LargeMessages::kAccepted : LargeMessages::kRefused;
-    return run_real_time(description.traits, url, large_messages, *node, inbox, outbox);
+    const Network network{
+        lcm_url_or_default(options.lcm_url),
+        description.channel_names ? description.channel_names(options) : ChannelNames{},
+        options.large_messages ? LargeMessages::kAccepted : LargeMessages::kRefused};
+    const auto run = options.real_time ? run_real_time : run_lockstep;
+    return run(description.traits, network, *node, inbox, outbox);
   });
 }
 

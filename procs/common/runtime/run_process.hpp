@@ -3,6 +3,7 @@
 // of messages (lockstep, real time, logs) for the same node.
 #pragma once
 
+#include "common/bus/channel_names.hpp"
 #include "common/config/config.hpp"
 #include "common/node/node.hpp"
 #include "common/runtime/options.hpp"
@@ -19,23 +20,43 @@ struct ProcessDescription {
   OptionSet option_set{};
   std::function<std::string(const ProcessOptions&)> dump_config{};
   std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
+  std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none: the usual ones
   std::function<std::unique_ptr<Node>(const ProcessOptions&, Inbox&, Outbox&)> make_node{};
+};
+
+/// A program's own configuration, and what every program has.
+template <class Config>
+struct ProcessConfig {
+  Config own{};
+  ChannelNames channels{};
+
+  void describe(Fields& fields) {
+    own.describe(fields);
+    fields.section("channels", channels);
+  }
+
+  void check(Problems& problems) const {
+    if constexpr (requires { own.check(problems); }) own.check(problems);
+    channels.check(problems);
+  }
 };
 
 int run_described_process(int argc, char** argv, const ProcessDescription& description);
 
-/// Configuration from files and command line, with --out, --out-log and --http where the struct has
-/// members for them.
+/// Configuration from files and command line, with --out, --out-log, --http and the names of
+/// channels where the struct has members for them.
 template <class Config>
-Config config_from(const ProcessOptions& options) {
-  Config config = load_config<Config>(options.config_sources);
+ProcessConfig<Config> process_config_from(const ProcessOptions& options) {
+  auto loaded = load_config<ProcessConfig<Config>>(options.config_sources);
+  Config& config = loaded.own;
+  if constexpr (requires { config.channels; }) config.channels = loaded.channels;
   if constexpr (requires { config.out_dir; }) config.out_dir = options.out_dir;
   if constexpr (requires { config.out_log; }) config.out_log = options.out_log;
   if constexpr (requires { config.http; }) config.http = options.http;
   if constexpr (requires { config.load_map; }) config.load_map = options.load_map;
   if constexpr (requires { config.save_map; }) config.save_map = options.save_map;
   if constexpr (requires { config.is_replay; }) config.is_replay = !options.logs.empty();
-  return config;
+  return loaded;
 }
 
 template <class NodeType>
@@ -61,13 +82,16 @@ int run_process(int argc, char** argv) {
                             .http = kServesPage,
                             .maps = kHasMaps};
   description.dump_config = [](const ProcessOptions& options) {
-    return dump_config(config_from<Config>(options));
+    return dump_config(process_config_from<Config>(options));
+  };
+  description.channel_names = [](const ProcessOptions& options) {
+    return process_config_from<Config>(options).channels;
   };
   description.config_value = [](const ProcessOptions& options, const std::string& key) {
-    return config_value(config_from<Config>(options), key);
+    return config_value(process_config_from<Config>(options), key);
   };
   description.make_node = [](const ProcessOptions& options, Inbox& inbox, Outbox& outbox) {
-    return std::make_unique<NodeType>(config_from<Config>(options), inbox, outbox);
+    return std::make_unique<NodeType>(process_config_from<Config>(options).own, inbox, outbox);
   };
   return run_described_process(argc, argv, description);
 }

@@ -36,8 +36,12 @@ constexpr int kClosingRepeats = 3;
 /// Wall-clock side of a run: network, time-outs, progress.
 class Run {
  public:
-  Run(const ProcessTraits& traits, const std::string& url, TickSource& source, Inbox& inbox)
-      : source_{source}, inbox_{inbox}, reporter_{traits.name}, bus_{url, subscriptions(inbox)} {}
+  Run(const ProcessTraits& traits, const std::string& url, const ChannelNames& names,
+      TickSource& source, Inbox& inbox)
+      : source_{source},
+        inbox_{inbox},
+        reporter_{traits.name},
+        bus_{url, subscriptions(inbox), LargeMessages::kRefused, names} {}
 
   int in_lockstep() {
     LockstepMaster master{source_.run_id(), source_.participants(), source_.window_ticks()};
@@ -222,7 +226,9 @@ int run_described_simulator(int argc, char** argv, const SimulatorDescription& d
       protect_inputs("--out", options.out_dir / file, inputs_of(options));
     Inbox inbox;
     const auto source = description.make_source(options, inbox);
-    Run run{description.traits, lcm_url_or_default(options.lcm_url), *source, inbox};
+    const auto names =
+        description.channel_names ? description.channel_names(options) : ChannelNames{};
+    Run run{description.traits, lcm_url_or_default(options.lcm_url), names, *source, inbox};
     source->begin();
     const int code = options.real_time ? run.in_real_time() : run.in_lockstep();
     source->finish();

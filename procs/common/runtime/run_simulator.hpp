@@ -43,6 +43,7 @@ struct SimulatorDescription {
   std::function<std::string(const ProcessOptions&)> dump_config{};
   std::function<std::string(const ProcessOptions&)> dump_robot_config{};
   std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
+  std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none: the usual ones
   std::function<std::unique_ptr<TickSource>(const ProcessOptions&, Inbox&)> make_source{};
   std::vector<std::string_view> files{};  ///< that the source writes into --out
 };
@@ -50,12 +51,12 @@ struct SimulatorDescription {
 int run_described_simulator(int argc, char** argv, const SimulatorDescription& description);
 
 template <class Config>
-Config simulator_config_from(const ProcessOptions& options) {
+ProcessConfig<Config> simulator_config_from(const ProcessOptions& options) {
   ProcessOptions with_seed = options;
   if (options.seed) {
     with_seed.config_sources.overrides.push_back("run.seed=" + std::to_string(*options.seed));
   }
-  return config_from<Config>(with_seed);
+  return process_config_from<Config>(with_seed);
 }
 
 template <class SourceType>
@@ -69,13 +70,16 @@ int run_simulator(int argc, char** argv) {
     return dump_config(simulator_config_from<Config>(options));
   };
   description.dump_robot_config = [](const ProcessOptions& options) {
-    return dump_robot_config(simulator_config_from<Config>(options).robot);
+    return dump_robot_config(simulator_config_from<Config>(options).own.robot);
+  };
+  description.channel_names = [](const ProcessOptions& options) {
+    return simulator_config_from<Config>(options).channels;
   };
   description.config_value = [](const ProcessOptions& options, const std::string& key) {
     return config_value(simulator_config_from<Config>(options), key);
   };
   description.make_source = [](const ProcessOptions& options, Inbox& inbox) {
-    return std::make_unique<SourceType>(simulator_config_from<Config>(options), inbox);
+    return std::make_unique<SourceType>(simulator_config_from<Config>(options).own, inbox);
   };
   return run_described_simulator(argc, argv, description);
 }

@@ -9,9 +9,11 @@
 #include <bot_core/planar_lidar_t.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <mbot_lcm_msgs/mbot_slam_reset_t.hpp>
 #include <mbot_lcm_msgs/occupancy_grid_t.hpp>
 #include <mbot_lcm_msgs/particles_t.hpp>
 #include <mbot_lcm_msgs/pose2D_t.hpp>
+#include <mbot_lcm_msgs/slam_status_t.hpp>
 #include <mbot_lcm_msgs/twist2D_t.hpp>
 
 #include <cmath>
@@ -98,6 +100,8 @@ TEST(Fingerprint, IsThatOfTheTypesOfOthers) {
   EXPECT_EQ(twist2D_t::getHash(), mbot_lcm_msgs::twist2D_t::getHash());
   EXPECT_EQ(occupancy_grid_t::getHash(), mbot_lcm_msgs::occupancy_grid_t::getHash());
   EXPECT_EQ(particles_t::getHash(), mbot_lcm_msgs::particles_t::getHash());
+  EXPECT_EQ(slam_status_t::getHash(), mbot_lcm_msgs::slam_status_t::getHash());
+  EXPECT_EQ(mbot_slam_reset_t::getHash(), mbot_lcm_msgs::mbot_slam_reset_t::getHash());
   // As found in logs of real MBots.
   EXPECT_EQ(static_cast<std::uint64_t>(lidar_t::getHash()), 0x89dc5b879a5056cfULL);
   EXPECT_EQ(static_cast<std::uint64_t>(pose2D_t::getHash()), 0x1f317af1246276acULL);
@@ -161,7 +165,7 @@ TEST(Codec, EveryTypeSurvivesARoundTrip) {
   graph.vertices = {{1.0, 2.0, 3.0}, {2.0, 2.0, 3.0}};
   graph.num_vertices = 2;
   graph_edge_t edge{};
-  edge.to = 1;
+  edge.to_vertex = 1;
   graph.edges = {edge};
   graph.num_edges = 1;
   expect_round_trip(channels::kMapGraph, graph);
@@ -187,6 +191,14 @@ TEST(Codec, EveryTypeSurvivesARoundTrip) {
   status.counters.assign(2, counter_t{});
   status.num_counters = 2;
   expect_round_trip(channels::kSlamStatus, status);
+  slam_status_t mbot_status{};
+  mbot_status.slam_mode = slam_status_t::MODE_FULL;
+  mbot_status.map_path = "corridor.map.lcm";
+  expect_round_trip(channels::kMbotSlamStatus, mbot_status);
+  mbot_slam_reset_t reset{};
+  reset.slam_map_location = "current.map";
+  reset.retain_pose = 1;
+  expect_round_trip(channels::kMbotSystemReset, reset);
   ack_t ack{};
   ack.who = "slam";
   ack.channels = small_tick().channels;

@@ -188,6 +188,14 @@ TEST(Config, OneValueCanBeAskedFor) {
   }
 }
 
+TEST(Config, ProblemsAcrossFieldsHaveTheirLines) {
+  const auto file = file_with("[robot.lidar]\nrange_max_m = 3\nrange_min_m = 4\n");
+  EXPECT_THAT(error_of({{file}, {}}),
+              HasSubstr("config_test.toml:3: robot.lidar.range_min_m: must be below"));
+  EXPECT_THAT(error_of({{file}, {"robot.lidar.range_min_m=5"}}),
+              HasSubstr("--set robot.lidar.range_min_m=5: robot.lidar.range_min_m: must be below"));
+}
+
 TEST(Config, ADumpReadsBackAsTheSame) {
   RobotOnly config{};
   config.robot.lidar.num_beams = 17;
