@@ -23,6 +23,7 @@ packages_for_tests=(
   clang-format clang-tidy shellcheck       # tests/lint
   libceres-dev                             # tests/benchmark/batch_limit
   parallel gnuplot-nox                     # sweeps: many runs at once, plots
+  python3-numpy python3-matplotlib         # tests/python; where missing they are skipped
 )
 
 list=false
