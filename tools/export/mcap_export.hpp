@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A run as an MCAP file for Foxglove.
+#pragma once
+
+#include "common/node/node.hpp"
+#include "export/foxglove.hpp"
+#include "export/mcap_writer.hpp"
+#include "viewer/core/scene/scene.hpp"
+#include "viewer/scene_updater.hpp"
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace waymark::exporting {
+
+/// Poses of the last seconds, to be asked for at any time in between.
+class RecentPoses {
+ public:
+  void add(Timestamp time, const Se2& pose);
+  /// Interpolated; nothing outside of what is there, or where there is a gap.
+  std::optional<Se2> at(Timestamp time) const;
+
+ private:
+  std::deque<viewer::TimedPose> poses_{};
+};
+
+/// Topics: /map, /scan, /pose, /pose_ellipse, /tf (world -> map -> odom -> base; world only where
+/// there is a truth), /markers, /camera, /truth.
+class McapExport final : public Node {
+ public:
+  /// @throws SetupError when the file cannot be created.
+  McapExport(const std::filesystem::path& out, Inbox& inbox);
+
+  void finish() override;
+
+  bool failed() const override { return failed_; }
+
+ private:
+  void add(const annotated_scan_t& message);
+  void add(const image_t& message);
+  void add(const map_tiles_t& message);
+  void add(const marker_map_t& message);
+  void add(const slam_estimate_t& message);
+  void add_odometry(const pose2D_t& message);
+  void add_truth(const pose2D_t& message);
+  void write_map(Timestamp time);
+  void write_transform(Timestamp time, const Json& transform);
+  void write_pose(McapWriter::ChannelId channel, Timestamp time, const char* frame,
+                  const Se2& pose);
+  void write(McapWriter::ChannelId channel, Timestamp time, const Json& message);
+
+  std::optional<McapWriter> writer_{};
+  Counters& counters_;
+  viewer::Scene scene_{};
+  viewer::SceneUpdater updater_;
+  McapWriter::ChannelId map_{}, scan_{}, pose_{}, ellipse_{}, tf_{}, markers_{}, camera_{},
+      truth_{};
+  RecentPoses odometry_{};
+  RecentPoses true_poses_{};
+  std::optional<Timestamp> last_map_{};
+  bool map_has_changed_{false};
+  Timestamp newest_{};
+  bool has_world_{false};
+  bool failed_{false};
+};
+
+}  // namespace waymark::exporting
