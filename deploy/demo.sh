@@ -7,6 +7,7 @@
 #   --out DIR        where everything goes (default: runs/demo-SCENARIO)
 #   --scenario FILE  (default: deploy/scenarios/corridor.toml, 50 m)
 #   --seed N         seed of everything random (default: the scenario's run.seed)
+#   --live           the drive as a live page at http://127.0.0.1:8080/ while it goes on
 #   --fast           deploy/scenarios/corridor_fast.toml: 10 m, driven faster than the real robot can
 #
 # Installs Debian packages (as root). Deletes an earlier run in the --out folder, with the rows of all replays of it.
@@ -27,11 +28,12 @@ rows=(
 readonly live_estimator=waymark
 
 parse_arguments() {
-  out='' scenario='' seed=()
+  out='' scenario='' seed=() live_page=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
       --fast) scenario=$deploy_dir/scenarios/corridor_fast.toml && shift && continue ;;
+      --live) live_page=(--http 127.0.0.1:8080) && shift && continue ;;
       --out | --scenario | --seed) need_value "$@" ;;&
       --out) out=$2 ;;
       --scenario) scenario=$2 ;;
@@ -80,7 +82,7 @@ report_times() {
 parse_arguments "$@"
 step "install packages" "$deploy_dir/install-deps.sh"
 step "build" build release programs
-step "drive" "$deploy_dir/launch.sh" "$scenario" --out "$out" --estimator $live_estimator "${seed[@]}"
+step "drive" "$deploy_dir/launch.sh" "$scenario" --out "$out" --estimator $live_estimator "${seed[@]}" "${live_page[@]}"
 live=$(fingerprint)
 for row in "${rows[@]}"; do step "replay ${row%% *}" replay_row "$row"; done
 [[ $live == "$(fingerprint)" ]] ||

@@ -7,6 +7,13 @@ namespace waymark::viewer {
 namespace {
 
 constexpr Duration kFirstSpacing = std::chrono::milliseconds{200};
+/// Longer than a client waits for a view before it asks again.
+constexpr std::int64_t kWatched_ms = 5000;
+
+std::int64_t wall_clock_ms() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+}
 
 }  // namespace
 
@@ -44,12 +51,22 @@ void Board::store(const ViewPtr& view, std::span<const PathPoint> path_growth) {
   history_spacing_ = (history_.back()->time - history_.front()->time) / static_cast<int>(kept - 1);
 }
 
+void Board::note_reader() const {
+  last_read_ms_ = wall_clock_ms();
+}
+
+bool Board::is_watched() const {
+  return wall_clock_ms() - last_read_ms_ < kWatched_ms;
+}
+
 ViewPtr Board::newest() const {
+  note_reader();
   const std::scoped_lock lock{mutex_};
   return newest_;
 }
 
 ViewPtr Board::at(Timestamp time) const {
+  note_reader();
   const std::scoped_lock lock{mutex_};
   if (!newest_ || newest_->time <= time) return newest_;
   const auto after = std::ranges::upper_bound(history_, time, {}, &LiveView::time);
@@ -58,6 +75,7 @@ ViewPtr Board::at(Timestamp time) const {
 }
 
 ViewPtr Board::wait_for_newer(std::uint64_t number, std::chrono::milliseconds timeout) const {
+  note_reader();
   std::unique_lock lock{mutex_};
   const auto is_newer = [&] {
     return newest_ && newest_->number > number;

@@ -4,8 +4,10 @@
 
 #include "viewer/http/live_view.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -44,6 +46,9 @@ class Board {
 
   Span history() const;
 
+  /// Somebody has looked within the last seconds of wall-clock time, or waits to.
+  bool is_watched() const;
+
   /// Ends all waiting.
   void close();
   bool closed() const;
@@ -51,8 +56,12 @@ class Board {
   static constexpr std::size_t kMaxHistory = 600;
 
  private:
+  static constexpr std::int64_t kNever_ms = -1'000'000'000;
+
+  void note_reader() const;
   void store(const ViewPtr& view, std::span<const PathPoint> path_growth);
 
+  mutable std::atomic<std::int64_t> last_read_ms_{kNever_ms};
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   ViewPtr newest_{};

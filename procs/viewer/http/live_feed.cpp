@@ -9,6 +9,7 @@ namespace waymark::viewer {
 namespace {
 
 constexpr std::chrono::milliseconds kPostPeriod{200};
+constexpr std::chrono::milliseconds kUnwatchedPeriod{1000};  // for the slider's history
 constexpr float kPathStep_m = 0.03F;
 /// 30 km of path.
 constexpr std::size_t kMaxPathPoints = 1'000'000;
@@ -147,7 +148,8 @@ void LiveFeed::post_when_due() {
     return;
   }
   const auto now = std::chrono::steady_clock::now();
-  if (now - last_post_wall_ < kPostPeriod) return;
+  const auto period = board_.is_watched() ? kPostPeriod : kUnwatchedPeriod;
+  if (now - last_post_wall_ < period) return;
   if (!board_.try_post(snapshot(), path_growth_)) return;
   last_post_wall_ = now;
   path_growth_.clear();

@@ -12,8 +12,8 @@
 
 namespace waymark::viewer {
 
-/// Lives on the node's thread. Live, five views a second of wall-clock time are posted, and none
-/// when a reader is in the way; of a log, five a second of message time.
+/// Lives on the node's thread. Live, five views a second of wall-clock time are posted, one while
+/// nobody looks, and none when a reader is in the way; of a log, five a second of message time.
 class LiveFeed {
  public:
   enum class Pace { kWallClock, kMessageTime };

@@ -160,11 +160,11 @@ std::string view_json(const LiveView& view, const Board::Span& history) {
   return dump(to_json(view, history));
 }
 
-std::string view_json(const LiveView& view, const Board::Span& history, std::size_t first,
+std::string with_path(std::string view_json, std::size_t first,
                       std::span<const PathPoint> path_growth) {
-  Json json = to_json(view, history);
-  json["path"] = {{"first", first}, {"xy", points_json(path_growth)}};
-  return dump(json);
+  const Json path{{"first", first}, {"xy", points_json(path_growth)}};
+  view_json.pop_back();  // the brace that closes it
+  return view_json + ",\"path\":" + dump(path) + "}";
 }
 
 std::string tile_bytes(const LiveMap& map, std::uint32_t since_version) {

@@ -12,8 +12,9 @@ namespace waymark::viewer {
 /// One JSON object, without the path and the map's cells. Numbers that are not finite become null.
 std::string view_json(const LiveView& view, const Board::Span& history);
 
-/// The same with the points from `first` on by which the path has grown: {"first":..,"xy":[..]}.
-std::string view_json(const LiveView& view, const Board::Span& history, std::size_t first,
+/// A view's JSON with the points by which the path has grown since a client has got `first` of
+/// them.
+std::string with_path(std::string view_json, std::size_t first,
                       std::span<const PathPoint> path_growth);
 
 /// Tiles newer than a version, little-endian: u32 generation, version, side [cells], number of

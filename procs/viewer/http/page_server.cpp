@@ -19,6 +19,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <thread>
 
 namespace waymark::viewer {
@@ -70,11 +71,28 @@ void refuse(httplib::Response& response, int status, const std::string& reason) 
   response.set_content(reason + "\n", "text/plain");
 }
 
+/// The newest view as JSON, made once for all clients.
+class NewestText {
+ public:
+  std::shared_ptr<const std::string> of(const LiveView& view, const Board& board) {
+    const std::scoped_lock lock{mutex_};
+    if (!text_ || number_ != view.number)
+      text_ = std::make_shared<const std::string>(view_json(view, board.history()));
+    number_ = view.number;
+    return text_;
+  }
+
+ private:
+  std::mutex mutex_{};
+  std::uint64_t number_{0};
+  std::shared_ptr<const std::string> text_{};
+};
+
 /// One client's stream of views.
 class EventStream {
  public:
-  EventStream(const Board& board, std::atomic<int>& num_streams)
-      : board_{board}, num_streams_{num_streams} {}
+  EventStream(const Board& board, NewestText& newest_text, std::atomic<int>& num_streams)
+      : board_{board}, newest_text_{newest_text}, num_streams_{num_streams} {}
 
   EventStream(const EventStream&) = delete;
   EventStream& operator=(const EventStream&) = delete;
@@ -104,13 +122,14 @@ class EventStream {
     // A path that is shorter than what was sent belongs to another run.
     if (view.path_length < path_sent_) path_sent_ = 0;
     const auto growth = board_.path(path_sent_, view.path_length);
-    const std::string json = view_json(view, board_.history(), path_sent_, growth);
+    const std::string json = with_path(*newest_text_.of(view, board_), path_sent_, growth);
     path_sent_ += growth.size();
     number_ = view.number;
     return "data: " + json + "\n\n";
   }
 
   const Board& board_;
+  NewestText& newest_text_;
   std::atomic<int>& num_streams_;
   std::uint64_t number_{0};
   std::size_t path_sent_{0};
@@ -236,7 +255,7 @@ class PageServer::Implementation {
       refuse(response, 503, fmt::format("{} pages are open already; close one", kMaxStreams));
       return;
     }
-    const auto stream = std::make_shared<EventStream>(board_, num_streams_);
+    const auto stream = std::make_shared<EventStream>(board_, newest_text_, num_streams_);
     response.set_chunked_content_provider(
         "text/event-stream",
         [stream](std::size_t, httplib::DataSink& sink) { return stream->send_next(sink); });
@@ -253,6 +272,7 @@ class PageServer::Implementation {
   HttpAddress address_;
   Board& board_;
   std::filesystem::path folder_;
+  NewestText newest_text_{};
   std::atomic<int> num_streams_{0};
   std::atomic<bool> has_ended_{false};
   httplib::Server server_;

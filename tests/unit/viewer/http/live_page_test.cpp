@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <thread>
+
 namespace waymark::viewer {
 namespace {
 
@@ -173,6 +175,33 @@ TEST(LiveFeed, ShowsTheStateThatWasAtATimeOfALog) {
   EXPECT_EQ(json["estimate"]["pose"][0], 5.0);
   EXPECT_EQ(json["path_length"], 51);
   EXPECT_EQ(json["history_s"], Json::parse("[0.0, 100.0]"));
+}
+
+TEST(LiveFeed, IsSlowWhileNobodyLooks) {
+  Board board;
+  LiveFeed feed{board, "run", LiveFeed::Pace::kWallClock};
+  const auto number_after_300_ms = [&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    feed.add_markers(at_s(1.0), {});
+    return board.wait_for_newer(0, std::chrono::milliseconds{1})->number;
+  };
+  feed.add_markers(at_s(1.0), {});
+  std::this_thread::sleep_for(std::chrono::milliseconds{300});
+  feed.add_markers(at_s(1.0), {});  // not due: nobody has looked
+  EXPECT_FALSE(board.is_watched());
+  EXPECT_EQ(board.newest()->number, 1U);
+  EXPECT_TRUE(board.is_watched());
+  EXPECT_EQ(number_after_300_ms(), 2U);
+  EXPECT_EQ(number_after_300_ms(), 3U);
+}
+
+TEST(PageJson, APathIsPartOfTheView) {
+  const LiveView view;
+  const std::vector<PathPoint> growth{{1.0F, 2.5F}, {3.0F, 4.0F}};
+  auto json = Json::parse(with_path(view_json(view, {}), 7, growth));
+  EXPECT_EQ(json["path"], Json::parse(R"({"first": 7, "xy": [1.0, 2.5, 3.0, 4.0]})"));
+  json.erase("path");
+  EXPECT_EQ(json, Json::parse(view_json(view, {})));
 }
 
 TEST(PageJson, IsJsonWhateverTheStringsAndNumbers) {
