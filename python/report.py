@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Report on a run: error, NEES, calibration, map. report.ipynb is the same as a notebook.
 
