@@ -48,10 +48,10 @@ def image(utime, content):
 
 def tiles(utime, percent):
     tile = waymark.map_tile_t()
-    tile.tile_x, tile.num_cells = 1, 4
-    tile.occupancy, tile.marker_ids = [percent, -1, 100, 0], [-1] * 4
+    tile.tile_x, tile.num_cells = 1, 16
+    tile.occupancy, tile.marker_ids = [percent, -1, 100, 0] * 4, [-1] * 16
     message = waymark.map_tiles_t()
-    message.utime, message.num_parts, message.resolution_m, message.tile_size_cells = utime, 1, 0.5, 2
+    message.utime, message.num_parts, message.resolution_m, message.tile_size_cells = utime, 1, 0.5, 4
     message.tiles, message.num_tiles = [tile], 1
     return Event("SLAM_MAP", utime, message.encode())
 
@@ -163,8 +163,8 @@ class Export(InFolder):
             [(1000 * e.time_us, waymark.image_t.decode(e.data).data) for e in images],
         )
         _, grid = mcap.topic("/map")[-1]
-        self.assertEqual(list(base64.b64decode(grid["data"])), [50, 255, 100, 0])  # -1 is 255
-        self.assertEqual((grid["column_count"], grid["pose"]["position"]["x"]), (2, 1.0))
+        self.assertEqual(list(base64.b64decode(grid["data"])), [50, 255, 100, 0] * 4)  # -1 is 255
+        self.assertEqual((grid["column_count"], grid["pose"]["position"]["x"]), (4, 2.0))
         _, last_scan = mcap.topic("/scan")[-1]
         self.assertEqual(last_scan["ranges"], [1.5, 0, 2.5])
         _, scene = mcap.topic("/markers")[-1]
