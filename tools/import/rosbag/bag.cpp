@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/rosbag/bag.hpp"
+
+#include "common/errors/setup_error.hpp"
+
+#include <array>
+#include <fstream>
+#include <string_view>
+
+namespace waymark {
+namespace {
+
+constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
+constexpr std::string_view kSqliteMagic = "SQLite format 3";
+constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
+constexpr std::int64_t kLatest_ns = 4'102'444'800'000'000'000;  // the year 2100
+
+}  // namespace
+
+std::string ros_type_name(std::string type) {
+  const std::size_t at = type.find("/msg/");
+  if (at != std::string::npos) type.erase(at, 4);
+  return type;
+}
+
+std::optional<Timestamp> time_from_ns(std::int64_t ns) {
+  if (ns < 0 || ns > kLatest_ns) return std::nullopt;
+  return timestamp_from_us(ns / 1000);
+}
+
+void read_bag(const std::filesystem::path& file, const TakeRecord& take, ImportReport& report) {
+  std::ifstream stream{file, std::ios::binary};
+  if (!std::filesystem::is_regular_file(file) || !stream)
+    throw SetupError{file.string() + ": cannot be read as a bag"};
+  std::array<char, 16> head{};
+  stream.read(head.data(), head.size());
+  const std::string_view start{head.data(), static_cast<std::size_t>(stream.gcount())};
+  if (start.starts_with(kRos1Magic)) return read_ros1_bag(file, take, report);
+  if (start.starts_with(kSqliteMagic)) return read_db3_bag(file, take, report);
+  if (start.starts_with(kMcapMagic)) return read_mcap_bag(file, take, report);
+  throw SetupError{file.string() +
+                   ": is no bag of ROS: neither .bag (version 2.0) nor .db3 nor .mcap"};
+}
+
+}  // namespace waymark

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/rosbag/static_frames.hpp"
+
+namespace waymark {
+namespace {
+
+/// "/base_link" of ROS 1 is "base_link".
+std::string frame_name(const std::string& name) {
+  return name.starts_with('/') ? name.substr(1) : name;
+}
+
+}  // namespace
+
+void StaticFrames::add(const RosTransform& transform) {
+  parents_[frame_name(transform.child)] = {frame_name(transform.parent),
+                                           transform.parent_from_child};
+}
+
+StaticFrames::Link StaticFrames::root_of(const std::string& frame) const {
+  Link root{frame_name(frame), Eigen::Isometry3d::Identity()};
+  // As many steps as there are frames: damaged transforms may go round.
+  for (std::size_t i = 0; i < parents_.size(); ++i) {
+    const auto link = parents_.find(root.parent);
+    if (link == parents_.end()) break;
+    root.parent_from_child = link->second.parent_from_child * root.parent_from_child;
+    root.parent = link->second.parent;
+  }
+  return root;
+}
+
+std::optional<Eigen::Isometry3d> StaticFrames::find(const std::string& parent,
+                                                    const std::string& child) const {
+  const Link above_parent = root_of(parent);
+  const Link above_child = root_of(child);
+  if (above_parent.parent != above_child.parent) return std::nullopt;
+  return above_parent.parent_from_child.inverse() * above_child.parent_from_child;
+}
+
+}  // namespace waymark
