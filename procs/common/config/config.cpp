@@ -188,17 +188,25 @@ std::string last_word(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
 }
 
-/// The key that is used and looks most like another one.
-std::string nearest_used(const std::string& key, const std::vector<Entry>& entries) {
-  std::vector<std::string> candidates;
+std::vector<std::string> used_keys(const std::vector<Entry>& entries) {
+  std::vector<std::string> keys;
   for (const Entry& entry : entries) {
-    if (entry.kind == Entry::Kind::kValue && entry.unused.empty()) candidates.push_back(entry.key);
+    if (entry.kind == Entry::Kind::kValue && entry.unused.empty()) keys.push_back(entry.key);
   }
-  // One of the same name stands for the same thing.
-  for (const std::string& candidate : candidates) {
-    if (last_word(candidate) == last_word(key)) return candidate;
+  return keys;
+}
+
+/// The key that is used in place of one that is not: of the same part of the configuration, with
+/// the same name or one that ends with it; empty if there is none.
+std::string used_instead(const std::string& key, const std::vector<Entry>& entries) {
+  const std::string part = key.substr(0, key.find('.') + 1);
+  const std::string name = last_word(key);
+  for (const std::string& candidate : used_keys(entries)) {
+    const std::string other = last_word(candidate);
+    if (candidate.starts_with(part) && (other == name || other.ends_with("_" + name)))
+      return candidate;
   }
-  return config_detail::nearest(key, candidates);
+  return "";
 }
 
 std::string hint(const std::string& meant) {
@@ -211,7 +219,7 @@ void add_unused_keys(const config_detail::Describe& describe, config_detail::Rea
     const auto set_by = log.set_by.find(entry.key);
     if (entry.unused.empty() || entry.key.empty() || set_by == log.set_by.end()) continue;
     log.problems.push_back(fmt::format("{}: {}: {}{}", set_by->second, entry.key, entry.unused,
-                                       hint(nearest_used(entry.key, entries))));
+                                       hint(used_instead(entry.key, entries))));
   }
 }
 
@@ -273,9 +281,10 @@ std::string config_detail::value(const Describe& describe, const std::string& ke
     if (entry.key != key || entry.kind != Entry::Kind::kValue) continue;
     if (entry.unused.empty()) return entry.text;
     throw ConfigError{
-        {fmt::format("{}: {}{}", key, entry.unused, hint(nearest_used(key, entries)))}};
+        {fmt::format("{}: {}{}", key, entry.unused, hint(used_instead(key, entries)))}};
   }
-  throw ConfigError{{fmt::format("{}: unknown key{}", key, hint(nearest_used(key, entries)))}};
+  throw ConfigError{
+      {fmt::format("{}: unknown key{}", key, hint(nearest(key, used_keys(entries))))}};
 }
 
 }  // namespace waymark
