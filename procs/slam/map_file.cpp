@@ -21,7 +21,6 @@ using RowMajorCalibration =
     Eigen::Matrix<double, kCalibrationSize, kCalibrationSize, Eigen::RowMajor>;
 
 constexpr std::size_t kCellsPerMessage = 1000;  // 56 bytes each
-constexpr std::size_t kPosesPerMessage = 500;   // 24 bytes each, and an edge of 80 bytes or two
 // What a cell of a loaded map counts as: a whole per cent, and no more than some passes of beams,
 // so that what has changed since can be seen.
 constexpr std::uint32_t kLoadedVisits = 100;
@@ -56,40 +55,6 @@ std::vector<map_walls_t> wall_messages(const NdtMap& walls, Timestamp time) {
   return messages;
 }
 
-graph_edge_t to_message(const GraphEdge& edge) {
-  graph_edge_t message{};
-  message.from_vertex = static_cast<std::int32_t>(edge.from);
-  message.to_vertex = static_cast<std::int32_t>(edge.to);
-  message.pose[0] = edge.from_from_to.x();
-  message.pose[1] = edge.from_from_to.y();
-  message.pose[2] = edge.from_from_to.theta();
-  std::size_t at = 0;
-  for (Eigen::Index row = 0; row < 3; ++row)
-    for (Eigen::Index column = row; column < 3; ++column)
-      message.information[at++] = edge.information(row, column);
-  return message;
-}
-
-std::vector<pose_graph_t> graph_messages(const PoseGraph& graph, Timestamp time) {
-  std::vector<pose_graph_t> messages(
-      std::max(num_parts(graph.poses, kPosesPerMessage), num_parts(graph.edges, kPosesPerMessage)));
-  for (std::size_t part = 0; part < messages.size(); ++part) {
-    pose_graph_t& message = messages[part];
-    message.utime = to_us(time);
-    message.part = static_cast<std::int32_t>(part);
-    message.num_parts = static_cast<std::int32_t>(messages.size());
-    const std::size_t begin = part * kPosesPerMessage;
-    const std::size_t end = begin + kPosesPerMessage;
-    for (std::size_t i = begin; i < std::min(end, graph.poses.size()); ++i)
-      message.vertices.push_back({graph.poses[i].x(), graph.poses[i].y(), graph.poses[i].theta()});
-    for (std::size_t i = begin; i < std::min(end, graph.edges.size()); ++i)
-      message.edges.push_back(to_message(graph.edges[i]));
-    message.num_vertices = static_cast<std::int32_t>(message.vertices.size());
-    message.num_edges = static_cast<std::int32_t>(message.edges.size());
-  }
-  return messages;
-}
-
 calibration_t to_message(const LearntCalibration& calibration, Timestamp time) {
   calibration_t message{};
   message.utime = to_us(time);
@@ -112,7 +77,7 @@ std::vector<Message> messages_with_id(const MapSnapshot& map, const MapFileInfo&
   }
   for (const map_walls_t& part : wall_messages(map.walls, map.time))
     messages.push_back(encode(channels::kMapWalls, part));
-  for (const pose_graph_t& part : graph_messages(map.graph, map.time))
+  for (const pose_graph_t& part : to_messages(map.graph, map.time))
     messages.push_back(encode(channels::kMapGraph, part));
   messages.push_back(encode(channels::kMapCalibration, to_message(map.calibration, map.time)));
   map_header_t header{};

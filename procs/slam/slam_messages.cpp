@@ -14,6 +14,7 @@ constexpr std::size_t kBeamsPerMessage = 5400;      // 12 bytes each
 constexpr std::size_t kParticlesPerMessage = 1300;  // 48 bytes each
 constexpr std::size_t kLandmarksPerMessage = 500;   // 125 bytes each
 constexpr std::size_t kPosesPerMessage = 3000;      // 20 bytes each
+constexpr std::size_t kVerticesPerMessage = 500;    // 24 bytes each, and as many edges of 80 bytes
 
 std::int8_t to_message(Health health) {
   switch (health) {
@@ -55,6 +56,20 @@ marker_landmark_t to_message(const Landmark& landmark) {
   message.state = marker_landmark_t::STATE_TENTATIVE;
   if (landmark.is_confirmed()) message.state = marker_landmark_t::STATE_CONFIRMED;
   if (landmark.was_moved) message.state = marker_landmark_t::STATE_MOVED;
+  return message;
+}
+
+graph_edge_t to_message(const GraphEdge& edge) {
+  graph_edge_t message{};
+  message.from = static_cast<std::int32_t>(edge.from);
+  message.to = static_cast<std::int32_t>(edge.to);
+  message.pose[0] = edge.from_from_to.x();
+  message.pose[1] = edge.from_from_to.y();
+  message.pose[2] = edge.from_from_to.theta();
+  std::size_t at = 0;
+  for (Eigen::Index row = 0; row < 3; ++row)
+    for (Eigen::Index column = row; column < 3; ++column)
+      message.information[at++] = edge.information(row, column);
   return message;
 }
 
@@ -155,6 +170,26 @@ std::vector<trajectory_t> to_messages(std::span<const TimedPose> trajectory) {
     for (const TimedPose& pose : trajectory.subspan(first, count))
       message.poses.push_back(to_pose_message(pose.time, pose.map_from_base));
     message.num_poses = static_cast<std::int32_t>(count);
+  }
+  return messages;
+}
+
+std::vector<pose_graph_t> to_messages(const PoseGraph& graph, Timestamp time) {
+  const std::size_t items = std::max({graph.poses.size(), graph.edges.size(), std::size_t{1}});
+  std::vector<pose_graph_t> messages((items + kVerticesPerMessage - 1) / kVerticesPerMessage);
+  for (std::size_t part = 0; part < messages.size(); ++part) {
+    pose_graph_t& message = messages[part];
+    message.utime = to_us(time);
+    message.part = static_cast<std::int32_t>(part);
+    message.num_parts = static_cast<std::int32_t>(messages.size());
+    const std::size_t begin = part * kVerticesPerMessage;
+    const std::size_t end = begin + kVerticesPerMessage;
+    for (std::size_t i = begin; i < std::min(end, graph.poses.size()); ++i)
+      message.vertices.push_back({graph.poses[i].x(), graph.poses[i].y(), graph.poses[i].theta()});
+    for (std::size_t i = begin; i < std::min(end, graph.edges.size()); ++i)
+      message.edges.push_back(to_message(graph.edges[i]));
+    message.num_vertices = static_cast<std::int32_t>(message.vertices.size());
+    message.num_edges = static_cast<std::int32_t>(message.edges.size());
   }
   return messages;
 }

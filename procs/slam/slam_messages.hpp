@@ -24,4 +24,7 @@ std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Times
 /// In parts that each fit one datagram; none for an empty trajectory.
 std::vector<trajectory_t> to_messages(std::span<const TimedPose> trajectory);
 
+/// In parts that each fit one datagram; at least one.
+std::vector<pose_graph_t> to_messages(const PoseGraph& graph, Timestamp time);
+
 }  // namespace waymark

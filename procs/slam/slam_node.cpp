@@ -143,6 +143,10 @@ void SlamNode::finish() {
     part.map_id = map_id_;
     outbox_.publish(channels::kSlamTrajectory, part);
   }
+  if (const auto graph = estimator_->pose_graph()) {
+    for (const pose_graph_t& part : to_messages(*graph, *last_estimate_))
+      outbox_.publish(channels::kMapGraph, part);
+  }
   spdlog::info("{}", timer_.summary());
 }
 

@@ -6,6 +6,7 @@
 #include "viewer/core/painters/map_painter.hpp"
 #include "viewer/core/painters/plain_painter.hpp"
 #include "viewer/core/painters/scan_painter.hpp"
+#include "viewer/files/g2o_text.hpp"
 #include "viewer/files/map_files.hpp"
 #include "viewer/files/png.hpp"
 #include "viewer/files/text_files.hpp"
@@ -110,6 +111,10 @@ void ViewerNode::subscribe(Inbox& inbox) {
   });
   subscribe_both(inbox, channels::kSlamScan);
   inbox.on<trajectory_t>(channels::kSlamTrajectory, [this](const auto& m) { updater_.add(m); });
+  inbox.on<pose_graph_t>(channels::kMapGraph, [this](const auto& m) {
+    if (m.part == 0) graph_parts_.clear();
+    if (m.part == std::ssize(graph_parts_)) graph_parts_.push_back(m);
+  });
   subscribe_both(inbox, channels::kSlamParticles, Backlog::kNewestOnly);
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) { updater_.add_odometry(m); });
   inbox.on<pose2D_t>(channels::kTruePose, [this](const auto& m) { updater_.add_truth(m); });
@@ -155,6 +160,15 @@ void ViewerNode::write_final_trajectory() {
   }
 }
 
+/// Only a whole one.
+void ViewerNode::write_graph() {
+  constexpr auto kName = "graph.g2o";
+  if (graph_parts_.empty() || std::ssize(graph_parts_) != graph_parts_.front().num_parts)
+    folder_.remove(kName);
+  else
+    folder_.write(kName, viewer::g2o_text(graph_parts_));
+}
+
 void ViewerNode::write_map_picture() {
   const cv::Mat picture = viewer::paint_map(scene_, config_.viewer.map_page);
   folder_.write("map.png", viewer::png_bytes(picture));
@@ -191,6 +205,7 @@ void ViewerNode::write_files() {
   }
   write_data();
   write_final_trajectory();
+  write_graph();
   write_map_picture();
   write_marker_layer();
   write_scan_and_plain_map();

@@ -50,6 +50,7 @@ class ViewerNode final : public Node {
   void write_when_due(Timestamp time);
   void write_data();
   void write_final_trajectory();
+  void write_graph();
   void write_map_picture();
   void write_marker_layer();
   void write_scan_and_plain_map();
@@ -62,6 +63,7 @@ class ViewerNode final : public Node {
   viewer::Pacer pacer_;
   std::optional<Timestamp> last_write_time_{};
   std::size_t next_picture_{0};
+  std::vector<pose_graph_t> graph_parts_{};
   viewer::Board board_{};
   std::optional<viewer::LiveFeed> live_feed_{};
   std::unique_ptr<viewer::PageServer> page_server_{};

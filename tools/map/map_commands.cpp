@@ -3,7 +3,6 @@
 
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
-#include "map/g2o_text.hpp"
 #include "slam/core/graph/map_merge.hpp"
 #include "slam/map_file.hpp"
 #include "viewer/viewer_node.hpp"
@@ -108,7 +107,6 @@ void export_map(const std::filesystem::path& file, const std::filesystem::path& 
     inbox.deliver(*message);
   viewer.finish();
   if (viewer.failed()) throw std::runtime_error{"not everything could be written"};
-  write_whole_file(folder / "graph.g2o", g2o_text(map.map.graph));
 }
 
 std::string transform_map(const std::filesystem::path& file, const Se2& new_from_old,

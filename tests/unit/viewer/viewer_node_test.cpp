@@ -8,6 +8,10 @@
 
 #include <fstream>
 #include <iterator>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -248,6 +252,53 @@ TEST_F(ViewerNodeTest, AFinalTrajectoryWithoutItsFirstPartIsLeftOut) {
   node.finish();
   EXPECT_FALSE(fs::exists(folder_ / "trajectory_final.tum"));
   EXPECT_EQ(inbox_.counters().get("SLAM_TRAJECTORY left out: an earlier part is missing"), 1);
+}
+
+pose_graph_t graph_part(int part, int num_parts) {
+  pose_graph_t graph{};
+  graph.part = part;
+  graph.num_parts = num_parts;
+  graph.num_vertices = 1;
+  graph.vertices = {{1.0 * part, 2.0, 0.5}};
+  if (part == 0) return graph;
+  graph_edge_t edge{};
+  edge.to = part;
+  edge.pose[0] = 1.0;
+  edge.pose[2] = 0.5 * std::numbers::pi;  // x of the first is -y of the second
+  edge.information[0] = 100.0;
+  edge.information[3] = 400.0;
+  edge.information[5] = 900.0;
+  graph.num_edges = 1;
+  graph.edges = {edge};
+  return graph;
+}
+
+TEST_F(ViewerNodeTest, WritesTheGraphForOtherToolsWhenItCameWhole) {
+  ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
+  deliver(channels::kMapGraph, graph_part(0, 2));
+  node.finish();
+  EXPECT_FALSE(fs::exists(folder_ / "graph.g2o"));
+  deliver(channels::kMapGraph, graph_part(1, 2));
+  node.finish();
+  std::istringstream text{content_of("graph.g2o")};
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);)
+    lines.push_back(line);
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_EQ(lines[0], "VERTEX_SE2 0 0 2 0.5");
+  EXPECT_EQ(lines[1], "VERTEX_SE2 1 1 2 0.5");
+  EXPECT_EQ(lines[2], "FIX 0");
+  std::istringstream edge{lines[3]};
+  std::string word;
+  edge >> word;
+  EXPECT_EQ(word, "EDGE_SE2");
+  const double expected[] = {0, 1, 1, 0, 0.5 * std::numbers::pi, 400, 0, 0, 100, 0, 900};
+  for (const double number : expected) {
+    double written = 0.0;
+    edge >> written;
+    EXPECT_NEAR(written, number, 1e-7);
+  }
 }
 
 TEST_F(ViewerNodeTest, TheScanWithMarkersStays) {
