@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace waymark {
 
@@ -38,6 +39,8 @@ struct SlamSection {
   bool publish_grid{false};
   MapMode mode{MapMode::kMap};
   StartPose start{};
+  std::string state_folder{};  ///< empty: none
+  bool commands{false};
   PreprocessingConfig preprocessing{};
   MotionNoise motion{};
   UpdateGate gate{};

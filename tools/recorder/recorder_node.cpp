@@ -12,11 +12,12 @@ namespace waymark {
 namespace {
 
 constexpr std::array kDataChannels{
-    channels::kCamera.name,       channels::kLidar.name,         channels::kOdometry.name,
-    channels::kDriveCommand.name, channels::kTruePose.name,      channels::kMarkers.name,
-    channels::kSlamPose.name,     channels::kSlamEstimate.name,  channels::kSlamMap.name,
-    channels::kSlamGrid.name,     channels::kSlamMarkers.name,   channels::kSlamParticles.name,
-    channels::kSlamScan.name,     channels::kSlamTrajectory.name};
+    channels::kCamera.name,       channels::kLidar.name,          channels::kOdometry.name,
+    channels::kDriveCommand.name, channels::kTruePose.name,       channels::kMarkers.name,
+    channels::kSlamPose.name,     channels::kSlamEstimate.name,   channels::kSlamMap.name,
+    channels::kSlamGrid.name,     channels::kSlamMarkers.name,    channels::kSlamParticles.name,
+    channels::kSlamScan.name,     channels::kSlamTrajectory.name, channels::kSlamCorrection.name,
+    channels::kSlamChanges.name,  channels::kSlamCommand.name,    channels::kSlamReply.name};
 
 /// @throws SetupError when there is a recording of that name, or what is left of one.
 void protect_recordings(const std::filesystem::path& log) {
