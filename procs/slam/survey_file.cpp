@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/survey_file.hpp"
 
+#include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
 #include "common/markers/marker_dictionary.hpp"
-#include "common/errors/setup_error.hpp"
 
 #include <fmt/format.h>
 

@@ -10,9 +10,9 @@
 #include "slam/core/graph/place_finder.hpp"
 #include "slam/core/graph/relocalisation.hpp"
 #include "slam/core/graph/survey.hpp"
+#include "slam/core/graph/wall_change_detector.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/mapping/scan_archive.hpp"
-#include "slam/core/graph/wall_change_detector.hpp"
 #include "slam/core/registration/submap.hpp"
 
 #include <deque>

@@ -2,8 +2,8 @@
 // What is not as the loaded map or the survey has it, on map.png.
 #pragma once
 
-#include "viewer/core/scene/scene.hpp"
 #include "viewer/core/drawing/view.hpp"
+#include "viewer/core/scene/scene.hpp"
 
 #include <opencv2/core.hpp>
 
