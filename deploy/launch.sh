@@ -13,7 +13,8 @@
 #   --set KEY=VALUE   the same for one value; may be given several times
 #   --load-map FILE  map of an earlier run (NAME.map.lcm); needs --mode
 #   --mode NAME      what for: localise (it stays as it is) or extend (what is new is added)
-#   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), anywhere
+#   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), last
+#                    (needs --set slam.state_folder=DIR), anywhere
 #   --save-map FILE  write the map there at the end
 #   --channels FILE   section [channels], for every process: other names on the network, e.g. deploy/mbot.toml
 #   --http HOST:PORT  show the run as a live page there, e.g. 127.0.0.1:8080
@@ -21,8 +22,9 @@
 #
 # Deletes an earlier run in the --out folder: its log, truth, robot.toml, logs/, tables, and the rows of all replays of
 # it. Files that no run or replay writes stay; a folder with such names that is no run of launch.sh is refused.
-# detector and viewer are restarted when they die, at most five times; the death of simulator, slam or
-# recorder ends the run. Exit codes: 0 fine, 1 the run failed, 2 bad usage or set-up, 3 a process died,
+# detector and viewer are restarted when they die, at most five times, and so is slam with --real-time and --start
+# last; the death of simulator, slam or recorder ends the run. Exit codes: 0 fine, 1 the run failed, 2 bad usage or
+# set-up, 3 a process died,
 # 4 time-out, 128+n signal n.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -266,6 +268,9 @@ on_sim_end() {
   esac
 }
 
+# can_resume: a slam that is started again goes on where it was.
+can_resume() { ((${#real_time[@]} > 0)) && [[ " ${slam_options[*]} " == *" slam.start=last "* ]]; }
+
 # on_other_end NAME CODE: restart, or end the run.
 on_other_end() {
   local name=$1 code=$2 restarts=${restarts_of[$1]:-0}
@@ -277,7 +282,8 @@ on_other_end() {
   fi
   ((code != kExitUsage)) || end_run $kExitUsage "$name could not be set up" "$name"
   case $name in
-    detector | viewer)
+    detector | viewer | slam)
+      [[ $name != slam ]] || can_resume || end_run $kExitDied "$name $(how "$code")" "$name"
       ((restarts < ${#kRestartDelays_s[@]})) ||
         end_run $kExitDied "$name $(how "$code") for the $((restarts + 1))th time" "$name"
       tell "$name $(how "$code"); starting it again"

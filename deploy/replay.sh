@@ -7,8 +7,10 @@
 #   --set KEY=VALUE  the same for one value; may be given several times
 #   --load-map FILE  map of an earlier run (NAME.map.lcm); needs --mode
 #   --mode NAME      what for: localise (it stays as it is) or extend (what is new is added)
-#   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), anywhere
+#   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), last, anywhere
 #   --save-map FILE  write the map there at the end
+#   --skip-s S       leave out so many seconds of the log's beginning
+#   --until-s S      read so many seconds from its beginning, and no more
 #   --row NAME       folder for the results inside DIR (default: the estimator's name)
 #   --robot FILE     sensors and their mounting (default: robot.toml beside the log)
 #   --out DIR        (default: the log's folder)
@@ -22,11 +24,11 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 parse_arguments() {
-  log='' estimator='' row='' robot='' out='' slam_options=() slam_files=() map_options=()
+  log='' estimator='' row='' robot='' out='' slam_options=() slam_files=() map_options=() part=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
-      --estimator | --config | --set | --row | --robot | --out | --load-map | --save-map | --mode | --start)
+      --estimator | --config | --set | --skip-s | --until-s | --row | --robot | --out | --load-map | --save-map | --mode | --start)
         need_value "$@"
         ;;&
       --estimator) estimator=$2 ;;
@@ -36,6 +38,7 @@ parse_arguments() {
       --save-map) map_options+=(--save-map "$2") ;;
       --mode) slam_options+=(--set "slam.mode=$2") ;;
       --start) slam_options+=(--set "slam.start=$2") ;;
+      --skip-s | --until-s) part+=("$1" "$2") ;;
       --row) need_row_name "$2" && row=$2 ;;
       --robot) robot=$2 ;;
       --out) out=$2 ;;
@@ -117,7 +120,7 @@ prepare
 show_progress_bars
 write "$folder/config.toml" "$config"
 incomplete=()
-run slam "${slam_options[@]}" "${map_options[@]}" --log "$log" --out-log "$folder/slam.lcm"
+run slam "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --out-log "$folder/slam.lcm"
 run viewer --log "$log" --log "$folder/slam.lcm" --out "$folder"
 [[ -f $folder/map.pgm ]] || die $kExitFailed "the log has given no map; see $logs/$row.slam.log"
 write_timings

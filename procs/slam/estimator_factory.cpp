@@ -10,9 +10,11 @@
 namespace waymark {
 
 std::unique_ptr<Estimator> make_estimator(const SlamConfig& config,
-                                          std::shared_ptr<const MapSnapshot> loaded_map) {
+                                          std::shared_ptr<const MapSnapshot> loaded_map,
+                                          std::vector<SurveyedMarker> survey) {
   EstimatorSetup setup = estimator_setup(config);
   setup.loaded_map = std::move(loaded_map);
+  setup.survey = std::move(survey);
   switch (config.slam.estimator) {
     case EstimatorName::kOdometry:
       return std::make_unique<OdometryEstimator>(setup);

@@ -5,10 +5,12 @@
 #include "slam/slam_config.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace waymark {
 
 std::unique_ptr<Estimator> make_estimator(const SlamConfig& config,
-                                          std::shared_ptr<const MapSnapshot> loaded_map = nullptr);
+                                          std::shared_ptr<const MapSnapshot> loaded_map = nullptr,
+                                          std::vector<SurveyedMarker> survey = {});
 
 }  // namespace waymark

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 namespace waymark {
 namespace {
@@ -251,6 +252,14 @@ class MapBuilder {
 
 std::vector<Message> to_map_messages(const MapSnapshot& map, const MapFileInfo& info) {
   return messages_with_id(map, info, id_of(messages_with_id(map, info, 0)));
+}
+
+MapFile map_of(const std::vector<Message>& messages) {
+  MapBuilder builder;
+  for (const Message& message : messages)
+    if (const std::string problem = builder.add(message); !problem.empty())
+      throw std::logic_error{"a map of messages " + problem};
+  return std::move(builder.file());
 }
 
 std::int64_t write_map_file(const std::filesystem::path& file, const MapSnapshot& map,

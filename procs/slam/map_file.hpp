@@ -28,6 +28,9 @@ struct MapFile {
 /// A map as messages, the header first. Their map_id is the hash of their content.
 std::vector<Message> to_map_messages(const MapSnapshot& map, const MapFileInfo& info);
 
+/// The map that these messages are: as if it had been saved and loaded.
+MapFile map_of(const std::vector<Message>& messages);
+
 /// Writes to a temporary name and renames: a map file that is there is whole.
 /// @return the map's id.
 /// @throws std::runtime_error naming the file.

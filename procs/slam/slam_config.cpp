@@ -102,11 +102,16 @@ void SlamSection::describe(Fields& fields) {
     fields.choice("start", start.kind,
                   {{"origin", StartKind::kOrigin},
                    {"pose", StartKind::kPose},
+                   {"last", StartKind::kLast},
                    {"anywhere", StartKind::kAnywhere}},
-                  "where in the loaded map: where mapping began, at start_pose, or unknown");
+                  "where in the loaded map: where mapping began, at start_pose, where slam stopped "
+                  "(by state_folder, else as anywhere), or unknown");
     fields.when(start.kind == StartKind::kPose, "only slam.start = pose uses it",
                 [&] { fields.section("start_pose", start); });
   });
+  fields.field("state_folder", state_folder,
+               "folder for last_pose.toml and for maps that are saved on command; empty: none");
+  fields.field("commands", commands, "whether SLAM_COMMAND is obeyed (waymark-command)");
   fields.section("preprocessing", preprocessing);
   of({EstimatorName::kOdometry, EstimatorName::kMarkerMatching}, [&] {
     fields.section("motion", motion);
@@ -128,6 +133,8 @@ void SlamConfig::check(Problems& problems) const {
   if (slam.mode == MapMode::kMap && slam.start.kind != StartKind::kOrigin)
     problems.add("slam.start",
                  "only a loaded map has another start than \"origin\": set slam.mode");
+  if (slam.start.kind == StartKind::kLast && slam.state_folder.empty())
+    problems.add("slam.start", "\"last\" needs slam.state_folder, where the last pose is kept");
   if (slam.grid.face_spacing_m > slam.grid.resolution_m) {
     problems.add("slam.grid.face_spacing_m", "must not be above resolution_m");
   }
@@ -166,6 +173,7 @@ EstimatorSetup estimator_setup(const SlamConfig& config) {
   setup.seed = static_cast<std::uint64_t>(config.slam.seed);
   setup.map_mode = config.slam.mode;
   setup.start = config.slam.start;
+  if (setup.start.kind == StartKind::kLast) setup.start.kind = StartKind::kAnywhere;
   if (setup.start.kind == StartKind::kOrigin) {
     setup.start.x_m = 0.0;
     setup.start.y_m = 0.0;

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace waymark {
 
@@ -38,6 +39,8 @@ struct SlamSection {
   double map_period_s{1.0};
   MapMode mode{MapMode::kMap};
   StartPose start{};
+  std::string state_folder{};  ///< empty: none
+  bool commands{false};
   PreprocessingConfig preprocessing{};
   MotionNoise motion{};
   UpdateGate gate{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/slam_messages.hpp"
 
+#include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
 
 #include <algorithm>
@@ -15,20 +16,7 @@ constexpr std::size_t kParticlesPerMessage = 1300;  // 48 bytes each
 constexpr std::size_t kLandmarksPerMessage = 500;   // 125 bytes each
 constexpr std::size_t kPosesPerMessage = 3000;      // 20 bytes each
 constexpr std::size_t kVerticesPerMessage = 500;    // 24 bytes each, and as many edges of 80 bytes
-
-std::int8_t to_message(Health health) {
-  switch (health) {
-    case Health::kInitialising:
-      return slam_estimate_t::HEALTH_INITIALISING;
-    case Health::kTracking:
-      return slam_estimate_t::HEALTH_TRACKING;
-    case Health::kDegenerate:
-      return slam_estimate_t::HEALTH_DEGENERATE;
-    case Health::kLost:
-      return slam_estimate_t::HEALTH_LOST;
-  }
-  return slam_estimate_t::HEALTH_UNKNOWN;
-}
+constexpr std::size_t kChangesPerMessage = 900;     // 69 bytes each
 
 std::int8_t to_message(WeakAxisSource source) {
   switch (source) {
@@ -40,6 +28,24 @@ std::int8_t to_message(WeakAxisSource source) {
       return slam_estimate_t::SOURCE_MARKERS;
   }
   return slam_estimate_t::SOURCE_UNKNOWN;
+}
+
+std::int8_t to_message(MapChange::Kind kind) {
+  switch (kind) {
+    case MapChange::Kind::kMarkerMoved:
+      return map_change_t::KIND_MARKER_MOVED;
+    case MapChange::Kind::kMarkerMissing:
+      return map_change_t::KIND_MARKER_MISSING;
+    case MapChange::Kind::kMarkerNew:
+      return map_change_t::KIND_MARKER_NEW;
+    case MapChange::Kind::kWallNew:
+      return map_change_t::KIND_WALL_NEW;
+    case MapChange::Kind::kWallGone:
+      return map_change_t::KIND_WALL_GONE;
+    case MapChange::Kind::kSurveyOff:
+      return map_change_t::KIND_SURVEY_OFF;
+  }
+  return map_change_t::KIND_MARKER_NEW;
 }
 
 marker_landmark_t to_message(const Landmark& landmark) {
@@ -75,6 +81,20 @@ graph_edge_t to_message(const GraphEdge& edge) {
 
 }  // namespace
 
+std::int8_t health_number(Health health) {
+  switch (health) {
+    case Health::kInitialising:
+      return slam_estimate_t::HEALTH_INITIALISING;
+    case Health::kTracking:
+      return slam_estimate_t::HEALTH_TRACKING;
+    case Health::kDegenerate:
+      return slam_estimate_t::HEALTH_DEGENERATE;
+    case Health::kLost:
+      return slam_estimate_t::HEALTH_LOST;
+  }
+  return slam_estimate_t::HEALTH_UNKNOWN;
+}
+
 slam_estimate_t to_message(const Estimate& estimate) {
   slam_estimate_t message{};
   message.utime = to_us(estimate.time);
@@ -83,7 +103,7 @@ slam_estimate_t to_message(const Estimate& estimate) {
   message.y_m = estimate.map_from_base.y();
   message.theta_rad = estimate.map_from_base.theta();
   Eigen::Map<RowMajor3>{message.covariance} = estimate.covariance;
-  message.health = to_message(estimate.health);
+  message.health = health_number(estimate.health);
   message.num_particles = static_cast<std::int32_t>(estimate.num_particles);
   message.effective_particles = estimate.effective_particles;
   message.beams_on_markers = estimate.beams_on_markers;
@@ -97,6 +117,16 @@ slam_estimate_t to_message(const Estimate& estimate) {
     message.weak_axis_source = to_message(estimate.weak_axis_source);
   }
   return message;
+}
+
+std::int64_t new_map_id(Timestamp first_observation, std::int64_t parent_map_id) {
+  Message named;
+  for (const std::int64_t part : {to_us(first_observation), parent_map_id})
+    for (int byte = 0; byte < 8; ++byte)
+      named.payload.push_back(
+          static_cast<std::uint8_t>(static_cast<std::uint64_t>(part) >> (8 * byte)));
+  const std::int64_t id = content_hash(named);
+  return id == 0 ? 1 : id;
 }
 
 annotated_scan_t to_message(const LidarScan& scan, const Observation& observation,
@@ -156,6 +186,28 @@ std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Times
     message.num_landmarks = static_cast<std::int32_t>(message.landmarks.size());
   }
   return messages;
+}
+
+map_changes_t to_message(std::span<const MapChange> changes, Timestamp time, std::int64_t map_id) {
+  map_changes_t message{};
+  message.utime = to_us(time);
+  message.map_id = map_id;
+  for (const MapChange& change : changes.first(std::min(changes.size(), kChangesPerMessage))) {
+    map_change_t& sent = message.changes.emplace_back();
+    sent.kind = to_message(change.kind);
+    sent.id = change.id;
+    sent.instance = change.instance;
+    sent.x_m = change.place.x();
+    sent.y_m = change.place.y();
+    sent.yaw_rad = change.place.theta();
+    sent.was_x_m = change.was_at.x();
+    sent.was_y_m = change.was_at.y();
+    sent.size_m = change.size_m;
+    sent.sigmas = change.sigmas;
+    sent.support = change.support;
+  }
+  message.num_changes = static_cast<std::int32_t>(message.changes.size());
+  return message;
 }
 
 std::vector<trajectory_t> to_messages(std::span<const TimedPose> trajectory) {

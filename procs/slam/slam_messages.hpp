@@ -10,7 +10,12 @@
 
 namespace waymark {
 
+std::int8_t health_number(Health health);
+
 slam_estimate_t to_message(const Estimate& estimate);
+
+/// Of a map that is being drawn: tells it from any other. Never 0.
+std::int64_t new_map_id(Timestamp first_observation, std::int64_t parent_map_id);
 
 annotated_scan_t to_message(const LidarScan& scan, const Observation& observation,
                             const Se2& map_from_lidar);
@@ -20,6 +25,9 @@ particles_t to_message(std::span<const PublishedParticle> particles, Timestamp t
 
 /// In parts that each fit one datagram; at least one.
 std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Timestamp time);
+
+/// As many as fit one datagram.
+map_changes_t to_message(std::span<const MapChange> changes, Timestamp time, std::int64_t map_id);
 
 /// In parts that each fit one datagram; none for an empty trajectory.
 std::vector<trajectory_t> to_messages(std::span<const TimedPose> trajectory);

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/slam_node.hpp"
 
+#include "common/files/writable_folder.hpp"
 #include "common/messages/convert.hpp"
 #include "slam/estimator_factory.hpp"
 #include "slam/map_file.hpp"
 #include "slam/slam_messages.hpp"
+#include "slam/survey_file.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -22,13 +23,6 @@ constexpr std::string_view kUnplaced = "estimates before the place in the map wa
 std::int32_t mbot_mode(MapMode mode) {
   if (mode == MapMode::kLocalise) return slam_status_t::MODE_LOCALISATION_ONLY;
   return slam_status_t::MODE_FULL;
-}
-
-MapFileInfo map_info(const SlamConfig& config) {
-  MapFileInfo info;
-  info.marker_dictionary = config.robot.markers.dictionary;
-  info.marker_size_m = config.robot.markers.size_m;
-  return info;
 }
 
 void check_map_options(const SlamConfig& config) {
@@ -48,8 +42,10 @@ void check_map_options(const SlamConfig& config) {
         "slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
 }
 
+/// @param frame  name of the frame that the map is in.
 /// @throws SetupError  also where the map does not suit this robot.
-std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config) {
+std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config, std::string& frame) {
+  frame = config.robot.markers.survey_file.empty() ? "map" : "survey";
   check_map_options(config);
   if (config.load_map.empty()) return nullptr;
   MapFile file = read_map_file(config.load_map);
@@ -67,11 +63,13 @@ std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config) {
     refuse(fmt::format("has cells of {} m: set slam.grid.resolution_m, which is {}, to that",
                        file.map.grid.frame.resolution_m, config.slam.grid.resolution_m));
   }
-  const bool has_markers =
-      std::any_of(file.map.landmarks.begin(), file.map.landmarks.end(),
-                  [](const Landmark& landmark) { return landmark.is_confirmed(); });
-  if (config.slam.start.kind == StartKind::kAnywhere && !has_markers)
-    refuse("has no markers, so that slam.start = anywhere cannot find the robot in it");
+  const bool is_empty = file.map.landmarks.empty() && file.map.walls.sums().empty();
+  const bool is_searched =
+      config.slam.start.kind == StartKind::kAnywhere || config.slam.start.kind == StartKind::kLast;
+  if (is_searched && is_empty)
+    refuse(
+        "has neither markers nor walls: slam.start = anywhere or last cannot find the robot there");
+  frame = file.info.frame;
   return std::make_shared<const MapSnapshot>(std::move(file.map));
 }
 
@@ -102,6 +100,20 @@ CountKind kind_of(Skip skip) {
   return CountKind::kEvent;
 }
 
+/// A loaded map has its frame already.
+std::vector<SurveyedMarker> load_survey(const SlamConfig& config) {
+  const std::string& file = config.robot.markers.survey_file;
+  if (file.empty()) return {};
+  if (config.slam.estimator != EstimatorName::kWaymark) {
+    spdlog::info("the survey '{}' is not used: only the estimator 'waymark' can", file);
+    return {};
+  }
+  std::vector<SurveyedMarker> survey = read_survey(file, config.robot.markers.dictionary);
+  if (!config.load_map.empty())
+    spdlog::info("the survey '{}' is checked, but not used: the loaded map has its frame", file);
+  return survey;
+}
+
 }  // namespace
 
 SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
@@ -109,9 +121,12 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
       counters_{inbox.counters()},
       outbox_{outbox},
       queue_{sensor_setup(config)},
-      loaded_map_{load_map(config)},
+      loaded_map_{load_map(config, frame_)},
+      survey_{load_survey(config)},
       map_id_{loaded_map_ && config.slam.mode == MapMode::kLocalise ? loaded_map_->map_id : 0},
-      estimator_{make_estimator(config, loaded_map_)} {
+      frame_map_id_{loaded_map_ ? loaded_map_->map_id : 0},
+      estimator_{make_estimator(config, loaded_map_, survey_)} {
+  if (!config.slam.state_folder.empty()) make_writable_folder(config.slam.state_folder);
   inbox.on<planar_lidar_t>(channels::kLidar, [this](const auto& m) { take(to_scan(m)); });
   inbox.on<lidar_t>(channels::kMbotLidar, [this](const auto& m) { take(to_scan(m)); });
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) {
@@ -125,6 +140,14 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
   if (config.channels.uses(channels::kMbotSystemReset.name)) {
     inbox.on<mbot_slam_reset_t>(channels::kMbotSystemReset, [this](const auto& m) { obey(m); });
   }
+  inbox.on<command_t>(channels::kSlamCommand, [this](const auto& m) {
+    const auto reply =
+        command_desk_.take(m, newest_, [this](const Command& command) { return obey(command); });
+    if (reply)
+      outbox_.publish(channels::kSlamReply, *reply);
+    else
+      counters_.add("SLAM_COMMAND dropped: too many", CountKind::kLoss);
+  });
 }
 
 void SlamNode::finish() {
@@ -132,6 +155,7 @@ void SlamNode::finish() {
   process_ready_scans();
   judge_input();
   if (!config_.save_map.empty()) save_map();
+  keep_last_pose();
   if (!last_estimate_) return;
   for (map_tiles_t part : map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_)) {
     part.map_id = map_id_;
@@ -158,10 +182,7 @@ void SlamNode::save_map() {
     return;
   }
   try {
-    const std::int64_t map_id = write_map_file(config_.save_map, *map, map_info(config_));
-    spdlog::info("map {:016x} is in '{}': {} markers, {} keyframes",
-                 static_cast<std::uint64_t>(map_id), config_.save_map.string(),
-                 map->landmarks.size(), map->graph.poses.size());
+    save_map_to(config_.save_map, *map);
   } catch (const std::exception& error) {
     failed_ = true;
     spdlog::error("{}", error.what());
@@ -173,12 +194,17 @@ void SlamNode::judge_input() {
   const std::int64_t scans = counters_.get(received_on(channels::kLidar.name));
   const std::int64_t odometry = counters_.get(received_on(channels::kOdometry.name));
   const std::int64_t unplaced = counters_.get(kUnplaced);
-  if (!last_estimate_ && unplaced > 0) {
+  if (!last_estimate_ && unplaced > 0 && loaded_map_ == nullptr) {
+    failed_ = true;
+    spdlog::error(
+        "no pose: in {} estimates the survey's frame was never known; that takes two surveyed "
+        "markers, or one with yaw, three times sighted",
+        unplaced);
+  } else if (!last_estimate_ && unplaced > 0) {
     failed_ = true;
     spdlog::error(
         "no pose: in {} estimates the robot's place in '{}' was never certain; more than one "
-        "place, "
-        "or none, agrees with what was seen",
+        "place, or none, agrees with what was seen",
         unplaced, config_.load_map.string());
   } else if (!last_estimate_ && scans + odometry > 0) {
     failed_ = true;
@@ -210,6 +236,10 @@ void SlamNode::process_ready_scans() {
 }
 
 void SlamNode::process(const SensorQueue::Ready& ready) {
+  newest_ = ready.observation.time;
+  odom_from_base_ = ready.observation.odom_from_base;
+  if (map_id_ == 0) map_id_ = new_map_id(newest_, frame_map_id_);
+  if (!was_resumed_) resume_last_pose(ready.observation);
   timer_.start();
   const Estimate estimate = estimator_->update(ready.observation);
   timer_.stop(estimate.updated);
@@ -225,6 +255,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   }
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_estimate_ = time;
+  placed_ = estimate;
   if (estimate.slipped) counters_.add("slips of the wheels");
   if (estimate.calibration_widened) counters_.add("calibration found worse than configured");
   if (ready.scan && estimate.ranges_wrong) counters_.add("scans with wrong ranges");
@@ -233,6 +264,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
                     to_message(*ready.scan, ready.observation, map_from_lidar));
   outbox_.publish(channels::kSlamPose, to_pose_message(time, estimate.map_from_base));
   outbox_.publish(channels::kSlamEstimate, message);
+  outbox_.publish(channels::kSlamCorrection, correction_.make(estimate, odom_from_base_, map_id_));
   outbox_.publish(channels::kSlamParticles, to_message(estimator_->particles(), time));
   publish_map_when_due(time);
 }
@@ -246,6 +278,7 @@ void SlamNode::publish_map_when_due(Timestamp time) {
   }
   publish_markers(time);
   publish_grid(time);
+  keep_last_pose();
 }
 
 void SlamNode::publish_markers(Timestamp time) {
@@ -253,6 +286,13 @@ void SlamNode::publish_markers(Timestamp time) {
     part.map_id = map_id_;
     outbox_.publish(channels::kSlamMarkers, part);
   }
+  if (loaded_map_ == nullptr && survey_.empty()) return;
+  const std::vector<MapChange> changes = estimator_->changes();
+  outbox_.publish(channels::kSlamChanges, to_message(changes, time, map_id_));
+  for (const MapChange& change : changes)
+    if (change.kind == MapChange::Kind::kSurveyOff && named_survey_ids_.insert(change.id).second)
+      spdlog::warn("surveyed marker {} is {:.1f} sigma from where the survey has it", change.id,
+                   change.sigmas);
 }
 
 void SlamNode::publish_grid(Timestamp time) {

@@ -4,20 +4,25 @@
 
 #include "common/messages/channels.hpp"
 #include "common/node/node.hpp"
+#include "slam/command_desk.hpp"
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/input/sensor_queue.hpp"
+#include "slam/correction.hpp"
 #include "slam/map_publisher.hpp"
 #include "slam/slam_config.hpp"
 #include "slam/update_timer.hpp"
 
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace waymark {
 
 /// Hears LIDAR, ODOMETRY and MARKERS, never the truth. Answers every scan with SLAM_SCAN,
-/// SLAM_POSE, SLAM_ESTIMATE and SLAM_PARTICLES, and once per map period with SLAM_MAP and
-/// SLAM_MARKERS.
+/// SLAM_POSE, SLAM_ESTIMATE, SLAM_CORRECTION and SLAM_PARTICLES, and once per map period with
+/// SLAM_MAP and SLAM_MARKERS; every SLAM_COMMAND with SLAM_REPLY.
 class SlamNode final : public Node {
  public:
   using Config = SlamConfig;
@@ -37,7 +42,17 @@ class SlamNode final : public Node {
   bool failed() const override { return failed_; }
 
  private:
+  std::int64_t save_map_to(const std::filesystem::path& file, const MapSnapshot& map);
   void save_map();
+  std::string obey(const Command& command);
+  std::string save_named(const std::string& name);
+  std::string reset();
+  std::string set_pose(const StartPose& pose);
+  std::string set_mode(MapMode mode);
+  void begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> map,
+                       const StartPose& start);
+  void resume_last_pose(const Observation& first);
+  void keep_last_pose();
   void take(LidarScan scan);
   void judge_input();
   void process_ready_scans();
@@ -55,11 +70,21 @@ class SlamNode final : public Node {
   Counters& counters_;
   Outbox& outbox_;
   SensorQueue queue_;
+  std::string frame_{};  ///< name of the map's frame
   std::shared_ptr<const MapSnapshot> loaded_map_;
-  std::int64_t map_id_;  ///< 0: of no file
+  std::vector<SurveyedMarker> survey_;
+  std::int64_t map_id_;        ///< of what is published; 0: not begun
+  std::int64_t frame_map_id_;  ///< of the map file whose frame it has; 0: none
   std::unique_ptr<Estimator> estimator_;
   MapPublisher map_publisher_{};
+  CorrectionMaker correction_{};
+  CommandDesk command_desk_{};
   std::optional<Timestamp> last_estimate_{};
+  std::optional<Estimate> placed_{};  ///< newest estimate with a pose, in this map
+  Se2 odom_from_base_{};              ///< of the newest observation
+  Timestamp newest_{};                ///< observation
+  std::set<int> named_survey_ids_{};
+  bool was_resumed_{false};  ///< or could not be
   std::optional<Timestamp> next_map_{};
   UpdateTimer timer_{};
   bool failed_{false};

@@ -79,6 +79,18 @@ void SceneUpdater::append(std::vector<Pose>& path, const Pose& pose, std::string
   }
 }
 
+void SceneUpdater::begin_map() {
+  Scene fresh;
+  fresh.title = scene_.title;
+  fresh.odometry = std::move(scene_.odometry);
+  fresh.truth = std::move(scene_.truth);
+  scene_ = std::move(fresh);
+  marker_parts_.clear();
+  marker_parts_utime_ = -1;
+  trajectory_parts_.clear();
+  num_trajectory_parts_ = 0;
+}
+
 void SceneUpdater::add(const map_tiles_t& message) {
   const TileLayout layout{message.origin_x_m, message.origin_y_m, message.resolution_m,
                           message.tile_size_cells};
@@ -111,6 +123,20 @@ void SceneUpdater::add(const marker_map_t& message) {
   scene_.landmarks.clear();
   for (const auto& [index, landmarks] : marker_parts_)
     scene_.landmarks.insert(scene_.landmarks.end(), landmarks.begin(), landmarks.end());
+}
+
+void SceneUpdater::add(const map_changes_t& message) {
+  std::vector<MapChange>& changes = scene_.changes.emplace();
+  for (const map_change_t& change : message.changes) {
+    changes.push_back({.kind = static_cast<MapChange::Kind>(change.kind),
+                       .id = change.id,
+                       .instance = change.instance,
+                       .place = {change.x_m, change.y_m, change.yaw_rad},
+                       .was_at = {change.was_x_m, change.was_y_m},
+                       .size_m = change.size_m,
+                       .sigmas = change.sigmas,
+                       .support = change.support});
+  }
 }
 
 void SceneUpdater::add(const slam_estimate_t& message) {

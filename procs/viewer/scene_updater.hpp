@@ -17,9 +17,12 @@ class SceneUpdater {
  public:
   SceneUpdater(Scene& scene, Counters& counters) : scene_{scene}, counters_{counters} {}
 
+  /// Slam draws another map: what was in the one before is forgotten.
+  void begin_map();
   void add(const map_tiles_t& message);
   /// Replaces the landmarks as soon as all parts of one time are there.
   void add(const marker_map_t& message);
+  void add(const map_changes_t& message);
   void add(const slam_estimate_t& message);
   void add(const annotated_scan_t& message);
   void add(const particles_t& message);

@@ -17,6 +17,7 @@
 
 #include <array>
 #include <thread>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -102,15 +103,25 @@ void ViewerNode::subscribe_page(Inbox& inbox) {
 
 void ViewerNode::subscribe(Inbox& inbox) {
   if (live_feed_) subscribe_page(inbox);
-  subscribe_both(inbox, channels::kSlamMap);
+  inbox.on<map_tiles_t>(channels::kSlamMap, [this](const auto& m) {
+    if (!follow(m.map_id, timestamp_from_us(m.utime))) return;
+    updater_.add(m);
+    if (live_feed_) live_feed_->add(m);
+  });
+  inbox.on<map_changes_t>(channels::kSlamChanges, [this](const auto& m) {
+    if (follow(m.map_id, timestamp_from_us(m.utime))) updater_.add(m);
+  });
   inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) {
+    if (!follow(m.map_id, timestamp_from_us(m.utime))) return;
     updater_.add(m);
     for (const auto& change : change_monitor_.update(timestamp_from_us(m.utime), scene_.landmarks))
       log_change(change);
     if (live_feed_) live_feed_->add_markers(timestamp_from_us(m.utime), scene_.landmarks);
   });
   subscribe_both(inbox, channels::kSlamScan);
-  inbox.on<trajectory_t>(channels::kSlamTrajectory, [this](const auto& m) { updater_.add(m); });
+  inbox.on<trajectory_t>(channels::kSlamTrajectory, [this](const auto& m) {
+    if (follow(m.map_id, timestamp_from_us(m.utime))) updater_.add(m);
+  });
   inbox.on<pose_graph_t>(channels::kMapGraph, [this](const auto& m) {
     if (m.part == 0) graph_parts_.clear();
     if (m.part == std::ssize(graph_parts_)) graph_parts_.push_back(m);
@@ -119,6 +130,7 @@ void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) { updater_.add_odometry(m); });
   inbox.on<pose2D_t>(channels::kTruePose, [this](const auto& m) { updater_.add_truth(m); });
   inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) {
+    if (!follow(m.map_id, timestamp_from_us(m.utime))) return;
     if (m.has_pose != 0) updater_.add(m);
     if (m.has_pose != 0 && !scene_.estimates.empty()) {
       if (const auto change = change_monitor_.update(scene_.estimates.back())) log_change(*change);
@@ -126,6 +138,39 @@ void ViewerNode::subscribe(Inbox& inbox) {
     }
     write_when_due(timestamp_from_us(m.utime));
   });
+}
+
+/// Slam was started again, or told to begin anew.
+bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
+  if (map_id == map_id_) return true;
+  if (map_id_ && time < map_began_) return false;
+  if (map_id_) {
+    spdlog::info("slam has begun map {:016x}", static_cast<std::uint64_t>(map_id));
+    set_old_map_aside();
+    updater_.begin_map();
+    change_monitor_ = {};
+    if (live_feed_) live_feed_->begin_map();
+  }
+  map_id_ = map_id;
+  map_began_ = time;
+  return true;
+}
+
+/// Its files, as they are now, go into a folder of their own.
+void ViewerNode::set_old_map_aside() {
+  constexpr int kMostKept = 20;  // a slam that begins anew all the time does not fill the disk
+  if (!has_heard_of_slam(scene_) || num_set_aside_ == kMostKept) return;
+  ++num_set_aside_;
+  const auto path =
+      folder_.path() / fmt::format("map-{:016x}", static_cast<std::uint64_t>(*map_id_));
+  try {
+    viewer::OutputFolder current = std::exchange(folder_, viewer::OutputFolder{path});
+    write_files();
+    folder_ = std::move(current);
+    spdlog::info("the map before is in '{}'", path.string());
+  } catch (const SetupError& error) {
+    spdlog::error("the map before is lost: {}", error.what());
+  }
 }
 
 void ViewerNode::write_when_due(Timestamp time) {
@@ -149,6 +194,7 @@ void ViewerNode::write_data() {
   folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
   folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
   folder_.write("markers.csv", viewer::markers_csv_text(scene_.landmarks));
+  if (scene_.changes) folder_.write("changes.csv", viewer::changes_csv_text(*scene_.changes));
 }
 
 void ViewerNode::write_final_trajectory() {

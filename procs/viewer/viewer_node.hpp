@@ -44,6 +44,9 @@ class ViewerNode final : public Node {
   /// What only the page shows.
   void subscribe_page(Inbox& inbox);
   void start_page();
+  /// @return false for what is left of the map before.
+  bool follow(std::int64_t map_id, Timestamp time);
+  void set_old_map_aside();
   void write_files();
   /// Writes the data files when a period has passed, and with them one of the pictures: all at
   /// once would hold up a lockstep run. Large maps, which cost more, are written less often.
@@ -61,6 +64,9 @@ class ViewerNode final : public Node {
   viewer::ChangeMonitor change_monitor_{};
   viewer::OutputFolder folder_;
   viewer::Pacer pacer_;
+  std::optional<std::int64_t> map_id_{};  ///< of the map in the scene
+  Timestamp map_began_{};
+  int num_set_aside_{0};
   std::optional<Timestamp> last_write_time_{};
   std::size_t next_picture_{0};
   std::vector<pose_graph_t> graph_parts_{};

@@ -69,8 +69,7 @@ class Replay : public ::testing::Test {
     return folder_ / name;
   }
 
-  int replay(const std::vector<std::filesystem::path>& logs) {
-    ProcessOptions options;
+  int replay(const std::vector<std::filesystem::path>& logs, ProcessOptions options = {}) {
     options.logs = logs;
     options.out_log = folder_ / "out.lcm";
     Inbox inbox;
@@ -103,6 +102,17 @@ TEST_F(Replay, MergesLogsByTime) {
   EXPECT_EQ(heard_, "ODOMETRY 1 1\nSLAM_POSE 3 2\nODOMETRY 5 1\nend\n");
   LogReader out{folder_ / "out.lcm"};
   EXPECT_EQ(out.next()->channel, "TRUE_POSE");
+}
+
+TEST_F(Replay, ReadsAPartOfALog) {
+  ProcessOptions options;
+  options.skip_s = 2.0;
+  options.until_s = 4.0;
+  std::vector<Message> messages;
+  for (int second = 0; second < 6; ++second)
+    messages.push_back(pose("ODOMETRY", 10'000'000 + 1'000'000 * second, 1));
+  EXPECT_EQ(replay({log("a.lcm", messages)}, options), kExitOk);
+  EXPECT_EQ(heard_, "ODOMETRY 12000000 1\nODOMETRY 13000000 1\nODOMETRY 14000000 1\nend\n");
 }
 
 TEST_F(Replay, ProgressIsThatOfAllLogsTogether) {

@@ -132,6 +132,42 @@ replay_of_a_damaged_log() {
   done
 }
 
+# ask CODE TEXT ARGUMENT...: waymark-command ends with that code and says that.
+ask() {
+  local expected=$1 text=$2 code=0
+  shift 2
+  "$work/bin/waymark-command" --lcm-url "$url" "$@" >"$work/ask.output" 2>&1 || code=$?
+  ((code == expected)) || fail "waymark-command $*: exit code $code instead of $expected"
+  grep -q -- "$text" "$work/ask.output" || fail "waymark-command $* does not say '$text'"
+}
+
+# A map that is saved on command; the replay of the log saves the same bytes.
+commands_while_it_runs() {
+  url="udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
+  ask 4 "no answer within 2 s" reset
+  ask 2 "" fly
+  ask 2 "" save
+  sed -i 's/^speed_mps = .*/speed_mps = 0.1/' "$work/short.toml"
+  local options=(--set slam.commands=true --set "slam.state_folder=$work/state")
+  begin run --lcm-url "$url" "${options[@]}"
+  local run=$!
+  until_under_way run
+  ask 1 "letters, digits" save ../map
+  ask 1 "in that mode already" set-mode map
+  ask 1 "no number" set-pose nan 0 0
+  until "$work/bin/waymark-command" --lcm-url "$url" save day1 >"$work/ask.output" 2>&1; do
+    kill -0 $run || fail "the run ended before a map was saved"
+  done
+  "$work/bin/waymark-map" check "$work/state/day1.map.lcm" >"$work/check.output" 2>&1 || fail "the map is not whole"
+  expect_code 0 $run
+  cp "$work/state/day1.map.lcm" "$work/live.map.lcm"
+  "${launch%launch.sh}replay.sh" "$work/run/run.lcm" --estimator waymark --row again "${options[@]}" \
+    >"$work/replay.output" 2>&1 || fail "replay: exit code $?"
+  cmp "$work/live.map.lcm" "$work/state/day1.map.lcm" || fail "the replay saves another map"
+  cmp "$work/run/waymark/map.pgm" "$work/run/again/map.pgm" || fail "the replay draws another map"
+  expect_nothing_left
+}
+
 # A sweep with real programs: figures, an expectation that cannot be reached, and going on.
 sweep() {
   command -v parallel >/dev/null || exit 77

@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
       return transform_map(file, {x_m, y_m, yaw_rad}, frame, out) + "\n";
     };
   });
-  CLI::App& merge = add("merge", "two maps as one, by the markers in both");
+  CLI::App& merge = add("merge", "two maps as one, by the markers in both, else by their walls");
   merge.add_option("other", other, "map file; comes out in the frame of the first")->required();
   merge.add_option("--out", out, "the new map file")->required();
   merge.callback([&] {

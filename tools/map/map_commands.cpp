@@ -4,6 +4,7 @@
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "slam/core/graph/map_merge.hpp"
+#include "slam/core/graph/wall_alignment.hpp"
 #include "slam/map_file.hpp"
 #include "viewer/viewer_node.hpp"
 
@@ -124,16 +125,20 @@ std::string merge_maps(const std::filesystem::path& a, const std::filesystem::pa
   const MapFile first = read_map_file(a);
   const MapFile second = read_map_file(b);
   need_same_markers(first, second);
-  const auto alignment = align_by_markers(first.map, second.map);
+  auto alignment = align_by_markers(first.map, second.map);
+  const bool is_by_markers = alignment.has_value();
+  if (!is_by_markers) alignment = align_by_walls(first.map, second.map);
   if (!alignment) {
     throw SetupError{fmt::format(
-        "'{}' and '{}' share no two markers that lie alike in both, so nothing says how they fit",
+        "'{}' and '{}' share no two markers, and no two stretches of walls that show every "
+        "direction, that lie alike in both: nothing says how they fit",
         a.string(), b.string())};
   }
   const std::int64_t map_id =
       write_map_file(out, merged(first.map, second.map, alignment->a_from_b), first.info);
-  return fmt::format("map {} of both is in '{}': {} shared markers agree to {:.3f} m", hex(map_id),
-                     out.string(), alignment->shared_markers, alignment->rms_m);
+  return fmt::format("map {} of both is in '{}': {} {} agree to {:.3f} m", hex(map_id),
+                     out.string(), alignment->shared,
+                     is_by_markers ? "shared markers" : "stretches of walls", alignment->rms_m);
 }
 
 }  // namespace waymark

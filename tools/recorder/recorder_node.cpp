@@ -16,7 +16,9 @@ constexpr std::array kDataChannels{
     channels::kDriveCommand.name, channels::kTruePose.name,       channels::kMarkers.name,
     channels::kSlamPose.name,     channels::kSlamEstimate.name,   channels::kSlamMap.name,
     channels::kSlamGrid.name,     channels::kSlamMarkers.name,    channels::kSlamParticles.name,
-    channels::kSlamScan.name,     channels::kSlamTrajectory.name, channels::kMapGraph.name};
+    channels::kSlamScan.name,     channels::kSlamTrajectory.name, channels::kSlamCorrection.name,
+    channels::kSlamChanges.name,  channels::kSlamCommand.name,    channels::kSlamReply.name,
+    channels::kMapGraph.name};
 
 /// @throws SetupError when there is a recording of that name, or what is left of one.
 void protect_recordings(const std::filesystem::path& log) {

@@ -5,8 +5,11 @@
 #include <waymark/ack_t.hpp>
 #include <waymark/annotated_scan_t.hpp>
 #include <waymark/calibration_t.hpp>
+#include <waymark/command_t.hpp>
+#include <waymark/correction_t.hpp>
 #include <waymark/image_t.hpp>
 #include <waymark/lidar_t.hpp>
+#include <waymark/map_changes_t.hpp>
 #include <waymark/map_header_t.hpp>
 #include <waymark/map_tiles_t.hpp>
 #include <waymark/map_walls_t.hpp>
@@ -19,6 +22,7 @@
 #include <waymark/pose2D_t.hpp>
 #include <waymark/pose_graph_t.hpp>
 #include <waymark/process_status_t.hpp>
+#include <waymark/reply_t.hpp>
 #include <waymark/slam_estimate_t.hpp>
 #include <waymark/slam_status_t.hpp>
 #include <waymark/tick_t.hpp>
@@ -48,12 +52,16 @@ inline constexpr Channel<marker_detections_t> kMarkers{"MARKERS"};
 
 inline constexpr Channel<pose2D_t> kSlamPose{"SLAM_POSE"};
 inline constexpr Channel<slam_estimate_t> kSlamEstimate{"SLAM_ESTIMATE"};
+inline constexpr Channel<correction_t> kSlamCorrection{"SLAM_CORRECTION"};
 inline constexpr Channel<map_tiles_t> kSlamMap{"SLAM_MAP"};
 inline constexpr Channel<occupancy_grid_t> kSlamGrid{"SLAM_GRID"};
 inline constexpr Channel<marker_map_t> kSlamMarkers{"SLAM_MARKERS"};
+inline constexpr Channel<map_changes_t> kSlamChanges{"SLAM_CHANGES"};
 inline constexpr Channel<particles_t> kSlamParticles{"SLAM_PARTICLES"};
 inline constexpr Channel<annotated_scan_t> kSlamScan{"SLAM_SCAN"};
 inline constexpr Channel<trajectory_t> kSlamTrajectory{"SLAM_TRAJECTORY"};
+inline constexpr Channel<command_t> kSlamCommand{"SLAM_COMMAND"};
+inline constexpr Channel<reply_t> kSlamReply{"SLAM_REPLY"};
 
 // Only where [channels] names them: an MBot's.
 inline constexpr Channel<slam_status_t> kMbotSlamStatus{"MBOT_SLAM_STATUS"};

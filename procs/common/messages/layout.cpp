@@ -154,6 +154,14 @@ constexpr FieldLayout kGraphEdge[] = {fixed(kInt32), fixed(kInt32), fixed(kDoubl
 constexpr FieldLayout kPoseGraph[] = {fixed(kInt64),      fixed(kInt32),    fixed(kInt32),
                                       fixed(kInt32),      many(kVertex, 3), fixed(kInt32),
                                       many(kGraphEdge, 5)};
+constexpr FieldLayout kCorrection[] = {fixed(kInt64, 2), fixed(kDouble, 3), fixed(kDouble, 9),
+                                       fixed(kByte),     fixed(kDouble, 3), fixed(kByte)};
+constexpr FieldLayout kCommand[] = {fixed(kInt64, 2),  fixed(kByte, 2),   text(),
+                                    fixed(kDouble, 3), fixed(kDouble, 2), fixed(kByte)};
+constexpr FieldLayout kReply[] = {fixed(kInt64, 2), fixed(kByte), text()};
+constexpr FieldLayout kMapChange[] = {fixed(kByte), fixed(kInt32), fixed(kInt32), fixed(kDouble, 7),
+                                      fixed(kInt32)};
+constexpr FieldLayout kMapChanges[] = {fixed(kInt64, 2), fixed(kInt32), many(kMapChange, 1)};
 constexpr FieldLayout kCalibration[] = {fixed(kInt64, 2), fixed(kDouble, 7), fixed(kDouble, 49)};
 constexpr FieldLayout kAnnotatedScan[] = {fixed(kInt64),          fixed(kDouble, 3),
                                           fixed(kInt32),          fixed_array(kFloat, 2),
@@ -202,6 +210,26 @@ StructLayout layout_of<lidar_t>() {
 template <>
 StructLayout layout_of<calibration_t>() {
   return kCalibration;
+}
+
+template <>
+StructLayout layout_of<command_t>() {
+  return kCommand;
+}
+
+template <>
+StructLayout layout_of<correction_t>() {
+  return kCorrection;
+}
+
+template <>
+StructLayout layout_of<map_changes_t>() {
+  return kMapChanges;
+}
+
+template <>
+StructLayout layout_of<reply_t>() {
+  return kReply;
 }
 
 template <>

@@ -105,6 +105,17 @@ RejectReason validate(const calibration_t& m) {
   return first_of(true, finite(m.mean) && finite(m.covariance));
 }
 
+RejectReason validate(const command_t& /*m*/) {
+  return RejectReason::kNone;
+}
+
+RejectReason validate(const correction_t& m) {
+  return first_of(
+      m.health >= slam_estimate_t::HEALTH_UNKNOWN && m.health <= slam_estimate_t::HEALTH_LOST &&
+          m.reason >= correction_t::REASON_ODOMETRY && m.reason <= correction_t::REASON_COMMAND,
+      all_finite(m.x_m, m.y_m, m.theta_rad) && finite(m.covariance) && finite(m.jump));
+}
+
 RejectReason validate(const image_t& m) {
   const auto is_side = [](int side_px) {
     return side_px > 0 && side_px <= bounds::kImageSide_px;
@@ -126,6 +137,18 @@ RejectReason validate(const lidar_t& m) {
   if (!times_near) return RejectReason::kBadTime;
   return first_of(true, finite(m.thetas),
                   are_ranges_within(m.ranges) && each_within(bounds::kAngle_rad, m.thetas));
+}
+
+RejectReason validate(const map_changes_t& m) {
+  const bool kinds_known = std::ranges::all_of(m.changes, [](const map_change_t& change) {
+    return change.kind >= map_change_t::KIND_MARKER_MOVED &&
+           change.kind <= map_change_t::KIND_SURVEY_OFF;
+  });
+  const bool changes_finite = std::ranges::all_of(m.changes, [](const map_change_t& change) {
+    return all_finite(change.x_m, change.y_m, change.yaw_rad, change.was_x_m, change.was_y_m,
+                      change.size_m, change.sigmas);
+  });
+  return first_of(has_size(m.changes, m.num_changes) && kinds_known, changes_finite);
 }
 
 RejectReason validate(const map_header_t& m) {
@@ -246,6 +269,10 @@ RejectReason validate(const process_status_t& m) {
     return counter.kind >= counter_t::KIND_EVENT && counter.kind <= counter_t::KIND_REJECTION;
   });
   return first_of(has_size(m.counters, m.num_counters) && kinds_known, true);
+}
+
+RejectReason validate(const reply_t& m) {
+  return first_of(m.state == reply_t::STATE_DONE || m.state == reply_t::STATE_REFUSED, true);
 }
 
 RejectReason validate(const slam_estimate_t& m) {

@@ -11,8 +11,12 @@ namespace waymark {
 RejectReason validate(const ack_t& message);
 RejectReason validate(const annotated_scan_t& message);
 RejectReason validate(const calibration_t& message);
+/// What is wrong in a command is answered, not rejected.
+RejectReason validate(const command_t& message);
+RejectReason validate(const correction_t& message);
 RejectReason validate(const image_t& message);
 RejectReason validate(const lidar_t& message);
+RejectReason validate(const map_changes_t& message);
 RejectReason validate(const map_header_t& message);
 RejectReason validate(const map_tiles_t& message);
 RejectReason validate(const map_walls_t& message);
@@ -25,6 +29,7 @@ RejectReason validate(const planar_lidar_t& message);
 RejectReason validate(const pose2D_t& message);
 RejectReason validate(const pose_graph_t& message);
 RejectReason validate(const process_status_t& message);
+RejectReason validate(const reply_t& message);
 RejectReason validate(const slam_estimate_t& message);
 RejectReason validate(const slam_status_t& message);
 RejectReason validate(const tick_t& message);

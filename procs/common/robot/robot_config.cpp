@@ -89,6 +89,9 @@ void MarkerConfig::describe(Fields& fields) {
                "how far all markers hang before their walls; learnt while driving, unless 0");
   fields.field("bulge_sigma_m", bulge_sigma_m, kNotNegative, "how far they differ in that");
   fields.field("skew_sigma_rad", skew_sigma_rad, kNotNegative, "how skew they hang");
+  fields.field("survey_file", survey_file,
+               "CSV with the columns of markers.csv: surveyed markers, which define the map's "
+               "frame; empty: none");
 }
 
 void RobotConfig::describe(Fields& fields) {

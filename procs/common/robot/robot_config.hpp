@@ -76,6 +76,7 @@ struct MarkerConfig {
   double standoff_sigma_m{0.003};  ///< how far all hang before their walls; learnt while driving
   double bulge_sigma_m{0.002};     ///< how far they differ in that
   double skew_sigma_rad{0.01};
+  std::string survey_file{};  ///< CSV of markers whose places are known; empty: none
 
   void describe(Fields& fields);
 };

@@ -53,6 +53,12 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
         ->take_all();
     app.add_option("--report", options.report,
                    "after a replay, write its timing, memory and counts there (JSON)");
+    app.add_option("--skip-s", options.skip_s,
+                   "with --log: leave out so many seconds of the log's beginning")
+        ->check(CLI::NonNegativeNumber);
+    app.add_option("--until-s", options.until_s,
+                   "with --log: read so many seconds from the log's beginning")
+        ->check(CLI::PositiveNumber);
   }
   if (option_set.out_log) {
     app.add_option("--out-log", options.out_log, "write what is published to this LCM log");

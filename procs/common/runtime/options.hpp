@@ -23,6 +23,8 @@ struct ProcessOptions {
   bool real_time{false};
   bool large_messages{false};
   std::vector<std::filesystem::path> logs{};
+  double skip_s{0.0};               ///< of the logs' beginning
+  std::optional<double> until_s{};  ///< from their beginning; nothing: to their end
   std::filesystem::path out_log{};
   std::filesystem::path out_dir{};
   std::filesystem::path report{};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/runtime/reorder_buffer.hpp"
 
+#include "common/messages/codec.hpp"
+
 #include <algorithm>
 
 namespace waymark {
@@ -8,6 +10,8 @@ namespace waymark {
 ReorderBuffer::ReorderBuffer(Duration window) : window_{window} {}
 
 std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
+  if (message.time == Timestamp{} && message.channel == channels::kSlamCommand.name)
+    return {stamped(std::move(message))};
   if (const Misfit why = misfit(message); why != Misfit::kNone) {
     if (why == Misfit::kLate) {
       counters.add(message.channel + " late, dropped", CountKind::kLoss);
@@ -24,6 +28,15 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
   const std::string channel = message.channel;
   if (!waiting_.insert(std::move(message)).second) counters.add(channel + " duplicates");
   return release_until(newest_ - window_);
+}
+
+/// Its sender knows no time, and wants it now: in a log it stands where it acts.
+Message ReorderBuffer::stamped(Message message) const {
+  const auto command = decode<command_t>(message.payload);
+  if (!has_any_ || !command.message) return message;
+  command_t timed = *command.message;
+  timed.utime = to_us(newest_);
+  return encode(channels::kSlamCommand, timed);
 }
 
 ReorderBuffer::Misfit ReorderBuffer::misfit(const Message& message) const {

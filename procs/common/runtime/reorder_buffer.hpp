@@ -34,6 +34,7 @@ class ReorderBuffer {
   enum class Misfit { kNone, kLate, kAhead };
 
   Misfit misfit(const Message& message) const;
+  Message stamped(Message message) const;
   std::vector<Message> begin_anew(Message message);
   std::vector<Message> release_until(Timestamp time);
 

@@ -144,6 +144,9 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
   };
   Progress progress{"replay"};
   const Timestamp first = oldest(sources)->head->time;
+  const Timestamp begin = first + duration_from_seconds(options.skip_s);
+  const auto end = options.until_s ? std::optional{first + duration_from_seconds(*options.until_s)}
+                                   : std::nullopt;
   Timestamp last = first;
   std::int64_t num_messages = 0;
   while (Source* source = oldest(sources)) {
@@ -151,7 +154,12 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
       spdlog::warn("interrupted");
       return kExitSignal + stop_signal();
     }
+    if (end && source->head->time > *end) break;
     last = std::max(last, source->head->time);
+    if (source->head->time < begin) {
+      source->advance();
+      continue;
+    }
     inbox.deliver(*source->head);
     write_out();
     ++num_messages;
@@ -163,7 +171,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
   if (writer) writer->close();
   progress.done();
   const ReplayReport report{.messages = num_messages,
-                            .log_s = to_seconds(last - first),
+                            .log_s = to_seconds(last - begin),
                             .wall_s = progress.elapsed_s(),
                             .peak_memory_mb = peak_memory_mb()};
   spdlog::info(

@@ -197,6 +197,8 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
 void check(const ProcessOptions& options, const OptionSet& option_set) {
   const bool is_recorder = !option_set.log;
   const bool is_replay = !options.logs.empty();
+  if (!is_replay && (options.skip_s > 0.0 || options.until_s))
+    throw SetupError{"--skip-s and --until-s need --log"};
   if (!is_recorder && !is_replay && !options.out_log.empty()) {
     throw SetupError{"--out-log needs --log; live runs are recorded by waymark-recorder"};
   }

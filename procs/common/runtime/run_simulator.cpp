@@ -3,6 +3,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/errors/exit_codes.hpp"
+#include "common/lockstep/command_relay.hpp"
 #include "common/lockstep/master.hpp"
 #include "common/log/log_file.hpp"
 #include "common/runtime/guard.hpp"
@@ -41,7 +42,8 @@ class Run {
       : source_{source},
         inbox_{inbox},
         reporter_{traits.name},
-        bus_{url, subscriptions(inbox), LargeMessages::kRefused, names} {}
+        bus_{url, subscriptions(inbox), LargeMessages::kRefused, names},
+        commands_{inbox.counters()} {}
 
   int in_lockstep() {
     LockstepMaster master{source_.run_id(), source_.participants(), source_.window_ticks()};
@@ -117,6 +119,7 @@ class Run {
   static std::vector<Inbox::Subscription> subscriptions(const Inbox& inbox) {
     std::vector<Inbox::Subscription> subscriptions = inbox.subscriptions();
     subscriptions.push_back({std::string{channels::kAck.name}});
+    subscriptions.push_back({std::string{channels::kSlamCommand.name}});
     return subscriptions;
   }
 
@@ -143,6 +146,7 @@ class Run {
 
   void send_tick(LockstepMaster& master) {
     std::vector<Message> messages = source_.advance(tick_end_);
+    commands_.move_into(messages, tick_end_);
     publish(master.open_tick(tick_end_, std::move(messages), source_.finished()));
   }
 
@@ -152,6 +156,8 @@ class Run {
     for (auto message = bus_.receive(timeout); message; message = bus_.receive(milliseconds{0})) {
       if (message->channel == channels::kAck.name) {
         acknowledged = master.take(*message) || acknowledged;
+      } else if (message->channel == channels::kSlamCommand.name) {
+        commands_.take(*message);
       } else {
         inbox_.deliver(*message);
       }
@@ -191,6 +197,7 @@ class Run {
   Inbox& inbox_;
   StatusReporter reporter_;
   Bus bus_;
+  CommandRelay commands_;
   Progress progress_{"sim"};
   Timestamp tick_end_{};
 };

@@ -78,4 +78,36 @@ std::string markers_csv_text(std::vector<Landmark> landmarks) {
   return text;
 }
 
+std::string_view name_of(MapChange::Kind kind) {
+  switch (kind) {
+    case MapChange::Kind::kMoved:
+      return "marker_moved";
+    case MapChange::Kind::kMissing:
+      return "marker_missing";
+    case MapChange::Kind::kNew:
+      return "marker_new";
+    case MapChange::Kind::kWallNew:
+      return "wall_new";
+    case MapChange::Kind::kWallGone:
+      return "wall_gone";
+    case MapChange::Kind::kSurveyOff:
+      return "survey_off";
+    case MapChange::Kind::kNone:
+      break;
+  }
+  return "none";
+}
+
+std::string changes_csv_text(std::span<const MapChange> changes) {
+  std::string text = "change,id,instance,x_m,y_m,yaw_rad,was_x_m,was_y_m,size_m,sigmas,support\n";
+  for (const MapChange& change : changes) {
+    fmt::format_to(std::back_inserter(text),
+                   "{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.3f},{:.1f},{}\n",
+                   name_of(change.kind), change.id, change.instance, change.place.x(),
+                   change.place.y(), change.place.theta(), change.was_at.x(), change.was_at.y(),
+                   change.size_m, change.sigmas, change.support);
+  }
+  return text;
+}
+
 }  // namespace waymark::viewer

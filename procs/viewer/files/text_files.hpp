@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace waymark::viewer {
@@ -22,5 +23,12 @@ std::string covariance_csv_text(std::span<const EstimatedPose> path);
 /// `id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state`, by id and
 /// instance.
 std::string markers_csv_text(std::vector<Landmark> landmarks);
+
+/// `change,id,instance,x_m,y_m,yaw_rad,was_x_m,was_y_m,size_m,sigmas,support`: one line for each
+/// thing that is not as the loaded map or the survey has it; of walls, id is -1.
+std::string changes_csv_text(std::span<const MapChange> changes);
+
+/// "marker_moved", "wall_gone", ...
+std::string_view name_of(MapChange::Kind kind);
 
 }  // namespace waymark::viewer

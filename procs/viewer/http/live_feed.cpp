@@ -24,6 +24,17 @@ LiveFeed::LiveFeed(Board& board, std::string title, Pace pace) : board_{board}, 
   current_.title = std::move(title);
 }
 
+void LiveFeed::begin_map() {
+  map_ = LiveMap{.layout = map_.layout, .generation = map_.generation + 1};
+  tile_index_.clear();
+  map_changed_ = true;
+  current_.estimate.reset();
+  current_.markers.clear();
+  current_.particles.clear();
+  current_.scan.clear();
+  current_.path_begin = current_.path_length;
+}
+
 void LiveFeed::add(const map_tiles_t& message) {
   const TileLayout layout{message.origin_x_m, message.origin_y_m, message.resolution_m,
                           message.tile_size_cells};
@@ -126,7 +137,7 @@ void LiveFeed::add_markers(Timestamp time, const std::vector<Landmark>& landmark
 void LiveFeed::grow_path(const Se2& map_from_base) {
   const PathPoint point{static_cast<float>(map_from_base.x()),
                         static_cast<float>(map_from_base.y())};
-  const bool is_first = current_.path_length == 0;
+  const bool is_first = current_.path_length == current_.path_begin;
   const float step_m = std::hypot(point[0] - last_path_point_[0], point[1] - last_path_point_[1]);
   if (!is_first && step_m < kPathStep_m) return;
   if (current_.path_length >= kMaxPathPoints) return;

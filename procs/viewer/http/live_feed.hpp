@@ -20,6 +20,8 @@ class LiveFeed {
 
   LiveFeed(Board& board, std::string title, Pace pace);
 
+  /// Slam draws another map: what was in the one before is forgotten.
+  void begin_map();
   void add(const map_tiles_t& message);
   void add(const annotated_scan_t& message);
   void add(const particles_t& message);

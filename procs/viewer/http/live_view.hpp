@@ -71,6 +71,7 @@ struct LiveView {
   std::optional<Timestamp> last_camera{};  ///< last frame or detections, with markers or without
   std::optional<Timestamp> last_marker{};  ///< last estimate that used one
   std::vector<ProcessState> processes{};
+  std::size_t path_begin{0};   ///< the map's first point
   std::size_t path_length{0};  ///< points of the board's path up to here
 };
 

@@ -139,6 +139,7 @@ Json to_json(const LiveView& view, const Board::Span& history) {
           {"scan", points_json(view.scan)},
           {"camera", camera_json(view)},
           {"processes", processes_json(view.processes)},
+          {"path_begin", view.path_begin},
           {"path_length", view.path_length}};
 }
 

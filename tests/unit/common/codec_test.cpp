@@ -114,6 +114,21 @@ TEST(Codec, EveryTypeSurvivesARoundTrip) {
   expect_round_trip(channels::kSlamMap, small_map());
   expect_round_trip(channels::kOdometry, to_pose_message(timestamp_from_us(1), {1, 2, 3}));
   expect_round_trip(channels::kDriveCommand, twist2D_t{});
+  expect_round_trip(channels::kSlamCorrection, correction_t{});
+  command_t command{};
+  command.name = "day_1";
+  command.pose[1] = std::numeric_limits<double>::quiet_NaN();  // is answered, not rejected
+  expect_round_trip(channels::kSlamCommand, command);
+  reply_t reply{};
+  reply.state = reply_t::STATE_REFUSED;
+  reply.text = "no";
+  expect_round_trip(channels::kSlamReply, reply);
+  map_changes_t changes{};
+  changes.num_changes = 2;
+  changes.changes.resize(2, map_change_t{});
+  for (map_change_t& change : changes.changes)
+    change.kind = map_change_t::KIND_WALL_NEW;
+  expect_round_trip(channels::kSlamChanges, changes);
   lidar_t mbot{};
   mbot.num_ranges = 2;
   mbot.ranges = mbot.thetas = mbot.intensities = {1.0F, 2.0F};

@@ -3,145 +3,32 @@
 #include "slam/map_file.hpp"
 
 #include "common/files/whole_file.hpp"
-#include "common/messages/convert.hpp"
+#include "common/log/log_file.hpp"
 #include "common/random/random.hpp"
 #include "slam/core/graph/map_merge.hpp"
-#include "slam/slam_node.hpp"
-#include "support/synthetic_corridor.hpp"
+#include "unit/slam/map_drives.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
+#include <csignal>
+#include <thread>
 
 namespace waymark {
 namespace {
 
+using test::config_for;
+using test::corridor_of;
+using test::Drive;
+using test::drive_through;
+using test::map_from_world;
+using test::messages_of;
+using test::SavedMap;
+using test::with_pose;
+using test::worst_error_m;
+
 namespace fs = std::filesystem;
-
-test::SyntheticCorridor corridor_of(std::uint64_t seed) {
-  test::SyntheticCorridor corridor;
-  corridor.length_m = 14.0;
-  corridor.drive_m = 12.0;
-  corridor.speed_m_s = 0.3;
-  corridor.seed = seed;
-  corridor.markers = test::opposite_markers(corridor, 3.5, 3.0);
-  return corridor;
-}
-
-std::vector<Message> messages_of(const test::SensorLog& log, double from_s = 0.0,
-                                 double to_s = 1e6) {
-  std::vector<Message> messages;
-  for (const LidarScan& scan : log.scans)
-    messages.push_back(encode(channels::kLidar, to_planar_lidar(scan)));
-  for (const OdometrySample& sample : log.odometry) {
-    messages.push_back(
-        encode(channels::kOdometry, to_pose_message(sample.time, sample.odom_from_base)));
-  }
-  for (const MarkerDetections& frame : log.frames)
-    messages.push_back(encode(channels::kMarkers, to_detections_message(frame)));
-  std::erase_if(messages, [&](const Message& message) {
-    const double time_s = 1e-6 * static_cast<double>(to_us(message.time));
-    return time_s < from_s || time_s > to_s;
-  });
-  std::sort(messages.begin(), messages.end(), comes_before);
-  return messages;
-}
-
-struct Drive {
-  std::vector<slam_estimate_t> estimates{};
-  std::vector<marker_landmark_t> markers{};  ///< at the end
-  bool failed{false};
-};
-
-Drive drive_through(const SlamConfig& config, const std::vector<Message>& messages) {
-  Inbox inbox;
-  Outbox outbox;
-  SlamNode node{config, inbox, outbox};
-  for (const Message& message : messages)
-    inbox.deliver(message);
-  node.finish();
-  Drive result;
-  result.failed = node.failed();
-  for (const Message& message : outbox.take()) {
-    if (message.channel == channels::kSlamEstimate.name)
-      result.estimates.push_back(*decode<slam_estimate_t>(message.payload).message);
-    if (message.channel == channels::kSlamMarkers.name)
-      result.markers = decode<marker_map_t>(message.payload).message->landmarks;
-  }
-  return result;
-}
-
-SlamConfig config_for(MapMode mode, const fs::path& map, StartKind start = StartKind::kAnywhere) {
-  SlamConfig config;
-  config.slam.mode = mode;
-  if (mode != MapMode::kMap) {
-    config.load_map = map;
-    config.slam.start.kind = start;
-  } else {
-    config.save_map = map;
-  }
-  return config;
-}
-
-/// The first true pose of a drive is the origin of its map.
-Se2 map_from_world(const test::SensorLog& log) {
-  return log.truth.front().world_from_base.inverse();
-}
-
-Se2 true_pose(const test::SensorLog& log, std::int64_t utime) {
-  const auto at =
-      std::lower_bound(log.truth.begin(), log.truth.end(), timestamp_from_us(utime),
-                       [](const test::TruePose& pose, Timestamp time) { return pose.time < time; });
-  return at == log.truth.end() ? log.truth.back().world_from_base : at->world_from_base;
-}
-
-/// Largest distance of the estimates with a pose from the truth, in the map's frame.
-double worst_error_m(const Drive& run, const test::SensorLog& log, const Se2& map_from_world,
-                     std::size_t skipped = 0) {
-  double worst_m = 0.0;
-  for (const slam_estimate_t& estimate : run.estimates) {
-    if (estimate.has_pose == 0) continue;
-    if (skipped > 0) {
-      --skipped;
-      continue;
-    }
-    const Eigen::Vector2d truth = (map_from_world * true_pose(log, estimate.utime)).translation();
-    worst_m = std::max(worst_m, std::hypot(estimate.x_m - truth.x(), estimate.y_m - truth.y()));
-  }
-  return worst_m;
-}
-
-std::size_t with_pose(const Drive& run) {
-  return static_cast<std::size_t>(
-      std::count_if(run.estimates.begin(), run.estimates.end(),
-                    [](const slam_estimate_t& estimate) { return estimate.has_pose != 0; }));
-}
-
-class SavedMap : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    drive_ = new test::SensorLog{test::drive(corridor_of(1))};
-    file_ = new fs::path{fs::path{testing::TempDir()} /
-                         ("saved_" + std::to_string(::getpid()) + ".map.lcm")};
-    ASSERT_FALSE(drive_through(config_for(MapMode::kMap, *file_), messages_of(*drive_)).failed);
-  }
-
-  static void TearDownTestSuite() {
-    fs::remove(*file_);
-    delete file_;
-    delete drive_;
-  }
-
-  static fs::path other_file(const std::string& name) {
-    return fs::path{testing::TempDir()} / (name + std::to_string(::getpid()) + ".map.lcm");
-  }
-
-  inline static test::SensorLog* drive_{nullptr};
-  inline static fs::path* file_{nullptr};
-};
 
 TEST_F(SavedMap, IsReadAsItWasWritten) {
   const MapFile map = read_map_file(*file_);
@@ -159,8 +46,9 @@ TEST_F(SavedMap, ThatIsDamagedAnywhereIsRefusedOrTheSame) {
   const std::int64_t map_id = read_map_file(*file_).map.map_id;
   const fs::path damaged = other_file("damaged");
   Random random{7};
+  constexpr int kPlaces = 1000;
   int refused = 0;
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < kPlaces; ++i) {
     const auto place =
         static_cast<std::size_t>(random.uniform(0.0, 1.0) * static_cast<double>(whole.size() - 1));
     for (const bool is_cut : {true, false}) {
@@ -179,8 +67,62 @@ TEST_F(SavedMap, ThatIsDamagedAnywhereIsRefusedOrTheSame) {
       }
     }
   }
-  EXPECT_GT(refused, 280);  // a log's event numbers are not the map's content
+  EXPECT_GT(refused, 2 * kPlaces * 9 / 10);  // a log's event numbers are not the map's content
   fs::remove(damaged);
+}
+
+TEST_F(SavedMap, OfAnotherFormatIsRefused) {
+  const MapFile map = read_map_file(*file_);
+  std::vector<Message> messages = to_map_messages(map.map, map.info);
+  map_header_t header = *decode<map_header_t>(messages.front().payload).message;
+  header.format = map_header_t::FORMAT + 1;
+  messages.front() = encode(channels::kMapHeader, header);
+  const fs::path file = other_file("format");
+  LogWriter writer{file};
+  for (const Message& message : messages)
+    writer.write(message);
+  writer.close();
+  try {
+    read_map_file(file);
+    FAIL() << "was read";
+  } catch (const SetupError& error) {
+    EXPECT_NE(std::string{error.what()}.find("format 2; this program reads 1"), std::string::npos);
+  }
+  fs::remove(file);
+}
+
+// Killed at any time, a writer leaves the old map or the new one.
+TEST_F(SavedMap, IsWholeWhenItsWriterIsKilled) {
+  const MapFile before = read_map_file(*file_);
+  MapFile after = before;
+  after.map.landmarks.pop_back();
+  const fs::path file = other_file("killed");
+  write_map_file(file, before.map, before.info);
+  const std::int64_t new_id = [&] {
+    const fs::path other = other_file("unkilled");
+    const std::int64_t id = write_map_file(other, after.map, after.info);
+    fs::remove(other);
+    return id;
+  }();
+  Random random{11};
+  for (int i = 0; i < 200; ++i) {
+    const pid_t writer = ::fork();
+    ASSERT_GE(writer, 0);
+    if (writer == 0) {
+      for (;;) {
+        write_map_file(file, after.map, after.info);
+        write_map_file(file, before.map, before.info);
+      }
+    }
+    std::this_thread::sleep_for(
+        std::chrono::microseconds{static_cast<std::int64_t>(random.uniform(0.0, 30'000.0))});
+    ::kill(writer, SIGKILL);
+    ::waitpid(writer, nullptr, 0);
+    const std::int64_t found = read_map_file(file).map.map_id;
+    EXPECT_TRUE(found == before.map.map_id || found == new_id) << i;
+  }
+  fs::remove(file);
+  fs::remove(part_path_of(file));
 }
 
 TEST_F(SavedMap, IsWhereAnotherDayIsLocalised) {
@@ -292,7 +234,7 @@ TEST_F(SavedMap, AndOneThatOverlapsAreMergedIntoOne) {
   const MapFile b = read_map_file(right);
   const auto alignment = align_by_markers(a.map, b.map);
   ASSERT_TRUE(alignment);
-  EXPECT_GE(alignment->shared_markers, 2U);
+  EXPECT_GE(alignment->shared, 2U);
   const MapSnapshot both = merged(a.map, b.map, alignment->a_from_b);
   const std::vector<test::SyntheticMarker> markers = corridor_of(8).markers;
   EXPECT_EQ(both.landmarks.size(), markers.size());
@@ -303,6 +245,16 @@ TEST_F(SavedMap, AndOneThatOverlapsAreMergedIntoOne) {
   }
   fs::remove(left);
   fs::remove(right);
+}
+
+TEST_F(SavedMap, ThatIsEmptyIsNoPlaceToLookForTheRobot) {
+  MapSnapshot empty;
+  empty.grid.frame = GridFrame::centred_on_map_origin(0.05);
+  const fs::path file = other_file("empty");
+  write_map_file(file, empty, read_map_file(*file_).info);
+  EXPECT_THROW(drive_through(config_for(MapMode::kLocalise, file, StartKind::kAnywhere), {}),
+               SetupError);
+  fs::remove(file);
 }
 
 TEST(MapAlignment, NeedsTwoMarkersInCommon) {

@@ -327,5 +327,48 @@ TEST_F(ViewerNodeTest, AFileThatCannotBeWrittenMakesItFailAndTheOthersAreWritten
   EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("1.000000 "));
 }
 
+// Slam was started again: what it draws now is another map in another frame.
+TEST_F(ViewerNodeTest, FollowsANewMapAndKeepsTheFilesOfTheOneBefore) {
+  ViewerNode node{config_, inbox_, outbox_};
+  slam_estimate_t estimate = estimate_at(1.0, 7.0);
+  estimate.map_id = 0xab;
+  deliver(channels::kSlamEstimate, estimate);
+  map_tiles_t tiles = tile_at(3, 0, 1);
+  tiles.utime = 1'000'000;
+  tiles.map_id = 0xab;
+  deliver(channels::kSlamMap, tiles);
+  estimate = estimate_at(2.0, 0.5);
+  estimate.map_id = 0xcd;
+  deliver(channels::kSlamEstimate, estimate);
+  deliver(channels::kSlamMap, tiles);  // late words about the map before
+  node.finish();
+  EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("2.000000 0.5"));
+  EXPECT_EQ(content_of("trajectory.tum").find("7.0"), std::string::npos);
+  EXPECT_THAT(content_of("map-00000000000000ab/trajectory.tum"), HasSubstr("1.000000 7.0"));
+  EXPECT_NE(content_of("map-00000000000000ab/map.pgm"), content_of("map.pgm"));
+}
+
+TEST_F(ViewerNodeTest, WritesWhatContradictsTheMap) {
+  ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
+  map_changes_t changes{};
+  changes.utime = 1'000'000;
+  changes.num_changes = 2;
+  changes.changes.resize(2, map_change_t{});
+  changes.changes[0].kind = map_change_t::KIND_MARKER_MISSING;
+  changes.changes[0].id = 7;
+  changes.changes[0].x_m = 1.5;
+  changes.changes[0].support = 9;
+  changes.changes[1].kind = map_change_t::KIND_WALL_GONE;
+  changes.changes[1].id = -1;
+  changes.changes[1].size_m = 0.9;
+  deliver(channels::kSlamChanges, changes);
+  node.finish();
+  EXPECT_EQ(content_of("changes.csv"),
+            "change,id,instance,x_m,y_m,yaw_rad,was_x_m,was_y_m,size_m,sigmas,support\n"
+            "marker_missing,7,0,1.500000,0.000000,0.000000,0.000000,0.000000,0.000,0.0,9\n"
+            "wall_gone,-1,0,0.000000,0.000000,0.000000,0.000000,0.000000,0.900,0.0,0\n");
+}
+
 }  // namespace
 }  // namespace waymark

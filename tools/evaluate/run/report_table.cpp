@@ -193,6 +193,10 @@ std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorR
   if (!truth.trajectory) text += "\nNo truth.tum: lengths only, no trajectory error.\n";
   if (!truth.markers) text += "\nNo truth_markers.csv: no marker error.\n";
   for (const EstimatorResult& result : results) {
+    if (!result.changes.empty())
+      text +=
+          fmt::format("\n* {}: {} things are not as the map or the survey has them (changes.csv)",
+                      result.name, result.changes.size());
     for (const std::string& problem : result.problems)
       text += fmt::format("\n* {}: {}", result.name, problem);
     if (!result.skipped.empty())

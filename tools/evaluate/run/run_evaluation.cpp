@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <sstream>
 
 namespace waymark::evaluate {
 namespace {
@@ -64,11 +65,52 @@ ExpectConfig read_expectations(const fs::path& file) {
   }
 }
 
+/// What the evaluation reads of slam's configuration.
+struct SlamPart {
+  struct Robot {
+    struct Markers {
+      std::string survey_file{};
+
+      void describe(Fields& fields) {
+        fields.field("survey_file", survey_file, "a survey defines the map's frame");
+      }
+    };
+
+    Markers markers{};
+
+    void describe(Fields& fields) { fields.section("markers", markers); }
+  };
+
+  Robot robot{};
+
+  void describe(Fields& fields) { fields.section("robot", robot); }
+};
+
+/// The poses are in a survey's coordinates, which are the world's.
+bool is_surveyed(const fs::path& config_file) {
+  if (!fs::exists(config_file)) return false;
+  try {
+    return !load_part<SlamPart>(config_file).robot.markers.survey_file.empty();
+  } catch (const ConfigError& error) {
+    throw InputError{error.what()};
+  }
+}
+
 /// @throws InputError if the file is there and is not JSON.
 std::optional<std::string> json_if_there(const fs::path& file) {
   std::optional<std::string> text = text_if_there(file);
   if (text && !nlohmann::json::accept(*text)) throw InputError{file.string() + ": not JSON"};
   return text;
+}
+
+/// Lines behind the header.
+std::vector<std::string> changes_in(const fs::path& file) {
+  std::vector<std::string> lines;
+  std::istringstream text{text_if_there(file).value_or("")};
+  for (std::string line; std::getline(text, line);)
+    lines.push_back(line);
+  if (!lines.empty()) lines.erase(lines.begin());
+  return lines;
 }
 
 /// Runs one part of the evaluation; what goes wrong becomes a problem.
@@ -196,8 +238,13 @@ std::vector<std::string> estimators_in(const fs::path& run_dir) {
 }
 
 EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
-                                   const EvaluationOptions& options) {
+                                   const EvaluationOptions& run_options) {
   EstimatorResult result{};
+  EvaluationOptions options = run_options;
+  attempt(result.problems, [&] {
+    if (!options.world_from_map && is_surveyed(dir / "config.toml")) options.world_from_map = Se2{};
+    result.changes = changes_in(dir / "changes.csv");
+  });
   result.name = dir.filename().string();
   result.true_length_m = truth.length_m;
   attempt(result.problems, [&] {

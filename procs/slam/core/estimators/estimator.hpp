@@ -9,7 +9,9 @@
 #include "slam/core/graph/map_snapshot.hpp"
 #include "slam/core/grid/grid_map.hpp"
 #include "slam/core/landmark/sighting_sigmas.hpp"
+#include "slam/core/landmark/surveyed_marker.hpp"
 #include "slam/core/mapping/landmark_map.hpp"
+#include "slam/core/mapping/map_change.hpp"
 #include "slam/core/mapping/mapper.hpp"
 #include "slam/core/motion/motion_model.hpp"
 #include "slam/core/scan/observation.hpp"
@@ -36,6 +38,7 @@ struct EstimatorSetup {
   std::shared_ptr<const MapSnapshot> loaded_map{};  ///< null: none
   MapMode map_mode{MapMode::kMap};
   StartPose start{};
+  std::vector<SurveyedMarker> survey{};  ///< none: the first pose is the map's origin
 };
 
 /// A hypothesis, for pictures.
@@ -68,6 +71,13 @@ class Estimator {
 
   /// The poses that redrawn_map() is drawn along, and what ties them; of methods that have a graph.
   virtual std::optional<PoseGraph> pose_graph() const { return std::nullopt; }
+
+  /// What contradicts the loaded map or the survey, of methods that notice.
+  virtual std::vector<MapChange> changes() const { return {}; }
+
+  /// The robot is at that pose by the time of the next update, of methods that can be told.
+  /// @return false: this one cannot.
+  virtual bool set_pose(const StartPose& /*pose*/) { return false; }
 
   /// All that another run needs to go on in this map, of methods that can. O(scans).
   virtual std::optional<MapSnapshot> snapshot() const { return std::nullopt; }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -59,7 +60,8 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
       map_{setup.grid, ground_of(setup)},
-      start_{setup.start} {
+      start_{setup.start},
+      survey_{setup.loaded_map ? std::vector<SurveyedMarker>{} : setup.survey} {
   if (setup_.loaded_map) load(*setup_.loaded_map);
 }
 
@@ -70,8 +72,8 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
   follow_odometry(observation, step_s);
   const Points points = points_of(observation);
   if (place_finder_ && !place(observation)) return unplaced(observation);
-  bool is_keyframe =
-      odometry_refused_ || is_keyframe_due(observation) || is_contradicted_by(observation);
+  bool is_keyframe = given_pose_ || odometry_refused_ || is_keyframe_due(observation) ||
+                     is_contradicted_by(observation);
   const Se2 map_from_last = graph_.state().keyframes.empty()
                                 ? Se2{}
                                 : graph_.state().keyframes.back() * newest_from_last_scan_;
@@ -87,17 +89,20 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
     since_insertion_m_ += observation.motion.distance_m;
     if (between.match) insert_between(points, *between.match, between.map_from_base);
   }
+  if (between.match) note_reason(EstimateReason::kScan);
   Estimate now =
       is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation, between);
   now.updated = is_keyframe;
   last_step_ = map_from_last.inverse() * now.map_from_base;
   last_step_s_ = step_s;
   newest_from_last_scan_ = graph_.state().keyframes.back().inverse() * now.map_from_base;
+  reason_ = EstimateReason::kOdometry;
   if (!is_frozen()) {
     scan_poses_.push_back({observation.time, newest(),
                            graph_.state().keyframes.back().inverse() * now.map_from_base});
   }
-  return now;
+  const bool has_frame = survey_.is_empty() || survey_.has_frame();
+  return has_frame ? now : unplaced(observation);
 }
 
 /// Odometry that was stuck tells at once what was driven meanwhile. Keyframes that were made in
@@ -155,11 +160,43 @@ void WaymarkEstimator::add_first_keyframe() {
   graph_.add(PosePrior{0, map_from_base, sigmas.cwiseInverse().asDiagonal()});
 }
 
+bool WaymarkEstimator::set_pose(const StartPose& pose) {
+  const bool has_begun = !graph_.state().keyframes.empty();
+  if (!has_begun && !setup_.loaded_map) return false;  // there is no map that it could be in
+  if (has_begun)
+    given_pose_ = pose;
+  else
+    start_ = pose;
+  if (place_finder_) is_confirmed_ = false;
+  place_finder_.reset();
+  note_reason(pose.kind == StartKind::kLast ? EstimateReason::kRelocalised
+                                            : EstimateReason::kCommand);
+  return true;
+}
+
+/// A new keyframe, which nothing but the given pose ties to the ones before.
+void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
+  const Se2 map_from_base{pose.x_m, pose.y_m, pose.yaw_rad};
+  const std::size_t keyframe = graph_.add_keyframe(map_from_base);
+  graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_, true});
+  const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
+  graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
+  is_confirmed_ = !setup_.loaded_map;
+  relocalisation_ = {};
+  begin_submaps_anew();
+}
+
+void WaymarkEstimator::note_reason(EstimateReason reason) {
+  reason_ = std::max(reason_, reason);
+}
+
 void WaymarkEstimator::add_keyframe(const Observation& observation, const Points& points) {
   inlier_share_ = 1.0;
   bool is_refuted_scan = false;
   if (graph_.state().keyframes.empty()) {
     add_first_keyframe();
+  } else if (given_pose_) {
+    put_elsewhere(*std::exchange(given_pose_, std::nullopt));
   } else {
     const Prediction expected = prediction();
     auto scan = matched(points, expected);
@@ -170,6 +207,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
     is_refuted_scan = scan && is_refuted(scan->match);
     if (scan) inlier_share_ = scan->match.inlier_share;
     if (scan && !is_refuted_scan && scan->match.is_usable(config_.scan)) {
+      note_reason(EstimateReason::kScan);
       learn_noise(expected, *scan);
       confirm_place(*scan);
       if (scan->submap != nullptr)
@@ -186,16 +224,19 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
   if (verdict_ == RelocalisationMonitor::Verdict::kElsewhere ||
       verdict_ == RelocalisationMonitor::Verdict::kBack) {
     relocate(relocalisation_.map_from_base());
+    note_reason(EstimateReason::kRelocalised);
   }
   const bool is_doubtful = verdict_ == RelocalisationMonitor::Verdict::kDoubtful;
   markers_known_ = false;
   if (!is_doubtful) {
     use_markers(measurements);
     note_misses(observation);
+    if (!measurements.empty()) use_survey();
     if (config_.loops.enabled && !is_refuted_scan && !is_frozen()) close_loops(points);
   }
   // What cannot be placed is not mapped.
   const bool is_mapped = !is_doubtful && !is_refuted_scan && is_confirmed_;
+  if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
   if (!is_frozen())
     map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? points : Points{});
   while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
@@ -276,6 +317,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
     estimate.covariance += away * away.transpose();
   }
   estimate.slipped = odometry_refused_;
+  estimate.reason = reason_;
   estimate.calibration_widened = graph_.is_calibration_doubted();
   estimate.weak_axis_source = markers_known_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
   const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kDoubtful ||

@@ -9,6 +9,8 @@
 #include "slam/core/graph/odometry_noise_learner.hpp"
 #include "slam/core/graph/place_finder.hpp"
 #include "slam/core/graph/relocalisation.hpp"
+#include "slam/core/graph/survey.hpp"
+#include "slam/core/graph/wall_change_detector.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/mapping/drawn_map.hpp"
 #include "slam/core/motion/speed_limits.hpp"
@@ -59,6 +61,8 @@ class WaymarkEstimator final : public Estimator {
   GridMap redrawn_map() const override;
   std::optional<PoseGraph> pose_graph() const override;
   std::optional<MapSnapshot> snapshot() const override;
+  bool set_pose(const StartPose& pose) override;
+  std::vector<MapChange> changes() const override;
 
  private:
   static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
@@ -118,6 +122,9 @@ class WaymarkEstimator final : public Estimator {
   void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;
   void add_keyframe(const Observation& observation, const Points& points);
   void add_first_keyframe();
+  void put_elsewhere(const StartPose& pose);
+  void use_survey();
+  void note_reason(EstimateReason reason);
   void add_map_factor(std::size_t keyframe, const ScanMatch& match);
   void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
@@ -130,6 +137,7 @@ class WaymarkEstimator final : public Estimator {
   void use_markers(std::span<const MarkerMeasurement> measurements);
   void note_misses(const Observation& observation);
   void relocate(const Se2& map_from_base);
+  void begin_submaps_anew();
   void map_keyframe(const Observation& observation, const Points& points);
   void insert_scan(const Points& points);
   Estimate estimate(const Observation& observation, const Se2& map_from_base,
@@ -179,6 +187,9 @@ class WaymarkEstimator final : public Estimator {
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
   Points loaded_points_{};                     ///< of the loaded map's walls
   bool is_confirmed_{true};  ///< the place in the loaded map, by markers or by walls
+  std::optional<WallChangeDetector> wall_changes_{};  ///< against the loaded map
+  Survey survey_;
+  std::optional<StartPose> given_pose_{};  ///< where the next keyframe is
   Timestamp newest_time_{};
 
   // Of the newest keyframe:
@@ -186,6 +197,7 @@ class WaymarkEstimator final : public Estimator {
   double inlier_share_{1.0};
   double usual_fit_{0.0};  ///< mean of inlier share times mapped share
   bool markers_known_{false};
+  EstimateReason reason_{EstimateReason::kOdometry};
 };
 
 }  // namespace waymark

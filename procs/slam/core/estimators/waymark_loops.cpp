@@ -33,6 +33,7 @@ void WaymarkEstimator::close_loops(const Points& points) {
          loop_finder_.find(newest(), points, search, submaps_, graph_.state(), range_noise_)) {
       add_scan_factor(found.keyframe, submaps_[found.loop.submap], found.loop.match, true);
       has_new_loops_ = true;
+      note_reason(EstimateReason::kLoop);
       loops_matter_ |= found.chi2 > kLoopMatters;
     }
   }

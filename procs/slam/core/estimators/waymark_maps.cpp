@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <optional>
 #include <variant>
 
 namespace waymark {
@@ -39,6 +40,27 @@ bool is_gone(const GridMap& grid, const Eigen::Vector2d& place) {
     }
   }
   return true;
+}
+
+/// What the loaded map was drawn along, where the robot has not been since: bounded by the area.
+void add_loaded_graph(const PoseGraph& loaded, PoseGraph& graph) {
+  constexpr double kThereAlready_m = 0.5;
+  const std::vector<Se2> today = graph.poses;
+  std::vector<std::optional<std::size_t>> kept_as(loaded.poses.size());
+  for (std::size_t i = 0; i < loaded.poses.size(); ++i) {
+    const bool is_there = std::any_of(today.begin(), today.end(), [&](const Se2& pose) {
+      return (pose.translation() - loaded.poses[i].translation()).norm() < kThereAlready_m;
+    });
+    if (is_there) continue;
+    kept_as[i] = graph.poses.size();
+    graph.poses.push_back(loaded.poses[i]);
+  }
+  for (GraphEdge edge : loaded.edges) {
+    if (!kept_as[edge.from] || !kept_as[edge.to]) continue;
+    edge.from = *kept_as[edge.from];
+    edge.to = *kept_as[edge.to];
+    graph.edges.push_back(edge);
+  }
 }
 
 GraphEdge edge_of(const ScanFactor& factor) {
@@ -80,6 +102,7 @@ void WaymarkEstimator::load(const MapSnapshot& map) {
     book_.add_known(landmark);
   }
   loaded_points_ = wall_points(map.grid);
+  wall_changes_.emplace(setup_.loaded_map);
   is_confirmed_ = false;
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);
 }
@@ -93,6 +116,7 @@ bool WaymarkEstimator::place(const Observation& observation) {
   place_finder_.reset();
   is_confirmed_ = true;
   motion_ = {};
+  note_reason(EstimateReason::kRelocalised);
   return true;
 }
 
@@ -175,6 +199,7 @@ std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   for (Landmark landmark : landmarks_of(graph))
     if (!landmark.is_missed()) snapshot.landmarks.push_back(landmark);
   snapshot.graph = pose_graph_of(graph);
+  if (setup_.loaded_map) add_loaded_graph(setup_.loaded_map->graph, snapshot.graph);
   snapshot.calibration.mean = graph.state().calibration;
   snapshot.calibration.covariance = graph.covariance({}, {});
   return snapshot;

@@ -104,6 +104,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     }
     matches.push_back({landmark, &measurement});
   }
+  if (!matches.empty()) note_reason(EstimateReason::kMarker);
   if (markers_known_) unobserved_m_ = 0.0;
   if (!returning.empty()) step_everything(returning);
   for (const Match& match : matches) {
@@ -135,6 +136,10 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
     graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
   }
   graph_.optimise();
+  begin_submaps_anew();
+}
+
+void WaymarkEstimator::begin_submaps_anew() {
   submaps_.clear();
   loop_finder_ = LoopFinder{config_.loops, config_.scan};  // it remembers submaps by their index
 }

@@ -19,6 +19,9 @@ enum class Health { kInitialising, kTracking, kDegenerate, kLost };
 /// What tells the motion along the weakest direction of the walls.
 enum class WeakAxisSource { kUnknown, kOdometry, kMarkers };
 
+/// What an estimate rests on beside odometry; the last of these that holds.
+enum class EstimateReason { kOdometry, kScan, kMarker, kLoop, kRelocalised, kSurvey, kCommand };
+
 struct Estimate {
   Timestamp time{};
   bool has_pose{true};  ///< false: where the robot is in the loaded map is not known yet
@@ -32,6 +35,7 @@ struct Estimate {
   int markers_in_view{0};
   Observability observability{};
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
+  EstimateReason reason{EstimateReason::kScan};
   bool updated{false};       ///< the scan was weighed and mapped, not only followed by odometry
   bool slipped{false};       ///< the scans showed that the wheels had slipped, and were believed
   bool ranges_wrong{false};  ///< the scan shows known walls, but at another scale: it was left out

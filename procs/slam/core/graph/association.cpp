@@ -64,6 +64,7 @@ void MarkerBook::add(int id, Timestamp time) {
   fresh.last_seen = time;
   entries_.push_back(fresh);
   is_retired_.push_back(false);
+  moved_from_.emplace_back();
 }
 
 /// Times of another run mean nothing in this one.
@@ -73,6 +74,7 @@ void MarkerBook::add_known(const Landmark& landmark) {
   entries_.back().last_seen = {};
   entries_.back().misses = 0;
   is_retired_.push_back(false);
+  moved_from_.emplace_back();
 }
 
 void MarkerBook::note_sighting(std::size_t landmark, Timestamp time) {
@@ -100,6 +102,7 @@ void MarkerBook::note_misses(const State& state, std::size_t keyframe,
       other.instance = entries_[i].instance;
       other.was_moved = entries_[i].is_confirmed();
       is_retired_[i] = true;
+      moved_from_[k] = i;
       break;
     }
   }

@@ -51,6 +51,11 @@ class MarkerBook {
                    const std::function<bool(const Se2& base_from_marker)>& is_in_view,
                    Timestamp now);
 
+  /// The retired landmark that it was before it was moved.
+  std::optional<std::size_t> moved_from(std::size_t landmark) const {
+    return moved_from_[landmark];
+  }
+
   bool is_retired(std::size_t landmark) const { return is_retired_[landmark]; }
 
   /// Markers that were first seen after that are no longer known.
@@ -78,6 +83,7 @@ class MarkerBook {
  private:
   std::vector<Landmark> entries_{};  ///< without pose and covariance: the graph has these
   std::vector<bool> is_retired_{};
+  std::vector<std::optional<std::size_t>> moved_from_{};
 };
 
 }  // namespace waymark

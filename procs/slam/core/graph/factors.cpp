@@ -178,6 +178,14 @@ LinearFactor MarkerFactor::linearise(const State& state, double gate) const {
   return linear;
 }
 
+LinearFactor LandmarkPrior::linearise(const State& state) const {
+  const Eigen::Matrix3d root = (is_off ? 0.0 : 1.0) * root_information;
+  LinearFactor linear;
+  linear.residual = root * pose_difference(state.landmarks[landmark], map_from_marker);
+  linear.blocks = {{{VariableKind::kLandmark, landmark}, root}};
+  return linear;
+}
+
 LinearFactor PosePrior::linearise(const State& state) const {
   LinearFactor linear;
   linear.residual = root_information * pose_difference(state.keyframes[keyframe], map_from_base);

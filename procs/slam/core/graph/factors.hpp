@@ -101,7 +101,17 @@ struct PosePrior {
   LinearFactor linearise(const State& state) const;
 };
 
-using Factor = std::variant<OdometryFactor, ScanFactor, MarkerFactor, PosePrior>;
+/// A marker's place is known, by a survey.
+struct LandmarkPrior {
+  std::size_t landmark{0};
+  Se2 map_from_marker{};
+  Eigen::Matrix3d root_information{Eigen::Matrix3d::Identity()};
+  bool is_off{false};  ///< it has turned out to be wrong
+
+  LinearFactor linearise(const State& state) const;
+};
+
+using Factor = std::variant<OdometryFactor, ScanFactor, MarkerFactor, PosePrior, LandmarkPrior>;
 
 /// Upper triangular R with R' R = information; information may be singular.
 Eigen::Matrix3d root_of(const Eigen::Matrix3d& information);

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 namespace waymark {
@@ -77,6 +78,10 @@ std::vector<Variable> Graph::variables_of(const Factor& factor) const {
     std::vector<Variable> operator()(const PosePrior& f) const {
       return {{VariableKind::kKeyframe, f.keyframe}};
     }
+
+    std::vector<Variable> operator()(const LandmarkPrior& f) const {
+      return {{VariableKind::kLandmark, f.landmark}};
+    }
   };
 
   return std::visit(Visitor{is_fixed_}, factor);
@@ -91,6 +96,59 @@ bool Graph::is_within_window(const Factor& factor) const {
 void Graph::add(const Factor& factor) {
   factors_.push_back(factor);
   if (is_within_window(factor)) active_factors_.push_back(factors_.size() - 1);
+}
+
+void Graph::move_to_frame(const Se2& new_from_old) {
+  constexpr double kUnknown = 1e3;  // [m, rad]
+  for (std::size_t i = 0; i < state_.keyframes.size(); ++i)
+    state_.keyframes[i] = new_from_old * state_.keyframes[i];
+  for (Se2& landmark : state_.landmarks)
+    landmark = new_from_old * landmark;
+  for (Eigen::Matrix3d& covariance : landmark_covariances_)
+    covariance = in_axes(new_from_old.rotation(), covariance);
+  const Eigen::Matrix2d back = new_from_old.rotation().transpose();
+  for (Factor& factor : factors_) {
+    auto* prior = std::get_if<PosePrior>(&factor);
+    if (prior == nullptr) continue;
+    prior->map_from_base = new_from_old * prior->map_from_base;
+    prior->root_information.leftCols<2>() = (prior->root_information.leftCols<2>() * back).eval();
+    if (prior->keyframe == 0) prior->root_information = Eigen::Matrix3d::Identity() / kUnknown;
+  }
+}
+
+void Graph::switch_prior(std::size_t factor, bool is_on) {
+  std::get<LandmarkPrior>(factors_[factor]).is_off = !is_on;
+}
+
+bool Graph::is_prior_on(std::size_t factor) const {
+  return !std::get<LandmarkPrior>(factors_[factor]).is_off;
+}
+
+/// The loss whose weight MarkerFactor has.
+double Graph::cost_of(const MarkerFactor& factor) const {
+  const double gate = noise_.marker_gate;
+  const double chi2 =
+      factor.linearise(state_, std::numeric_limits<double>::infinity()).residual.squaredNorm();
+  return chi2 > gate ? 2.0 * gate - gate * gate / chi2 : chi2;
+}
+
+double Graph::cost() const {
+  double sum = 0.0;
+  for (const Factor& factor : factors_) {
+    const auto* marker = std::get_if<MarkerFactor>(&factor);
+    sum += marker != nullptr ? cost_of(*marker) : linearised(factor).residual.squaredNorm();
+  }
+  return sum;
+}
+
+double Graph::cost_of_landmark(std::size_t landmark) const {
+  double sum = 0.0;
+  for (const Factor& factor : factors_)
+    if (const auto* marker = std::get_if<MarkerFactor>(&factor);
+        marker != nullptr && marker->landmark == landmark) {
+      sum += cost_of(*marker);
+    }
+  return sum;
 }
 
 void Graph::relocate_newest(const Se2& map_from_base) {
@@ -140,6 +198,8 @@ LinearFactor Graph::linearised(const Factor& factor) const {
     }
 
     LinearFactor operator()(const PosePrior& f) const { return f.linearise(graph.state_); }
+
+    LinearFactor operator()(const LandmarkPrior& f) const { return f.linearise(graph.state_); }
   };
 
   return std::visit(Visitor{*this}, factor);

@@ -49,6 +49,20 @@ class Graph {
   /// All its variables are in the window, or it waits for optimise_all().
   void add(const Factor& factor);
 
+  /// Moves everything into another frame. The first pose, which defined the old one, is as good as
+  /// unknown then: priors of landmarks must say where the frame is.
+  void move_to_frame(const Se2& new_from_old);
+
+  /// Whether a factor, a LandmarkPrior, counts. Takes effect in optimise_all().
+  void switch_prior(std::size_t factor, bool is_on);
+  bool is_prior_on(std::size_t factor) const;
+
+  /// Sum of chi^2 of all factors, robust where they are.
+  double cost() const;
+
+  /// The same of the measurements of one landmark.
+  double cost_of_landmark(std::size_t landmark) const;
+
   /// Puts the newest keyframe elsewhere: what has been said about it is forgotten.
   void relocate_newest(const Se2& map_from_base);
 
@@ -97,6 +111,7 @@ class Graph {
   };
 
   LinearFactor linearised(const Factor& factor) const;
+  double cost_of(const MarkerFactor& factor) const;
   bool is_within_window(const Factor& factor) const;
   void push_variable(const Variable& variable);
   void add_to(NormalEquations& equations, const LinearFactor& linear) const;

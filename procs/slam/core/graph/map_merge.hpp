@@ -16,8 +16,8 @@ MapSnapshot transformed(const MapSnapshot& map, const Se2& new_from_old);
 /// How two maps lie to each other.
 struct MapAlignment {
   Se2 a_from_b{};
-  std::size_t shared_markers{0};  ///< that agree
-  double rms_m{0.0};              ///< of their positions
+  std::size_t shared{0};  ///< markers, or stretches of walls, that agree
+  double rms_m{0.0};      ///< of their positions
 };
 
 /// By markers that are the only ones of their id in both maps. The largest set that agrees counts,

@@ -59,6 +59,7 @@ enum class MapMode {
 enum class StartKind {
   kOrigin,    ///< where mapping began, set down by hand
   kPose,      ///< at a given pose
+  kLast,      ///< where it was when slam stopped, if map and odometry still fit; else unknown
   kAnywhere,  ///< unknown
 };
 

@@ -83,7 +83,7 @@ void PlaceFinder::Hypothesis::drive(double distance_m) {
 }
 
 PlaceFinder::PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan)
-    : map_{std::move(map)}, scan_{scan} {}
+    : map_{map}, scan_{scan}, by_walls_{std::move(map), scan} {}
 
 std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& observation,
                                        std::span<const MarkerMeasurement> measurements,
@@ -101,7 +101,9 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
     if (weighs_walls || (place.wall_score == 0.0 && place.score() >= kDecided))
       weigh_walls(place, observation, noise);
   }
-  if (hypotheses_.empty()) return std::nullopt;
+  if (hypotheses_.empty()) {
+    return measurements.empty() ? by_walls_.update(motion, observation, noise) : std::nullopt;
+  }
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score() > b.score(); });
   const Hypothesis& best = hypotheses_.front();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "slam/core/graph/map_snapshot.hpp"
+#include "slam/core/graph/wall_place_finder.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/registration/scan_match.hpp"
 #include "slam/core/scan/observation.hpp"
@@ -23,7 +24,8 @@ namespace waymark {
 /// stretch of wall can add or take is bounded, for markers are taken down and doors are opened. The
 /// best hypothesis is the place once it beats both the next best and the empty one (the robot is
 /// nowhere in the map) clearly. So a marker whose id is unique is enough if nothing speaks against
-/// it; twins have to wait until their surroundings differ.
+/// it; twins have to wait until their surroundings differ. While no marker has been seen, walls
+/// alone may decide (WallPlaceFinder).
 class PlaceFinder {
  public:
   PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
@@ -73,6 +75,7 @@ class PlaceFinder {
   ScanMatchConfig scan_;
   std::vector<Hypothesis> hypotheses_{};
   double since_walls_m_{0.0};
+  WallPlaceFinder by_walls_;
 };
 
 /// The markers that should be in a camera's view: they face it, and the LiDAR sees their wall.

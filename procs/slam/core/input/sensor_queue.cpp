@@ -291,6 +291,7 @@ Observation SensorQueue::observation_at(Timestamp time, std::span<const Beam> be
 Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {
   Observation observation;
   observation.time = time;
+  observation.odom_from_base = odometry_.sent_pose_at(time);
   if (last_observed_ && odometry_.covers(*last_observed_)) {
     observation.motion = odometry_.motion_between(*last_observed_, time);
     if (const auto kept_back = odometry_.kept_back(*last_observed_, time)) {

@@ -34,7 +34,7 @@ OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
   }
   if (samples_.empty() || is_other(sample.odom_from_base, last_raw_)) changed_ = sample.time;
   last_raw_ = sample.odom_from_base;
-  samples_.push_back({sample.time, smooth_from_raw_ * sample.odom_from_base});
+  samples_.push_back({sample.time, smooth_from_raw_ * sample.odom_from_base, smooth_from_raw_});
   if (samples_.size() > kMaxSamples) samples_.pop_front();
   return outcome;
 }
@@ -52,10 +52,11 @@ std::optional<Motion> OdometryBuffer::kept_back(Timestamp from, Timestamp to) co
   return catch_up_->motion;
 }
 
-std::deque<OdometrySample>::const_iterator OdometryBuffer::sample_from(Timestamp time) const {
+std::deque<OdometryBuffer::Sample>::const_iterator OdometryBuffer::sample_from(
+    Timestamp time) const {
   return std::lower_bound(
       samples_.begin(), samples_.end(), time,
-      [](const OdometrySample& sample, Timestamp wanted) { return sample.time < wanted; });
+      [](const Sample& sample, Timestamp wanted) { return sample.time < wanted; });
 }
 
 std::optional<Timestamp> OdometryBuffer::first_from(Timestamp time) const {
@@ -72,10 +73,17 @@ Se2 OdometryBuffer::pose_at(Timestamp time) const {
   return interpolate(before->odom_from_base, after->odom_from_base, fraction);
 }
 
+Se2 OdometryBuffer::sent_pose_at(Timestamp time) const {
+  assert(covers(time));
+  const auto after = sample_from(time);
+  const auto before = after->time == time ? after : std::prev(after);
+  return before->smooth_from_raw.inverse() * pose_at(time);
+}
+
 Motion OdometryBuffer::motion_between(Timestamp from, Timestamp to) const {
   Motion motion;
   Se2 odom_from_last = pose_at(from);
-  for (const OdometrySample& sample : samples_) {
+  for (const Sample& sample : samples_) {
     if (sample.time <= from || sample.time >= to) continue;
     motion = motion.then(Motion::between(odom_from_last, sample.odom_from_base));
     odom_from_last = sample.odom_from_base;
@@ -84,7 +92,7 @@ Motion OdometryBuffer::motion_between(Timestamp from, Timestamp to) const {
 }
 
 void OdometryBuffer::shift(Duration later) {
-  for (OdometrySample& sample : samples_)
+  for (Sample& sample : samples_)
     sample.time += later;
   changed_ += later;
   if (catch_up_) catch_up_->time += later;

@@ -30,8 +30,11 @@ class OdometryBuffer {
     return !samples_.empty() && samples_.front().time <= time && time <= samples_.back().time;
   }
 
-  /// Interpolated; needs covers(time).
+  /// Interpolated, without jumps; needs covers(time).
   Se2 pose_at(Timestamp time) const;
+
+  /// The same as it was sent, with jumps.
+  Se2 sent_pose_at(Timestamp time) const;
 
   /// Along the path of the samples; needs both times covered, from <= to. Without what was kept
   /// back.
@@ -52,13 +55,19 @@ class OdometryBuffer {
   void forget_before(Timestamp time);
 
  private:
+  struct Sample {
+    Timestamp time{};
+    Se2 odom_from_base{};  ///< without jumps
+    Se2 smooth_from_raw{};
+  };
+
   /// What was kept back since the odometry last changed.
   struct CatchUp {
     Timestamp time{};  ///< of the sample that told it
     Motion motion{};
   };
 
-  std::deque<OdometrySample>::const_iterator sample_from(Timestamp time) const;
+  std::deque<Sample>::const_iterator sample_from(Timestamp time) const;
   bool has_kept_back(const Se2& step, const OdometrySample& sample) const;
 
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
@@ -67,7 +76,7 @@ class OdometryBuffer {
   static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
   static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz, if nobody forgets
 
-  std::deque<OdometrySample> samples_{};  ///< without jumps
+  std::deque<Sample> samples_{};
   Se2 smooth_from_raw_{};
   Se2 last_raw_{};
   Timestamp changed_{};  ///< when it last told another pose than before

@@ -12,6 +12,7 @@ namespace waymark {
 struct Observation {
   Timestamp time{};                    ///< of the scan, else of odometry
   Motion motion{};                     ///< since the observation before; none for the first
+  Se2 odom_from_base{};                ///< odometry as it was sent, at this time
   std::vector<AnnotatedBeam> beams{};  ///< none while the LiDAR is silent
   MeanSweep mean_sweep{};
   std::vector<MarkerSighting> sightings{};  ///< of the camera frames since the observation before

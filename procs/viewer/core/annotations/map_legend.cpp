@@ -3,6 +3,7 @@
 
 #include "viewer/core/drawing/canvas.hpp"
 #include "viewer/core/drawing/palette.hpp"
+#include "viewer/core/layers/change_layer.hpp"
 #include "viewer/core/layers/map_layers.hpp"
 #include "viewer/core/layers/marker_labels.hpp"
 
@@ -174,6 +175,33 @@ void add_markers(LegendWriter& legend, cv::Mat& page, const PageContent& content
   }
 }
 
+/// One entry for each kind that is on the map, with a piece of its symbol.
+void add_changes(LegendWriter& legend, cv::Mat& page, const PageContent& content) {
+  for (const auto& [kind, name] :
+       {std::pair{MapChange::Kind::kMissing, "marker is missing"},
+        std::pair{MapChange::Kind::kMoved, "where a moved marker was"},
+        std::pair{MapChange::Kind::kNew, "new marker"},
+        std::pair{MapChange::Kind::kSurveyOff, "where the survey has it"},
+        std::pair{MapChange::Kind::kWallNew, "new wall"},
+        std::pair{MapChange::Kind::kWallGone, "wall is gone"}}) {
+    if (std::none_of(content.changes.begin(), content.changes.end(),
+                     [which = kind](const MapChange& change) { return change.kind == which; })) {
+      continue;
+    }
+    legend.add(name, [&page, which = kind](cv::Point2d left, cv::Point2d right) {
+      const cv::Point2d middle = 0.5 * (left + right);
+      const bool has_line =
+          which == MapChange::Kind::kMoved || which == MapChange::Kind::kSurveyOff;
+      const std::array<MapChange, 1> symbol{
+          MapChange{.kind = which,
+                    .place = {has_line ? right.x : middle.x, -middle.y, 0.0},
+                    .was_at = {has_line ? left.x + 6 : middle.x, -middle.y},
+                    .size_m = 22.0}};
+      draw_changes(page, View{.px_per_m = 1.0}, symbol);
+    });
+  }
+}
+
 }  // namespace
 
 int draw_legend(cv::Mat& page, const MapPage& layout, const PageContent& content,
@@ -184,6 +212,7 @@ int draw_legend(cv::Mat& page, const MapPage& layout, const PageContent& content
   add_marks(legend, page, marks);
   legend.new_line();
   add_markers(legend, page, content);
+  add_changes(legend, page, content);
   add_health(legend, content);
   legend.add_box("occupied", palette::kOccupied);
   legend.add_box("free", palette::kFree);

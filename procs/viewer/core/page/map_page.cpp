@@ -113,6 +113,7 @@ Panel panel_at(const View& view, int left_px, int top_px) {
 PageContent content_of(const Scene& scene) {
   return {.map = scene.map.grid(),
           .landmarks = scene.landmarks,
+          .changes = scene.changes.value_or(std::vector<MapChange>{}),
           .estimates = scene.estimates,
           .final_in_map = scene.final_trajectory,
           .truth_in_map = aligned_on_first(scene.estimates, scene.truth),

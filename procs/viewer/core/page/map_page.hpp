@@ -36,6 +36,7 @@ constexpr int kRulerHeight_px = 58;
 struct PageContent {
   GridMap map{};
   std::vector<Landmark> landmarks{};
+  std::vector<MapChange> changes{};
   std::vector<EstimatedPose> estimates{};
   std::vector<TimedPose> final_in_map{};
   std::vector<TimedPose> truth_in_map{};

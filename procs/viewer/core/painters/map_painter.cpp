@@ -5,6 +5,7 @@
 #include "viewer/core/annotations/map_legend.hpp"
 #include "viewer/core/drawing/canvas.hpp"
 #include "viewer/core/drawing/palette.hpp"
+#include "viewer/core/layers/change_layer.hpp"
 #include "viewer/core/layers/map_layers.hpp"
 #include "viewer/core/layers/marker_labels.hpp"
 #include "viewer/core/layers/path_marks.hpp"
@@ -50,6 +51,7 @@ void draw_strip(cv::Mat& page, const Panel& strip, const PageContent& content,
   const auto labels = place_labels(content.landmarks, content.map, view, text_px);
   draw_labels(panel, labels, text_px);
   draw_plates(panel, view, content.landmarks, style.marker_size_m, widths.plate_px);
+  draw_changes(panel, view, content.changes);
   draw_ruler(page, strip);
 }
 

@@ -61,6 +61,20 @@ struct Landmark {
   LandmarkState state{LandmarkState::kUnknown};
 };
 
+/// What is not as the loaded map or the survey has it; values as in lcmtypes/map_change_t.lcm.
+struct MapChange {
+  enum class Kind { kNone, kMoved, kMissing, kNew, kWallNew, kWallGone, kSurveyOff };
+
+  Kind kind{Kind::kNone};
+  int id{kNoMarker};
+  int instance{0};
+  Se2 place{};
+  Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};
+  double size_m{0.0};  ///< of a wall
+  double sigmas{0.0};  ///< of kSurveyOff
+  int support{0};
+};
+
 /// A scan whose beams carry the ids of the markers that they hit.
 struct AnnotatedScan {
   Timestamp time{};
@@ -77,6 +91,7 @@ struct Scene {
   std::string title{};  ///< what made the map, e.g. the estimator's name
   TiledMap map{kMaxMapCells};
   std::vector<Landmark> landmarks{};
+  std::optional<std::vector<MapChange>> changes{};  ///< none: nobody compares
   std::vector<EstimatedPose> estimates{};
   std::vector<TimedPose> final_trajectory{};  ///< as the estimator knows it at the end
   std::vector<TimedPose> odometry{};          ///< odom_from_base

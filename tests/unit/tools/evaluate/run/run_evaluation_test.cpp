@@ -185,6 +185,32 @@ TEST(Run, AFinalTrajectoryHasItsOwnFiguresAndRow) {
   EXPECT_THAT(table, Not(HasSubstr("odometry, final")));
 }
 
+// A survey defines the map's frame: the world's, without alignment.
+TEST(Run, PosesInASurveysCoordinatesAreNotAligned) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "waymark", 200, 1.0);
+  run.file("waymark/config.toml", "[robot.markers]\nsize_m = 0.4\nsurvey_file = \"s.csv\"\n");
+  add_estimator(run, "odometry", 200, 1.0);
+  run.file("odometry/config.toml", "[robot.markers]\nsurvey_file = \"\"\n");
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  const Json waymark = json_in(run.path() / "waymark/metrics.json");
+  EXPECT_NEAR(waymark["ate_frame_m"].get<double>(), 1.0, 1e-9);  // the truth begins at x = 1 m
+  EXPECT_NEAR(waymark["ate_origin_m"].get<double>(), 0.0, 1e-9);
+  EXPECT_FALSE(json_in(run.path() / "odometry/metrics.json").contains("ate_frame_m"));
+}
+
+TEST(Run, WhatContradictsTheMapIsInTheResults) {
+  const TemporaryFolder run;
+  add_truth(run);
+  add_estimator(run, "waymark", 200, 1.0);
+  run.file("waymark/changes.csv", "change,id\nmarker_missing,7\nwall_gone,-1\n");
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(json_in(run.path() / "waymark/metrics.json")["changes"],
+            (Json{"marker_missing,7", "wall_gone,-1"}));
+  EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("waymark: 2 things are not as"));
+}
+
 TEST(Run, RowsStandInTheTablesOrder) {
   const TemporaryFolder run;
   for (const char* name : {"zeta", "waymark", "marker_matching_blank", "marker_matching", "alpha",

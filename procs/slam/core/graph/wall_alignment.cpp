@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/wall_alignment.hpp"
+
+#include "slam/core/registration/correlative_search.hpp"
+#include "slam/core/registration/scan_match.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+constexpr double kWall = 0.5;       // occupancy
+constexpr double kStretch_m = 4.0;  // radius of what is looked for at once
+constexpr double kStretchesEvery_m = 3.0;
+constexpr std::size_t kMostStretches = 24;
+constexpr std::size_t kPoints = 250;
+constexpr std::size_t kLeastPoints = 80;
+constexpr double kLeastScore = 0.6;  // of a stretch, part of which may be new or gone
+constexpr double kRunnerUpShare = 0.85;
+constexpr double kApart_m = 0.5;
+constexpr double kApart_rad = 0.3;
+constexpr double kAgree_m = 0.3;
+constexpr double kAgree_rad = 0.1;
+constexpr std::size_t kAgreeing = 2;    // stretches, at least
+constexpr double kRangeSigma_m = 0.02;  // of points that stand for cells
+const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
+
+Points wall_points_of(const GridMap& grid) {
+  Points points;
+  grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset)
+      if (cells[offset].occupancy() > kWall)
+        points.push_back(grid.frame.centre_of(cell_at(index, offset)));
+  });
+  return points;
+}
+
+/// Places along the way of a map, some metres apart.
+std::vector<Se2> places_of(const PoseGraph& graph) {
+  std::vector<Se2> places;
+  for (const Se2& pose : graph.poses) {
+    const bool is_near = std::any_of(places.begin(), places.end(), [&](const Se2& place) {
+      return (place.translation() - pose.translation()).norm() < kStretchesEvery_m;
+    });
+    if (!is_near) places.push_back(pose);
+  }
+  if (places.size() <= kMostStretches) return places;
+  std::vector<Se2> some;
+  for (std::size_t i = 0; i < kMostStretches; ++i)
+    some.push_back(places[i * places.size() / kMostStretches]);
+  return some;
+}
+
+Points stretch_at(const Se2& place, const Points& walls) {
+  Points points;
+  for (const Eigen::Vector2d& wall : walls)
+    if ((wall - place.translation()).norm() < kStretch_m) points.push_back(place.inverse() * wall);
+  return points;
+}
+
+/// a_from_place, where the stretch fits at one place only.
+std::optional<Se2> found_in(const MapSnapshot& a, const CorrelativeField& field,
+                            const SearchWindow& window, const Se2& middle, const Points& stretch) {
+  const Points some = thinned(stretch, kPoints);
+  if (some.size() < kLeastPoints) return std::nullopt;
+  const auto best = field.best(some, middle, window, kLeastScore);
+  if (!best) return std::nullopt;
+  const auto runner_up =
+      field.best_apart_from(best->submap_from_base, kApart_m, kApart_rad, some, middle, window,
+                            std::max(kLeastScore, kRunnerUpShare * best->score));
+  if (runner_up) return std::nullopt;
+  const RangeNoise noise{kRangeSigma_m};
+  const ScanMatchConfig config;
+  const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
+  const ScanMatch match = match_scan(some, a.walls, best->submap_from_base, near, noise, config);
+  if (!match.is_usable(config) || match.observed.is_degenerate) return std::nullopt;
+  return match.map_from_base;
+}
+
+Se2 mean_of(const std::vector<Se2>& poses) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Se2& pose : poses)
+    sum += pose_difference(pose, poses.front());
+  sum /= static_cast<double>(poses.size());
+  return {poses.front().x() + sum.x(), poses.front().y() + sum.y(),
+          poses.front().theta() + sum.z()};
+}
+
+}  // namespace
+
+std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapshot& b) {
+  const Points walls_a = wall_points_of(a.grid);
+  const Points walls_b = wall_points_of(b.grid);
+  if (walls_a.empty() || walls_b.empty()) return std::nullopt;
+  Eigen::Vector2d least = walls_a.front();
+  Eigen::Vector2d most = least;
+  for (const Eigen::Vector2d& point : walls_a) {
+    least = least.cwiseMin(point);
+    most = most.cwiseMax(point);
+  }
+  const CorrelativeField field{walls_a};
+  const Se2 middle{Eigen::Vector2d{0.5 * (least + most)}, 0.0};
+  const SearchWindow window{0.5 * (most - least).maxCoeff() + kStretch_m, std::numbers::pi};
+
+  struct Found {
+    Se2 a_from_place{};
+    Se2 b_from_place{};
+
+    /// Of the other one's place, if this one is right.
+    bool agrees_with(const Found& other) const {
+      const Se2 a_from_b = a_from_place * b_from_place.inverse();
+      const Eigen::Vector3d off =
+          pose_difference(a_from_b * other.b_from_place, other.a_from_place);
+      return off.head<2>().norm() < kAgree_m && std::abs(off.z()) < kAgree_rad;
+    }
+  };
+
+  std::vector<Found> found;
+  for (const Se2& place : places_of(b.graph))
+    if (const auto there = found_in(a, field, window, middle, stretch_at(place, walls_b)))
+      found.push_back({*there, place});
+  std::vector<Found> best;
+  for (const Found& one : found) {
+    std::vector<Found> agreeing;
+    std::copy_if(found.begin(), found.end(), std::back_inserter(agreeing),
+                 [&](const Found& other) { return one.agrees_with(other); });
+    if (agreeing.size() > best.size()) best = agreeing;
+  }
+  if (best.size() < kAgreeing) return std::nullopt;
+  // The middle of the stretches is known best: the mean is taken there.
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  for (const Found& one : best)
+    centre += one.b_from_place.translation() / static_cast<double>(best.size());
+  const Se2 b_from_centre{centre, 0.0};
+  std::vector<Se2> a_from_centre;
+  for (const Found& one : best)
+    a_from_centre.push_back(one.a_from_place * one.b_from_place.inverse() * b_from_centre);
+  MapAlignment alignment{mean_of(a_from_centre) * b_from_centre.inverse(), best.size(), 0.0};
+  for (const Found& one : best) {
+    const Eigen::Vector2d off =
+        (alignment.a_from_b * one.b_from_place).translation() - one.a_from_place.translation();
+    alignment.rms_m += off.squaredNorm() / static_cast<double>(best.size());
+  }
+  alignment.rms_m = std::sqrt(alignment.rms_m);
+  return alignment;
+}
+
+}  // namespace waymark

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/wall_change_detector.hpp"
+
+#include "slam/core/mapping/insert_scan.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace waymark {
+namespace {
+
+constexpr std::uint32_t kLeastVisits = 8;  // beams; a person who passes leaves fewer
+constexpr double kWall = 0.5;              // occupancy
+constexpr double kFree = 0.1;
+constexpr std::size_t kLeastCells = 6;  // 0.3 m of wall in cells of 0.05 m
+constexpr int kGap = 2;                 // cells of one change are at most so far apart
+
+template <class Condition>
+bool all_around(CellIndex centre, Condition&& holds) {
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      if (!holds(CellIndex{centre.x + x, centre.y + y})) return false;
+  return true;
+}
+
+using Cells = std::map<std::pair<int, int>, bool>;  ///< (y, x): whether it is in a cluster
+
+/// All cells that hang together with the first one.
+std::vector<CellIndex> cluster_from(const std::pair<int, int>& first, Cells& cells) {
+  std::vector<CellIndex> cluster;
+  std::vector<std::pair<int, int>> open{first};
+  cells.at(first) = true;
+  while (!open.empty()) {
+    const auto [y, x] = open.back();
+    open.pop_back();
+    cluster.push_back({x, y});
+    for (int dy = -kGap; dy <= kGap; ++dy) {
+      for (int dx = -kGap; dx <= kGap; ++dx) {
+        const auto near = cells.find({y + dy, x + dx});
+        if (near == cells.end() || near->second) continue;
+        near->second = true;
+        open.push_back(near->first);
+      }
+    }
+  }
+  return cluster;
+}
+
+MapChange change_of(const std::vector<CellIndex>& cluster, MapChange::Kind kind,
+                    const GridFrame& frame) {
+  Eigen::Vector2d least = frame.centre_of(cluster.front());
+  Eigen::Vector2d most = least;
+  for (const CellIndex cell : cluster) {
+    least = least.cwiseMin(frame.centre_of(cell));
+    most = most.cwiseMax(frame.centre_of(cell));
+  }
+  MapChange change;
+  change.kind = kind;
+  change.was_at = 0.5 * (least + most);
+  change.place = {change.was_at, 0.0};
+  change.size_m = (most - least).maxCoeff() + frame.resolution_m;
+  change.support = static_cast<int>(cluster.size());
+  return change;
+}
+
+void add_clusters(Cells cells, MapChange::Kind kind, const GridFrame& frame,
+                  std::vector<MapChange>& changes) {
+  for (auto& [place, is_taken] : cells) {
+    if (is_taken) continue;
+    const std::vector<CellIndex> cluster = cluster_from(place, cells);
+    if (cluster.size() >= kLeastCells) changes.push_back(change_of(cluster, kind, frame));
+  }
+}
+
+}  // namespace
+
+WallChangeDetector::WallChangeDetector(std::shared_ptr<const MapSnapshot> map)
+    : map_{std::move(map)}, seen_{map_->grid.frame, {}, {}} {}
+
+void WallChangeDetector::add(const Observation& observation, const Se2& map_from_base) {
+  const CellIndex here = map_->grid.frame.cell_of(map_from_base.translation());
+  if (map_->grid.occupancy[here].is_mapped()) insert_beams(observation.beams, map_from_base, seen_);
+}
+
+std::vector<MapChange> WallChangeDetector::changes() const {
+  const auto& then = map_->grid.occupancy;
+  const auto& now = seen_.occupancy;
+  const auto was_free = [&](CellIndex cell) {
+    return then[cell].is_mapped() && then[cell].occupancy() < kFree;
+  };
+  const auto is_free = [&](CellIndex cell) {
+    return now[cell].visits >= kLeastVisits && now[cell].occupancy() < kFree;
+  };
+  Cells appeared;
+  Cells gone;
+  now.for_each_tile([&](TileIndex tile, const auto& cells) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset) {
+      if (cells[offset].visits < kLeastVisits) continue;
+      const CellIndex cell = cell_at(tile, offset);
+      if (cells[offset].occupancy() > kWall && all_around(cell, was_free))
+        appeared[{cell.y, cell.x}] = false;
+      if (then[cell].occupancy() > kWall && all_around(cell, is_free))
+        gone[{cell.y, cell.x}] = false;
+    }
+  });
+  std::vector<MapChange> changes;
+  add_clusters(std::move(appeared), MapChange::Kind::kWallNew, map_->grid.frame, changes);
+  add_clusters(std::move(gone), MapChange::Kind::kWallGone, map_->grid.frame, changes);
+  return changes;
+}
+
+}  // namespace waymark

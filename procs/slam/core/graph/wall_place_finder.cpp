@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/wall_place_finder.hpp"
+
+#include "slam/core/graph/state.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace waymark {
+namespace {
+
+constexpr double kWall = 0.5;  // occupancy
+constexpr double kSearchEvery_m = 0.4;
+constexpr int kAgreeing = 3;  // scans
+constexpr std::size_t kBeams = 150;
+constexpr std::size_t kLeastBeams = 60;
+constexpr double kLeastScore = 0.7;
+constexpr double kRunnerUpShare = 0.8;
+constexpr double kApart_m = 0.5;
+constexpr double kApart_rad = 0.3;
+constexpr double kAgree_m = 0.2;
+constexpr double kAgree_rad = 0.1;
+constexpr double kLeastInliers = 0.8;  // share of the mapped beams
+constexpr double kLeastMapped = 0.8;   // share of all beams
+const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
+
+}  // namespace
+
+WallPlaceFinder::WallPlaceFinder(std::shared_ptr<const MapSnapshot> map,
+                                 const ScanMatchConfig& scan)
+    : map_{std::move(map)}, scan_{scan} {
+  Points walls;
+  map_->grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset)
+      if (cells[offset].occupancy() > kWall)
+        walls.push_back(map_->grid.frame.centre_of(cell_at(index, offset)));
+  });
+  if (walls.empty()) return;
+  Eigen::Vector2d least = walls.front();
+  Eigen::Vector2d most = least;
+  for (const Eigen::Vector2d& wall : walls) {
+    least = least.cwiseMin(wall);
+    most = most.cwiseMax(wall);
+  }
+  field_.emplace(walls);
+  middle_ = {Eigen::Vector2d{0.5 * (least + most)}, 0.0};
+  window_ = {0.5 * (most - least).maxCoeff(), std::numbers::pi};
+}
+
+std::optional<Se2> WallPlaceFinder::update(const Motion& motion, const Observation& observation,
+                                           const RangeNoise& noise) {
+  if (candidate_) candidate_ = *candidate_ * motion.start_from_end;
+  since_search_m_ += motion.distance_m;
+  if (!field_ || observation.beams.size() < kLeastBeams || since_search_m_ < kSearchEvery_m)
+    return std::nullopt;
+  since_search_m_ = 0.0;
+  Points points;
+  for (const AnnotatedBeam& annotated : observation.beams)
+    points.push_back(annotated.beam.end_in_base);
+  const auto there = found(thinned(points, kBeams), noise);
+  if (!there) return std::nullopt;
+  const Eigen::Vector3d off = candidate_ ? pose_difference(*there, *candidate_)
+                                         : Eigen::Vector3d::Constant(std::numbers::pi);
+  const bool agrees = off.head<2>().norm() < kAgree_m && std::abs(off.z()) < kAgree_rad;
+  agreed_ = agrees ? agreed_ + 1 : 1;
+  candidate_ = there;
+  return agreed_ >= kAgreeing ? there : std::nullopt;
+}
+
+std::optional<Se2> WallPlaceFinder::found(const Points& points, const RangeNoise& noise) const {
+  const auto best = field_->best(points, middle_, window_, kLeastScore);
+  if (!best) return std::nullopt;
+  const auto runner_up =
+      field_->best_apart_from(best->submap_from_base, kApart_m, kApart_rad, points, middle_,
+                              window_, kRunnerUpShare * best->score);
+  if (runner_up) return std::nullopt;
+  const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
+  const ScanMatch match =
+      match_scan(points, map_->walls, best->submap_from_base, near, noise, scan_);
+  const bool fits = match.is_usable(scan_) && match.inlier_share >= kLeastInliers &&
+                    match.mapped_share >= kLeastMapped && !match.observed.is_degenerate;
+  return fits ? std::optional{match.map_from_base} : std::nullopt;
+}
+
+}  // namespace waymark

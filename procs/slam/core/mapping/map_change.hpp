@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is not as a loaded map, or a survey, has it.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "slam/core/scan/marker_sighting.hpp"
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+struct MapChange {
+  enum class Kind {
+    kMarkerMoved,
+    kMarkerMissing,
+    kMarkerNew,
+    kWallNew,
+    kWallGone,
+    kSurveyOff,  ///< a surveyed marker hangs elsewhere than the survey says
+  };
+
+  Kind kind{Kind::kMarkerNew};
+  int id{kNoMarker};  ///< of the marker
+  int instance{0};
+  Se2 place{};                                      ///< now; of what is gone: where it was
+  Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};  ///< [m] in the map, or by the survey
+  double size_m{0.0};                               ///< of a wall: longer side of the box about it
+  double sigmas{0.0};                               ///< of kSurveyOff: how many standard deviations
+  int support{0};  ///< sightings, missed detections, or cells of a wall
+};
+
+}  // namespace waymark

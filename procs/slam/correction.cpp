@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/correction.hpp"
+
+#include "slam/core/graph/state.hpp"
+#include "slam/core/motion/pose_deviation.hpp"
+#include "slam/slam_messages.hpp"
+
+namespace waymark {
+namespace {
+
+using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+std::int8_t to_message(EstimateReason reason) {
+  switch (reason) {
+    case EstimateReason::kOdometry:
+      return correction_t::REASON_ODOMETRY;
+    case EstimateReason::kScan:
+      return correction_t::REASON_SCAN;
+    case EstimateReason::kMarker:
+      return correction_t::REASON_MARKER;
+    case EstimateReason::kLoop:
+      return correction_t::REASON_LOOP;
+    case EstimateReason::kRelocalised:
+      return correction_t::REASON_RELOCALISED;
+    case EstimateReason::kSurvey:
+      return correction_t::REASON_SURVEY;
+    case EstimateReason::kCommand:
+      return correction_t::REASON_COMMAND;
+  }
+  return correction_t::REASON_ODOMETRY;
+}
+
+}  // namespace
+
+correction_t CorrectionMaker::make(const Estimate& estimate, const Se2& odom_from_base,
+                                   std::int64_t map_id) {
+  const Se2 map_from_odom = estimate.map_from_base * odom_from_base.inverse();
+  const Se2 by_the_one_before = before_.value_or(map_from_odom) * odom_from_base;
+  before_ = map_from_odom;
+  correction_t message{};
+  message.utime = to_us(estimate.time);
+  message.map_id = map_id;
+  message.x_m = map_from_odom.x();
+  message.y_m = map_from_odom.y();
+  message.theta_rad = map_from_odom.theta();
+  // Odometry's number is exact: what is uncertain is the pose, seen from the odometry's origin.
+  Eigen::Map<RowMajor3>{message.covariance} = carried_along(
+      estimate.covariance, map_from_odom.translation() - estimate.map_from_base.translation());
+  message.health = health_number(estimate.health);
+  Eigen::Map<Eigen::Vector3d>{message.jump} =
+      pose_difference(estimate.map_from_base, by_the_one_before);
+  message.reason = to_message(estimate.reason);
+  return message;
+}
+
+}  // namespace waymark

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The slam process: commands, and the last pose.
+#include "slam/estimator_factory.hpp"
+#include "slam/last_pose.hpp"
+#include "slam/map_file.hpp"
+#include "slam/slam_node.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace waymark {
+namespace {
+
+MapFileInfo map_info(const SlamConfig& config, const std::string& frame) {
+  MapFileInfo info;
+  info.frame = frame;
+  info.marker_dictionary = config.robot.markers.dictionary;
+  info.marker_size_m = config.robot.markers.size_m;
+  return info;
+}
+
+StartPose unknown_start() {
+  StartPose start;
+  start.kind = StartKind::kAnywhere;
+  return start;
+}
+
+/// Where an estimate has the robot, for an estimator that goes on from there.
+StartPose start_at(const Estimate& estimate) {
+  constexpr double kLeast_m = 0.02;  // the map is known to about a cell
+  constexpr double kLeast_rad = 0.01;
+  const Eigen::Vector3d sigmas = estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return {StartKind::kPose,
+          estimate.map_from_base.x(),
+          estimate.map_from_base.y(),
+          estimate.map_from_base.theta(),
+          std::max(kLeast_m, sigmas.head<2>().maxCoeff()),
+          std::max(kLeast_rad, sigmas.z())};
+}
+
+}  // namespace
+
+std::int64_t SlamNode::save_map_to(const std::filesystem::path& file, const MapSnapshot& map) {
+  const std::int64_t map_id = write_map_file(file, map, map_info(config_, frame_));
+  spdlog::info("map {:016x} is in '{}': {} markers, {} keyframes",
+               static_cast<std::uint64_t>(map_id), file.string(), map.landmarks.size(),
+               map.graph.poses.size());
+  frame_map_id_ = map_id;
+  return map_id;
+}
+
+/// @return what was done. @throws Refusal
+std::string SlamNode::obey(const Command& command) {
+  if (!config_.slam.commands) throw Refusal{"commands are off: set slam.commands = true"};
+  switch (command.kind) {
+    case Command::Kind::kSaveMap:
+      return save_named(command.map_name);
+    case Command::Kind::kReset:
+      return reset();
+    case Command::Kind::kSetPose:
+      return set_pose(command.pose);
+    case Command::Kind::kSetMode:
+      return set_mode(command.mode);
+  }
+  throw Refusal{"commands of this kind are not known"};
+}
+
+std::string SlamNode::save_named(const std::string& name) {
+  if (config_.slam.state_folder.empty())
+    throw Refusal{"there is no folder to save to: set slam.state_folder"};
+  if (config_.slam.mode == MapMode::kLocalise)
+    throw Refusal{"mode localise leaves the map as it is, so there is nothing to save"};
+  const auto map = estimator_->snapshot();
+  if (!map) throw Refusal{"there is no map yet, or none that this estimator can save"};
+  const auto file = std::filesystem::path{config_.slam.state_folder} / (name + ".map.lcm");
+  try {
+    const std::int64_t map_id = save_map_to(file, *map);
+    return fmt::format("map {:016x} is in '{}'", static_cast<std::uint64_t>(map_id), file.string());
+  } catch (const std::exception& error) {
+    throw Refusal{error.what()};
+  }
+}
+
+/// @param start  where in the map; of a new map: nowhere.
+void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> map,
+                               const StartPose& start) {
+  const bool keeps_frame = map != nullptr;
+  config_.slam.mode = mode;
+  config_.slam.start = start;
+  loaded_map_ = std::move(map);
+  estimator_ = make_estimator(config_, loaded_map_, survey_);
+  placed_.reset();
+  next_map_.reset();
+  if (keeps_frame) return;
+  map_id_ = 0;
+  frame_map_id_ = 0;
+  frame_ = survey_.empty() ? "map" : "survey";
+  map_publisher_ = {};
+  correction_.forget();
+}
+
+std::string SlamNode::reset() {
+  const bool has_map = loaded_map_ != nullptr;
+  begin_estimator(config_.slam.mode, loaded_map_, has_map ? unknown_start() : StartPose{});
+  return has_map ? "the robot is looked for in the loaded map" : "a new map is begun";
+}
+
+std::string SlamNode::set_pose(const StartPose& pose) {
+  if (!estimator_->set_pose(pose)) {
+    throw Refusal{"there is no map yet that the pose could be in, or the estimator takes none"};
+  }
+  return fmt::format("the robot is at ({:.3f}, {:.3f}) m, {:.4f} rad", pose.x_m, pose.y_m,
+                     pose.yaw_rad);
+}
+
+std::string SlamNode::set_mode(MapMode mode) {
+  if (config_.slam.estimator != EstimatorName::kWaymark)
+    throw Refusal{"only the estimator 'waymark' has modes"};
+  if (mode == config_.slam.mode) throw Refusal{"slam is in that mode already"};
+  if (mode == MapMode::kLocalise && !config_.save_map.empty())
+    throw Refusal{
+        "the map is to be saved at the end (--save-map), so the mode must not end as localise"};
+  if (mode == MapMode::kMap) {
+    begin_estimator(MapMode::kMap, nullptr, {});
+    return "a new map is begun";
+  }
+  std::shared_ptr<const MapSnapshot> map = loaded_map_;
+  if (config_.slam.mode != MapMode::kLocalise) {
+    if (mode == MapMode::kExtend) throw Refusal{"mode map adds to its map already"};
+    const auto drawn = estimator_->snapshot();
+    if (!drawn) throw Refusal{"there is no map yet to localise in"};
+    MapFile file = map_of(to_map_messages(*drawn, map_info(config_, frame_)));
+    file.map.map_id = map_id_;
+    map = std::make_shared<const MapSnapshot>(std::move(file.map));
+  }
+  begin_estimator(mode, std::move(map), placed_ ? start_at(*placed_) : unknown_start());
+  if (mode == MapMode::kLocalise) return "the map stays as it is";
+  return "the map is added to";
+}
+
+/// On the first observation, for it takes odometry to know whether the last pose still fits.
+void SlamNode::resume_last_pose(const Observation& first) {
+  was_resumed_ = true;
+  if (config_.slam.start.kind != StartKind::kLast) return;
+  Resumption resumption{std::nullopt, "there is none"};
+  try {
+    if (const auto last = read_last_pose(config_.slam.state_folder))
+      resumption = resume(*last, frame_map_id_, first.time, first.odom_from_base);
+  } catch (const std::exception& error) {
+    spdlog::warn("{}", error.what());
+    resumption.why_not = "it cannot be read";
+  }
+  if (resumption.start && estimator_->set_pose(*resumption.start)) {
+    spdlog::info("resumes at ({:.2f}, {:.2f}) m", resumption.start->x_m, resumption.start->y_m);
+    return;
+  }
+  spdlog::info("the last pose is not used: {}; the robot is looked for anywhere in the map",
+               resumption.why_not);
+}
+
+void SlamNode::keep_last_pose() {
+  const bool is_known =
+      placed_ && placed_->time == newest_ &&
+      (placed_->health == Health::kTracking || placed_->health == Health::kDegenerate);
+  if (config_.slam.state_folder.empty() || frame_map_id_ == 0 || !is_known) return;
+  const Eigen::Vector3d sigmas = placed_->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  try {
+    write_last_pose(config_.slam.state_folder,
+                    {newest_, frame_map_id_, placed_->map_from_base, sigmas, odom_from_base_});
+  } catch (const std::exception& error) {
+    counters_.add("last pose not written");
+  }
+}
+
+}  // namespace waymark

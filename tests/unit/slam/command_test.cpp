@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Commands: what is refused and why, and what the others do.
+#include "common/lockstep/command_relay.hpp"
+#include "slam/command_desk.hpp"
+#include "unit/slam/map_drives.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace waymark {
+namespace {
+
+using test::config_for;
+using test::corridor_of;
+using test::messages_of;
+namespace fs = std::filesystem;
+
+command_t save_command(const std::string& name) {
+  command_t command{};
+  command.command_id = 1;
+  command.kind = command_t::KIND_SAVE_MAP;
+  command.name = name;
+  return command;
+}
+
+command_t pose_command(double x_m, double yaw_rad) {
+  command_t command{};
+  command.command_id = 2;
+  command.kind = command_t::KIND_SET_POSE;
+  command.pose[0] = x_m;
+  command.pose[2] = yaw_rad;
+  command.sigmas[0] = command.sigmas[1] = 0.1;
+  return command;
+}
+
+template <class Type>
+Message shifted(Channel<Type> channel, const Message& message, std::int64_t by_us) {
+  Type body = *decode<Type>(message.payload).message;
+  body.utime += by_us;
+  return encode(channel, body);
+}
+
+std::string why_refused(const command_t& command) {
+  try {
+    checked(command);
+  } catch (const Refusal& refusal) {
+    return refusal.what();
+  }
+  return {};
+}
+
+TEST(Command, NamesThatAreNoNamesAreRefused) {
+  for (const std::string name : {"a", "Corridor_2-b", "0"})
+    EXPECT_EQ(why_refused(save_command(name)), "") << name;
+  for (const std::string& name :
+       {std::string{}, std::string{"../map"}, std::string{"/tmp/map"}, std::string{"a b"},
+        std::string{"."}, std::string{"a.b"}, std::string{"\xc3\xa4"}, std::string(65, 'a')})
+    EXPECT_NE(why_refused(save_command(name)).find("letters, digits"), std::string::npos) << name;
+}
+
+TEST(Command, PosesThatAreNoPosesAreRefused) {
+  EXPECT_EQ(why_refused(pose_command(1.0, 3.0)), "");
+  EXPECT_NE(why_refused(pose_command(std::numeric_limits<double>::quiet_NaN(), 0.0)), "");
+  EXPECT_NE(why_refused(pose_command(0.0, std::numeric_limits<double>::infinity())), "");
+  EXPECT_NE(why_refused(pose_command(1e7, 0.0)), "");
+  command_t exact = pose_command(1.0, 0.0);
+  exact.sigmas[0] = 0.0;
+  EXPECT_NE(why_refused(exact).find("above 0"), std::string::npos);
+}
+
+TEST(Command, UnknownKindsAndModesAreRefused) {
+  command_t command{};
+  for (const int kind : {-128, -1, 0, 5, 127}) {
+    command.kind = static_cast<std::int8_t>(kind);
+    EXPECT_NE(why_refused(command).find("not known"), std::string::npos) << kind;
+  }
+  command.kind = command_t::KIND_SET_MODE;
+  EXPECT_NE(why_refused(command).find("not known"), std::string::npos);
+}
+
+TEST(CommandDesk, ARepeatedCommandActsOnceAndIsAnsweredAgain) {
+  CommandDesk desk;
+  int acted = 0;
+  const auto act = [&](const Command&) {
+    return std::to_string(++acted);
+  };
+  const auto first = desk.take(save_command("a"), timestamp_from_us(1), act);
+  const auto again = desk.take(save_command("a"), timestamp_from_us(2), act);
+  EXPECT_EQ(acted, 1);
+  ASSERT_TRUE(first && again);
+  EXPECT_EQ(again->text, "1");
+  EXPECT_EQ(again->state, reply_t::STATE_DONE);
+}
+
+TEST(CommandDesk, AFloodIsRefusedWithOneAnswerASecond) {
+  CommandDesk desk;
+  int acted = 0;
+  int answers = 0;
+  std::string last;
+  for (int i = 0; i < 10000; ++i) {
+    command_t command = save_command("a");
+    command.command_id = 100 + i;
+    const auto reply = desk.take(command, timestamp_from_us(1'000'000 + i), [&](const Command&) {
+      ++acted;
+      return std::string{};
+    });
+    if (!reply) continue;
+    ++answers;
+    last = reply->text;
+  }
+  EXPECT_EQ(acted, CommandDesk::kMostPerSecond);
+  EXPECT_EQ(answers, CommandDesk::kMostPerSecond + 1);
+  EXPECT_NE(last.find("more than 5 commands"), std::string::npos);
+}
+
+TEST(CommandRelay, StampsCommandsOfOneTickAndLeavesItsOwnAlone) {
+  Counters counters;
+  CommandRelay relay{counters};
+  for (int i = 0; i < 20; ++i) {
+    command_t command = save_command("a");
+    command.command_id = i;
+    relay.take(encode(channels::kSlamCommand, command));
+  }
+  std::vector<Message> tick;
+  relay.move_into(tick, timestamp_from_us(5'000'000));
+  ASSERT_EQ(tick.size(), CommandRelay::kMostPerTick);
+  EXPECT_EQ(counters.get("SLAM_COMMAND dropped: too many"), 10);
+  EXPECT_EQ(tick.front().time, timestamp_from_us(5'000'000));
+  for (const Message& message : tick)
+    relay.take(message);
+  std::vector<Message> next;
+  relay.move_into(next, timestamp_from_us(6'000'000));
+  EXPECT_TRUE(next.empty());
+}
+
+class CommandedSlam : public test::SavedMap {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path{::testing::TempDir()} / ("state_" + std::to_string(::getpid()));
+  }
+
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// @param commands  with the time at which they act.
+  test::Drive drive_with(SlamConfig config, std::vector<Message> messages,
+                         std::vector<std::pair<double, command_t>> commands) {
+    config.slam.state_folder = folder_;
+    config.slam.commands = true;
+    std::int64_t id = 1000;
+    for (auto& [time_s, command] : commands) {
+      command.utime = static_cast<std::int64_t>(1e6 * time_s);
+      command.command_id = ++id;
+      command.in_tick = 1;
+      messages.push_back(encode(channels::kSlamCommand, command));
+    }
+    std::sort(messages.begin(), messages.end(), comes_before);
+    return test::drive_through(config, messages);
+  }
+
+  static std::vector<reply_t> replies_of(const test::Drive& drive) {
+    std::vector<reply_t> replies;
+    for (const Message& message : drive.messages)
+      if (message.channel == channels::kSlamReply.name)
+        replies.push_back(*decode<reply_t>(message.payload).message);
+    return replies;
+  }
+
+  static command_t mode_command(std::int8_t mode) {
+    command_t command{};
+    command.kind = command_t::KIND_SET_MODE;
+    command.mode = mode;
+    return command;
+  }
+
+  static SlamConfig mapping() { return SlamConfig{}; }
+
+  fs::path folder_{};
+};
+
+TEST_F(CommandedSlam, RefusesWhileCommandsAreOff) {
+  SlamConfig config = mapping();
+  std::vector<Message> messages = messages_of(*drive_, 0.0, 3.0);
+  messages.push_back(encode(channels::kSlamCommand, save_command("a")));
+  const auto replies = replies_of(test::drive_through(config, messages));
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].state, reply_t::STATE_REFUSED);
+  EXPECT_NE(replies[0].text.find("slam.commands = true"), std::string::npos);
+}
+
+TEST_F(CommandedSlam, SavesAMapThatCanBeLocalisedIn) {
+  const test::Drive drive =
+      drive_with(mapping(), messages_of(*drive_), {{30.0, save_command("m")}});
+  const auto replies = replies_of(drive);
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].state, reply_t::STATE_DONE) << replies[0].text;
+  const fs::path map = folder_ / "m.map.lcm";
+  EXPECT_GT(read_map_file(map).map.landmarks.size(), 3U);
+  const test::SensorLog today = test::drive(corridor_of(2));
+  const test::Drive localised =
+      test::drive_through(config_for(MapMode::kLocalise, map), messages_of(today, 0.0, 20.0));
+  EXPECT_GT(test::with_pose(localised), localised.estimates.size() / 2);
+}
+
+TEST_F(CommandedSlam, AResetBeginsAnotherMapAtTheRobot) {
+  command_t reset{};
+  reset.kind = command_t::KIND_RESET;
+  const test::Drive drive = drive_with(mapping(), messages_of(*drive_), {{20.0, reset}});
+  EXPECT_NE(drive.estimates.front().map_id, drive.estimates.back().map_id);
+  const auto first = std::find_if(drive.estimates.begin(), drive.estimates.end(),
+                                  [&](const slam_estimate_t& estimate) {
+                                    return estimate.map_id == drive.estimates.back().map_id;
+                                  });
+  EXPECT_NEAR(first->x_m, 0.0, 1e-3);
+  EXPECT_GT(first->utime, 19'500'000);
+  EXPECT_LT(drive.markers.size(), corridor_of(1).markers.size());
+}
+
+TEST_F(CommandedSlam, AMapBecomesOneToLocaliseIn) {
+  const test::Drive drive = drive_with(mapping(), messages_of(*drive_, 0.0, 18.0),
+                                       {{13.0, mode_command(command_t::MODE_EXTEND)},
+                                        {14.0, mode_command(command_t::MODE_LOCALISE)},
+                                        {14.5, save_command("a")}});
+  const auto replies = replies_of(drive);
+  ASSERT_EQ(replies.size(), 3U);
+  EXPECT_EQ(replies[0].state, reply_t::STATE_REFUSED) << replies[0].text;
+  EXPECT_EQ(replies[1].state, reply_t::STATE_DONE) << replies[1].text;
+  EXPECT_EQ(replies[2].state, reply_t::STATE_REFUSED) << replies[2].text;
+  EXPECT_EQ(drive.estimates.front().map_id, drive.estimates.back().map_id);
+  EXPECT_LT(drive.markers.size(), corridor_of(1).markers.size());
+  EXPECT_LT(test::worst_error_m(drive, *drive_, test::map_from_world(*drive_)), 0.15);
+}
+
+// Carried 3 m back by hand, and told so; the odometry knows nothing of it.
+TEST_F(CommandedSlam, AGivenPoseIsWhereTheRobotIs) {
+  std::vector<Message> messages = messages_of(*drive_, 0.0, 20.0);
+  std::vector<Message> later = messages_of(*drive_, 10.0, 40.0);
+  const std::int64_t shift_us = 10'100'000;
+  for (Message& message : later) {
+    if (message.channel == channels::kLidar.name)
+      message = shifted(channels::kLidar, message, shift_us);
+    else if (message.channel == channels::kOdometry.name)
+      message = shifted(channels::kOdometry, message, shift_us);
+    else
+      message = shifted(channels::kMarkers, message, shift_us);
+    messages.push_back(message);
+  }
+  const Se2 there = test::map_from_world(*drive_) * test::true_pose(*drive_, 10'200'000);
+  command_t command = pose_command(there.x(), there.theta());
+  command.pose[1] = there.y();
+  const test::Drive drive = drive_with(mapping(), messages, {{20.15, command}});
+  const auto replies = replies_of(drive);
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].state, reply_t::STATE_DONE) << replies[0].text;
+  for (const slam_estimate_t& estimate : drive.estimates) {
+    if (estimate.utime < 20'500'000) continue;
+    const Se2 truth =
+        test::map_from_world(*drive_) * test::true_pose(*drive_, estimate.utime - shift_us);
+    EXPECT_LT(std::hypot(estimate.x_m - truth.x(), estimate.y_m - truth.y()), 0.25)
+        << 1e-6 * static_cast<double>(estimate.utime);
+  }
+}
+
+TEST_F(CommandedSlam, AReplayRepeatsThem) {
+  const std::vector<std::pair<double, command_t>> commands{
+      {15.0, save_command("m")}, {20.0, mode_command(command_t::MODE_LOCALISE)}};
+  const test::Drive first = drive_with(mapping(), messages_of(*drive_), commands);
+  const test::Drive second = drive_with(mapping(), messages_of(*drive_), commands);
+  EXPECT_TRUE(first.messages == second.messages);
+}
+
+}  // namespace
+}  // namespace waymark

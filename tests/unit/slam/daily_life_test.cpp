@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Corrections, the last pose, what contradicts the map, and surveyed markers.
+#include "common/files/whole_file.hpp"
+#include "slam/last_pose.hpp"
+#include "slam/survey_file.hpp"
+#include "unit/slam/map_drives.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace waymark {
+namespace {
+
+using test::config_for;
+using test::corridor_of;
+using test::map_from_world;
+using test::messages_of;
+namespace fs = std::filesystem;
+
+template <class Type>
+std::vector<Type> sent_on(Channel<Type> channel, const test::Drive& drive) {
+  std::vector<Type> found;
+  for (const Message& message : drive.messages)
+    if (message.channel == channel.name) found.push_back(*decode<Type>(message.payload).message);
+  return found;
+}
+
+Se2 odometry_at(const test::SensorLog& log, Timestamp time) {
+  for (std::size_t i = 1; i < log.odometry.size(); ++i) {
+    const OdometrySample& before = log.odometry[i - 1];
+    const OdometrySample& after = log.odometry[i];
+    if (after.time < time) continue;
+    const auto sent = [](const OdometrySample& sample) {
+      return to_odometry(to_pose_message(sample.time, sample.odom_from_base)).odom_from_base;
+    };
+    return interpolate(sent(before), sent(after),
+                       to_seconds(time - before.time) / to_seconds(after.time - before.time));
+  }
+  return log.odometry.back().odom_from_base;
+}
+
+class DailyLife : public test::SavedMap {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path{::testing::TempDir()} / ("daily_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_{};
+};
+
+TEST_F(DailyLife, TheCorrectionComposedWithOdometryIsTheEstimate) {
+  const test::Drive drive = test::drive_through(SlamConfig{}, messages_of(*drive_));
+  const auto corrections = sent_on(channels::kSlamCorrection, drive);
+  ASSERT_EQ(corrections.size(), drive.estimates.size());
+  for (std::size_t i = 0; i < corrections.size(); ++i) {
+    const correction_t& correction = corrections[i];
+    const slam_estimate_t& estimate = drive.estimates[i];
+    ASSERT_EQ(correction.utime, estimate.utime);
+    const Se2 odom_from_base = odometry_at(*drive_, timestamp_from_us(correction.utime));
+    const Se2 pose = Se2{correction.x_m, correction.y_m, correction.theta_rad} * odom_from_base;
+    EXPECT_NEAR(pose.x(), estimate.x_m, 1e-6);
+    EXPECT_NEAR(pose.y(), estimate.y_m, 1e-6);
+    EXPECT_NEAR(angle_difference(pose.theta(), estimate.theta_rad), 0.0, 1e-6);
+    EXPECT_EQ(correction.map_id, estimate.map_id);
+    EXPECT_NE(correction.map_id, 0);
+  }
+}
+
+TEST_F(DailyLife, ACorrectionsCovarianceCarriedToTheRobotIsThatOfItsPose) {
+  const test::Drive drive = test::drive_through(SlamConfig{}, messages_of(*drive_, 0.0, 20.0));
+  const correction_t correction = sent_on(channels::kSlamCorrection, drive).back();
+  const slam_estimate_t& estimate = drive.estimates.back();
+  using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  Eigen::Matrix3d carry = Eigen::Matrix3d::Identity();
+  carry(0, 2) = -(estimate.y_m - correction.y_m);
+  carry(1, 2) = estimate.x_m - correction.x_m;
+  const Eigen::Matrix3d carried =
+      carry * Eigen::Map<const RowMajor3>{correction.covariance} * carry.transpose();
+  EXPECT_TRUE(carried.isApprox(Eigen::Map<const RowMajor3>{estimate.covariance}, 1e-6));
+}
+
+TEST_F(DailyLife, MarkersMakeCorrections) {
+  const test::Drive drive = test::drive_through(SlamConfig{}, messages_of(*drive_));
+  std::map<int, int> counts;
+  for (const correction_t& correction : sent_on(channels::kSlamCorrection, drive))
+    ++counts[correction.reason];
+  EXPECT_GT(counts[correction_t::REASON_SCAN], 20);
+  EXPECT_GT(counts[correction_t::REASON_MARKER], 20);
+}
+
+TEST(LastPose, IsReadAsItWasWritten) {
+  const fs::path folder = fs::path{::testing::TempDir()} / ("last_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  EXPECT_FALSE(read_last_pose(folder));
+  const LastPose last{
+      timestamp_from_us(123'456'789), -5, {1.25, -2.5, 3.0}, {0.1, 0.2, 0.3}, {7.0, 8.0, -1.0}};
+  write_last_pose(folder, last);
+  const auto read = read_last_pose(folder);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->time, last.time);
+  EXPECT_EQ(read->map_id, last.map_id);
+  EXPECT_EQ(read->map_from_base.x(), 1.25);
+  EXPECT_EQ(read->sigmas, last.sigmas);
+  EXPECT_EQ(read->odom_from_base.theta(), -1.0);
+  fs::remove_all(folder);
+}
+
+TEST(LastPose, IsUsedOnlyWhereMapAndOdometryFit) {
+  const LastPose last{
+      timestamp_from_us(100'000'000), 7, {10.0, 0.0, 0.0}, {0.1, 0.1, 0.01}, {20.0, 1.0, 0.5}};
+  const auto at = [](double time_s) {
+    return timestamp_from_us(static_cast<std::int64_t>(1e6 * time_s));
+  };
+  const Se2 driven_on = last.odom_from_base * Se2{1.0, 0.0, 0.0};
+  const Resumption resumed = resume(last, 7, at(102.0), driven_on);
+  ASSERT_TRUE(resumed.start);
+  EXPECT_NEAR(resumed.start->x_m, 11.0, 1e-9);
+  EXPECT_GT(resumed.start->sigma_m, 0.1);
+  EXPECT_FALSE(resume(last, 8, at(102.0), driven_on).start);  // another map
+  EXPECT_FALSE(resume(last, 7, at(99.0), driven_on).start);   // the clock went back
+  EXPECT_FALSE(resume(last, 7, at(102.0), Se2{}).start);      // odometry began anew
+  EXPECT_FALSE(resume(last, 7, at(100'000.0), driven_on).start);
+  EXPECT_TRUE(resume(last, 7, at(100'000.0), last.odom_from_base).start);  // it stood all night
+}
+
+TEST_F(DailyLife, ARestartedSlamGoesOnWhereItWas) {
+  const test::SensorLog today = test::drive(corridor_of(2));
+  SlamConfig config = config_for(MapMode::kLocalise, *file_);
+  config.slam.state_folder = folder_;
+  test::drive_through(config, messages_of(today, 0.0, 21.0));
+  config.slam.start.kind = StartKind::kLast;
+  const test::Drive rest = test::drive_through(config, messages_of(today, 22.5));
+  EXPECT_EQ(test::with_pose(rest), rest.estimates.size());
+  EXPECT_LT(test::worst_error_m(rest, today, map_from_world(*drive_)), 0.1);
+  // In another map it does not.
+  write_last_pose(folder_, {timestamp_from_us(22'000'000), 99, {}, {0.1, 0.1, 0.1}, {}});
+  const test::Drive lost = test::drive_through(config, messages_of(today, 22.5));
+  EXPECT_LT(test::worst_error_m(lost, today, map_from_world(*drive_)), 0.1);
+}
+
+// One marker is gone, one hangs a metre further on, one is new, and a wall has come.
+TEST_F(DailyLife, WhatContradictsTheMapIsNamed) {
+  test::SyntheticCorridor changed = corridor_of(2);
+  changed.markers[2].position_m.x() += 1.0;
+  changed.markers.push_back(
+      {77, {8.0, changed.markers[1].position_m.y()}, changed.markers[1].yaw_rad});
+  const int gone = changed.markers[5].id;
+  const int moved = changed.markers[2].id;
+  changed.markers.erase(changed.markers.begin() + 5);
+  changed.length_m = 13.0;
+  changed.drive_m = 10.5;
+  const test::Drive today = test::drive_through(config_for(MapMode::kLocalise, *file_),
+                                                messages_of(test::drive(changed)));
+  std::map<int, std::vector<int>> ids_of_kind;
+  for (const map_change_t& change : today.changes)
+    ids_of_kind[change.kind].push_back(change.id);
+  EXPECT_EQ(ids_of_kind[map_change_t::KIND_MARKER_MISSING], std::vector{gone});
+  EXPECT_EQ(ids_of_kind[map_change_t::KIND_MARKER_MOVED], std::vector{moved});
+  EXPECT_EQ(ids_of_kind[map_change_t::KIND_MARKER_NEW], std::vector{77});
+  ASSERT_EQ(ids_of_kind[map_change_t::KIND_WALL_NEW].size(), 1U);
+  for (const map_change_t& change : today.changes)
+    if (change.kind == map_change_t::KIND_WALL_NEW) {
+      EXPECT_NEAR(change.x_m, 13.0 - 1.0, 0.2);  // the map begins at the robot's start
+      EXPECT_GT(change.size_m, 1.0);
+    }
+}
+
+TEST_F(DailyLife, NothingContradictsAMapThatIsRight) {
+  const test::Drive today = test::drive_through(config_for(MapMode::kLocalise, *file_),
+                                                messages_of(test::drive(corridor_of(2))));
+  EXPECT_TRUE(today.changes.empty());
+  EXPECT_FALSE(sent_on(channels::kSlamChanges, today).empty());
+}
+
+class SurveyedMap : public DailyLife {
+ protected:
+  fs::path survey(const std::string& text) {
+    const fs::path file = folder_ / "survey.csv";
+    write_whole_file(file, text);
+    return file;
+  }
+
+  std::string why_refused(const std::string& text) {
+    try {
+      read_survey(survey(text), "DICT_6X6_250");
+    } catch (const SetupError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  static std::string line_of(const test::SyntheticMarker& marker, double off_m = 0.0) {
+    return fmt::format("{},{},{},{},0.005,0.005,0.005\n", marker.id, marker.position_m.x() + off_m,
+                       marker.position_m.y(), marker.yaw_rad);
+  }
+
+  static constexpr const char* kHeader = "id,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad\n";
+};
+
+TEST_F(SurveyedMap, WhatIsWrongInTheFileIsNamedWithItsLine) {
+  const std::string header = kHeader;
+  const std::string good = header + "1,0,0,0,0.01,0.01,0.01\n";
+  EXPECT_EQ(why_refused(good), "");
+  const auto expect = [&](const std::string& text, const std::string& what) {
+    EXPECT_NE(why_refused(text).find(what), std::string::npos) << why_refused(text);
+  };
+  expect(good + "1,3,0,0,0.01,0.01,0.01\n", "line 3: id 1 comes twice");
+  expect(good + "2,3,0,0,0,0.01,0.01\n", "line 3: sigma_x_m is 0, but must be above 0");
+  expect(good + "2,3,0,0,-1,0.01,0.01\n", "line 3: sigma_x_m is -1");
+  expect(good + "250,3,0,0,0.1,0.01,0.01\n", "line 3: id is 250, but the dictionary has 0 to 249");
+  expect(good + "-1,3,0,0,0.1,0.01,0.01\n", "line 3: id is -1");
+  expect(good + "2,nan,0,0,0.1,0.01,0.01\n", "line 3: x_m is 'nan', which is no number");
+  expect(good + "2,3\n", "line 3: there is no y_m");
+  expect("id,x_m\n1,2\n", "line 1: there is no column y_m");
+  expect(header, "defines no frame");
+  expect(header + "1,0,0,,0.01,0.01,\n", "defines no frame");
+  expect("", "has no line with the names of its columns");
+  EXPECT_THROW(read_survey(folder_ / "nowhere.csv", "DICT_6X6_250"), SetupError);
+}
+
+TEST_F(SurveyedMap, PosesComeOutInItsCoordinates) {
+  const auto markers = corridor_of(1).markers;
+  SlamConfig config;
+  config.robot.markers.survey_file =
+      survey(kHeader + line_of(markers.front()) + line_of(markers.back()));
+  const test::Drive drive = test::drive_through(config, messages_of(*drive_));
+  EXPECT_FALSE(drive.failed);
+  EXPECT_GT(test::with_pose(drive), drive.estimates.size() * 3 / 4);
+  EXPECT_LT(test::worst_error_m(drive, *drive_, Se2{}), 0.12);
+  const auto trajectory = sent_on(channels::kSlamTrajectory, drive);
+  ASSERT_FALSE(trajectory.empty());
+  double squares_m2 = 0.0;
+  for (const pose2D_t& pose : trajectory.front().poses) {
+    const Se2 truth = test::true_pose(*drive_, pose.utime);
+    squares_m2 += std::pow(double{pose.x} - truth.x(), 2) + std::pow(double{pose.y} - truth.y(), 2);
+  }
+  EXPECT_LT(std::sqrt(squares_m2 / static_cast<double>(trajectory.front().poses.size())), 0.02);
+  EXPECT_TRUE(drive.changes.empty());
+  EXPECT_EQ(drive.markers.size(), markers.size());
+}
+
+TEST_F(SurveyedMap, AnEntryThatIsWrongIsNamedAndDoesNoHarm) {
+  const auto markers = corridor_of(1).markers;
+  for (const std::size_t wrong : {std::size_t{1}, markers.size() - 1}) {
+    std::string text = kHeader;
+    for (const std::size_t i :
+         {std::size_t{0}, std::size_t{1}, markers.size() - 2, markers.size() - 1})
+      text += line_of(markers[i], i == wrong ? 0.5 : 0.0);
+    SlamConfig config;
+    config.robot.markers.survey_file = survey(text);
+    const test::Drive drive = test::drive_through(config, messages_of(*drive_));
+    ASSERT_EQ(drive.changes.size(), 1U);
+    EXPECT_EQ(drive.changes[0].kind, map_change_t::KIND_SURVEY_OFF);
+    EXPECT_EQ(drive.changes[0].id, markers[wrong].id);
+    EXPECT_GT(drive.changes[0].sigmas, 50.0);
+    for (const marker_landmark_t& landmark : drive.markers) {
+      const auto& marker = markers[static_cast<std::size_t>(landmark.id)];
+      EXPECT_NEAR(landmark.x_m, marker.position_m.x(), 0.04) << landmark.id;
+      EXPECT_NEAR(landmark.y_m, marker.position_m.y(), 0.04) << landmark.id;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command/command_line.hpp"
+
+#include "common/errors/exit_codes.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+
+namespace waymark {
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+  CommandLine line;
+  command_t& command = line.command;
+  constexpr double kUsualSigma_m = 0.1;  // of somebody who points at a map
+  constexpr double kUsualSigma_rad = 0.1;
+  command.sigmas[0] = kUsualSigma_m;
+  command.sigmas[1] = kUsualSigma_rad;
+  std::string mode;
+
+  CLI::App program{
+      "Asks a running slam to do something (it must have slam.commands = true).\n"
+      "Exit code: 0 done; 1 refused, and why; 2 wrong usage; 4 no answer within 2 s.",
+      "waymark-command"};
+  program.set_version_flag("--version", "waymark-command " WAYMARK_VERSION);
+  program.add_option(
+      "--lcm-url", line.lcm_url,
+      "LCM network (default: $LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
+  program.require_subcommand(1);
+  program.fallthrough();
+  CLI::App& save = *program.add_subcommand("save", "save the map in slam's state folder");
+  save.add_option("name", command.name, "NAME of NAME.map.lcm: letters, digits, _ and -")
+      ->required();
+  save.callback([&] { command.kind = command_t::KIND_SAVE_MAP; });
+  program
+      .add_subcommand("reset", "begin anew: a new map; with a loaded one, look for the robot in it")
+      ->callback([&] { command.kind = command_t::KIND_RESET; });
+  CLI::App& pose = *program.add_subcommand("set-pose", "say where the robot is in the map");
+  pose.add_option("x_m", command.pose[0], "base in the map")->required();
+  pose.add_option("y_m", command.pose[1], "base in the map")->required();
+  pose.add_option("yaw_rad", command.pose[2], "base in the map")->required();
+  pose.add_option("--sigma-m", command.sigmas[0], "how far x and y may be off (default 0.1)");
+  pose.add_option("--sigma-rad", command.sigmas[1], "how far the heading may be off (default 0.1)");
+  pose.callback([&] { command.kind = command_t::KIND_SET_POSE; });
+  CLI::App& set_mode = *program.add_subcommand("set-mode", "go on in another mode");
+  const std::map<std::string, std::int8_t> modes{{"map", command_t::MODE_MAP},
+                                                 {"localise", command_t::MODE_LOCALISE},
+                                                 {"extend", command_t::MODE_EXTEND}};
+  set_mode.add_option("mode", mode, "map, localise or extend")
+      ->required()
+      ->check(CLI::IsMember{std::vector<std::string>{"map", "localise", "extend"}});
+  set_mode.callback([&] {
+    command.kind = command_t::KIND_SET_MODE;
+    command.mode = modes.at(mode);
+  });
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    line.exit_code = program.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return line;
+}
+
+}  // namespace waymark

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of waymark-command as a message.
+#pragma once
+
+#include "common/messages/channels.hpp"
+
+#include <optional>
+#include <string>
+
+namespace waymark {
+
+struct CommandLine {
+  command_t command{};
+  std::string lcm_url{};
+  std::optional<int> exit_code{};  ///< there is nothing to send: --help, or wrong usage
+};
+
+CommandLine parse_command_line(int argc, const char* const* argv);
+
+}  // namespace waymark
