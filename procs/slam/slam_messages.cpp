@@ -67,8 +67,8 @@ marker_landmark_t to_message(const Landmark& landmark) {
 
 graph_edge_t to_message(const GraphEdge& edge) {
   graph_edge_t message{};
-  message.from = static_cast<std::int32_t>(edge.from);
-  message.to = static_cast<std::int32_t>(edge.to);
+  message.from_vertex = static_cast<std::int32_t>(edge.from);
+  message.to_vertex = static_cast<std::int32_t>(edge.to);
   message.pose[0] = edge.from_from_to.x();
   message.pose[1] = edge.from_from_to.y();
   message.pose[2] = edge.from_from_to.theta();

@@ -262,7 +262,7 @@ pose_graph_t graph_part(int part, int num_parts) {
   graph.vertices = {{1.0 * part, 2.0, 0.5}};
   if (part == 0) return graph;
   graph_edge_t edge{};
-  edge.to = part;
+  edge.to_vertex = part;
   edge.pose[0] = 1.0;
   edge.pose[2] = 0.5 * std::numbers::pi;  // x of the first is -y of the second
   edge.information[0] = 100.0;

@@ -20,7 +20,7 @@ void WaymarkEstimator::use_survey() {
   if (!survey_.has_frame()) return;
   survey_.apply(graph_, kSolveSteps);
   graph_.optimise();
-  redraw_if_moved();
+  map_.begin_to_follow();
   note_reason(EstimateReason::kSurvey);
 }
 
