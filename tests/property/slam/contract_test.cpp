@@ -139,7 +139,7 @@ TEST_P(Contract, AMirroredWorldGivesAMirroredResult) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllEstimators, Contract, testing::ValuesIn(kMethods),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
 }  // namespace waymark

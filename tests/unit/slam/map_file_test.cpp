@@ -8,6 +8,7 @@
 #include "slam/core/graph/map_merge.hpp"
 #include "unit/slam/map_drives.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -86,7 +87,10 @@ TEST_F(SavedMap, OfAnotherFormatIsRefused) {
     read_map_file(file);
     FAIL() << "was read";
   } catch (const SetupError& error) {
-    EXPECT_NE(std::string{error.what()}.find("format 2; this program reads 1"), std::string::npos);
+    EXPECT_NE(
+        std::string{error.what()}.find(fmt::format("format {}; this program reads {}",
+                                                   map_header_t::FORMAT + 1, map_header_t::FORMAT)),
+        std::string::npos);
   }
   fs::remove(file);
 }

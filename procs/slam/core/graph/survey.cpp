@@ -13,6 +13,7 @@ constexpr double kLeastApart_m = 1.0;    // markers that say which way a frame i
 constexpr double kClearlyBetter = 25.0;  // chi^2 that leaving out the wrong one saves
 constexpr int kLeastSightings = 3;
 constexpr double kContradiction = 50.0;  // chi^2 that priors add where all are right, at most
+constexpr double kGauge = 1e3;           // 1 over the sigmas of a pose that holds the frame
 constexpr int kMostLeftOut = 5;          // more wrong entries are no survey
 constexpr std::size_t kMostTried = 8;    // of the entries that are off most
 
@@ -95,6 +96,8 @@ void Survey::apply(Graph& graph, int solve_steps) {
   }
   Graph free = graph;
   switch_all(free, false);
+  // Without priors nothing would hold the frame.
+  free.add(PosePrior{0, free.state().keyframes[0], kGauge * Eigen::Matrix3d::Identity()});
   free.optimise_all(solve_steps);
   switch_all(graph, true);  // judged anew, with what is new
   graph.optimise_all(solve_steps);
