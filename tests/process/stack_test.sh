@@ -221,7 +221,7 @@ live_page() {
 never_reads() {
   exec 8<>"/dev/tcp/${1/://}"
   printf 'GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n' >&8
-  sleep 300 8<&8
+  exec sleep 300 8<&8
 }
 
 # The same run without the page, and with two clients of which one never reads.
@@ -235,13 +235,13 @@ live_page_changes_no_byte() {
     ! (: <>"/dev/tcp/${address/://}") 2>/dev/null || break
     sleep 0.1
   done
-  never_reads "$address" &
+  never_reads "$address" >/dev/null 2>&1 &
   deaf=$!
   (
     exec 8<>"/dev/tcp/${address/://}"
     printf 'GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n' >&8
-    cat <&8 >"$work/events"
-  ) &
+    exec cat <&8 >"$work/events"
+  ) 2>/dev/null &
   reader=$!
   expect_code 0 $run
   kill $deaf $reader 2>/dev/null || true

@@ -68,8 +68,9 @@ class ClosedLoop : public ::testing::Test {
   }
 
   static void expect_same_result(const std::string& name) {
-    for (const std::string file : {"run.lcm", "truth.tum", "waymark/map.pgm", "waymark/map.yaml",
-                                   "waymark/trajectory.tum", "waymark/markers.csv"}) {
+    for (const std::string file :
+         {"run.lcm", "truth.tum", "waymark/map.pgm", "waymark/map.yaml", "waymark/trajectory.tum",
+          "waymark/markers.csv", "waymark/graph.g2o"}) {
       EXPECT_TRUE(content_of(folder() / name / file) == content_of(folder() / "reference" / file))
           << file << " of " << name << " differs from that of the undisturbed run";
     }
@@ -109,13 +110,13 @@ TEST_F(ClosedLoop, WritesEverythingThatScriptsRelyOn) {
   for (const std::string file :
        {"run.lcm", "scenario.toml", "robot.toml", "truth.tum", "truth_markers.csv", "logs/sim.log",
         "waymark/map.pgm", "waymark/map.yaml", "waymark/map.png", "waymark/marker_layer.png",
-        "waymark/trajectory.tum", "waymark/markers.csv"}) {
+        "waymark/trajectory.tum", "waymark/markers.csv", "waymark/graph.g2o"}) {
     EXPECT_TRUE(fs::exists(folder() / "reference" / file)) << file;
   }
   for (const auto& entry : fs::recursive_directory_iterator{folder() / "reference"}) {
     EXPECT_THAT(entry.path().extension(),
                 ::testing::AnyOf(".lcm", ".toml", ".tum", ".csv", ".log", ".pgm", ".yaml", ".png",
-                                 ".json", ".md", ""))
+                                 ".json", ".md", ".g2o", ""))
         << "left behind: " << entry.path();
   }
 }

@@ -37,9 +37,9 @@ std::string g2o_text(std::span<const pose_graph_t> parts) {
       const Eigen::Matrix3d information = information_in_to(edge);
       fmt::format_to(
           out, "EDGE_SE2 {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n",
-          edge.from_vertex, edge.to_vertex, edge.pose[0], edge.pose[1], edge.pose[2], information(0, 0),
-          information(0, 1), information(0, 2), information(1, 1), information(1, 2),
-          information(2, 2));
+          edge.from_vertex, edge.to_vertex, edge.pose[0], edge.pose[1], edge.pose[2],
+          information(0, 0), information(0, 1), information(0, 2), information(1, 1),
+          information(1, 2), information(2, 2));
     }
   }
   return text;
