@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# clang-tidy with the tree's .clang-tidy. All files take a quarter of an hour on two cores, so CI takes the newest.
+# clang-tidy with the tree's .clang-tidy. All files take a quarter of an hour on two cores.
 #
 # usage: tests/tidy.sh [--newest N | FILE...]
 #   --newest N  the N sources of procs/ and tools/ that the latest commits changed
