@@ -132,6 +132,8 @@ void OdometryNoise::describe(Fields& fields) {
                "how much the heading may drift per metre");
   fields.field("lidar_ahead_sigma_m", lidar_ahead_sigma_m, kPositive,
                "how far the LiDAR may be ahead of where it is told to be");
+  fields.field("may_slip", may_slip,
+               "whether a motion may be no random walk: wheels that spin, pushes, jumps");
 }
 
 void MarkerMeasurementConfig::describe(Fields& fields) {
@@ -184,6 +186,8 @@ void WaymarkConfig::describe(Fields& fields) {
                "keyframes that are solved for at each update");
   fields.field("submap_keyframes", submap_keyframes, {2, 100000}, "keyframes of a submap");
   fields.field("learn_noise", learn_noise, "whether odometry may be found worse than described");
+  fields.field("calibrate", calibrate,
+               "whether systematic errors of odometry and camera are learnt; else they are 0");
   fields.field("marker_gate", marker_gate, kPositive,
                "chi^2 of a marker's innovation that is still believed");
   fields.field("marker_near_m", marker_near_m, kNotNegative,

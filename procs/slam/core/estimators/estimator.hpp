@@ -66,6 +66,9 @@ class Estimator {
   /// The map as it is when drawn along trajectory(). O(scans).
   virtual GridMap redrawn_map() const { return map(); }
 
+  /// The poses that redrawn_map() is drawn along, and what ties them; of methods that have a graph.
+  virtual std::optional<PoseGraph> pose_graph() const { return std::nullopt; }
+
   /// All that another run needs to go on in this map, of methods that can. O(scans).
   virtual std::optional<MapSnapshot> snapshot() const { return std::nullopt; }
 };

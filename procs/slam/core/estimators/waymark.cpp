@@ -12,16 +12,19 @@ namespace {
 
 constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]: the map's frame is the first pose
 
+constexpr double kFixed = 1e-6;  // of the sigmas of a calibration that is not learnt
+
 // A scan that odometry contradicts becomes a keyframe, where a slip is weighed.
 constexpr double kContradiction = 25.0;  // chi^2
 constexpr double kContradiction_m = 0.03;
 constexpr double kContradiction_rad = 0.02;
 
-Calibration calibration_sigmas(const EstimatorSetup& setup, const OdometryNoise& odometry) {
+Calibration calibration_sigmas(const EstimatorSetup& setup, const OdometryNoise& odometry,
+                               bool calibrate) {
   Calibration sigmas;
   sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
       odometry.lidar_ahead_sigma_m, setup.sighting_sigmas.learnt;
-  return sigmas;
+  return calibrate ? sigmas : Calibration{kFixed * sigmas};
 }
 
 Points points_of(const Observation& observation) {
@@ -40,25 +43,37 @@ GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config)
   return noise;
 }
 
+/// That the map is drawn upon.
+GridMap ground_of(const EstimatorSetup& setup) {
+  if (setup.loaded_map) return setup.loaded_map->grid;
+  return {GridFrame::centred_on_map_origin(setup.grid.resolution_m), {}, {}};
+}
+
 }  // namespace
 
 WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config)
     : setup_{setup},
       config_{config},
-      graph_{graph_noise(setup, config), calibration_sigmas(setup, config.odometry)},
+      graph_{graph_noise(setup, config),
+             calibration_sigmas(setup, config.odometry, config.calibrate)},
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
-      mapper_{setup.grid},
+      map_{setup.grid, ground_of(setup)},
       start_{setup.start} {
   if (setup_.loaded_map) load(*setup_.loaded_map);
 }
 
 Estimate WaymarkEstimator::update(const Observation& observation) {
+  const double step_s =
+      newest_time_ == Timestamp{} ? 0.0 : to_seconds(observation.time - newest_time_);
   newest_time_ = observation.time;
-  follow_odometry(observation);
+  follow_odometry(observation, step_s);
   const Points points = points_of(observation);
   if (place_finder_ && !place(observation)) return unplaced(observation);
   bool is_keyframe = is_keyframe_due(observation) || is_contradicted_by(observation);
+  const Se2 map_from_last = graph_.state().keyframes.empty()
+                                ? Se2{}
+                                : graph_.state().keyframes.back() * newest_from_last_scan_;
   BetweenKeyframes between;
   if (!is_keyframe) {
     between = between_keyframes(points);
@@ -74,6 +89,9 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
   Estimate now =
       is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation, between);
   now.updated = is_keyframe;
+  last_step_ = map_from_last.inverse() * now.map_from_base;
+  last_step_s_ = step_s;
+  newest_from_last_scan_ = graph_.state().keyframes.back().inverse() * now.map_from_base;
   if (!is_frozen()) {
     scan_poses_.push_back({observation.time, newest(),
                            graph_.state().keyframes.back().inverse() * now.map_from_base});
@@ -83,14 +101,14 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
 
 /// Odometry that was stuck tells at once what was driven meanwhile. Keyframes that were made in
 /// between, because markers or walls said that the robot moves, hang on those alone then.
-void WaymarkEstimator::follow_odometry(const Observation& observation) {
+void WaymarkEstimator::follow_odometry(const Observation& observation, double step_s) {
   if (observation.odometry_caught_up && standstill_ &&
       graph_.is_active({VariableKind::kKeyframe, standstill_->keyframe})) {
     graph_.cut_odometry_since(standstill_->keyframe);
     moved_from_ = standstill_->keyframe;
     motion_ = standstill_->motion;
   }
-  motion_ = motion_.then(observation.motion);
+  motion_ = motion_.then(believable_motion(observation, step_s));
   const bool is_standing =
       observation.motion.distance_m == 0.0 && observation.motion.turn_rad == 0.0;
   if (!is_standing) {
@@ -99,6 +117,16 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
   } else if (!standstill_ && !graph_.state().keyframes.empty()) {
     standstill_ = Standstill{moved_from_, motion_};
   }
+}
+
+/// What no robot can have driven that has driven as this one: then it went on as before.
+Motion WaymarkEstimator::believable_motion(const Observation& observation, double step_s) {
+  odometry_refused_ =
+      !observation.odometry_caught_up && !speed_limits_.allow(observation.motion, step_s);
+  if (!odometry_refused_) return observation.motion;
+  const double share = last_step_s_ > 0.0 ? std::min(1.0, step_s / last_step_s_) : 0.0;
+  const Se2 guess{share * last_step_.x(), share * last_step_.y(), share * last_step_.theta()};
+  return {guess, guess.translation().norm(), std::abs(guess.theta()), step_s};
 }
 
 bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
@@ -178,11 +206,9 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
 
 void WaymarkEstimator::map_keyframe(const Observation& observation, const Points& points) {
   const Se2& map_from_base = graph_.state().keyframes.back();
-  mapper_.insert(observation, map_from_base,
-                 graph_.covariance_of({VariableKind::kKeyframe, newest()}));
   insert_scan(points);
-  archive_.add(observation, map_from_base);
-  drawn_at_.push_back(map_from_base);
+  map_.add(observation, map_from_base);
+  map_.follow(poses_of(graph_));
 }
 
 Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) const {
@@ -247,6 +273,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
     const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
     estimate.covariance += away * away.transpose();
   }
+  estimate.slipped = odometry_refused_;
   estimate.calibration_widened = graph_.is_calibration_doubted();
   estimate.weak_axis_source = markers_known_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
   const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kDoubtful ||

@@ -10,10 +10,12 @@
 #include "slam/core/graph/place_finder.hpp"
 #include "slam/core/graph/relocalisation.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
-#include "slam/core/mapping/scan_archive.hpp"
+#include "slam/core/mapping/drawn_map.hpp"
+#include "slam/core/motion/speed_limits.hpp"
 #include "slam/core/registration/submap.hpp"
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -29,6 +31,7 @@ struct WaymarkConfig {
   int window_keyframes{48};
   int submap_keyframes{40};
   bool learn_noise{true};
+  bool calibrate{true};
   double marker_gate{16.3};          ///< chi^2 of a marker's innovation, 3 degrees of freedom
   double marker_near_m{0.25};        ///< off by less, it is the same one all the same
   double same_marker_within_m{0.5};  ///< no second marker of one id nearer than this
@@ -48,12 +51,13 @@ class WaymarkEstimator final : public Estimator {
 
   Estimate update(const Observation& observation) override;
 
-  const GridMap& map() const override { return mapper_.map(); }
+  const GridMap& map() const override { return map_.map(); }
 
   std::vector<Landmark> landmarks() const override;
   std::vector<PublishedParticle> particles() const override;
   std::vector<TimedPose> trajectory() const override;
   GridMap redrawn_map() const override;
+  std::optional<PoseGraph> pose_graph() const override;
   std::optional<MapSnapshot> snapshot() const override;
 
  private:
@@ -95,6 +99,7 @@ class WaymarkEstimator final : public Estimator {
   Estimate unplaced(const Observation& observation) const;
   void load(const MapSnapshot& map);
   std::vector<Landmark> landmarks_of(const Graph& graph) const;
+  Graph solved() const;
 
   bool is_frozen() const { return setup_.map_mode == MapMode::kLocalise; }
 
@@ -103,11 +108,13 @@ class WaymarkEstimator final : public Estimator {
   bool is_in_loaded_map(const ScanMatch& match) const;
   void confirm_place(const MatchedScan& scan);
   Eigen::Matrix3d loaded_map_covariance(const Se2& map_from_base) const;
-  void follow_odometry(const Observation& observation);
+  void follow_odometry(const Observation& observation, double step_s);
+  Motion believable_motion(const Observation& observation, double step_s);
   bool is_keyframe_due(const Observation& observation) const;
   bool is_contradicted_by(const Observation& observation) const;
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
+  std::vector<Se2> without_odometry() const;
   void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;
   void add_keyframe(const Observation& observation, const Points& points);
   void add_first_keyframe();
@@ -115,9 +122,8 @@ class WaymarkEstimator final : public Estimator {
   void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
   void close_loops(const Points& points);
-  void solve_everything(const std::vector<std::size_t>& returning_landmarks);
-  void redraw_if_moved();
-  Mapper empty_mapper() const;
+  void step_everything(const std::vector<std::size_t>& returning_landmarks);
+  static std::function<Se2(std::size_t)> poses_of(const Graph& graph);
   void learn_noise(const Prediction& prediction, const MatchedScan& scan);
   std::vector<MarkerMeasurement> measured(const Observation& observation) const;
   std::vector<PoseHint> hints(std::span<const MarkerMeasurement> measurements) const;
@@ -149,21 +155,24 @@ class WaymarkEstimator final : public Estimator {
   OdometryNoiseLearner noise_learner_{};
   LoopFinder loop_finder_;
   double since_loop_search_m_{0.0};
-  std::size_t solved_keyframes_{0};   ///< of the whole graph, when it was solved last
-  bool has_new_loops_{false};         ///< since then
-  bool loops_matter_{false};          ///< one of them contradicts the pose
-  std::size_t redrawn_keyframes_{0};  ///< when the map was drawn again last
-  std::deque<Submap> submaps_{};  ///< the last two are being filled, the last but one is matched
-  Motion motion_{};               ///< since the keyframe `moved_from_`
-  std::size_t moved_from_{0};     ///< the newest one, unless odometry was stuck
+  std::size_t solved_keyframes_{0};  ///< of the whole graph, when it was solved last
+  int solve_steps_left_{0};          ///< of that: one at each keyframe
+  bool has_new_loops_{false};        ///< since then
+  bool loops_matter_{false};         ///< one of them contradicts the pose
+  std::deque<Submap> submaps_{};     ///< the last two are being filled, the last but one is matched
+  Motion motion_{};                  ///< since the keyframe `moved_from_`
+  std::size_t moved_from_{0};        ///< the newest one, unless odometry was stuck
   std::optional<Standstill> standstill_{};
   int keyframes_standing_{0};  ///< in a row
+  SpeedLimits speed_limits_{};
+  bool odometry_refused_{false};  ///< since the last scan
+  Se2 newest_from_last_scan_{};   ///< pose of the last scan in the newest keyframe's frame
+  Se2 last_step_{};               ///< from the scan before it
+  double last_step_s_{0.0};
   double since_insertion_m_{0.0};
   double unobserved_m_{0.0};  ///< driven since markers or walls showed the way
-  Mapper mapper_;
+  DrawnMap map_;
   std::vector<ScanPose> scan_poses_{};
-  ScanArchive archive_{};
-  std::vector<Se2> drawn_at_{};  ///< poses of the keyframes in the map
 
   StartPose start_;
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started

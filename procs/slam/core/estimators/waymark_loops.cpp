@@ -13,8 +13,7 @@ constexpr std::size_t kSolveEvery = 10;  // keyframes; and as the graph grows
 constexpr std::size_t kSolveShare = 40;  // a share of all, so that the cost per keyframe is bounded
 constexpr std::size_t kRoutineShare = 8;  // the same of loops that only confirm the pose
 constexpr double kLoopMatters = 3.0;      // chi^2 of a loop that does more
-constexpr std::size_t kRedrawShare = 4;   // of all keyframes are new before the map is drawn again
-constexpr double kBlurred_m = 0.25;       // poses that moved so far have it drawn again at once
+constexpr double kSettled = 5e-3;         // [m, rad] less is not worth a further step
 constexpr double kLoopSlack_m = 0.05;     // of old poses, whose covariance is not known any more
 constexpr double kLoopSlack_rad = 0.01;
 
@@ -41,11 +40,16 @@ void WaymarkEstimator::close_loops(const Points& points) {
   const std::size_t since = all - solved_keyframes_;
   if (has_new_loops_ &&
       since >= std::max(kSolveEvery, all / (loops_matter_ ? kSolveShare : kRoutineShare))) {
-    solve_everything({});
+    solve_steps_left_ = kSolveSteps;
+    solved_keyframes_ = all;
+    has_new_loops_ = false;
+    loops_matter_ = false;
   }
+  if (solve_steps_left_ > 0) step_everything({});
 }
 
-void WaymarkEstimator::solve_everything(const std::vector<std::size_t>& returning_landmarks) {
+/// The published map follows.
+void WaymarkEstimator::step_everything(const std::vector<std::size_t>& returning_landmarks) {
   std::vector<std::size_t> activated = returning_landmarks;
   for (std::size_t i = 0; i < book_.entries().size(); ++i) {
     const double away_m =
@@ -53,43 +57,27 @@ void WaymarkEstimator::solve_everything(const std::vector<std::size_t>& returnin
             .norm();
     if (!book_.is_retired(i) && !graph_.is_fixed(i) && away_m < kNear_m) activated.push_back(i);
   }
-  graph_.optimise_all(has_new_loops_ ? kSolveSteps : 0, activated);
-  graph_.optimise();
-  if (has_new_loops_) redraw_if_moved();
-  solved_keyframes_ = graph_.state().keyframes.size();
-  has_new_loops_ = false;
-  loops_matter_ = false;
+  const double moved = graph_.step_all(activated);
+  solve_steps_left_ = moved < kSettled ? 0 : std::max(0, solve_steps_left_ - 1);
+  map_.begin_to_follow();
 }
 
-/// The published map follows a closed loop.
-void WaymarkEstimator::redraw_if_moved() {
-  double farthest_m = 0.0;
-  for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
-    farthest_m =
-        std::max(farthest_m,
-                 (drawn_at_[i].translation() - graph_.state().keyframes[i].translation()).norm());
-  }
-  const std::size_t since = drawn_at_.size() - redrawn_keyframes_;
-  const double blur_m =
-      since < drawn_at_.size() / kRedrawShare ? kBlurred_m : setup_.grid.resolution_m;
-  if (farthest_m < blur_m) return;
-  redrawn_keyframes_ = drawn_at_.size();
-  mapper_ = empty_mapper();
-  for (std::size_t i = 0; i < drawn_at_.size(); ++i) {
-    drawn_at_[i] = graph_.state().keyframes[i];
-    mapper_.insert(archive_.at(i), drawn_at_[i], Eigen::Matrix3d::Zero());
-  }
+std::function<Se2(std::size_t)> WaymarkEstimator::poses_of(const Graph& graph) {
+  return [&graph](std::size_t keyframe) {
+    return graph.state().keyframes[keyframe];
+  };
 }
 
-/// With nothing but the loaded map in it.
-Mapper WaymarkEstimator::empty_mapper() const {
-  return setup_.loaded_map ? Mapper{setup_.grid, setup_.loaded_map->grid} : Mapper{setup_.grid};
+/// The whole graph, at its optimum.
+Graph WaymarkEstimator::solved() const {
+  Graph graph = graph_;
+  graph.optimise_all(kSolveSteps);
+  return graph;
 }
 
 std::vector<TimedPose> WaymarkEstimator::trajectory() const {
   if (is_frozen()) return {};
-  Graph graph = graph_;
-  graph.optimise_all(kSolveSteps);
+  const Graph graph = solved();
   std::vector<TimedPose> trajectory;
   trajectory.reserve(scan_poses_.size());
   for (const ScanPose& scan : scan_poses_)
@@ -100,12 +88,8 @@ std::vector<TimedPose> WaymarkEstimator::trajectory() const {
 
 GridMap WaymarkEstimator::redrawn_map() const {
   if (is_frozen()) return map();
-  Graph graph = graph_;
-  graph.optimise_all(kSolveSteps);
-  Mapper mapper = empty_mapper();
-  for (std::size_t i = 0; i < archive_.size(); ++i)
-    mapper.insert(archive_.at(i), graph.state().keyframes[i], Eigen::Matrix3d::Zero());
-  return mapper.map();
+  const Graph graph = solved();
+  return map_.drawn_along(poses_of(graph));
 }
 
 }  // namespace waymark

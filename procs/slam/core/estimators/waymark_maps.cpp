@@ -18,7 +18,6 @@ constexpr double kWallPoint = 0.5;    // occupancy
 constexpr double kNearPoints_m = 15.0;
 constexpr double kMostPoints = 400.0;  // of a wall's cell: newer ones outweigh older ones in time
 constexpr double kGone = 0.1;          // occupancy about a wall that is not there any more
-constexpr int kSolveSteps = 12;
 
 Points wall_points(const GridMap& grid) {
   Points points;
@@ -53,6 +52,26 @@ GraphEdge edge_of(const ScanFactor& factor) {
   return {main->keyframe, factor.keyframe, main->reference_from_keyframe, root.transpose() * root};
 }
 
+PoseGraph pose_graph_of(const Graph& graph) {
+  PoseGraph result;
+  for (std::size_t i = 0; i < graph.state().keyframes.size(); ++i)
+    result.poses.push_back(graph.state().keyframes[i]);
+  const OdometryNoise noise = graph.odometry_noise();
+  for (const Factor& factor : graph.factors()) {
+    if (const auto* odometry = std::get_if<OdometryFactor>(&factor)) {
+      if (odometry->is_cut || odometry->motion.distance_m + odometry->motion.turn_rad <= 0.0)
+        continue;
+      const CorrectedMotion moved =
+          corrected_motion(odometry->motion, odometry_part(graph.state().calibration), noise);
+      result.edges.push_back(
+          {odometry->from, odometry->to, moved.start_from_end, moved.covariance.inverse()});
+    } else if (const auto* scan = std::get_if<ScanFactor>(&factor)) {
+      if (!scan->references.empty()) result.edges.push_back(edge_of(*scan));
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 void WaymarkEstimator::load(const MapSnapshot& map) {
@@ -60,7 +79,6 @@ void WaymarkEstimator::load(const MapSnapshot& map) {
     graph_.add_fixed_landmark(landmark.map_from_marker, landmark.covariance);
     book_.add_known(landmark);
   }
-  mapper_ = empty_mapper();
   loaded_points_ = wall_points(map.grid);
   is_confirmed_ = false;
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);
@@ -123,25 +141,25 @@ Eigen::Matrix3d WaymarkEstimator::loaded_map_covariance(const Se2& map_from_base
   return nearest == nullptr ? Eigen::Matrix3d::Zero() : nearest->covariance;
 }
 
+std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
+  if (is_frozen() || graph_.state().keyframes.empty()) return std::nullopt;
+  return pose_graph_of(solved());
+}
+
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   if (is_frozen() || graph_.state().keyframes.empty()) return std::nullopt;
-  Graph graph = graph_;
-  graph.optimise_all(kSolveSteps);
-  graph.optimise();
+  const Graph graph = solved();
   MapSnapshot snapshot;
   if (setup_.loaded_map) snapshot.parent_map_id = setup_.loaded_map->map_id;
   snapshot.time = newest_time_;
-  Mapper mapper = empty_mapper();
   snapshot.walls =
       setup_.loaded_map ? setup_.loaded_map->walls : NdtMap{config_.scan.cell_spacing_m};
-  for (std::size_t i = 0; i < archive_.size(); ++i) {
-    const Observation observation = archive_.at(i);
+  for (std::size_t i = 0; i < map_.scans().size(); ++i) {
     const Se2& map_from_base = graph.state().keyframes[i];
-    mapper.insert(observation, map_from_base, Eigen::Matrix3d::Zero());
-    for (const AnnotatedBeam& annotated : observation.beams)
+    for (const AnnotatedBeam& annotated : map_.scans().at(i).beams)
       snapshot.walls.add(map_from_base * annotated.beam.end_in_base, 0);
   }
-  snapshot.grid = mapper.map();
+  snapshot.grid = map_.drawn_along(poses_of(graph));
   NdtMap kept{snapshot.walls.spacing_m()};
   for (NdtCellSums cell : snapshot.walls.sums()) {
     const Eigen::Vector2d mean =
@@ -156,21 +174,7 @@ std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   snapshot.walls = std::move(kept);
   for (Landmark landmark : landmarks_of(graph))
     if (!landmark.is_missed()) snapshot.landmarks.push_back(landmark);
-  for (std::size_t i = 0; i < graph.state().keyframes.size(); ++i)
-    snapshot.graph.poses.push_back(graph.state().keyframes[i]);
-  const OdometryNoise noise = graph.odometry_noise();
-  for (const Factor& factor : graph.factors()) {
-    if (const auto* odometry = std::get_if<OdometryFactor>(&factor)) {
-      if (odometry->is_cut || odometry->motion.distance_m + odometry->motion.turn_rad <= 0.0)
-        continue;
-      const CorrectedMotion moved =
-          corrected_motion(odometry->motion, odometry_part(graph.state().calibration), noise);
-      snapshot.graph.edges.push_back(
-          {odometry->from, odometry->to, moved.start_from_end, moved.covariance.inverse()});
-    } else if (const auto* scan = std::get_if<ScanFactor>(&factor)) {
-      if (!scan->references.empty()) snapshot.graph.edges.push_back(edge_of(*scan));
-    }
-  }
+  snapshot.graph = pose_graph_of(graph);
   snapshot.calibration.mean = graph.state().calibration;
   snapshot.calibration.covariance = graph.covariance({}, {});
   return snapshot;

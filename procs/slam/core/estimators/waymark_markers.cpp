@@ -105,7 +105,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     matches.push_back({landmark, &measurement});
   }
   if (markers_known_) unobserved_m_ = 0.0;
-  if (!returning.empty()) solve_everything(returning);
+  if (!returning.empty()) step_everything(returning);
   for (const Match& match : matches) {
     MarkerFactor factor;
     factor.keyframe = newest();
@@ -115,6 +115,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     graph_.add(factor);
   }
   if (!matches.empty()) graph_.optimise();
+  if (!returning.empty()) has_new_loops_ = loops_matter_ = true;
 }
 
 /// Absence is evidence where the camera could have seen the marker, and nothing stood before it:

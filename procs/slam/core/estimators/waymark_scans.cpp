@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMaxReferences = 4;  // keyframes that stand for all that saw a scan's walls
+constexpr std::size_t kGroupedKeyframes = 15;  // that one stands for, of all that saw the walls
 
 // Wide search of a scan that fits badly.
 constexpr double kUsualFit = 0.93;   // share of the usual fit; below, a scan fits badly
@@ -43,20 +43,33 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   return scan;
 }
 
+/// Where the robot may be if odometry is worth nothing: where it was at the last scan, or as much
+/// farther on as then. Map frame.
+std::vector<Se2> WaymarkEstimator::without_odometry() const {
+  const Se2 last = graph_.state().keyframes.back() * newest_from_last_scan_;
+  return {last, last * last_step_};
+}
+
 /// Odometry may be off by more than plain matching can find: where a scan fits worse than the scans
-/// before, the best place in a wide window is tried, too.
+/// before, the best places in wide windows are tried, too, first where the robot would be without
+/// odometry: that is wrong by a scan's motion at most.
 void WaymarkEstimator::search_widely(const Points& points, const Prediction& prediction,
                                      MatchedScan& scan) const {
   if (!is_bad_fit(scan.match)) return;
-  const Se2 guess = scan.map_from_submap.inverse() * prediction.map_from_base;
-  const CorrelativeField field{points_near(scan, guess)};
-  const auto best = field.best(thinned(points, kSearchBeams), guess,
-                               {kSearchReach_m, kSearchReach_rad}, config_.loops.min_score);
-  if (!best) return;
+  const Se2 submap_from_map = scan.map_from_submap.inverse();
+  const CorrelativeField field{points_near(scan, submap_from_map * prediction.map_from_base)};
+  const Points beams = thinned(points, kSearchBeams);
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
-  const ScanMatch other = match_scan(points, surfaces_of(scan), best->submap_from_base, near,
-                                     range_noise_, config_.scan);
-  if (other.inliers > kClearlyMore * scan.match.inliers) scan.match = other;
+  std::vector<Se2> guesses = without_odometry();
+  guesses.push_back(prediction.map_from_base);
+  for (const Se2& guess : guesses) {
+    const auto best = field.best(beams, submap_from_map * guess, {kSearchReach_m, kSearchReach_rad},
+                                 config_.loops.min_score);
+    if (!best) continue;
+    const ScanMatch other = match_scan(points, surfaces_of(scan), best->submap_from_base, near,
+                                       range_noise_, config_.scan);
+    if (other.inliers > kClearlyMore * scan.match.inliers) scan.match = other;
+  }
 }
 
 void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
@@ -64,19 +77,21 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
   ScanFactor factor;
   factor.is_loop = is_loop;
   factor.keyframe = keyframe;
-  // Neighbouring keyframes are put together: their middle one stands for them.
-  const std::size_t count = match.keyframe_shares.size();
-  const std::size_t groups = std::min(count, kMaxReferences);
-  for (std::size_t group = 0; group < groups; ++group) {
-    const std::size_t begin = group * count / groups;
-    const std::size_t end = (group + 1) * count / groups;
+  // Keyframes are put together: one stands for its neighbours. It is the same one for every scan,
+  // so that the whole graph stays sparse.
+  const auto count = match.keyframe_shares.size();
+  const auto first = static_cast<std::size_t>(match.first_keyframe);
+  for (std::size_t begin = 0; begin < count;) {
+    const std::size_t group = (first + begin) / kGroupedKeyframes * kGroupedKeyframes;
+    const std::size_t end = std::min(count, group + kGroupedKeyframes - first);
     double share = 0.0;
     for (std::size_t i = begin; i < end; ++i)
       share += match.keyframe_shares[i];
-    const std::size_t reference =
-        static_cast<std::size_t>(match.first_keyframe) + (begin + end - 1) / 2;
-    const bool is_open = is_loop || graph_.is_active({VariableKind::kKeyframe, reference});
-    if (share <= 0.0 || !is_open) continue;
+    std::size_t reference =
+        std::clamp(group + kGroupedKeyframes / 2, first + begin, first + end - 1);
+    if (!is_loop) reference = std::max(reference, graph_.first_active_keyframe());
+    begin = end;
+    if (share <= 0.0 || reference >= first + end) continue;
     factor.references.push_back(
         {reference, share, submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
   }
@@ -93,7 +108,7 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
 
 /// What the scan says about the motion since the keyframe before, against what odometry says.
 void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
-  if (!config_.learn_noise) return;
+  if (!config_.learn_noise || motion_.guessed_s > 0.0) return;
   const OdometryNoise described = scaled(graph_.noise().odometry, {});
   const ScanMatch& match = scan.match;
   const Se2 found = scan.map_from_submap * match.map_from_base;
@@ -120,8 +135,10 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
 /// and holds half a length of scans at least.
 void WaymarkEstimator::insert_scan(const Points& points) {
   const auto half = static_cast<std::size_t>(std::max(1, config_.submap_keyframes / 2));
-  if (submaps_.empty() || submaps_.back().num_keyframes() >= half)
+  if (submaps_.empty() || submaps_.back().num_keyframes() >= half) {
+    if (submaps_.size() > 1) submaps_[submaps_.size() - 2].finish();
     submaps_.emplace_back(config_.scan.cell_spacing_m, newest());
+  }
   for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
     submaps_[i].insert(points, submap_from_map(i) * graph_.state().keyframes.back());
 }

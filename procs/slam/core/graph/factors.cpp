@@ -110,10 +110,13 @@ LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& 
   const Relative found = relative(state.keyframes[from], state.keyframes[to]);
   const Eigen::Vector3d residual = pose_residual(found.pose - vector_of(moved.start_from_end));
   constexpr double kCarried_m = 1000.0;  // as good as nothing; keeps the normal equations regular
-  const Eigen::Matrix3d root =
-      is_cut
-          ? Eigen::Matrix3d{Eigen::Matrix3d::Identity() / kCarried_m}
-          : root_of(likeliest_covariance(residual, moved.covariance, noise.half_track_m).inverse());
+  Eigen::Matrix3d root = Eigen::Matrix3d::Identity() / kCarried_m;
+  if (!is_cut) {
+    const Eigen::LLT<Eigen::Matrix3d> covariance{
+        noise.may_slip ? likeliest_covariance(residual, moved.covariance, noise.half_track_m)
+                       : moved.covariance};
+    root = covariance.matrixL().solve(Eigen::Matrix3d::Identity());
+  }
   linear.residual = root * residual;
   LinearFactor::Jacobian by_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
   if (!is_cut) {

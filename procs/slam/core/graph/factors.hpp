@@ -16,6 +16,9 @@ namespace waymark {
 /// residual + sum of jacobian * step, whitened and robustly weighted.
 struct LinearFactor {
   using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kCalibrationSize>;
+  /// Of two Jacobians.
+  using Product = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                kCalibrationSize, kCalibrationSize>;
 
   struct Block {
     Variable variable{};

@@ -196,12 +196,15 @@ void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& r
       landmark_covariances_[variable.index] = covariance_.block<3, 3>(offset, offset);
 }
 
-void Graph::optimise() {
+/// @return the steps' sum.
+Eigen::VectorXd Graph::solve_window() {
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(prior_.g.size());
   for (int i = 0; i < kMaxIterations; ++i) {
     const NormalEquations equations = window_equations();
     const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root{equations.h};
     const Eigen::VectorXd step = root.solve(-equations.g);
     retract_window(step);
+    moved += step;
     const bool is_last = i + 1 == kMaxIterations || step.cwiseAbs().maxCoeff() < kConverged;
     if (!is_last) continue;
     update_covariance(root);
@@ -209,6 +212,7 @@ void Graph::optimise() {
   }
   const Variable calibration{};
   calibration_.weigh(state_.calibration, covariance(calibration, calibration).diagonal());
+  return moved;
 }
 
 Eigen::MatrixXd Graph::covariance(const Variable& a, const Variable& b) const {

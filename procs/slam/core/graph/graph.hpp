@@ -62,11 +62,16 @@ class Graph {
   std::size_t num_active_keyframes() const { return state_.keyframes.size() - first_keyframe_; }
 
   /// Gauss-Newton over the window.
-  void optimise();
+  void optimise() { solve_window(); }
 
-  /// Gauss-Newton over everything; then what lies behind the window becomes its prior anew.
+  /// One step of Gauss-Newton over everything. What lies behind the window is eliminated where it
+  /// is now, which makes the window's prior anew; the window is solved; the rest follows it.
   /// @param activated  landmarks that come back into the window.
-  void optimise_all(int iterations, const std::vector<std::size_t>& activated = {});
+  /// @return how far anything behind the window has moved [m, rad].
+  double step_all(const std::vector<std::size_t>& activated = {});
+
+  /// At most so many steps, until nothing moves.
+  void optimise_all(int steps);
 
   /// Takes the oldest keyframe out of the window, and landmarks that nothing in it has seen and
   /// that are `far_m` from the newest one.
@@ -97,6 +102,7 @@ class Graph {
   void add_to(NormalEquations& equations, const LinearFactor& linear) const;
   NormalEquations window_equations() const;
   void retract_window(const Eigen::VectorXd& step);
+  Eigen::VectorXd solve_window();
   void eliminate(const Variable& variable);
   void remove_from_layout(const Variable& variable);
   void update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root);

@@ -40,11 +40,11 @@ std::optional<std::size_t> LoopFinder::nearest_submap(const LoopSearch& search,
   for (std::size_t i = 0; i < submaps.size(); ++i) {
     const Submap& submap = submaps[i];
     if (submap.last_keyframe() >= search.first_recent_keyframe) break;
-    const Se2& map_from_submap = state.keyframes[submap.first_keyframe()];
+    const Eigen::Vector2d place =
+        state.keyframes[submap.first_keyframe()].inverse() * search.map_from_base.translation();
+    if (place.norm() - submap.reach_m() >= least_m) continue;
     for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k) {
-      const double distance_m = ((map_from_submap * submap.submap_from_keyframe(k)).translation() -
-                                 search.map_from_base.translation())
-                                    .norm();
+      const double distance_m = (submap.submap_from_keyframe(k).translation() - place).norm();
       if (distance_m >= least_m) continue;
       least_m = distance_m;
       nearest = i;

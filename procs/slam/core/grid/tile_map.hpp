@@ -32,10 +32,12 @@ class TileMap {
 
   /// The cell for writing; its tile becomes this map's own.
   /// @throws std::length_error when the map would span more than kMaxTableTiles tiles.
-  Cell& edit(CellIndex cell) {
-    const TileIndex index = tile_of(cell);
+  Cell& edit(CellIndex cell) { return edit_tile(tile_of(cell))[offset_in_tile(cell)]; }
+
+  /// The same of a whole tile; stays where it is until the map is copied.
+  Tile& edit_tile(TileIndex index) {
     if (!covers(index)) grow_to(index);
-    return table_[place_of(index)].edit()[offset_in_tile(cell)];
+    return table_[place_of(index)].edit();
   }
 
   /// Null where nothing was edited. Two maps share a tile when the addresses are equal.
@@ -120,6 +122,28 @@ class TileMap {
   int columns_{0};
   int rows_{0};
   std::vector<CopyOnWrite<Tile>> table_{};
+};
+
+/// Edits cells that lie beside each other: looks the tile up once. The map must not be copied
+/// meanwhile.
+template <class Map>
+class TileEditor {
+ public:
+  explicit TileEditor(Map& map) : map_{map} {}
+
+  auto& edit(CellIndex cell) {
+    const TileIndex index = tile_of(cell);
+    if (tile_ == nullptr || index != index_) {
+      index_ = index;
+      tile_ = &map_.edit_tile(index);
+    }
+    return (*tile_)[offset_in_tile(cell)];
+  }
+
+ private:
+  Map& map_;
+  TileIndex index_{};
+  typename Map::Tile* tile_{nullptr};
 };
 
 }  // namespace waymark

@@ -14,6 +14,9 @@ namespace waymark {
 /// that they run along.
 void insert_beams(std::span<const AnnotatedBeam> beams, const Se2& map_from_base, GridMap& map);
 
+/// Takes out what insert_beams() has put in with the same arguments.
+void erase_beams(std::span<const AnnotatedBeam> beams, const Se2& map_from_base, GridMap& map);
+
 /// A sample of a wall as the camera saw it: on a marker, or beside one.
 struct FacePoint {
   Eigen::Vector2d in_base{Eigen::Vector2d::Zero()};

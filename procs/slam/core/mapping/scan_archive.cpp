@@ -22,6 +22,12 @@ ScanArchive::Place ScanArchive::place_of(const Se2& map_from_base) {
           whole(map_from_base.theta() / kDirection_rad)};
 }
 
+std::optional<std::size_t> ScanArchive::emptied_by(const Se2& map_from_base) const {
+  const auto here = at_places_.find(place_of(map_from_base));
+  if (here == at_places_.end() || here->second.size() < kScansPerPlace) return std::nullopt;
+  return here->second.front();
+}
+
 void ScanArchive::add(const Observation& observation, const Se2& map_from_base) {
   Scan scan;
   scan.beams.reserve(observation.beams.size());

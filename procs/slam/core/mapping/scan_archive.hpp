@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <deque>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace waymark {
@@ -23,6 +24,17 @@ class ScanArchive {
   static constexpr std::size_t kScansPerPlace = 10;
 
   void add(const Observation& observation, const Se2& map_from_base);
+
+  /// The scan that the next one will empty, if that is from there.
+  std::optional<std::size_t> emptied_by(const Se2& map_from_base) const;
+
+  bool is_empty(std::size_t index) const {
+    return scans_[index].beams.empty() && scans_[index].sightings.empty();
+  }
+
+  const std::vector<MarkerSighting>& sightings(std::size_t index) const {
+    return scans_[index].sightings;
+  }
 
   /// Also counts those that have been emptied.
   std::size_t size() const { return scans_.size(); }

@@ -14,17 +14,18 @@ struct Motion {
   Se2 start_from_end{};    ///< pose at the end in the base frame at the start
   double distance_m{0.0};  ///< length of the path
   double turn_rad{0.0};    ///< sum of the turns, without sign
+  double guessed_s{0.0};   ///< of its duration, in which odometry was wrong and it is a guess
 
   /// The motion of one step.
   static Motion between(const Se2& odom_from_start, const Se2& odom_from_end) {
     const Se2 step = odom_from_start.inverse() * odom_from_end;
-    return {step, step.translation().norm(), std::abs(step.theta())};
+    return {step, step.translation().norm(), std::abs(step.theta()), 0.0};
   }
 
   /// First this motion, then `next`.
   Motion then(const Motion& next) const {
     return {start_from_end * next.start_from_end, distance_m + next.distance_m,
-            turn_rad + next.turn_rad};
+            turn_rad + next.turn_rad, guessed_s + next.guessed_s};
   }
 };
 

@@ -9,6 +9,7 @@ namespace {
 
 // A turn below so many standard deviations of its noise tells nothing about the scale of turns.
 constexpr double kTellingSigmas = 3.0;
+constexpr double kGuessed_m_s = 0.25;    // sigma of a guessed speed; [rad/s] of a turn
 constexpr double kVarianceFloor = 1e-9;  // [m^2, rad^2] of a step: 0.03 mm, 0.002 degrees
 
 double squared(double x) {
@@ -71,7 +72,9 @@ CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& e
   corrected.by_errors.col(1) = measured.distance_m * by_extra;
   corrected.by_errors.col(2) = telling_rad * by_extra;
   corrected.by_errors.col(3) << swing, 0.0;
-  corrected.covariance = random_walk(measured, noise);
+  corrected.covariance =
+      random_walk(measured, noise) +
+      Eigen::Matrix3d{Eigen::Matrix3d::Identity() * squared(kGuessed_m_s * measured.guessed_s)};
   return corrected;
 }
 

@@ -21,6 +21,7 @@ struct OdometryNoise {
   double drift_sigma_rad_per_m{0.01};  ///< heading gained per metre
   double lidar_ahead_sigma_m{0.05};    ///< of the place that the LiDAR is told to be at
   double half_track_m{0.14};           ///< between the wheels; taken from the robot
+  bool may_slip{true};                 ///< wheels spin, are pushed, jump: a mixture, not a normal
 
   void describe(Fields& fields);
 };

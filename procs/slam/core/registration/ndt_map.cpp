@@ -7,11 +7,9 @@
 namespace waymark {
 namespace {
 
-constexpr int kMinPoints = 4;                // of a cell that says something
-constexpr double kPriorPoints = 6.0;         // that the pooled point noise counts as in a cell
-constexpr double kLineRatio = 0.1;           // of a line's variances, across to along
-constexpr double kDescribedPoints = 2000.0;  // that the description of the LiDAR counts as
-constexpr double kMaxPooled = 2e5;           // older points are forgotten beyond
+constexpr int kMinPoints = 4;         // of a cell that says something
+constexpr double kPriorPoints = 6.0;  // that the pooled point noise counts as in a cell
+constexpr double kLineRatio = 0.1;    // of a line's variances, across to along
 
 }  // namespace
 
@@ -19,19 +17,7 @@ bool NdtSurface::is_line() const {
   return across_m2 < kLineRatio * along_m2;
 }
 
-RangeNoise::RangeNoise(double described_sigma_m)
-    : sum_m2_{kDescribedPoints * described_sigma_m * described_sigma_m},
-      weight_{kDescribedPoints} {}
-
-void RangeNoise::observe(double across_m2, int count) {
-  sum_m2_ += count * across_m2;
-  weight_ += count;
-  if (weight_ <= kMaxPooled) return;
-  sum_m2_ *= kMaxPooled / weight_;
-  weight_ = kMaxPooled;
-}
-
-std::uint64_t NdtMap::key(int column, int row) {
+NdtMap::Key NdtMap::key(int column, int row) {
   return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(column)) << 32) |
          static_cast<std::uint32_t>(row);
 }
@@ -99,13 +85,20 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   cell.is_stale = false;
 }
 
-const NdtSurface* NdtMap::at(const Eigen::Vector2d& point, double point_variance_m2) const {
-  const auto column = static_cast<int>(std::lround(point.x() / spacing_m_));
-  const auto row = static_cast<int>(std::lround(point.y() / spacing_m_));
-  const auto found = cells_.find(key(column, row));
+NdtMap::Key NdtMap::key_at(const Eigen::Vector2d& point) const {
+  return key(static_cast<int>(std::floor(point.x() / spacing_m_ + 0.5)),
+             static_cast<int>(std::floor(point.y() / spacing_m_ + 0.5)));
+}
+
+const NdtSurface* NdtMap::at(Key key, double point_variance_m2) const {
+  const auto found = cells_.find(key);
   if (found == cells_.end() || found->second.count < kMinPoints) return nullptr;
   Cell& cell = found->second;
-  if (cell.is_stale) refresh(cell, spacing_m_ * Eigen::Vector2d{column, row}, point_variance_m2);
+  if (cell.is_stale) {
+    const auto column = static_cast<std::int32_t>(key >> 32);
+    const auto row = static_cast<std::int32_t>(key);
+    refresh(cell, spacing_m_ * Eigen::Vector2d{column, row}, point_variance_m2);
+  }
   return &cell.surface;
 }
 

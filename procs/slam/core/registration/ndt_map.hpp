@@ -25,21 +25,6 @@ struct NdtSurface {
   bool is_line() const;
 };
 
-/// How far LiDAR points scatter across walls: the description, corrected by what the walls show.
-class RangeNoise {
- public:
-  explicit RangeNoise(double described_sigma_m);
-
-  /// @param across_m2  mean square of points about a fitted line, `count` of them.
-  void observe(double across_m2, int count);
-
-  double variance_m2() const { return sum_m2_ / weight_; }
-
- private:
-  double sum_m2_;
-  double weight_;
-};
-
 /// The points of one cell, summed up about its centre.
 struct NdtCellSums {
   int column{0};
@@ -60,9 +45,19 @@ class NdtMap {
   /// @param weight    points that it counts as.
   void add(const Eigen::Vector2d& point, int keyframe, double weight = 1.0);
 
-  /// The surface at a point, nullptr where too few points were seen.
+  /// A cell, as one number.
+  using Key = std::uint64_t;
+
+  /// The cell whose centre is nearest.
+  Key key_at(const Eigen::Vector2d& point) const;
+
+  /// The surface of a cell, nullptr where too few points were seen.
   /// @param point_variance_m2  of single points across a wall: what few points cannot show.
-  const NdtSurface* at(const Eigen::Vector2d& point, double point_variance_m2) const;
+  const NdtSurface* at(Key key, double point_variance_m2) const;
+
+  const NdtSurface* at(const Eigen::Vector2d& point, double point_variance_m2) const {
+    return at(key_at(point), point_variance_m2);
+  }
 
   std::size_t num_cells() const { return cells_.size(); }
 
@@ -85,11 +80,11 @@ class NdtMap {
     bool is_stale{true};
   };
 
-  static std::uint64_t key(int column, int row);
+  static Key key(int column, int row);
   void refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const;
 
   double spacing_m_;
-  mutable std::unordered_map<std::uint64_t, Cell> cells_{};  ///< never iterated over in an order
+  mutable std::unordered_map<Key, Cell> cells_{};  ///< never iterated over in an order
 };
 
 }  // namespace waymark

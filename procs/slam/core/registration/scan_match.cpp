@@ -30,54 +30,97 @@ struct Quadratic {
   Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
 };
 
-/// What one beam that ended on a surface says, in standard deviations.
+/// What one beam that ended on a surface says: its distance across, and along if the surface is no
+/// line.
 struct BeamTerm {
-  Eigen::Matrix2d weight{Eigen::Matrix2d::Zero()};  ///< inverse covariance of the distance
-  Eigen::Vector2d distance{Eigen::Vector2d::Zero()};
-  double robust{0.0};  ///< Geman-McClure weight
+  Eigen::Vector2d normal{Eigen::Vector2d::Zero()};
+  double across_m{0.0};
+  double along_m{0.0};
+  double across_weight{0.0};  ///< inverse variances, times the Geman-McClure weight
+  double along_weight{0.0};
+  double robust{0.0};  ///< that weight
 };
 
 BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point, double blur_m2,
                  const ScanMatchConfig& config) {
   BeamTerm term;
-  term.distance = point - surface.mean;
-  const double across = 1.0 / (surface.across_m2 + squared(config.roughness_m) + blur_m2);
-  const Eigen::Vector2d& normal = surface.normal;
-  term.weight = across * normal * normal.transpose();
+  const Eigen::Vector2d distance = point - surface.mean;
+  term.normal = surface.normal;
+  term.across_m = term.normal.dot(distance);
+  term.across_weight = 1.0 / (surface.across_m2 + squared(config.roughness_m) + blur_m2);
+  double chi2 = term.across_weight * squared(term.across_m);
   if (!surface.is_line()) {
-    const Eigen::Vector2d along{-normal.y(), normal.x()};
-    term.weight += along * along.transpose() / (surface.along_m2 + blur_m2);
+    term.along_m = term.normal.x() * distance.y() - term.normal.y() * distance.x();
+    term.along_weight = 1.0 / (surface.along_m2 + blur_m2);
+    chi2 += term.along_weight * squared(term.along_m);
   }
-  const double chi2 = term.distance.dot(term.weight * term.distance);
   const double kernel2 = squared(config.kernel_sigmas);
   term.robust = squared(kernel2 / (kernel2 + chi2));
+  term.across_weight *= term.robust;
+  term.along_weight *= term.robust;
   return term;
 }
 
-Quadratic quadratic_about(std::span<const Eigen::Vector2d> points, const NdtMap& map,
-                          const Se2& pose, double blur_m2, double point_variance_m2,
-                          const ScanMatchConfig& config) {
-  Quadratic sum;
-  const Eigen::Matrix2d rotation = pose.rotation();
-  for (const Eigen::Vector2d& point : points) {
-    const Eigen::Vector2d lever = rotation * point;
-    const Eigen::Vector2d there = lever + pose.translation();
-    const NdtSurface* surface = map.at(there, point_variance_m2);
-    if (surface == nullptr) continue;
-    const BeamTerm term = compare(*surface, there, blur_m2, config);
-    const Eigen::Matrix2d weight = term.robust * term.weight;
-    const Eigen::Vector2d by_turn{-lever.y(), lever.x()};  // d(x, y) / d(theta)
-    const Eigen::Vector2d pull = weight * term.distance;
-    const Eigen::Vector2d weight_turn = weight * by_turn;
-    sum.information.topLeftCorner<2, 2>() += weight;
-    sum.information.topRightCorner<2, 1>() += weight_turn;
-    sum.information(2, 2) += by_turn.dot(weight_turn);
-    sum.gradient.head<2>() += pull;
-    sum.gradient.z() += by_turn.dot(pull);
+/// A scan in a map, from pose to pose: points mostly stay in the cells that they were in.
+class PointsInMap {
+ public:
+  PointsInMap(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2)
+      : points_{points}, map_{map}, point_variance_m2_{point_variance_m2}, places_(points.size()) {}
+
+  Quadratic quadratic_about(const Se2& pose, double blur_m2, const ScanMatchConfig& config) {
+    Quadratic sum;
+    const Eigen::Matrix2d rotation = pose.rotation();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Eigen::Vector2d lever = rotation * points_[i];
+      const Eigen::Vector2d there = lever + pose.translation();
+      const NdtSurface* surface = surface_of(i, there);
+      if (surface == nullptr) continue;
+      const BeamTerm term = compare(*surface, there, blur_m2, config);
+      add(term.normal, lever, term.across_m, term.across_weight, sum);
+      if (term.along_weight > 0.0) {
+        const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
+        add(along, lever, term.along_m, term.along_weight, sum);
+      }
+    }
+    sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
+    sum.information(1, 0) = sum.information(0, 1);
+    return sum;
   }
-  sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
-  return sum;
-}
+
+ private:
+  struct Place {
+    NdtMap::Key key{0};
+    const NdtSurface* surface{nullptr};
+    bool is_known{false};
+  };
+
+  const NdtSurface* surface_of(std::size_t point, const Eigen::Vector2d& there) {
+    Place& place = places_[point];
+    const NdtMap::Key key = map_.key_at(there);
+    if (!place.is_known || place.key != key) place = {key, map_.at(key, point_variance_m2_), true};
+    return place.surface;
+  }
+
+  /// A distance along `direction`, which follows the pose by (direction, direction x lever).
+  static void add(const Eigen::Vector2d& direction, const Eigen::Vector2d& lever, double distance_m,
+                  double weight, Quadratic& sum) {
+    const double by_turn = lever.x() * direction.y() - lever.y() * direction.x();
+    const double wx = weight * direction.x();
+    const double wy = weight * direction.y();
+    sum.information(0, 0) += wx * direction.x();
+    sum.information(0, 1) += wx * direction.y();
+    sum.information(1, 1) += wy * direction.y();
+    sum.information(0, 2) += wx * by_turn;
+    sum.information(1, 2) += wy * by_turn;
+    sum.information(2, 2) += weight * by_turn * by_turn;
+    sum.gradient += weight * distance_m * Eigen::Vector3d{direction.x(), direction.y(), by_turn};
+  }
+
+  std::span<const Eigen::Vector2d> points_;
+  const NdtMap& map_;
+  double point_variance_m2_;
+  std::vector<Place> places_;
+};
 
 Se2 moved(const Se2& pose, const Eigen::Vector3d& step) {
   return {Eigen::Vector2d{pose.translation() + step.head<2>()}, pose.theta() + step.z()};
@@ -153,6 +196,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
   double blur_m =
       std::min(kMaxBlur_m, std::sqrt(0.5 * guess_covariance.topLeftCorner<2, 2>().trace() +
                                      lever2_m2 * guess_covariance(2, 2)));
+  PointsInMap points{points_in_base, map, point_variance_m2};
   Quadratic model;
   ObservedAxes observed;
   for (bool is_final = false; !is_final; blur_m *= kBlurStep) {
@@ -160,8 +204,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
     if (is_final) blur_m = 0.0;
     const int steps = is_final ? kFinalSteps : kStepsPerStage;
     for (int i = 0; i < steps; ++i) {
-      model = quadratic_about(points_in_base, map, match.map_from_base, squared(blur_m),
-                              point_variance_m2, config);
+      model = points.quadratic_about(match.map_from_base, squared(blur_m), config);
       observed = observed_axes(model.information, config.weak_share);
       Eigen::Vector3d gradient = model.gradient;
       if (observed.is_degenerate) {
@@ -177,7 +220,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
     }
   }
   // The optimum without the guess, along what the scan shows.
-  model = quadratic_about(points_in_base, map, match.map_from_base, 0.0, point_variance_m2, config);
+  model = points.quadratic_about(match.map_from_base, 0.0, config);
   match.observed = observed_axes(model.information, config.weak_share);
   Eigen::Vector3d gradient = model.gradient;
   if (match.observed.is_degenerate) {

@@ -4,6 +4,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "slam/core/registration/ndt_map.hpp"
+#include "slam/core/registration/range_noise.hpp"
 
 #include <Eigen/Core>
 

@@ -4,6 +4,7 @@
 
 #include "slam/core/registration/scan_match.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <set>
@@ -21,6 +22,7 @@ class Submap {
   /// Keyframes come one after the other, without a gap.
   void insert(const Points& points_in_base, const Se2& submap_from_base) {
     poses_.push_back(submap_from_base);
+    reach_m_ = std::max(reach_m_, submap_from_base.translation().norm());
     add(points_in_base, submap_from_base);
   }
 
@@ -47,6 +49,12 @@ class Submap {
   /// One for each occupied cell of 5 cm.
   const Points& points() const { return points_; }
 
+  /// Nothing is added any more.
+  void finish() { occupied_.clear(); }
+
+  /// Of the keyframes, from the first one.
+  double reach_m() const { return reach_m_; }
+
   /// As it was inserted.
   const Se2& submap_from_keyframe(std::size_t keyframe) const {
     return poses_[keyframe - first_keyframe_];
@@ -58,6 +66,7 @@ class Submap {
   std::size_t first_keyframe_;
   NdtMap surfaces_;
   std::vector<Se2> poses_{};
+  double reach_m_{0.0};
   std::set<std::pair<long, long>> occupied_{};
   Points points_{};
 };

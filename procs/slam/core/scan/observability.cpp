@@ -3,6 +3,9 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+#include <cmath>
+
 namespace waymark {
 namespace {
 
@@ -33,13 +36,19 @@ std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> bea
   }
   if (points < kMinPoints) return std::nullopt;
   const Eigen::Vector2d mean = sum / points;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
-      Eigen::Matrix2d{squares / points - mean * mean.transpose()}};
-  if (std::sqrt(std::max(0.0, axes.eigenvalues()[0])) >
-      kMaxThicknessRatio * std::sqrt(axes.eigenvalues()[1])) {
+  const Eigen::Matrix2d scatter = squares / points - mean * mean.transpose();
+  // Eigenvalues and the direction of the smaller one, in closed form.
+  const double half_trace = 0.5 * scatter.trace();
+  const double half_difference = 0.5 * (scatter(0, 0) - scatter(1, 1));
+  const double radius = std::hypot(half_difference, scatter(0, 1));
+  if (radius <= 0.0 || std::sqrt(std::max(0.0, half_trace - radius)) >
+                           kMaxThicknessRatio * std::sqrt(half_trace + radius)) {
     return std::nullopt;
   }
-  return Eigen::Vector2d{axes.eigenvectors().col(0)};
+  const Eigen::Vector2d normal = half_difference > 0.0
+                                     ? Eigen::Vector2d{-scatter(0, 1), half_difference + radius}
+                                     : Eigen::Vector2d{half_difference - radius, scatter(0, 1)};
+  return normal.normalized();
 }
 
 double surface_share(std::span<const AnnotatedBeam> beams) {

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/mapping/drawn_map.hpp"
+
+#include "common/geometry/angle.hpp"
+#include "slam/core/mapping/insert_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+// What one follow() may cost: a loop of 1000 scans has been drawn anew after 40 of them.
+constexpr std::size_t kLeastDrawn = 8;
+constexpr std::size_t kMostDrawn = 64;
+constexpr std::size_t kDrawnShare = 40;
+constexpr std::size_t kCheckedPerDrawn = 32;  // that have not moved
+constexpr double kLever_m = 5.0;              // walls are usually this near
+
+}  // namespace
+
+DrawnMap::DrawnMap(const MapperConfig& config, const GridMap& ground)
+    : config_{config}, ground_{ground}, map_{ground} {}
+
+void DrawnMap::draw_markers(std::size_t scan, const Se2& map_from_base, GridMap& map) const {
+  for (const MarkerSighting& sighting : scans_.sightings(scan)) {
+    const auto points = face_points(sighting, config_.face_spacing_m, config_.face_margin_m);
+    insert_face_points(points, config_.face_spacing_m, map_from_base, map);
+  }
+}
+
+void DrawnMap::add(const Observation& observation, const Se2& map_from_base) {
+  // As it is kept, in single precision, so that it can be taken out again to the cell.
+  if (const auto old = scans_.emptied_by(map_from_base))
+    erase_beams(scans_.at(*old).beams, drawn_at_[*old], map_);
+  scans_.add(observation, map_from_base);
+  drawn_at_.push_back(map_from_base);
+  const std::size_t newest = scans_.size() - 1;
+  insert_beams(scans_.at(newest).beams, map_from_base, map_);
+  draw_markers(newest, map_from_base, map_);
+}
+
+void DrawnMap::follow(const std::function<Se2(std::size_t)>& pose_of) {
+  if (unchecked_ == 0) return;
+  const std::size_t budget =
+      std::clamp(scans_.size() / kDrawnShare, kLeastDrawn, kMostDrawn) * kCheckedPerDrawn;
+  for (std::size_t spent = 0; unchecked_ > 0 && spent < budget; ++spent) {
+    --unchecked_;
+    if (next_ == 0) next_ = scans_.size();
+    const std::size_t scan = --next_;
+    const Se2 pose = pose_of(scan);
+    const Se2& old = drawn_at_[scan];
+    const double moved_m = (pose.translation() - old.translation()).norm() +
+                           kLever_m * std::abs(angle_difference(pose.theta(), old.theta()));
+    if (moved_m < config_.resolution_m || scans_.is_empty(scan)) continue;
+    const Observation observation = scans_.at(scan);
+    erase_beams(observation.beams, old, map_);
+    insert_beams(observation.beams, pose, map_);
+    drawn_at_[scan] = pose;
+    has_moved_ = true;
+    spent += kCheckedPerDrawn - 1;
+  }
+  if (unchecked_ > 0 || !has_moved_) return;
+  has_moved_ = false;
+  map_.markers = ground_.markers;
+  for (std::size_t scan = 0; scan < scans_.size(); ++scan)
+    draw_markers(scan, drawn_at_[scan], map_);
+}
+
+GridMap DrawnMap::drawn_along(const std::function<Se2(std::size_t)>& pose_of) const {
+  GridMap map = ground_;
+  for (std::size_t scan = 0; scan < scans_.size(); ++scan) {
+    insert_beams(scans_.at(scan).beams, pose_of(scan), map);
+    draw_markers(scan, pose_of(scan), map);
+  }
+  return map;
+}
+
+}  // namespace waymark

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/motion/speed_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kSlowest = 0.01;  // [m/s, rad/s] less is standing
+constexpr double kBinRatio = 1.1;  // of speeds, from bin to bin: up to 20 m/s
+constexpr double kUsualShare = 0.95;
+constexpr double kFaster = 2.0;  // than usual; and beyond that
+constexpr double kSlack_m_s = 0.5;
+constexpr double kSlack_rad_s = 1.0;
+constexpr double kNewStep = 0.05;  // weight of the newest in the mean duration of steps
+constexpr int kLeastSteps = 20;    // before anything is refused
+constexpr int kMostRefused = 20;   // in a row; then what was usual is forgotten
+
+}  // namespace
+
+void SpeedLimits::Usual::add(double speed) {
+  if (speed < kSlowest) return;
+  const auto bin = static_cast<std::size_t>(std::log(speed / kSlowest) / std::log(kBinRatio));
+  ++counts_[std::min(bin, kBins - 1)];
+  ++count_;
+}
+
+double SpeedLimits::Usual::high() const {
+  int below = 0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    below += counts_[bin];
+    if (below > kUsualShare * count_)
+      return kSlowest * std::pow(kBinRatio, static_cast<double>(bin) + 1.0);
+  }
+  return 0.0;
+}
+
+bool SpeedLimits::allow(const Motion& step, double step_s) {
+  if (step_s <= 0.0) return true;
+  // Stamps may come in bursts, which makes speeds of steps that are near each other meaningless.
+  mean_step_s_ = mean_step_s_ == 0.0 ? step_s : mean_step_s_ + kNewStep * (step_s - mean_step_s_);
+  const double lasted_s = std::max(step_s, mean_step_s_);
+  const double drive_m_s = step.distance_m / lasted_s;
+  const double turn_rad_s = step.turn_rad / lasted_s;
+  const bool is_known = drives_.count() + turns_.count() >= kLeastSteps;
+  if (is_known && (drive_m_s > kFaster * drives_.high() + kSlack_m_s ||
+                   turn_rad_s > kFaster * turns_.high() + kSlack_rad_s)) {
+    if (++refused_in_a_row_ <= kMostRefused) return false;
+    drives_ = {};
+    turns_ = {};
+  }
+  refused_in_a_row_ = 0;
+  drives_.add(drive_m_s);
+  turns_.add(turn_rad_s);
+  return true;
+}
+
+}  // namespace waymark

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loops: what is found in old submaps, and what is refused.
+#include "slam/core/graph/loop_finder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+
+namespace waymark {
+namespace {
+
+constexpr double kView_m = 4.0;
+
+/// Walls of a corridor along x with a pillar wherever `has_pillar` says, seen from a pose.
+template <class HasPillar>
+Points view(const Se2& map_from_base, HasPillar has_pillar) {
+  Points points;
+  const auto add = [&](double x, double y) {
+    const Eigen::Vector2d seen = map_from_base.inverse() * Eigen::Vector2d{x, y};
+    if (seen.norm() < kView_m) points.push_back(seen);
+  };
+  for (int i = -100; i < 600; ++i) {
+    const double x = 0.05 * i;
+    const bool is_pillar = has_pillar(x);
+    add(x, is_pillar ? 0.6 : 1.0);
+    add(x, is_pillar ? -0.7 : -1.0);
+  }
+  for (int i = -100; i < 600; ++i) {
+    const double x = 0.05 * i;
+    if (has_pillar(x) == has_pillar(x + 0.05)) continue;
+    for (double y = 0.6; y < 1.0; y += 0.04) {
+      add(x, y);
+      add(x, -y - 0.1);
+    }
+  }
+  return points;
+}
+
+bool every_two_metres(double x) {
+  return std::fmod(x + 100.0, 2.0) < 0.4;
+}
+
+/// No two distances are alike.
+bool irregularly(double x) {
+  for (const double pillar_m : {0.7, 1.9, 4.4, 5.3, 8.1, 9.0, 10.6, 13.5})
+    if (x >= pillar_m && x < pillar_m + 0.4) return true;
+  return false;
+}
+
+template <class HasPillar>
+class Corridor {
+ public:
+  explicit Corridor(HasPillar has_pillar) : has_pillar_{has_pillar} {
+    submaps_.emplace_back(0.25, 0);
+    for (std::size_t k = 0; k < 40; ++k) {
+      const Se2 pose{3.0 + 0.2 * static_cast<double>(k), 0.0, 0.0};
+      state_.keyframes.push_back(pose);
+      submaps_.back().insert(view(pose, has_pillar_), Se2{3.0, 0.0, 0.0}.inverse() * pose);
+    }
+  }
+
+  /// The robot is at `truth`, and believes to be at `believed`.
+  std::vector<LoopFinder::Found> look_around(const Se2& truth, const Se2& believed) {
+    LoopSearch search;
+    search.map_from_base = believed;
+    search.covariance = Eigen::Vector3d{1.0, 0.04, 0.04}.asDiagonal();
+    search.first_recent_keyframe = 1000;
+    return finder_.find(1000, view(truth, has_pillar_), search, submaps_, state_, RangeNoise{0.01});
+  }
+
+  const LoopFinder& finder() const { return finder_; }
+
+ private:
+  HasPillar has_pillar_;
+  LoopFinder finder_{LoopConfig{}, ScanMatchConfig{}};
+  std::deque<Submap> submaps_{};
+  State state_{};
+};
+
+TEST(LoopFinder, TwoScansThatAgreeCloseALoop) {
+  Corridor corridor{irregularly};
+  const Se2 drift{1.2, 0.1, 0.3};
+  const Se2 first{6.0, 0.0, 0.0};
+  const Se2 second{6.5, 0.0, 0.0};
+  EXPECT_TRUE(corridor.look_around(first, drift * first).empty());
+  const auto found = corridor.look_around(second, drift * second);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR((Se2{3.0, 0.0, 0.0} * found[1].loop.match.map_from_base).x(), second.x(), 0.05);
+}
+
+/// Where every second metre looks the same, scans agree with each other about a wrong place as
+/// well.
+TEST(LoopFinder, PlacesThatLookTheSameAreAmbiguousHoweverOftenTheyAreSeen) {
+  Corridor corridor{every_two_metres};
+  const Se2 drift{1.0, 0.1, 0.5};
+  for (const double x : {6.0, 6.5, 7.0}) {
+    const Se2 truth{x, 0.0, 0.0};
+    EXPECT_TRUE(corridor.look_around(truth, drift * truth).empty()) << x;
+  }
+  EXPECT_EQ(corridor.finder().num_ambiguous(), 3);
+}
+
+}  // namespace
+}  // namespace waymark
