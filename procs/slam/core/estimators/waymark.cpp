@@ -70,7 +70,8 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
   follow_odometry(observation, step_s);
   const Points points = points_of(observation);
   if (place_finder_ && !place(observation)) return unplaced(observation);
-  bool is_keyframe = is_keyframe_due(observation) || is_contradicted_by(observation);
+  bool is_keyframe =
+      odometry_refused_ || is_keyframe_due(observation) || is_contradicted_by(observation);
   const Se2 map_from_last = graph_.state().keyframes.empty()
                                 ? Se2{}
                                 : graph_.state().keyframes.back() * newest_from_last_scan_;
@@ -124,6 +125,7 @@ Motion WaymarkEstimator::believable_motion(const Observation& observation, doubl
   odometry_refused_ =
       !observation.odometry_caught_up && !speed_limits_.allow(observation.motion, step_s);
   if (!odometry_refused_) return observation.motion;
+  refused_step_ = observation.motion.start_from_end;
   const double share = last_step_s_ > 0.0 ? std::min(1.0, step_s / last_step_s_) : 0.0;
   const Se2 guess{share * last_step_.x(), share * last_step_.y(), share * last_step_.theta()};
   return {guess, guess.translation().norm(), std::abs(guess.theta()), step_s};

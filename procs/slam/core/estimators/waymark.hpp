@@ -166,6 +166,7 @@ class WaymarkEstimator final : public Estimator {
   int keyframes_standing_{0};  ///< in a row
   SpeedLimits speed_limits_{};
   bool odometry_refused_{false};  ///< since the last scan
+  Se2 refused_step_{};            ///< what it said
   Se2 newest_from_last_scan_{};   ///< pose of the last scan in the newest keyframe's frame
   Se2 last_step_{};               ///< from the scan before it
   double last_step_s_{0.0};

@@ -43,11 +43,13 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   return scan;
 }
 
-/// Where the robot may be if odometry is worth nothing: where it was at the last scan, or as much
-/// farther on as then. Map frame.
+/// Where the robot may be if the prediction is worth nothing: where it was at the last scan, as
+/// much farther on as then, or where a refused step of the odometry has it. Map frame.
 std::vector<Se2> WaymarkEstimator::without_odometry() const {
   const Se2 last = graph_.state().keyframes.back() * newest_from_last_scan_;
-  return {last, last * last_step_};
+  std::vector<Se2> places{last, last * last_step_};
+  if (odometry_refused_) places.push_back(last * refused_step_);  // a log may have a gap
+  return places;
 }
 
 /// Odometry may be off by more than plain matching can find: where a scan fits worse than the scans
