@@ -104,7 +104,8 @@ TEST(MbotSlam, AResetClearsTheMapOfWhoeverDrawsIt) {
   int tiles = 0;
   for (const Message& message : slam.outbox.take()) {
     if (message.channel != "SLAM_MAP") continue;
-    for (const map_tile_t& tile : decode<map_tiles_t>(message.payload).message->tiles) {
+    const auto cleared = *decode<map_tiles_t>(message.payload).message;
+    for (const map_tile_t& tile : cleared.tiles) {
       ++tiles;
       EXPECT_TRUE(std::ranges::all_of(tile.occupancy, [](int percent) { return percent == -1; }));
     }
