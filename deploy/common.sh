@@ -9,7 +9,7 @@ readonly kExitFailed=1 kExitUsage=2 kExitDied=3 kExitTimeout=4  # as in exit_cod
 # What the programs make in the folder of a row, beside config.toml.
 # shellcheck disable=SC2034
 readonly kRowResults=(map.pgm map.yaml map.png marker_layer.png plain.png scan.png markers.csv
-  trajectory.tum trajectory_final.tum covariance.csv odometry.tum slam.lcm timings.json metrics.json stations.csv)
+  trajectory.tum trajectory_final.tum covariance.csv odometry.tum slam.lcm timings.json findings.json metrics.json stations.csv)
 
 script_name=$(basename "${0%.sh}")
 deploy_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
@@ -32,6 +32,13 @@ die() {
 }
 
 usage_error() { die $kExitUsage "$* (see ${0##*/} --help)"; }
+
+# write_findings LOG FOLDER: what slam says at its end of sensors that are not as described, for waymark-evaluate.
+write_findings() {
+  local found
+  found=$(sed -n 's/.* findings \({.*}\)$/\1/p' "$1" | tail -n 1)
+  [[ -z $found ]] || printf '%s\n' "$found" >"$2/findings.json"
+}
 
 # no_arguments [ARGUMENT...]: of a script that takes none but --help.
 no_arguments() {

@@ -349,4 +349,5 @@ for name in "${others[@]}" sim; do start "$name"; done
 ((${#viewer_options[@]} == 0)) || tell "the live page is http://${viewer_options[1]}/"
 supervise
 finish
+is_record_only || write_findings "$out/logs/slam.log" "$row"
 tell "finished in $SECONDS s; results are in $row, logs in $out/logs"

@@ -121,6 +121,7 @@ run slam "${slam_options[@]}" "${map_options[@]}" --log "$log" --out-log "$folde
 run viewer --log "$log" --log "$folder/slam.lcm" --out "$folder"
 [[ -f $folder/map.pgm ]] || die $kExitFailed "the log has given no map; see $logs/$row.slam.log"
 write_timings
+write_findings "$logs/$row.slam.log" "$folder"
 ((${#incomplete[@]} == 0)) ||
   die $kExitFailed "$row is in $folder, of a log that is damaged or was not understood in part; see ${incomplete[*]}"
 say "$row is in $folder"

@@ -37,6 +37,8 @@ std::int8_t to_message(WeakAxisSource source) {
       return slam_estimate_t::SOURCE_ODOMETRY;
     case WeakAxisSource::kMarkers:
       return slam_estimate_t::SOURCE_MARKERS;
+    case WeakAxisSource::kNothing:
+      return slam_estimate_t::SOURCE_NOTHING;
   }
   return slam_estimate_t::SOURCE_UNKNOWN;
 }

@@ -3,6 +3,7 @@
 
 #include "common/messages/convert.hpp"
 #include "slam/estimator_factory.hpp"
+#include "slam/findings_text.hpp"
 #include "slam/map_file.hpp"
 #include "slam/slam_messages.hpp"
 
@@ -143,7 +144,32 @@ void SlamNode::finish() {
     part.map_id = map_id_;
     outbox_.publish(channels::kSlamTrajectory, part);
   }
+  count_findings();
+  say_findings();
   spdlog::info("{}", timer_.summary());
+}
+
+/// The second line is for programs: deploy/replay.sh makes findings.json of it.
+void SlamNode::say_findings() {
+  const std::optional<Findings> found = estimator_->findings();
+  if (!found) return;
+  const std::vector<Finding> findings = worth_saying(*found, repeated_scans());
+  spdlog::info("found: {}", sentence_of(findings));
+  spdlog::info("findings {}", json_of(findings));
+}
+
+std::int64_t SlamNode::repeated_scans() const {
+  return counters_.get(to_string(Skip::kScanRepeated));
+}
+
+/// Status messages say the same.
+void SlamNode::count_findings() {
+  const std::optional<Findings> found = estimator_->findings();
+  if (!found) return;
+  for (const Finding& finding : worth_saying(*found, repeated_scans())) {
+    const std::string name = counter_of(finding);
+    counters_.add(name, CountKind::kEvent, count_of(finding) - counters_.get(name));
+  }
 }
 
 void SlamNode::save_map() {
@@ -242,6 +268,7 @@ void SlamNode::publish_map_when_due(Timestamp time) {
   }
   publish_markers(time);
   publish_grid(time);
+  count_findings();
 }
 
 void SlamNode::publish_markers(Timestamp time) {

@@ -40,6 +40,9 @@ class SlamNode final : public Node {
   void save_map();
   void take(LidarScan scan);
   void judge_input();
+  void say_findings();
+  void count_findings();
+  std::int64_t repeated_scans() const;
   void process_ready_scans();
   void process(const SensorQueue::Ready& ready);
   void publish_map_when_due(Timestamp time);

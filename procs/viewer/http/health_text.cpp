@@ -52,6 +52,14 @@ std::string state_sentence(const EstimatedPose& estimate) {
   return "The walls fix the position in every direction.";
 }
 
+std::string findings_sentence(const std::vector<ProcessState>& processes) {
+  std::string list;
+  for (const ProcessState& process : processes)
+    for (const auto& [name, value] : process.findings)
+      list += fmt::format("{}{} {}", list.empty() ? " Found: " : ", ", name, value);
+  return list.empty() ? list : list + ".";
+}
+
 }  // namespace
 
 std::string_view health_name(Health health) {
@@ -101,7 +109,7 @@ std::string health_reason(const LiveView& view) {
   } else if (!since_marker_s) {
     reason += " No marker so far.";
   }
-  return reason;
+  return reason + findings_sentence(view.processes);
 }
 
 }  // namespace waymark::viewer

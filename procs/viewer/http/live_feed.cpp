@@ -4,6 +4,7 @@
 #include "common/node/node.hpp"
 
 #include <cmath>
+#include <string_view>
 
 namespace waymark::viewer {
 namespace {
@@ -17,6 +18,8 @@ constexpr std::size_t kMaxPathPoints = 1'000'000;
 constexpr std::size_t kMaxProcesses = 16;
 /// A square of 200 m in cells of 0.05 m and tiles of 64 cells.
 constexpr std::size_t kMaxTiles = 4000;
+/// Begins the names of counters that say what a process has found of its sensors.
+constexpr std::string_view kFound = "found: ";
 
 }  // namespace
 
@@ -107,6 +110,8 @@ void LiveFeed::add(const process_status_t& message) {
   for (const counter_t& counter : message.counters) {
     if (counter.kind != counter_t::KIND_EVENT && counter.value > 0)
       process.losses.emplace_back(counter.name, counter.value);
+    if (counter.name.starts_with(kFound) && counter.value > 0)
+      process.findings.emplace_back(counter.name.substr(kFound.size()), counter.value);
   }
   post_when_due();
 }

@@ -53,6 +53,8 @@ struct ProcessState {
   std::string name{};
   std::string state{};
   std::vector<std::pair<std::string, std::int64_t>> losses{};  ///< what was dropped or refused
+  /// What it has found of its sensors, beside what they are described as.
+  std::vector<std::pair<std::string, std::int64_t>> findings{};
 };
 
 using PathPoint = std::array<float, 2>;  ///< (x, y) [m], map frame

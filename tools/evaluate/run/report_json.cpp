@@ -177,6 +177,7 @@ Json metrics_json(const EstimatorResult& result) {
   json["expected_of_seeds"] = {{"nees_in_band_share", number(result.expect.nees_in_band_share)},
                                {"seeds_share", number(result.expect.seeds_share)}};
   json["timings"] = parsed(result.timings_json);
+  json["findings"] = parsed(result.findings_json);
   json["problems"] = result.problems;
   json["skipped"] = result.skipped;
   return json;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "slam/core/filter/estimate.hpp"
+#include "slam/core/filter/findings.hpp"
 #include "slam/core/filter/parallel_for.hpp"
 #include "slam/core/filter/scan_trail.hpp"
 #include "slam/core/filter/update_gate.hpp"
@@ -65,6 +66,9 @@ class Estimator {
 
   /// The map as it is when drawn along trajectory(). O(scans).
   virtual GridMap redrawn_map() const { return map(); }
+
+  /// What the sensors have turned out to be, of methods that look.
+  virtual std::optional<Findings> findings() const { return std::nullopt; }
 
   /// All that another run needs to go on in this map, of methods that can. O(scans).
   virtual std::optional<MapSnapshot> snapshot() const { return std::nullopt; }

@@ -24,14 +24,6 @@ Calibration calibration_sigmas(const EstimatorSetup& setup, const OdometryNoise&
   return sigmas;
 }
 
-Points points_of(const Observation& observation) {
-  Points points;
-  points.reserve(observation.beams.size());
-  for (const AnnotatedBeam& annotated : observation.beams)
-    points.push_back(annotated.beam.end_in_base);
-  return points;
-}
-
 GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config) {
   GraphNoise noise;
   noise.odometry = config.odometry;
@@ -49,13 +41,16 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
       mapper_{setup.grid},
+      weighed_with_{graph_.odometry_noise()},
       start_{setup.start} {
   if (setup_.loaded_map) load(*setup_.loaded_map);
 }
 
-Estimate WaymarkEstimator::update(const Observation& observation) {
-  newest_time_ = observation.time;
-  follow_odometry(observation);
+Estimate WaymarkEstimator::update(const Observation& measured) {
+  newest_time_ = measured.time;
+  follow_odometry(measured);
+  const std::optional<Observation> corrected = with_right_scale(measured);
+  const Observation& observation = corrected ? *corrected : measured;
   const Points points = points_of(observation);
   if (place_finder_ && !place(observation)) return unplaced(observation);
   bool is_keyframe = is_keyframe_due(observation) || is_contradicted_by(observation);
@@ -69,6 +64,7 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
     since_insertion_m_ = observation.motion.distance_m;
   } else {
     since_insertion_m_ += observation.motion.distance_m;
+    if (between.shows_all_axes || agrees_with_markers(observation)) motion_doubt_.note_observed();
     if (between.match) insert_between(points, *between.match, between.map_from_base);
   }
   Estimate now =
@@ -79,40 +75,6 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
                            graph_.state().keyframes.back().inverse() * now.map_from_base});
   }
   return now;
-}
-
-/// Odometry that was stuck tells at once what was driven meanwhile. Keyframes that were made in
-/// between, because markers or walls said that the robot moves, hang on those alone then.
-void WaymarkEstimator::follow_odometry(const Observation& observation) {
-  if (observation.odometry_caught_up && standstill_ &&
-      graph_.is_active({VariableKind::kKeyframe, standstill_->keyframe})) {
-    graph_.cut_odometry_since(standstill_->keyframe);
-    moved_from_ = standstill_->keyframe;
-    motion_ = standstill_->motion;
-  }
-  motion_ = motion_.then(observation.motion);
-  const bool is_standing =
-      observation.motion.distance_m == 0.0 && observation.motion.turn_rad == 0.0;
-  if (!is_standing) {
-    standstill_.reset();
-    keyframes_standing_ = 0;
-  } else if (!standstill_ && !graph_.state().keyframes.empty()) {
-    standstill_ = Standstill{moved_from_, motion_};
-  }
-}
-
-bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
-  const double distance_m = observation.sightings.empty() ? config_.keyframe_distance_m
-                                                          : config_.marker_keyframe_distance_m;
-  return graph_.state().keyframes.empty() || motion_.distance_m >= distance_m ||
-         motion_.turn_rad >= config_.keyframe_turn_rad;
-}
-
-WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
-  const CorrectedMotion moved =
-      corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
-  const Se2& from = graph_.state().keyframes[moved_from_];
-  return {from * moved.start_from_end, in_axes(from.rotation(), moved.covariance)};
 }
 
 void WaymarkEstimator::add_first_keyframe() {
@@ -128,6 +90,7 @@ void WaymarkEstimator::add_first_keyframe() {
 void WaymarkEstimator::add_keyframe(const Observation& observation, const Points& points) {
   inlier_share_ = 1.0;
   bool is_refuted_scan = false;
+  bool shows_all_axes = false;
   if (graph_.state().keyframes.empty()) {
     add_first_keyframe();
   } else {
@@ -135,10 +98,12 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
     auto scan = matched(points, expected);
     if (scan) search_widely(points, expected, *scan);
     const std::size_t keyframe = graph_.add_keyframe(expected.map_from_base);
-    graph_.add(OdometryFactor{moved_from_, keyframe, motion_});
-    if (standstill_) ++keyframes_standing_;
+    shows_all_axes = scan && scan->match.is_usable(config_.scan) && !is_refuted(scan->match) &&
+                     !scan->match.observed.is_degenerate;
+    add_odometry_factor(keyframe, shows_all_axes || agrees_with_markers(observation));
     is_refuted_scan = scan && is_refuted(scan->match);
     if (scan) inlier_share_ = scan->match.inlier_share;
+    if (scan) note_fit(scan->match);
     if (scan && !is_refuted_scan && scan->match.is_usable(config_.scan)) {
       learn_noise(expected, *scan);
       confirm_place(*scan);
@@ -164,8 +129,11 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
     note_misses(observation);
     if (config_.loops.enabled && !is_refuted_scan && !is_frozen()) close_loops(points);
   }
+  weigh_past_anew();
+  compare_with_odometry();
+  if (markers_known_ || shows_all_axes) motion_doubt_.note_observed();
   // What cannot be placed is not mapped.
-  const bool is_mapped = !is_doubtful && !is_refuted_scan && is_confirmed_;
+  const bool is_mapped = !is_doubtful && !is_refuted_scan && !is_rescaled_ && is_confirmed_;
   if (!is_frozen())
     map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? points : Points{});
   while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
@@ -194,8 +162,9 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
 /// the wrong place, and would confirm that to the next ones.
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
-  if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||
-      is_bad_fit(match) || verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
+  if (is_frozen() || !is_confirmed_ || is_rescaled_ ||
+      since_insertion_m_ < config_.insert_distance_m || is_bad_fit(match) ||
+      verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
     return;
   }
   since_insertion_m_ = 0.0;
@@ -203,10 +172,11 @@ void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& mat
     submaps_[i].add(points, submap_from_map(i) * map_from_base);
 }
 
-WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Points& points) const {
+WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Points& points) {
   const Prediction expected = prediction();
   BetweenKeyframes between{expected.map_from_base, expected.covariance};
   const auto scan = matched(points, expected);
+  if (scan) note_fit(scan->match);
   if (!scan || !scan->match.is_usable(config_.scan) || is_refuted(scan->match)) return between;
   const Se2 found = scan->map_from_submap * scan->match.map_from_base;
   const Eigen::Matrix3d information =
@@ -219,6 +189,7 @@ WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Poi
                            expected.map_from_base.y() + step.y(),
                            expected.map_from_base.theta() + step.z()};
   between.match = scan->match;
+  between.shows_all_axes = !scan->match.observed.is_degenerate;
   const double chi2 = off.dot(pull) - pull.dot(between.covariance * pull);
   between.contradicts_odometry =
       chi2 > kContradiction &&
@@ -242,17 +213,23 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                     const Eigen::Matrix3d& covariance) const {
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = 0.5 * (covariance + covariance.transpose());
+  estimate.covariance +=
+      in_axes(map_from_base.rotation(), unmeasured_covariance(motion_doubt_.suspected_m()));
   if (setup_.loaded_map) estimate.covariance += loaded_map_covariance(map_from_base);
   if (relocalisation_.alternative()) {
     const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
     estimate.covariance += away * away.transpose();
   }
   estimate.calibration_widened = graph_.is_calibration_doubted();
-  estimate.weak_axis_source = markers_known_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
+  estimate.weak_axis_source = motion_doubt_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing
+                              : markers_known_                   ? WeakAxisSource::kMarkers
+                                                                 : WeakAxisSource::kOdometry;
+  estimate.ranges_wrong = is_rescaled_;
   const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kDoubtful ||
                        inlier_share_ < config_.lost_inlier_share;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
-                              !estimate.observability.is_degenerate || markers_known_);
+                              !estimate.observability.is_degenerate ||
+                                  estimate.weak_axis_source == WeakAxisSource::kMarkers);
   return estimate;
 }
 

@@ -17,7 +17,7 @@ namespace waymark {
 enum class Health { kInitialising, kTracking, kDegenerate, kLost };
 
 /// What tells the motion along the weakest direction of the walls.
-enum class WeakAxisSource { kUnknown, kOdometry, kMarkers };
+enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
 
 struct Estimate {
   Timestamp time{};

@@ -184,6 +184,28 @@ TEST(OdometryNoiseLearner, BelievesTheDescriptionUntilInnovationsSayOtherwise) {
   EXPECT_GT(worse.scale().along, 1.5);  // wheels that are bad in the turn are so along the way
 }
 
+/// 40 m in steps of 5 cm, each seen to 5 mm; `slips_per_m` of 10 cm.
+OdometryNoiseLearner learner_after(double slips_per_m) {
+  OdometryNoiseLearner learner;
+  Random random{{8}};
+  for (int i = 0; i < 800; ++i) {
+    const double slip_m = random.uniform() < 0.05 * slips_per_m ? 0.1 : 0.0;
+    learner.observe_along({0.005 * random.normal() - slip_m, 0.05 * 0.003 * 0.003, 2.5e-5, 0.05});
+  }
+  return learner;
+}
+
+TEST(OdometryNoiseLearner, SlipsAddTheirSecondMomentByMetre) {
+  const OdometryNoiseLearner learner = learner_after(0.7);
+  EXPECT_NEAR(learner.num_slips(), 28, 12);
+  EXPECT_NEAR(learner.scale().slip_m2_per_m, 0.7 * 0.01, 0.003);
+  EXPECT_LT(learner.scale().along, 6.0);  // wheels that slip roll as they are described
+}
+
+TEST(OdometryNoiseLearner, WithoutSlipsNoneAreAdded) {
+  EXPECT_EQ(learner_after(0.0).scale().slip_m2_per_m, 0.0);
+}
+
 /// A drive of short steps past two markers, with noise; every keyframe is tied to the two before.
 class Drive {
  public:
