@@ -93,6 +93,7 @@ CountKind kind_of(Skip skip) {
     case Skip::kOdometryJumped:
     case Skip::kOdometryStuck:
     case Skip::kScanWithoutReturns:
+    case Skip::kScanRepeated:
     case Skip::kScanBeforeOdometry:
     case Skip::kScanWithoutOdometry:
     case Skip::kFrameRepeated:
