@@ -3,9 +3,10 @@
 #include "common/log/log_file.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/number_checks.hpp"
-#include "import/carmen_reader.hpp"
-#include "import/log_output.hpp"
-#include "import/mbot_reader.hpp"
+#include "import/carmen/carmen_reader.hpp"
+#include "import/findings/findings.hpp"
+#include "import/log/log_output.hpp"
+#include "import/mbot/mbot_reader.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,6 +25,7 @@ struct Options {
   std::filesystem::path file{};
   std::filesystem::path out{};
   bool tolerant{false};
+  bool fix_reversed_odometry{false};
   std::optional<double> first_angle_deg{};
   std::optional<double> angle_step_deg{};
   std::optional<double> lidar_yaw_deg{};
@@ -39,6 +41,9 @@ void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting
                  "LCM log to write; robot.toml (and reference.tum) go beside it")
       ->required();
   app.add_flag("--tolerant", options.tolerant, "exit with 0 although lines or events were skipped");
+  app.add_flag(
+      "--fix-reversed-odometry", options.fix_reversed_odometry,
+      "where scans show that odometry counts backing up as driving forward, turn it round");
   app.add_option("--min-range-m", range_min_m, "shortest range measured")
       ->check(nonnegative_number())
       ->capture_default_str();
@@ -67,17 +72,25 @@ CLI::App* add_carmen(CLI::App& app, Options& options) {
           std::map<std::string, CarmenOdometrySource>{{"laser", CarmenOdometrySource::kLaserLines},
                                                       {"odom", CarmenOdometrySource::kOdomLines}}));
   carmen
-      ->add_option("--max-range-m", options.carmen.range_max_m,
-                   "ranges from here on are no returns (default: as the line says, else 81.9)")
+      ->add_option("--stamps", options.carmen.stamps,
+                   "ipc or logger: which timestamp is a line's time (default: ipc if it advances)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, CarmenStamps>{
+          {"ipc", CarmenStamps::kIpc}, {"logger", CarmenStamps::kLogger}}));
+  carmen
+      ->add_option(
+          "--max-range-m", options.carmen.range_max_m,
+          "ranges from here on are no returns (default: where a pile-up shows, else as the "
+          "line says, else 81.83)")
       ->check(positive_number());
   carmen
       ->add_option("--first-angle-deg", options.first_angle_deg,
-                   "beam 0 of FLASER and RLASER (default -90)")
+                   "beam 0 (default: -90 for FLASER and RLASER, else as the line says)")
       ->check(angle_deg());
   carmen
-      ->add_option("--angle-step-deg", options.angle_step_deg,
-                   "between beams of FLASER and RLASER (default 1 for 180 and 181 beams, 0.5 for "
-                   "360 and 361)")
+      ->add_option(
+          "--angle-step-deg", options.angle_step_deg,
+          "between beams (default: for FLASER and RLASER 1 with 180 and 181 beams, 0.5 with "
+          "360 and 361, else as the line says)")
       ->check(angle_deg());
   return carmen;
 }
@@ -91,19 +104,22 @@ CLI::App* add_mbot(CLI::App& app, Options& options) {
       ->capture_default_str();
   mbot->add_option("--odometry-channel", chosen.odometry_channel,
                    "pose2D_t, pose_xyt_t, odometry_t or bot_core.pose_t");
-  mbot->add_option("--encoder-channel", chosen.encoder_channel,
-                   "left and right ticks of a MAEBot, instead of --odometry-channel");
+  mbot->add_option(
+      "--encoder-channel", chosen.encoder_channel,
+      "left and right ticks of a MAEBot (default, without --odometry-channel: the only "
+      "channel that has some)");
   mbot->add_option("--reference-channel", chosen.reference_channel,
                    "poses to write as reference.tum, types as for --odometry-channel");
-  mbot->add_option("--meters-per-tick", chosen.wheels.meters_per_tick, "way of a wheel per tick")
-      ->check(positive_number())
-      ->capture_default_str();
-  mbot->add_option("--wheel-base-m", chosen.wheels.wheel_base_m, "distance between the wheels")
-      ->check(positive_number())
-      ->capture_default_str();
-  mbot->add_option("--max-range-m", chosen.range_max_m, "longest range measured")
-      ->check(positive_number())
-      ->capture_default_str();
+  mbot->add_option("--meters-per-tick", chosen.meters_per_tick,
+                   "way of a wheel per tick (default: the MAEBot's whose messages they are)")
+      ->check(positive_number());
+  mbot->add_option("--wheel-base-m", chosen.wheel_base_m,
+                   "distance between the wheels (default: the MAEBot's)")
+      ->check(positive_number());
+  mbot->add_option("--max-range-m", chosen.range_max_m,
+                   "ranges from here on are no returns (default: where a pile-up shows, else 6 for "
+                   "lidar_t or the longest range)")
+      ->check(positive_number());
   return mbot;
 }
 
@@ -129,9 +145,11 @@ int import(const Options& options, bool is_carmen) {
   protect_inputs("--out", options.out, {options.file});
   ImportReport report{options.file, is_carmen ? AddressUnit::kLine : AddressUnit::kByte};
   try {
-    const ImportedLog log = is_carmen ? read_carmen_log(options.file, options.carmen, report)
-                                      : read_mbot_log(options.file, options.mbot, report);
-    write_imported_log(log, options.out);
+    ImportedLog log = is_carmen ? read_carmen_log(options.file, options.carmen, report)
+                                : read_mbot_log(options.file, options.mbot, report);
+    examine(log, options.fix_reversed_odometry ? ReversedOdometry::kMend : ReversedOdometry::kName,
+            report);
+    write_imported_log(log, report, options.out);
     tell(report);
     fmt::print("{}", summary(log, report));
   } catch (...) {

@@ -37,6 +37,18 @@ inline std::vector<std::uint8_t> maebot_encoders(std::int64_t utime_us, std::int
       .take();
 }
 
+/// MAEBot of 2014: motor currents and commands behind the ticks.
+inline std::vector<std::uint8_t> maebot_motor_feedback(std::int64_t utime_us, std::int32_t left,
+                                                       std::int32_t right) {
+  PayloadWriter writer{0x8dc5a028fca42ff9ULL};
+  writer.put(static_cast<std::uint64_t>(utime_us))
+      .put(static_cast<std::uint32_t>(left))
+      .put(static_cast<std::uint32_t>(right));
+  for (std::uint32_t other = 0; other < 7; ++other)
+    writer.put(other);
+  return writer.take();
+}
+
 /// bot_core.pose_t at (x, y, 9 m), turned about z by the quaternion (w, 0, 0, z).
 inline std::vector<std::uint8_t> bot_core_pose(std::int64_t utime_us, double x_m, double y_m,
                                                double w, double z) {

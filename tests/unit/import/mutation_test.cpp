@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Random damage to good logs: the importers return or say what is wrong; they never crash, and what
 // they give is always in order and valid.
+#include "common/errors/setup_error.hpp"
 #include "common/messages/convert.hpp"
-#include "common/node/node.hpp"
 #include "foreign_payloads.hpp"
-#include "import/carmen_reader.hpp"
-#include "import/log_output.hpp"
-#include "import/mbot_reader.hpp"
+#include "import/carmen/carmen_reader.hpp"
+#include "import/findings/findings.hpp"
+#include "import/log/log_output.hpp"
+#include "import/mbot/mbot_reader.hpp"
 #include "import_files.hpp"
 
+#include <bzlib.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <random>
@@ -55,19 +59,26 @@ bool ascends(const Records& records) {
          }) == records.end();
 }
 
-/// Imports and, now and then, writes; false when the log was refused with a sentence.
+/// Imports, examines and, now and then, writes; false when the log was refused with a sentence.
 template <class Read>
-bool import_survives(int trial, const Read& read) {
+bool import_survives(int trial, ImportReport& report, const Read& read) {
   try {
-    const ImportedLog log = read();
+    ImportedLog log = read();
+    examine(log, ReversedOdometry::kMend, report);
     EXPECT_TRUE(ascends(log.scans));
     EXPECT_TRUE(ascends(log.odometry));
     EXPECT_LE(log.odometry.front().time, log.scans.front().time);
     EXPECT_GE(log.odometry.back().time, log.scans.back().last_beam_time);
-    if (trial % kTrialsPerWrite == 0) write_imported_log(log, test_folder() / "out.lcm");
+    if (trial % kTrialsPerWrite == 0) {
+      std::filesystem::remove(test_folder() / "robot.toml");
+      std::filesystem::remove(test_folder() / "reference.tum");
+      std::filesystem::remove(test_folder() / "out.lcm");
+      write_imported_log(log, report, test_folder() / "out.lcm");
+    }
     return true;
   } catch (const SetupError& error) {
     EXPECT_STRNE(error.what(), "");
+    EXPECT_THAT(std::string{error.what()}, ::testing::Not(::testing::HasSubstr("\n")));
     return false;
   }
 }
@@ -84,9 +95,49 @@ TEST(Mutations, OfACarmenLogNeverCrash) {
     options.beams = {-1.0, 0.5};
     if (trial % 2 == 0) options.odometry = CarmenOdometrySource::kOdomLines;
     ImportReport report{file, AddressUnit::kLine};
-    imported += import_survives(trial, [&] { return read_carmen_log(file, options, report); });
+    imported +=
+        import_survives(trial, report, [&] { return read_carmen_log(file, options, report); });
   }
   EXPECT_GT(imported, kTrials / 2);
+}
+
+std::string with_gzip(const std::string& text) {
+  const auto file = write_file("whole.gz", "");
+  gzFile gz = gzopen(file.c_str(), "wb");
+  gzwrite(gz, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(gz);
+  return read_file(file);
+}
+
+std::string with_bzip2(std::string text) {
+  const auto file = write_file("whole.bz2", "");
+  BZFILE* bz = BZ2_bzopen(file.c_str(), "wb");
+  BZ2_bzwrite(bz, text.data(), static_cast<int>(text.size()));
+  BZ2_bzclose(bz);
+  return read_file(file);
+}
+
+TEST(Mutations, OfCompressedLogsAndEveryCutOfThemNeverCrash) {
+  const std::string text = read_file(data_file("small.clf"));
+  CarmenOptions options{};
+  options.beams = {-1.0, 0.5};
+  std::mt19937 random{3};
+  for (const std::string& good : {with_gzip(text), with_bzip2(text)}) {
+    for (std::size_t length = 0; length <= good.size(); ++length) {
+      const bool is_whole = length == good.size();
+      const auto file = write_file("cut", good.substr(0, length));
+      ImportReport report{file, AddressUnit::kLine};
+      const bool imported =
+          import_survives(1, report, [&] { return read_carmen_log(file, options, report); });
+      EXPECT_TRUE(is_whole ? imported : !imported || report.num_skipped() > 0)
+          << length << " of " << good.size() << " bytes were taken for the whole log";
+    }
+    for (int trial = 0; trial < kTrials / 4; ++trial) {
+      const auto file = write_file("mutated", mutated(good, random));
+      ImportReport report{file, AddressUnit::kLine};
+      import_survives(trial, report, [&] { return read_carmen_log(file, options, report); });
+    }
+  }
 }
 
 std::string good_lcm_log() {
@@ -116,7 +167,8 @@ TEST(Mutations, OfAnLcmLogNeverCrash) {
         trial % 2 == 0 ? "TICKS" : "ODO";
     options.reference_channel = "POSE";
     ImportReport report{file, AddressUnit::kByte};
-    imported += import_survives(trial, [&] { return read_mbot_log(file, options, report); });
+    imported +=
+        import_survives(trial, report, [&] { return read_mbot_log(file, options, report); });
   }
   EXPECT_GT(imported, kTrials / 2);
 }

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/carmen/carmen_line.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace waymark {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kExact = 1e-12;
+
+template <class Content>
+Content parse(const std::string& line, const CarmenBeams& beams = {}) {
+  const CarmenLine parsed = parse_carmen_line(line, beams);
+  EXPECT_TRUE(std::holds_alternative<Content>(parsed)) << line;
+  const auto* content = std::get_if<Content>(&parsed);
+  return content == nullptr ? Content{} : *content;
+}
+
+std::string flaser(int num_beams, const std::string& keyword = "FLASER") {
+  std::string line = keyword + " " + std::to_string(num_beams);
+  for (int i = 0; i < num_beams; ++i)
+    line += " 2.5";
+  return line + " 1 2 0.5 3 4 0.25 100.25 host 0.75";
+}
+
+TEST(CarmenLine, OdomIsPoseAndIpcTime) {
+  const auto odometry = parse<CarmenOdometry>("ODOM 1.5 -2 0.25 9 8 7 123.5 nohost 4.5\r");
+
+  EXPECT_EQ(odometry.odom_from_base.x(), 1.5);
+  EXPECT_EQ(odometry.odom_from_base.y(), -2.0);
+  EXPECT_EQ(odometry.odom_from_base.theta(), 0.25);
+  EXPECT_EQ(odometry.time_s, 123.5);
+}
+
+TEST(CarmenLine, FlaserHasTheLidarsPoseBeforeTheRobots) {
+  const auto scan = parse<CarmenScan>(flaser(180));
+
+  EXPECT_EQ(scan.lidar, CarmenLidar::kFront);
+  EXPECT_EQ(scan.odom_from_lidar.x(), 1.0);
+  EXPECT_EQ(scan.odom_from_lidar.theta(), 0.5);
+  EXPECT_EQ(scan.odom_from_base.x(), 3.0);
+  EXPECT_EQ(scan.odom_from_base.y(), 4.0);
+  EXPECT_EQ(scan.odom_from_base.theta(), 0.25);
+  EXPECT_EQ(scan.time_s, 100.25);
+  EXPECT_EQ(scan.logger_time_s, 0.75);
+  EXPECT_FALSE(scan.range_max_m);
+}
+
+TEST(CarmenLine, BeamsOfFlaserFollowTheSickConvention) {
+  const std::vector<std::pair<int, double>> last_deg{
+      {180, 89.0}, {181, 90.0}, {360, 89.5}, {361, 90.0}};
+  for (const auto& [num_beams, angle_deg] : last_deg) {
+    const auto scan = parse<CarmenScan>(flaser(num_beams));
+    EXPECT_NEAR(scan.first_angle_rad, radians(-90.0), kExact);
+    EXPECT_NEAR(scan.first_angle_rad + (num_beams - 1) * scan.angle_step_rad, radians(angle_deg),
+                kExact);
+  }
+}
+
+TEST(CarmenLine, AnotherNumberOfBeamsNeedsItsAngles) {
+  EXPECT_THAT(parse<LineProblem>(flaser(4)).detail, HasSubstr("--first-angle-deg"));
+
+  const auto scan = parse<CarmenScan>(flaser(4), {0.5, 0.125});
+  EXPECT_EQ(scan.first_angle_rad, 0.5);
+  EXPECT_EQ(scan.angle_step_rad, 0.125);
+  EXPECT_EQ(parse<CarmenScan>(flaser(4, "RLASER"), {0.5, 0.125}).lidar, CarmenLidar::kRear);
+}
+
+TEST(CarmenLine, RobotLaserSaysItsBeamsItself) {
+  const auto scan = parse<CarmenScan>(
+      "ROBOTLASER1 0 -1.570796 3.141593 1.570796 20 0.01 1 3 1 2 50 2 7 8 "
+      "1 2 0.5 3 4 0.25 9 9 9 9 9 100.25 host 0.75");
+
+  EXPECT_THAT(scan.ranges_m, ElementsAre(1.0, 2.0, 50.0));
+  EXPECT_EQ(scan.first_angle_rad, -1.570796);
+  EXPECT_EQ(scan.angle_step_rad, 1.570796);
+  EXPECT_EQ(scan.range_max_m, 20.0);
+  EXPECT_EQ(scan.odom_from_lidar.x(), 1.0);
+  EXPECT_EQ(scan.odom_from_base.x(), 3.0);
+  EXPECT_EQ(scan.time_s, 100.25);
+}
+
+TEST(CarmenLine, WithoutResolutionTheFieldOfViewGivesTheStep) {
+  const auto scan =
+      parse<CarmenScan>("ROBOTLASER1 0 -1 2 0 20 0.01 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 host 0");
+
+  EXPECT_EQ(scan.angle_step_rad, 1.0);
+}
+
+TEST(CarmenLine, GivenAnglesOverrideAHeaderThatIsWrong) {
+  const std::string line = "ROBOTLASER1 0 -1 9 4.5 0 0 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 host 0";
+  EXPECT_THAT(parse<LineProblem>(line).kind, "contradictory header");
+
+  const auto scan = parse<CarmenScan>(line, {0.25, 0.5});
+
+  EXPECT_EQ(scan.first_angle_rad, 0.25);
+  EXPECT_EQ(scan.angle_step_rad, 0.5);
+  EXPECT_FALSE(scan.range_max_m) << "0 is none";
+}
+
+TEST(CarmenLine, ParametersSayWhereTheLidarsAreMounted) {
+  const auto front = parse<CarmenMounting>("PARAM robot_frontlaser_offset -0.04 107.5 host 107.5");
+  EXPECT_EQ(front.lidar, CarmenLidar::kFront);
+  EXPECT_EQ(front.what, CarmenMounting::What::kForward);
+  EXPECT_EQ(front.value, -0.04);
+  const auto rear = parse<CarmenMounting>("PARAM robot_rearlaser_angular_offset 3.14 nohost 0");
+  EXPECT_EQ(rear.lidar, CarmenLidar::kRear);
+  EXPECT_EQ(rear.what, CarmenMounting::What::kAngle);
+  EXPECT_EQ(parse<CarmenMounting>("PARAM robot_frontlaser_side_offset 0.1 h 0").what,
+            CarmenMounting::What::kSideward);
+  EXPECT_THAT(parse<LineProblem>("PARAM robot_frontlaser_offset ten h 0").kind, "not a number");
+  EXPECT_THAT(parse<LineProblem>("PARAM robot_frontlaser_offset 11 h 0").kind,
+              "number out of range");
+  EXPECT_EQ(parse<CarmenOther>("RAWLASER1 0").keyword, "RAWLASER1");
+}
+
+TEST(CarmenLine, OtherSensorsCommentsAndBlankLinesAreNoProblem) {
+  for (const char* line :
+       {"", "  \r", "# FLASER", "PARAM a b c", "NMEAGGA 1 2", "PARAM robot_frontlaser_use yes"})
+    parse<CarmenOther>(line);
+}
+
+struct BadLine {
+  std::string line;
+  std::string kind;
+  std::string detail;
+};
+
+TEST(CarmenLine, BadLinesSayWhatIsWrong) {
+  const std::string tail = " 0 0 0 0 0 0 1 host 0";
+  const std::vector<BadLine> lines{
+      {"FLASER", "missing field", "the number of ranges"},
+      {"FLASER 2 1", "missing field", "range 1 of 2"},
+      {"FLASER 2 1 1 0 0 0 0 0 0 1 host", "missing field", "logger_timestamp"},
+      {"FLASER -1" + tail, "number out of range", "-1"},
+      {"FLASER 2000000000 1" + tail, "number out of range", "2000000000"},
+      {"FLASER 1.5 1" + tail, "not a number", "1.5"},
+      {"FLASER 2 1 1e" + tail, "not a number", "range 1 of 2"},
+      {"FLASER 2 1 1e999" + tail, "not a number", "1e999"},
+      {"FLASER 2 1 NaN" + tail, "NaN", "range 1 of 2"},
+      {"FLASER 2 1 -0.5" + tail, "negative range", "-0.5"},
+      {"FLASER 2 1 1 5" + tail, "not a number", "host"},
+      {"FLASER 2 1 1" + tail + " 3", "surplus fields", "3"},
+      {"FLASER 2 1 1 0 0 0 0 0 0 -1 host 0", "bad time", "-1"},
+      {"FLASER 2 1 1 0 0 0 1e9 0 0 1 host 0", "number out of range", "odometry pose"},
+      {"FLASER 2 1 1 0 0 0 inf 0 0 1 host 0", "not finite", "odometry pose"},
+      {"ROBOTLASER1 0 -1 2 0.1 20 0 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 host 0",
+       "contradictory header", "3 beams"},
+      {"ROBOTLASER1 0 -1 9 4.5 20 0 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 host 0",
+       "contradictory header", "field of view 9"},
+      {"\x01\x02\xff", "unknown line", "???"},
+  };
+  for (const BadLine& bad : lines) {
+    const bool has_header = bad.line.starts_with("ROBOTLASER");
+    const auto problem =
+        parse<LineProblem>(bad.line, has_header ? CarmenBeams{} : CarmenBeams{0.0, 0.1});
+    EXPECT_EQ(problem.kind, bad.kind) << bad.line;
+    EXPECT_THAT(problem.detail, HasSubstr(bad.detail)) << bad.line;
+  }
+}
+
+}  // namespace
+}  // namespace waymark

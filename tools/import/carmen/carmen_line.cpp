@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/carmen/carmen_line.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <utility>
+
+namespace waymark {
+namespace {
+
+constexpr int kMaxBeams = 4000;            // as robot.lidar.num_beams
+constexpr double kLatestTime_s = 4e9;      // the year 2096
+constexpr double kLargestPose = 1e6;       // [m, rad] no robot drives or turns that far
+constexpr double kLargestMounting = 10.0;  // [m, rad] no robot is that large
+
+// Keywords of CARMEN's loggers that carry neither a LiDAR scan nor odometry that we use.
+constexpr std::array<std::string_view, 23> kOtherKeywords{
+    "SYNC",      "TRUEPOS",  "RAWLASER1", "RAWLASER2",        "RAWLASER3",     "RAWLASER4",
+    "RAWLASER5", "LASER3",   "LASER4",    "LASER5",           "ROBOTVELOCITY", "POSITION",
+    "MARKER",    "SCANMARK", "NMEAGGA",   "NMEARMC",          "SONAR",         "BUMPER",
+    "IMU",       "IMU_CORR", "PANTILT",   "FOLLOWTRAJECTORY", "BASEVELOCITY"};
+
+struct BeamAngles {
+  double first_rad{0.0};
+  double step_rad{0.0};
+};
+
+/// SICK conventions over 180 degrees from -90: 181 and 361 beams reach +90 with the last one, 180
+/// and 360 end one step before (as in the logs of the relations benchmark).
+std::optional<BeamAngles> beam_angles(int num_beams, const CarmenBeams& given) {
+  const bool is_known =
+      num_beams == 180 || num_beams == 181 || num_beams == 360 || num_beams == 361;
+  if (!is_known && (!given.first_angle_rad || !given.angle_step_rad)) return std::nullopt;
+  const double conventional_step_rad = radians(num_beams <= 181 ? 1.0 : 0.5);
+  return BeamAngles{given.first_angle_rad.value_or(radians(-90.0)),
+                    given.angle_step_rad.value_or(conventional_step_rad)};
+}
+
+Se2 take_pose(FieldCursor& fields, std::string_view name) {
+  const double x_m = fields.number(name);
+  const double y_m = fields.number(name);
+  const double theta_rad = fields.number(name);
+  if (std::max({std::abs(x_m), std::abs(y_m), std::abs(theta_rad)}) > kLargestPose) {
+    fields.fail("number out of range",
+                fmt::format("{} is ({}, {}, {})", name, x_m, y_m, theta_rad));
+  }
+  return {x_m, y_m, theta_rad};
+}
+
+std::vector<double> take_ranges(FieldCursor& fields, int num_beams) {
+  std::vector<double> ranges_m;
+  ranges_m.reserve(static_cast<std::size_t>(num_beams));
+  for (int i = 0; i < num_beams && !fields.failed(); ++i) {
+    const double range_m = fields.number_or_infinity(fmt::format("range {} of {}", i, num_beams));
+    if (range_m < 0.0) fields.fail("negative range", fmt::format("range {} is {}", i, range_m));
+    ranges_m.push_back(range_m);
+  }
+  return ranges_m;
+}
+
+/// The three fields that end every line; checks that nothing follows.
+template <class Line>
+void take_times(FieldCursor& fields, Line& line) {
+  line.time_s = fields.number("ipc_timestamp");
+  fields.word("ipc_hostname");
+  line.logger_time_s = fields.number("logger_timestamp");
+  fields.expect_end();
+  if (line.time_s < 0.0 || line.time_s > kLatestTime_s) {
+    fields.fail("bad time", fmt::format("ipc_timestamp is {}", line.time_s));
+  }
+  // Nobody needs a logger's time unless ipc_timestamp is of no use.
+  line.logger_time_s = std::clamp(line.logger_time_s, 0.0, kLatestTime_s);
+}
+
+CarmenLine finish(FieldCursor& fields, CarmenLine line) {
+  if (fields.failed()) return *fields.problem();
+  return line;
+}
+
+CarmenLine parse_odometry(FieldCursor& fields) {
+  CarmenOdometry odometry{};
+  odometry.odom_from_base = take_pose(fields, "the odometry pose");
+  for (const std::string_view name : {"tv", "rv", "accel"})
+    fields.number(name);
+  take_times(fields, odometry);
+  return finish(fields, odometry);
+}
+
+CarmenLine parse_old_laser(FieldCursor& fields, CarmenLidar lidar, const CarmenBeams& given) {
+  CarmenScan scan{};
+  scan.lidar = lidar;
+  const int num_beams = fields.integer("the number of ranges", 1, kMaxBeams);
+  scan.ranges_m = take_ranges(fields, num_beams);
+  scan.odom_from_lidar = take_pose(fields, "the LiDAR pose");
+  scan.odom_from_base = take_pose(fields, "the odometry pose");
+  take_times(fields, scan);
+  const auto angles = beam_angles(num_beams, given);
+  if (!angles) {
+    fields.fail("unknown field of view",
+                fmt::format("{} beams: give --first-angle-deg and --angle-step-deg", num_beams));
+    return finish(fields, scan);
+  }
+  scan.first_angle_rad = angles->first_rad;
+  scan.angle_step_rad = angles->step_rad;
+  return finish(fields, scan);
+}
+
+/// Step from the header: its resolution, or field of view over beams where that is 0.
+double angle_step(FieldCursor& fields, double field_of_view_rad, double resolution_rad,
+                  int num_beams) {
+  const double gaps = std::max(1, num_beams - 1);
+  if (resolution_rad == 0.0) return field_of_view_rad / gaps;
+  // Beams that reach the end of the field of view, or end one step before.
+  constexpr double kRounding = 0.02;  // start angle and resolution are written with six digits
+  const bool agrees = resolution_rad > 0.0 &&
+                      resolution_rad * gaps <= field_of_view_rad * (1.0 + kRounding) &&
+                      resolution_rad * (gaps + 1.0) >= field_of_view_rad * (1.0 - kRounding);
+  if (!agrees) {
+    fields.fail("contradictory header",
+                fmt::format("{} beams of {} rad do not make a field of view of {} rad: give "
+                            "--first-angle-deg and --angle-step-deg",
+                            num_beams, resolution_rad, field_of_view_rad));
+  }
+  return resolution_rad;
+}
+
+CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const CarmenBeams& given) {
+  CarmenScan scan{};
+  scan.lidar = lidar;
+  fields.number("laser_type");
+  scan.first_angle_rad = fields.number("start_angle");
+  const double field_of_view_rad = fields.number("field_of_view");
+  const double resolution_rad = fields.number("angular_resolution");
+  scan.range_max_m = fields.number("maximum_range");
+  fields.number("accuracy");
+  fields.number("remission_mode");
+  const int num_beams = fields.integer("the number of ranges", 1, kMaxBeams);
+  scan.ranges_m = take_ranges(fields, num_beams);
+  const int num_remissions = fields.integer("the number of remissions", 0, kMaxBeams);
+  for (int i = 0; i < num_remissions && !fields.failed(); ++i)
+    fields.number("a remission");
+  scan.odom_from_lidar = take_pose(fields, "the LiDAR pose");
+  scan.odom_from_base = take_pose(fields, "the odometry pose");
+  for (const std::string_view name : {"tv", "rv", "forward_safety", "side_safety", "turn_axis"})
+    fields.number(name);
+  take_times(fields, scan);
+  scan.first_angle_rad = given.first_angle_rad.value_or(scan.first_angle_rad);
+  if (given.angle_step_rad) {
+    scan.angle_step_rad = *given.angle_step_rad;
+    if (*scan.range_max_m <= 0.0) scan.range_max_m.reset();
+    return finish(fields, scan);
+  }
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  if (std::abs(scan.first_angle_rad) > kTurn_rad || field_of_view_rad <= 0.0 ||
+      field_of_view_rad > 1.01 * kTurn_rad || *scan.range_max_m <= 0.0) {
+    fields.fail("contradictory header",
+                fmt::format("start angle {} rad, field of view {} rad, maximum range {} m",
+                            scan.first_angle_rad, field_of_view_rad, *scan.range_max_m));
+  }
+  scan.angle_step_rad = angle_step(fields, field_of_view_rad, resolution_rad, num_beams);
+  return finish(fields, scan);
+}
+
+/// Parameters are free text but for those that matter here.
+CarmenLine parse_parameter(FieldCursor& fields) {
+  using What = CarmenMounting::What;
+  constexpr std::array<std::pair<std::string_view, What>, 3> kMountings{
+      {{"_offset", What::kForward},
+       {"_side_offset", What::kSideward},
+       {"_angular_offset", What::kAngle}}};
+  constexpr std::string_view kFront = "robot_frontlaser";
+  constexpr std::string_view kRear = "robot_rearlaser";
+  const std::string_view name = fields.word("the parameter's name");
+  const bool is_front = name.starts_with(kFront);
+  if (!is_front && !name.starts_with(kRear)) return CarmenOther{};
+  const std::string_view what = name.substr(is_front ? kFront.size() : kRear.size());
+  const auto known =
+      std::ranges::find(kMountings, what, [](const auto& entry) { return entry.first; });
+  if (known == kMountings.end()) return CarmenOther{};
+  const CarmenMounting mounting{is_front ? CarmenLidar::kFront : CarmenLidar::kRear, known->second,
+                                fields.number(name)};
+  if (std::abs(mounting.value) > kLargestMounting) {
+    fields.fail("number out of range", fmt::format("{} is {}", name, mounting.value));
+  }
+  return finish(fields, mounting);
+}
+
+}  // namespace
+
+CarmenLine parse_carmen_line(std::string_view line, const CarmenBeams& beams) {
+  const bool is_blank = line.find_first_not_of(" \t\r") == std::string_view::npos;
+  if (is_blank || line.front() == '#') return CarmenOther{};
+  FieldCursor fields{line};
+  const std::string_view keyword = fields.word("the keyword");
+  if (keyword == "PARAM") return parse_parameter(fields);
+  if (keyword == "ODOM") return parse_odometry(fields);
+  if (keyword == "FLASER") return parse_old_laser(fields, CarmenLidar::kFront, beams);
+  if (keyword == "RLASER") return parse_old_laser(fields, CarmenLidar::kRear, beams);
+  if (keyword == "ROBOTLASER1") return parse_robot_laser(fields, CarmenLidar::kFront, beams);
+  if (keyword == "ROBOTLASER2") return parse_robot_laser(fields, CarmenLidar::kRear, beams);
+  const auto other = std::ranges::find(kOtherKeywords, keyword);
+  if (other != kOtherKeywords.end()) return CarmenOther{*other};
+  return LineProblem{"unknown line", quoted(keyword) + " is no keyword of a CARMEN log"};
+}
+
+}  // namespace waymark

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One line of a CARMEN log. The keywords that matter here, with their fields:
+//   ODOM x y theta tv rv accel | ipc_timestamp ipc_hostname logger_timestamp
+//   FLASER, RLASER n range*n laser_x laser_y laser_theta odom_x odom_y odom_theta | the same three
+//   ROBOTLASER1, ROBOTLASER2 type start_angle field_of_view angular_resolution maximum_range
+//     accuracy remission_mode n range*n n_remissions remission*n_remissions laser_x laser_y
+//     laser_theta odom_x odom_y odom_theta laser_tv laser_rv forward_safety side_safety turn_axis
+//     | the same three
+//   PARAM name value | the same three: of them, where the LiDARs are mounted
+// FLASER and ROBOTLASER1 are the front LiDAR, RLASER and ROBOTLASER2 the rear one.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "import/carmen/field_cursor.hpp"
+
+#include <optional>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace waymark {
+
+enum class CarmenLidar { kFront, kRear };
+
+/// What FLASER and RLASER lines do not say; nullopt = the convention for their number of beams, see
+/// beam_angles(). ROBOTLASER lines say it themselves, but what is given here overrides them.
+struct CarmenBeams {
+  std::optional<double> first_angle_rad{};
+  std::optional<double> angle_step_rad{};
+};
+
+struct CarmenScan {
+  CarmenLidar lidar{CarmenLidar::kFront};
+  double time_s{0.0};              ///< ipc_timestamp
+  double logger_time_s{0.0};       ///< may be anything finite
+  std::vector<double> ranges_m{};  ///< as written, not negative; may be +inf
+  double first_angle_rad{0.0};
+  double angle_step_rad{0.0};
+  std::optional<double> range_max_m{};  ///< when the line says it
+  Se2 odom_from_lidar{};
+  Se2 odom_from_base{};
+};
+
+struct CarmenOdometry {
+  double time_s{0.0};
+  double logger_time_s{0.0};
+  Se2 odom_from_base{};
+};
+
+/// A parameter that says where a LiDAR is mounted.
+struct CarmenMounting {
+  enum class What { kForward, kSideward, kAngle };
+
+  CarmenLidar lidar{CarmenLidar::kFront};
+  What what{What::kForward};
+  double value{0.0};  ///< [m, m, rad] base frame
+};
+
+/// A line that says nothing about LiDAR or odometry: comment, other parameter, another sensor.
+struct CarmenOther {
+  std::string_view keyword{"other lines"};  ///< of a sensor; static
+};
+
+using CarmenLine =
+    std::variant<CarmenScan, CarmenOdometry, CarmenMounting, CarmenOther, LineProblem>;
+
+/// Never throws on account of the line. O(length).
+CarmenLine parse_carmen_line(std::string_view line, const CarmenBeams& beams);
+
+}  // namespace waymark

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/carmen/carmen_reader.hpp"
+
+#include "common/errors/setup_error.hpp"
+#include "common/messages/bounds.hpp"
+#include "common/messages/codec.hpp"
+#include "import/carmen/mounting.hpp"
+#include "import/carmen/text_lines.hpp"
+#include "import/findings/no_return.hpp"
+#include "import/log/time_order.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace waymark {
+namespace {
+
+// A SICK LMS 200 measures up to 80 m; from 8183 on, in centimetres, its values are error codes
+// (SICK, Telegrams for configuring and operating the LMS 2xx).
+constexpr double kSickRangeMax_m = 81.83;
+constexpr Duration kLongestBurst = std::chrono::milliseconds{1};
+
+Timestamp timestamp_from_seconds(double seconds) {
+  return Timestamp{duration_from_seconds(seconds)};
+}
+
+template <class Line>
+CarmenTimes times_of(const Line& line) {
+  return {timestamp_from_seconds(line.time_s), timestamp_from_seconds(line.logger_time_s)};
+}
+
+template <class Line>
+struct Read {
+  CarmenTimes times{};
+  std::int64_t at{0};
+  Line line{};
+  Timestamp time{};  ///< the one of both that is taken
+};
+
+class CarmenReader {
+ public:
+  CarmenReader(const CarmenOptions& options, ImportReport& report)
+      : options_{options}, report_{report} {}
+
+  void take(CarmenLine line, std::int64_t at) {
+    at_ = at;
+    std::visit([this](auto&& content) { take_content(std::forward<decltype(content)>(content)); },
+               std::move(line));
+  }
+
+  ImportedLog finish();
+
+ private:
+  void take_content(CarmenScan scan);
+  void take_content(const CarmenOdometry& odometry);
+
+  void take_content(const CarmenMounting& mounting) { mountings_.push_back(mounting); }
+
+  void take_content(CarmenOther other) { ++counts_[std::string{other.keyword}]; }
+
+  void take_content(const LineProblem& problem) { report_.skip(problem.kind, at_, problem.detail); }
+
+  void apply_stamps();
+  void part_equal_times();
+  void add_scan(const Read<CarmenScan>& read);
+  void apply_mounting();
+  double usual_range_max_m();
+
+  const CarmenOptions& options_;
+  ImportReport& report_;
+  ImportedLog log_{};
+  std::int64_t at_{0};
+  std::map<std::string, std::int64_t> counts_{};
+  std::vector<Read<CarmenScan>> scans_{};
+  std::vector<Read<CarmenOdometry>> odometry_{};
+  std::vector<CarmenMounting> mountings_{};
+};
+
+void CarmenReader::take_content(CarmenScan scan) {
+  ++counts_[scan.lidar == CarmenLidar::kFront ? "front scans" : "rear scans"];
+  if (scan.lidar != options_.lidar) return;
+  scans_.push_back({times_of(scan), at_, std::move(scan), {}});
+}
+
+void CarmenReader::take_content(const CarmenOdometry& odometry) {
+  ++counts_["ODOM"];
+  if (options_.odometry != CarmenOdometrySource::kOdomLines) return;
+  odometry_.push_back({times_of(odometry), at_, odometry, {}});
+}
+
+void CarmenReader::apply_stamps() {
+  std::vector<CarmenTimes> times;
+  for (const auto& scan : scans_)
+    times.push_back(scan.times);
+  const CarmenStamps stamps = choose_stamps(times, options_.stamps, report_);
+  for (auto& scan : scans_)
+    scan.time = scan.times.by(stamps);
+  for (auto& sample : odometry_) {
+    log_.odometry.push_back({sample.times.by(stamps), sample.at, sample.line.odom_from_base});
+  }
+}
+
+/// Scans that a driver stamps alike because it sends them in a burst: order is kept, and each one
+/// gets the next microsecond, so that none is taken for a repetition.
+void CarmenReader::part_equal_times() {
+  std::int64_t parted = 0;
+  for (std::size_t i = 1; i < scans_.size(); ++i) {
+    const Timestamp before = scans_[i - 1].time;
+    // Only right behind scans of the same stamp; a larger step back is another fault.
+    if (scans_[i].time > before || before - scans_[i].time > kLongestBurst) continue;
+    scans_[i].time = before + std::chrono::microseconds{1};
+    ++parted;
+  }
+  if (parted > 0) {
+    report_.note(
+        fmt::format("{} scans have the time of the one before: stamped 1 us apart", parted));
+  }
+}
+
+void CarmenReader::add_scan(const Read<CarmenScan>& read) {
+  const CarmenScan& scan = read.line;
+  planar_lidar_t message{};
+  message.utime = to_us(read.time);
+  message.nranges = static_cast<int>(scan.ranges_m.size());
+  message.rad0 = static_cast<float>(scan.first_angle_rad);
+  message.radstep = static_cast<float>(scan.angle_step_rad);
+  for (const double range_m : scan.ranges_m)
+    message.ranges.push_back(static_cast<float>(std::min(range_m, bounds::kRange_m)));
+  log_.scans.push_back(
+      {read.time, read.time, read.at, message.nranges, 0.0, encode(channels::kLidar, message), {}});
+  if (options_.odometry == CarmenOdometrySource::kLaserLines) {
+    log_.scans.back().odom_from_base = scan.odom_from_base;
+  }
+}
+
+void CarmenReader::apply_mounting() {
+  std::vector<Se2> poses;
+  for (const auto& scan : scans_)
+    poses.push_back(scan.line.odom_from_base.inverse() * scan.line.odom_from_lidar);
+  Se2 base_from_lidar = find_mounting(poses, mountings_, options_.lidar, report_);
+  // Loggers write the robot's heading for the rear LiDAR, too, whose beam angles count from behind.
+  if (options_.lidar == CarmenLidar::kRear && std::abs(base_from_lidar.theta()) < radians(90.0)) {
+    base_from_lidar = base_from_lidar * Se2{0.0, 0.0, radians(180.0)};
+  }
+  // The lines have six decimals.
+  const auto rounded = [](double value) {
+    return std::round(value * 1e6) / 1e6;
+  };
+  LidarConfig& lidar = log_.robot.lidar;
+  lidar.x_m = options_.mounting.x_m.value_or(rounded(base_from_lidar.x()));
+  lidar.y_m = options_.mounting.y_m.value_or(rounded(base_from_lidar.y()));
+  lidar.yaw_rad = options_.mounting.yaw_rad.value_or(base_from_lidar.theta());
+}
+
+/// What most lines say, else a SICK's.
+double CarmenReader::usual_range_max_m() {
+  std::vector<double> limits_m;
+  for (const auto& scan : scans_)
+    limits_m.push_back(scan.line.range_max_m.value_or(kSickRangeMax_m));
+  const auto middle = limits_m.begin() + static_cast<std::ptrdiff_t>(limits_m.size() / 2);
+  std::ranges::nth_element(limits_m, middle);
+  return *middle;
+}
+
+ImportedLog CarmenReader::finish() {
+  for (const auto& [name, count] : counts_) {
+    log_.contents += fmt::format("{}{} {}", log_.contents.empty() ? "" : ", ", name, count);
+  }
+  if (scans_.empty()) {
+    throw SetupError{"no LiDAR scan could be read" +
+                     (log_.contents.empty() ? "" : "; the log holds " + log_.contents)};
+  }
+  apply_stamps();
+  apply_mounting();
+  settle_small_disorder(scans_, "scan", report_);
+  part_equal_times();
+  for (const auto& scan : scans_)
+    add_scan(scan);
+  keep_usual_beam_count(log_.scans, report_);
+  log_.robot.lidar.range_min_m = options_.range_min_m;
+  complete(log_, report_);
+  mark_no_returns(log_, {options_.range_max_m, usual_range_max_m()}, report_);
+  return std::move(log_);
+}
+
+}  // namespace
+
+ImportedLog read_carmen_log(const std::filesystem::path& file, const CarmenOptions& options,
+                            ImportReport& report) {
+  TextLines lines{file};
+  CarmenReader reader{options, report};
+  while (const auto line = lines.next())
+    reader.take(parse_carmen_line(*line, options.beams), lines.line_number());
+  if (!lines.fault().empty()) {
+    report.skip("damaged file", lines.line_number(), "the file ends here: " + lines.fault());
+  }
+  return reader.finish();
+}
+
+}  // namespace waymark

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A CARMEN log (.clf, .log; gzip, bzip2 or not) -> scans and odometry.
+#pragma once
+
+#include "import/carmen/carmen_line.hpp"
+#include "import/carmen/stamps.hpp"
+#include "import/log/imported_log.hpp"
+
+#include <filesystem>
+#include <optional>
+
+namespace waymark {
+
+/// Which lines the odometry comes from. Never from both: they are stamped by different processes,
+/// and where they disagree by milliseconds the robot would seem to jump to and fro.
+enum class CarmenOdometrySource {
+  kLaserLines,  ///< the odometry pose in each scan's line: exact at the scan; what GMapping reads
+  kOdomLines,   ///< ODOM
+};
+
+struct CarmenOptions {
+  CarmenLidar lidar{CarmenLidar::kFront};
+  CarmenOdometrySource odometry{CarmenOdometrySource::kLaserLines};
+  CarmenBeams beams{};
+  std::optional<CarmenStamps> stamps{};  ///< nullopt = ipc_timestamp if it advances
+  std::optional<double> range_max_m{};   ///< nullopt = see mark_no_returns(); usual: SICK LMS
+  double range_min_m{0.0};
+  LidarMounting mounting{};
+};
+
+/// @throws SetupError when the file is unreadable, empty, or gives no scan or no odometry.
+ImportedLog read_carmen_log(const std::filesystem::path& file, const CarmenOptions& options,
+                            ImportReport& report);
+
+}  // namespace waymark

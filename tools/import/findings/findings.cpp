@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/findings/findings.hpp"
+
+#include "import/findings/range_noise.hpp"
+#include "import/findings/reversed_odometry.hpp"
+#include "import/findings/standing_odometry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kScansForNoise = 1000;  // evenly over the log
+constexpr double kLargestSigma_m = 1.0;
+constexpr std::size_t kFewestReversed = 5;  // steps: fewer are found by chance
+
+void estimate_range_noise(ImportedLog& log, ImportReport& report) {
+  WallScatter noise;
+  const std::size_t every = 1 + log.scans.size() / kScansForNoise;
+  for (std::size_t i = 0; i < log.scans.size(); i += every)
+    noise.add(scan_of(log.scans[i]));
+  const auto sigma_m = noise.sigma_m();
+  if (!sigma_m) {
+    report.note(fmt::format(
+        "the ranges' noise cannot be estimated (too few neighbouring ranges): {} m is written; if "
+        "you know it, change range_sigma_m in robot.toml",
+        log.robot.lidar.range_sigma_m));
+    return;
+  }
+  log.robot.lidar.range_sigma_m = std::min(*sigma_m, kLargestSigma_m);
+  report.note(fmt::format(
+      "ranges scatter by {:.4f} m about straight walls: written as the LiDAR's noise; if you know "
+      "better, change range_sigma_m in robot.toml",
+      log.robot.lidar.range_sigma_m));
+}
+
+void check_that_odometry_moves(const ImportedLog& log, ImportReport& report) {
+  const auto change_m = change_of_scans_while_standing_m(log);
+  if (!change_m) return;
+  report.note(fmt::format(
+      "odometry says nothing: all {} poses are equal, but the scans change by {:.2f} m; no "
+      "estimator "
+      "can use this log unless another source has odometry (--odometry odom, --odometry-channel, "
+      "--encoder-channel)",
+      log.odometry.size(), *change_m));
+}
+
+void check_direction(ImportedLog& log, ReversedOdometry wanted, ImportReport& report) {
+  const std::vector<ReversedStep> steps = find_reversed_steps(log);
+  if (steps.size() < kFewestReversed) return;
+  double distance_m = 0.0;
+  for (const ReversedStep& step : steps)
+    distance_m += step.distance_m;
+  const std::string found = fmt::format(
+      "odometry counts backing up as driving forward in {} steps between scans, {:.1f} m, first at "
+      "{:.3f} s",
+      steps.size(), distance_m, to_seconds(steps.front().after));
+  if (wanted == ReversedOdometry::kMend) {
+    log.odometry = with_steps_mended(log.odometry, steps);
+    report.note(found + ": turned round, as asked for");
+  } else {
+    report.note(found + ": left as it is; --fix-reversed-odometry turns it round");
+  }
+}
+
+}  // namespace
+
+void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report) {
+  estimate_range_noise(log, report);
+  check_that_odometry_moves(log, report);
+  check_direction(log, reversed, report);
+}
+
+}  // namespace waymark

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/log/import_report.hpp"
+
+#include <fmt/format.h>
+
+namespace waymark {
+namespace {
+
+constexpr std::int64_t kNamedPerKind = 10;
+
+}  // namespace
+
+void ImportReport::skip(std::string_view kind, std::int64_t at, std::string_view detail) {
+  const std::int64_t count = ++skipped_by_kind_.try_emplace(std::string{kind}, 0).first->second;
+  if (count > kNamedPerKind) return;
+  const std::string address = unit_ == AddressUnit::kLine ? fmt::format("{}:{}", file_, at)
+                                                          : fmt::format("{}: byte {}", file_, at);
+  messages_.push_back(fmt::format("{}: skipped: {}: {}", address, kind, detail));
+  if (count == kNamedPerKind) {
+    messages_.push_back(fmt::format("{}: further cases of \"{}\" are only counted", file_, kind));
+  }
+}
+
+std::int64_t ImportReport::num_skipped() const {
+  std::int64_t sum = 0;
+  for (const auto& [kind, count] : skipped_by_kind_)
+    sum += count;
+  return sum;
+}
+
+}  // namespace waymark

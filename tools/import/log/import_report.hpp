@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an import left out and why, and what it took for granted: nothing is dropped silently.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace waymark {
+
+/// What a position in the imported file counts.
+enum class AddressUnit { kLine, kByte };
+
+/// What is wrong with a line or a message.
+struct LineProblem {
+  std::string_view kind{};  ///< what to count it as
+  std::string detail{};
+};
+
+class ImportReport {
+ public:
+  ImportReport(const std::filesystem::path& file, AddressUnit unit)
+      : file_{file.filename().string()}, unit_{unit} {}
+
+  /// A line or event that is left out. The first ones of a kind are named, all are counted.
+  /// @param at  line number (from 1) or byte offset (from 0)
+  void skip(std::string_view kind, std::int64_t at, std::string_view detail);
+
+  /// A decision that the user should know of.
+  void note(std::string text) { notes_.push_back(std::move(text)); }
+
+  std::int64_t num_skipped() const;
+
+  const std::map<std::string, std::int64_t, std::less<>>& skipped_by_kind() const {
+    return skipped_by_kind_;
+  }
+
+  /// One line per skipped record that is named: "fr079.clf:17: skipped: ...".
+  const std::vector<std::string>& messages() const { return messages_; }
+
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  std::string file_;
+  AddressUnit unit_;
+  std::map<std::string, std::int64_t, std::less<>> skipped_by_kind_{};
+  std::vector<std::string> messages_{};
+  std::vector<std::string> notes_{};
+};
+
+}  // namespace waymark

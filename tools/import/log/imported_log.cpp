@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/log/imported_log.hpp"
+
+#include "common/errors/setup_error.hpp"
+#include "common/messages/codec.hpp"
+#include "common/messages/convert.hpp"
+#include "import/log/time_order.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <set>
+
+namespace waymark {
+namespace {
+
+constexpr Duration kLongestHold = std::chrono::seconds{1};
+constexpr double kHabitShare = 0.05;         // of all scans: a number of beams that a driver means
+constexpr std::int64_t kFewestOfAHabit = 2;  // scans
+
+/// Records per second, within what the configuration allows.
+template <class Record>
+double rate_hz(const std::vector<Record>& records, double low_hz, double high_hz) {
+  if (records.size() < 2) return low_hz;
+  const double seconds = to_seconds(records.back().time - records.front().time);
+  return std::clamp(static_cast<double>(records.size() - 1) / seconds, low_hz, high_hz);
+}
+
+/// Repeated odometry says nothing new and is no fault.
+void remove_repeats(std::vector<ImportedPose>& poses) {
+  const auto repeats = std::ranges::unique(poses, [](const auto& a, const auto& b) {
+    return a.time == b.time && a.pose.translation() == b.pose.translation() &&
+           a.pose.theta() == b.pose.theta();
+  });
+  poses.erase(repeats.begin(), repeats.end());
+}
+
+}  // namespace
+
+LidarScan scan_of(const ImportedScan& scan) {
+  if (fingerprint_of(scan.message.payload) == lidar_t::getHash()) {
+    return to_scan(decode<lidar_t>(scan.message.payload).message.value());
+  }
+  return to_scan(decode<planar_lidar_t>(scan.message.payload).message.value());
+}
+
+Se2 pose_at(const std::vector<ImportedPose>& poses, Timestamp time) {
+  const auto after = std::ranges::lower_bound(poses, time, {}, &ImportedPose::time);
+  if (after == poses.begin()) return after->pose;
+  const auto before = std::prev(after);
+  if (after == poses.end()) return before->pose;
+  const double share = to_seconds(time - before->time) / to_seconds(after->time - before->time);
+  const Se2 step = before->pose.inverse() * after->pose;
+  return before->pose * Se2{share * step.translation(), share * step.theta()};
+}
+
+void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& report) {
+  std::map<int, std::int64_t> scans_by_count;
+  for (const ImportedScan& scan : scans)
+    ++scans_by_count[scan.num_beams];
+  const auto usual =
+      std::ranges::max_element(scans_by_count, {}, [](const auto& entry) { return entry.second; });
+  const auto is_habit = [&](int num_beams) {
+    const std::int64_t count = scans_by_count.at(num_beams);
+    const double share = static_cast<double>(count) / static_cast<double>(scans.size());
+    return count >= kFewestOfAHabit &&
+           (share >= kHabitShare || std::abs(num_beams - usual->first) == 1);
+  };
+  std::string kept;
+  std::set<int> rare;
+  for (const auto& [num_beams, count] : scans_by_count) {
+    if (!is_habit(num_beams) && num_beams != usual->first) {
+      rare.insert(num_beams);
+    } else {
+      kept += fmt::format("{}{} (in {} scans)", kept.empty() ? "" : ", ", num_beams, count);
+    }
+  }
+  if (scans_by_count.size() - rare.size() > 1)
+    report.note("numbers of beams alternate, and all are kept: " + kept);
+  const int usual_beams = usual->first;
+  std::erase_if(scans, [&](const ImportedScan& scan) {
+    if (!rare.contains(scan.num_beams)) return false;
+    report.skip("changed beam count", scan.at,
+                fmt::format("{} beams, but most scans have {}", scan.num_beams, usual_beams));
+    return true;
+  });
+}
+
+void cover_scans(ImportedLog& log, ImportReport& report) {
+  if (log.odometry.empty() || log.scans.empty()) return;
+  const Timestamp first = log.odometry.front().time;
+  const Timestamp last = log.odometry.back().time;
+  std::erase_if(log.scans, [&](const ImportedScan& scan) {
+    if (scan.time >= first - kLongestHold && scan.last_beam_time <= last + kLongestHold) {
+      return false;
+    }
+    report.skip("no odometry at its time", scan.at,
+                fmt::format("a scan at {:.6f} s, odometry from {:.6f} to {:.6f} s",
+                            to_seconds(scan.time), to_seconds(first), to_seconds(last)));
+    return true;
+  });
+  if (log.scans.empty()) return;
+  const Timestamp first_scan = log.scans.front().time;
+  const Timestamp last_scan = log.scans.back().last_beam_time;
+  if (first_scan < first) {
+    log.odometry.insert(log.odometry.begin(), log.odometry.front());
+    log.odometry.front().time = first_scan;
+    report.note(fmt::format("odometry starts {:.3f} s after the first scan: first pose held",
+                            to_seconds(first - first_scan)));
+  }
+  if (last_scan > last) {
+    log.odometry.push_back(log.odometry.back());
+    log.odometry.back().time = last_scan;
+    report.note(fmt::format("odometry ends {:.3f} s before the last scan: last pose held",
+                            to_seconds(last_scan - last)));
+  }
+}
+
+void complete(ImportedLog& log, ImportReport& report) {
+  settle_small_disorder(log.scans, "scan", report);
+  keep_ascending(log.scans, "a scan", report);
+  settle_small_disorder(log.odometry, "odometry sample", report);
+  settle_small_disorder(log.reference, "reference pose", report);
+  if (log.odometry.empty()) {
+    for (const ImportedScan& scan : log.scans) {
+      if (scan.odom_from_base) log.odometry.push_back({scan.time, scan.at, *scan.odom_from_base});
+    }
+  }
+  remove_repeats(log.odometry);
+  keep_ascending(log.odometry, "odometry", report);
+  keep_ascending(log.reference, "a reference pose", report);
+  const bool had_scans = !log.scans.empty();
+  cover_scans(log, report);
+  const std::string held = log.contents.empty() ? "" : "; the log holds " + log.contents;
+  if (!had_scans) throw SetupError{"no LiDAR scan could be read" + held};
+  if (log.odometry.empty()) throw SetupError{"no odometry could be read" + held};
+  if (log.scans.empty()) throw SetupError{"no scan has odometry at its time" + held};
+  log.robot.base.odometry_rate_hz = rate_hz(log.odometry, 1.0, 200.0);
+  log.robot.lidar.rate_hz = rate_hz(log.scans, 0.1, 100.0);
+  log.robot.lidar.num_beams = std::ranges::max(log.scans, {}, &ImportedScan::num_beams).num_beams;
+}
+
+double path_length_m(const std::vector<ImportedPose>& poses) {
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    length_m += (poses[i].pose.translation() - poses[i - 1].pose.translation()).norm();
+  }
+  return length_m;
+}
+
+}  // namespace waymark

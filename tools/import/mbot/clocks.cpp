@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/mbot/clocks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+constexpr Duration kSameClock = std::chrono::seconds{1};
+constexpr std::int64_t kLatest_us = 4'000'000'000'000'000;  // the year 2096: more is garbage
+constexpr double kComparable = 0.5;  // span of one clock over that of the other
+
+}  // namespace
+
+void ChannelClock::add(Timestamp stamp, Timestamp logged) {
+  if (to_us(logged) < 0 || to_us(logged) > kLatest_us) return;
+  if (empty()) {
+    first_stamp_ = last_stamp_ = stamp;
+    first_logged_ = last_logged_ = logged;
+  }
+  first_stamp_ = std::min(first_stamp_, stamp);
+  last_stamp_ = std::max(last_stamp_, stamp);
+  first_logged_ = std::min(first_logged_, logged);
+  last_logged_ = std::max(last_logged_, logged);
+  logger_minus_stamp_us_.push_back(to_us(logged) - to_us(stamp));
+}
+
+Duration ChannelClock::logger_ahead() const {
+  std::vector<std::int64_t> differences_us = logger_minus_stamp_us_;
+  const auto middle =
+      differences_us.begin() + static_cast<std::ptrdiff_t>(differences_us.size() / 2);
+  std::ranges::nth_element(differences_us, middle);
+  return Duration{*middle};
+}
+
+bool ChannelClock::is_comparable() const {
+  const double by_stamps_s = to_seconds(last_stamp_ - first_stamp_);
+  const double by_logger_s = to_seconds(last_logged_ - first_logged_);
+  return by_logger_s > kComparable * by_stamps_s && by_stamps_s > kComparable * by_logger_s;
+}
+
+void put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::string_view name,
+                  std::vector<ImportedPose>& poses, ImportReport& report) {
+  if (lidar.empty() || other.empty() || !lidar.is_comparable() || !other.is_comparable()) return;
+  const Duration shift = other.logger_ahead() - lidar.logger_ahead();
+  if (shift > -kSameClock && shift < kSameClock) return;
+  // A stamp that a shift would take below zero is garbage: it stays, and is out of order.
+  for (ImportedPose& pose : poses) {
+    if (to_us(pose.time + shift) >= 0) pose.time += shift;
+  }
+  report.note(fmt::format(
+      "stamps of {} are of another clock than the LiDAR's, {:.3f} s apart by the logger's times: "
+      "put onto the LiDAR's; only as exact as the logger",
+      name, to_seconds(shift)));
+}
+
+}  // namespace waymark
