@@ -9,7 +9,8 @@ readonly kExitFailed=1 kExitUsage=2 kExitDied=3 kExitTimeout=4  # as in exit_cod
 # What the programs make in the folder of a row, beside config.toml.
 # shellcheck disable=SC2034
 readonly kRowResults=(map.pgm map.yaml map.png marker_layer.png plain.png scan.png markers.csv changes.csv
-  trajectory.tum trajectory_final.tum graph.g2o covariance.csv odometry.tum slam.lcm timings.json metrics.json stations.csv)
+  trajectory.tum trajectory_final.tum graph.g2o covariance.csv odometry.tum slam.lcm timings.json findings.json
+  metrics.json stations.csv)
 
 script_name=$(basename "${0%.sh}")
 deploy_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)

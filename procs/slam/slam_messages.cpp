@@ -26,6 +26,8 @@ std::int8_t to_message(WeakAxisSource source) {
       return slam_estimate_t::SOURCE_ODOMETRY;
     case WeakAxisSource::kMarkers:
       return slam_estimate_t::SOURCE_MARKERS;
+    case WeakAxisSource::kNothing:
+      return slam_estimate_t::SOURCE_NOTHING;
   }
   return slam_estimate_t::SOURCE_UNKNOWN;
 }
@@ -186,6 +188,21 @@ std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Times
     message.num_landmarks = static_cast<std::int32_t>(message.landmarks.size());
   }
   return messages;
+}
+
+findings_t to_message(std::span<const Finding> findings, Timestamp time, std::int64_t map_id) {
+  findings_t message{};
+  message.utime = to_us(time);
+  message.map_id = map_id;
+  for (const Finding& finding : findings) {
+    finding_t& sent = message.findings.emplace_back();
+    sent.name = finding.name;
+    sent.text = finding.text;
+    sent.value = finding.value;
+    sent.share = finding.share.value_or(-1.0);
+  }
+  message.num_findings = static_cast<std::int32_t>(message.findings.size());
+  return message;
 }
 
 map_changes_t to_message(std::span<const MapChange> changes, Timestamp time, std::int64_t map_id) {

@@ -4,6 +4,7 @@
 
 #include "common/messages/channels.hpp"
 #include "slam/core/estimators/estimator.hpp"
+#include "slam/findings_text.hpp"
 
 #include <span>
 #include <vector>
@@ -27,6 +28,8 @@ particles_t to_message(std::span<const PublishedParticle> particles, Timestamp t
 std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Timestamp time);
 
 /// As many as fit one datagram.
+findings_t to_message(std::span<const Finding> findings, Timestamp time, std::int64_t map_id);
+
 map_changes_t to_message(std::span<const MapChange> changes, Timestamp time, std::int64_t map_id);
 
 /// In parts that each fit one datagram; none for an empty trajectory.

@@ -90,6 +90,7 @@ CountKind kind_of(Skip skip) {
     case Skip::kOdometryJumped:
     case Skip::kOdometryStuck:
     case Skip::kScanWithoutReturns:
+    case Skip::kScanRepeated:
     case Skip::kScanBeforeOdometry:
     case Skip::kScanWithoutOdometry:
     case Skip::kFrameRepeated:
@@ -171,7 +172,27 @@ void SlamNode::finish() {
     for (const pose_graph_t& part : to_messages(*graph, *last_estimate_))
       outbox_.publish(channels::kMapGraph, part);
   }
+  publish_findings(*last_estimate_);
+  if (const auto found = findings()) spdlog::info("found: {}", sentence_of(*found));
   spdlog::info("{}", timer_.summary());
+}
+
+std::optional<std::vector<Finding>> SlamNode::findings() const {
+  const std::optional<Findings> found = estimator_->findings();
+  if (!found) return std::nullopt;
+  return worth_saying(*found, counters_.get(to_string(Skip::kScanRepeated)));
+}
+
+/// What data were not used is in the status, too.
+void SlamNode::publish_findings(Timestamp time) {
+  const auto found = findings();
+  if (!found) return;
+  outbox_.publish(channels::kSlamFindings, to_message(*found, time, map_id_));
+  for (const Finding& finding : *found) {
+    if (!finding.share) continue;
+    const auto count = static_cast<std::int64_t>(finding.value);
+    counters_.add(finding.name, CountKind::kEvent, count - counters_.get(finding.name));
+  }
 }
 
 void SlamNode::save_map() {
@@ -278,6 +299,7 @@ void SlamNode::publish_map_when_due(Timestamp time) {
   }
   publish_markers(time);
   publish_grid(time);
+  publish_findings(time);
   keep_last_pose();
 }
 

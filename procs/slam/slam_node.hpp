@@ -8,6 +8,7 @@
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/input/sensor_queue.hpp"
 #include "slam/correction.hpp"
+#include "slam/findings_text.hpp"
 #include "slam/map_publisher.hpp"
 #include "slam/slam_config.hpp"
 #include "slam/update_timer.hpp"
@@ -55,10 +56,12 @@ class SlamNode final : public Node {
   void keep_last_pose();
   void take(LidarScan scan);
   void judge_input();
+  std::optional<std::vector<Finding>> findings() const;
   void process_ready_scans();
   void process(const SensorQueue::Ready& ready);
   void publish_map_when_due(Timestamp time);
   void publish_markers(Timestamp time);
+  void publish_findings(Timestamp time);
   void publish_grid(Timestamp time);
   void publish_mbot_status(Timestamp time);
   /// An MBot's web app wants a new map, or to be found anew in the loaded one.

@@ -139,6 +139,15 @@ void SceneUpdater::add(const map_changes_t& message) {
   }
 }
 
+void SceneUpdater::add(const findings_t& message) {
+  std::vector<Finding>& findings = scene_.findings.emplace();
+  for (const finding_t& finding : message.findings) {
+    const bool has_share = finding.share >= 0.0;
+    findings.push_back({finding.name, finding.text, finding.value,
+                        has_share ? std::optional{finding.share} : std::nullopt});
+  }
+}
+
 void SceneUpdater::add(const slam_estimate_t& message) {
   append(scene_.estimates,
          EstimatedPose{.time = timestamp_from_us(message.utime),

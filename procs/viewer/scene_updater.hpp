@@ -23,6 +23,7 @@ class SceneUpdater {
   /// Replaces the landmarks as soon as all parts of one time are there.
   void add(const marker_map_t& message);
   void add(const map_changes_t& message);
+  void add(const findings_t& message);
   void add(const slam_estimate_t& message);
   void add(const annotated_scan_t& message);
   void add(const particles_t& message);

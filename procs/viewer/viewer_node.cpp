@@ -111,6 +111,11 @@ void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<map_changes_t>(channels::kSlamChanges, [this](const auto& m) {
     if (follow(m.map_id, timestamp_from_us(m.utime))) updater_.add(m);
   });
+  inbox.on<findings_t>(channels::kSlamFindings, [this](const auto& m) {
+    if (!follow(m.map_id, timestamp_from_us(m.utime))) return;
+    updater_.add(m);
+    if (live_feed_) live_feed_->add_findings(timestamp_from_us(m.utime), *scene_.findings);
+  });
   inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) {
     if (!follow(m.map_id, timestamp_from_us(m.utime))) return;
     updater_.add(m);
@@ -194,6 +199,7 @@ void ViewerNode::write_data() {
   folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
   folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
   folder_.write("markers.csv", viewer::markers_csv_text(scene_.landmarks));
+  if (scene_.findings) folder_.write("findings.json", viewer::findings_json_text(*scene_.findings));
   if (scene_.changes) folder_.write("changes.csv", viewer::changes_csv_text(*scene_.changes));
 }
 

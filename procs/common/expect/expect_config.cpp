@@ -33,6 +33,8 @@ void ExpectConfig::describe(Fields& fields) {
                "thickness of the walls on the map image [cells], at most");
   fields.field("memory_mb_per_m", memory_mb_per_m, kAnyNumber,
                "peak memory of the estimator over the distance driven, at most");
+  fields.field("nees_mean", nees_mean, kAnyNumber,
+               "mean NEES of the run's poses (3 is right), at most");
   fields.field(
       "sigma_growth", sigma_growth, kAnyNumber,
       "factor by which the standard deviation along the corridor grows between the next two, "

@@ -27,6 +27,7 @@ struct ExpectConfig {
   double max_jump_m{0.0};            ///< of the pose from one estimate to the next, at most
   double max_wall_cells{0.0};        ///< thickness of the walls on the map image, at most
   double memory_mb_per_m{0.0};       ///< of the estimator for each metre driven, at most
+  double nees_mean{0.0};             ///< of a run's poses; 3 is right; at most
   double sigma_growth{0.0};          ///< along, from one station to another, at least
   double sigma_growth_from_m{0.0};   ///< driven
   double sigma_growth_to_m{0.0};     ///< driven

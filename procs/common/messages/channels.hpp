@@ -7,6 +7,7 @@
 #include <waymark/calibration_t.hpp>
 #include <waymark/command_t.hpp>
 #include <waymark/correction_t.hpp>
+#include <waymark/findings_t.hpp>
 #include <waymark/image_t.hpp>
 #include <waymark/lidar_t.hpp>
 #include <waymark/map_changes_t.hpp>
@@ -57,6 +58,7 @@ inline constexpr Channel<map_tiles_t> kSlamMap{"SLAM_MAP"};
 inline constexpr Channel<occupancy_grid_t> kSlamGrid{"SLAM_GRID"};
 inline constexpr Channel<marker_map_t> kSlamMarkers{"SLAM_MARKERS"};
 inline constexpr Channel<map_changes_t> kSlamChanges{"SLAM_CHANGES"};
+inline constexpr Channel<findings_t> kSlamFindings{"SLAM_FINDINGS"};
 inline constexpr Channel<particles_t> kSlamParticles{"SLAM_PARTICLES"};
 inline constexpr Channel<annotated_scan_t> kSlamScan{"SLAM_SCAN"};
 inline constexpr Channel<trajectory_t> kSlamTrajectory{"SLAM_TRAJECTORY"};

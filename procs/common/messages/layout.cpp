@@ -162,6 +162,8 @@ constexpr FieldLayout kReply[] = {fixed(kInt64, 2), fixed(kByte), text()};
 constexpr FieldLayout kMapChange[] = {fixed(kByte), fixed(kInt32), fixed(kInt32), fixed(kDouble, 7),
                                       fixed(kInt32)};
 constexpr FieldLayout kMapChanges[] = {fixed(kInt64, 2), fixed(kInt32), many(kMapChange, 1)};
+constexpr FieldLayout kFinding[] = {text(), text(), fixed(kDouble, 2)};
+constexpr FieldLayout kFindings[] = {fixed(kInt64, 2), fixed(kInt32), many(kFinding, 1)};
 constexpr FieldLayout kCalibration[] = {fixed(kInt64, 2), fixed(kDouble, 7), fixed(kDouble, 49)};
 constexpr FieldLayout kAnnotatedScan[] = {fixed(kInt64),          fixed(kDouble, 3),
                                           fixed(kInt32),          fixed_array(kFloat, 2),
@@ -195,6 +197,11 @@ StructLayout layout_of<ack_t>() {
 template <>
 StructLayout layout_of<annotated_scan_t>() {
   return kAnnotatedScan;
+}
+
+template <>
+StructLayout layout_of<findings_t>() {
+  return kFindings;
 }
 
 template <>

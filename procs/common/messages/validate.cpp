@@ -116,6 +116,13 @@ RejectReason validate(const correction_t& m) {
       all_finite(m.x_m, m.y_m, m.theta_rad) && finite(m.covariance) && finite(m.jump));
 }
 
+RejectReason validate(const findings_t& m) {
+  const bool all_valid = std::ranges::all_of(m.findings, [](const finding_t& finding) {
+    return all_finite(finding.value, finding.share);
+  });
+  return first_of(has_size(m.findings, m.num_findings), all_valid);
+}
+
 RejectReason validate(const image_t& m) {
   const auto is_side = [](int side_px) {
     return side_px > 0 && side_px <= bounds::kImageSide_px;

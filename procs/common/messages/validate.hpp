@@ -14,6 +14,7 @@ RejectReason validate(const calibration_t& message);
 /// What is wrong in a command is answered, not rejected.
 RejectReason validate(const command_t& message);
 RejectReason validate(const correction_t& message);
+RejectReason validate(const findings_t& message);
 RejectReason validate(const image_t& message);
 RejectReason validate(const lidar_t& message);
 RejectReason validate(const map_changes_t& message);

@@ -2,6 +2,7 @@
 #include "viewer/files/text_files.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -96,6 +97,17 @@ std::string_view name_of(MapChange::Kind kind) {
       break;
   }
   return "none";
+}
+
+std::string findings_json_text(std::span<const Finding> findings) {
+  auto json = nlohmann::ordered_json::object();
+  for (const Finding& finding : findings) {
+    auto& entry = json[finding.name];
+    entry["value"] = finding.value;
+    entry["share"] = finding.share ? nlohmann::ordered_json(*finding.share) : nullptr;
+    entry["text"] = finding.text;
+  }
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string changes_csv_text(std::span<const MapChange> changes) {

@@ -28,6 +28,9 @@ std::string markers_csv_text(std::vector<Landmark> landmarks);
 /// thing that is not as the loaded map or the survey has it; of walls, id is -1.
 std::string changes_csv_text(std::span<const MapChange> changes);
 
+/// `{NAME: {"value": number, "share": number or null, "text": "..."}, ...}`.
+std::string findings_json_text(std::span<const Finding> findings);
+
 /// "marker_moved", "wall_gone", ...
 std::string_view name_of(MapChange::Kind kind);
 

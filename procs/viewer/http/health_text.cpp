@@ -52,6 +52,13 @@ std::string state_sentence(const EstimatedPose& estimate) {
   return "The walls fix the position in every direction.";
 }
 
+std::string findings_sentence(const std::vector<Finding>& findings) {
+  std::string list;
+  for (const Finding& finding : findings)
+    list += fmt::format("{}{}", list.empty() ? " Found: " : "; ", finding.text);
+  return list.empty() ? list : list + ".";
+}
+
 }  // namespace
 
 std::string_view health_name(Health health) {
@@ -101,7 +108,7 @@ std::string health_reason(const LiveView& view) {
   } else if (!since_marker_s) {
     reason += " No marker so far.";
   }
-  return reason;
+  return reason + findings_sentence(view.findings);
 }
 
 }  // namespace waymark::viewer

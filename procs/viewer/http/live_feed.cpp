@@ -30,6 +30,7 @@ void LiveFeed::begin_map() {
   map_changed_ = true;
   current_.estimate.reset();
   current_.markers.clear();
+  current_.findings.clear();
   current_.particles.clear();
   current_.scan.clear();
   current_.path_begin = current_.path_length;
@@ -131,6 +132,11 @@ void LiveFeed::add(const slam_estimate_t& message, const EstimatedPose& estimate
 
 void LiveFeed::add_markers(Timestamp time, const std::vector<Landmark>& landmarks) {
   current_.markers = landmarks;
+  advance_to(time);
+}
+
+void LiveFeed::add_findings(Timestamp time, const std::vector<Finding>& findings) {
+  current_.findings = findings;
   advance_to(time);
 }
 

@@ -32,6 +32,9 @@ class LiveFeed {
   /// @param landmarks  all markers in the map.
   void add_markers(Timestamp time, const std::vector<Landmark>& landmarks);
 
+  /// @param findings  all that slam has found of its sensors.
+  void add_findings(Timestamp time, const std::vector<Finding>& findings);
+
   /// Posts what there is, whoever is in the way.
   void post_last();
 

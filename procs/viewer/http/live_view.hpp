@@ -64,6 +64,7 @@ struct LiveView {
   std::optional<EstimatedPose> estimate{};
   std::shared_ptr<const LiveMap> map{std::make_shared<LiveMap>()};
   std::vector<Landmark> markers{};
+  std::vector<Finding> findings{};  ///< of the sensors, by slam
   std::vector<Se2> particles{};
   std::vector<PathPoint> scan{};  ///< ends of the beams
   std::shared_ptr<const CameraFrame> camera{};

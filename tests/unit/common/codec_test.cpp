@@ -129,6 +129,12 @@ TEST(Codec, EveryTypeSurvivesARoundTrip) {
   for (map_change_t& change : changes.changes)
     change.kind = map_change_t::KIND_WALL_NEW;
   expect_round_trip(channels::kSlamChanges, changes);
+  findings_t findings{};
+  findings.num_findings = 1;
+  findings.findings.resize(1, finding_t{});
+  findings.findings[0].name = "odometry_stuck";
+  findings.findings[0].share = 0.1;
+  expect_round_trip(channels::kSlamFindings, findings);
   lidar_t mbot{};
   mbot.num_ranges = 2;
   mbot.ranges = mbot.thetas = mbot.intensities = {1.0F, 2.0F};

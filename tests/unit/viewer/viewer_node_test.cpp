@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <fstream>
 #include <iterator>
@@ -368,6 +369,24 @@ TEST_F(ViewerNodeTest, WritesWhatContradictsTheMap) {
             "change,id,instance,x_m,y_m,yaw_rad,was_x_m,was_y_m,size_m,sigmas,support\n"
             "marker_missing,7,0,1.500000,0.000000,0.000000,0.000000,0.000000,0.000,0.0,9\n"
             "wall_gone,-1,0,0.000000,0.000000,0.000000,0.000000,0.000000,0.900,0.0,0\n");
+}
+
+TEST_F(ViewerNodeTest, WritesWhatSlamHasFoundOfItsSensors) {
+  ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
+  findings_t findings{};
+  findings.utime = 1'000'000;
+  findings.num_findings = 2;
+  findings.findings.resize(2, finding_t{});
+  findings.findings[0] = {"range_noise_scale", "ranges \"scatter\"", 2.5, -1.0};
+  findings.findings[1] = {"odometry_stuck", "it stood still", 20.0, 0.5};
+  deliver(channels::kSlamFindings, findings);
+  node.finish();
+  const auto json = nlohmann::json::parse(content_of("findings.json"));
+  EXPECT_EQ(json["range_noise_scale"]["value"], 2.5);
+  EXPECT_TRUE(json["range_noise_scale"]["share"].is_null());
+  EXPECT_EQ(json["range_noise_scale"]["text"], "ranges \"scatter\"");
+  EXPECT_EQ(json["odometry_stuck"]["share"], 0.5);
 }
 
 }  // namespace

@@ -81,6 +81,10 @@ Figure memory_mb_per_m(const EstimatorResult& result) {
   return result.memory_mb_per_m;
 }
 
+Figure nees_mean(const EstimatorResult& result) {
+  return result.nees ? Figure{result.nees->mean} : std::nullopt;
+}
+
 Figure growth(const EstimatorResult& result) {
   return result.sigma_growth;
 }
@@ -112,6 +116,7 @@ constexpr Rule kRules[]{
     {"max_jump_m", &ExpectConfig::max_jump_m, Limit::kAtMost, max_jump_m},
     {"max_wall_cells", &ExpectConfig::max_wall_cells, Limit::kAtMost, max_wall_cells},
     {"memory_mb_per_m", &ExpectConfig::memory_mb_per_m, Limit::kAtMost, memory_mb_per_m},
+    {"nees_mean", &ExpectConfig::nees_mean, Limit::kAtMost, nees_mean},
     {"sigma_growth", &ExpectConfig::sigma_growth, Limit::kAtLeast, growth}};
 
 }  // namespace

@@ -178,6 +178,7 @@ Json metrics_json(const EstimatorResult& result) {
                                {"seeds_share", number(result.expect.seeds_share)}};
   json["timings"] = parsed(result.timings_json);
   json["changes"] = result.changes;
+  json["findings"] = parsed(result.findings_json);
   json["problems"] = result.problems;
   json["skipped"] = result.skipped;
   return json;

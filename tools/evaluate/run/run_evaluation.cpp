@@ -276,6 +276,7 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
   }
   attempt(result.problems, [&] { result.config_toml = text_if_there(dir / "config.toml"); });
   attempt(result.problems, [&] { result.timings_json = json_if_there(dir / "timings.json"); });
+  attempt(result.problems, [&] { result.findings_json = json_if_there(dir / "findings.json"); });
   add_figures_of_scenario(truth.expect, result);
   return result;
 }

@@ -59,7 +59,8 @@ struct EstimatorResult {
   ExpectConfig expect{};  ///< of this row; all zero if nothing is expected of it
   std::optional<std::string> config_toml{};
   std::optional<std::string> timings_json{};
-  std::vector<std::string> changes{};   ///< lines of changes.csv behind its header
+  std::vector<std::string> changes{};  ///< lines of changes.csv behind its header
+  std::optional<std::string> findings_json{};
   std::vector<std::string> problems{};  ///< figures that should be there and are not
   Skipped skipped{};                    ///< lines that were left out
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "slam/core/filter/estimate.hpp"
+#include "slam/core/filter/findings.hpp"
 #include "slam/core/filter/parallel_for.hpp"
 #include "slam/core/filter/scan_trail.hpp"
 #include "slam/core/filter/update_gate.hpp"
@@ -78,6 +79,9 @@ class Estimator {
   /// The robot is at that pose by the time of the next update, of methods that can be told.
   /// @return false: this one cannot.
   virtual bool set_pose(const StartPose& /*pose*/) { return false; }
+
+  /// What the sensors have turned out to be, of methods that look.
+  virtual std::optional<Findings> findings() const { return std::nullopt; }
 
   /// All that another run needs to go on in this map, of methods that can. O(scans).
   virtual std::optional<MapSnapshot> snapshot() const { return std::nullopt; }

@@ -28,14 +28,6 @@ Calibration calibration_sigmas(const EstimatorSetup& setup, const OdometryNoise&
   return calibrate ? sigmas : Calibration{kFixed * sigmas};
 }
 
-Points points_of(const Observation& observation) {
-  Points points;
-  points.reserve(observation.beams.size());
-  for (const AnnotatedBeam& annotated : observation.beams)
-    points.push_back(annotated.beam.end_in_base);
-  return points;
-}
-
 GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config) {
   GraphNoise noise;
   noise.odometry = config.odometry;
@@ -60,18 +52,22 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
       map_{setup.grid, ground_of(setup)},
+      weighed_with_{graph_.odometry_noise()},
       start_{setup.start},
       survey_{setup.loaded_map ? std::vector<SurveyedMarker>{} : setup.survey} {
   if (setup_.loaded_map) load(*setup_.loaded_map);
 }
 
-Estimate WaymarkEstimator::update(const Observation& observation) {
+Estimate WaymarkEstimator::update(const Observation& measured) {
   const double step_s =
-      newest_time_ == Timestamp{} ? 0.0 : to_seconds(observation.time - newest_time_);
-  newest_time_ = observation.time;
-  follow_odometry(observation, step_s);
+      newest_time_ == Timestamp{} ? 0.0 : to_seconds(measured.time - newest_time_);
+  newest_time_ = measured.time;
+  follow_odometry(measured, step_s);
+  if (place_finder_ && !place(measured)) return unplaced(measured);
+  Look look = this->look(points_of(measured));
+  const std::optional<Observation> corrected = with_right_scale(measured, look);
+  const Observation& observation = corrected ? *corrected : measured;
   const Points points = points_of(observation);
-  if (place_finder_ && !place(observation)) return unplaced(observation);
   bool is_keyframe = given_pose_ || odometry_refused_ || is_keyframe_due(observation) ||
                      is_contradicted_by(observation);
   const Se2 map_from_last = graph_.state().keyframes.empty()
@@ -79,14 +75,15 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
                                 : graph_.state().keyframes.back() * newest_from_last_scan_;
   BetweenKeyframes between;
   if (!is_keyframe) {
-    between = between_keyframes(points);
+    between = between_keyframes(look);
     is_keyframe = between.contradicts_odometry;
   }
   if (is_keyframe) {
-    add_keyframe(observation, points);
+    add_keyframe(observation, points, look);
     since_insertion_m_ = observation.motion.distance_m;
   } else {
     since_insertion_m_ += observation.motion.distance_m;
+    if (between.shows_all_axes || agrees_with_markers(observation)) motion_doubt_.note_observed();
     if (between.match) insert_between(points, *between.match, between.map_from_base);
   }
   if (between.match) note_reason(EstimateReason::kScan);
@@ -103,51 +100,6 @@ Estimate WaymarkEstimator::update(const Observation& observation) {
   }
   const bool has_frame = survey_.is_empty() || survey_.has_frame();
   return has_frame ? now : unplaced(observation);
-}
-
-/// Odometry that was stuck tells at once what was driven meanwhile. Keyframes that were made in
-/// between, because markers or walls said that the robot moves, hang on those alone then.
-void WaymarkEstimator::follow_odometry(const Observation& observation, double step_s) {
-  if (observation.odometry_caught_up && standstill_ &&
-      graph_.is_active({VariableKind::kKeyframe, standstill_->keyframe})) {
-    graph_.cut_odometry_since(standstill_->keyframe);
-    moved_from_ = standstill_->keyframe;
-    motion_ = standstill_->motion;
-  }
-  motion_ = motion_.then(believable_motion(observation, step_s));
-  const bool is_standing =
-      observation.motion.distance_m == 0.0 && observation.motion.turn_rad == 0.0;
-  if (!is_standing) {
-    standstill_.reset();
-    keyframes_standing_ = 0;
-  } else if (!standstill_ && !graph_.state().keyframes.empty()) {
-    standstill_ = Standstill{moved_from_, motion_};
-  }
-}
-
-/// What no robot can have driven that has driven as this one: then it went on as before.
-Motion WaymarkEstimator::believable_motion(const Observation& observation, double step_s) {
-  odometry_refused_ =
-      !observation.odometry_caught_up && !speed_limits_.allow(observation.motion, step_s);
-  if (!odometry_refused_) return observation.motion;
-  refused_step_ = observation.motion.start_from_end;
-  const double share = last_step_s_ > 0.0 ? std::min(1.0, step_s / last_step_s_) : 0.0;
-  const Se2 guess{share * last_step_.x(), share * last_step_.y(), share * last_step_.theta()};
-  return {guess, guess.translation().norm(), std::abs(guess.theta()), step_s};
-}
-
-bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
-  const double distance_m = observation.sightings.empty() ? config_.keyframe_distance_m
-                                                          : config_.marker_keyframe_distance_m;
-  return graph_.state().keyframes.empty() || motion_.distance_m >= distance_m ||
-         motion_.turn_rad >= config_.keyframe_turn_rad;
-}
-
-WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
-  const CorrectedMotion moved =
-      corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
-  const Se2& from = graph_.state().keyframes[moved_from_];
-  return {from * moved.start_from_end, in_axes(from.rotation(), moved.covariance)};
 }
 
 void WaymarkEstimator::add_first_keyframe() {
@@ -190,22 +142,32 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
-void WaymarkEstimator::add_keyframe(const Observation& observation, const Points& points) {
+WaymarkEstimator::Look WaymarkEstimator::look(const Points& points) const {
+  if (graph_.state().keyframes.empty()) return {};
+  const Prediction expected = prediction();
+  return {expected, matched(points, expected)};
+}
+
+void WaymarkEstimator::add_keyframe(const Observation& observation, const Points& points,
+                                    const Look& look) {
   inlier_share_ = 1.0;
   bool is_refuted_scan = false;
+  bool shows_all_axes = false;
   if (graph_.state().keyframes.empty()) {
     add_first_keyframe();
   } else if (given_pose_) {
     put_elsewhere(*std::exchange(given_pose_, std::nullopt));
   } else {
-    const Prediction expected = prediction();
-    auto scan = matched(points, expected);
+    const Prediction& expected = look.expected;
+    auto scan = look.scan;
     if (scan) search_widely(points, expected, *scan);
     const std::size_t keyframe = graph_.add_keyframe(expected.map_from_base);
-    graph_.add(OdometryFactor{moved_from_, keyframe, motion_});
-    if (standstill_) ++keyframes_standing_;
+    shows_all_axes = scan && scan->match.is_usable(config_.scan) && !is_refuted(scan->match) &&
+                     !scan->match.observed.is_degenerate;
+    add_odometry_factor(keyframe, shows_all_axes || agrees_with_markers(observation));
     is_refuted_scan = scan && is_refuted(scan->match);
     if (scan) inlier_share_ = scan->match.inlier_share;
+    if (scan) note_fit(scan->match);
     if (scan && !is_refuted_scan && scan->match.is_usable(config_.scan)) {
       note_reason(EstimateReason::kScan);
       learn_noise(expected, *scan);
@@ -234,6 +196,9 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
     if (!measurements.empty()) use_survey();
     if (config_.loops.enabled && !is_refuted_scan && !is_frozen()) close_loops(points);
   }
+  weigh_past_anew();
+  compare_with_odometry();
+  if (markers_known_ || shows_all_axes) motion_doubt_.note_observed();
   // What cannot be placed is not mapped.
   const bool is_mapped = !is_doubtful && !is_refuted_scan && is_confirmed_;
   if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
@@ -272,10 +237,11 @@ void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& mat
     submaps_[i].add(points, submap_from_map(i) * map_from_base);
 }
 
-WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Points& points) const {
-  const Prediction expected = prediction();
+WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Look& look) {
+  const Prediction& expected = look.expected;
   BetweenKeyframes between{expected.map_from_base, expected.covariance};
-  const auto scan = matched(points, expected);
+  const auto& scan = look.scan;
+  if (scan) note_fit(scan->match);
   if (!scan || !scan->match.is_usable(config_.scan) || is_refuted(scan->match)) return between;
   const Se2 found = scan->map_from_submap * scan->match.map_from_base;
   const Eigen::Matrix3d information =
@@ -288,6 +254,7 @@ WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Poi
                            expected.map_from_base.y() + step.y(),
                            expected.map_from_base.theta() + step.z()};
   between.match = scan->match;
+  between.shows_all_axes = !scan->match.observed.is_degenerate;
   const double chi2 = off.dot(pull) - pull.dot(between.covariance * pull);
   between.contradicts_odometry =
       chi2 > kContradiction &&
@@ -311,6 +278,8 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                     const Eigen::Matrix3d& covariance) const {
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = 0.5 * (covariance + covariance.transpose());
+  estimate.covariance +=
+      in_axes(map_from_base.rotation(), unmeasured_covariance(motion_doubt_.suspected_m()));
   if (setup_.loaded_map) estimate.covariance += loaded_map_covariance(map_from_base);
   if (relocalisation_.alternative()) {
     const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
@@ -319,11 +288,15 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   estimate.slipped = odometry_refused_;
   estimate.reason = reason_;
   estimate.calibration_widened = graph_.is_calibration_doubted();
-  estimate.weak_axis_source = markers_known_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
+  estimate.weak_axis_source = motion_doubt_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing
+                              : markers_known_                   ? WeakAxisSource::kMarkers
+                                                                 : WeakAxisSource::kOdometry;
+  estimate.ranges_wrong = is_rescaled_;
   const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kDoubtful ||
                        inlier_share_ < config_.lost_inlier_share;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
-                              !estimate.observability.is_degenerate || markers_known_);
+                              !estimate.observability.is_degenerate ||
+                                  estimate.weak_axis_source == WeakAxisSource::kMarkers);
   return estimate;
 }
 

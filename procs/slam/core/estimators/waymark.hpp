@@ -6,6 +6,7 @@
 #include "slam/core/graph/association.hpp"
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/loop_finder.hpp"
+#include "slam/core/graph/motion_doubt.hpp"
 #include "slam/core/graph/odometry_noise_learner.hpp"
 #include "slam/core/graph/place_finder.hpp"
 #include "slam/core/graph/relocalisation.hpp"
@@ -47,6 +48,9 @@ struct WaymarkConfig {
   void describe(Fields& fields);
 };
 
+/// Ends of its beams, base frame.
+Points points_of(const Observation& observation);
+
 class WaymarkEstimator final : public Estimator {
  public:
   WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config);
@@ -60,12 +64,14 @@ class WaymarkEstimator final : public Estimator {
   std::vector<TimedPose> trajectory() const override;
   GridMap redrawn_map() const override;
   std::optional<PoseGraph> pose_graph() const override;
+  std::optional<Findings> findings() const override;
   std::optional<MapSnapshot> snapshot() const override;
   bool set_pose(const StartPose& pose) override;
   std::vector<MapChange> changes() const override;
 
  private:
   static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
+  static constexpr int kMaxStanding = 20;  ///< keyframes of a robot that does not move
 
   struct Prediction {
     Se2 map_from_base{};
@@ -76,6 +82,12 @@ class WaymarkEstimator final : public Estimator {
     ScanMatch match{};              ///< submap frame
     const Submap* submap{nullptr};  ///< null: the loaded map, in its own frame
     Se2 map_from_submap{};
+  };
+
+  /// A scan where the robot is expected to be.
+  struct Look {
+    Prediction expected{};
+    std::optional<MatchedScan> scan{};
   };
 
   /// A scan hangs on the keyframe before it.
@@ -91,12 +103,15 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes
     std::optional<ScanMatch> match{};
     bool contradicts_odometry{false};
+    bool shows_all_axes{false};
   };
 
   /// Odometry tells nothing new; it may be stuck.
   struct Standstill {
     std::size_t keyframe{0};
-    Motion motion{};  ///< since that keyframe
+    Motion motion{};      ///< since that keyframe
+    Se2 map_from_base{};  ///< the robot, as of the last keyframe that showed it moving
+    Timestamp since{};
   };
 
   bool place(const Observation& observation);
@@ -112,15 +127,24 @@ class WaymarkEstimator final : public Estimator {
   bool is_in_loaded_map(const ScanMatch& match) const;
   void confirm_place(const MatchedScan& scan);
   Eigen::Matrix3d loaded_map_covariance(const Se2& map_from_base) const;
+  std::optional<Observation> with_right_scale(const Observation& observation, Look& look);
+  bool fits_badly(const ScanMatch& match) const;
+  void note_fit(const ScanMatch& match);
   void follow_odometry(const Observation& observation, double step_s);
   Motion believable_motion(const Observation& observation, double step_s);
+  void add_odometry_factor(std::size_t keyframe, bool is_observed);
+  void compare_with_odometry();
+  void spread_kept_back(const Observation& observation);
+  void weigh_past_anew();
   bool is_keyframe_due(const Observation& observation) const;
   bool is_contradicted_by(const Observation& observation) const;
+  bool agrees_with_markers(const Observation& observation) const;
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   std::vector<Se2> without_odometry() const;
   void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;
-  void add_keyframe(const Observation& observation, const Points& points);
+  Look look(const Points& points) const;
+  void add_keyframe(const Observation& observation, const Points& points, const Look& look);
   void add_first_keyframe();
   void put_elsewhere(const StartPose& pose);
   void use_survey();
@@ -131,7 +155,8 @@ class WaymarkEstimator final : public Estimator {
   void close_loops(const Points& points);
   void step_everything(const std::vector<std::size_t>& returning_landmarks);
   static std::function<Se2(std::size_t)> poses_of(const Graph& graph);
-  void learn_noise(const Prediction& prediction, const MatchedScan& scan);
+  void learn_noise(const Prediction& expected, const MatchedScan& scan);
+  void learn_noise(const MarkerInnovation& innovation, const MarkerMeasurement& measurement);
   std::vector<MarkerMeasurement> measured(const Observation& observation) const;
   std::vector<PoseHint> hints(std::span<const MarkerMeasurement> measurements) const;
   void use_markers(std::span<const MarkerMeasurement> measurements);
@@ -143,7 +168,7 @@ class WaymarkEstimator final : public Estimator {
   Estimate estimate(const Observation& observation, const Se2& map_from_base,
                     const Eigen::Matrix3d& covariance) const;
   Estimate estimate_at_keyframe(const Observation& observation) const;
-  BetweenKeyframes between_keyframes(const Points& points) const;
+  BetweenKeyframes between_keyframes(const Look& look);
   Estimate estimate_between(const Observation& observation, const BetweenKeyframes& between) const;
   void insert_between(const Points& points, const ScanMatch& match, const Se2& map_from_base);
   void learn_usual_fit(const ScanMatch& match);
@@ -178,10 +203,14 @@ class WaymarkEstimator final : public Estimator {
   Se2 newest_from_last_scan_{};   ///< pose of the last scan in the newest keyframe's frame
   Se2 last_step_{};               ///< from the scan before it
   double last_step_s_{0.0};
+  MotionDoubt motion_doubt_{};
+  bool is_observed_{true};  ///< markers or walls showed the way to the newest keyframe
   double since_insertion_m_{0.0};
   double unobserved_m_{0.0};  ///< driven since markers or walls showed the way
   DrawnMap map_;
   std::vector<ScanPose> scan_poses_{};
+  OdometryNoise weighed_with_;  ///< what lies behind the window
+  Findings findings_{};         ///< counts
 
   StartPose start_;
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
@@ -198,6 +227,10 @@ class WaymarkEstimator final : public Estimator {
   double usual_fit_{0.0};  ///< mean of inlier share times mapped share
   bool markers_known_{false};
   EstimateReason reason_{EstimateReason::kOdometry};
+
+  // Of the newest scan that was compared with a map:
+  double usual_inliers_{0.0};  ///< mean of inlier shares
+  bool is_rescaled_{false};
 };
 
 }  // namespace waymark

@@ -3,14 +3,17 @@
 #include "slam/core/estimators/waymark.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace waymark {
 namespace {
 
 constexpr double kSamePlace_m = 0.5;    // two markers this near hang in one place
 constexpr double kContradicts_m = 0.5;  // a marker this far from all of its id
-constexpr int kMaxStanding = 20;        // keyframes of a robot that does not move
-constexpr double kReturned_m = 0.3;     // sigma of a pose that a relocalisation is taken back to
+// The same while the odometry stands still: at least, and in standard deviations of the sighting.
+constexpr double kStandsStill_m = 0.03;
+constexpr double kStandsStillSigmas = 4.0;
+constexpr double kReturned_m = 0.3;  // sigma of a pose that a relocalisation is taken back to
 constexpr double kReturned_rad = 0.1;
 // A marker counts as missed if no frame of the last moments has shown it.
 constexpr Duration kSightingAge = std::chrono::seconds{1};
@@ -18,22 +21,33 @@ constexpr Duration kSightingAge = std::chrono::seconds{1};
 }  // namespace
 
 /// A marker where none of its id should be may mean that the robot was carried away: that cannot
-/// wait until it has driven on.
+/// wait until it has driven on. One that moves while the odometry stands still may mean that the
+/// odometry is stuck.
 bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const {
   if (observation.sightings.empty() || keyframes_standing_ >= kMaxStanding) return false;
   const Se2 map_from_base = prediction().map_from_base;
   return std::any_of(
       observation.sightings.begin(), observation.sightings.end(), [&](const MarkerSighting& seen) {
         const Eigen::Vector2d place = map_from_base * seen.base_from_marker.translation();
-        return book_.knows(seen.id) &&
-               !book_.has_one_near(graph_.state(), place, kContradicts_m, seen.id);
+        const double off_m =
+            motion_doubt_.is_standing()
+                ? std::max(kStandsStill_m, kStandsStillSigmas * seen.sigma_along_m())
+                : kContradicts_m;
+        return book_.knows(seen.id) && !book_.has_one_near(graph_.state(), place, off_m, seen.id);
       });
 }
 
+/// Known markers are where they are expected, as is_contradicted_by() has found.
+bool WaymarkEstimator::agrees_with_markers(const Observation& observation) const {
+  return std::any_of(observation.sightings.begin(), observation.sightings.end(),
+                     [&](const MarkerSighting& seen) { return book_.knows(seen.id); });
+}
+
 std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& observation) const {
-  return measure_markers(
-      observation, {setup_.range_sigma_m, setup_.camera.base_from_camera, setup_.sighting_sigmas},
-      graph_.odometry_noise(), config_.markers);
+  return measure_markers(observation,
+                         {std::sqrt(range_noise_.variance_m2()), setup_.camera.base_from_camera,
+                          setup_.sighting_sigmas},
+                         graph_.odometry_noise(), config_.markers);
 }
 
 std::vector<PoseHint> WaymarkEstimator::hints(
@@ -82,17 +96,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     if (is_it) {
       landmark = nearest->landmark;
       book_.note_sighting(landmark, measurement.time);
-      if (!markers_known_ && unobserved_m_ > 0.0 && config_.learn_noise) {
-        const OdometryNoise& described = graph_.noise().odometry;
-        const double by_odometry =
-            described.along_per_sqrt_m * described.along_per_sqrt_m * unobserved_m_;
-        const double scale = graph_.noise().scale.along;
-        noise_learner_.observe_along(
-            {nearest->residual.x(), by_odometry,
-             std::max(nearest->covariance(0, 0) - scale * scale * by_odometry,
-                      measurement.covariance(0, 0))});
-        graph_.set_odometry_scale(noise_learner_.scale());
-      }
+      if (!markers_known_) learn_noise(*nearest, measurement);
       markers_known_ = true;
       if (graph_.is_fixed(landmark))
         is_confirmed_ = true;
@@ -130,6 +134,7 @@ void WaymarkEstimator::note_misses(const Observation& observation) {
 }
 
 void WaymarkEstimator::relocate(const Se2& map_from_base) {
+  ++findings_.relocalisations;
   graph_.relocate_newest(map_from_base);
   if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
     const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};

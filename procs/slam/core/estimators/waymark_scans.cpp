@@ -108,31 +108,6 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
   graph_.add(factor);
 }
 
-/// What the scan says about the motion since the keyframe before, against what odometry says.
-void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
-  if (!config_.learn_noise || motion_.guessed_s > 0.0) return;
-  const OdometryNoise described = scaled(graph_.noise().odometry, {});
-  const ScanMatch& match = scan.match;
-  const Se2 found = scan.map_from_submap * match.map_from_base;
-  const Eigen::Matrix2d to_base = found.rotation().transpose();
-  Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
-  off.head<2>() = (to_base * off.head<2>()).eval();
-  const Eigen::Matrix3d information =
-      in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
-  // Two scans err, this one and the one before.
-  noise_learner_.observe_turn({off.z(),
-                               turn_variance(described, motion_.distance_m, motion_.turn_rad),
-                               2.0 / information(2, 2)});
-  if (!match.observed.is_degenerate) {
-    const Eigen::Matrix3d covariance = information.inverse();
-    noise_learner_.observe_along(
-        {off.x(), described.along_per_sqrt_m * described.along_per_sqrt_m * motion_.distance_m,
-         2.0 * covariance(0, 0)});
-    unobserved_m_ = -motion_.distance_m;
-  }
-  graph_.set_odometry_scale(noise_learner_.scale());
-}
-
 /// Two submaps are filled at a time, one half a length behind the other: the older one is matched,
 /// and holds half a length of scans at least.
 void WaymarkEstimator::insert_scan(const Points& points) {

@@ -104,17 +104,37 @@ Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
       ->covariance;
 }
 
-LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise) const {
+Eigen::Matrix3d unmeasured_covariance(double sigma_m) {
+  constexpr double kAside = 0.1;  // of the way
+  constexpr double kTurn_rad_per_m = 0.2;
+  return (sigma_m * Eigen::Vector3d{1.0, kAside, kTurn_rad_per_m}).cwiseAbs2().asDiagonal();
+}
+
+CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const OdometryScale& scale) {
+  const Eigen::Vector2d way = moved.start_from_end.translation();
+  if (way.norm() == 0.0) return moved;
+  const Eigen::Vector2d along = way.normalized();
+  moved.start_from_end = {Eigen::Vector2d{way + scale.slip_per_m * distance_m * along},
+                          moved.start_from_end.theta()};
+  moved.covariance.topLeftCorner<2, 2>() +=
+      scale.slip_m2_per_m * distance_m * along * along.transpose();
+  return moved;
+}
+
+LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise,
+                                       const OdometryScale& scale) const {
   LinearFactor linear;
-  const CorrectedMotion moved = corrected_motion(motion, odometry_part(state.calibration), noise);
+  CorrectedMotion moved = corrected_motion(motion, odometry_part(state.calibration), noise);
+  if (is_unobserved) moved = with_slips(moved, motion.distance_m, scale);
   const Relative found = relative(state.keyframes[from], state.keyframes[to]);
   const Eigen::Vector3d residual = pose_residual(found.pose - vector_of(moved.start_from_end));
   constexpr double kCarried_m = 1000.0;  // as good as nothing; keeps the normal equations regular
   Eigen::Matrix3d root = Eigen::Matrix3d::Identity() / kCarried_m;
   if (!is_cut) {
-    const Eigen::LLT<Eigen::Matrix3d> covariance{
+    const Eigen::Matrix3d measured =
         noise.may_slip ? likeliest_covariance(residual, moved.covariance, noise.half_track_m)
-                       : moved.covariance};
+                       : moved.covariance;
+    const Eigen::LLT<Eigen::Matrix3d> covariance{measured + unmeasured_covariance(unmeasured_m)};
     root = covariance.matrixL().solve(Eigen::Matrix3d::Identity());
   }
   linear.residual = root * residual;

@@ -29,14 +29,20 @@ struct LinearFactor {
   std::vector<Block> blocks{};
 };
 
-/// How much worse than configured the random walk of odometry is: factors on standard deviations.
+/// How much worse than configured the random walk of odometry is: factors on standard deviations,
+/// and what slips add where nothing shows them.
 struct OdometryScale {
   double along{1.0};
   double turn{1.0};
+  double slip_per_m{0.0};     ///< mean; negative where wheels spin
+  double slip_m2_per_m{0.0};  ///< variance along the way
 };
 
 /// Noise of the odometry, times the scale.
 OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
+
+/// The motion that the wheels measured where nothing else showed the way.
+CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const OdometryScale& scale);
 
 /// The odometry's noise is a mixture of normal distributions: the wheels roll; one of them spins,
 /// which errs in the way as it errs in the turn; or something worse has happened. The likeliest
@@ -48,15 +54,22 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
 Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
                                      const Eigen::Matrix3d& rolling, double half_track_m);
 
+/// Of a motion that was not measured: mostly ahead. Axes of the base.
+/// @param sigma_m  how far that may have been.
+Eigen::Matrix3d unmeasured_covariance(double sigma_m);
+
 /// From one keyframe to the next, by the wheels.
 struct OdometryFactor {
   std::size_t from{0};
   std::size_t to{0};
   Motion motion{};
-  bool is_cut{false};  ///< the robot was carried: it says nothing
+  bool is_cut{false};         ///< the robot was carried: it says nothing
+  bool is_unobserved{false};  ///< neither markers nor walls showed the way: wheels may have slipped
+  double unmeasured_m{0.0};   ///< what may have been driven without being measured (one sigma)
 
   /// @param noise  scaled.
-  LinearFactor linearise(const State& state, const OdometryNoise& noise) const;
+  LinearFactor linearise(const State& state, const OdometryNoise& noise,
+                         const OdometryScale& scale = {}) const;
 };
 
 /// A scan against surfaces that other keyframes have seen: the mean of what these keyframes say.

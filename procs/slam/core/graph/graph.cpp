@@ -182,7 +182,7 @@ LinearFactor Graph::linearised(const Factor& factor) const {
     const Graph& graph;
 
     LinearFactor operator()(const OdometryFactor& f) const {
-      return f.linearise(graph.state_, graph.odometry_noise());
+      return f.linearise(graph.state_, graph.odometry_noise(), graph.noise_.scale);
     }
 
     LinearFactor operator()(const ScanFactor& f) const { return f.linearise(graph.state_); }

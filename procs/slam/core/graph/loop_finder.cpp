@@ -18,6 +18,8 @@ constexpr std::size_t kSearchBeams = 120;
 constexpr std::size_t kFields = 8;  // kept
 constexpr double kApart_m = 0.3;    // of a runner-up
 constexpr double kApart_rad = 0.35;
+constexpr double kAlongWeak = 0.98;                                              // cosine
+const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();  // of a search
 constexpr double kAgree_m = 0.3;  // two candidates' corrections
 constexpr double kAgree_rad = 0.05;
 constexpr double kAgreeWithin_m = 5.0;  // driven between them
@@ -71,38 +73,36 @@ std::optional<LoopMatch> LoopFinder::match(std::size_t submap, const Points& poi
   turn.topLeftCorner<2, 2>() = submap_from_map.rotation();
   Eigen::Matrix3d covariance = turn * search.covariance * turn.transpose();
   // The nearest place that fits is the likeliest; a search is for those that have drifted.
-  LoopMatch direct{submap, match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
-  if (is_good(direct.match)) return direct;
+  LoopMatch loop{submap, match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
   const double wide_m = std::min(config_.max_search_m, reach_m(covariance));
   const double wide_rad = std::min(std::numbers::pi, reach_rad(covariance));
-  if (wide_m < kDirectReach_m && wide_rad < kDirectReach_rad) return std::nullopt;
-  {
-    const Points beams = thinned(points, kSearchBeams);
-    const CorrelativeField& field = field_of(submap, old);
-    const SearchWindow window{wide_m, wide_rad};
+  const bool is_near = wide_m < kDirectReach_m && wide_rad < kDirectReach_rad;
+  if (is_near) return is_good(loop.match) ? std::optional{loop} : std::nullopt;
+  const Points beams = thinned(points, kSearchBeams);
+  const CorrelativeField& field = field_of(submap, old);
+  const SearchWindow window{wide_m, wide_rad};
+  if (!is_good(loop.match)) {
     const auto best = field.best(beams, guess, window, config_.min_score);
     if (!best) return std::nullopt;
-    const auto other = field.best_apart_from(best->submap_from_base, kApart_m, kApart_rad, beams,
-                                             guess, window, config_.runner_up_share * best->score);
-    guess = best->submap_from_base;
-    covariance = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
-    if (other) {
-      // Along a bare corridor the score is flat, and the match will not use that direction.
-      const ScanMatch at_best = match_scan(points, old.surfaces(), guess, covariance, noise, scan_);
-      const Eigen::Vector2d apart = other->submap_from_base.translation() - guess.translation();
-      const double along_weak =
-          at_best.observed.is_degenerate
-              ? std::abs(at_best.observed.weak_direction.dot(apart.normalized()))
-              : 0.0;
-      if (along_weak < 0.98 || apart.norm() < kApart_m) {
-        ++num_ambiguous_;
-        return std::nullopt;
-      }
-    }
+    loop.match = match_scan(points, old.surfaces(), best->submap_from_base, kFound, noise, scan_);
+    if (!is_good(loop.match)) return std::nullopt;
   }
-  LoopMatch loop{submap, match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
-  if (!is_good(loop.match)) return std::nullopt;
+  const Se2& found = loop.match.map_from_base;
+  const auto other = field.best_apart_from(found, kApart_m, kApart_rad, beams, guess, window,
+                                           config_.runner_up_share * field.score(beams, found));
+  if (other && is_other_place(*other, loop.match)) {
+    ++num_ambiguous_;
+    return std::nullopt;
+  }
   return loop;
+}
+
+/// Along a bare corridor the score is flat, and the match does not use that direction.
+bool LoopFinder::is_other_place(const SearchMatch& other, const ScanMatch& match) {
+  const Eigen::Vector2d apart =
+      other.submap_from_base.translation() - match.map_from_base.translation();
+  if (!match.observed.is_degenerate || apart.norm() < kApart_m) return true;
+  return std::abs(match.observed.weak_direction.head<2>().dot(apart.normalized())) < kAlongWeak;
 }
 
 bool LoopFinder::is_good(const ScanMatch& match) const {

@@ -79,6 +79,7 @@ class LoopFinder {
                                  const std::deque<Submap>& submaps, const State& state,
                                  const RangeNoise& noise);
   bool is_good(const ScanMatch& match) const;
+  static bool is_other_place(const SearchMatch& other, const ScanMatch& match);
   const CorrelativeField& field_of(std::size_t submap, const Submap& old);
 
   LoopConfig config_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -13,6 +14,14 @@ constexpr double kPriorDecades = 3.0;  // log-odds of the description against an
 constexpr double kCoupling = 0.7;      // standard deviation of log(along / turn)
 constexpr double kSlipFactor = 5.0;    // as the second component of OdometryMixture
 const double kLogSlipShare = std::log(0.03);
+
+constexpr double kSlipSigmas = 4.0;      // an innovation beyond is a slip
+constexpr double kSlipShows_m = 0.03;    // standard deviation of all else with which slips show
+constexpr double kLongestSlip_m = 0.5;   // what is longer was no slip
+constexpr double kForgotten_m = 50.0;    // driven until a slip counts e times less
+constexpr double kPriorSlips_m2 = 4e-4;  // sum of squares before the first observation: one of 2 cm
+constexpr double kPriorDistance_m = 5.0;  // on so much driving
+constexpr double kMeanIsUncertain = 1.5;  // factor on the variance: the mean is estimated, too
 
 double squared(double x) {
   return x * x;
@@ -39,19 +48,61 @@ void OdometryNoiseLearner::add(const OdometryInnovation& innovation, LogLikeliho
   }
 }
 
+void OdometryNoiseLearner::observe_slip(const OdometryInnovation& innovation) {
+  const double rolling_m2 =
+      innovation.other_variance + squared(scale().along) * innovation.odometry_variance;
+  const double keeps = std::exp(-innovation.distance_m / kForgotten_m);
+  slips_m_ *= keeps;
+  slips_m2_ *= keeps;
+  observed_m_ *= keeps;
+  if (innovation.other_variance < squared(kSlipShows_m)) observed_m_ += innovation.distance_m;
+  const double size_m = std::abs(innovation.value);
+  if (size_m <= kSlipSigmas * std::sqrt(rolling_m2) || size_m > kLongestSlip_m) {
+    slip_m_ = 0.0;
+    return;
+  }
+  // The pose follows a slip within some observations: together they are one.
+  if (slip_m_ == 0.0) ++num_slips_;
+  if (size_m <= std::abs(slip_m_)) return;
+  slips_m_ += innovation.value - slip_m_;
+  slips_m2_ += squared(size_m) - squared(slip_m_);
+  slip_m_ = innovation.value;
+}
+
+double OdometryNoiseLearner::slip_m2_per_m() const {
+  return kMeanIsUncertain * (slips_m2_ + kPriorSlips_m2) / (observed_m_ + kPriorDistance_m);
+}
+
 OdometryScale OdometryNoiseLearner::scale() const {
+  struct Model {
+    double log_posterior;
+    double along;
+    double turn;
+  };
+
+  std::vector<Model> models;
   double best = -std::numeric_limits<double>::infinity();
-  OdometryScale scale;
   for (std::size_t a = 0; a < kScales; ++a) {
     for (std::size_t t = 0; t < kScales; ++t) {
       const double apart = std::log(scale_at(a) / scale_at(t)) / kCoupling;
       const double log_posterior = along_[a] + turn_[t] - 0.5 * squared(apart) -
                                    (a > 0 ? kPriorDecades : 0.0) - (t > 0 ? kPriorDecades : 0.0);
-      if (log_posterior <= best) continue;
-      best = log_posterior;
-      scale = {scale_at(a), scale_at(t)};
+      models.push_back({log_posterior, scale_at(a), scale_at(t)});
+      best = std::max(best, log_posterior);
     }
   }
+  double sum = 0.0;
+  double along2 = 0.0;
+  double turn2 = 0.0;
+  for (const Model& model : models) {
+    const double posterior = std::exp(model.log_posterior - best);
+    sum += posterior;
+    along2 += posterior * squared(model.along);
+    turn2 += posterior * squared(model.turn);
+  }
+  OdometryScale scale{std::sqrt(along2 / sum), std::sqrt(turn2 / sum)};
+  scale.slip_m2_per_m = slip_m2_per_m();
+  scale.slip_per_m = slips_m_ / (observed_m_ + kPriorDistance_m);
   return scale;
 }
 

@@ -14,20 +14,31 @@ struct OdometryInnovation {
   double value{0.0};
   double odometry_variance{0.0};  ///< by the odometry's noise as configured
   double other_variance{0.0};     ///< by all else
+  double distance_m{0.0};         ///< driven meanwhile
 };
 
-/// Maximum a posteriori over a grid of noise scales, each with the log-likelihood of what was seen;
+/// Mean variance over a grid of noise scales, each with the posterior probability of what was seen;
 /// old innovations are forgotten slowly. A single slip is no noise: innovations may come from the
 /// wide components of OdometryMixture. Wheels that are bad in the turn, which walls show
 /// everywhere, are probably as bad along the way, which a bare corridor does not show. Source:
 /// innovation-based adaptive estimation (Mehra 1972), as a bank of models (Magill 1965).
+///
+/// Slips along the way are no noise of wheels that roll, but where nothing shows them they add to
+/// the variance all the same: the first two moments of those that were seen, by metre (a compound
+/// Poisson process, with pseudo-observations as its prior).
 class OdometryNoiseLearner {
  public:
   void observe_along(const OdometryInnovation& innovation) { add(innovation, along_); }
 
   void observe_turn(const OdometryInnovation& innovation) { add(innovation, turn_); }
 
+  /// The same of a marker: it shows a slip, or none. Scans are no witnesses, for along a corridor
+  /// they are pulled back to where they were matched before, which looks like a slip.
+  void observe_slip(const OdometryInnovation& innovation);
+
   OdometryScale scale() const;
+
+  int num_slips() const { return num_slips_; }
 
  private:
   static constexpr std::size_t kScales = 12;  ///< 1, sqrt(2), 2 ... 45
@@ -35,9 +46,15 @@ class OdometryNoiseLearner {
 
   static double scale_at(std::size_t i);
   static void add(const OdometryInnovation& innovation, LogLikelihoods& to);
+  double slip_m2_per_m() const;
 
   LogLikelihoods along_{};
   LogLikelihoods turn_{};
+  double slips_m_{0.0};     ///< sum, forgotten with the distance
+  double slips_m2_{0.0};    ///< sum of squares, forgotten alike
+  double observed_m_{0.0};  ///< driven where slips would have shown, forgotten alike
+  int num_slips_{0};
+  double slip_m_{0.0};  ///< the one that is being followed
 };
 
 }  // namespace waymark

@@ -2,6 +2,7 @@
 #include "slam/core/input/sensor_queue.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace waymark {
@@ -22,6 +23,16 @@ bool are_repeated(std::span<const MarkerDetection> before, std::span<const Marke
                     });
 }
 
+/// A robot that stands may see the same again; this much further on it cannot.
+constexpr double kElsewhere_m = 0.05;
+constexpr double kElsewhere_rad = 0.05;
+constexpr std::size_t kTooMany = 20;  // returns that agree by chance
+
+bool are_same(const std::vector<double>& before, const std::vector<double>& now) {
+  return std::equal(before.begin(), before.end(), now.begin(), now.end(),
+                    [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
+}
+
 bool is_refused(OdometryBuffer::Outcome outcome) {
   return outcome == OdometryBuffer::Outcome::kOutOfOrder ||
          outcome == OdometryBuffer::Outcome::kTooFarAhead;
@@ -40,13 +51,15 @@ std::string_view to_string(Skip skip) {
     case Skip::kOdometryJumped:
       return "odometry jumps";
     case Skip::kOdometryStuck:
-      return "odometry catching up after it was stuck";
+      return "odometry catching up after it was stuck or jumped";
     case Skip::kScanOutOfOrder:
       return "scans out of order";
     case Skip::kScanAhead:
       return "scans dropped: stamped ahead";
     case Skip::kScanWithoutReturns:
       return "scans without returns";
+    case Skip::kScanRepeated:
+      return "scans that repeat one from elsewhere";
     case Skip::kScanBeforeOdometry:
       return "scans before the first odometry";
     case Skip::kScanWithoutOdometry:
@@ -256,11 +269,24 @@ std::optional<SensorQueue::Ready> SensorQueue::next() {
     if (beams.empty()) skip(Skip::kScanWithoutReturns);
     Ready ready{observation_at(scan.time, beams), std::nullopt};
     ready.observation.mean_sweep = sweep;
+    if (repeats_one_from_elsewhere(scan, ready.observation.motion) && beams.size() >= kTooMany) {
+      skip(Skip::kScanRepeated);
+      ready.observation.beams.clear();
+    }
     ready.scan = std::move(scan);
     return ready;
   }
   if (const auto time = next_without_scan()) return Ready{observation_at(*time, {}), std::nullopt};
   return std::nullopt;
+}
+
+bool SensorQueue::repeats_one_from_elsewhere(const LidarScan& scan, const Motion& motion) {
+  since_new_ranges_ = since_new_ranges_.then(motion);
+  if (!are_same(newest_ranges_m_, scan.ranges_m)) {
+    newest_ranges_m_ = scan.ranges_m;
+    since_new_ranges_ = {};
+  }
+  return since_new_ranges_.distance_m > kElsewhere_m || since_new_ranges_.turn_rad > kElsewhere_rad;
 }
 
 /// One that is further ahead may be stamped wrong, and holds nothing up.
@@ -294,6 +320,7 @@ Observation SensorQueue::observe(Timestamp time, std::span<const Beam> beams) {
   observation.odom_from_base = odometry_.sent_pose_at(time);
   if (last_observed_ && odometry_.covers(*last_observed_)) {
     observation.motion = odometry_.motion_between(*last_observed_, time);
+    observation.odometry_doubtful = odometry_.is_doubtful(*last_observed_, time);
     if (const auto kept_back = odometry_.kept_back(*last_observed_, time)) {
       observation.motion = kept_back->then(observation.motion);
       observation.odometry_caught_up = true;

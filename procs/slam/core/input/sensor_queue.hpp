@@ -36,10 +36,11 @@ enum class Skip {
   kOdometryAhead,   ///< by more than any pause, or of the odometry that followed it
   kClockSet,        ///< what waits is dropped, motion goes on
   kOdometryJumped,  ///< used as a new beginning, its jump is not
-  kOdometryStuck,   ///< stood still and then told at once what was driven: used when it came
+  kOdometryStuck,   ///< stood still or jumped about, and then said at once what was driven
   kScanOutOfOrder,
   kScanAhead,           ///< of odometry by far, or of the scans that followed it
   kScanWithoutReturns,  ///< odometry and camera are
+  kScanRepeated,        ///< range for range one from elsewhere: the LiDAR is stuck
   kScanBeforeOdometry,
   kScanWithoutOdometry,  ///< the input ended before the odometry for it came
   kScanOverflow,         ///< odometry stays away
@@ -98,6 +99,7 @@ class SensorQueue {
   bool has_passed(Timestamp time) const;
   bool scan_is_due() const;
   std::optional<Timestamp> next_without_scan() const;
+  bool repeats_one_from_elsewhere(const LidarScan& scan, const Motion& motion);
   Observation observation_at(Timestamp time, std::span<const Beam> beams);
   Observation observe(Timestamp time, std::span<const Beam> beams);
   std::optional<FocalSighting> focal_sighting(const MarkerDetection& detection) const;
@@ -116,6 +118,8 @@ class SensorQueue {
   WaitingLine<LidarScan> scans_{};
   WaitingLine<MarkerDetections> frames_{};
   std::vector<MarkerDetection> newest_detections_{};
+  std::vector<double> newest_ranges_m_{};
+  Motion since_new_ranges_{};
   std::optional<Timestamp> last_observed_{};
   std::vector<Skip> skips_{};
   bool has_finished_{false};

@@ -20,23 +20,58 @@ OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
   if (!samples_.empty()) {
     if (sample.time <= newest()) return Outcome::kOutOfOrder;
     if (sample.time > newest() + ClockWatch::kLongestPause) return Outcome::kTooFarAhead;
-    const double elapsed_s = to_seconds(sample.time - newest());
-    const Se2 step = last_raw_.inverse() * sample.odom_from_base;
-    if (!(step.translation().norm() <= kMaxSpeed_m_s * elapsed_s) ||
-        !(std::abs(step.theta()) <= kMaxTurnRate_rad_s * elapsed_s)) {
-      smooth_from_raw_ = samples_.back().odom_from_base * sample.odom_from_base.inverse();
-      outcome = Outcome::kJumped;
-      if (has_kept_back(step, sample)) {
-        outcome = Outcome::kCaughtUp;
-        catch_up_ = {sample.time, Motion::between(last_raw_, sample.odom_from_base)};
-      }
-    }
+    outcome = add_newer(sample);
   }
   if (samples_.empty() || is_other(sample.odom_from_base, last_raw_)) changed_ = sample.time;
   last_raw_ = sample.odom_from_base;
-  samples_.push_back({sample.time, smooth_from_raw_ * sample.odom_from_base, smooth_from_raw_});
+  const bool is_held = doubt_ || outcome == Outcome::kCaughtUp;
+  samples_.push_back(
+      {sample.time,
+       is_held ? samples_.back().odom_from_base : smooth_from_raw_ * sample.odom_from_base,
+       smooth_from_raw_});
   if (samples_.size() > kMaxSamples) samples_.pop_front();
   return outcome;
+}
+
+OdometryBuffer::Outcome OdometryBuffer::add_newer(const OdometrySample& sample) {
+  const double elapsed_s = to_seconds(sample.time - newest());
+  const Se2 step = last_raw_.inverse() * sample.odom_from_base;
+  const bool jumps = !(step.translation().norm() <= kMaxSpeed_m_s * elapsed_s) ||
+                     !(std::abs(step.theta()) <= kMaxTurnRate_rad_s * elapsed_s);
+  if (!jumps && !doubt_) return Outcome::kAdded;
+  const Se2 held = samples_.back().odom_from_base;
+  if (!doubt_ && has_kept_back(step, sample)) {
+    catch_up_ = {sample.time, Motion::between(last_raw_, sample.odom_from_base)};
+    smooth_from_raw_ = held * sample.odom_from_base.inverse();
+    return Outcome::kCaughtUp;
+  }
+  if (!doubt_) {
+    doubt_ = Doubt{{newest(), last_raw_}, sample.odom_from_base, 0};
+    doubted_ = Interval{newest(), sample.time};
+  }
+  smooth_from_raw_ = held * sample.odom_from_base.inverse();
+  return weigh(sample, jumps);
+}
+
+OdometryBuffer::Outcome OdometryBuffer::weigh(const OdometrySample& sample, bool jumps) {
+  doubted_->to = sample.time;
+  if (jumps) doubt_->begin = sample.odom_from_base;
+  doubt_->agreeing = jumps ? 0 : doubt_->agreeing + 1;
+  if (doubt_->agreeing < kAgreeing) return jumps ? Outcome::kJumped : Outcome::kAdded;
+  const Doubt doubt = *doubt_;
+  doubt_.reset();
+  const Se2 since = doubt.before.odom_from_base.inverse() * sample.odom_from_base;
+  const double elapsed_s = to_seconds(sample.time - doubt.before.time);
+  const bool went_on = is_other(doubt.begin, Se2{}) &&
+                       since.translation().norm() <= kMaxDrive_m_s * elapsed_s &&
+                       std::abs(since.theta()) <= kMaxDrive_rad_s * elapsed_s;
+  if (went_on) {
+    catch_up_ = {sample.time, Motion::between(doubt.before.odom_from_base, sample.odom_from_base)};
+    return Outcome::kCaughtUp;
+  }
+  // A reset: what the samples that agree say was driven.
+  smooth_from_raw_ = samples_.back().odom_from_base * doubt.begin.inverse();
+  return Outcome::kAdded;
 }
 
 /// Odometry that begins anew does so at the origin.
@@ -96,6 +131,8 @@ void OdometryBuffer::shift(Duration later) {
     sample.time += later;
   changed_ += later;
   if (catch_up_) catch_up_->time += later;
+  if (doubt_) doubt_->before.time += later;
+  if (doubted_) *doubted_ = {doubted_->from + later, doubted_->to + later};
 }
 
 void OdometryBuffer::forget_before(Timestamp time) {

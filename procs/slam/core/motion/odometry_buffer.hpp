@@ -17,9 +17,11 @@ class OdometryBuffer {
   enum class Outcome { kAdded, kOutOfOrder, kTooFarAhead, kJumped, kCaughtUp };
 
   /// A sample that is not newer than the last is refused, and one that is newer by more than any
-  /// pause (ClockWatch::kLongestPause). A jump that no robot can drive (its odometry was reset)
-  /// counts as no motion. Odometry that stood still and then jumps as far as can be driven
-  /// meanwhile had been stuck: the jump is what it has kept back.
+  /// pause (ClockWatch::kLongestPause). Odometry that stood still and then jumps as far as can be
+  /// driven meanwhile had been stuck: the jump is what it has kept back. After a jump that no robot
+  /// can drive nothing is believed until some samples in a row agree: if they are where the robot
+  /// can have driven since the jump, what came in between was garbage, and the way from before it
+  /// is what was kept back; else the odometry was reset, which is no motion.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }
@@ -42,6 +44,11 @@ class OdometryBuffer {
 
   /// What a sample after `from`, not after `to`, has told of the time before it.
   std::optional<Motion> kept_back(Timestamp from, Timestamp to) const;
+
+  /// Whether samples of that time are not believed.
+  bool is_doubtful(Timestamp from, Timestamp to) const {
+    return doubted_ && doubted_->from < to && from < doubted_->to;
+  }
 
   /// Of the first sample that is not before that time.
   std::optional<Timestamp> first_from(Timestamp time) const;
@@ -67,13 +74,28 @@ class OdometryBuffer {
     Motion motion{};
   };
 
+  /// Since a jump.
+  struct Doubt {
+    OdometrySample before{};  ///< the jump
+    Se2 begin{};              ///< of the samples that agree
+    int agreeing{0};
+  };
+
+  struct Interval {
+    Timestamp from{};
+    Timestamp to{};
+  };
+
   std::deque<Sample>::const_iterator sample_from(Timestamp time) const;
+  Outcome add_newer(const OdometrySample& sample);
+  Outcome weigh(const OdometrySample& sample, bool jumps);
   bool has_kept_back(const Se2& step, const OdometrySample& sample) const;
 
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
   static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
   static constexpr double kMaxDrive_m_s = 2.0;        ///< on average, while it was stuck
   static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
+  static constexpr int kAgreeing = 4;                 ///< samples that end a doubt
   static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz, if nobody forgets
 
   std::deque<Sample> samples_{};
@@ -81,6 +103,8 @@ class OdometryBuffer {
   Se2 last_raw_{};
   Timestamp changed_{};  ///< when it last told another pose than before
   std::optional<CatchUp> catch_up_{};
+  std::optional<Doubt> doubt_{};
+  std::optional<Interval> doubted_{};  ///< the last one, perhaps still going on
 };
 
 }  // namespace waymark

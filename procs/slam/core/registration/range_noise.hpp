@@ -1,17 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 namespace waymark {
 
-/// How far LiDAR points scatter across walls, as described.
+/// How far LiDAR points scatter across walls: the description, corrected by what the walls show.
 class RangeNoise {
  public:
-  explicit RangeNoise(double sigma_m) : variance_m2_{sigma_m * sigma_m} {}
+  explicit RangeNoise(double described_sigma_m)
+      : sum_m2_{kDescribedPoints * described_sigma_m * described_sigma_m},
+        weight_{kDescribedPoints} {}
 
-  double variance_m2() const { return variance_m2_; }
+  /// @param across_m2  mean square of points about a fitted line, `count` of them.
+  void observe(double across_m2, int count) {
+    sum_m2_ += count * across_m2;
+    weight_ += count;
+    const double keeps = std::min(1.0, kMaxPooled / weight_);
+    sum_m2_ *= keeps;
+    weight_ *= keeps;
+  }
+
+  double variance_m2() const { return sum_m2_ / weight_; }
 
  private:
-  double variance_m2_;
+  static constexpr double kDescribedPoints = 2000.0;  ///< that the description counts as
+  static constexpr double kMaxPooled = 2e5;           ///< older points are forgotten
+
+  double sum_m2_;
+  double weight_;
 };
 
 }  // namespace waymark

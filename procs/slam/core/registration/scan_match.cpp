@@ -20,6 +20,16 @@ constexpr double kConverged_m = 2e-5;   // or radians
 constexpr double kMaxBlur_m = 0.25;     // a cell knows no more than its own half
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
 
+// Noise of ranges.
+constexpr int kWellSeen = 20;               // points of a cell
+constexpr double kSquareOn = 0.5;           // cosine of a beam's incidence
+constexpr double kSigmaOverMedian = 1.483;  // of the absolute values of a normal distribution
+
+// Scale of ranges.
+constexpr int kScaleSteps = 8;
+constexpr double kScaleKernel_m = 0.1;
+constexpr double kScalePrior = 0.2;
+
 double squared(double x) {
   return x * x;
 }
@@ -134,11 +144,16 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
                const ScanMatchConfig& config, ScanMatch& match) {
   int mapped = 0;
   std::map<int, double> shares;
+  std::vector<double> off_range_m;
   for (const Eigen::Vector2d& point : points) {
     const NdtSurface* surface = map.at(match.map_from_base * point, point_variance_m2);
     if (surface == nullptr) continue;
     ++mapped;
     const BeamTerm term = compare(*surface, match.map_from_base * point, 0.0, config);
+    const double square_on =
+        std::abs(surface->normal.dot(match.map_from_base.rotation() * point.normalized()));
+    if (surface->is_line() && surface->count >= kWellSeen && square_on > kSquareOn)
+      off_range_m.push_back(std::abs(term.across_m) / square_on);
     if (term.robust < kInlierWeight) continue;
     ++match.inliers;
     const int keyframes = surface->last_keyframe - surface->first_keyframe + 1;
@@ -146,6 +161,12 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
       shares[k] += 1.0 / keyframes;
   }
   match.num_mapped = mapped;
+  match.num_scattered = static_cast<int>(off_range_m.size());
+  if (!off_range_m.empty()) {
+    const auto middle = off_range_m.begin() + static_cast<std::ptrdiff_t>(off_range_m.size() / 2);
+    std::nth_element(off_range_m.begin(), middle, off_range_m.end());
+    match.range_scatter_m = kSigmaOverMedian * *middle;
+  }
   match.mapped_share = points.empty() ? 0.0 : mapped / static_cast<double>(points.size());
   match.inlier_share = mapped == 0 ? 0.0 : match.inliers / static_cast<double>(mapped);
   if (shares.empty()) return;
@@ -157,7 +178,62 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
         share / match.inliers;
 }
 
+using Vector4 = Eigen::Vector4d;
+
+struct ScaleEquations {
+  Eigen::Matrix4d information{Eigen::Matrix4d::Zero()};
+  Vector4 gradient{Vector4::Zero()};
+};
+
+/// Of (x, y, theta, share of the ranges), about a pose and a share.
+ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
+                               const Eigen::Vector2d& origin, const NdtMap& map, const Se2& pose,
+                               double share, double point_variance_m2) {
+  ScaleEquations sum;
+  const Eigen::Matrix2d rotation = pose.rotation();
+  for (const Eigen::Vector2d& measured : points) {
+    const Eigen::Vector2d ray = measured - origin;
+    const Eigen::Vector2d lever = rotation * (origin + ray / (1.0 + share));
+    const Eigen::Vector2d there = lever + pose.translation();
+    const NdtSurface* surface = map.at(there, point_variance_m2);
+    if (surface == nullptr || !surface->is_line()) continue;
+    const Eigen::Vector2d& normal = surface->normal;
+    const double off_m = normal.dot(there - surface->mean);
+    const double robust =
+        squared(squared(kScaleKernel_m) / (squared(kScaleKernel_m) + squared(off_m)));
+    const double weight = robust / (surface->across_m2 + point_variance_m2);
+    const Vector4 by{normal.x(), normal.y(), normal.dot(Eigen::Vector2d{-lever.y(), lever.x()}),
+                     -normal.dot(rotation * ray) / squared(1.0 + share)};
+    sum.information += weight * by * by.transpose();
+    sum.gradient += weight * off_m * by;
+  }
+  return sum;
+}
+
 }  // namespace
+
+RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
+                           const Eigen::Vector2d& origin_in_base, const NdtMap& map,
+                           const Se2& guess, const Eigen::Matrix3d& guess_covariance,
+                           const RangeNoise& noise) {
+  Eigen::Matrix4d prior = Eigen::Matrix4d::Zero();
+  prior.topLeftCorner<3, 3>() = guess_covariance.inverse();
+  prior(3, 3) = 1.0 / squared(kScalePrior);
+  Se2 pose = guess;
+  RangeScale scale;
+  for (int i = 0; i < kScaleSteps; ++i) {
+    const ScaleEquations seen = scale_equations(points_in_base, origin_in_base, map, pose,
+                                                scale.share, noise.variance_m2());
+    Vector4 off;
+    off << difference(pose, guess), scale.share;
+    const Eigen::Matrix4d covariance = (seen.information + prior).inverse();
+    const Vector4 step = -covariance * (seen.gradient + prior * off);
+    pose = moved(pose, step.head<3>());
+    scale.share = std::clamp(scale.share + step[3], -kScalePrior, kScalePrior);
+    scale.sigma = std::sqrt(covariance(3, 3));
+  }
+  return scale;
+}
 
 Points thinned(const Points& points, std::size_t most) {
   const std::size_t step = std::max<std::size_t>(1, (points.size() + most - 1) / most);

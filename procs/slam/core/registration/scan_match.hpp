@@ -45,11 +45,13 @@ ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share
 struct ScanMatch {
   /// Where the scan alone would put the base: along unobserved axes, where the guess was.
   Se2 map_from_base{};
-  ObservedAxes observed{};   ///< information about (x, y, theta), map's axes
-  double inlier_share{0.0};  ///< of the beams that ended on something mapped
-  double mapped_share{0.0};  ///< of all beams
-  int num_mapped{0};         ///< beams that ended on something mapped
-  int inliers{0};            ///< of these
+  ObservedAxes observed{};      ///< information about (x, y, theta), map's axes
+  double inlier_share{0.0};     ///< of the beams that ended on something mapped
+  double mapped_share{0.0};     ///< of all beams
+  int num_mapped{0};            ///< beams that ended on something mapped
+  int inliers{0};               ///< of these
+  double range_scatter_m{0.0};  ///< of ranges about the lines that they end on (one sigma)
+  int num_scattered{0};         ///< beams that show it
   /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the surfaces that the
   /// inliers lie on; sums to 1.
   int first_keyframe{0};
@@ -59,6 +61,21 @@ struct ScanMatch {
     return inliers >= config.min_inliers && observed.information(2, 2) > 0.0;
   }
 };
+
+/// By which share ranges are longer than the map says.
+struct RangeScale {
+  double share{0.0};
+  double sigma{0.0};
+};
+
+/// Fits the scale of ranges together with the pose: walls on both sides show it.
+/// @param origin_in_base  of the beams.
+/// @param guess           map_from_base; of it, too, is known only so much:
+/// @param guess_covariance  of (x, y, theta), map's axes.
+RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
+                           const Eigen::Vector2d& origin_in_base, const NdtMap& map,
+                           const Se2& guess, const Eigen::Matrix3d& guess_covariance,
+                           const RangeNoise& noise);
 
 /// Gauss-Newton on robust point-to-distribution distances, from coarse to fine.
 /// @param points_in_base   ends of beams.

@@ -19,7 +19,8 @@ struct Observation {
   /// The motion begins with one that odometry has kept back while it stood still, and has told at
   /// once. Observations meanwhile had no motion.
   bool odometry_caught_up{false};
-  bool camera_reported{false};  ///< there was such a frame, even if it was empty
+  bool odometry_doubtful{false};  ///< it jumped about: what was driven is not known
+  bool camera_reported{false};    ///< there was such a frame, even if it was empty
 };
 
 }  // namespace waymark

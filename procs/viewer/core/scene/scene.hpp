@@ -75,6 +75,14 @@ struct MapChange {
   int support{0};
 };
 
+/// What is not as described about the sensors, or was not used.
+struct Finding {
+  std::string name{};
+  std::string text{};
+  double value{0.0};  ///< in the unit that the name says; a count where there is a share
+  std::optional<double> share{};  ///< of the observations or scans that it concerns
+};
+
 /// A scan whose beams carry the ids of the markers that they hit.
 struct AnnotatedScan {
   Timestamp time{};
@@ -92,6 +100,7 @@ struct Scene {
   TiledMap map{kMaxMapCells};
   std::vector<Landmark> landmarks{};
   std::optional<std::vector<MapChange>> changes{};  ///< none: nobody compares
+  std::optional<std::vector<Finding>> findings{};   ///< none: nobody looks
   std::vector<EstimatedPose> estimates{};
   std::vector<TimedPose> final_trajectory{};  ///< as the estimator knows it at the end
   std::vector<TimedPose> odometry{};          ///< odom_from_base

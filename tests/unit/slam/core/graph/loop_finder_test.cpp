@@ -37,6 +37,10 @@ Points view(const Se2& map_from_base, HasPillar has_pillar) {
   return points;
 }
 
+bool every_two_metres(double x) {
+  return std::fmod(x + 100.0, 2.0) < 0.4;
+}
+
 /// No two distances are alike.
 bool irregularly(double x) {
   for (const double pillar_m : {0.7, 1.9, 4.4, 5.3, 8.1, 9.0, 10.6, 13.5})
@@ -65,6 +69,8 @@ class Corridor {
     return finder_.find(1000, view(truth, has_pillar_), search, submaps_, state_, RangeNoise{0.01});
   }
 
+  const LoopFinder& finder() const { return finder_; }
+
  private:
   HasPillar has_pillar_;
   LoopFinder finder_{LoopConfig{}, ScanMatchConfig{}};
@@ -81,6 +87,21 @@ TEST(LoopFinder, TwoScansThatAgreeCloseALoop) {
   const auto found = corridor.look_around(second, drift * second);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NEAR((Se2{3.0, 0.0, 0.0} * found[1].loop.match.map_from_base).x(), second.x(), 0.05);
+}
+
+/// Half a period, a whole one, and none: the scan fits in all three places.
+TEST(LoopFinder, PlacesThatLookTheSameAreAmbiguousHoweverOftenTheyAreSeen) {
+  Corridor corridor{every_two_metres};
+  int looks = 0;
+  for (const double drift_m : {1.0, 2.0, 0.0}) {
+    const Se2 drift{drift_m, 0.1, 0.1};
+    for (const double x : {6.0, 6.5, 7.0}) {
+      const Se2 truth{x, 0.0, 0.0};
+      EXPECT_TRUE(corridor.look_around(truth, drift * truth).empty()) << drift_m << " " << x;
+      ++looks;
+    }
+  }
+  EXPECT_EQ(corridor.finder().num_ambiguous(), looks);
 }
 
 }  // namespace

@@ -77,6 +77,33 @@ std::vector<SensorQueue::Ready> all_ready(SensorQueue& queue, int until_ms,
   return all;
 }
 
+/// Observations without beams, of scans with `ranges_m(ms)` five times a second; a metre in 10 s.
+std::size_t num_blind(const std::function<double(int)>& range_m) {
+  SensorQueue queue{SensorSetup{}};
+  std::size_t blind = 0;
+  for (int now_ms = 0; now_ms <= 4000; now_ms += 100) {
+    LidarScan scan = scan_at(now_ms);
+    scan.angles_rad.clear();
+    for (int beam = 0; beam < 40; ++beam)
+      scan.angles_rad.push_back(0.1 * beam);
+    scan.ranges_m.assign(40, range_m(now_ms));
+    if (now_ms % 200 == 0) queue.add(scan);
+    queue.add(odometry_at(now_ms));
+    while (const auto ready = queue.next())
+      blind += ready->observation.beams.empty() ? 1 : 0;
+  }
+  const std::vector<Skip> skips = queue.take_skips();
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(skips, Skip::kScanRepeated)), blind);
+  return blind;
+}
+
+TEST(SensorQueue, AScanThatRepeatsOneFromElsewhereShowsNothing) {
+  EXPECT_EQ(num_blind([](int now_ms) { return 2.0 + 1e-6 * now_ms; }), 0U);
+  EXPECT_GT(num_blind([](int) { return 2.0; }), 10U);
+  // 3 cm apart a robot may see the same.
+  EXPECT_EQ(num_blind([](int now_ms) { return 2.0 + 1e-3 * (now_ms / 400); }), 0U);
+}
+
 std::vector<int> times_ms(const std::vector<SensorQueue::Ready>& all) {
   std::vector<int> times;
   for (const SensorQueue::Ready& ready : all)

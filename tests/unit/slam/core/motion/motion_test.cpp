@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/random/random.hpp"
 #include "slam/core/motion/motion_model.hpp"
 #include "slam/core/motion/odometry_buffer.hpp"
 
 #include <gtest/gtest.h>
+
+#include <optional>
 
 namespace waymark {
 namespace {
@@ -34,12 +37,42 @@ TEST(OdometryBuffer, AResetOfTheOdometryIsNoMotion) {
   OdometryBuffer buffer;
   buffer.add({at_ms(0), Se2{5.0, 1.0, 0.5}});
   EXPECT_EQ(buffer.add({at_ms(33), Se2{0.0, 0.0, 0.0}}), OdometryBuffer::Outcome::kJumped);
-  buffer.add({at_ms(66), Se2{0.01, 0.0, 0.0}});
+  for (int step = 1; step <= 6; ++step)
+    buffer.add({at_ms(33 + 33 * step), Se2{0.01 * step, 0.0, 0.0}});
 
-  const Motion motion = buffer.motion_between(at_ms(0), at_ms(66));
+  const Motion motion = buffer.motion_between(at_ms(0), at_ms(231));
 
-  EXPECT_NEAR(motion.start_from_end.x(), 0.01, 1e-12);
+  EXPECT_NEAR(motion.start_from_end.x(), 0.06, 1e-12);
   EXPECT_NEAR(motion.start_from_end.y(), 0.0, 1e-12);
+  EXPECT_FALSE(buffer.kept_back(at_ms(0), at_ms(231)));
+}
+
+TEST(OdometryBuffer, WhatWasDrivenDuringGarbageIsToldAfterIt) {
+  Random random{{5}};
+  OdometryBuffer buffer;
+  const auto right = [](int step) {
+    return Se2{3.0 + 0.005 * step, -1.0, 0.3};
+  };
+  int jumps = 0;
+  std::optional<Motion> kept_back;
+  for (int step = 0; step <= 40; ++step) {
+    const bool is_garbage = step > 10 && step <= 25;
+    const Se2 off{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-3.0, 3.0)};
+    const auto outcome =
+        buffer.add({at_ms(33 * step), is_garbage ? right(step) * off : right(step)});
+    jumps += outcome == OdometryBuffer::Outcome::kJumped ? 1 : 0;
+    if (outcome == OdometryBuffer::Outcome::kCaughtUp)
+      kept_back = buffer.kept_back(at_ms(33 * (step - 1)), at_ms(33 * step));
+  }
+  EXPECT_GE(jumps, 10);
+  EXPECT_FALSE(buffer.is_doubtful(at_ms(0), at_ms(300)));
+  EXPECT_TRUE(buffer.is_doubtful(at_ms(500), at_ms(700)));
+  EXPECT_FALSE(buffer.is_doubtful(at_ms(1100), at_ms(1300)));
+  ASSERT_TRUE(kept_back);
+  const Motion told = buffer.motion_between(at_ms(0), at_ms(33 * 40));
+  const Se2 whole = right(0).inverse() * right(40);
+  EXPECT_NEAR(told.start_from_end.x() + kept_back->start_from_end.x(), whole.x(), 1e-9);
+  EXPECT_NEAR(told.start_from_end.y() + kept_back->start_from_end.y(), whole.y(), 1e-9);
 }
 
 /// Stands at (5, 1, 0.5) for a second, then tells another pose.

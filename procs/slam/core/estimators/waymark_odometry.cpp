@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the graph estimator uses odometry, and learns how wrong it is.
+#include "slam/core/estimators/waymark.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+// Off by more than that, odometry that stood still was stuck.
+constexpr double kMoved_m = 0.03;
+constexpr double kMoved_rad = 0.05;
+constexpr double kOtherNoise = 2.0;        // ratio of variances; beyond, the past is weighed anew
+constexpr std::size_t kWeighedEvery = 10;  // keyframes
+
+double along_m2_per_m(const OdometryNoise& noise) {
+  return noise.along_per_sqrt_m * noise.along_per_sqrt_m;
+}
+
+bool is_other(double a, double b) {
+  return a > kOtherNoise * b || b > kOtherNoise * a;
+}
+
+}  // namespace
+
+/// Odometry that was stuck tells at once what was driven meanwhile. Keyframes that were made in
+/// between, because markers or walls said that the robot moves, hang on those alone then.
+void WaymarkEstimator::follow_odometry(const Observation& observation, double step_s) {
+  motion_doubt_.follow(observation);
+  if (observation.odometry_caught_up) ++findings_.odometry_caught_up;
+  if (observation.odometry_caught_up && standstill_ &&
+      graph_.is_active({VariableKind::kKeyframe, standstill_->keyframe})) {
+    graph_.cut_odometry_since(standstill_->keyframe);
+    moved_from_ = standstill_->keyframe;
+    motion_ = standstill_->motion;
+    spread_kept_back(observation);
+  }
+  motion_ = motion_.then(believable_motion(observation, step_s));
+  if (!motion_doubt_.is_standing()) {
+    standstill_.reset();
+    keyframes_standing_ = 0;
+  } else if (!standstill_ && !graph_.state().keyframes.empty()) {
+    standstill_ = Standstill{moved_from_, motion_, prediction().map_from_base, observation.time};
+  }
+  ++findings_.observations;
+  if (observation.odometry_doubtful || odometry_refused_) {
+    ++findings_.odometry_jumping;
+  } else if (motion_doubt_.is_silent()) {
+    ++findings_.odometry_stuck;
+  }
+}
+
+/// What no robot can have driven that has driven as this one: then it went on as before.
+Motion WaymarkEstimator::believable_motion(const Observation& observation, double step_s) {
+  odometry_refused_ =
+      !observation.odometry_caught_up && !speed_limits_.allow(observation.motion, step_s);
+  if (!odometry_refused_) return observation.motion;
+  refused_step_ = observation.motion.start_from_end;
+  const double share = last_step_s_ > 0.0 ? std::min(1.0, step_s / last_step_s_) : 0.0;
+  const Se2 guess{share * last_step_.x(), share * last_step_.y(), share * last_step_.theta()};
+  return {guess, guess.translation().norm(), std::abs(guess.theta()), step_s};
+}
+
+bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
+  if (graph_.state().keyframes.empty()) return true;
+  const bool is_seen = !observation.sightings.empty();
+  if (is_seen && motion_doubt_.is_silent() && keyframes_standing_ < kMaxStanding) return true;
+  return motion_.distance_m >=
+             (is_seen ? config_.marker_keyframe_distance_m : config_.keyframe_distance_m) ||
+         motion_.turn_rad >= config_.keyframe_turn_rad;
+}
+
+WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
+  CorrectedMotion moved =
+      corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
+  if (!is_observed_) moved = with_slips(moved, motion_.distance_m, graph_.noise().scale);
+  const Eigen::Matrix3d covariance =
+      moved.covariance + unmeasured_covariance(motion_doubt_.unmeasured_m());
+  const Se2& from = graph_.state().keyframes[moved_from_];
+  return {from * moved.start_from_end, in_axes(from.rotation(), covariance)};
+}
+
+void WaymarkEstimator::add_odometry_factor(std::size_t keyframe, bool is_observed) {
+  is_observed_ = is_observed;
+  OdometryFactor odometry;
+  odometry.is_unobserved = !is_observed;
+  odometry.from = moved_from_;
+  odometry.to = keyframe;
+  odometry.motion = motion_;
+  odometry.unmeasured_m = motion_doubt_.take_unmeasured_m();
+  graph_.add(odometry);
+}
+
+/// Keyframes of a robot that stands are few: those after kMaxStanding are not made.
+void WaymarkEstimator::compare_with_odometry() {
+  if (!standstill_) return;
+  ++keyframes_standing_;
+  const Se2& now = graph_.state().keyframes.back();
+  const Eigen::Vector3d moved = pose_difference(now, standstill_->map_from_base);
+  if (moved.head<2>().norm() < kMoved_m && std::abs(moved.z()) < kMoved_rad) return;
+  motion_doubt_.note_moved();
+  keyframes_standing_ = 0;
+  standstill_->map_from_base = now;
+}
+
+/// The way that was driven while odometry stood still is drawn evenly into the final trajectory.
+void WaymarkEstimator::spread_kept_back(const Observation& observation) {
+  const double whole_s = to_seconds(observation.time - standstill_->since);
+  const Motion& before = standstill_->motion;
+  for (auto scan = scan_poses_.rbegin(); scan != scan_poses_.rend(); ++scan) {
+    if (scan->time <= standstill_->since) break;
+    const double share = to_seconds(scan->time - standstill_->since) / whole_s;
+    scan->keyframe = standstill_->keyframe;
+    scan->keyframe_from_base =
+        before.start_from_end * interpolate(Se2{}, observation.motion.start_from_end, share);
+  }
+}
+
+/// What the scan says about the motion since the keyframe before, against what odometry says.
+void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
+  if (!config_.learn_noise || motion_.guessed_s > 0.0 || motion_doubt_.is_standing() ||
+      motion_doubt_.is_silent()) {
+    return;
+  }
+  const OdometryNoise& described = graph_.noise().odometry;
+  const ScanMatch& match = scan.match;
+  const Se2 found = scan.map_from_submap * match.map_from_base;
+  const Eigen::Matrix2d to_base = found.rotation().transpose();
+  Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
+  off.head<2>() = (to_base * off.head<2>()).eval();
+  const Eigen::Matrix3d information =
+      in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
+  // Two scans err, this one and the one before.
+  noise_learner_.observe_turn({off.z(),
+                               turn_variance(described, motion_.distance_m, motion_.turn_rad),
+                               2.0 / information(2, 2), motion_.distance_m});
+  if (!match.observed.is_degenerate) {
+    const Eigen::Matrix3d covariance = information.inverse();
+    noise_learner_.observe_along({off.x(), along_m2_per_m(described) * motion_.distance_m,
+                                  2.0 * covariance(0, 0), motion_.distance_m});
+    unobserved_m_ = -motion_.distance_m;
+  }
+  graph_.set_odometry_scale(noise_learner_.scale());
+}
+
+/// The same of a known marker, where nothing else showed the way since the last one.
+void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
+                                   const MarkerMeasurement& measurement) {
+  if (!config_.learn_noise || unobserved_m_ <= 0.0 || motion_doubt_.is_silent()) return;
+  const double by_odometry = along_m2_per_m(graph_.noise().odometry) * unobserved_m_;
+  const double blind_m = std::max(0.0, unobserved_m_ - motion_.distance_m);
+  const double believed = along_m2_per_m(graph_.odometry_noise()) * unobserved_m_ +
+                          graph_.noise().scale.slip_m2_per_m * blind_m;
+  // A marker that is further ahead than expected: the robot has driven less.
+  const OdometryInnovation along{
+      -innovation.residual.x(), by_odometry,
+      std::max(innovation.covariance(0, 0) - believed, measurement.covariance(0, 0)),
+      unobserved_m_};
+  noise_learner_.observe_slip(along);
+  noise_learner_.observe_along(along);
+  graph_.set_odometry_scale(noise_learner_.scale());
+}
+
+/// What was driven before odometry was known to be that bad is uncertain alike.
+void WaymarkEstimator::weigh_past_anew() {
+  const OdometryNoise noise = graph_.odometry_noise();
+  const bool is_other_noise =
+      is_other(along_m2_per_m(noise), along_m2_per_m(weighed_with_)) ||
+      is_other(noise.turn_per_sqrt_m * noise.turn_per_sqrt_m,
+               weighed_with_.turn_per_sqrt_m * weighed_with_.turn_per_sqrt_m);
+  if (is_frozen() || !is_other_noise ||
+      graph_.state().keyframes.size() < solved_keyframes_ + kWeighedEvery) {
+    return;
+  }
+  weighed_with_ = noise;
+  step_everything({});
+}
+
+}  // namespace waymark

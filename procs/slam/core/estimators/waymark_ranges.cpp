@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the graph estimator judges the LiDAR: the noise of its ranges, and their scale.
+#include "slam/core/estimators/waymark.hpp"
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kSuspect = 0.8;       // of the usual share of inliers; below, ranges may be wrong
+constexpr double kUsualMemory = 0.05;  // weight of the newest scan in what is usual
+constexpr double kLeastShare = 0.01;   // of the ranges; less is within what LiDARs are good for
+constexpr double kLeastSigmas = 5.0;
+constexpr double kClearlyMore = 1.15;             // inliers with the ranges scaled
+const Eigen::Vector3d kAround{0.05, 0.05, 0.02};  // where the pose may be beside the prediction
+
+Observation scaled_ranges(Observation observation, double share) {
+  for (AnnotatedBeam& annotated : observation.beams) {
+    Beam& beam = annotated.beam;
+    beam.range_m /= 1.0 + share;
+    beam.end_in_base = beam.start_in_base + (beam.end_in_base - beam.start_in_base) / (1.0 + share);
+  }
+  return observation;
+}
+
+}  // namespace
+
+Points points_of(const Observation& observation) {
+  Points points;
+  points.reserve(observation.beams.size());
+  for (const AnnotatedBeam& annotated : observation.beams)
+    points.push_back(annotated.beam.end_in_base);
+  return points;
+}
+
+/// Walls on both sides that are all too far away, or all too near, are no other pose: the ranges
+/// are at another scale.
+std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,
+                                                              Look& look) {
+  is_rescaled_ = false;
+  if (!look.scan || !fits_badly(look.scan->match)) return std::nullopt;
+  const Points points = points_of(observation);
+  const Prediction& expected = look.expected;
+  const auto& plain = look.scan;
+  const Se2 submap_from_map = plain->map_from_submap.inverse();
+  Eigen::Matrix3d around = in_axes(submap_from_map.rotation(), expected.covariance);
+  around.diagonal() += kAround.cwiseAbs2();
+  const RangeScale scale =
+      fit_range_scale(points, observation.beams.front().beam.start_in_base, surfaces_of(*plain),
+                      submap_from_map * expected.map_from_base, around, range_noise_);
+  if (std::abs(scale.share) < std::max(kLeastShare, kLeastSigmas * scale.sigma))
+    return std::nullopt;
+  Observation corrected = scaled_ranges(observation, scale.share);
+  const auto fitted = matched(points_of(corrected), expected);
+  if (!fitted || fitted->match.inliers < kClearlyMore * plain->match.inliers ||
+      is_refuted(fitted->match)) {
+    return std::nullopt;
+  }
+  look.scan = fitted;
+  is_rescaled_ = true;
+  ++findings_.scans_rescaled;
+  findings_.range_share = scale.share;
+  return corrected;
+}
+
+bool WaymarkEstimator::fits_badly(const ScanMatch& match) const {
+  return is_refuted(match) || match.inlier_share < kSuspect * usual_inliers_;
+}
+
+void WaymarkEstimator::note_fit(const ScanMatch& match) {
+  ++findings_.scans;
+  if (is_refuted(match)) {
+    ++findings_.scans_refuted;
+  } else if (!match.is_usable(config_.scan)) {
+    ++findings_.scans_unusable;
+  }
+  if (fits_badly(match)) return;
+  usual_inliers_ += kUsualMemory * (match.inlier_share - usual_inliers_);
+  if (match.is_usable(config_.scan) && !is_rescaled_)
+    range_noise_.observe(match.range_scatter_m * match.range_scatter_m, match.num_scattered);
+}
+
+std::optional<Findings> WaymarkEstimator::findings() const {
+  Findings findings = findings_;
+  const OdometryScale& scale = graph_.noise().scale;
+  findings.odometry_along = scale.along;
+  findings.odometry_turn = scale.turn;
+  findings.slips = noise_learner_.num_slips();
+  findings.slip_m_per_sqrt_m = std::sqrt(scale.slip_m2_per_m);
+  findings.range_sigma_m = std::sqrt(range_noise_.variance_m2());
+  findings.described_range_sigma_m = setup_.range_sigma_m;
+  findings.loops_ambiguous = loop_finder_.num_ambiguous();
+  findings.is_camera_doubted = graph_.is_calibration_doubted();
+  return findings;
+}
+
+}  // namespace waymark

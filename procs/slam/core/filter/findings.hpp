@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run has shown of its sensors, beside what they are described as.
+#pragma once
+
+#include <cstdint>
+
+namespace waymark {
+
+/// Counts are of observations.
+struct Findings {
+  std::int64_t observations{0};
+
+  double odometry_along{1.0};  ///< random walk along the way, in multiples of the described one
+  double odometry_turn{1.0};   ///< and of the heading
+  std::int64_t slips{0};       ///< of the wheels, that markers or walls showed
+  double slip_m_per_sqrt_m{0.0};
+  std::int64_t odometry_stuck{0};      ///< it stood still while the robot moved
+  std::int64_t odometry_jumping{0};    ///< it was anything
+  std::int64_t odometry_caught_up{0};  ///< times that it said late what had been driven
+
+  double range_sigma_m{0.0};            ///< of the LiDAR, as the walls show it
+  double described_range_sigma_m{0.0};  ///< as it is described
+  std::int64_t scans{0};                ///< with returns, compared with a map
+  std::int64_t scans_unusable{0};       ///< show too few mapped surfaces
+  std::int64_t scans_refuted{0};        ///< show something else than what is mapped there
+  std::int64_t scans_rescaled{0};       ///< fit when their ranges are scaled
+  double range_share{0.0};              ///< by which they were too long, of the last such scan
+
+  std::int64_t loops_ambiguous{0};  ///< that fitted in several places, and were not closed
+  std::int64_t relocalisations{0};
+  bool is_camera_doubted{false};
+};
+
+}  // namespace waymark

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/motion_doubt.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kSpeedMemory_s = 1.0;
+constexpr double kStuckShare = 0.05;        // of odometry that stops, where nothing shows the way
+constexpr double kLongestSuspect_s = 20.0;  // a robot that stands for longer parks
+
+}  // namespace
+
+void MotionDoubt::follow(const Observation& observation) {
+  const double elapsed_s = time_ ? to_seconds(observation.time - *time_) : 0.0;
+  time_ = observation.time;
+  is_standing_ = observation.motion.distance_m == 0.0 && observation.motion.turn_rad == 0.0;
+  is_jumping_ = observation.odometry_doubtful && !observation.odometry_caught_up;
+  if (observation.odometry_caught_up) {
+    note_observed();
+    is_stuck_ = false;
+  } else if (is_silent()) {
+    is_stuck_ = is_stuck_ && is_standing_;
+    silent_s_ += elapsed_s;
+  } else if (is_standing_) {
+    standing_s_ += elapsed_s;
+  } else {
+    standing_s_ = 0.0;
+    if (elapsed_s <= 0.0) return;
+    const double share = std::min(1.0, elapsed_s / kSpeedMemory_s);
+    speed_m_s_ += share * (observation.motion.distance_m / elapsed_s - speed_m_s_);
+  }
+}
+
+double MotionDoubt::take_unmeasured_m() {
+  const double sigma_m = unmeasured_m();
+  silent_s_ = 0.0;
+  return sigma_m;
+}
+
+double MotionDoubt::suspected_m() const {
+  return std::sqrt(kStuckShare) * speed_m_s_ * std::min(standing_s_, kLongestSuspect_s);
+}
+
+}  // namespace waymark

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/findings_text.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace waymark {
+namespace {
+
+constexpr double kWorse = 1.9;        // factor on a standard deviation; learnt in steps of sqrt(2)
+constexpr double kNoisier = 1.3;      // the same of ranges
+constexpr double kWorthShare = 0.01;  // of scans or observations; fewer may be a door that opened
+
+double share_of(std::int64_t part, std::int64_t all) {
+  return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0.0;
+}
+
+class List {
+ public:
+  void add(std::string name, std::string text, double value,
+           std::optional<double> share = std::nullopt) {
+    list_.push_back({std::move(name), std::move(text), value, share});
+  }
+
+  /// @param text  with {} for the share in percent.
+  void add_share(std::string name, fmt::format_string<double> text, std::int64_t part,
+                 std::int64_t all, double least = kWorthShare) {
+    const double share = share_of(part, all);
+    if (part == 0 || share < least) return;
+    add(std::move(name), fmt::format(text, 100.0 * share), static_cast<double>(part), share);
+  }
+
+  std::vector<Finding> take() { return std::move(list_); }
+
+ private:
+  std::vector<Finding> list_{};
+};
+
+void add_odometry(const Findings& f, List& list) {
+  if (f.odometry_along >= kWorse) {
+    list.add("odometry_along_noise_scale",
+             fmt::format("odometry is {:.1f} times as noisy along the way as described",
+                         f.odometry_along),
+             f.odometry_along);
+  }
+  if (f.odometry_turn >= kWorse) {
+    list.add(
+        "odometry_turn_noise_scale",
+        fmt::format("odometry is {:.1f} times as noisy in turns as described", f.odometry_turn),
+        f.odometry_turn);
+  }
+  if (f.slips > 0) {
+    list.add("odometry_slips_m_per_sqrt_m",
+             fmt::format("wheels slip: {} times, which adds {:.3f} m per root metre to the noise",
+                         f.slips, f.slip_m_per_sqrt_m),
+             f.slip_m_per_sqrt_m);
+  }
+  list.add_share("odometry_stuck",
+                 "odometry stood still while the robot moved for {:.1f} % of the observations",
+                 f.odometry_stuck, f.observations, 0.0);
+  list.add_share("odometry_jumping", "odometry jumped about for {:.1f} % of the observations",
+                 f.odometry_jumping, f.observations, 0.0);
+  if (f.odometry_caught_up > 0) {
+    list.add("odometry_caught_up",
+             fmt::format("odometry said late what had been driven, {} times", f.odometry_caught_up),
+             static_cast<double>(f.odometry_caught_up));
+  }
+}
+
+void add_ranges(const Findings& f, std::int64_t repeated_scans, List& list) {
+  if (f.range_sigma_m >= kNoisier * f.described_range_sigma_m) {
+    list.add("range_noise_scale",
+             fmt::format("LiDAR ranges scatter by {:.3f} m, described are {:.3f} m",
+                         f.range_sigma_m, f.described_range_sigma_m),
+             f.range_sigma_m / f.described_range_sigma_m);
+  }
+  list.add_share("scans_rescaled", "LiDAR ranges were at another scale in {:.1f} % of the scans",
+                 f.scans_rescaled, f.scans, 0.0);
+  if (f.scans_rescaled > 0) {
+    list.add("range_share",
+             fmt::format("in the last of them {:+.1f} % too long", 100.0 * f.range_share),
+             f.range_share);
+  }
+  list.add_share("scans_refuted", "{:.1f} % of the scans contradict the map and were left out",
+                 f.scans_refuted, f.scans);
+  list.add_share("scans_unusable",
+                 "{:.1f} % of the scans show too few mapped surfaces and were left out",
+                 f.scans_unusable, f.scans);
+  list.add_share("scans_repeated", "{:.1f} % of the scans repeat one from elsewhere",
+                 repeated_scans, f.scans + repeated_scans, 0.0);
+}
+
+}  // namespace
+
+std::vector<Finding> worth_saying(const Findings& findings, std::int64_t repeated_scans) {
+  List list;
+  add_odometry(findings, list);
+  add_ranges(findings, repeated_scans, list);
+  if (findings.is_camera_doubted)
+    list.add("calibration_doubted", "the calibration is worse than described", 1.0);
+  if (findings.loops_ambiguous > 0) {
+    list.add("loops_ambiguous",
+             fmt::format("scans fitted in several places of the map {} times, which closed no loop",
+                         findings.loops_ambiguous),
+             static_cast<double>(findings.loops_ambiguous));
+  }
+  if (findings.relocalisations > 0) {
+    list.add("relocalisations",
+             fmt::format("the robot was found elsewhere {} times", findings.relocalisations),
+             static_cast<double>(findings.relocalisations));
+  }
+  return list.take();
+}
+
+std::string sentence_of(std::span<const Finding> findings) {
+  std::string sentence;
+  for (const Finding& finding : findings)
+    sentence += (sentence.empty() ? "" : "; ") + finding.text;
+  return sentence.empty() ? "nothing" : sentence;
+}
+
+}  // namespace waymark

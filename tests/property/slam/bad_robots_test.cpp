@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Robots whose sensors are worse than they are described: the error stays small where something
+// shows the way, the covariance is honest where nothing does, and what was found is named.
+#include "common/random/random.hpp"
+#include "estimator_run.hpp"
+#include "slam/core/estimators/waymark.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace waymark {
+namespace {
+
+using test::SensorLog;
+using test::Step;
+using test::SyntheticCorridor;
+
+struct Drives {
+  double nees{0.0};     ///< mean
+  double ate_m{0.0};    ///< worst RMS of the position
+  Findings findings{};  ///< of the last one
+};
+
+SyntheticCorridor corridor_of(std::uint64_t seed) {
+  SyntheticCorridor corridor;
+  corridor.seed = seed;
+  corridor.length_m = 24.0;
+  corridor.drive_m = 20.0;
+  corridor.speed_m_s = 0.2;
+  corridor.markers = test::opposite_markers(corridor, 4.0, 4.0);
+  return corridor;
+}
+
+/// Four seeds. The estimator knows the description only. NEES counts from `from_m` driven on.
+Drives drive_all(const std::function<void(SyntheticCorridor&)>& make_worse,
+                 const std::function<void(SensorLog&, Random&)>& spoil, double from_m = 0.0) {
+  constexpr std::uint64_t kSeeds = 4;
+  Drives drives;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    SyntheticCorridor corridor = corridor_of(seed);
+    const EstimatorSetup described = test::estimator_setup_of(corridor, seed);
+    make_worse(corridor);
+    SensorLog log = test::drive(corridor);
+    Random random{seed, 99};
+    spoil(log, random);
+    WaymarkEstimator estimator{described, {}};
+    const std::vector<Step> steps = test::run(estimator, log, test::setup_of(corridor));
+    double nees = 0.0;
+    double squares = 0.0;
+    std::size_t counted = 0;
+    for (const Step& step : steps) {
+      const Eigen::Vector3d error = pose_difference(step.estimate.map_from_base, step.truth);
+      Eigen::Matrix3d covariance = step.estimate.covariance;
+      covariance.diagonal().array() += 1e-10;  // the first pose is exact
+      squares += error.head<2>().squaredNorm();
+      if (step.truth.x() < from_m) continue;
+      nees += error.dot(covariance.ldlt().solve(error));
+      ++counted;
+    }
+    drives.nees += nees / static_cast<double>(counted) / kSeeds;
+    drives.ate_m = std::max(drives.ate_m, std::sqrt(squares / static_cast<double>(steps.size())));
+    drives.findings = *estimator.findings();
+  }
+  return drives;
+}
+
+void as_described(SyntheticCorridor&) {}
+
+void not_at_all(SensorLog&, Random&) {}
+
+/// Odometry poses from index `from` on, moved as if `extra` had been driven there.
+void insert_motion(SensorLog& log, std::size_t from, const Se2& extra) {
+  const Se2 before = log.odometry[from].odom_from_base;
+  for (std::size_t i = from; i < log.odometry.size(); ++i) {
+    log.odometry[i].odom_from_base =
+        before * extra * (before.inverse() * log.odometry[i].odom_from_base);
+  }
+}
+
+/// Of the samples while the robot drives from 8 to 8 + `way_m` metres.
+std::pair<std::size_t, std::size_t> samples_of(double way_m) {
+  constexpr double kPerMetre = 30.0 / 0.2;
+  return {static_cast<std::size_t>(8.0 * kPerMetre),
+          static_cast<std::size_t>((8.0 + way_m) * kPerMetre)};
+}
+
+TEST(BadRobots, ARobotAsDescribedIsNotAccused) {
+  const Drives drives = drive_all(as_described, not_at_all);
+  EXPECT_LT(drives.nees, 5.0);
+  EXPECT_LT(drives.findings.odometry_turn, 1.9);
+  EXPECT_LT(drives.findings.odometry_along, 1.9);
+  EXPECT_LT(drives.findings.range_sigma_m, 1.3 * drives.findings.described_range_sigma_m);
+  EXPECT_EQ(drives.findings.odometry_stuck, 0);
+  EXPECT_EQ(drives.findings.scans_rescaled, 0);
+}
+
+TEST(BadRobots, NoisyOdometryIsFoundAndItsCovarianceHonest) {
+  const Drives drives = drive_all(
+      [](SyntheticCorridor& corridor) {
+        corridor.along_noise_per_sqrt_m = 0.02;
+        corridor.turn_noise_per_sqrt_m = 0.035;
+      },
+      not_at_all);
+  EXPECT_LT(drives.nees, 5.0);
+  EXPECT_GT(drives.findings.odometry_turn, 2.0);
+  EXPECT_GT(drives.findings.odometry_along, 2.0);
+}
+
+/// From the second pair of markers on: nothing can show slips before the first one.
+TEST(BadRobots, WheelsThatSlipAreFoundAndTheCovarianceIsHonest) {
+  constexpr double kSecondMarkers_m = 8.0;
+  const Drives drives = drive_all(
+      as_described,
+      [](SensorLog& log, Random& random) {
+        for (std::size_t i = log.odometry.size() - 1; i > 0; --i)
+          if (random.uniform() < 0.7 * 0.2 / 30.0)
+            insert_motion(log, i, {-0.1 * std::log(1.0 - random.uniform()), 0.0, 0.0});
+      },
+      kSecondMarkers_m);
+  EXPECT_LT(drives.nees, 8.0);
+  EXPECT_GT(drives.findings.slips, 2);
+}
+
+TEST(BadRobots, BurstsOfGarbageCostNothingAndAreNamed) {
+  const Drives drives = drive_all(as_described, [](SensorLog& log, Random& random) {
+    for (const double way_m : {0.1, 0.3}) {
+      const auto [from, to] = samples_of(way_m);
+      for (std::size_t i = from; i < to; ++i) {
+        log.odometry[i].odom_from_base =
+            log.odometry[i].odom_from_base *
+            Se2{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-3.1, 3.1)};
+      }
+    }
+  });
+  EXPECT_LT(drives.nees, 5.0);
+  EXPECT_LT(drives.ate_m, 0.06);
+  EXPECT_GT(drives.findings.odometry_jumping, 0);
+}
+
+TEST(BadRobots, OdometryThatIsStuckIsNoticedAndCatchesUp) {
+  const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
+    const auto [from, to] = samples_of(2.0);
+    for (std::size_t i = from; i < to; ++i)
+      log.odometry[i].odom_from_base = log.odometry[from].odom_from_base;
+  });
+  EXPECT_LT(drives.nees, 8.0);
+  EXPECT_GT(drives.findings.odometry_stuck, 10);
+  EXPECT_EQ(drives.findings.odometry_caught_up, 1);
+}
+
+TEST(BadRobots, OdometryThatLosesWhatWasDrivenIsNoticed) {
+  const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
+    const auto [from, to] = samples_of(2.0);
+    const Se2 held = log.odometry[from].odom_from_base;
+    const Se2 lost = log.odometry[to].odom_from_base.inverse();
+    for (std::size_t i = from; i < log.odometry.size(); ++i) {
+      log.odometry[i].odom_from_base =
+          i < to ? held : held * (lost * log.odometry[i].odom_from_base);
+    }
+  });
+  EXPECT_LT(drives.nees, 12.0);
+  EXPECT_LT(drives.ate_m, 0.3);
+  EXPECT_GT(drives.findings.odometry_stuck, 10);
+}
+
+TEST(BadRobots, NoiseOfRangesIsFound) {
+  const Drives drives =
+      drive_all([](SyntheticCorridor& corridor) { corridor.range_sigma_m = 0.04; }, not_at_all);
+  EXPECT_LT(drives.nees, 5.0);
+  EXPECT_NEAR(drives.findings.range_sigma_m, 0.04, 0.008);
+}
+
+TEST(BadRobots, RangesOfAnotherScaleAreCorrectedAndNamed) {
+  const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
+    for (std::size_t i = log.scans.size() / 2; i < log.scans.size() / 2 + 50; ++i)
+      for (double& range_m : log.scans[i].ranges_m)
+        range_m *= 1.05;
+  });
+  EXPECT_LT(drives.nees, 5.0);
+  EXPECT_LT(drives.ate_m, 0.04);
+  EXPECT_NEAR(static_cast<double>(drives.findings.scans_rescaled), 50.0, 5.0);
+  EXPECT_NEAR(drives.findings.range_share, 0.05, 0.01);
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/motion_doubt.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Five times a second.
+class Robot {
+ public:
+  MotionDoubt doubt{};
+
+  void observe(double distance_m, bool is_doubtful = false, bool caught_up = false) {
+    Observation observation;
+    time_ += milliseconds{200};
+    observation.time = time_;
+    observation.motion = {{distance_m, 0.0, 0.0}, distance_m, 0.0};
+    observation.odometry_doubtful = is_doubtful;
+    observation.odometry_caught_up = caught_up;
+    doubt.follow(observation);
+  }
+
+  void drive() {
+    for (int i = 0; i < 50; ++i)
+      observe(0.02);
+  }
+
+  void stand(int observations) {
+    for (int i = 0; i < observations; ++i)
+      observe(0.0);
+  }
+
+ private:
+  Timestamp time_{};
+};
+
+TEST(MotionDoubt, OdometryThatMovesLeavesNone) {
+  Robot robot;
+  robot.drive();
+  EXPECT_EQ(robot.doubt.unmeasured_m(), 0.0);
+  EXPECT_EQ(robot.doubt.suspected_m(), 0.0);
+}
+
+TEST(MotionDoubt, OdometryThatStandsIsSuspectedUntilSomethingShowsTheWay) {
+  Robot robot;
+  robot.drive();
+  robot.stand(50);
+  EXPECT_EQ(robot.doubt.unmeasured_m(), 0.0);
+  EXPECT_GT(robot.doubt.suspected_m(), 0.1);  // of the metre that it would have driven
+  robot.doubt.note_observed();
+  EXPECT_EQ(robot.doubt.suspected_m(), 0.0);
+}
+
+TEST(MotionDoubt, ARobotThatParksIsNotLostForIt) {
+  Robot robot;
+  robot.drive();
+  robot.stand(50'000);
+  EXPECT_LT(robot.doubt.suspected_m(), 0.5);
+}
+
+TEST(MotionDoubt, StuckOdometryMeasuresNothingUntilItMovesAgain) {
+  Robot robot;
+  robot.drive();
+  robot.stand(1);
+  robot.doubt.note_moved();
+  robot.doubt.note_observed();
+  EXPECT_TRUE(robot.doubt.is_silent());
+  robot.stand(50);
+  EXPECT_NEAR(robot.doubt.unmeasured_m(), 1.0, 0.1);
+  robot.observe(0.02);
+  EXPECT_FALSE(robot.doubt.is_silent());
+  EXPECT_NEAR(robot.doubt.take_unmeasured_m(), 1.0, 0.15);  // nobody has said what was driven
+  EXPECT_EQ(robot.doubt.unmeasured_m(), 0.0);
+}
+
+TEST(MotionDoubt, OdometryThatCatchesUpLeavesNone) {
+  Robot robot;
+  robot.drive();
+  robot.stand(1);
+  robot.doubt.note_moved();
+  robot.stand(50);
+  robot.observe(1.0, false, true);
+  EXPECT_EQ(robot.doubt.unmeasured_m(), 0.0);
+  EXPECT_FALSE(robot.doubt.is_silent());
+}
+
+TEST(MotionDoubt, OdometryThatJumpsAboutMeasuresNothing) {
+  Robot robot;
+  robot.drive();
+  for (int i = 0; i < 5; ++i)
+    robot.observe(0.0, true);
+  EXPECT_TRUE(robot.doubt.is_silent());
+  EXPECT_NEAR(robot.doubt.unmeasured_m(), 0.1, 0.02);
+}
+
+}  // namespace
+}  // namespace waymark
