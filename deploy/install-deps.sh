@@ -15,7 +15,8 @@ packages=(
   libmujoco-dev libosmesa6-dev             # sim: physics, rendering without a display
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libcpp-httplib-dev pkg-config            # viewer: the live page
-  zlib1g-dev libbz2-dev                    # import of compressed CARMEN logs
+  zlib1g-dev libbz2-dev                    # import of compressed logs, export
+  libsqlite3-dev libzstd-dev liblz4-dev    # import of ROS bags
   libgtest-dev libgmock-dev                # the build is configured with its tests
   iproute2                                 # `ip`: a route for multicast where there is none
 )
@@ -24,6 +25,7 @@ packages_for_tests=(
   libceres-dev                             # tests/benchmark/batch_limit
   parallel gnuplot-nox                     # sweeps: many runs at once, plots
   python3-numpy python3-matplotlib         # tests/python; where missing they are skipped
+  lz4 zstd                                 # tests/python: bags compressed with them
 )
 
 list=false
