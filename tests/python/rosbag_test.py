@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """waymark-import rosbag, on bags of all formats that the test writes."""
 
+import json
 import math
 import os
 import random
@@ -192,6 +193,15 @@ class Rosbag(InFolder):
             "ranges of 0 m (1 of 122, 0.82 %)",
         ):
             self.assertIn(words, done.stderr)
+
+    def test_the_doctor_reads_bags(self):
+        bag = self.folder / "drive.mcap"
+        bags.write_mcap(bag, list(a_drive(True)))
+        done = subprocess.run([build_dir / "waymark-doctor", bag, "--json"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        checks = {check["name"]: check for check in json.loads(done.stdout)["checks"]}
+        self.assertEqual(checks["records"]["verdict"], "PASS")
+        self.assertEqual(checks["lidar_x"]["verdict"], "UNCHECKED")
 
     def test_several_topics_of_a_type_are_listed(self):
         bag = self.folder / "two.bag"
