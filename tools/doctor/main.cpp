@@ -4,16 +4,19 @@
 #include "common/files/whole_file.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/progress.hpp"
+#include "doctor/live_log.hpp"
 #include "doctor/report.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <chrono>
+
 namespace waymark {
 namespace {
 
-constexpr ProcessTraits kTraits{"doctor", "Says what is wrong with a robot's set-up, from a log.",
-                                false};
+constexpr ProcessTraits kTraits{
+    "doctor", "Says what is wrong with a robot's set-up, from a log or while it runs.", false};
 
 constexpr double kQuiet_s = 2.0;  // shorter work needs no progress
 
@@ -22,19 +25,35 @@ struct Options {
   std::filesystem::path robot{};
   std::filesystem::path write_robot{};
   bool as_json{false};
+  int seconds{0};  ///< 0: a log
+  std::string lcm_url{};
   InputChannels channels{};
 };
 
-int run(const Options& options) {
-  const auto show_in = [](Progress& progress) {
-    return [&progress](double share) {
-      if (progress.elapsed_s() > kQuiet_s) progress.show(share, "");
-    };
+auto show_in(Progress& progress) {
+  return [&progress](double share) {
+    if (progress.elapsed_s() > kQuiet_s) progress.show(share, "");
   };
+}
+
+DoctorInput listen(const Options& options) {
+  Progress recording{"recording"};
+  const LiveLog live{options.lcm_url, options.channels, std::chrono::seconds{options.seconds},
+                     show_in(recording)};
+  recording.done();
+  log_counters(live.counters());
+  return read_input(live.file(), options.robot, options.channels);
+}
+
+DoctorInput read(const Options& options) {
   Progress frames{"frames"};
-  const DoctorInput input =
-      read_input(options.file, options.robot, options.channels, show_in(frames));
+  DoctorInput input = read_input(options.file, options.robot, options.channels, show_in(frames));
   frames.done();
+  return input;
+}
+
+int run(const Options& options) {
+  const DoctorInput input = options.seconds > 0 ? listen(options) : read(options);
   Progress scans{"scans"};
   const Diagnosis diagnosis = diagnose(input, show_in(scans));
   scans.done();
@@ -44,7 +63,8 @@ int run(const Options& options) {
       throw SetupError{options.write_robot.string() +
                        ": is there already; give --write-robot another name, or move it away"};
     }
-    write_whole_file(options.write_robot, to_robot_toml(diagnosis, options.file));
+    write_whole_file(options.write_robot,
+                     to_robot_toml(diagnosis, options.seconds > 0 ? "a live run" : options.file));
   }
   return any_failed(diagnosis.checks) ? kExitFailed : kExitOk;
 }
@@ -59,8 +79,17 @@ int main(int argc, char** argv) {
       std::string{kTraits.purpose} + "\nExit code: 0 no FAIL, 1 a FAIL, 2 the log cannot be used.",
       "waymark-doctor"};
   app.set_version_flag("--version", "waymark-doctor " WAYMARK_VERSION);
-  app.add_option("LOG", options.file, "LCM log, bag of ROS, or CARMEN log (text, gzip, bzip2)")
-      ->required();
+  CLI::Option* log =
+      app.add_option("LOG", options.file, "LCM log, bag of ROS, or CARMEN log (text, gzip, bzip2)");
+  CLI::Option* seconds =
+      app.add_option(
+             "--seconds", options.seconds,
+             "instead of a log: listen to a running robot for so long; drive and turn meanwhile")
+          ->check(CLI::Range(1, 3600))
+          ->excludes(log);
+  app.add_option("--lcm-url", options.lcm_url,
+                 "LCM network (default: $LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)")
+      ->needs(seconds);
   app.add_option("--config", options.robot,
                  "robot.toml to hold it against (default: the one beside the log)");
   app.add_option("--write-robot", options.write_robot, "write a robot.toml with what was found");
@@ -73,6 +102,7 @@ int main(int argc, char** argv) {
                  "of an LCM log without odometry (default: the only one with a MAEBot's ticks)");
   try {
     app.parse(argc, argv);
+    if (log->empty() && seconds->empty()) throw CLI::RequiredError{"LOG or --seconds"};
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }

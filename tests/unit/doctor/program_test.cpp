@@ -85,7 +85,8 @@ TEST(DoctorProgram, LogsThatCannotBeUsedGive2AndASentence) {
   for (const std::string& arguments :
        {std::string{}, path("missing"), path("empty"), path("text"), path("no_lidar.lcm"),
         log + " --lidar-channel NONE", log + " --config " + path("missing.toml"),
-        log + " --config " + path("no_dictionary.toml"), log + " --no-such-option"}) {
+        log + " --config " + path("no_dictionary.toml"), log + " --no-such-option",
+        log + " --seconds 3", std::string{"--seconds 0"}, log + " --lcm-url udpm://"}) {
     const Ended ended = doctor(arguments);
     EXPECT_EQ(ended.code, 2) << arguments;
     EXPECT_FALSE(ended.errors.empty()) << arguments;
