@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that Waymark is built with; does nothing when none is missing.
 #
-# usage: install-deps.sh [--tests] [--list]
+# usage: install-deps.sh [--tests] [--fuzz] [--list]
 #   --tests  also what only tests, benchmarks and sweeps need
+#   --fuzz   also what only tests/fuzz/run.sh needs
 #   --list   prints the packages, installs nothing
 set -euo pipefail
 
@@ -27,12 +28,14 @@ packages_for_tests=(
   python3-numpy python3-matplotlib         # tests/python; where missing they are skipped
   lz4 zstd                                 # tests/python: bags compressed with them
 )
+packages_for_fuzzing=(clang-16 libclang-rt-16-dev)  # Debian's default, 14, does not compile GCC 12's <ranges>
 
 list=false
 for option in "$@"; do
   case $option in
     --help | -h) sed -n '3,/^[^#]/s/^# \?//p' "$0" && exit 0 ;;
     --tests) packages+=("${packages_for_tests[@]}") ;;
+    --fuzz) packages+=("${packages_for_fuzzing[@]}") ;;
     --list) list=true ;;
     *) echo "install-deps: unknown option '$option'; see --help" >&2 && exit 2 ;;
   esac
