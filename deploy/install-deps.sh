@@ -18,6 +18,7 @@ packages=(
   libcpp-httplib-dev pkg-config            # viewer: the live page
   zlib1g-dev libbz2-dev                    # import of compressed logs, export
   libsqlite3-dev libzstd-dev liblz4-dev    # import of ROS bags
+  libcairo2-dev                            # marker sheets as PDF
   libgtest-dev libgmock-dev                # the build is configured with its tests
   iproute2                                 # `ip`: a route for multicast where there is none
 )
@@ -27,6 +28,7 @@ packages_for_tests=(
   parallel gnuplot-nox                     # sweeps: many runs at once, plots
   python3-numpy python3-matplotlib         # tests/python; where missing they are skipped
   lz4 zstd                                 # tests/python: bags compressed with them
+  poppler-utils                            # tests of marker sheets: draws their PDF
 )
 packages_for_fuzzing=(clang-16 libclang-rt-16-dev)  # Debian's default, 14, does not compile GCC 12's <ranges>
 
