@@ -68,7 +68,7 @@ Check frames_check(const CameraRecord& camera, const RobotConfig& robot) {
 
 Check dictionary_check(const CameraRecord& camera, RobotConfig& robot) {
   const std::int64_t described = camera.markers_of_described;
-  const std::string& name = robot.markers.dictionary;
+  const std::string name = robot.markers.dictionary;
   std::string best;
   std::int64_t most = 0;
   for (const auto& [other, count] : camera.markers_by_dictionary) {

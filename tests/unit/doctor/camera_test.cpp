@@ -48,6 +48,8 @@ TEST(DoctorsCamera, AnotherDictionaryIsNamed) {
   const Check& check =
       *std::ranges::find(diagnosis.checks, std::string{"marker_dictionary"}, &Check::name);
   EXPECT_EQ(check.verdict, Verdict::kFail);
+  EXPECT_THAT(check.finding,
+              HasSubstr("60 markers are read with DICT_4X4_100, 2 with DICT_6X6_250"));
   EXPECT_THAT(check.remedy, HasSubstr("\"DICT_4X4_100\""));
   EXPECT_EQ(diagnosis.robot.markers.dictionary, "DICT_4X4_100");
 }
