@@ -9,8 +9,8 @@
 #   --seconds N  instead so many seconds for each
 #   --corpus DIR (default: build/fuzz/corpus)
 #
-# An input that crashes, takes more than 2 s under the sanitizers, or allocates more than 16 MB at once is kept in
-# CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE" repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
+# An input that crashes, takes more than 2 s under the sanitizers, or allocates more than 16 MB at once (map: 64 MB, for
+# the table of tiles of a large building) is kept in CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE" repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../../deploy/common.sh"
 
@@ -53,8 +53,10 @@ failed=()
 for target in "${targets[@]}"; do
   mkdir -p "$corpus/$target"
   log=$corpus/$target.log
+  max_MB=16
+  [[ $target != map ]] || max_MB=64
   "$source_dir/build/fuzz/tests/fuzz/fuzz_$target" "$corpus/$target" "$amount" -max_len=$kMaxInput_bytes -timeout=2 \
-    -rss_limit_mb=1024 -malloc_limit_mb=16 -print_final_stats=1 -artifact_prefix="$corpus/findings/$target-" >"$log" 2>&1 ||
+    -rss_limit_mb=1024 -malloc_limit_mb=$max_MB -print_final_stats=1 -artifact_prefix="$corpus/findings/$target-" >"$log" 2>&1 ||
     failed+=("$target")
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   features=$(grep -oE 'cov: [0-9]+ ft: [0-9]+' "$log" | tail -n 1)
