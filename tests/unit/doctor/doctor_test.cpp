@@ -82,6 +82,15 @@ TEST(Doctor, EachFaultIsNamedWithItsNumberAndNoOther) {
   }
 }
 
+/// Between samples interpolation smooths odometry's noise: a fit there is better, and no sign of an
+/// offset.
+TEST(Doctor, NoiseOfOdometryIsNoTimeOffset) {
+  const Diagnosis diagnosis = diagnosis_of({.odometry_noise_rad = 0.004});
+  const Check& check = find(diagnosis, "time_offset");
+  EXPECT_EQ(check.verdict, Verdict::kPass);
+  EXPECT_NEAR(check.value.value(), 0.0, 5.0) << "a sample has 20 ms";
+}
+
 TEST(Doctor, BackingUpThatIsCountedAsForwardIsNamed) {
   const Diagnosis diagnosis = diagnosis_of({.counts_backing_as_forward = true});
   EXPECT_THAT(names_of(diagnosis, Verdict::kFail), ::testing::Contains("backing_up"))

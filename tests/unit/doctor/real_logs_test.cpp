@@ -64,6 +64,7 @@ TEST(DoctorOnRealLogs, Aces) {
   EXPECT_EQ(seen.at("no_return").verdict, Verdict::kWarn) << "there is no description";
   EXPECT_EQ(seen.at("backing_up").verdict, Verdict::kPass);
   EXPECT_EQ(seen.at("lidar_mirrored").verdict, Verdict::kPass);
+  EXPECT_EQ(seen.at("time_offset").verdict, Verdict::kPass);
 }
 
 TEST(DoctorOnRealLogs, MbotConvex) {

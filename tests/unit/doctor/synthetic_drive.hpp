@@ -28,6 +28,7 @@ struct DriveFaults {
   double marker_size{1.0};
   double camera_yaw_rad{0.0};  ///< true minus described
   double camera_late_s{0.0};
+  double odometry_noise_rad{0.0};  ///< of the turn in each sample
 };
 
 struct RoomMarker {
@@ -160,9 +161,11 @@ inline DoctorInput drive_in_room(const DriveFaults& faults) {
         faults.turning * 0.9 * std::sin(0.7 * t) * (std::sin(0.23 * t) > 0.0 ? 1.0 : 0.4);
     const Se2 motion{speed_m_s * kStep_s, 0.0, turn_rad_s * kStep_s};
     pose = pose * motion;
+    const double turn_noise_rad =
+        faults.odometry_noise_rad > 0.0 ? faults.odometry_noise_rad * noise(random) : 0.0;
     const bool is_wrong = faults.counts_backing_as_forward && speed_m_s < 0.0;
     odometry = odometry * Se2{(is_wrong ? -1.0 : 1.0) * faults.distance_scale * motion.x(), 0.0,
-                              faults.turn_scale * motion.theta()};
+                              faults.turn_scale * motion.theta() + turn_noise_rad};
   }
   // As the importer leaves a log: scans within odometry.
   std::erase_if(log.scans, [&](const ImportedScan& scan) {

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,9 +14,10 @@ namespace {
 constexpr std::size_t kFewest = 30;
 constexpr double kFewestTurns_rad = 2.0 * std::numbers::pi;
 constexpr double kLargestOffset_s = 0.5;
-constexpr double kOffsetStep_s = 0.01;
-constexpr double kSigmaOfMad = 1.4826;  // of a normal distribution
-constexpr double kCutoff = 3.0;         // of the sigmas: what is further counts less
+constexpr double kParabola_s = 0.1;            // half its width: turns of a robot last longer
+constexpr double kShortestInterval_s = 0.005;  // of odometry: shorter ones are taken together
+constexpr double kSigmaOfMad = 1.4826;         // of a normal distribution
+constexpr double kCutoff = 3.0;                // of the sigmas: what is further counts less
 constexpr double kSmallest = 1e-9;
 constexpr std::size_t kBlocks = 12;  // stretches whose residuals count as one each
 
@@ -53,8 +55,21 @@ Turns turns_with(const std::vector<LidarTurn>& turns, const std::vector<Imported
 struct Line {
   double ratio{0.0};
   double ratio_sigma{0.0};
-  double cost{
-      0.0};  ///< mean of Cauchy's loss over its square cutoff; of all numbers of turns alike
+  double cost{0.0};                             ///< mean of Cauchy's loss over its square cutoff
+  std::array<double, kBlocks> cost_of_block{};  ///< sums
+  std::array<double, kBlocks> turns_of_block{};
+
+  /// Mean without one block; kBlocks = with all.
+  double cost_without(std::size_t block) const {
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t other = 0; other < kBlocks; ++other) {
+      if (other == block) continue;
+      sum += cost_of_block[other];
+      count += turns_of_block[other];
+    }
+    return sum / std::max(1.0, count);
+  }
 };
 
 double weight_of(double residual, double cutoff) {
@@ -88,18 +103,38 @@ std::optional<Line> fit_line(const Turns& turns, double cutoff_rad) {
       if (information < kSmallest) return std::nullopt;
       ratio = product / information;
     }
-    double cost = 0.0;
-    for (std::size_t i = 0; i < turns.lidar_rad.size(); ++i) {
+    Line fitted{ratio, std::sqrt(squares / weights / information)};
+    const std::size_t count = turns.lidar_rad.size();
+    for (std::size_t i = 0; i < count; ++i) {
       const double relative = (turns.odometry_rad[i] - ratio * turns.lidar_rad[i]) / cutoff_rad;
-      cost += std::log1p(relative * relative);
+      const std::size_t block = i * kBlocks / count;
+      fitted.cost_of_block[block] += std::log1p(relative * relative);
+      fitted.turns_of_block[block] += 1.0;
     }
-    cost /= static_cast<double>(turns.lidar_rad.size());
-    if (start > 0.0 || cost < best) {
-      best = cost;
-      line = {ratio, std::sqrt(squares / weights / information), cost};
+    fitted.cost = fitted.cost_without(kBlocks);
+    if (start > 0.0 || fitted.cost < best) {
+      best = fitted.cost;
+      line = fitted;
     }
   }
   return line;
+}
+
+double median_interval_s(const std::vector<ImportedPose>& odometry) {
+  std::vector<double> intervals_s;
+  for (std::size_t i = 1; i < odometry.size(); ++i)
+    intervals_s.push_back(to_seconds(odometry[i].time - odometry[i - 1].time));
+  return std::max(kShortestInterval_s, median(std::move(intervals_s)));
+}
+
+/// Of odometry that is too seldom to look for one.
+std::optional<TurnComparison> comparison_without_offset(TurnComparison comparison, const Turns& now,
+                                                        double cutoff_rad) {
+  const auto line = fit_line(now, cutoff_rad);
+  if (!line) return std::nullopt;
+  comparison.ratio = {line->ratio, line->ratio_sigma};
+  comparison.lidar_late_s = {0.0, kLargestOffset_s};
+  return comparison;
 }
 
 }  // namespace
@@ -125,28 +160,41 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
       residuals.push_back(std::abs(now.odometry_rad[k] - line->ratio * now.lidar_rad[k]));
     cutoff_rad = kCutoff * std::max(kFloor_rad, kSigmaOfMad * median(std::move(residuals)));
   }
+  // Offsets of whole odometry samples: between them odometry is interpolated, which smooths its
+  // noise and makes every fit better.
+  const double interval_s = median_interval_s(odometry);
+  const int steps = static_cast<int>(std::floor(kLargestOffset_s / interval_s));
+  if (steps < 1) return comparison_without_offset(comparison, now, cutoff_rad);
   std::vector<Line> lines;
   std::size_t best = 0;
-  const int steps = static_cast<int>(std::lround(kLargestOffset_s / kOffsetStep_s));
   for (int i = -steps; i <= steps; ++i) {
-    const auto line = fit_line(turns_with(turns, odometry, i * kOffsetStep_s), cutoff_rad);
+    const auto line = fit_line(turns_with(turns, odometry, i * interval_s), cutoff_rad);
     if (!line) return std::nullopt;
     lines.push_back(*line);
     if (line->cost < lines[best].cost) best = lines.size() - 1;
   }
   comparison.ratio = {lines[best].ratio, lines[best].ratio_sigma};
-  comparison.lidar_late_s.value = (static_cast<double>(best) - steps) * kOffsetStep_s;
-  comparison.lidar_late_s.sigma = kLargestOffset_s;  // at the border nothing is known
-  if (best > 0 && best + 1 < lines.size()) {
-    const double bend = lines[best - 1].cost - 2.0 * lines[best].cost + lines[best + 1].cost;
-    if (bend > kSmallest) {
-      comparison.lidar_late_s.value +=
-          kOffsetStep_s * 0.5 * (lines[best - 1].cost - lines[best + 1].cost) / bend;
-      // The cost is a mean of log-likelihoods up to a factor: its curvature times their number.
-      const double curvature = bend / (kOffsetStep_s * kOffsetStep_s);
-      comparison.lidar_late_s.sigma =
-          std::sqrt(2.0 * lines[best].cost / (curvature * static_cast<double>(turns.size())));
-    }
+  comparison.lidar_late_s = {(static_cast<double>(best) - steps) * interval_s, kLargestOffset_s};
+  const auto wide = static_cast<std::size_t>(std::max(1.0, std::round(kParabola_s / interval_s)));
+  if (best < wide || best + wide >= lines.size()) return comparison;  // nothing is known there
+  const auto vertex_s = [&](std::size_t without) {
+    const double before = lines[best - wide].cost_without(without);
+    const double at = lines[best].cost_without(without);
+    const double after = lines[best + wide].cost_without(without);
+    const double bend = before - 2.0 * at + after;
+    const double half_width_s = static_cast<double>(wide) * interval_s;
+    return bend > kSmallest ? half_width_s * 0.5 * (before - after) / bend : 0.0;
+  };
+  // How much it moves without each stretch (jackknife).
+  const double vertex = vertex_s(kBlocks);
+  double variance_s2 = 0.0;
+  for (std::size_t block = 0; block < kBlocks; ++block)
+    variance_s2 += (vertex_s(block) - vertex) * (vertex_s(block) - vertex);
+  comparison.lidar_late_s.value += vertex;
+  comparison.lidar_late_s.sigma = std::sqrt(variance_s2);
+  if (const auto line =
+          fit_line(turns_with(turns, odometry, comparison.lidar_late_s.value), cutoff_rad)) {
+    comparison.ratio = {line->ratio, line->ratio_sigma};
   }
   return comparison;
 }

@@ -22,8 +22,8 @@ struct TurnComparison {
 };
 
 /// Least squares over the turns between consecutive scans, with the time offset within half a
-/// second that makes them fit best. nullopt for less than 30 turns, or for a robot that hardly
-/// turns (less than a whole turn in all).
+/// second that makes them fit best: a parabola over offsets of whole odometry samples. nullopt for
+/// less than 30 turns, or for a robot that hardly turns (less than a whole turn in all).
 std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
                                             const std::vector<ImportedPose>& odometry);
 
