@@ -4,17 +4,17 @@
 # UndefinedBehaviorSanitizer. Goes on from its corpus, which begins with the messages, the map and the files of a short run.
 #
 # usage: tests/fuzz/run.sh [options] [TARGET...]
-#   TARGET       messages datagram log map config survey carmen mbot jpeg (default: all, one after the other)
+#   TARGET       messages datagram log map config survey carmen mbot rosbag jpeg (default: all, one after the other)
 #   --runs N     executions of each (default: 100000)
 #   --seconds N  instead so many seconds for each
 #   --corpus DIR (default: build/fuzz/corpus)
 #
 # An input that crashes, takes more than 2 s under the sanitizers, or allocates more than 16 MB at once (map: 64 MB, for
-# the table of tiles of a large building) is kept in CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE" repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
+# the table of tiles of a large building; rosbag: 300 MB, for a chunk) is kept in CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE" repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../../deploy/common.sh"
 
-readonly kTargets=(messages datagram log map config survey carmen mbot jpeg)
+readonly kTargets=(messages datagram log map config survey carmen mbot rosbag jpeg)
 readonly kMaxInput_bytes=65536
 amount=-runs=100000 targets=() corpus=$source_dir/build/fuzz/corpus
 while (($# > 0)); do
@@ -47,6 +47,7 @@ make_seeds() {
 
 build fuzz fuzz_seeds "${targets[@]/#/fuzz_}"
 [[ -d $corpus/messages ]] || { build release programs && make_seeds; }
+[[ -d $corpus/rosbag ]] || /usr/bin/python3 -B "$source_dir/tests/python/bag_drive.py" "$corpus/rosbag"
 mkdir -p "$corpus/findings"
 
 failed=()
@@ -55,6 +56,7 @@ for target in "${targets[@]}"; do
   log=$corpus/$target.log
   max_MB=16
   [[ $target != map ]] || max_MB=64
+  [[ $target != rosbag ]] || max_MB=300
   "$source_dir/build/fuzz/tests/fuzz/fuzz_$target" "$corpus/$target" "$amount" -max_len=$kMaxInput_bytes -timeout=2 \
     -rss_limit_mb=1024 -malloc_limit_mb=$max_MB -print_final_stats=1 -artifact_prefix="$corpus/findings/$target-" >"$log" 2>&1 ||
     failed+=("$target")
