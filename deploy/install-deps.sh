@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that Waymark is built with; does nothing when none is missing.
 #
-# usage: install-deps.sh [--tests] [--list]
+# usage: install-deps.sh [--tests] [--fuzz] [--list]
 #   --tests  also what only tests, benchmarks and sweeps need
+#   --fuzz   also what only tests/fuzz/run.sh needs
 #   --list   prints the packages, installs nothing
 set -euo pipefail
 
@@ -15,7 +16,9 @@ packages=(
   libmujoco-dev libosmesa6-dev             # sim: physics, rendering without a display
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libcpp-httplib-dev pkg-config            # viewer: the live page
-  zlib1g-dev libbz2-dev                    # import of compressed CARMEN logs
+  zlib1g-dev libbz2-dev                    # import of compressed logs, export
+  libsqlite3-dev libzstd-dev liblz4-dev    # import of ROS bags
+  libcairo2-dev                            # marker sheets as PDF
   libgtest-dev libgmock-dev                # the build is configured with its tests
   iproute2                                 # `ip`: a route for multicast where there is none
 )
@@ -24,13 +27,17 @@ packages_for_tests=(
   libceres-dev                             # tests/benchmark/batch_limit
   parallel gnuplot-nox                     # sweeps: many runs at once, plots
   python3-numpy python3-matplotlib         # tests/python; where missing they are skipped
+  lz4 zstd                                 # tests/python: bags compressed with them
+  poppler-utils                            # tests of marker sheets: draws their PDF
 )
+packages_for_fuzzing=(clang-16 libclang-rt-16-dev)  # Debian's default, 14, does not compile GCC 12's <ranges>
 
 list=false
 for option in "$@"; do
   case $option in
     --help | -h) sed -n '3,/^[^#]/s/^# \?//p' "$0" && exit 0 ;;
     --tests) packages+=("${packages_for_tests[@]}") ;;
+    --fuzz) packages+=("${packages_for_fuzzing[@]}") ;;
     --list) list=true ;;
     *) echo "install-deps: unknown option '$option'; see --help" >&2 && exit 2 ;;
   esac

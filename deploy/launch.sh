@@ -238,7 +238,8 @@ kill_all() {
 }
 
 on_signal() {
-  trap 'kill_all; exit $((128 + $2))' INT TERM HUP  # impatient
+  # shellcheck disable=SC2064  # the number as it is now
+  trap "kill_all; exit $((128 + $2))" INT TERM HUP  # impatient
   tell "stopped by SIG$1; what there is is in $out"
   stop_all
   exit $((128 + $2))

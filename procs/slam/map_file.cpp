@@ -183,24 +183,33 @@ class MapBuilder {
   }
 
   std::string on_tiles(map_tiles_t tiles) {
-    GridMap& grid = file_.map.grid;
+    const GridMap& grid = file_.map.grid;
     if (tiles.tile_size_cells != kTileSize || tiles.resolution_m != grid.frame.resolution_m ||
         tiles.origin_x_m != grid.frame.origin_m.x() ||
         tiles.origin_y_m != grid.frame.origin_m.y()) {
       return "has tiles of another grid than its header says";
     }
-    for (const map_tile_t& tile : tiles.tiles) {
-      for (std::size_t offset = 0; offset < kTileCells; ++offset) {
-        const CellIndex cell = cell_at({tile.tile_x, tile.tile_y}, offset);
-        const int percent = tile.occupancy[offset];
-        if (percent >= 0)
-          grid.occupancy.edit(cell) = {static_cast<std::uint32_t>(std::min(percent, 100)),
-                                       kLoadedVisits};
-        if (tile.marker_ids[offset] != kNoMarker)
-          grid.markers.edit(cell).vote(tile.marker_ids[offset], kLoadedVotes);
-      }
+    try {
+      for (const map_tile_t& tile : tiles.tiles)
+        draw(tile);
+    } catch (const std::length_error& error) {
+      return fmt::format("cannot be one: {}", error.what());
     }
     return {};
+  }
+
+  /// @throws std::length_error where the tile is too far from the others.
+  void draw(const map_tile_t& tile) {
+    GridMap& grid = file_.map.grid;
+    for (std::size_t offset = 0; offset < kTileCells; ++offset) {
+      const CellIndex cell = cell_at({tile.tile_x, tile.tile_y}, offset);
+      const int percent = tile.occupancy[offset];
+      if (percent >= 0)
+        grid.occupancy.edit(cell) = {static_cast<std::uint32_t>(std::min(percent, 100)),
+                                     kLoadedVisits};
+      if (tile.marker_ids[offset] != kNoMarker)
+        grid.markers.edit(cell).vote(tile.marker_ids[offset], kLoadedVotes);
+    }
   }
 
   std::string on_markers(marker_map_t markers) {

@@ -29,7 +29,8 @@ Message pose(std::int64_t utime_us) {
   return encode(channels::kOdometry, message);
 }
 
-constexpr const char* kDropped = "datagrams dropped: no whole message of LCM, or too many at once";
+constexpr const char* kMalformed = "datagrams rejected: no whole message of LCM";
+constexpr const char* kSomebodyElse = "ODOMETRY rejected: somebody else publishes, too";
 
 class BusTest : public ::testing::Test {
  protected:
@@ -100,11 +101,11 @@ TEST_F(BusTest, CorruptDatagramsAreSurvived) {
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0], pose(5));
   EXPECT_EQ(counted("ODOMETRY rejected: bad time"), 2);
-  EXPECT_EQ(counted(kDropped), 6);
+  EXPECT_EQ(counted(kMalformed), 7);
 }
 
 // Two fragments whose offset lies outside of their message: liblcm 1.3.1 writes there.
-TEST_F(BusTest, ForgedFragmentOffsetsDoNotReachLiblcm) {
+TEST_F(BusTest, ForgedFragmentOffsetsAreRefused) {
   const std::vector<std::uint8_t> body(1000, 0x41);
   for (int i = 0; i < 100; ++i) {
     network_.send_datagram(lcm_fragment(3000, 0, 0, 3, body));
@@ -114,7 +115,7 @@ TEST_F(BusTest, ForgedFragmentOffsetsDoNotReachLiblcm) {
   const auto messages = drain();
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0], pose(9));
-  EXPECT_EQ(counted(kDropped), 200);
+  EXPECT_EQ(counted(kMalformed), 200);
 }
 
 TEST(BusSetup, LargeMessagesAreTakenOnRequest) {
@@ -140,7 +141,7 @@ TEST_F(BusTest, LargeMessagesOfOthersAreRefused) {
   network_.send_datagram(lcm_fragment(80000, 0, 0, 2, body));
   network_.send_datagram(lcm_fragment(80000, 40000, 1, 2, std::vector<std::uint8_t>(40000)));
   EXPECT_TRUE(drain().empty());
-  EXPECT_EQ(counted(kDropped), 2);
+  EXPECT_EQ(counted(kMalformed), 2);
 }
 
 TEST_F(BusTest, AFloodStaysBounded) {
@@ -156,6 +157,55 @@ TEST_F(BusTest, AFloodStaysBounded) {
   const auto messages = drain();
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0], pose(7));
+}
+
+Bus one_publisher_per_channel(const PrivateNetwork& network) {
+  return Bus{network.url(),
+             {{"ODOMETRY"}, {"SLAM_COMMAND"}},
+             LargeMessages::kRefused,
+             {},
+             Publishers::kOnePerChannel};
+}
+
+/// Two publishers of the same channel, in turn.
+TEST(BusPublishers, OfTwoOnAChannelTheFirstOneIsHeard) {
+  const PrivateNetwork network;
+  Bus bus = one_publisher_per_channel(network);
+  Bus driver{network.url(), {}};
+  Bus other{network.url(), {}};
+  for (int i = 0; i < 50; ++i) {
+    driver.publish(pose(i));
+    other.publish(pose(1'000'000 + i));
+  }
+  for (int i = 0; i < 50; ++i)
+    EXPECT_EQ(bus.receive(milliseconds{1000}), pose(i));
+  EXPECT_FALSE(bus.receive(milliseconds{300}));
+  Counters counters;
+  bus.collect_counts(counters);
+  EXPECT_EQ(counters.get(kSomebodyElse), 50);
+}
+
+TEST(BusPublishers, EverybodyMayCommand) {
+  const PrivateNetwork network;
+  Bus bus = one_publisher_per_channel(network);
+  Bus first{network.url(), {}};
+  Bus second{network.url(), {}};
+  const Message command = encode(channels::kSlamCommand, command_t{});
+  first.publish(command);
+  second.publish(command);
+  EXPECT_EQ(bus.receive(milliseconds{1000}), command);
+  EXPECT_EQ(bus.receive(milliseconds{1000}), command);
+}
+
+// In liblcm 1.3.1 all groups of a port hear each other.
+TEST(BusSetup, OtherGroupsOnTheSamePortAreNotHeard) {
+  const PrivateNetwork network;
+  std::string elsewhere = network.url();
+  elsewhere.replace(elsewhere.find("239.255.76.67"), 13, "239.255.76.99");
+  Bus bus{network.url(), {{"ODOMETRY"}}};
+  Bus other{elsewhere, {}};
+  other.publish(pose(1));
+  EXPECT_FALSE(bus.receive(milliseconds{300}));
 }
 
 ChannelNames named(const std::vector<std::string>& settings) {

@@ -278,6 +278,20 @@ signals_stop_everything() {
   done
 }
 
+# A process that stays would take 7 s to be killed.
+a_second_signal_ends_it_at_once() {
+  FAKE_viewer_stays=1 FAKE_sim_seconds=30 env --default-signal=INT "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+  local run=$! code=0 began
+  wait_until all_started
+  kill -TERM $run
+  wait_until test -e "$work/interrupted"
+  began=$SECONDS
+  kill -TERM $run
+  wait $run || code=$?
+  ((code == 143 && SECONDS - began <= 3)) || fail "exit code $code after $((SECONDS - began)) s"
+  expect_nothing_left
+}
+
 # Even when the script itself has no chance to clean up.
 killed_script_leaves_nothing() {
   FAKE_sim_seconds=30 "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &

@@ -202,6 +202,63 @@ mbot_client() {
   expect_nothing_left
 }
 
+# Somebody else publishes wrong copies of the sensors' messages, 1,500 a second and stamped up to 30 s ahead.
+a_rival_in_real_time() {
+  local port=$((8700 + $$ % 200)) rival file
+  begin run --real-time --lcm-url "udpm://239.255.76.67:$port?ttl=0"
+  local run=$!
+  until_under_way run
+  /usr/bin/python3 -B "$source_dir/tests/support/rival.py" "$port" 300 >"$work/rival.output" 2>&1 &
+  rival=$!
+  expect_code 0 $run
+  kill $rival
+  for file in map.pgm trajectory.tum markers.csv; do [[ -s $work/run/waymark/$file ]] || fail "no $file"; done
+  grep -q "LIDAR: .* publishes, too, and is refused as long as" "$work/run/logs/slam.log" || fail "the rival is not named"
+  grep -q "rejected: .*LIDAR rejected: somebody else publishes, too" "$work/run/logs/slam.log" ||
+    fail "the rival's messages are not counted"
+  ! grep -q "scans dropped\|late, dropped\|clock was set" "$work/run/logs/slam.log" || fail "it disturbs what is real"
+  "$work/bin/waymark-evaluate" run "$work/run" >"$work/evaluate.output" 2>&1 || fail "no figures"
+  expect_nothing_left
+}
+
+# The units, with the programs where they are: nothing that systemd does not know, and hardly a privilege.
+systemd_units() {
+  command -v systemd-analyze >/dev/null || exit 77
+  local name
+  cp -r "$source_dir/deploy/systemd" "$work/units"
+  sed -i "s#waymark-\(detector\|slam\|viewer\|recorder\) --real-time#$work/bin/&#" "$work/units/"*.service
+  systemd-analyze verify "$work/units/"*.service "$work/units/waymark.target" >"$work/verify.output" 2>&1 || fail "exit code $?"
+  [[ ! -s $work/verify.output ]] || fail "systemd has something to say"
+  for name in detector slam viewer recorder; do
+    systemd-analyze security --offline=true --threshold=15 "$work/units/waymark-$name.service" >"$work/security.output" 2>&1 ||
+      fail "$name is exposed"
+  done
+}
+
+# Type=notify and WatchdogSec: what a program says to its supervisor.
+a_supervisor_is_told() {
+  local url="udpm://239.255.76.67:$((8700 + $$ % 200))?ttl=0"
+  /usr/bin/python3 -c '
+import socket, sys
+s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+s.bind(sys.argv[1])
+s.settimeout(10)
+while True:
+    state = s.recv(100).decode()
+    print(state, flush=True)
+    if state == "STOPPING=1": break' "$work/notify" >"$work/states" &
+  local listener=$! i
+  for ((i = 0; i < 100; ++i)); do [[ ! -S $work/notify ]] || break; sleep 0.05; done
+  NOTIFY_SOCKET=$work/notify env --default-signal=INT "$work/bin/waymark-recorder" --real-time --lcm-url "$url" \
+    --out-log "$work/run.lcm" >"$work/recorder.output" 2>&1 &
+  local recorder=$!
+  for ((i = 0; i < 100; ++i)); do ! grep -qs WATCHDOG "$work/states" || break; sleep 0.05; done
+  kill -INT $recorder
+  wait $listener || fail "it did not say that it stops"
+  expect_code 1 $recorder  # nothing came to be recorded
+  [[ $(uniq "$work/states" | xargs) == "READY=1 WATCHDOG=1 STOPPING=1" ]] || fail "it said: $(cat "$work/states")"
+}
+
 # A real browser looks at a run whose camera goes off.
 live_page() {
   local address="127.0.0.1:$((20000 + $$ % 10000))" code=0

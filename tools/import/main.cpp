@@ -7,6 +7,7 @@
 #include "import/findings/findings.hpp"
 #include "import/log/log_output.hpp"
 #include "import/mbot/mbot_reader.hpp"
+#include "import/rosbag/rosbag_reader.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -31,11 +32,11 @@ struct Options {
   std::optional<double> lidar_yaw_deg{};
   CarmenOptions carmen{};
   MbotOptions mbot{};
+  RosbagOptions rosbag{};
 };
 
-/// What both kinds of logs have.
-void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting,
-                        double& range_min_m) {
+/// What all kinds of logs have.
+void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting) {
   app.add_option("FILE", options.file, "the log to read")->required();
   app.add_option("--out", options.out,
                  "LCM log to write; robot.toml (and reference.tum) go beside it")
@@ -44,9 +45,6 @@ void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting
   app.add_flag(
       "--fix-reversed-odometry", options.fix_reversed_odometry,
       "where scans show that odometry counts backing up as driving forward, turn it round");
-  app.add_option("--min-range-m", range_min_m, "shortest range measured")
-      ->check(nonnegative_number())
-      ->capture_default_str();
   app.add_option("--lidar-x-m", mounting.x_m, "where the LiDAR sits in the base frame")
       ->check(finite_number());
   app.add_option("--lidar-y-m", mounting.y_m, "where the LiDAR sits in the base frame")
@@ -55,11 +53,19 @@ void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting
       ->check(angle_deg());
 }
 
+/// Of logs whose scans do not say it.
+void add_range_min(CLI::App& app, double& range_min_m) {
+  app.add_option("--min-range-m", range_min_m, "shortest range measured")
+      ->check(nonnegative_number())
+      ->capture_default_str();
+}
+
 CLI::App* add_carmen(CLI::App& app, Options& options) {
   CLI::App* carmen = app.add_subcommand(
       "carmen",
       "CARMEN text log: FLASER, RLASER, ROBOTLASER1, ROBOTLASER2, ODOM; gzip, bzip2 or not");
-  add_common_options(*carmen, options, options.carmen.mounting, options.carmen.range_min_m);
+  add_common_options(*carmen, options, options.carmen.mounting);
+  add_range_min(*carmen, options.carmen.range_min_m);
   carmen
       ->add_option("--lidar", options.carmen.lidar,
                    "front (FLASER, ROBOTLASER1; default) or rear (RLASER, ROBOTLASER2)")
@@ -99,7 +105,8 @@ CLI::App* add_mbot(CLI::App& app, Options& options) {
   CLI::App* mbot = app.add_subcommand(
       "mbot", "LCM log of an MBot robot (lidar_t) or of one with bot_core's planar_lidar_t");
   MbotOptions& chosen = options.mbot;
-  add_common_options(*mbot, options, chosen.mounting, chosen.range_min_m);
+  add_common_options(*mbot, options, chosen.mounting);
+  add_range_min(*mbot, chosen.range_min_m);
   mbot->add_option("--lidar-channel", chosen.lidar_channel, "lidar_t or planar_lidar_t")
       ->capture_default_str();
   mbot->add_option("--odometry-channel", chosen.odometry_channel,
@@ -123,6 +130,31 @@ CLI::App* add_mbot(CLI::App& app, Options& options) {
   return mbot;
 }
 
+CLI::App* add_rosbag(CLI::App& app, Options& options) {
+  CLI::App* rosbag = app.add_subcommand(
+      "rosbag",
+      "bag of ROS 1 (.bag) or ROS 2 (.db3, .mcap): LaserScan, Odometry, images, tf_static");
+  RosbagOptions& chosen = options.rosbag;
+  add_common_options(*rosbag, options, chosen.mounting);
+  rosbag->add_option("--scan-topic", chosen.scan_topic,
+                     "sensor_msgs/LaserScan (default: the only one)");
+  rosbag->add_option("--odometry-topic", chosen.odometry_topic,
+                     "nav_msgs/Odometry (default: the only one)");
+  rosbag->add_option("--image-topic", chosen.image_topic,
+                     "sensor_msgs/CompressedImage or Image (default: the only one, if any)");
+  rosbag->add_option("--camera-info-topic", chosen.camera_info_topic,
+                     "sensor_msgs/CameraInfo (default: the only one)");
+  rosbag
+      ->add_option("--max-range-m", chosen.range_max_m,
+                   "ranges from here on are no returns (default: where a pile-up shows, else as "
+                   "the scans say)")
+      ->check(positive_number());
+  rosbag->add_flag("--no-images", chosen.without_images, "leave the camera out");
+  rosbag->add_option("--base-frame", chosen.base_frame,
+                     "frame of the base in tf_static (default: the child frame of odometry)");
+  return rosbag;
+}
+
 void convert_angles(Options& options) {
   const auto to_radians = [](const std::optional<double>& angle_deg) {
     return angle_deg ? std::optional{radians(*angle_deg)} : std::nullopt;
@@ -130,7 +162,8 @@ void convert_angles(Options& options) {
   options.carmen.beams = {to_radians(options.first_angle_deg), to_radians(options.angle_step_deg)};
   const std::optional<double> yaw_rad = to_radians(options.lidar_yaw_deg);
   if (yaw_rad) {
-    options.carmen.mounting.yaw_rad = options.mbot.mounting.yaw_rad = wrap_angle(*yaw_rad);
+    options.carmen.mounting.yaw_rad = options.mbot.mounting.yaw_rad =
+        options.rosbag.mounting.yaw_rad = wrap_angle(*yaw_rad);
   }
 }
 
@@ -141,12 +174,20 @@ void tell(const ImportReport& report) {
     spdlog::info("{}", note);
 }
 
-int import(const Options& options, bool is_carmen) {
+enum class Kind { kCarmen, kMbot, kRosbag };
+
+ImportedLog read(const Options& options, Kind kind, ImportReport& report) {
+  if (kind == Kind::kCarmen) return read_carmen_log(options.file, options.carmen, report);
+  if (kind == Kind::kMbot) return read_mbot_log(options.file, options.mbot, report);
+  return read_rosbag(options.file, options.rosbag, report);
+}
+
+int import(const Options& options, Kind kind) {
   protect_inputs("--out", options.out, {options.file});
-  ImportReport report{options.file, is_carmen ? AddressUnit::kLine : AddressUnit::kByte};
+  ImportReport report{options.file,
+                      kind == Kind::kCarmen ? AddressUnit::kLine : AddressUnit::kByte};
   try {
-    ImportedLog log = is_carmen ? read_carmen_log(options.file, options.carmen, report)
-                                : read_mbot_log(options.file, options.mbot, report);
+    ImportedLog log = read(options, kind, report);
     examine(log, options.fix_reversed_odometry ? ReversedOdometry::kMend : ReversedOdometry::kName,
             report);
     write_imported_log(log, report, options.out);
@@ -172,11 +213,15 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   const CLI::App* carmen = add_carmen(app, options);
   add_mbot(app, options);
+  const CLI::App* rosbag = add_rosbag(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }
   convert_angles(options);
-  return run_guarded(kTraits, [&] { return import(options, carmen->parsed()); });
+  const Kind kind = carmen->parsed()   ? Kind::kCarmen
+                    : rosbag->parsed() ? Kind::kRosbag
+                                       : Kind::kMbot;
+  return run_guarded(kTraits, [&] { return import(options, kind); });
 }

@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kInch_m = 0.0254;
 constexpr int kMaxSide_px = 20'000;  ///< 1.7 m at 300 dpi; guards the memory
+constexpr double kMaxSide_m = 10.0;  ///< as robot.markers.size_m
 constexpr int kMaxQuietZone_modules = 20;
 constexpr int kMaxId = 100'000;  ///< more than any dictionary has; guards against endless ranges
 
@@ -88,7 +89,7 @@ std::vector<int> parse_ids(const std::string& text) {
   return ids;
 }
 
-Sheet draw_sheet(const SheetOptions& options, int id) {
+cv::Mat marker_modules(const SheetOptions& options, int id) {
   const cv::aruco::Dictionary dictionary = dictionary_of(options.dictionary);
   if (id < 0 || id >= size_of(dictionary))
     throw std::runtime_error{fmt::format("--ids: {} has the ids 0 to {}, got {}",
@@ -96,10 +97,21 @@ Sheet draw_sheet(const SheetOptions& options, int id) {
   if (options.quiet_zone_modules < 1 || options.quiet_zone_modules > kMaxQuietZone_modules)
     throw std::runtime_error{fmt::format("--quiet-zone-modules: got {}, expected 1 to {}",
                                          options.quiet_zone_modules, kMaxQuietZone_modules)};
+  if (!(options.size_m > 0.0 && options.size_m <= kMaxSide_m))
+    throw std::runtime_error{fmt::format("--size-m: got {}, expected more than 0, up to {} m",
+                                         options.size_m, kMaxSide_m)};
   const int modules = dictionary.markerSize + 2;  // the black border is one module wide
+  cv::Mat marker;
+  cv::aruco::drawMarker(cv::makePtr<cv::aruco::Dictionary>(dictionary), id, modules, marker, 1);
+  return marker;
+}
+
+Sheet draw_sheet(const SheetOptions& options, int id) {
+  const cv::Mat drawn = marker_modules(options, id);
+  const int modules = drawn.cols;
   const double exact_px = options.size_m / modules * options.dpi / kInch_m;
   const double sheet_px = exact_px * (modules + 2.0 * options.quiet_zone_modules);
-  if (!(options.size_m > 0.0 && options.dpi > 0.0 && exact_px >= 1.0 && sheet_px <= kMaxSide_px))
+  if (!(options.dpi > 0.0 && exact_px >= 1.0 && sheet_px <= kMaxSide_px))
     throw std::runtime_error{fmt::format(
         "--size-m {} at --dpi {}: a module must have at least a pixel, the sheet at most {} pixels",
         options.size_m, options.dpi, kMaxSide_px)};
@@ -108,7 +120,7 @@ Sheet draw_sheet(const SheetOptions& options, int id) {
   const int side_px = modules * module_px;
   const int margin_px = options.quiet_zone_modules * module_px;
   cv::Mat marker;
-  cv::aruco::drawMarker(cv::makePtr<cv::aruco::Dictionary>(dictionary), id, side_px, marker, 1);
+  cv::resize(drawn, marker, {side_px, side_px}, 0.0, 0.0, cv::INTER_NEAREST);
   const int text_px = std::max(module_px, 12);
   Sheet sheet{
       cv::Mat(side_px + 2 * margin_px + text_px, side_px + 2 * margin_px, CV_8UC1, cv::Scalar{255}),

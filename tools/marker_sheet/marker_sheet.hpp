@@ -20,6 +20,10 @@ struct SheetOptions {
 /// "0-3,7" -> 0 1 2 3 7. @throws std::runtime_error naming the part that is not an id or a range.
 std::vector<int> parse_ids(const std::string& text);
 
+/// One pixel per module, the black border included: 0 is black.
+/// @throws std::runtime_error if the options or the id make no marker.
+cv::Mat marker_modules(const SheetOptions& options, int id);
+
 /// The marker, its quiet zone, and below that the id and the size in words. Modules are squares of
 /// whole pixels, so the black square may differ from size_m by half a pixel per module; the dots
 /// per metre that make up for it are in `pixels_per_m`.

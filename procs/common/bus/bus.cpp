@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/bus/bus.hpp"
 
-#include "common/bus/datagram_filter.hpp"
+#include "common/bus/channel_owners.hpp"
+#include "common/bus/datagram_receiver.hpp"
+#include "common/messages/codec.hpp"
 
 #include <lcm/lcm.h>
+#include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <condition_variable>
@@ -12,6 +15,7 @@
 #include <map>
 #include <mutex>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 namespace waymark {
@@ -25,6 +29,7 @@ constexpr std::size_t kMaxLargePayloadBytes = std::size_t{4} << 20;
 constexpr int kHandleTimeout_ms = 50;
 // LCM's own queue only bridges the moments in which our thread is not scheduled.
 constexpr int kLcmQueueCapacity = 200;
+constexpr std::chrono::seconds kBetweenWarnings{10};
 
 SetupError no_network(const std::string& url) {
   return SetupError{"cannot join the LCM network " + url +
@@ -32,6 +37,13 @@ SetupError no_network(const std::string& url) {
                     "\n    ip link set lo up"
                     "\n    ip route add 224.0.0.0/4 dev lo"
                     "\n  or set another --lcm-url (see README, \"No multicast route\")"};
+}
+
+/// Statuses and commands may come from everybody, acknowledgements from all in the lockstep.
+bool has_one_publisher(std::string_view channel) {
+  using namespace channels;
+  return !channel.ends_with("_STATUS") && channel != kSlamCommand.name &&
+         channel != kMbotSystemReset.name && channel != kDriveCommand.name && channel != kAck.name;
 }
 
 }  // namespace
@@ -46,28 +58,38 @@ std::string lcm_url_or_default(const std::string& given_url) {
 class Bus::Implementation {
  public:
   Implementation(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
-                 LargeMessages large_messages, const ChannelNames& names)
+                 LargeMessages large_messages, const ChannelNames& names, Publishers publishers)
       : max_payload_bytes_{large_messages == LargeMessages::kAccepted ? kMaxLargePayloadBytes
                                                                       : kMaxPayloadBytes},
         names_{names},
+        publishers_{publishers},
         lcm_{lcm_create(url.c_str()), &lcm_destroy} {
     if (lcm_ == nullptr) throw no_network(url);
+    const auto group =
+        large_messages == LargeMessages::kRefused ? multicast_group_of(url) : std::nullopt;
     for (const Inbox::Subscription& subscription : subscriptions) {
       queues_[subscription.channel].backlog = subscription.backlog;
       const std::string name{names_.on_network(subscription.channel)};
       std::vector<std::string>& channels = channels_of_[name];
       channels.push_back(subscription.channel);
-      if (channels.size() > 1) continue;  // several channels on one name, told apart by type
+      if (channels.size() > 1 || group) continue;  // channels on one name are told apart by type
       lcm_subscription_t* handle = lcm_subscribe(lcm_.get(), name.c_str(), &on_receive, this);
       if (handle == nullptr) throw no_network(url);
       lcm_subscription_set_queue_capacity(handle, kLcmQueueCapacity);
     }
     if (subscriptions.empty()) return;
-    // A TCP server that is not there shows nowhere else, and waiting for it would abort.
-    if (!is_connected()) throw no_network(url);
-    if (large_messages == LargeMessages::kRefused) filter_.emplace(url);
+    if (group) {
+      join(*group, url);
+    } else if (!is_connected()) {
+      // A TCP server that is not there shows nowhere else, and waiting for it would abort.
+      throw no_network(url);
+    }
     receiver_ = std::thread{[this] {
-      receive_until_stopped();
+      if (datagrams_) {
+        receive_datagrams();
+      } else {
+        receive_from_lcm();
+      }
     }};
   }
 
@@ -106,9 +128,8 @@ class Bus::Implementation {
 
   void collect_counts(Counters& counters) {
     const std::lock_guard lock{mutex_};
-    if (const std::int64_t dropped = filter_ ? filter_->take_dropped() : 0; dropped > 0)
-      counts_.add("datagrams dropped: no whole message of LCM, or too many at once",
-                  CountKind::kLoss, dropped);
+    if (const std::int64_t lost = datagrams_ ? datagrams_->take_overflowed() : 0; lost > 0)
+      counts_.add("datagrams lost: too many at once", CountKind::kLoss, lost);
     for (const auto& [name, count] : counts_.all())
       counters.add(name, count.kind, count.value);
     counts_ = {};
@@ -121,31 +142,72 @@ class Bus::Implementation {
     std::size_t bytes{0};
   };
 
-  static void on_receive(const lcm_recv_buf_t* buffer, const char* channel, void* self) {
+  void join(const MulticastGroup& group, const std::string& url) {
+    try {
+      datagrams_.emplace(group);
+    } catch (const std::system_error&) {
+      throw no_network(url);
+    }
+  }
+
+  static void on_receive(const lcm_recv_buf_t* buffer, const char* name, void* self) {
+    if (buffer->data == nullptr) return;
     // Nothing may be thrown through C.
     try {
-      static_cast<Implementation*>(self)->enqueue(buffer, channel);
+      // liblcm 1.3.1 reports size -1 for a datagram without a channel end: too large.
+      static_cast<Implementation*>(self)->enqueue(
+          name, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size}, std::nullopt);
     } catch (...) {
     }
   }
 
-  void enqueue(const lcm_recv_buf_t* buffer, const char* name) {
+  /// @param sender  as far as it is known.
+  void enqueue(std::string_view name, std::span<const std::uint8_t> bytes,
+               const std::optional<Sender>& sender) {
     const std::lock_guard lock{mutex_};
-    const auto found = channels_of_.find(std::string_view{name});
-    if (found == channels_of_.end()) return;  // a name without end, from a broken datagram
-    // liblcm 1.3.1 reports size -1 for a datagram without a channel end.
-    if (buffer->data == nullptr || buffer->data_size > max_payload_bytes_) {
+    const auto now = std::chrono::steady_clock::now();
+    if (sender) owners_.hear(*sender, now);
+    const auto found = channels_of_.find(name);
+    if (found == channels_of_.end()) return;  // or a name without end, from a broken datagram
+    if (bytes.size() > max_payload_bytes_) {
       counts_.add(found->second.front() + " rejected: too large", CountKind::kRejection);
       return;
     }
-    const std::span bytes{static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
     const std::string& channel = ChannelNames::of_type(found->second, fingerprint_of(bytes));
+    if (sender && publishers_ == Publishers::kOnePerChannel && has_one_publisher(channel) &&
+        !is_accepted(channel, *sender, now))
+      return;
     const auto time = time_of(bytes);
     if (!time) {
       counts_.add(channel + " rejected: bad time", CountKind::kRejection);
       return;
     }
     push(channel, queues_[channel], {channel, *time, {bytes.begin(), bytes.end()}});
+  }
+
+  bool is_accepted(const std::string& channel, const Sender& sender, ChannelOwners::Time now) {
+    switch (owners_.judge(channel, sender, now)) {
+      case ChannelOwners::Verdict::kAccepted:
+        return true;
+      case ChannelOwners::Verdict::kSucceeds:
+        counts_.add(channel + " has another publisher than before");
+        return true;
+      case ChannelOwners::Verdict::kRefused:
+        break;
+    }
+    counts_.add(channel + " rejected: somebody else publishes, too", CountKind::kRejection);
+    warn_of_rival(channel, sender, now);
+    return false;
+  }
+
+  void warn_of_rival(const std::string& channel, const Sender& rival, ChannelOwners::Time now) {
+    const auto [warned, is_first] = warned_.try_emplace(channel, now);
+    if (!is_first && now - warned->second < kBetweenWarnings) return;
+    warned->second = now;
+    spdlog::warn(
+        "{}: {} publishes, too, and is refused as long as {} is heard; two drivers or stacks on "
+        "one network? (ss -uap 'sport = :{}' says whose it is)",
+        channel, to_string(rival), to_string(owners_.owner_of(channel)), rival.port);
   }
 
   void push(const std::string& channel, Queue& queue, Message message) {
@@ -169,7 +231,18 @@ class Bus::Implementation {
 
   bool is_connected() const { return lcm_get_fileno(lcm_.get()) >= 0; }
 
-  void receive_until_stopped() {
+  void receive_datagrams() {
+    while (!stop_) {
+      const auto received = datagrams_->receive();
+      if (received) enqueue(received->message.channel, received->message.payload, received->sender);
+      const std::int64_t malformed = datagrams_->take_malformed();
+      if (malformed == 0) continue;
+      const std::lock_guard lock{mutex_};
+      counts_.add("datagrams rejected: no whole message of LCM", CountKind::kRejection, malformed);
+    }
+  }
+
+  void receive_from_lcm() {
     while (!stop_ && is_connected())
       lcm_handle_timeout(lcm_.get(), kHandleTimeout_ms);
     const std::lock_guard lock{mutex_};
@@ -178,14 +251,17 @@ class Bus::Implementation {
 
   std::size_t max_payload_bytes_;
   ChannelNames names_;
+  Publishers publishers_;
   std::map<std::string, std::vector<std::string>, std::less<>> channels_of_;  ///< network -> ours
   std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;
-  std::optional<DatagramFilter> filter_;
+  std::optional<DatagramReceiver> datagrams_;  ///< nothing: liblcm receives
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::map<std::string, Queue, std::less<>> queues_;
   std::deque<Queue*> order_;  ///< queue of each waiting message, by arrival
   Counters counts_;
+  ChannelOwners owners_;
+  std::map<std::string, ChannelOwners::Time, std::less<>> warned_;  ///< of a rival, by channel
   std::atomic<bool> stop_{false};
   std::thread receiver_;
 };
@@ -196,9 +272,9 @@ void check_network(const std::string& url) {
 }
 
 Bus::Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
-         LargeMessages large_messages, const ChannelNames& names)
-    : implementation_{std::make_unique<Implementation>(url, subscriptions, large_messages, names)} {
-}
+         LargeMessages large_messages, const ChannelNames& names, Publishers publishers)
+    : implementation_{std::make_unique<Implementation>(url, subscriptions, large_messages, names,
+                                                       publishers)} {}
 
 Bus::~Bus() = default;
 

@@ -20,6 +20,12 @@ enum class LargeMessages {
   kAccepted,  ///< up to 4 MiB; who can send to the network can crash liblcm 1.3.1 then
 };
 
+/// Who may publish what we hear. Statuses and commands may come from everybody.
+enum class Publishers {
+  kAny,            ///< in lockstep: its ticks say which messages are theirs
+  kOnePerChannel,  ///< ChannelOwners; known on udpm and without large messages only
+};
+
 /// `--lcm-url`, else $LCM_DEFAULT_URL, else the loopback default.
 std::string lcm_url_or_default(const std::string& given_url);
 
@@ -31,14 +37,16 @@ void check_network(const std::string& url);
 ///
 /// A thread of its own takes everything from LCM at once (LCM's queues drop the newest message when
 /// full), refuses what cannot be a message (size, time), and keeps a bounded queue per channel.
-/// What is no whole datagram of LCM is dropped in the kernel (DatagramFilter), and counted.
-/// Nothing is decoded here, and nothing is thrown through LCM's C frames. Messages carry our names
+/// What comes as multicast is received by ourselves (DatagramReceiver), without liblcm: what is no
+/// whole message in one datagram is refused there. Nothing is decoded here, and nothing is thrown
+/// through LCM's C frames. Messages carry our names
 /// of channels; only the network has those of [channels].
 class Bus {
  public:
   /// @throws SetupError when there is no multicast route or the URL is not one, with the cure.
   Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
-      LargeMessages large_messages = LargeMessages::kRefused, const ChannelNames& names = {});
+      LargeMessages large_messages = LargeMessages::kRefused, const ChannelNames& names = {},
+      Publishers publishers = Publishers::kAny);
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;

@@ -19,6 +19,7 @@ constexpr std::int64_t kHeaderBytes = 28;
 constexpr std::int64_t kMaxChannelBytes = 999;                  // as liblcm
 constexpr std::int64_t kMaxDataBytes = std::int64_t{64} << 20;  // raw images of other robots fit
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kFirstSearchBytes = 256;
 
 template <class Unsigned>
 Unsigned read_big_endian(const char* bytes) {
@@ -100,13 +101,14 @@ bool LogReader::read_header(std::int64_t offset, Header& header) {
          header.channel_bytes + header.data_bytes <= size_bytes_ - offset - kHeaderBytes;
 }
 
-/// Offset of the next whole event at or behind `offset`.
+/// Offset of the next whole event at or behind `offset`. O(bytes up to there): a log may have a
+/// byte of garbage behind every event.
 std::optional<std::int64_t> LogReader::find_event(std::int64_t offset) {
   const std::array<char, 4> sync{'\xED', '\xA1', '\xDA', '\x01'};
-  std::vector<char> window(kBufferBytes);
+  std::vector<char> window(kFirstSearchBytes);
   while (size_bytes_ - offset >= kHeaderBytes) {
     file_.seekg(offset);
-    const std::int64_t wanted_bytes = std::min<std::int64_t>(kBufferBytes, size_bytes_ - offset);
+    const std::int64_t wanted_bytes = std::min(std::ssize(window), size_bytes_ - offset);
     file_.read(window.data(), wanted_bytes);
     const auto end = window.begin() + wanted_bytes;
     for (auto at = window.begin();; ++at) {
@@ -117,6 +119,7 @@ std::optional<std::int64_t> LogReader::find_event(std::int64_t offset) {
       if (read_header(candidate, header)) return candidate;
     }
     offset += std::max<std::int64_t>(1, wanted_bytes - 3);
+    window.resize(std::min(2 * window.size(), kBufferBytes));
   }
   return std::nullopt;
 }

@@ -23,10 +23,18 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
     return begin_anew(std::move(message));
   }
   clock_watch_.see_fitting();
-  newest_ = has_any_ ? std::max(newest_, message.time) : message.time;
-  has_any_ = true;
-  const std::string channel = message.channel;
-  if (!waiting_.insert(std::move(message)).second) counters.add(channel + " duplicates");
+  Stream& stream = streams_[message.channel];
+  judge_aside(stream, message.time, counters);
+  if (waiting_.contains(message) ||
+      std::ranges::find(stream.aside, message) != stream.aside.end()) {
+    counters.add(message.channel + " duplicates");
+    return {};
+  }
+  if (leads(stream, message.time)) {
+    stream.aside.push_back(std::move(message));
+    return {};
+  }
+  put_into_order(stream, std::move(message));
   return release_until(newest_ - window_);
 }
 
@@ -40,21 +48,58 @@ Message ReorderBuffer::stamped(Message message) const {
 }
 
 ReorderBuffer::Misfit ReorderBuffer::misfit(const Message& message) const {
-  const auto released = released_.find(message.channel);
-  if (released != released_.end() && message.time < released->second) return Misfit::kLate;
+  const auto stream = streams_.find(message.channel);
+  if (stream != streams_.end() && stream->second.released &&
+      message.time < *stream->second.released)
+    return Misfit::kLate;
   if (has_any_ && message.time > newest_ + ClockWatch::kLongestPause) return Misfit::kAhead;
   return Misfit::kNone;
 }
 
+bool ReorderBuffer::leads(const Stream& stream, Timestamp time) const {
+  if (!has_any_ || time <= newest_ + kLead) return false;
+  return !stream.newest || time > *stream.newest + 2 * stream.usual_step;
+}
+
+/// @param time  of a message of the same channel that follows.
+void ReorderBuffer::judge_aside(Stream& stream, Timestamp time, Counters& counters) {
+  if (stream.aside.empty() || stream.aside.front().time == time) return;
+  if (time > stream.aside.front().time) {
+    for (Message& message : std::exchange(stream.aside, {}))
+      put_into_order(stream, std::move(message));
+  } else {
+    counters.add(stream.aside.front().channel + " rejected: time jumps ahead",
+                 CountKind::kRejection, std::ssize(stream.aside));
+    stream.aside.clear();
+  }
+}
+
+void ReorderBuffer::put_into_order(Stream& stream, Message message) {
+  const Timestamp time = message.time;
+  newest_ = has_any_ ? std::max(newest_, time) : time;
+  has_any_ = true;
+  if (!stream.newest) {
+    stream.newest = time;
+  } else if (time > *stream.newest) {
+    stream.usual_step = std::min(time - *stream.newest, 2 * stream.usual_step);
+    stream.newest = time;
+  }
+  waiting_.insert(std::move(message));
+}
+
 std::vector<Message> ReorderBuffer::begin_anew(Message message) {
   std::vector<Message> before = flush();
-  newest_ = message.time;
-  released_.clear();
-  waiting_.insert(std::move(message));
+  streams_.clear();
+  has_any_ = false;
+  put_into_order(streams_[message.channel], message);
   return before;
 }
 
 std::vector<Message> ReorderBuffer::flush() {
+  for (auto& [channel, stream] : streams_) {
+    for (Message& message : std::exchange(stream.aside, {}))
+      put_into_order(stream, std::move(message));
+  }
   return release_until(newest_);
 }
 
@@ -62,7 +107,7 @@ std::vector<Message> ReorderBuffer::release_until(Timestamp time) {
   std::vector<Message> released;
   while (!waiting_.empty() && waiting_.begin()->time <= time) {
     released.push_back(std::move(waiting_.extract(waiting_.begin()).value()));
-    released_[released.back().channel] = released.back().time;
+    streams_[released.back().channel].released = released.back().time;
   }
   return released;
 }

@@ -7,6 +7,7 @@
 #include "common/time/clock_watch.hpp"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ namespace waymark {
 /// channel may lag behind the others by more, as what is computed from them does. Dropped and
 /// counted is what comes later than something newer of its own channel, and what jumps absurdly
 /// ahead, which would let nothing else wait; unless the clock was set.
+///
+/// What leads its channel and all others by far is set aside: either there was a pause, or it is
+/// stamped wrong. The next message of its channel tells: one that is newer, or one that is not.
 class ReorderBuffer {
  public:
   explicit ReorderBuffer(Duration window);
@@ -33,15 +37,30 @@ class ReorderBuffer {
   /// How a message does not fit what came before.
   enum class Misfit { kNone, kLate, kAhead };
 
+  // Sensors' periods and the jitter between processes; being set aside costs one period of delay.
+  static constexpr Duration kLead = std::chrono::milliseconds{100};
+  static constexpr Duration kLongestStep = std::chrono::milliseconds{500};
+
+  /// What is known of a channel.
+  struct Stream {
+    std::optional<Timestamp> newest{};    ///< of what was put into order
+    std::optional<Timestamp> released{};  ///< of what was released
+    Duration usual_step{kLongestStep};    ///< twice as long may be usual, too
+    std::vector<Message> aside{};         ///< of one stamp
+  };
+
   Misfit misfit(const Message& message) const;
   Message stamped(Message message) const;
+  bool leads(const Stream& stream, Timestamp time) const;
+  void judge_aside(Stream& stream, Timestamp time, Counters& counters);
+  void put_into_order(Stream& stream, Message message);
   std::vector<Message> begin_anew(Message message);
   std::vector<Message> release_until(Timestamp time);
 
   Duration window_;
   std::set<Message, Before> waiting_;
   Timestamp newest_{};
-  std::map<std::string, Timestamp, std::less<>> released_;  ///< newest of each channel
+  std::map<std::string, Stream, std::less<>> streams_;
   ClockWatch clock_watch_;
   bool has_any_{false};
 };

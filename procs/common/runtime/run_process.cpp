@@ -10,6 +10,7 @@
 #include "common/runtime/replay.hpp"
 #include "common/runtime/signals.hpp"
 #include "common/runtime/status.hpp"
+#include "common/runtime/supervisor.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -165,10 +166,12 @@ class RealTimeFeed {
 /// Live, on whatever arrives, until a signal asks to stop.
 int run_real_time(const ProcessTraits& traits, const Network& network, Node& node, Inbox& inbox,
                   Outbox& outbox) {
-  Bus bus{network.url, inbox.subscriptions(), network.large_messages, network.names};
+  Bus bus{network.url, inbox.subscriptions(), network.large_messages, network.names,
+          Publishers::kOnePerChannel};
   StatusReporter reporter{traits.name};
   RealTimeFeed feed{bus, inbox, outbox};
   spdlog::info("ready, real time on {}", network.url);
+  tell_supervisor(kReady);
   const auto start = steady_clock::now();
   bool hinted = false;
   while (stop_signal() == 0) {
@@ -178,8 +181,9 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
       spdlog::warn("nothing has come on {} so far; is it the robot's LCM network?", network.url);
       hinted = true;
     }
-    reporter.report(bus, inbox.counters(), feed.newest(), "real-time");
+    if (reporter.report(bus, inbox.counters(), feed.newest(), "real-time")) tell_supervisor(kAlive);
   }
+  tell_supervisor(kStopping);
   const auto stop = steady_clock::now();
   while (steady_clock::now() - stop < kDrain && feed.take(milliseconds{0})) {
   }

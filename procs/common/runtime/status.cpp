@@ -14,10 +14,10 @@ StatusReporter::StatusReporter(std::string_view process_name) : name_{process_na
   channel_ += "_STATUS";
 }
 
-void StatusReporter::report(Bus& bus, Counters& counters, Timestamp newest,
+bool StatusReporter::report(Bus& bus, Counters& counters, Timestamp newest,
                             std::string_view state) {
   const auto now = std::chrono::steady_clock::now();
-  if (now - last_ < std::chrono::seconds{1}) return;
+  if (now - last_ < std::chrono::seconds{1}) return false;
   last_ = now;
   bus.collect_counts(counters);
   process_status_t status{};
@@ -34,6 +34,7 @@ void StatusReporter::report(Bus& bus, Counters& counters, Timestamp newest,
   status.num_counters = static_cast<int>(status.counters.size());
   bus.publish(encode(Channel<process_status_t>{channel_}, status));
   warn_of_new_losses(counters);
+  return true;
 }
 
 /// Warns whenever a count of lost or refused messages has doubled, so that a flood does not flood

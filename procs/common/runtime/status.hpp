@@ -15,8 +15,8 @@ class StatusReporter {
  public:
   explicit StatusReporter(std::string_view process_name);
 
-  /// Does something once a second at most.
-  void report(Bus& bus, Counters& counters, Timestamp newest, std::string_view state);
+  /// Does something once a second at most. @return whether it did.
+  bool report(Bus& bus, Counters& counters, Timestamp newest, std::string_view state);
 
  private:
   void warn_of_new_losses(const Counters& counters);

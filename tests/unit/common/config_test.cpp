@@ -105,6 +105,7 @@ TEST(Config, AllProblemsAreReportedWithTheirLines) {
 
 TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
   EXPECT_THAT(error_of({{file_with("[robot\n")}, {}}), HasSubstr("config_test.toml:1: not TOML"));
+  EXPECT_THAT(error_of({{file_with("[\x01")}, {}}), HasSubstr("config_test.toml:1: not TOML"));
   EXPECT_THAT(error_of({{"/no/such.toml"}, {}}), HasSubstr("/no/such.toml: cannot be read"));
 }
 

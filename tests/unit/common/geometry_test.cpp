@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/geometry/se2.hpp"
+#include "common/node/counters.hpp"
 #include "common/random/random.hpp"
 #include "common/robot/robot_config.hpp"
-#include "common/runtime/reorder_buffer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -93,10 +93,6 @@ TEST(CameraConfig, LooksForwardByDefault) {
   EXPECT_TRUE((camera.base_from_camera() * ahead).isApprox(-Eigen::Vector3d::UnitZ()));
 }
 
-Message at(std::int64_t utime_us, std::string channel = "A") {
-  return {std::move(channel), timestamp_from_us(utime_us), {}};
-}
-
 TEST(Counters, TheKindIsNotInTheName) {
   Counters counters;
   counters.add("late rejected words that were dropped");
@@ -107,57 +103,6 @@ TEST(Counters, TheKindIsNotInTheName) {
   EXPECT_EQ(counters.total(CountKind::kRejection), 4);
   EXPECT_EQ(counters.get("nothing suspicious"), 4);
   EXPECT_EQ(counters.get("something else"), 0);
-}
-
-TEST(ReorderBuffer, SortsWithinItsWindowAndDropsWhatIsLate) {
-  Counters counters;
-  ReorderBuffer buffer{Duration{100}};
-  EXPECT_TRUE(buffer.add(at(1000), counters).empty());
-  EXPECT_TRUE(buffer.add(at(1050), counters).empty());
-  EXPECT_TRUE(buffer.add(at(1020), counters).empty());
-  const auto released = buffer.add(at(1150), counters);
-  ASSERT_EQ(released.size(), 3U);
-  EXPECT_EQ(released[1].time, timestamp_from_us(1020));
-  EXPECT_TRUE(buffer.add(at(1040), counters).empty());
-  EXPECT_EQ(counters.get("A late, dropped"), 1);
-  EXPECT_EQ(counters.total(CountKind::kLoss), 1);
-  EXPECT_EQ(buffer.flush().size(), 1U);
-}
-
-TEST(ReorderBuffer, AChannelMayLagBehindTheOthers) {
-  Counters counters;
-  ReorderBuffer buffer{Duration{100}};
-  buffer.add(at(1000, "SENSOR"), counters);
-  EXPECT_EQ(buffer.add(at(2000, "SENSOR"), counters).size(), 1U);
-  EXPECT_EQ(buffer.add(at(900, "ANSWER"), counters).size(), 1U);
-  EXPECT_EQ(buffer.add(at(950, "ANSWER"), counters).size(), 1U);
-  EXPECT_TRUE(buffer.add(at(940, "ANSWER"), counters).empty());
-  EXPECT_EQ(counters.get("ANSWER late, dropped"), 1);
-}
-
-TEST(ReorderBuffer, AClockThatWasSetIsFollowed) {
-  constexpr std::int64_t kHour_us = 3'600'000'000;
-  for (const std::int64_t step_us : {-kHour_us, kHour_us}) {
-    Counters counters;
-    ReorderBuffer buffer{Duration{0}};
-    int released = 0;
-    for (std::int64_t i = 0; i < 200; ++i) {
-      const std::int64_t utime = 2 * kHour_us + 100'000 * i + (i < 100 ? 0 : step_us);
-      released += static_cast<int>(buffer.add(at(utime, i % 2 ? "A" : "B"), counters).size());
-    }
-    EXPECT_EQ(counters.get("clock was set"), 1) << step_us;
-    EXPECT_GT(released, 170) << step_us;
-  }
-}
-
-TEST(ReorderBuffer, AJumpOfTheClockDoesNotSilenceEverybodyElse) {
-  Counters counters;
-  ReorderBuffer buffer{Duration{0}};
-  EXPECT_EQ(buffer.add(at(1000), counters).size(), 1U);
-  EXPECT_TRUE(buffer.add(at(3'600'000'000), counters).empty());
-  EXPECT_EQ(counters.get("A rejected: time jumps ahead"), 1);
-  EXPECT_EQ(counters.total(CountKind::kRejection), 1);
-  EXPECT_EQ(buffer.add(at(2000), counters).size(), 1U);
 }
 
 }  // namespace

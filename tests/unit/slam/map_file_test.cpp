@@ -72,6 +72,27 @@ TEST_F(SavedMap, ThatIsDamagedAnywhereIsRefusedOrTheSame) {
   fs::remove(damaged);
 }
 
+TEST_F(SavedMap, WithATileFarFromTheOthersIsRefused) {
+  const fs::path stray = other_file("stray");
+  LogReader reader{*file_};
+  LogWriter writer{stray};
+  while (const auto message = reader.next()) {
+    auto tiles = decode<map_tiles_t>(message->payload);
+    if (tiles.message)
+      tiles.message->tiles.at(0).tile_x = tiles.message->tiles.at(0).tile_y = 1 << 19;
+    writer.write(tiles.message ? encode(channels::kSlamMap, *tiles.message) : *message);
+  }
+  writer.close();
+  try {
+    read_map_file(stray);
+    ADD_FAILURE() << "it was read";
+  } catch (const SetupError& error) {
+    EXPECT_NE(std::string{error.what()}.find("more tiles than a building has"), std::string::npos)
+        << error.what();
+  }
+  fs::remove(stray);
+}
+
 TEST_F(SavedMap, OfAnotherFormatIsRefused) {
   const MapFile map = read_map_file(*file_);
   std::vector<Message> messages = to_map_messages(map.map, map.info);

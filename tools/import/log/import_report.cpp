@@ -8,14 +8,18 @@ namespace {
 
 constexpr std::int64_t kNamedPerKind = 10;
 
+std::string address_of(const std::string& file, AddressUnit unit, std::int64_t at) {
+  if (unit == AddressUnit::kLine) return fmt::format("{}:{}", file, at);
+  return fmt::format("{}: {} {}", file, unit == AddressUnit::kByte ? "byte" : "row", at);
+}
+
 }  // namespace
 
 void ImportReport::skip(std::string_view kind, std::int64_t at, std::string_view detail) {
   const std::int64_t count = ++skipped_by_kind_.try_emplace(std::string{kind}, 0).first->second;
   if (count > kNamedPerKind) return;
-  const std::string address = unit_ == AddressUnit::kLine ? fmt::format("{}:{}", file_, at)
-                                                          : fmt::format("{}: byte {}", file_, at);
-  messages_.push_back(fmt::format("{}: skipped: {}: {}", address, kind, detail));
+  messages_.push_back(
+      fmt::format("{}: skipped: {}: {}", address_of(file_, unit_, at), kind, detail));
   if (count == kNamedPerKind) {
     messages_.push_back(fmt::format("{}: further cases of \"{}\" are only counted", file_, kind));
   }

@@ -12,7 +12,7 @@
 namespace waymark {
 
 /// What a position in the imported file counts.
-enum class AddressUnit { kLine, kByte };
+enum class AddressUnit { kLine, kByte, kRow };
 
 /// What is wrong with a line or a message.
 struct LineProblem {
@@ -25,8 +25,10 @@ class ImportReport {
   ImportReport(const std::filesystem::path& file, AddressUnit unit)
       : file_{file.filename().string()}, unit_{unit} {}
 
+  void count_in(AddressUnit unit) { unit_ = unit; }
+
   /// A line or event that is left out. The first ones of a kind are named, all are counted.
-  /// @param at  line number (from 1) or byte offset (from 0)
+  /// @param at  line number (from 1), byte offset (from 0) or row of a table
   void skip(std::string_view kind, std::int64_t at, std::string_view detail);
 
   /// A decision that the user should know of.

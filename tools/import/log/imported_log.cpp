@@ -92,14 +92,19 @@ void cover_scans(ImportedLog& log, ImportReport& report) {
   if (log.odometry.empty() || log.scans.empty()) return;
   const Timestamp first = log.odometry.front().time;
   const Timestamp last = log.odometry.back().time;
-  std::erase_if(log.scans, [&](const ImportedScan& scan) {
-    if (scan.time >= first - kLongestHold && scan.last_beam_time <= last + kLongestHold) {
-      return false;
-    }
-    report.skip("no odometry at its time", scan.at,
-                fmt::format("a scan at {:.6f} s, odometry from {:.6f} to {:.6f} s",
-                            to_seconds(scan.time), to_seconds(first), to_seconds(last)));
+  const auto is_outside = [&](Timestamp start, Timestamp end, std::int64_t at,
+                              std::string_view what) {
+    if (start >= first - kLongestHold && end <= last + kLongestHold) return false;
+    report.skip("no odometry at its time", at,
+                fmt::format("{} at {:.6f} s, odometry from {:.6f} to {:.6f} s", what,
+                            to_seconds(start), to_seconds(first), to_seconds(last)));
     return true;
+  };
+  std::erase_if(log.scans, [&](const ImportedScan& scan) {
+    return is_outside(scan.time, scan.last_beam_time, scan.at, "a scan");
+  });
+  std::erase_if(log.images, [&](const ImportedImage& image) {
+    return is_outside(image.time, image.time, image.at, "an image");
   });
   if (log.scans.empty()) return;
   const Timestamp first_scan = log.scans.front().time;
@@ -139,6 +144,8 @@ void complete(ImportedLog& log, ImportReport& report) {
   if (log.scans.empty()) throw SetupError{"no scan has odometry at its time" + held};
   log.robot.base.odometry_rate_hz = rate_hz(log.odometry, 1.0, 200.0);
   log.robot.lidar.rate_hz = rate_hz(log.scans, 0.1, 100.0);
+  std::ranges::sort(log.images, {}, &ImportedImage::time);
+  if (log.images.size() > 1) log.robot.camera.rate_hz = rate_hz(log.images, 0.1, 200.0);
   log.robot.lidar.num_beams = std::ranges::max(log.scans, {}, &ImportedScan::num_beams).num_beams;
 }
 

@@ -30,11 +30,18 @@ struct ImportedPose {
   Se2 pose{};
 };
 
+struct ImportedImage {
+  Timestamp time{};
+  std::int64_t at{0};
+  Message message{};  ///< for the channel CAMERA
+};
+
 struct ImportedLog {
   std::vector<ImportedScan> scans{};     ///< ascending times
   std::vector<ImportedPose> odometry{};  ///< odom_from_base, ascending times
   std::vector<ImportedPose>
       reference{};  ///< poses of the base that the log itself gives, ascending
+  std::vector<ImportedImage> images{};
   RobotConfig robot{};
   std::vector<double> no_return_codes_m{};  ///< ranges that were found to say so, ascending
   std::string contents{};                   ///< what the file held, for the summary
@@ -60,8 +67,8 @@ Se2 pose_at(const std::vector<ImportedPose>& poses, Timestamp time);
 void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& report);
 
 /// A scan is processed when odometry has reached it. Where odometry starts after the first scan or
-/// ends before the last one by at most a second, its first or last pose is held; scans further out
-/// are removed.
+/// ends before the last one by at most a second, its first or last pose is held; scans and images
+/// further out are removed.
 void cover_scans(ImportedLog& log, ImportReport& report);
 
 /// Puts everything in order, takes the odometry from the scans where there is no other, and fills

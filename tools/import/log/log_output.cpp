@@ -52,6 +52,8 @@ void write_log(const ImportedLog& log, const std::filesystem::path& out) {
   for (const ImportedPose& sample : log.odometry) {
     messages.push_back(encode(channels::kOdometry, to_pose_message(sample.time, sample.pose)));
   }
+  for (const ImportedImage& image : log.images)
+    messages.push_back(image.message);
   std::ranges::sort(messages, comes_before);
   LogWriter writer{out};
   for (const Message& message : messages)
@@ -124,6 +126,7 @@ std::string summary(const ImportedLog& log, const ImportReport& report) {
   line("scans", fmt::format("{}", log.scans.size()));
   line("beams", beam_counts(log));
   line("odometry", fmt::format("{} samples", log.odometry.size()));
+  if (!log.images.empty()) line("images", fmt::format("{}", log.images.size()));
   line("duration", fmt::format("{:.3f} s", to_seconds(last.time - first.time)));
   line("path length", fmt::format("{:.3f} m (odometry)", path_length_m(log.odometry)));
   if (!log.reference.empty()) {

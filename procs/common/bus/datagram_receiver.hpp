@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// LCM's datagrams as they come from the network, with their senders.
+#pragma once
+
+#include <chrono>
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace waymark {
+
+/// Socket that a datagram came from: every process that publishes has one of its own.
+struct Sender {
+  std::uint32_t address{0};  ///< IPv4, in the order of this machine
+  std::uint16_t port{0};
+
+  auto operator<=>(const Sender&) const = default;
+};
+
+/// "127.0.0.1:40000".
+std::string to_string(const Sender& sender);
+
+struct MulticastGroup {
+  std::uint32_t address{0};  ///< IPv4, in the order of this machine
+  std::uint16_t port{0};
+};
+
+/// The group of udpm://ADDRESS:PORT?..., with LCM's defaults for what is missing; nothing when the
+/// URL is of another kind of network.
+/// @throws SetupError when address or port is none.
+std::optional<MulticastGroup> multicast_group_of(const std::string& lcm_url);
+
+/// A message in one datagram. Source: lcm_udpm.c, "short message".
+struct WholeMessage {
+  std::string_view channel{};
+  std::span<const std::uint8_t> payload{};
+};
+
+/// Views of the datagram's bytes; nothing where they are no whole message of LCM.
+std::optional<WholeMessage> whole_message_in(std::span<const std::uint8_t> datagram);
+
+/// Takes whole messages of one datagram from a multicast group.
+///
+/// liblcm receives, too, but does not say from whom, and 1.3.1 puts large messages together from
+/// fragments without checking their offsets: two forged datagrams make it write outside of its
+/// buffer. None of our messages needs fragments.
+class DatagramReceiver {
+ public:
+  struct Received {
+    Sender sender{};
+    WholeMessage message{};  ///< valid until the next call
+  };
+
+  /// @throws std::system_error when the group cannot be joined.
+  explicit DatagramReceiver(const MulticastGroup& group);
+  ~DatagramReceiver();
+  DatagramReceiver(const DatagramReceiver&) = delete;
+  DatagramReceiver& operator=(const DatagramReceiver&) = delete;
+
+  /// Nothing when no datagram comes within kWait, or one that is no message.
+  std::optional<Received> receive();
+
+  /// Datagrams since the last call that were no message.
+  std::int64_t take_malformed();
+
+  /// Datagrams since the last call for which there was no room: nobody took the others away.
+  std::int64_t take_overflowed();
+
+ private:
+  static constexpr std::chrono::milliseconds kWait{50};
+
+  void join(const MulticastGroup& group);
+
+  int socket_{-1};
+  std::vector<std::uint8_t> bytes_{};
+  std::int64_t malformed_{0};
+  std::uint32_t overflowed_before_{0};  ///< by the kernel's count, which wraps
+};
+
+}  // namespace waymark

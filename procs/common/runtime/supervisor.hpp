@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a process says to the supervisor that has started it (systemd, where a unit asks for it).
+#pragma once
+
+#include <string_view>
+
+namespace waymark {
+
+/// States of sd_notify(3): a datagram to the socket that $NOTIFY_SOCKET names. Does nothing where
+/// there is no supervisor, or it does not listen.
+inline constexpr std::string_view kReady = "READY=1";
+inline constexpr std::string_view kAlive = "WATCHDOG=1";
+inline constexpr std::string_view kStopping = "STOPPING=1";
+
+void tell_supervisor(std::string_view state);
+
+}  // namespace waymark

@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Random inputs, guided by coverage, for everything that reads bytes of others: libFuzzer with AddressSanitizer and
+# UndefinedBehaviorSanitizer. Goes on from its corpus, which begins with the messages, the map and the files of a short run.
+#
+# usage: tests/fuzz/run.sh [options] [TARGET...]
+#   TARGET       messages datagram log map config survey carmen mbot rosbag jpeg (default: all, one after the other)
+#   --runs N     executions of each (default: 100000)
+#   --seconds N  instead so many seconds for each
+#   --corpus DIR (default: build/fuzz/corpus)
+#
+# An input that crashes, takes more than 2 s under the sanitizers, or allocates more than 16 MB at once (map: 64 MB, for
+# the table of tiles of a large building; rosbag: 300 MB, for a chunk) is kept in CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE" repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
+# shellcheck source=deploy/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../../deploy/common.sh"
+
+readonly kTargets=(messages datagram log map config survey carmen mbot rosbag jpeg)
+readonly kMaxInput_bytes=65536
+amount=-runs=100000 targets=() corpus=$source_dir/build/fuzz/corpus
+while (($# > 0)); do
+  case $1 in
+    --help | -h) print_usage && exit 0 ;;
+    --runs) need_value "$@" && need_count "$1" "$2" && amount=-runs=$2 && shift 2 ;;
+    --seconds) need_value "$@" && need_count "$1" "$2" && amount=-max_total_time=$2 && shift 2 ;;
+    --corpus) need_value "$@" && corpus=$2 && shift 2 ;;
+    -*) usage_error "unknown option '$1'" ;;
+    *)
+      [[ " ${kTargets[*]} " == *" $1 "* ]] || usage_error "no target '$1'; there are ${kTargets[*]}"
+      targets+=("$1") && shift
+      ;;
+  esac
+done
+((${#targets[@]} > 0)) || targets=("${kTargets[@]}")
+command -v clang++-16 >/dev/null || die $kExitUsage "no clang++-16 here; deploy/install-deps.sh --fuzz installs it"
+
+# make_seeds: from a live run of the release's programs.
+make_seeds() {
+  local work
+  work=$(mktemp -d)
+  printf '[world]\nlength_m = 5.0\n[markers]\nfirst_m = 2.0\nspacing_m = 2.0\nlast_m = 4.0\n[route]\nend_x_m = 3.0\nspeed_mps = 0.5\n' \
+    >"$work/short.toml"
+  "$source_dir/deploy/launch.sh" "$work/short.toml" --out "$work/run" --save-map "$work/short.map.lcm" >"$work/output" 2>&1 ||
+    die $kExitFailed "the run for the first inputs failed: see $work/output"
+  "$source_dir/build/fuzz/tests/fuzz/fuzz_seeds" "$work/run" "$work/short.map.lcm" "$corpus"
+  rm -rf -- "$work"
+}
+
+build fuzz fuzz_seeds "${targets[@]/#/fuzz_}"
+[[ -d $corpus/messages ]] || { build release programs && make_seeds; }
+[[ -d $corpus/rosbag ]] || /usr/bin/python3 -B "$source_dir/tests/python/bag_drive.py" "$corpus/rosbag"
+mkdir -p "$corpus/findings"
+
+failed=()
+for target in "${targets[@]}"; do
+  mkdir -p "$corpus/$target"
+  log=$corpus/$target.log
+  max_MB=16
+  [[ $target != map ]] || max_MB=64
+  [[ $target != rosbag ]] || max_MB=300
+  "$source_dir/build/fuzz/tests/fuzz/fuzz_$target" "$corpus/$target" "$amount" -max_len=$kMaxInput_bytes -timeout=2 \
+    -rss_limit_mb=1024 -malloc_limit_mb=$max_MB -print_final_stats=1 -artifact_prefix="$corpus/findings/$target-" >"$log" 2>&1 ||
+    failed+=("$target")
+  executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+  features=$(grep -oE 'cov: [0-9]+ ft: [0-9]+' "$log" | tail -n 1)
+  say "$target: ${executions:-some} executions, ${features:-no coverage}, $(find "$corpus/$target" -type f | wc -l) inputs"
+done
+((${#failed[@]} == 0)) || die $kExitFailed "findings in ${failed[*]}: see $corpus/findings and $corpus/TARGET.log"

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Camera and markers: what is written for them, and what the frames show.
+#include "doctor/doctor.hpp"
+#include "doctor/report.hpp"
+#include "synthetic_drive.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace waymark {
+namespace {
+
+using ::testing::HasSubstr;
+
+Check check_of(const DoctorInput& input, const std::string& name) {
+  const Diagnosis diagnosis = diagnose(input);
+  return *std::ranges::find(diagnosis.checks, name, &Check::name);
+}
+
+TEST(DoctorsCamera, ACameraThatIsTwentyMillisecondsLateIsAWarning) {
+  const Check check = check_of(drive_in_room({.camera_late_s = 0.02}), "camera_time_offset");
+  EXPECT_EQ(check.verdict, Verdict::kWarn) << check.finding;
+  EXPECT_NEAR(check.value.value(), 20.0, 4.0);
+  EXPECT_THAT(check.remedy, HasSubstr("ms to the camera's times"));
+}
+
+TEST(DoctorsCamera, WhatIsFoundIsWrittenIntoTheRobot) {
+  const DoctorInput input = drive_in_room({.marker_size = 0.96});
+  const Diagnosis diagnosis = diagnose(input);
+  EXPECT_NEAR(diagnosis.robot.markers.size_m, 0.96 * input.described->markers.size_m, 0.004);
+  EXPECT_EQ(diagnosis.robot.camera.fx_px, input.described->camera.fx_px);
+}
+
+TEST(DoctorsCamera, OdometryOfAnotherScaleIsNoOtherFocalLength) {
+  const DoctorInput input = drive_in_room({.distance_scale = 0.95});
+  EXPECT_EQ(check_of(input, "focal_length").verdict, Verdict::kPass);
+  EXPECT_EQ(check_of(input, "odometry_distance_scale").verdict, Verdict::kWarn);
+}
+
+TEST(DoctorsCamera, AnotherDictionaryIsNamed) {
+  DoctorInput input = drive_in_room({.duration_s = 20.0});
+  input.camera->markers_of_described = 2;  // read by chance
+  input.camera->markers_by_dictionary = {{"DICT_4X4_1000", 60}, {"DICT_7X7_1000", 1}};
+  input.camera->largest_id = {{"DICT_4X4_1000", 70}, {"DICT_7X7_1000", 5}};
+  const Diagnosis diagnosis = diagnose(input);
+  const Check& check =
+      *std::ranges::find(diagnosis.checks, std::string{"marker_dictionary"}, &Check::name);
+  EXPECT_EQ(check.verdict, Verdict::kFail);
+  EXPECT_THAT(check.finding,
+              HasSubstr("60 markers are read with DICT_4X4_100, 2 with DICT_6X6_250"));
+  EXPECT_THAT(check.remedy, HasSubstr("\"DICT_4X4_100\""));
+  EXPECT_EQ(diagnosis.robot.markers.dictionary, "DICT_4X4_100");
+}
+
+TEST(DoctorsCamera, BlurAndUnreadableFramesAreNamed) {
+  DoctorInput input = drive_in_room({.duration_s = 20.0});
+  std::ranges::fill(input.camera->blurs_px, 4.0);
+  input.camera->problems["another size"] = input.camera->num_looked_at / 2;
+  EXPECT_EQ(check_of(input, "blur").verdict, Verdict::kFail);
+  const Check frames = check_of(input, "camera_frames");
+  EXPECT_EQ(frames.verdict, Verdict::kFail);
+  EXPECT_THAT(frames.finding, HasSubstr("another size"));
+}
+
+TEST(DoctorsCamera, WithoutMarkersNothingIsSaidOfThem) {
+  DoctorInput input = drive_in_room({.duration_s = 20.0});
+  input.camera->sightings.clear();
+  input.camera->blurs_px.clear();
+  input.camera->markers_of_described = 0;
+  for (const char* name :
+       {"marker_dictionary", "blur", "focal_length", "marker_size", "camera_yaw"}) {
+    EXPECT_EQ(check_of(input, name).verdict, Verdict::kUnchecked) << name;
+  }
+}
+
+TEST(DoctorsCamera, BlurIsTheStandardDeviationAcrossTheSides) {
+  constexpr int kModules = 8;
+  constexpr int kSide_px = 160;
+  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250);
+  cv::Mat marker;
+  cv::aruco::drawMarker(dictionary, 5, kSide_px, marker);
+  const CameraConfig camera{};
+  for (const double sigma_px : {1.0, 2.0, 3.5}) {
+    cv::Mat image{camera.height_px, camera.width_px, CV_8UC1, cv::Scalar{230}};
+    marker.copyTo(image(cv::Rect{200, 150, kSide_px, kSide_px}));
+    cv::GaussianBlur(image, image, {}, sigma_px);
+    const double last = kSide_px - 0.5;
+    const double blur_px = blur_of_marker_px(image, camera,
+                                             {Eigen::Vector2d{199.5, 149.5},
+                                              {200 + last, 149.5},
+                                              {200 + last, 150 + last},
+                                              {199.5, 150 + last}},
+                                             kModules);
+    EXPECT_NEAR(blur_px, sigma_px, 0.12 * sigma_px);
+  }
+}
+
+}  // namespace
+}  // namespace waymark

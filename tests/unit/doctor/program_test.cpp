@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program: exit codes, files, and logs that cannot be used.
+#include "common/log/log_file.hpp"
+#include "import/log/log_output.hpp"
+#include "synthetic_drive.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <fstream>
+
+namespace waymark {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::filesystem::path test_folder() {
+  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+  return std::filesystem::path{::testing::TempDir()} / "waymark_doctor" / test->name();
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file{path, std::ios::binary};
+  return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+struct Ended {
+  int code{-1};
+  std::string out{};
+  std::string errors{};
+};
+
+Ended doctor(const std::string& arguments) {
+  const auto folder = test_folder();
+  const std::string command = std::string{WAYMARK_BUILD_DIR} + "/waymark-doctor " + arguments +
+                              " >" + (folder / "out").string() + " 2>" +
+                              (folder / "errors").string();
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / "out"),
+          read_file(folder / "errors")};
+}
+
+/// run.lcm with robot.toml beside it, in an empty folder.
+std::string run_of(const DriveFaults& faults) {
+  std::filesystem::remove_all(test_folder());
+  const DoctorInput input = drive_in_room(faults);
+  write_imported_log(input.log, input.report, test_folder() / "run.lcm");
+  return (test_folder() / "run.lcm").string();
+}
+
+TEST(DoctorProgram, AHealthyRobotGives0AndAFaultyOne1) {
+  EXPECT_EQ(doctor(run_of({})).code, 0);
+  const Ended mirrored = doctor(run_of({.is_mirrored = true}));
+  EXPECT_EQ(mirrored.code, 1);
+  EXPECT_THAT(mirrored.out, HasSubstr("FAIL  lidar_mirrored"));
+}
+
+TEST(DoctorProgram, WritesARobotOnce) {
+  const std::string log = run_of({.base_from_lidar = Se2{-0.2, -0.05, 0.0}});
+  const std::string robot = (test_folder() / "found.toml").string();
+
+  const Ended first = doctor(log + " --json --write-robot " + robot);
+
+  EXPECT_EQ(first.code, 1);
+  EXPECT_EQ(nlohmann::json::parse(first.out)["checks"][0]["name"], "records");
+  EXPECT_NEAR(load_config<RobotOnly>({{robot}, {}}).robot.lidar.x_m, -0.2, 0.02);
+  EXPECT_EQ(doctor(log + " --write-robot " + robot).code, 2) << "it replaces nothing";
+  EXPECT_EQ(doctor(log + " --config " + robot).code, 0) << "its own description is right";
+}
+
+TEST(DoctorProgram, LogsThatCannotBeUsedGive2AndASentence) {
+  const std::string log = run_of({.duration_s = 5.0});
+  std::ofstream{test_folder() / "text"} << "no log of anything\n";
+  std::ofstream{test_folder() / "empty"};
+  std::ofstream{test_folder() / "no_dictionary.toml"}
+      << "[robot.markers]\ndictionary = \"DICT_9X9_5\"\n";
+  LogWriter only_odometry{test_folder() / "no_lidar.lcm"};
+  only_odometry.write(encode(channels::kOdometry, pose2D_t{}));
+  only_odometry.close();
+  const auto path = [](const char* name) {
+    return (test_folder() / name).string();
+  };
+  for (const std::string& arguments :
+       {std::string{}, path("missing"), path("empty"), path("text"), path("no_lidar.lcm"),
+        log + " --lidar-channel NONE", log + " --config " + path("missing.toml"),
+        log + " --config " + path("no_dictionary.toml"), log + " --no-such-option",
+        log + " --seconds 3", std::string{"--seconds 0"}, log + " --lcm-url udpm://"}) {
+    const Ended ended = doctor(arguments);
+    EXPECT_EQ(ended.code, 2) << arguments;
+    EXPECT_FALSE(ended.errors.empty()) << arguments;
+  }
+}
+
+TEST(DoctorProgram, ADamagedLogIsNamedAndTheRestIsUsed) {
+  const std::string log = run_of({});
+  const std::string bytes = read_file(log);
+  std::ofstream{test_folder() / "cut.lcm", std::ios::binary}
+      << bytes.substr(0, bytes.size() / 2) + "garbage" + bytes.substr(bytes.size() / 2);
+
+  const Ended ended = doctor((test_folder() / "cut.lcm").string());
+
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_THAT(ended.out, HasSubstr("WARN  records"));
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "doctor/camera/camera_record.hpp"
+
+#include "common/log/log_file.hpp"
+#include "common/markers/marker_dictionary.hpp"
+#include "common/messages/codec.hpp"
+#include "common/messages/convert.hpp"
+#include "detector/core/frame_decoder.hpp"
+#include "detector/core/marker_detector.hpp"
+#include "detector/core/seen_square.hpp"
+#include "slam/core/scan/marker_sighting.hpp"
+
+#include <opencv2/core/utility.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace waymark {
+namespace {
+
+constexpr std::int64_t kMostFrames = 400;
+constexpr std::size_t kMostMessages = 1200;
+constexpr std::int64_t kDictionaryFrames = 30;
+constexpr int kBorderModules = 2;
+constexpr double kReach_px = 8.0;  // of edge profiles: holds blurs of up to half of it
+
+/// The largest of every family: the smaller ones are its beginning.
+constexpr std::array<std::string_view, 9> kFamilies{
+    "DICT_4X4_1000",      "DICT_5X5_1000",       "DICT_6X6_1000",
+    "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5",
+    "DICT_APRILTAG_25h9", "DICT_APRILTAG_36h10", "DICT_APRILTAG_36h11"};
+
+PixelFormat format_of(const image_t& image) {
+  switch (image.pixelformat) {
+    case image_t::PIXEL_FORMAT_GRAY:
+      return PixelFormat::kGray;
+    case image_t::PIXEL_FORMAT_RGB:
+      return PixelFormat::kRgb;
+    case image_t::PIXEL_FORMAT_BGR:
+      return PixelFormat::kBgr;
+    case image_t::PIXEL_FORMAT_MJPEG:
+      return PixelFormat::kMjpeg;
+    default:
+      return PixelFormat::kOther;
+  }
+}
+
+std::optional<CameraSighting> seen_by(const RobotConfig& robot, Timestamp time,
+                                      const MarkerDetection& marker) {
+  const auto sighting = sight_marker(marker, time, {}, robot.markers.size_m);
+  if (!sighting) return std::nullopt;
+  const Eigen::Isometry3d base_from_camera = robot.camera.base_from_camera();
+  const Eigen::Matrix3d turn = base_from_camera.linear();
+  CameraSighting seen{.id = marker.id, .time = time};
+  seen.place_in_camera =
+      base_from_camera.inverse() * Eigen::Vector3d{marker.base_from_marker.translation()};
+  seen.covariance_in_camera =
+      turn.transpose() * marker.covariance_in_base.topLeftCorner<3, 3>() * turn;
+  seen.facing_rad = sighting->base_from_marker.theta();
+  return seen;
+}
+
+class CameraReader {
+ public:
+  explicit CameraReader(const RobotConfig& robot)
+      : robot_{robot},
+        detector_{robot, {}},
+        modules_per_side_{find_dictionary(robot.markers.dictionary)->markerSize + kBorderModules} {
+    for (const std::string_view family : kFamilies)
+      finders_.emplace_back(family, CandidateFinder{*find_dictionary(family), {}});
+    described_.emplace_back(robot.markers.dictionary,
+                            CandidateFinder{*find_dictionary(robot.markers.dictionary), {}});
+  }
+
+  void look_at(const image_t& image, bool try_dictionaries) {
+    ++record_.num_looked_at;
+    const DecodedFrame frame =
+        decode_frame({format_of(image), image.width, image.height, image.row_stride, image.data},
+                     {robot_.camera.width_px, robot_.camera.height_px});
+    if (frame.problem != FrameProblem::kNone) {
+      ++record_.problems[std::string{to_string(frame.problem)}];
+      return;
+    }
+    for (const MarkerDetection& marker : detector_.detect(frame.gray))
+      add(frame.gray, timestamp_from_us(image.utime), marker);
+    if (!try_dictionaries) return;
+    record_.markers_of_described += std::ssize(described_.front().second.find(frame.gray));
+    for (const auto& [name, finder] : finders_) {
+      for (const MarkerCandidate& marker : finder.find(frame.gray)) {
+        ++record_.markers_by_dictionary[name];
+        int& largest = record_.largest_id[name];
+        largest = std::max(largest, marker.id);
+      }
+    }
+  }
+
+  CameraRecord& record() { return record_; }
+
+ private:
+  void add(const cv::Mat& gray, Timestamp time, const MarkerDetection& marker) {
+    const auto seen = seen_by(robot_, time, marker);
+    if (!seen) return;
+    record_.sightings.push_back(*seen);
+    const double blur_px =
+        blur_of_marker_px(gray, robot_.camera, marker.corners_px, modules_per_side_);
+    if (blur_px < 0.0) return;
+    record_.blurs_px.push_back(blur_px);
+    record_.modules_px.push_back(marker.width_px / modules_per_side_);
+  }
+
+  RobotConfig robot_;
+  MarkerDetector detector_;
+  int modules_per_side_;
+  std::vector<std::pair<std::string, CandidateFinder>> finders_{};
+  std::vector<std::pair<std::string, CandidateFinder>> described_{};
+  CameraRecord record_{};
+};
+
+}  // namespace
+
+double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
+                         const std::array<Eigen::Vector2d, 4>& corners_px, int modules_per_side) {
+  const CameraModel model{camera};
+  std::array<Side, 4> sides{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    sides[k] = {model.ideal_from_raw(corners_px[k]), model.ideal_from_raw(corners_px[(k + 1) % 4])};
+  }
+  std::vector<double> blurs_px;
+  for (const SeenSide& side :
+       look_at_square(gray, model, sides, modules_per_side, kReach_px).sides) {
+    if (side.blur_px > 0.0) blurs_px.push_back(side.blur_px);
+  }
+  if (blurs_px.empty()) return -1.0;
+  // A motion blurs two of the sides.
+  return std::ranges::max(blurs_px);
+}
+
+CameraRecord read_markers(const std::filesystem::path& lcm_log, const RobotConfig& robot) {
+  const auto is_markers = [](std::string_view channel) {
+    return channel == channels::kMarkers.name;
+  };
+  CameraRecord record;
+  record.has_images = false;
+  LogReader reader{lcm_log};
+  std::vector<MarkerDetections> frames;
+  while (const auto event = reader.next(is_markers)) {
+    const auto message = decode<marker_detections_t>(event->payload);
+    if (!message.message) {
+      ++record.problems["damaged message"];
+      continue;
+    }
+    frames.push_back(to_detections(*message.message));
+    record.times.push_back(frames.back().time);
+  }
+  record.num_looked_at = std::ssize(frames);
+  const std::size_t every = 1 + frames.size() / kMostMessages;
+  for (std::size_t i = 0; i < frames.size(); i += every) {
+    for (const MarkerDetection& marker : frames[i].detections) {
+      if (const auto seen = seen_by(robot, frames[i].time, marker))
+        record.sightings.push_back(*seen);
+    }
+  }
+  return record;
+}
+
+CameraRecord read_camera(const std::filesystem::path& lcm_log, const RobotConfig& robot,
+                         const ShowProgress& progress) {
+  cv::setNumThreads(1);
+  const auto is_camera = [](std::string_view channel) {
+    return channel == channels::kCamera.name;
+  };
+  std::int64_t num_frames = 0;
+  for (LogReader reader{lcm_log}; reader.next(is_camera);)
+    ++num_frames;
+  CameraReader camera{robot};
+  const std::int64_t every = 1 + num_frames / kMostFrames;
+  const std::int64_t every_for_dictionaries = every * (1 + num_frames / every / kDictionaryFrames);
+  LogReader reader{lcm_log};
+  std::int64_t number = 0;
+  while (const auto event = reader.next(is_camera)) {
+    const std::int64_t current = number++;
+    const auto time = time_of(event->payload);
+    if (time) camera.record().times.push_back(*time);
+    if (current % every != 0) continue;
+    if (progress) progress(static_cast<double>(current) / static_cast<double>(num_frames));
+    const auto image = decode<image_t>(event->payload);
+    if (image.message) {
+      camera.look_at(*image.message, current % every_for_dictionaries == 0);
+    } else {
+      ++camera.record().num_looked_at;
+      ++camera.record().problems["damaged message"];
+    }
+  }
+  return std::move(camera.record());
+}
+
+}  // namespace waymark

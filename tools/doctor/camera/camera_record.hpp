@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the camera frames of a log show.
+#pragma once
+
+#include "common/robot/robot_config.hpp"
+#include "common/sensors/sensors.hpp"
+#include "doctor/motion/lidar_motion.hpp"
+
+#include <opencv2/core.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// A marker in one frame, with the described camera and marker size.
+struct CameraSighting {
+  int id{kNoMarker};
+  Timestamp time{};
+  Eigen::Vector3d place_in_camera{Eigen::Vector3d::Zero()};  ///< centre, optical frame
+  Eigen::Matrix3d covariance_in_camera{Eigen::Matrix3d::Identity()};
+  double facing_rad{0.0};  ///< direction that the marker faces, base frame
+};
+
+struct CameraRecord {
+  bool has_images{true};                           ///< false: sightings only, of MARKERS
+  std::vector<Timestamp> times{};                  ///< of all frames
+  std::int64_t num_looked_at{0};                   ///< frames that were decoded: evenly spread ones
+  std::map<std::string, std::int64_t> problems{};  ///< of these, by reason
+  std::vector<CameraSighting> sightings{};
+  std::vector<double> blurs_px{};    ///< one per sighting: standard deviation across its sides
+  std::vector<double> modules_px{};  ///< one per sighting: side of a module
+  /// Markers of the described dictionary, and of the largest one of every family, in some frames.
+  std::int64_t markers_of_described{0};
+  std::map<std::string, std::int64_t> markers_by_dictionary{};
+  std::map<std::string, int> largest_id{};  ///< by dictionary
+};
+
+/// The same from MARKERS, of a log without images: as the detector has seen them, with the robot's
+/// description. Up to 1200 messages, evenly spread.
+CameraRecord read_markers(const std::filesystem::path& lcm_log, const RobotConfig& robot);
+
+/// Looks at up to 400 frames of CAMERA, evenly spread.
+CameraRecord read_camera(const std::filesystem::path& lcm_log, const RobotConfig& robot,
+                         const ShowProgress& progress = {});
+
+/// Median standard deviation of the point spread across the sides of a marker [px]; negative when
+/// its sides are not seen.
+double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
+                         const std::array<Eigen::Vector2d, 4>& corners_px, int modules_per_side);
+
+}  // namespace waymark

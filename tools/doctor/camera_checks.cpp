@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks of camera and markers.
+#include "common/markers/marker_dictionary.hpp"
+#include "doctor/checks.hpp"
+#include "doctor/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr Limits kFocal{0.01, 0.05};
+constexpr Limits kSize{0.01, 0.03};
+constexpr Limits kYaw_rad{0.0087, 0.035};  // 0.5 and 2 degrees
+constexpr Limits kLate_s{0.01, 0.05};
+// Edges are refined within three pixels on either side (RefinementConfig::reach_px): with half of
+// that as their sigma they fill it, with all of it they leave it.
+constexpr Limits kBlur_px{1.5, 3.0};
+constexpr Limits kUnreadable{0.01, 0.1};  // share of the frames
+constexpr std::size_t kFewestMarkers = 20;
+constexpr double kSigmaOfMedian = 1.2533;  // times sigma / sqrt(n), of a normal distribution
+constexpr double kSigmaOfMad = 1.4826;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Measured median_of(const std::vector<double>& values) {
+  const double value = median(values);
+  std::vector<double> deviations;
+  for (const double other : values)
+    deviations.push_back(std::abs(other - value));
+  return {value, kSigmaOfMedian * kSigmaOfMad * median(std::move(deviations)) /
+                     std::sqrt(static_cast<double>(values.size()))};
+}
+
+/// The smallest dictionary of the same family that has all ids.
+std::string smallest_dictionary(const std::string& largest, int id) {
+  const std::string family = largest.substr(0, largest.rfind('_') + 1);
+  if (!largest.ends_with("_1000")) return largest;
+  for (const std::string& name : dictionary_names()) {
+    if (name.starts_with(family) && size_of(*find_dictionary(name)) > id) return name;
+  }
+  return largest;
+}
+
+Check frames_check(const CameraRecord& camera, const RobotConfig& robot) {
+  std::int64_t bad = 0;
+  std::string reasons;
+  for (const auto& [reason, count] : camera.problems) {
+    bad += count;
+    reasons += fmt::format(", {} {}", count, reason);
+  }
+  const double share = static_cast<double>(bad) /
+                       static_cast<double>(std::max<std::int64_t>(1, camera.num_looked_at));
+  return {"camera_frames", judge(share, 0.0, kUnreadable),
+          fmt::format("{} of {} frames cannot be used{}", bad, camera.num_looked_at, reasons),
+          fmt::format("send images of {}x{} (robot.camera.width_px, height_px), whole and as JPEG "
+                      "or grey",
+                      robot.camera.width_px, robot.camera.height_px),
+          100.0 * share};
+}
+
+Check dictionary_check(const CameraRecord& camera, RobotConfig& robot) {
+  const std::int64_t described = camera.markers_of_described;
+  const std::string name = robot.markers.dictionary;
+  std::string best;
+  std::int64_t most = 0;
+  for (const auto& [other, count] : camera.markers_by_dictionary) {
+    if (count <= most) continue;
+    most = count;
+    best = other;
+  }
+  // Counts of what is read by chance scatter as their roots do.
+  const double surplus = static_cast<double>(most - described);
+  const bool is_other =
+      most > 2 * described && surplus > kSigmas * std::sqrt(static_cast<double>(most + described));
+  if (is_other) {
+    const std::string found = smallest_dictionary(best, camera.largest_id.at(best));
+    robot.markers.dictionary = found;
+    return {"marker_dictionary", Verdict::kFail,
+            fmt::format("{} markers are read with {}, {} with {}", most, found, described, name),
+            fmt::format("robot.markers.dictionary = \"{}\", or print markers of {}", found, name),
+            static_cast<double>(described)};
+  }
+  if (described == 0) {
+    return unchecked("marker_dictionary", "no frame shows a marker of any dictionary",
+                     "drive past markers; look whether they are in view, sharp, and lit");
+  }
+  return {"marker_dictionary", Verdict::kPass,
+          fmt::format("{} markers are read with {}", described, name), "",
+          static_cast<double>(described)};
+}
+
+Check blur_check(const CameraRecord& camera) {
+  if (camera.blurs_px.size() < kFewestMarkers) {
+    return unchecked("blur", fmt::format("{} markers are too few", camera.blurs_px.size()),
+                     "drive past markers");
+  }
+  const Measured blur = median_of(camera.blurs_px);
+  const Verdict verdict = judge(blur.value, blur.sigma, kBlur_px);
+  return {"blur", verdict,
+          fmt::format("edges of markers are blurred by {:.2f} +- {:.2f} px (standard deviation); a "
+                      "module has {:.1f} px",
+                      blur.value, blur.sigma, median(camera.modules_px)),
+          verdict == Verdict::kPass ? "" : "focus the camera, expose shorter, or light the way",
+          blur.value};
+}
+
+Check no_sightings(const char* name) {
+  return unchecked(name, "too little of it shows in the markers that were seen",
+                   "drive past several markers on walls that the LiDAR sees, with turns that start "
+                   "and stop while one is in view");
+}
+
+}  // namespace
+
+std::vector<Check> check_camera(const DoctorInput& input,
+                                const std::optional<CameraCalibration>& calibration,
+                                RobotConfig& robot) {
+  std::vector<Check> checks;
+  if (!input.camera) {
+    return {unchecked(
+        "camera",
+        input.described ? "the log has neither CAMERA nor MARKERS" : "no robot.toml describes it",
+        input.described ? "record CAMERA, too (LCM logs only)" : "give --config robot.toml")};
+  }
+  const RobotConfig described = robot;
+  checks.push_back(frames_check(*input.camera, robot));
+  checks.push_back(check_camera_drops(*input.camera));
+  if (input.camera->has_images) {
+    checks.push_back(dictionary_check(*input.camera, robot));
+    checks.push_back(blur_check(*input.camera));
+  } else {
+    for (const char* name : {"marker_dictionary", "blur"})
+      checks.push_back(unchecked(name, "the log has MARKERS but no CAMERA", "record CAMERA, too"));
+  }
+  const auto add = [&](const char* name, const Measured& measured, double expected, Limits limits,
+                       double unit, const auto& finding, const auto& remedy) {
+    if (!is_known(measured, limits)) return checks.push_back(no_sightings(name));
+    const Verdict verdict = judge(measured.value - expected, measured.sigma, limits);
+    checks.push_back({name, verdict, finding(), verdict == Verdict::kPass ? "" : remedy(),
+                      unit * measured.value});
+  };
+  if (!calibration) {
+    for (const char* name : {"focal_length", "marker_size", "camera_yaw", "camera_time_offset"})
+      checks.push_back(no_sightings(name));
+    return checks;
+  }
+  const CameraCalibration& found = *calibration;
+  add(
+      "focal_length", found.focal, 1.0, kFocal, 1.0,
+      [&] {
+        return fmt::format("the focal length is {:.4f} +- {:.4f} times robot.camera.fx_px",
+                           found.focal.value, found.focal.sigma);
+      },
+      [&] {
+        robot.camera.fx_px *= found.focal.value;
+        robot.camera.fy_px *= found.focal.value;
+        return fmt::format("robot.camera.fx_px = {:.2f}, fy_px = {:.2f}, or calibrate the lens",
+                           robot.camera.fx_px, robot.camera.fy_px);
+      });
+  add(
+      "marker_size", found.marker_size, 1.0, kSize, 1.0,
+      [&] {
+        return fmt::format("markers are {:.4f} +- {:.4f} times as large as robot.markers.size_m",
+                           found.marker_size.value, found.marker_size.sigma);
+      },
+      [&] {
+        robot.markers.size_m *= found.marker_size.value;
+        return fmt::format("measure one; robot.markers.size_m = {:.4f}, or print them at 100 %",
+                           robot.markers.size_m);
+      });
+  add(
+      "camera_yaw", found.yaw_rad, 0.0, kYaw_rad, degrees(1.0),
+      [&] {
+        return fmt::format("the camera looks {:.2f} +- {:.2f} deg to the {} of its description",
+                           degrees(std::abs(found.yaw_rad.value)), degrees(found.yaw_rad.sigma),
+                           found.yaw_rad.value >= 0.0 ? "left" : "right");
+      },
+      [&] {
+        robot.camera.yaw_rad = wrap_angle(described.camera.yaw_rad + found.yaw_rad.value);
+        return fmt::format("robot.camera.yaw_rad = {:.4f}", robot.camera.yaw_rad);
+      });
+  add(
+      "camera_time_offset", found.late_s, 0.0, kLate_s, 1e3,
+      [&] {
+        return fmt::format("the camera's stamps are {:.0f} +- {:.0f} ms {} odometry's",
+                           1e3 * std::abs(found.late_s.value), 1e3 * found.late_s.sigma,
+                           found.late_s.value >= 0.0 ? "behind" : "ahead of");
+      },
+      [&] {
+        return fmt::format(
+            "add {:.0f} ms to the camera's times in its driver, or stamp "
+            "frames when they are exposed",
+            -1e3 * found.late_s.value);
+      });
+  return checks;
+}
+
+}  // namespace waymark

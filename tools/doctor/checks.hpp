@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The checks, one by one. Those with `robot` write what they found there.
+#pragma once
+
+#include "doctor/camera/camera_calibration.hpp"
+#include "doctor/check.hpp"
+#include "doctor/doctor_input.hpp"
+#include "doctor/motion/hand_eye.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace waymark {
+
+// The records of the log.
+Check check_records(const DoctorInput& input);
+Check check_lidar_drops(const ImportedLog& log);
+Check check_odometry_drops(const ImportedLog& log);
+Check check_traffic(const DoctorInput& input);
+
+// The LiDAR alone.
+Check check_no_return(const DoctorInput& input, RobotConfig& robot);
+Check check_range_noise(const DoctorInput& input, RobotConfig& robot);
+Check check_scans_fit(const ImportedLog& log, const LidarMotions& motions);
+
+// Odometry against the LiDAR.
+Check check_odometry_moves(const ImportedLog& log);
+Check check_mirror(const std::optional<TurnComparison>& turns);
+Check check_turn_scale(const std::optional<TurnComparison>& turns);
+Check check_time_offset(const std::optional<TurnComparison>& turns);
+Check check_distance_scale(const std::optional<HandEye>& calibration);
+Check check_backing_up(const ImportedLog& log);
+/// x, y and yaw.
+std::vector<Check> check_mounting(const DoctorInput& input,
+                                  const std::optional<HandEye>& calibration, RobotConfig& robot);
+
+/// All of camera and markers; a single one that is unchecked where the log has no camera.
+std::vector<Check> check_camera(const DoctorInput& input,
+                                const std::optional<CameraCalibration>& calibration,
+                                RobotConfig& robot);
+Check check_camera_drops(const CameraRecord& camera);
+
+/// The offset when it is known well enough to be used, else 0.
+double usable_lateness_s(const TurnComparison& turns);
+
+}  // namespace waymark

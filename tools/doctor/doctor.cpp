@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "doctor/doctor.hpp"
+
+#include "doctor/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace waymark {
+namespace {
+
+// What camera and markers are held against has to be better than they are; a robot whose distances
+// nobody has measured is taken to be as good as its wheels.
+constexpr double kGoodScaleSigma = 0.005;
+constexpr double kUnmeasuredScaleSigma = 0.01;
+
+/// The LiDAR where it is, not where it is said to be.
+ImportedLog with_lidar(ImportedLog log, const LidarConfig& lidar) {
+  log.robot.lidar.x_m = lidar.x_m;
+  log.robot.lidar.y_m = lidar.y_m;
+  log.robot.lidar.yaw_rad = lidar.yaw_rad;
+  return log;
+}
+
+/// A scale that is measured well, else 1.
+Measured best_scale(const Measured& measured) {
+  if (measured.sigma < kGoodScaleSigma) return {std::abs(measured.value), measured.sigma};
+  return {1.0, kUnmeasuredScaleSigma};
+}
+
+/// @param log  with the LiDAR where it is
+std::optional<CameraCalibration> calibrate(const DoctorInput& input, ImportedLog log,
+                                           const std::optional<TurnComparison>& turns,
+                                           const std::optional<HandEye>& hand_eye,
+                                           Duration lidar_late) {
+  if (!input.camera || !input.described) return std::nullopt;
+  const Measured unmeasured{1.0, kUnmeasuredScaleSigma};
+  const Measured distance = hand_eye ? best_scale(hand_eye->scale) : unmeasured;
+  const Measured turn = turns ? best_scale(turns->ratio) : unmeasured;
+  log.odometry = rescaled(log.odometry, distance.value, turn.value);
+  return calibrate_camera(input.camera->sightings, input.described->camera,
+                          input.described->markers, log, lidar_late, {distance.sigma, turn.sigma});
+}
+
+}  // namespace
+
+Diagnosis diagnose(const DoctorInput& input, const ShowProgress& progress) {
+  Diagnosis diagnosis;
+  diagnosis.robot = input.described.value_or(input.log.robot);
+  std::vector<Check>& checks = diagnosis.checks;
+  const LidarMotions motions = lidar_motions(input.log, progress);
+  const auto turns = compare_turns(motions.turns, input.log.odometry);
+  const bool is_mirrored = turns && turns->ratio.value < 0.0;
+  const Duration late = turns ? duration_from_seconds(usable_lateness_s(*turns)) : Duration{0};
+  const auto calibration = hand_eye(motions.motions, input.log.odometry, is_mirrored, late);
+
+  checks.push_back(check_records(input));
+  checks.push_back(check_lidar_drops(input.log));
+  checks.push_back(check_odometry_drops(input.log));
+  checks.push_back(check_traffic(input));
+  checks.push_back(check_no_return(input, diagnosis.robot));
+  checks.push_back(check_range_noise(input, diagnosis.robot));
+  checks.push_back(check_scans_fit(input.log, motions));
+  checks.push_back(check_odometry_moves(input.log));
+  checks.push_back(check_mirror(turns));
+  checks.push_back(check_turn_scale(turns));
+  checks.push_back(check_time_offset(turns));
+  checks.push_back(check_distance_scale(calibration));
+  std::vector<Check> mounting = check_mounting(input, calibration, diagnosis.robot);
+  const ImportedLog placed = with_lidar(input.log, diagnosis.robot.lidar);
+  checks.push_back(check_backing_up(placed));
+  std::ranges::move(mounting, std::back_inserter(checks));
+  const auto camera =
+      is_mirrored ? std::nullopt : calibrate(input, placed, turns, calibration, late);
+  std::ranges::move(check_camera(input, camera, diagnosis.robot), std::back_inserter(checks));
+  return diagnosis;
+}
+
+}  // namespace waymark

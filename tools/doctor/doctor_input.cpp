@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "doctor/doctor_input.hpp"
+
+#include "common/errors/setup_error.hpp"
+#include "common/log/log_file.hpp"
+#include "common/markers/marker_dictionary.hpp"
+#include "common/messages/codec.hpp"
+#include "import/carmen/carmen_reader.hpp"
+#include "import/findings/range_noise.hpp"
+#include "import/mbot/foreign_messages.hpp"
+#include "import/mbot/mbot_reader.hpp"
+#include "import/rosbag/bag.hpp"
+#include "import/rosbag/rosbag_reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <fstream>
+#include <set>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kScansForNoise = 1000;
+
+bool is_lcm_log(const std::filesystem::path& file) {
+  constexpr std::array<char, 4> kMagic{'\xED', '\xA1', '\xDA', '\x01'};
+  std::array<char, 4> start{};
+  std::ifstream stream{file, std::ios::binary};
+  stream.read(start.data(), start.size());
+  return stream && start == kMagic;
+}
+
+struct Contents {
+  std::map<std::string, ChannelTraffic> channels{};
+  std::set<std::string> lidars{};
+};
+
+Contents contents_of(const std::filesystem::path& file) {
+  Contents contents;
+  LogReader reader{file};
+  while (const auto event = reader.next()) {
+    ChannelTraffic& traffic = contents.channels[event->channel];
+    const auto bytes = static_cast<std::int64_t>(event->payload.size());
+    ++traffic.messages;
+    traffic.bytes += bytes;
+    traffic.largest_bytes = std::max(traffic.largest_bytes, bytes);
+    const std::int64_t type = fingerprint_of(event->payload);
+    if (type == lidar_t::getHash() || type == planar_lidar_t::getHash())
+      contents.lidars.insert(event->channel);
+  }
+  return contents;
+}
+
+MbotOptions choose(const Contents& contents, const InputChannels& wanted) {
+  MbotOptions options{};
+  options.lidar_channel = wanted.lidar;
+  options.odometry_channel = wanted.odometry;
+  options.encoder_channel = wanted.encoders;
+  if (wanted.lidar.empty()) {
+    if (contents.lidars.size() != 1) {
+      throw SetupError{fmt::format(
+          "{} channels have LiDAR scans ({}): give --lidar-channel", contents.lidars.size(),
+          contents.lidars.empty() ? "none" : fmt::format("{}", fmt::join(contents.lidars, ", ")))};
+    }
+    options.lidar_channel = *contents.lidars.begin();
+  }
+  const std::string ours{channels::kOdometry.name};
+  if (wanted.odometry.empty() && wanted.encoders.empty() && contents.channels.contains(ours))
+    options.odometry_channel = ours;
+  return options;
+}
+
+void estimate_noise(DoctorInput& input) {
+  ImportedLog& log = input.log;
+  WallScatter scatter;
+  const std::size_t every = 1 + log.scans.size() / kScansForNoise;
+  for (std::size_t i = 0; i < log.scans.size(); i += every)
+    scatter.add(scan_of(log.scans[i]));
+  const auto sigma_m = scatter.sigma_m();
+  input.noise_is_estimated = sigma_m.has_value();
+  log.robot.lidar.range_sigma_m = sigma_m.value_or(log.robot.lidar.range_sigma_m);
+}
+
+}  // namespace
+
+DoctorInput read_input(const std::filesystem::path& file, const std::filesystem::path& robot,
+                       const InputChannels& wanted, const ShowProgress& progress) {
+  DoctorInput input{{}, {file, AddressUnit::kByte}, false, Mounting::kInLog, {}, {}, {}};
+  if (is_lcm_log(file)) {
+    const Contents contents = contents_of(file);
+    input.channels = contents.channels;
+    input.log = read_mbot_log(file, choose(contents, wanted), input.report);
+    input.mounting = Mounting::kUnknown;
+  } else if (is_bag(file)) {
+    input.log = read_rosbag(file, {.without_images = true}, input.report);
+  } else {
+    input.report.count_in(AddressUnit::kLine);
+    input.log = read_carmen_log(file, {}, input.report);
+  }
+  std::filesystem::path description = robot;
+  if (description.empty() && std::filesystem::exists(file.parent_path() / "robot.toml"))
+    description = file.parent_path() / "robot.toml";
+  if (!description.empty()) {
+    input.described = load_config<RobotOnly>({{description}, {}}).robot;
+    input.mounting = Mounting::kDescribed;
+    const std::string& dictionary = input.described->markers.dictionary;
+    if (!find_dictionary(dictionary)) {
+      throw SetupError{fmt::format("{}: robot.markers.dictionary: there is no '{}'; known are {}",
+                                   description.string(), dictionary,
+                                   fmt::join(dictionary_names(), ", "))};
+    }
+    LidarConfig& lidar = input.log.robot.lidar;
+    lidar.x_m = input.described->lidar.x_m;
+    lidar.y_m = input.described->lidar.y_m;
+    lidar.yaw_rad = input.described->lidar.yaw_rad;
+    if (input.channels.contains(std::string{channels::kCamera.name})) {
+      input.camera = read_camera(file, *input.described, progress);
+    } else if (input.channels.contains(std::string{channels::kMarkers.name})) {
+      input.camera = read_markers(file, *input.described);
+    }
+  }
+  estimate_noise(input);
+  return input;
+}
+
+}  // namespace waymark

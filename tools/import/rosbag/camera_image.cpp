@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/rosbag/camera_image.hpp"
+
+#include "common/messages/message.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kMaxImageBytes = kMaxPayloadBytes - 200;  // leaves room for the other fields
+constexpr std::array kQualities{95, 90, 80, 70, 55, 40, 25};
+constexpr std::int64_t kMaxPixels = 64'000'000;
+
+struct PixelKind {
+  std::string_view name;
+  int type;
+  int to_grey;  ///< of cv::cvtColor; -1 = is grey
+};
+
+constexpr std::array kPixelKinds{
+    PixelKind{"mono8", CV_8UC1, -1},
+    PixelKind{"8UC1", CV_8UC1, -1},
+    PixelKind{"bgr8", CV_8UC3, cv::COLOR_BGR2GRAY},
+    PixelKind{"8UC3", CV_8UC3, cv::COLOR_BGR2GRAY},
+    PixelKind{"rgb8", CV_8UC3, cv::COLOR_RGB2GRAY},
+    PixelKind{"bgra8", CV_8UC4, cv::COLOR_BGRA2GRAY},
+    PixelKind{"rgba8", CV_8UC4, cv::COLOR_RGBA2GRAY},
+};
+
+std::optional<cv::Mat> grey_of_pixels(const RosImage& image) {
+  const auto kind = std::ranges::find(kPixelKinds, image.format, &PixelKind::name);
+  if (kind == kPixelKinds.end()) return std::nullopt;
+  const std::int64_t needed = std::int64_t{image.width_px} * CV_ELEM_SIZE(kind->type);
+  if (needed > image.row_bytes) return std::nullopt;
+  const cv::Mat pixels{image.height_px, image.width_px, kind->type,
+                       const_cast<std::uint8_t*>(image.data.data()),
+                       static_cast<std::size_t>(image.row_bytes)};
+  if (kind->to_grey < 0) return pixels;
+  cv::Mat grey;
+  cv::cvtColor(pixels, grey, kind->to_grey);
+  return grey;
+}
+
+/// Size of a JPEG by its frame header, without decoding it.
+std::optional<std::pair<int, int>> jpeg_size(ByteView data) {
+  if (data.size() < 4 || data[0] != 0xFF || data[1] != 0xD8) return std::nullopt;
+  std::size_t at = 2;
+  while (at + 9 < data.size() && data[at] == 0xFF) {
+    const std::uint8_t marker = data[at + 1];
+    const std::size_t length = static_cast<std::size_t>(data[at + 2]) << 8U | data[at + 3];
+    const bool is_frame =
+        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (is_frame) {
+      return std::pair{data[at + 7] << 8 | data[at + 8], data[at + 5] << 8 | data[at + 6]};
+    }
+    if (length < 2) return std::nullopt;
+    at += 2 + length;
+  }
+  return std::nullopt;
+}
+
+image_t message_of(Timestamp time, int width_px, int height_px, std::vector<std::uint8_t> jpeg) {
+  image_t message{};
+  message.utime = to_us(time);
+  message.width = width_px;
+  message.height = height_px;
+  message.pixelformat = image_t::PIXEL_FORMAT_MJPEG;
+  message.size = static_cast<std::int32_t>(jpeg.size());
+  message.data = std::move(jpeg);
+  return message;
+}
+
+std::optional<cv::Mat> decoded(const RosImage& image) {
+  if (image.width_px > 0) return grey_of_pixels(image);
+  const auto size = jpeg_size(image.data);
+  if (size && std::int64_t{size->first} * size->second > kMaxPixels) return std::nullopt;
+  const cv::Mat bytes{1, static_cast<int>(image.data.size()), CV_8UC1,
+                      const_cast<std::uint8_t*>(image.data.data())};
+  try {
+    cv::Mat grey = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+    return grey.empty() ? std::nullopt : std::optional{grey};
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::optional<image_t> to_camera_message(const RosImage& image, Timestamp time) {
+  const auto size = image.width_px == 0 ? jpeg_size(image.data) : std::nullopt;
+  if (size && size->first > 0 && size->second > 0 && image.data.size() <= kMaxImageBytes)
+    return message_of(time, size->first, size->second, {image.data.begin(), image.data.end()});
+  const auto grey = decoded(image);
+  if (!grey) return std::nullopt;
+  std::vector<std::uint8_t> jpeg;
+  for (const int quality : kQualities) {
+    if (!cv::imencode(".jpg", *grey, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality}))
+      return std::nullopt;
+    if (jpeg.size() <= kMaxImageBytes) return message_of(time, grey->cols, grey->rows, jpeg);
+  }
+  return std::nullopt;
+}
+
+}  // namespace waymark

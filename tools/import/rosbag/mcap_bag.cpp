@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// MCAP (https://mcap.dev/spec), with messages of ROS 1 or ROS 2.
+#include "import/rosbag/bag.hpp"
+#include "import/rosbag/decompress.hpp"
+#include "import/rosbag/mapped_file.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <map>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kMagicBytes = 8;
+
+enum Op : std::uint8_t {
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kDataEnd = 0x0F,
+};
+
+class McapReader {
+ public:
+  McapReader(const TakeRecord& take, ImportReport& report) : take_{take}, report_{report} {}
+
+  void read(ByteView file) {
+    ByteCursor cursor{file};
+    cursor.take(kMagicBytes);
+    while (!cursor.at_end()) {
+      const auto at = static_cast<std::int64_t>(cursor.offset());
+      const auto op = cursor.number<std::uint8_t>();
+      const ByteView content = cursor.block<std::uint64_t>();
+      if (!cursor.good()) {
+        return report_.skip("no MCAP record", at,
+                            fmt::format("{} bytes", file.size() - static_cast<std::size_t>(at)));
+      }
+      if (op == kDataEnd || op == kFooter) return;
+      take_record(op, content, at);
+    }
+    report_.skip("end of the data is missing", static_cast<std::int64_t>(file.size()),
+                 "the file is cut off");
+  }
+
+ private:
+  struct McapChannel {
+    std::string topic{};
+    std::string type{};
+    RosEncoding encoding{RosEncoding::kCdr};
+    bool is_ros{false};
+  };
+
+  void take_record(std::uint8_t op, ByteView content, std::int64_t at) {
+    switch (op) {
+      case kSchema:
+        return take_schema(content, at);
+      case kChannel:
+        return take_channel(content, at);
+      case kMessage:
+        return take_message(content, at);
+      case kChunk:
+        return take_chunk(content, at);
+      default:
+        return;  // indices, attachments, metadata
+    }
+  }
+
+  void take_schema(ByteView content, std::int64_t at) {
+    ByteCursor cursor{content};
+    const auto id = cursor.number<std::uint16_t>();
+    const std::string name = ros_name(cursor.text());
+    if (!cursor.good()) return report_.skip("bad schema", at, "");
+    types_[id] = ros_type_name(name);
+  }
+
+  void take_channel(ByteView content, std::int64_t at) {
+    ByteCursor cursor{content};
+    const auto id = cursor.number<std::uint16_t>();
+    const auto schema = cursor.number<std::uint16_t>();
+    const std::string topic = ros_name(cursor.text());
+    const std::string_view encoding = cursor.text();
+    if (!cursor.good()) return report_.skip("bad channel", at, "");
+    const auto type = types_.find(schema);
+    channels_[id] = {topic, type == types_.end() ? "" : type->second,
+                     encoding == "ros1" ? RosEncoding::kRos1 : RosEncoding::kCdr,
+                     encoding == "ros1" || encoding == "cdr"};
+  }
+
+  void take_message(ByteView content, std::int64_t at) {
+    ByteCursor cursor{content};
+    const auto id = cursor.number<std::uint16_t>();
+    cursor.number<std::uint32_t>();  // sequence
+    const auto log_ns = cursor.number<std::uint64_t>();
+    cursor.number<std::uint64_t>();  // time of publishing
+    const auto channel = channels_.find(id);
+    if (!cursor.good() || channel == channels_.end()) {
+      return report_.skip("message of no channel", at, "");
+    }
+    const McapChannel& of = channel->second;
+    if (!of.is_ros) return;  // of another program
+    const auto recorded = time_from_ns(static_cast<std::int64_t>(log_ns));
+    if (!recorded) return report_.skip("bad time", at, of.topic);
+    take_({of.topic, of.type, of.encoding, *recorded, at, cursor.take(cursor.left())});
+  }
+
+  void take_chunk(ByteView content, std::int64_t at) {
+    ByteCursor cursor{content};
+    cursor.number<std::uint64_t>();  // first and last time
+    cursor.number<std::uint64_t>();
+    const auto size = cursor.number<std::uint64_t>();
+    const auto crc = cursor.number<std::uint32_t>();
+    const std::string compression = ros_name(cursor.text());
+    const ByteView packed = cursor.block<std::uint64_t>();
+    if (!cursor.good()) return report_.skip("damaged chunk", at, "shorter than its fields");
+    if (compression.empty()) return take_inside(packed, crc, at);
+    if (!is_known_compression(compression)) {
+      return report_.skip("unknown compression", at, compression);
+    }
+    const auto unpacked = decompress(compression, packed, size);
+    if (!unpacked) {
+      return report_.skip("damaged chunk", at, fmt::format("{} bytes", packed.size()));
+    }
+    take_inside(*unpacked, crc, at);
+  }
+
+  void take_inside(ByteView records, std::uint32_t crc, std::int64_t at) {
+    if (crc != 0 && crc != crc32_z(0, records.data(), records.size())) {
+      return report_.skip("damaged chunk", at, "its checksum is another one");
+    }
+    ByteCursor cursor{records};
+    while (!cursor.at_end()) {
+      const auto op = cursor.number<std::uint8_t>();
+      const ByteView content = cursor.block<std::uint64_t>();
+      if (!cursor.good() || op == kChunk) return report_.skip("no MCAP record", at, "in its chunk");
+      take_record(op, content, at);
+    }
+  }
+
+  const TakeRecord& take_;
+  ImportReport& report_;
+  std::map<std::uint16_t, std::string> types_{};
+  std::map<std::uint16_t, McapChannel> channels_{};
+};
+
+}  // namespace
+
+void read_mcap_bag(const std::filesystem::path& file, const TakeRecord& take,
+                   ImportReport& report) {
+  const MappedFile bag{file};
+  McapReader{take, report}.read(bag.bytes());
+}
+
+}  // namespace waymark

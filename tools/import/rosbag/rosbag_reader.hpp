@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A bag of ROS -> scans, odometry, camera images, and what the robot is like.
+#pragma once
+
+#include "import/log/imported_log.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace waymark {
+
+struct RosbagOptions {
+  std::string scan_topic{};      ///< empty = the only one with sensor_msgs/LaserScan
+  std::string odometry_topic{};  ///< the same with nav_msgs/Odometry
+  std::string image_topic{};  ///< CompressedImage or Image; empty = the only one, if there is one
+  std::string camera_info_topic{};  ///< empty = the only one
+  std::string base_frame{};         ///< empty = odometry's child frame
+  bool without_images{false};
+  std::optional<double> range_max_m{};  ///< nullopt = see mark_no_returns(); usual: as scans say
+  LidarMounting mounting{};
+};
+
+/// A scan with a time increment keeps the time of each beam (lidar_t). Mountings are taken from the
+/// static transforms, the camera's numbers from CameraInfo.
+/// @throws SetupError when the file is no bag, has no scan or no odometry, or several topics fit.
+ImportedLog read_rosbag(const std::filesystem::path& file, const RosbagOptions& options,
+                        ImportReport& report);
+
+}  // namespace waymark
