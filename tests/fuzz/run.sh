@@ -46,7 +46,7 @@ make_seeds() {
 }
 
 build fuzz fuzz_seeds "${targets[@]/#/fuzz_}"
-[[ -d $corpus/messages ]] || { build release programs && make_seeds; }
+[[ -d $corpus/messages ]] || { build release waymark-{sim,detector,slam,viewer,recorder} && make_seeds; }
 [[ -d $corpus/rosbag ]] || /usr/bin/python3 -B "$source_dir/tests/python/bag_drive.py" "$corpus/rosbag"
 mkdir -p "$corpus/findings"
 

@@ -107,6 +107,12 @@ TEST(Doctor, WhatTheLogDoesNotSayIsNoPass) {
   }
 }
 
+TEST(Doctor, WithoutTurnsTheLidarsPlaceIsUnknown) {
+  const Diagnosis straight = diagnosis_of({.turning = 0.0, .odometry_noise_rad = 0.002});
+  for (const char* name : {"lidar_x", "lidar_y"})
+    EXPECT_EQ(find(straight, name).verdict, Verdict::kUnchecked) << find(straight, name).finding;
+}
+
 TEST(Doctor, WritesWhatItFoundIntoTheRobot) {
   const Diagnosis diagnosis =
       diagnosis_of({.base_from_lidar = Se2{-0.2, -0.05, 0.0}, .no_return_m = 12.0});

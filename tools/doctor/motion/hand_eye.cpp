@@ -19,7 +19,8 @@ constexpr double kShortestInterval_s = 0.005;  // of odometry: shorter ones are 
 constexpr double kSigmaOfMad = 1.4826;         // of a normal distribution
 constexpr double kCutoff = 3.0;                // of the sigmas: what is further counts less
 constexpr double kSmallest = 1e-9;
-constexpr std::size_t kBlocks = 12;  // stretches whose residuals count as one each
+constexpr double kUnknownPlace_m = 1.0;  // a robot's size
+constexpr std::size_t kBlocks = 12;      // stretches whose residuals count as one each
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -202,6 +203,7 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
 std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
                                 const std::vector<ImportedPose>& odometry, bool is_mirrored,
                                 Duration lidar_late) {
+  double turned_rad = 0.0;
   std::vector<Eigen::Matrix<double, 2, 4>> rows;
   std::vector<Eigen::Vector2d> values;
   for (const LidarMotion& motion : motions) {
@@ -216,6 +218,7 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
     Eigen::Matrix<double, 2, 4> row;
     row << lidar.x(), -lidar.y(), 1.0 - c, s, lidar.y(), lidar.x(), -s, 1.0 - c;
     rows.push_back(row);
+    turned_rad += std::abs(wrap_angle(motion.first_from_second.theta()));
     values.push_back(base.translation());
   }
   if (rows.size() < kFewest) return std::nullopt;
@@ -267,9 +270,11 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
   const auto sigma = [&](int i) {
     return std::sqrt(covariance(i, i));
   };
+  // Without turns odometry's noise is all that tells a lever from none.
+  const double least_sigma_m = turned_rad < kFewestTurns_rad ? kUnknownPlace_m : 0.0;
   const double sigma_direction = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
-  return HandEye{{found[2] / scale, sigma(2) / scale},
-                 {found[3] / scale, sigma(3) / scale},
+  return HandEye{{found[2] / scale, std::max(least_sigma_m, sigma(2) / scale)},
+                 {found[3] / scale, std::max(least_sigma_m, sigma(3) / scale)},
                  {std::atan2(found[1], found[0]), sigma_direction / scale},
                  {scale, sigma_direction},
                  static_cast<int>(rows.size())};
