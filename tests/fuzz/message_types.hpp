@@ -33,7 +33,8 @@ inline constexpr auto kTypes = std::tuple{channels::kAck,
                                           channels::kMbotSlamStatus,
                                           channels::kTick,
                                           channels::kSlamTrajectory,
-                                          channels::kDriveCommand};
+                                          channels::kDriveCommand,
+                                          channels::kSlamFindings};
 
 /// Calls `visit(index, channel)` for each.
 template <class Visit>

@@ -87,9 +87,12 @@ std::optional<LoopMatch> LoopFinder::match(std::size_t submap, const Points& poi
     loop.match = match_scan(points, old.surfaces(), best->submap_from_base, kFound, noise, scan_);
     if (!is_good(loop.match)) return std::nullopt;
   }
+  // About the match, so that its own place is one of those that are compared.
   const Se2& found = loop.match.map_from_base;
-  const auto other = field.best_apart_from(found, kApart_m, kApart_rad, beams, guess, window,
-                                           config_.runner_up_share * field.score(beams, found));
+  const double moved_m = (found.translation() - guess.translation()).norm();
+  const auto other =
+      field.best_apart_from(found, kApart_m, kApart_rad, beams, found, {wide_m + moved_m, wide_rad},
+                            config_.runner_up_share * field.score(beams, found));
   if (other && is_other_place(*other, loop.match)) {
     ++num_ambiguous_;
     return std::nullopt;

@@ -23,13 +23,13 @@ Points view(const Se2& map_from_base, HasPillar has_pillar) {
   for (int i = -100; i < 600; ++i) {
     const double x = 0.05 * i;
     const bool is_pillar = has_pillar(x);
-    add(x, is_pillar ? 0.6 : 1.0);
-    add(x, is_pillar ? -0.7 : -1.0);
+    add(x, is_pillar ? 0.8 : 2.0);
+    add(x, is_pillar ? -0.9 : -2.0);
   }
   for (int i = -100; i < 600; ++i) {
     const double x = 0.05 * i;
     if (has_pillar(x) == has_pillar(x + 0.05)) continue;
-    for (double y = 0.6; y < 1.0; y += 0.04) {
+    for (double y = 0.8; y < 2.0; y += 0.04) {
       add(x, y);
       add(x, -y - 0.1);
     }
