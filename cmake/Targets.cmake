@@ -1,10 +1,28 @@
 # Short forms, so that every folder's CMakeLists.txt reads the same way.
 
-# waymark_library(NAME [PICTURES] SOURCES ... LIBRARIES ...): a static library of ours; headers are included from procs/.
-# PICTURES: most of its files include OpenCV.
+option(WAYMARK_UNITY "Compile the files of a folder as one" ON)
+
+# waymark_unity(NAME [FILE...]): headers are read once per folder and not once per file. What files of a folder define in
+# anonymous namespaces must have different names for that; FILEs that do not are compiled alone.
+function(waymark_unity name)
+  if(NOT WAYMARK_UNITY)
+    return()
+  endif()
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${name} SOURCES)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  foreach(source IN LISTS sources)
+    get_filename_component(folder "${source}" DIRECTORY)
+    string(MAKE_C_IDENTIFIER "${name}_${folder}" group)
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+endfunction()
+
+# waymark_library(NAME [PICTURES] SOURCES ... [ALONE ...] LIBRARIES ...): a static library of ours; headers are included
+# from procs/. PICTURES: most of its files include OpenCV. ALONE: as for waymark_unity.
 function(waymark_library name)
-  cmake_parse_arguments(ARG "PICTURES" "" "SOURCES;LIBRARIES" ${ARGN})
-  add_library(${name} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "PICTURES" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES} ${ARG_ALONE})
   target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}/procs")
   target_link_libraries(${name} PUBLIC ${ARG_LIBRARIES} PRIVATE waymark_warnings)
   if(ARG_PICTURES)
@@ -12,6 +30,7 @@ function(waymark_library name)
   else()
     target_precompile_headers(${name} REUSE_FROM precompiled_plain)
   endif()
+  waymark_unity(${name} ${ARG_ALONE})
 endfunction()
 
 add_custom_target(programs COMMENT "All installed programs")
@@ -31,16 +50,17 @@ foreach(label unit property process simulation)
   add_custom_target(${label}_tests)
 endforeach()
 
-# waymark_test(NAME LABEL unit|property|process|simulation SOURCES ... LIBRARIES ...): one GoogleTest program,
+# waymark_test(NAME LABEL unit|property|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one GoogleTest program,
 # which is one test of CTest; the target LABEL_tests builds all of a label.
 function(waymark_test name)
-  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LIBRARIES" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;ALONE;LIBRARIES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock_main waymark_warnings)
   target_precompile_headers(${name} REUSE_FROM precompiled_tests)
   target_compile_definitions(${name} PRIVATE
     WAYMARK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WAYMARK_BUILD_DIR="${PROJECT_BINARY_DIR}")
+  waymark_unity(${name} ${ARG_ALONE})
   add_dependencies(${ARG_LABEL}_tests ${name})
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 1500)

@@ -5,7 +5,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kSolveSteps = 12;
+constexpr int kSurveySteps = 12;
 constexpr double kBeforeMarker_m = 0.3;  // free space that the map has there
 
 }  // namespace
@@ -18,7 +18,7 @@ void WaymarkEstimator::use_survey() {
     relocalisation_ = {};
   }
   if (!survey_.has_frame()) return;
-  survey_.apply(graph_, kSolveSteps);
+  survey_.apply(graph_, kSurveySteps);
   graph_.optimise();
   map_.begin_to_follow();
   note_reason(EstimateReason::kSurvey);

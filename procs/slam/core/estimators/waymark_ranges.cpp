@@ -11,7 +11,7 @@ constexpr double kSuspect = 0.8;       // of the usual share of inliers; below, 
 constexpr double kUsualMemory = 0.05;  // weight of the newest scan in what is usual
 constexpr double kLeastShare = 0.01;   // of the ranges; less is within what LiDARs are good for
 constexpr double kLeastSigmas = 5.0;
-constexpr double kClearlyMore = 1.15;             // inliers with the ranges scaled
+constexpr double kClearlyBetter = 1.15;           // inliers with the ranges scaled
 const Eigen::Vector3d kAround{0.05, 0.05, 0.02};  // where the pose may be beside the prediction
 
 Observation scaled_ranges(Observation observation, double share) {
@@ -52,7 +52,7 @@ std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation&
     return std::nullopt;
   Observation corrected = scaled_ranges(observation, scale.share);
   const auto fitted = matched(points_of(corrected), expected);
-  if (!fitted || fitted->match.inliers < kClearlyMore * plain->match.inliers ||
+  if (!fitted || fitted->match.inliers < kClearlyBetter * plain->match.inliers ||
       is_refuted(fitted->match)) {
     return std::nullopt;
   }
