@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # The whole thing on a machine with nothing installed: packages, build, one drive through the corridor,
-# its log through every estimator, and the paper's table.
+# its log through every estimator, and the paper's table; then the programs that the table did not need.
 #
 # usage: deploy/demo.sh [options]
 #   --out DIR        where everything goes (default: runs/demo-SCENARIO)
@@ -81,13 +81,15 @@ report_times() {
 
 parse_arguments "$@"
 step "install packages" "$deploy_dir/install-deps.sh"
-step "build" build release programs
+step "build" build release waymark-{sim,detector,slam,viewer,recorder,evaluate}
 step "drive" "$deploy_dir/launch.sh" "$scenario" --out "$out" --estimator $live_estimator "${seed[@]}" "${live_page[@]}"
 live=$(fingerprint)
 for row in "${rows[@]}"; do step "replay ${row%% *}" replay_row "$row"; done
 [[ $live == "$(fingerprint)" ]] ||
   die $kExitFailed "live run and replay of its log differ in $live_estimator/map.pgm or trajectory.tum"
 step "evaluate" "$bin_dir/waymark-evaluate" run "$out"
+[[ -z $source_dir ]] || say "the table is ready; now the programs that it did not need"
+step "build the other programs" build release programs
 report_times
 say "live run and replay of its log: the same map and trajectory, byte for byte"
 say "pictures: $out/*/map.png; table: $out/results.md"

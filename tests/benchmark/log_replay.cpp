@@ -6,10 +6,9 @@
 // Writes OUT.online.tum and OUT.final.tum. Prints the numbers of scans and updates; processor time
 // of everything, of the estimator, of its longest scan, and at the end of the trajectory and the
 // map; scans for which it was lost, and the largest step of the pose beyond what odometry said.
+#include "benchmark/deliver.hpp"
 #include "common/config/config.hpp"
 #include "common/log/log_file.hpp"
-#include "common/messages/codec.hpp"
-#include "common/messages/convert.hpp"
 #include "slam/estimator_factory.hpp"
 #include "slam/slam_config.hpp"
 
@@ -23,19 +22,6 @@
 
 namespace waymark {
 namespace {
-
-void deliver(const Message& message, SensorQueue& queue) {
-  if (message.channel == channels::kLidar.name) {
-    if (const auto planar = decode<planar_lidar_t>(message.payload).message)
-      queue.add(to_scan(*planar));
-    else if (const auto rolling = decode<lidar_t>(message.payload).message)
-      queue.add(to_scan(*rolling));
-  } else if (message.channel == channels::kOdometry.name) {
-    if (const auto pose = decode<pose2D_t>(message.payload).message) queue.add(to_odometry(*pose));
-  } else if (const auto frame = decode<marker_detections_t>(message.payload).message) {
-    queue.add(to_detections(*frame));
-  }
-}
 
 double seconds_since(std::clock_t start) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -84,7 +70,7 @@ int replay(int argc, char** argv) {
     }
   };
   while (const auto message = reader.next([](std::string_view) { return true; })) {
-    deliver(*message, queue);
+    benchmark::deliver(*message, queue);
     take_ready();
   }
   queue.finish();

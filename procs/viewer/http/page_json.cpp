@@ -61,20 +61,6 @@ Json estimate_json(const EstimatedPose& estimate) {
   return json;
 }
 
-std::string_view state_name(LandmarkState state) {
-  switch (state) {
-    case LandmarkState::kConfirmed:
-      return "confirmed";
-    case LandmarkState::kTentative:
-      return "tentative";
-    case LandmarkState::kMoved:
-      return "moved";
-    case LandmarkState::kUnknown:
-      break;
-  }
-  return "unknown";
-}
-
 Json markers_json(const LiveView& view) {
   Json markers = Json::array();
   for (const Landmark& landmark : view.markers) {
@@ -85,7 +71,7 @@ Json markers_json(const LiveView& view) {
                        {"sigmas", {sigma(c, 0), sigma(c, 1), sigma(c, 2)}},
                        {"sightings", landmark.sightings},
                        {"since_s", seconds_json(seconds_since(landmark.last_seen, view.time))},
-                       {"state", state_name(landmark.state)}});
+                       {"state", name_of(landmark.state)}});
   }
   return markers;
 }

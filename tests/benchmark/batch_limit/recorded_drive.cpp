@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "batch_limit/recorded_drive.hpp"
 
+#include "benchmark/deliver.hpp"
 #include "common/log/log_file.hpp"
-#include "common/messages/codec.hpp"
-#include "common/messages/convert.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -11,19 +10,6 @@
 
 namespace waymark::benchmark {
 namespace {
-
-void deliver(const Message& message, SensorQueue& queue) {
-  if (message.channel == channels::kLidar.name) {
-    if (const auto planar = decode<planar_lidar_t>(message.payload).message)
-      queue.add(to_scan(*planar));
-    else if (const auto rolling = decode<lidar_t>(message.payload).message)
-      queue.add(to_scan(*rolling));
-  } else if (message.channel == channels::kOdometry.name) {
-    if (const auto pose = decode<pose2D_t>(message.payload).message) queue.add(to_odometry(*pose));
-  } else if (const auto frame = decode<marker_detections_t>(message.payload).message) {
-    queue.add(to_detections(*frame));
-  }
-}
 
 constexpr double kSamePlace_m = 0.3;
 constexpr double kNoWall = 1e3;  // [m, rad]: nothing is held to a wall that vague

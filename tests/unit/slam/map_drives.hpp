@@ -5,6 +5,7 @@
 #include "common/messages/convert.hpp"
 #include "slam/map_file.hpp"
 #include "slam/slam_node.hpp"
+#include "slam_run.hpp"
 #include "support/synthetic_corridor.hpp"
 
 #include <gtest/gtest.h>
@@ -28,25 +29,6 @@ inline SyntheticCorridor corridor_of(std::uint64_t seed) {
   corridor.seed = seed;
   corridor.markers = opposite_markers(corridor, 3.5, 3.0);
   return corridor;
-}
-
-inline std::vector<Message> messages_of(const SensorLog& log, double from_s = 0.0,
-                                        double to_s = 1e6) {
-  std::vector<Message> messages;
-  for (const LidarScan& scan : log.scans)
-    messages.push_back(encode(channels::kLidar, to_planar_lidar(scan)));
-  for (const OdometrySample& sample : log.odometry) {
-    messages.push_back(
-        encode(channels::kOdometry, to_pose_message(sample.time, sample.odom_from_base)));
-  }
-  for (const MarkerDetections& frame : log.frames)
-    messages.push_back(encode(channels::kMarkers, to_detections_message(frame)));
-  std::erase_if(messages, [&](const Message& message) {
-    const double time_s = 1e-6 * static_cast<double>(to_us(message.time));
-    return time_s < from_s || time_s > to_s;
-  });
-  std::sort(messages.begin(), messages.end(), comes_before);
-  return messages;
 }
 
 struct Drive {

@@ -19,13 +19,9 @@ inline SlamConfig small_config() {
   return config;
 }
 
-/// A short drive as messages in the order of a recorded log.
-inline std::vector<Message> messages_of_drive(double drive_m = 0.6) {
-  test::SyntheticCorridor corridor;
-  corridor.length_m = 8.0;
-  corridor.drive_m = drive_m;
-  corridor.markers = test::opposite_markers(corridor);
-  const test::SensorLog log = test::drive(corridor);
+/// What was measured between two times, as messages in the order of a recorded log.
+inline std::vector<Message> messages_of(const test::SensorLog& log, double from_s = 0.0,
+                                        double to_s = 1e6) {
   std::vector<Message> messages;
   for (const LidarScan& scan : log.scans)
     messages.push_back(encode(channels::kLidar, to_planar_lidar(scan)));
@@ -35,8 +31,21 @@ inline std::vector<Message> messages_of_drive(double drive_m = 0.6) {
   }
   for (const MarkerDetections& frame : log.frames)
     messages.push_back(encode(channels::kMarkers, to_detections_message(frame)));
+  std::erase_if(messages, [&](const Message& message) {
+    const double time_s = 1e-6 * static_cast<double>(to_us(message.time));
+    return time_s < from_s || time_s > to_s;
+  });
   std::sort(messages.begin(), messages.end(), comes_before);
   return messages;
+}
+
+/// A short drive.
+inline std::vector<Message> messages_of_drive(double drive_m = 0.6) {
+  test::SyntheticCorridor corridor;
+  corridor.length_m = 8.0;
+  corridor.drive_m = drive_m;
+  corridor.markers = test::opposite_markers(corridor);
+  return messages_of(test::drive(corridor));
 }
 
 struct Slam {

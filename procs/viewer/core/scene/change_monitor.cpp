@@ -12,20 +12,6 @@ std::string place(const Eigen::Vector2d& position_m) {
   return fmt::format("({:.2f}, {:.2f}) m", position_m.x(), position_m.y());
 }
 
-std::string_view name_of(LandmarkState state) {
-  switch (state) {
-    case LandmarkState::kConfirmed:
-      return "confirmed";
-    case LandmarkState::kTentative:
-      return "tentative";
-    case LandmarkState::kMoved:
-      return "moved";
-    case LandmarkState::kUnknown:
-      break;
-  }
-  return "in an unknown state";
-}
-
 std::string name_of(const std::pair<int, int>& id_and_instance) {
   const auto [id, instance] = id_and_instance;
   return instance == 0 ? fmt::format("marker {}", id) : fmt::format("marker {}.{}", id, instance);

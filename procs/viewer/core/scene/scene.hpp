@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace waymark::viewer {
@@ -25,6 +26,9 @@ enum class Health { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
 
 /// What the map thinks of a marker; values as in lcmtypes/marker_landmark_t.lcm.
 enum class LandmarkState { kUnknown, kConfirmed, kTentative, kMoved };
+
+/// "confirmed", ...
+std::string_view name_of(LandmarkState state);
 
 /// What observes the motion along the weakest axis; values as in lcmtypes/slam_estimate_t.lcm.
 enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
