@@ -13,7 +13,6 @@ namespace {
 
 using test::config_for;
 using test::corridor_of;
-using test::messages_of;
 namespace fs = std::filesystem;
 
 command_t save_command(const std::string& name) {

@@ -16,7 +16,6 @@ namespace {
 using test::config_for;
 using test::corridor_of;
 using test::map_from_world;
-using test::messages_of;
 namespace fs = std::filesystem;
 
 template <class Type>

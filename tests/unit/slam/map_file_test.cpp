@@ -24,7 +24,6 @@ using test::corridor_of;
 using test::Drive;
 using test::drive_through;
 using test::map_from_world;
-using test::messages_of;
 using test::SavedMap;
 using test::with_pose;
 using test::worst_error_m;
