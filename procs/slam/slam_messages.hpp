@@ -27,9 +27,9 @@ particles_t to_message(std::span<const PublishedParticle> particles, Timestamp t
 /// In parts that each fit one datagram; at least one.
 std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Timestamp time);
 
-/// As many as fit one datagram.
 findings_t to_message(std::span<const Finding> findings, Timestamp time, std::int64_t map_id);
 
+/// As many as fit one datagram.
 map_changes_t to_message(std::span<const MapChange> changes, Timestamp time, std::int64_t map_id);
 
 /// In parts that each fit one datagram; none for an empty trajectory.

@@ -64,10 +64,9 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   newest_time_ = measured.time;
   follow_odometry(measured, step_s);
   if (place_finder_ && !place(measured)) return unplaced(measured);
-  Look look = this->look(points_of(measured));
+  Look look = look_from_expected(measured);
   const std::optional<Observation> corrected = with_right_scale(measured, look);
   const Observation& observation = corrected ? *corrected : measured;
-  const Points points = points_of(observation);
   bool is_keyframe = given_pose_ || odometry_refused_ || is_keyframe_due(observation) ||
                      is_contradicted_by(observation);
   const Se2 map_from_last = graph_.state().keyframes.empty()
@@ -79,12 +78,12 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
     is_keyframe = between.contradicts_odometry;
   }
   if (is_keyframe) {
-    add_keyframe(observation, points, look);
+    add_keyframe(observation, look);
     since_insertion_m_ = observation.motion.distance_m;
   } else {
     since_insertion_m_ += observation.motion.distance_m;
     if (between.shows_all_axes || agrees_with_markers(observation)) motion_doubt_.note_observed();
-    if (between.match) insert_between(points, *between.match, between.map_from_base);
+    if (between.match) insert_between(look.points, *between.match, between.map_from_base);
   }
   if (between.match) note_reason(EstimateReason::kScan);
   Estimate now =
@@ -142,14 +141,16 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
-WaymarkEstimator::Look WaymarkEstimator::look(const Points& points) const {
-  if (graph_.state().keyframes.empty()) return {};
-  const Prediction expected = prediction();
-  return {expected, matched(points, expected)};
+/// Without a match where nothing is expected: at the beginning, and where the pose was given.
+WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& observation) const {
+  Look look{points_of(observation)};
+  if (graph_.state().keyframes.empty() || given_pose_) return look;
+  look.expected = prediction();
+  look.scan = matched(look.points, look.expected);
+  return look;
 }
 
-void WaymarkEstimator::add_keyframe(const Observation& observation, const Points& points,
-                                    const Look& look) {
+void WaymarkEstimator::add_keyframe(const Observation& observation, const Look& look) {
   inlier_share_ = 1.0;
   bool is_refuted_scan = false;
   bool shows_all_axes = false;
@@ -160,15 +161,15 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
   } else {
     const Prediction& expected = look.expected;
     auto scan = look.scan;
-    if (scan) search_widely(points, expected, *scan);
+    if (scan) search_widely(look.points, expected, *scan);
     const std::size_t keyframe = graph_.add_keyframe(expected.map_from_base);
-    shows_all_axes = scan && scan->match.is_usable(config_.scan) && !is_refuted(scan->match) &&
-                     !scan->match.observed.is_degenerate;
-    add_odometry_factor(keyframe, shows_all_axes || agrees_with_markers(observation));
     is_refuted_scan = scan && is_refuted(scan->match);
+    const bool is_used = scan && !is_refuted_scan && scan->match.is_usable(config_.scan);
+    shows_all_axes = is_used && !scan->match.observed.is_degenerate;
+    add_odometry_factor(keyframe, shows_all_axes || agrees_with_markers(observation));
     if (scan) inlier_share_ = scan->match.inlier_share;
     if (scan) note_fit(scan->match);
-    if (scan && !is_refuted_scan && scan->match.is_usable(config_.scan)) {
+    if (is_used) {
       note_reason(EstimateReason::kScan);
       learn_noise(expected, *scan);
       confirm_place(*scan);
@@ -194,7 +195,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
     use_markers(measurements);
     note_misses(observation);
     if (!measurements.empty()) use_survey();
-    if (config_.loops.enabled && !is_refuted_scan && !is_frozen()) close_loops(points);
+    if (config_.loops.enabled && !is_refuted_scan && !is_frozen()) close_loops(look.points);
   }
   weigh_past_anew();
   compare_with_odometry();
@@ -203,7 +204,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Points
   const bool is_mapped = !is_doubtful && !is_refuted_scan && is_confirmed_;
   if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
   if (!is_frozen())
-    map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? points : Points{});
+    map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? look.points : Points{});
   while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
     graph_.marginalise_oldest(kNear_m);
   if (is_frozen()) graph_.forget_behind_window();

@@ -86,6 +86,7 @@ class WaymarkEstimator final : public Estimator {
 
   /// A scan where the robot is expected to be.
   struct Look {
+    Points points{};
     Prediction expected{};
     std::optional<MatchedScan> scan{};
   };
@@ -143,8 +144,8 @@ class WaymarkEstimator final : public Estimator {
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   std::vector<Se2> without_odometry() const;
   void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;
-  Look look(const Points& points) const;
-  void add_keyframe(const Observation& observation, const Points& points, const Look& look);
+  Look look_from_expected(const Observation& observation) const;
+  void add_keyframe(const Observation& observation, const Look& look);
   void add_first_keyframe();
   void put_elsewhere(const StartPose& pose);
   void use_survey();

@@ -26,7 +26,7 @@ bool is_other(double a, double b) {
 
 }  // namespace
 
-/// Odometry that was stuck tells at once what was driven meanwhile. Keyframes that were made in
+/// Odometry that was stuck reports at once what was driven meanwhile. Keyframes that were made in
 /// between, because markers or walls said that the robot moves, hang on those alone then.
 void WaymarkEstimator::follow_odometry(const Observation& observation, double step_s) {
   motion_doubt_.follow(observation);

@@ -39,23 +39,24 @@ std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation&
                                                               Look& look) {
   is_rescaled_ = false;
   if (!look.scan || !fits_badly(look.scan->match)) return std::nullopt;
-  const Points points = points_of(observation);
   const Prediction& expected = look.expected;
   const auto& plain = look.scan;
   const Se2 submap_from_map = plain->map_from_submap.inverse();
   Eigen::Matrix3d around = in_axes(submap_from_map.rotation(), expected.covariance);
   around.diagonal() += kAround.cwiseAbs2();
-  const RangeScale scale =
-      fit_range_scale(points, observation.beams.front().beam.start_in_base, surfaces_of(*plain),
-                      submap_from_map * expected.map_from_base, around, range_noise_);
+  const RangeScale scale = fit_range_scale(
+      look.points, observation.beams.front().beam.start_in_base, surfaces_of(*plain),
+      submap_from_map * expected.map_from_base, around, range_noise_);
   if (std::abs(scale.share) < std::max(kLeastShare, kLeastSigmas * scale.sigma))
     return std::nullopt;
   Observation corrected = scaled_ranges(observation, scale.share);
-  const auto fitted = matched(points_of(corrected), expected);
+  const Points points = points_of(corrected);
+  const auto fitted = matched(points, expected);
   if (!fitted || fitted->match.inliers < kClearlyBetter * plain->match.inliers ||
       is_refuted(fitted->match)) {
     return std::nullopt;
   }
+  look.points = points;
   look.scan = fitted;
   is_rescaled_ = true;
   ++findings_.scans_rescaled;

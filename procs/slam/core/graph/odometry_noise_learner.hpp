@@ -32,7 +32,7 @@ class OdometryNoiseLearner {
 
   void observe_turn(const OdometryInnovation& innovation) { add(innovation, turn_); }
 
-  /// The same of a marker: it shows a slip, or none. Scans are no witnesses, for along a corridor
+  /// The same of a marker: it shows a slip, or none. Scans are not used, for along a corridor
   /// they are pulled back to where they were matched before, which looks like a slip.
   void observe_slip(const OdometryInnovation& innovation);
 

@@ -69,10 +69,10 @@ TEST(OdometryBuffer, WhatWasDrivenDuringGarbageIsToldAfterIt) {
   EXPECT_TRUE(buffer.is_doubtful(at_ms(500), at_ms(700)));
   EXPECT_FALSE(buffer.is_doubtful(at_ms(1100), at_ms(1300)));
   ASSERT_TRUE(kept_back);
-  const Motion told = buffer.motion_between(at_ms(0), at_ms(33 * 40));
+  const Motion reported = buffer.motion_between(at_ms(0), at_ms(33 * 40));
   const Se2 whole = right(0).inverse() * right(40);
-  EXPECT_NEAR(told.start_from_end.x() + kept_back->start_from_end.x(), whole.x(), 1e-9);
-  EXPECT_NEAR(told.start_from_end.y() + kept_back->start_from_end.y(), whole.y(), 1e-9);
+  EXPECT_NEAR(reported.start_from_end.x() + kept_back->start_from_end.x(), whole.x(), 1e-9);
+  EXPECT_NEAR(reported.start_from_end.y() + kept_back->start_from_end.y(), whole.y(), 1e-9);
 }
 
 /// Stands at (5, 1, 0.5) for a second, then tells another pose.
