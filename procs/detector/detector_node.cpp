@@ -2,6 +2,7 @@
 #include "detector/detector_node.hpp"
 
 #include "common/messages/convert.hpp"
+#include "detector/image_message.hpp"
 
 #include <opencv2/core/utility.hpp>
 #include <spdlog/spdlog.h>
@@ -15,21 +16,6 @@ namespace waymark {
 namespace {
 
 constexpr std::size_t kMarkersPerMessage = 130;  // 492 bytes each
-
-PixelFormat format_of(const image_t& image) {
-  switch (image.pixelformat) {
-    case image_t::PIXEL_FORMAT_GRAY:
-      return PixelFormat::kGray;
-    case image_t::PIXEL_FORMAT_RGB:
-      return PixelFormat::kRgb;
-    case image_t::PIXEL_FORMAT_BGR:
-      return PixelFormat::kBgr;
-    case image_t::PIXEL_FORMAT_MJPEG:
-      return PixelFormat::kMjpeg;
-    default:
-      return PixelFormat::kOther;
-  }
-}
 
 }  // namespace
 
@@ -51,7 +37,7 @@ void DetectorNode::handle(const image_t& image) {
   MarkerDetections detections{.time = timestamp_from_us(image.utime),
                               .image_width_px = image_size_.width,
                               .image_height_px = image_size_.height};
-  const DecodedFrame frame = decode_image(image);
+  const DecodedFrame frame = decode_image(image, image_size_);
   if (frame.problem == FrameProblem::kNone) {
     detections.detections = detector_.detect(frame.gray);
     leave_out_what_does_not_fit(detections.detections);
@@ -88,15 +74,6 @@ void DetectorNode::reject(const DecodedFrame& frame) {
         frame.wrong_size.width, frame.wrong_size.height, image_size_.width, image_size_.height);
   }
   inbox_.counters().add(name, CountKind::kRejection);
-}
-
-DecodedFrame DetectorNode::decode_image(const image_t& image) const {
-  return decode_frame({.format = format_of(image),
-                       .width_px = image.width,
-                       .height_px = image.height,
-                       .row_stride_bytes = image.row_stride,
-                       .bytes = image.data},
-                      image_size_);
 }
 
 }  // namespace waymark

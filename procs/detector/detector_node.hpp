@@ -31,7 +31,6 @@ class DetectorNode final : public Node {
   void count(const MarkerDetections& detections);
   /// Counts; says of the first image of another size which one it has.
   void reject(const DecodedFrame& frame);
-  DecodedFrame decode_image(const image_t& image) const;
 
   cv::Size image_size_;
   MarkerDetector detector_;

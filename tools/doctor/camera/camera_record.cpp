@@ -5,9 +5,9 @@
 #include "common/markers/marker_dictionary.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
-#include "detector/core/frame_decoder.hpp"
 #include "detector/core/marker_detector.hpp"
 #include "detector/core/seen_square.hpp"
+#include "detector/image_message.hpp"
 #include "slam/core/scan/marker_sighting.hpp"
 
 #include <opencv2/core/utility.hpp>
@@ -30,21 +30,6 @@ constexpr std::array<std::string_view, 9> kFamilies{
     "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5",
     "DICT_APRILTAG_25h9", "DICT_APRILTAG_36h10", "DICT_APRILTAG_36h11"};
 
-PixelFormat format_of(const image_t& image) {
-  switch (image.pixelformat) {
-    case image_t::PIXEL_FORMAT_GRAY:
-      return PixelFormat::kGray;
-    case image_t::PIXEL_FORMAT_RGB:
-      return PixelFormat::kRgb;
-    case image_t::PIXEL_FORMAT_BGR:
-      return PixelFormat::kBgr;
-    case image_t::PIXEL_FORMAT_MJPEG:
-      return PixelFormat::kMjpeg;
-    default:
-      return PixelFormat::kOther;
-  }
-}
-
 std::optional<CameraSighting> seen_by(const RobotConfig& robot, Timestamp time,
                                       const MarkerDetection& marker) {
   const auto sighting = sight_marker(marker, time, {}, robot.markers.size_m);
@@ -65,18 +50,16 @@ class CameraReader {
   explicit CameraReader(const RobotConfig& robot)
       : robot_{robot},
         detector_{robot, {}},
+        described_{*find_dictionary(robot.markers.dictionary), {}},
         modules_per_side_{find_dictionary(robot.markers.dictionary)->markerSize + kBorderModules} {
     for (const std::string_view family : kFamilies)
       finders_.emplace_back(family, CandidateFinder{*find_dictionary(family), {}});
-    described_.emplace_back(robot.markers.dictionary,
-                            CandidateFinder{*find_dictionary(robot.markers.dictionary), {}});
   }
 
   void look_at(const image_t& image, bool try_dictionaries) {
     ++record_.num_looked_at;
     const DecodedFrame frame =
-        decode_frame({format_of(image), image.width, image.height, image.row_stride, image.data},
-                     {robot_.camera.width_px, robot_.camera.height_px});
+        decode_image(image, {robot_.camera.width_px, robot_.camera.height_px});
     if (frame.problem != FrameProblem::kNone) {
       ++record_.problems[std::string{to_string(frame.problem)}];
       return;
@@ -84,7 +67,7 @@ class CameraReader {
     for (const MarkerDetection& marker : detector_.detect(frame.gray))
       add(frame.gray, timestamp_from_us(image.utime), marker);
     if (!try_dictionaries) return;
-    record_.markers_of_described += std::ssize(described_.front().second.find(frame.gray));
+    record_.markers_of_described += std::ssize(described_.find(frame.gray));
     for (const auto& [name, finder] : finders_) {
       for (const MarkerCandidate& marker : finder.find(frame.gray)) {
         ++record_.markers_by_dictionary[name];
@@ -110,9 +93,9 @@ class CameraReader {
 
   RobotConfig robot_;
   MarkerDetector detector_;
+  CandidateFinder described_;
   int modules_per_side_;
-  std::vector<std::pair<std::string, CandidateFinder>> finders_{};
-  std::vector<std::pair<std::string, CandidateFinder>> described_{};
+  std::vector<std::pair<std::string, CandidateFinder>> finders_{};  ///< by family
   CameraRecord record_{};
 };
 
