@@ -8,16 +8,10 @@
 # shellcheck disable=SC2317  # cases are called by name
 set -euo pipefail
 
-source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build_dir=${1:?usage: real_log_test.sh BUILD_DIR CASE}
+# shellcheck source=tests/process/installed.sh
+source "$(dirname "${BASH_SOURCE[0]}")/installed.sh"
 data=${WAYMARK_DATA:-$source_dir/../shared/data}/logs
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-
-# The installed layout, so that the programs of any build folder are under test.
-mkdir -p "$work/share/waymark"
-cp -r "$source_dir/deploy" "$work/share/waymark/"
-ln -s "$build_dir" "$work/bin"
 
 need_log() {
   [[ -f $data/$1 ]] && return

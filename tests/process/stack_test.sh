@@ -7,16 +7,9 @@
 # shellcheck disable=SC2317  # cases are called by name
 set -euo pipefail
 
-source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build_dir=${1:?usage: stack_test.sh BUILD_DIR CASE}
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-unset LCM_DEFAULT_URL
-
-# The installed layout, so that the programs of any build folder are under test.
-mkdir -p "$work/share/waymark"
-cp -r "$source_dir/deploy" "$work/share/waymark/"
-ln -s "$build_dir" "$work/bin"
+# shellcheck source=tests/process/installed.sh
+source "$(dirname "${BASH_SOURCE[0]}")/installed.sh"
 launch=$work/share/waymark/deploy/launch.sh
 
 cat >"$work/short.toml" <<'END'
