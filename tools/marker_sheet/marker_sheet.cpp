@@ -138,17 +138,20 @@ Sheet draw_sheet(const SheetOptions& options, int id) {
   return sheet;
 }
 
-std::filesystem::path write_sheet(const SheetOptions& options, int id,
-                                  const std::filesystem::path& folder) {
-  const Sheet sheet = draw_sheet(options, id);
+void write_png(const Sheet& sheet, const std::filesystem::path& file) {
   std::vector<unsigned char> png;
   cv::imencode(".png", sheet.picture, png);
   std::string bytes{png.begin(), png.end()};
   constexpr std::size_t kAfterHeader = 8 + 25;  // signature and IHDR chunk
   bytes.insert(kAfterHeader, size_chunk(sheet.pixels_per_m));
-  std::filesystem::create_directories(folder);
-  const auto file = folder / fmt::format("marker_{}_{:04}.png", options.dictionary, id);
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   write_whole_file(file, bytes);
+}
+
+std::filesystem::path write_sheet(const SheetOptions& options, int id,
+                                  const std::filesystem::path& folder) {
+  const auto file = folder / fmt::format("marker_{}_{:04}.png", options.dictionary, id);
+  write_png(draw_sheet(options, id), file);
   return file;
 }
 

@@ -35,6 +35,10 @@ struct Sheet {
 /// @throws std::runtime_error if the options or the id make no marker.
 Sheet draw_sheet(const SheetOptions& options, int id);
 
+/// With its resolution, so that it prints at its true size; makes the folder.
+/// @throws std::runtime_error if it cannot be written.
+void write_png(const Sheet& sheet, const std::filesystem::path& file);
+
 /// Writes marker_<dictionary>_<id>.png with its resolution, so that it prints at its true size.
 /// @throws std::runtime_error if the sheet cannot be drawn or written.
 std::filesystem::path write_sheet(const SheetOptions& options, int id,

@@ -12,7 +12,7 @@ namespace waymark::marker_sheet {
 namespace {
 
 constexpr double kGap_mm = 3.0;        // between border, caption and ruler
-constexpr int kMostPages = 100;        // of one marker
+constexpr int kMostPages = 100;        // of one pattern
 constexpr double kRounding_mm = 1e-6;  // sheets that fill a page fit it
 
 struct NamedPage {
@@ -46,15 +46,15 @@ PageSize page_of(const std::string& name) {
   throw std::runtime_error{fmt::format("--page: got '{}', expected A4, A3 or Letter", name)};
 }
 
-SheetLayout layout_of(const SheetOptions& options, int modules) {
+SheetLayout layout_of(const Pattern& pattern) {
   SheetLayout sheet;
-  sheet.side_mm = 1e3 * options.size_m;
-  sheet.quiet_mm = options.quiet_zone_modules * sheet.side_mm / modules;
-  const double white_mm = sheet.side_mm + 2.0 * sheet.quiet_mm;
-  sheet.width_mm = std::max(white_mm, kRuler_mm + 2.0 * kGap_mm);
-  sheet.marker_x_mm = 0.5 * (sheet.width_mm - sheet.side_mm);
-  sheet.marker_y_mm = sheet.quiet_mm;
-  sheet.caption_y_mm = white_mm + kGap_mm;
+  sheet.pattern_width_mm = pattern.width_mm;
+  sheet.pattern_height_mm = pattern.height_mm;
+  sheet.quiet_mm = pattern.quiet_mm;
+  sheet.width_mm = std::max(pattern.width_mm + 2.0 * pattern.quiet_mm, kRuler_mm + 2.0 * kGap_mm);
+  sheet.pattern_x_mm = 0.5 * (sheet.width_mm - pattern.width_mm);
+  sheet.pattern_y_mm = pattern.quiet_mm;
+  sheet.caption_y_mm = pattern.height_mm + 2.0 * pattern.quiet_mm + kGap_mm;
   sheet.ruler_x_mm = 0.5 * (sheet.width_mm - kRuler_mm);
   sheet.ruler_y_mm = sheet.caption_y_mm + kCaption_mm + kGap_mm + kTick_mm;
   sheet.height_mm = sheet.ruler_y_mm + kGap_mm;
@@ -70,16 +70,16 @@ Tiling tiling_of(const SheetLayout& sheet, const std::string& page, bool tiles) 
   const int pages = best.columns * best.rows;
   if (pages > 1 && !tiles) {
     throw std::runtime_error{fmt::format(
-        "a marker of {:.4g} mm with border, caption and ruler needs {:.0f} x {:.0f} mm, {} has "
+        "{:.4g} x {:.4g} mm with border, caption and ruler need {:.0f} x {:.0f} mm, {} has "
         "{:.0f} x {:.0f} mm inside its margins: give --tile (then it is {} pages to put together), "
-        "a larger --page, or a smaller --size-m",
-        sheet.side_mm, sheet.width_mm, sheet.height_mm, page, upright.cell_width_mm,
-        upright.cell_height_mm, pages)};
+        "a larger --page, or a smaller pattern",
+        sheet.pattern_width_mm, sheet.pattern_height_mm, sheet.width_mm, sheet.height_mm, page,
+        upright.cell_width_mm, upright.cell_height_mm, pages)};
   }
   if (pages > kMostPages) {
     throw std::runtime_error{
-        fmt::format("--size-m {:.4g}: that is {} pages of {}, at most {} are written",
-                    1e-3 * sheet.side_mm, pages, page, kMostPages)};
+        fmt::format("a width of {:.4g} m: that is {} pages of {}, at most {} are written",
+                    1e-3 * sheet.pattern_width_mm, pages, page, kMostPages)};
   }
   return best;
 }

@@ -2,11 +2,9 @@
 // Where things go on paper. Millimetres, from the top left.
 #pragma once
 
-#include "marker_sheet/marker_sheet.hpp"
+#include "marker_sheet/pattern.hpp"
 
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace waymark::marker_sheet {
 
@@ -18,13 +16,14 @@ struct PageSize {
 /// @throws std::runtime_error naming the known ones: A4, A3, Letter.
 PageSize page_of(const std::string& name);
 
-/// One marker with its white border, caption and ruler, as if paper had no end.
+/// A pattern with its white border, caption and ruler, as if paper had no end.
 struct SheetLayout {
   double width_mm{};
   double height_mm{};
-  double side_mm{};      ///< of the black square
-  double marker_x_mm{};  ///< its top left corner
-  double marker_y_mm{};
+  double pattern_width_mm{};
+  double pattern_height_mm{};
+  double pattern_x_mm{};  ///< its top left corner
+  double pattern_y_mm{};
   double quiet_mm{};      ///< width of the white border
   double caption_y_mm{};  ///< top of the caption
   double ruler_x_mm{};    ///< left end of the ruler
@@ -35,8 +34,7 @@ inline constexpr double kRuler_mm = 100.0;
 inline constexpr double kCaption_mm = 5.0;  ///< height of its line
 inline constexpr double kTick_mm = 4.0;     ///< of ruler and mounting height
 
-/// @param modules  along one side, border included
-SheetLayout layout_of(const SheetOptions& options, int modules);
+SheetLayout layout_of(const Pattern& pattern);
 
 /// How a sheet is spread over pages, which are cut at their margins and put edge to edge.
 struct Tiling {

@@ -15,6 +15,9 @@ namespace waymark::marker_sheet {
 namespace {
 
 constexpr double kPoint_per_mm = 72.0 / 25.4;
+constexpr double kInch_mm = 25.4;
+constexpr double kFewestPixels_per_mm = 2.0;  // modules have some millimetres
+constexpr double kMostPixels = 20'000.0;      // 1.7 m at 300 dpi; guards the memory
 constexpr double kHairline_mm = 0.1;
 constexpr double kCutMark_mm = 5.0;
 constexpr int kTextPixels_per_mm = 24;  // 600 dots per inch
@@ -70,20 +73,11 @@ void draw_text(cairo_t* to, const std::string& text, double x_mm, double y_mm, d
   cairo_surface_finish(image.get());
 }
 
-/// The black squares as one path: filled at once, no seams show between them.
-void draw_marker(cairo_t* to, const cv::Mat& modules, const SheetLayout& sheet) {
-  const double module_mm = sheet.side_mm / modules.cols;
-  for (int row = 0; row < modules.rows; ++row) {
-    for (int first = 0; first < modules.cols; ++first) {
-      if (modules.at<unsigned char>(row, first) != 0) continue;
-      int end = first;
-      while (end < modules.cols && modules.at<unsigned char>(row, end) == 0)
-        ++end;
-      cairo_rectangle(to, sheet.marker_x_mm + first * module_mm,
-                      sheet.marker_y_mm + row * module_mm, (end - first) * module_mm, module_mm);
-      first = end;
-    }
-  }
+/// As one path: filled at once, no seams show between rectangles.
+void draw_black(cairo_t* to, const Pattern& pattern, const SheetLayout& sheet) {
+  for (const Rectangle& black : pattern.black)
+    cairo_rectangle(to, sheet.pattern_x_mm + black.x_mm, sheet.pattern_y_mm + black.y_mm,
+                    black.width_mm, black.height_mm);
   cairo_fill(to);
 }
 
@@ -98,12 +92,12 @@ void draw_ruler(cairo_t* to, const SheetLayout& sheet) {
   }
 }
 
-/// At the height of the marker's middle, on the outer half of its border.
+/// At the height of the pattern's middle, on the outer half of its border.
 void draw_height_marks(cairo_t* to, const SheetLayout& sheet) {
-  const double y_mm = sheet.marker_y_mm + 0.5 * sheet.side_mm;
+  const double y_mm = sheet.pattern_y_mm + 0.5 * sheet.pattern_height_mm;
   const double length_mm = std::min(kTick_mm, 0.5 * sheet.quiet_mm);
-  const double left_mm = sheet.marker_x_mm - sheet.quiet_mm;
-  const double right_mm = sheet.marker_x_mm + sheet.side_mm + sheet.quiet_mm;
+  const double left_mm = sheet.pattern_x_mm - sheet.quiet_mm;
+  const double right_mm = sheet.pattern_x_mm + sheet.pattern_width_mm + sheet.quiet_mm;
   draw_line(to, left_mm, y_mm, left_mm + length_mm, y_mm);
   draw_line(to, right_mm - length_mm, y_mm, right_mm, y_mm);
 }
@@ -123,13 +117,16 @@ void draw_cut_marks(cairo_t* to, const Tiling& tiling) {
   }
 }
 
-std::string caption_of(const SheetOptions& options, int id) {
-  return fmt::format("{}  id {}  {:.4g} mm   the line below has 100 mm", options.dictionary, id,
-                     1e3 * options.size_m);
+void draw_sheet_of(cairo_t* to, const Pattern& pattern, const SheetLayout& sheet) {
+  draw_black(to, pattern, sheet);
+  draw_height_marks(to, sheet);
+  draw_text(to, pattern.caption + "   the line below has 100 mm", sheet.ruler_x_mm,
+            sheet.caption_y_mm, kCaption_mm, kRuler_mm);
+  draw_ruler(to, sheet);
 }
 
-void draw_page(cairo_t* to, const PdfOptions& options, const cv::Mat& modules, int id,
-               const SheetLayout& sheet, const Tiling& tiling, int column, int row) {
+void draw_page(cairo_t* to, const Pattern& pattern, const SheetLayout& sheet, const Tiling& tiling,
+               int column, int row) {
   cairo_save(to);
   cairo_scale(to, kPoint_per_mm, kPoint_per_mm);
   cairo_set_line_width(to, kHairline_mm);
@@ -138,18 +135,14 @@ void draw_page(cairo_t* to, const PdfOptions& options, const cv::Mat& modules, i
   cairo_clip(to);
   cairo_translate(to, kMargin_mm + tiling.offset_x_mm - column * tiling.cell_width_mm,
                   kMargin_mm + tiling.offset_y_mm - row * tiling.cell_height_mm);
-  draw_marker(to, modules, sheet);
-  draw_height_marks(to, sheet);
-  draw_text(to, caption_of(options.sheet, id), sheet.ruler_x_mm, sheet.caption_y_mm, kCaption_mm,
-            kRuler_mm);
-  draw_ruler(to, sheet);
+  draw_sheet_of(to, pattern, sheet);
   cairo_restore(to);
   if (tiling.columns * tiling.rows > 1) {
     draw_cut_marks(to, tiling);
     constexpr double kLabel_mm = 3.0;
     draw_text(to,
-              fmt::format("id {}: row {} of {}, column {} of {}; cut at the marks", id, row + 1,
-                          tiling.rows, column + 1, tiling.columns),
+              fmt::format("{}: row {} of {}, column {} of {}; cut at the marks", pattern.name,
+                          row + 1, tiling.rows, column + 1, tiling.columns),
               kMargin_mm + kCutMark_mm, 0.5 * (kMargin_mm - kLabel_mm), kLabel_mm,
               tiling.cell_width_mm - 2.0 * kCutMark_mm);
   }
@@ -158,7 +151,7 @@ void draw_page(cairo_t* to, const PdfOptions& options, const cv::Mat& modules, i
 
 }  // namespace
 
-Pdf draw_pdf(const PdfOptions& options, const std::vector<int>& ids) {
+Pdf draw_pdf(const std::vector<Pattern>& patterns, const PageOptions& options) {
   Pdf pdf;
   const PageSize first = page_of(options.page);
   const Surface surface{
@@ -171,15 +164,14 @@ Pdf draw_pdf(const PdfOptions& options, const std::vector<int>& ids) {
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE,
                                  "2000-01-01T00:00:00Z");
   const Context context{cairo_create(surface.get()), &cairo_destroy};
-  for (const int id : ids) {
-    const cv::Mat modules = marker_modules(options.sheet, id);
-    const SheetLayout sheet = layout_of(options.sheet, modules.cols);
+  for (const Pattern& pattern : patterns) {
+    const SheetLayout sheet = layout_of(pattern);
     const Tiling tiling = tiling_of(sheet, options.page, options.tiles);
     cairo_pdf_surface_set_size(surface.get(), kPoint_per_mm * tiling.page.width_mm,
                                kPoint_per_mm * tiling.page.height_mm);
     for (int row = 0; row < tiling.rows; ++row) {
       for (int column = 0; column < tiling.columns; ++column) {
-        draw_page(context.get(), options, modules, id, sheet, tiling, column, row);
+        draw_page(context.get(), pattern, sheet, tiling, column, row);
         cairo_show_page(context.get());
         check(cairo_status(context.get()));
         ++pdf.num_pages;
@@ -189,6 +181,33 @@ Pdf draw_pdf(const PdfOptions& options, const std::vector<int>& ids) {
   cairo_surface_finish(surface.get());
   check(cairo_surface_status(surface.get()));
   return pdf;
+}
+
+Sheet draw_picture(const Pattern& pattern, double dpi) {
+  const SheetLayout sheet = layout_of(pattern);
+  const double px_per_mm = dpi / kInch_mm;
+  const double largest_px = px_per_mm * std::max(sheet.width_mm, sheet.height_mm);
+  if (!(px_per_mm >= kFewestPixels_per_mm && largest_px <= kMostPixels))
+    throw std::runtime_error{
+        fmt::format("--dpi {}: expected {:.0f} or more, and a picture of at most {:.0f} pixels",
+                    dpi, kFewestPixels_per_mm * kInch_mm, kMostPixels)};
+  const Surface surface{
+      cairo_image_surface_create(CAIRO_FORMAT_A8,
+                                 static_cast<int>(std::ceil(px_per_mm * sheet.width_mm)),
+                                 static_cast<int>(std::ceil(px_per_mm * sheet.height_mm))),
+      &cairo_surface_destroy};
+  check(cairo_surface_status(surface.get()));
+  const Context context{cairo_create(surface.get()), &cairo_destroy};
+  cairo_scale(context.get(), px_per_mm, px_per_mm);
+  cairo_set_line_width(context.get(), kHairline_mm);
+  draw_sheet_of(context.get(), pattern, sheet);
+  check(cairo_status(context.get()));
+  cairo_surface_flush(surface.get());
+  const cv::Mat ink{cairo_image_surface_get_height(surface.get()),
+                    cairo_image_surface_get_width(surface.get()), CV_8UC1,
+                    cairo_image_surface_get_data(surface.get()),
+                    static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()))};
+  return {255 - ink, 1e3 * px_per_mm};
 }
 
 }  // namespace waymark::marker_sheet

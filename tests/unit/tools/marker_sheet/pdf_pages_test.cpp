@@ -26,12 +26,24 @@ bool has_poppler() {
   return std::system("command -v pdftoppm >/dev/null") == 0;
 }
 
+struct PdfOptions {
+  SheetOptions sheet{};
+  PageOptions page{};
+};
+
+/// The markers with these ids.
+Pdf draw_pdf(const PdfOptions& options, const std::vector<int>& ids) {
+  std::vector<Pattern> patterns;
+  for (const int id : ids)
+    patterns.push_back(marker_pattern(options.sheet, id));
+  return marker_sheet::draw_pdf(patterns, options.page);
+}
+
 PdfOptions options_of(const char* dictionary, double size_m, const char* page, bool tiles) {
   PdfOptions options;
   options.sheet.dictionary = dictionary;
   options.sheet.size_m = size_m;
-  options.page = page;
-  options.tiles = tiles;
+  options.page = {page, tiles};
   return options;
 }
 
@@ -123,7 +135,7 @@ TEST(PdfPages, TheRulerHasAHundredMillimetres) {
     GTEST_SKIP() << "no pdftoppm here; deploy/install-deps.sh --tests installs it";
   constexpr double kPxPerMm = 10.0;
   const PdfOptions options = options_of("DICT_6X6_250", 0.08, "A4", false);
-  const SheetLayout sheet = layout_of(options.sheet, 8);
+  const SheetLayout sheet = layout_of(marker_pattern(options.sheet, 3));
   const Tiling tiling = tiling_of(sheet, "A4", false);
   const auto pages = rendered(draw_pdf(options, {3}), kPxPerMm);
   const double y_mm = kMargin_mm + tiling.offset_y_mm + sheet.ruler_y_mm;
@@ -138,7 +150,7 @@ TEST(PdfPages, TilesThatAreCutAndPutTogetherReadBack) {
     GTEST_SKIP() << "no pdftoppm here; deploy/install-deps.sh --tests installs it";
   constexpr double kPxPerMm = 5.0;
   const PdfOptions options = options_of("DICT_6X6_250", 0.4, "A4", true);
-  const Tiling tiling = tiling_of(layout_of(options.sheet, 8), "A4", true);
+  const Tiling tiling = tiling_of(layout_of(marker_pattern(options.sheet, 3)), "A4", true);
   const Pdf pdf = draw_pdf(options, {23});
   ASSERT_EQ(pdf.num_pages, tiling.columns * tiling.rows);
   ASSERT_GT(pdf.num_pages, 1);

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/markers/charuco_board.hpp"
+
+#include "common/errors/setup_error.hpp"
+#include "common/markers/marker_dictionary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numbers>
+#include <string_view>
+
+namespace waymark {
+namespace {
+
+constexpr int kFewestSquares = 3;  // 2 x 2 inner corners: fewer make no homography
+constexpr int kMostSquares = 60;   // along a side: guards the memory
+constexpr double kLargestSquare_m = 1.0;
+// A marker needs white around it to be found, and pixels to be read.
+constexpr double kSmallestShare = 0.3;
+constexpr double kLargestShare = 0.9;
+
+/// 0 where the text is no number of squares.
+int number_in(std::string_view text) {
+  int number{};
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc{} && stop == text.data() + text.size();
+  return is_number && number >= kFewestSquares && number <= kMostSquares ? number : 0;
+}
+
+}  // namespace
+
+cv::Ptr<cv::aruco::CharucoBoard> make_board(const BoardOptions& options) {
+  const std::string_view squares{options.squares};
+  const std::size_t x = squares.find('x');
+  const int columns = number_in(squares.substr(0, x));
+  const int rows = x == std::string::npos ? 0 : number_in(squares.substr(x + 1));
+  if (columns == 0 || rows == 0)
+    throw SetupError{fmt::format("--squares: got '{}', expected columns x rows, {} to {} each: 7x5",
+                                 squares, kFewestSquares, kMostSquares)};
+  if (!(options.square_m > 0.0 && options.square_m <= kLargestSquare_m))
+    throw SetupError{fmt::format("--square-m: got {}, expected more than 0, up to {} m",
+                                 options.square_m, kLargestSquare_m)};
+  if (!(options.marker_m >= kSmallestShare * options.square_m &&
+        options.marker_m <= kLargestShare * options.square_m))
+    throw SetupError{fmt::format("--marker-m: got {}, expected {} to {} of --square-m {}",
+                                 options.marker_m, kSmallestShare, kLargestShare,
+                                 options.square_m)};
+  const auto dictionary = find_dictionary(options.dictionary);
+  if (!dictionary)
+    throw SetupError{fmt::format("--dictionary: got '{}', expected one of {}", options.dictionary,
+                                 fmt::join(dictionary_names(), ", "))};
+  const int num_markers = columns * rows / 2;
+  if (num_markers > size_of(*dictionary))
+    throw SetupError{fmt::format("--squares: {} need {} markers, {} has {}", squares, num_markers,
+                                 options.dictionary, size_of(*dictionary))};
+  return cv::aruco::CharucoBoard::create(columns, rows, static_cast<float>(options.square_m),
+                                         static_cast<float>(options.marker_m),
+                                         cv::makePtr<cv::aruco::Dictionary>(*dictionary));
+}
+
+BoardCorners find_corners(const cv::Mat& gray, const cv::Ptr<cv::aruco::CharucoBoard>& board) {
+  // A marker's white square is no second marker: OpenCV takes what lies nearer than a share of its
+  // outline for one and keeps the larger. Half of what there is leaves room for perspective.
+  const auto parameters = cv::aruco::DetectorParameters::create();
+  const double gap = 0.5 * (board->getSquareLength() / board->getMarkerLength() - 1.0);
+  parameters->minMarkerDistanceRate =
+      std::min(parameters->minMarkerDistanceRate, 0.5 * std::numbers::sqrt2 * gap / 4.0);
+  BoardCorners found;
+  std::vector<std::vector<cv::Point2f>> markers;
+  cv::aruco::detectMarkers(gray, board->dictionary, markers, found.marker_ids, parameters);
+  if (found.marker_ids.empty()) return found;
+  cv::aruco::interpolateCornersCharuco(markers, found.marker_ids, gray, board, found.corners_px,
+                                       found.ids);
+  return found;
+}
+
+}  // namespace waymark
