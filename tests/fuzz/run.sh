@@ -37,9 +37,8 @@ command -v clang++-16 >/dev/null || die $kExitUsage "no clang++-16 here; deploy/
 make_seeds() {
   local work
   work=$(mktemp -d)
-  printf '[world]\nlength_m = 5.0\n[markers]\nfirst_m = 2.0\nspacing_m = 2.0\nlast_m = 4.0\n[route]\nend_x_m = 3.0\nspeed_mps = 0.5\n' \
-    >"$work/short.toml"
-  "$source_dir/deploy/launch.sh" "$work/short.toml" --out "$work/run" --save-map "$work/short.map.lcm" >"$work/output" 2>&1 ||
+  "$source_dir/deploy/launch.sh" "$source_dir/tests/data/scenarios/smallest.toml" --out "$work/run" \
+    --save-map "$work/short.map.lcm" >"$work/output" 2>&1 ||
     die $kExitFailed "the run for the first inputs failed: see $work/output"
   "$source_dir/build/fuzz/tests/fuzz/fuzz_seeds" "$work/run" "$work/short.map.lcm" "$corpus"
   rm -rf -- "$work"

@@ -23,16 +23,7 @@ import sys
 import tempfile
 import time
 
-SCENARIO = """[world]
-length_m = 5.0
-[markers]
-first_m = 2.0
-spacing_m = 2.0
-last_m = 4.0
-[route]
-end_x_m = 3.0
-speed_mps = 0.1
-"""
+SCENARIO = pathlib.Path(__file__).resolve().parents[1] / "data/scenarios/smallest.toml"
 PROGRAMS = ("sim", "recorder", "viewer", "slam", "detector")
 LONGEST_END_S = 40  # from the signal: launch.sh gives its processes 15 s, then 7 s, then kills them
 EVENT_MAGIC = 0xEDA1DA01
@@ -94,7 +85,7 @@ class Runs:
         self.random = random.Random(options.seed)
         self.folder = folder
         self.scenario = folder / "short.toml"
-        self.scenario.write_text(SCENARIO)
+        self.scenario.write_text(SCENARIO.read_text().replace("speed_mps = 0.5", "speed_mps = 0.1"))
         self.map_tool = self.deploy.parent / "build/release/waymark-map"
         if not self.map_tool.exists():
             self.map_tool = self.deploy.parents[2] / "bin/waymark-map"

@@ -18,27 +18,17 @@ import time
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PORT = 8892
 LONGEST_RUN_S = 60
-SCENARIO = """[world]
-length_m = 5.0
-[markers]
-first_m = 2.0
-spacing_m = 2.0
-last_m = 4.0
-[route]
-end_x_m = 3.0
-speed_mps = 0.5
-"""
+SCENARIO = SOURCE / "tests/data/scenarios/smallest.toml"
 
 
 def run(build, folder, rng):
     """One run: what went wrong (empty: nothing) and the trajectory."""
-    scenario, robot, row = folder / "short.toml", folder / "robot.toml", folder / "row"
+    robot, row = folder / "robot.toml", folder / "row"
     row.mkdir(parents=True)
-    scenario.write_text(SCENARIO)
-    dumped = subprocess.run([build / "waymark-sim", "--config", scenario, "--dump-robot-config"], check=True,
+    dumped = subprocess.run([build / "waymark-sim", "--config", SCENARIO, "--dump-robot-config"], check=True,
                             capture_output=True)
     robot.write_bytes(dumped.stdout)
-    options = {"sim": ["--config", scenario, "--out", folder], "recorder": ["--out-log", folder / "run.lcm"],
+    options = {"sim": ["--config", SCENARIO, "--out", folder], "recorder": ["--out-log", folder / "run.lcm"],
                "viewer": ["--out", row], "slam": ["--config", robot], "detector": ["--config", robot]}
     order = list(options)
     rng.shuffle(order)
