@@ -5,9 +5,11 @@
 #include "common/markers/marker_dictionary.hpp"
 
 #include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <numbers>
 #include <string_view>
 
@@ -17,6 +19,10 @@ namespace {
 constexpr int kFewestSquares = 3;  // 2 x 2 inner corners: fewer make no homography
 constexpr int kMostSquares = 60;   // along a side: guards the memory
 constexpr double kLargestSquare_m = 1.0;
+constexpr int kSmallestWindow_px = 2;  // half of it, for corners
+constexpr int kLargestWindow_px = 7;   // beyond, a lens bends the edges
+constexpr int kMostSteps = 50;
+constexpr double kConverged_px = 1e-3;
 // A marker needs white around it to be found, and pixels to be read.
 constexpr double kSmallestShare = 0.3;
 constexpr double kLargestShare = 0.9;
@@ -73,6 +79,16 @@ BoardCorners find_corners(const cv::Mat& gray, const cv::Ptr<cv::aruco::CharucoB
   if (found.marker_ids.empty()) return found;
   cv::aruco::interpolateCornersCharuco(markers, found.marker_ids, gray, board, found.corners_px,
                                        found.ids);
+  if (found.ids.empty()) return found;
+  // OpenCV's own corners are half a pixel too far right and down (opencv issue 25539): refined
+  // here, in a window that ends before the markers begin.
+  double side_px = std::numeric_limits<double>::infinity();
+  for (const auto& marker : markers)
+    side_px = std::min(side_px, 0.25 * cv::arcLength(marker, true));
+  const int half_px =
+      std::clamp(static_cast<int>(gap * side_px), kSmallestWindow_px, kLargestWindow_px);
+  cv::cornerSubPix(gray, found.corners_px, {half_px, half_px}, {-1, -1},
+                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMostSteps, kConverged_px});
   return found;
 }
 

@@ -24,9 +24,9 @@ cv::Ptr<cv::aruco::CharucoBoard> make_board(const BoardOptions& options);
 
 /// Inner corners of the chessboard in an image.
 struct BoardCorners {
-  std::vector<int> marker_ids{};  ///< markers that were read
-  std::vector<int> ids{};         ///< corners between them: of board.chessboardCorners
-  std::vector<cv::Point2f> corners_px{};
+  std::vector<int> marker_ids{};          ///< markers that were read
+  std::vector<int> ids{};                 ///< corners between them: of board.chessboardCorners
+  std::vector<cv::Point2f> corners_px{};  ///< pixel centres are integers
 };
 
 BoardCorners find_corners(const cv::Mat& gray, const cv::Ptr<cv::aruco::CharucoBoard>& board);

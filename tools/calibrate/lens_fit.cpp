@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrate/lens_fit.hpp"
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+#include <opencv2/calib3d.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace waymark::calibrate {
+namespace {
+
+constexpr int kNumLens = 9;
+constexpr int kNumPose = 6;
+using LensMatrix = Eigen::Matrix<double, kNumLens, kNumLens>;
+
+constexpr double kOutlier = 3.0;        // times the median error of views
+constexpr double kCornerOutlier = 5.0;  // times the median of residuals: 6 sigma
+constexpr int kMostSteps = 100;
+constexpr double kConverged = 1e-10;  // relative change of the parameters
+
+/// Covariance of the lens with the views' poses marginalised, by the Gauss-Newton Hessian's Schur
+/// complement, times the variance of what is left. OpenCV's own is too large: it divides the sum of
+/// squares by the points instead of the equations, of which a point has two.
+class LensInformation {
+ public:
+  /// @param jacobian  of projectPoints(): turn, place, focal lengths, principal point, distortion.
+  void add(const cv::Mat& jacobian, const std::vector<cv::Point2f>& residuals_px) {
+    Eigen::Matrix<double, Eigen::Dynamic, kNumPose + kNumLens> rows(jacobian.rows,
+                                                                    kNumPose + kNumLens);
+    Eigen::VectorXd errors(jacobian.rows);
+    for (int row = 0; row < jacobian.rows; ++row) {
+      for (int column = 0; column < rows.cols(); ++column)
+        rows(row, column) = jacobian.at<double>(row, column);
+      const cv::Point2f& error = residuals_px[static_cast<std::size_t>(row / 2)];
+      errors(row) = row % 2 == 0 ? error.x : error.y;
+    }
+    const auto pose = rows.leftCols<kNumPose>();
+    const auto lens = rows.rightCols<kNumLens>();
+    const Eigen::MatrixXd reduced =
+        lens - pose * (pose.transpose() * pose).ldlt().solve(pose.transpose() * lens);
+    information_ += reduced.transpose() * reduced;
+    sum_ += errors.squaredNorm();
+    num_equations_ += jacobian.rows;
+    ++num_views_;
+  }
+
+  LensMatrix covariance() const {
+    const double spare = num_equations_ - kNumLens - kNumPose * num_views_;
+    const LensMatrix inverse = information_.inverse();
+    return sum_ / spare * inverse;
+  }
+
+ private:
+  LensMatrix information_{LensMatrix::Zero()};
+  double sum_{0.0};
+  double num_equations_{0.0};
+  double num_views_{0.0};
+};
+
+/// Root mean square of the mean residuals in the cells of a grid: what frames that look the same
+/// way get wrong alike. Noise is still in it, so that it is never below what was shown.
+double common_error_px(const LensFit& fit, cv::Size image) {
+  constexpr int kColumns = 8;
+  constexpr int kRows = 6;
+  std::array<cv::Point2d, kColumns * kRows> sums{};
+  std::array<double, kColumns * kRows> counts{};
+  double total = 0.0;
+  for (std::size_t v = 0; v < fit.views.size(); ++v) {
+    for (std::size_t i = 0; i < fit.residuals_px[v].size(); ++i) {
+      const cv::Point2d corner = fit.views[v].corners_px[i];
+      const int column =
+          std::clamp(static_cast<int>(kColumns * corner.x / image.width), 0, kColumns - 1);
+      const int row = std::clamp(static_cast<int>(kRows * corner.y / image.height), 0, kRows - 1);
+      const auto cell = static_cast<std::size_t>(row * kColumns + column);
+      sums[cell] += cv::Point2d{fit.residuals_px[v][i]};
+      counts[cell] += 1.0;
+      total += 1.0;
+    }
+  }
+  double squares = 0.0;
+  for (std::size_t cell = 0; cell < sums.size(); ++cell) {
+    if (counts[cell] > 0.0) squares += 0.5 * sums[cell].dot(sums[cell]) / counts[cell];
+  }
+  return std::sqrt(squares / total);
+}
+
+LensFit fit_once(const std::vector<BoardView>& views, cv::Size image, std::vector<double>& errors) {
+  std::vector<std::vector<cv::Point3f>> points_m;
+  std::vector<std::vector<cv::Point2f>> points_px;
+  std::size_t num_points = 0;
+  for (const BoardView& view : views) {
+    points_m.push_back(view.corners_in_board_m);
+    points_px.push_back(view.corners_px);
+    num_points += view.corners_px.size();
+  }
+  if (2 * num_points <= kNumLens + kNumPose * views.size())
+    throw std::runtime_error{
+        "more corners in each view: bring the board nearer, or take one with more squares"};
+  cv::Matx33d matrix = cv::Matx33d::eye();
+  cv::Mat distortion = cv::Mat::zeros(1, 5, CV_64F);
+  std::vector<cv::Mat> turns;
+  std::vector<cv::Mat> places;
+  LensFit fit;
+  fit.views = views;
+  fit.rms_px = cv::calibrateCamera(
+      points_m, points_px, image, matrix, distortion, turns, places, cv::noArray(), cv::noArray(),
+      errors, 0, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMostSteps, kConverged});
+  fit.values = {matrix(0, 0), matrix(1, 1), matrix(0, 2), matrix(1, 2)};
+  for (int i = 0; i < 5; ++i)
+    fit.values[static_cast<std::size_t>(4 + i)] = distortion.at<double>(i);
+  LensInformation information;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    std::vector<cv::Point2f> residuals;
+    cv::Mat jacobian;
+    cv::projectPoints(points_m[v], turns[v], places[v], matrix, distortion, residuals, jacobian);
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+      residuals[i] = points_px[v][i] - residuals[i];
+    information.add(jacobian, residuals);
+    fit.residuals_px.push_back(std::move(residuals));
+  }
+  const LensMatrix covariance = information.covariance();
+  for (int i = 0; i < kNumLens; ++i)
+    fit.sigmas[static_cast<std::size_t>(i)] = std::sqrt(covariance(i, i));
+  return fit;
+}
+
+/// Removes corners with more than five times the median residual; returns how many.
+std::size_t drop_corners(std::vector<BoardView>& views,
+                         const std::vector<std::vector<cv::Point2f>>& residuals_px) {
+  std::vector<double> sorted;
+  for (const auto& residuals : residuals_px) {
+    for (const cv::Point2f& residual : residuals)
+      sorted.push_back(cv::norm(residual));
+  }
+  std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
+  const double most_px = kCornerOutlier * sorted[sorted.size() / 2];
+  std::size_t num_dropped = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    for (std::size_t i = residuals_px[v].size(); i-- > 0;) {
+      if (cv::norm(residuals_px[v][i]) <= most_px) continue;
+      views[v].corners_px.erase(views[v].corners_px.begin() + std::ptrdiff_t(i));
+      views[v].corners_in_board_m.erase(views[v].corners_in_board_m.begin() + std::ptrdiff_t(i));
+      ++num_dropped;
+    }
+  }
+  return num_dropped;
+}
+
+/// Views first, the worst one first: it spoils the others' errors.
+LensFit fit_without_outliers(std::vector<BoardView> views, cv::Size image) {
+  std::vector<std::string> dropped;
+  std::size_t num_dropped_corners = 0;
+  while (true) {
+    std::vector<double> errors;
+    LensFit fit = fit_once(views, image, errors);
+    const auto worst = std::ranges::max_element(errors) - errors.begin();
+    std::vector<double> sorted = errors;
+    std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
+    if (errors[static_cast<std::size_t>(worst)] > kOutlier * sorted[sorted.size() / 2]) {
+      dropped.push_back(views[static_cast<std::size_t>(worst)].name);
+      views.erase(views.begin() + worst);
+      continue;
+    }
+    const std::size_t num_corners = drop_corners(views, fit.residuals_px);
+    num_dropped_corners += num_corners;
+    if (num_corners > 0) continue;
+    fit.dropped = std::move(dropped);
+    fit.num_dropped_corners = num_dropped_corners;
+    return fit;
+  }
+}
+
+}  // namespace
+
+LensFit fit_lens(const std::vector<BoardView>& views, cv::Size image) {
+  try {
+    LensFit fit = fit_without_outliers(views, image);
+    fit.focal_sigma = std::max(fit.sigmas[0] / fit.values[0], fit.sigmas[1] / fit.values[1]);
+    fit.bearing_sigma_rad = common_error_px(fit, image) / std::min(fit.values[0], fit.values[1]);
+    return fit;
+  } catch (const cv::Exception& error) {
+    throw std::runtime_error{fmt::format("views that determine a lens: {}", error.err)};
+  }
+}
+
+}  // namespace waymark::calibrate
