@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <string>
 
 namespace waymark::calibrate {
 namespace {
@@ -41,19 +43,20 @@ CameraCalibration calibrated(const std::vector<BoardView>& views) {
   return calibration;
 }
 
+/// Six seeds; WAYMARK_SEEDS=20 takes as many as tools/calibrate/README.md speaks of.
 TEST(Lens, FocalLengthIsWithinAThousandthAndSigmasAreHonest) {
   const CameraConfig truth = known_camera();
-  constexpr int kSeeds = 20;
+  const char* wanted = std::getenv("WAYMARK_SEEDS");
+  const int num_seeds = wanted != nullptr ? std::stoi(wanted) : 6;
   constexpr int kViews = 40;
   double focal_squares = 0.0;
   double centre_squares = 0.0;
-  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(num_seeds); ++seed) {
     Random random{seed, 26};
     const CameraCalibration calibration = calibrated(views_of(kViews, 0.7, kTilt_rad, random));
     ASSERT_THAT(calibration.missing, IsEmpty()) << seed;
     const LensFit& fit = *calibration.fit;
     EXPECT_LT(fit.rms_px, 0.1) << seed;
-    if (getenv("DBG")) std::cerr << to_text(calibration);
     EXPECT_NEAR(fit.values[0] / truth.fx_px, 1.0, 0.001) << seed;
     EXPECT_NEAR(fit.values[1] / truth.fy_px, 1.0, 0.001) << seed;
     const std::array<double, 4> expected{truth.fx_px, truth.fy_px, truth.cx_px, truth.cy_px};
@@ -61,8 +64,8 @@ TEST(Lens, FocalLengthIsWithinAThousandthAndSigmasAreHonest) {
       (i < 2 ? focal_squares : centre_squares) +=
           std::pow((fit.values[i] - expected[i]) / fit.sigmas[i], 2);
   }
-  const double focal = std::sqrt(focal_squares / (2 * kSeeds));
-  const double centre = std::sqrt(centre_squares / (2 * kSeeds));
+  const double focal = std::sqrt(focal_squares / (2.0 * num_seeds));
+  const double centre = std::sqrt(centre_squares / (2.0 * num_seeds));
   RecordProperty("normalised_error_focal", std::to_string(focal));
   RecordProperty("normalised_error_centre", std::to_string(centre));
   EXPECT_GT(focal, 0.7);
