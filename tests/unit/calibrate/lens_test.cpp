@@ -68,10 +68,10 @@ TEST(Lens, FocalLengthIsWithinAThousandthAndSigmasAreHonest) {
   const double centre = std::sqrt(centre_squares / (2.0 * num_seeds));
   RecordProperty("normalised_error_focal", std::to_string(focal));
   RecordProperty("normalised_error_centre", std::to_string(centre));
-  EXPECT_GT(focal, 0.7);
-  EXPECT_LT(focal, 1.4);
-  EXPECT_GT(centre, 0.7);
-  EXPECT_LT(centre, 1.4);
+  // 0.6 to 1.4 with 20 seeds; fx and fy err together, so that a seed is one value.
+  const double band = 0.4 * std::sqrt(20.0 / num_seeds);
+  EXPECT_NEAR(focal, 1.0, band);
+  EXPECT_NEAR(centre, 1.0, band);
 }
 
 TEST(Lens, TheConfiguredModelPredictsPixelsAtTheEdgesOfTheImage) {
