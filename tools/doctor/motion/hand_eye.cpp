@@ -121,6 +121,25 @@ std::optional<Line> fit_line(const Turns& turns, double cutoff_rad) {
   return line;
 }
 
+/// At an offset and half a width before and after it; where is the least, in half widths?
+struct CostsAroundBest {
+  double before{0.0};
+  double at{0.0};
+  double after{0.0};
+
+  double parabola() const {
+    const double bend = before - 2.0 * at + after;
+    return bend > kSmallest ? 0.5 * (before - after) / bend : 0.0;
+  }
+
+  /// Of two straight lines of the same steepness. A robust loss has the one shape near its least
+  /// and the other one further off, so that the truth lies between the two.
+  double wedge() const {
+    const double rise = std::max(before, after) - at;
+    return rise > kSmallest ? 0.5 * (before - after) / rise : 0.0;
+  }
+};
+
 double median_interval_s(const std::vector<ImportedPose>& odometry) {
   std::vector<double> intervals_s;
   for (std::size_t i = 1; i < odometry.size(); ++i)
@@ -178,19 +197,22 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
   comparison.lidar_late_s = {(static_cast<double>(best) - steps) * interval_s, kLargestOffset_s};
   const auto wide = static_cast<std::size_t>(std::max(1.0, std::round(kParabola_s / interval_s)));
   if (best < wide || best + wide >= lines.size()) return comparison;  // nothing is known there
-  const auto vertex_s = [&](std::size_t without) {
-    const double before = lines[best - wide].cost_without(without);
-    const double at = lines[best].cost_without(without);
-    const double after = lines[best + wide].cost_without(without);
-    const double bend = before - 2.0 * at + after;
-    const double half_width_s = static_cast<double>(wide) * interval_s;
-    return bend > kSmallest ? half_width_s * 0.5 * (before - after) / bend : 0.0;
+  const double half_width_s = static_cast<double>(wide) * interval_s;
+  const auto costs = [&](std::size_t without) {
+    return CostsAroundBest{lines[best - wide].cost_without(without),
+                           lines[best].cost_without(without),
+                           lines[best + wide].cost_without(without)};
   };
   // How much it moves without each stretch (jackknife).
-  const double vertex = vertex_s(kBlocks);
+  const double vertex = half_width_s * costs(kBlocks).parabola();
   double variance_s2 = 0.0;
-  for (std::size_t block = 0; block < kBlocks; ++block)
-    variance_s2 += (vertex_s(block) - vertex) * (vertex_s(block) - vertex);
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    const double moved_s = half_width_s * costs(block).parabola() - vertex;
+    variance_s2 += moved_s * moved_s;
+  }
+  // And with the shape that is laid through the three costs: the same in every stretch.
+  const double shape_s = half_width_s * costs(kBlocks).wedge() - vertex;
+  variance_s2 += shape_s * shape_s;
   comparison.lidar_late_s.value += vertex;
   comparison.lidar_late_s.sigma = std::sqrt(variance_s2);
   if (const auto line =
