@@ -21,9 +21,10 @@ constexpr double kCornerOutlier = 5.0;  // times the median of residuals: 6 sigm
 constexpr int kMostSteps = 100;
 constexpr double kConverged = 1e-10;  // relative change of the parameters
 
-/// Covariance of the lens with the views' poses marginalised, by the Gauss-Newton Hessian's Schur
-/// complement, times the variance of what is left. OpenCV's own is too large: it divides the sum of
-/// squares by the points instead of the equations, of which a point has two.
+/// Covariance of the lens with the views' poses marginalised (Schur complement of the Gauss-Newton
+/// Hessian). What the corners of a view get wrong, they get wrong together: the views are what is
+/// independent, and how far each of them pulls the lens says how well it is known (the sandwich
+/// estimator with clusters of Liang and Zeger, Biometrika 1986).
 class LensInformation {
  public:
   /// @param jacobian  of projectPoints(): turn, place, focal lengths, principal point, distortion.
@@ -42,21 +43,19 @@ class LensInformation {
     const Eigen::MatrixXd reduced =
         lens - pose * (pose.transpose() * pose).ldlt().solve(pose.transpose() * lens);
     information_ += reduced.transpose() * reduced;
-    sum_ += errors.squaredNorm();
-    num_equations_ += jacobian.rows;
+    const Eigen::Matrix<double, kNumLens, 1> pull = reduced.transpose() * errors;
+    pulls_ += pull * pull.transpose();
     ++num_views_;
   }
 
   LensMatrix covariance() const {
-    const double spare = num_equations_ - kNumLens - kNumPose * num_views_;
     const LensMatrix inverse = information_.inverse();
-    return sum_ / spare * inverse;
+    return num_views_ / (num_views_ - kNumLens) * inverse * pulls_ * inverse;
   }
 
  private:
   LensMatrix information_{LensMatrix::Zero()};
-  double sum_{0.0};
-  double num_equations_{0.0};
+  LensMatrix pulls_{LensMatrix::Zero()};
   double num_views_{0.0};
 };
 
@@ -99,6 +98,10 @@ LensFit fit_once(const std::vector<BoardView>& views, cv::Size image, std::vecto
   if (2 * num_points <= kNumLens + kNumPose * views.size())
     throw std::runtime_error{
         "more corners in each view: bring the board nearer, or take one with more squares"};
+  if (views.size() <= kNumLens)
+    throw std::runtime_error{fmt::format(
+        "more different views of the board: {} that agree are too few for a lens of {} numbers",
+        views.size(), kNumLens)};
   cv::Matx33d matrix = cv::Matx33d::eye();
   cv::Mat distortion = cv::Mat::zeros(1, 5, CV_64F);
   std::vector<cv::Mat> turns;

@@ -43,7 +43,7 @@ CameraCalibration calibrated(const std::vector<BoardView>& views) {
   return calibration;
 }
 
-/// Six seeds; WAYMARK_SEEDS=20 takes as many as tools/calibrate/README.md speaks of.
+/// Six seeds; WAYMARK_SEEDS=40 takes as many as tools/calibrate/README.md speaks of.
 TEST(Lens, FocalLengthIsWithinAThousandthAndSigmasAreHonest) {
   const CameraConfig truth = known_camera();
   const char* wanted = std::getenv("WAYMARK_SEEDS");
