@@ -61,10 +61,12 @@ class BoardRenderer {
     sheet_ = sheet.picture;
     corner_px_ = kPxPerMm * Eigen::Vector2d{layout.pattern_x_mm, layout.pattern_y_mm};
     const CameraModel lens{camera};
-    for (int row = 0; row < kFiner * camera.height_px; ++row) {
-      for (int column = 0; column < kFiner * camera.width_px; ++column) {
+    rays_.create(kFiner * camera.height_px, kFiner * camera.width_px);
+    for (int row = 0; row < rays_.rows; ++row) {
+      for (int column = 0; column < rays_.cols; ++column) {
         const Eigen::Vector2d raw_px{(column + 0.5) / kFiner - 0.5, (row + 0.5) / kFiner - 0.5};
-        rays_.push_back(lens.normalized_from_ideal(lens.ideal_from_raw(raw_px)));
+        const Eigen::Vector2d ray = lens.normalized_from_ideal(lens.ideal_from_raw(raw_px));
+        rays_(row, column) = {ray.x(), ray.y()};
       }
     }
   }
@@ -73,29 +75,24 @@ class BoardRenderer {
   cv::Mat picture(const Eigen::Isometry3d& camera_from_board, Random& random) const {
     Eigen::Matrix3d image_from_board;
     image_from_board << camera_from_board.linear().leftCols<2>(), camera_from_board.translation();
-    const Eigen::Matrix3d board_from_image = image_from_board.inverse();
-    cv::Mat_<float> x(kFiner * camera_.height_px, kFiner * camera_.width_px);
-    cv::Mat_<float> y(x.size());
-    auto ray = rays_.begin();
-    for (int row = 0; row < x.rows; ++row) {
-      for (int column = 0; column < x.cols; ++column, ++ray) {
-        const Eigen::Vector2d place_px =
-            1e3 * kPxPerMm * (board_from_image * ray->homogeneous()).hnormalized() + corner_px_;
-        x(row, column) = static_cast<float>(place_px.x() - 0.5);
-        y(row, column) = static_cast<float>(place_px.y() - 0.5);
-      }
-    }
+    Eigen::Matrix3d sheet_from_board = Eigen::Matrix3d::Identity();
+    sheet_from_board.topLeftCorner<2, 2>() *= 1e3 * kPxPerMm;
+    sheet_from_board.topRightCorner<2, 1>() = corner_px_ - Eigen::Vector2d::Constant(0.5);
+    const Eigen::Matrix3d sheet_from_image = sheet_from_board * image_from_board.inverse();
+    cv::Matx33d warp;
+    for (int k = 0; k < 9; ++k)
+      warp.val[k] = sheet_from_image(k / 3, k % 3);
+    cv::Mat places_px;
+    cv::perspectiveTransform(rays_, places_px, warp);
+    places_px.convertTo(places_px, CV_32F);
     cv::Mat fine;
-    cv::remap(sheet_, fine, x, y, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar{200});
+    cv::remap(sheet_, fine, places_px, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar{200});
     cv::GaussianBlur(fine, fine, {}, 0.7 * kFiner);
     cv::Mat picture;
     cv::resize(fine, picture, {camera_.width_px, camera_.height_px}, 0.0, 0.0, cv::INTER_AREA);
-    for (int row = 0; row < picture.rows; ++row) {
-      for (int column = 0; column < picture.cols; ++column) {
-        auto& pixel = picture.at<unsigned char>(row, column);
-        pixel = cv::saturate_cast<unsigned char>(20.0 + 0.85 * pixel + random.normal(0.0, 2.0));
-      }
-    }
+    cv::Mat noise{picture.size(), CV_32F};
+    cv::RNG{random()}.fill(noise, cv::RNG::NORMAL, 20.0, 2.0);
+    cv::addWeighted(picture, 0.85, noise, 1.0, 0.0, picture, CV_8U);
     return picture;
   }
 
@@ -106,7 +103,7 @@ class BoardRenderer {
   CameraConfig camera_;
   cv::Mat sheet_{};
   Eigen::Vector2d corner_px_{};  ///< of the board in `sheet_`
-  std::vector<Eigen::Vector2d> rays_{};
+  cv::Mat_<cv::Vec2d> rays_{};
 };
 
 }  // namespace waymark::calibrate
