@@ -11,7 +11,7 @@
 #   --jobs N            jobs at the same time (default: one per core)
 #   --sshlogin LIST     machines, as GNU parallel takes them; DIR and this folder must be shared with them
 #   --keep-images       record the camera's images, too (20 times the disk)
-#   --plan-only         state the cost, write the plan, and stop (deploy/sweep.slurm runs it on a cluster)
+#   --plan-only         write the plan, and stop (deploy/sweep.slurm runs it on a cluster)
 #
 # A job records the log of one scenario and seed, live and in lockstep, replays every estimator on it and
 # evaluates. A run that fails is a failure in the table and stops nobody; a full disk stops the sweep.
@@ -23,11 +23,6 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 # shellcheck source=deploy/lists.sh
 source "$deploy_dir/lists.sh"
-
-# Measured on two cores of a server, 30 particles, 360 beams; for the estimate only.
-readonly kSimSpeed=4       # times real time: simulator, camera pictures, detector, recorder
-readonly kReplaySpeed=40   # times real time: one estimator, viewer and evaluation
-readonly kLog_MB_per_s=0.04 kImages_MB_per_s=0.4 kRow_MB=3
 
 parse_arguments() {
   scenarios=() seeds=1-20 estimators=odometry,waymark variants='' out='' jobs=$(nproc) images=0
@@ -89,12 +84,10 @@ write_plan() {
   mkdir -p "$plan/scenarios"
   for file in "${scenarios[@]}"; do
     name=$(basename "${file%.toml}")
-    "$bin_dir/waymark-sim" --config "$file" --dump-config >"$plan/effective.toml" || exit $?
-    cost_of_scenario "$plan/effective.toml"
+    "$bin_dir/waymark-sim" --config "$file" --dump-config >/dev/null || exit $?
     cp "$file" "$plan/scenarios/$name.toml"
     for seed in "${seed_list[@]}"; do echo "$name $seed"; done >>"$plan/jobs"
   done
-  rm -f "$plan/effective.toml"
   printf '%s\n' "${rows[@]}" >"$plan/rows"
   : >"$plan/variants"
   if [[ -n $variants ]]; then
@@ -136,40 +129,13 @@ write_runs() {
   done >"$plan/runs.tsv"
 }
 
-simulated_s=0
-
-# cost_of_scenario FILE: adds the scenario's simulated time, from its route: length over speed.
-cost_of_scenario() {
-  local s
-  s=$(awk '
-    /^\[/ { inside = /route/ }
-    inside && $2 == "=" { v[$1] = $3; if ($1 == "x_m") x[++n] = $3; if ($1 == "y_m") y[n] = $3 }
-    END {
-      px = v["start_x_m"]; py = v["start_y_m"]
-      if (!n) { n = 1; x[1] = v["end_x_m"]; y[1] = py }
-      for (i = 1; i <= n; ++i) { d += sqrt((x[i] - px) ^ 2 + (y[i] - py) ^ 2); px = x[i]; py = y[i] }
-      speed = v["speed_mps"] > 0 ? v["speed_mps"] : 0.1
-      print int(v["duration_s"] > 0 ? v["duration_s"] : d / speed) }' "$1")
-  simulated_s=$((simulated_s + s))
-}
-
-# state_cost: before anything runs. Refuses what cannot fit on the disk.
-state_cost() {
-  local num_seeds=${#seed_list[@]} num_rows num_replays hours disk_MB free_MB
-  num_rows=$(wc -l <"$plan/rows")
-  num_replays=$((num_rows * (1 + $(wc -l <"$plan/variants"))))
-  local sums
-  sums=$(awk -v s=$simulated_s -v seeds="$num_seeds" -v replays=$num_replays -v jobs="$jobs" -v images="$images" \
-    -v sim=$kSimSpeed -v replay=$kReplaySpeed -v log_=$kLog_MB_per_s -v img=$kImages_MB_per_s -v row=$kRow_MB \
-    -v scenarios=${#scenarios[@]} 'BEGIN {
-      printf "%.1f %d", s * seeds * (1 / sim + replays / replay) / jobs / 3600,
-        s * seeds * (log_ + images * img) + row * replays * seeds * scenarios + 1 }')
-  read -r hours disk_MB <<<"$sums"
+# state_size: before anything runs. How long it takes, and whether the disk is enough, the jobs measure.
+state_size() {
+  local free_MB
   free_MB=$(df --output=avail -BM "$out" | tr -dc 0-9)
-  say "${#scenarios[@]} scenarios x $num_seeds seeds = $(wc -l <"$plan/jobs") logs, $(wc -l <"$plan/runs.tsv") runs of an estimator"
-  say "about $hours hours with $jobs at a time, $disk_MB MB of $free_MB MB of disk (what is done already is not done again)"
-  ((disk_MB + $(min_free_MB) < free_MB)) ||
-    die $kExitUsage "not enough disk: $disk_MB MB are needed in $out, $free_MB MB are free"
+  say "${#scenarios[@]} scenarios x ${#seed_list[@]} seeds = $(wc -l <"$plan/jobs") logs," \
+    "$(wc -l <"$plan/runs.tsv") runs of an estimator, $jobs at a time; what is done already is not done again"
+  ((free_MB >= $(min_free_MB))) || die $kExitUsage "the disk of $out is full: $free_MB MB are free"
 }
 
 # run_jobs: 0 = all jobs have been done, well or not.
@@ -214,7 +180,7 @@ exec {sweep_lock}<"$out"
 flock --nonblock "$sweep_lock" || die $kExitUsage "another sweep is writing to '$out'"
 find_old_plan
 write_plan
-state_cost
+state_size
 adopt_plan
 [[ -z $plan_only ]] || exit 0
 trap 'on_signal INT 2' INT
