@@ -139,6 +139,7 @@ commands_while_it_runs() {
   url="udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
   ask 4 "no answer within 2 s" reset
   ask 2 "" fly
+  ask 2 "no_such_channel" --channels <(printf '[channels]\nno_such_channel = "A"\n') reset
   ask 2 "" save
   sed -i 's/^speed_mps = .*/speed_mps = 0.1/' "$work/short.toml"
   local options=(--set slam.commands=true --set "slam.state_folder=$work/state")

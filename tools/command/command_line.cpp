@@ -26,6 +26,11 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   program.add_option(
       "--lcm-url", line.lcm_url,
       "LCM network (default: $LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
+  program
+      .add_option("--channels", line.channels_file,
+                  "TOML file whose section [channels] says what SLAM_COMMAND and SLAM_REPLY are "
+                  "called on the network")
+      ->check(CLI::ExistingFile);
   program.require_subcommand(1);
   program.fallthrough();
   CLI::App& save = *program.add_subcommand("save", "save the map in slam's state folder");

@@ -12,6 +12,7 @@ namespace waymark {
 struct CommandLine {
   command_t command{};
   std::string lcm_url{};
+  std::string channels_file{};     ///< empty: Waymark's names
   std::optional<int> exit_code{};  ///< there is nothing to send: --help, or wrong usage
 };
 

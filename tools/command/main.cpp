@@ -2,6 +2,7 @@
 // waymark-command: sends one SLAM_COMMAND and waits for its SLAM_REPLY.
 #include "command/command_line.hpp"
 #include "common/bus/bus.hpp"
+#include "common/config/config.hpp"
 #include "common/errors/exit_codes.hpp"
 
 #include <fmt/format.h>
@@ -19,11 +20,24 @@ constexpr milliseconds kPatience{2000};
 constexpr milliseconds kPoll{50};
 constexpr milliseconds kSendAgain{300};  // datagrams get lost; the same id acts once
 
-int ask(waymark::command_t command, const std::string& lcm_url) {
+struct ChannelsSection {
+  waymark::ChannelNames channels{};
+
+  void describe(waymark::Fields& fields) { fields.section("channels", channels); }
+};
+
+int ask(const waymark::CommandLine& line) {
   using namespace waymark;
+  const ChannelNames names = line.channels_file.empty()
+                                 ? ChannelNames{}
+                                 : load_config<ChannelsSection>({{line.channels_file}, {}}).channels;
+  command_t command = line.command;
   std::random_device random;  // no two commands have one id
   command.command_id = static_cast<std::int64_t>((std::uint64_t{random()} << 32U) | random());
-  Bus bus{lcm_url_or_default(lcm_url), {{std::string{channels::kSlamReply.name}}}};
+  Bus bus{lcm_url_or_default(line.lcm_url),
+          {{std::string{channels::kSlamReply.name}}},
+          LargeMessages::kRefused,
+          names};
   const auto start = steady_clock::now();
   auto last_sent = start - kSendAgain;
   while (steady_clock::now() - start < kPatience) {
@@ -49,7 +63,7 @@ int main(int argc, char** argv) {
   const waymark::CommandLine line = waymark::parse_command_line(argc, argv);
   if (line.exit_code) return *line.exit_code;
   try {
-    return ask(line.command, line.lcm_url);
+    return ask(line);
   } catch (const std::exception& error) {
     fmt::print(stderr, "waymark-command: {}\n", error.what());
     return waymark::kExitUsage;

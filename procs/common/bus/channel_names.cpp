@@ -6,54 +6,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
+#include <tuple>
+#include <vector>
 
 namespace waymark {
 namespace {
-
-enum class Use { kAlways, kOnceNamed };
 
 struct TypedChannel {
   std::string_view channel;
   std::string_view type;
   std::int64_t fingerprint;
-  Use use;
+  ChannelUse use;
 };
 
-template <class Type>
-TypedChannel typed(Channel<Type> channel, Use use = Use::kAlways) {
-  return {channel.name, Type::getTypeName(), Type::getHash(), use};
-}
-
-/// Every channel that is on a network, in the order of channels.hpp.
-const auto& typed_channels() {
-  using namespace channels;
-  static const std::array kAll{typed(kCamera),
-                               typed(kLidar),
-                               typed(kMbotLidar),
-                               typed(kOdometry),
-                               typed(kDriveCommand),
-                               typed(kTruePose),
-                               typed(kMarkers),
-                               typed(kSlamPose),
-                               typed(kSlamEstimate),
-                               typed(kSlamMap),
-                               typed(kSlamGrid, Use::kOnceNamed),
-                               typed(kSlamMarkers),
-                               typed(kSlamParticles),
-                               typed(kSlamScan),
-                               typed(kSlamTrajectory),
-                               typed(kMbotSlamStatus, Use::kOnceNamed),
-                               typed(kMbotSystemReset, Use::kOnceNamed),
-                               typed(kSimStatus),
-                               typed(kDetectorStatus),
-                               typed(kSlamStatus),
-                               typed(kViewerStatus),
-                               typed(kRecorderStatus),
-                               typed(kTick),
-                               typed(kAck)};
-  return kAll;
+/// Every channel that may be on a network.
+const std::vector<TypedChannel>& typed_channels() {
+  static const std::vector<TypedChannel> all = std::apply(
+      []<class... Types>(const Channel<Types>&... channels) {
+        std::vector<TypedChannel> typed{
+            {channels.name, Types::getTypeName(), Types::getHash(), channels.use}...};
+        std::erase_if(typed, [](const auto& one) { return one.use == ChannelUse::kMapFiles; });
+        return typed;
+      },
+      channels::kAll);
+  return all;
 }
 
 std::string key_of(std::string_view channel) {
@@ -75,7 +52,7 @@ bool is_name(std::string_view text) {
 
 ChannelNames::ChannelNames() {
   for (const TypedChannel& typed : typed_channels())
-    names_.emplace(typed.channel, typed.use == Use::kAlways ? typed.channel : "");
+    names_.emplace(typed.channel, typed.use == ChannelUse::kNetwork ? typed.channel : "");
 }
 
 void ChannelNames::describe(Fields& fields) {
@@ -85,8 +62,9 @@ void ChannelNames::describe(Fields& fields) {
     last = typed.channel;
     fields.field(
         key_of(typed.channel), names_.find(typed.channel)->second,
-        fmt::format("name on the network of {} ({}){}", typed.channel, typed.type,
-                    typed.use == Use::kAlways ? "" : "; \"\" = it is neither sent nor heard"));
+        fmt::format(
+            "name on the network of {} ({}){}", typed.channel, typed.type,
+            typed.use == ChannelUse::kNetwork ? "" : "; \"\" = it is neither sent nor heard"));
   }
 }
 
@@ -95,7 +73,7 @@ void ChannelNames::check(Problems& problems) const {
   for (auto at = all.begin(); at != all.end(); ++at) {
     const std::string_view name = on_network(at->channel);
     const std::string key = "channels." + key_of(at->channel);
-    if (name.empty() && at->use == Use::kOnceNamed) continue;
+    if (name.empty() && at->use == ChannelUse::kNetworkOnceNamed) continue;
     if (!is_name(name)) {
       problems.add(key, fmt::format("got \"{}\", expected a name of 1 to 63 letters, digits, "
                                     "'_', '-' or '/'",

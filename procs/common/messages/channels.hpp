@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All channels, each with its type: the only list. lcmtypes/README.md is the same table for people.
+// All channels, each with its type. lcmtypes/README.md is the same table for people.
 #pragma once
 
 #include <waymark/ack_t.hpp>
@@ -31,13 +31,22 @@
 #include <waymark/twist2D_t.hpp>
 
 #include <string_view>
+#include <tuple>
 
 namespace waymark {
+
+/// Where a channel is found.
+enum class ChannelUse {
+  kNetwork,
+  kNetworkOnceNamed,  ///< only where [channels] names it
+  kMapFiles,
+};
 
 /// A channel name bound to the type that travels on it.
 template <class Type>
 struct Channel {
   std::string_view name;
+  ChannelUse use{ChannelUse::kNetwork};
 };
 
 namespace channels {
@@ -55,7 +64,7 @@ inline constexpr Channel<pose2D_t> kSlamPose{"SLAM_POSE"};
 inline constexpr Channel<slam_estimate_t> kSlamEstimate{"SLAM_ESTIMATE"};
 inline constexpr Channel<correction_t> kSlamCorrection{"SLAM_CORRECTION"};
 inline constexpr Channel<map_tiles_t> kSlamMap{"SLAM_MAP"};
-inline constexpr Channel<occupancy_grid_t> kSlamGrid{"SLAM_GRID"};
+inline constexpr Channel<occupancy_grid_t> kSlamGrid{"SLAM_GRID", ChannelUse::kNetworkOnceNamed};
 inline constexpr Channel<marker_map_t> kSlamMarkers{"SLAM_MARKERS"};
 inline constexpr Channel<map_changes_t> kSlamChanges{"SLAM_CHANGES"};
 inline constexpr Channel<findings_t> kSlamFindings{"SLAM_FINDINGS"};
@@ -65,15 +74,17 @@ inline constexpr Channel<trajectory_t> kSlamTrajectory{"SLAM_TRAJECTORY"};
 inline constexpr Channel<command_t> kSlamCommand{"SLAM_COMMAND"};
 inline constexpr Channel<reply_t> kSlamReply{"SLAM_REPLY"};
 
-// Only where [channels] names them: an MBot's.
-inline constexpr Channel<slam_status_t> kMbotSlamStatus{"MBOT_SLAM_STATUS"};
-inline constexpr Channel<mbot_slam_reset_t> kMbotSystemReset{"MBOT_SYSTEM_RESET"};
+// An MBot's.
+inline constexpr Channel<slam_status_t> kMbotSlamStatus{"MBOT_SLAM_STATUS",
+                                                        ChannelUse::kNetworkOnceNamed};
+inline constexpr Channel<mbot_slam_reset_t> kMbotSystemReset{"MBOT_SYSTEM_RESET",
+                                                             ChannelUse::kNetworkOnceNamed};
 
-// Only in map files.
-inline constexpr Channel<map_header_t> kMapHeader{"MAP_HEADER"};
-inline constexpr Channel<map_walls_t> kMapWalls{"MAP_WALLS"};
+// In map files; the graph at the end of a run, too.
+inline constexpr Channel<map_header_t> kMapHeader{"MAP_HEADER", ChannelUse::kMapFiles};
+inline constexpr Channel<map_walls_t> kMapWalls{"MAP_WALLS", ChannelUse::kMapFiles};
 inline constexpr Channel<pose_graph_t> kMapGraph{"MAP_GRAPH"};
-inline constexpr Channel<calibration_t> kMapCalibration{"MAP_CALIBRATION"};
+inline constexpr Channel<calibration_t> kMapCalibration{"MAP_CALIBRATION", ChannelUse::kMapFiles};
 
 inline constexpr Channel<process_status_t> kSimStatus{"SIM_STATUS"};
 inline constexpr Channel<process_status_t> kDetectorStatus{"DETECTOR_STATUS"};
@@ -83,6 +94,19 @@ inline constexpr Channel<process_status_t> kRecorderStatus{"RECORDER_STATUS"};
 
 inline constexpr Channel<tick_t> kTick{"TICK"};
 inline constexpr Channel<ack_t> kAck{"ACK"};
+
+/// All of the above.
+inline constexpr std::tuple kAll{kCamera,          kLidar,          kMbotLidar,
+                                 kOdometry,        kDriveCommand,   kTruePose,
+                                 kMarkers,         kSlamPose,       kSlamEstimate,
+                                 kSlamCorrection,  kSlamMap,        kSlamGrid,
+                                 kSlamMarkers,     kSlamChanges,    kSlamFindings,
+                                 kSlamParticles,   kSlamScan,       kSlamTrajectory,
+                                 kSlamCommand,     kSlamReply,      kMbotSlamStatus,
+                                 kMbotSystemReset, kMapHeader,      kMapWalls,
+                                 kMapGraph,        kMapCalibration, kSimStatus,
+                                 kDetectorStatus,  kSlamStatus,     kViewerStatus,
+                                 kRecorderStatus,  kTick,           kAck};
 
 }  // namespace channels
 }  // namespace waymark

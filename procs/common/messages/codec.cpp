@@ -2,11 +2,8 @@
 #include "common/messages/codec.hpp"
 
 #include "common/messages/bounds.hpp"
-#include "common/messages/layout.hpp"
-#include "common/messages/validate.hpp"
 
 #include <cstring>
-#include <stdexcept>
 
 namespace waymark {
 namespace {
@@ -86,66 +83,12 @@ std::optional<Timestamp> time_of(std::span<const std::uint8_t> payload) {
   return timestamp_from_us(utime_us);
 }
 
-template <class Type>
-Decoded<Type> decode(std::span<const std::uint8_t> payload) {
-  if (payload.size() > kMaxDecodedBytes) return {{}, RejectReason::kTooLarge};
-  if (payload.size() < kFingerprintBytes) return {{}, RejectReason::kTruncated};
-  if (fingerprint_of(payload) != Type::getHash()) return {{}, RejectReason::kWrongType};
-  const RejectReason layout_fault = walk(payload.subspan(kFingerprintBytes), layout_of<Type>());
-  if (layout_fault != RejectReason::kNone) return {{}, layout_fault};
-  Type message{};
-  const int size = static_cast<int>(payload.size());
-  if (message.decode(payload.data(), 0, size) != size) return {{}, RejectReason::kTruncated};
-  if (!is_sane_time(message.utime)) return {{}, RejectReason::kBadTime};
-  const RejectReason fault = validate(message);
-  if (fault != RejectReason::kNone) return {{}, fault};
-  return {std::move(message), RejectReason::kNone};
+RejectReason check_bytes(std::span<const std::uint8_t> payload, std::int64_t fingerprint,
+                         StructLayout layout) {
+  if (payload.size() > kMaxDecodedBytes) return RejectReason::kTooLarge;
+  if (payload.size() < kFingerprintBytes) return RejectReason::kTruncated;
+  if (fingerprint_of(payload) != fingerprint) return RejectReason::kWrongType;
+  return walk(payload.subspan(kFingerprintBytes), layout);
 }
-
-template <class Type>
-Message encode(Channel<Type> channel, const Type& message) {
-  const RejectReason fault = validate(message);
-  if (fault != RejectReason::kNone) {
-    throw std::logic_error{"a message for " + std::string{channel.name} + " is " +
-                           std::string{to_string(fault)} + " (utime " +
-                           std::to_string(message.utime) + ")"};
-  }
-  Message encoded{std::string{channel.name}, timestamp_from_us(message.utime), {}};
-  encoded.payload.resize(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(encoded.payload.data(), 0, static_cast<int>(encoded.payload.size()));
-  return encoded;
-}
-
-#define WAYMARK_INSTANTIATE(Type)                                     \
-  template Decoded<Type> decode<Type>(std::span<const std::uint8_t>); \
-  template Message encode<Type>(Channel<Type>, const Type&)
-WAYMARK_INSTANTIATE(ack_t);
-WAYMARK_INSTANTIATE(annotated_scan_t);
-WAYMARK_INSTANTIATE(calibration_t);
-WAYMARK_INSTANTIATE(command_t);
-WAYMARK_INSTANTIATE(correction_t);
-WAYMARK_INSTANTIATE(findings_t);
-WAYMARK_INSTANTIATE(image_t);
-WAYMARK_INSTANTIATE(lidar_t);
-WAYMARK_INSTANTIATE(map_changes_t);
-WAYMARK_INSTANTIATE(map_header_t);
-WAYMARK_INSTANTIATE(map_tiles_t);
-WAYMARK_INSTANTIATE(map_walls_t);
-WAYMARK_INSTANTIATE(marker_detections_t);
-WAYMARK_INSTANTIATE(marker_map_t);
-WAYMARK_INSTANTIATE(mbot_slam_reset_t);
-WAYMARK_INSTANTIATE(occupancy_grid_t);
-WAYMARK_INSTANTIATE(particles_t);
-WAYMARK_INSTANTIATE(planar_lidar_t);
-WAYMARK_INSTANTIATE(pose2D_t);
-WAYMARK_INSTANTIATE(pose_graph_t);
-WAYMARK_INSTANTIATE(process_status_t);
-WAYMARK_INSTANTIATE(reply_t);
-WAYMARK_INSTANTIATE(slam_estimate_t);
-WAYMARK_INSTANTIATE(slam_status_t);
-WAYMARK_INSTANTIATE(tick_t);
-WAYMARK_INSTANTIATE(trajectory_t);
-WAYMARK_INSTANTIATE(twist2D_t);
-#undef WAYMARK_INSTANTIATE
 
 }  // namespace waymark

@@ -3,30 +3,19 @@
 #pragma once
 
 #include "common/messages/channels.hpp"
+#include "common/messages/layout.hpp"
 #include "common/messages/message.hpp"
+#include "common/messages/reject_reason.hpp"
+#include "common/messages/validate.hpp"
 
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace waymark {
-
-/// Why a message was not accepted.
-enum class RejectReason {
-  kNone,
-  kTooLarge,
-  kTruncated,  ///< shorter than its length fields say
-  kWrongType,  ///< fingerprint of another type
-  kBadLength,  ///< negative or absurd length field
-  kTrailingBytes,
-  kNotFinite,     ///< NaN or infinity where none may be
-  kInconsistent,  ///< arrays that must agree in size do not, or a field has no such value
-  kOutOfBounds,   ///< a number beyond bounds.hpp, which no robot has
-  kBadTime,       ///< utime negative or absurdly far in the future
-};
-
-std::string_view to_string(RejectReason reason);
 
 /// Result of decode(): a message, or the reason why there is none.
 template <class Type>
@@ -41,12 +30,39 @@ std::int64_t fingerprint_of(std::span<const std::uint8_t> payload);
 /// utime of a payload (all our types start with it); nullopt when too short or out of range.
 std::optional<Timestamp> time_of(std::span<const std::uint8_t> payload);
 
+/// What can be checked without knowing more of a type than its layout: size, fingerprint, length
+/// fields, and that they take all bytes.
+RejectReason check_bytes(std::span<const std::uint8_t> payload, std::int64_t fingerprint,
+                         StructLayout layout);
+
 /// Size limit -> fingerprint -> walk of the length fields -> decode -> all bytes consumed ->
 /// semantic check. Never throws, never allocates more than the payload's size allows.
 template <class Type>
-Decoded<Type> decode(std::span<const std::uint8_t> payload);
+Decoded<Type> decode(std::span<const std::uint8_t> payload) {
+  const RejectReason bytes_fault = check_bytes(payload, Type::getHash(), LayoutOf<Type>::fields);
+  if (bytes_fault != RejectReason::kNone) return {{}, bytes_fault};
+  Type message{};
+  const int size = static_cast<int>(payload.size());
+  if (message.decode(payload.data(), 0, size) != size) return {{}, RejectReason::kTruncated};
+  if (!time_of(payload)) return {{}, RejectReason::kBadTime};
+  const RejectReason fault = validate(message);
+  if (fault != RejectReason::kNone) return {{}, fault};
+  return {std::move(message), RejectReason::kNone};
+}
 
+/// @throws std::logic_error  when the message is not valid.
 template <class Type>
-Message encode(Channel<Type> channel, const Type& message);
+Message encode(Channel<Type> channel, const Type& message) {
+  const RejectReason fault = validate(message);
+  if (fault != RejectReason::kNone) {
+    throw std::logic_error{"a message for " + std::string{channel.name} + " is " +
+                           std::string{to_string(fault)} + " (utime " +
+                           std::to_string(message.utime) + ")"};
+  }
+  Message encoded{std::string{channel.name}, timestamp_from_us(message.utime), {}};
+  encoded.payload.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(encoded.payload.data(), 0, static_cast<int>(encoded.payload.size()));
+  return encoded;
+}
 
 }  // namespace waymark

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/messages/layout.hpp"
 
+#include "common/messages/channels.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -190,138 +192,58 @@ RejectReason walk(std::span<const std::uint8_t> body, StructLayout layout) {
 }
 
 template <>
-StructLayout layout_of<ack_t>() {
-  return kAck;
-}
-
+constinit const StructLayout LayoutOf<ack_t>::fields{kAck};
 template <>
-StructLayout layout_of<annotated_scan_t>() {
-  return kAnnotatedScan;
-}
-
+constinit const StructLayout LayoutOf<annotated_scan_t>::fields{kAnnotatedScan};
 template <>
-StructLayout layout_of<findings_t>() {
-  return kFindings;
-}
-
+constinit const StructLayout LayoutOf<calibration_t>::fields{kCalibration};
 template <>
-StructLayout layout_of<image_t>() {
-  return kImage;
-}
-
+constinit const StructLayout LayoutOf<command_t>::fields{kCommand};
 template <>
-StructLayout layout_of<lidar_t>() {
-  return kLidar;
-}
-
+constinit const StructLayout LayoutOf<correction_t>::fields{kCorrection};
 template <>
-StructLayout layout_of<calibration_t>() {
-  return kCalibration;
-}
-
+constinit const StructLayout LayoutOf<findings_t>::fields{kFindings};
 template <>
-StructLayout layout_of<command_t>() {
-  return kCommand;
-}
-
+constinit const StructLayout LayoutOf<image_t>::fields{kImage};
 template <>
-StructLayout layout_of<correction_t>() {
-  return kCorrection;
-}
-
+constinit const StructLayout LayoutOf<lidar_t>::fields{kLidar};
 template <>
-StructLayout layout_of<map_changes_t>() {
-  return kMapChanges;
-}
-
+constinit const StructLayout LayoutOf<map_changes_t>::fields{kMapChanges};
 template <>
-StructLayout layout_of<reply_t>() {
-  return kReply;
-}
-
+constinit const StructLayout LayoutOf<map_header_t>::fields{kMapHeader};
 template <>
-StructLayout layout_of<map_header_t>() {
-  return kMapHeader;
-}
-
+constinit const StructLayout LayoutOf<map_tiles_t>::fields{kMapTiles};
 template <>
-StructLayout layout_of<map_walls_t>() {
-  return kMapWalls;
-}
-
+constinit const StructLayout LayoutOf<map_walls_t>::fields{kMapWalls};
 template <>
-StructLayout layout_of<pose_graph_t>() {
-  return kPoseGraph;
-}
-
+constinit const StructLayout LayoutOf<marker_detections_t>::fields{kMarkerDetections};
 template <>
-StructLayout layout_of<map_tiles_t>() {
-  return kMapTiles;
-}
-
+constinit const StructLayout LayoutOf<marker_map_t>::fields{kMarkerMap};
 template <>
-StructLayout layout_of<marker_detections_t>() {
-  return kMarkerDetections;
-}
-
+constinit const StructLayout LayoutOf<mbot_slam_reset_t>::fields{kMbotSlamReset};
 template <>
-StructLayout layout_of<marker_map_t>() {
-  return kMarkerMap;
-}
-
+constinit const StructLayout LayoutOf<occupancy_grid_t>::fields{kOccupancyGrid};
 template <>
-StructLayout layout_of<mbot_slam_reset_t>() {
-  return kMbotSlamReset;
-}
-
+constinit const StructLayout LayoutOf<particles_t>::fields{kParticles};
 template <>
-StructLayout layout_of<occupancy_grid_t>() {
-  return kOccupancyGrid;
-}
-
+constinit const StructLayout LayoutOf<planar_lidar_t>::fields{kPlanarLidar};
 template <>
-StructLayout layout_of<particles_t>() {
-  return kParticles;
-}
-
+constinit const StructLayout LayoutOf<pose2D_t>::fields{kPose2D};
 template <>
-StructLayout layout_of<planar_lidar_t>() {
-  return kPlanarLidar;
-}
-
+constinit const StructLayout LayoutOf<pose_graph_t>::fields{kPoseGraph};
 template <>
-StructLayout layout_of<pose2D_t>() {
-  return kPose2D;
-}
-
+constinit const StructLayout LayoutOf<process_status_t>::fields{kProcessStatus};
 template <>
-StructLayout layout_of<process_status_t>() {
-  return kProcessStatus;
-}
-
+constinit const StructLayout LayoutOf<reply_t>::fields{kReply};
 template <>
-StructLayout layout_of<slam_estimate_t>() {
-  return kSlamEstimate;
-}
-
+constinit const StructLayout LayoutOf<slam_estimate_t>::fields{kSlamEstimate};
 template <>
-StructLayout layout_of<slam_status_t>() {
-  return kSlamStatus;
-}
-
+constinit const StructLayout LayoutOf<slam_status_t>::fields{kSlamStatus};
 template <>
-StructLayout layout_of<tick_t>() {
-  return kTick;
-}
-
+constinit const StructLayout LayoutOf<tick_t>::fields{kTick};
 template <>
-StructLayout layout_of<trajectory_t>() {
-  return kTrajectory;
-}
-
+constinit const StructLayout LayoutOf<trajectory_t>::fields{kTrajectory};
 template <>
-StructLayout layout_of<twist2D_t>() {
-  return kTwist2D;
-}
+constinit const StructLayout LayoutOf<twist2D_t>::fields{kTwist2D};
 
 }  // namespace waymark

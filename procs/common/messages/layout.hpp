@@ -4,7 +4,7 @@
 // (LCM 1.3.1).
 #pragma once
 
-#include "common/messages/codec.hpp"
+#include "common/messages/reject_reason.hpp"
 
 #include <cstdint>
 #include <span>
@@ -30,8 +30,10 @@ using StructLayout = std::span<const FieldLayout>;
 /// left.
 RejectReason walk(std::span<const std::uint8_t> body, StructLayout layout);
 
-/// Layout of a message type of ours.
+/// Layout of a message type of ours; a type without one does not link.
 template <class Type>
-StructLayout layout_of();
+struct LayoutOf {
+  static const StructLayout fields;
+};
 
 }  // namespace waymark

@@ -3,7 +3,8 @@
 // be and within bounds.hpp.
 #pragma once
 
-#include "common/messages/codec.hpp"
+#include "common/messages/channels.hpp"
+#include "common/messages/reject_reason.hpp"
 
 namespace waymark {
 

@@ -10,6 +10,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <string>
+#include <tuple>
 
 namespace waymark {
 namespace {
@@ -78,6 +81,43 @@ TEST(ChannelNames, ThatLcmWouldNotTakeAreRefused) {
   EXPECT_THAT(error_of({{}, {"channels.odometry=" + std::string(64, 'A')}}), HasSubstr("1 to 63"));
   EXPECT_THAT(error_of({{}, {"channels.odomety=ODO"}}),
               HasSubstr("did you mean channels.odometry"));
+}
+
+/// Rows "| `CHANNEL` | `type_t` ..." of lcmtypes/README.md, without the second types.
+std::set<std::string> channels_in_readme() {
+  std::ifstream file{WAYMARK_SOURCE_DIR "/lcmtypes/README.md"};
+  std::set<std::string> rows;
+  const std::string start = "| `";
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with(start)) continue;
+    const auto name_end = line.find('`', start.size());
+    const auto type = line.find('`', name_end + 1) + 1;
+    rows.insert(line.substr(start.size(), name_end - start.size()) + " " +
+                line.substr(type, line.find('`', type) - type));
+  }
+  return rows;
+}
+
+TEST(Channels, AreThoseOfTheReadme) {
+  std::set<std::string> listed;
+  std::apply(
+      [&]<class... Types>(const Channel<Types>&... channels) {
+        (listed.insert(std::string{channels.name} + " " + Types::getTypeName()), ...);
+      },
+      channels::kAll);
+  listed.erase("LIDAR lidar_t");  // in LIDAR's row
+  EXPECT_EQ(listed, channels_in_readme());
+}
+
+TEST(ChannelNames, EveryChannelOfTheNetworkCanHaveAnother) {
+  const ChannelNames names =
+      load({{},
+            {"channels.slam_correction=POSE_CORRECTION", "channels.slam_command=ORDER",
+             "channels.slam_reply=ANSWER", "channels.slam_changes=CHANGES",
+             "channels.slam_findings=FINDINGS", "channels.map_graph=GRAPH"}})
+          .channels;
+  EXPECT_EQ(names.on_network("SLAM_CORRECTION"), "POSE_CORRECTION");
+  EXPECT_THAT(error_of({{}, {"channels.map_header=HEADER"}}), HasSubstr("channels.map_header"));
 }
 
 TEST(ChannelNames, ADumpReadsBackAsTheSame) {

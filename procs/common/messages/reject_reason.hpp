@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Why a message was not accepted.
+#pragma once
+
+#include <string_view>
+
+namespace waymark {
+
+enum class RejectReason {
+  kNone,
+  kTooLarge,
+  kTruncated,  ///< shorter than its length fields say
+  kWrongType,  ///< fingerprint of another type
+  kBadLength,  ///< negative or absurd length field
+  kTrailingBytes,
+  kNotFinite,     ///< NaN or infinity where none may be
+  kInconsistent,  ///< arrays that must agree in size do not, or a field has no such value
+  kOutOfBounds,   ///< a number beyond bounds.hpp, which no robot has
+  kBadTime,       ///< utime negative or absurdly far in the future
+};
+
+std::string_view to_string(RejectReason reason);
+
+}  // namespace waymark
