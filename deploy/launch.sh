@@ -5,6 +5,7 @@
 # usage: deploy/launch.sh SCENARIO [options]
 #   --out DIR         where everything goes (default: runs/SCENARIO-seedN-DATE)
 #   --seed N          seed of everything random (default: the scenario's run.seed)
+#   --robot FILE      what the other processes believe of the robot (default: what the scenario says)
 #   --record-only     no slam and no viewer: only a log, for deploy/replay.sh
 #   --no-images       leave the camera's images out of the log
 #   --real-time       as fast as the clock and without lockstep, like on a real robot
@@ -37,7 +38,7 @@ readonly kRunFiles=(run.lcm run.lcm.part scenario.toml robot.toml truth.tum trut
   results.json results.md)
 
 parse_arguments() {
-  scenario='' out='' seed='' estimator='' real_time=() slam_options=() map_options=() lcm_url=${LCM_DEFAULT_URL:-}
+  scenario='' out='' seed='' robot='' estimator='' real_time=() slam_options=() map_options=() lcm_url=${LCM_DEFAULT_URL:-}
   others=(recorder viewer slam detector) recorder_options=() slam_files=() viewer_options=() channel_options=()
   while (($# > 0)); do
     case $1 in
@@ -45,10 +46,11 @@ parse_arguments() {
       --real-time) real_time=(--real-time) && shift && continue ;;
       --record-only) others=(recorder detector) && shift && continue ;;
       --no-images) recorder_options=(--set 'recorder.exclude=["CAMERA"]') && shift && continue ;;
-      --out | --seed | --estimator | --config | --set | --http | --channels | --lcm-url | --load-map | --save-map | --mode | --start)
+      --out | --seed | --robot | --estimator | --config | --set | --http | --channels | --lcm-url | --load-map | --save-map | --mode | --start)
         need_value "$@"
         ;;&
       --out) out=$2 ;;
+      --robot) need_file "$2" && robot=$2 ;;
       --seed) need_number "$1" "$2" && seed=$2 ;;
       --estimator) slam_options+=(--set "slam.estimator=$2") ;;
       --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
@@ -109,6 +111,7 @@ check_scenario() {
   [[ -z $seed ]] || sim_options+=(--seed "$seed")
   "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-config >"$checked/scenario.toml" || exit $?
   "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-robot-config >"$checked/robot.toml" || exit $?
+  [[ -z $robot ]] || cp -- "$robot" "$checked/robot.toml"
   seed=$("$bin_dir/waymark-sim" "${sim_options[@]}" --print-config run.seed) || exit $?
 }
 
@@ -150,7 +153,7 @@ find_old_run() {
     old_rows+=("$folder")
     old_files+=("$folder/config.toml" "${kRowResults[@]/#/"$folder/"}" "$out/logs/${folder##*/}."{slam,viewer}.log)
   done
-  protect_inputs "$scenario" "${slam_files[@]}" "${channel_options[@]:1}"
+  protect_inputs "$scenario" "${robot:-$scenario}" "${slam_files[@]}" "${channel_options[@]:1}"
 }
 
 # clear_old_run: a folder holds one run; files of an earlier one must not be taken for results. What no

@@ -3,6 +3,7 @@
 
 #include "common/files/writable_folder.hpp"
 #include "common/messages/convert.hpp"
+#include "common/robot/described_sensors.hpp"
 #include "slam/estimator_factory.hpp"
 #include "slam/map_file.hpp"
 #include "slam/slam_messages.hpp"
@@ -135,7 +136,7 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
     process_ready_scans();
   });
   inbox.on<marker_detections_t>(channels::kMarkers, [this](const auto& m) {
-    queue_.add(to_detections(m));
+    queue_.add(as_described(to_detections(m), config_.robot.camera));
     process_ready_scans();
   });
   if (config.channels.uses(channels::kMbotSystemReset.name)) {
@@ -245,7 +246,7 @@ void SlamNode::judge_input() {
 void SlamNode::take(LidarScan scan) {
   if (std::ssize(scan.ranges_m) != config_.robot.lidar.num_beams)
     counters_.add("scans with another number of beams than configured");
-  queue_.add(std::move(scan));
+  queue_.add(as_described(std::move(scan), config_.robot.lidar));
   process_ready_scans();
 }
 

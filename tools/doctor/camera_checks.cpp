@@ -141,11 +141,14 @@ std::vector<Check> check_camera(const DoctorInput& input,
       checks.push_back(unchecked(name, "the log has MARKERS but no CAMERA", "record CAMERA, too"));
   }
   const auto add = [&](const char* name, const Measured& measured, double expected, Limits limits,
-                       double unit, const auto& finding, const auto& remedy) {
+                       double unit, const std::string& finding, const auto& write,
+                       const auto& remedy) {
     if (!is_known(measured, limits)) return checks.push_back(no_sightings(name));
-    const Verdict verdict = judge(measured.value - expected, measured.sigma, limits);
-    checks.push_back({name, verdict, finding(), verdict == Verdict::kPass ? "" : remedy(),
-                      unit * measured.value});
+    const double deviation = measured.value - expected;
+    const Verdict verdict = judge(deviation, measured.sigma, limits);
+    const std::string to_do = verdict == Verdict::kPass ? "" : remedy();
+    if (is_worth_writing(deviation, measured.sigma, limits)) write();
+    checks.push_back({name, verdict, finding, to_do, unit * measured.value});
   };
   if (!calibration) {
     for (const char* name : {"focal_length", "marker_size", "camera_yaw", "camera_time_offset"})
@@ -153,52 +156,49 @@ std::vector<Check> check_camera(const DoctorInput& input,
     return checks;
   }
   const CameraCalibration& found = *calibration;
+  const double fx_px = described.camera.fx_px * found.focal.value;
+  const double fy_px = described.camera.fy_px * found.focal.value;
   add(
       "focal_length", found.focal, 1.0, kFocal, 1.0,
+      fmt::format("the focal length is {:.4f} +- {:.4f} times robot.camera.fx_px",
+                  found.focal.value, found.focal.sigma),
       [&] {
-        return fmt::format("the focal length is {:.4f} +- {:.4f} times robot.camera.fx_px",
-                           found.focal.value, found.focal.sigma);
+        robot.camera.fx_px = fx_px;
+        robot.camera.fy_px = fy_px;
       },
       [&] {
-        robot.camera.fx_px *= found.focal.value;
-        robot.camera.fy_px *= found.focal.value;
         return fmt::format("robot.camera.fx_px = {:.2f}, fy_px = {:.2f}, or calibrate the lens",
-                           robot.camera.fx_px, robot.camera.fy_px);
+                           fx_px, fy_px);
       });
+  const double size_m = described.markers.size_m * found.marker_size.value;
   add(
       "marker_size", found.marker_size, 1.0, kSize, 1.0,
+      fmt::format("markers are {:.4f} +- {:.4f} times as large as robot.markers.size_m",
+                  found.marker_size.value, found.marker_size.sigma),
+      [&] { robot.markers.size_m = size_m; },
       [&] {
-        return fmt::format("markers are {:.4f} +- {:.4f} times as large as robot.markers.size_m",
-                           found.marker_size.value, found.marker_size.sigma);
-      },
-      [&] {
-        robot.markers.size_m *= found.marker_size.value;
         return fmt::format("measure one; robot.markers.size_m = {:.4f}, or print them at 100 %",
-                           robot.markers.size_m);
+                           size_m);
       });
+  const double yaw_rad = wrap_angle(described.camera.yaw_rad + found.yaw_rad.value);
   add(
       "camera_yaw", found.yaw_rad, 0.0, kYaw_rad, degrees(1.0),
-      [&] {
-        return fmt::format("the camera looks {:.2f} +- {:.2f} deg to the {} of its description",
-                           degrees(std::abs(found.yaw_rad.value)), degrees(found.yaw_rad.sigma),
-                           found.yaw_rad.value >= 0.0 ? "left" : "right");
-      },
-      [&] {
-        robot.camera.yaw_rad = wrap_angle(described.camera.yaw_rad + found.yaw_rad.value);
-        return fmt::format("robot.camera.yaw_rad = {:.4f}", robot.camera.yaw_rad);
-      });
+      fmt::format("the camera looks {:.2f} +- {:.2f} deg to the {} of its description",
+                  degrees(std::abs(found.yaw_rad.value)), degrees(found.yaw_rad.sigma),
+                  found.yaw_rad.value >= 0.0 ? "left" : "right"),
+      [&] { robot.camera.yaw_rad = yaw_rad; },
+      [&] { return fmt::format("robot.camera.yaw_rad = {:.4f}", yaw_rad); });
+  const double late_s = described.camera.late_s + found.late_s.value;
+  const Measured total{late_s, found.late_s.sigma};
   add(
-      "camera_time_offset", found.late_s, 0.0, kLate_s, 1e3,
+      "camera_time_offset", total, described.camera.late_s, kLate_s, 1e3,
+      fmt::format("the camera's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f}",
+                  1e3 * std::abs(late_s), 1e3 * total.sigma, late_s >= 0.0 ? "behind" : "ahead of",
+                  1e3 * described.camera.late_s),
+      [&] { robot.camera.late_s = late_s; },
       [&] {
-        return fmt::format("the camera's stamps are {:.0f} +- {:.0f} ms {} odometry's",
-                           1e3 * std::abs(found.late_s.value), 1e3 * found.late_s.sigma,
-                           found.late_s.value >= 0.0 ? "behind" : "ahead of");
-      },
-      [&] {
-        return fmt::format(
-            "add {:.0f} ms to the camera's times in its driver, or stamp "
-            "frames when they are exposed",
-            -1e3 * found.late_s.value);
+        return fmt::format("robot.camera.late_s = {:.4f}, or stamp frames when they are exposed",
+                           late_s);
       });
   return checks;
 }

@@ -25,9 +25,9 @@ Check check_scans_fit(const ImportedLog& log, const LidarMotions& motions);
 
 // Odometry against the LiDAR.
 Check check_odometry_moves(const ImportedLog& log);
-Check check_mirror(const std::optional<TurnComparison>& turns);
+Check check_mirror(const std::optional<TurnComparison>& turns, RobotConfig& robot);
 Check check_turn_scale(const std::optional<TurnComparison>& turns);
-Check check_time_offset(const std::optional<TurnComparison>& turns);
+Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig& robot);
 Check check_distance_scale(const std::optional<HandEye>& calibration);
 Check check_backing_up(const ImportedLog& log);
 /// x, y and yaw.

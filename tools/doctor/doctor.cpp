@@ -15,11 +15,13 @@ namespace {
 constexpr double kGoodScaleSigma = 0.005;
 constexpr double kUnmeasuredScaleSigma = 0.01;
 
-/// The LiDAR where it is, not where it is said to be.
-ImportedLog with_lidar(ImportedLog log, const LidarConfig& lidar) {
+/// The LiDAR where it is, not where it is said to be, and the right way round.
+ImportedLog with_lidar(ImportedLog log, const LidarConfig& lidar, bool is_mirrored) {
   log.robot.lidar.x_m = lidar.x_m;
   log.robot.lidar.y_m = lidar.y_m;
   log.robot.lidar.yaw_rad = lidar.yaw_rad;
+  for (ImportedScan& scan : log.scans)
+    put_right(scan, is_mirrored, Duration{0});
   return log;
 }
 
@@ -63,16 +65,15 @@ Diagnosis diagnose(const DoctorInput& input, const ShowProgress& progress) {
   checks.push_back(check_range_noise(input, diagnosis.robot));
   checks.push_back(check_scans_fit(input.log, motions));
   checks.push_back(check_odometry_moves(input.log));
-  checks.push_back(check_mirror(turns));
+  checks.push_back(check_mirror(turns, diagnosis.robot));
   checks.push_back(check_turn_scale(turns));
-  checks.push_back(check_time_offset(turns));
+  checks.push_back(check_time_offset(turns, diagnosis.robot));
   checks.push_back(check_distance_scale(calibration));
   std::vector<Check> mounting = check_mounting(input, calibration, diagnosis.robot);
-  const ImportedLog placed = with_lidar(input.log, diagnosis.robot.lidar);
+  const ImportedLog placed = with_lidar(input.log, diagnosis.robot.lidar, is_mirrored);
   checks.push_back(check_backing_up(placed));
   std::ranges::move(mounting, std::back_inserter(checks));
-  const auto camera =
-      is_mirrored ? std::nullopt : calibrate(input, placed, turns, calibration, late);
+  const auto camera = calibrate(input, placed, turns, calibration, late);
   std::ranges::move(check_camera(input, camera, diagnosis.robot), std::back_inserter(checks));
   return diagnosis;
 }

@@ -85,7 +85,8 @@ void estimate_noise(DoctorInput& input) {
 
 }  // namespace
 
-DoctorInput read_input(const std::filesystem::path& file, const std::filesystem::path& robot,
+DoctorInput read_input(const std::filesystem::path& file,
+                       const std::vector<std::filesystem::path>& robot,
                        const InputChannels& wanted, const ShowProgress& progress) {
   DoctorInput input{{}, {file, AddressUnit::kByte}, false, Mounting::kInLog, {}, {}, {}};
   if (is_lcm_log(file)) {
@@ -99,26 +100,32 @@ DoctorInput read_input(const std::filesystem::path& file, const std::filesystem:
     input.report.count_in(AddressUnit::kLine);
     input.log = read_carmen_log(file, {}, input.report);
   }
-  std::filesystem::path description = robot;
-  if (description.empty() && std::filesystem::exists(file.parent_path() / "robot.toml"))
-    description = file.parent_path() / "robot.toml";
-  if (!description.empty()) {
-    input.described = load_config<RobotOnly>({{description}, {}}).robot;
+  std::vector<std::filesystem::path> descriptions = robot;
+  if (descriptions.empty() && std::filesystem::exists(file.parent_path() / "robot.toml"))
+    descriptions.push_back(file.parent_path() / "robot.toml");
+  if (!descriptions.empty()) {
+    input.described = load_config<RobotOnly>({descriptions, {}}).robot;
     input.mounting = Mounting::kDescribed;
     const std::string& dictionary = input.described->markers.dictionary;
     if (!find_dictionary(dictionary)) {
       throw SetupError{fmt::format("{}: robot.markers.dictionary: there is no '{}'; known are {}",
-                                   description.string(), dictionary,
+                                   descriptions.back().string(), dictionary,
                                    fmt::join(dictionary_names(), ", "))};
     }
     LidarConfig& lidar = input.log.robot.lidar;
     lidar.x_m = input.described->lidar.x_m;
     lidar.y_m = input.described->lidar.y_m;
     lidar.yaw_rad = input.described->lidar.yaw_rad;
+    for (ImportedScan& scan : input.log.scans)
+      put_right(scan, input.described->lidar.mirrored, duration_from_seconds(input.described->lidar.late_s));
     if (input.channels.contains(std::string{channels::kCamera.name})) {
       input.camera = read_camera(file, *input.described, progress);
     } else if (input.channels.contains(std::string{channels::kMarkers.name})) {
       input.camera = read_markers(file, *input.described);
+    }
+    if (input.camera) {
+      for (CameraSighting& sighting : input.camera->sightings)
+        sighting.time -= duration_from_seconds(input.described->camera.late_s);
     }
   }
   estimate_noise(input);

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace waymark {
 
@@ -39,9 +40,11 @@ struct InputChannels {
 };
 
 /// An LCM log, a bag of ROS, or a CARMEN log (text, gzip, bzip2), whatever its name.
-/// @param robot  robot.toml; empty = the one beside the log, if there is one
+/// What a description says of mirrored scans and late stamps is put right.
+/// @param robot  robot.toml, later files win; empty = the one beside the log, if there is one
 /// @throws SetupError when the log cannot be used
-DoctorInput read_input(const std::filesystem::path& file, const std::filesystem::path& robot,
+DoctorInput read_input(const std::filesystem::path& file,
+                       const std::vector<std::filesystem::path>& robot,
                        const InputChannels& channels, const ShowProgress& progress = {});
 
 }  // namespace waymark

@@ -30,4 +30,11 @@ inline bool is_known(const Measured& measured, Limits limits) {
   return kSigmas * measured.sigma <= limits.bad;
 }
 
+/// What a description is replaced by: what contradicts it, and what is known much better than a
+/// description has to be.
+inline bool is_worth_writing(double deviation, double sigma, Limits limits) {
+  constexpr double kMuchBetter = 2.0;
+  return std::abs(deviation) > kSigmas * sigma || kMuchBetter * kSigmas * sigma < limits.good;
+}
+
 }  // namespace waymark

@@ -22,7 +22,7 @@ constexpr double kQuiet_s = 2.0;  // shorter work needs no progress
 
 struct Options {
   std::filesystem::path file{};
-  std::filesystem::path robot{};
+  std::vector<std::filesystem::path> robot{};
   std::filesystem::path write_robot{};
   bool as_json{false};
   int seconds{0};  ///< 0: a log
@@ -91,7 +91,8 @@ int main(int argc, char** argv) {
                  "LCM network (default: $LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)")
       ->needs(seconds);
   app.add_option("--config", options.robot,
-                 "robot.toml to hold it against (default: the one beside the log)");
+                 "robot.toml to hold it against; of several, later files win (default: the one "
+                 "beside the log)");
   app.add_option("--write-robot", options.write_robot, "write a robot.toml with what was found");
   app.add_flag("--json", options.as_json, "one JSON object instead of text");
   app.add_option("--lidar-channel", options.channels.lidar,

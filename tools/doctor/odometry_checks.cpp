@@ -50,7 +50,7 @@ Check check_odometry_moves(const ImportedLog& log) {
           length_m};
 }
 
-Check check_mirror(const std::optional<TurnComparison>& turns) {
+Check check_mirror(const std::optional<TurnComparison>& turns, RobotConfig& robot) {
   if (!turns) return no_turns("lidar_mirrored");
   const double ratio = turns->ratio.value;
   if (std::abs(ratio) <= kSigmas * turns->ratio.sigma) {
@@ -58,12 +58,15 @@ Check check_mirror(const std::optional<TurnComparison>& turns) {
                      "turns of LiDAR and odometry have nothing to do with each other",
                      "check the times of both, and that both are of this robot");
   }
+  if (ratio < 0.0) robot.lidar.mirrored = !robot.lidar.mirrored;
   return {"lidar_mirrored", ratio > 0.0 ? Verdict::kPass : Verdict::kFail,
           fmt::format("LiDAR and odometry turn {} (ratio {:.3f} over {:.1f} rad)",
                       ratio > 0.0 ? "the same way" : "opposite ways", ratio, turns->turned_rad),
           ratio > 0.0 ? ""
-                      : "the LiDAR is mounted upside down or its driver counts angles clockwise: "
-                        "reverse its beams; or swap the wheels' encoders",
+                      : fmt::format("the LiDAR is mounted upside down or its driver counts angles "
+                                    "clockwise: robot.lidar.mirrored = {}; or swap the wheels' "
+                                    "encoders",
+                                    robot.lidar.mirrored),
           ratio};
 }
 
@@ -82,7 +85,7 @@ Check check_turn_scale(const std::optional<TurnComparison>& turns) {
           scale};
 }
 
-Check check_time_offset(const std::optional<TurnComparison>& turns) {
+Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig& robot) {
   if (!turns) return no_turns("time_offset");
   const Measured& late = turns->lidar_late_s;
   if (!is_known(late, kOffset_s)) {
@@ -92,16 +95,18 @@ Check check_time_offset(const std::optional<TurnComparison>& turns) {
         "record a log with turns that start and stop");
   }
   const Verdict verdict = judge(late.value, late.sigma, kOffset_s);
+  const double described_s = robot.lidar.late_s;
+  const double found_s = described_s + late.value;
+  if (is_worth_writing(late.value, late.sigma, kOffset_s)) robot.lidar.late_s = found_s;
   return {"time_offset", verdict,
-          fmt::format("the LiDAR's stamps are {:.0f} +- {:.0f} ms {} odometry's",
-                      1e3 * std::abs(late.value), 1e3 * late.sigma,
-                      late.value >= 0.0 ? "behind" : "ahead of"),
+          fmt::format("the LiDAR's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f}",
+                      1e3 * std::abs(found_s), 1e3 * late.sigma,
+                      found_s >= 0.0 ? "behind" : "ahead of", 1e3 * described_s),
           verdict == Verdict::kPass
               ? ""
-              : fmt::format("add {:.0f} ms to the LiDAR's times in its driver, or stamp both where "
-                            "they are measured",
-                            -1e3 * late.value),
-          1e3 * late.value};
+              : fmt::format("robot.lidar.late_s = {:.4f}, or stamp both where they are measured",
+                            found_s),
+          1e3 * found_s};
 }
 
 Check check_distance_scale(const std::optional<HandEye>& calibration) {
@@ -157,7 +162,8 @@ std::vector<Check> check_mounting(const DoctorInput& input,
     // Nothing said where it sits: nothing is contradicted, but whoever starts at 0 is wrong.
     const Verdict verdict =
         is_known_before || difference == Verdict::kPass ? difference : Verdict::kWarn;
-    if (verdict != Verdict::kPass) target = measured.value;
+    if (verdict != Verdict::kPass || is_worth_writing(deviation, measured.sigma, limits))
+      target = measured.value;
     checks.push_back(
         {name, verdict,
          fmt::format("the LiDAR sits at {} {:.3f} +- {:.3f} {}, {}", key, unit * measured.value,

@@ -12,6 +12,7 @@ constexpr Range kAngle{-std::numbers::pi, std::numbers::pi};
 constexpr Range kPlace_m{-5.0, 5.0};
 constexpr Range kHeight_m{0.0, 5.0};
 constexpr Range kLongestRange_m{0.01, 500.0};
+constexpr Range kLate_s{-1.0, 1.0};
 
 }  // namespace
 
@@ -32,6 +33,8 @@ void LidarConfig::describe(Fields& fields) {
   fields.field("range_min_m", range_min_m, kNotNegative, "shortest range measured");
   fields.field("range_max_m", range_max_m, kLongestRange_m, "longest range measured");
   fields.field("range_sigma_m", range_sigma_m, kPositive, "standard deviation of a range");
+  fields.field("mirrored", mirrored, "beams count clockwise, as of a LiDAR that hangs upside down");
+  fields.field("late_s", late_s, kLate_s, "its stamps are that much behind odometry's");
 }
 
 Eigen::Isometry3d CameraConfig::base_from_camera() const {
@@ -63,6 +66,7 @@ void CameraConfig::describe(Fields& fields) {
   fields.field("pitch_rad", pitch_rad, kAngle, "positive looks down");
   fields.field("yaw_rad", yaw_rad, kAngle, "positive looks left");
   fields.field("rate_hz", rate_hz, {0.1, 200.0}, "frames per second");
+  fields.field("late_s", late_s, kLate_s, "its stamps are that much behind odometry's");
   fields.field("focal_sigma", focal_sigma, kNotNegative,
                "how well fx and fy are known, relative; learnt while driving, unless 0");
   fields.field("yaw_sigma_rad", yaw_sigma_rad, kNotNegative,

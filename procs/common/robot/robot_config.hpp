@@ -33,6 +33,8 @@ struct LidarConfig {
   double range_min_m{0.12};
   double range_max_m{3.5};
   double range_sigma_m{0.01};
+  bool mirrored{false};  ///< beams count clockwise, seen from above: it hangs upside down
+  double late_s{0.0};    ///< its stamps behind ODOMETRY's
 
   Se2 base_from_lidar() const { return {x_m, y_m, yaw_rad}; }
 
@@ -57,6 +59,7 @@ struct CameraConfig {
   double pitch_rad{0.0};  ///< positive looks down
   double yaw_rad{0.0};
   double rate_hz{10.0};
+  double late_s{0.0};                ///< its stamps behind ODOMETRY's
   double focal_sigma{0.002};         ///< of the focal lengths, relative; learnt while driving
   double yaw_sigma_rad{0.0087};      ///< of `yaw_rad`; learnt while driving
   double bearing_sigma_rad{0.0001};  ///< what neighbouring frames get wrong alike: 0.05 px here

@@ -114,7 +114,11 @@ void Simulation::sense(Tick& tick) {
   } else if (is_due(scenario_.robot.lidar.rate_hz)) {
     send_scan(lidar_.scan(now(), physics_));
   }
-  if (is_due(scenario_.robot.camera.rate_hz)) camera_outlet_.take(photograph(), moment());
+  if (is_due(scenario_.robot.camera.rate_hz)) {
+    CameraFrame frame = photograph();
+    frame.time += duration_from_seconds(scenario_.robot.camera.late_s);
+    camera_outlet_.take(std::move(frame), moment());
+  }
 }
 
 void Simulation::measure_odometry() {
@@ -136,6 +140,7 @@ void Simulation::send_scan(LidarScan scan) {
     Random random = garbage_random(Sensor::kLidar);
     make_garbage(scan, scenario_.robot.lidar, random);
   }
+  scan.time += duration_from_seconds(scenario_.robot.lidar.late_s);
   lidar_outlet_.take(std::move(scan), moment());
 }
 

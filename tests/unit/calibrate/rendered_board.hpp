@@ -28,8 +28,8 @@ inline CameraConfig known_camera() {
 /// Where a board is held: its middle in the middle `share` of the image, turned by up to
 /// `most_tilt_rad` about both axes.
 inline std::vector<Eigen::Isometry3d> hand_held(int num_views, double share, double most_tilt_rad,
-                                                Random& random) {
-  const CameraConfig camera = known_camera();
+                                                Random& random,
+                                                const CameraConfig& camera = known_camera()) {
   std::vector<Eigen::Isometry3d> views;
   for (int i = 0; i < num_views; ++i) {
     const double z_m = random.uniform(0.28, 0.45);

@@ -4,6 +4,7 @@
 #include "common/errors/setup_error.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
+#include "common/robot/described_sensors.hpp"
 #include "import/log/time_order.hpp"
 
 #include <fmt/format.h>
@@ -40,10 +41,18 @@ void remove_repeats(std::vector<ImportedPose>& poses) {
 }  // namespace
 
 LidarScan scan_of(const ImportedScan& scan) {
+  const LidarConfig lidar{.mirrored = scan.is_mirrored, .late_s = to_seconds(scan.late)};
   if (fingerprint_of(scan.message.payload) == lidar_t::getHash()) {
-    return to_scan(decode<lidar_t>(scan.message.payload).message.value());
+    return as_described(to_scan(decode<lidar_t>(scan.message.payload).message.value()), lidar);
   }
-  return to_scan(decode<planar_lidar_t>(scan.message.payload).message.value());
+  return as_described(to_scan(decode<planar_lidar_t>(scan.message.payload).message.value()), lidar);
+}
+
+void put_right(ImportedScan& scan, bool is_mirrored, Duration late) {
+  scan.is_mirrored = scan.is_mirrored != is_mirrored;
+  scan.late += late;
+  scan.time -= late;
+  scan.last_beam_time -= late;
 }
 
 Se2 pose_at(const std::vector<ImportedPose>& poses, Timestamp time) {

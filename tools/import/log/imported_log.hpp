@@ -22,6 +22,8 @@ struct ImportedScan {
   double longest_range_m{0.0};          ///< of the ranges that are returns
   Message message{};                    ///< for the channel LIDAR
   std::optional<Se2> odom_from_base{};  ///< when the scan itself carries odometry
+  bool is_mirrored{false};              ///< the message's angles count clockwise
+  Duration late{0};                     ///< of the message's stamp; `time` has none
 };
 
 struct ImportedPose {
@@ -56,6 +58,9 @@ struct LidarMounting {
 
 /// The scan of the message, as slam will see it.
 LidarScan scan_of(const ImportedScan& scan);
+
+/// Mirrors the scan back and takes `late` off its times, on top of what was done before.
+void put_right(ImportedScan& scan, bool is_mirrored, Duration late);
 
 /// The pose at a time, interpolated; before the first and after the last one these.
 /// @param poses  not empty, ascending times

@@ -23,10 +23,10 @@ class FaultyOutlet {
 
   const Faults& faults() const { return faults_; }
 
-  /// Takes what the sensor has just measured.
+  /// Takes what the sensor has just measured; what is stamped before the clock's start is lost.
   void take(Measurement measured, const Moment& moment) {
     const std::uint64_t number = count_++;
-    if (is_lost(number, moment)) return;
+    if (measured.time < Timestamp{} || is_lost(number, moment)) return;
     if (faults_.have(FaultKind::kStuck)) repeat_if_stuck(measured, moment);
     if (const FaultConfig* fault = faults_.acting(FaultKind::kDelayed, moment))
       measured.time += duration_from_seconds(fault->delay_s);

@@ -54,7 +54,7 @@ void Lidar::add_beams(LidarScan& scan, int count, const Physics& physics) {
   const double step_rad = 2.0 * std::numbers::pi / config_.num_beams;
   for (int i = 0; i < count; ++i) {
     const double angle_rad = static_cast<double>(scan.ranges_m.size()) * step_rad;
-    const double in_base_rad = config_.yaw_rad + angle_rad;
+    const double in_base_rad = config_.yaw_rad + (config_.mirrored ? -angle_rad : angle_rad);
     const Eigen::Vector3d direction =
         world_from_base.linear() *
         Eigen::Vector3d{std::cos(in_base_rad), std::sin(in_base_rad), 0.0};
