@@ -58,6 +58,16 @@ class MapYaml {
     return values_.contains(key) ? text(key) : fallback;
   }
 
+  /// Lower left corner of the image; (0, 0) where there is none. Its yaw is left aside.
+  Eigen::Vector2d origin() const {
+    if (!values_.contains("origin")) return Eigen::Vector2d::Zero();
+    std::string list = text("origin");
+    std::erase_if(list, [](char c) { return c == '[' || c == ']'; });
+    const auto numbers = parse_numbers(list);
+    if (!numbers || numbers->size() < 2) refuse("origin", "[x, y, yaw]");
+    return {numbers->at(0), numbers->at(1)};
+  }
+
   [[noreturn]] void refuse(const std::string& key, std::string_view expected) const {
     throw InputError{
         fmt::format("{}: {}: got '{}', expected {}", file_.string(), key, text(key), expected)};
@@ -134,6 +144,10 @@ MapImage read_map(const fs::path& yaml_file) {
     }
   }
   return map;
+}
+
+Eigen::Vector2d read_map_origin(const fs::path& yaml_file) {
+  return MapYaml{yaml_file}.origin();
 }
 
 }  // namespace waymark::evaluate

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/placement/advice.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace waymark::placement {
+namespace {
+
+constexpr double kEverywhere_m = 2.0;  // between markers of a wall that is full of them
+constexpr double kAboveFloor = 1.02;   // of what every place together would reach
+constexpr double kNothing = 1e-12;     // [m^3] of excess
+
+double worst(std::span<const double> sigmas_m) {
+  return sigmas_m.empty() ? 0.0 : *std::max_element(sigmas_m.begin(), sigmas_m.end());
+}
+
+/// Evaluates sets of places.
+class Search {
+ public:
+  Search(const CovarianceModel& model, std::span<const Step> steps, std::span<const Sightings> hung,
+         std::span<const Sightings> at_places)
+      : model_{model}, steps_{steps}, hung_{hung}, at_places_{at_places} {}
+
+  std::vector<double> sigmas_m(const std::vector<std::size_t>& chosen) {
+    ++evaluations_;
+    std::vector<const Sightings*> markers;
+    for (const Sightings& marker : hung_)
+      markers.push_back(&marker);
+    for (const std::size_t place : chosen)
+      markers.push_back(&at_places_[place]);
+    return model_.sigmas_m(model_.predict(markers));
+  }
+
+  void aim_at(const std::vector<double>& reachable_m) { aims_m_ = reachable_m; }
+
+  /// [m^3]
+  double excess(std::span<const double> sigmas_m) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < sigmas_m.size(); ++i) {
+      const double above_m2 = sigmas_m[i] * sigmas_m[i] - aims_m_[i] * aims_m_[i];
+      sum += std::max(0.0, above_m2) * std::max(1e-3, steps_[i].motion.distance_m);
+    }
+    return sum;
+  }
+
+  int evaluations() const { return evaluations_; }
+
+ private:
+  const CovarianceModel& model_;
+  std::span<const Step> steps_;
+  std::span<const Sightings> hung_;
+  std::span<const Sightings> at_places_;
+  std::vector<double> aims_m_{};
+  int evaluations_{0};
+};
+
+std::vector<std::size_t> with(std::vector<std::size_t> chosen, std::size_t place) {
+  chosen.push_back(place);
+  return chosen;
+}
+
+struct Gain {
+  std::size_t place{0};
+  double gain{std::numeric_limits<double>::infinity()};
+  std::size_t round{0};  ///< in which it was evaluated
+};
+
+/// The place that lowers the excess most; nothing when none does.
+std::optional<std::size_t> best_place(Search& search, std::vector<Gain>& gains,
+                                      const std::vector<std::size_t>& chosen, double excess,
+                                      std::size_t round) {
+  const auto less = [](const Gain& a, const Gain& b) {
+    return a.gain < b.gain || (a.gain == b.gain && a.place > b.place);
+  };
+  while (!gains.empty()) {
+    const auto top = std::max_element(gains.begin(), gains.end(), less);
+    if (!(top->gain > kNothing)) return std::nullopt;
+    if (top->round == round) return top->place;
+    top->gain = excess - search.excess(search.sigmas_m(with(chosen, top->place)));
+    top->round = round;
+  }
+  return std::nullopt;
+}
+
+/// From the one chosen last but one: the last one was needed.
+void drop_needless(Search& search, std::vector<std::size_t>& chosen) {
+  for (std::size_t i = chosen.size(); i-- > 0 && chosen.size() > 1;) {
+    std::vector<std::size_t> fewer = chosen;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+    if (search.excess(search.sigmas_m(fewer)) <= kNothing) chosen = fewer;
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> everywhere(std::span<const WallPlace> places) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const bool is_near = std::any_of(chosen.begin(), chosen.end(), [&](std::size_t other) {
+      return overlap(places[i].map_from_marker, places[other].map_from_marker, kEverywhere_m);
+    });
+    if (!is_near) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+std::vector<Stretch> stretches_above(std::span<const double> sigmas_m, double target_m) {
+  std::vector<Stretch> stretches;
+  for (std::size_t i = 0; i < sigmas_m.size(); ++i) {
+    if (sigmas_m[i] <= target_m) continue;
+    if (stretches.empty() || stretches.back().last + 1 != i) stretches.push_back({i, i, 0.0});
+    stretches.back().last = i;
+    stretches.back().worst_m = std::max(stretches.back().worst_m, sigmas_m[i]);
+  }
+  return stretches;
+}
+
+bool Advice::is_met(double target_m) const {
+  return worst(then_m) <= target_m;
+}
+
+Advice advise(const CovarianceModel& model, std::span<const Step> steps,
+              std::span<const Sightings> hung, std::span<const WallPlace> places,
+              std::span<const Sightings> at_places, double plate_m, double target_m,
+              std::size_t most) {
+  Search search{model, steps, hung, at_places};
+  Advice advice;
+  advice.now_m = search.sigmas_m({});
+  advice.reachable_m.assign(advice.now_m.size(), target_m);
+  std::vector<double> sigmas_m = advice.now_m;
+  if (worst(sigmas_m) > target_m) {
+    const std::vector<double> floor_m = search.sigmas_m(everywhere(places));
+    for (std::size_t i = 0; i < floor_m.size(); ++i)
+      if (floor_m[i] > target_m) advice.reachable_m[i] = kAboveFloor * floor_m[i];
+  }
+  search.aim_at(advice.reachable_m);
+  std::vector<Gain> gains;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (!at_places[i].empty()) gains.push_back({i});
+  double excess = search.excess(sigmas_m);
+  for (std::size_t round = 1; excess > kNothing && advice.chosen.size() < most; ++round) {
+    const auto best = best_place(search, gains, advice.chosen, excess, round);
+    if (!best) break;
+    advice.chosen.push_back(*best);
+    sigmas_m = search.sigmas_m(advice.chosen);
+    excess = search.excess(sigmas_m);
+    std::erase_if(gains, [&](const Gain& gain) {
+      return overlap(places[gain.place].map_from_marker, places[*best].map_from_marker, plate_m);
+    });
+  }
+  if (excess <= kNothing) drop_needless(search, advice.chosen);
+  advice.then_m = advice.now_m;
+  std::vector<std::size_t> hung_so_far;
+  for (const std::size_t place : advice.chosen) {
+    hung_so_far.push_back(place);
+    advice.then_m = search.sigmas_m(hung_so_far);
+    advice.worst_after_m.push_back(worst(advice.then_m));
+  }
+  advice.evaluations = search.evaluations();
+  return advice;
+}
+
+}  // namespace waymark::placement

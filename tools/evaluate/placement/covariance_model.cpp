@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/placement/covariance_model.hpp"
+
+#include "evaluate/placement/keyframe_schedule.hpp"
+#include "evaluate/placement/pose_covariance.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace waymark::placement {
+namespace {
+
+constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]: the map's frame is the first pose
+constexpr double kInFront_m = 0.15;       // a marker's own wall is no obstacle
+
+Variable pose_of_step(std::size_t step) {
+  return {VariableKind::kKeyframe, step};
+}
+
+Variable landmark(std::size_t marker) {
+  return {VariableKind::kLandmark, marker};
+}
+
+/// What has a scale is variance per metre along the way.
+double along_m2_per_m(const OdometryNoise& noise, const OdometryScale& scale, bool shows_way) {
+  const double rolling = scale.along * noise.along_per_sqrt_m;
+  return rolling * rolling + (shows_way ? 0.0 : scale.slip_m2_per_m);
+}
+
+void drive_step(const Se2& before, const Step& step, const OdometryNoise& described,
+                const OdometryScale& scale, bool shows_way, PoseCovariance& known) {
+  CorrectedMotion moved =
+      corrected_motion(step.motion, OdometryErrors::Zero(), scaled(described, scale));
+  if (!shows_way) {
+    OdometryScale slips = scale;
+    slips.slip_per_m = 0.0;
+    moved = with_slips(moved, step.motion.distance_m, slips);
+  }
+  const Eigen::Vector2d way = step.map_from_base.translation() - before.translation();
+  Eigen::Matrix3d by_pose = Eigen::Matrix3d::Identity();
+  by_pose.topRightCorner<2, 1>() << -way.y(), way.x();  // d(x, y) / d(theta)
+  Eigen::Matrix<double, 3, kCalibrationSize> by_calibration =
+      Eigen::Matrix<double, 3, kCalibrationSize>::Zero();
+  by_calibration.leftCols<kOdometryTerms>() =
+      turning(before) * moved.by_errors.leftCols<kOdometryTerms>();
+  known.move(by_pose, by_calibration, turned(before, moved.covariance));
+}
+
+/// @param steps_of  variables of the factor's keyframes by their number there.
+std::vector<PoseCovariance::Block> blocks_of(const LinearFactor& linear,
+                                             const std::vector<Variable>& keyframes,
+                                             const Variable& marker, double root_weight) {
+  std::vector<PoseCovariance::Block> blocks;
+  for (const LinearFactor::Block& block : linear.blocks) {
+    Variable variable = PoseCovariance::kCalibration;
+    if (block.variable.kind == VariableKind::kKeyframe) variable = keyframes[block.variable.index];
+    if (block.variable.kind == VariableKind::kLandmark) variable = marker;
+    blocks.push_back({variable, root_weight * block.jacobian});
+  }
+  return blocks;
+}
+
+using References = std::vector<std::pair<std::size_t, double>>;
+
+void match_scan_of(std::span<const Step> steps, std::size_t now, const References& references,
+                   double keyframes, PoseCovariance& known) {
+  if (references.empty() || !(keyframes > 0.0)) return;
+  State state;
+  std::vector<Variable> variables;
+  ScanFactor factor;
+  for (const auto& [step, share] : references) {
+    factor.references.push_back({variables.size(), share,
+                                 steps[step].map_from_base.inverse() * steps[now].map_from_base});
+    state.keyframes.push_back(steps[step].map_from_base);
+    variables.push_back(pose_of_step(step));
+  }
+  factor.keyframe = variables.size();
+  factor.root_information = root_of(steps[now].observed.information);
+  state.keyframes.push_back(steps[now].map_from_base);
+  variables.push_back(PoseCovariance::kPose);
+  known.measure(blocks_of(factor.linearise(state), variables, {}, std::sqrt(keyframes)));
+}
+
+/// What views say about the camera apart from poses: their walls, and their perspective.
+void learn_calibration(const MarkerMeasurement& measured, double keyframes, PoseCovariance& known) {
+  const double root_weight = std::sqrt(keyframes);
+  if (measured.wall) {
+    const Eigen::LLT<Eigen::Matrix2d> root{measured.wall->covariance};
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2, kCalibrationSize);
+    rows.rightCols<kCameraTerms>() =
+        root_weight * root.matrixL().solve(measured.wall->by_errors());
+    known.measure({{PoseCovariance::kCalibration, rows}});
+  }
+  if (measured.focal) {
+    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, kCalibrationSize);
+    row(0, kOdometryTerms + SightingSigmas::kFocal) = root_weight / measured.focal->sigma;
+    known.measure({{PoseCovariance::kCalibration, row}});
+  }
+}
+
+void see_marker(const Step& step, const StepSighting& sighting, PoseCovariance& known) {
+  const MarkerMeasurement& measured = sighting.view->measurement;
+  learn_calibration(measured, sighting.keyframes, known);
+  MarkerFactor factor;
+  factor.measurement = measured;
+  factor.root_information = root_of(measured.covariance.inverse());
+  State state;
+  state.keyframes = {step.map_from_base};
+  state.landmarks = {step.map_from_base * measured.base_from_marker};
+  const LinearFactor linear =
+      factor.linearise(state, std::numeric_limits<double>::infinity());
+  const Variable marker = landmark(sighting.marker);
+  std::vector<PoseCovariance::Block> blocks =
+      blocks_of(linear, {PoseCovariance::kPose}, marker, std::sqrt(sighting.keyframes));
+  if (known.has(marker)) {
+    known.measure(blocks);
+    return;
+  }
+  const auto own = std::find_if(blocks.begin(), blocks.end(),
+                                [&](const auto& block) { return block.variable == marker; });
+  const Eigen::Matrix3d solve = Eigen::Matrix3d{own->jacobian}.inverse();
+  blocks.erase(own);
+  for (PoseCovariance::Block& block : blocks)
+    block.jacobian = -solve * block.jacobian;
+  known.add(marker, blocks, solve * solve.transpose());
+}
+
+/// The step after which a pose behind is not needed any more, by step; itself: never needed.
+std::vector<std::size_t> last_uses(const std::vector<StepPlan>& plan) {
+  std::vector<std::size_t> last(plan.size());
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    last[i] = i;
+    for (const auto& [step, share] : plan[i].submap)
+      last[step] = i;
+    if (plan[i].loop) last[*plan[i].loop] = i;
+  }
+  return last;
+}
+
+}  // namespace
+
+double sigma_along(const Eigen::Matrix3d& covariance, const Eigen::Vector2d& axis) {
+  const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
+  if (!axis.isZero()) return std::sqrt(std::max(0.0, axis.dot(position * axis)));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{position, Eigen::EigenvaluesOnly};
+  return std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+}
+
+Sightings sightings_along(std::span<const Step> steps, const Se2& map_from_marker,
+                          const OccupiedWalls& walls, const ViewModel& views) {
+  Sightings sightings;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const Step& step = steps[i];
+    const Se2 base_from_marker = step.map_from_base.inverse() * map_from_marker;
+    const double away_m = base_from_marker.translation().norm();
+    if (away_m > views.reach_m()) continue;
+    const auto view = views.view(base_from_marker, step.hits, step.speed_mps);
+    if (!view) continue;
+    const Eigen::Vector2d there = map_from_marker.translation() - step.map_from_base.translation();
+    const Eigen::Vector2d stop =
+        there + kInFront_m * map_from_marker.rotation().col(0);  // before its wall
+    if (walls.first_hit(step.map_from_base.translation(), stop.normalized(), stop.norm())) continue;
+    sightings.push_back({i, *view});
+  }
+  return sightings;
+}
+
+CovarianceModel::CovarianceModel(std::span<const Step> steps, const SlamConfig& config)
+    : steps_{steps}, config_{config}, setup_{estimator_setup(config)} {
+  config_.slam.waymark.odometry.half_track_m = setup_.half_track_m;
+}
+
+std::vector<Eigen::Matrix3d> CovarianceModel::predict(
+    std::span<const Sightings* const> markers) const {
+  const WaymarkConfig& config = config_.slam.waymark;
+  const OdometryNoise& odometry = config.odometry;
+  Calibration sigmas;
+  sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
+      odometry.lidar_ahead_sigma_m, setup_.sighting_sigmas.learnt;
+  if (!config.calibrate) sigmas.setZero();
+  PoseCovariance known{sigmas, kFirstPoseSigma};
+
+  const std::vector<StepPlan> plan = plan_keyframes(steps_, markers, config_);
+  const std::vector<std::size_t> last_use = last_uses(plan);
+  std::vector<std::size_t> kept;
+  std::vector<Eigen::Matrix3d> covariances;
+  double unfixed_m2 = 0.0;  // what the odometry's noise as known now adds to that as known later
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const Step& step = steps_[i];
+    const StepPlan& now = plan[i];
+    if (i > 0) {
+      const OdometryScale& later = plan[now.leaves_window].noise;
+      drive_step(steps_[i - 1].map_from_base, step, odometry, later, now.shows_way, known);
+      match_scan_of(steps_, i, now.submap, now.keyframes, known);
+      if (now.loop) match_scan_of(steps_, i, {{*now.loop, 1.0}}, 1.0, known);
+      const double more = along_m2_per_m(odometry, now.noise, now.shows_way) -
+                          along_m2_per_m(odometry, later, now.shows_way);
+      unfixed_m2 = now.shows_way
+                       ? 0.0
+                       : unfixed_m2 + std::max(0.0, more) * step.motion.distance_m;
+    }
+    for (const StepSighting& sighting : now.sightings)
+      if (sighting.keyframes > 0.0) see_marker(step, sighting, known);
+    Eigen::Matrix3d covariance = known.of_pose();
+    const Eigen::Vector2d ahead = step.map_from_base.rotation().col(0);
+    covariance.topLeftCorner<2, 2>() += unfixed_m2 * ahead * ahead.transpose();
+    covariances.push_back(covariance);
+    if (last_use[i] > i) {
+      known.add(pose_of_step(i), {{PoseCovariance::kPose, Eigen::Matrix3d::Identity()}},
+                Eigen::Matrix3d::Zero());
+      kept.push_back(i);
+    }
+    std::erase_if(kept, [&](std::size_t old) {
+      if (last_use[old] > i) return false;
+      known.drop(pose_of_step(old));
+      return true;
+    });
+  }
+  return covariances;
+}
+
+std::vector<double> CovarianceModel::sigmas_m(std::span<const Eigen::Matrix3d> covariances) const {
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i < covariances.size(); ++i)
+    sigmas.push_back(sigma_along(covariances[i], steps_[i].weak_axis));
+  return sigmas;
+}
+
+}  // namespace waymark::placement

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/placement/placement_input.hpp"
+
+#include "evaluate/files/map_image.hpp"
+#include "evaluate/files/tum.hpp"
+#include "evaluate/run/run_evaluation.hpp"
+#include "slam/map_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark::placement {
+namespace {
+
+namespace fs = std::filesystem;
+using evaluate::InputError;
+
+constexpr double kLongestStep_m = 1.0;  // between two poses; more is no drive
+// As the viewer's map.pgm.
+constexpr double kOccupied = 0.65;
+constexpr double kFree = 0.196;
+
+CellState state_of(evaluate::Cell cell) {
+  switch (cell) {
+    case evaluate::Cell::kFree:
+      return CellState::kFree;
+    case evaluate::Cell::kOccupied:
+      return CellState::kOccupied;
+    case evaluate::Cell::kUnknown:
+      break;
+  }
+  return CellState::kUnknown;
+}
+
+OccupancyImage image_in(const fs::path& yaml_file) {
+  const evaluate::MapImage map = evaluate::read_map(yaml_file);
+  OccupancyImage image{map.width_px, map.height_px, map.resolution_m,
+                       evaluate::read_map_origin(yaml_file), {}};
+  image.cells.reserve(map.cells.size());
+  std::transform(map.cells.begin(), map.cells.end(), std::back_inserter(image.cells), state_of);
+  return image;
+}
+
+OccupancyImage image_of(const GridMap& grid) {
+  std::vector<std::pair<CellIndex, CellState>> known;
+  grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset) {
+      if (!cells[offset].is_mapped()) continue;
+      const double occupancy = cells[offset].occupancy();
+      known.emplace_back(cell_at(index, offset), occupancy >= kOccupied ? CellState::kOccupied
+                                                 : occupancy <= kFree   ? CellState::kFree
+                                                                        : CellState::kUnknown);
+    }
+  });
+  if (known.empty()) return {};
+  CellIndex least = known.front().first;
+  CellIndex most = least;
+  for (const auto& [cell, state] : known) {
+    least = {std::min(least.x, cell.x), std::min(least.y, cell.y)};
+    most = {std::max(most.x, cell.x), std::max(most.y, cell.y)};
+  }
+  OccupancyImage image;
+  image.columns = most.x - least.x + 1;
+  image.rows = most.y - least.y + 1;
+  image.resolution_m = grid.frame.resolution_m;
+  image.origin_m =
+      grid.frame.origin_m + grid.frame.resolution_m * Eigen::Vector2d{least.x, least.y};
+  image.cells.resize(static_cast<std::size_t>(image.columns) * image.rows);
+  for (const auto& [cell, state] : known)
+    image.cells[static_cast<std::size_t>(cell.y - least.y) * image.columns + (cell.x - least.x)] =
+        state;
+  return image;
+}
+
+/// The row of a run that has an estimate by waymark.
+fs::path row_in(const fs::path& run) {
+  if (fs::exists(run / "trajectory.tum")) return run;
+  if (fs::exists(run / "waymark" / "trajectory.tum")) return run / "waymark";
+  const std::vector<std::string> rows = evaluate::estimators_in(run);
+  if (rows.size() == 1) return run / rows.front();
+  if (rows.empty())
+    throw InputError{run.string() + ": neither a run nor a row: no trajectory.tum in it"};
+  throw InputError{fmt::format("{}: several rows, none of them 'waymark'; give one of {}",
+                               run.string(), fmt::join(rows, ", "))};
+}
+
+void check_is_mapping(const PlacementInput& input) {
+  const SlamSection& slam = input.config.slam;
+  if (slam.estimator != EstimatorName::kWaymark)
+    throw InputError{input.source.string() +
+                     ": not by the estimator 'waymark', whose covariances are what is predicted"};
+  if (slam.mode != MapMode::kMap || !input.config.robot.markers.survey_file.empty())
+    throw InputError{input.source.string() +
+                     ": it was localised in a map or a survey; give the run or the map file that "
+                     "mapped the place"};
+}
+
+void read_row(const fs::path& config, PlacementInput& input) {
+  const fs::path& row = input.source;
+  const fs::path own = row / "config.toml";
+  if (config.empty() && !fs::exists(own))
+    throw InputError{row.string() + ": no config.toml in it; give the robot with --config"};
+  input.config = load_part<SlamConfig>(fs::exists(own) ? own : config);
+  if (!config.empty()) input.config.robot = load_part<RobotOnly>(config).robot;
+  check_is_mapping(input);
+  evaluate::Skipped skipped;
+  const fs::path final_way = row / "trajectory_final.tum";
+  const auto way = evaluate::read_tum(
+      fs::exists(final_way) ? final_way : row / "trajectory.tum", skipped);
+  for (const evaluate::StampedPose& pose : way)
+    input.places.push_back({pose.t_s, pose.parent_from_base});
+  if (fs::exists(row / "markers.csv")) {
+    const auto table = evaluate::read_csv(row / "markers.csv",
+                                          {"id", "instance", "x_m", "y_m", "yaw_rad"}, skipped);
+    for (const auto& line : table.rows)
+      input.markers.push_back(
+          {static_cast<int>(std::lround(table.at(line, "id"))),
+           static_cast<int>(std::lround(table.at(line, "instance"))),
+           {table.at(line, "x_m"), table.at(line, "y_m"), table.at(line, "yaw_rad")}});
+  }
+  if (fs::exists(row / "covariance.csv"))
+    input.covariances = evaluate::read_covariances(row / "covariance.csv", skipped);
+  input.image = image_in(row / "map.yaml");
+  input.notes.insert(input.notes.end(), skipped.begin(), skipped.end());
+}
+
+void read_map_source(const fs::path& config, PlacementInput& input) {
+  const MapFile file = read_map_file(input.source);
+  if (file.map.parent_map_id != 0)
+    throw InputError{input.source.string() +
+                     ": extends another map, so it holds no single drive; give the first map"};
+  if (config.empty())
+    input.notes.emplace_back(
+        "a map file does not say with which robot it was made: usual values; --config robot.toml");
+  else
+    input.config = load_part<SlamConfig>(config);
+  check_is_mapping(input);
+  input.config.robot.markers.dictionary = file.info.marker_dictionary;
+  input.config.robot.markers.size_m = file.info.marker_size_m;
+  for (const Se2& pose : file.map.graph.poses)
+    input.places.push_back({0.0, pose});
+  for (const Landmark& landmark : file.map.landmarks)
+    input.markers.push_back({landmark.id, landmark.instance, landmark.map_from_marker});
+  input.image = image_of(file.map.grid);
+}
+
+}  // namespace
+
+PlacementInput read_placement_input(const fs::path& source, const fs::path& config) {
+  PlacementInput input;
+  std::error_code ignored;
+  if (fs::is_directory(source, ignored)) {
+    input.source = row_in(source);
+    read_row(config, input);
+  } else {
+    input.source = source;
+    read_map_source(config, input);
+  }
+  if (input.places.size() < 2)
+    throw InputError{input.source.string() + ": fewer than two poses, so no drive"};
+  for (std::size_t i = 1; i < input.places.size(); ++i) {
+    const double step_m = (input.places[i].map_from_base.translation() -
+                           input.places[i - 1].map_from_base.translation())
+                              .norm();
+    if (step_m > kLongestStep_m)
+      throw InputError{fmt::format(
+          "{}: the way jumps by {:.1f} m: the robot was carried, which no model predicts",
+          input.source.string(), step_m)};
+  }
+  if (std::find(input.image.cells.begin(), input.image.cells.end(), CellState::kOccupied) ==
+      input.image.cells.end())
+    throw InputError{input.source.string() + ": its map has no wall to hang a marker on"};
+  return input;
+}
+
+}  // namespace waymark::placement
