@@ -7,7 +7,7 @@ late or early; marker size; odometry's scales. The commands of docs/robot.md are
 the robot, of which they get what `waymark-sim --dump-robot-config` says of a TurtleBot3. Three things stand in for others:
 the programs that take --real-time run in lockstep with the simulator, which is faster than the clock; the log of the board is
 drawn, with the robot's lens (the simulator's world has no board); and the viewer takes any free port. What was found is then
-held against the truth. A robot takes two minutes on two cores; --fast is a short drive in a short corridor (ctest -R first_hour).
+held against the truth. A robot takes two minutes on two cores; --fast is a short drive in a short corridor.
 
 usage: tests/simulation/first_hour.py [--robots N] [--first N] [--fast] [--keep DIR] [--build DIR]
 """

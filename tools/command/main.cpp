@@ -28,9 +28,10 @@ struct ChannelsSection {
 
 int ask(const waymark::CommandLine& line) {
   using namespace waymark;
-  const ChannelNames names = line.channels_file.empty()
-                                 ? ChannelNames{}
-                                 : load_config<ChannelsSection>({{line.channels_file}, {}}).channels;
+  const ChannelNames names =
+      line.channels_file.empty()
+          ? ChannelNames{}
+          : load_config<ChannelsSection>({{line.channels_file}, {}}).channels;
   command_t command = line.command;
   std::random_device random;  // no two commands have one id
   command.command_id = static_cast<std::int64_t>((std::uint64_t{random()} << 32U) | random());

@@ -86,8 +86,8 @@ void estimate_noise(DoctorInput& input) {
 }  // namespace
 
 DoctorInput read_input(const std::filesystem::path& file,
-                       const std::vector<std::filesystem::path>& robot,
-                       const InputChannels& wanted, const ShowProgress& progress) {
+                       const std::vector<std::filesystem::path>& robot, const InputChannels& wanted,
+                       const ShowProgress& progress) {
   DoctorInput input{{}, {file, AddressUnit::kByte}, false, Mounting::kInLog, {}, {}, {}};
   if (is_lcm_log(file)) {
     const Contents contents = contents_of(file);
@@ -117,7 +117,8 @@ DoctorInput read_input(const std::filesystem::path& file,
     lidar.y_m = input.described->lidar.y_m;
     lidar.yaw_rad = input.described->lidar.yaw_rad;
     for (ImportedScan& scan : input.log.scans)
-      put_right(scan, input.described->lidar.mirrored, duration_from_seconds(input.described->lidar.late_s));
+      put_right(scan, input.described->lidar.mirrored,
+                duration_from_seconds(input.described->lidar.late_s));
     if (input.channels.contains(std::string{channels::kCamera.name})) {
       input.camera = read_camera(file, *input.described, progress);
     } else if (input.channels.contains(std::string{channels::kMarkers.name})) {

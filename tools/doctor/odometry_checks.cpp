@@ -98,15 +98,16 @@ Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig&
   const double described_s = robot.lidar.late_s;
   const double found_s = described_s + late.value;
   if (is_worth_writing(late.value, late.sigma, kOffset_s)) robot.lidar.late_s = found_s;
-  return {"time_offset", verdict,
-          fmt::format("the LiDAR's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f}",
-                      1e3 * std::abs(found_s), 1e3 * late.sigma,
-                      found_s >= 0.0 ? "behind" : "ahead of", 1e3 * described_s),
-          verdict == Verdict::kPass
-              ? ""
-              : fmt::format("robot.lidar.late_s = {:.4f}, or stamp both where they are measured",
-                            found_s),
-          1e3 * found_s};
+  return {
+      "time_offset", verdict,
+      fmt::format("the LiDAR's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f}",
+                  1e3 * std::abs(found_s), 1e3 * late.sigma, found_s >= 0.0 ? "behind" : "ahead of",
+                  1e3 * described_s),
+      verdict == Verdict::kPass
+          ? ""
+          : fmt::format("robot.lidar.late_s = {:.4f}, or stamp both where they are measured",
+                        found_s),
+      1e3 * found_s};
 }
 
 Check check_distance_scale(const std::optional<HandEye>& calibration) {

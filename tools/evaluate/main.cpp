@@ -163,8 +163,7 @@ void add_consistency(CLI::App& program, Arguments& arguments, Command& chosen) {
 
 void add_placement(CLI::App& program, Arguments& arguments, Command& chosen) {
   CLI::App& command = *program.add_subcommand(
-      "placement",
-      "where the estimate is too uncertain, and the fewest new markers that cure it");
+      "placement", "where the estimate is too uncertain, and the fewest new markers that cure it");
   auto& options = arguments.placement;
   command
       .add_option("RUN|MAP", options.source,

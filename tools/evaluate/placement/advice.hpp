@@ -23,10 +23,10 @@ std::vector<Stretch> stretches_above(std::span<const double> sigmas_m, double ta
 std::vector<std::size_t> everywhere(std::span<const WallPlace> places);
 
 struct Advice {
-  std::vector<std::size_t> chosen{};        ///< of the places, in the order to hang them
-  std::vector<double> worst_after_m{};      ///< with the places up to each
-  std::vector<double> now_m{};              ///< sigma by step, with the markers that hang
-  std::vector<double> then_m{};             ///< the same with the chosen ones
+  std::vector<std::size_t> chosen{};    ///< of the places, in the order to hang them
+  std::vector<double> worst_after_m{};  ///< with the places up to each
+  std::vector<double> now_m{};          ///< sigma by step, with the markers that hang
+  std::vector<double> then_m{};         ///< the same with the chosen ones
   /// Where even a marker at every place leaves more than the target, by step; else the target.
   std::vector<double> reachable_m{};
   int evaluations{0};  ///< of the model

@@ -74,8 +74,8 @@ void match_scan_of(std::span<const Step> steps, std::size_t now, const Reference
   std::vector<Variable> variables;
   ScanFactor factor;
   for (const auto& [step, share] : references) {
-    factor.references.push_back({variables.size(), share,
-                                 steps[step].map_from_base.inverse() * steps[now].map_from_base});
+    factor.references.push_back(
+        {variables.size(), share, steps[step].map_from_base.inverse() * steps[now].map_from_base});
     state.keyframes.push_back(steps[step].map_from_base);
     variables.push_back(pose_of_step(step));
   }
@@ -92,8 +92,7 @@ void learn_calibration(const MarkerMeasurement& measured, double keyframes, Pose
   if (measured.wall) {
     const Eigen::LLT<Eigen::Matrix2d> root{measured.wall->covariance};
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2, kCalibrationSize);
-    rows.rightCols<kCameraTerms>() =
-        root_weight * root.matrixL().solve(measured.wall->by_errors());
+    rows.rightCols<kCameraTerms>() = root_weight * root.matrixL().solve(measured.wall->by_errors());
     known.measure({{PoseCovariance::kCalibration, rows}});
   }
   if (measured.focal) {
@@ -112,8 +111,7 @@ void see_marker(const Step& step, const StepSighting& sighting, PoseCovariance& 
   State state;
   state.keyframes = {step.map_from_base};
   state.landmarks = {step.map_from_base * measured.base_from_marker};
-  const LinearFactor linear =
-      factor.linearise(state, std::numeric_limits<double>::infinity());
+  const LinearFactor linear = factor.linearise(state, std::numeric_limits<double>::infinity());
   const Variable marker = landmark(sighting.marker);
   std::vector<PoseCovariance::Block> blocks =
       blocks_of(linear, {PoseCovariance::kPose}, marker, std::sqrt(sighting.keyframes));
@@ -200,9 +198,7 @@ std::vector<Eigen::Matrix3d> CovarianceModel::predict(
       if (now.loop) match_scan_of(steps_, i, {{*now.loop, 1.0}}, 1.0, known);
       const double more = along_m2_per_m(odometry, now.noise, now.shows_way) -
                           along_m2_per_m(odometry, later, now.shows_way);
-      unfixed_m2 = now.shows_way
-                       ? 0.0
-                       : unfixed_m2 + std::max(0.0, more) * step.motion.distance_m;
+      unfixed_m2 = now.shows_way ? 0.0 : unfixed_m2 + std::max(0.0, more) * step.motion.distance_m;
     }
     for (const StepSighting& sighting : now.sightings)
       if (sighting.keyframes > 0.0) see_marker(step, sighting, known);

@@ -13,8 +13,8 @@ namespace {
 constexpr double kStep_m = 0.25;
 constexpr double kStep_rad = 0.3;
 // Mean of the squared cosine of incidence over the beams that meet a spot of a wall from a drive
-// along it: the spot is as thick as they make it, whoever looks at it now. (Even in the bearing b from
-// the wall's normal, -90 to 90 degrees: the mean of cos^2 b.)
+// along it: the spot is as thick as they make it, whoever looks at it now. (Even in the bearing b
+// from the wall's normal, -90 to 90 degrees: the mean of cos^2 b.)
 constexpr double kMeanFacing2 = 0.5;
 
 double squared(double x) {
@@ -46,8 +46,7 @@ ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
     const double angle_rad =
         map_from_lidar.theta() + 2.0 * std::numbers::pi * beam / lidar.num_beams;
     const Eigen::Vector2d direction{std::cos(angle_rad), std::sin(angle_rad)};
-    const auto cell =
-        walls.first_hit(map_from_lidar.translation(), direction, lidar.range_max_m);
+    const auto cell = walls.first_hit(map_from_lidar.translation(), direction, lidar.range_max_m);
     if (!cell) continue;
     const WallPatch& patch = walls.patch(*cell);
     const double facing = std::abs(patch.normal.dot(direction));

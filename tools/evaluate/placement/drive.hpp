@@ -24,10 +24,10 @@ struct Step {
   std::size_t scan{0};  ///< at its end, in the poses that the drive was made of
   Se2 map_from_base{};  ///< at its end
   double travel_m{0.0};
-  Motion motion{};          ///< since the step before
-  double scans{0.0};        ///< in it; 0: not known
-  double speed_mps{0.0};    ///< 0: not known
-  ObservedAxes observed{};  ///< by one scan; base axes
+  Motion motion{};                                     ///< since the step before
+  double scans{0.0};                                   ///< in it; 0: not known
+  double speed_mps{0.0};                               ///< 0: not known
+  ObservedAxes observed{};                             ///< by one scan; base axes
   Eigen::Vector2d weak_axis{Eigen::Vector2d::Zero()};  ///< see with_weak_axes(); zero: none yet
   std::vector<Eigen::Vector2d> hits{};                 ///< ends of beams, base frame
 };

@@ -42,7 +42,8 @@ void count_keyframes(std::span<const Step> steps, const SlamConfig& config,
     // The first scan is a keyframe.
     const double apart_m = step.scans > 0.0 ? step.motion.distance_m / step.scans : 0.0;
     const auto made = [&](double least_m) {
-      return i == 0 ? 1.0 : keyframes_of(step, spacing(least_m, apart_m), waymark.keyframe_turn_rad);
+      return i == 0 ? 1.0
+                    : keyframes_of(step, spacing(least_m, apart_m), waymark.keyframe_turn_rad);
     };
     const double with_markers = seen * made(waymark.marker_keyframe_distance_m);
     const double without = (1.0 - seen) * made(waymark.keyframe_distance_m);
@@ -76,8 +77,8 @@ void choose_submaps(const WaymarkConfig& config, std::vector<StepPlan>& plan) {
       const double begin = std::max(group, first);
       const double end = std::min(group + kGroupedKeyframes, now);
       if (end <= begin) continue;
-      const double middle =
-          std::clamp(group + std::floor(0.5 * kGroupedKeyframes), begin, std::max(begin, end - 1.0));
+      const double middle = std::clamp(group + std::floor(0.5 * kGroupedKeyframes), begin,
+                                       std::max(begin, end - 1.0));
       const std::size_t step = std::min(step_of(middle, plan), i - 1);
       plan[i].submap.emplace_back(step, end - begin);
       sum += end - begin;
@@ -93,15 +94,15 @@ void choose_loops(std::span<const Step> steps, const WaymarkConfig& config,
   if (!config.loops.enabled) return;
   double searched_m = 0.0;
   for (std::size_t i = 1; i < steps.size(); ++i) {
-    if (steps[i].observed.is_degenerate ||
-        steps[i].travel_m - searched_m < config.loops.every_m) {
+    if (steps[i].observed.is_degenerate || steps[i].travel_m - searched_m < config.loops.every_m) {
       continue;
     }
     searched_m = steps[i].travel_m;
     double least_m = config.loops.reach_m;
     for (std::size_t k = 0; k < i; ++k) {
       // Not old: in the submaps that are being filled.
-      if (plan[i].keyframes_before - plan[k].keyframes_before < 2.0 * config.submap_keyframes) break;
+      if (plan[i].keyframes_before - plan[k].keyframes_before < 2.0 * config.submap_keyframes)
+        break;
       const double away_m =
           (steps[i].map_from_base.translation() - steps[k].map_from_base.translation()).norm();
       if (away_m >= least_m || steps[k].observed.is_degenerate) continue;
@@ -141,8 +142,8 @@ void follow_noise(std::span<const Step> steps, const WaymarkConfig& config,
       } else {
         unobserved_m += distance_m;
       }
-      const bool sees_marker = !plan[i].sightings.empty() &&
-                               (step.observed.is_degenerate ? plan[i].shows_way : true);
+      const bool sees_marker =
+          !plan[i].sightings.empty() && (step.observed.is_degenerate ? plan[i].shows_way : true);
       if (!sees_marker) continue;
       if (unobserved_m > 0.0) {
         const MarkerMeasurement& measured = plan[i].sightings.front().view->measurement;
@@ -172,8 +173,8 @@ std::vector<StepPlan> plan_keyframes(std::span<const Step> steps,
   choose_loops(steps, config.slam.waymark, plan);
   follow_noise(steps, config.slam.waymark, plan);
   for (std::size_t i = 0; i < plan.size(); ++i)
-    plan[i].leaves_window = std::max(
-        i, step_of(plan[i].keyframes_before + config.slam.waymark.window_keyframes, plan));
+    plan[i].leaves_window =
+        std::max(i, step_of(plan[i].keyframes_before + config.slam.waymark.window_keyframes, plan));
   return plan;
 }
 

@@ -21,7 +21,7 @@ struct StepSighting {
 };
 
 struct StepPlan {
-  double keyframes{0.0};      ///< made in it
+  double keyframes{0.0};  ///< made in it
   double keyframes_before{0.0};
   bool shows_way{false};  ///< walls or markers show the motion along
   std::vector<StepSighting> sightings{};

@@ -12,7 +12,7 @@
 namespace waymark::placement {
 namespace {
 
-constexpr int kBorderModules = 2;  // one on each side
+constexpr int kBorderModules = 2;      // one on each side
 constexpr double kQuietModules = 2.0;  // on each side, as the marker sheets have it
 constexpr double kSpacing_m = 0.5;     // between places of one wall that are tried
 constexpr double kTelling_m = 1e-3;    // sigmas below say nothing about the model
@@ -42,8 +42,7 @@ void compare_with_run(const PlacementInput& input, Placement& placement) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < placement.steps.size(); ++i) {
     const Step& step = placement.steps[i];
-    const auto* shown =
-        evaluate::covariance_at(input.covariances, input.places[step.scan].t_s);
+    const auto* shown = evaluate::covariance_at(input.covariances, input.places[step.scan].t_s);
     if (shown == nullptr) continue;
     const double sigma_m = sigma_along(shown->covariance, step.weak_axis);
     if (sigma_m > placement.worst_run_m.value_or(0.0)) {
@@ -106,9 +105,8 @@ Placement place_markers(const PlacementInput& input, double target_m) {
     poses.push_back(marker.map_from_marker);
     hung.push_back(sightings_along(placement.steps, marker.map_from_marker, walls, views));
   }
-  const std::vector<WallPlace> places =
-      free_wall_places(placement.steps, walls, poses, plate_m,
-                       input.config.robot.lidar.range_max_m, kSpacing_m);
+  const std::vector<WallPlace> places = free_wall_places(
+      placement.steps, walls, poses, plate_m, input.config.robot.lidar.range_max_m, kSpacing_m);
   std::vector<Sightings> at_places;
   for (const WallPlace& place : places)
     at_places.push_back(sightings_along(placement.steps, place.map_from_marker, walls, views));

@@ -40,7 +40,8 @@ struct Placement {
 
   double worst_now_m() const;
   double worst_then_m() const;
-  double reachable_m() const;  ///< worst sigma with a marker everywhere; the target if that meets it
+  double reachable_m()
+      const;  ///< worst sigma with a marker everywhere; the target if that meets it
 
   bool is_met() const { return worst_then_m() <= target_m; }
 };

@@ -36,8 +36,8 @@ CellState state_of(evaluate::Cell cell) {
 
 OccupancyImage image_in(const fs::path& yaml_file) {
   const evaluate::MapImage map = evaluate::read_map(yaml_file);
-  OccupancyImage image{map.width_px, map.height_px, map.resolution_m,
-                       evaluate::read_map_origin(yaml_file), {}};
+  OccupancyImage image{
+      map.width_px, map.height_px, map.resolution_m, evaluate::read_map_origin(yaml_file), {}};
   image.cells.reserve(map.cells.size());
   std::transform(map.cells.begin(), map.cells.end(), std::back_inserter(image.cells), state_of);
   return image;
@@ -107,8 +107,8 @@ void read_row(const fs::path& config, PlacementInput& input) {
   check_is_mapping(input);
   evaluate::Skipped skipped;
   const fs::path final_way = row / "trajectory_final.tum";
-  const auto way = evaluate::read_tum(
-      fs::exists(final_way) ? final_way : row / "trajectory.tum", skipped);
+  const auto way =
+      evaluate::read_tum(fs::exists(final_way) ? final_way : row / "trajectory.tum", skipped);
   for (const evaluate::StampedPose& pose : way)
     input.places.push_back({pose.t_s, pose.parent_from_base});
   if (fs::exists(row / "markers.csv")) {

@@ -53,9 +53,9 @@ viewer::Landmark landmark_of(int id, int instance, const Se2& pose, viewer::Land
 
 std::string placement_picture(const PlacementInput& input, const Placement& placement) {
   viewer::Scene scene;
-  scene.title = fmt::format("placement: {} new, worst sigma {:.3f} to {:.3f} m",
-                            placement.markers.size(), placement.worst_now_m(),
-                            placement.worst_then_m());
+  scene.title =
+      fmt::format("placement: {} new, worst sigma {:.3f} to {:.3f} m", placement.markers.size(),
+                  placement.worst_now_m(), placement.worst_then_m());
   put_map(input.image, scene.map);
   for (const MappedMarker& marker : input.markers)
     scene.landmarks.push_back(landmark_of(marker.id, marker.instance, marker.map_from_marker,
@@ -63,8 +63,7 @@ std::string placement_picture(const PlacementInput& input, const Placement& plac
   scene.changes.emplace();
   for (const NewMarker& marker : placement.markers) {
     const Se2& pose = marker.place.map_from_marker;
-    scene.landmarks.push_back(
-        landmark_of(marker.id, 0, pose, viewer::LandmarkState::kTentative));
+    scene.landmarks.push_back(landmark_of(marker.id, 0, pose, viewer::LandmarkState::kTentative));
     viewer::MapChange change;
     change.kind = viewer::MapChange::Kind::kNew;
     change.id = marker.id;

@@ -29,9 +29,10 @@ std::string verdict(const Placement& placement) {
   if (placement.markers.size() == placement.free_ids)
     return fmt::format("The target cannot be met with the {} ids that are free.\n",
                        placement.free_ids);
-  return fmt::format("The target cannot be met by markers alone: with one at every free place the "
-                     "worst sigma is {:.4f} m.\n",
-                     placement.reachable_m());
+  return fmt::format(
+      "The target cannot be met by markers alone: with one at every free place the "
+      "worst sigma is {:.4f} m.\n",
+      placement.reachable_m());
 }
 
 Json json_of(const Stretch& stretch, const std::vector<Step>& steps) {
@@ -77,8 +78,9 @@ std::string placement_text(const PlacementInput& input, const Placement& placeme
                    placement.across_m);
   }
   if (!placement.stretches.empty())
-    text += "\nabove the target\n  from [m]    to [m]   from (x, y)         to (x, y)           "
-            "worst [m]\n";
+    text +=
+        "\nabove the target\n  from [m]    to [m]   from (x, y)         to (x, y)           "
+        "worst [m]\n";
   for (const Stretch& stretch : placement.stretches) {
     const Step& from = placement.steps[stretch.first];
     const Step& to = placement.steps[stretch.last];
@@ -87,8 +89,9 @@ std::string placement_text(const PlacementInput& input, const Placement& placeme
                    to.map_from_base.x(), to.map_from_base.y(), stretch.worst_m);
   }
   if (!placement.markers.empty())
-    text += "\nhang, in this order\n  id  wall    passed at [m]      x [m]      y [m]  yaw [deg]  "
-            "worst sigma then [m]\n";
+    text +=
+        "\nhang, in this order\n  id  wall    passed at [m]      x [m]      y [m]  yaw [deg]  "
+        "worst sigma then [m]\n";
   for (const NewMarker& marker : placement.markers) {
     const Se2& pose = marker.place.map_from_marker;
     fmt::format_to(out, "{:4}  {:6}{:15.1f}{:11.2f}{:11.2f}{:11.1f}{:22.4f}\n", marker.id,
@@ -131,7 +134,8 @@ std::string placement_json(const PlacementInput& input, const Placement& placeme
   }
   json["limits"] = Json::array();
   for (const Limit& limit : placement.limits)
-    json["limits"].push_back({{"cause", limit.cause}, {"worst_sigma_without_m", limit.without_it_m}});
+    json["limits"].push_back(
+        {{"cause", limit.cause}, {"worst_sigma_without_m", limit.without_it_m}});
   json["notes"] = input.notes;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -17,8 +17,8 @@ PoseCovariance::PoseCovariance(const Calibration& calibration_sigmas, double pos
 void PoseCovariance::move(const Eigen::Matrix3d& by_pose,
                           const Eigen::Matrix<double, 3, kCalibrationSize>& by_calibration,
                           const Eigen::Matrix3d& noise) {
-  const Eigen::MatrixXd rows = by_pose * p_.middleRows<3>(kPoseAt) +
-                               by_calibration * p_.topRows<kCalibrationSize>();
+  const Eigen::MatrixXd rows =
+      by_pose * p_.middleRows<3>(kPoseAt) + by_calibration * p_.topRows<kCalibrationSize>();
   const Eigen::Matrix3d own = rows.middleCols<3>(kPoseAt) * by_pose.transpose() +
                               rows.leftCols<kCalibrationSize>() * by_calibration.transpose() +
                               noise;

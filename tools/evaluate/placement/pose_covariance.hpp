@@ -33,9 +33,7 @@ class PoseCovariance {
 
   Eigen::Matrix3d of_pose() const { return p_.block<3, 3>(kPoseAt, kPoseAt); }
 
-  Calibration calibration_variances() const {
-    return p_.diagonal().head<kCalibrationSize>();
-  }
+  Calibration calibration_variances() const { return p_.diagonal().head<kCalibrationSize>(); }
 
   /// pose = by_pose * pose + by_calibration * calibration + noise.
   void move(const Eigen::Matrix3d& by_pose,

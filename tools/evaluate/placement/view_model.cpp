@@ -27,12 +27,12 @@ struct ReadShare {
 constexpr std::array kReadShares{ReadShare{0.75, 0.0}, ReadShare{0.95, 0.45}, ReadShare{1.3, 0.65},
                                  ReadShare{1.8, 0.86}, ReadShare{2.5, 0.92},  ReadShare{3.5, 1.0}};
 
-constexpr double kScatter_px = 0.02;   // of edge points about their side, as in those frames
-constexpr double kSharedNoise = 2.2;   // neighbouring edge points count as fewer: the detector's
+constexpr double kScatter_px = 0.02;  // of edge points about their side, as in those frames
+constexpr double kSharedNoise = 2.2;  // neighbouring edge points count as fewer: the detector's
 constexpr double kThinnestBorder_px = 1.0;
-constexpr double kImageMargin_px = 3.0;   // CandidateConfig::border_distance_px
-constexpr double kNearest_m = 0.05;       // in front of the camera
-constexpr double kOnItsWall_m = 0.15;     // beams that end this near to the marker's plane
+constexpr double kImageMargin_px = 3.0;  // CandidateConfig::border_distance_px
+constexpr double kNearest_m = 0.05;      // in front of the camera
+constexpr double kOnItsWall_m = 0.15;    // beams that end this near to the marker's plane
 
 std::array<Eigen::Vector3d, 4> corners_in_marker(double size_m) {
   const double h = 0.5 * size_m;
@@ -71,8 +71,8 @@ Eigen::Matrix2d end_covariance(double length_px, double border_px) {
   const double points = std::max<double>(refinement.min_points, length_px - 2.0 * border_px);
   const double variance = kSharedNoise * kScatter_px * kScatter_px / points;
   const double thickness = std::max(kThinnestBorder_px, border_px);
-  const double common_px =
-      std::hypot(refinement.side_sigma_px, refinement.thin_border_sigma_px / std::pow(thickness, 4));
+  const double common_px = std::hypot(refinement.side_sigma_px,
+                                      refinement.thin_border_sigma_px / std::pow(thickness, 4));
   Eigen::Matrix2d covariance;
   covariance << 4.0, -2.0, -2.0, 4.0;  // mean, and slope about it, at both ends
   return variance * covariance + Eigen::Matrix2d::Constant(common_px * common_px);

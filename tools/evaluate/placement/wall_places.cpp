@@ -24,8 +24,7 @@ bool is_bare_and_straight(const OccupiedWalls& walls, const Eigen::Vector2d& pla
     const Eigen::Vector2d point = place + i * cell_m * along;
     bool has_wall = false;
     for (const double off : {-1.0, 0.0, 1.0})
-      has_wall = has_wall ||
-                 walls.state_at(point + off * cell_m * normal) == CellState::kOccupied;
+      has_wall = has_wall || walls.state_at(point + off * cell_m * normal) == CellState::kOccupied;
     const CellState before = walls.state_at(point + (kFreeBefore_m + cell_m) * normal);
     if (!has_wall || before != CellState::kFree) return false;
   }
@@ -93,9 +92,8 @@ std::vector<WallPlace> free_wall_places(std::span<const Step> steps, const Occup
                         side_of(passing.map_from_base.inverse() * place->translation())});
     }
   }
-  std::stable_sort(places.begin(), places.end(), [](const WallPlace& a, const WallPlace& b) {
-    return a.travel_m < b.travel_m;
-  });
+  std::stable_sort(places.begin(), places.end(),
+                   [](const WallPlace& a, const WallPlace& b) { return a.travel_m < b.travel_m; });
   return places;
 }
 

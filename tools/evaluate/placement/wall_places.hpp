@@ -21,8 +21,8 @@ struct WallPlace {
 /// markers, one every `spacing_m` of each wall, in order of the drive.
 /// @param plate_m  side of a marker with its quiet zone.
 std::vector<WallPlace> free_wall_places(std::span<const Step> steps, const OccupiedWalls& walls,
-                                        std::span<const Se2> hung, double plate_m,
-                                        double range_m, double spacing_m);
+                                        std::span<const Se2> hung, double plate_m, double range_m,
+                                        double spacing_m);
 
 /// Plates there would overlap, or hide each other.
 bool overlap(const Se2& a, const Se2& b, double plate_m);

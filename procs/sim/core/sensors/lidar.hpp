@@ -28,7 +28,8 @@ class Lidar {
   LidarScan scan(Timestamp time, const Physics& physics);
 
   /// The next beams of a sweep, from where the robot is now. Angles count from the x axis,
-  /// counter-clockwise (of a mirrored LiDAR in truth clockwise, which the scan does not say); the sweep is complete when it has config().num_beams.
+  /// counter-clockwise (of a mirrored LiDAR in truth clockwise, which the scan does not say); the
+  /// sweep is complete when it has config().num_beams.
   void add_beams(LidarScan& scan, int count, const Physics& physics);
 
   const LidarConfig& config() const { return config_; }
