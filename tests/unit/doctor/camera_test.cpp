@@ -23,14 +23,14 @@ TEST(DoctorsCamera, ACameraThatIsTwentyMillisecondsLateIsAWarning) {
   const Check check = check_of(drive_in_room({.camera_late_s = 0.02}), "camera_time_offset");
   EXPECT_EQ(check.verdict, Verdict::kWarn) << check.finding;
   EXPECT_NEAR(check.value.value(), 20.0, 4.0);
-  EXPECT_THAT(check.remedy, HasSubstr("ms to the camera's times"));
+  EXPECT_THAT(check.remedy, HasSubstr("robot.camera.late_s = 0.0"));
 }
 
 TEST(DoctorsCamera, WhatIsFoundIsWrittenIntoTheRobot) {
   const DoctorInput input = drive_in_room({.marker_size = 0.96});
   const Diagnosis diagnosis = diagnose(input);
   EXPECT_NEAR(diagnosis.robot.markers.size_m, 0.96 * input.described->markers.size_m, 0.004);
-  EXPECT_EQ(diagnosis.robot.camera.fx_px, input.described->camera.fx_px);
+  EXPECT_NEAR(diagnosis.robot.camera.fx_px, input.described->camera.fx_px, 1.6);  // 0.3 %
 }
 
 TEST(DoctorsCamera, OdometryOfAnotherScaleIsNoOtherFocalLength) {
