@@ -100,7 +100,7 @@ cv::Mat marker_modules(const SheetOptions& options, int id) {
   if (!(options.size_m > 0.0 && options.size_m <= kMaxSide_m))
     throw std::runtime_error{fmt::format("--size-m: got {}, expected more than 0, up to {} m",
                                          options.size_m, kMaxSide_m)};
-  const int modules = dictionary.markerSize + 2;  // the black border is one module wide
+  const int modules = modules_per_side(dictionary);
   cv::Mat marker;
   cv::aruco::drawMarker(cv::makePtr<cv::aruco::Dictionary>(dictionary), id, modules, marker, 1);
   return marker;

@@ -65,4 +65,8 @@ int size_of(const cv::aruco::Dictionary& dictionary) {
   return dictionary.bytesList.rows;
 }
 
+int modules_per_side(const cv::aruco::Dictionary& dictionary) {
+  return dictionary.markerSize + 2;
+}
+
 }  // namespace waymark

@@ -21,4 +21,7 @@ std::vector<std::string> dictionary_names();
 /// Number of ids: they are 0 to one less.
 int size_of(const cv::aruco::Dictionary& dictionary);
 
+/// Of the black square: its bits, and the border of one module on each side.
+int modules_per_side(const cv::aruco::Dictionary& dictionary);
+
 }  // namespace waymark

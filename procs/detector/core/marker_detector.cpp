@@ -9,8 +9,6 @@
 namespace waymark {
 namespace {
 
-constexpr int kBorderModules = 2;  // one on each side
-
 cv::aruco::Dictionary dictionary_of(const MarkerConfig& markers) {
   const auto dictionary = find_dictionary(markers.dictionary);
   if (!dictionary) throw std::invalid_argument{"unknown dictionary " + markers.dictionary};
@@ -75,7 +73,7 @@ MarkerDetector::MarkerDetector(const RobotConfig& robot, const MarkerDetectorCon
       config_{config},
       camera_{robot.camera},
       base_from_camera_{robot.camera.base_from_camera()},
-      modules_per_side_{dictionary_of(robot.markers).markerSize + kBorderModules},
+      modules_per_side_{modules_per_side(dictionary_of(robot.markers))},
       finder_{dictionary_of(robot.markers), config.candidates} {}
 
 std::vector<MarkerDetection> MarkerDetector::detect(const cv::Mat& gray) const {

@@ -21,12 +21,6 @@ using Matrix86 = Eigen::Matrix<double, 8, 6>;
 
 constexpr double kNearestMarkerM = 0.01;
 
-std::array<Eigen::Vector3d, 4> corners_in_marker(double size_m) {
-  const double h = 0.5 * size_m;
-  return {Eigen::Vector3d{-h, h, 0}, Eigen::Vector3d{h, h, 0}, Eigen::Vector3d{h, -h, 0},
-          Eigen::Vector3d{-h, -h, 0}};
-}
-
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return (Eigen::Matrix3d{} << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
 }

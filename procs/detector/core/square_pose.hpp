@@ -8,9 +8,17 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <optional>
 
 namespace waymark {
+
+/// In the order of Corners; marker frame.
+inline std::array<Eigen::Vector3d, 4> corners_in_marker(double size_m) {
+  const double h = 0.5 * size_m;
+  return {Eigen::Vector3d{-h, h, 0}, Eigen::Vector3d{h, h, 0}, Eigen::Vector3d{h, -h, 0},
+          Eigen::Vector3d{-h, -h, 0}};
+}
 
 struct SquarePose {
   Eigen::Isometry3d camera_from_marker{Eigen::Isometry3d::Identity()};

@@ -21,7 +21,6 @@ namespace {
 constexpr std::int64_t kMostFrames = 400;
 constexpr std::size_t kMostMessages = 1200;
 constexpr std::int64_t kDictionaryFrames = 30;
-constexpr int kBorderModules = 2;
 constexpr double kReach_px = 8.0;  // of edge profiles: holds blurs of up to half of it
 
 /// The largest of every family: the smaller ones are its beginning.
@@ -51,7 +50,7 @@ class CameraReader {
       : robot_{robot},
         detector_{robot, {}},
         described_{*find_dictionary(robot.markers.dictionary), {}},
-        modules_per_side_{find_dictionary(robot.markers.dictionary)->markerSize + kBorderModules} {
+        modules_per_side_{modules_per_side(*find_dictionary(robot.markers.dictionary))} {
     for (const std::string_view family : kFamilies)
       finders_.emplace_back(family, CandidateFinder{*find_dictionary(family), {}});
   }

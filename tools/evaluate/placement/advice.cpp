@@ -12,10 +12,6 @@ constexpr double kEverywhere_m = 2.0;  // between markers of a wall that is full
 constexpr double kAboveFloor = 1.02;   // of what every place together would reach
 constexpr double kNothing = 1e-12;     // [m^3] of excess
 
-double worst(std::span<const double> sigmas_m) {
-  return sigmas_m.empty() ? 0.0 : *std::max_element(sigmas_m.begin(), sigmas_m.end());
-}
-
 /// Evaluates sets of places.
 class Search {
  public:
@@ -23,14 +19,8 @@ class Search {
          std::span<const Sightings> at_places)
       : model_{model}, steps_{steps}, hung_{hung}, at_places_{at_places} {}
 
-  std::vector<double> sigmas_m(const std::vector<std::size_t>& chosen) {
-    ++evaluations_;
-    std::vector<const Sightings*> markers;
-    for (const Sightings& marker : hung_)
-      markers.push_back(&marker);
-    for (const std::size_t place : chosen)
-      markers.push_back(&at_places_[place]);
-    return model_.sigmas_m(model_.predict(markers));
+  std::vector<double> sigmas_m(const std::vector<std::size_t>& chosen) const {
+    return model_.sigmas_m(model_.predict(hung_and(hung_, at_places_, chosen)));
   }
 
   void aim_at(const std::vector<double>& reachable_m) { aims_m_ = reachable_m; }
@@ -45,15 +35,12 @@ class Search {
     return sum;
   }
 
-  int evaluations() const { return evaluations_; }
-
  private:
   const CovarianceModel& model_;
   std::span<const Step> steps_;
   std::span<const Sightings> hung_;
   std::span<const Sightings> at_places_;
   std::vector<double> aims_m_{};
-  int evaluations_{0};
 };
 
 std::vector<std::size_t> with(std::vector<std::size_t> chosen, std::size_t place) {
@@ -68,7 +55,7 @@ struct Gain {
 };
 
 /// The place that lowers the excess most; nothing when none does.
-std::optional<std::size_t> best_place(Search& search, std::vector<Gain>& gains,
+std::optional<std::size_t> best_place(const Search& search, std::vector<Gain>& gains,
                                       const std::vector<std::size_t>& chosen, double excess,
                                       std::size_t round) {
   const auto less = [](const Gain& a, const Gain& b) {
@@ -85,7 +72,7 @@ std::optional<std::size_t> best_place(Search& search, std::vector<Gain>& gains,
 }
 
 /// From the one chosen last but one: the last one was needed.
-void drop_needless(Search& search, std::vector<std::size_t>& chosen) {
+void drop_needless(const Search& search, std::vector<std::size_t>& chosen) {
   for (std::size_t i = chosen.size(); i-- > 0 && chosen.size() > 1;) {
     std::vector<std::size_t> fewer = chosen;
     fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
@@ -117,8 +104,19 @@ std::vector<Stretch> stretches_above(std::span<const double> sigmas_m, double ta
   return stretches;
 }
 
-bool Advice::is_met(double target_m) const {
-  return worst(then_m) <= target_m;
+double worst(std::span<const double> sigmas_m) {
+  return sigmas_m.empty() ? 0.0 : *std::max_element(sigmas_m.begin(), sigmas_m.end());
+}
+
+std::vector<const Sightings*> hung_and(std::span<const Sightings> hung,
+                                       std::span<const Sightings> at_places,
+                                       std::span<const std::size_t> chosen) {
+  std::vector<const Sightings*> markers;
+  for (const Sightings& marker : hung)
+    markers.push_back(&marker);
+  for (const std::size_t place : chosen)
+    markers.push_back(&at_places[place]);
+  return markers;
 }
 
 Advice advise(const CovarianceModel& model, std::span<const Step> steps,
@@ -158,7 +156,6 @@ Advice advise(const CovarianceModel& model, std::span<const Step> steps,
     advice.then_m = search.sigmas_m(hung_so_far);
     advice.worst_after_m.push_back(worst(advice.then_m));
   }
-  advice.evaluations = search.evaluations();
   return advice;
 }
 

@@ -29,10 +29,15 @@ struct Advice {
   std::vector<double> then_m{};         ///< the same with the chosen ones
   /// Where even a marker at every place leaves more than the target, by step; else the target.
   std::vector<double> reachable_m{};
-  int evaluations{0};  ///< of the model
-
-  bool is_met(double target_m) const;
 };
+
+/// Largest; 0 of none.
+double worst(std::span<const double> sigmas_m);
+
+/// Those that hang, and those at chosen places.
+std::vector<const Sightings*> hung_and(std::span<const Sightings> hung,
+                                       std::span<const Sightings> at_places,
+                                       std::span<const std::size_t> chosen);
 
 /// Greedy on the excess of variance over the target, integrated along the way; lazily, for a place
 /// seldom gains by others (Minoux 1978). Then those go that are not needed.

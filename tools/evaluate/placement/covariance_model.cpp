@@ -3,6 +3,7 @@
 
 #include "evaluate/placement/keyframe_schedule.hpp"
 #include "evaluate/placement/pose_covariance.hpp"
+#include "slam/core/motion/pose_deviation.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -15,8 +16,7 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]: the map's frame is the first pose
-constexpr double kInFront_m = 0.15;       // a marker's own wall is no obstacle
+constexpr double kInFront_m = 0.15;  // a marker's own wall is no obstacle
 
 Variable pose_of_step(std::size_t step) {
   return {VariableKind::kKeyframe, step};
@@ -41,14 +41,12 @@ void drive_step(const Se2& before, const Step& step, const OdometryNoise& descri
     slips.slip_per_m = 0.0;
     moved = with_slips(moved, step.motion.distance_m, slips);
   }
-  const Eigen::Vector2d way = step.map_from_base.translation() - before.translation();
-  Eigen::Matrix3d by_pose = Eigen::Matrix3d::Identity();
-  by_pose.topRightCorner<2, 1>() << -way.y(), way.x();  // d(x, y) / d(theta)
   Eigen::Matrix<double, 3, kCalibrationSize> by_calibration =
       Eigen::Matrix<double, 3, kCalibrationSize>::Zero();
   by_calibration.leftCols<kOdometryTerms>() =
       turning(before) * moved.by_errors.leftCols<kOdometryTerms>();
-  known.move(by_pose, by_calibration, turned(before, moved.covariance));
+  known.move(carried_along(step.map_from_base.translation() - before.translation()), by_calibration,
+             turned(before, moved.covariance));
 }
 
 /// @param steps_of  variables of the factor's keyframes by their number there.
@@ -175,13 +173,8 @@ CovarianceModel::CovarianceModel(std::span<const Step> steps, const SlamConfig& 
 
 std::vector<Eigen::Matrix3d> CovarianceModel::predict(
     std::span<const Sightings* const> markers) const {
-  const WaymarkConfig& config = config_.slam.waymark;
-  const OdometryNoise& odometry = config.odometry;
-  Calibration sigmas;
-  sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
-      odometry.lidar_ahead_sigma_m, setup_.sighting_sigmas.learnt;
-  if (!config.calibrate) sigmas.setZero();
-  PoseCovariance known{sigmas, kFirstPoseSigma};
+  const OdometryNoise& odometry = config_.slam.waymark.odometry;
+  PoseCovariance known{calibration_sigmas(setup_, config_.slam.waymark), kFirstPoseSigma};
 
   const std::vector<StepPlan> plan = plan_keyframes(steps_, markers, config_);
   const std::vector<std::size_t> last_use = last_uses(plan);

@@ -11,8 +11,7 @@
 namespace waymark::placement {
 namespace {
 
-constexpr int kGroupedKeyframes = 15;  // one stands for: as in the estimator's scan factors
-constexpr double kSeen = 0.5;          // share of the scans, from which a marker counts as in view
+constexpr double kSeen = 0.5;  // share of the scans, from which a marker counts as in view
 
 /// Distance between keyframes that are due after `least_m`, at scans `apart_m` apart.
 double spacing(double least_m, double apart_m) {
@@ -67,18 +66,18 @@ std::size_t step_of(double keyframe, const std::vector<StepPlan>& plan) {
 /// Two submaps are filled at a time, and the older one is matched; see
 /// WaymarkEstimator::insert_scan() and add_scan_factor().
 void choose_submaps(const WaymarkConfig& config, std::vector<StepPlan>& plan) {
+  constexpr double kGroup{kGroupedKeyframes};
   const double half = std::max(1, config.submap_keyframes / 2);
   for (std::size_t i = 1; i < plan.size(); ++i) {
     const double now = plan[i].keyframes_before;
     const double first = std::max(0.0, half * (std::floor((now - 1.0) / half) - 1.0));
     double sum = 0.0;
-    for (double group = std::floor(first / kGroupedKeyframes) * kGroupedKeyframes; group < now;
-         group += kGroupedKeyframes) {
+    for (double group = std::floor(first / kGroup) * kGroup; group < now; group += kGroup) {
       const double begin = std::max(group, first);
-      const double end = std::min(group + kGroupedKeyframes, now);
+      const double end = std::min(group + kGroup, now);
       if (end <= begin) continue;
-      const double middle = std::clamp(group + std::floor(0.5 * kGroupedKeyframes), begin,
-                                       std::max(begin, end - 1.0));
+      const double middle =
+          std::clamp(group + std::floor(0.5 * kGroup), begin, std::max(begin, end - 1.0));
       const std::size_t step = std::min(step_of(middle, plan), i - 1);
       plan[i].submap.emplace_back(step, end - begin);
       sum += end - begin;

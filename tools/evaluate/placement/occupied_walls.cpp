@@ -16,7 +16,7 @@ constexpr double kStep = 0.5;  // of a cell, along a ray
 
 }  // namespace
 
-OccupiedWalls::OccupiedWalls(OccupancyImage image)
+OccupiedWalls::OccupiedWalls(PlacedMapImage image)
     : image_{std::move(image)}, patches_(image_.cells.size()) {}
 
 std::optional<std::size_t> OccupiedWalls::first_hit(const Eigen::Vector2d& from_m,
@@ -28,21 +28,21 @@ std::optional<std::size_t> OccupiedWalls::first_hit(const Eigen::Vector2d& from_
         (from_m + far_m * direction - image_.origin_m) / image_.resolution_m;
     const int column = static_cast<int>(std::floor(cell.x()));
     const int row = static_cast<int>(std::floor(cell.y()));
-    if (image_.at(column, row) == CellState::kOccupied)
-      return static_cast<std::size_t>(row) * image_.columns + column;
+    if (image_.at(column, row) == Cell::kOccupied)
+      return static_cast<std::size_t>(row) * image_.width_px + column;
     if (!image_.contains(column, row)) return std::nullopt;
   }
   return std::nullopt;
 }
 
 Eigen::Vector2d OccupiedWalls::centre_of(std::size_t cell) const {
-  const auto columns = static_cast<std::size_t>(image_.columns);
+  const auto columns = static_cast<std::size_t>(image_.width_px);
   const Eigen::Vector2d place{static_cast<double>(cell % columns) + 0.5,
                               static_cast<double>(cell / columns) + 0.5};
   return image_.origin_m + image_.resolution_m * place;
 }
 
-CellState OccupiedWalls::state_at(const Eigen::Vector2d& point_m) const {
+Cell OccupiedWalls::state_at(const Eigen::Vector2d& point_m) const {
   const Eigen::Vector2d cell = (point_m - image_.origin_m) / image_.resolution_m;
   return image_.at(static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y())));
 }
@@ -54,7 +54,7 @@ const WallPatch& OccupiedWalls::patch(std::size_t cell) const {
 }
 
 WallPatch OccupiedWalls::fitted(std::size_t cell) const {
-  const auto columns = static_cast<std::size_t>(image_.columns);
+  const auto columns = static_cast<std::size_t>(image_.width_px);
   const int column = static_cast<int>(cell % columns);
   const int row = static_cast<int>(cell / columns);
   const int reach = static_cast<int>(std::ceil(kPatchRadius_m / image_.resolution_m));
@@ -65,7 +65,7 @@ WallPatch OccupiedWalls::fitted(std::size_t cell) const {
     for (int c = -reach; c <= reach; ++c) {
       const Eigen::Vector2d offset = image_.resolution_m * Eigen::Vector2d{c, r};
       if (offset.norm() > kPatchRadius_m) continue;
-      if (image_.at(column + c, row + r) != CellState::kOccupied) continue;
+      if (image_.at(column + c, row + r) != Cell::kOccupied) continue;
       ++count;
       sum += offset;
       squares += offset * offset.transpose();

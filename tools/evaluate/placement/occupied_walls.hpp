@@ -2,32 +2,20 @@
 // The walls of an occupancy map: where a beam ends, and which way the wall lies there.
 #pragma once
 
+#include "common/corridor/map_image.hpp"
+
 #include <Eigen/Core>
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace waymark::placement {
 
-enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
+using corridor::Cell;
 
-/// Row 0 is the lowest y, column 0 the lowest x; cells along the map's axes.
-struct OccupancyImage {
-  int columns{0};
-  int rows{0};
-  double resolution_m{0.05};
+/// Cells along the map's axes.
+struct PlacedMapImage : corridor::MapImage {
   Eigen::Vector2d origin_m{Eigen::Vector2d::Zero()};  ///< lower left corner of cell (0, 0), map
-  std::vector<CellState> cells{};                     ///< row by row
-
-  bool contains(int column, int row) const {
-    return column >= 0 && row >= 0 && column < columns && row < rows;
-  }
-
-  CellState at(int column, int row) const {
-    return contains(column, row) ? cells[static_cast<std::size_t>(row) * columns + column]
-                                 : CellState::kUnknown;
-  }
 };
 
 /// The line that the occupied cells around a place lie on.
@@ -39,9 +27,9 @@ struct WallPatch {
 
 class OccupiedWalls {
  public:
-  explicit OccupiedWalls(OccupancyImage image);
+  explicit OccupiedWalls(PlacedMapImage image);
 
-  const OccupancyImage& image() const { return image_; }
+  const PlacedMapImage& image() const { return image_; }
 
   /// Index of the first occupied cell on a ray; nothing where it leaves the known map, or goes
   /// further than `range_m`. O(range / resolution).
@@ -50,7 +38,7 @@ class OccupiedWalls {
 
   Eigen::Vector2d centre_of(std::size_t cell) const;
 
-  CellState state_at(const Eigen::Vector2d& point_m) const;
+  Cell state_at(const Eigen::Vector2d& point_m) const;
 
   /// Of an occupied cell; fitted at the first call.
   const WallPatch& patch(std::size_t cell) const;
@@ -58,7 +46,7 @@ class OccupiedWalls {
  private:
   WallPatch fitted(std::size_t cell) const;
 
-  OccupancyImage image_;
+  PlacedMapImage image_;
   mutable std::vector<std::optional<WallPatch>> patches_{};
 };
 

@@ -12,15 +12,10 @@
 namespace waymark::placement {
 namespace {
 
-constexpr int kBorderModules = 2;      // one on each side
 constexpr double kQuietModules = 2.0;  // on each side, as the marker sheets have it
 constexpr double kSpacing_m = 0.5;     // between places of one wall that are tried
 constexpr double kTelling_m = 1e-3;    // sigmas below say nothing about the model
 constexpr double kMatters = 0.9;       // a cause without which the worst sigma is below this share
-
-double worst(const std::vector<double>& sigmas_m) {
-  return sigmas_m.empty() ? 0.0 : *std::max_element(sigmas_m.begin(), sigmas_m.end());
-}
 
 /// Smallest first.
 std::vector<int> free_ids(const MarkerConfig& markers, int dictionary_size,
@@ -62,12 +57,7 @@ double with_all(const SlamConfig& config, const Placement& placement,
                 std::span<const Sightings> hung, std::span<const WallPlace> places,
                 std::span<const Sightings> at_places) {
   const CovarianceModel model{placement.steps, config};
-  std::vector<const Sightings*> markers;
-  for (const Sightings& marker : hung)
-    markers.push_back(&marker);
-  for (const std::size_t place : everywhere(places))
-    markers.push_back(&at_places[place]);
-  return worst(model.sigmas_m(model.predict(markers)));
+  return worst(model.sigmas_m(model.predict(hung_and(hung, at_places, everywhere(places)))));
 }
 
 }  // namespace
@@ -89,7 +79,7 @@ Placement place_markers(const PlacementInput& input, double target_m) {
   const auto dictionary = find_dictionary(described.dictionary);
   if (!dictionary)
     throw evaluate::InputError{"robot.markers.dictionary: unknown: " + described.dictionary};
-  const int modules = dictionary->markerSize + kBorderModules;
+  const int modules = modules_per_side(*dictionary);
   const double plate_m = described.size_m * (1.0 + 2.0 * kQuietModules / modules);
 
   Placement placement;
@@ -120,10 +110,7 @@ Placement place_markers(const PlacementInput& input, double target_m) {
     placement.markers.push_back(
         {places[placement.advice.chosen[i]], ids[i], placement.advice.worst_after_m[i]});
   placement.stretches = stretches_above(placement.advice.now_m, target_m);
-  std::vector<const Sightings*> markers;
-  for (const Sightings& marker : hung)
-    markers.push_back(&marker);
-  placement.now = model.predict(markers);
+  placement.now = model.predict(hung_and(hung, {}, {}));
   for (const Eigen::Matrix3d& covariance : placement.now)
     placement.across_m =
         std::max(placement.across_m, sigma_along(covariance, Eigen::Vector2d::Zero()));

@@ -5,6 +5,7 @@
 #include "evaluate/files/tum.hpp"
 #include "evaluate/run/run_evaluation.hpp"
 #include "slam/map_file.hpp"
+#include "viewer/core/scene/grid_map.hpp"
 
 #include <fmt/format.h>
 
@@ -18,40 +19,21 @@ namespace fs = std::filesystem;
 using evaluate::InputError;
 
 constexpr double kLongestStep_m = 1.0;  // between two poses; more is no drive
-// As the viewer's map.pgm.
-constexpr double kOccupied = 0.65;
-constexpr double kFree = 0.196;
 
-CellState state_of(evaluate::Cell cell) {
-  switch (cell) {
-    case evaluate::Cell::kFree:
-      return CellState::kFree;
-    case evaluate::Cell::kOccupied:
-      return CellState::kOccupied;
-    case evaluate::Cell::kUnknown:
-      break;
-  }
-  return CellState::kUnknown;
+PlacedMapImage image_in(const fs::path& yaml_file) {
+  return {evaluate::read_map(yaml_file), evaluate::read_map_origin(yaml_file)};
 }
 
-OccupancyImage image_in(const fs::path& yaml_file) {
-  const evaluate::MapImage map = evaluate::read_map(yaml_file);
-  OccupancyImage image{
-      map.width_px, map.height_px, map.resolution_m, evaluate::read_map_origin(yaml_file), {}};
-  image.cells.reserve(map.cells.size());
-  std::transform(map.cells.begin(), map.cells.end(), std::back_inserter(image.cells), state_of);
-  return image;
-}
-
-OccupancyImage image_of(const GridMap& grid) {
-  std::vector<std::pair<CellIndex, CellState>> known;
+PlacedMapImage image_of(const GridMap& grid) {
+  constexpr viewer::MapThresholds kThresholds;  // of map.pgm
+  std::vector<std::pair<CellIndex, Cell>> known;
   grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
     for (std::size_t offset = 0; offset < kTileCells; ++offset) {
       if (!cells[offset].is_mapped()) continue;
       const double occupancy = cells[offset].occupancy();
-      known.emplace_back(cell_at(index, offset), occupancy >= kOccupied ? CellState::kOccupied
-                                                 : occupancy <= kFree   ? CellState::kFree
-                                                                        : CellState::kUnknown);
+      known.emplace_back(cell_at(index, offset), occupancy >= kThresholds.occupied ? Cell::kOccupied
+                                                 : occupancy <= kThresholds.free   ? Cell::kFree
+                                                                                 : Cell::kUnknown);
     }
   });
   if (known.empty()) return {};
@@ -61,15 +43,15 @@ OccupancyImage image_of(const GridMap& grid) {
     least = {std::min(least.x, cell.x), std::min(least.y, cell.y)};
     most = {std::max(most.x, cell.x), std::max(most.y, cell.y)};
   }
-  OccupancyImage image;
-  image.columns = most.x - least.x + 1;
-  image.rows = most.y - least.y + 1;
+  PlacedMapImage image;
+  image.width_px = most.x - least.x + 1;
+  image.height_px = most.y - least.y + 1;
   image.resolution_m = grid.frame.resolution_m;
   image.origin_m =
       grid.frame.origin_m + grid.frame.resolution_m * Eigen::Vector2d{least.x, least.y};
-  image.cells.resize(static_cast<std::size_t>(image.columns) * image.rows);
+  image.cells.resize(static_cast<std::size_t>(image.width_px) * image.height_px);
   for (const auto& [cell, state] : known)
-    image.cells[static_cast<std::size_t>(cell.y - least.y) * image.columns + (cell.x - least.x)] =
+    image.cells[static_cast<std::size_t>(cell.y - least.y) * image.width_px + (cell.x - least.x)] =
         state;
   return image;
 }
@@ -169,7 +151,7 @@ PlacementInput read_placement_input(const fs::path& source, const fs::path& conf
           "{}: the way jumps by {:.1f} m: the robot was carried, which no model predicts",
           input.source.string(), step_m)};
   }
-  if (std::find(input.image.cells.begin(), input.image.cells.end(), CellState::kOccupied) ==
+  if (std::find(input.image.cells.begin(), input.image.cells.end(), Cell::kOccupied) ==
       input.image.cells.end())
     throw InputError{input.source.string() + ": its map has no wall to hang a marker on"};
   return input;

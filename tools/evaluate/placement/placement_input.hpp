@@ -24,7 +24,7 @@ struct PlacementInput {
   SlamConfig config{};
   std::vector<ScanPlace> places{};  ///< the way, as known at the end
   std::vector<MappedMarker> markers{};
-  OccupancyImage image{};
+  PlacedMapImage image{};
   std::vector<evaluate::StampedCovariance> covariances{};  ///< as shown on line; none of a map
   std::vector<std::string> notes{};  ///< what was assumed or left out, a sentence each
 };

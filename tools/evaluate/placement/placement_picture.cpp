@@ -13,25 +13,25 @@ namespace {
 
 constexpr int kTile = 64;  // cells
 
-std::int8_t percent_of(CellState state) {
+std::int8_t percent_of(Cell state) {
   switch (state) {
-    case CellState::kFree:
+    case Cell::kFree:
       return 0;
-    case CellState::kOccupied:
+    case Cell::kOccupied:
       return 100;
-    case CellState::kUnknown:
+    case Cell::kUnknown:
       break;
   }
   return viewer::kUnknownOccupancy;
 }
 
-void put_map(const OccupancyImage& image, viewer::TiledMap& map) {
+void put_map(const PlacedMapImage& image, viewer::TiledMap& map) {
   const viewer::TileLayout layout{image.origin_m.x(), image.origin_m.y(), image.resolution_m,
                                   kTile};
   std::vector<std::int8_t> occupancy(kTile * kTile);
   const std::vector<std::int16_t> no_markers(occupancy.size(), kNoMarker);
-  for (int y = 0; y * kTile < image.rows; ++y) {
-    for (int x = 0; x * kTile < image.columns; ++x) {
+  for (int y = 0; y * kTile < image.height_px; ++y) {
+    for (int x = 0; x * kTile < image.width_px; ++x) {
       for (int cell = 0; cell < kTile * kTile; ++cell)
         occupancy[static_cast<std::size_t>(cell)] =
             percent_of(image.at(x * kTile + cell % kTile, y * kTile + cell / kTile));

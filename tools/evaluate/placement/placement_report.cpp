@@ -11,10 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double degrees(double rad) {
-  return rad / radians(1.0);
-}
-
 std::string verdict(const Placement& placement) {
   if (placement.worst_now_m() <= placement.target_m)
     return "The target is met as it is: no new marker is needed.\n";

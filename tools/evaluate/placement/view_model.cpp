@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/placement/view_model.hpp"
 
-#include "detector/core/corner_refinement.hpp"
+#include "detector/core/square_pose.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -33,12 +33,6 @@ constexpr double kThinnestBorder_px = 1.0;
 constexpr double kImageMargin_px = 3.0;  // CandidateConfig::border_distance_px
 constexpr double kNearest_m = 0.05;      // in front of the camera
 constexpr double kOnItsWall_m = 0.15;    // beams that end this near to the marker's plane
-
-std::array<Eigen::Vector3d, 4> corners_in_marker(double size_m) {
-  const double h = 0.5 * size_m;
-  return {Eigen::Vector3d{-h, h, 0}, Eigen::Vector3d{h, h, 0}, Eigen::Vector3d{h, -h, 0},
-          Eigen::Vector3d{-h, -h, 0}};
-}
 
 Eigen::Isometry3d upright(const Se2& base_from_marker, double height_m) {
   const double yaw_rad = base_from_marker.theta();
@@ -189,10 +183,7 @@ std::optional<MarkerView> ViewModel::view(const Se2& base_from_marker,
   MarkerSighting sighting;
   sighting.id = 0;
   sighting.base_from_marker = base_from_marker;
-  constexpr std::array<int, 3> kPlanar{0, 1, 5};  // x, y, rotation about z
-  for (Eigen::Index i = 0; i < 3; ++i)
-    for (Eigen::Index k = 0; k < 3; ++k)
-      sighting.covariance_in_base(i, k) = in_base(kPlanar[i], kPlanar[k]);
+  sighting.covariance_in_base = planar_covariance(in_base);
   if (!sighting.covariance_in_base.allFinite() || sighting.sigma_along_m() > max_sigma_m_)
     return std::nullopt;
   sighting.size_m = robot_.markers.size_m;

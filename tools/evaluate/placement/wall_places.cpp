@@ -24,9 +24,9 @@ bool is_bare_and_straight(const OccupiedWalls& walls, const Eigen::Vector2d& pla
     const Eigen::Vector2d point = place + i * cell_m * along;
     bool has_wall = false;
     for (const double off : {-1.0, 0.0, 1.0})
-      has_wall = has_wall || walls.state_at(point + off * cell_m * normal) == CellState::kOccupied;
-    const CellState before = walls.state_at(point + (kFreeBefore_m + cell_m) * normal);
-    if (!has_wall || before != CellState::kFree) return false;
+      has_wall = has_wall || walls.state_at(point + off * cell_m * normal) == Cell::kOccupied;
+    const Cell before = walls.state_at(point + (kFreeBefore_m + cell_m) * normal);
+    if (!has_wall || before != Cell::kFree) return false;
   }
   return true;
 }

@@ -19,7 +19,7 @@ constexpr int kInkBlack = 20;
 int black_square_modules(const MarkerPrint& print) {
   const auto dictionary = find_dictionary(print.dictionary);
   assert(dictionary);
-  return dictionary->markerSize + 2 * kBorderModules;
+  return modules_per_side(*dictionary);
 }
 
 int quiet_zone_texels(const MarkerPrint& print) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/waymark.hpp"
 
+#include "slam/core/motion/pose_deviation.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
@@ -11,22 +13,12 @@
 namespace waymark {
 namespace {
 
-constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]: the map's frame is the first pose
-
 constexpr double kFixed = 1e-6;  // of the sigmas of a calibration that is not learnt
 
 // A scan that odometry contradicts becomes a keyframe, where a slip is weighed.
 constexpr double kContradiction = 25.0;  // chi^2
 constexpr double kContradiction_m = 0.03;
 constexpr double kContradiction_rad = 0.02;
-
-Calibration calibration_sigmas(const EstimatorSetup& setup, const OdometryNoise& odometry,
-                               bool calibrate) {
-  Calibration sigmas;
-  sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
-      odometry.lidar_ahead_sigma_m, setup.sighting_sigmas.learnt;
-  return calibrate ? sigmas : Calibration{kFixed * sigmas};
-}
 
 GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config) {
   GraphNoise noise;
@@ -44,11 +36,18 @@ GridMap ground_of(const EstimatorSetup& setup) {
 
 }  // namespace
 
+Calibration calibration_sigmas(const EstimatorSetup& setup, const WaymarkConfig& config) {
+  const OdometryNoise& odometry = config.odometry;
+  Calibration sigmas;
+  sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
+      odometry.lidar_ahead_sigma_m, setup.sighting_sigmas.learnt;
+  return config.calibrate ? sigmas : Calibration{kFixed * sigmas};
+}
+
 WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config)
     : setup_{setup},
       config_{config},
-      graph_{graph_noise(setup, config),
-             calibration_sigmas(setup, config.odometry, config.calibrate)},
+      graph_{graph_noise(setup, config), calibration_sigmas(setup, config)},
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
       map_{setup.grid, ground_of(setup)},
@@ -267,10 +266,8 @@ Estimate WaymarkEstimator::estimate_between(const Observation& observation,
                                             const BetweenKeyframes& between) const {
   const Eigen::Vector2d way =
       between.map_from_base.translation() - graph_.state().keyframes.back().translation();
-  Eigen::Matrix3d carried = Eigen::Matrix3d::Identity();
-  carried.topRightCorner<2, 1>() << -way.y(), way.x();  // d(x, y) / d(theta)
   const Eigen::Matrix3d covariance =
-      carried * graph_.covariance_of({VariableKind::kKeyframe, newest()}) * carried.transpose() +
+      carried_along(graph_.covariance_of({VariableKind::kKeyframe, newest()}), way) +
       between.covariance;
   return estimate(observation, between.map_from_base, covariance);
 }

@@ -48,6 +48,13 @@ struct WaymarkConfig {
   void describe(Fields& fields);
 };
 
+inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]: the map's frame is the first pose
+/// A scan factor ties a scan to one keyframe for so many of those that saw the walls.
+inline constexpr std::size_t kGroupedKeyframes = 15;
+
+/// How well the robot's description knows its calibration.
+Calibration calibration_sigmas(const EstimatorSetup& setup, const WaymarkConfig& config);
+
 /// Ends of its beams, base frame.
 Points points_of(const Observation& observation);
 

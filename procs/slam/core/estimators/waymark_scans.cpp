@@ -10,8 +10,6 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kGroupedKeyframes = 15;  // that one stands for, of all that saw the walls
-
 // Wide search of a scan that fits badly.
 constexpr double kUsualFit = 0.93;   // share of the usual fit; below, a scan fits badly
 constexpr double kFitMemory = 0.05;  // weight of the newest scan in what is usual

@@ -13,17 +13,6 @@ constexpr double kMaxRange_m = 100.0;  // no camera reads a marker from there
 constexpr double kMaxVariance = 1e6;   // nothing is left of a sighting with that
 constexpr double kRounding = 1e-9;     // of a covariance, share of its trace
 
-Eigen::Matrix3d planar_covariance(const Eigen::Matrix<double, 6, 6>& covariance) {
-  constexpr int kPlanar[]{0, 1, 5};  // x, y, rotation about z
-  Eigen::Matrix3d planar;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      planar(row, column) = covariance(kPlanar[row], kPlanar[column]);
-    }
-  }
-  return planar;
-}
-
 /// Symmetric, and no direction has a negative variance, but for rounding.
 bool is_covariance(const Eigen::Matrix3d& matrix) {
   const double trace = matrix.trace();
@@ -34,6 +23,17 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d planar_covariance(const Eigen::Matrix<double, 6, 6>& covariance) {
+  constexpr int kPlanar[]{0, 1, 5};  // x, y, rotation about z
+  Eigen::Matrix3d planar;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      planar(row, column) = covariance(kPlanar[row], kPlanar[column]);
+    }
+  }
+  return planar;
+}
 
 std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Timestamp time,
                                            const Se2& scan_base_from_frame_base, double size_m) {

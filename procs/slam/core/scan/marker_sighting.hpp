@@ -44,6 +44,10 @@ struct MarkerSighting {
   }
 };
 
+/// Of (x, y, yaw).
+/// @param covariance  of x y z rx ry rz, same frame.
+Eigen::Matrix3d planar_covariance(const Eigen::Matrix<double, 6, 6>& covariance);
+
 /// Projects a detection onto the plane and carries it from the camera frame's time to the scan's.
 /// @param scan_base_from_frame_base  odometry between the two moments.
 /// @return nothing for a marker that does not stand upright (tilted by more than 30 degrees): it

@@ -25,23 +25,23 @@ constexpr double kCell_m = 0.05;
 constexpr double kSpeed_mps = 0.1;
 
 /// A corridor along x from 0 to `length_m`, walls at y = +-1 m, its ends closed or far away.
-OccupancyImage corridor(double length_m, bool is_closed) {
-  OccupancyImage image;
+PlacedMapImage corridor(double length_m, bool is_closed) {
+  PlacedMapImage image;
   image.resolution_m = kCell_m;
   image.origin_m = {-0.5 * kCell_m - 5.0, -0.5 * kCell_m - 1.5};
-  image.columns = static_cast<int>(std::lround((length_m + 10.0) / kCell_m)) + 1;
-  image.rows = 61;
-  for (int row = 0; row < image.rows; ++row) {
-    for (int column = 0; column < image.columns; ++column) {
+  image.width_px = static_cast<int>(std::lround((length_m + 10.0) / kCell_m)) + 1;
+  image.height_px = 61;
+  for (int row = 0; row < image.height_px; ++row) {
+    for (int column = 0; column < image.width_px; ++column) {
       const double x_m = -5.0 + kCell_m * column;
       const double y_m = -1.5 + kCell_m * row;
       const bool is_side = std::abs(std::abs(y_m) - kHalfWidth_m) < 0.5 * kCell_m;
       const bool is_end =
           is_closed && (std::abs(x_m) < 0.5 * kCell_m || std::abs(x_m - length_m) < 0.5 * kCell_m);
       const bool is_inside = std::abs(y_m) < kHalfWidth_m;
-      image.cells.push_back(is_side || (is_end && is_inside) ? CellState::kOccupied
-                            : is_inside                      ? CellState::kFree
-                                                             : CellState::kUnknown);
+      image.cells.push_back(is_side || (is_end && is_inside) ? Cell::kOccupied
+                            : is_inside                      ? Cell::kFree
+                                                             : Cell::kUnknown);
     }
   }
   return image;
