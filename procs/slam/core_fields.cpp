@@ -4,6 +4,7 @@
 #include "slam/core/estimators/gmapping.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/waymark.hpp"
+#include "slam/core/input/preprocessing.hpp"
 
 namespace waymark {
 
@@ -39,6 +40,21 @@ void MapperConfig::describe(Fields& fields) {
                "bare wall beside a marker that is seen together with it");
   fields.field("same_marker_within_m", same_marker_within_m, kPositive,
                "sightings of an id nearer than this are of one marker");
+}
+
+void Preprocessing::describe(Fields& fields) {
+  fields.field("beam_tolerance_m", beam_tolerance_m, kPositive,
+               "a beam that ends this near to a sighted marker's segment carries its id");
+  fields.field("view_margin_rad", view_margin_rad, kNotNegative,
+               "a marker nearer than this to the image's edge may be missed");
+  fields.field("detectable_range_m", detectable_range_m, kPositive,
+               "a marker further away may be missed: its absence says nothing");
+  fields.field("max_sigma_m", max_sigma_m, kPositive,
+               "sightings with a larger standard deviation along their wall are not used");
+  fields.field("marker_wait_s", marker_wait_s, {0.0, 10.0},
+               "how long a scan waits for the camera frames up to its time");
+  fields.field("scan_wait_s", scan_wait_s, {0.0, 10.0},
+               "how late a scan may be before odometry and camera go on without");
 }
 
 void StepNoise::describe(Fields& fields) {
@@ -131,7 +147,7 @@ void OdometryNoise::describe(Fields& fields) {
   fields.field("drift_sigma_rad_per_m", drift_sigma_rad_per_m, kPositive,
                "how much the heading may drift per metre");
   fields.field("lidar_ahead_sigma_m", lidar_ahead_sigma_m, kPositive,
-               "how far the LiDAR may be ahead of where it is told to be");
+               "how far the LiDAR may be ahead of its configured place");
   fields.field("may_slip", may_slip,
                "whether a motion may be no random walk: wheels that spin, pushes, jumps");
 }
@@ -139,7 +155,7 @@ void OdometryNoise::describe(Fields& fields) {
 void MarkerMeasurementConfig::describe(Fields& fields) {
   fields.field("reach_m", reach_m, kPositive, "wall around a marker that is believed straight");
   fields.field("perspective_sigma", perspective_sigma, kPositive,
-               "of the focal length, as one view of a marker tells it; views err alike");
+               "of the focal length from one view of a marker; views err alike");
   fields.field("perspective_max_sigma", perspective_max_sigma, kPositive,
                "views that the noise of corners makes worse say nothing about it");
   fields.field("covariance_factor", covariance_factor, kPositive,

@@ -9,7 +9,7 @@
 
 namespace waymark {
 
-/// Makes SLAM_CORRECTION of estimates with a pose, and remembers the one before.
+/// Makes SLAM_CORRECTION of estimates with a pose, and keeps the one before.
 class CorrectionMaker {
  public:
   /// @param odom_from_base  odometry as it was sent, at the time of the estimate.

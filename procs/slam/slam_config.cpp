@@ -18,7 +18,7 @@ namespace {
 constexpr double kCornerSigma_px = 0.02;  // of refined corners
 
 /// The horizontal wedge in which a whole marker fits into the image.
-CameraView camera_view(const CameraConfig& camera, const PreprocessingConfig& preprocessing) {
+CameraView camera_view(const CameraConfig& camera, const Preprocessing& preprocessing) {
   const Eigen::Isometry3d base_from_camera = camera.base_from_camera();
   const Eigen::Vector3d forward = base_from_camera.linear().col(2);
   CameraView view;
@@ -38,25 +38,6 @@ SightingSigmas sighting_sigmas(const CameraConfig& camera, const MarkerConfig& m
           .bulge_m = markers.bulge_sigma_m,
           .skew_rad = markers.skew_sigma_rad};
 }
-
-}  // namespace
-
-void PreprocessingConfig::describe(Fields& fields) {
-  fields.field("beam_tolerance_m", beam_tolerance_m, kPositive,
-               "a beam that ends this near to a sighted marker's segment carries its id");
-  fields.field("view_margin_rad", view_margin_rad, kNotNegative,
-               "a marker nearer than this to the image's edge may be missed");
-  fields.field("detectable_range_m", detectable_range_m, kPositive,
-               "a marker further away may be missed: its absence says nothing");
-  fields.field("max_sigma_m", max_sigma_m, kPositive,
-               "sightings with a larger standard deviation along their wall are not used");
-  fields.field("marker_wait_s", marker_wait_s, {0.0, 10.0},
-               "how long a scan waits for the camera frames up to its time");
-  fields.field("scan_wait_s", scan_wait_s, {0.0, 10.0},
-               "how late a scan may be before odometry and camera go on without");
-}
-
-namespace {
 
 std::string_view name_of(EstimatorName estimator) {
   switch (estimator) {
@@ -146,10 +127,7 @@ SensorSetup sensor_setup(const SlamConfig& config) {
   setup.lidar = {lidar.base_from_lidar(), lidar.range_min_m, lidar.range_max_m};
   setup.camera = camera_view(config.robot.camera, config.slam.preprocessing);
   setup.marker_size_m = config.robot.markers.size_m;
-  setup.beam_tolerance_m = config.slam.preprocessing.beam_tolerance_m;
-  setup.max_sigma_m = config.slam.preprocessing.max_sigma_m;
-  setup.marker_wait = duration_from_seconds(config.slam.preprocessing.marker_wait_s);
-  setup.scan_wait = duration_from_seconds(config.slam.preprocessing.scan_wait_s);
+  setup.preprocessing = config.slam.preprocessing;
   setup.blank_ids = config.slam.blank_ids;
   const CameraModel camera{config.robot.camera};
   setup.ray_of_pixel = [camera](const Eigen::Vector2d& raw_px) {

@@ -19,18 +19,6 @@ namespace waymark {
 
 enum class EstimatorName { kOdometry, kGmapping, kMarkerMatching, kWaymark };
 
-/// How marker sightings are put on beams, and which beams may say "no marker here".
-struct PreprocessingConfig {
-  double beam_tolerance_m{0.08};
-  double view_margin_rad{0.1};
-  double detectable_range_m{3.2};
-  double max_sigma_m{0.05};
-  double marker_wait_s{0.25};
-  double scan_wait_s{1.0};
-
-  void describe(Fields& fields);
-};
-
 struct SlamSection {
   EstimatorName estimator{EstimatorName::kWaymark};
   std::int64_t seed{1};
@@ -41,7 +29,7 @@ struct SlamSection {
   StartPose start{};
   std::string state_folder{};  ///< empty: none
   bool commands{false};
-  PreprocessingConfig preprocessing{};
+  Preprocessing preprocessing{};
   MotionNoise motion{};
   UpdateGate gate{};
   MapperConfig grid{};

@@ -15,7 +15,7 @@ std::int8_t health_number(Health health);
 
 slam_estimate_t to_message(const Estimate& estimate);
 
-/// Of a map that is being drawn: tells it from any other. Never 0.
+/// Identifies a map that is being drawn. Never 0.
 std::int64_t new_map_id(Timestamp first_observation, std::int64_t parent_map_id);
 
 annotated_scan_t to_message(const LidarScan& scan, const Observation& observation,

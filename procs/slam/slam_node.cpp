@@ -5,11 +5,9 @@
 #include "common/messages/convert.hpp"
 #include "common/robot/described_sensors.hpp"
 #include "slam/estimator_factory.hpp"
-#include "slam/map_file.hpp"
+#include "slam/slam_inputs.hpp"
 #include "slam/slam_messages.hpp"
-#include "slam/survey_file.hpp"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <string_view>
@@ -24,54 +22,6 @@ constexpr std::string_view kUnplaced = "estimates before the place in the map wa
 std::int32_t mbot_mode(MapMode mode) {
   if (mode == MapMode::kLocalise) return slam_status_t::MODE_LOCALISATION_ONLY;
   return slam_status_t::MODE_FULL;
-}
-
-void check_map_options(const SlamConfig& config) {
-  const bool is_loaded = !config.load_map.empty();
-  const bool is_used = is_loaded || !config.save_map.empty();
-  if (is_used && config.slam.estimator != EstimatorName::kWaymark)
-    throw SetupError{"only the estimator 'waymark' loads and saves maps: set slam.estimator"};
-  if (is_loaded && config.slam.mode == MapMode::kMap) {
-    throw SetupError{
-        "--load-map needs to know what for: --set slam.mode=localise (the map stays as it is) or "
-        "--set slam.mode=extend"};
-  }
-  if (!is_loaded && config.slam.mode != MapMode::kMap)
-    throw SetupError{"slam.mode = localise and extend need a map: --load-map FILE"};
-  if (config.slam.mode == MapMode::kLocalise && !config.save_map.empty())
-    throw SetupError{
-        "slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
-}
-
-/// @param frame  name of the frame that the map is in.
-/// @throws SetupError  also where the map does not suit this robot.
-std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config, std::string& frame) {
-  frame = config.robot.markers.survey_file.empty() ? "map" : "survey";
-  check_map_options(config);
-  if (config.load_map.empty()) return nullptr;
-  MapFile file = read_map_file(config.load_map);
-  const MarkerConfig& markers = config.robot.markers;
-  const auto refuse = [&](const std::string& why) {
-    throw SetupError{fmt::format("map '{}' {}", config.load_map.string(), why)};
-  };
-  if (file.info.marker_dictionary != markers.dictionary ||
-      file.info.marker_size_m != markers.size_m) {
-    refuse(fmt::format("was made with markers {} of {} m, but robot.markers says {} of {} m",
-                       file.info.marker_dictionary, file.info.marker_size_m, markers.dictionary,
-                       markers.size_m));
-  }
-  if (file.map.grid.frame.resolution_m != config.slam.grid.resolution_m) {
-    refuse(fmt::format("has cells of {} m: set slam.grid.resolution_m, which is {}, to that",
-                       file.map.grid.frame.resolution_m, config.slam.grid.resolution_m));
-  }
-  const bool is_empty = file.map.landmarks.empty() && file.map.walls.sums().empty();
-  const bool is_searched =
-      config.slam.start.kind == StartKind::kAnywhere || config.slam.start.kind == StartKind::kLast;
-  if (is_searched && is_empty)
-    refuse(
-        "has neither markers nor walls: slam.start = anywhere or last cannot find the robot there");
-  frame = file.info.frame;
-  return std::make_shared<const MapSnapshot>(std::move(file.map));
 }
 
 CountKind kind_of(Skip skip) {
@@ -100,20 +50,6 @@ CountKind kind_of(Skip skip) {
       break;
   }
   return CountKind::kEvent;
-}
-
-/// A loaded map has its frame already.
-std::vector<SurveyedMarker> load_survey(const SlamConfig& config) {
-  const std::string& file = config.robot.markers.survey_file;
-  if (file.empty()) return {};
-  if (config.slam.estimator != EstimatorName::kWaymark) {
-    spdlog::info("the survey '{}' is not used: only the estimator 'waymark' can", file);
-    return {};
-  }
-  std::vector<SurveyedMarker> survey = read_survey(file, config.robot.markers.dictionary);
-  if (!config.load_map.empty())
-    spdlog::info("the survey '{}' is checked, but not used: the loaded map has its frame", file);
-  return survey;
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ void feed(SensorQueue& queue, const SensorLog& log, Take&& take) {
 inline std::vector<Observation> observations_of(SensorLog log, const SyntheticCorridor& corridor) {
   SensorSetup setup;
   setup.lidar = {{corridor.lidar_x_m, 0.0, 0.0}, 0.05, corridor.range_max_m};
-  setup.marker_wait = Duration{0};
+  setup.preprocessing.marker_wait_s = 0.0;
   SensorQueue queue{setup};
   std::vector<Observation> observations;
   const auto keep = [&](SensorQueue::Ready ready) {

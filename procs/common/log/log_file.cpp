@@ -19,6 +19,7 @@ constexpr std::int64_t kHeaderBytes = 28;
 constexpr std::int64_t kMaxChannelBytes = 999;                  // as liblcm
 constexpr std::int64_t kMaxDataBytes = std::int64_t{64} << 20;  // raw images of other robots fit
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kReadBufferBytes = std::size_t{32} << 10;  // images are passed over
 constexpr std::size_t kFirstSearchBytes = 256;
 
 template <class Unsigned>
@@ -49,11 +50,12 @@ struct LogReader::Header {
   std::int64_t data_bytes;
 };
 
-LogReader::LogReader(const std::filesystem::path& path) : path_{path} {
+LogReader::LogReader(const std::filesystem::path& path) : path_{path}, buffer_(kReadBufferBytes) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) && !error) {
     throw std::runtime_error{path.string() + ": is a folder or a device, not an LCM log"};
   }
+  file_.rdbuf()->pubsetbuf(buffer_.data(), std::ssize(buffer_));
   file_.open(path, std::ios::binary);
   if (!file_) throw std::runtime_error{path.string() + ": cannot be read: " + last_system_error()};
   size_bytes_ = static_cast<std::int64_t>(std::filesystem::file_size(path));
@@ -73,11 +75,11 @@ std::optional<Message> LogReader::next(const std::function<bool(std::string_view
     Message event{std::string(static_cast<std::size_t>(header.channel_bytes), '\0'),
                   timestamp_from_us(header.time_us),
                   {}};
-    file_.read(event.channel.data(), header.channel_bytes);
+    read(event.channel.data(), header.channel_bytes);
     const bool is_wanted = wanted(event.channel);
     if (is_wanted) {
       event.payload.resize(static_cast<std::size_t>(header.data_bytes));
-      file_.read(reinterpret_cast<char*>(event.payload.data()), header.data_bytes);
+      read(event.payload.data(), header.data_bytes);
     }
     if (!file_) throw std::runtime_error{path_.string() + ": read error"};
     offset_ += kHeaderBytes + header.channel_bytes + header.data_bytes;
@@ -90,8 +92,8 @@ std::optional<Message> LogReader::next(const std::function<bool(std::string_view
 bool LogReader::read_header(std::int64_t offset, Header& header) {
   if (size_bytes_ - offset < kHeaderBytes) return false;
   std::array<char, kHeaderBytes> bytes{};
-  if (file_.tellg() != std::streampos{offset}) file_.seekg(offset);
-  file_.read(bytes.data(), kHeaderBytes);
+  seek(offset);
+  read(bytes.data(), kHeaderBytes);
   if (read_big_endian<std::uint32_t>(bytes.data()) != kSyncWord) return false;
   header.time_us = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(&bytes[12]));
   header.channel_bytes = static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&bytes[20]));
@@ -107,9 +109,9 @@ std::optional<std::int64_t> LogReader::find_event(std::int64_t offset) {
   const std::array<char, 4> sync{'\xED', '\xA1', '\xDA', '\x01'};
   std::vector<char> window(kFirstSearchBytes);
   while (size_bytes_ - offset >= kHeaderBytes) {
-    file_.seekg(offset);
+    seek(offset);
     const std::int64_t wanted_bytes = std::min(std::ssize(window), size_bytes_ - offset);
-    file_.read(window.data(), wanted_bytes);
+    read(window.data(), wanted_bytes);
     const auto end = window.begin() + wanted_bytes;
     for (auto at = window.begin();; ++at) {
       at = std::search(at, end, sync.begin(), sync.end());
@@ -128,6 +130,16 @@ void LogReader::skip_to(std::int64_t offset) {
   if (skipped_bytes_ == 0) first_skipped_offset_ = offset_;
   skipped_bytes_ += offset - offset_;
   offset_ = offset;
+}
+
+void LogReader::seek(std::int64_t offset) {
+  if (offset != position_) file_.seekg(offset);
+  position_ = offset;
+}
+
+void LogReader::read(void* bytes, std::int64_t size) {
+  file_.read(static_cast<char*>(bytes), size);
+  position_ += size;
 }
 
 std::vector<std::string> channels_in(const std::filesystem::path& path) {

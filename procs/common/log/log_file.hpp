@@ -47,9 +47,13 @@ class LogReader {
   bool read_header(std::int64_t offset, Header& header);
   std::optional<std::int64_t> find_event(std::int64_t offset);
   void skip_to(std::int64_t offset);
+  void seek(std::int64_t offset);
+  void read(void* bytes, std::int64_t size);
 
   std::filesystem::path path_;
+  std::vector<char> buffer_;
   std::ifstream file_;
+  std::int64_t position_{0};  ///< of file_, which would ask the system for it
   std::int64_t size_bytes_{0};
   std::int64_t offset_{0};
   std::int64_t skipped_bytes_{0};

@@ -18,11 +18,11 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
     } else {
       counters.add(message.channel + " rejected: time jumps ahead", CountKind::kRejection);
     }
-    if (!clock_watch_.see_misfit(message.time)) return {};
+    if (!clock_steps_.see_misfit(message.time)) return {};
     counters.add("clock was set");
     return begin_anew(std::move(message));
   }
-  clock_watch_.see_fitting();
+  clock_steps_.see_fitting();
   Stream& stream = streams_[message.channel];
   judge_aside(stream, message.time, counters);
   if (waiting_.contains(message) ||
@@ -52,7 +52,7 @@ ReorderBuffer::Misfit ReorderBuffer::misfit(const Message& message) const {
   if (stream != streams_.end() && stream->second.released &&
       message.time < *stream->second.released)
     return Misfit::kLate;
-  if (has_any_ && message.time > newest_ + ClockWatch::kLongestPause) return Misfit::kAhead;
+  if (has_any_ && message.time > newest_ + ClockStepDetector::kLongestPause) return Misfit::kAhead;
   return Misfit::kNone;
 }
 

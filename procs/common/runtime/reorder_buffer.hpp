@@ -4,7 +4,7 @@
 
 #include "common/messages/message.hpp"
 #include "common/node/node.hpp"
-#include "common/time/clock_watch.hpp"
+#include "common/time/clock_step_detector.hpp"
 
 #include <map>
 #include <optional>
@@ -20,7 +20,7 @@ namespace waymark {
 /// ahead, which would let nothing else wait; unless the clock was set.
 ///
 /// What leads its channel and all others by far is set aside: either there was a pause, or it is
-/// stamped wrong. The next message of its channel tells: one that is newer, or one that is not.
+/// stamped wrong. The next message of its channel decides: one that is newer, or one that is not.
 class ReorderBuffer {
  public:
   explicit ReorderBuffer(Duration window);
@@ -61,7 +61,7 @@ class ReorderBuffer {
   std::set<Message, Before> waiting_;
   Timestamp newest_{};
   std::map<std::string, Stream, std::less<>> streams_;
-  ClockWatch clock_watch_;
+  ClockStepDetector clock_steps_;
   bool has_any_{false};
 };
 

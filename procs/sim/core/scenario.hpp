@@ -68,6 +68,7 @@ struct Scenario {
   void check_world(Problems& problems) const;
   void check_markers(Problems& problems) const;
   void check_places(Problems& problems) const;
+  void check_added(int num_ids, Problems& problems) const;
   void check_moves(Problems& problems) const;
   void check_route(Problems& problems) const;
   void check_faults(Problems& problems) const;

@@ -111,8 +111,16 @@ void Scenario::check_markers(Problems& problems) const {
                              robot.markers.dictionary));
     return;
   }
-  if (markers.layout == MarkerLayout::kNone) return;
+  if (markers.layout == MarkerLayout::kNone && markers.added.empty()) return;
   const double half_plate_m = 0.5 * plate_size_m(marker_print());
+  if (markers.centre_height_m < half_plate_m - kRoundingSlack_m ||
+      markers.centre_height_m > world.wall_height_m - half_plate_m + kRoundingSlack_m) {
+    problems.add("markers.centre_height_m",
+                 fmt::format("got {}, expected a plate of {:.2f} m to fit between floor and wall "
+                             "top, {} m",
+                             markers.centre_height_m, 2.0 * half_plate_m, world.wall_height_m));
+  }
+  if (markers.layout == MarkerLayout::kNone) return;
   const bool ends_in_time = world.layout != Layout::kStraight ||
                             markers.last_m <= world.length_m - half_plate_m + kRoundingSlack_m;
   if (markers.first_m < half_plate_m - kRoundingSlack_m || markers.last_m < markers.first_m ||
@@ -127,13 +135,6 @@ void Scenario::check_markers(Problems& problems) const {
     problems.add("markers.spacing_m", fmt::format("got {}, expected at least the size of a plate, "
                                                   "{:.2f} m",
                                                   markers.spacing_m, 2.0 * half_plate_m));
-  }
-  if (markers.centre_height_m < half_plate_m - kRoundingSlack_m ||
-      markers.centre_height_m > world.wall_height_m - half_plate_m + kRoundingSlack_m) {
-    problems.add("markers.centre_height_m",
-                 fmt::format("got {}, expected a plate of {:.2f} m to fit between floor and wall "
-                             "top, {} m",
-                             markers.centre_height_m, 2.0 * half_plate_m, world.wall_height_m));
   }
 }
 
@@ -157,7 +158,35 @@ void Scenario::check_places(Problems& problems) const {
     problems.add("markers.missing", fmt::format("there is no place {}, the last one is {}", number,
                                                 static_cast<int>(num_places) - 1));
   }
+  check_added(num_ids, problems);
   check_moves(problems);
+}
+
+void Scenario::check_added(int num_ids, Problems& problems) const {
+  const double plate_m = plate_size_m(marker_print());
+  const std::vector<MarkerPlate> plates = build_world(world, markers, plate_m, run.seed).markers;
+  const std::vector<Wall> walls = outline(world);
+  for (std::size_t i = 0; i < markers.added.size(); ++i) {
+    const MarkerAddConfig& added = markers.added[i];
+    const std::string key = fmt::format("markers.added[{}]", i);
+    if (added.id >= num_ids) {
+      problems.add(key, fmt::format("marker id {} is not in {}, which has ids 0 to {}", added.id,
+                                    robot.markers.dictionary, num_ids - 1));
+    }
+    const auto hung = plate_near(walls, {added.x_m, added.y_m}, plate_m);
+    if (!hung) {
+      problems.add(key, fmt::format("no wall with room for a plate of {:.2f} m is within half a "
+                                    "metre of ({}, {})",
+                                    plate_m, added.x_m, added.y_m));
+      continue;
+    }
+    const auto is_in_its_way = [&](const MarkerPlate& other) {
+      return other.yaw_rad == hung->yaw_rad &&
+             (other.centre_m - hung->centre_m).head<2>().norm() < plate_m - kRoundingSlack_m;
+    };
+    if (std::count_if(plates.begin(), plates.end(), is_in_its_way) > 1)
+      problems.add(key, "another marker hangs there");
+  }
 }
 
 void Scenario::check_moves(Problems& problems) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the files go. A file that is there is whole; a file that cannot be written is remembered.
+// Where the files go. A file that is there is whole; a file that cannot be written is recorded.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ class OutputFolder {
   /// @throws SetupError when files cannot be written there.
   explicit OutputFolder(std::filesystem::path folder);
 
-  /// Writes one file. A failure is logged and remembered, and does not stop anybody.
+  /// Writes one file. A failure is logged and recorded, and does not stop anybody.
   void write(const std::string& name, std::string_view bytes);
 
   /// Removes a file of an earlier run, if there is one.

@@ -150,6 +150,26 @@ TEST(BadRobots, OdometryThatIsStuckIsNoticedAndCatchesUp) {
   EXPECT_EQ(drives.findings.odometry_caught_up, 1);
 }
 
+TEST(BadRobots, OdometryThatNeverMovesIsNamedAndTheCovarianceHonest) {
+  const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
+    for (OdometrySample& sample : log.odometry)
+      sample.odom_from_base = {};
+  });
+  EXPECT_GT(drives.findings.odometry_stuck, drives.findings.observations / 2);
+  EXPECT_LT(drives.nees, 5.0);
+}
+
+TEST(BadRobots, TurnsThatOdometryInventsAreNotTakenForRangesOfAnotherScale) {
+  const Drives drives = drive_all(as_described, [](SensorLog& log, Random& random) {
+    for (std::size_t i = 600; i < log.odometry.size(); i += 300) {
+      const double turn_rad = random.uniform(0.2, 0.5);
+      insert_motion(log, i, {0.0, 0.0, i % 600 == 0 ? turn_rad : -turn_rad});
+    }
+  });
+  EXPECT_EQ(drives.findings.scans_rescaled, 0);
+  EXPECT_LT(drives.ate_m, 0.06);
+}
+
 TEST(BadRobots, OdometryThatLosesWhatWasDrivenIsNoticed) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
     const auto [from, to] = samples_of(2.0);

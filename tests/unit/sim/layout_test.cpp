@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace waymark {
 namespace {
@@ -157,6 +158,28 @@ TEST(Markers, MissingOnesLeaveTheirIdUnused) {
   EXPECT_THAT(ids_of(build_world({}, markers, kPlate_m, 1)), ElementsAre(0, 3, 4, 7));
   markers.keep_every = 4;
   EXPECT_THAT(ids_of(build_world({}, markers, kPlate_m, 1)), ElementsAre(0, 5));
+}
+
+TEST(Markers, AddedOnesHangOnTheNearestWall) {
+  WorldConfig config{};
+  config.openings = {{.side = Side::kLeft, .centre_m = 10.0, .depth_m = 4.0, .room_width_m = 5.0}};
+  MarkerLayoutConfig markers{};
+  markers.layout = MarkerLayout::kNone;
+  const double room_back_m = 1.0 + 2.0 * config.wall_thickness_m + 4.0;
+  markers.added = {{7, 20.0, -0.8}, {8, 50.0, 0.1}, {9, 11.0, room_back_m}, {7, 0.2, 0.9}};
+  const std::vector<MarkerPlate> plates = build_world(config, markers, kPlate_m, 1).markers;
+  ASSERT_EQ(plates.size(), 4U);
+  const auto expect_at = [&](std::size_t i, double x_m, double y_m, double yaw_rad) {
+    EXPECT_NEAR(plates[i].centre_m.x(), x_m, 1e-9) << i;
+    EXPECT_NEAR(plates[i].centre_m.y(), y_m, 1e-9) << i;
+    EXPECT_NEAR(wrap_angle(plates[i].yaw_rad - yaw_rad), 0.0, 1e-9) << i;
+  };
+  const double quarter_rad = 0.5 * std::numbers::pi;
+  expect_at(0, 20.0, -1.0 + kPlateThickness_m, quarter_rad);
+  expect_at(1, 50.0 - kPlateThickness_m, 0.1, 2.0 * quarter_rad);
+  expect_at(2, 11.0, room_back_m - kPlateThickness_m, -quarter_rad);
+  expect_at(3, 0.5 * kPlate_m, 1.0 - kPlateThickness_m, -quarter_rad);
+  EXPECT_EQ(plates[3].instance, 1);
 }
 
 TEST(Markers, ASharedIdNumbersItsInstances) {

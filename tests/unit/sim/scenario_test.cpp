@@ -79,6 +79,18 @@ TEST(Scenario, IdsMustBeInTheDictionary) {
   EXPECT_THAT(error_of({"markers.ids=[1, 2]"}), HasSubstr("expected one for each of the 24"));
 }
 
+TEST(Scenario, AddedMarkersNeedFreeWallBehindThem) {
+  EXPECT_EQ(error_of({"markers.added=[{id=99, x_m=50.0, y_m=0.2}]"}), "no error");
+  EXPECT_EQ(error_of({"markers.layout=none", "markers.added=[{id=9, x_m=9.0, y_m=0.9}]"}),
+            "no error");
+  EXPECT_THAT(error_of({"markers.added=[{id=99, x_m=30.0, y_m=0.0}]"}),
+              HasSubstr("no wall with room for a plate of"));
+  EXPECT_THAT(error_of({"markers.added=[{id=99, x_m=4.5, y_m=1.0}]"}),
+              HasSubstr("markers.added[0]: another marker hangs there"));
+  EXPECT_THAT(error_of({"markers.added=[{id=250, x_m=50.0}]"}),
+              HasSubstr("marker id 250 is not in DICT_6X6_250"));
+}
+
 TEST(Scenario, TheRouteMustKeepClearOfTheWalls) {
   EXPECT_THAT(error_of({"route.start_x_m=0.05"}), HasSubstr("route.start"));
   EXPECT_THAT(error_of({"route.start_y_m=1.0"}), HasSubstr("route.start"));

@@ -292,7 +292,7 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
   const auto sigma = [&](int i) {
     return std::sqrt(covariance(i, i));
   };
-  // Without turns odometry's noise is all that tells a lever from none.
+  // Without turns only odometry's noise distinguishes a lever from none.
   const double least_sigma_m = turned_rad < kFewestTurns_rad ? kUnknownPlace_m : 0.0;
   const double sigma_direction = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
   return HandEye{{found[2] / scale, std::max(least_sigma_m, sigma(2) / scale)},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a line, taken one after the other; the first thing that is wrong is remembered.
+// The fields of a line, taken one after the other; the first error is kept.
 #pragma once
 
 #include "import/log/import_report.hpp"

@@ -83,6 +83,28 @@ bool is_kept(const MarkerLayoutConfig& markers, const Place& place, std::size_t 
 
 }  // namespace
 
+std::optional<MarkerPlate> plate_near(const std::vector<Wall>& walls,
+                                      const Eigen::Vector2d& point_m, double plate_size_m) {
+  constexpr double kReach_m = 0.5;
+  const double half_m = 0.5 * plate_size_m;
+  std::optional<MarkerPlate> nearest;
+  double nearest_m = kReach_m;
+  for (const Wall& wall : walls) {
+    if (wall.length_m() < plate_size_m) continue;
+    const double along_m =
+        std::clamp(wall.along().dot(point_m - wall.from_m), half_m, wall.length_m() - half_m);
+    const Eigen::Vector2d centre_m =
+        wall.from_m + along_m * wall.along() - kPlateThickness_m * wall.outward();
+    const double away_m = (centre_m - point_m).norm();
+    if (away_m > nearest_m) continue;
+    nearest_m = away_m;
+    nearest.emplace();
+    nearest->centre_m.head<2>() = centre_m;
+    nearest->yaw_rad = std::atan2(-wall.outward().y(), -wall.outward().x());
+  }
+  return nearest;
+}
+
 bool hangs_on_a_wall(const std::vector<Wall>& walls, const Eigen::Vector2d& centre_m,
                      double plate_size_m) {
   constexpr double kRoundingSlack_m = 1e-9;
@@ -131,6 +153,14 @@ World build_world(const WorldConfig& world, const MarkerLayoutConfig& markers, d
                              instances[ids.at(i)]++,
                              {place.centre_m.x(), place.centre_m.y(), markers.centre_height_m},
                              place.yaw_rad});
+  }
+  for (const MarkerAddConfig& added : markers.added) {
+    auto plate = plate_near(built.walls, {added.x_m, added.y_m}, plate_size_m);
+    if (!plate) continue;  // Scenario::check refuses it
+    plate->id = added.id;
+    plate->instance = instances[added.id]++;
+    plate->centre_m.z() = markers.centre_height_m;
+    built.markers.push_back(*plate);
   }
   return built;
 }

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace waymark {
@@ -52,6 +53,11 @@ std::size_t place_count(const WorldConfig& world, const MarkerLayoutConfig& mark
 
 /// Id of each of so many places: the explicit list, the one for all, or counted up from first_id.
 std::vector<int> marker_ids(const MarkerLayoutConfig& markers, std::size_t num_places);
+
+/// Nearest centre of a plate on a wall, and the direction that it faces.
+/// @return nullopt where no wall with room for it is within half a metre.
+std::optional<MarkerPlate> plate_near(const std::vector<Wall>& walls,
+                                      const Eigen::Vector2d& point_m, double plate_size_m);
 
 /// Is there wall behind a whole plate?
 bool hangs_on_a_wall(const std::vector<Wall>& walls, const Eigen::Vector2d& centre_m,

@@ -45,6 +45,12 @@ void MarkerMoveConfig::describe(Fields& fields) {
   fields.field("dy_m", dy_m, kAnyNumber, "by how much, world frame");
 }
 
+void MarkerAddConfig::describe(Fields& fields) {
+  fields.field("id", id, {0, 100000}, "of the marker");
+  fields.field("x_m", x_m, kAnyNumber, "its centre, world frame; it hangs on the nearest wall");
+  fields.field("y_m", y_m, kAnyNumber, "its centre, world frame");
+}
+
 void MarkerLayoutConfig::describe(Fields& fields) {
   fields.choice("layout", layout,
                 {{"opposite", MarkerLayout::kOpposite},
@@ -68,6 +74,7 @@ void MarkerLayoutConfig::describe(Fields& fields) {
   fields.field("missing", missing, {0, 100000}, "numbers of places whose marker is gone");
   fields.field("missing_share", missing_share, kFraction, "so many are gone, drawn from the seed");
   fields.list("moved", moved, "markers that are hung elsewhere during the run");
+  fields.list("added", added, "markers beside those of the layout, on any wall");
 }
 
 }  // namespace waymark

@@ -67,6 +67,15 @@ struct MarkerMoveConfig {
   void describe(Fields& fields);
 };
 
+/// One more marker, on any wall: a corridor's, its end, a room's.
+struct MarkerAddConfig {
+  int id{0};
+  double x_m{0.0};
+  double y_m{0.0};
+
+  void describe(Fields& fields);
+};
+
 /// Where the markers hang. What they look like is RobotConfig's: the robot has to know that.
 /// Places are numbered by corridor, station, left wall before right wall; a marker that is missing
 /// leaves its number and id unused.
@@ -84,6 +93,7 @@ struct MarkerLayoutConfig {
   std::vector<int> missing{};
   double missing_share{0.0};
   std::vector<MarkerMoveConfig> moved{};
+  std::vector<MarkerAddConfig> added{};
 
   void describe(Fields& fields);
 };

@@ -30,7 +30,7 @@ GmappingEstimator::GmappingEstimator(const EstimatorSetup& setup, const Gmapping
 Estimate GmappingEstimator::update(const Observation& observation) {
   const bool is_first = updates_ == 0;
   const auto missing_rad = config_.watch_turns
-                               ? turn_watch_.missing_turn(observation.beams, observation.motion)
+                               ? turn_monitor_.missing_turn(observation.beams, observation.motion)
                                : std::nullopt;
   const Motion missing = Motion::between({}, {0.0, 0.0, missing_rad.value_or(0.0)});
   const Motion motion = missing_rad ? observation.motion.then(missing) : observation.motion;

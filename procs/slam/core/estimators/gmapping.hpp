@@ -9,7 +9,7 @@
 #include "slam/core/gmapping/scan_gate.hpp"
 #include "slam/core/gmapping/scan_matcher.hpp"
 #include "slam/core/gmapping/trajectory.hpp"
-#include "slam/core/scan/turn_watch.hpp"
+#include "slam/core/scan/turn_monitor.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -76,7 +76,7 @@ class GmappingEstimator final : public Estimator {
   MatcherSetting matcher_;
   ParticleSet<State> particles_;
   std::uint64_t observations_{0};
-  TurnWatch turn_watch_{};
+  TurnMonitor turn_monitor_{};
   ScanTrail trail_{};
   std::vector<Se2> settled_way_{};  ///< poses at the updates that all particles share
 

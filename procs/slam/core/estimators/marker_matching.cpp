@@ -77,7 +77,7 @@ void MarkerMatchingEstimator::weigh(const Observation& observation) {
   particles_.normalise();
   const std::size_t best = particles_.best();
   wall_agreement_ = walls[best].mapped > 0.0 ? walls[best].agreement / walls[best].mapped : 1.0;
-  markers_told_ = markers[best] > 0.0;
+  saw_known_markers_ = markers[best] > 0.0;
 }
 
 Estimate MarkerMatchingEstimator::estimate(const Observation& observation) const {
@@ -86,9 +86,10 @@ Estimate MarkerMatchingEstimator::estimate(const Observation& observation) const
   estimate.covariance = covariance_;
   estimate.num_particles = particles_.size();
   estimate.effective_particles = effective_particles_;
-  estimate.weak_axis_source = markers_told_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
+  estimate.weak_axis_source =
+      saw_known_markers_ ? WeakAxisSource::kMarkers : WeakAxisSource::kOdometry;
   estimate.health = health_of(updates_, wall_agreement_ < config_.lost_agreement,
-                              !estimate.observability.is_degenerate || markers_told_);
+                              !estimate.observability.is_degenerate || saw_known_markers_);
   return estimate;
 }
 

@@ -54,8 +54,8 @@ class MarkerMatchingEstimator final : public Estimator {
   Se2 best_{};  ///< map_from_base of the particle with the highest weight
   Eigen::Matrix3d covariance_{Eigen::Matrix3d::Zero()};
   double effective_particles_{1.0};
-  double wall_agreement_{1.0};  ///< of the best particle's beams with the mapped walls
-  bool markers_told_{false};    ///< known markers were in view
+  double wall_agreement_{1.0};     ///< of the best particle's beams with the mapped walls
+  bool saw_known_markers_{false};  ///< known markers were in view
 };
 
 }  // namespace waymark

@@ -20,6 +20,9 @@ constexpr double kContradiction = 25.0;  // chi^2
 constexpr double kContradiction_m = 0.03;
 constexpr double kContradiction_rad = 0.02;
 
+// Of a robot whose odometry stands still, from scan to scan: it may be stuck.
+const Eigen::Vector3d kStuckStep{0.1, 0.1, 0.05};
+
 GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config) {
   GraphNoise noise;
   noise.odometry = config.odometry;
@@ -74,7 +77,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   BetweenKeyframes between;
   if (!is_keyframe) {
     between = between_keyframes(look);
-    is_keyframe = between.contradicts_odometry;
+    is_keyframe = between.contradicts_odometry || has_moved_silently(between.map_from_base);
   }
   if (is_keyframe) {
     add_keyframe(observation, look);
@@ -145,7 +148,9 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
   Look look{points_of(observation)};
   if (graph_.state().keyframes.empty() || given_pose_) return look;
   look.expected = prediction();
-  look.scan = matched(look.points, look.expected);
+  Prediction searched = look.expected;
+  if (motion_doubt_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
+  look.scan = matched(look.points, searched);
   return look;
 }
 
@@ -160,10 +165,13 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Look& 
   } else {
     const Prediction& expected = look.expected;
     auto scan = look.scan;
-    if (scan) search_widely(look.points, expected, *scan);
-    const std::size_t keyframe = graph_.add_keyframe(expected.map_from_base);
+    if (scan && !look.is_searched) search_widely(look.points, expected, *scan);
     is_refuted_scan = scan && is_refuted(scan->match);
     const bool is_used = scan && !is_refuted_scan && scan->match.is_usable(config_.scan);
+    // Odometry that stands still is so sure that no step of the solver would leave it.
+    const bool is_moved = is_used && motion_doubt_.is_standing();
+    const std::size_t keyframe = graph_.add_keyframe(
+        is_moved ? scan->map_from_submap * scan->match.map_from_base : expected.map_from_base);
     shows_all_axes = is_used && !scan->match.observed.is_degenerate;
     add_odometry_factor(keyframe, shows_all_axes || agrees_with_markers(observation));
     if (scan) inlier_share_ = scan->match.inlier_share;

@@ -96,6 +96,7 @@ class WaymarkEstimator final : public Estimator {
     Points points{};
     Prediction expected{};
     std::optional<MatchedScan> scan{};
+    bool is_searched{false};  ///< widely
   };
 
   /// A scan hangs on the keyframe before it.
@@ -114,12 +115,13 @@ class WaymarkEstimator final : public Estimator {
     bool shows_all_axes{false};
   };
 
-  /// Odometry tells nothing new; it may be stuck.
+  /// Odometry has not changed; it may be stuck.
   struct Standstill {
     std::size_t keyframe{0};
     Motion motion{};      ///< since that keyframe
     Se2 map_from_base{};  ///< the robot, as of the last keyframe that showed it moving
     Timestamp since{};
+    Timestamp moved_at{};  ///< time of that keyframe
   };
 
   bool place(const Observation& observation);
@@ -145,6 +147,7 @@ class WaymarkEstimator final : public Estimator {
   void spread_kept_back(const Observation& observation);
   void weigh_past_anew();
   bool is_keyframe_due(const Observation& observation) const;
+  bool has_moved_silently(const Se2& map_from_base) const;
   bool is_contradicted_by(const Observation& observation) const;
   bool agrees_with_markers(const Observation& observation) const;
   Prediction prediction() const;

@@ -146,7 +146,7 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
 
 void WaymarkEstimator::begin_submaps_anew() {
   submaps_.clear();
-  loop_finder_ = LoopFinder{config_.loops, config_.scan};  // it remembers submaps by their index
+  loop_finder_ = LoopFinder{config_.loops, config_.scan};  // it keeps submaps by their index
 }
 
 }  // namespace waymark

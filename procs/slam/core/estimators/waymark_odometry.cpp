@@ -43,7 +43,8 @@ void WaymarkEstimator::follow_odometry(const Observation& observation, double st
     standstill_.reset();
     keyframes_standing_ = 0;
   } else if (!standstill_ && !graph_.state().keyframes.empty()) {
-    standstill_ = Standstill{moved_from_, motion_, prediction().map_from_base, observation.time};
+    standstill_ = Standstill{moved_from_, motion_, prediction().map_from_base, observation.time,
+                             observation.time};
   }
   ++findings_.observations;
   if (observation.odometry_doubtful || odometry_refused_) {
@@ -71,6 +72,14 @@ bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
   return motion_.distance_m >=
              (is_seen ? config_.marker_keyframe_distance_m : config_.keyframe_distance_m) ||
          motion_.turn_rad >= config_.keyframe_turn_rad;
+}
+
+/// As far as from keyframe to keyframe, while odometry says nothing.
+bool WaymarkEstimator::has_moved_silently(const Se2& map_from_base) const {
+  if (!motion_doubt_.is_silent()) return false;
+  const Eigen::Vector3d moved = pose_difference(map_from_base, graph_.state().keyframes.back());
+  return moved.head<2>().norm() >= config_.keyframe_distance_m ||
+         std::abs(moved.z()) >= config_.keyframe_turn_rad;
 }
 
 WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
@@ -101,9 +110,11 @@ void WaymarkEstimator::compare_with_odometry() {
   const Se2& now = graph_.state().keyframes.back();
   const Eigen::Vector3d moved = pose_difference(now, standstill_->map_from_base);
   if (moved.head<2>().norm() < kMoved_m && std::abs(moved.z()) < kMoved_rad) return;
-  motion_doubt_.note_moved();
+  motion_doubt_.note_moved(moved.head<2>().norm(),
+                           to_seconds(newest_time_ - standstill_->moved_at));
   keyframes_standing_ = 0;
   standstill_->map_from_base = now;
+  standstill_->moved_at = newest_time_;
 }
 
 /// The way that was driven while odometry stood still is drawn evenly into the final trajectory.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the graph estimator judges the LiDAR: the noise of its ranges, and their scale.
+// How the graph estimator monitors the LiDAR: the noise of its ranges, and their scale.
 #include "slam/core/estimators/waymark.hpp"
 
 #include <cmath>
@@ -33,13 +33,16 @@ Points points_of(const Observation& observation) {
   return points;
 }
 
-/// Walls on both sides that are all too far away, or all too near, are no other pose: the ranges
-/// are at another scale.
+/// A scan that contradicts the map was taken elsewhere, or its ranges are at another scale: walls
+/// on both sides that are all too far away, or all too near, are no other pose.
 std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,
                                                               Look& look) {
   is_rescaled_ = false;
   if (!look.scan || !fits_badly(look.scan->match)) return std::nullopt;
   const Prediction& expected = look.expected;
+  search_widely(look.points, expected, *look.scan);
+  look.is_searched = true;
+  if (!fits_badly(look.scan->match)) return std::nullopt;
   const auto& plain = look.scan;
   const Se2 submap_from_map = plain->map_from_submap.inverse();
   Eigen::Matrix3d around = in_axes(submap_from_map.rotation(), expected.covariance);
@@ -53,7 +56,7 @@ std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation&
   const Points points = points_of(corrected);
   const auto fitted = matched(points, expected);
   if (!fitted || fitted->match.inliers < kClearlyBetter * plain->match.inliers ||
-      is_refuted(fitted->match)) {
+      fits_badly(fitted->match)) {
     return std::nullopt;
   }
   look.points = points;

@@ -16,7 +16,7 @@ namespace waymark {
 
 enum class Health { kInitialising, kTracking, kDegenerate, kLost };
 
-/// What tells the motion along the weakest direction of the walls.
+/// What observes the motion along the weakest direction of the walls.
 enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
 
 /// What an estimate rests on beside odometry; the last of these that holds.
@@ -39,7 +39,7 @@ struct Estimate {
   bool updated{false};       ///< the scan was weighed and mapped, not only followed by odometry
   bool slipped{false};       ///< the scans showed that the wheels had slipped, and were believed
   bool ranges_wrong{false};  ///< the scan shows known walls, but at another scale: it was scaled
-  /// Camera or markers are further from what was told of them than their standard deviations allow.
+  /// Camera or markers are further from their description than their standard deviations allow.
   bool calibration_widened{false};
 };
 

@@ -97,7 +97,7 @@ class ScanMatcher {
   /// From the ends of the rays from `first` on to the nearest hits around.
   Distances nearest(std::size_t first, const Transform& map_from_ray);
 
-  /// Puts the rays first that lose most at this pose: a score that cannot win is told sooner.
+  /// Puts the rays first that lose most at this pose: a score that cannot win is abandoned sooner.
   void worst_first(const Se2& map_from_base);
 
   const MatcherSetting& setting_;

@@ -23,7 +23,7 @@ struct BeamCells {
   bool operator==(const BeamCells&) const = default;
 };
 
-/// The hits within `reach` cells of a beam's end, remembered per cell: the hundred poses of a climb
+/// The hits within `reach` cells of a beam's end, cached per cell: the hundred poses of a climb
 /// ask for the same few thousand cells. The map must not change meanwhile.
 /// Eight hits without a branch, in one cache line: tests/benchmark/gmapping_speed.cpp
 class Surroundings {

@@ -34,6 +34,11 @@ void MotionDoubt::follow(const Observation& observation) {
   }
 }
 
+void MotionDoubt::note_moved(double distance_m, double elapsed_s) {
+  is_stuck_ = is_standing_;
+  if (is_stuck_ && elapsed_s > 0.0) speed_m_s_ = distance_m / elapsed_s;
+}
+
 double MotionDoubt::take_unmeasured_m() {
   const double sigma_m = unmeasured_m();
   silent_s_ = 0.0;

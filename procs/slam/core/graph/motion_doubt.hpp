@@ -23,8 +23,8 @@ class MotionDoubt {
     standing_s_ = 0.0;
   }
 
-  /// They showed that the robot moved, and the odometry stood still.
-  void note_moved() { is_stuck_ = is_standing_; }
+  /// They showed that the robot moved so far in that time, and the odometry stood still.
+  void note_moved(double distance_m, double elapsed_s);
 
   bool is_standing() const { return is_standing_; }
 
@@ -42,7 +42,7 @@ class MotionDoubt {
 
  private:
   std::optional<Timestamp> time_{};  ///< of the newest observation
-  double speed_m_s_{0.0};            ///< while odometry measured it
+  double speed_m_s_{0.0};            ///< by odometry, or, where that is stuck, by the estimate
   double silent_s_{0.0};
   double standing_s_{0.0};  ///< and not silent
   bool is_standing_{false};

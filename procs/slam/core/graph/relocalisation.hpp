@@ -29,9 +29,9 @@ struct PoseHint {
 
 /// Weighs two hypotheses: the robot is where it is believed to be, and a marker that seems to be
 /// elsewhere was moved, is misread or has a twin; or the robot was carried, and is where the known
-/// places of those markers say. Two markers that agree about the other place while none supports
-/// the belief decide. A robot that was relocated to the twin of a place meets new ids where other
-/// markers should hang: two of them take it back.
+/// places of those markers say. Two markers that agree about the other place, while none supports
+/// the present one, decide. A robot that was relocated to the twin of a place meets new ids where
+/// other markers should hang: two of them take it back.
 class RelocalisationMonitor {
  public:
   enum class Verdict { kSettled, kDoubtful, kElsewhere, kBack };

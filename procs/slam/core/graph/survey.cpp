@@ -53,7 +53,7 @@ bool Survey::match(const Graph& graph, const MarkerBook& book) {
       least_m = away_m;
       entry.landmark = i;
     }
-    // Before there is a frame, nothing tells twins apart.
+    // Before there is a frame, twins cannot be distinguished.
     if (!has_frame_ && candidates > 1) entry.landmark.reset();
     is_new |= entry.landmark.has_value();
   }
@@ -99,7 +99,7 @@ void Survey::apply(Graph& graph, int solve_steps) {
   // Without priors nothing would hold the frame.
   free.add(PosePrior{0, free.state().keyframes[0], kGauge * Eigen::Matrix3d::Identity()});
   free.optimise_all(solve_steps);
-  switch_all(graph, true);  // judged anew, with what is new
+  switch_all(graph, true);  // tested again, with the new measurements
   graph.optimise_all(solve_steps);
   for (int i = 0; i < kMostLeftOut && graph.cost() - free.cost() > kContradiction; ++i) {
     // The contradiction goes away with the entry that is wrong, and with none that is right.

@@ -29,7 +29,7 @@ class Survey {
   /// Once there is a frame: survey_from_map, by which the graph is to be moved.
   std::optional<Se2> new_frame(const Graph& graph);
 
-  /// Adds the priors of new matches, solves, and judges those that are contradicted.
+  /// Adds the priors of new matches, solves, and tests those that are contradicted.
   void apply(Graph& graph, int solve_steps);
 
   struct Contradiction {

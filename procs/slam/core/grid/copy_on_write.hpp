@@ -31,7 +31,7 @@ class CopyOnWrite {
     if (shared_ && shared_->users.fetch_sub(1, std::memory_order_acq_rel) == 1) delete shared_;
   }
 
-  /// Null when empty. The address tells whether two handles share.
+  /// Null when empty. Two handles share when the addresses are equal.
   const Value* get() const { return shared_ ? &shared_->value : nullptr; }
 
   bool is_private() const { return shared_ && shared_->users.load(std::memory_order_acquire) == 1; }

@@ -83,8 +83,9 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const MarkerSenso
                                     sighting.base_from_marker.translation());
 }
 
-/// How the camera's errors move what it sees: a camera that is mounted further left than told sees
-/// everything turned to the right; a longer focal length brings everything nearer to the image.
+/// How the camera's errors move what it sees: a camera that is mounted further left than described
+/// sees everything turned to the right; a longer focal length brings everything nearer to the
+/// image.
 Eigen::Matrix<double, 3, 2> by_camera_errors(const Eigen::Vector2d& place_in_base,
                                              const Se2& base_from_camera) {
   const Eigen::Vector2d ray = place_in_base - base_from_camera.translation();

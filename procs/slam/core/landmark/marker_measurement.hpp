@@ -87,8 +87,8 @@ struct MarkerMeasurement {
 };
 
 /// The sightings of an observation's newest frame as measurements. The corners tell the bearing
-/// best and the range worst; the wall tells where along that bearing the marker is. A view that the
-/// wall contradicts (a flipped pose) gives no measurement.
+/// best and the range worst; where along that bearing the marker is, follows from the wall. A view
+/// that the wall contradicts (a flipped pose) gives no measurement.
 /// @param odometry  that carried the sightings from their frames' times to the scan's.
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
                                                const MarkerSensors& sensors,

@@ -6,7 +6,7 @@
 
 namespace waymark {
 
-/// How far camera and markers may differ from what the robot has been told of them: standard
+/// How far camera and markers may differ from their description: standard
 /// deviations. Keys and meanings: [robot.camera] and [robot.markers]; the defaults are theirs.
 struct SightingSigmas {
   /// Places in `learnt`.

@@ -12,7 +12,7 @@ namespace waymark {
 
 struct Landmark {
   int id{kNoMarker};
-  int instance{0};  ///< tells markers of equal id apart, in order of their first sighting
+  int instance{0};  ///< distinguishes markers of equal id, in order of their first sighting
   Se2 map_from_marker{};
   /// [m^2, m rad, rad^2] order x y yaw, map frame.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};

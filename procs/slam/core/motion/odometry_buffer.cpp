@@ -19,7 +19,7 @@ OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
   Outcome outcome = Outcome::kAdded;
   if (!samples_.empty()) {
     if (sample.time <= newest()) return Outcome::kOutOfOrder;
-    if (sample.time > newest() + ClockWatch::kLongestPause) return Outcome::kTooFarAhead;
+    if (sample.time > newest() + ClockStepDetector::kLongestPause) return Outcome::kTooFarAhead;
     outcome = add_newer(sample);
   }
   if (samples_.empty() || is_other(sample.odom_from_base, last_raw_)) changed_ = sample.time;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/sensors/sensors.hpp"
-#include "common/time/clock_watch.hpp"
+#include "common/time/clock_step_detector.hpp"
 #include "slam/core/motion/motion.hpp"
 
 #include <deque>
@@ -17,11 +17,11 @@ class OdometryBuffer {
   enum class Outcome { kAdded, kOutOfOrder, kTooFarAhead, kJumped, kCaughtUp };
 
   /// A sample that is not newer than the last is refused, and one that is newer by more than any
-  /// pause (ClockWatch::kLongestPause). Odometry that stood still and then jumps as far as can be
-  /// driven meanwhile had been stuck: the jump is what it has kept back. After a jump that no robot
-  /// can drive nothing is believed until some samples in a row agree: if they are where the robot
-  /// can have driven since the jump, what came in between was garbage, and the way from before it
-  /// is what was kept back; else the odometry was reset, which is no motion.
+  /// pause (ClockStepDetector::kLongestPause). Odometry that stood still and then jumps as far as
+  /// can be driven meanwhile had been stuck: the jump is what it has kept back. After a jump that
+  /// no robot can drive nothing is believed until some samples in a row agree: if they are where
+  /// the robot can have driven since the jump, what came in between was garbage, and the way from
+  /// before it is what was kept back; else the odometry was reset, which is no motion.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }
@@ -42,7 +42,7 @@ class OdometryBuffer {
   /// back.
   Motion motion_between(Timestamp from, Timestamp to) const;
 
-  /// What a sample after `from`, not after `to`, has told of the time before it.
+  /// What a sample after `from`, not after `to`, has reported of the time before it.
   std::optional<Motion> kept_back(Timestamp from, Timestamp to) const;
 
   /// Whether samples of that time are not believed.
@@ -70,7 +70,7 @@ class OdometryBuffer {
 
   /// What was kept back since the odometry last changed.
   struct CatchUp {
-    Timestamp time{};  ///< of the sample that told it
+    Timestamp time{};  ///< of the sample that reported it
     Motion motion{};
   };
 
@@ -101,7 +101,7 @@ class OdometryBuffer {
   std::deque<Sample> samples_{};
   Se2 smooth_from_raw_{};
   Se2 last_raw_{};
-  Timestamp changed_{};  ///< when it last told another pose than before
+  Timestamp changed_{};  ///< when its pose last changed
   std::optional<CatchUp> catch_up_{};
   std::optional<Doubt> doubt_{};
   std::optional<Interval> doubted_{};  ///< the last one, perhaps still going on

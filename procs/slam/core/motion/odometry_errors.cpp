@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-// A turn below so many standard deviations of its noise tells nothing about the scale of turns.
+// A turn below so many standard deviations of its noise says nothing about the scale of turns.
 constexpr double kTellingSigmas = 3.0;
 constexpr double kGuessed_m_s = 0.25;    // sigma of a guessed speed; [rad/s] of a turn
 constexpr double kVarianceFloor = 1e-9;  // [m^2, rad^2] of a step: 0.03 mm, 0.002 degrees

@@ -19,7 +19,7 @@ struct OdometryNoise {
   double scale_sigma{0.02};            ///< of distances
   double turn_scale_sigma{0.02};       ///< of turns
   double drift_sigma_rad_per_m{0.01};  ///< heading gained per metre
-  double lidar_ahead_sigma_m{0.05};    ///< of the place that the LiDAR is told to be at
+  double lidar_ahead_sigma_m{0.05};    ///< of the configured place of the LiDAR
   double half_track_m{0.14};           ///< between the wheels; taken from the robot
   bool may_slip{true};                 ///< wheels spin, are pushed, jump: a mixture, not a normal
 
@@ -35,8 +35,8 @@ Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNo
 
 /// Systematic errors, as a vector (scale, drift, turn scale, ahead, spin): true distance = (1 +
 /// scale) measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * distance.
-/// What the LiDAR localises is `ahead` [m] before what the wheels turn about, beyond what the
-/// configuration tells: a robot that turns on the spot moves it sideways. A wheel that slips errs
+/// What the LiDAR localises is `ahead` [m] before what the wheels turn about, beyond its
+/// configured place: a robot that turns on the spot moves it sideways. A wheel that slips errs
 /// in the way as it does in the turn: `spin` [m/rad], minus half the track where it spins.
 using OdometryErrors = Eigen::Matrix<double, 5, 1>;
 inline constexpr Eigen::Index kOdometryErrors = OdometryErrors::SizeAtCompileTime;
@@ -49,7 +49,7 @@ using MotionByErrors = Eigen::Matrix<double, 3, kOdometryErrors>;
 struct CorrectedMotion {
   Se2 start_from_end{};
   /// Of (x, y, theta) at the end, in the frame at the start, by the systematic errors. Spin is left
-  /// out: what the odometry tells does not show a slip.
+  /// out: odometry itself does not show a slip.
   MotionByErrors by_errors{MotionByErrors::Zero()};
   /// Of the random walk, same order and frame.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};

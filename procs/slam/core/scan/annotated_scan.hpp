@@ -13,7 +13,7 @@ namespace waymark {
 
 /// What the camera says about the spot where a beam ended.
 enum class Sight {
-  kUnknown,  ///< the camera could not have told
+  kUnknown,  ///< outside of the camera's view
   kNone,     ///< no marker there
   kMarker,   ///< a marker: its id is given
 };

@@ -12,7 +12,7 @@
 
 namespace waymark {
 
-/// Where the LiDAR sits and which of its ranges are to be trusted.
+/// Where the LiDAR sits and which of its ranges are valid.
 struct LidarSetup {
   Se2 base_from_lidar{};
   double range_min_m{0.12};

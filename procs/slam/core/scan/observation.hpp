@@ -16,8 +16,8 @@ struct Observation {
   std::vector<AnnotatedBeam> beams{};  ///< none while the LiDAR is silent
   MeanSweep mean_sweep{};
   std::vector<MarkerSighting> sightings{};  ///< of the camera frames since the observation before
-  /// The motion begins with one that odometry has kept back while it stood still, and has told at
-  /// once. Observations meanwhile had no motion.
+  /// The motion begins with one that odometry has kept back while it stood still, and has reported
+  /// at once. Observations meanwhile had no motion.
   bool odometry_caught_up{false};
   bool odometry_doubtful{false};  ///< it jumped about: what was driven is not known
   bool camera_reported{false};    ///< there was such a frame, even if it was empty

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the perspective of one square tells about the camera that sees it.
+// What can be learnt about a camera from the perspective of one square.
 #pragma once
 
 #include <Eigen/Core>

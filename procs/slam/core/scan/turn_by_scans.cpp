@@ -11,7 +11,7 @@ namespace waymark {
 namespace {
 
 constexpr int kBins = 360;
-constexpr int kMaxTurn = 50;             // [bin] beyond what odometry tells
+constexpr int kMaxTurn = 50;             // [bin] beyond odometry
 constexpr int kSameTurn = 3;             // [bin] this near to odometry's turn is no contradiction
 constexpr float kFar_m = 0.3F;           // differences are not counted beyond: other objects
 constexpr double kMinCommon = 0.6;       // share of the later scan's bins
@@ -64,7 +64,7 @@ std::optional<TurnByScans> turn_between(std::span<const AnnotatedBeam> earlier,
                                         std::span<const AnnotatedBeam> later,
                                         const Motion& motion) {
   if (earlier.empty() || later.empty()) return std::nullopt;
-  // Both from the LiDAR's later place as odometry tells it; what is left to find is the turn.
+  // Both from the LiDAR's later place by odometry; what is left to find is the turn.
   const Se2 base_from_lidar{later.front().beam.start_in_base, 0.0};
   const RangeProfile now = profile_of(later, base_from_lidar);
   const RangeProfile then = profile_of(earlier, motion.start_from_end * base_from_lidar);

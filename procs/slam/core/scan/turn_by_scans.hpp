@@ -10,11 +10,11 @@
 
 namespace waymark {
 
-/// A turn that is told from range profiles.
+/// A turn that is measured by range profiles.
 struct TurnByScans {
   double turn_rad{0.0};
   double mismatch_m{0.0};           ///< mean difference of the ranges after that turn
-  double odometry_mismatch_m{0.0};  ///< the same after the turn that odometry tells
+  double odometry_mismatch_m{0.0};  ///< the same after odometry's turn
   /// Odometry's turn does not fit the scans at all, and another one does: the wheels slipped or the
   /// robot was turned by hand.
   bool contradicts_odometry{false};

@@ -65,7 +65,7 @@ TEST(MotionDoubt, StuckOdometryMeasuresNothingUntilItMovesAgain) {
   Robot robot;
   robot.drive();
   robot.stand(1);
-  robot.doubt.note_moved();
+  robot.doubt.note_moved(0.02, 0.2);
   robot.doubt.note_observed();
   EXPECT_TRUE(robot.doubt.is_silent());
   robot.stand(50);
@@ -76,11 +76,21 @@ TEST(MotionDoubt, StuckOdometryMeasuresNothingUntilItMovesAgain) {
   EXPECT_EQ(robot.doubt.unmeasured_m(), 0.0);
 }
 
+TEST(MotionDoubt, TheSpeedOfOdometryThatNeverMovedIsTheEstimates) {
+  Robot robot;
+  robot.stand(10);
+  robot.doubt.note_moved(0.1, 0.2);
+  robot.doubt.note_observed();
+  robot.stand(10);
+  EXPECT_TRUE(robot.doubt.is_silent());
+  EXPECT_NEAR(robot.doubt.unmeasured_m(), 1.0, 0.11);  // 0.5 m/s for 2 s
+}
+
 TEST(MotionDoubt, OdometryThatCatchesUpLeavesNone) {
   Robot robot;
   robot.drive();
   robot.stand(1);
-  robot.doubt.note_moved();
+  robot.doubt.note_moved(0.02, 0.2);
   robot.stand(50);
   robot.observe(1.0, false, true);
   EXPECT_EQ(robot.doubt.unmeasured_m(), 0.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Unit tests of what the queue lets through.
-#include "slam/core/input/sensor_queue.hpp"
+#include "input_values.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,56 +11,10 @@
 namespace waymark {
 namespace {
 
-Timestamp at_ms(int milliseconds) {
-  return Timestamp{std::chrono::milliseconds{milliseconds}};
-}
-
-MarkerDetections frame_at(int milliseconds, std::vector<double> columns_px) {
-  MarkerDetections frame;
-  frame.time = at_ms(milliseconds);
-  for (const double column_px : columns_px) {
-    MarkerDetection detection;
-    detection.id = static_cast<int>(frame.detections.size());
-    detection.corners_px[0].x() = column_px;
-    frame.detections.push_back(detection);
-  }
-  return frame;
-}
-
-std::vector<Skip> skips_of(const std::vector<MarkerDetections>& frames) {
-  SensorQueue queue{SensorSetup{}};
-  for (const MarkerDetections& frame : frames)
-    queue.add(frame);
-  return queue.take_skips();
-}
-
-TEST(SensorQueue, AFrameThatRepeatsTheOneBeforeIsSkipped) {
-  EXPECT_EQ(skips_of({frame_at(0, {10.0, 20.0}), frame_at(100, {10.0, 20.0}),
-                      frame_at(200, {10.0, 20.0})}),
-            (std::vector<Skip>{Skip::kFrameRepeated, Skip::kFrameRepeated}));
-}
-
-TEST(SensorQueue, AFrameThatDiffersAtAllIsUsed) {
-  EXPECT_TRUE(skips_of({frame_at(0, {10.0}), frame_at(100, {10.0 + 1e-9}),
-                        frame_at(200, {10.0, 20.0}), frame_at(300, {10.0})})
-                  .empty());
-}
-
-TEST(SensorQueue, EmptyFramesMayFollowEachOther) {
-  EXPECT_TRUE(skips_of({frame_at(0, {}), frame_at(100, {}), frame_at(200, {})}).empty());
-}
-
-OdometrySample odometry_at(int milliseconds) {
-  return {at_ms(milliseconds), Se2{1e-4 * milliseconds, 0.0, 0.0}};
-}
-
-LidarScan scan_at(int milliseconds) {
-  LidarScan scan;
-  scan.time = at_ms(milliseconds);
-  scan.angles_rad = {0.0, 0.1, 0.2};
-  scan.ranges_m = {1.0, 1.0, 1.0};
-  return scan;
-}
+using test::at_ms;
+using test::frame_at;
+using test::odometry_at;
+using test::scan_at;
 
 /// A metre in 10 s by odometry at 10 Hz, with the scans and frames that there are.
 std::vector<SensorQueue::Ready> all_ready(SensorQueue& queue, int until_ms,
@@ -77,33 +31,6 @@ std::vector<SensorQueue::Ready> all_ready(SensorQueue& queue, int until_ms,
   return all;
 }
 
-/// Observations without beams, of scans with `ranges_m(ms)` five times a second; a metre in 10 s.
-std::size_t num_blind(const std::function<double(int)>& range_m) {
-  SensorQueue queue{SensorSetup{}};
-  std::size_t blind = 0;
-  for (int now_ms = 0; now_ms <= 4000; now_ms += 100) {
-    LidarScan scan = scan_at(now_ms);
-    scan.angles_rad.clear();
-    for (int beam = 0; beam < 40; ++beam)
-      scan.angles_rad.push_back(0.1 * beam);
-    scan.ranges_m.assign(40, range_m(now_ms));
-    if (now_ms % 200 == 0) queue.add(scan);
-    queue.add(odometry_at(now_ms));
-    while (const auto ready = queue.next())
-      blind += ready->observation.beams.empty() ? 1 : 0;
-  }
-  const std::vector<Skip> skips = queue.take_skips();
-  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(skips, Skip::kScanRepeated)), blind);
-  return blind;
-}
-
-TEST(SensorQueue, AScanThatRepeatsOneFromElsewhereShowsNothing) {
-  EXPECT_EQ(num_blind([](int now_ms) { return 2.0 + 1e-6 * now_ms; }), 0U);
-  EXPECT_GT(num_blind([](int) { return 2.0; }), 10U);
-  // 3 cm apart a robot may see the same.
-  EXPECT_EQ(num_blind([](int now_ms) { return 2.0 + 1e-3 * (now_ms / 400); }), 0U);
-}
-
 std::vector<int> times_ms(const std::vector<SensorQueue::Ready>& all) {
   std::vector<int> times;
   for (const SensorQueue::Ready& ready : all)
@@ -114,7 +41,7 @@ std::vector<int> times_ms(const std::vector<SensorQueue::Ready>& all) {
 SensorSetup setup_without_waiting() {
   SensorSetup setup;
   setup.lidar.range_max_m = 5.0;
-  setup.marker_wait = Duration{0};
+  setup.preprocessing.marker_wait_s = 0.0;
   return setup;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/scan/turn_by_scans.hpp"
 
-#include "slam/core/scan/turn_watch.hpp"
+#include "slam/core/scan/turn_monitor.hpp"
 #include "support/room_with_column.hpp"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(TurnBetween, HasNothingToSayWithoutScans) {
 /// Every step is 0.05 m and a degree by odometry; the wheels miss 20 degrees, spread over `steps`.
 double turn_found(int steps) {
   const Motion told{Se2{0.05, 0.0, kDegree}, 0.05, kDegree};
-  TurnWatch watch;
+  TurnMonitor watch;
   Se2 truth{-1.5, -0.6, 0.3};
   double found_rad = 0.0;
   watch.missing_turn(scan_of_room(truth), {});
@@ -62,13 +62,13 @@ double turn_found(int steps) {
   return found_rad;
 }
 
-TEST(TurnWatch, FindsASlipAtOnceAndOneBitByBit) {
+TEST(TurnMonitor, FindsASlipAtOnceAndOneBitByBit) {
   for (const int steps : {1, 4, 8})
     EXPECT_NEAR(turn_found(steps), 20.0 * kDegree, 3.5 * kDegree) << steps;
 }
 
-TEST(TurnWatch, ComparesAcrossScansThatShowNothing) {
-  TurnWatch watch;
+TEST(TurnMonitor, ComparesAcrossScansThatShowNothing) {
+  TurnMonitor watch;
   const Motion told{Se2{0.05, 0.0, 0.0}, 0.05, 0.0};
   Se2 truth{-0.5, 0.3, 0.2};
   EXPECT_FALSE(watch.missing_turn(scan_of_room(truth), {}));

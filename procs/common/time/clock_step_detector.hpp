@@ -8,7 +8,7 @@ namespace waymark {
 
 /// A computer without a battery finds its time server, a log begins anew: from then on no stamp
 /// fits what came before. One that is wrong is followed by one that fits.
-class ClockWatch {
+class ClockStepDetector {
  public:
   /// A stamp later than everything by more than this is wrong, until others agree.
   static constexpr Duration kLongestPause = std::chrono::minutes{10};

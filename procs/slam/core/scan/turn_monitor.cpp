@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/scan/turn_watch.hpp"
+#include "slam/core/scan/turn_monitor.hpp"
 
 #include "common/geometry/angle.hpp"
 #include "slam/core/scan/turn_by_scans.hpp"
@@ -8,14 +8,14 @@ namespace waymark {
 namespace {
 
 // How far back the compared scan is. Further away other things come into sight; nearer, a turn is
-// too small to be told from noise.
+// too small to be distinguished from noise.
 constexpr double kWay_m = 0.2;
 constexpr double kTurn_rad = 0.35;
 
 }  // namespace
 
-std::optional<double> TurnWatch::missing_turn(std::span<const AnnotatedBeam> beams,
-                                              const Motion& motion) {
+std::optional<double> TurnMonitor::missing_turn(std::span<const AnnotatedBeam> beams,
+                                                const Motion& motion) {
   since_reference_ = since_reference_.then(motion);
   if (beams.empty()) return std::nullopt;
   std::optional<double> missing_rad;

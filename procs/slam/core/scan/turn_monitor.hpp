@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Turns of the robot that its wheels did not tell.
+// Turns of the robot that its wheels did not measure.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -13,7 +13,7 @@ namespace waymark {
 
 /// Finds turns that odometry misses, scan by scan: each is compared with one from a short way
 /// before (turn_between).
-class TurnWatch {
+class TurnMonitor {
  public:
   /// The next observation.
   /// @param beams  of its scan; none: nothing is compared.

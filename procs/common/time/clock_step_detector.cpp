@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/time/clock_watch.hpp"
+#include "common/time/clock_step_detector.hpp"
 
 namespace waymark {
 namespace {
@@ -9,7 +9,7 @@ constexpr Duration kNear = std::chrono::seconds{2};  // between stamps that foll
 
 }  // namespace
 
-bool ClockWatch::see_misfit(Timestamp time) {
+bool ClockStepDetector::see_misfit(Timestamp time) {
   const bool agrees = misfits_ > 0 && time >= last_misfit_ - kNear && time <= last_misfit_ + kNear;
   if (!agrees) {
     misfits_ = 0;

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The values of one sensor that wait for the others, and which of their stamps are wrong.
+#pragma once
+
+#include "common/time/time.hpp"
+#include "slam/core/input/skip.hpp"
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <utility>
+
+namespace waymark {
+
+/// How many values of a sensor wait, and what to call those that are not used.
+struct QueuePolicy {
+  std::size_t capacity{0};  ///< of more the oldest is dropped
+  Skip out_of_order{};
+  Skip ahead{};
+  Skip overflow{};
+};
+
+/// Values (with a member `time`) in order of time. Where one is not newer than those before it,
+/// either it is stamped too early or they are stamped too late: it waits aside, and the next one
+/// decides. If that is newer than all, the one aside was wrong; if it follows the one aside, those
+/// that lead the two were.
+template <class Value>
+class StampedQueue {
+ public:
+  explicit StampedQueue(const QueuePolicy& policy) : policy_{policy} {}
+
+  void add(Value value, Skips& skips) {
+    auto before = std::exchange(aside_, std::nullopt);
+    if (!newest_ || value.time > *newest_) {
+      skips.add(policy_.out_of_order, before ? 1 : 0);
+      push(std::move(value), skips);
+    } else if (before && value.time > before->time) {
+      skips.add(policy_.ahead, std::erase_if(values_, [&](const Value& other) {
+                  return other.time >= before->time;
+                }));
+      push(std::move(*before), skips);
+      push(std::move(value), skips);
+    } else if (value.time < *newest_) {
+      skips.add(policy_.out_of_order, before ? 1 : 0);
+      aside_ = std::move(value);
+    } else {
+      skips.add(policy_.out_of_order);
+      aside_ = std::move(before);
+    }
+  }
+
+  bool is_empty() const { return values_.empty(); }
+
+  /// Needs !is_empty().
+  const Value& front() const { return values_.front(); }
+
+  Value pop() {
+    Value value = std::move(values_.front());
+    values_.pop_front();
+    return value;
+  }
+
+  /// Whether a value of that time or a later one has come; it may have been popped.
+  bool has_reached(Timestamp time) const { return newest_ && *newest_ >= time; }
+
+  /// Whether it may turn out that what is stamped with that time is wrong.
+  bool is_doubtful(Timestamp time) const { return aside_ && time > aside_->time; }
+
+  /// The one aside comes too late once the time is past.
+  void drop_aside_until(Timestamp time, Skips& skips) {
+    if (!aside_ || aside_->time > time) return;
+    aside_.reset();
+    skips.add(policy_.out_of_order);
+  }
+
+  void drop_after(Timestamp time, Skips& skips) {
+    skips.add(policy_.ahead,
+              std::erase_if(values_, [&](const Value& value) { return value.time > time; }));
+    if (newest_ && *newest_ > time) newest_.reset();
+  }
+
+  /// As when the clock was set.
+  void clear(Skips& skips) {
+    skips.add(policy_.out_of_order, values_.size() + (aside_ ? 1 : 0));
+    *this = StampedQueue{policy_};
+  }
+
+ private:
+  void push(Value value, Skips& skips) {
+    newest_ = value.time;
+    values_.push_back(std::move(value));
+    if (values_.size() <= policy_.capacity) return;
+    values_.pop_front();
+    skips.add(policy_.overflow);
+  }
+
+  QueuePolicy policy_;
+  std::deque<Value> values_{};
+  std::optional<Timestamp> newest_{};  ///< of all that were pushed
+  std::optional<Value> aside_{};
+};
+
+}  // namespace waymark

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/slam_inputs.hpp"
+
+#include "slam/map_file.hpp"
+#include "slam/survey_file.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+namespace waymark {
+namespace {
+
+void check_map_options(const SlamConfig& config) {
+  const bool is_loaded = !config.load_map.empty();
+  const bool is_used = is_loaded || !config.save_map.empty();
+  if (is_used && config.slam.estimator != EstimatorName::kWaymark)
+    throw SetupError{"only the estimator 'waymark' loads and saves maps: set slam.estimator"};
+  if (is_loaded && config.slam.mode == MapMode::kMap) {
+    throw SetupError{
+        "--load-map needs to know what for: --set slam.mode=localise (the map stays as it is) or "
+        "--set slam.mode=extend"};
+  }
+  if (!is_loaded && config.slam.mode != MapMode::kMap)
+    throw SetupError{"slam.mode = localise and extend need a map: --load-map FILE"};
+  if (config.slam.mode == MapMode::kLocalise && !config.save_map.empty())
+    throw SetupError{
+        "slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
+}
+
+}  // namespace
+
+std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config, std::string& frame) {
+  frame = config.robot.markers.survey_file.empty() ? "map" : "survey";
+  check_map_options(config);
+  if (config.load_map.empty()) return nullptr;
+  MapFile file = read_map_file(config.load_map);
+  const MarkerConfig& markers = config.robot.markers;
+  const auto refuse = [&](const std::string& why) {
+    throw SetupError{fmt::format("map '{}' {}", config.load_map.string(), why)};
+  };
+  if (file.info.marker_dictionary != markers.dictionary ||
+      file.info.marker_size_m != markers.size_m) {
+    refuse(fmt::format("was made with markers {} of {} m, but robot.markers says {} of {} m",
+                       file.info.marker_dictionary, file.info.marker_size_m, markers.dictionary,
+                       markers.size_m));
+  }
+  if (file.map.grid.frame.resolution_m != config.slam.grid.resolution_m) {
+    refuse(fmt::format("has cells of {} m: set slam.grid.resolution_m, which is {}, to that",
+                       file.map.grid.frame.resolution_m, config.slam.grid.resolution_m));
+  }
+  const bool is_empty = file.map.landmarks.empty() && file.map.walls.sums().empty();
+  const bool is_searched =
+      config.slam.start.kind == StartKind::kAnywhere || config.slam.start.kind == StartKind::kLast;
+  if (is_searched && is_empty)
+    refuse(
+        "has neither markers nor walls: slam.start = anywhere or last cannot find the robot there");
+  frame = file.info.frame;
+  return std::make_shared<const MapSnapshot>(std::move(file.map));
+}
+
+std::vector<SurveyedMarker> load_survey(const SlamConfig& config) {
+  const std::string& file = config.robot.markers.survey_file;
+  if (file.empty()) return {};
+  if (config.slam.estimator != EstimatorName::kWaymark) {
+    spdlog::info("the survey '{}' is not used: only the estimator 'waymark' can", file);
+    return {};
+  }
+  std::vector<SurveyedMarker> survey = read_survey(file, config.robot.markers.dictionary);
+  if (!config.load_map.empty())
+    spdlog::info("the survey '{}' is checked, but not used: the loaded map has its frame", file);
+  return survey;
+}
+
+}  // namespace waymark

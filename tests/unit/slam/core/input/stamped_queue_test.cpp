@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Unit tests of which values of a sensor wait, and which are found to be stamped wrong.
+#include "slam/core/input/stamped_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace waymark {
+namespace {
+
+struct Value {
+  Timestamp time{};
+};
+
+constexpr QueuePolicy kPolicy{.capacity = 4,
+                              .out_of_order = Skip::kScanOutOfOrder,
+                              .ahead = Skip::kScanAhead,
+                              .overflow = Skip::kScanOverflow};
+
+struct Result {
+  std::vector<int> seconds{};  ///< of what is in the queue, in order
+  std::vector<Skip> skips{};
+
+  bool operator==(const Result&) const = default;
+};
+
+Timestamp at_s(int seconds) {
+  return Timestamp{std::chrono::seconds{seconds}};
+}
+
+Result result_of(const std::vector<int>& seconds) {
+  StampedQueue<Value> queue{kPolicy};
+  Skips skips;
+  for (const int time_s : seconds)
+    queue.add({at_s(time_s)}, skips);
+  Result result;
+  while (!queue.is_empty())
+    result.seconds.push_back(static_cast<int>(to_us(queue.pop().time) / 1'000'000));
+  result.skips = skips.take();
+  return result;
+}
+
+TEST(StampedQueue, ValuesInOrderAreKept) {
+  EXPECT_EQ(result_of({1, 2, 3}), (Result{{1, 2, 3}, {}}));
+}
+
+TEST(StampedQueue, AValueThatIsTooEarlyIsSkippedOnceTheNextOneIsNewerThanAll) {
+  EXPECT_EQ(result_of({5, 6, 2}), (Result{{5, 6}, {}})) << "it may yet be right";
+  EXPECT_EQ(result_of({5, 6, 2, 7}), (Result{{5, 6, 7}, {Skip::kScanOutOfOrder}}));
+}
+
+TEST(StampedQueue, ValuesAheadAreSkippedOnceTwoOlderOnesFollowEachOther) {
+  EXPECT_EQ(result_of({1, 2, 60, 61, 3, 4}),
+            (Result{{1, 2, 3, 4}, {Skip::kScanAhead, Skip::kScanAhead}}));
+}
+
+TEST(StampedQueue, TheSameStampTwiceIsSkipped) {
+  EXPECT_EQ(result_of({1, 2, 2, 3}), (Result{{1, 2, 3}, {Skip::kScanOutOfOrder}}));
+}
+
+TEST(StampedQueue, OfTooManyTheOldestIsDropped) {
+  EXPECT_EQ(result_of({1, 2, 3, 4, 5, 6}),
+            (Result{{3, 4, 5, 6}, {Skip::kScanOverflow, Skip::kScanOverflow}}));
+}
+
+TEST(StampedQueue, ClearingCountsTheOneAsideAndForgetsTheNewest) {
+  StampedQueue<Value> queue{kPolicy};
+  Skips skips;
+  for (const int time_s : {5, 6, 2})
+    queue.add({at_s(time_s)}, skips);
+  queue.clear(skips);
+  EXPECT_EQ(skips.take().size(), 3U);
+  EXPECT_FALSE(queue.has_reached(at_s(1)));
+  queue.add({at_s(1)}, skips);
+  EXPECT_FALSE(queue.is_empty());
+  EXPECT_TRUE(skips.take().empty());
+}
+
+TEST(StampedQueue, WhatTurnsOutToBeAheadOfAllElseIsDropped) {
+  StampedQueue<Value> queue{kPolicy};
+  Skips skips;
+  for (const int time_s : {1, 9})
+    queue.add({at_s(time_s)}, skips);
+  queue.drop_after(at_s(5), skips);
+  EXPECT_EQ(skips.take(), std::vector<Skip>{Skip::kScanAhead});
+  queue.add({at_s(2)}, skips);
+  EXPECT_EQ(to_us(queue.pop().time), 1'000'000);
+  EXPECT_EQ(to_us(queue.pop().time), 2'000'000);
+}
+
+}  // namespace
+}  // namespace waymark
