@@ -6,7 +6,9 @@
 #   LOG             CARMEN text with FLASER lines; .gz or .bz2, too
 #   --seed N        of everything that is drawn (default: 1)
 #   --bursts        in 30 scans, in three bursts of 10, odometry is off by up to 1 m or 1 rad each
+#   --still         odometry stays where it began
 #   --noise-m S     normal noise on the ranges
+#   --people        three people go along, 0.9 to 1.5 m away: each hides a tenth of the beams
 #   --every-s T     scans that are nearer in time to the one before are left out
 #   --beam-step N   only each N-th beam
 #   --mirror        left is right
@@ -18,11 +20,13 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 parse_arguments() {
-  seed=1 bursts=0 noise_m=0 every_s=0 beam_step=1 mirror=0 reverse=0 relations='' files=()
+  seed=1 bursts=0 still=0 noise_m=0 people=0 every_s=0 beam_step=1 mirror=0 reverse=0 relations='' files=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
       --bursts) bursts=1 && shift && continue ;;
+      --still) still=1 && shift && continue ;;
+      --people) people=1 && shift && continue ;;
       --mirror) mirror=1 && shift && continue ;;
       --reverse) reverse=1 && shift && continue ;;
       --seed | --noise-m | --every-s | --beam-step | --relations) need_value "$@" ;;&
@@ -54,7 +58,7 @@ unpacked() {
 last_time() { unpacked "$1" | awk '$1 == "FLASER" { last = $(NF - 2) } END { printf "%.6f", last }'; }
 
 perturbed() {
-  awk -v seed="$seed" -v bursts="$bursts" -v noise_m="$noise_m" -v every_s="$every_s" -v beam_step="$beam_step" \
+  awk -v seed="$seed" -v bursts="$bursts" -v still="$still" -v people="$people" -v noise_m="$noise_m" -v every_s="$every_s" -v beam_step="$beam_step" \
     -v mirror="$mirror" -v reverse="$reverse" -v last_s="$1" '
     function normal() { return sqrt(-2 * log(1 - rand())) * cos(6.283185307179586 * rand()) }
     # The odometry as it is told, odom_*, follows the increments of the one that was measured.
@@ -70,7 +74,17 @@ perturbed() {
         odom_y += sin(odom_theta) * ahead + cos(odom_theta) * left
         odom_theta += turn
       } else { odom_x = x; odom_y = y; odom_theta = theta }
+      if (still) { odom_x = 0; odom_y = 0; odom_theta = 0 }
       last_x = x; last_y = y; last_theta = theta
+    }
+    # A range of the beam at that share of the scan: the people walk about the robot.
+    function nearest(range, share,    person, off, away) {
+      for (person = 1; person <= 3; ++person) {
+        off = share - 0.5 - 0.45 * sin(0.15 * person * (time - first_s) + person)
+        away = 1.2 + 0.3 * sin(0.4 * (time - first_s) + person)
+        if (off * off < 0.0025 && (range <= 0 || range > away)) range = sprintf("%.3f", away + 0.01 * normal())
+      }
+      return range
     }
     function wrapped(angle) { return atan2(sin(angle), cos(angle)) }
     function written(line,    word, n, count, kept, i, beam, range, text, sign, is_burst) {
@@ -84,6 +98,7 @@ perturbed() {
       for (i = 0; i < count; i += beam_step) {
         beam = mirror ? count - 1 - i : i
         range = word[3 + beam]
+        if (people) range = nearest(range, i / count)
         if (noise_m > 0 && range > 0 && range < 50) range = sprintf("%.3f", range + noise_m * normal())
         text = text " " (range < 0 ? 0 : range)
         ++kept
