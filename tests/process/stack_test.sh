@@ -153,6 +153,8 @@ commands_while_it_runs() {
     kill -0 $run || fail "the run ended before a map was saved"
   done
   "$work/bin/waymark-map" check "$work/state/day1.map.lcm" >"$work/check.output" 2>&1 || fail "the map is not whole"
+  "$work/bin/waymark-map" info "$work/state/day1.map.lcm" >"$work/info.output" 2>&1 || fail "the map cannot be read"
+  grep -q 'differs from its description by: distances' "$work/info.output" || fail "no calibration in the map"
   expect_code 0 $run
   cp "$work/state/day1.map.lcm" "$work/live.map.lcm"
   "${launch%launch.sh}replay.sh" "$work/run/run.lcm" --estimator waymark --row again "${options[@]}" \

@@ -12,6 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
 
 namespace waymark {
 namespace {
@@ -53,6 +56,49 @@ void need_same_markers(const MapFile& a, const MapFile& b) {
     throw SetupError{fmt::format("the maps have other cells: {} m and {} m", cell_a_m, cell_b_m)};
 }
 
+struct CalibrationTerm {
+  std::string_view key;
+  std::string_view name;
+  std::string_view unit;
+  double per_unit;
+};
+
+/// In the order of Calibration.
+constexpr std::array<CalibrationTerm, kCalibrationSize> kTerms{
+    {{"odometry_scale", "distances", "%", 100.0},
+     {"odometry_drift_rad_per_m", "drift", "rad/m", 1.0},
+     {"odometry_turn_scale", "turns", "%", 100.0},
+     {"lidar_ahead_m", "LiDAR ahead", "m", 1.0},
+     {"camera_yaw_rad", "camera yaw", "rad", 1.0},
+     {"focal_length", "focal length", "%", 100.0},
+     {"marker_standoff_m", "standoff of markers", "m", 1.0}}};
+
+double sigma_of(const LearntCalibration& calibration, std::size_t term) {
+  const auto i = static_cast<Eigen::Index>(term);
+  return std::sqrt(std::max(0.0, calibration.covariance(i, i)));
+}
+
+nlohmann::json json_of(const LearntCalibration& calibration) {
+  nlohmann::json json;
+  for (std::size_t i = 0; i < kTerms.size(); ++i) {
+    json[kTerms[i].key] = {{"mean", calibration.mean[static_cast<Eigen::Index>(i)]},
+                           {"sigma", sigma_of(calibration, i)}};
+  }
+  return json;
+}
+
+/// How the robot differs from its description.
+std::string text_of(const LearntCalibration& calibration) {
+  std::string text;
+  for (std::size_t i = 0; i < kTerms.size(); ++i) {
+    const CalibrationTerm& term = kTerms[i];
+    text += fmt::format("{}{} {:+.4f} +- {:.4f} {}", i > 0 ? ", " : "", term.name,
+                        term.per_unit * calibration.mean[static_cast<Eigen::Index>(i)],
+                        term.per_unit * sigma_of(calibration, i), term.unit);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string map_info(const std::filesystem::path& file, bool as_json) {
@@ -78,6 +124,7 @@ std::string map_info(const std::filesystem::path& file, bool as_json) {
                           {"confirmed_markers", confirmed},
                           {"keyframes", map.graph.poses.size()},
                           {"edges", map.graph.edges.size()},
+                          {"calibration", json_of(map.calibration)},
                           {"bytes", std::filesystem::file_size(file)}}
                .dump(2) +
            "\n";
@@ -87,11 +134,12 @@ std::string map_info(const std::filesystem::path& file, bool as_json) {
       "area     {:.1f} m x {:.1f} m, {:.1f} m2 mapped, cells of {} m\n"
       "markers  {} of {} m: {}, {} of them confirmed\n"
       "graph    {} keyframes, {} edges\n"
+      "robot    differs from its description by: {}\n"
       "file     {:.1f} kB\n",
       hex(map.map_id), map.parent_map_id == 0 ? "none" : hex(map.parent_map_id), info.frame,
       size.x(), size.y(), area_m2, cell_m, info.marker_dictionary, info.marker_size_m,
       map.landmarks.size(), confirmed, map.graph.poses.size(), map.graph.edges.size(),
-      1e-3 * static_cast<double>(std::filesystem::file_size(file)));
+      text_of(map.calibration), 1e-3 * static_cast<double>(std::filesystem::file_size(file)));
 }
 
 void export_map(const std::filesystem::path& file, const std::filesystem::path& folder) {

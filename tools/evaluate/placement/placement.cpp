@@ -12,6 +12,7 @@
 namespace waymark::placement {
 namespace {
 
+constexpr double kMargin = 0.85;       // planned for: the model is good to that
 constexpr double kQuietModules = 2.0;  // on each side, as the marker sheets have it
 constexpr double kSpacing_m = 0.5;     // between places of one wall that are tried
 constexpr double kTelling_m = 1e-3;    // sigmas below say nothing about the model
@@ -104,8 +105,13 @@ Placement place_markers(const PlacementInput& input, double target_m) {
   placement.free_places = places.size();
   placement.free_ids = ids.size();
 
-  placement.advice =
-      advise(model, placement.steps, hung, places, at_places, plate_m, target_m, ids.size());
+  const auto advise_for = [&](double sigma_m) {
+    return advise(model, placement.steps, hung, places, at_places, plate_m, sigma_m, ids.size());
+  };
+  placement.advice = advise_for(kMargin * target_m);
+  // Where there is nothing to do, or too much, the target itself is what counts.
+  if (placement.worst_now_m() <= target_m || placement.worst_then_m() > kMargin * target_m)
+    placement.advice = advise_for(target_m);
   for (std::size_t i = 0; i < placement.advice.chosen.size(); ++i)
     placement.markers.push_back(
         {places[placement.advice.chosen[i]], ids[i], placement.advice.worst_after_m[i]});
