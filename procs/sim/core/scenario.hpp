@@ -68,8 +68,8 @@ struct Scenario {
   void check_world(Problems& problems) const;
   void check_markers(Problems& problems) const;
   void check_places(Problems& problems) const;
-  void check_added(int num_ids, Problems& problems) const;
-  void check_moves(Problems& problems) const;
+  void check_added(const World& built, int num_ids, Problems& problems) const;
+  void check_moves(const World& built, Problems& problems) const;
   void check_route(Problems& problems) const;
   void check_faults(Problems& problems) const;
   void check_times(Problems& problems) const;

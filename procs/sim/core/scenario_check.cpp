@@ -13,6 +13,7 @@ namespace waymark {
 namespace {
 
 constexpr double kRoundingSlack_m = 1e-9;
+constexpr double kSameWall_rad = 1e-6;
 // Half of the Waffle Pi's length and width with some air: closest approach of the base to a wall.
 constexpr double kBodyBehind_m = 0.20;
 constexpr double kBodyBeside_m = 0.16;
@@ -46,6 +47,11 @@ std::string what_is_too_close(const std::vector<Wall>& walls, const std::vector<
                                             : fmt::format("{:.2f} m from a wall or box", nearest_m);
   return fmt::format("({:.2f}, {:.2f}) is {}, expected {:.2f} m of room on all sides", point_m.x(),
                      point_m.y(), place, needed_m);
+}
+
+std::string not_in_dictionary(int id, const std::string& dictionary, int num_ids) {
+  return fmt::format("marker id {} is not in {}, which has ids 0 to {}", id, dictionary,
+                     num_ids - 1);
 }
 
 void check_fault(const FaultConfig& fault, const std::string& key, Problems& problems) {
@@ -149,8 +155,7 @@ void Scenario::check_places(Problems& problems) const {
   for (const int id : marker_ids(markers, num_places)) {
     if (id < num_ids) continue;
     problems.add(markers.ids.empty() ? "markers.first_id" : "markers.ids",
-                 fmt::format("marker id {} is not in {}, which has ids 0 to {}", id,
-                             robot.markers.dictionary, num_ids - 1));
+                 not_in_dictionary(id, robot.markers.dictionary, num_ids));
     return;
   }
   for (const int number : markers.missing) {
@@ -158,22 +163,19 @@ void Scenario::check_places(Problems& problems) const {
     problems.add("markers.missing", fmt::format("there is no place {}, the last one is {}", number,
                                                 static_cast<int>(num_places) - 1));
   }
-  check_added(num_ids, problems);
-  check_moves(problems);
+  const World built = build_world(world, markers, plate_size_m(marker_print()), run.seed);
+  check_added(built, num_ids, problems);
+  check_moves(built, problems);
 }
 
-void Scenario::check_added(int num_ids, Problems& problems) const {
+void Scenario::check_added(const World& built, int num_ids, Problems& problems) const {
   const double plate_m = plate_size_m(marker_print());
-  const std::vector<MarkerPlate> plates = build_world(world, markers, plate_m, run.seed).markers;
-  const std::vector<Wall> walls = outline(world);
   for (std::size_t i = 0; i < markers.added.size(); ++i) {
     const MarkerAddConfig& added = markers.added[i];
     const std::string key = fmt::format("markers.added[{}]", i);
-    if (added.id >= num_ids) {
-      problems.add(key, fmt::format("marker id {} is not in {}, which has ids 0 to {}", added.id,
-                                    robot.markers.dictionary, num_ids - 1));
-    }
-    const auto hung = plate_near(walls, {added.x_m, added.y_m}, plate_m);
+    if (added.id >= num_ids)
+      problems.add(key, not_in_dictionary(added.id, robot.markers.dictionary, num_ids));
+    const auto hung = plate_near(built.walls, {added.x_m, added.y_m}, plate_m);
     if (!hung) {
       problems.add(key, fmt::format("no wall with room for a plate of {:.2f} m is within half a "
                                     "metre of ({}, {})",
@@ -181,17 +183,17 @@ void Scenario::check_added(int num_ids, Problems& problems) const {
       continue;
     }
     const auto is_in_its_way = [&](const MarkerPlate& other) {
-      return other.yaw_rad == hung->yaw_rad &&
+      return std::abs(angle_difference(other.yaw_rad, hung->yaw_rad)) < kSameWall_rad &&
              (other.centre_m - hung->centre_m).head<2>().norm() < plate_m - kRoundingSlack_m;
     };
-    if (std::count_if(plates.begin(), plates.end(), is_in_its_way) > 1)
+    // It is one of them itself.
+    if (std::count_if(built.markers.begin(), built.markers.end(), is_in_its_way) > 1)
       problems.add(key, "another marker hangs there");
   }
 }
 
-void Scenario::check_moves(Problems& problems) const {
+void Scenario::check_moves(const World& built, Problems& problems) const {
   const double plate_m = plate_size_m(marker_print());
-  const World built = build_world(world, markers, plate_m, run.seed);
   if (built.moves.size() != markers.moved.size()) {
     problems.add("markers.moved", "one of the places has no marker that could be moved");
     return;

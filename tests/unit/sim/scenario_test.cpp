@@ -87,6 +87,8 @@ TEST(Scenario, AddedMarkersNeedFreeWallBehindThem) {
               HasSubstr("no wall with room for a plate of"));
   EXPECT_THAT(error_of({"markers.added=[{id=99, x_m=4.5, y_m=1.0}]"}),
               HasSubstr("markers.added[0]: another marker hangs there"));
+  EXPECT_THAT(error_of({"world.layout=L", "markers.added=[{id=99, x_m=48.0, y_m=7.0}]"}),
+              HasSubstr("markers.added[0]: another marker hangs there"));
   EXPECT_THAT(error_of({"markers.added=[{id=250, x_m=50.0}]"}),
               HasSubstr("marker id 250 is not in DICT_6X6_250"));
 }

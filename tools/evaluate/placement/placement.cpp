@@ -108,15 +108,16 @@ Placement place_markers(const PlacementInput& input, double target_m) {
   const auto advise_for = [&](double sigma_m) {
     return advise(model, placement.steps, hung, places, at_places, plate_m, sigma_m, ids.size());
   };
-  placement.advice = advise_for(kMargin * target_m);
   // Where there is nothing to do, or too much, the target itself is what counts.
-  if (placement.worst_now_m() <= target_m || placement.worst_then_m() > kMargin * target_m)
+  placement.now = model.predict(hung_and(hung, {}, {}));
+  const bool is_met_now = worst(model.sigmas_m(placement.now)) <= target_m;
+  placement.advice = advise_for(is_met_now ? target_m : kMargin * target_m);
+  if (!is_met_now && placement.worst_then_m() > kMargin * target_m)
     placement.advice = advise_for(target_m);
   for (std::size_t i = 0; i < placement.advice.chosen.size(); ++i)
     placement.markers.push_back(
         {places[placement.advice.chosen[i]], ids[i], placement.advice.worst_after_m[i]});
   placement.stretches = stretches_above(placement.advice.now_m, target_m);
-  placement.now = model.predict(hung_and(hung, {}, {}));
   for (const Eigen::Matrix3d& covariance : placement.now)
     placement.across_m =
         std::max(placement.across_m, sigma_along(covariance, Eigen::Vector2d::Zero()));

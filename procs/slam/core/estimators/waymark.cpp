@@ -151,10 +151,12 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
   Prediction searched = look.expected;
   if (motion_doubt_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
   look.scan = matched(look.points, searched);
+  // Before its ranges are blamed, a scan that contradicts the map is looked for elsewhere.
+  if (look.scan && fits_badly(look.scan->match)) search_widely(look);
   return look;
 }
 
-void WaymarkEstimator::add_keyframe(const Observation& observation, const Look& look) {
+void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) {
   inlier_share_ = 1.0;
   bool is_refuted_scan = false;
   bool shows_all_axes = false;
@@ -164,8 +166,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, const Look& 
     put_elsewhere(*std::exchange(given_pose_, std::nullopt));
   } else {
     const Prediction& expected = look.expected;
-    auto scan = look.scan;
-    if (scan && !look.is_searched) search_widely(look.points, expected, *scan);
+    if (look.scan) search_widely(look);
+    const auto& scan = look.scan;
     is_refuted_scan = scan && is_refuted(scan->match);
     const bool is_used = scan && !is_refuted_scan && scan->match.is_usable(config_.scan);
     // Odometry that stands still is so sure that no step of the solver would leave it.

@@ -153,9 +153,9 @@ class WaymarkEstimator final : public Estimator {
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   std::vector<Se2> without_odometry() const;
-  void search_widely(const Points& points, const Prediction& prediction, MatchedScan& scan) const;
+  void search_widely(Look& look) const;
   Look look_from_expected(const Observation& observation) const;
-  void add_keyframe(const Observation& observation, const Look& look);
+  void add_keyframe(const Observation& observation, Look& look);
   void add_first_keyframe();
   void put_elsewhere(const StartPose& pose);
   void use_survey();

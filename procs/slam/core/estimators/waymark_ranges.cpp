@@ -33,16 +33,13 @@ Points points_of(const Observation& observation) {
   return points;
 }
 
-/// A scan that contradicts the map was taken elsewhere, or its ranges are at another scale: walls
-/// on both sides that are all too far away, or all too near, are no other pose.
+/// Walls on both sides that are all too far away, or all too near, are no other pose: the ranges
+/// are at another scale.
 std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,
                                                               Look& look) {
   is_rescaled_ = false;
   if (!look.scan || !fits_badly(look.scan->match)) return std::nullopt;
   const Prediction& expected = look.expected;
-  search_widely(look.points, expected, *look.scan);
-  look.is_searched = true;
-  if (!fits_badly(look.scan->match)) return std::nullopt;
   const auto& plain = look.scan;
   const Se2 submap_from_map = plain->map_from_submap.inverse();
   Eigen::Matrix3d around = in_axes(submap_from_map.rotation(), expected.covariance);

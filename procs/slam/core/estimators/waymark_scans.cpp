@@ -52,10 +52,14 @@ std::vector<Se2> WaymarkEstimator::without_odometry() const {
 
 /// Odometry may be off by more than plain matching can find: where a scan fits worse than the scans
 /// before, the best places in wide windows are tried, too, first where the robot would be without
-/// odometry: that is wrong by a scan's motion at most.
-void WaymarkEstimator::search_widely(const Points& points, const Prediction& prediction,
-                                     MatchedScan& scan) const {
-  if (!is_bad_fit(scan.match)) return;
+/// odometry: that is wrong by a scan's motion at most. Needs a scan that was matched; once is
+/// enough.
+void WaymarkEstimator::search_widely(Look& look) const {
+  MatchedScan& scan = *look.scan;
+  if (look.is_searched || !is_bad_fit(scan.match)) return;
+  look.is_searched = true;
+  const Points& points = look.points;
+  const Prediction& prediction = look.expected;
   const Se2 submap_from_map = scan.map_from_submap.inverse();
   const CorrelativeField field{points_near(scan, submap_from_map * prediction.map_from_base)};
   const Points beams = thinned(points, kSearchBeams);

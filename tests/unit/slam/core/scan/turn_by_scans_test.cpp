@@ -48,14 +48,14 @@ TEST(TurnBetween, HasNothingToSayWithoutScans) {
 /// Every step is 0.05 m and a degree by odometry; the wheels miss 20 degrees, spread over `steps`.
 double turn_found(int steps) {
   const Motion told{Se2{0.05, 0.0, kDegree}, 0.05, kDegree};
-  TurnMonitor watch;
+  TurnMonitor monitor;
   Se2 truth{-1.5, -0.6, 0.3};
   double found_rad = 0.0;
-  watch.missing_turn(scan_of_room(truth), {});
+  monitor.missing_turn(scan_of_room(truth), {});
   for (int i = 0; i < 30; ++i) {
     truth = truth * told.start_from_end;
     if (i >= 10 && i < 10 + steps) truth = truth * Se2{0.0, 0.0, 20.0 * kDegree / steps};
-    const auto missing_rad = watch.missing_turn(scan_of_room(truth), told);
+    const auto missing_rad = monitor.missing_turn(scan_of_room(truth), told);
     EXPECT_TRUE(i >= 10 || !missing_rad) << i;
     found_rad += missing_rad.value_or(0.0);
   }
@@ -68,14 +68,14 @@ TEST(TurnMonitor, FindsASlipAtOnceAndOneBitByBit) {
 }
 
 TEST(TurnMonitor, ComparesAcrossScansThatShowNothing) {
-  TurnMonitor watch;
+  TurnMonitor monitor;
   const Motion told{Se2{0.05, 0.0, 0.0}, 0.05, 0.0};
   Se2 truth{-0.5, 0.3, 0.2};
-  EXPECT_FALSE(watch.missing_turn(scan_of_room(truth), {}));
+  EXPECT_FALSE(monitor.missing_turn(scan_of_room(truth), {}));
   truth = truth * Se2{0.05, 0.0, 0.5};
-  EXPECT_FALSE(watch.missing_turn({}, told));
+  EXPECT_FALSE(monitor.missing_turn({}, told));
   truth = truth * told.start_from_end;
-  const auto missing_rad = watch.missing_turn(scan_of_room(truth), told);
+  const auto missing_rad = monitor.missing_turn(scan_of_room(truth), told);
   ASSERT_TRUE(missing_rad);
   EXPECT_NEAR(*missing_rad, 0.5, 1.6 * kDegree);
 }
