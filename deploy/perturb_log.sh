@@ -7,6 +7,8 @@
 #   --seed N        of everything that is drawn (default: 1)
 #   --bursts        in 30 scans, in three bursts of 10, odometry is off by up to 1 m or 1 rad each
 #   --still         odometry stays where it began
+#   --odometry-noise S  each step of odometry is off by normal noise: S m and S rad after 1 m, growing with the root
+#   --odometry-step S   odometry as of coarse encoders: rounded to S m and S rad
 #   --noise-m S     normal noise on the ranges
 #   --people        three people go along, 0.9 to 1.5 m away: each hides a tenth of the beams
 #   --every-s T     scans that are nearer in time to the one before are left out
@@ -20,7 +22,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 parse_arguments() {
-  seed=1 bursts=0 still=0 noise_m=0 people=0 every_s=0 beam_step=1 mirror=0 reverse=0 relations='' files=()
+  seed=1 bursts=0 still=0 odometry_noise=0 odometry_step=0 noise_m=0 people=0 every_s=0 beam_step=1 mirror=0 reverse=0 relations='' files=()
   while (($# > 0)); do
     case $1 in
       --help | -h) print_usage && exit 0 ;;
@@ -29,8 +31,10 @@ parse_arguments() {
       --people) people=1 && shift && continue ;;
       --mirror) mirror=1 && shift && continue ;;
       --reverse) reverse=1 && shift && continue ;;
-      --seed | --noise-m | --every-s | --beam-step | --relations) need_value "$@" ;;&
+      --seed | --odometry-noise | --odometry-step | --noise-m | --every-s | --beam-step | --relations) need_value "$@" ;;&
       --seed) seed=$2 ;;
+      --odometry-noise) odometry_noise=$2 ;;
+      --odometry-step) odometry_step=$2 ;;
       --noise-m) noise_m=$2 ;;
       --every-s) every_s=$2 ;;
       --beam-step) need_count "$1" "$2" && beam_step=$2 ;;
@@ -58,11 +62,13 @@ unpacked() {
 last_time() { unpacked "$1" | awk '$1 == "FLASER" { last = $(NF - 2) } END { printf "%.6f", last }'; }
 
 perturbed() {
-  awk -v seed="$seed" -v bursts="$bursts" -v still="$still" -v people="$people" -v noise_m="$noise_m" -v every_s="$every_s" -v beam_step="$beam_step" \
+  awk -v seed="$seed" -v bursts="$bursts" -v still="$still" -v people="$people" \
+    -v odometry_noise="$odometry_noise" -v odometry_step="$odometry_step" \
+    -v noise_m="$noise_m" -v every_s="$every_s" -v beam_step="$beam_step" \
     -v mirror="$mirror" -v reverse="$reverse" -v last_s="$1" '
     function normal() { return sqrt(-2 * log(1 - rand())) * cos(6.283185307179586 * rand()) }
     # The odometry as it is told, odom_*, follows the increments of the one that was measured.
-    function follow(x, y, theta, is_burst,    dx, dy, ahead, left, turn) {
+    function follow(x, y, theta, is_burst,    dx, dy, ahead, left, turn, root) {
       if (scans > 1) {
         dx = x - last_x; dy = y - last_y
         ahead = cos(last_theta) * dx + sin(last_theta) * dy
@@ -70,6 +76,11 @@ perturbed() {
         turn = theta - last_theta
         if (is_burst && rand() < 0.5) turn += 2 * rand() - 1
         else if (is_burst) ahead += 2 * rand() - 1
+        if (odometry_noise > 0) {
+          root = odometry_noise * sqrt(sqrt(ahead * ahead + left * left) + 0.2 * sqrt(turn * turn))
+          ahead += root * normal()
+          turn += root * normal()
+        }
         odom_x += cos(odom_theta) * ahead - sin(odom_theta) * left
         odom_y += sin(odom_theta) * ahead + cos(odom_theta) * left
         odom_theta += turn
@@ -86,6 +97,7 @@ perturbed() {
       }
       return range
     }
+    function rounded(value) { return odometry_step > 0 ? odometry_step * int(value / odometry_step + (value < 0 ? -0.5 : 0.5)) : value }
     function wrapped(angle) { return atan2(sin(angle), cos(angle)) }
     function written(line,    word, n, count, kept, i, beam, range, text, sign, is_burst) {
       n = split(line, word, " ")
@@ -111,9 +123,10 @@ perturbed() {
       ahead = cos(word[count + 8]) * dx + sin(word[count + 8]) * dy
       left = sign * (-sin(word[count + 8]) * dx + cos(word[count + 8]) * dy)
       turn = sign * (word[count + 5] - word[count + 8])
+      said_x = rounded(odom_x); said_y = rounded(odom_y); said_theta = rounded(odom_theta)
       printf "FLASER %d%s %.6f %.6f %.6f %.6f %.6f %.6f %.6f nohost %.6f\n", kept, text, \
-        odom_x + cos(odom_theta) * ahead - sin(odom_theta) * left, odom_y + sin(odom_theta) * ahead + cos(odom_theta) * left, \
-        wrapped(odom_theta + turn), odom_x, odom_y, wrapped(odom_theta), time, time
+        said_x + cos(said_theta) * ahead - sin(said_theta) * left, said_y + sin(said_theta) * ahead + cos(said_theta) * left, \
+        wrapped(said_theta + turn), said_x, said_y, wrapped(said_theta), time, time
     }
     BEGIN { srand(seed) }
     $1 == "PARAM" { print }

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kWorse = 1.9;        // factor on a standard deviation; learnt in steps of sqrt(2)
 constexpr double kNoisier = 1.3;      // the same of ranges
+constexpr double kManyBeams = 0.05;   // moving; a few are noise at the walls' edges
 constexpr double kWorthShare = 0.01;  // of scans or observations; fewer may be a door that opened
 
 double share_of(std::int64_t part, std::int64_t all) {
@@ -87,6 +88,10 @@ void add_ranges(const Findings& f, std::int64_t repeated_scans, List& list) {
   list.add_share("scans_unusable",
                  "{:.1f} % of the scans show too few mapped surfaces and were left out",
                  f.scans_unusable, f.scans);
+  list.add_share("beams_moving",
+                 "{:.1f} % of the LiDAR's beams end where the map is free, on people or doors, and "
+                 "were left out of the matching",
+                 f.beams_moving, f.beams, kManyBeams);
   list.add_share("scans_repeated", "{:.1f} % of the scans repeat one from elsewhere",
                  repeated_scans, f.scans + repeated_scans, 0.0);
 }

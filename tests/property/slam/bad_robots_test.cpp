@@ -94,6 +94,7 @@ TEST(BadRobots, ARobotAsDescribedIsNotAccused) {
   EXPECT_LT(drives.findings.range_sigma_m, 1.3 * drives.findings.described_range_sigma_m);
   EXPECT_EQ(drives.findings.odometry_stuck, 0);
   EXPECT_EQ(drives.findings.scans_rescaled, 0);
+  EXPECT_LT(100 * drives.findings.beams_moving, drives.findings.beams);
 }
 
 TEST(BadRobots, NoisyOdometryIsFoundAndItsCovarianceHonest) {
@@ -183,6 +184,27 @@ TEST(BadRobots, OdometryThatLosesWhatWasDrivenIsNoticed) {
   EXPECT_LT(drives.nees, 12.0);
   EXPECT_LT(drives.ate_m, 0.3);
   EXPECT_GT(drives.findings.odometry_stuck, 10);
+}
+
+TEST(BadRobots, PeopleWhoWalkAlongAreLeftOutAndNamed) {
+  const Drives drives = drive_all(as_described, [](SensorLog& log, Random& random) {
+    for (std::size_t i = 0; i < log.scans.size(); ++i) {
+      const double time_s = 0.2 * static_cast<double>(i);
+      std::vector<double>& ranges_m = log.scans[i].ranges_m;
+      const auto beams = static_cast<double>(ranges_m.size());
+      for (int person = 1; person <= 3; ++person) {
+        const double toward = 0.5 + 0.45 * std::sin(0.1 * person * time_s + person);
+        const double away_m = 0.7 + 0.15 * std::sin(0.3 * time_s + person);
+        for (std::size_t k = 0; k < ranges_m.size(); ++k)
+          if (std::abs(static_cast<double>(k) / beams - toward) < 0.03 && ranges_m[k] > away_m)
+            ranges_m[k] = away_m + random.normal(0.0, 0.01);
+      }
+    }
+  });
+  EXPECT_LT(drives.nees, 5.0);
+  EXPECT_LT(drives.ate_m, 0.04);
+  EXPECT_LT(drives.findings.odometry_along, 1.9);
+  EXPECT_GT(20 * drives.findings.beams_moving, drives.findings.beams);
 }
 
 TEST(BadRobots, NoiseOfRangesIsFound) {

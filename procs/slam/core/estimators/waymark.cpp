@@ -67,6 +67,8 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   follow_odometry(measured, step_s);
   if (place_finder_ && !place(measured)) return unplaced(measured);
   Look look = look_from_expected(measured);
+  findings_.beams += static_cast<std::int64_t>(measured.beams.size());
+  findings_.beams_moving += static_cast<std::int64_t>(look.beams_moving);
   const std::optional<Observation> corrected = with_right_scale(measured, look);
   const Observation& observation = corrected ? *corrected : measured;
   bool is_keyframe = given_pose_ || odometry_refused_ || is_keyframe_due(observation) ||
@@ -150,6 +152,7 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
   look.expected = prediction();
   Prediction searched = look.expected;
   if (motion_doubt_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
+  leave_out_moving(searched, look);
   look.scan = matched(look.points, searched);
   // Before its ranges are blamed, a scan that contradicts the map is looked for elsewhere.
   if (look.scan && fits_badly(look.scan->match)) search_widely(look);

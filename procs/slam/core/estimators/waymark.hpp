@@ -96,7 +96,8 @@ class WaymarkEstimator final : public Estimator {
     Points points{};
     Prediction expected{};
     std::optional<MatchedScan> scan{};
-    bool is_searched{false};  ///< widely
+    bool is_searched{false};      ///< widely
+    std::size_t beams_moving{0};  ///< left out of the points
   };
 
   /// A scan hangs on the keyframe before it.
@@ -154,6 +155,7 @@ class WaymarkEstimator final : public Estimator {
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   std::vector<Se2> without_odometry() const;
   void search_widely(Look& look) const;
+  void leave_out_moving(const Prediction& where, Look& look) const;
   Look look_from_expected(const Observation& observation) const;
   void add_keyframe(const Observation& observation, Look& look);
   void add_first_keyframe();

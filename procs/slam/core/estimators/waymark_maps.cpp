@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the graph estimator uses a loaded map, and makes one to be saved.
 #include "slam/core/estimators/waymark.hpp"
+#include "slam/core/mapping/seen_through.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -18,7 +19,6 @@ constexpr double kLeastMapped = 0.6;  // share of the beams on walls of the load
 constexpr double kWallPoint = 0.5;    // occupancy
 constexpr double kNearPoints_m = 15.0;
 constexpr double kMostPoints = 400.0;  // of a wall's cell: newer ones outweigh older ones in time
-constexpr double kGone = 0.1;          // occupancy about a wall that is not there any more
 
 Points wall_points(const GridMap& grid) {
   Points points;
@@ -28,18 +28,6 @@ Points wall_points(const GridMap& grid) {
         points.push_back(grid.frame.centre_of(cell_at(index, offset)));
   });
   return points;
-}
-
-/// The map's cells there are free by now.
-bool is_gone(const GridMap& grid, const Eigen::Vector2d& place) {
-  const CellIndex centre = grid.frame.cell_of(place);
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      const OccupancyCell& cell = grid.occupancy[{centre.x + x, centre.y + y}];
-      if (!cell.is_mapped() || cell.occupancy() > kGone) return false;
-    }
-  }
-  return true;
 }
 
 /// What the loaded map was drawn along, where the robot has not been since: bounded by the area.
@@ -188,7 +176,7 @@ std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   for (NdtCellSums cell : snapshot.walls.sums()) {
     const Eigen::Vector2d mean =
         kept.spacing_m() * Eigen::Vector2d{cell.column, cell.row} + cell.sum_m / cell.count;
-    if (is_gone(snapshot.grid, mean)) continue;
+    if (is_seen_through(snapshot.grid, mean)) continue;
     const double share = std::min(1.0, kMostPoints / cell.count);
     cell.count *= share;
     cell.sum_m *= share;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the graph estimator uses scans.
 #include "slam/core/estimators/waymark.hpp"
+#include "slam/core/mapping/seen_through.hpp"
 
 #include <Eigen/LU>
 
@@ -18,6 +19,10 @@ constexpr double kSearchReach_rad = 0.6;
 constexpr std::size_t kSearchBeams = 120;
 constexpr double kClearlyMore = 1.05;                  // inliers than the plain match has
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
+
+// Beams that end where the map is free.
+constexpr double kMovingSigmas = 2.0;
+constexpr double kMostOff_m = 0.3;  // of a beam's end; farther, walls stand in free places, too
 
 }  // namespace
 
@@ -74,6 +79,24 @@ void WaymarkEstimator::search_widely(Look& look) const {
                                        range_noise_, config_.scan);
     if (other.inliers > kClearlyMore * scan.match.inliers) scan.match = other;
   }
+}
+
+/// Beams that end where the map is free, wherever about the prediction the robot is, show what
+/// moves: people who walk along would hold the matches back. They are neither matched nor enter the
+/// submaps. Where most of a scan is so, it is the pose that is wrong.
+void WaymarkEstimator::leave_out_moving(const Prediction& where, Look& look) const {
+  const double position_m2 = 0.5 * where.covariance.topLeftCorner<2, 2>().trace();
+  Points standing;
+  standing.reserve(look.points.size());
+  for (const Eigen::Vector2d& point : look.points) {
+    const double off_m =
+        kMovingSigmas * std::sqrt(position_m2 + where.covariance(2, 2) * point.squaredNorm());
+    if (off_m > kMostOff_m || !is_seen_through(map_.map(), where.map_from_base * point, off_m))
+      standing.push_back(point);
+  }
+  if (2 * standing.size() < look.points.size()) return;
+  look.beams_moving = look.points.size() - standing.size();
+  look.points = std::move(standing);
 }
 
 void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,

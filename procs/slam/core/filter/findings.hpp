@@ -25,6 +25,8 @@ struct Findings {
   std::int64_t scans_refuted{0};        ///< show something else than what is mapped there
   std::int64_t scans_rescaled{0};       ///< fit when their ranges are scaled
   double range_share{0.0};              ///< by which they were too long, of the last such scan
+  std::int64_t beams{0};                ///< with returns
+  std::int64_t beams_moving{0};         ///< of these, ended where the map is free
 
   std::int64_t loops_ambiguous{0};  ///< that fitted in several places, and were not closed
   std::int64_t relocalisations{0};

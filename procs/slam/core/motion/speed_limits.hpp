@@ -36,6 +36,7 @@ class SpeedLimits {
   Usual turns_{};
   int refused_in_a_row_{0};
   double mean_step_s_{0.0};
+  double last_step_s_{0.0};
 };
 
 }  // namespace waymark

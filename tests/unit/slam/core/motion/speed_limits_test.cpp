@@ -50,6 +50,13 @@ TEST(SpeedLimits, ARobotThatGoesOnLikeThatIsBelievedInTheEnd) {
   EXPECT_LE(refused, 20);
 }
 
+TEST(SpeedLimits, WhatAGapLeftOverMayComeInTheStepAfterIt) {
+  SpeedLimits limits = after_a_drive(0.4);
+  EXPECT_TRUE(limits.allow(step(0.1), 3.0));
+  EXPECT_TRUE(limits.allow(step(1.0), kStep_s));
+  EXPECT_FALSE(limits.allow(step(1.0), kStep_s));
+}
+
 TEST(SpeedLimits, StandingTeachesNothing) {
   SpeedLimits limits;
   for (int i = 0; i < 1000; ++i)

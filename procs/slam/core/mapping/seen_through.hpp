@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Places that beams pass through.
+#pragma once
+
+#include "slam/core/grid/grid_map.hpp"
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+/// Beams have passed through the cell of a place, through its neighbours and through all others
+/// within so far, and next to none ended there.
+/// @param place  map frame.
+inline bool is_seen_through(const GridMap& map, const Eigen::Vector2d& place,
+                            double within_m = 0.0) {
+  constexpr double kMostOccupied = 0.1;
+  const CellIndex centre = map.frame.cell_of(place);
+  const auto is_free = [&](int x, int y) {
+    const OccupancyCell& cell = map.occupancy[{centre.x + x, centre.y + y}];
+    return cell.is_mapped() && cell.occupancy() <= kMostOccupied;
+  };
+  if (!is_free(0, 0)) return false;  // as of nearly every beam
+  const int reach = 1 + static_cast<int>(within_m / map.frame.resolution_m);
+  for (int x = -reach; x <= reach; ++x)
+    for (int y = -reach; y <= reach; ++y)
+      if (!is_free(x, y)) return false;
+  return true;
+}
+
+}  // namespace waymark

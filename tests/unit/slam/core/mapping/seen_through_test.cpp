@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Places that beams pass through.
+#include "slam/core/mapping/seen_through.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+constexpr double kCell_m = 0.05;
+
+/// Free from x = 0 to 1 m and y = 0 to 1 m, but for a wall along x = 0.5 m.
+GridMap room_with_a_wall() {
+  GridMap map{GridFrame::centred_on_map_origin(kCell_m), {}, {}};
+  for (int x = 0; x < 20; ++x) {
+    for (int y = 0; y < 20; ++y) {
+      OccupancyCell& cell = map.occupancy.edit(map.frame.cell_of({x * kCell_m, y * kCell_m}));
+      cell.visits = 20;
+      cell.hits = x == 10 ? 15 : 1;
+    }
+  }
+  return map;
+}
+
+TEST(SeenThrough, FreePlacesAreAndWallsAreNot) {
+  const GridMap map = room_with_a_wall();
+  EXPECT_TRUE(is_seen_through(map, {0.2, 0.5}));
+  EXPECT_FALSE(is_seen_through(map, {0.5, 0.5}));
+}
+
+TEST(SeenThrough, NotBesideAWall) {
+  const GridMap map = room_with_a_wall();
+  EXPECT_FALSE(is_seen_through(map, {0.45, 0.5}));
+  EXPECT_TRUE(is_seen_through(map, {0.4, 0.5}));
+}
+
+TEST(SeenThrough, NotWhereAWallIsWithinReach) {
+  const GridMap map = room_with_a_wall();
+  EXPECT_TRUE(is_seen_through(map, {0.3, 0.5}, 0.12));
+  EXPECT_FALSE(is_seen_through(map, {0.3, 0.5}, 0.17));
+}
+
+TEST(SeenThrough, NotWhatNobodyHasSeen) {
+  const GridMap map = room_with_a_wall();
+  EXPECT_FALSE(is_seen_through(map, {3.0, 0.5}));
+  EXPECT_FALSE(is_seen_through(map, {0.0, 0.5}));  // at the edge of what was seen
+}
+
+}  // namespace
+}  // namespace waymark
