@@ -14,10 +14,14 @@ namespace {
 constexpr std::size_t kFewest = 30;
 constexpr double kFewestTurns_rad = 2.0 * std::numbers::pi;
 constexpr double kLargestOffset_s = 0.5;
-constexpr double kParabola_s = 0.1;            // half its width: turns of a robot last longer
+constexpr double kRateOver_s = 0.2;  // that turn rates are taken over: turns last longer
+constexpr double kLeastSlope =
+    0.05;  // of what remains of an offset over the offset: 1 without noise
 constexpr double kShortestInterval_s = 0.005;  // of odometry: shorter ones are taken together
 constexpr double kSigmaOfMad = 1.4826;         // of a normal distribution
 constexpr double kCutoff = 3.0;                // of the sigmas: what is further counts less
+constexpr double kLeastResidual_rad = 0.0017;  // a tenth of a degree
+constexpr double kLeastResidual_m = 1e-4;
 constexpr double kSmallest = 1e-9;
 constexpr double kUnknownPlace_m = 1.0;  // a robot's size
 constexpr std::size_t kBlocks = 12;      // stretches whose residuals count as one each
@@ -56,21 +60,7 @@ Turns turns_with(const std::vector<LidarTurn>& turns, const std::vector<Imported
 struct Line {
   double ratio{0.0};
   double ratio_sigma{0.0};
-  double cost{0.0};                             ///< mean of Cauchy's loss over its square cutoff
-  std::array<double, kBlocks> cost_of_block{};  ///< sums
-  std::array<double, kBlocks> turns_of_block{};
-
-  /// Mean without one block; kBlocks = with all.
-  double cost_without(std::size_t block) const {
-    double sum = 0.0;
-    double count = 0.0;
-    for (std::size_t other = 0; other < kBlocks; ++other) {
-      if (other == block) continue;
-      sum += cost_of_block[other];
-      count += turns_of_block[other];
-    }
-    return sum / std::max(1.0, count);
-  }
+  double cost{0.0};  ///< mean of Cauchy's loss over its square cutoff
 };
 
 double weight_of(double residual, double cutoff) {
@@ -105,14 +95,11 @@ std::optional<Line> fit_line(const Turns& turns, double cutoff_rad) {
       ratio = product / information;
     }
     Line fitted{ratio, std::sqrt(squares / weights / information)};
-    const std::size_t count = turns.lidar_rad.size();
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < turns.lidar_rad.size(); ++i) {
       const double relative = (turns.odometry_rad[i] - ratio * turns.lidar_rad[i]) / cutoff_rad;
-      const std::size_t block = i * kBlocks / count;
-      fitted.cost_of_block[block] += std::log1p(relative * relative);
-      fitted.turns_of_block[block] += 1.0;
+      fitted.cost += std::log1p(relative * relative);
     }
-    fitted.cost = fitted.cost_without(kBlocks);
+    fitted.cost /= static_cast<double>(turns.lidar_rad.size());
     if (start > 0.0 || fitted.cost < best) {
       best = fitted.cost;
       line = fitted;
@@ -121,24 +108,100 @@ std::optional<Line> fit_line(const Turns& turns, double cutoff_rad) {
   return line;
 }
 
-/// At an offset and half a width before and after it; where is the least, in half widths?
-struct CostsAroundBest {
-  double before{0.0};
-  double at{0.0};
-  double after{0.0};
+/// Speed of turning, over a time that is long beside the samples' noise.
+double turn_rate_rad_s(const std::vector<ImportedPose>& odometry, Timestamp time) {
+  const Duration half = duration_from_seconds(0.5 * kRateOver_s);
+  const Se2 before = pose_at(odometry, std::max(odometry.front().time, time - half));
+  const Se2 after = pose_at(odometry, std::min(odometry.back().time, time + half));
+  return angle_difference(after.theta(), before.theta()) / kRateOver_s;
+}
 
-  double parabola() const {
-    const double bend = before - 2.0 * at + after;
-    return bend > kSmallest ? 0.5 * (before - after) / bend : 0.0;
-  }
-
-  /// Of two straight lines of the same steepness. A robust loss has the one shape near its least
-  /// and the other one further off, so that the truth lies between the two.
-  double wedge() const {
-    const double rise = std::max(before, after) - at;
-    return rise > kSmallest ? 0.5 * (before - after) / rise : 0.0;
-  }
+/// values = rows * unknowns, each with noise.
+template <int kRows, int kUnknowns>
+struct Equations {
+  std::vector<Eigen::Matrix<double, kRows, kUnknowns>> rows{};
+  std::vector<Eigen::Matrix<double, kRows, 1>> values{};
 };
+
+template <int kUnknowns>
+struct Solution {
+  Eigen::Matrix<double, kUnknowns, 1> unknowns{};
+  Eigen::Matrix<double, kUnknowns, kUnknowns> covariance{};
+};
+
+/// Robust least squares (Cauchy's weights, cutoff from the median residual); covariance from the
+/// residuals of twelve stretches, nowhere below that of independent ones: what wheels and walls get
+/// wrong lasts, so that equations of a stretch err together.
+/// @param least_residual  a median below it is not believed
+template <int kRows, int kUnknowns>
+std::optional<Solution<kUnknowns>> solve_robustly(const Equations<kRows, kUnknowns>& equations,
+                                                  double least_residual) {
+  using Square = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  using Column = Eigen::Matrix<double, kUnknowns, 1>;
+  const auto& [rows, values] = equations;
+  Column found = Column::Zero();
+  Square information = Square::Zero();
+  double cutoff = 0.0;
+  double sigma2 = 0.0;
+  constexpr int kSteps = 30;
+  for (int step = 0; step < kSteps; ++step) {
+    information.setZero();
+    Column product = Column::Zero();
+    double squares = 0.0;
+    double weights = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double residual = (values[i] - rows[i] * found).norm();
+      const double weight = step == 0 ? 1.0 : weight_of(residual, cutoff);  // first all alike
+      information += weight * rows[i].transpose() * rows[i];
+      product += weight * rows[i].transpose() * values[i];
+      squares += weight * residual * residual;
+      weights += weight;
+    }
+    const Eigen::LDLT<Square> solver{information};
+    if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
+    found = solver.solve(product);
+    if (!found.allFinite()) return std::nullopt;
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      residuals.push_back((values[i] - rows[i] * found).norm());
+    cutoff = kCutoff * std::max(least_residual, median(std::move(residuals)));
+    sigma2 = squares / weights / kRows;
+  }
+  const Square inverse = (information + kSmallest * Square::Identity()).inverse();
+  Square spread = Square::Zero();
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    Column slope = Column::Zero();
+    for (std::size_t i = block * rows.size() / kBlocks; i < (block + 1) * rows.size() / kBlocks;
+         ++i) {
+      const Eigen::Matrix<double, kRows, 1> residual = values[i] - rows[i] * found;
+      slope += weight_of(residual.norm(), cutoff) * rows[i].transpose() * residual;
+    }
+    spread += slope * slope.transpose();
+  }
+  return Solution<kUnknowns>{found, (sigma2 * inverse).cwiseMax(inverse * spread * inverse).eval()};
+}
+
+/// What remains of the offset beside `late_s`: it changes a turn of the odometry by the offset
+/// times the turn rates' difference between its ends.
+std::optional<Measured> remaining_offset_s(const std::vector<LidarTurn>& turns,
+                                           const std::vector<ImportedPose>& odometry,
+                                           double late_s) {
+  const Duration late = duration_from_seconds(late_s);
+  Equations<1, 2> equations;
+  for (const LidarTurn& turn : turns) {
+    const Timestamp from = turn.from - late;
+    const Timestamp to = turn.to - late;
+    if (!covers(odometry, from, to)) continue;
+    equations.rows.emplace_back(turn.turn_rad,
+                                turn_rate_rad_s(odometry, to) - turn_rate_rad_s(odometry, from));
+    equations.values.emplace_back(
+        angle_difference(pose_at(odometry, to).theta(), pose_at(odometry, from).theta()));
+  }
+  if (equations.rows.size() < kFewest) return std::nullopt;
+  const auto solution = solve_robustly(equations, kLeastResidual_rad);
+  if (!solution) return std::nullopt;
+  return Measured{solution->unknowns[1], std::sqrt(solution->covariance(1, 1))};
+}
 
 double median_interval_s(const std::vector<ImportedPose>& odometry) {
   std::vector<double> intervals_s;
@@ -170,7 +233,6 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
   if (turns.size() < kFewest || comparison.turned_rad < kFewestTurns_rad) return std::nullopt;
   // A cutoff from the residuals of the best line without an offset; at least a tenth of a degree.
   const Turns now = turns_with(turns, odometry, 0.0);
-  constexpr double kFloor_rad = 0.0017;
   double cutoff_rad = 0.1;
   for (int i = 0; i < 3; ++i) {
     const auto line = fit_line(now, cutoff_rad);
@@ -178,7 +240,7 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
     std::vector<double> residuals;
     for (std::size_t k = 0; k < now.lidar_rad.size(); ++k)
       residuals.push_back(std::abs(now.odometry_rad[k] - line->ratio * now.lidar_rad[k]));
-    cutoff_rad = kCutoff * std::max(kFloor_rad, kSigmaOfMad * median(std::move(residuals)));
+    cutoff_rad = kCutoff * std::max(kLeastResidual_rad, kSigmaOfMad * median(std::move(residuals)));
   }
   // Offsets of whole odometry samples: between them odometry is interpolated, which smooths its
   // noise and makes every fit better.
@@ -193,32 +255,27 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
     lines.push_back(*line);
     if (line->cost < lines[best].cost) best = lines.size() - 1;
   }
+  const double late_s = (static_cast<double>(best) - steps) * interval_s;
   comparison.ratio = {lines[best].ratio, lines[best].ratio_sigma};
-  comparison.lidar_late_s = {(static_cast<double>(best) - steps) * interval_s, kLargestOffset_s};
-  const auto wide = static_cast<std::size_t>(std::max(1.0, std::round(kParabola_s / interval_s)));
-  if (best < wide || best + wide >= lines.size()) return comparison;  // nothing is known there
-  const double half_width_s = static_cast<double>(wide) * interval_s;
-  const auto costs = [&](std::size_t without) {
-    return CostsAroundBest{lines[best - wide].cost_without(without),
-                           lines[best].cost_without(without),
-                           lines[best + wide].cost_without(without)};
-  };
-  // How much it moves without each stretch (jackknife).
-  const double vertex = half_width_s * costs(kBlocks).parabola();
-  double variance_s2 = 0.0;
-  for (std::size_t block = 0; block < kBlocks; ++block) {
-    const double moved_s = half_width_s * costs(block).parabola() - vertex;
-    variance_s2 += moved_s * moved_s;
-  }
-  // And with the shape that is laid through the three costs: the same in every stretch.
-  const double shape_s = half_width_s * costs(kBlocks).wedge() - vertex;
-  variance_s2 += shape_s * shape_s;
-  comparison.lidar_late_s.value += vertex;
-  comparison.lidar_late_s.sigma = std::sqrt(variance_s2);
-  if (const auto line =
-          fit_line(turns_with(turns, odometry, comparison.lidar_late_s.value), cutoff_rad)) {
+  comparison.lidar_late_s = {late_s, kLargestOffset_s};
+  const int beside = std::max(1, static_cast<int>(std::round(0.5 * kRateOver_s / interval_s)));
+  const double half_width_s = beside * interval_s;
+  const auto before = remaining_offset_s(turns, odometry, late_s - half_width_s);
+  const auto here = remaining_offset_s(turns, odometry, late_s);
+  const auto after = remaining_offset_s(turns, odometry, late_s + half_width_s);
+  if (!before || !here || !after) return comparison;
+  // Noise of the turn rates makes what remains look smaller, at every offset alike: the truth is
+  // where nothing remains.
+  const double slope = (before->value - after->value) / (2.0 * half_width_s);
+  if (slope < kLeastSlope) return comparison;
+  const double found_s = late_s - half_width_s + before->value / slope;
+  // The nearest sample says the same, or the turns are too quick for samples so seldom: then the
+  // truth is about between the two.
+  const double by_nearest_s = late_s + here->value / slope;
+  comparison.lidar_late_s = {found_s,
+                             std::hypot(here->sigma / slope, 0.5 * (by_nearest_s - found_s))};
+  if (const auto line = fit_line(turns_with(turns, odometry, found_s), cutoff_rad))
     comparison.ratio = {line->ratio, line->ratio_sigma};
-  }
   return comparison;
 }
 
@@ -226,8 +283,7 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
                                 const std::vector<ImportedPose>& odometry, bool is_mirrored,
                                 Duration lidar_late) {
   double turned_rad = 0.0;
-  std::vector<Eigen::Matrix<double, 2, 4>> rows;
-  std::vector<Eigen::Vector2d> values;
+  Equations<2, 4> equations;
   for (const LidarMotion& motion : motions) {
     const Timestamp from = motion.from - lidar_late;
     const Timestamp to = motion.to - lidar_late;
@@ -239,57 +295,17 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
     const double s = std::sin(base.theta());
     Eigen::Matrix<double, 2, 4> row;
     row << lidar.x(), -lidar.y(), 1.0 - c, s, lidar.y(), lidar.x(), -s, 1.0 - c;
-    rows.push_back(row);
+    equations.rows.push_back(row);
     turned_rad += std::abs(wrap_angle(motion.first_from_second.theta()));
-    values.push_back(base.translation());
+    equations.values.push_back(base.translation());
   }
-  if (rows.size() < kFewest) return std::nullopt;
-
-  Eigen::Vector4d found = Eigen::Vector4d::Zero();
-  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
-  double cutoff_m = 1e3;  // first all alike
-  double sigma2_m2 = 0.0;
-  constexpr int kSteps = 30;
-  for (int step = 0; step < kSteps; ++step) {
-    information.setZero();
-    Eigen::Vector4d product = Eigen::Vector4d::Zero();
-    double squares = 0.0;
-    double weights = 0.0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double residual_m = (values[i] - rows[i] * found).norm();
-      const double weight = step == 0 ? 1.0 : weight_of(residual_m, cutoff_m);
-      information += weight * rows[i].transpose() * rows[i];
-      product += weight * rows[i].transpose() * values[i];
-      squares += weight * residual_m * residual_m;
-      weights += weight;
-    }
-    const Eigen::LDLT<Eigen::Matrix4d> solver{information};
-    if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
-    found = solver.solve(product);
-    if (!found.allFinite()) return std::nullopt;
-    std::vector<double> residuals_m;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      residuals_m.push_back((values[i] - rows[i] * found).norm());
-    cutoff_m = kCutoff * std::max(1e-4, median(std::move(residuals_m)));
-    sigma2_m2 = step == 0 ? cutoff_m * cutoff_m : 0.5 * squares / weights;
-  }
-  const Eigen::Matrix4d inverse = (information + kSmallest * Eigen::Matrix4d::Identity()).inverse();
-  // What wheels and walls get wrong lasts: motions of a stretch err together.
-  Eigen::Matrix4d spread = Eigen::Matrix4d::Zero();
-  for (std::size_t block = 0; block < kBlocks; ++block) {
-    Eigen::Vector4d slope = Eigen::Vector4d::Zero();
-    for (std::size_t i = block * rows.size() / kBlocks; i < (block + 1) * rows.size() / kBlocks;
-         ++i) {
-      const Eigen::Vector2d residual_m = values[i] - rows[i] * found;
-      slope += weight_of(residual_m.norm(), cutoff_m) * rows[i].transpose() * residual_m;
-    }
-    spread += slope * slope.transpose();
-  }
-  const Eigen::Matrix4d covariance =
-      (sigma2_m2 * inverse).cwiseMax(inverse * spread * inverse).eval();
+  if (equations.rows.size() < kFewest) return std::nullopt;
+  const auto solution = solve_robustly(equations, kLeastResidual_m);
+  if (!solution) return std::nullopt;
+  const auto& [found, covariance] = *solution;
   const double scale = std::hypot(found[0], found[1]);
   if (scale < kSmallest) return std::nullopt;
-  const auto sigma = [&](int i) {
+  const auto sigma = [&covariance = covariance](int i) {
     return std::sqrt(covariance(i, i));
   };
   // Without turns only odometry's noise distinguishes a lever from none.
@@ -299,7 +315,7 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
                  {found[3] / scale, std::max(least_sigma_m, sigma(3) / scale)},
                  {std::atan2(found[1], found[0]), sigma_direction / scale},
                  {scale, sigma_direction},
-                 static_cast<int>(rows.size())};
+                 static_cast<int>(equations.rows.size())};
 }
 
 }  // namespace waymark

@@ -21,9 +21,10 @@ struct TurnComparison {
   double turned_rad{0.0};   ///< by the LiDAR, all turns without their signs
 };
 
-/// Least squares over the turns between consecutive scans, with the time offset within half a
-/// second that makes them fit best: a parabola over offsets of whole odometry samples. nullopt for
-/// less than 30 turns, or for a robot that hardly turns (less than a whole turn in all).
+/// Robust least squares over the turns between consecutive scans. The time offset within half a
+/// second: first that of whole odometry samples which makes them fit best, then the one at which
+/// turns of the odometry do not depend on how its speed of turning changes. nullopt for less than
+/// 30 turns, or for a robot that hardly turns (less than a whole turn in all).
 std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
                                             const std::vector<ImportedPose>& odometry);
 
