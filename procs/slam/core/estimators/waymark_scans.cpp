@@ -21,7 +21,7 @@ constexpr double kClearlyMore = 1.05;                  // inliers than the plain
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
 
 // Beams that end where the map is free.
-constexpr double kMovingSigmas = 2.0;
+constexpr double kMovingSigmas = 3.0;
 constexpr double kMostOff_m = 0.3;  // of a beam's end; farther, walls stand in free places, too
 
 }  // namespace
