@@ -38,6 +38,8 @@ bool covers(const std::vector<ImportedPose>& odometry, Timestamp from, Timestamp
 
 /// Turns of both, one entry per pair of scans.
 struct Turns {
+  std::vector<Timestamp> from{};  ///< of odometry
+  std::vector<Timestamp> to{};
   std::vector<double> lidar_rad{};
   std::vector<double> odometry_rad{};
 };
@@ -50,6 +52,8 @@ Turns turns_with(const std::vector<LidarTurn>& turns, const std::vector<Imported
     if (!covers(odometry, turn.from - late, turn.to - late)) continue;
     const Se2 from = pose_at(odometry, turn.from - late);
     const Se2 to = pose_at(odometry, turn.to - late);
+    both.from.push_back(turn.from - late);
+    both.to.push_back(turn.to - late);
     both.lidar_rad.push_back(turn.turn_rad);
     both.odometry_rad.push_back(angle_difference(to.theta(), from.theta()));
   }
@@ -186,16 +190,12 @@ std::optional<Solution<kUnknowns>> solve_robustly(const Equations<kRows, kUnknow
 std::optional<Measured> remaining_offset_s(const std::vector<LidarTurn>& turns,
                                            const std::vector<ImportedPose>& odometry,
                                            double late_s) {
-  const Duration late = duration_from_seconds(late_s);
+  const Turns both = turns_with(turns, odometry, late_s);
   Equations<1, 2> equations;
-  for (const LidarTurn& turn : turns) {
-    const Timestamp from = turn.from - late;
-    const Timestamp to = turn.to - late;
-    if (!covers(odometry, from, to)) continue;
-    equations.rows.emplace_back(turn.turn_rad,
-                                turn_rate_rad_s(odometry, to) - turn_rate_rad_s(odometry, from));
-    equations.values.emplace_back(
-        angle_difference(pose_at(odometry, to).theta(), pose_at(odometry, from).theta()));
+  for (std::size_t i = 0; i < both.lidar_rad.size(); ++i) {
+    equations.rows.emplace_back(both.lidar_rad[i], turn_rate_rad_s(odometry, both.to[i]) -
+                                                       turn_rate_rad_s(odometry, both.from[i]));
+    equations.values.emplace_back(both.odometry_rad[i]);
   }
   if (equations.rows.size() < kFewest) return std::nullopt;
   const auto solution = solve_robustly(equations, kLeastResidual_rad);
@@ -258,8 +258,10 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
   const double late_s = (static_cast<double>(best) - steps) * interval_s;
   comparison.ratio = {lines[best].ratio, lines[best].ratio_sigma};
   comparison.lidar_late_s = {late_s, kLargestOffset_s};
-  const int beside = std::max(1, static_cast<int>(std::round(0.5 * kRateOver_s / interval_s)));
-  const double half_width_s = beside * interval_s;
+  const auto beside =
+      static_cast<std::size_t>(std::max(1.0, std::round(0.5 * kRateOver_s / interval_s)));
+  if (best < beside || best + beside >= lines.size()) return comparison;  // nothing is known there
+  const double half_width_s = static_cast<double>(beside) * interval_s;
   const auto before = remaining_offset_s(turns, odometry, late_s - half_width_s);
   const auto here = remaining_offset_s(turns, odometry, late_s);
   const auto after = remaining_offset_s(turns, odometry, late_s + half_width_s);
