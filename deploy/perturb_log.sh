@@ -7,7 +7,8 @@
 #   --seed N        of everything that is drawn (default: 1)
 #   --bursts        in 30 scans, in three bursts of 10, odometry is off by up to 1 m or 1 rad each
 #   --still         odometry stays where it began
-#   --odometry-noise S  each step of odometry is off by normal noise: S m and S rad after 1 m, growing with the root
+#   --odometry-noise S  each step of odometry is off by normal noise: S m and S rad after 1 m, growing
+#                   with the root; a radian of turning counts as 0.2 m
 #   --odometry-step S   odometry as of coarse encoders: rounded to S m and S rad
 #   --noise-m S     normal noise on the ranges
 #   --people        three people go along, 0.9 to 1.5 m away: each hides a tenth of the beams
@@ -67,7 +68,7 @@ perturbed() {
     -v noise_m="$noise_m" -v every_s="$every_s" -v beam_step="$beam_step" \
     -v mirror="$mirror" -v reverse="$reverse" -v last_s="$1" '
     function normal() { return sqrt(-2 * log(1 - rand())) * cos(6.283185307179586 * rand()) }
-    # The odometry as it is told, odom_*, follows the increments of the one that was measured.
+    # Worse odometry, odom_*, follows the increments of the one that was measured.
     function follow(x, y, theta, is_burst,    dx, dy, ahead, left, turn, root) {
       if (scans > 1) {
         dx = x - last_x; dy = y - last_y
@@ -77,7 +78,7 @@ perturbed() {
         if (is_burst && rand() < 0.5) turn += 2 * rand() - 1
         else if (is_burst) ahead += 2 * rand() - 1
         if (odometry_noise > 0) {
-          root = odometry_noise * sqrt(sqrt(ahead * ahead + left * left) + 0.2 * sqrt(turn * turn))
+          root = odometry_noise * sqrt(sqrt(ahead * ahead + left * left) + 0.2 * sqrt(wrapped(turn) ^ 2))
           ahead += root * normal()
           turn += root * normal()
         }
