@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command/command_line.hpp"
 
+#include "common/bus/ask_slam.hpp"
 #include "common/errors/exit_codes.hpp"
 
 #include <CLI/CLI.hpp>
@@ -12,10 +13,8 @@ namespace waymark {
 CommandLine parse_command_line(int argc, const char* const* argv) {
   CommandLine line;
   command_t& command = line.command;
-  constexpr double kUsualSigma_m = 0.1;  // of somebody who points at a map
-  constexpr double kUsualSigma_rad = 0.1;
-  command.sigmas[0] = kUsualSigma_m;
-  command.sigmas[1] = kUsualSigma_rad;
+  command.sigmas[0] = kPointedSigma_m;
+  command.sigmas[1] = kPointedSigma_rad;
   std::string mode;
 
   CLI::App program{

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// waymark-evaluate: how good a map and a trajectory are, and where markers would make them better.
+// waymark-evaluate: how good a map and a trajectory are.
 #include "common/config/config.hpp"
 #include "common/errors/setup_error.hpp"
 #include "common/runtime/number_checks.hpp"
 #include "evaluate/commands.hpp"
-#include "evaluate/placement/placement_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <functional>
 #include <map>
@@ -27,7 +28,6 @@ struct Arguments {
   std::vector<std::filesystem::path> row_dirs{};
   std::vector<std::string> estimators{};
   EvaluationOptions options{};
-  waymark::placement::PlacementOptions placement{};
   Output output{};
 };
 
@@ -161,30 +161,26 @@ void add_consistency(CLI::App& program, Arguments& arguments, Command& chosen) {
   });
 }
 
-void add_placement(CLI::App& program, Arguments& arguments, Command& chosen) {
+/// The program beside this one that gives the advice, with the rest of the command line.
+int run_placement_program(const std::vector<std::string>& arguments) {
+  const std::string program =
+      std::filesystem::read_symlink("/proc/self/exe").replace_filename("waymark-placement");
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments)
+    argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  ::execv(program.c_str(), argv.data());
+  throw std::system_error{errno, std::generic_category(), program};
+}
+
+void add_placement(CLI::App& program, Command& chosen) {
   CLI::App& command = *program.add_subcommand(
       "placement", "where the estimate is too uncertain, and the fewest new markers that cure it");
-  auto& options = arguments.placement;
-  command
-      .add_option("RUN|MAP", options.source,
-                  "folder of a run or of its row, or a map file (NAME.map.lcm)")
-      ->required();
-  command
-      .add_option("--target-sigma-m", options.target_m,
-                  "standard deviation of the position along the axis that the walls do not show "
-                  "that is wanted everywhere on the way [m]")
-      ->check(waymark::positive_number())
-      ->capture_default_str();
-  command.add_option("--config", options.config,
-                     "robot.toml or slam configuration, for a map file, or instead of the run's");
-  command.add_option("--json", options.json, "write the advice there for programs");
-  command.add_option("--csv", options.csv, "write the new markers there, as in markers.csv");
-  command.add_option("--picture", options.picture,
-                     "PNG file of the map with the places (default: placement.png in the row, "
-                     "NAME.placement.png beside a map file)");
+  command.set_help_flag();  // --help is for the other program, too
+  command.prefix_command();
   command.callback([&] {
     chosen = [&] {
-      return waymark::placement::run_placement(arguments.placement);
+      return run_placement_program(command.remaining());
     };
   });
 }
@@ -206,7 +202,7 @@ int main(int argc, char** argv) {
   add_relations(program, arguments, chosen);
   add_sweep(program, arguments, chosen);
   add_consistency(program, arguments, chosen);
-  add_placement(program, arguments, chosen);
+  add_placement(program, chosen);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "export/foxglove.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "common/geometry/principal_axes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -196,13 +196,13 @@ Json ellipse_json(const Eigen::Vector2d& centre_m, const Eigen::Matrix2d& covari
   constexpr int kCorners = 36;
   constexpr double kSigmas = 2.0;
   constexpr int kLineLoop = 1;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{covariance};
-  const Eigen::Vector2d radii_m = kSigmas * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const PrincipalAxes axes = principal_axes(covariance);
+  const Eigen::Vector2d radii_m = kSigmas * axes.values.cwiseMax(0.0).cwiseSqrt();
   Json points = Json::array();
   for (int i = 0; i < kCorners; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kCorners;
     const Eigen::Vector2d on_axes{radii_m.x() * std::cos(angle), radii_m.y() * std::sin(angle)};
-    const Eigen::Vector2d at = centre_m + axes.eigenvectors() * on_axes;
+    const Eigen::Vector2d at = centre_m + axes.directions * on_axes;
     points.push_back(vector_json(at.x(), at.y(), 0.0));
   }
   return {{"type", kLineLoop},       {"pose", pose_json(Se2{})}, {"thickness", 2.0},

@@ -2,8 +2,8 @@
 #include "common/corridor/medial_line.hpp"
 
 #include "common/corridor/not_a_corridor.hpp"
+#include "common/geometry/principal_axes.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -188,7 +188,7 @@ Axis principal_axis(const std::vector<Vector2d>& points) {
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
   for (const Vector2d& point : points)
     spread += (point - centre) * (point - centre).transpose();
-  Vector2d direction = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>{spread}.eigenvectors().col(1);
+  Vector2d direction = principal_axes(spread).directions.col(1);
   Eigen::Index main{};
   direction.cwiseAbs().maxCoeff(&main);
   if (direction[main] < 0.0) direction = -direction;

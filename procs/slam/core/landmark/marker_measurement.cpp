@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/landmark/marker_measurement.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "common/geometry/principal_axes.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -168,10 +169,9 @@ std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
                   is_first ? std::min(kFirstReach_m, reach_m) : reach_m, range_sigma_m);
     if (fit.beams < kMinBeams) return std::nullopt;
     mean = fit.sum / fit.weight;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
-        Eigen::Matrix2d{fit.squares / fit.weight - mean * mean.transpose()}};
-    extent = axes.eigenvalues()[1];
-    axis = axes.eigenvectors().col(1);
+    const PrincipalAxes axes = principal_axes(fit.squares / fit.weight - mean * mean.transpose());
+    extent = axes.values[1];
+    axis = axes.directions.col(1);
     Eigen::Vector2d normal{-axis.y(), axis.x()};
     if (normal.dot(expected) < 0.0) normal = -normal;
     if (normal.dot(expected) < std::cos(kMaxTurn_rad)) return std::nullopt;

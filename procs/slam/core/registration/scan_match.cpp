@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/scan_match.hpp"
 
+#include "common/geometry/principal_axes.hpp"
+
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -246,10 +247,9 @@ Points thinned(const Points& points, std::size_t most) {
 ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share) {
   ObservedAxes observed;
   observed.information = information;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
-      Eigen::Matrix2d{information.topLeftCorner<2, 2>()}};
-  observed.weak_direction = axes.eigenvectors().col(0);
-  observed.is_degenerate = axes.eigenvalues()[0] <= weak_share * axes.eigenvalues()[1];
+  const PrincipalAxes axes = principal_axes(information.topLeftCorner<2, 2>());
+  observed.weak_direction = axes.directions.col(0);
+  observed.is_degenerate = axes.values[0] <= weak_share * axes.values[1];
   if (!observed.is_degenerate) return observed;
   Eigen::Matrix3d keep = Eigen::Matrix3d::Identity();
   keep.topLeftCorner<2, 2>() -= observed.weak_direction * observed.weak_direction.transpose();

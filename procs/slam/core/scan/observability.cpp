@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/scan/observability.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "common/geometry/principal_axes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,11 +72,10 @@ Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& 
                               normal_in_base->dot(Eigen::Vector2d{-end.y(), end.x()})};
     result.information += row * row.transpose() / (range_sigma_m * range_sigma_m);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
-      Eigen::Matrix2d{result.information.topLeftCorner<2, 2>()}};
-  result.weak_direction = axes.eigenvectors().col(0);
-  result.weak_information = axes.eigenvalues()[0];
-  result.is_degenerate = axes.eigenvalues()[0] <= kDegenerateShare * axes.eigenvalues()[1];
+  const PrincipalAxes axes = principal_axes(result.information.topLeftCorner<2, 2>());
+  result.weak_direction = axes.directions.col(0);
+  result.weak_information = axes.values[0];
+  result.is_degenerate = axes.values[0] <= kDegenerateShare * axes.values[1];
   return result;
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/core/layers/path_marks.hpp"
 
+#include "common/geometry/principal_axes.hpp"
 #include "viewer/core/drawing/canvas.hpp"
 #include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/drawing/path_points.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
@@ -195,16 +194,15 @@ int bar_width_px(double scale) {
 std::optional<Ellipse> two_sigma_ellipse(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
   if (!position.allFinite()) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{position};
+  const PrincipalAxes axes = principal_axes(position);
   // Rounding may leave a variance of nothing a little below it.
   constexpr double kRounding = 1e-9;
-  const double largest = std::max(axes.eigenvalues()(1), 0.0);
-  if (!axes.eigenvalues().allFinite() || axes.eigenvalues()(0) < -kRounding * largest ||
-      axes.eigenvalues()(1) < 0.0) {
+  const double largest = std::max(axes.values(1), 0.0);
+  if (!axes.values.allFinite() || axes.values(0) < -kRounding * largest || axes.values(1) < 0.0) {
     return std::nullopt;
   }
-  const Eigen::Vector2d sigma_m = axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::Vector2d axis = axes.eigenvectors().col(1);
+  const Eigen::Vector2d sigma_m = axes.values.cwiseMax(0.0).cwiseSqrt();
+  const Eigen::Vector2d axis = axes.directions.col(1);
   return Ellipse{2.0 * sigma_m(1), 2.0 * sigma_m(0), std::atan2(axis.y(), axis.x())};
 }
 

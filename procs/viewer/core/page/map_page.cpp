@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/core/page/map_page.hpp"
 
+#include "common/geometry/principal_axes.hpp"
 #include "viewer/core/drawing/path_points.hpp"
 #include "viewer/core/scene/alignment.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -156,10 +155,9 @@ Se2 view_from_map(const GridMap& map) {
   }
   if (count < 2.0) return {};
   const Eigen::Vector2d mean = sum / count;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{sum_of_squares / count -
-                                                            mean * mean.transpose()};
-  if (axes.eigenvalues()(1) < kLong * kLong * std::max(axes.eigenvalues()(0), 1e-9)) return {};
-  Eigen::Vector2d axis = axes.eigenvectors().col(1);
+  const PrincipalAxes axes = principal_axes(sum_of_squares / count - mean * mean.transpose());
+  if (axes.values(1) < kLong * kLong * std::max(axes.values(0), 1e-9)) return {};
+  Eigen::Vector2d axis = axes.directions.col(1);
   if (axis.x() < 0.0) axis = -axis;
   const double angle_rad = std::atan2(axis.y(), axis.x());
   return std::abs(angle_rad) < kNearlyLying_rad ? Se2{} : Se2{0.0, 0.0, -angle_rad};

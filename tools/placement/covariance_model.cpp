@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/covariance_model.hpp"
+#include "placement/covariance_model.hpp"
 
-#include "evaluate/placement/keyframe_schedule.hpp"
-#include "evaluate/placement/pose_covariance.hpp"
+#include "common/geometry/principal_axes.hpp"
+#include "placement/keyframe_schedule.hpp"
+#include "placement/pose_covariance.hpp"
 #include "slam/core/motion/pose_deviation.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -143,8 +143,8 @@ std::vector<std::size_t> last_uses(const std::vector<StepPlan>& plan) {
 double sigma_along(const Eigen::Matrix3d& covariance, const Eigen::Vector2d& axis) {
   const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
   if (!axis.isZero()) return std::sqrt(std::max(0.0, axis.dot(position * axis)));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{position, Eigen::EigenvaluesOnly};
-  return std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+  const PrincipalAxes axes = principal_axes(position);
+  return std::sqrt(std::max(0.0, axes.values[1]));
 }
 
 Sightings sightings_along(std::span<const Step> steps, const Se2& map_from_marker,

@@ -2,8 +2,8 @@
 // Where the estimate is too uncertain, and where new markers would cure it.
 #pragma once
 
-#include "evaluate/placement/advice.hpp"
-#include "evaluate/placement/placement_input.hpp"
+#include "placement/advice.hpp"
+#include "placement/placement_input.hpp"
 
 #include <optional>
 #include <string>

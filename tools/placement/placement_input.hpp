@@ -2,9 +2,9 @@
 // What a placement is made from: a run's row, or a map file.
 #pragma once
 
-#include "evaluate/placement/drive.hpp"
-#include "evaluate/placement/occupied_walls.hpp"
 #include "evaluate/trajectory/nees.hpp"
+#include "placement/drive.hpp"
+#include "placement/occupied_walls.hpp"
 #include "slam/slam_config.hpp"
 
 #include <filesystem>

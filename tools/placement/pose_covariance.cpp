@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/pose_covariance.hpp"
+#include "placement/pose_covariance.hpp"
 
 #include <Eigen/Cholesky>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/placement.hpp"
+#include "placement/placement.hpp"
 
 #include "common/markers/marker_dictionary.hpp"
 

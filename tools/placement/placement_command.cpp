@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/placement_command.hpp"
+#include "placement/placement_command.hpp"
 
 #include "common/files/whole_file.hpp"
 #include "evaluate/commands.hpp"
-#include "evaluate/placement/placement_report.hpp"
+#include "placement/placement_report.hpp"
 
 #include <fmt/format.h>
 

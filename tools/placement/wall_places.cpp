@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/wall_places.hpp"
+#include "placement/wall_places.hpp"
 
 #include <algorithm>
 #include <cmath>

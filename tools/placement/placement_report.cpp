@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/placement_report.hpp"
+#include "placement/placement_report.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

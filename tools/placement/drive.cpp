@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/drive.hpp"
+#include "placement/drive.hpp"
 
 #include <Eigen/Geometry>
 

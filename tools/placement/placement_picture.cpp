@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/placement_report.hpp"
+#include "placement/placement_report.hpp"
 #include "viewer/core/painters/map_painter.hpp"
 #include "viewer/files/png.hpp"
 

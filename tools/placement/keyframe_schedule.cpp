@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/keyframe_schedule.hpp"
+#include "placement/keyframe_schedule.hpp"
 
 #include "slam/core/graph/odometry_noise_learner.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/placement_input.hpp"
+#include "placement/placement_input.hpp"
 
 #include "evaluate/files/map_image.hpp"
 #include "evaluate/files/tum.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/view_model.hpp"
+#include "placement/view_model.hpp"
 
 #include "detector/core/square_pose.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/advice.hpp"
+#include "placement/advice.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -2,8 +2,8 @@
 // Where on the walls of a map a marker could hang.
 #pragma once
 
-#include "evaluate/placement/drive.hpp"
-#include "evaluate/placement/occupied_walls.hpp"
+#include "placement/drive.hpp"
+#include "placement/occupied_walls.hpp"
 
 #include <span>
 #include <string>

@@ -2,7 +2,7 @@
 // A placement for people and for programs.
 #pragma once
 
-#include "evaluate/placement/placement.hpp"
+#include "placement/placement.hpp"
 
 #include <string>
 

@@ -2,7 +2,7 @@
 // A drive as steps of a quarter of a metre, with what the scans there would show of the pose.
 #pragma once
 
-#include "evaluate/placement/occupied_walls.hpp"
+#include "placement/occupied_walls.hpp"
 #include "slam/core/motion/motion.hpp"
 #include "slam/core/registration/scan_match.hpp"
 #include "slam/slam_config.hpp"

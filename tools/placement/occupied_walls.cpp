@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/occupied_walls.hpp"
+#include "placement/occupied_walls.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "common/geometry/principal_axes.hpp"
 
 #include <cmath>
 #include <utility>
@@ -72,13 +72,11 @@ WallPatch OccupiedWalls::fitted(std::size_t cell) const {
     }
   }
   const Eigen::Vector2d mean = sum / count;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{
-      Eigen::Matrix2d{squares / count - mean * mean.transpose()}};
+  const PrincipalAxes axes = principal_axes(squares / count - mean * mean.transpose());
   WallPatch patch;
   patch.point = centre_of(cell) + mean;
-  patch.normal = axes.eigenvectors().col(0);
-  patch.is_line =
-      count >= kLeastCells && axes.eigenvalues()[0] < kLineRatio * axes.eigenvalues()[1];
+  patch.normal = axes.directions.col(0);
+  patch.is_line = count >= kLeastCells && axes.values[0] < kLineRatio * axes.values[1];
   return patch;
 }
 

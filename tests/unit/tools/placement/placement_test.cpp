@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate/placement/placement.hpp"
+#include "placement/placement.hpp"
 
-#include "evaluate/placement/placement_report.hpp"
-#include "evaluate/placement/pose_covariance.hpp"
+#include "placement/placement_report.hpp"
+#include "placement/pose_covariance.hpp"
 
 #include <Eigen/LU>
 #include <gmock/gmock.h>

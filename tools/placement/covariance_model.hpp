@@ -3,8 +3,8 @@
 // estimator `waymark` shows, from its own factors on measurements without errors.
 #pragma once
 
-#include "evaluate/placement/drive.hpp"
-#include "evaluate/placement/view_model.hpp"
+#include "placement/drive.hpp"
+#include "placement/view_model.hpp"
 
 #include <Eigen/Core>
 

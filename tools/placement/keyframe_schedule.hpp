@@ -3,7 +3,7 @@
 // how noisy it would take the odometry for.
 #pragma once
 
-#include "evaluate/placement/covariance_model.hpp"
+#include "placement/covariance_model.hpp"
 #include "slam/core/graph/factors.hpp"
 
 #include <optional>

@@ -2,8 +2,8 @@
 // The fewest new markers that bring the pose's standard deviation under a target.
 #pragma once
 
-#include "evaluate/placement/covariance_model.hpp"
-#include "evaluate/placement/wall_places.hpp"
+#include "placement/covariance_model.hpp"
+#include "placement/wall_places.hpp"
 
 #include <span>
 #include <vector>

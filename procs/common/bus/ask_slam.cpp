@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/bus/ask_slam.hpp"
+
+#include "common/bus/bus.hpp"
+
+#include <chrono>
+#include <random>
+
+namespace waymark {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kPatience{2000};
+constexpr milliseconds kPoll{50};
+constexpr milliseconds kSendAgain{300};  // datagrams get lost; the same id acts once
+
+}  // namespace
+
+std::optional<reply_t> ask_slam(const std::string& lcm_url, const ChannelNames& names,
+                                command_t command) {
+  std::random_device random;  // no two commands have one id
+  command.command_id = static_cast<std::int64_t>((std::uint64_t{random()} << 32U) | random());
+  Bus bus{lcm_url, {{std::string{channels::kSlamReply.name}}}, LargeMessages::kRefused, names};
+  const auto start = steady_clock::now();
+  auto last_sent = start - kSendAgain;
+  while (steady_clock::now() - start < kPatience) {
+    if (steady_clock::now() - last_sent >= kSendAgain) {
+      bus.publish(encode(channels::kSlamCommand, command));
+      last_sent = steady_clock::now();
+    }
+    const auto message = bus.receive(kPoll);
+    if (!message) continue;
+    const auto reply = decode<reply_t>(message->payload).message;
+    if (reply && reply->command_id == command.command_id) return *reply;
+  }
+  return std::nullopt;
+}
+
+}  // namespace waymark

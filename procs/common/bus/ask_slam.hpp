@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One SLAM_COMMAND, and the SLAM_REPLY to it.
+#pragma once
+
+#include "common/bus/channel_names.hpp"
+#include "common/messages/channels.hpp"
+
+#include <optional>
+#include <string>
+
+namespace waymark {
+
+/// How far a pose may be off that somebody has pointed at in a map.
+inline constexpr double kPointedSigma_m = 0.1;
+inline constexpr double kPointedSigma_rad = 0.1;
+
+/// Gives the command an id of its own and sends it again and again until slam answers; it acts
+/// once.
+/// @return nothing when no answer comes within 2 s.
+/// @throws SetupError as Bus does.
+std::optional<reply_t> ask_slam(const std::string& lcm_url, const ChannelNames& names,
+                                command_t command);
+
+}  // namespace waymark

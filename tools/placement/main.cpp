@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// waymark-placement, which is `waymark-evaluate placement`: where more markers would make a map
+// better.
+#include "common/config/config.hpp"
+#include "common/errors/setup_error.hpp"
+#include "common/runtime/number_checks.hpp"
+#include "evaluate/commands.hpp"
+#include "placement/placement_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <system_error>
+
+namespace {
+
+using waymark::placement::PlacementOptions;
+
+void add_options(CLI::App& program, PlacementOptions& options) {
+  program
+      .add_option("RUN|MAP", options.source,
+                  "folder of a run or of its row, or a map file (NAME.map.lcm)")
+      ->required();
+  program
+      .add_option("--target-sigma-m", options.target_m,
+                  "standard deviation of the position along the axis that the walls do not show "
+                  "that is wanted everywhere on the way [m]")
+      ->check(waymark::positive_number())
+      ->capture_default_str();
+  program.add_option("--config", options.config,
+                     "robot.toml or slam configuration, for a map file, or instead of the run's");
+  program.add_option("--json", options.json, "write the advice there for programs");
+  program.add_option("--csv", options.csv, "write the new markers there, as in markers.csv");
+  program.add_option("--picture", options.picture,
+                     "PNG file of the map with the places (default: placement.png in the row, "
+                     "NAME.placement.png beside a map file)");
+}
+
+int fail(const std::exception& error) {
+  fmt::print(stderr, "waymark-evaluate placement: {}\n", error.what());
+  return waymark::evaluate::kUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  PlacementOptions options;
+  CLI::App program{
+      "Says where the estimate is too uncertain, and the fewest new markers that cure it.\n"
+      "Exit code: 0 the target is met, or will be; 1 it cannot be; 2 wrong usage or files.",
+      "waymark-evaluate placement"};
+  program.set_version_flag("--version", "waymark-placement " WAYMARK_VERSION);
+  add_options(program, options);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? waymark::evaluate::kFine : waymark::evaluate::kUsage;
+  }
+  try {
+    return waymark::placement::run_placement(options);
+  } catch (const waymark::evaluate::InputError& error) {
+    return fail(error);
+  } catch (const std::system_error& error) {
+    return fail(error);
+  } catch (const waymark::ConfigError& error) {
+    return fail(error);
+  } catch (const waymark::SetupError& error) {
+    return fail(error);
+  }
+}
