@@ -29,6 +29,7 @@ packages_for_tests=(
   python3-numpy python3-matplotlib         # tests/python; where missing they are skipped
   lz4 zstd                                 # tests/python: bags compressed with them
   poppler-utils                            # tests of marker sheets: draws their PDF
+  python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs  # tests/python: a bag written by ROS itself
 )
 packages_for_fuzzing=(clang-16 libclang-rt-16-dev)  # Debian's default, 14, does not compile GCC 12's <ranges>
 

@@ -19,6 +19,7 @@
 #   --save-map FILE  write the map there at the end
 #   --channels FILE   section [channels], for every process: other names on the network, e.g. deploy/mbot.toml
 #   --http HOST:PORT  show the run as a live page there, e.g. 127.0.0.1:8080
+#   --http-token TOKEN|@FILE  whoever gives it on the page may command slam (needs --set slam.commands=true)
 #   --lcm-url URL     LCM network (default: $LCM_DEFAULT_URL, else a UDP port of its own)
 #
 # Deletes an earlier run in the --out folder: its log, truth, robot.toml, logs/, tables, and the rows of all replays of
@@ -46,7 +47,7 @@ parse_arguments() {
       --real-time) real_time=(--real-time) && shift && continue ;;
       --record-only) others=(recorder detector) && shift && continue ;;
       --no-images) recorder_options=(--set 'recorder.exclude=["CAMERA"]') && shift && continue ;;
-      --out | --seed | --robot | --estimator | --config | --set | --http | --channels | --lcm-url | --load-map | --save-map | --mode | --start)
+      --out | --seed | --robot | --estimator | --config | --set | --http | --http-token | --channels | --lcm-url | --load-map | --save-map | --mode | --start)
         need_value "$@"
         ;;&
       --out) out=$2 ;;
@@ -60,7 +61,8 @@ parse_arguments() {
       --mode) slam_options+=(--set "slam.mode=$2") ;;
       --start) slam_options+=(--set "slam.start=$2") ;;
       --channels) need_file "$2" && channel_options=(--config "$2") ;;
-      --http) viewer_options=(--http "$2") ;;
+      --http) viewer_options=(--http "$2" "${viewer_options[@]}") ;;
+      --http-token) viewer_options+=(--http-token "$2") ;;
       --lcm-url) lcm_url=$2 ;;
       -*) usage_error "unknown option '$1'" ;;
       *)

@@ -2,6 +2,7 @@
 // Configuration of the viewer: section [viewer], and what comes from the command line.
 #pragma once
 
+#include "common/bus/channel_names.hpp"
 #include "common/config/config.hpp"
 #include "viewer/core/page/style.hpp"
 
@@ -24,6 +25,9 @@ struct ViewerConfig {
   ViewerSection viewer{};
   std::filesystem::path out_dir{};  ///< from the command line (--out)
   std::string http{};               ///< HOST:PORT of the live page (--http); empty = none
+  std::string http_token{};         ///< of --http-token; empty = the page is read-only
+  std::string lcm_url{};            ///< where the page's commands go (--lcm-url)
+  ChannelNames channels{};          ///< what they are called there
   bool is_replay{false};            ///< there is a --log
 
   void describe(Fields& fields);

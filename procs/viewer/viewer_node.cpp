@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/viewer_node.hpp"
 
+#include "common/bus/ask_slam.hpp"
+#include "common/bus/bus.hpp"
 #include "common/runtime/signals.hpp"
 #include "viewer/core/painters/layer_painter.hpp"
 #include "viewer/core/painters/map_painter.hpp"
@@ -68,15 +70,31 @@ ViewerNode::ViewerNode(const Config& config, Inbox& inbox, Outbox& /*outbox*/)
   subscribe(inbox);
 }
 
+void ViewerNode::check(const Config& config) {
+  if (!config.http.empty()) viewer::parse_http_address(config.http);
+  if (!config.http_token.empty()) viewer::parse_http_token(config.http_token);
+}
+
 void ViewerNode::start_page() {
   using Pace = viewer::LiveFeed::Pace;
   const viewer::HttpAddress address = viewer::parse_http_address(config_.http);
   live_feed_.emplace(board_, scene_.title,
                      config_.is_replay ? Pace::kMessageTime : Pace::kWallClock);
-  page_server_ = std::make_unique<viewer::PageServer>(address, board_, folder_.path());
+  page_server_ =
+      std::make_unique<viewer::PageServer>(address, board_, folder_.path(), page_commands());
   spdlog::info("the live page is {}", address.url());
   if (!address.is_loopback())
     spdlog::warn("everybody who reaches {} can look at the live page", address.host);
+}
+
+/// Nothing without a token: the page is read-only.
+std::optional<viewer::PageCommands> ViewerNode::page_commands() const {
+  if (config_.http_token.empty()) return std::nullopt;
+  return viewer::PageCommands{.token = viewer::parse_http_token(config_.http_token),
+                              .ask = [url = lcm_url_or_default(config_.lcm_url),
+                                      names = config_.channels](const command_t& command) {
+                                return ask_slam(url, names, command);
+                              }};
 }
 
 template <class Type>

@@ -30,6 +30,9 @@ class ViewerNode final : public Node {
   /// @throws SetupError when there is no folder to write to.
   ViewerNode(const Config& config, Inbox& inbox, Outbox& outbox);
 
+  /// @throws SetupError for an address or a token of the live page that cannot be one.
+  static void check(const Config& config);
+
   /// Writes everything once more, if anything has come from slam.
   void finish() override;
 
@@ -44,6 +47,7 @@ class ViewerNode final : public Node {
   /// What only the page shows.
   void subscribe_page(Inbox& inbox);
   void start_page();
+  std::optional<viewer::PageCommands> page_commands() const;
   /// @return false for what is left of the map before.
   bool follow(std::int64_t map_id, Timestamp time);
   void set_old_map_aside();

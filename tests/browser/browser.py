@@ -81,6 +81,16 @@ class Browser:
     def text(self, element_id):
         return self.run("return document.getElementById(arguments[0]).textContent", element_id)
 
+    def click(self, element_id):
+        element = next(iter(self._ask("POST", "/element", {"using": "css selector", "value": f"#{element_id}"}).values()))
+        self._ask("POST", f"/element/{element}/click")
+
+    def drag(self, start, end):
+        """A stroke with the mouse; points are (x, y) in pixels of the window."""
+        moves = [{"type": "pointerMove", "duration": 50, "x": round(x), "y": round(y)} for x, y in (start, end)]
+        steps = [moves[0], {"type": "pointerDown", "button": 0}, moves[1], {"type": "pointerUp", "button": 0}]
+        self._ask("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": steps}]})
+
     def wait_for(self, what, timeout_s=60):
         """The first true value of what(); raises TimeoutError."""
         end = time.monotonic() + timeout_s

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The live page in a real browser during a run whose camera goes off: walls, robot and markers are drawn, and the words
-say why it knows less.
+say why it knows less. With the token it commands.
 
-usage: live_page_test.py URL [SCREENSHOT]   (the run is started by tests/process/stack_test.sh)
+usage: live_page_test.py URL TOKEN [SCREENSHOT]   (the run is started by tests/process/stack_test.sh)
 """
 
 import sys
@@ -44,6 +44,21 @@ def expect(holds, what):
         sys.exit(1)
 
 
+def set_pose(browser, url, token):
+    """The robot is dragged to where it is already, looking along the corridor."""
+    browser.open("about:blank")  # another fragment alone would not load the page again
+    browser.open(f"{url}#token={token}")
+    browser.wait_for(lambda: browser.run("return Boolean(view?.estimate && box)"))
+    browser.click("set-pose")
+    x, y = browser.run(
+        "const r = canvas.getBoundingClientRect(), [x, y] = toPixel(...view.estimate.pose); return [r.left + x, r.top + y];"
+    )
+    browser.drag((x, y), (x + 60, y))
+    browser.wait_for(lambda: browser.text("answer") not in ("", "Waiting for slam."))
+    answer = browser.text("answer")
+    expect(browser.run("return document.getElementById('answer').className") == "", f"slam takes the pose that was drawn: {answer}")
+
+
 def main():
     if missing():
         print(f"skipped: no {' and no '.join(missing())} here; apt-get install chromium chromium-driver")
@@ -67,9 +82,11 @@ def main():
         expect(browser.text("health") in ("tracking", "degenerate"), f"health is {browser.text('health')}")
         before = browser.text("reason")
         expect("silent" not in before, f"the camera is not silent yet: {before}")
-        if len(sys.argv) > 2:
+        expect(browser.run("return document.getElementById('unlocked').hidden"), "without the token there are no commands")
+        set_pose(browser, url, sys.argv[2])
+        if len(sys.argv) > 3:
             browser.wait_for(lambda: browser.run("return view.markers.length >= 4"))
-            browser.screenshot(sys.argv[2])
+            browser.screenshot(sys.argv[3])
         browser.wait_for(lambda: "The camera has been silent for" in browser.text("reason"))
         expect(True, f"then it is: {browser.text('reason')}")
         width = browser.run("return document.documentElement.scrollWidth - window.innerWidth")

@@ -134,6 +134,18 @@ ask() {
   grep -q -- "$text" "$work/ask.output" || fail "waymark-command $* does not say '$text'"
 }
 
+# post_command STATUS TEXT JSON TOKEN: the live page at $page answers a command with that.
+post_command() {
+  local answer
+  answer=$(
+    exec 8<>"/dev/tcp/${page/://}"
+    printf 'POST /command HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer %s\r\nContent-Length: %d\r\nConnection: close\r\n\r\n%s' \
+      "$4" "${#3}" "$3" >&8
+    cat <&8
+  )
+  [[ $answer == "HTTP/1.1 $1 "*"$2"* ]] || fail "POST $3: not $1 and '$2', but $answer"
+}
+
 # A map that is saved on command; the replay of the log saves the same bytes.
 commands_while_it_runs() {
   url="udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
@@ -143,12 +155,19 @@ commands_while_it_runs() {
   ask 2 "" save
   sed -i 's/^speed_mps = .*/speed_mps = 0.1/' "$work/short.toml"
   local options=(--set slam.commands=true --set "slam.state_folder=$work/state")
-  begin run --lcm-url "$url" "${options[@]}"
+  local page="127.0.0.1:$((20000 + $$ % 10000))" token=0123456789abcdef0123
+  begin run --lcm-url "$url" --http "$page" --http-token too-short "${options[@]}"
+  expect_code 2 $!
+  grep -q "expected 16 to 200 printable characters" "$work/run.output" || fail "a short token is not named"
+  begin run --lcm-url "$url" --http "$page" --http-token "$token" "${options[@]}"
   local run=$!
   until_under_way run
   ask 1 "letters, digits" save ../map
   ask 1 "in that mode already" set-mode map
   ask 1 "no number" set-pose nan 0 0
+  post_command 401 "not the token" '{"command": "reset"}' "${token}X"
+  post_command 409 "in that mode already" '{"command": "set-mode", "mode": "map"}' "$token"
+  post_command 200 "" '{"command": "save", "name": "from_page"}' "$token"
   until "$work/bin/waymark-command" --lcm-url "$url" save day1 >"$work/ask.output" 2>&1; do
     kill -0 $run || fail "the run ended before a map was saved"
   done
@@ -261,9 +280,10 @@ live_page() {
   sed -i 's/^length_m.*/length_m = 14.0/; s/^end_x_m.*/end_x_m = 12.0/' "$work/short.toml"
   printf '[[faults]]\nsensor = "camera"\nkind = "off"\nfrom_m = 5.0\n' >>"$work/short.toml"
   command -v chromium >/dev/null && command -v chromedriver >/dev/null || exit 77
-  begin run --real-time --http "$address"
+  local token=0123456789abcdef0123
+  begin run --real-time --http "$address" --http-token "$token" --set slam.commands=true --set "slam.state_folder=$work/state"
   local run=$!
-  /usr/bin/python3 -B "$source_dir/tests/browser/live_page_test.py" "http://$address/" >"$work/page.output" 2>&1 || code=$?
+  /usr/bin/python3 -B "$source_dir/tests/browser/live_page_test.py" "http://$address/" "$token" >"$work/page.output" 2>&1 || code=$?
   kill -INT $run
   wait $run || true
   ((code == 0)) || fail "the page: exit code $code"

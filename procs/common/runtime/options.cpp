@@ -70,6 +70,9 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
     app.add_option("--http", options.http,
                    "HOST:PORT: show the run as a live page there, e.g. 127.0.0.1:8080; with --log, "
                    "until Ctrl-C");
+    app.add_option("--http-token", options.http_token,
+                   "TOKEN or @FILE: whoever gives it on the live page may save the map, set the "
+                   "pose and the mode, and reset (slam must have slam.commands = true)");
   }
   if (option_set.maps) {
     app.add_option("--load-map", options.load_map,

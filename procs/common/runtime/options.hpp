@@ -29,6 +29,7 @@ struct ProcessOptions {
   std::filesystem::path out_dir{};
   std::filesystem::path report{};
   std::string http{};
+  std::string http_token{};
   std::filesystem::path load_map{};
   std::filesystem::path save_map{};
   std::optional<std::int64_t> seed{};

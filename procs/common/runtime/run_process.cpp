@@ -214,6 +214,8 @@ void check(const ProcessOptions& options, const OptionSet& option_set) {
   if (!is_replay && !options.report.empty()) {
     throw SetupError{"--report needs --log: it is about a replay"};
   }
+  if (!options.http_token.empty() && (is_replay || options.http.empty()))
+    throw SetupError{"--http-token needs --http, and a run that is live: a log takes no commands"};
   if (!options.report.empty()) protect_inputs("--report", options.report, inputs_of(options));
   if (!options.out_log.empty()) protect_inputs("--out-log", options.out_log, inputs_of(options));
   if (options.save_map.empty()) return;
@@ -228,7 +230,6 @@ void check(const ProcessOptions& options, const OptionSet& option_set) {
 /// Reads the map that is to be loaded.
 void check_maps(const ProcessDescription& description, const ProcessOptions& options) {
   if (options.load_map.empty() && options.save_map.empty()) return;
-  check(options, description.option_set);
   Inbox inbox;
   Outbox outbox;
   description.make_node(options, inbox, outbox);
@@ -244,6 +245,8 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
   return run_guarded(description.traits, [&] {
     if (options.check) {
       description.dump_config(options);
+      check(options, description.option_set);
+      description.check_node(options);
       check_maps(description, options);
       if (options.logs.empty()) check_network(lcm_url_or_default(options.lcm_url));
       return int{kExitOk};

@@ -21,6 +21,7 @@ struct ProcessDescription {
   std::function<std::string(const ProcessOptions&)> dump_config{};
   std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
   std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none: the usual ones
+  std::function<void(const ProcessOptions&)> check_node{};  ///< what --check can of a node's own
   std::function<std::unique_ptr<Node>(const ProcessOptions&, Inbox&, Outbox&)> make_node{};
 };
 
@@ -43,8 +44,8 @@ struct ProcessConfig {
 
 int run_described_process(int argc, char** argv, const ProcessDescription& description);
 
-/// Configuration from files and command line, with --out, --out-log, --http and the names of
-/// channels where the struct has members for them.
+/// Configuration from files and command line, with --out, --out-log, --http, --lcm-url and the
+/// names of channels where the struct has members for them.
 template <class Config>
 ProcessConfig<Config> process_config_from(const ProcessOptions& options) {
   auto loaded = load_config<ProcessConfig<Config>>(options.config_sources);
@@ -53,6 +54,8 @@ ProcessConfig<Config> process_config_from(const ProcessOptions& options) {
   if constexpr (requires { config.out_dir; }) config.out_dir = options.out_dir;
   if constexpr (requires { config.out_log; }) config.out_log = options.out_log;
   if constexpr (requires { config.http; }) config.http = options.http;
+  if constexpr (requires { config.http_token; }) config.http_token = options.http_token;
+  if constexpr (requires { config.lcm_url; }) config.lcm_url = options.lcm_url;
   if constexpr (requires { config.load_map; }) config.load_map = options.load_map;
   if constexpr (requires { config.save_map; }) config.save_map = options.save_map;
   if constexpr (requires { config.is_replay; }) config.is_replay = !options.logs.empty();
@@ -89,6 +92,10 @@ int run_process(int argc, char** argv) {
   };
   description.config_value = [](const ProcessOptions& options, const std::string& key) {
     return config_value(process_config_from<Config>(options), key);
+  };
+  description.check_node = [](const ProcessOptions& options) {
+    if constexpr (requires(const Config& c) { NodeType::check(c); })
+      NodeType::check(process_config_from<Config>(options).own);
   };
   description.make_node = [](const ProcessOptions& options, Inbox& inbox, Outbox& outbox) {
     return std::make_unique<NodeType>(process_config_from<Config>(options).own, inbox, outbox);

@@ -66,9 +66,9 @@ std::optional<Number> number_of(const httplib::Request& request, const char* key
   return number;
 }
 
-void refuse(httplib::Response& response, int status, const std::string& reason) {
+void answer(httplib::Response& response, int status, const std::string& sentence) {
   response.status = status;
-  response.set_content(reason + "\n", "text/plain");
+  response.set_content(sentence + "\n", "text/plain");
 }
 
 /// The newest view as JSON, made once for all clients.
@@ -140,8 +140,12 @@ class EventStream {
 
 class PageServer::Implementation {
  public:
-  Implementation(const HttpAddress& address, Board& board, std::filesystem::path folder)
-      : address_{address}, board_{board}, folder_{std::move(folder)} {
+  Implementation(const HttpAddress& address, Board& board, std::filesystem::path folder,
+                 std::optional<PageCommands> commands)
+      : address_{address},
+        board_{board},
+        folder_{std::move(folder)},
+        commands_{std::move(commands)} {
     set_limits();
     add_routes();
     errno = 0;
@@ -190,20 +194,25 @@ class PageServer::Implementation {
       return refuse_strangers(request, response);
     });
     server_.set_exception_handler([](const auto&, auto& response, std::exception_ptr) {
-      refuse(response, 400, "the query is not understood");
+      answer(response, 400, "the query is not understood");
     });
   }
 
   httplib::Server::HandlerResponse refuse_strangers(const httplib::Request& request,
                                                     httplib::Response& response) const {
     using Outcome = httplib::Server::HandlerResponse;
-    if (request.method != "GET" && request.method != "HEAD") {
-      refuse(response, 405, "read-only: GET and HEAD");
+    const bool is_command = request.method == "POST" && request.path == "/command";
+    if (is_command && !commands_) {
+      answer(response, 405, "read-only: commands need a viewer with --http-token");
+      return Outcome::Handled;
+    }
+    if (!is_command && request.method != "GET" && request.method != "HEAD") {
+      answer(response, 405, "read-only: GET and HEAD");
       return Outcome::Handled;
     }
     const std::string host = request.get_header_value("Host");
     if (address_.is_loopback() && !host.empty() && !names_loopback(host)) {
-      refuse(response, 403, "this page is for this machine only");
+      answer(response, 403, "this page is for this machine only");
       return Outcome::Handled;
     }
     return Outcome::Unhandled;
@@ -228,9 +237,15 @@ class PageServer::Implementation {
       if (view && view->camera) {
         response.set_content(view->camera->jpeg, "image/jpeg");
       } else if (view) {
-        refuse(response, 404, "no camera image so far");
+        answer(response, 404, "no camera image so far");
       }
     });
+    server_.Get("/command", [this](const auto&, auto& response) {
+      if (!commands_) return answer(response, 404, "no --http-token: nothing can be commanded");
+      response.set_content("POST, with the token\n", "text/plain");
+    });
+    server_.Post("/command",
+                 [this](const auto& request, auto& response) { serve_command(request, response); });
     for (const Download& download : kDownloads)
       server_.Get(fmt::format("/{}", download.name), [this, download](const auto&, auto& response) {
         serve_file(download, response);
@@ -245,14 +260,14 @@ class PageServer::Implementation {
     // Half a microsecond of rounding must not lead to the view before.
     const ViewPtr view =
         time_s ? board_.at(Timestamp{duration_from_seconds(*time_s + 1e-6)}) : board_.newest();
-    if (!view) refuse(response, 404, "nothing has come so far");
+    if (!view) answer(response, 404, "nothing has come so far");
     return view;
   }
 
   void serve_events(httplib::Response& response) {
     if (++num_streams_ > kMaxStreams) {
       --num_streams_;
-      refuse(response, 503, fmt::format("{} pages are open already; close one", kMaxStreams));
+      answer(response, 503, fmt::format("{} pages are open already; close one", kMaxStreams));
       return;
     }
     const auto stream = std::make_shared<EventStream>(board_, newest_text_, num_streams_);
@@ -261,9 +276,26 @@ class PageServer::Implementation {
         [stream](std::size_t, httplib::DataSink& sink) { return stream->send_next(sink); });
   }
 
+  void serve_command(const httplib::Request& request, httplib::Response& response) {
+    if (!carries_token(request.get_header_value("Authorization"), commands_->token))
+      return answer(response, 401, "not the token of --http-token");
+    const std::unique_lock lock{command_mutex_, std::try_to_lock};
+    if (!lock) return answer(response, 429, "another command is on its way");
+    try {
+      const auto reply = commands_->ask(parse_page_command(request.body));
+      if (!reply) return answer(response, 504, "slam has not answered within 2 s");
+      const bool is_done = reply->state == reply_t::STATE_DONE;
+      answer(response, is_done ? 200 : 409, reply->text);
+    } catch (const std::invalid_argument& error) {
+      answer(response, 400, error.what());
+    } catch (const std::exception& error) {
+      answer(response, 504, error.what());
+    }
+  }
+
   void serve_file(const Download& download, httplib::Response& response) const {
     std::ifstream file{folder_ / download.name, std::ios::binary};
-    if (!file) return refuse(response, 404, "not written so far");
+    if (!file) return answer(response, 404, "not written so far");
     response.set_content(std::string{std::istreambuf_iterator<char>{file}, {}}, download.type);
     response.set_header("Content-Disposition",
                         fmt::format("attachment; filename=\"{}\"", download.name));
@@ -272,6 +304,8 @@ class PageServer::Implementation {
   HttpAddress address_;
   Board& board_;
   std::filesystem::path folder_;
+  std::optional<PageCommands> commands_;
+  std::mutex command_mutex_{};
   NewestText newest_text_{};
   std::atomic<int> num_streams_{0};
   std::atomic<bool> has_ended_{false};
@@ -279,8 +313,10 @@ class PageServer::Implementation {
   std::thread thread_;
 };
 
-PageServer::PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder)
-    : implementation_{std::make_unique<Implementation>(address, board, std::move(folder))} {}
+PageServer::PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder,
+                       std::optional<PageCommands> commands)
+    : implementation_{std::make_unique<Implementation>(address, board, std::move(folder),
+                                                       std::move(commands))} {}
 
 PageServer::~PageServer() = default;
 

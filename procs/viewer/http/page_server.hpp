@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The web server of the live page: reads the board and the output folder, changes nothing.
+// The web server of the live page: reads the board and the output folder; commands go to slam.
 #pragma once
 
 #include "viewer/http/board.hpp"
 #include "viewer/http/http_address.hpp"
+#include "viewer/http/page_commands.hpp"
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace waymark::viewer {
 
@@ -15,11 +17,15 @@ namespace waymark::viewer {
 /// `/` the page; `/events` server-sent events, a view each, five a second at most; `/view`,
 /// `/tiles` and `/camera.jpg` with `time_s=T` for a moment of the past; the files of the output
 /// folder as they were last written. A client that takes longer than two seconds for a view is cut.
+/// With commands: POST `/command` (see parse_page_command) with the header "Authorization: Bearer
+/// TOKEN"; 200 done, 401 wrong token, 409 refused by slam and why, 429 one is on its way already,
+/// 504 no answer. Without: 405.
 class PageServer {
  public:
   /// @param board  closed when this ends; outlives this.
   /// @throws SetupError when the address cannot be listened on.
-  PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder);
+  PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder,
+             std::optional<PageCommands> commands = {});
   ~PageServer();
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;

@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <random>
 
 namespace waymark::viewer {
@@ -118,6 +119,92 @@ TEST_F(PageServerTest, IsReadOnlyAndForThisMachine) {
   EXPECT_EQ(client_.Post("/", "x", "text/plain")->status, 405);
   EXPECT_EQ(client_.Delete("/map.png")->status, 405);
   EXPECT_EQ(client_.Get("/", {{"Host", "robot.example"}})->status, 403);
+}
+
+/// A page with commands, which a slam in this process answers.
+class PageCommandsTest : public PageServerTest {
+ protected:
+  static constexpr auto kToken = "0123456789abcdef";
+
+  httplib::Result post_command(const std::string& body, const std::string& token = kToken) {
+    return commander_.Post("/command", {{"Authorization", "Bearer " + token}}, body,
+                           "application/json");
+  }
+
+  const int command_port_ = free_port();
+  std::vector<command_t> asked_{};
+  std::optional<reply_t> reply_{
+      reply_t{.utime = 0, .command_id = 0, .state = reply_t::STATE_DONE, .text = "saved"}};
+  PageServer commanded_{{.host = "127.0.0.1", .port = command_port_},
+                        board_,
+                        ::testing::TempDir(),
+                        PageCommands{.token = kToken, .ask = [this](const command_t& command) {
+                                       asked_.push_back(command);
+                                       return reply_;
+                                     }}};
+  httplib::Client commander_{"127.0.0.1", command_port_};
+};
+
+TEST_F(PageCommandsTest, CommandsGoToSlamAndItsAnswerComesBack) {
+  const auto saved = post_command(R"({"command": "save", "name": "day1"})");
+  ASSERT_TRUE(saved);
+  EXPECT_EQ(saved->status, 200);
+  EXPECT_EQ(saved->body, "saved\n");
+  post_command(R"({"command": "set-pose", "pose": [1.5, -2, 0.5]})");
+  post_command(R"({"command": "set-mode", "mode": "localise"})");
+  post_command(R"({"command": "reset"})");
+  ASSERT_EQ(asked_.size(), 4U);
+  EXPECT_EQ(asked_[0].kind, command_t::KIND_SAVE_MAP);
+  EXPECT_EQ(asked_[0].name, "day1");
+  EXPECT_EQ(asked_[1].kind, command_t::KIND_SET_POSE);
+  EXPECT_THAT(asked_[1].pose, ::testing::ElementsAre(1.5, -2.0, 0.5));
+  EXPECT_THAT(asked_[1].sigmas, ::testing::ElementsAre(0.1, 0.1));
+  EXPECT_EQ(asked_[2].mode, command_t::MODE_LOCALISE);
+  EXPECT_EQ(asked_[3].kind, command_t::KIND_RESET);
+}
+
+TEST_F(PageCommandsTest, WhatSlamRefusesOrDoesNotAnswerIsSaid) {
+  reply_->state = reply_t::STATE_REFUSED;
+  reply_->text = "commands are off";
+  const auto refused = post_command(R"({"command": "reset"})");
+  EXPECT_EQ(refused->status, 409);
+  EXPECT_EQ(refused->body, "commands are off\n");
+  reply_.reset();
+  EXPECT_EQ(post_command(R"({"command": "reset"})")->status, 504);
+}
+
+TEST_F(PageCommandsTest, WithoutTheTokenNothingIsAsked) {
+  const std::string reset = R"({"command": "reset"})";
+  EXPECT_EQ(post_command(reset, "0123456789abcdeX")->status, 401);
+  EXPECT_EQ(post_command(reset, "")->status, 401);
+  EXPECT_EQ(commander_.Post("/command", reset, "application/json")->status, 401);
+  EXPECT_EQ(client_.Post("/command", reset, "application/json")->status, 405);
+  EXPECT_EQ(client_.Get("/command")->status, 404);
+  EXPECT_EQ(commander_.Get("/command")->status, 200);
+  EXPECT_THAT(asked_, ::testing::IsEmpty());
+}
+
+TEST_F(PageCommandsTest, WhatIsNoCommandIsRefused) {
+  for (const std::string body : {"", "{", "[]", R"({"command": "fly"})", R"({"command": "save"})",
+                                 R"({"command": "set-pose", "pose": [1, 2]})",
+                                 R"({"command": "set-pose", "pose": [1e999, 2, 3]})",
+                                 R"({"command": "set-pose", "pose": [1, 2, "north"]})",
+                                 R"({"command": "set-pose", "pose": [1, 2, 3, 4]})",
+                                 R"({"command": "set-mode", "mode": "fly"})", R"({"command": 7})"})
+    EXPECT_EQ(post_command(body)->status, 400) << body;
+  EXPECT_EQ(post_command(std::string(5000, ' '))->status, 413);
+  EXPECT_THAT(asked_, ::testing::IsEmpty());
+}
+
+TEST(HttpToken, IsLongEnoughAndMayStandInAFile) {
+  const std::string file = ::testing::TempDir() + "http_token";
+  std::ofstream{file} << "from-a-file-0123456789\nanother line\n";
+  EXPECT_EQ(parse_http_token("@" + file), "from-a-file-0123456789");
+  EXPECT_EQ(parse_http_token("0123456789abcdef"), "0123456789abcdef");
+  EXPECT_THROW(parse_http_token("0123456789abcde"), SetupError);
+  EXPECT_THROW(parse_http_token("0123456789 abcdef"), SetupError);
+  EXPECT_THROW(parse_http_token(std::string(201, 'a')), SetupError);
+  EXPECT_THROW(parse_http_token("@/no/such/file"), SetupError);
 }
 
 TEST_F(PageServerTest, ATakenPortIsASetupError) {
