@@ -140,6 +140,13 @@ make_shared_folder() {
   [[ -d $1 ]] || mkdir -m 1777 -- "$1" 2>/dev/null || [[ -d $1 ]] || die $kExitUsage "cannot make the folder '$1'"
 }
 
+# put_file FROM TO: a whole copy or none, also onto another disk, which may be full.
+put_file() {
+  if cp -- "$1" "$2.part" && mv -- "$2.part" "$2"; then return; fi
+  rm -f -- "$2.part"
+  die $kExitFailed "cannot write '$2'"
+}
+
 # take_port: sets lcm_url to a UDP port that no other stack on this machine has. The lock is a file
 # descriptor that every process started later inherits, so the port is taken as long as one lives.
 # (Multicast groups do not keep stacks apart in liblcm 1.3.1, ports do.)

@@ -102,7 +102,7 @@ prepare() {
   clear_old_run
   : >"$out/$kMark"
 
-  mv "$checked/robot.toml" "$out/robot.toml"
+  put_file "$checked/robot.toml" "$out/robot.toml"
   is_record_only || make_row
   rm -rf -- "$checked"
 }
@@ -136,7 +136,7 @@ check_programs() {
 
 make_row() {
   mkdir -p "$row"
-  mv "$checked/slam.toml" "$row/config.toml"
+  put_file "$checked/slam.toml" "$row/config.toml"
 }
 
 # find_old_run: sets old_rows, the folders of the rows of a run that is in the way, and old_files, the names

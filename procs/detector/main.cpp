@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// waymark-detector
-#include "common/runtime/run_process.hpp"
-#include "detector/detector_node.hpp"
+#include "detector/run_detector.hpp"
 
 int main(int argc, char** argv) {
-  return waymark::run_process<waymark::DetectorNode>(argc, argv);
+  return waymark::run_detector(argc, argv);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/sim_node.hpp"
+#include "sim/run_sim.hpp"
 
 int main(int argc, char** argv) {
-  return waymark::run_simulator<waymark::SimNode>(argc, argv);
+  return waymark::run_sim(argc, argv);
 }

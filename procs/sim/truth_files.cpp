@@ -6,13 +6,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 
 namespace waymark {
 namespace {
-
-[[noreturn]] void throw_not_writable(const std::filesystem::path& path) {
-  throw SetupError{path.string() + ": cannot be written; does the folder exist, is it writable?"};
-}
 
 std::string marker_row(const MarkerPlate& marker) {
   return fmt::format("{},{},{:.6f},{:.6f},{:.9f}", marker.id, marker.instance, marker.centre_m.x(),
@@ -38,7 +35,8 @@ std::string truth_marker_moves_csv(const std::vector<MovedMarker>& moves) {
 
 TruthTrajectory::TruthTrajectory(const std::filesystem::path& path)
     : path_{path}, unfinished_path_{path.string() + ".unfinished"}, stream_{unfinished_path_} {
-  if (!stream_) throw_not_writable(path);
+  if (!stream_)
+    throw SetupError{path.string() + ": cannot be written; does the folder exist, is it writable?"};
 }
 
 void TruthTrajectory::add(const TruePose& pose) {
@@ -52,7 +50,8 @@ void TruthTrajectory::finish() {
   stream_.close();
   std::error_code error;
   if (stream_) std::filesystem::rename(unfinished_path_, path_, error);
-  if (!stream_ || error) throw_not_writable(path_);
+  if (!stream_ || error)
+    throw std::runtime_error{path_.string() + ": cannot be written (disk full?)"};
 }
 
 }  // namespace waymark

@@ -21,9 +21,10 @@ std::string truth_marker_moves_csv(const std::vector<MovedMarker>& moves);
 /// truth.tum: `t x y z qx qy qz qw` of the base in the world frame, growing during the run.
 class TruthTrajectory {
  public:
+  /// @throws SetupError when the file cannot be created.
   explicit TruthTrajectory(const std::filesystem::path& path);
   void add(const TruePose& pose);
-  /// Puts the file in place.
+  /// Puts the file in place. @throws std::runtime_error naming it when the disk is full.
   void finish();
 
  private:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/runtime/run_process.hpp"
-#include "slam/slam_node.hpp"
+#include "slam/run_slam.hpp"
 
 int main(int argc, char** argv) {
-  return waymark::run_process<waymark::SlamNode>(argc, argv);
+  return waymark::run_slam(argc, argv);
 }

@@ -277,7 +277,7 @@ std::int64_t write_map_file(const std::filesystem::path& file, const MapSnapshot
   LogWriter writer{file};
   for (const Message& message : messages_with_id(map, info, map_id))
     writer.write(message);
-  writer.close();
+  writer.close_on_disk();
   return map_id;
 }
 

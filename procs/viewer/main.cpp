@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/runtime/run_process.hpp"
-#include "viewer/viewer_node.hpp"
+#include "viewer/run_viewer.hpp"
 
 int main(int argc, char** argv) {
-  return waymark::run_process<waymark::ViewerNode>(argc, argv);
+  return waymark::run_viewer(argc, argv);
 }

@@ -84,6 +84,22 @@ bad_scenario() {
   [[ ! -e $work/run ]] || fail "a folder for nothing"
 }
 
+# A second stack in lockstep on the port of the first is refused before anything of it runs; the first one is as ever.
+two_stacks_on_one_port() {
+  url="udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
+  begin alone --lcm-url "$url"
+  expect_code 0 $!
+  begin first --lcm-url "$url"
+  local first=$!
+  until_under_way first
+  begin second --lcm-url "$url" --seed 5
+  expect_code 2 $!
+  grep -q "another simulator runs in lockstep on UDP port" "$work/second.output" || fail "the other stack is not named"
+  [[ ! -e $work/second ]] || fail "a folder for nothing"
+  expect_code 0 $first
+  cmp "$work/alone/run.lcm" "$work/first/run.lcm" || fail "the first run has other bytes"
+}
+
 every_program_checks_without_running() {
   local name code
   for name in sim detector slam viewer recorder; do

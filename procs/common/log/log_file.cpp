@@ -3,6 +3,9 @@
 
 #include "common/errors/setup_error.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -40,6 +43,15 @@ void append_big_endian(std::string& bytes, Unsigned value) {
 
 std::string last_system_error() {
   return std::generic_category().message(errno);
+}
+
+/// @param path  a file, or the folder whose names are meant.
+void flush_to_disk(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool is_flushed = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const std::string why = is_flushed ? "" : last_system_error();
+  if (descriptor >= 0) ::close(descriptor);
+  if (!is_flushed) throw std::runtime_error{path.string() + ": cannot be flushed: " + why};
 }
 
 }  // namespace
@@ -206,10 +218,21 @@ void LogWriter::write(const Message& message) {
   if (!file_) throw std::runtime_error{part_path_.string() + ": cannot be written (disk full?)"};
 }
 
-void LogWriter::close() {
+void LogWriter::finish_part() {
   file_.close();
   if (!file_) throw std::runtime_error{part_path_.string() + ": cannot be written (disk full?)"};
+}
+
+void LogWriter::close() {
+  finish_part();
   std::filesystem::rename(part_path_, path_);
+}
+
+void LogWriter::close_on_disk() {
+  finish_part();
+  flush_to_disk(part_path_);
+  std::filesystem::rename(part_path_, path_);
+  flush_to_disk(path_.has_parent_path() ? path_.parent_path() : ".");
 }
 
 }  // namespace waymark

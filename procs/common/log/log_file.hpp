@@ -89,8 +89,13 @@ class LogWriter {
   void write(const Message& message);
   /// @throws std::runtime_error when not everything reached the file.
   void close();
+  /// The same, and after a power cut, too, the name stands for the old file or the whole new one:
+  /// both are on the disk when this returns, which may take a second.
+  void close_on_disk();
 
  private:
+  void finish_part();
+
   std::filesystem::path path_;
   std::filesystem::path part_path_;
   std::vector<char> buffer_;

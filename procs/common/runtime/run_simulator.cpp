@@ -2,6 +2,7 @@
 #include "common/runtime/run_simulator.hpp"
 
 #include "common/bus/bus.hpp"
+#include "common/bus/simulator_lock.hpp"
 #include "common/errors/exit_codes.hpp"
 #include "common/lockstep/command_relay.hpp"
 #include "common/lockstep/master.hpp"
@@ -15,6 +16,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <thread>
 
@@ -202,12 +204,25 @@ class Run {
   Timestamp tick_end_{};
 };
 
+ChannelNames names_of(const ProcessOptions& options, const SimulatorDescription& description) {
+  return description.channel_names ? description.channel_names(options) : ChannelNames{};
+}
+
+/// Nothing in real time: there, who came first is heard.
+std::unique_ptr<SimulatorLock> lock_of(const ProcessOptions& options,
+                                       const SimulatorDescription& description) {
+  if (options.real_time) return nullptr;
+  return std::make_unique<SimulatorLock>(lcm_url_or_default(options.lcm_url),
+                                         names_of(options, description));
+}
+
 /// Makes the world, too, but writes nothing.
 int check(ProcessOptions options, const SimulatorDescription& description) {
   options.out_dir.clear();
   Inbox inbox;
   description.make_source(options, inbox);
   check_network(lcm_url_or_default(options.lcm_url));
+  lock_of(options, description);
   return kExitOk;
 }
 
@@ -233,9 +248,9 @@ int run_described_simulator(int argc, char** argv, const SimulatorDescription& d
       protect_inputs("--out", options.out_dir / file, inputs_of(options));
     Inbox inbox;
     const auto source = description.make_source(options, inbox);
-    const auto names =
-        description.channel_names ? description.channel_names(options) : ChannelNames{};
-    Run run{description.traits, lcm_url_or_default(options.lcm_url), names, *source, inbox};
+    const auto lock = lock_of(options, description);
+    Run run{description.traits, lcm_url_or_default(options.lcm_url), names_of(options, description),
+            *source, inbox};
     source->begin();
     const int code = options.real_time ? run.in_real_time() : run.in_lockstep();
     source->finish();

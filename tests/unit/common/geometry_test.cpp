@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/geometry/principal_axes.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/node/counters.hpp"
 #include "common/random/random.hpp"
@@ -103,6 +104,17 @@ TEST(Counters, TheKindIsNotInTheName) {
   EXPECT_EQ(counters.total(CountKind::kRejection), 4);
   EXPECT_EQ(counters.get("nothing suspicious"), 4);
   EXPECT_EQ(counters.get("something else"), 0);
+}
+
+TEST(PrincipalAxes, AreThoseOfATurnedEllipse) {
+  const double angle_rad = 0.4;
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd{angle_rad}.toRotationMatrix();
+  const Eigen::Matrix2d ellipse = turn * Eigen::Vector2d{9.0, 4.0}.asDiagonal() * turn.transpose();
+  const PrincipalAxes axes = principal_axes(ellipse);
+  EXPECT_NEAR(axes.values(0), 4.0, 1e-12);
+  EXPECT_NEAR(axes.values(1), 9.0, 1e-12);
+  EXPECT_NEAR(std::abs(axes.directions.col(1).dot(turn.col(0))), 1.0, 1e-12);
+  EXPECT_NEAR(axes.directions.col(0).dot(axes.directions.col(1)), 0.0, 1e-12);
 }
 
 }  // namespace

@@ -3,11 +3,38 @@
 
 #include "common/errors/setup_error.hpp"
 
+#include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <ctime>
 #include <fstream>
 #include <sstream>
+
+namespace {
+
+std::vector<std::string> disk_calls;  ///< what was asked of the system, in order
+
+std::string name_of(int descriptor) {
+  return std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor))
+      .filename()
+      .string();
+}
+
+}  // namespace
+
+// In the place of the C library's, which they call.
+extern "C" int fsync(int descriptor) {
+  disk_calls.push_back("flush " + name_of(descriptor));
+  return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+  disk_calls.push_back("rename to " + std::filesystem::path{to}.filename().string());
+  return static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
 
 namespace waymark {
 namespace {
@@ -35,6 +62,10 @@ class LogFile : public ::testing::Test {
     return bytes.str();
   }
 
+  static std::string name_of_folder(const std::filesystem::path& path) {
+    return std::filesystem::canonical(path.parent_path()).filename().string();
+  }
+
   void put(const std::string& bytes) const { std::ofstream{path_, std::ios::binary} << bytes; }
 
   std::vector<Message> read(std::int64_t& skipped_bytes) const {
@@ -46,6 +77,16 @@ class LogFile : public ::testing::Test {
     return events;
   }
 };
+
+TEST_F(LogFile, IsOnTheDiskBeforeItTakesTheNameWhereAPowerCutMatters) {
+  disk_calls.clear();
+  LogWriter writer{path_};
+  writer.write(event(3));
+  writer.close_on_disk();
+  const std::string name = path_.filename().string();
+  EXPECT_THAT(disk_calls, ::testing::ElementsAre("flush " + name + ".part", "rename to " + name,
+                                                 "flush " + name_of_folder(path_)));
+}
 
 TEST_F(LogFile, WhatIsWrittenIsRead) {
   good_log(10);

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// main() of waymark-slam, compiled with the node: main.cpp needs none of its headers.
+#pragma once
+
+namespace waymark {
+
+int run_slam(int argc, char** argv);
+
+}  // namespace waymark
