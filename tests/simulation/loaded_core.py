@@ -123,7 +123,7 @@ def main():
         for program, (cpu_s, memory_mb) in end.items():
             print(f"  {program}: {cpu_s / float(simulated):.3f} s of processor time per second, {half[program][1]:.1f} MB at half, "
                   f"{memory_mb:.1f} MB at the end, exit code {codes[program]}")
-            losses = [line.split("] ")[-1].strip() for line in logs[program].read_text().splitlines() if "dropped" in line or "late" in line]
+            losses = [line.split("] ")[-1].strip() for line in logs[program].read_text().splitlines() if "dropped" in line or "skipped" in line]
             for line in losses[-4:]:
                 print(f"    {line}")
             failed |= codes[program] != 0 or memory_mb > 1.1 * half[program][1] + 10
