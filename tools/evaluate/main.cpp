@@ -185,6 +185,11 @@ void add_placement(CLI::App& program, Command& chosen) {
   });
 }
 
+int fail(const std::exception& error) {
+  fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
+  return kUsage;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -211,16 +216,12 @@ int main(int argc, char** argv) {
   try {
     return chosen();
   } catch (const InputError& error) {
-    fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
-    return kUsage;
+    return fail(error);
   } catch (const std::system_error& error) {
-    fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
-    return kUsage;
+    return fail(error);
   } catch (const waymark::ConfigError& error) {
-    fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
-    return kUsage;
+    return fail(error);
   } catch (const waymark::SetupError& error) {
-    fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
-    return kUsage;
+    return fail(error);
   }
 }
