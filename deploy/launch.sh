@@ -234,10 +234,11 @@ stop_all() {
   kill_all
 }
 
+# kill_all: also what a signal has kept from getting a name: it may come between a process's start and pid_of.
 kill_all() {
-  local name
-  for name in "${!pid_of[@]}"; do
-    ! is_running "$name" || kill -KILL -- "-${pid_of[$name]}" 2>/dev/null || true
+  local group
+  for group in $(jobs -rp); do
+    kill -KILL -- "-$group" 2>/dev/null || true
   done
   wait
 }

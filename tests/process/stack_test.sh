@@ -84,6 +84,20 @@ bad_scenario() {
   [[ ! -e $work/run ]] || fail "a folder for nothing"
 }
 
+# A signal between the start of a process and launch.sh's note of it: nothing waits for that process for ever.
+a_signal_while_it_starts() {
+  local i run
+  for ((i = 0; i < 8; ++i)); do
+    begin "start$i"
+    run=$!
+    until [[ -e $work/start$i/logs/recorder.log ]]; do sleep 0.001; done
+    sleep "0.00$i"
+    kill -TERM $run
+    expect_code 143 $run
+  done
+  expect_nothing_left
+}
+
 # A second stack in lockstep on the port of the first is refused before anything of it runs; the first one is as ever.
 two_stacks_on_one_port() {
   url="udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
