@@ -140,6 +140,9 @@ make_shared_folder() {
   [[ -d $1 ]] || mkdir -m 1777 -- "$1" 2>/dev/null || [[ -d $1 ]] || die $kExitUsage "cannot make the folder '$1'"
 }
 
+# put_text FILE TEXT: whole or not at all.
+put_text() { printf '%s\n' "$2" >"$1.tmp" && mv "$1.tmp" "$1"; }
+
 # put_file FROM TO: a whole copy or none, also onto another disk, which may be full.
 put_file() {
   if cp -- "$1" "$2.part" && mv -- "$2.part" "$2"; then return; fi

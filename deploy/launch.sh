@@ -237,7 +237,7 @@ stop_all() {
 # kill_all: also what a signal has kept from getting a name: it may come between a process's start and pid_of.
 kill_all() {
   local group
-  for group in $(jobs -rp); do
+  for group in $(jobs -p); do
     kill -KILL -- "-$group" 2>/dev/null || true
   done
   wait

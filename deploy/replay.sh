@@ -94,9 +94,6 @@ clear_old_results() {
   rm -f -- "${old_files[@]}"
 }
 
-# write FILE TEXT: whole or not at all.
-write() { printf '%s\n' "$2" >"$1.tmp" && mv "$1.tmp" "$1"; }
-
 # run NAME ARGUMENTS...: one program; its words go to the log file and, being progress, to the terminal; what
 # the replay took and counted to a report. One that has come to the end of a damaged log, and so has written
 # one, has made what can be made of it.
@@ -111,14 +108,14 @@ run() {
 }
 
 write_timings() {
-  write "$folder/timings.json" "{\"slam\": $(<"$folder/slam.report"),"$'\n'"\"viewer\": $(<"$folder/viewer.report")}"
+  put_text "$folder/timings.json" "{\"slam\": $(<"$folder/slam.report"),"$'\n'"\"viewer\": $(<"$folder/viewer.report")}"
   rm -f -- "$folder/"{slam,viewer}.report
 }
 
 parse_arguments "$@"
 prepare
 show_progress_bars
-write "$folder/config.toml" "$config"
+put_text "$folder/config.toml" "$config"
 incomplete=()
 run slam "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --out-log "$folder/slam.lcm"
 run viewer --log "$log" --log "$folder/slam.lcm" --out "$folder"

@@ -35,9 +35,6 @@ parse_arguments() {
   base=$sweep/$scenario/seed-$seed
 }
 
-# put FILE TEXT: whole or not at all.
-put() { printf '%s\n' "$2" >"$1.tmp" && mv "$1.tmp" "$1"; }
-
 # check_disk: a full disk is nobody's failure but the sweep's.
 check_disk() {
   local free_MB
@@ -49,7 +46,7 @@ check_disk() {
 # fails FOLDER SENTENCE
 fails() {
   check_disk
-  put "$1/failed" "$2"
+  put_text "$1/failed" "$2"
   say "$scenario seed $seed: $2"
 }
 
@@ -77,7 +74,7 @@ record() {
   local images=() wanted code=0
   wanted=$(stamp <(world))
   if [[ $(cat "$base/recorded" 2>/dev/null) == "$wanted" ]]; then
-    put "$base/expect.toml" "$(expectation)"
+    put_text "$base/expect.toml" "$(expectation)"
     return 0
   fi
   rm -rf -- "$base"
@@ -92,8 +89,8 @@ record() {
     fails "$base" "recording ended with code $code; logs are in $base/logs, the first words in sweep.log"
     return 1
   fi
-  put "$base/expect.toml" "$(expectation)"
-  put "$base/recorded" "$wanted"
+  put_text "$base/expect.toml" "$(expectation)"
+  put_text "$base/recorded" "$wanted"
 }
 
 # inject FOLDER VARIANT: the recorded run with faults, as a run folder of its own.
@@ -110,7 +107,7 @@ inject() {
     fails "$1" "waymark-faults ended with code $code; its log is $1/logs/faults.log"
     return 1
   fi
-  put "$1/recorded" "$wanted"
+  put_text "$1/recorded" "$wanted"
 }
 
 # rows_to_do FOLDER: lines of plan/rows that have no result there.
@@ -134,7 +131,7 @@ replay() {
   rm -f -- "$folder/$row/slam.lcm"
   leave_if_told $code
   if ((code == 0)); then
-    put "$folder/$row/done" "$line"
+    put_text "$folder/$row/done" "$line"
   else
     fails "$folder/$row" "replay ended with code $code; logs are $folder/logs/$row.*"
   fi
@@ -206,6 +203,6 @@ flock --nonblock "$job_lock" || done_by_somebody_else
 if [[ -n $again ]]; then rm -rf -- "$base" "$sweep/$scenario+"*"/seed-$seed"; fi
 if [[ $(cat "$base/finished" 2>/dev/null) == "$(everything)" ]] && [[ ! -e $base/failed ]]; then exit 0; fi
 do_job
-put "$base/finished" "$(everything)"
+put_text "$base/finished" "$(everything)"
 [[ -z $count ]] || report_count
 if [[ -n $again ]]; then "$bin_dir/waymark-evaluate" sweep "$sweep"; fi

@@ -24,6 +24,8 @@ end_x_m = 5.0
 speed_mps = 0.5
 END
 
+readonly page="127.0.0.1:$((20000 + $$ % 10000))" token=0123456789abcdef0123  # of the live page
+
 fail() {
   echo "FAILED: $*" >&2
   tail -n 20 "$work"/*.output >&2
@@ -185,7 +187,6 @@ commands_while_it_runs() {
   ask 2 "" save
   sed -i 's/^speed_mps = .*/speed_mps = 0.1/' "$work/short.toml"
   local options=(--set slam.commands=true --set "slam.state_folder=$work/state")
-  local page="127.0.0.1:$((20000 + $$ % 10000))" token=0123456789abcdef0123
   begin run --lcm-url "$url" --http "$page" --http-token too-short "${options[@]}"
   expect_code 2 $!
   grep -q "expected 16 to 200 printable characters" "$work/run.output" || fail "a short token is not named"
@@ -306,42 +307,41 @@ while True:
 
 # A real browser looks at a run whose camera goes off.
 live_page() {
-  local address="127.0.0.1:$((20000 + $$ % 10000))" code=0
+  local code=0
   sed -i 's/^length_m.*/length_m = 14.0/; s/^end_x_m.*/end_x_m = 12.0/' "$work/short.toml"
   printf '[[faults]]\nsensor = "camera"\nkind = "off"\nfrom_m = 5.0\n' >>"$work/short.toml"
   command -v chromium >/dev/null && command -v chromedriver >/dev/null || exit 77
-  local token=0123456789abcdef0123
-  begin run --real-time --http "$address" --http-token "$token" --set slam.commands=true --set "slam.state_folder=$work/state"
+  begin run --real-time --http "$page" --http-token "$token" --set slam.commands=true --set "slam.state_folder=$work/state"
   local run=$!
-  /usr/bin/python3 -B "$source_dir/tests/browser/live_page_test.py" "http://$address/" "$token" >"$work/page.output" 2>&1 || code=$?
+  /usr/bin/python3 -B "$source_dir/tests/browser/live_page_test.py" "http://$page/" "$token" >"$work/page.output" 2>&1 || code=$?
   kill -INT $run
   wait $run || true
   ((code == 0)) || fail "the page: exit code $code"
   expect_nothing_left
 }
 
-# never_reads ADDRESS: a client that asks for the stream of views, and takes nothing of it.
+# never_reads: a client that asks for the stream of views, and takes nothing of it.
 never_reads() {
-  exec 8<>"/dev/tcp/${1/://}"
+  exec 8<>"/dev/tcp/${page/://}"
   printf 'GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n' >&8
   exec sleep 300 8<&8
 }
 
 # The same run without the page, and with two clients of which one never reads.
 live_page_changes_no_byte() {
-  local address="127.0.0.1:$((20000 + $$ % 10000))" file reader deaf i
+  local file reader deaf i
   begin plain
   expect_code 0 $!
-  begin watched --http "$address"
+  begin watched --http "$page"
   local run=$!
   for ((i = 0; i < 300; ++i)); do
-    ! (: <>"/dev/tcp/${address/://}") 2>/dev/null || break
+    ! (: <>"/dev/tcp/${page/://}") 2>/dev/null || break
     sleep 0.1
   done
-  never_reads "$address" >/dev/null 2>&1 &
+  never_reads >/dev/null 2>&1 &
   deaf=$!
   (
-    exec 8<>"/dev/tcp/${address/://}"
+    exec 8<>"/dev/tcp/${page/://}"
     printf 'GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n' >&8
     exec cat <&8 >"$work/events"
   ) 2>/dev/null &

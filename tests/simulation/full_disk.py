@@ -3,9 +3,9 @@
 """Live runs of a short corridor on disks that fill up at random places.
 
 Each run writes into a file system of its own (tmpfs in a user namespace) that is too small by a random amount, in
-pages of 4 kB; every second one begins with an old map that --save-map is to replace. Afterwards no process of it lives, the exit
-code is 0, 1, 2 or 3, something says that the disk is full when the code is not 0, every file that has its name is whole,
-and the map is the old one or a whole new one. A run takes 3 to 10 s: no part of tests/run.sh.
+pages of 4 kB; every second one begins with an old map that --save-map is to replace. Afterwards no process of it
+lives, the exit code is 0, 1, 2 or 3, something says that the disk is full when the code is not 0, every file that has
+its name is whole, and the map is the old one or a whole new one. A run takes 3 to 10 s: no part of tests/run.sh.
 
 usage: tests/simulation/full_disk.py [--runs N] [--seed N]
 """
@@ -19,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 
-from kill_runs import SCENARIO, TAG, is_whole, processes_of
+from kill_runs import SCENARIO, TAG, half_files, map_faults, processes_of
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PAGE = 4096
@@ -53,19 +53,12 @@ def faults_of(disk, name, code, output, old_map):
     said = output.read_text(errors="replace") + "".join(log.read_text(errors="replace") for log in disk.glob("run/logs/*.log"))
     if code != 0 and not any(words in said for words in FULL):
         faults.append(f"code {code}, but nothing says that the disk is full")
-    for path in disk.rglob("*"):
-        if path.is_file() and path.stat().st_size > 0 and path.suffix not in {".part", ".log"}:
-            try:
-                whole = is_whole(path)
-            except (ValueError, IndexError, UnicodeDecodeError):
-                whole = False
-            faults += [] if whole else [f"not whole: {path.relative_to(disk)}"]
+    faults += half_files(disk)
     saved = disk / "saved.map.lcm"
     if old_map and not saved.exists():
         faults.append("the old map is gone")
-    if saved.exists() and saved.read_bytes() != old_map:
-        checked = subprocess.run([SOURCE / "build/release/waymark-map", "check", saved], capture_output=True, text=True)
-        faults += [] if checked.returncode == 0 else [f"the map: {checked.stderr or checked.stdout}"]
+    if saved.exists():
+        faults += map_faults(SOURCE / "build/release/waymark-map", saved, old_map)
     return faults
 
 

@@ -79,6 +79,27 @@ def is_whole(path):
     return path.suffix not in {".toml", ".yaml", ".g2o"} or text.endswith("\n")
 
 
+def half_files(folder):
+    """Faults: files in the folder that have their name and are not whole."""
+    faults = []
+    for path in folder.rglob("*"):
+        if path.is_file() and path.stat().st_size > 0 and path.suffix not in {".part", ".log"}:
+            try:
+                whole = is_whole(path)
+            except (ValueError, IndexError) as error:
+                whole, path = False, f"{path} ({error})"
+            faults += [] if whole else [f"not whole: {path}"]
+    return faults
+
+
+def map_faults(map_tool, saved_map, old_map):
+    """Faults of a map that is neither the old one, whose bytes are given, nor a whole new one."""
+    if saved_map.read_bytes() == old_map:
+        return []
+    checked = subprocess.run([map_tool, "check", saved_map], capture_output=True, text=True)
+    return [] if checked.returncode == 0 else [f"the map: {checked.stderr or checked.stdout}"]
+
+
 class Runs:
     def __init__(self, options, folder):
         self.deploy = options.deploy
@@ -133,17 +154,7 @@ class Runs:
         faults = [] if code in codes else [f"exit code {code}, not one of {sorted(codes)}"]
         if left := processes_of(name):
             faults.append(f"left over: {left}")
-        for path in (self.folder / name).rglob("*"):
-            if path.is_file() and path.stat().st_size > 0 and path.suffix not in {".part", ".log"}:
-                try:
-                    whole = is_whole(path)
-                except (ValueError, IndexError) as error:
-                    whole, path = False, f"{path} ({error})"
-                faults += [] if whole else [f"not whole: {path}"]
-        if saved_map.read_bytes() != self.old_map.read_bytes():
-            checked = subprocess.run([self.map_tool, "check", saved_map], capture_output=True, text=True)
-            faults += [] if checked.returncode == 0 else [f"the map: {checked.stderr or checked.stdout}"]
-        return faults
+        return faults + half_files(self.folder / name) + map_faults(self.map_tool, saved_map, self.old_map.read_bytes())
 
     def one(self, name):
         saved_map = self.folder / f"{name}.map.lcm"

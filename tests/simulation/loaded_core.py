@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Detector and slam in real time on one core that they share with a program that takes all it gets.
 
-A drive is simulated with its camera images and played by lcm-logplayer from the other core: 10 Hz camera, 5 Hz LiDAR. Without and with
-the load it prints the processor time per second of messages, how late poses come behind their scans, what was dropped
-(oldest first, and counted), and the memory at half and at the end. It fails when a process does, when a pose of the last
-ten seconds is later than the limit, or when memory grows from half to end. No part of tests/run.sh.
+A drive is simulated with its camera images and played by lcm-logplayer from the other core: 10 Hz camera, 5 Hz LiDAR.
+Without and with the load it prints the processor time per second of messages, how late poses come behind their scans,
+what was dropped (oldest first, and counted), and the memory at half and at the end. It fails when a process does, when
+a pose of the last ten seconds is later than the limit, or when memory grows from half to end. It takes six minutes:
+no part of tests/run.sh.
 
 usage: tests/simulation/loaded_core.py [--limit-s S] [--competitors N]
 """
@@ -43,7 +44,7 @@ def on(core, command, **options):
     return subprocess.Popen(["taskset", "-c", core, *map(str, command)], stdin=subprocess.DEVNULL, **options)
 
 
-def play(folder, name, competitors):
+def play(folder, name, competitors, seconds):
     """One real-time run of the recorded drive. Returns what it cost and how late poses came."""
     url = f"udpm://239.255.76.67:{8900 + os.getpid() % 50}?ttl=0"
     logs = {program: folder / f"{name}-{program}.txt" for program in ("detector", "slam")}
@@ -61,7 +62,7 @@ def play(folder, name, competitors):
     start, half = time.monotonic(), {}
     while player.poll() is None:
         time.sleep(0.2)
-        if not half and time.monotonic() - start > 0.5 * folder_seconds(folder):
+        if not half and time.monotonic() - start > 0.5 * seconds:
             half = {program: cpu_and_memory(process.pid) for program, process in programs.items()}
     time.sleep(2)
     end = {program: cpu_and_memory(process.pid) for program, process in programs.items()}
@@ -74,10 +75,6 @@ def play(folder, name, competitors):
         process.kill()
         process.wait()
     return codes, half, end, *lateness(heard), logs
-
-
-def folder_seconds(folder):
-    return float((folder / "seconds").read_text())
 
 
 def lateness(heard):
@@ -109,19 +106,18 @@ def main():
     (folder / "drive.toml").write_text(SCENARIO)
     launch = [SOURCE / "deploy/launch.sh", folder / "drive.toml", "--record-only", "--out", folder / "run"]
     subprocess.run(launch, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    simulated = re.search(r"simulated ([0-9.]+) s", (folder / "run/logs/sim.log").read_text())[1]
-    (folder / "seconds").write_text(simulated)
+    seconds = float(re.search(r"simulated ([0-9.]+) s", (folder / "run/logs/sim.log").read_text())[1])
     failed = False
     for name, competitors in (("alone", 0), ("loaded", options.competitors)):
-        codes, half, end, late, counts, logs = play(folder, name, competitors)
+        codes, half, end, late, counts, logs = play(folder, name, competitors, seconds)
         delays = sorted(delay for _, delay in late)
-        at_end = max((delay for when, delay in late if when > late[-1][0] - 10), default=float("inf")) if late else float("inf")
+        at_end = max((delay for when, delay in late if when > late[-1][0] - 10), default=float("inf"))
         print(f"{name}: {counts['SLAM_POSE']} poses for {counts['LIDAR']} scans, {counts['MARKERS']} detections for {counts['CAMERA']} frames")
         if delays:
             print(f"  poses late by {statistics.median(delays):.3f} s (median), {delays[int(0.95 * len(delays))]:.3f} s (95 %), "
                   f"{delays[-1]:.3f} s (most), {at_end:.3f} s (most of the last 10 s)")
         for program, (cpu_s, memory_mb) in end.items():
-            print(f"  {program}: {cpu_s / float(simulated):.3f} s of processor time per second, {half[program][1]:.1f} MB at half, "
+            print(f"  {program}: {cpu_s / seconds:.3f} s of processor time per second, {half[program][1]:.1f} MB at half, "
                   f"{memory_mb:.1f} MB at the end, exit code {codes[program]}")
             losses = [line.split("] ")[-1].strip() for line in logs[program].read_text().splitlines() if "dropped" in line or "skipped" in line]
             for line in losses[-4:]:

@@ -6,8 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <map>
-
 namespace waymark {
 
 CommandLine parse_command_line(int argc, const char* const* argv) {
@@ -47,15 +45,12 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   pose.add_option("--sigma-rad", command.sigmas[1], "how far the heading may be off (default 0.1)");
   pose.callback([&] { command.kind = command_t::KIND_SET_POSE; });
   CLI::App& set_mode = *program.add_subcommand("set-mode", "go on in another mode");
-  const std::map<std::string, std::int8_t> modes{{"map", command_t::MODE_MAP},
-                                                 {"localise", command_t::MODE_LOCALISE},
-                                                 {"extend", command_t::MODE_EXTEND}};
   set_mode.add_option("mode", mode, "map, localise or extend")
       ->required()
       ->check(CLI::IsMember{std::vector<std::string>{"map", "localise", "extend"}});
   set_mode.callback([&] {
     command.kind = command_t::KIND_SET_MODE;
-    command.mode = modes.at(mode);
+    command.mode = command_modes().at(mode);
   });
   try {
     program.parse(argc, argv);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/commands.hpp"
 
+#include "common/config/config.hpp"
+#include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
 #include "evaluate/files/map_image.hpp"
 #include "evaluate/run/report.hpp"
@@ -9,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <system_error>
 
 namespace waymark::evaluate {
 namespace {
@@ -41,6 +44,24 @@ std::string file_text(const Json& json) {
 }
 
 }  // namespace
+
+int run_command(std::string_view program, const std::function<int()>& command) {
+  const auto fail = [&](const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", program, error.what());
+    return kUsage;
+  };
+  try {
+    return command();
+  } catch (const InputError& error) {
+    return fail(error);
+  } catch (const std::system_error& error) {
+    return fail(error);
+  } catch (const ConfigError& error) {
+    return fail(error);
+  } catch (const SetupError& error) {
+    return fail(error);
+  }
+}
 
 int run_length(const fs::path& map_yaml, std::optional<double> true_length_m,
                const Output& output) {

@@ -6,8 +6,10 @@
 #include "evaluate/run/run_evaluation.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace waymark::evaluate {
@@ -20,6 +22,10 @@ struct Output {
   bool json{};      ///< print JSON instead of text
   bool tolerant{};  ///< skipped lines do not fail the program
 };
+
+/// What the program returns of a sub-command; where input is unusable kUsage, and one sentence on
+/// standard error.
+int run_command(std::string_view program, const std::function<int()>& command);
 
 int run_length(const std::filesystem::path& map_yaml, std::optional<double> true_length_m,
                const Output& output);

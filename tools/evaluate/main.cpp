@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-evaluate: how good a map and a trajectory are.
-#include "common/config/config.hpp"
-#include "common/errors/setup_error.hpp"
 #include "common/runtime/number_checks.hpp"
 #include "evaluate/commands.hpp"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <functional>
 #include <map>
 #include <system_error>
@@ -185,11 +181,6 @@ void add_placement(CLI::App& program, Command& chosen) {
   });
 }
 
-int fail(const std::exception& error) {
-  fmt::print(stderr, "waymark-evaluate: {}\n", error.what());
-  return kUsage;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -213,15 +204,5 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? kFine : kUsage;
   }
-  try {
-    return chosen();
-  } catch (const InputError& error) {
-    return fail(error);
-  } catch (const std::system_error& error) {
-    return fail(error);
-  } catch (const waymark::ConfigError& error) {
-    return fail(error);
-  } catch (const waymark::SetupError& error) {
-    return fail(error);
-  }
+  return run_command("waymark-evaluate", chosen);
 }

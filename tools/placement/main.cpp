@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-placement, which is `waymark-evaluate placement`: where more markers would make a map
 // better.
-#include "common/config/config.hpp"
-#include "common/errors/setup_error.hpp"
 #include "common/runtime/number_checks.hpp"
 #include "evaluate/commands.hpp"
 #include "placement/placement_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
-#include <cstdio>
-#include <system_error>
 
 namespace {
 
@@ -37,11 +31,6 @@ void add_options(CLI::App& program, PlacementOptions& options) {
                      "NAME.placement.png beside a map file)");
 }
 
-int fail(const std::exception& error) {
-  fmt::print(stderr, "waymark-evaluate placement: {}\n", error.what());
-  return waymark::evaluate::kUsage;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -57,15 +46,6 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? waymark::evaluate::kFine : waymark::evaluate::kUsage;
   }
-  try {
-    return waymark::placement::run_placement(options);
-  } catch (const waymark::evaluate::InputError& error) {
-    return fail(error);
-  } catch (const std::system_error& error) {
-    return fail(error);
-  } catch (const waymark::ConfigError& error) {
-    return fail(error);
-  } catch (const waymark::SetupError& error) {
-    return fail(error);
-  }
+  return waymark::evaluate::run_command("waymark-evaluate placement",
+                                        [&] { return waymark::placement::run_placement(options); });
 }

@@ -18,6 +18,13 @@ constexpr milliseconds kSendAgain{300};  // datagrams get lost; the same id acts
 
 }  // namespace
 
+const std::map<std::string, std::int8_t>& command_modes() {
+  static const std::map<std::string, std::int8_t> modes{{"map", command_t::MODE_MAP},
+                                                        {"localise", command_t::MODE_LOCALISE},
+                                                        {"extend", command_t::MODE_EXTEND}};
+  return modes;
+}
+
 std::optional<reply_t> ask_slam(const std::string& lcm_url, const ChannelNames& names,
                                 command_t command) {
   std::random_device random;  // no two commands have one id

@@ -5,6 +5,8 @@
 #include "common/bus/channel_names.hpp"
 #include "common/messages/channels.hpp"
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -13,6 +15,9 @@ namespace waymark {
 /// How far a pose may be off that somebody has pointed at in a map.
 inline constexpr double kPointedSigma_m = 0.1;
 inline constexpr double kPointedSigma_rad = 0.1;
+
+/// MODE_* by the name that people use.
+const std::map<std::string, std::int8_t>& command_modes();
 
 /// Gives the command an id of its own and sends it again and again until slam answers; it acts
 /// once.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <stdexcept>
 
@@ -17,21 +18,15 @@ namespace {
 constexpr std::size_t kShortestToken = 16;
 constexpr std::size_t kLongestToken = 200;
 
-/// @throws nlohmann::json::exception when there are not as many numbers.
+/// @throws std::exception when there are not as many numbers.
 template <std::size_t kSize>
 void copy_numbers(const nlohmann::json& list, double (&numbers)[kSize]) {
   const auto values = list.get<std::array<double, kSize>>();
-  if (list.size() != kSize) throw std::invalid_argument{fmt::format("{} numbers", list.size())};
+  if (list.size() != kSize) throw std::invalid_argument{"too many numbers"};
   std::copy(values.begin(), values.end(), numbers);
 }
 
-std::int8_t mode_of(const std::string& name) {
-  if (name == "map") return command_t::MODE_MAP;
-  if (name == "localise") return command_t::MODE_LOCALISE;
-  if (name == "extend") return command_t::MODE_EXTEND;
-  throw std::invalid_argument{fmt::format("mode '{}'", name)};
-}
-
+/// @throws std::exception for what is no command.
 command_t command_of(const nlohmann::json& json) {
   command_t command{};
   const auto kind = json.at("command").get<std::string>();
@@ -48,9 +43,9 @@ command_t command_of(const nlohmann::json& json) {
     if (json.contains("sigmas")) copy_numbers(json.at("sigmas"), command.sigmas);
   } else if (kind == "set-mode") {
     command.kind = command_t::KIND_SET_MODE;
-    command.mode = mode_of(json.at("mode").get<std::string>());
+    command.mode = command_modes().at(json.at("mode").get<std::string>());
   } else {
-    throw std::invalid_argument{fmt::format("command '{}'", kind)};
+    throw std::invalid_argument{kind};
   }
   return command;
 }
