@@ -201,6 +201,9 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.field("window_keyframes", window_keyframes, {2, 100000},
                "keyframes that are solved for at each update");
   fields.field("submap_keyframes", submap_keyframes, {2, 100000}, "keyframes of a submap");
+  fields.field("keyframes_per_place", keyframes_per_place, {1, 100000},
+               "kept of a square metre and a quarter of a turn; later ones are forgotten once they "
+               "have been tied to those");
   fields.field("learn_noise", learn_noise, "whether odometry may be found worse than described");
   fields.field("calibrate", calibrate,
                "whether systematic errors of odometry and camera are learnt; else they are 0");

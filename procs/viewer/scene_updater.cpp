@@ -8,8 +8,6 @@
 namespace waymark::viewer {
 namespace {
 
-/// Poses kept per path: 9 hours at 30 Hz. Bounds the memory that a flood of messages can take.
-constexpr std::size_t kMaxPathPoses = 1'000'000;
 /// Parts of one marker map, of up to 500 markers each.
 constexpr std::int32_t kMaxMarkerParts = 256;
 
@@ -66,17 +64,29 @@ std::string_view problem_of(TiledMap::Outcome outcome) {
   return "";
 }
 
+/// The first one stays: paths are aligned on it.
+template <class Pose>
+void keep_every_second(std::vector<Pose>& path) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < path.size(); i += 2)
+    path[kept++] = path[i];
+  path.resize(kept);
+}
+
 }  // namespace
 
 template <class Pose>
 void SceneUpdater::append(std::vector<Pose>& path, const Pose& pose, std::string_view path_name) {
   if (!path.empty() && pose.time <= path.back().time) {
     counters_.add(fmt::format("{} left out: not newer", path_name), CountKind::kLoss);
-  } else if (path.size() >= kMaxPathPoses) {
-    counters_.add(fmt::format("{} left out: path is full", path_name), CountKind::kLoss);
-  } else {
-    path.push_back(pose);
+    return;
   }
+  if (path.size() >= kMaxPathPoses) {
+    keep_every_second(path);
+    counters_.add(fmt::format("{} kept at half of the rate up to now", path_name),
+                  CountKind::kEvent);
+  }
+  path.push_back(pose);
 }
 
 void SceneUpdater::begin_map() {

@@ -15,6 +15,10 @@ namespace waymark::viewer {
 
 class SceneUpdater {
  public:
+  /// Of a path: 2 h at 30 Hz, 14 h at 5 Hz. Then every second pose up to now is left out, so that
+  /// memory is bounded and the path is whole.
+  static constexpr std::size_t kMaxPathPoses = 250'000;
+
   SceneUpdater(Scene& scene, Counters& counters) : scene_{scene}, counters_{counters} {}
 
   /// Slam draws another map: what was in the one before is forgotten.

@@ -18,6 +18,10 @@ constexpr int kStepsPerSecond = 30;
 constexpr int kStepsPerFrame = 3;
 constexpr int kStepsPerScan = 6;
 
+// Turning back on the spot.
+constexpr double kTurn_rad_per_step = 0.5 / kStepsPerSecond;
+constexpr double kAlongAxis_rad = 0.5;
+
 Timestamp time_of_step(int step) {
   return timestamp_from_us(1'000'000 + static_cast<std::int64_t>(step) * 1'000'000 / 30);
 }
@@ -182,7 +186,8 @@ SensorLog drive(const SyntheticCorridor& corridor) {
   const int steps = static_cast<int>(std::ceil(corridor.drive_m / step_m));
   Se2 world_from_base{corridor.start_x_m, 0.0, corridor.initial_heading_rad};
   Se2 odom_from_base;
-  for (int step = 0; step <= steps; ++step) {
+  int driven = 0;  // steps
+  for (int step = 0; driven <= steps; ++step) {
     const TruePose truth{time_of_step(step), world_from_base};
     log.truth.push_back(truth);
     log.odometry.push_back({truth.time, odom_from_base});
@@ -193,19 +198,29 @@ SensorLog drive(const SyntheticCorridor& corridor) {
     if (step % kStepsPerFrame == 0) {
       log.frames.push_back(noisy_frame(corridor, truth, Random{corridor.seed, kCameraNoise, key}));
     }
+    const double driven_m = driven * step_m;
+    const bool is_way_back = corridor.turn_back_every_m > 0.0 &&
+                             std::fmod(driven_m / corridor.turn_back_every_m, 2.0) >= 1.0;
+    const double axis_rad = is_way_back ? std::numbers::pi : 0.0;
+    const bool is_turning =
+        corridor.turn_back_every_m > 0.0 &&
+        std::abs(angle_difference(world_from_base.theta(), axis_rad)) > kAlongAxis_rad;
     // The operator steers back to a gently winding line.
-    const double driven_m = step * step_m;
-    const double wanted_rad =
-        corridor.wander_rad * std::sin(driven_m / 1.7) - 0.5 * world_from_base.y();
-    const double turn_rad = 2.0 * step_m * angle_difference(wanted_rad, world_from_base.theta());
-    world_from_base = world_from_base * Se2{step_m, 0.0, turn_rad};
+    const double wanted_rad = axis_rad + corridor.wander_rad * std::sin(driven_m / 1.7) -
+                              0.5 * std::cos(axis_rad) * world_from_base.y();
+    const double way_m = is_turning ? 0.0 : step_m;
+    const double turn_rad =
+        is_turning ? kTurn_rad_per_step
+                   : 2.0 * step_m * angle_difference(wanted_rad, world_from_base.theta());
+    driven += is_turning ? 0 : 1;
+    world_from_base = world_from_base * Se2{way_m, 0.0, turn_rad};
     odom_from_base =
         odom_from_base *
-        Se2{step_m * (1.0 + corridor.scale_error) +
-                odometry_random.normal(0.0, corridor.along_noise_per_sqrt_m * std::sqrt(step_m)),
+        Se2{way_m * (1.0 + corridor.scale_error) +
+                odometry_random.normal(0.0, corridor.along_noise_per_sqrt_m * std::sqrt(way_m)),
             0.0,
             turn_rad * (1.0 + corridor.turn_scale_error) +
-                odometry_random.normal(0.0, corridor.turn_noise_per_sqrt_m * std::sqrt(step_m))};
+                odometry_random.normal(0.0, corridor.turn_noise_per_sqrt_m * std::sqrt(way_m))};
   }
   return log;
 }

@@ -21,6 +21,7 @@ struct SyntheticCorridor {
   double width_m{2.0};
   double start_x_m{1.0};
   double drive_m{48.0};
+  double turn_back_every_m{0.0};  ///< turns on the spot after so many metres; 0: never
   double speed_m_s{0.1};
   double initial_heading_rad{0.0};
   double wander_rad{0.02};  ///< amplitude of the heading about the corridor's axis

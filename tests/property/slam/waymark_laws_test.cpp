@@ -130,6 +130,34 @@ TEST(WaymarkEstimator, TheFinalTrajectoryIsNoWorseThanTheOneOnLine) {
   EXPECT_LT(std::sqrt(sum / static_cast<double>(steps.size())), test::along_rmse_m(steps) + 0.005);
 }
 
+/// Up and down the same corridor: the graph grows with the area, and is as good as one that keeps
+/// everything.
+TEST(WaymarkEstimator, APlaceThatIsKnownWellDoesNotMakeTheGraphGrow) {
+  SyntheticCorridor corridor = corridor_with_markers(5);
+  corridor.speed_m_s = 1.0;
+  corridor.length_m = 7.0;
+  corridor.turn_back_every_m = 5.0;
+  corridor.markers = test::opposite_markers(corridor, 2.0, 3.0);
+  const auto graph_after = [&](int passes, int per_place, double& error_m) {
+    corridor.drive_m = corridor.turn_back_every_m * passes;
+    WaymarkConfig config;
+    config.keyframes_per_place = per_place;
+    WaymarkEstimator estimator{estimator_setup_of(corridor, 1), config};
+    error_m = test::along_rmse_m(run(estimator, drive(corridor), setup_of(corridor)));
+    return static_cast<double>(estimator.pose_graph()->poses.size());
+  };
+  constexpr int kFew = 10;
+  constexpr int kAll = 100000;
+  double error_m = 0.0;
+  double error_of_all_m = 0.0;
+  const double half = graph_after(16, kFew, error_m);
+  const double whole = graph_after(32, kFew, error_m);
+  const double all = graph_after(32, kAll, error_of_all_m);
+  EXPECT_LT(whole, 1.1 * half);
+  EXPECT_GT(all, 2.0 * whole);
+  EXPECT_LT(error_m, 1.1 * error_of_all_m + 0.001);
+}
+
 /// A stuck encoder: nothing for a while, then at once what was driven meanwhile.
 TEST(WaymarkEstimator, OdometryThatCatchesUpIsNotCountedTwice) {
   const SyntheticCorridor corridor = corridor_with_markers(1);

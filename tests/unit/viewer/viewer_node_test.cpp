@@ -47,18 +47,6 @@ map_tiles_t tile_at(int tile_x, int part, int num_parts) {
   return message;
 }
 
-marker_map_t markers_at(std::int64_t utime, int part, int num_parts, int id) {
-  marker_map_t message{};
-  message.utime = utime;
-  message.part = part;
-  message.num_parts = num_parts;
-  message.num_landmarks = 1;
-  message.landmarks.resize(1);
-  message.landmarks[0] = marker_landmark_t{};
-  message.landmarks[0].id = id;
-  return message;
-}
-
 trajectory_t trajectory_part(int part, int num_parts) {
   trajectory_t message{};
   message.utime = 10;
@@ -195,43 +183,6 @@ TEST_F(ViewerNodeTest, PutsTheMapTogetherFromPartsInAnyOrder) {
   EXPECT_THAT(content_of("map.yaml"), HasSubstr("origin: [-0.100000000, 0.000000000, 0.0]"));
 }
 
-TEST_F(ViewerNodeTest, MarkersAppearWhenAllPartsAreThere) {
-  viewer::Scene scene;
-  Counters counters;
-  viewer::SceneUpdater updater{scene, counters};
-  updater.add(markers_at(10, 1, 2, 5));
-  EXPECT_THAT(scene.landmarks, SizeIs(0));
-  updater.add(markers_at(10, 0, 2, 4));
-  ASSERT_THAT(scene.landmarks, SizeIs(2));
-  EXPECT_EQ(scene.landmarks[0].id, 4);
-  updater.add(markers_at(20, 0, 2, 9));
-  EXPECT_THAT(scene.landmarks, SizeIs(2)) << "half a map does not replace a whole one";
-  updater.add(markers_at(15, 1, 2, 9));
-  EXPECT_EQ(scene.landmarks[0].id, 4) << "parts of different times do not mix";
-}
-
-TEST_F(ViewerNodeTest, AWeakAxisIsKeptWhenThereIsOne) {
-  viewer::Scene scene;
-  Counters counters;
-  viewer::SceneUpdater updater{scene, counters};
-  updater.add(estimate_at(1.0, 0.0));
-  slam_estimate_t message = estimate_at(2.0, 0.0);
-  message.weak_axis[1] = 1.0;
-  message.weak_information = 50.0;
-  message.weak_axis_source = slam_estimate_t::SOURCE_NOTHING;
-  updater.add(message);
-  message.utime += 1;
-  message.weak_axis_source = 100;
-  updater.add(message);
-  ASSERT_THAT(scene.estimates, SizeIs(3));
-  EXPECT_FALSE(scene.estimates[0].weak_axis);
-  ASSERT_TRUE(scene.estimates[1].weak_axis);
-  EXPECT_EQ(scene.estimates[1].weak_axis->direction, (Eigen::Vector3d{0, 1, 0}));
-  EXPECT_EQ(scene.estimates[1].weak_axis->information, 50.0);
-  EXPECT_EQ(scene.estimates[1].weak_axis->source, viewer::WeakAxisSource::kNothing);
-  EXPECT_EQ(scene.estimates[2].weak_axis->source, viewer::WeakAxisSource::kUnknown);
-}
-
 TEST_F(ViewerNodeTest, WritesAFinalTrajectoryWhenOneCameWhole) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamTrajectory, trajectory_part(0, 2));
@@ -300,23 +251,6 @@ TEST_F(ViewerNodeTest, WritesTheGraphForOtherToolsWhenItCameWhole) {
     edge >> written;
     EXPECT_NEAR(written, number, 1e-7);
   }
-}
-
-TEST_F(ViewerNodeTest, TheScanWithMarkersStays) {
-  viewer::Scene scene;
-  Counters counters;
-  viewer::SceneUpdater updater{scene, counters};
-  annotated_scan_t scan{};
-  scan.num_beams = 1;
-  scan.ranges = {1.0F};
-  scan.angles = {0.0F};
-  scan.marker_ids = {0};
-  scan.utime = 1;
-  updater.add(scan);
-  scan.marker_ids = {-1};
-  scan.utime = 2;
-  updater.add(scan);
-  EXPECT_EQ(to_us(scene.scan->time), 1);
 }
 
 TEST_F(ViewerNodeTest, AFileThatCannotBeWrittenMakesItFailAndTheOthersAreWritten) {

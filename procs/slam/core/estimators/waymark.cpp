@@ -53,6 +53,7 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       graph_{graph_noise(setup, config), calibration_sigmas(setup, config)},
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
+      thinning_{config.keyframes_per_place, 2 * config.submap_keyframes},
       map_{setup.grid, ground_of(setup)},
       weighed_with_{graph_.odometry_noise()},
       start_{setup.start},
@@ -219,7 +220,10 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
     map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? look.points : Points{});
   while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
     graph_.marginalise_oldest(kNear_m);
-  if (is_frozen()) graph_.forget_behind_window();
+  if (is_frozen())
+    graph_.forget_behind_window();
+  else
+    forget_surplus();
   motion_ = {};
   moved_from_ = newest();
   if (standstill_ && standstill_->keyframe == moved_from_) standstill_->motion = {};

@@ -5,6 +5,7 @@
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/graph/association.hpp"
 #include "slam/core/graph/graph.hpp"
+#include "slam/core/graph/keyframe_thinning.hpp"
 #include "slam/core/graph/loop_finder.hpp"
 #include "slam/core/graph/motion_doubt.hpp"
 #include "slam/core/graph/odometry_noise_learner.hpp"
@@ -33,6 +34,7 @@ struct WaymarkConfig {
   double insert_distance_m{0.04};  ///< scans in between enter the submaps after this much driving
   int window_keyframes{48};
   int submap_keyframes{40};
+  int keyframes_per_place{60};
   bool learn_noise{true};
   bool calibrate{true};
   double marker_gate{16.3};          ///< chi^2 of a marker's innovation, 3 degrees of freedom
@@ -166,6 +168,7 @@ class WaymarkEstimator final : public Estimator {
   void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
   void close_loops(const Points& points);
+  void forget_surplus();
   void step_everything(const std::vector<std::size_t>& returning_landmarks);
   static std::function<Se2(std::size_t)> poses_of(const Graph& graph);
   void learn_noise(const Prediction& expected, const MatchedScan& scan);
@@ -200,6 +203,7 @@ class WaymarkEstimator final : public Estimator {
   RangeNoise range_noise_;
   OdometryNoiseLearner noise_learner_{};
   LoopFinder loop_finder_;
+  KeyframeThinning thinning_;
   double since_loop_search_m_{0.0};
   std::size_t solved_keyframes_{0};  ///< of the whole graph, when it was solved last
   int solve_steps_left_{0};          ///< of that: one at each keyframe

@@ -31,7 +31,12 @@ void WaymarkEstimator::close_loops(const Points& points) {
     search.first_recent_keyframe = graph_.first_active_keyframe();
     for (const LoopFinder::Found& found :
          loop_finder_.find(newest(), points, search, submaps_, graph_.state(), range_noise_)) {
-      add_scan_factor(found.keyframe, submaps_[found.loop.submap], found.loop.match, true);
+      const auto submap =
+          std::find_if(submaps_.begin(), submaps_.end(), [&found](const Submap& candidate) {
+            return candidate.first_keyframe() == found.loop.submap;
+          });
+      if (submap == submaps_.end()) continue;  // forgotten meanwhile
+      add_scan_factor(found.keyframe, *submap, found.loop.match, true);
       has_new_loops_ = true;
       note_reason(EstimateReason::kLoop);
       loops_matter_ |= found.chi2 > kLoopMatters;
@@ -67,6 +72,18 @@ std::function<Se2(std::size_t)> WaymarkEstimator::poses_of(const Graph& graph) {
   return [&graph](std::size_t keyframe) {
     return graph.state().keyframes[keyframe];
   };
+}
+
+/// Of places that are known well, so that memory and time grow with the area.
+void WaymarkEstimator::forget_surplus() {
+  const std::vector<RemovedKeyframe> surplus = thinning_.surplus(graph_);
+  if (surplus.empty()) return;
+  graph_.remove_keyframes(surplus);
+  std::erase_if(submaps_, [this](const Submap& submap) {
+    for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k)
+      if (graph_.is_removed(k)) return true;
+    return false;
+  });
 }
 
 /// The whole graph, at its optimum.

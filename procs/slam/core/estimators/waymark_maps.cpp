@@ -64,8 +64,11 @@ GraphEdge edge_of(const ScanFactor& factor) {
 
 PoseGraph pose_graph_of(const Graph& graph) {
   PoseGraph result;
-  for (std::size_t i = 0; i < graph.state().keyframes.size(); ++i)
-    result.poses.push_back(graph.state().keyframes[i]);
+  std::vector<std::size_t> number;  // of each keyframe in the result
+  for (std::size_t i = 0; i < graph.state().keyframes.size(); ++i) {
+    number.push_back(result.poses.size());
+    if (!graph.is_removed(i)) result.poses.push_back(graph.state().keyframes[i]);
+  }
   const OdometryNoise noise = graph.odometry_noise();
   for (const Factor& factor : graph.factors()) {
     if (const auto* odometry = std::get_if<OdometryFactor>(&factor)) {
@@ -78,6 +81,10 @@ PoseGraph pose_graph_of(const Graph& graph) {
     } else if (const auto* scan = std::get_if<ScanFactor>(&factor)) {
       if (!scan->references.empty()) result.edges.push_back(edge_of(*scan));
     }
+  }
+  for (GraphEdge& edge : result.edges) {
+    edge.from = number[edge.from];
+    edge.to = number[edge.to];
   }
   return result;
 }

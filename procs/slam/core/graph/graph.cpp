@@ -116,12 +116,17 @@ void Graph::move_to_frame(const Se2& new_from_old) {
   }
 }
 
-void Graph::switch_prior(std::size_t factor, bool is_on) {
-  std::get<LandmarkPrior>(factors_[factor]).is_off = !is_on;
+void Graph::switch_prior(std::size_t landmark, bool is_on) {
+  for (Factor& factor : factors_)
+    if (auto* prior = std::get_if<LandmarkPrior>(&factor); prior && prior->landmark == landmark)
+      prior->is_off = !is_on;
 }
 
-bool Graph::is_prior_on(std::size_t factor) const {
-  return !std::get<LandmarkPrior>(factors_[factor]).is_off;
+bool Graph::is_prior_on(std::size_t landmark) const {
+  return std::any_of(factors_.begin(), factors_.end(), [landmark](const Factor& factor) {
+    const auto* prior = std::get_if<LandmarkPrior>(&factor);
+    return prior && prior->landmark == landmark && !prior->is_off;
+  });
 }
 
 /// The loss whose weight MarkerFactor has.

@@ -20,6 +20,12 @@ struct GraphNoise {
   double marker_gate{16.3};  ///< chi^2, 3 degrees of freedom
 };
 
+/// A keyframe that is no unknown any more: it moves with another one, which stays.
+struct RemovedKeyframe {
+  std::size_t keyframe{0};
+  std::size_t carrier{0};
+};
+
 class Graph {
  public:
   Graph(const GraphNoise& noise, const Calibration& calibration_sigmas);
@@ -53,9 +59,9 @@ class Graph {
   /// unknown then: priors of landmarks must say where the frame is.
   void move_to_frame(const Se2& new_from_old);
 
-  /// Whether a factor, a LandmarkPrior, counts. Takes effect in optimise_all().
-  void switch_prior(std::size_t factor, bool is_on);
-  bool is_prior_on(std::size_t factor) const;
+  /// Whether the LandmarkPrior of a landmark counts. Takes effect in optimise_all().
+  void switch_prior(std::size_t landmark, bool is_on);
+  bool is_prior_on(std::size_t landmark) const;
 
   /// Sum of chi^2 of all factors, robust where they are.
   double cost() const;
@@ -95,6 +101,14 @@ class Graph {
   /// landmarks behind it do not move any more. After that optimise_all() must not be called.
   void forget_behind_window();
 
+  /// Takes keyframes behind the window out: what was measured from and against them is forgotten.
+  /// @param removed  in order.
+  void remove_keyframes(const std::vector<RemovedKeyframe>& removed);
+
+  bool is_removed(std::size_t keyframe) const {
+    return keyframe < is_removed_.size() && is_removed_[keyframe];
+  }
+
   /// Joint covariance of two variables of the window as of optimise(): the calibration, landmarks
   /// and the newest keyframe. Zero for those that have come since.
   Eigen::MatrixXd covariance(const Variable& a, const Variable& b) const;
@@ -110,6 +124,13 @@ class Graph {
     Eigen::VectorXd g;
   };
 
+  struct Carried {
+    RemovedKeyframe keyframe{};
+    Se2 carrier_from_keyframe{};
+  };
+
+  bool forget_removed(Factor& factor) const;
+  void carry_removed();
   LinearFactor linearised(const Factor& factor) const;
   double cost_of(const MarkerFactor& factor) const;
   bool is_within_window(const Factor& factor) const;
@@ -136,7 +157,9 @@ class Graph {
   Eigen::MatrixXd covariance_{};  ///< of the variables in covariance_offsets_
   std::map<Variable, Eigen::Index> covariance_offsets_{};
   std::vector<Eigen::Matrix3d> landmark_covariances_{};
-  std::vector<bool> is_fixed_{};  ///< landmarks
+  std::vector<bool> is_fixed_{};    ///< landmarks
+  std::vector<bool> is_removed_{};  ///< keyframes; may be shorter than all
+  std::vector<Carried> carried_{};
 };
 
 }  // namespace waymark

@@ -34,13 +34,12 @@ double reach_rad(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-std::optional<std::size_t> LoopFinder::nearest_submap(const LoopSearch& search,
-                                                      const std::deque<Submap>& submaps,
-                                                      const State& state) const {
-  std::optional<std::size_t> nearest;
+const Submap* LoopFinder::nearest_submap(const LoopSearch& search,
+                                         const std::deque<Submap>& submaps,
+                                         const State& state) const {
+  const Submap* nearest = nullptr;
   double least_m = config_.reach_m + std::min(config_.max_search_m, reach_m(search.covariance));
-  for (std::size_t i = 0; i < submaps.size(); ++i) {
-    const Submap& submap = submaps[i];
+  for (const Submap& submap : submaps) {
     if (submap.last_keyframe() >= search.first_recent_keyframe) break;
     const Eigen::Vector2d place =
         state.keyframes[submap.first_keyframe()].inverse() * search.map_from_base.translation();
@@ -49,37 +48,36 @@ std::optional<std::size_t> LoopFinder::nearest_submap(const LoopSearch& search,
       const double distance_m = (submap.submap_from_keyframe(k).translation() - place).norm();
       if (distance_m >= least_m) continue;
       least_m = distance_m;
-      nearest = i;
+      nearest = &submap;
     }
   }
   return nearest;
 }
 
-const CorrelativeField& LoopFinder::field_of(std::size_t submap, const Submap& old) {
-  const auto found = fields_.find(submap);
+const CorrelativeField& LoopFinder::field_of(const Submap& old) {
+  const auto found = fields_.find(old.first_keyframe());
   if (found != fields_.end()) return found->second;
   if (fields_.size() >= kFields) fields_.erase(fields_.begin());
-  return fields_.emplace(submap, CorrelativeField{old.points()}).first->second;
+  return fields_.emplace(old.first_keyframe(), CorrelativeField{old.points()}).first->second;
 }
 
-std::optional<LoopMatch> LoopFinder::match(std::size_t submap, const Points& points,
-                                           const LoopSearch& search,
-                                           const std::deque<Submap>& submaps, const State& state,
+std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& points,
+                                           const LoopSearch& search, const State& state,
                                            const RangeNoise& noise) {
-  const Submap& old = submaps[submap];
   const Se2 submap_from_map = state.keyframes[old.first_keyframe()].inverse();
   Se2 guess = submap_from_map * search.map_from_base;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = submap_from_map.rotation();
   Eigen::Matrix3d covariance = turn * search.covariance * turn.transpose();
   // The nearest place that fits is the likeliest; a search is for those that have drifted.
-  LoopMatch loop{submap, match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
+  LoopMatch loop{old.first_keyframe(),
+                 match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
   const double wide_m = std::min(config_.max_search_m, reach_m(covariance));
   const double wide_rad = std::min(std::numbers::pi, reach_rad(covariance));
   const bool is_near = wide_m < kDirectReach_m && wide_rad < kDirectReach_rad;
   if (is_near) return is_good(loop.match) ? std::optional{loop} : std::nullopt;
   const Points beams = thinned(points, kSearchBeams);
-  const CorrelativeField& field = field_of(submap, old);
+  const CorrelativeField& field = field_of(old);
   const SearchWindow window{wide_m, wide_rad};
   if (!is_good(loop.match)) {
     const auto best = field.best(beams, guess, window, config_.min_score);
@@ -117,12 +115,11 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
                                                 const LoopSearch& search,
                                                 const std::deque<Submap>& submaps,
                                                 const State& state, const RangeNoise& noise) {
-  const auto submap = nearest_submap(search, submaps, state);
-  if (!submap) return {};
-  const auto loop = match(*submap, points, search, submaps, state, noise);
+  const Submap* old = nearest_submap(search, submaps, state);
+  if (old == nullptr) return {};
+  const auto loop = match(*old, points, search, state, noise);
   if (!loop) return {};
-  const Se2 map_from_base =
-      state.keyframes[submaps[*submap].first_keyframe()] * loop->match.map_from_base;
+  const Se2 map_from_base = state.keyframes[old->first_keyframe()] * loop->match.map_from_base;
   const Eigen::Vector3d off = pose_difference(map_from_base, search.map_from_base);
   const double chi2 = off.dot(search.covariance.ldlt().solve(off));
   const Found found{keyframe, *loop, chi2};

@@ -32,7 +32,7 @@ struct LoopConfig {
 
 /// A scan of the newest keyframe found in an old submap.
 struct LoopMatch {
-  std::size_t submap{0};  ///< index
+  std::size_t submap{0};  ///< its first keyframe
   ScanMatch match{};      ///< submap frame
 };
 
@@ -72,19 +72,18 @@ class LoopFinder {
     Se2 map_from_base{};
   };
 
-  std::optional<std::size_t> nearest_submap(const LoopSearch& search,
-                                            const std::deque<Submap>& submaps,
-                                            const State& state) const;
-  std::optional<LoopMatch> match(std::size_t submap, const Points& points, const LoopSearch& search,
-                                 const std::deque<Submap>& submaps, const State& state,
-                                 const RangeNoise& noise);
+  const Submap* nearest_submap(const LoopSearch& search, const std::deque<Submap>& submaps,
+                               const State& state) const;
+  std::optional<LoopMatch> match(const Submap& old, const Points& points, const LoopSearch& search,
+                                 const State& state, const RangeNoise& noise);
   bool is_good(const ScanMatch& match) const;
   static bool is_other_place(const SearchMatch& other, const ScanMatch& match);
-  const CorrelativeField& field_of(std::size_t submap, const Submap& old);
+  const CorrelativeField& field_of(const Submap& old);
 
   LoopConfig config_;
   ScanMatchConfig scan_;
-  std::map<std::size_t, CorrelativeField> fields_{};  ///< of the submaps searched last
+  std::map<std::size_t, CorrelativeField>
+      fields_{};  ///< of the submaps searched last, by first keyframe
   std::optional<Candidate> candidate_{};
   int num_ambiguous_{0};
   int num_unconfirmed_{0};

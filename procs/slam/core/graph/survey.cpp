@@ -31,7 +31,7 @@ LandmarkPrior prior_of(const SurveyedMarker& marker, std::size_t landmark) {
 
 Survey::Survey(std::vector<SurveyedMarker> markers) {
   for (SurveyedMarker& marker : markers)
-    entries_.push_back({marker, std::nullopt, std::nullopt});
+    entries_.push_back({marker, std::nullopt});
 }
 
 bool Survey::match(const Graph& graph, const MarkerBook& book) {
@@ -90,9 +90,9 @@ std::optional<Se2> Survey::new_frame(const Graph& graph) {
 
 void Survey::apply(Graph& graph, int solve_steps) {
   for (Entry& entry : entries_) {
-    if (!entry.landmark || entry.factor) continue;
+    if (!entry.landmark || entry.has_prior) continue;
     graph.add(prior_of(entry.marker, *entry.landmark));
-    entry.factor = graph.factors().size() - 1;
+    entry.has_prior = true;
   }
   Graph free = graph;
   switch_all(free, false);
@@ -107,7 +107,7 @@ void Survey::apply(Graph& graph, int solve_steps) {
     double least = graph.cost() - kClearlyBetter;
     for (const Entry* entry : most_suspicious(graph)) {
       Graph without = graph;
-      without.switch_prior(*entry->factor, false);
+      without.switch_prior(*entry->landmark, false);
       without.optimise_all(solve_steps);
       if (without.cost() >= least) continue;
       least = without.cost();
@@ -120,14 +120,14 @@ void Survey::apply(Graph& graph, int solve_steps) {
 
 void Survey::switch_all(Graph& graph, bool is_on) const {
   for (const Entry& entry : entries_)
-    if (entry.factor) graph.switch_prior(*entry.factor, is_on);
+    if (entry.has_prior) graph.switch_prior(*entry.landmark, is_on);
 }
 
 /// Those that are off, or that have pulled their landmark away from its measurements.
 std::vector<const Survey::Entry*> Survey::most_suspicious(const Graph& graph) const {
   std::vector<std::pair<double, const Entry*>> costs;
   for (const Entry& entry : entries_) {
-    if (!entry.factor || !graph.is_prior_on(*entry.factor)) continue;
+    if (!entry.has_prior || !graph.is_prior_on(*entry.landmark)) continue;
     const double sigmas = sigmas_off(entry, graph);
     costs.emplace_back(sigmas * sigmas + graph.cost_of_landmark(*entry.landmark), &entry);
   }
@@ -148,7 +148,7 @@ double Survey::sigmas_off(const Entry& entry, const Graph& graph) const {
 std::vector<Survey::Contradiction> Survey::contradictions(const Graph& graph) const {
   std::vector<Contradiction> found;
   for (const Entry& entry : entries_) {
-    if (!entry.factor) continue;
+    if (!entry.has_prior) continue;
     const double sigmas = sigmas_off(entry, graph);
     if (sigmas > kWrong)
       found.push_back({entry.marker, graph.state().landmarks[*entry.landmark], sigmas});

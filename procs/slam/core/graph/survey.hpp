@@ -45,7 +45,7 @@ class Survey {
   struct Entry {
     SurveyedMarker marker{};
     std::optional<std::size_t> landmark{};
-    std::optional<std::size_t> factor{};  ///< of the graph
+    bool has_prior{false};  ///< in the graph
   };
 
   void switch_all(Graph& graph, bool is_on) const;

@@ -20,28 +20,23 @@ constexpr double kConverged = 1e-3;  // [m, rad]
 /// after them the window's as they are.
 class EliminationOrder {
  public:
-  EliminationOrder(std::size_t keyframes, const std::vector<std::size_t>& landmarks,
-                   std::size_t all_landmarks)
-      : keyframes_{keyframes}, number_of_landmark_(all_landmarks, -1) {
-    for (std::size_t i = 0; i < landmarks.size(); ++i)
-      number_of_landmark_[landmarks[i]] = static_cast<Eigen::Index>(keyframes + i);
-    for (std::size_t i = 0; i < keyframes + landmarks.size(); ++i)
-      place_.push_back(static_cast<Eigen::Index>(i));
+  explicit EliminationOrder(const std::vector<Variable>& variables) {
+    for (const Variable& variable : variables) {
+      std::vector<Eigen::Index>& numbers = numbers_of(variable.kind);
+      if (numbers.size() <= variable.index) numbers.resize(variable.index + 1, -1);
+      numbers[variable.index] = std::ssize(place_);
+      place_.push_back(std::ssize(place_));
+    }
   }
 
   Eigen::Index size() const { return 3 * std::ssize(place_); }
 
   /// Less than 0: in the window.
   Eigen::Index number_of(const Variable& variable) const {
-    switch (variable.kind) {
-      case VariableKind::kKeyframe:
-        return variable.index < keyframes_ ? static_cast<Eigen::Index>(variable.index) : -1;
-      case VariableKind::kLandmark:
-        return number_of_landmark_[variable.index];
-      case VariableKind::kCalibration:
-        break;
-    }
-    return -1;
+    if (variable.kind == VariableKind::kCalibration) return -1;
+    const std::vector<Eigen::Index>& numbers =
+        variable.kind == VariableKind::kKeyframe ? keyframes_ : landmarks_;
+    return variable.index < numbers.size() ? numbers[variable.index] : -1;
   }
 
   Eigen::Index place_of_number(Eigen::Index number) const {
@@ -72,8 +67,12 @@ class EliminationOrder {
   }
 
  private:
-  std::size_t keyframes_;
-  std::vector<Eigen::Index> number_of_landmark_;
+  std::vector<Eigen::Index>& numbers_of(VariableKind kind) {
+    return kind == VariableKind::kKeyframe ? keyframes_ : landmarks_;
+  }
+
+  std::vector<Eigen::Index> keyframes_{};  ///< numbers, by index
+  std::vector<Eigen::Index> landmarks_{};
   std::vector<Eigen::Index> place_{};  ///< by number, in blocks
 };
 
@@ -89,10 +88,13 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
     const Variable variable{VariableKind::kLandmark, landmark};
     if (!is_active(variable)) push_variable(variable);
   }
-  std::vector<std::size_t> landmarks;
+  std::vector<Variable> variables;
+  for (std::size_t i = 0; i < first_keyframe_; ++i)
+    if (!is_removed(i)) variables.push_back({VariableKind::kKeyframe, i});
   for (std::size_t i = 0; i < state_.landmarks.size(); ++i)
-    if (!is_fixed_[i] && !is_active({VariableKind::kLandmark, i})) landmarks.push_back(i);
-  EliminationOrder order{first_keyframe_, landmarks, state_.landmarks.size()};
+    if (const Variable landmark{VariableKind::kLandmark, i}; !is_fixed_[i] && !is_active(landmark))
+      variables.push_back(landmark);
+  EliminationOrder order{variables};
   const Eigen::Index num_behind = order.size();
   const Eigen::Index num_window = prior_.g.size();
   if (num_behind == 0) return 0.0;
@@ -152,12 +154,9 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   x.head(num_behind) = -x.head(num_behind).cwiseQuotient(solver.vectorD().head(num_behind));
   x.tail(num_window).noalias() = corner.transpose() * window_step;
   solver.matrixU().solveInPlace(x);
-  for (std::size_t i = 0; i < first_keyframe_ + landmarks.size(); ++i) {
-    const Variable variable =
-        i < first_keyframe_ ? Variable{VariableKind::kKeyframe, i}
-                            : Variable{VariableKind::kLandmark, landmarks[i - first_keyframe_]};
+  for (const Variable& variable : variables)
     state_.retract(variable, x.segment(place_of(variable), 3));
-  }
+  carry_removed();
   for (Factor& factor : factors_)
     if (auto* scan = std::get_if<ScanFactor>(&factor); scan != nullptr && scan->is_loop)
       scan->reweigh(state_);

@@ -288,6 +288,56 @@ TEST(Graph, CovariancesAreSymmetricAndPositive) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{covariance}.eigenvalues()[0], 0.0);
 }
 
+TEST(Graph, ARemovedKeyframeMovesWithItsCarrierAndSaysNothing) {
+  Drive drive{6};
+  Graph& graph = drive.graph();
+  const std::size_t num_factors = graph.factors().size();
+  const Se2 before = graph.state().keyframes[1].inverse() * graph.state().keyframes[3];
+  graph.remove_keyframes({{2, 1}, {3, 1}});
+  EXPECT_TRUE(graph.is_removed(2));
+  EXPECT_TRUE(graph.is_removed(3));
+  EXPECT_FALSE(graph.is_removed(1));
+  EXPECT_FALSE(graph.is_removed(4));
+  for (const Factor& factor : graph.factors()) {
+    if (const auto* marker = std::get_if<MarkerFactor>(&factor)) {
+      EXPECT_FALSE(graph.is_removed(marker->keyframe));
+    } else if (const auto* odometry = std::get_if<OdometryFactor>(&factor)) {
+      EXPECT_FALSE(graph.is_removed(odometry->from) || graph.is_removed(odometry->to));
+      EXPECT_EQ(odometry->is_cut, odometry->from == 1);
+      EXPECT_EQ(odometry->to, odometry->is_cut ? 4U : odometry->from + 1);
+    }
+  }
+  EXPECT_LT(graph.factors().size(), num_factors);
+  const Eigen::Matrix3d knew = graph.covariance_of(drive.newest());
+  graph.optimise_all(20);
+  const Se2 after = graph.state().keyframes[1].inverse() * graph.state().keyframes[3];
+  EXPECT_LT(pose_difference(after, before).norm(), 1e-9);
+  EXPECT_GT(graph.covariance_of(drive.newest()).trace(), knew.trace());
+}
+
+TEST(Graph, AScanKeepsWhatItSaysAboutKeyframesThatStay) {
+  Drive drive{2};
+  Graph& graph = drive.graph();
+  ScanFactor scan;
+  scan.keyframe = 5;
+  scan.references = {{1, 0.25, {}}, {2, 0.5, {}}, {3, 0.25, {}}};
+  graph.add(scan);
+  scan.references = {{2, 1.0, {}}};
+  graph.add(scan);
+  graph.remove_keyframes({{2, 1}});
+  int scans = 0;
+  for (const Factor& factor : graph.factors()) {
+    const auto* left = std::get_if<ScanFactor>(&factor);
+    if (left == nullptr) continue;
+    ++scans;
+    ASSERT_EQ(left->references.size(), 2U);
+    EXPECT_EQ(left->references[0].keyframe, 1U);
+    EXPECT_EQ(left->references[1].keyframe, 3U);
+    EXPECT_DOUBLE_EQ(left->references[0].share + left->references[1].share, 1.0);
+  }
+  EXPECT_EQ(scans, 1);
+}
+
 TEST(Graph, AWrongLoopAmongRightOnesLosesItsWeight) {
   Graph graph{GraphNoise{}, Drive::sigmas()};
   graph.add_keyframe({});

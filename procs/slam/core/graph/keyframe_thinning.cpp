@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/keyframe_thinning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace waymark {
+namespace {
+
+constexpr double kPlace_m = 1.0;
+constexpr std::size_t kLookEvery = 100;      // keyframes
+constexpr std::size_t kLeastTies = 10;       // of an end
+constexpr std::size_t kLeastSightings = 20;  // of a marker, by keyframes that stay
+constexpr double kLeastInformation = 10.0;   // [1/m, 1/rad] of a loop that is a tie
+
+bool shows_all_axes(const ScanFactor& loop) {
+  return loop.root_information.rowwise().norm().minCoeff() > kLeastInformation;
+}
+
+}  // namespace
+
+KeyframeThinning::Place KeyframeThinning::place_of(const Se2& map_from_base) {
+  constexpr double kQuarter = 0.5 * std::numbers::pi;
+  return {static_cast<int>(std::lround(map_from_base.x() / kPlace_m)),
+          static_cast<int>(std::lround(map_from_base.y() / kPlace_m)),
+          static_cast<int>(std::lround(map_from_base.theta() / kQuarter) + 4) % 4};
+}
+
+std::vector<RemovedKeyframe> KeyframeThinning::surplus(const Graph& graph) {
+  const std::size_t behind = graph.first_active_keyframe();
+  if (behind < judgements_.size() + kLookEvery) return {};
+  for (const Ties& ties : ties_of_new(graph))
+    judgements_.push_back(judged(judgements_.size(), ties, graph.state()));
+  std::vector<RemovedKeyframe> surplus;
+  while (open_run_ < behind) {
+    const auto is_needed = [](const Judgement& judgement) {
+      return judgement.is_needed;
+    };
+    const auto begin = std::find_if_not(judgements_.begin() + static_cast<long>(open_run_),
+                                        judgements_.end(), is_needed);
+    const auto end = std::find_if(begin, judgements_.end(), is_needed);
+    const auto first = static_cast<std::size_t>(begin - judgements_.begin());
+    const auto last = static_cast<std::size_t>(end - judgements_.begin());
+    add_surplus(first, last, graph, surplus);
+    open_run_ = last == behind ? first : last;
+    if (last == behind) break;
+  }
+  return surplus;
+}
+
+/// Of the keyframes that have left the window since the last look.
+std::vector<KeyframeThinning::Ties> KeyframeThinning::ties_of_new(const Graph& graph) const {
+  const std::size_t first = judgements_.size();
+  std::vector<Ties> ties(graph.first_active_keyframe() - first);
+  for (std::size_t i = 0; i < ties.size(); ++i)
+    ties[i].oldest = first + i;
+  const auto of = [&](std::size_t keyframe) -> Ties* {
+    return keyframe >= first && keyframe - first < ties.size() ? &ties[keyframe - first] : nullptr;
+  };
+  for (const Factor& factor : graph.factors()) {
+    if (const auto* marker = std::get_if<MarkerFactor>(&factor)) {
+      if (Ties* here = of(marker->keyframe)) here->landmarks.push_back(marker->landmark);
+    } else if (const auto* prior = std::get_if<PosePrior>(&factor)) {
+      if (Ties* here = of(prior->keyframe)) here->oldest = 0;
+    } else if (const auto* scan = std::get_if<ScanFactor>(&factor)) {
+      Ties* here = of(scan->keyframe);
+      if (here == nullptr || !scan->is_loop || !shows_all_axes(*scan)) continue;
+      for (const ScanFactor::Reference& reference : scan->references)
+        here->oldest = std::min(here->oldest, reference.keyframe);
+    }
+  }
+  return ties;
+}
+
+KeyframeThinning::Judgement KeyframeThinning::judged(std::size_t keyframe, const Ties& ties,
+                                                     const State& state) {
+  Judgement judgement{false, 0, ties.oldest};
+  const Se2& map_from_base = state.keyframes[keyframe];
+  std::vector<std::size_t>& there = needed_[place_of(map_from_base)];
+  judgement.is_needed = there.size() < per_place_;
+  for (const std::size_t landmark : ties.landmarks) {
+    const auto [seen, is_new] = sightings_.try_emplace(landmark, Sightings{keyframe, 0});
+    judgement.tied_to = std::min(judgement.tied_to, seen->second.first_keyframe);
+    judgement.is_needed |= seen->second.needed < kLeastSightings;
+  }
+  if (judgement.is_needed) {
+    there.push_back(keyframe);
+    for (const std::size_t landmark : ties.landmarks)
+      ++sightings_.at(landmark).needed;
+    return judgement;
+  }
+  judgement.carrier = *std::min_element(there.begin(), there.end(), [&](auto a, auto b) {
+    const auto away_m = [&](std::size_t other) {
+      return (state.keyframes[other].translation() - map_from_base.translation()).norm();
+    };
+    return away_m(a) < away_m(b);
+  });
+  return judgement;
+}
+
+/// Behind the last keyframe of a run's beginning that stays; `end` if all of it has to.
+std::size_t KeyframeThinning::end_of_head(std::size_t begin, std::size_t end) const {
+  std::size_t ties = 0;
+  for (std::size_t k = begin; k < end; ++k) {
+    ties += judgements_[k].tied_to < begin;
+    if (ties >= kLeastTies && k + 1 - begin >= least_end_) return k + 1;
+  }
+  return end;
+}
+
+/// The first one of its end that stays; `begin` if all of it has to.
+std::size_t KeyframeThinning::begin_of_tail(std::size_t begin, std::size_t end,
+                                            const Graph& graph) const {
+  std::size_t ties = 0;
+  for (std::size_t k = end; k-- > begin && !graph.is_removed(k);) {
+    ties += judgements_[k].tied_to < begin;
+    if (ties >= kLeastTies && end - k >= least_end_) return k;
+  }
+  return begin;
+}
+
+void KeyframeThinning::add_surplus(std::size_t begin, std::size_t end, const Graph& graph,
+                                   std::vector<RemovedKeyframe>& surplus) const {
+  const std::size_t tail = begin_of_tail(begin, end, graph);
+  for (std::size_t k = end_of_head(begin, end); k < tail; ++k)
+    if (!graph.is_removed(k)) surplus.push_back({k, judgements_[k].carrier});
+}
+
+}  // namespace waymark

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Graph::remove_keyframes(): the graph without some of its past.
+#include "slam/core/graph/graph.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace waymark {
+
+/// A scan keeps what it says about keyframes that stay.
+/// @return whether anything is left of the factor.
+bool Graph::forget_removed(Factor& factor) const {
+  const std::vector<Variable> variables = variables_of(factor);
+  const auto is_gone = [this](const Variable& variable) {
+    return variable.kind == VariableKind::kKeyframe && is_removed(variable.index);
+  };
+  if (std::none_of(variables.begin(), variables.end(), is_gone)) return true;
+  auto* scan = std::get_if<ScanFactor>(&factor);
+  if (scan == nullptr || is_removed(scan->keyframe)) return false;
+  std::erase_if(scan->references, [this](const ScanFactor::Reference& reference) {
+    return is_removed(reference.keyframe);
+  });
+  double sum = 0.0;
+  for (const ScanFactor::Reference& reference : scan->references)
+    sum += reference.share;
+  for (ScanFactor::Reference& reference : scan->references)
+    reference.share /= sum;
+  return !scan->references.empty();
+}
+
+void Graph::remove_keyframes(const std::vector<RemovedKeyframe>& removed) {
+  is_removed_.resize(state_.keyframes.size(), false);
+  for (const RemovedKeyframe& gone : removed) {
+    is_removed_[gone.keyframe] = true;
+    carried_.push_back(
+        {gone, state_.keyframes[gone.carrier].inverse() * state_.keyframes[gone.keyframe]});
+  }
+  std::vector<bool> is_active_factor(factors_.size(), false);
+  for (const std::size_t index : active_factors_)
+    is_active_factor[index] = true;
+  active_factors_.clear();
+  std::vector<Factor> kept;
+  kept.reserve(factors_.size());
+  for (std::size_t index = 0; index < factors_.size(); ++index) {
+    if (!forget_removed(factors_[index])) continue;
+    if (is_active_factor[index]) active_factors_.push_back(kept.size());
+    kept.push_back(std::move(factors_[index]));
+  }
+  factors_ = std::move(kept);
+  // Between the ends of a gap nothing is known of the way.
+  std::size_t filled = 0;
+  for (const RemovedKeyframe& gone : removed) {
+    if (gone.keyframe < filled) continue;
+    OdometryFactor gap;
+    gap.from = gap.to = gone.keyframe;
+    gap.is_cut = true;
+    while (is_removed_[gap.from])
+      --gap.from;
+    while (is_removed_[gap.to])
+      ++gap.to;
+    filled = gap.to;
+    factors_.emplace_back(gap);
+  }
+}
+
+void Graph::carry_removed() {
+  for (const Carried& carried : carried_)
+    state_.keyframes[carried.keyframe.keyframe] =
+        state_.keyframes[carried.keyframe.carrier] * carried.carrier_from_keyframe;
+}
+
+}  // namespace waymark
