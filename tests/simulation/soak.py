@@ -15,6 +15,8 @@ import collections
 import json
 import os
 import pathlib
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -35,7 +37,6 @@ laps = {laps}
 [lidar_noise]
 dropout_probability = 0.02
 """
-HTTP = "127.0.0.1:8097"
 WAY_MB_PER_HOUR = {"waymark-slam": 5.0, "waymark-viewer": 30.0}
 
 Held = collections.namedtuple("Held", "memory_mb descriptors threads")
@@ -56,10 +57,16 @@ def programs_of(launch):
     return held
 
 
-def read_page():
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def read_page(address):
     for path in ("/", "/map.png"):
         try:
-            urllib.request.urlopen(f"http://{HTTP}{path}", timeout=5).read()
+            urllib.request.urlopen(f"http://{address}{path}", timeout=5).read()
         except OSError:
             pass
 
@@ -95,21 +102,28 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "soak.toml").write_text(SCENARIO.format(laps=max(1, round(options.hours * 3600 / LAP_S))))
     before = set(os.listdir("/tmp"))
-    command = [SOURCE / "deploy/launch.sh", folder / "soak.toml", "--out", folder / "run", "--no-images", "--http", HTTP]
+    address = f"127.0.0.1:{free_port()}"
+    command = [SOURCE / "deploy/launch.sh", folder / "soak.toml", "--out", folder / "run", "--no-images", "--http", address]
+    samples, files = [], []
+    start = time.monotonic()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     with (folder / "launch.log").open("w") as log:
         launch = subprocess.Popen(command + ([] if options.lockstep else ["--real-time"]), stdout=log, stderr=log,
                                   stdin=subprocess.DEVNULL)
-    samples, files = [], []
-    start = time.monotonic()
-    while launch.poll() is None:
-        time.sleep(options.every_s)
-        held = programs_of(launch.pid)
-        if len(held) >= 5:
-            samples.append(held)
-            files.append(sum(1 for path in (folder / "run").rglob("*")))
-            read_page()
-            (folder / "soak.json").write_text(json.dumps(
-                [{program: row._asdict() for program, row in sample.items()} for sample in samples], indent=1))
+        try:
+            while launch.poll() is None:
+                time.sleep(options.every_s)
+                held = programs_of(launch.pid)
+                if len(held) < 5:
+                    continue
+                samples.append(held)
+                files.append(sum(1 for path in (folder / "run").rglob("*")))
+                read_page(address)
+                (folder / "soak.json").write_text(json.dumps(
+                    [{program: row._asdict() for program, row in sample.items()} for sample in samples], indent=1))
+        finally:
+            launch.terminate()
+            launch.wait()
     print(f"{(time.monotonic() - start) / 3600:.2f} h, {len(samples)} looks, exit code {launch.returncode}")
     if len(samples) < 8:
         print(f"too few looks, see {folder}/launch.log: more --hours or less --every-s")
