@@ -135,7 +135,7 @@ void OdometryNoise::describe(Fields& fields) {
   fields.field("along_per_sqrt_m", along_per_sqrt_m, kNotNegative,
                "random walk of the distance [m/sqrt(m)]");
   fields.field("across_per_sqrt_m", across_per_sqrt_m, kNotNegative,
-               "random walk sideways [m/sqrt(m)]");
+               "random walk sideways, beyond what the heading explains [m/sqrt(m)]");
   fields.field("turn_per_sqrt_m", turn_per_sqrt_m, kNotNegative,
                "random walk of the heading by distance [rad/sqrt(m)]");
   fields.field("turn_per_sqrt_rad", turn_per_sqrt_rad, kNotNegative,
@@ -160,7 +160,9 @@ void MarkerMeasurementConfig::describe(Fields& fields) {
                "views that the noise of corners makes worse say nothing about it");
   fields.field("covariance_factor", covariance_factor, kPositive,
                "on the detector's covariances: neighbouring frames err alike");
-  fields.field("gate", gate, kPositive, "chi^2 between camera and wall that is still believed");
+  fields.field(
+      "gate", gate, kPositive,
+      "chi^2 (3 degrees of freedom; 16.3 = 99.9 %) between camera and wall that is still believed");
 }
 
 void ScanMatchConfig::describe(Fields& fields) {
@@ -185,7 +187,8 @@ void LoopConfig::describe(Fields& fields) {
   fields.field("min_score", min_score, kFraction, "of the wide search");
   fields.field("runner_up_share", runner_up_share, kFraction,
                "of the best score: a runner-up above makes a loop ambiguous");
-  fields.field("gate", gate, kPositive, "chi^2 of a loop against the graph's covariance");
+  fields.field("gate", gate, kPositive,
+               "chi^2 (3 degrees of freedom) of a loop against the graph's covariance");
   fields.field("surprise_share", surprise_share, kFraction,
                "what both shares have to be of a loop beyond the gate");
 }
@@ -208,7 +211,7 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.field("calibrate", calibrate,
                "whether systematic errors of odometry and camera are learnt; else they are 0");
   fields.field("marker_gate", marker_gate, kPositive,
-               "chi^2 of a marker's innovation that is still believed");
+               "chi^2 (3 degrees of freedom) of a marker's innovation that is still believed");
   fields.field("marker_near_m", marker_near_m, kNotNegative,
                "a known marker that is off by less is believed, but counts less");
   fields.field("same_marker_within_m", same_marker_within_m, kPositive,

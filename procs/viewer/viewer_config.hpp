@@ -12,12 +12,13 @@
 namespace waymark {
 
 struct ViewerSection {
-  std::string title{};  ///< empty = name of the output folder
+  std::string title{};
   double write_period_s{5.0};
   double max_write_share{0.05};
   viewer::MapPageStyle map_page{};
   int scan_size_px{1000};
 
+  /// What they are, in words: viewer_config.cpp.
   void describe(Fields& fields);
 };
 

@@ -33,11 +33,12 @@ struct LidarConfig {
   double range_min_m{0.12};
   double range_max_m{3.5};
   double range_sigma_m{0.01};
-  bool mirrored{false};  ///< beams count clockwise, seen from above: it hangs upside down
-  double late_s{0.0};    ///< its stamps behind ODOMETRY's
+  bool mirrored{false};
+  double late_s{0.0};
 
   Se2 base_from_lidar() const { return {x_m, y_m, yaw_rad}; }
 
+  /// What they are, in words: robot_config.cpp.
   void describe(Fields& fields);
 };
 
@@ -51,22 +52,23 @@ struct CameraConfig {
   double fy_px{530.4663};
   double cx_px{319.5};
   double cy_px{239.5};
-  std::vector<double> distortion{0.0, 0.0, 0.0, 0.0, 0.0};  ///< k1 k2 p1 p2 k3
+  std::vector<double> distortion{0.0, 0.0, 0.0, 0.0, 0.0};
   double x_m{0.076};
   double y_m{0.0};
   double z_m{0.103};
   double roll_rad{0.0};
-  double pitch_rad{0.0};  ///< positive looks down
+  double pitch_rad{0.0};
   double yaw_rad{0.0};
   double rate_hz{10.0};
-  double late_s{0.0};                ///< its stamps behind ODOMETRY's
-  double focal_sigma{0.002};         ///< of the focal lengths, relative; learnt while driving
-  double yaw_sigma_rad{0.0087};      ///< of `yaw_rad`; learnt while driving
-  double bearing_sigma_rad{0.0001};  ///< what neighbouring frames get wrong alike: 0.05 px here
-  double position_sigma_m{0.0003};   ///< the same of places
+  double late_s{0.0};
+  double focal_sigma{0.002};
+  double yaw_sigma_rad{0.0087};
+  double bearing_sigma_rad{0.0001};
+  double position_sigma_m{0.0003};
 
   /// Pose of the optical frame (x right, y down, z forward) in the base frame.
   Eigen::Isometry3d base_from_camera() const;
+  /// What they are, in words: robot_config.cpp.
   void describe(Fields& fields);
   void check(Problems& problems) const;
 };
@@ -74,13 +76,14 @@ struct CameraConfig {
 /// What the markers look like, and how they hang.
 struct MarkerConfig {
   std::string dictionary{"DICT_6X6_250"};
-  double size_m{0.4};              ///< side of the black square
-  std::vector<int> ids{};          ///< ids in use; empty = every id of the dictionary
-  double standoff_sigma_m{0.003};  ///< how far all hang before their walls; learnt while driving
-  double bulge_sigma_m{0.002};     ///< how far they differ in that
+  double size_m{0.4};
+  std::vector<int> ids{};
+  double standoff_sigma_m{0.003};
+  double bulge_sigma_m{0.002};
   double skew_sigma_rad{0.01};
-  std::string survey_file{};  ///< CSV of markers whose places are known; empty: none
+  std::string survey_file{};
 
+  /// What they are, in words: robot_config.cpp.
   void describe(Fields& fields);
 };
 

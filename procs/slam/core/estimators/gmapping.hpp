@@ -21,12 +21,12 @@ namespace waymark {
 /// EstimatorSetup.
 struct GmappingConfig {
   int particles{30};
-  double max_range_m{0.0};          ///< maxRange; 0 = a centimetre less than the LiDAR's
-  double max_usable_range_m{0.0};   ///< maxUrange; 0 = max_range_m
-  double minimum_score{0.0};        ///< minimumScore
-  double resample_threshold{0.5};   ///< resampleThreshold
-  double likelihood_gain{3.0};      ///< ogain
-  double occupied_threshold{0.25};  ///< occ_thresh
+  double max_range_m{0.0};
+  double max_usable_range_m{0.0};
+  double minimum_score{0.0};
+  double resample_threshold{0.5};
+  double likelihood_gain{3.0};
+  double occupied_threshold{0.25};
   /// Where the scans contradict odometry's turn, the particles turn as the scans tell. The released
   /// code comes through such places by chance.
   bool watch_turns{false};
@@ -34,6 +34,7 @@ struct GmappingConfig {
   ScanGate gate{};
   MatcherConfig matcher{};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -12,12 +12,12 @@ namespace waymark {
 
 struct MarkerMatchingConfig {
   int particles{200};
-  double resample_threshold{0.5};  ///< share of effective particles below which to resample
+  double resample_threshold{0.5};
   MatchingRewards rewards{};
-  double sighting_sigma_m{
-      kSightingSigma_m};        ///< a sighting with this error along its wall counts half
-  double lost_agreement{0.25};  ///< of the beams with the mapped walls; below: lost
+  double sighting_sigma_m{kSightingSigma_m};
+  double lost_agreement{0.25};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -30,23 +30,24 @@ class Fields;
 struct WaymarkConfig {
   double keyframe_distance_m{0.15};
   double keyframe_turn_rad{0.15};
-  double marker_keyframe_distance_m{0.05};  ///< the same of a scan with sighted markers
-  double insert_distance_m{0.04};  ///< scans in between enter the submaps after this much driving
+  double marker_keyframe_distance_m{0.05};
+  double insert_distance_m{0.04};
   int window_keyframes{48};
   int submap_keyframes{40};
   int keyframes_per_place{60};
   bool learn_noise{true};
   bool calibrate{true};
-  double marker_gate{16.3};          ///< chi^2 of a marker's innovation, 3 degrees of freedom
-  double marker_near_m{0.25};        ///< off by less, it is the same one all the same
-  double same_marker_within_m{0.5};  ///< no second marker of one id nearer than this
-  double lost_inlier_share{0.3};     ///< of the beams that end on mapped surfaces; below: lost
-  double min_inlier_share{0.5};      ///< the same of a scan that is used and mapped
+  double marker_gate{16.3};
+  double marker_near_m{0.25};
+  double same_marker_within_m{0.5};
+  double lost_inlier_share{0.3};
+  double min_inlier_share{0.5};
   OdometryNoise odometry{};
   ScanMatchConfig scan{};
   MarkerMeasurementConfig markers{};
   LoopConfig loops{};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -12,11 +12,12 @@ class Fields;
 /// Standard deviations per unit of motion, under GMapping's own names. They apply to every scan's
 /// step, so the spread after a given path depends on how many scans it is cut into.
 struct StepNoise {
-  double srr{0.1};  ///< [m/m] translation by translation
-  double srt{0.2};  ///< [rad/m] rotation by translation
-  double str{0.1};  ///< [m/rad] translation by rotation
-  double stt{0.2};  ///< [rad/rad] rotation by rotation
+  double srr{0.1};
+  double srt{0.2};
+  double str{0.1};
+  double stt{0.2};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

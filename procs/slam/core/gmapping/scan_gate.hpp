@@ -10,9 +10,9 @@ namespace waymark {
 class Fields;
 
 struct ScanGate {
-  double linear_update_m{1.0};     ///< linearUpdate
-  double angular_update_rad{0.5};  ///< angularUpdate
-  double temporal_update_s{-1.0};  ///< temporalUpdate; negative: never for the time alone
+  double linear_update_m{1.0};
+  double angular_update_rad{0.5};
+  double temporal_update_s{-1.0};
 
   bool is_open(const Motion& since_update, Duration elapsed) const {
     return since_update.distance_m >= linear_update_m ||
@@ -20,6 +20,7 @@ struct ScanGate {
            (temporal_update_s >= 0.0 && to_seconds(elapsed) > temporal_update_s);
   }
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -25,15 +25,16 @@ enum class FreeCells {
 
 /// Under GMapping's names. The widths are in m^2: the released code does not square them.
 struct MatcherConfig {
-  double sigma_m2{0.05};              ///< score of a beam: exp(-d^2 / sigma)
-  double likelihood_sigma_m2{0.075};  ///< lsigma: log-likelihood of a beam: -d^2 / lsigma
-  int kernel_size{1};                 ///< cells searched around the end of a beam, each way
-  double linear_step_m{0.05};         ///< lstep
-  double angular_step_rad{0.05};      ///< astep
-  int iterations{5};                  ///< how often both steps are halved
-  int skip_beams{0};                  ///< lskip: beams left out between two that are used
+  double sigma_m2{0.05};
+  double likelihood_sigma_m2{0.075};
+  int kernel_size{1};
+  double linear_step_m{0.05};
+  double angular_step_rad{0.05};
+  int iterations{5};
+  int skip_beams{0};
   FreeCells free_cells{FreeCells::kAsReleased};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

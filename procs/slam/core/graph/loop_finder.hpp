@@ -17,16 +17,17 @@ class Fields;
 
 struct LoopConfig {
   bool enabled{true};
-  double every_m{0.5};           ///< driven between two attempts
-  double reach_m{4.0};           ///< of a submap about its keyframes
-  double max_search_m{15.0};     ///< half of the widest window
-  double min_inlier_share{0.8};  ///< of the beams on mapped surfaces
-  double min_mapped_share{0.6};  ///< of all beams
-  double min_score{0.4};         ///< of the wide search
-  double runner_up_share{0.85};  ///< of the best score; a runner-up above makes it ambiguous
-  double gate{16.3};             ///< chi^2 against the graph's own covariance
-  double surprise_share{0.85};   ///< what both shares have to be of a loop beyond the gate
+  double every_m{0.5};
+  double reach_m{4.0};
+  double max_search_m{15.0};
+  double min_inlier_share{0.8};
+  double min_mapped_share{0.6};
+  double min_score{0.4};
+  double runner_up_share{0.85};
+  double gate{16.3};
+  double surprise_share{0.85};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -65,12 +65,13 @@ enum class StartKind {
 
 struct StartPose {
   StartKind kind{StartKind::kOrigin};
-  double x_m{0.0};  ///< of the base in the map; of kOrigin: 0
+  double x_m{0.0};
   double y_m{0.0};
   double yaw_rad{0.0};
-  double sigma_m{0.1};  ///< in x and in y
+  double sigma_m{0.1};
   double sigma_rad{0.05};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -16,12 +16,13 @@ namespace waymark {
 class Fields;
 
 struct MarkerMeasurementConfig {
-  double reach_m{1.5};                  ///< wall around the marker that is believed to be straight
-  double perspective_sigma{0.02};       ///< of the focal length by one view; views err alike
-  double perspective_max_sigma{0.003};  ///< views that the corners' noise makes worse say nothing
-  double covariance_factor{1.0};        ///< on the detector's covariance: corners err together
-  double gate{16.3};  ///< chi^2 between camera and wall, 3 degrees of freedom (16.3 = 99.9 %)
+  double reach_m{1.5};
+  double perspective_sigma{0.02};
+  double perspective_max_sigma{0.003};
+  double covariance_factor{1.0};
+  double gate{16.3};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

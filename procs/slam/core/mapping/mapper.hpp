@@ -12,10 +12,11 @@ class Fields;
 
 struct MapperConfig {
   double resolution_m{0.05};
-  double face_spacing_m{0.02};       ///< between the points that stand for a marker's face
-  double face_margin_m{0.1};         ///< bare wall beside a marker, seen together with it
-  double same_marker_within_m{1.0};  ///< sightings of an id nearer than this are of one marker
+  double face_spacing_m{0.02};
+  double face_margin_m{0.1};
+  double same_marker_within_m{1.0};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

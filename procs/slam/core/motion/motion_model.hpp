@@ -12,11 +12,12 @@ class Fields;
 /// All noise is a random walk along the path: its variance grows with distance and turn, so it does
 /// not depend on how many steps the path is cut into.
 struct MotionNoise {
-  double along_per_sqrt_m{0.01};   ///< [m/sqrt(m)] along the motion
-  double turn_per_sqrt_m{0.0087};  ///< [rad/sqrt(m)] heading, by distance
-  double turn_per_sqrt_rad{0.02};  ///< [rad/sqrt(rad)] heading, by turn
-  bool rotation_only{false};       ///< the paper to the letter: no noise along the motion
+  double along_per_sqrt_m{0.01};
+  double turn_per_sqrt_m{0.0087};
+  double turn_per_sqrt_rad{0.02};
+  bool rotation_only{false};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -12,17 +12,18 @@ class Fields;
 
 /// Random walk of the odometry along the path, and how wrong its calibration may be (one sigma).
 struct OdometryNoise {
-  double along_per_sqrt_m{0.003};      ///< [m/sqrt(m)]
-  double across_per_sqrt_m{0.001};     ///< [m/sqrt(m)] beyond what the heading explains
-  double turn_per_sqrt_m{0.0087};      ///< [rad/sqrt(m)]
-  double turn_per_sqrt_rad{0.02};      ///< [rad/sqrt(rad)]
-  double scale_sigma{0.02};            ///< of distances
-  double turn_scale_sigma{0.02};       ///< of turns
-  double drift_sigma_rad_per_m{0.01};  ///< heading gained per metre
-  double lidar_ahead_sigma_m{0.05};    ///< of the configured place of the LiDAR
-  double half_track_m{0.14};           ///< between the wheels; taken from the robot
-  bool may_slip{true};                 ///< wheels spin, are pushed, jump: a mixture, not a normal
+  double along_per_sqrt_m{0.003};
+  double across_per_sqrt_m{0.001};
+  double turn_per_sqrt_m{0.0087};
+  double turn_per_sqrt_rad{0.02};
+  double scale_sigma{0.02};
+  double turn_scale_sigma{0.02};
+  double drift_sigma_rad_per_m{0.01};
+  double lidar_ahead_sigma_m{0.05};
+  double half_track_m{0.14};  ///< between the wheels; taken from the robot
+  bool may_slip{true};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

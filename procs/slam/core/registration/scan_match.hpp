@@ -21,13 +21,14 @@ using Points = std::vector<Eigen::Vector2d>;
 Points thinned(const Points& points, std::size_t most);
 
 struct ScanMatchConfig {
-  double cell_spacing_m{0.25};    ///< of the submaps' cells
-  double kernel_sigmas{3.0};      ///< a beam this far from its wall counts a quarter
-  double information_share{0.3};  ///< of independent beams: those on one wall err together
-  double roughness_m{0.003};      ///< of walls, beside the noise of ranges
-  double weak_share{0.03};        ///< directions below this share of the strongest are unobserved
-  int min_inliers{15};            ///< beams; a scan with fewer is not used
+  double cell_spacing_m{0.25};
+  double kernel_sigmas{3.0};
+  double information_share{0.3};
+  double roughness_m{0.003};
+  double weak_share{0.03};
+  int min_inliers{15};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 

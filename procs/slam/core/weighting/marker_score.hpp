@@ -15,12 +15,13 @@ class Fields;
 
 /// Values of one beam in units of log weight (the temperature is in the values).
 struct MatchingRewards {
-  double strong_reward{1.0};  ///< the ids of beam and cell match
-  double penalty{1.0};        ///< they differ
+  double strong_reward{1.0};
+  double penalty{1.0};
   /// Both are outside marker regions, and the cell is a wall. A quarter of this lets the map get a
   /// kink of half a degree when a particle with good ids and a bad heading draws it.
   double weak_reward{0.2};
 
+  /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 
