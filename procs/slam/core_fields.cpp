@@ -202,7 +202,7 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.field("insert_distance_m", insert_distance_m, kNotNegative,
                "scans in between enter the submaps after this much driving");
   fields.field("window_keyframes", window_keyframes, {2, 100000},
-               "keyframes that are solved for at each update");
+               "keyframes that are solved for at each update; 16 at most with mode = localise");
   fields.field("submap_keyframes", submap_keyframes, {2, 100000}, "keyframes of a submap");
   fields.field("keyframes_per_place", keyframes_per_place, {1, 100000},
                "kept of a square metre and a quarter of a turn; later ones are forgotten once they "

@@ -218,7 +218,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
   if (!is_frozen())
     map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? look.points : Points{});
-  while (graph_.num_active_keyframes() > static_cast<std::size_t>(config_.window_keyframes))
+  while (graph_.num_active_keyframes() > num_window_keyframes())
     graph_.marginalise_oldest(kNear_m);
   if (is_frozen())
     graph_.forget_behind_window();

@@ -18,6 +18,7 @@
 #include "slam/core/motion/speed_limits.hpp"
 #include "slam/core/registration/submap.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <optional>
@@ -32,7 +33,7 @@ struct WaymarkConfig {
   double keyframe_turn_rad{0.15};
   double marker_keyframe_distance_m{0.05};
   double insert_distance_m{0.04};
-  int window_keyframes{48};
+  int window_keyframes{32};
   int submap_keyframes{40};
   int keyframes_per_place{60};
   bool learn_noise{true};
@@ -82,6 +83,8 @@ class WaymarkEstimator final : public Estimator {
  private:
   static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
   static constexpr int kMaxStanding = 20;  ///< keyframes of a robot that does not move
+  /// Keyframes of the window where each is tied to a map that does not move.
+  static constexpr std::size_t kFrozenWindow = 16;
 
   struct Prediction {
     Se2 map_from_base{};
@@ -135,6 +138,11 @@ class WaymarkEstimator final : public Estimator {
   Graph solved() const;
 
   bool is_frozen() const { return setup_.map_mode == MapMode::kLocalise; }
+
+  std::size_t num_window_keyframes() const {
+    const auto all = static_cast<std::size_t>(config_.window_keyframes);
+    return is_frozen() ? std::min(all, kFrozenWindow) : all;
+  }
 
   const NdtMap& surfaces_of(const MatchedScan& scan) const;
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base) const;
