@@ -118,7 +118,7 @@ TEST_F(BusTest, ForgedFragmentOffsetsAreRefused) {
   EXPECT_EQ(counted(kMalformed), 200);
 }
 
-TEST(BusSetup, LargeMessagesAreTakenOnRequest) {
+TEST(BusSetup, FragmentedMessagesAreTakenWhereLargeOnesAreAllowed) {
   const PrivateNetwork network;
   Bus bus{network.url(), {{"CAMERA"}}, LargeMessages::kAccepted};
   std::vector<std::uint8_t> payload(80000);

@@ -39,7 +39,8 @@ Check check_odometry_moves(const ImportedLog& log) {
     return {"odometry_moves", Verdict::kFail,
             fmt::format("odometry is the same pose all the time, but the scans change by {:.2f} m",
                         *change_m),
-            "connect the encoders; without odometry no estimator works", *change_m};
+            "connect the encoders; without odometry only waymark works, by scans alone and badly",
+            *change_m};
   }
   const double length_m = path_length_m(log.odometry);
   if (length_m == 0.0) {

@@ -13,8 +13,8 @@
 
 namespace waymark::faults {
 
-/// What a faulty run has beside its log, and a recorded one has not: the variant that was applied,
-/// as a file of variants.
+/// Marks a run as faulty (recorded runs have none): the variant that was applied, as a file of
+/// variants.
 inline constexpr std::string_view kMark = "variant_applied.toml";
 
 /// All files that may be written.
@@ -27,13 +27,15 @@ inline constexpr std::array<std::string_view, 8> kFiles{kMark,
                                                         "truth_marker_moves.csv",
                                                         "run.lcm"};
 
-/// Writes the mark, copies scenario.toml, robot.toml, truth.tum, truth_marker_moves.csv (if there)
-/// and truth_markers.csv (with the ids that the markers now have), writes expect.toml and, last,
-/// run.lcm. Random numbers: the scenario's run.seed.
+/// Writes the mark; copies scenario.toml, robot.toml, truth.tum, truth_marker_moves.csv and
+/// truth_markers.csv (with the ids that the markers now have), as far as they are there; writes
+/// expect.toml and, last, run.lcm, without what slam published. Random numbers: the scenario's
+/// run.seed, else 1.
 /// @return how often each fault was put in.
 /// @throws SetupError when run_dir holds no run or one that has faults already, when it is out_dir,
 /// or when another recorded run is there.
-/// @throws std::runtime_error naming the file that cannot be read or written.
+/// @throws std::runtime_error naming the file that cannot be read or written, or when ids are
+/// changed in a run that moves markers.
 std::map<std::string, std::int64_t> write_faulty_run(const std::filesystem::path& run_dir,
                                                      const Variant& variant,
                                                      const std::filesystem::path& out_dir);

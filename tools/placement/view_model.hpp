@@ -27,12 +27,14 @@ double read_share_of(double module_px);
 /// high as the camera.
 class ViewModel {
  public:
-  /// @param modules_per_side  bits of the dictionary plus the two of the border.
+  /// @param modules_per_side  bits along a side of the dictionary's markers, plus two of the
+  /// border.
   ViewModel(const SlamConfig& config, int modules_per_side);
 
   /// @param hits_in_base  ends of the LiDAR's beams.
   /// @param speed_mps     of the robot, between frame and scan.
-  /// @return nothing where the marker is not wholly in the image, faces away, or is too small.
+  /// @return nothing where the marker is not wholly in the image, faces away, is too small, or too
+  ///         uncertain to be used.
   std::optional<MarkerView> view(const Se2& base_from_marker,
                                  std::span<const Eigen::Vector2d> hits_in_base,
                                  double speed_mps) const;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kCentralRows = 1.0 / 3.0;  ///< half width of the central band, in corridor widths
 constexpr double kCoverage = 0.4;           ///< share of the rows a wall must cover
-constexpr double kLineHalfWidth_px = 0.75;  ///< a drawn line's cells are this near to it
+constexpr double kLineHalfWidth_px = 0.75;  ///< cells this near to a line lie on it
 constexpr double kRoughness_px = 1.25;      ///< a wall's innermost cells are this near to its line
 constexpr double kOffsetStep_px = 0.5;
 constexpr int kMaxTilt_deg = 20;

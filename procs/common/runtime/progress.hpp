@@ -7,8 +7,8 @@
 
 namespace waymark {
 
-/// One line that is redrawn on a terminal (or where $WAYMARK_PROGRESS_BAR says that one is behind
-/// the pipe); elsewhere a line every ten per cent.
+/// One line that is redrawn on a terminal (or when $WAYMARK_PROGRESS_BAR is set, for a terminal at
+/// the other end of a pipe); elsewhere a line every ten per cent.
 class Progress {
  public:
   explicit Progress(std::string what);

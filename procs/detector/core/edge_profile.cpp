@@ -52,8 +52,8 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
 
 }  // namespace
 
-/// Before white bits black is read in the middle of a border that is thin, as far from them as from
-/// the edge.
+/// In front of white bits the black of a thin border is read at its middle, farthest from both
+/// edges.
 void read_levels(EdgeProfile& profile, double border_px) {
   profile.white = mean_between(profile, kWhiteFrom, 1.0);
   const double middle = 0.5 * border_px / profile.reach_px;

@@ -39,7 +39,7 @@ struct EdgeProfile {
   std::vector<double> brightness{};
   bool is_white_behind{false};  ///< the bit behind the border
   double white{0.0};            ///< mean level outside
-  double black{0.0};            ///< mean level inside, raised where the border is thin
+  double black{0.0};            ///< mean level inside; blur makes a thin border's too bright
 
   double step_px() const;
   /// Linear between the samples, constant beyond them.
@@ -58,8 +58,8 @@ struct EdgeProfile {
 /// Levels that are read off a profile across a border of that thickness.
 void read_levels(EdgeProfile& profile, double border_px);
 
-/// One profile per pixel along the side, away from its corners. Places from which the profile would
-/// leave the image are left out.
+/// About one profile per pixel along the side, 2 to 80, away from its corners. Places from which
+/// the profile would leave the image are left out.
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
                                          const Side& side, double reach_px, double border_px);
 

@@ -20,7 +20,8 @@ struct LiveTile {
   int x{0};
   int y{0};
   std::uint32_t version{0};
-  std::vector<std::int8_t> occupancy_percent{};  ///< 0..100, -1 = unknown; from the lower left
+  /// 0..100, -1 = unknown; row by row from the lower left.
+  std::vector<std::int8_t> occupancy_percent{};
 };
 
 /// Tiles are shared between views: only those that have changed are new.

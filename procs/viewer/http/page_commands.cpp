@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kShortestToken = 16;
 constexpr std::size_t kLongestToken = 200;
 
-/// @throws std::exception when there are not as many numbers.
+/// @throws std::exception unless the list is exactly that many numbers.
 template <std::size_t kSize>
 void copy_numbers(const nlohmann::json& list, double (&numbers)[kSize]) {
   const auto values = list.get<std::array<double, kSize>>();

@@ -118,7 +118,7 @@ TEST(WaymarkEstimator, AnEmptyScanNeitherCrashesNorMoves) {
     EXPECT_EQ(estimator.update(nothing).map_from_base.x(), before.x());
 }
 
-TEST(WaymarkEstimator, TheFinalTrajectoryIsNoWorseThanTheOneOnLine) {
+TEST(WaymarkEstimator, TheFinalTrajectoryIsNoWorseThanTheOneWhileDriving) {
   const SyntheticCorridor corridor = corridor_with_markers(4);
   WaymarkEstimator estimator{estimator_setup_of(corridor, 1), {}};
   const std::vector<Step> steps = run(estimator, drive(corridor), setup_of(corridor));

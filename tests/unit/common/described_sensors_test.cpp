@@ -11,7 +11,7 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::ElementsAre;
 
-TEST(DescribedSensors, BeamsOfAMirroredLidarCountTheOtherWayRound) {
+TEST(DescribedSensors, AMirroredLidarsAnglesAreNegated) {
   const LidarScan scan{.time = Timestamp{milliseconds{1000}},
                        .ranges_m = {1.0, 2.0, 3.0},
                        .angles_rad = {-0.5, 0.0, 0.7},

@@ -220,7 +220,7 @@ TEST_F(LogFile, OnlyARegularFileIsReplaced) {
   EXPECT_FALSE(std::filesystem::exists(path_.string() + ".part"));
 }
 
-TEST_F(LogFile, WhatAWriterWouldOverwriteIsKnownByAnyName) {
+TEST_F(LogFile, WouldOverwriteSeesThroughLinksAndSpellings) {
   good_log(1);
   const auto other_spelling = path_.parent_path() / "." / path_.filename();
   const std::filesystem::path link = path_.string() + ".link";

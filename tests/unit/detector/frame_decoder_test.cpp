@@ -65,7 +65,7 @@ TEST(FrameDecoder, RawFormatsHonourStrideAndChannelOrder) {
             9);
 }
 
-TEST(FrameDecoder, WhatIsNoImageOfThatSizeIsRefusedByName) {
+TEST(FrameDecoder, BadFramesAreRefusedWithTheReason) {
   const std::vector<std::uint8_t> bytes(64 * 48, 1);
   EXPECT_EQ(problem_of(PixelFormat::kMjpeg, {}), FrameProblem::kEmpty);
   EXPECT_EQ(problem_of(PixelFormat::kOther, bytes), FrameProblem::kUnknownFormat);

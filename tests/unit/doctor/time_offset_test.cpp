@@ -34,7 +34,7 @@ TEST(DoctorTimeOffset, BetweenSamplesIsFoundToMilliseconds) {
   }
 }
 
-TEST(DoctorTimeOffset, OfSeldomOdometryIsWithinItsSigmas) {
+TEST(DoctorTimeOffset, AtLowSampleRatesIsWithinThreeSigmas) {
   for (const int period_steps : {5, 10}) {
     for (int late_steps = -period_steps; late_steps <= period_steps; ++late_steps) {
       const Measured late = seldom_comparison(late_steps, period_steps).lidar_late_s;

@@ -14,13 +14,13 @@
 namespace waymark {
 namespace {
 
-/// The last two are not asked for: what is left of odometry's errors of scale.
+/// The last two are nuisance terms: what is left of odometry's errors of scale.
 enum Term : Eigen::Index { kFocal, kSize, kYaw, kLate, kDistance, kTurn, kTerms };
 
 using Errors = Eigen::Matrix<double, kTerms, 1>;
 using Information = Eigen::Matrix<double, kTerms, kTerms>;
 
-/// Far wider than any set-up is wrong: only what no residual shows stays there.
+/// Far wider than any set-up is wrong: only terms that are not observable stay at the prior.
 const Eigen::Vector4d kPriorSigmas{0.3, 0.3, 0.3, 1.0};           // relative, relative, rad, s
 constexpr std::array kSteps{1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4};  // of numerical derivatives
 constexpr double kSlowStep_s = 0.25;  // robots start and stop turning within that

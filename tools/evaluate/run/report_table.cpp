@@ -77,7 +77,7 @@ std::string flags_of(const EstimatorResult& result) {
   return flags.empty() ? "-" : fmt::format("{}", fmt::join(flags, " "));
 }
 
-/// A row of the paper's Table I.
+/// A row of the table of corridor lengths, as Table I of the marker-matching paper (README.md).
 Row length_row(const EstimatorResult& result) {
   Row row{result.name, "-", cell(result.true_length_m, 1, " m"), "-", "-", "-"};
   if (!result.length) return row;

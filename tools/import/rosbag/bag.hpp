@@ -47,7 +47,7 @@ std::string ros_name(std::string_view bytes);
 /// "sensor_msgs/msg/LaserScan" -> "sensor_msgs/LaserScan".
 std::string ros_type_name(std::string type);
 
-/// Nanoseconds of a bag as our time; nothing for times that no robot has lived in.
+/// Nanoseconds of a bag as our time; nothing before 1970 and after 2099.
 std::optional<Timestamp> time_from_ns(std::int64_t ns);
 
 }  // namespace waymark

@@ -11,8 +11,8 @@
 namespace waymark {
 namespace {
 
-// Wide search of a scan that fits badly.
-constexpr double kUsualFit = 0.93;   // share of the usual fit; below, a scan fits badly
+// Wide search for the pose of a scan that fits badly.
+constexpr double kBadFit = 0.93;     // a scan below this share of the usual fit fits badly
 constexpr double kFitMemory = 0.05;  // weight of the newest scan in what is usual
 constexpr double kSearchReach_m = 0.5;
 constexpr double kSearchReach_rad = 0.6;
@@ -46,8 +46,8 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   return scan;
 }
 
-/// Where the robot may be if the prediction is worth nothing: where it was at the last scan, as
-/// much farther on as then, or where a refused step of the odometry has it. Map frame.
+/// Guesses of the pose without the prediction, map frame: the last pose, that pose after the last
+/// step once more, and after a step of the odometry that was refused.
 std::vector<Se2> WaymarkEstimator::without_odometry() const {
   const Se2 last = graph_.state().keyframes.back() * newest_from_last_scan_;
   std::vector<Se2> places{last, last * last_step_};
@@ -150,7 +150,7 @@ void WaymarkEstimator::learn_usual_fit(const ScanMatch& match) {
 }
 
 bool WaymarkEstimator::is_bad_fit(const ScanMatch& match) const {
-  return match.inlier_share * match.mapped_share < kUsualFit * usual_fit_;
+  return match.inlier_share * match.mapped_share < kBadFit * usual_fit_;
 }
 
 /// Most of what it shows stands where the map has something else, so that it is no view of a place

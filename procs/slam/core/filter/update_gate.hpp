@@ -9,7 +9,7 @@ namespace waymark {
 class Fields;
 
 /// Scans from the same place repeat the same errors: weighing them as if they were independent
-/// makes a filter sure of nothing in particular. So a scan counts only after some motion.
+/// makes a filter overconfident. So a scan counts only after some motion.
 struct UpdateGate {
   double distance_m{0.05};
   double turn_rad{0.05};

@@ -166,7 +166,8 @@ ScanMatcher::Match ScanMatcher::climb(const Se2& start) {
   double turn_rad = setting_.config.angular_step_rad;
   LatticePoint best_point{};
   std::vector<LatticePoint> seen{best_point};
-  // A pose that was looked at before scored less than the best one, by whatever way it is reached.
+  // A pose that was looked at before scored no more than the best one, by whatever way it is
+  // reached.
   const auto is_new = [&](const LatticePoint& point) {
     if (std::find(seen.begin(), seen.end(), point) != seen.end()) return false;
     seen.push_back(point);

@@ -11,9 +11,9 @@
 
 namespace waymark {
 
-/// The first keyframes of a place are needed: they define where it is. Where the robot comes by
-/// again and again, a run of later keyframes is surplus, but for its two ends: each of them stays
-/// as long as it has to be for markers and loops to tie it to what is older than the run.
+/// The first keyframes of a place, and those that see a marker which few have seen, are needed.
+/// Where the robot comes by again, a run of other keyframes is surplus, except for its two ends:
+/// each is long enough to be tied to keyframes older than the run, by markers and loops.
 class KeyframeThinning {
  public:
   /// @param per_place  keyframes that a square metre and a quarter of a turn need.

@@ -10,7 +10,7 @@ namespace waymark {
 namespace {
 
 constexpr double kMemory = 0.99;       // of an innovation, at the next one
-constexpr double kPriorDecades = 3.0;  // log-odds of the description against any worse scale
+constexpr double kPriorLogOdds = 3.0;  // natural: of the description against any worse scale
 constexpr double kCoupling = 0.7;      // standard deviation of log(along / turn)
 constexpr double kSlipFactor = 5.0;    // as the second component of OdometryMixture
 const double kLogSlipShare = std::log(0.03);
@@ -86,7 +86,7 @@ OdometryScale OdometryNoiseLearner::scale() const {
     for (std::size_t t = 0; t < kScales; ++t) {
       const double apart = std::log(scale_at(a) / scale_at(t)) / kCoupling;
       const double log_posterior = along_[a] + turn_[t] - 0.5 * squared(apart) -
-                                   (a > 0 ? kPriorDecades : 0.0) - (t > 0 ? kPriorDecades : 0.0);
+                                   (a > 0 ? kPriorLogOdds : 0.0) - (t > 0 ? kPriorLogOdds : 0.0);
       models.push_back({log_posterior, scale_at(a), scale_at(t)});
       best = std::max(best, log_posterior);
     }

@@ -71,9 +71,10 @@ class EliminationOrder {
     return kind == VariableKind::kKeyframe ? keyframes_ : landmarks_;
   }
 
-  std::vector<Eigen::Index> keyframes_{};  ///< numbers, by index
+  std::vector<Eigen::Index> keyframes_{};  ///< numbers by index; -1: none
   std::vector<Eigen::Index> landmarks_{};
-  std::vector<Eigen::Index> place_{};  ///< by number, in blocks
+  std::vector<Eigen::Index>
+      place_{};  ///< in the order of elimination, by number; in blocks of three
 };
 
 }  // namespace

@@ -11,8 +11,8 @@
 
 namespace waymark {
 
-/// A sample that is newer than the one before by more than usual may be stamped wrong: it leads,
-/// and counts once another one is newer still. Until then nothing has reached its time.
+/// A sample that comes more than two usual steps after the one before may be stamped wrong. It is
+/// held back ("leading") until a newer one confirms it; until then its time has not been reached.
 class OdometryStream {
  public:
   /// What other sensors have to know of a sample.

@@ -11,10 +11,10 @@ namespace waymark {
 
 enum class Skip {
   kOdometryOutOfOrder,
-  kOdometryAhead,   ///< by more than any pause, or of the odometry that followed it
+  kOdometryAhead,   ///< later than any pause explains, or than the samples after it
   kClockSet,        ///< what waits is dropped, motion goes on
   kOdometryJumped,  ///< used as a new beginning, its jump is not
-  kOdometryStuck,   ///< stood still or jumped about, and then said at once what was driven
+  kOdometryStuck,   ///< stood still or jumped about, then reported the way in one step
   kScanOutOfOrder,
   kScanAhead,           ///< of odometry by far, or of the scans that followed it
   kScanWithoutReturns,  ///< odometry and camera are

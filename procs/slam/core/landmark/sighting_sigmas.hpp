@@ -9,13 +9,13 @@ namespace waymark {
 /// How far camera and markers may differ from their description: standard
 /// deviations. Keys and meanings: [robot.camera] and [robot.markers]; the defaults are theirs.
 struct SightingSigmas {
-  /// Places in `learnt`.
+  /// Indices into `learnt`.
   static constexpr Eigen::Index kYaw = 0;
   static constexpr Eigen::Index kFocal = 1;
   static constexpr Eigen::Index kStandoff = 2;
 
   /// Of what all sightings get wrong in the same way: mounting's yaw [rad], focal length
-  /// (relative), standoff of the markers [m]. Learnt while driving, but for what is 0.
+  /// (relative), standoff of the markers [m]. Learnt while driving; one of 0 is not.
   Eigen::Vector3d learnt{0.0087, 0.002, 0.003};
   double bearing_rad{0.0001};
   double position_m{0.0003};

@@ -38,11 +38,11 @@ class OdometryBuffer {
   /// The same as it was sent, with jumps.
   Se2 sent_pose_at(Timestamp time) const;
 
-  /// Along the path of the samples; needs both times covered, from <= to. Without what was kept
-  /// back.
+  /// Along the path of the samples, without what kept_back() reports. Needs both times covered,
+  /// from <= to.
   Motion motion_between(Timestamp from, Timestamp to) const;
 
-  /// What a sample after `from`, not after `to`, has reported of the time before it.
+  /// Motion that a sample in (from, to] has reported late, after odometry was stuck or jumped.
   std::optional<Motion> kept_back(Timestamp from, Timestamp to) const;
 
   /// Whether samples of that time are not believed.

@@ -35,8 +35,8 @@ struct NdtCellSums {
 };
 
 /// Square cells of side `2 spacing` whose centres are `spacing` apart, so that each point lies in
-/// four of them and is compared with the one that it is most central to: the cost has no steps at
-/// the borders of cells.
+/// four of them and is compared with the one that it is most central to: steps of the cost, where
+/// that changes, are small.
 class NdtMap {
  public:
   explicit NdtMap(double spacing_m) : spacing_m_{spacing_m} {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything that an estimator is given at one scan, or at one moment without.
+// Everything that an estimator is given for one scan, or for one moment without a scan.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -20,7 +20,7 @@ struct Observation {
   /// at once. Observations meanwhile had no motion.
   bool odometry_caught_up{false};
   bool odometry_doubtful{false};  ///< it jumped about: what was driven is not known
-  bool camera_reported{false};    ///< there was such a frame, even if it was empty
+  bool camera_reported{false};  ///< a frame came since the observation before, even without markers
 };
 
 }  // namespace waymark

@@ -31,9 +31,9 @@ struct PathMarks {
 };
 
 /// Ellipses every round number of metres and at the end; weak axes likewise and wherever another
-/// source begins to observe them. Where marks would lie on each other, as where the robot drives
-/// back, the less certain one stays; so it does until no more than a page can take are left.
-/// O(n) in the path, O(m^2) in the marks that find room.
+/// source begins to observe them. Of marks that would overlap, the less certain one is kept (of
+/// weak axes: the one whose source is worse); the clearance grows until few enough for a page are
+/// left. O(n + c log c + c m): n poses, c candidates, m marks kept in the first pass.
 PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
                        double spacing_px);
 

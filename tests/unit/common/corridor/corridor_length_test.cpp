@@ -174,7 +174,7 @@ TEST(CorridorLength, AnEmptyMapIsAnError) {
   EXPECT_THROW(measure_corridor(map), NotACorridor);
 }
 
-TEST(CorridorLength, AccuracyIsThePapers) {
+TEST(CorridorLength, AccuracyFollowsThePapersFormula) {
   EXPECT_NEAR(accuracy_percent(49.6, 50.0), 99.2, kExact);
   EXPECT_NEAR(accuracy_percent(50.4, 50.0), 99.2, kExact);
   EXPECT_NEAR(accuracy_percent(20.7, 50.0), 41.4, kExact);

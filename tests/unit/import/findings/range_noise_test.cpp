@@ -32,7 +32,7 @@ double estimated_sigma_m(double sigma_m, double step_m = 1e-3) {
   return noise.sigma_m().value_or(-1.0);
 }
 
-TEST(WallScatter, IsThatOfTheRangesFromMillimetresToDecimetres) {
+TEST(WallScatter, IsTheRangeNoiseFromMillimetresToDecimetres) {
   for (const double sigma_m : {0.003, 0.01, 0.03, 0.1})
     EXPECT_NEAR(estimated_sigma_m(sigma_m), sigma_m, 0.1 * sigma_m) << sigma_m;
 }

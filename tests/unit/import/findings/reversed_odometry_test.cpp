@@ -36,7 +36,7 @@ TEST(ReversedOdometry, RightOdometryIsLeftInPeace) {
   EXPECT_THAT(find_reversed_steps(drive(to_and_fro(), CountedAs::kDriven)), IsEmpty());
 }
 
-TEST(ReversedOdometry, RotatingLidarsWithClockwiseAnglesAreTheSame) {
+TEST(ReversedOdometry, IsFoundWithClockwiseScansToo) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kForward);
   for (ImportedScan& scan : log.scans) {
     lidar_t message = to_mbot_lidar(scan_of(scan));

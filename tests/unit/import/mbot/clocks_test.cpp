@@ -54,7 +54,7 @@ TEST(Clocks, OneClockIsLeftAsItIs) {
   EXPECT_THAT(notes, IsEmpty());
 }
 
-TEST(Clocks, ALoggerWithoutTimesSaysNothing) {
+TEST(Clocks, ConstantLogTimesOrAMissingChannelGiveNoNote) {
   ChannelClock lidar;
   ChannelClock odometry;
   for (int i = 0; i < 60; ++i) {

@@ -23,7 +23,7 @@ TEST(EvaluateProgram, HelpAndVersionAreFine) {
   EXPECT_EQ(exit_code("--version"), 0);
 }
 
-TEST(EvaluateProgram, WrongUsageAndMissingFilesAreTwo) {
+TEST(EvaluateProgram, WrongUsageAndMissingFilesEndWithCodeTwo) {
   EXPECT_EQ(exit_code(""), 2);
   EXPECT_EQ(exit_code("measure"), 2);
   EXPECT_EQ(exit_code("length"), 2);

@@ -172,7 +172,7 @@ TEST(Faults, OdometryIsScaledAndDrifts) {
               1e-3);
 }
 
-TEST(FaultyRun, IsARunFolderOfItsOwn) {
+TEST(FaultyRun, WritesACompleteRunFolder) {
   const TemporaryFolder folder;
   folder.file("run/robot.toml", "[robot]\n");
   folder.file("run/scenario.toml", "[run]\nseed = 3\n");

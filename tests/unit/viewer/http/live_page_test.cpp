@@ -148,7 +148,7 @@ TEST(LiveFeed, OnlyTilesThatChangedAreNew) {
   EXPECT_EQ(bytes.substr(bytes.size() - 4), std::string(4, 99));
 }
 
-TEST(LiveFeed, AnotherLayoutIsAnotherMap) {
+TEST(LiveFeed, AnotherLayoutOfTilesBeginsANewMap) {
   Board board;
   LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
   feed.add(tile(0, 10));

@@ -94,7 +94,7 @@ SyntheticCorridor room() {
   return corridor;
 }
 
-TEST(GmappingEstimator, CorrectsOdometryWhereTheWallsTell) {
+TEST(GmappingEstimator, CorrectsOdometryInARoom) {
   const SyntheticCorridor corridor = room();
   const auto log = drive(corridor);
   GmappingConfig config;

@@ -112,7 +112,7 @@ TEST(DrawScan, CrossesEveryCellUpToTheHit) {
   EXPECT_EQ((map.occupancy[{5, 0}]), (OccupancyCell{}));
 }
 
-TEST(DrawScan, ABeamBeyondTheUsableRangeClearsUpToIt) {
+TEST(DrawScan, ALongBeamClearsOnlyTheUsableRange) {
   GridMap map{kFrame, {}, {}};
   draw_scan(*beam_to(1.0), Se2{}, 0.2, map);
   EXPECT_EQ((map.occupancy[{3, 0}]), (OccupancyCell{0, 1}));

@@ -61,7 +61,7 @@ TEST(MotionDoubt, ARobotThatParksIsNotLostForIt) {
   EXPECT_LT(robot.doubt.suspected_m(), 0.5);
 }
 
-TEST(MotionDoubt, StuckOdometryMeasuresNothingUntilItMovesAgain) {
+TEST(MotionDoubt, UnmeasuredMotionGrowsWhileOdometryIsStuck) {
   Robot robot;
   robot.drive();
   robot.stand(1);

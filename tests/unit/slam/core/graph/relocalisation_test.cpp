@@ -54,7 +54,7 @@ TEST(RelocalisationMonitor, AMisreadIdIsForgottenSoon) {
   EXPECT_EQ(monitor.judge(kBelieved, {}, onwards), Verdict::kSettled);
 }
 
-TEST(RelocalisationMonitor, NewIdsWhereOthersShouldHangTakeARelocalisationBack) {
+TEST(RelocalisationMonitor, TwoUnexpectedNewMarkersUndoARelocalisation) {
   RelocalisationMonitor monitor;
   const std::vector pair{elsewhere(3), elsewhere(4)};
   monitor.judge(kBelieved, pair, {});

@@ -62,7 +62,7 @@ TEST(SensorQueue, WhileTheLidarIsSilentOdometryAndCameraGoOn) {
   EXPECT_NEAR(way_m, 0.21, 1e-9);
 }
 
-TEST(SensorQueue, WithoutAScanAtAllThereIsNothingToStartFrom) {
+TEST(SensorQueue, ThereIsNoObservationBeforeTheFirstScan) {
   SensorQueue queue{setup_without_waiting()};
   EXPECT_TRUE(all_ready(queue, 5000, {}).empty());
 }

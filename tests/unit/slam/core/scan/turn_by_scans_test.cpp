@@ -67,7 +67,7 @@ TEST(TurnMonitor, FindsASlipAtOnceAndOneBitByBit) {
     EXPECT_NEAR(turn_found(steps), 20.0 * kDegree, 3.5 * kDegree) << steps;
 }
 
-TEST(TurnMonitor, ComparesAcrossScansThatShowNothing) {
+TEST(TurnMonitor, ComparesAcrossAnEmptyScan) {
   TurnMonitor monitor;
   const Motion told{Se2{0.05, 0.0, 0.0}, 0.05, 0.0};
   Se2 truth{-0.5, 0.3, 0.2};

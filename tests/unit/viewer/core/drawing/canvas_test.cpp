@@ -33,7 +33,7 @@ TEST(DashedPolyline, AlternatesAlongTheWholePath) {
   EXPECT_EQ(image(60, 10)[0], 255);
 }
 
-TEST(DashedPolyline, NothingForNoPathOnePointAndNoLength) {
+TEST(DashedPolyline, DrawsNothingForEmptyOrZeroLengthPaths) {
   Image image = white();
   draw_dashed_polyline(image, {}, {kBlack, 1}, 5.0, 5.0);
   draw_dashed_polyline(image, std::array<cv::Point2d, 1>{{{5, 5}}}, {kBlack, 1}, 5.0, 5.0);

@@ -63,7 +63,7 @@ TEST(PaintMap, StripsCoverTheWholeMap) {
   }
 }
 
-TEST(PaintMap, ShortCorridorsRoomsAndRingsStayInOnePiece) {
+TEST(PaintMap, ShortCorridorsAndSquareRoomsStayInOneStrip) {
   EXPECT_THAT(lay_out(content_of(corridor_scene(10.0)), kStyle).strips, SizeIs(1));
   EXPECT_THAT(lay_out(content_of(scene_of(room(-2, -2, 3, 3))), kStyle).strips, SizeIs(1));
   EXPECT_THAT(lay_out(content_of(scene_of(room(-1, -1, 49, 49))), kStyle).strips, SizeIs(1));
