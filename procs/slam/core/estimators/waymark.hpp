@@ -33,7 +33,7 @@ struct WaymarkConfig {
   double keyframe_turn_rad{0.15};
   double marker_keyframe_distance_m{0.05};
   double insert_distance_m{0.04};
-  int window_keyframes{32};
+  int window_keyframes{48};
   int submap_keyframes{40};
   int keyframes_per_place{60};
   bool learn_noise{true};
