@@ -119,7 +119,7 @@ def play(name, arguments):
     signal.signal(signal.SIGINT, lambda *_: stopped.append(True))
     arguments = [argument for argument in arguments if argument != "--real-time"]
     if "--http" in arguments:
-        arguments[arguments.index("--http") + 1] = f"127.0.0.1:{free_port()}"
+        arguments[arguments.index("--http") + 1] = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
     if name != "recorder":
         program = subprocess.Popen([f"{plan['build']}/waymark-{name}", *arguments])
         while not stopped:
@@ -156,8 +156,8 @@ def place_for(folder, build):
             (programs / program.name).symlink_to(program)
 
 
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+def free_port(kind=socket.SOCK_DGRAM):
+    with socket.socket(socket.AF_INET, kind) as probe:
         probe.bind(("", 0))
         return probe.getsockname()[1]
 

@@ -13,13 +13,14 @@ usage: tests/simulation/long_day.py RUN [--hours H] [--keep DIR]
 """
 import argparse
 import math
-import os
 import pathlib
 import re
 import struct
 import subprocess
 import sys
 import tempfile
+
+from loaded_core import cpu_and_memory
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = SOURCE / "build/release"
@@ -95,10 +96,8 @@ def replay(run, day, options, out_log):
         match = re.match(r"replay +[0-9]+ % +([0-9.]+) s", line)
         if not match:
             continue
-        status = pathlib.Path(f"/proc/{slam.pid}/status").read_text()
-        times = pathlib.Path(f"/proc/{slam.pid}/stat").read_text().rsplit(")", 1)[1].split()
-        tenths.append((float(match[1]), int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024,
-                       (int(times[11]) + int(times[12])) / os.sysconf("SC_CLK_TCK")))
+        cpu_s, memory_mb = cpu_and_memory(slam.pid)
+        tenths.append((float(match[1]), memory_mb, cpu_s))
     if slam.wait() != 0:
         raise SystemExit(f"{' '.join(map(str, command))}: exit code {slam.returncode}\n{''.join(said[-20:])}")
     print("".join(line for line in said if "estimator:" in line or "replayed" in line or "found:" in line), end="")

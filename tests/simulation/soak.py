@@ -12,6 +12,7 @@ usage: tests/simulation/soak.py [--hours H] [--lockstep] [--every-s S] [--out DI
 """
 import argparse
 import collections
+import contextlib
 import json
 import os
 import pathlib
@@ -22,6 +23,10 @@ import sys
 import tempfile
 import time
 import urllib.request
+
+from first_hour import free_port
+from kill_runs import TAG, processes_of
+from loaded_core import cpu_and_memory
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 LAP_S = 92
@@ -42,25 +47,16 @@ WAY_MB_PER_HOUR = {"waymark-slam": 5.0, "waymark-viewer": 30.0}
 Held = collections.namedtuple("Held", "memory_mb descriptors threads")
 
 
-def programs_of(launch):
-    """Name and what it holds, for each program that the script has started."""
+def programs_of(tag):
+    """Name and what it holds, for each program of the run."""
     held = {}
-    for folder in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            status = dict(line.split(":\t", 1) for line in (folder / "status").read_text().splitlines() if ":\t" in line)
-            program = (folder / "cmdline").read_bytes().split(b"\0")[0].decode().rpartition("/")[2]
-            if program.startswith("waymark-") and int(status["PPid"]) == launch:
-                held[program] = Held(int(status["VmRSS"].split()[0]) / 1024, len(list((folder / "fd").iterdir())),
-                                     int(status["Threads"]))
-        except (OSError, KeyError, ValueError):
-            pass
+    for pid, command in processes_of(tag).items():
+        program = command[0].rpartition("/")[2]
+        with contextlib.suppress(OSError, TypeError):  # it has ended meanwhile
+            if program.startswith("waymark-"):
+                held[program] = Held(cpu_and_memory(pid)[1], len(os.listdir(f"/proc/{pid}/fd")),
+                                     len(os.listdir(f"/proc/{pid}/task")))
     return held
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def read_page(address):
@@ -102,18 +98,18 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "soak.toml").write_text(SCENARIO.format(laps=max(1, round(options.hours * 3600 / LAP_S))))
     before = set(os.listdir("/tmp"))
-    address = f"127.0.0.1:{free_port()}"
+    address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
     command = [SOURCE / "deploy/launch.sh", folder / "soak.toml", "--out", folder / "run", "--no-images", "--http", address]
-    samples, files = [], []
+    samples, files, tag = [], [], str(os.getpid())
     start = time.monotonic()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     with (folder / "launch.log").open("w") as log:
         launch = subprocess.Popen(command + ([] if options.lockstep else ["--real-time"]), stdout=log, stderr=log,
-                                  stdin=subprocess.DEVNULL)
+                                  stdin=subprocess.DEVNULL, env=os.environ | {TAG: tag})
         try:
             while launch.poll() is None:
                 time.sleep(options.every_s)
-                held = programs_of(launch.pid)
+                held = programs_of(tag)
                 if len(held) < 5:
                     continue
                 samples.append(held)

@@ -13,8 +13,7 @@
 namespace waymark::calibrate {
 namespace {
 
-constexpr std::size_t kFewestCorners =
-    8;  // 16 equations, 6 for the pose: fewer hardly show the lens
+constexpr std::size_t kFewestCorners = 8;  // 16 equations, 6 of them for the pose
 constexpr std::size_t kFewestViews = 10;
 constexpr std::size_t kMostViews = 40;      // more cost seconds and gain little
 constexpr double kSameView = 0.02;          // widths of the image that the outline has moved

@@ -41,8 +41,8 @@ void check_that_odometry_moves(const ImportedLog& log, ImportReport& report) {
   if (!change_m) return;
   report.note(fmt::format(
       "odometry says nothing: all {} poses are equal, but the scans change by {:.2f} m; only "
-      "waymark "
-      "can use this log, by scans alone and badly, unless another source has odometry (--odometry "
+      "waymark can use this log, by scans alone and badly, unless another source has odometry "
+      "(--odometry "
       "odom, --odometry-channel, --encoder-channel)",
       log.odometry.size(), *change_m));
 }

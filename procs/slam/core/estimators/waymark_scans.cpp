@@ -122,12 +122,7 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
     factor.references.push_back(
         {reference, share, submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
   }
-  double sum = 0.0;
-  for (const ScanFactor::Reference& reference : factor.references)
-    sum += reference.share;
-  if (sum <= 0.0) return;
-  for (ScanFactor::Reference& reference : factor.references)
-    reference.share /= sum;
+  if (!factor.normalise_shares()) return;
   factor.root_information =
       root_of(in_axes(match.map_from_base.rotation().transpose(), match.observed.information));
   graph_.add(factor);

@@ -148,6 +148,16 @@ LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& 
   return linear;
 }
 
+bool ScanFactor::normalise_shares() {
+  double sum = 0.0;
+  for (const Reference& reference : references)
+    sum += reference.share;
+  if (sum <= 0.0) return false;
+  for (Reference& reference : references)
+    reference.share /= sum;
+  return true;
+}
+
 void ScanFactor::reweigh(const State& state) {
   constexpr double kKernel = 25.0;  // chi^2: loops are known to centimetres, submaps bend by some
   const double chi2 = linearise(state).residual.squaredNorm() / (weight * weight);

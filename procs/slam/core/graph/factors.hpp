@@ -89,6 +89,10 @@ struct ScanFactor {
 
   LinearFactor linearise(const State& state) const;
 
+  /// Makes the shares sum to 1.
+  /// @return whether there is any.
+  bool normalise_shares();
+
   /// Dynamic covariance scaling (Agarwal et al. 2013): a loop that the others contradict loses its
   /// weight. A new one has all of it, so that the graph follows it before it is judged.
   void reweigh(const State& state);

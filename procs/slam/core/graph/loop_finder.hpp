@@ -83,8 +83,8 @@ class LoopFinder {
 
   LoopConfig config_;
   ScanMatchConfig scan_;
-  std::map<std::size_t, CorrelativeField>
-      fields_{};  ///< of the submaps searched last, by first keyframe
+  /// Of the submaps searched last, by first keyframe.
+  std::map<std::size_t, CorrelativeField> fields_{};
   std::optional<Candidate> candidate_{};
   int num_ambiguous_{0};
   int num_unconfirmed_{0};

@@ -40,8 +40,8 @@ GridMap transformed(const GridMap& grid, const Se2& new_from_old) {
   return result;
 }
 
-/// Every second cell of every second row holds each point once. Its points are
-/// replaced by twelve of the same mean and covariance.
+/// Every second cell of every second row holds each point once. Its points are replaced
+/// by twelve of the same mean and covariance.
 void add_transformed(const NdtMap& walls, const Se2& new_from_old, NdtMap& result) {
   for (const NdtCellSums& cell : walls.sums()) {
     if (cell.column % 2 != 0 || cell.row % 2 != 0) continue;

@@ -20,12 +20,7 @@ bool Graph::forget_removed(Factor& factor) const {
   std::erase_if(scan->references, [this](const ScanFactor::Reference& reference) {
     return is_removed(reference.keyframe);
   });
-  double sum = 0.0;
-  for (const ScanFactor::Reference& reference : scan->references)
-    sum += reference.share;
-  for (ScanFactor::Reference& reference : scan->references)
-    reference.share /= sum;
-  return !scan->references.empty();
+  return scan->normalise_shares();
 }
 
 void Graph::remove_keyframes(const std::vector<RemovedKeyframe>& removed) {

@@ -6,6 +6,7 @@
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
+#include <array>
 
 namespace waymark {
 namespace {
@@ -22,7 +23,7 @@ class EliminationOrder {
  public:
   explicit EliminationOrder(const std::vector<Variable>& variables) {
     for (const Variable& variable : variables) {
-      std::vector<Eigen::Index>& numbers = numbers_of(variable.kind);
+      std::vector<Eigen::Index>& numbers = numbers_[static_cast<std::size_t>(variable.kind)];
       if (numbers.size() <= variable.index) numbers.resize(variable.index + 1, -1);
       numbers[variable.index] = std::ssize(place_);
       place_.push_back(std::ssize(place_));
@@ -33,9 +34,7 @@ class EliminationOrder {
 
   /// Less than 0: in the window.
   Eigen::Index number_of(const Variable& variable) const {
-    if (variable.kind == VariableKind::kCalibration) return -1;
-    const std::vector<Eigen::Index>& numbers =
-        variable.kind == VariableKind::kKeyframe ? keyframes_ : landmarks_;
+    const std::vector<Eigen::Index>& numbers = numbers_[static_cast<std::size_t>(variable.kind)];
     return variable.index < numbers.size() ? numbers[variable.index] : -1;
   }
 
@@ -67,14 +66,8 @@ class EliminationOrder {
   }
 
  private:
-  std::vector<Eigen::Index>& numbers_of(VariableKind kind) {
-    return kind == VariableKind::kKeyframe ? keyframes_ : landmarks_;
-  }
-
-  std::vector<Eigen::Index> keyframes_{};  ///< numbers by index; -1: none
-  std::vector<Eigen::Index> landmarks_{};
-  std::vector<Eigen::Index>
-      place_{};  ///< in the order of elimination, by number; in blocks of three
+  std::array<std::vector<Eigen::Index>, 3> numbers_{};  ///< by VariableKind and index; -1: none
+  std::vector<Eigen::Index> place_{};  ///< in the elimination, by number; in blocks of three
 };
 
 }  // namespace
