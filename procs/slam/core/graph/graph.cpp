@@ -18,24 +18,34 @@ constexpr double kConverged = 1e-4;  // [m, rad]; what is left is that squared
 
 Graph::Graph(const GraphNoise& noise, const Calibration& calibration_sigmas)
     : noise_{noise}, calibration_{calibration_sigmas} {
-  push_variable({VariableKind::kCalibration, 0});
+  insert_variable({VariableKind::kCalibration, 0});
 }
 
-void Graph::push_variable(const Variable& variable) {
-  const Eigen::Index size = prior_.g.size();
-  const Eigen::Index grown = size + variable.size();
-  layout_.push_back(variable);
-  offsets_[variable] = size;
-  prior_.h.conservativeResize(grown, grown);
-  prior_.h.bottomRows(variable.size()).setZero();
-  prior_.h.rightCols(variable.size()).setZero();
-  prior_.g.conservativeResize(grown);
-  prior_.g.tail(variable.size()).setZero();
+/// Keyframes before the calibration, landmarks behind it.
+void Graph::insert_variable(const Variable& variable) {
+  const auto place =
+      variable.kind == VariableKind::kKeyframe
+          ? std::find(layout_.begin(), layout_.end(), Variable{VariableKind::kCalibration, 0})
+          : layout_.end();
+  const Eigen::Index size = variable.size();
+  const Eigen::Index at = place == layout_.end() ? prior_.g.size() : offsets_.at(*place);
+  const Eigen::Index behind = prior_.g.size() - at;
+  layout_.insert(place, variable);
+  for (auto& [other, offset] : offsets_)
+    if (offset >= at) offset += size;
+  offsets_[variable] = at;
+  NormalEquations grown{Eigen::MatrixXd::Zero(at + size + behind, at + size + behind),
+                        Eigen::VectorXd::Zero(at + size + behind)};
+  grown.g << prior_.g.head(at), Eigen::VectorXd::Zero(size), prior_.g.tail(behind);
+  grown.h.topLeftCorner(at, at) = prior_.h.topLeftCorner(at, at);
+  grown.h.bottomLeftCorner(behind, at) = prior_.h.bottomLeftCorner(behind, at);
+  grown.h.bottomRightCorner(behind, behind) = prior_.h.bottomRightCorner(behind, behind);
+  prior_ = std::move(grown);
 }
 
 std::size_t Graph::add_keyframe(const Se2& map_from_base) {
   state_.keyframes.push_back(map_from_base);
-  push_variable({VariableKind::kKeyframe, state_.keyframes.size() - 1});
+  insert_variable({VariableKind::kKeyframe, state_.keyframes.size() - 1});
   return state_.keyframes.size() - 1;
 }
 
@@ -43,7 +53,7 @@ std::size_t Graph::add_landmark(const Se2& map_from_marker) {
   state_.landmarks.push_back(map_from_marker);
   landmark_covariances_.emplace_back(Eigen::Matrix3d::Zero());
   is_fixed_.push_back(false);
-  push_variable({VariableKind::kLandmark, state_.landmarks.size() - 1});
+  insert_variable({VariableKind::kLandmark, state_.landmarks.size() - 1});
   return state_.landmarks.size() - 1;
 }
 
@@ -211,24 +221,29 @@ LinearFactor Graph::linearised(const Factor& factor) const {
 }
 
 void Graph::add_to(NormalEquations& equations, const LinearFactor& linear) const {
-  for (const LinearFactor::Block& row : linear.blocks) {
-    const Eigen::Index at = offsets_.at(row.variable);
-    equations.g.segment(at, row.variable.size()).noalias() +=
+  std::vector<Eigen::Index> offsets;
+  offsets.reserve(linear.blocks.size());
+  for (const LinearFactor::Block& block : linear.blocks)
+    offsets.push_back(offsets_.at(block.variable));
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const LinearFactor::Block& row = linear.blocks[i];
+    equations.g.segment(offsets[i], row.variable.size()).noalias() +=
         row.jacobian.transpose() * linear.residual;
-    for (const LinearFactor::Block& column : linear.blocks) {
-      const Eigen::Index beside = offsets_.at(column.variable);
-      if (beside > at) continue;
-      equations.h.block(at, beside, row.variable.size(), column.variable.size()).noalias() +=
-          row.jacobian.transpose() * column.jacobian;
+    for (std::size_t k = 0; k < offsets.size(); ++k) {
+      const LinearFactor::Block& column = linear.blocks[k];
+      if (offsets[k] > offsets[i]) continue;
+      equations.h.block(offsets[i], offsets[k], row.variable.size(), column.variable.size())
+          .noalias() += row.jacobian.transpose() * column.jacobian;
     }
   }
 }
 
 Graph::NormalEquations Graph::window_equations() const {
   NormalEquations equations = prior_;
+  const Eigen::Index at = offsets_.at({VariableKind::kCalibration, 0});
   calibration_.add_to(state_.calibration,
-                      equations.h.topLeftCorner<kCalibrationSize, kCalibrationSize>(),
-                      equations.g.head<kCalibrationSize>());
+                      equations.h.block<kCalibrationSize, kCalibrationSize>(at, at),
+                      equations.g.segment<kCalibrationSize>(at));
   for (const std::size_t index : active_factors_)
     add_to(equations, linearised(factors_[index]));
   return equations;
@@ -240,21 +255,22 @@ void Graph::retract_window(const Eigen::VectorXd& step) {
   prior_.g += prior_.h.selfadjointView<Eigen::Lower>() * step;
 }
 
-/// Columns of the inverse: of all but the older keyframes, which nobody asks for.
+/// Of what comes after the older keyframes, which nobody asks for: the inverse of the lower right
+/// corner of L L' takes that of the root alone.
 void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root) {
+  const Eigen::Index first =
+      state_.keyframes.empty()
+          ? 0
+          : offsets_.at({VariableKind::kKeyframe, state_.keyframes.size() - 1});
+  const Eigen::Index size = root.rows() - first;
   covariance_offsets_.clear();
-  Eigen::Index size = 0;
-  for (const Variable& variable : layout_) {
-    if (variable.kind == VariableKind::kKeyframe && variable.index + 1 < state_.keyframes.size())
-      continue;
-    covariance_offsets_[variable] = size;
-    size += variable.size();
-  }
-  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(root.rows(), size);
-  for (const auto& [variable, offset] : covariance_offsets_) {
-    half.block(offsets_.at(variable), offset, variable.size(), variable.size()).setIdentity();
-  }
-  root.matrixL().solveInPlace(half);
+  for (const auto& [variable, offset] : offsets_)
+    if (offset >= first) covariance_offsets_[variable] = offset - first;
+  Eigen::MatrixXd half = Eigen::MatrixXd::Identity(size, size);
+  root.matrixLLT()
+      .bottomRightCorner(size, size)
+      .triangularView<Eigen::Lower>()
+      .solveInPlace(half);
   covariance_.noalias() = half.transpose() * half;
   for (const auto& [variable, offset] : covariance_offsets_)
     if (variable.kind == VariableKind::kLandmark)
@@ -264,17 +280,17 @@ void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& r
 /// @return the steps' sum.
 Eigen::VectorXd Graph::solve_window() {
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(prior_.g.size());
-  for (int i = 0; i < kMaxIterations; ++i) {
+  Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root;
+  double step_size = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMaxIterations && step_size >= kConverged; ++i) {
     const NormalEquations equations = window_equations();
-    const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root{equations.h};
+    root.compute(equations.h);
     const Eigen::VectorXd step = root.solve(-equations.g);
     retract_window(step);
     moved += step;
-    const bool is_last = i + 1 == kMaxIterations || step.cwiseAbs().maxCoeff() < kConverged;
-    if (!is_last) continue;
-    update_covariance(root);
-    break;
+    step_size = step.cwiseAbs().maxCoeff();
   }
+  update_covariance(root);
   const Variable calibration{};
   calibration_.weigh(state_.calibration, covariance(calibration, calibration).diagonal());
   return moved;

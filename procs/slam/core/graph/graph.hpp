@@ -134,7 +134,7 @@ class Graph {
   LinearFactor linearised(const Factor& factor) const;
   double cost_of(const MarkerFactor& factor) const;
   bool is_within_window(const Factor& factor) const;
-  void push_variable(const Variable& variable);
+  void insert_variable(const Variable& variable);
   void add_to(NormalEquations& equations, const LinearFactor& linear) const;
   NormalEquations window_equations() const;
   void retract_window(const Eigen::VectorXd& step);

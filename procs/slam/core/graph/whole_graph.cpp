@@ -80,7 +80,7 @@ void Graph::optimise_all(int steps) {
 double Graph::step_all(const std::vector<std::size_t>& activated) {
   for (const std::size_t landmark : activated) {
     const Variable variable{VariableKind::kLandmark, landmark};
-    if (!is_active(variable)) push_variable(variable);
+    if (!is_active(variable)) insert_variable(variable);
   }
   std::vector<Variable> variables;
   for (std::size_t i = 0; i < first_keyframe_; ++i)
