@@ -47,8 +47,9 @@ void Preprocessing::describe(Fields& fields) {
                "a beam that ends this near to a sighted marker's segment carries its id");
   fields.field("view_margin_rad", view_margin_rad, kNotNegative,
                "a marker nearer than this to the image's edge may be missed");
-  fields.field("detectable_range_m", detectable_range_m, kPositive,
-               "a marker further away may be missed: its absence says nothing");
+  fields.field(
+      "detectable_px", detectable_px, kPositive,
+      "a marker whose side is shorter in the image may be missed: its absence says nothing");
   fields.field("max_sigma_m", max_sigma_m, kPositive,
                "sightings with a larger standard deviation along their wall are not used");
   fields.field("marker_wait_s", marker_wait_s, {0.0, 10.0},

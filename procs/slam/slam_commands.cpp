@@ -88,14 +88,22 @@ std::string SlamNode::save_named(const std::string& name) {
 /// @param start  where in the map; of a new map: nowhere.
 void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> map,
                                const StartPose& start) {
-  const bool keeps_frame = map != nullptr;
+  const bool keeps_map_id = map != nullptr;
   config_.slam.mode = mode;
   config_.slam.start = start;
   loaded_map_ = std::move(map);
   estimator_ = make_estimator(config_, loaded_map_, survey_);
   placed_.reset();
   next_map_.reset();
-  if (keeps_frame) return;
+  if (last_estimate_) {
+    // Nobody shall draw the new map over the old one.
+    for (map_tiles_t part : map_publisher_.complete(estimator_->map(), *last_estimate_)) {
+      part.map_id = map_id_;
+      outbox_.publish(channels::kSlamMap, part);
+    }
+    publish_markers(*last_estimate_);
+  }
+  if (keeps_map_id) return;
   map_id_ = 0;
   frame_map_id_ = 0;
   frame_ = survey_.empty() ? "map" : "survey";

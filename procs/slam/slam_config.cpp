@@ -18,7 +18,8 @@ namespace {
 constexpr double kCornerSigma_px = 0.02;  // of refined corners
 
 /// The horizontal wedge in which a whole marker fits into the image.
-CameraView camera_view(const CameraConfig& camera, const Preprocessing& preprocessing) {
+CameraView camera_view(const CameraConfig& camera, const MarkerConfig& markers,
+                       const Preprocessing& preprocessing) {
   const Eigen::Isometry3d base_from_camera = camera.base_from_camera();
   const Eigen::Vector3d forward = base_from_camera.linear().col(2);
   CameraView view;
@@ -27,7 +28,7 @@ CameraView camera_view(const CameraConfig& camera, const Preprocessing& preproce
   view.left_rad = std::atan(camera.cx_px / camera.fx_px) - preprocessing.view_margin_rad;
   view.right_rad = -std::atan((camera.width_px - 1 - camera.cx_px) / camera.fx_px) +
                    preprocessing.view_margin_rad;
-  view.range_max_m = preprocessing.detectable_range_m;
+  view.range_max_m = markers.size_m * camera.fx_px / preprocessing.detectable_px;
   return view;
 }
 
@@ -125,7 +126,7 @@ SensorSetup sensor_setup(const SlamConfig& config) {
   const LidarConfig& lidar = config.robot.lidar;
   SensorSetup setup;
   setup.lidar = {lidar.base_from_lidar(), lidar.range_min_m, lidar.range_max_m};
-  setup.camera = camera_view(config.robot.camera, config.slam.preprocessing);
+  setup.camera = camera_view(config.robot.camera, config.robot.markers, config.slam.preprocessing);
   setup.marker_size_m = config.robot.markers.size_m;
   setup.preprocessing = config.slam.preprocessing;
   setup.blank_ids = config.slam.blank_ids;

@@ -228,8 +228,10 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
 }
 
 void SlamNode::publish_map_when_due(Timestamp time) {
-  if (next_map_ && time < *next_map_) return;
-  next_map_ = time + duration_from_seconds(config_.slam.map_period_s);
+  const Duration period = duration_from_seconds(config_.slam.map_period_s);
+  const bool is_clock_set_back = next_map_ && time + period < *next_map_;
+  if (next_map_ && time < *next_map_ && !is_clock_set_back) return;
+  next_map_ = time + period;
   for (map_tiles_t part : map_publisher_.changes(estimator_->map(), time)) {
     part.map_id = map_id_;
     outbox_.publish(channels::kSlamMap, part);
@@ -281,20 +283,8 @@ void SlamNode::obey(const mbot_slam_reset_t& reset) {
   }
   counters_.add("MBOT_SYSTEM_RESET obeyed");
   spdlog::info("MBOT_SYSTEM_RESET: begins anew");
-  begin_anew();
-}
-
-void SlamNode::begin_anew() {
   queue_ = SensorQueue{sensor_setup(config_)};
-  estimator_ = make_estimator(config_, loaded_map_);
-  next_map_.reset();
-  if (!last_estimate_) return;
-  // Viewers shall not draw the new map over the old one.
-  for (map_tiles_t part : map_publisher_.complete(estimator_->map(), *last_estimate_)) {
-    part.map_id = map_id_;
-    outbox_.publish(channels::kSlamMap, part);
-  }
-  publish_markers(*last_estimate_);
+  begin_estimator(config_.slam.mode, loaded_map_, config_.slam.start);
 }
 
 }  // namespace waymark

@@ -66,8 +66,6 @@ class SlamNode final : public Node {
   void publish_mbot_status(Timestamp time);
   /// An MBot's web app wants a new map, or to be found anew in the loaded one.
   void obey(const mbot_slam_reset_t& reset);
-  /// Forgets everything but the loaded map.
-  void begin_anew();
 
   SlamConfig config_;
   Counters& counters_;

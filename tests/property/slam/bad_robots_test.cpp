@@ -20,6 +20,7 @@ using test::SyntheticCorridor;
 struct Drives {
   double nees{0.0};     ///< mean
   double ate_m{0.0};    ///< worst RMS of the position
+  double end_m{0.0};    ///< worst error at the end
   Findings findings{};  ///< of the last one
 };
 
@@ -61,6 +62,9 @@ Drives drive_all(const std::function<void(SyntheticCorridor&)>& make_worse,
     }
     drives.nees += nees / static_cast<double>(counted) / kSeeds;
     drives.ate_m = std::max(drives.ate_m, std::sqrt(squares / static_cast<double>(steps.size())));
+    drives.end_m = std::max(drives.end_m, (steps.back().estimate.map_from_base.translation() -
+                                           steps.back().truth.translation())
+                                              .norm());
     drives.findings = *estimator.findings();
   }
   return drives;
@@ -149,6 +153,17 @@ TEST(BadRobots, OdometryThatIsStuckIsNoticedAndCatchesUp) {
   EXPECT_LT(drives.nees, 8.0);
   EXPECT_GT(drives.findings.odometry_stuck, 10);
   EXPECT_EQ(drives.findings.odometry_caught_up, 1);
+}
+
+/// So long that the keyframe where it began is behind the window.
+TEST(BadRobots, WhatOdometryHasKeptBackForLongIsUsed) {
+  const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
+    const auto [from, to] = samples_of(6.0);
+    for (std::size_t i = from; i < to; ++i)
+      log.odometry[i].odom_from_base = log.odometry[from].odom_from_base;
+  });
+  EXPECT_EQ(drives.findings.odometry_caught_up, 1);
+  EXPECT_LT(drives.end_m, 0.06);
 }
 
 TEST(BadRobots, OdometryThatNeverMovesIsNamedAndTheCovarianceHonest) {

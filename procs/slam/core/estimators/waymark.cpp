@@ -20,6 +20,9 @@ constexpr double kContradiction = 25.0;  // chi^2
 constexpr double kContradiction_m = 0.03;
 constexpr double kContradiction_rad = 0.02;
 
+constexpr double kFarthest_m =
+    1500.0;  // that a pose is given from the one before: the grid is bounded
+
 // Of a robot whose odometry stands still, from scan to scan: it may be stuck.
 const Eigen::Vector3d kStuckStep{0.1, 0.1, 0.05};
 
@@ -62,10 +65,11 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
 }
 
 Estimate WaymarkEstimator::update(const Observation& measured) {
-  const double step_s =
-      newest_time_ == Timestamp{} ? 0.0 : to_seconds(measured.time - newest_time_);
   newest_time_ = measured.time;
-  follow_odometry(measured, step_s);
+  clock_s_ += measured.elapsed_s;
+  is_put_elsewhere_ = false;
+  solved_.reset();
+  follow_odometry(measured);
   if (place_finder_ && !place(measured)) return unplaced(measured);
   Look look = look_from_expected(measured);
   findings_.beams += static_cast<std::int64_t>(measured.beams.size());
@@ -94,8 +98,8 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   Estimate now =
       is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation, between);
   now.updated = is_keyframe;
-  last_step_ = map_from_last.inverse() * now.map_from_base;
-  last_step_s_ = step_s;
+  last_step_ = is_put_elsewhere_ ? Se2{} : map_from_last.inverse() * now.map_from_base;
+  last_step_s_ = measured.elapsed_s;
   newest_from_last_scan_ = graph_.state().keyframes.back().inverse() * now.map_from_base;
   reason_ = EstimateReason::kOdometry;
   if (!is_frozen()) {
@@ -119,6 +123,9 @@ void WaymarkEstimator::add_first_keyframe() {
 bool WaymarkEstimator::set_pose(const StartPose& pose) {
   const bool has_begun = !graph_.state().keyframes.empty();
   if (!has_begun && !setup_.loaded_map) return false;  // there is no map that it could be in
+  const Eigen::Vector2d known = has_begun ? graph_.state().keyframes.back().translation()
+                                          : setup_.loaded_map->graph.poses.front().translation();
+  if ((Eigen::Vector2d{pose.x_m, pose.y_m} - known).norm() > kFarthest_m) return false;
   if (has_begun)
     given_pose_ = pose;
   else
@@ -139,7 +146,17 @@ void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
   is_confirmed_ = !setup_.loaded_map;
   relocalisation_ = {};
+  forget_way_here();
   begin_submaps_anew();
+}
+
+/// The robot was put elsewhere, or its place has other coordinates: the step there was not driven.
+/// (A relocalisation may be what shows that odometry was stuck, and keeps the standstill.)
+void WaymarkEstimator::forget_way_here() {
+  is_put_elsewhere_ = true;
+  standstill_.reset();
+  keyframes_standing_ = 0;
+  motion_doubt_.note_observed();
 }
 
 void WaymarkEstimator::note_reason(EstimateReason reason) {
@@ -220,10 +237,12 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
     map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? look.points : Points{});
   while (graph_.num_active_keyframes() > num_window_keyframes())
     graph_.marginalise_oldest(kNear_m);
-  if (is_frozen())
+  if (is_frozen()) {
+    graph_.let_calibration_wander(motion_.distance_m);
     graph_.forget_behind_window();
-  else
+  } else {
     forget_surplus();
+  }
   motion_ = {};
   moved_from_ = newest();
   if (standstill_ && standstill_->keyframe == moved_from_) standstill_->motion = {};
@@ -250,8 +269,8 @@ void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& mat
     return;
   }
   since_insertion_m_ = 0.0;
-  for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
-    submaps_[i].add(points, submap_from_map(i) * map_from_base);
+  for (Submap& submap : filled_submaps_)
+    submap.add(points, submap_from_map(submap) * map_from_base);
 }
 
 WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Look& look) {

@@ -125,17 +125,18 @@ class WaymarkEstimator final : public Estimator {
   /// Odometry has not changed; it may be stuck.
   struct Standstill {
     std::size_t keyframe{0};
-    Motion motion{};      ///< since that keyframe
-    Se2 map_from_base{};  ///< the robot, as of the last keyframe that showed it moving
+    Motion motion{};       ///< since that keyframe
+    Se2 map_from_start{};  ///< the robot, when it began
+    Se2 map_from_base{};   ///< the robot, as of the last keyframe that showed it moving
     Timestamp since{};
-    Timestamp moved_at{};  ///< time of that keyframe
+    double moved_at_s{0.0};  ///< time of that keyframe, as clock_s_
   };
 
   bool place(const Observation& observation);
   Estimate unplaced(const Observation& observation) const;
   void load(const MapSnapshot& map);
   std::vector<Landmark> landmarks_of(const Graph& graph) const;
-  Graph solved() const;
+  const Graph& solved() const;
 
   bool is_frozen() const { return setup_.map_mode == MapMode::kLocalise; }
 
@@ -145,15 +146,15 @@ class WaymarkEstimator final : public Estimator {
   }
 
   const NdtMap& surfaces_of(const MatchedScan& scan) const;
-  Points points_near(const MatchedScan& scan, const Se2& submap_from_base) const;
+  Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
   void confirm_place(const MatchedScan& scan);
   Eigen::Matrix3d loaded_map_covariance(const Se2& map_from_base) const;
   std::optional<Observation> with_right_scale(const Observation& observation, Look& look);
   bool fits_badly(const ScanMatch& match) const;
   void note_fit(const ScanMatch& match);
-  void follow_odometry(const Observation& observation, double step_s);
-  Motion believable_motion(const Observation& observation, double step_s);
+  void follow_odometry(const Observation& observation);
+  Motion believable_motion(const Observation& observation);
   void add_odometry_factor(std::size_t keyframe, bool is_observed);
   void compare_with_odometry();
   void spread_kept_back(const Observation& observation);
@@ -171,6 +172,7 @@ class WaymarkEstimator final : public Estimator {
   void add_keyframe(const Observation& observation, Look& look);
   void add_first_keyframe();
   void put_elsewhere(const StartPose& pose);
+  void forget_way_here();
   void use_survey();
   void note_reason(EstimateReason reason);
   void add_map_factor(std::size_t keyframe, const ScanMatch& match);
@@ -199,8 +201,7 @@ class WaymarkEstimator final : public Estimator {
   void learn_usual_fit(const ScanMatch& match);
   bool is_bad_fit(const ScanMatch& match) const;
   bool is_refuted(const ScanMatch& match) const;
-  std::size_t first_filled_submap() const;
-  Se2 submap_from_map(std::size_t submap) const;
+  Se2 submap_from_map(const Submap& submap) const;
 
   std::size_t newest() const { return graph_.state().keyframes.size() - 1; }
 
@@ -214,13 +215,15 @@ class WaymarkEstimator final : public Estimator {
   LoopFinder loop_finder_;
   KeyframeThinning thinning_;
   double since_loop_search_m_{0.0};
-  std::size_t solved_keyframes_{0};  ///< of the whole graph, when it was solved last
-  int solve_steps_left_{0};          ///< of that: one at each keyframe
-  bool has_new_loops_{false};        ///< since then
-  bool loops_matter_{false};         ///< one of them contradicts the pose
-  std::deque<Submap> submaps_{};     ///< the last two are being filled, the last but one is matched
-  Motion motion_{};                  ///< since the keyframe `moved_from_`
-  std::size_t moved_from_{0};        ///< the newest one, unless odometry was stuck
+  std::size_t solved_keyframes_{0};        ///< of the whole graph, when it was solved last
+  int solve_steps_left_{0};                ///< of that: one at each keyframe
+  bool has_new_loops_{false};              ///< since then
+  bool loops_matter_{false};               ///< one of them contradicts the pose
+  mutable std::optional<Graph> solved_{};  ///< see solved()
+  std::deque<Submap> submaps_{};           ///< that are full
+  std::deque<Submap> filled_submaps_{};  ///< one or two that are being filled; the first is matched
+  Motion motion_{};                      ///< since the keyframe `moved_from_`
+  std::size_t moved_from_{0};            ///< the newest one, unless odometry was stuck
   std::optional<Standstill> standstill_{};
   int keyframes_standing_{0};  ///< in a row
   SpeedLimits speed_limits_{};
@@ -246,6 +249,8 @@ class WaymarkEstimator final : public Estimator {
   Survey survey_;
   std::optional<StartPose> given_pose_{};  ///< where the next keyframe is
   Timestamp newest_time_{};
+  double clock_s_{0.0};           ///< since the first observation; nobody sets it
+  bool is_put_elsewhere_{false};  ///< by the newest observation
 
   // Of the newest keyframe:
   RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kSettled};

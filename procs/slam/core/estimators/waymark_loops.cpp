@@ -86,16 +86,18 @@ void WaymarkEstimator::forget_surplus() {
   });
 }
 
-/// The whole graph, at its optimum.
-Graph WaymarkEstimator::solved() const {
-  Graph graph = graph_;
-  graph.optimise_all(kSolveSteps);
-  return graph;
+/// The whole graph, at its optimum; until the next update.
+const Graph& WaymarkEstimator::solved() const {
+  if (!solved_) {
+    solved_.emplace(graph_);
+    solved_->optimise_all(kSolveSteps);
+  }
+  return *solved_;
 }
 
 std::vector<TimedPose> WaymarkEstimator::trajectory() const {
   if (is_frozen()) return {};
-  const Graph graph = solved();
+  const Graph& graph = solved();
   std::vector<TimedPose> trajectory;
   trajectory.reserve(scan_poses_.size());
   for (const ScanPose& scan : scan_poses_)
@@ -106,7 +108,7 @@ std::vector<TimedPose> WaymarkEstimator::trajectory() const {
 
 GridMap WaymarkEstimator::redrawn_map() const {
   if (is_frozen()) return map();
-  const Graph graph = solved();
+  const Graph& graph = solved();
   return map_.drawn_along(poses_of(graph));
 }
 

@@ -7,7 +7,10 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <set>
+#include <utility>
 #include <variant>
 
 namespace waymark {
@@ -15,9 +18,8 @@ namespace {
 
 constexpr double kFound_m = 0.1;  // sigmas of a place that markers and walls have shown
 constexpr double kFound_rad = 0.05;
-constexpr double kLeastMapped = 0.6;  // share of the beams on walls of the loaded map, to be in it
-constexpr double kWallPoint = 0.5;    // occupancy
-constexpr double kNearPoints_m = 15.0;
+constexpr double kLeastMapped = 0.6;   // share of the beams on walls of the loaded map, to be in it
+constexpr double kWallPoint = 0.5;     // occupancy
 constexpr double kMostPoints = 400.0;  // of a wall's cell: newer ones outweigh older ones in time
 
 Points wall_points(const GridMap& grid) {
@@ -33,13 +35,20 @@ Points wall_points(const GridMap& grid) {
 /// What the loaded map was drawn along, where the robot has not been since: bounded by the area.
 void add_loaded_graph(const PoseGraph& loaded, PoseGraph& graph) {
   constexpr double kThereAlready_m = 0.5;
-  const std::vector<Se2> today = graph.poses;
+  const auto place_of = [](const Se2& pose) {
+    return std::pair{std::lround(pose.x() / kThereAlready_m),
+                     std::lround(pose.y() / kThereAlready_m)};
+  };
+  std::set<std::pair<long, long>> today;  // and the places around it
+  for (const Se2& pose : graph.poses) {
+    const auto [x, y] = place_of(pose);
+    for (long i = x - 1; i <= x + 1; ++i)
+      for (long k = y - 1; k <= y + 1; ++k)
+        today.emplace(i, k);
+  }
   std::vector<std::optional<std::size_t>> kept_as(loaded.poses.size());
   for (std::size_t i = 0; i < loaded.poses.size(); ++i) {
-    const bool is_there = std::any_of(today.begin(), today.end(), [&](const Se2& pose) {
-      return (pose.translation() - loaded.poses[i].translation()).norm() < kThereAlready_m;
-    });
-    if (is_there) continue;
+    if (today.contains(place_of(loaded.poses[i]))) continue;
     kept_as[i] = graph.poses.size();
     graph.poses.push_back(loaded.poses[i]);
   }
@@ -126,11 +135,12 @@ const NdtMap& WaymarkEstimator::surfaces_of(const MatchedScan& scan) const {
   return scan.submap != nullptr ? scan.submap->surfaces() : setup_.loaded_map->walls;
 }
 
-Points WaymarkEstimator::points_near(const MatchedScan& scan, const Se2& submap_from_base) const {
+Points WaymarkEstimator::points_near(const MatchedScan& scan, const Se2& submap_from_base,
+                                     double within_m) const {
   if (scan.submap != nullptr) return scan.submap->points();
   Points near;
   for (const Eigen::Vector2d& point : loaded_points_)
-    if ((point - submap_from_base.translation()).norm() < kNearPoints_m) near.push_back(point);
+    if ((point - submap_from_base.translation()).norm() < within_m) near.push_back(point);
   return near;
 }
 
@@ -167,7 +177,7 @@ std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
 
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   if (is_frozen() || graph_.state().keyframes.empty()) return std::nullopt;
-  const Graph graph = solved();
+  const Graph& graph = solved();
   MapSnapshot snapshot;
   if (setup_.loaded_map) snapshot.parent_map_id = setup_.loaded_map->map_id;
   snapshot.time = newest_time_;
@@ -181,9 +191,14 @@ std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   snapshot.grid = map_.drawn_along(poses_of(graph));
   NdtMap kept{snapshot.walls.spacing_m()};
   for (NdtCellSums cell : snapshot.walls.sums()) {
-    const Eigen::Vector2d mean =
-        kept.spacing_m() * Eigen::Vector2d{cell.column, cell.row} + cell.sum_m / cell.count;
-    if (is_seen_through(snapshot.grid, mean)) continue;
+    const Eigen::Vector2d centre = kept.spacing_m() * Eigen::Vector2d{cell.column, cell.row};
+    const NdtSurface* surface = snapshot.walls.at(centre, range_noise_.variance_m2());
+    // Between the walls of a corner, where their mean is, it is free.
+    const bool has_free_middle = surface != nullptr && !surface->is_line;
+    if (has_free_middle ? is_seen_through(snapshot.grid, centre, kept.spacing_m())
+                        : is_seen_through(snapshot.grid, centre + cell.sum_m / cell.count)) {
+      continue;
+    }
     const double share = std::min(1.0, kMostPoints / cell.count);
     cell.count *= share;
     cell.sum_m *= share;

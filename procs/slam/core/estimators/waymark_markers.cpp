@@ -37,7 +37,7 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
       });
 }
 
-/// Known markers are where they are expected, as is_contradicted_by() has found.
+/// Markers are seen that are known: they will say where the robot is.
 bool WaymarkEstimator::agrees_with_markers(const Observation& observation) const {
   return std::any_of(observation.sightings.begin(), observation.sightings.end(),
                      [&](const MarkerSighting& seen) { return book_.knows(seen.id); });
@@ -141,12 +141,13 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
     graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
   }
   graph_.optimise();
+  is_put_elsewhere_ = true;
   begin_submaps_anew();
 }
 
 void WaymarkEstimator::begin_submaps_anew() {
-  submaps_.clear();
-  loop_finder_ = LoopFinder{config_.loops, config_.scan};  // it keeps submaps by their index
+  filled_submaps_.clear();
+  loop_finder_.forget_candidate();
 }
 
 }  // namespace waymark

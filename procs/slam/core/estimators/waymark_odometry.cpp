@@ -26,25 +26,33 @@ bool is_other(double a, double b) {
 
 }  // namespace
 
-/// Odometry that was stuck reports at once what was driven meanwhile. Keyframes that were made in
-/// between, because markers or walls said that the robot moves, hang on those alone then.
-void WaymarkEstimator::follow_odometry(const Observation& observation, double step_s) {
+/// Odometry that was stuck reports at once what was driven meanwhile: from where the robot was when
+/// it got stuck. Keyframes that were made in between, because markers or walls said that the robot
+/// moves, hang on those alone then.
+void WaymarkEstimator::follow_odometry(const Observation& observation) {
   motion_doubt_.follow(observation);
   if (observation.odometry_caught_up) ++findings_.odometry_caught_up;
-  if (observation.odometry_caught_up && standstill_ &&
-      graph_.is_active({VariableKind::kKeyframe, standstill_->keyframe})) {
-    graph_.cut_odometry_since(standstill_->keyframe);
-    moved_from_ = standstill_->keyframe;
-    motion_ = standstill_->motion;
+  if (observation.odometry_caught_up && standstill_) {
+    const std::size_t start = standstill_->keyframe;
+    graph_.cut_odometry_since(start);
+    const bool is_in_graph = !is_frozen() && !graph_.is_removed(start);
+    if (is_in_graph || graph_.is_active({VariableKind::kKeyframe, start})) {
+      moved_from_ = start;
+      motion_ = standstill_->motion;
+    } else {
+      motion_ = {};
+      motion_.start_from_end =
+          graph_.state().keyframes.back().inverse() * standstill_->map_from_start;
+    }
     spread_kept_back(observation);
   }
-  motion_ = motion_.then(believable_motion(observation, step_s));
+  motion_ = motion_.then(believable_motion(observation));
   if (!motion_doubt_.is_standing()) {
     standstill_.reset();
     keyframes_standing_ = 0;
   } else if (!standstill_ && !graph_.state().keyframes.empty()) {
-    standstill_ = Standstill{moved_from_, motion_, prediction().map_from_base, observation.time,
-                             observation.time};
+    const Se2 here = prediction().map_from_base;
+    standstill_ = Standstill{moved_from_, motion_, here, here, observation.time, clock_s_};
   }
   ++findings_.observations;
   if (observation.odometry_doubtful || odometry_refused_) {
@@ -55,23 +63,26 @@ void WaymarkEstimator::follow_odometry(const Observation& observation, double st
 }
 
 /// What no robot can have driven that has driven as this one: then it went on as before.
-Motion WaymarkEstimator::believable_motion(const Observation& observation, double step_s) {
+Motion WaymarkEstimator::believable_motion(const Observation& observation) {
+  const double step_s = observation.elapsed_s;
   odometry_refused_ =
       !observation.odometry_caught_up && !speed_limits_.allow(observation.motion, step_s);
   if (!odometry_refused_) return observation.motion;
   refused_step_ = observation.motion.start_from_end;
   const double share = last_step_s_ > 0.0 ? std::min(1.0, step_s / last_step_s_) : 0.0;
   const Se2 guess{share * last_step_.x(), share * last_step_.y(), share * last_step_.theta()};
-  return {guess, guess.translation().norm(), std::abs(guess.theta()), step_s};
+  Motion motion = Motion::between({}, guess);
+  motion.guessed_s = step_s;
+  return motion;
 }
 
 bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
   if (graph_.state().keyframes.empty()) return true;
   const bool is_seen = !observation.sightings.empty();
   if (is_seen && motion_doubt_.is_silent() && keyframes_standing_ < kMaxStanding) return true;
-  return motion_.distance_m >=
+  return motion_.start_from_end.translation().norm() >=
              (is_seen ? config_.marker_keyframe_distance_m : config_.keyframe_distance_m) ||
-         motion_.turn_rad >= config_.keyframe_turn_rad;
+         std::abs(motion_.start_from_end.theta()) >= config_.keyframe_turn_rad;
 }
 
 /// As far as from keyframe to keyframe, while odometry says nothing.
@@ -101,6 +112,8 @@ void WaymarkEstimator::add_odometry_factor(std::size_t keyframe, bool is_observe
   odometry.motion = motion_;
   odometry.unmeasured_m = motion_doubt_.take_unmeasured_m();
   graph_.add(odometry);
+  // From where the robot got stuck long ago.
+  if (!graph_.is_active({VariableKind::kKeyframe, moved_from_})) step_everything({});
 }
 
 /// Keyframes of a robot that stands are few: those after kMaxStanding are not made.
@@ -110,11 +123,10 @@ void WaymarkEstimator::compare_with_odometry() {
   const Se2& now = graph_.state().keyframes.back();
   const Eigen::Vector3d moved = pose_difference(now, standstill_->map_from_base);
   if (moved.head<2>().norm() < kMoved_m && std::abs(moved.z()) < kMoved_rad) return;
-  motion_doubt_.note_moved(moved.head<2>().norm(),
-                           to_seconds(newest_time_ - standstill_->moved_at));
+  motion_doubt_.note_moved(moved.head<2>().norm(), clock_s_ - standstill_->moved_at_s);
   keyframes_standing_ = 0;
   standstill_->map_from_base = now;
-  standstill_->moved_at = newest_time_;
+  standstill_->moved_at_s = clock_s_;
 }
 
 /// The way that was driven while odometry stood still is drawn evenly into the final trajectory.

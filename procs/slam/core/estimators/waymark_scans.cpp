@@ -35,8 +35,8 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
                             prediction.covariance, range_noise_, config_.scan);
     if (is_frozen() || is_in_loaded_map(scan.match)) return scan;
   }
-  if (submaps_.empty()) return std::nullopt;
-  scan.submap = submaps_.size() > 1 ? &submaps_[submaps_.size() - 2] : &submaps_.back();
+  if (filled_submaps_.empty()) return std::nullopt;
+  scan.submap = &filled_submaps_.front();
   scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
   const Se2 submap_from_map = scan.map_from_submap.inverse();
   const Se2 guess = submap_from_map * prediction.map_from_base;
@@ -66,7 +66,11 @@ void WaymarkEstimator::search_widely(Look& look) const {
   const Points& points = look.points;
   const Prediction& prediction = look.expected;
   const Se2 submap_from_map = scan.map_from_submap.inverse();
-  const CorrelativeField field{points_near(scan, submap_from_map * prediction.map_from_base)};
+  double farthest_m = 0.0;
+  for (const Eigen::Vector2d& point : points)
+    farthest_m = std::max(farthest_m, point.norm());
+  const CorrelativeField field{
+      points_near(scan, submap_from_map * prediction.map_from_base, farthest_m + kSearchReach_m)};
   const Points beams = thinned(points, kSearchBeams);
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
   std::vector<Se2> guesses = without_odometry();
@@ -77,7 +81,12 @@ void WaymarkEstimator::search_widely(Look& look) const {
     if (!best) continue;
     const ScanMatch other = match_scan(points, surfaces_of(scan), best->submap_from_base, near,
                                        range_noise_, config_.scan);
-    if (other.inliers > kClearlyMore * scan.match.inliers) scan.match = other;
+    // A view of a new place has few inliers where it is right: it is left only if the map
+    // contradicts it, or for a place where the scan fits as well as others do.
+    if (other.inliers > kClearlyMore * scan.match.inliers &&
+        (fits_badly(scan.match) || !is_bad_fit(other))) {
+      scan.match = other;
+    }
   }
 }
 
@@ -132,12 +141,16 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
 /// and holds half a length of scans at least.
 void WaymarkEstimator::insert_scan(const Points& points) {
   const auto half = static_cast<std::size_t>(std::max(1, config_.submap_keyframes / 2));
-  if (submaps_.empty() || submaps_.back().num_keyframes() >= half) {
-    if (submaps_.size() > 1) submaps_[submaps_.size() - 2].finish();
-    submaps_.emplace_back(config_.scan.cell_spacing_m, newest());
+  if (filled_submaps_.empty() || filled_submaps_.back().num_keyframes() >= half) {
+    if (filled_submaps_.size() > 1) {
+      submaps_.push_back(std::move(filled_submaps_.front()));
+      submaps_.back().finish();
+      filled_submaps_.pop_front();
+    }
+    filled_submaps_.emplace_back(config_.scan.cell_spacing_m, newest());
   }
-  for (std::size_t i = first_filled_submap(); i < submaps_.size(); ++i)
-    submaps_[i].insert(points, submap_from_map(i) * graph_.state().keyframes.back());
+  for (Submap& submap : filled_submaps_)
+    submap.insert(points, submap_from_map(submap) * graph_.state().keyframes.back());
 }
 
 void WaymarkEstimator::learn_usual_fit(const ScanMatch& match) {
@@ -155,12 +168,8 @@ bool WaymarkEstimator::is_refuted(const ScanMatch& match) const {
          match.inlier_share < config_.min_inlier_share;
 }
 
-std::size_t WaymarkEstimator::first_filled_submap() const {
-  return submaps_.size() > 1 ? submaps_.size() - 2 : 0;
-}
-
-Se2 WaymarkEstimator::submap_from_map(std::size_t submap) const {
-  return graph_.state().keyframes[submaps_[submap].first_keyframe()].inverse();
+Se2 WaymarkEstimator::submap_from_map(const Submap& submap) const {
+  return graph_.state().keyframes[submap.first_keyframe()].inverse();
 }
 
 }  // namespace waymark

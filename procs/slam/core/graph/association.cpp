@@ -108,11 +108,6 @@ void MarkerBook::note_misses(const State& state, std::size_t keyframe,
   }
 }
 
-void MarkerBook::retire_since(Timestamp time) {
-  for (std::size_t i = 0; i < entries_.size(); ++i)
-    if (entries_[i].first_seen > time) is_retired_[i] = true;
-}
-
 bool MarkerBook::knows(int id) const {
   for (std::size_t i = 0; i < entries_.size(); ++i)
     if (!is_retired_[i] && entries_[i].id == id) return true;

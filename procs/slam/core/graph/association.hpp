@@ -58,9 +58,6 @@ class MarkerBook {
 
   bool is_retired(std::size_t landmark) const { return is_retired_[landmark]; }
 
-  /// Markers that were first seen after that are no longer known.
-  void retire_since(Timestamp time);
-
   bool knows(int id) const;
 
   /// Some marker is known to hang within `near_m` of a place.

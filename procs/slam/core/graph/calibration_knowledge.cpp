@@ -38,6 +38,11 @@ void CalibrationKnowledge::observe(const FocalSighting& focal) {
   camera_vector_[SightingSigmas::kFocal] += information * focal.error;
 }
 
+void CalibrationKnowledge::fade(double share) {
+  camera_information_ *= share;
+  camera_vector_ *= share;
+}
+
 void CalibrationKnowledge::weigh(const Calibration& value, const Calibration& variances) {
   for (Eigen::Index term = 0; term < kOdometryTerms; ++term)
     weigh({term}, value, variances);

@@ -24,6 +24,17 @@ class CalibrationKnowledge {
   void observe(const WallInnovation& wall);
   void observe(const FocalSighting& focal);
 
+  /// What was observed is forgotten but for `share`.
+  void fade(double share);
+
+  /// A random walk over `driven_m`: variances that it adds. A payload, a tyre or a knock changes a
+  /// calibration; after kMemory_m little is left of what was known.
+  Calibration wander(double driven_m) const {
+    return driven_m / kMemory_m * prior_information().cwiseInverse();
+  }
+
+  static constexpr double kMemory_m = 1000.0;
+
   /// Adds to the normal equations H step = -g at a value of the calibration.
   void add_to(const Calibration& value, Eigen::Ref<Eigen::MatrixXd> h,
               Eigen::Ref<Eigen::VectorXd> g) const;

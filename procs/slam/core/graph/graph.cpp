@@ -2,11 +2,9 @@
 #include "slam/core/graph/graph.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 namespace waymark {
 namespace {
@@ -267,10 +265,7 @@ void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& r
   for (const auto& [variable, offset] : offsets_)
     if (offset >= first) covariance_offsets_[variable] = offset - first;
   Eigen::MatrixXd half = Eigen::MatrixXd::Identity(size, size);
-  root.matrixLLT()
-      .bottomRightCorner(size, size)
-      .triangularView<Eigen::Lower>()
-      .solveInPlace(half);
+  root.matrixLLT().bottomRightCorner(size, size).triangularView<Eigen::Lower>().solveInPlace(half);
   covariance_.noalias() = half.transpose() * half;
   for (const auto& [variable, offset] : covariance_offsets_)
     if (variable.kind == VariableKind::kLandmark)
@@ -306,80 +301,6 @@ Eigen::MatrixXd Graph::covariance(const Variable& a, const Variable& b) const {
 
 Eigen::Matrix3d Graph::landmark_covariance(std::size_t landmark) const {
   return landmark_covariances_[landmark];
-}
-
-/// Schur complement (of prior and factors that touch it).
-void Graph::eliminate(const Variable& variable) {
-  std::vector<std::size_t> kept;
-  for (const std::size_t index : active_factors_) {
-    const std::vector<Variable> touched = variables_of(factors_[index]);
-    if (std::find(touched.begin(), touched.end(), variable) == touched.end())
-      kept.push_back(index);
-    else
-      add_to(prior_, linearised(factors_[index]));
-  }
-  active_factors_ = std::move(kept);
-
-  const Eigen::Index at = offsets_.at(variable);
-  const Eigen::Index size = variable.size();
-  prior_.h = Eigen::MatrixXd{prior_.h.selfadjointView<Eigen::Lower>()};
-  const Eigen::MatrixXd own = prior_.h.block(at, at, size, size);
-  const Eigen::MatrixXd column = prior_.h.middleCols(at, size);
-  // What was never measured has no information to pass on.
-  const Eigen::MatrixXd gain =
-      own.llt().info() == Eigen::Success
-          ? Eigen::MatrixXd{own.llt().solve(column.transpose()).transpose()}
-          : Eigen::MatrixXd::Zero(column.rows(), size);
-  prior_.g -= gain * prior_.g.segment(at, size).eval();
-  prior_.h.noalias() -= gain * column.transpose();
-  remove_from_layout(variable);
-}
-
-void Graph::remove_from_layout(const Variable& variable) {
-  const Eigen::Index at = offsets_.at(variable);
-  const Eigen::Index size = variable.size();
-  const Eigen::Index behind = prior_.g.size() - at - size;
-  const auto shrink = [&](Eigen::MatrixXd& matrix) {
-    matrix.middleRows(at, behind) = matrix.bottomRows(behind).eval();
-    matrix.middleCols(at, behind) = matrix.rightCols(behind).eval();
-    matrix.conservativeResize(matrix.rows() - size, matrix.cols() - size);
-  };
-  shrink(prior_.h);
-  prior_.g.segment(at, behind) = prior_.g.tail(behind).eval();
-  prior_.g.conservativeResize(prior_.g.size() - size);
-  layout_.erase(std::find(layout_.begin(), layout_.end(), variable));
-  offsets_.erase(variable);
-  for (auto& [other, offset] : offsets_)
-    if (offset > at) offset -= size;
-}
-
-void Graph::forget_behind_window() {
-  std::vector<Factor> kept;
-  kept.reserve(active_factors_.size());
-  for (std::size_t& index : active_factors_) {
-    kept.push_back(std::move(factors_[index]));
-    index = kept.size() - 1;
-  }
-  factors_ = std::move(kept);
-  state_.keyframes.forget_before(first_keyframe_);
-  for (std::size_t i = 0; i < is_fixed_.size(); ++i)
-    if (!is_active({VariableKind::kLandmark, i})) is_fixed_[i] = true;
-}
-
-void Graph::marginalise_oldest(double far_m) {
-  eliminate({VariableKind::kKeyframe, first_keyframe_++});
-  std::set<std::size_t> seen;
-  for (const std::size_t index : active_factors_)
-    if (const auto* marker = std::get_if<MarkerFactor>(&factors_[index]))
-      seen.insert(marker->landmark);
-  const std::vector<Variable> layout = layout_;
-  for (const Variable& variable : layout) {
-    if (variable.kind != VariableKind::kLandmark || seen.contains(variable.index)) continue;
-    const double away_m =
-        (state_.landmarks[variable.index].translation() - state_.keyframes.back().translation())
-            .norm();
-    if (away_m > far_m) eliminate(variable);
-  }
 }
 
 }  // namespace waymark

@@ -101,6 +101,10 @@ class Graph {
   /// landmarks behind it do not move any more. After that optimise_all() must not be called.
   void forget_behind_window();
 
+  /// The calibration changes slowly: what is known of it fades while the robot drives. Not for a
+  /// graph that is solved as a whole, where it is one constant.
+  void let_calibration_wander(double driven_m);
+
   /// Takes keyframes behind the window out: what was measured from and against them is forgotten.
   /// @param removed  in order.
   void remove_keyframes(const std::vector<RemovedKeyframe>& removed);

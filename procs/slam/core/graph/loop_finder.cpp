@@ -148,7 +148,6 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
     both = {candidate_->found, found};
     candidate_.reset();
   } else {
-    num_unconfirmed_ += candidate_.has_value();
     candidate_ = candidate;
   }
   return both;

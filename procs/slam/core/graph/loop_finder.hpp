@@ -63,7 +63,8 @@ class LoopFinder {
 
   int num_ambiguous() const { return num_ambiguous_; }
 
-  int num_unconfirmed() const { return num_unconfirmed_; }
+  /// Of a loop that waits for a second one: it is in coordinates that are no more.
+  void forget_candidate() { candidate_.reset(); }
 
  private:
   /// Found from one scan alone, far from where the robot was believed to be.
@@ -87,7 +88,6 @@ class LoopFinder {
   std::map<std::size_t, CorrelativeField> fields_{};
   std::optional<Candidate> candidate_{};
   int num_ambiguous_{0};
-  int num_unconfirmed_{0};
 };
 
 }  // namespace waymark

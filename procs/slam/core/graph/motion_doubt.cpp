@@ -7,6 +7,9 @@
 namespace waymark {
 namespace {
 
+constexpr double kStill_m_s =
+    0.002;  // slower is standing: odometry with a gyro is never quite still
+constexpr double kStill_rad_s = 0.005;
 constexpr double kSpeedMemory_s = 1.0;
 constexpr double kStuckShare = 0.05;        // of odometry that stops, where nothing shows the way
 constexpr double kLongestSuspect_s = 20.0;  // a robot that stands for longer parks
@@ -14,9 +17,9 @@ constexpr double kLongestSuspect_s = 20.0;  // a robot that stands for longer pa
 }  // namespace
 
 void MotionDoubt::follow(const Observation& observation) {
-  const double elapsed_s = time_ ? to_seconds(observation.time - *time_) : 0.0;
-  time_ = observation.time;
-  is_standing_ = observation.motion.distance_m == 0.0 && observation.motion.turn_rad == 0.0;
+  const double elapsed_s = observation.elapsed_s;
+  is_standing_ = observation.motion.distance_m <= kStill_m_s * elapsed_s &&
+                 observation.motion.turn_rad <= kStill_rad_s * elapsed_s;
   is_jumping_ = observation.odometry_doubtful && !observation.odometry_caught_up;
   if (observation.odometry_caught_up) {
     note_observed();

@@ -5,8 +5,6 @@
 
 #include "slam/core/scan/observation.hpp"
 
-#include <optional>
-
 namespace waymark {
 
 /// Odometry that stands still nearly always belongs to a robot that stands. Where markers or walls
@@ -41,8 +39,7 @@ class MotionDoubt {
   double suspected_m() const;
 
  private:
-  std::optional<Timestamp> time_{};  ///< of the newest observation
-  double speed_m_s_{0.0};            ///< by odometry, or, where that is stuck, by the estimate
+  double speed_m_s_{0.0};  ///< by odometry, or, where that is stuck, by the estimate
   double silent_s_{0.0};
   double standing_s_{0.0};  ///< and not silent
   bool is_standing_{false};

@@ -38,8 +38,6 @@ class PlaceFinder {
                             std::span<const MarkerMeasurement> measurements, const CameraView& view,
                             const RangeNoise& noise);
 
-  std::size_t num_hypotheses() const { return hypotheses_.size(); }
-
  private:
   enum class Clue { kLandmark, kUnexpectedId };
 

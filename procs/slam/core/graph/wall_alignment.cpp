@@ -102,7 +102,7 @@ std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapsh
     least = least.cwiseMin(point);
     most = most.cwiseMax(point);
   }
-  const CorrelativeField field{walls_a};
+  const CorrelativeField field = CorrelativeField::of_map(walls_a);
   const Se2 middle{Eigen::Vector2d{0.5 * (least + most)}, 0.0};
   const SearchWindow window{0.5 * (most - least).maxCoeff() + kStretch_m, std::numbers::pi};
 

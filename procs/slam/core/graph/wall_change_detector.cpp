@@ -13,8 +13,10 @@ namespace {
 constexpr std::uint32_t kLeastVisits = 8;  // beams; a person who passes leaves fewer
 constexpr double kWall = 0.5;              // occupancy
 constexpr double kFree = 0.1;
-constexpr std::size_t kLeastCells = 6;  // 0.3 m of wall in cells of 0.05 m
-constexpr int kGap = 2;                 // cells of one change are at most so far apart
+constexpr int kAgedEvery = 100;             // scans
+constexpr std::uint32_t kMostVisits = 200;  // of a cell that is not aged
+constexpr std::size_t kLeastCells = 6;      // 0.3 m of wall in cells of 0.05 m
+constexpr int kGap = 2;                     // cells of one change are at most so far apart
 
 template <class Condition>
 bool all_around(CellIndex centre, Condition&& holds) {
@@ -80,7 +82,22 @@ WallChangeDetector::WallChangeDetector(std::shared_ptr<const MapSnapshot> map)
 
 void WallChangeDetector::add(const Observation& observation, const Se2& map_from_base) {
   const CellIndex here = map_->grid.frame.cell_of(map_from_base.translation());
-  if (map_->grid.occupancy[here].is_mapped()) insert_beams(observation.beams, map_from_base, seen_);
+  if (!map_->grid.occupancy[here].is_mapped()) return;
+  insert_beams(observation.beams, map_from_base, seen_);
+  if (++num_scans_ % kAgedEvery == 0) age();
+}
+
+/// What was seen long ago counts less and less.
+void WallChangeDetector::age() {
+  std::vector<TileIndex> tiles;
+  seen_.occupancy.for_each_tile([&](TileIndex tile, const auto&) { tiles.push_back(tile); });
+  for (const TileIndex tile : tiles) {
+    for (OccupancyCell& cell : seen_.occupancy.edit_tile(tile)) {
+      if (cell.visits <= kMostVisits) continue;
+      cell.visits /= 2;
+      cell.hits /= 2;
+    }
+  }
 }
 
 std::vector<MapChange> WallChangeDetector::changes() const {

@@ -25,8 +25,11 @@ class WallChangeDetector {
   std::vector<MapChange> changes() const;
 
  private:
+  void age();
+
   std::shared_ptr<const MapSnapshot> map_;
   GridMap seen_;
+  int num_scans_{0};
 };
 
 }  // namespace waymark

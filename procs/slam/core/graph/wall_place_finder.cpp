@@ -43,7 +43,7 @@ WallPlaceFinder::WallPlaceFinder(std::shared_ptr<const MapSnapshot> map,
     least = least.cwiseMin(wall);
     most = most.cwiseMax(wall);
   }
-  field_.emplace(walls);
+  field_ = CorrelativeField::of_map(walls);
   middle_ = {Eigen::Vector2d{0.5 * (least + most)}, 0.0};
   window_ = {0.5 * (most - least).maxCoeff(), std::numbers::pi};
 }

@@ -91,7 +91,10 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   EliminationOrder order{variables};
   const Eigen::Index num_behind = order.size();
   const Eigen::Index num_window = prior_.g.size();
-  if (num_behind == 0) return 0.0;
+  if (num_behind == 0) {
+    solve_window();
+    return 0.0;
+  }
 
   std::vector<bool> is_active_factor(factors_.size(), false);
   for (const std::size_t index : active_factors_)

@@ -9,7 +9,7 @@ class Fields;
 struct Preprocessing {
   double beam_tolerance_m{0.08};
   double view_margin_rad{0.1};
-  double detectable_range_m{3.2};
+  double detectable_px{66.0};
   double max_sigma_m{0.05};
   double marker_wait_s{0.25};
   double scan_wait_s{1.0};

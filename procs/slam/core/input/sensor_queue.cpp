@@ -10,12 +10,16 @@ namespace {
 
 constexpr Duration kStepWithoutScan{200'000};  // a LiDAR's usual period
 
-// 10 to 20 s of them.
-constexpr QueuePolicy kScanPolicy{.capacity = 100,
+// Of LiDARs and cameras with up to 100 scans or frames a second.
+constexpr std::size_t kCapacity = 2000;
+constexpr Duration kLongest = std::chrono::seconds{20};
+constexpr QueuePolicy kScanPolicy{.capacity = kCapacity,
+                                  .longest = kLongest,
                                   .out_of_order = Skip::kScanOutOfOrder,
                                   .ahead = Skip::kScanAhead,
                                   .overflow = Skip::kScanOverflow};
-constexpr QueuePolicy kFramePolicy{.capacity = 200,
+constexpr QueuePolicy kFramePolicy{.capacity = kCapacity,
+                                   .longest = kLongest,
                                    .out_of_order = Skip::kFrameOutOfOrder,
                                    .ahead = Skip::kFrameAhead,
                                    .overflow = Skip::kFrameOverflow};
@@ -146,6 +150,7 @@ std::optional<Timestamp> SensorQueue::next_without_scan() const {
 Observation SensorQueue::observation_at(Timestamp time, std::span<const Beam> beams) {
   Observation observation;
   observation.time = time;
+  if (last_observed_) observation.elapsed_s = to_seconds(time - *last_observed_);
   drive_to(time, observation);
   look_until(time, observation);
   const bool camera_saw_all = observation.camera_reported && !setup_.blank_ids;

@@ -15,6 +15,7 @@ namespace waymark {
 /// How many values of a sensor wait, and what to call those that are not used.
 struct QueuePolicy {
   std::size_t capacity{0};  ///< of more the oldest is dropped
+  Duration longest{};       ///< so is one that is older than the newest by more
   Skip out_of_order{};
   Skip ahead{};
   Skip overflow{};
@@ -89,9 +90,10 @@ class StampedQueue {
   void push(Value value, Skips& skips) {
     newest_ = value.time;
     values_.push_back(std::move(value));
-    if (values_.size() <= policy_.capacity) return;
-    values_.pop_front();
-    skips.add(policy_.overflow);
+    while (values_.size() > policy_.capacity || *newest_ - values_.front().time > policy_.longest) {
+      values_.pop_front();
+      skips.add(policy_.overflow);
+    }
   }
 
   QueuePolicy policy_;

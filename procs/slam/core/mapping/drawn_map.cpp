@@ -31,7 +31,7 @@ void DrawnMap::draw_markers(std::size_t scan, const Se2& map_from_base, GridMap&
 
 void DrawnMap::add(const Observation& observation, const Se2& map_from_base) {
   // As it is kept, in single precision, so that it can be taken out again to the cell.
-  if (const auto old = scans_.emptied_by(map_from_base))
+  if (const auto old = scans_.emptied_by(observation, map_from_base))
     erase_beams(scans_.at(*old).beams, drawn_at_[*old], map_);
   scans_.add(observation, map_from_base);
   drawn_at_.push_back(map_from_base);
@@ -65,6 +65,14 @@ void DrawnMap::follow(const std::function<Se2(std::size_t)>& pose_of) {
   map_.markers = ground_.markers;
   for (std::size_t scan = 0; scan < scans_.size(); ++scan)
     draw_markers(scan, drawn_at_[scan], map_);
+}
+
+void DrawnMap::redraw(const std::function<Se2(std::size_t)>& pose_of) {
+  map_ = drawn_along(pose_of);
+  for (std::size_t scan = 0; scan < scans_.size(); ++scan)
+    drawn_at_[scan] = pose_of(scan);
+  unchecked_ = 0;
+  has_moved_ = false;
 }
 
 GridMap DrawnMap::drawn_along(const std::function<Se2(std::size_t)>& pose_of) const {

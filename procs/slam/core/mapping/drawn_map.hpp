@@ -29,6 +29,9 @@ class DrawnMap {
   /// @param pose_of  map_from_base of a scan, by its number.
   void follow(const std::function<Se2(std::size_t)>& pose_of);
 
+  /// Draws all of them anew at once: as where the map's frame has changed.
+  void redraw(const std::function<Se2(std::size_t)>& pose_of);
+
   /// The same map drawn along other poses.
   GridMap drawn_along(const std::function<Se2(std::size_t)>& pose_of) const;
 

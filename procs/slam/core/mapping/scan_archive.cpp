@@ -17,13 +17,18 @@ int whole(double number) {
 
 }  // namespace
 
-ScanArchive::Place ScanArchive::place_of(const Se2& map_from_base) {
-  return {whole(map_from_base.x() / kPlace_m), whole(map_from_base.y() / kPlace_m),
-          whole(map_from_base.theta() / kDirection_rad)};
+std::optional<ScanArchive::Place> ScanArchive::place_of(const Observation& observation,
+                                                        const Se2& map_from_base) {
+  if (observation.beams.empty() && observation.sightings.empty()) return std::nullopt;
+  return Place{whole(map_from_base.x() / kPlace_m), whole(map_from_base.y() / kPlace_m),
+               whole(map_from_base.theta() / kDirection_rad), observation.beams.empty() ? 0 : 1};
 }
 
-std::optional<std::size_t> ScanArchive::emptied_by(const Se2& map_from_base) const {
-  const auto here = at_places_.find(place_of(map_from_base));
+std::optional<std::size_t> ScanArchive::emptied_by(const Observation& observation,
+                                                   const Se2& map_from_base) const {
+  const auto place = place_of(observation, map_from_base);
+  if (!place) return std::nullopt;
+  const auto here = at_places_.find(*place);
   if (here == at_places_.end() || here->second.size() < kScansPerPlace) return std::nullopt;
   return here->second.front();
 }
@@ -36,9 +41,11 @@ void ScanArchive::add(const Observation& observation, const Se2& map_from_base) 
         {annotated.beam.start_in_base.cast<float>(), annotated.beam.end_in_base.cast<float>()});
   }
   scan.sightings = observation.sightings;
-  std::deque<std::size_t>& here = at_places_[place_of(map_from_base)];
-  here.push_back(scans_.size());
   scans_.push_back(std::move(scan));
+  const auto place = place_of(observation, map_from_base);
+  if (!place) return;
+  std::deque<std::size_t>& here = at_places_[*place];
+  here.push_back(scans_.size() - 1);
   if (here.size() <= kScansPerPlace) return;
   scans_[here.front()] = {};
   here.pop_front();

@@ -25,8 +25,9 @@ class ScanArchive {
 
   void add(const Observation& observation, const Se2& map_from_base);
 
-  /// The scan that the next one will empty, if that is from there.
-  std::optional<std::size_t> emptied_by(const Se2& map_from_base) const;
+  /// The scan that this one will empty.
+  std::optional<std::size_t> emptied_by(const Observation& observation,
+                                        const Se2& map_from_base) const;
 
   bool is_empty(std::size_t index) const {
     return scans_[index].beams.empty() && scans_[index].sightings.empty();
@@ -43,7 +44,7 @@ class ScanArchive {
   Observation at(std::size_t index) const;
 
  private:
-  using Place = std::array<int, 3>;  ///< column, row, direction
+  using Place = std::array<int, 4>;  ///< column, row, direction, whether it has beams
 
   struct PackedBeam {
     Eigen::Vector2f start_in_base;
@@ -55,7 +56,8 @@ class ScanArchive {
     std::vector<MarkerSighting> sightings{};
   };
 
-  static Place place_of(const Se2& map_from_base);
+  /// None of one that shows nothing.
+  static std::optional<Place> place_of(const Observation& observation, const Se2& map_from_base);
 
   std::vector<Scan> scans_{};
   std::map<Place, std::deque<std::size_t>> at_places_{};  ///< indices, the oldest first

@@ -15,17 +15,19 @@ struct Motion {
   double distance_m{0.0};  ///< length of the path
   double turn_rad{0.0};    ///< sum of the turns, without sign
   double guessed_s{0.0};   ///< of its duration, in which odometry was wrong and it is a guess
+  double advance_m{0.0};   ///< `distance_m`, of which what was driven backwards counts negative
 
   /// The motion of one step.
   static Motion between(const Se2& odom_from_start, const Se2& odom_from_end) {
     const Se2 step = odom_from_start.inverse() * odom_from_end;
-    return {step, step.translation().norm(), std::abs(step.theta()), 0.0};
+    const double distance_m = step.translation().norm();
+    return {step, distance_m, std::abs(step.theta()), 0.0, std::copysign(distance_m, step.x())};
   }
 
   /// First this motion, then `next`.
   Motion then(const Motion& next) const {
     return {start_from_end * next.start_from_end, distance_m + next.distance_m,
-            turn_rad + next.turn_rad, guessed_s + next.guessed_s};
+            turn_rad + next.turn_rad, guessed_s + next.guessed_s, advance_m + next.advance_m};
   }
 };
 

@@ -59,7 +59,7 @@ CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& e
                                  const OdometryNoise& noise) {
   const double turn_rad = measured.start_from_end.theta();
   const double telling_rad = telling_turn(turn_rad, random_walk(measured, noise)(2, 2));
-  const double extra_rad = errors[1] * measured.distance_m + errors[2] * telling_rad;
+  const double extra_rad = errors[1] * measured.advance_m + errors[2] * telling_rad;
   // A turn that grows evenly along the way bends the path by half of it.
   const Eigen::Vector2d bent =
       Se2{0.0, 0.0, 0.5 * extra_rad} * measured.start_from_end.translation();
@@ -69,7 +69,7 @@ CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& e
   corrected.start_from_end = {Eigen::Vector2d{moved + errors[3] * swing}, turn_rad + extra_rad};
   const Eigen::Vector3d by_extra{-0.5 * moved.y(), 0.5 * moved.x(), 1.0};
   corrected.by_errors.col(0) << bent, 0.0;
-  corrected.by_errors.col(1) = measured.distance_m * by_extra;
+  corrected.by_errors.col(1) = measured.advance_m * by_extra;
   corrected.by_errors.col(2) = telling_rad * by_extra;
   corrected.by_errors.col(3) << swing, 0.0;
   corrected.covariance =

@@ -34,14 +34,12 @@ double turn_variance(const OdometryNoise& noise, double distance_m, double turn_
 /// its start; zero where nothing was driven.
 Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNoise& noise);
 
-/// Systematic errors, as a vector (scale, drift, turn scale, ahead, spin): true distance = (1 +
-/// scale) measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * distance.
+/// Systematic errors, as a vector (scale, drift, turn scale, ahead): true distance = (1 + scale)
+/// measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance.
 /// What the LiDAR localises is `ahead` [m] before what the wheels turn about, beyond its
-/// configured place: a robot that turns on the spot moves it sideways. A wheel that slips errs
-/// in the way as it does in the turn: `spin` [m/rad], minus half the track where it spins.
-using OdometryErrors = Eigen::Matrix<double, 5, 1>;
+/// configured place: a robot that turns on the spot moves it sideways.
+using OdometryErrors = Eigen::Vector4d;
 inline constexpr Eigen::Index kOdometryErrors = OdometryErrors::SizeAtCompileTime;
-inline constexpr Eigen::Index kSpin = 4;
 
 /// How (x, y, theta) follows the systematic errors.
 using MotionByErrors = Eigen::Matrix<double, 3, kOdometryErrors>;
@@ -49,8 +47,7 @@ using MotionByErrors = Eigen::Matrix<double, 3, kOdometryErrors>;
 /// A measured motion, corrected by systematic errors.
 struct CorrectedMotion {
   Se2 start_from_end{};
-  /// Of (x, y, theta) at the end, in the frame at the start, by the systematic errors. Spin is left
-  /// out: odometry itself does not show a slip.
+  /// Of (x, y, theta) at the end, in the frame at the start, by the systematic errors.
   MotionByErrors by_errors{MotionByErrors::Zero()};
   /// Of the random walk, same order and frame.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};

@@ -14,6 +14,8 @@ constexpr double kUsualShare = 0.95;
 constexpr double kFaster = 2.0;  // than usual; and beyond that
 constexpr double kSlack_m_s = 0.5;
 constexpr double kSlack_rad_s = 1.0;
+constexpr double kMost_m_s2 = 1.0;
+constexpr double kMost_rad_s2 = 2.0;
 constexpr double kNewStep = 0.05;  // weight of the newest in the mean duration of steps
 constexpr int kLeastSteps = 20;    // before anything is refused
 constexpr int kMostRefused = 20;   // in a row; then what was usual is forgotten
@@ -47,13 +49,18 @@ bool SpeedLimits::allow(const Motion& step, double step_s) {
   const double drive_m_s = step.distance_m / lasted_s;
   const double turn_rad_s = step.turn_rad / lasted_s;
   const bool is_known = drives_.count() + turns_.count() >= kLeastSteps;
-  if (is_known && (drive_m_s > kFaster * drives_.high() + kSlack_m_s ||
-                   turn_rad_s > kFaster * turns_.high() + kSlack_rad_s)) {
+  const double most_m_s =
+      std::max(kFaster * drives_.high() + kSlack_m_s, drive_m_s_ + kMost_m_s2 * step_s);
+  const double most_rad_s =
+      std::max(kFaster * turns_.high() + kSlack_rad_s, turn_rad_s_ + kMost_rad_s2 * step_s);
+  if (is_known && (drive_m_s > most_m_s || turn_rad_s > most_rad_s)) {
     if (++refused_in_a_row_ <= kMostRefused) return false;
     drives_ = {};
     turns_ = {};
   }
   refused_in_a_row_ = 0;
+  drive_m_s_ = drive_m_s;
+  turn_rad_s_ = turn_rad_s;
   drives_.add(drive_m_s);
   turns_.add(turn_rad_s);
   return true;

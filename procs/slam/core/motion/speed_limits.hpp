@@ -9,8 +9,9 @@
 
 namespace waymark {
 
-/// A robot hardly ever drives much faster than it usually does. Odometry that says so in one step
-/// is wrong, though along a bare corridor nothing else contradicts it.
+/// A robot hardly ever drives much faster than it usually does, unless it gets there by an
+/// acceleration that wheels have. Odometry that says so in one step is wrong, though along a bare
+/// corridor nothing else contradicts it.
 class SpeedLimits {
  public:
   /// @param step  one step of the odometry, that took `step_s` seconds.
@@ -37,6 +38,8 @@ class SpeedLimits {
   int refused_in_a_row_{0};
   double mean_step_s_{0.0};
   double last_step_s_{0.0};
+  double drive_m_s_{0.0};  ///< of the newest step that was believed
+  double turn_rad_s_{0.0};
 };
 
 }  // namespace waymark

@@ -5,12 +5,14 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
 namespace waymark {
 namespace {
 
+constexpr double kUsualResolution_m = 0.05;
 constexpr int kFull = 255;           // the byte that stands for a field value of 1
 constexpr int kTopLevel = 6;         // of 64 cells: 3.2 m at 5 cm
 constexpr int kMaxHalfSide = 1024;   // [cells] from the median: 51 m at 5 cm, beyond indoor LiDARs
@@ -25,20 +27,25 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// Of at least one point, in x and in y.
+Eigen::Vector2d median(std::span<const Eigen::Vector2d> points) {
+  std::vector<double> xs;
+  std::vector<double> ys;
+  for (const Eigen::Vector2d& point : points) {
+    xs.push_back(point.x());
+    ys.push_back(point.y());
+  }
+  return {median(std::move(xs)), median(std::move(ys))};
+}
+
 /// The finite points within the square of +-`half_side_m` about the median.
 std::vector<Eigen::Vector2d> without_outliers(std::span<const Eigen::Vector2d> points,
                                               double half_side_m) {
   std::vector<Eigen::Vector2d> kept;
-  std::vector<double> xs;
-  std::vector<double> ys;
-  for (const Eigen::Vector2d& point : points) {
-    if (!point.allFinite()) continue;
-    kept.push_back(point);
-    xs.push_back(point.x());
-    ys.push_back(point.y());
-  }
+  std::copy_if(points.begin(), points.end(), std::back_inserter(kept),
+               [](const Eigen::Vector2d& point) { return point.allFinite(); });
   if (kept.empty()) return kept;
-  const Eigen::Vector2d centre{median(std::move(xs)), median(std::move(ys))};
+  const Eigen::Vector2d centre = median(kept);
   std::erase_if(kept, [&](const Eigen::Vector2d& point) {
     return (point - centre).lpNorm<Eigen::Infinity>() > half_side_m;
   });
@@ -62,6 +69,18 @@ CorrelativeField::CorrelativeField(std::span<const Eigen::Vector2d> points_in_su
   if (points.empty()) return;
   draw(points, sigma_m);
   build_pyramid();
+}
+
+CorrelativeField CorrelativeField::of_map(std::span<const Eigen::Vector2d> points) {
+  double resolution_m = kUsualResolution_m;
+  if (!points.empty()) {
+    const Eigen::Vector2d centre = median(points);
+    for (const Eigen::Vector2d& point : points) {
+      const double off_m = (point - centre).lpNorm<Eigen::Infinity>();
+      resolution_m = std::max(resolution_m, off_m / kMaxHalfSide);
+    }
+  }
+  return CorrelativeField{points, resolution_m, resolution_m};
 }
 
 void CorrelativeField::draw(std::span<const Eigen::Vector2d> points, double sigma_m) {

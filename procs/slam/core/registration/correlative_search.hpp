@@ -42,6 +42,9 @@ class CorrelativeField {
   explicit CorrelativeField(std::span<const Eigen::Vector2d> points_in_submap,
                             double resolution_m = 0.05, double sigma_m = 0.05);
 
+  /// Of a whole map: coarser where it has to be, so that no point is ignored.
+  static CorrelativeField of_map(std::span<const Eigen::Vector2d> points);
+
   /// Mean field value at the points, 0..1; outside the field, and for points that are not finite,
   /// the value is 0. No points: 0. O(points).
   double score(std::span<const Eigen::Vector2d> points_in_base, const Se2& submap_from_base) const;

@@ -13,10 +13,6 @@ constexpr double kLineRatio = 0.1;    // of a line's variances, across to along
 
 }  // namespace
 
-bool NdtSurface::is_line() const {
-  return across_m2 < kLineRatio * along_m2;
-}
-
 NdtMap::Key NdtMap::key(int column, int row) {
   return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(column)) << 32) |
          static_cast<std::uint32_t>(row);
@@ -81,6 +77,9 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   surface.across_m2 =
       (cell.count * across_m2 + kPriorPoints * point_variance_m2) / (cell.count + kPriorPoints);
   surface.along_m2 = half_trace + radius;
+  // A wall stays a line for a LiDAR that scatters: what counts is the shape behind the noise.
+  surface.is_line =
+      surface.across_m2 - point_variance_m2 < kLineRatio * (surface.along_m2 - point_variance_m2);
   surface.count = static_cast<int>(cell.count);
   cell.is_stale = false;
 }

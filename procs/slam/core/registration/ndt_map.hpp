@@ -20,9 +20,7 @@ struct NdtSurface {
   int count{0};                   ///< points
   int first_keyframe{0};          ///< the points came from keyframes in [first, last]
   int last_keyframe{0};
-
-  /// A piece of wall; else a corner, a leg, clutter: a place without a direction.
-  bool is_line() const;
+  bool is_line{false};  ///< a piece of wall; else a corner, a leg, clutter: without a direction
 };
 
 /// The points of one cell, summed up about its centre.
@@ -58,8 +56,6 @@ class NdtMap {
   const NdtSurface* at(const Eigen::Vector2d& point, double point_variance_m2) const {
     return at(key_at(point), point_variance_m2);
   }
-
-  std::size_t num_cells() const { return cells_.size(); }
 
   double spacing_m() const { return spacing_m_; }
 

@@ -60,7 +60,7 @@ BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point, double
   term.across_m = term.normal.dot(distance);
   term.across_weight = 1.0 / (surface.across_m2 + squared(config.roughness_m) + blur_m2);
   double chi2 = term.across_weight * squared(term.across_m);
-  if (!surface.is_line()) {
+  if (!surface.is_line) {
     term.along_m = term.normal.x() * distance.y() - term.normal.y() * distance.x();
     term.along_weight = 1.0 / (surface.along_m2 + blur_m2);
     chi2 += term.along_weight * squared(term.along_m);
@@ -153,7 +153,7 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
     const BeamTerm term = compare(*surface, match.map_from_base * point, 0.0, config);
     const double square_on =
         std::abs(surface->normal.dot(match.map_from_base.rotation() * point.normalized()));
-    if (surface->is_line() && surface->count >= kWellSeen && square_on > kSquareOn)
+    if (surface->is_line && surface->count >= kWellSeen && square_on > kSquareOn)
       off_range_m.push_back(std::abs(term.across_m) / square_on);
     if (term.robust < kInlierWeight) continue;
     ++match.inliers;
@@ -197,7 +197,7 @@ ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
     const Eigen::Vector2d lever = rotation * (origin + ray / (1.0 + share));
     const Eigen::Vector2d there = lever + pose.translation();
     const NdtSurface* surface = map.at(there, point_variance_m2);
-    if (surface == nullptr || !surface->is_line()) continue;
+    if (surface == nullptr || !surface->is_line) continue;
     const Eigen::Vector2d& normal = surface->normal;
     const double off_m = normal.dot(there - surface->mean);
     const double robust =

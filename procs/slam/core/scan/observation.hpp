@@ -11,6 +11,7 @@ namespace waymark {
 
 struct Observation {
   Timestamp time{};                    ///< of the scan, else of odometry
+  double elapsed_s{0.0};               ///< since the observation before, also where clocks were set
   Motion motion{};                     ///< since the observation before; none for the first
   Se2 odom_from_base{};                ///< odometry as it was sent, at this time
   std::vector<AnnotatedBeam> beams{};  ///< none while the LiDAR is silent

@@ -21,7 +21,7 @@ constexpr double kStep = 1e-6;
 constexpr double kGate = 16.3;
 
 Motion straight(double distance_m, double turn_rad = 0.0) {
-  return {{distance_m, 0.0, turn_rad}, distance_m, std::abs(turn_rad)};
+  return Motion::between({}, {distance_m, 0.0, turn_rad});
 }
 
 State some_state() {
@@ -226,7 +226,7 @@ class Drive {
       truth = truth * step;
       const Se2 measured{0.2 + 0.001 * random.normal(), 0.001, 0.01 + 0.002 * random.normal()};
       graph_.add_keyframe(graph_.state().keyframes.back() * measured);
-      graph_.add(OdometryFactor{k - 1, k, {measured, 0.2, 0.01}});
+      graph_.add(OdometryFactor{k - 1, k, {measured, 0.2, 0.01, 0.0, 0.2}});
       for (std::size_t m = 0; m < markers.size(); ++m) {
         MarkerFactor seen;
         seen.keyframe = k;
@@ -279,6 +279,35 @@ TEST(Graph, SolvingEverythingRebuildsTheWindowsPrior) {
   const Eigen::Matrix3d rebuilt = window.graph().covariance_of(window.newest());
   const Eigen::Matrix3d expected = whole.graph().covariance_of(whole.newest());
   EXPECT_LT((rebuilt - expected).norm(), 0.01 * expected.norm());
+}
+
+TEST(Graph, SolvingEverythingSolvesAWindowThatIsAll) {
+  Drive drive{100};
+  Graph& graph = drive.graph();
+  graph.add(PosePrior{
+      graph.state().keyframes.size() - 1, {5.0, 0.0, 0.0}, 1e6 * Eigen::Matrix3d::Identity()});
+  graph.step_all();
+  EXPECT_NEAR(graph.state().keyframes.back().x(), 5.0, 0.01);
+}
+
+/// Of what markers and odometry have told, not of the description.
+TEST(Graph, WhatIsKnownOfACalibrationFadesAndThePosesStay) {
+  constexpr double kDriven_m = 20.0;
+  Drive drive{6};
+  Graph& graph = drive.graph();
+  const Se2 pose = graph.state().keyframes.back();
+  const Eigen::Matrix3d of_pose = graph.covariance_of(drive.newest());
+  const Eigen::MatrixXd before = graph.covariance({}, {});
+  graph.let_calibration_wander(kDriven_m);
+  graph.optimise();
+  const Eigen::MatrixXd after = graph.covariance({}, {});
+  for (Eigen::Index i = 0; i < kOdometryTerms; ++i) {
+    const double described = Drive::sigmas()[i] * Drive::sigmas()[i];
+    EXPECT_GT(after(i, i), before(i, i)) << i;
+    EXPECT_LT(after(i, i), before(i, i) + 1.01 * kDriven_m / 1000.0 * described) << i;
+  }
+  EXPECT_LT(pose_difference(graph.state().keyframes.back(), pose).norm(), 1e-3);
+  EXPECT_LT((graph.covariance_of(drive.newest()) - of_pose).norm(), 0.05 * of_pose.norm());
 }
 
 TEST(Graph, CovariancesAreSymmetricAndPositive) {

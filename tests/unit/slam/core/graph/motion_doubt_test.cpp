@@ -6,8 +6,6 @@
 namespace waymark {
 namespace {
 
-using std::chrono::milliseconds;
-
 /// Five times a second.
 class Robot {
  public:
@@ -15,8 +13,7 @@ class Robot {
 
   void observe(double distance_m, bool is_doubtful = false, bool caught_up = false) {
     Observation observation;
-    time_ += milliseconds{200};
-    observation.time = time_;
+    observation.elapsed_s = 0.2;
     observation.motion = {{distance_m, 0.0, 0.0}, distance_m, 0.0};
     observation.odometry_doubtful = is_doubtful;
     observation.odometry_caught_up = caught_up;
@@ -32,9 +29,6 @@ class Robot {
     for (int i = 0; i < observations; ++i)
       observe(0.0);
   }
-
- private:
-  Timestamp time_{};
 };
 
 TEST(MotionDoubt, OdometryThatMovesLeavesNone) {
@@ -52,6 +46,15 @@ TEST(MotionDoubt, OdometryThatStandsIsSuspectedUntilSomethingShowsTheWay) {
   EXPECT_GT(robot.doubt.suspected_m(), 0.1);  // of the metre that it would have driven
   robot.doubt.note_observed();
   EXPECT_EQ(robot.doubt.suspected_m(), 0.0);
+}
+
+TEST(MotionDoubt, OdometryWithAGyroStandsThoughItIsNeverQuiteStill) {
+  Robot robot;
+  robot.drive();
+  robot.observe(0.0002);
+  EXPECT_TRUE(robot.doubt.is_standing());
+  robot.observe(0.002);  // 1 cm a second
+  EXPECT_FALSE(robot.doubt.is_standing());
 }
 
 TEST(MotionDoubt, ARobotThatParksIsNotLostForIt) {

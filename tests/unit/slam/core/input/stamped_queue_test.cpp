@@ -14,6 +14,7 @@ struct Value {
 };
 
 constexpr QueuePolicy kPolicy{.capacity = 4,
+                              .longest = Duration::max(),
                               .out_of_order = Skip::kScanOutOfOrder,
                               .ahead = Skip::kScanAhead,
                               .overflow = Skip::kScanOverflow};
@@ -62,6 +63,17 @@ TEST(StampedQueue, TheSameStampTwiceIsSkipped) {
 TEST(StampedQueue, OfTooManyTheOldestIsDropped) {
   EXPECT_EQ(result_of({1, 2, 3, 4, 5, 6}),
             (Result{{3, 4, 5, 6}, {Skip::kScanOverflow, Skip::kScanOverflow}}));
+}
+
+TEST(StampedQueue, WhatIsOlderThanTheNewestByTooMuchIsDropped) {
+  QueuePolicy policy = kPolicy;
+  policy.longest = std::chrono::seconds{20};
+  StampedQueue<Value> queue{policy};
+  Skips skips;
+  for (const int time_s : {1, 15, 21, 22})
+    queue.add({at_s(time_s)}, skips);
+  EXPECT_EQ(skips.take(), (std::vector<Skip>{Skip::kScanOverflow}));
+  EXPECT_EQ(queue.front().time, at_s(15));
 }
 
 TEST(StampedQueue, ClearingCountsTheOneAsideAndForgetsTheNewest) {

@@ -42,6 +42,18 @@ TEST(ScanArchive, KeepsTheNewestScansOfAPlace) {
   }
 }
 
+TEST(ScanArchive, WhatShowsNothingTakesNoPlace) {
+  const test::SyntheticCorridor corridor = test::bare_corridor();
+  const Observation scan = test::observations_of(test::drive(corridor), corridor).front();
+  ScanArchive archive;
+  archive.add(scan, Se2{1.1, 0.1, 0.1});
+  for (std::size_t i = 0; i < 3 * ScanArchive::kScansPerPlace; ++i) {
+    EXPECT_FALSE(archive.emptied_by(Observation{}, Se2{1.1, 0.1, 0.1}));
+    archive.add(Observation{}, Se2{1.1, 0.1, 0.1});
+  }
+  EXPECT_FALSE(archive.at(0).beams.empty());
+}
+
 TEST(MapPublisher, TilesThatAreGoneAreSentEmpty) {
   GridMap map{GridFrame::centred_on_map_origin(0.05), {}, {}};
   map.occupancy.edit(map.frame.cell_of(Eigen::Vector2d{0.0, 0.0})) = {1, 1};

@@ -2,6 +2,7 @@
 #include "common/random/random.hpp"
 #include "slam/core/motion/motion_model.hpp"
 #include "slam/core/motion/odometry_buffer.hpp"
+#include "slam/core/motion/odometry_errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +13,25 @@ namespace {
 
 Timestamp at_ms(int milliseconds) {
   return timestamp_from_us(milliseconds * 1000);
+}
+
+TEST(Motion, WhatIsDrivenBackwardsIsNoAdvance) {
+  const Motion ahead = Motion::between({}, {0.5, 0.0, 0.0});
+  const Motion back = Motion::between({}, {-0.2, 0.0, 0.0});
+  EXPECT_NEAR(ahead.then(back).advance_m, 0.3, 1e-12);
+  EXPECT_NEAR(ahead.then(back).distance_m, 0.7, 1e-12);
+}
+
+/// A wheel that is larger than the other turns the robot the other way when it backs up.
+TEST(OdometryErrors, DriftTurnsTheOtherWayInReverse) {
+  OdometryErrors errors = OdometryErrors::Zero();
+  errors[1] = 0.01;  // rad/m
+  const auto turn_rad = [&](double drive_m) {
+    return corrected_motion(Motion::between({}, {drive_m, 0.0, 0.0}), errors, {})
+        .start_from_end.theta();
+  };
+  EXPECT_NEAR(turn_rad(2.0), 0.02, 1e-12);
+  EXPECT_NEAR(turn_rad(-2.0), -0.02, 1e-12);
 }
 
 TEST(OdometryBuffer, InterpolatesBetweenSamples) {

@@ -33,6 +33,14 @@ TEST(SpeedLimits, ARobotMayAccelerate) {
     EXPECT_TRUE(limits.allow(step(speed_m_s * kStep_s), kStep_s)) << speed_m_s;
 }
 
+TEST(SpeedLimits, ARobotMayAccelerateAfterAnHourOfCreeping) {
+  SpeedLimits limits;
+  for (int i = 0; i < 18'000; ++i)
+    EXPECT_TRUE(limits.allow(step(0.1 * kStep_s), kStep_s));
+  for (double speed_m_s = 0.1; speed_m_s < 1.5; speed_m_s += 0.5 * kStep_s)
+    EXPECT_TRUE(limits.allow(step(speed_m_s * kStep_s), kStep_s)) << speed_m_s;
+}
+
 TEST(SpeedLimits, ABurstDoesNotBecomeUsual) {
   SpeedLimits limits = after_a_drive(0.4);
   for (int burst = 0; burst < 3; ++burst) {

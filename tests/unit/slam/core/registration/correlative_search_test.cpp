@@ -304,5 +304,15 @@ TEST(CorrelativeSearch, WindowsWithoutLimitEnd) {
   EXPECT_GT(match->score, 0.9);
 }
 
+TEST(CorrelativeField, OfAMapLeavesNoWallOut) {
+  Points walls;
+  draw_wall({0.0, 0.0}, {300.0, 0.0}, walls);
+  draw_wall({298.0, 0.0}, {298.0, 4.0}, walls);
+  const Points seen{{0.0, 1.0}, {0.0, 2.0}, {0.0, 3.0}};  // of the short one, from its foot
+  const Se2 foot{298.0, 0.0, 0.0};
+  EXPECT_EQ(CorrelativeField{walls}.score(seen, foot), 0.0);
+  EXPECT_GT(CorrelativeField::of_map(walls).score(seen, foot), 0.8);
+}
+
 }  // namespace
 }  // namespace waymark

@@ -18,16 +18,20 @@ Eigen::Matrix3d sigmas(double m, double rad) {
 }
 
 /// Points on both walls of a bare corridor of 2 m, as seen from `map_from_base`.
-Points corridor_from(const Se2& map_from_base, std::uint64_t seed) {
+Points corridor_from(const Se2& map_from_base, std::uint64_t seed, double sigma_m) {
   Random random{{seed}};
   Points points;
   for (double x = -3.0; x <= 3.0; x += 0.05) {
     for (const double y : {-1.0, 1.0}) {
-      const Eigen::Vector2d place{map_from_base.x() + x, y + kSigma_m * random.normal()};
+      const Eigen::Vector2d place{map_from_base.x() + x, y + sigma_m * random.normal()};
       points.push_back(map_from_base.inverse() * place);
     }
   }
   return points;
+}
+
+Points corridor_from(const Se2& map_from_base, std::uint64_t seed) {
+  return corridor_from(map_from_base, seed, kSigma_m);
 }
 
 /// The walls of a room of 6 m x 4 m about the map's origin.
@@ -73,7 +77,8 @@ TEST(ScanMatch, FindsThePoseInARoom) {
 }
 
 TEST(ScanMatch, ABareCorridorSaysExactlyNothingAlongItsAxis) {
-  const Submap corridor = submap_of(corridor_from);
+  const Submap corridor =
+      submap_of([](const Se2& pose, std::uint64_t seed) { return corridor_from(pose, seed); });
   const Se2 truth{1.0, 0.1, 0.05};
   const Se2 guess{1.4, 0.05, 0.03};
   const ScanMatch match = match_scan(corridor_from(truth, 99), corridor.surfaces(), guess,
@@ -87,6 +92,16 @@ TEST(ScanMatch, ABareCorridorSaysExactlyNothingAlongItsAxis) {
   EXPECT_NEAR(match.map_from_base.x(), guess.x(), 0.01);  // stays where it was believed to be
   EXPECT_NEAR(match.map_from_base.y(), truth.y(), 0.005);
   EXPECT_NEAR(match.map_from_base.theta(), truth.theta(), 0.002);
+}
+
+TEST(ScanMatch, ABareCorridorStaysOneForALidarThatScatters) {
+  constexpr double kScatter_m = 0.08;
+  const Submap corridor = submap_of(
+      [](const Se2& pose, std::uint64_t seed) { return corridor_from(pose, seed, kScatter_m); });
+  const Se2 truth{1.0, 0.1, 0.05};
+  const ScanMatch match = match_scan(corridor_from(truth, 99, kScatter_m), corridor.surfaces(),
+                                     truth, sigmas(0.1, 0.05), RangeNoise{kScatter_m}, {});
+  EXPECT_TRUE(match.observed.is_degenerate);
 }
 
 TEST(ScanMatch, SharesOfKeyframesSumToOne) {
