@@ -214,7 +214,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_estimate_ = time;
   placed_ = estimate;
-  if (estimate.slipped) counters_.add("slips of the wheels");
+  if (estimate.odometry_refused) counters_.add("steps of the odometry that were not believed");
   if (estimate.calibration_widened) counters_.add("calibration found worse than configured");
   if (ready.scan && estimate.ranges_wrong) counters_.add("scans with wrong ranges");
   if (ready.scan)

@@ -50,7 +50,7 @@ Estimate GmappingEstimator::update(const Observation& observation) {
   ++observations_;
   Estimate now = estimate(observation);
   now.updated = is_update;
-  now.slipped = missing_rad.has_value();
+  now.odometry_refused = missing_rad.has_value();
   return now;
 }
 

@@ -319,7 +319,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
     const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
     estimate.covariance += away * away.transpose();
   }
-  estimate.slipped = odometry_refused_;
+  estimate.odometry_refused = odometry_refused_;
   estimate.reason = reason_;
   estimate.calibration_widened = graph_.is_calibration_doubted();
   estimate.weak_axis_source = motion_doubt_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing

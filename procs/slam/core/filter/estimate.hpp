@@ -36,8 +36,10 @@ struct Estimate {
   Observability observability{};
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
   EstimateReason reason{EstimateReason::kScan};
-  bool updated{false};       ///< the scan was weighed and mapped, not only followed by odometry
-  bool slipped{false};       ///< the scans showed that the wheels had slipped, and were believed
+  bool updated{false};  ///< the scan was weighed and mapped, not only followed by odometry
+  /// The odometry's newest step was not believed: scans (gmapping), or how this robot drives
+  /// (waymark), say otherwise.
+  bool odometry_refused{false};
   bool ranges_wrong{false};  ///< the scan shows known walls, but at another scale: it was scaled
   /// Camera or markers are further from their description than their standard deviations allow.
   bool calibration_widened{false};

@@ -12,7 +12,7 @@ struct Findings {
 
   double odometry_along{1.0};  ///< random walk along the way, in multiples of the described one
   double odometry_turn{1.0};   ///< and of the heading
-  std::int64_t slips{0};       ///< of the wheels, that markers or walls showed
+  std::int64_t slips{0};       ///< of the wheels, that markers showed
   double slip_m_per_sqrt_m{0.0};
   std::int64_t odometry_stuck{0};      ///< it stood still while the robot moved
   std::int64_t odometry_jumping{0};    ///< it was anything

@@ -18,8 +18,9 @@ constexpr std::size_t kSearchBeams = 120;
 constexpr std::size_t kFields = 8;  // kept
 constexpr double kApart_m = 0.3;    // of a runner-up
 constexpr double kApart_rad = 0.35;
-constexpr double kAlongWeak = 0.98;                                              // cosine
-const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();  // of a search
+constexpr double kAlongWeak = 0.98;  // cosine
+/// Covariance of what a search finds: 0.1 m, 0.03 rad.
+const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
 constexpr double kAgree_m = 0.3;  // two candidates' corrections
 constexpr double kAgree_rad = 0.05;
 constexpr double kAgreeWithin_m = 5.0;  // driven between them
@@ -55,10 +56,16 @@ const Submap* LoopFinder::nearest_submap(const LoopSearch& search,
 }
 
 const CorrelativeField& LoopFinder::field_of(const Submap& old) {
-  const auto found = fields_.find(old.first_keyframe());
-  if (found != fields_.end()) return found->second;
-  if (fields_.size() >= kFields) fields_.erase(fields_.begin());
-  return fields_.emplace(old.first_keyframe(), CorrelativeField{old.points()}).first->second;
+  const auto known = std::find_if(fields_.begin(), fields_.end(), [&old](const auto& field) {
+    return field.first == old.first_keyframe();
+  });
+  if (known != fields_.end()) {
+    std::rotate(known, known + 1, fields_.end());
+  } else {
+    if (fields_.size() >= kFields) fields_.pop_front();
+    fields_.emplace_back(old.first_keyframe(), CorrelativeField{old.points()});
+  }
+  return fields_.back().second;
 }
 
 std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& points,

@@ -7,8 +7,8 @@
 #include "slam/core/registration/submap.hpp"
 
 #include <deque>
-#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace waymark {
@@ -84,8 +84,8 @@ class LoopFinder {
 
   LoopConfig config_;
   ScanMatchConfig scan_;
-  /// Of the submaps searched last, by first keyframe.
-  std::map<std::size_t, CorrelativeField> fields_{};
+  /// Of submaps, by first keyframe; the one searched last is last.
+  std::deque<std::pair<std::size_t, CorrelativeField>> fields_{};
   std::optional<Candidate> candidate_{};
   int num_ambiguous_{0};
 };

@@ -12,7 +12,7 @@ namespace {
 constexpr double kMemory = 0.99;       // of an innovation, at the next one
 constexpr double kPriorLogOdds = 3.0;  // natural: of the description against any worse scale
 constexpr double kCoupling = 0.7;      // standard deviation of log(along / turn)
-constexpr double kSlipFactor = 5.0;    // as the second component of OdometryMixture
+constexpr double kSlipFactor = 5.0;    // on the odometry's standard deviation, in a slip
 const double kLogSlipShare = std::log(0.03);
 
 constexpr double kSlipSigmas = 4.0;      // an innovation beyond is a slip

@@ -19,9 +19,10 @@ struct OdometryInnovation {
 
 /// Mean variance over a grid of noise scales, each with the posterior probability of what was seen;
 /// old innovations are forgotten slowly. A single slip is no noise: innovations may come from the
-/// wide components of OdometryMixture. Wheels that are bad in the turn, which walls show
-/// everywhere, are probably as bad along the way, which a bare corridor does not show. Source:
-/// innovation-based adaptive estimation (Mehra 1972), as a bank of models (Magill 1965).
+/// wide components of its mixture (likeliest_covariance() in factors.hpp). Wheels that are bad in
+/// the turn, which walls show everywhere, are probably as bad along the way, which a bare corridor
+/// does not show. Source: innovation-based adaptive estimation (Mehra 1972), as a bank of models
+/// (Magill 1965).
 ///
 /// Slips along the way are no noise of wheels that roll, but where nothing shows them they add to
 /// the variance all the same: the first two moments of those that were seen, by metre (a compound

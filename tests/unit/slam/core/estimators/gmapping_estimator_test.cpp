@@ -125,7 +125,7 @@ double heading_error_after_slip(bool watch_turns, std::uint64_t seed) {
   const Se2 driven = test::drive_through_room(
       step, 10, Se2{0.12, 0.0, 0.45}, [&](const Observation& observation, bool has_slipped) {
         estimate = estimator.update(observation);
-        EXPECT_EQ(estimate.slipped, watch_turns && has_slipped);
+        EXPECT_EQ(estimate.odometry_refused, watch_turns && has_slipped);
       });
   return std::abs(angle_difference(estimate.map_from_base.theta(), driven.theta()));
 }
