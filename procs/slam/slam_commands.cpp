@@ -119,7 +119,9 @@ std::string SlamNode::reset() {
 
 std::string SlamNode::set_pose(const StartPose& pose) {
   if (!estimator_->set_pose(pose)) {
-    throw Refusal{"there is no map yet that the pose could be in, or the estimator takes none"};
+    throw Refusal{
+        "there is no map yet that the pose could be in, it is more than 1.5 km away, or the "
+        "estimator takes none"};
   }
   return fmt::format("the robot is at ({:.3f}, {:.3f}) m, {:.4f} rad", pose.x_m, pose.y_m,
                      pose.yaw_rad);

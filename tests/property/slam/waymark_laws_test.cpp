@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -116,6 +117,41 @@ TEST(WaymarkEstimator, AnEmptyScanNeitherCrashesNorMoves) {
   const Se2 before = estimator.update(nothing).map_from_base;
   for (int i = 0; i < 5; ++i)
     EXPECT_EQ(estimator.update(nothing).map_from_base.x(), before.x());
+}
+
+TEST(WaymarkEstimator, APoseThatIsGivenIsNoMotionOfOdometryThatStandsStill) {
+  const SyntheticCorridor corridor = corridor_with_markers(1);
+  WaymarkEstimator estimator{estimator_setup_of(corridor, 1), {}};
+  run(estimator, drive(corridor), setup_of(corridor));
+  Observation standing;
+  standing.elapsed_s = 0.2;
+  const auto stand = [&](int observations) {
+    Estimate estimate;
+    for (int i = 0; i < observations; ++i) {
+      standing.time += std::chrono::milliseconds{200};
+      estimate = estimator.update(standing);
+    }
+    return estimate;
+  };
+  const Se2 before = stand(20).map_from_base;
+  StartPose given;
+  given.kind = StartKind::kPose;
+  given.x_m = before.x() + 5.0;
+  given.y_m = before.y();
+  ASSERT_TRUE(estimator.set_pose(given));
+  const Estimate after = stand(100);
+  EXPECT_NEAR(after.map_from_base.x(), given.x_m, 1e-3);
+  EXPECT_LT(std::sqrt(after.covariance(0, 0)), 1.0);
+}
+
+TEST(WaymarkEstimator, APoseThatNoGridCouldHoldIsRefused) {
+  const SyntheticCorridor corridor = corridor_with_markers(1);
+  WaymarkEstimator estimator{estimator_setup_of(corridor, 1), {}};
+  run(estimator, drive(corridor), setup_of(corridor));
+  StartPose far;
+  far.kind = StartKind::kPose;
+  far.x_m = 1e5;
+  EXPECT_FALSE(estimator.set_pose(far));
 }
 
 TEST(WaymarkEstimator, TheFinalTrajectoryIsNoWorseThanTheOneWhileDriving) {

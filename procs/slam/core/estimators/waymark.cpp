@@ -20,8 +20,8 @@ constexpr double kContradiction = 25.0;  // chi^2
 constexpr double kContradiction_m = 0.03;
 constexpr double kContradiction_rad = 0.02;
 
-constexpr double kFarthest_m =
-    1500.0;  // that a pose is given from the one before: the grid is bounded
+// A pose is given no farther from the one before: the grid is bounded.
+constexpr double kFarthest_m = 1500.0;
 
 // Of a robot whose odometry stands still, from scan to scan: it may be stuck.
 const Eigen::Vector3d kStuckStep{0.1, 0.1, 0.05};
@@ -123,9 +123,13 @@ void WaymarkEstimator::add_first_keyframe() {
 bool WaymarkEstimator::set_pose(const StartPose& pose) {
   const bool has_begun = !graph_.state().keyframes.empty();
   if (!has_begun && !setup_.loaded_map) return false;  // there is no map that it could be in
-  const Eigen::Vector2d known = has_begun ? graph_.state().keyframes.back().translation()
-                                          : setup_.loaded_map->graph.poses.front().translation();
-  if ((Eigen::Vector2d{pose.x_m, pose.y_m} - known).norm() > kFarthest_m) return false;
+  const Eigen::Vector2d given{pose.x_m, pose.y_m};
+  Eigen::Vector2d known = given;
+  if (has_begun)
+    known = graph_.state().keyframes.back().translation();
+  else if (!loaded_points_.empty())
+    known = loaded_points_.front();
+  if ((given - known).norm() > kFarthest_m) return false;
   if (has_begun)
     given_pose_ = pose;
   else
@@ -269,7 +273,7 @@ void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& mat
     return;
   }
   since_insertion_m_ = 0.0;
-  for (Submap& submap : filled_submaps_)
+  for (Submap& submap : growing_submaps_)
     submap.add(points, submap_from_map(submap) * map_from_base);
 }
 

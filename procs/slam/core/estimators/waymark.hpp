@@ -220,10 +220,10 @@ class WaymarkEstimator final : public Estimator {
   bool has_new_loops_{false};              ///< since then
   bool loops_matter_{false};               ///< one of them contradicts the pose
   mutable std::optional<Graph> solved_{};  ///< see solved()
-  std::deque<Submap> submaps_{};           ///< that are full
-  std::deque<Submap> filled_submaps_{};  ///< one or two that are being filled; the first is matched
-  Motion motion_{};                      ///< since the keyframe `moved_from_`
-  std::size_t moved_from_{0};            ///< the newest one, unless odometry was stuck
+  std::deque<Submap> submaps_{};           ///< finished
+  std::deque<Submap> growing_submaps_{};   ///< one or two; the first is matched
+  Motion motion_{};                        ///< since the keyframe `moved_from_`
+  std::size_t moved_from_{0};              ///< the newest one, unless odometry was stuck
   std::optional<Standstill> standstill_{};
   int keyframes_standing_{0};  ///< in a row
   SpeedLimits speed_limits_{};

@@ -146,7 +146,7 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
 }
 
 void WaymarkEstimator::begin_submaps_anew() {
-  filled_submaps_.clear();
+  growing_submaps_.clear();
   loop_finder_.forget_candidate();
 }
 

@@ -35,8 +35,8 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
                             prediction.covariance, range_noise_, config_.scan);
     if (is_frozen() || is_in_loaded_map(scan.match)) return scan;
   }
-  if (filled_submaps_.empty()) return std::nullopt;
-  scan.submap = &filled_submaps_.front();
+  if (growing_submaps_.empty()) return std::nullopt;
+  scan.submap = &growing_submaps_.front();
   scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
   const Se2 submap_from_map = scan.map_from_submap.inverse();
   const Se2 guess = submap_from_map * prediction.map_from_base;
@@ -141,15 +141,15 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
 /// and holds half a length of scans at least.
 void WaymarkEstimator::insert_scan(const Points& points) {
   const auto half = static_cast<std::size_t>(std::max(1, config_.submap_keyframes / 2));
-  if (filled_submaps_.empty() || filled_submaps_.back().num_keyframes() >= half) {
-    if (filled_submaps_.size() > 1) {
-      submaps_.push_back(std::move(filled_submaps_.front()));
+  if (growing_submaps_.empty() || growing_submaps_.back().num_keyframes() >= half) {
+    if (growing_submaps_.size() > 1) {
+      submaps_.push_back(std::move(growing_submaps_.front()));
       submaps_.back().finish();
-      filled_submaps_.pop_front();
+      growing_submaps_.pop_front();
     }
-    filled_submaps_.emplace_back(config_.scan.cell_spacing_m, newest());
+    growing_submaps_.emplace_back(config_.scan.cell_spacing_m, newest());
   }
-  for (Submap& submap : filled_submaps_)
+  for (Submap& submap : growing_submaps_)
     submap.insert(points, submap_from_map(submap) * graph_.state().keyframes.back());
 }
 
