@@ -46,7 +46,7 @@ struct Estimate {
 };
 
 /// What a method can say about itself after `updates` updates.
-/// @param observes_all_axes  walls or markers tell the motion in every direction.
+/// @param observes_all_axes  walls or markers observe the motion in every direction.
 Health health_of(std::uint64_t updates, bool is_lost, bool observes_all_axes);
 
 /// The part of an estimate that the observation alone decides.

@@ -290,7 +290,7 @@ TEST(Graph, SolvingEverythingSolvesAWindowThatIsAll) {
   EXPECT_NEAR(graph.state().keyframes.back().x(), 5.0, 0.01);
 }
 
-/// Of what markers and odometry have told, not of the description.
+/// What was measured fades, the description stays.
 TEST(Graph, WhatIsKnownOfACalibrationFadesAndThePosesStay) {
   constexpr double kDriven_m = 20.0;
   Drive drive{6};
