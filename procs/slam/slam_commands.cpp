@@ -97,10 +97,7 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
   next_map_.reset();
   if (last_estimate_) {
     // Nobody shall draw the new map over the old one.
-    for (map_tiles_t part : map_publisher_.complete(estimator_->map(), *last_estimate_)) {
-      part.map_id = map_id_;
-      outbox_.publish(channels::kSlamMap, part);
-    }
+    publish_tiles(map_publisher_.complete(estimator_->map(), *last_estimate_));
     publish_markers(*last_estimate_);
   }
   if (keeps_map_id) return;
@@ -120,8 +117,9 @@ std::string SlamNode::reset() {
 std::string SlamNode::set_pose(const StartPose& pose) {
   if (!estimator_->set_pose(pose)) {
     throw Refusal{
-        "there is no map yet that the pose could be in, it is more than 1.5 km away, or the "
-        "estimator takes none"};
+        fmt::format("there is no map yet that the pose could be in, it is more than {} m away, or "
+                    "the estimator takes none",
+                    kFarthestPose_m)};
   }
   return fmt::format("the robot is at ({:.3f}, {:.3f}) m, {:.4f} rad", pose.x_m, pose.y_m,
                      pose.yaw_rad);

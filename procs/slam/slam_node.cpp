@@ -95,10 +95,7 @@ void SlamNode::finish() {
   if (!config_.save_map.empty()) save_map();
   keep_last_pose();
   if (!last_estimate_) return;
-  for (map_tiles_t part : map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_)) {
-    part.map_id = map_id_;
-    outbox_.publish(channels::kSlamMap, part);
-  }
+  publish_tiles(map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_));
   publish_markers(*last_estimate_);
   publish_grid(*last_estimate_);
   for (trajectory_t part : to_messages(estimator_->trajectory())) {
@@ -229,17 +226,21 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
 
 void SlamNode::publish_map_when_due(Timestamp time) {
   const Duration period = duration_from_seconds(config_.slam.map_period_s);
-  const bool is_clock_set_back = next_map_ && time + period < *next_map_;
-  if (next_map_ && time < *next_map_ && !is_clock_set_back) return;
+  // Further away than a period it is of a clock that was set back.
+  if (next_map_ && time < *next_map_ && time >= *next_map_ - period) return;
   next_map_ = time + period;
-  for (map_tiles_t part : map_publisher_.changes(estimator_->map(), time)) {
-    part.map_id = map_id_;
-    outbox_.publish(channels::kSlamMap, part);
-  }
+  publish_tiles(map_publisher_.changes(estimator_->map(), time));
   publish_markers(time);
   publish_grid(time);
   publish_findings(time);
   keep_last_pose();
+}
+
+void SlamNode::publish_tiles(std::vector<map_tiles_t> parts) {
+  for (map_tiles_t& part : parts) {
+    part.map_id = map_id_;
+    outbox_.publish(channels::kSlamMap, part);
+  }
 }
 
 void SlamNode::publish_markers(Timestamp time) {

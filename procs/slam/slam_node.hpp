@@ -60,6 +60,7 @@ class SlamNode final : public Node {
   void process_ready_scans();
   void process(const SensorQueue::Ready& ready);
   void publish_map_when_due(Timestamp time);
+  void publish_tiles(std::vector<map_tiles_t> parts);
   void publish_markers(Timestamp time);
   void publish_findings(Timestamp time);
   void publish_grid(Timestamp time);

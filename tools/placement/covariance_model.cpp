@@ -43,8 +43,7 @@ void drive_step(const Se2& before, const Step& step, const OdometryNoise& descri
   }
   Eigen::Matrix<double, 3, kCalibrationSize> by_calibration =
       Eigen::Matrix<double, 3, kCalibrationSize>::Zero();
-  by_calibration.leftCols<kOdometryTerms>() =
-      turning(before) * moved.by_errors.leftCols<kOdometryTerms>();
+  by_calibration.leftCols<kOdometryTerms>() = turning(before) * moved.by_errors;
   known.move(carried_along(step.map_from_base.translation() - before.translation()), by_calibration,
              turned(before, moved.covariance));
 }

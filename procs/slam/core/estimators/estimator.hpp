@@ -24,6 +24,10 @@
 
 namespace waymark {
 
+/// A pose that is given is at most so far from the one before, or from the map: about half of the
+/// side of the largest grid (TileMap::kMaxTableTiles).
+inline constexpr double kFarthestPose_m = 1500.0;
+
 /// What all methods are given.
 struct EstimatorSetup {
   MapperConfig grid{};
@@ -76,8 +80,8 @@ class Estimator {
   /// What contradicts the loaded map or the survey, of methods that notice.
   virtual std::vector<MapChange> changes() const { return {}; }
 
-  /// The robot is at that pose by the time of the next update, of methods that can be told.
-  /// @return false: this one cannot.
+  /// The robot is at that pose by the time of the next update, of methods that can be corrected.
+  /// @return false: this one cannot, has no map yet, or is more than kFarthestPose_m away.
   virtual bool set_pose(const StartPose& /*pose*/) { return false; }
 
   /// What the sensors have turned out to be, of methods that look.

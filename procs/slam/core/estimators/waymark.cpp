@@ -20,9 +20,6 @@ constexpr double kContradiction = 25.0;  // chi^2
 constexpr double kContradiction_m = 0.03;
 constexpr double kContradiction_rad = 0.02;
 
-// A pose is given no farther from the one before: the grid is bounded.
-constexpr double kFarthest_m = 1500.0;
-
 // Of a robot whose odometry stands still, from scan to scan: it may be stuck.
 const Eigen::Vector3d kStuckStep{0.1, 0.1, 0.05};
 
@@ -108,59 +105,6 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   }
   const bool has_frame = survey_.is_empty() || survey_.has_frame();
   return has_frame ? now : unplaced(observation);
-}
-
-void WaymarkEstimator::add_first_keyframe() {
-  const Se2 map_from_base{start_.x_m, start_.y_m, start_.yaw_rad};
-  graph_.add_keyframe(map_from_base);
-  const bool defines_frame = !setup_.loaded_map;
-  const Eigen::Vector3d sigmas =
-      defines_frame ? Eigen::Vector3d::Constant(kFirstPoseSigma)
-                    : Eigen::Vector3d{start_.sigma_m, start_.sigma_m, start_.sigma_rad};
-  graph_.add(PosePrior{0, map_from_base, sigmas.cwiseInverse().asDiagonal()});
-}
-
-bool WaymarkEstimator::set_pose(const StartPose& pose) {
-  const bool has_begun = !graph_.state().keyframes.empty();
-  if (!has_begun && !setup_.loaded_map) return false;  // there is no map that it could be in
-  const Eigen::Vector2d given{pose.x_m, pose.y_m};
-  Eigen::Vector2d known = given;
-  if (has_begun)
-    known = graph_.state().keyframes.back().translation();
-  else if (!loaded_points_.empty())
-    known = loaded_points_.front();
-  if ((given - known).norm() > kFarthest_m) return false;
-  if (has_begun)
-    given_pose_ = pose;
-  else
-    start_ = pose;
-  if (place_finder_) is_confirmed_ = false;
-  place_finder_.reset();
-  note_reason(pose.kind == StartKind::kLast ? EstimateReason::kRelocalised
-                                            : EstimateReason::kCommand);
-  return true;
-}
-
-/// A new keyframe, which nothing but the given pose ties to the ones before.
-void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
-  const Se2 map_from_base{pose.x_m, pose.y_m, pose.yaw_rad};
-  const std::size_t keyframe = graph_.add_keyframe(map_from_base);
-  graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_, true});
-  const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
-  graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
-  is_confirmed_ = !setup_.loaded_map;
-  relocalisation_ = {};
-  forget_way_here();
-  begin_submaps_anew();
-}
-
-/// The robot was put elsewhere, or its place has other coordinates: the step there was not driven.
-/// (A relocalisation may be what shows that odometry was stuck, and keeps the standstill.)
-void WaymarkEstimator::forget_way_here() {
-  is_put_elsewhere_ = true;
-  standstill_.reset();
-  keyframes_standing_ = 0;
-  motion_doubt_.note_observed();
 }
 
 void WaymarkEstimator::note_reason(EstimateReason reason) {

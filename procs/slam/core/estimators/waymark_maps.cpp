@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the graph estimator uses a loaded map, and makes one to be saved.
 #include "slam/core/estimators/waymark.hpp"
+#include "slam/core/grid/occupied_points.hpp"
 #include "slam/core/mapping/seen_through.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -16,21 +17,8 @@
 namespace waymark {
 namespace {
 
-constexpr double kFound_m = 0.1;  // sigmas of a place that markers and walls have shown
-constexpr double kFound_rad = 0.05;
 constexpr double kLeastMapped = 0.6;   // share of the beams on walls of the loaded map, to be in it
-constexpr double kWallPoint = 0.5;     // occupancy
 constexpr double kMostPoints = 400.0;  // of a wall's cell: newer ones outweigh older ones in time
-
-Points wall_points(const GridMap& grid) {
-  Points points;
-  grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
-    for (std::size_t offset = 0; offset < kTileCells; ++offset)
-      if (cells[offset].occupancy() > kWallPoint)
-        points.push_back(grid.frame.centre_of(cell_at(index, offset)));
-  });
-  return points;
-}
 
 /// What the loaded map was drawn along, where the robot has not been since: bounded by the area.
 void add_loaded_graph(const PoseGraph& loaded, PoseGraph& graph) {
@@ -105,30 +93,10 @@ void WaymarkEstimator::load(const MapSnapshot& map) {
     graph_.add_fixed_landmark(landmark.map_from_marker, landmark.covariance);
     book_.add_known(landmark);
   }
-  loaded_points_ = wall_points(map.grid);
+  loaded_points_ = occupied_points(map.grid);
   wall_changes_.emplace(setup_.loaded_map);
   is_confirmed_ = false;
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);
-}
-
-/// @return whether the robot's place in the loaded map is known by now.
-bool WaymarkEstimator::place(const Observation& observation) {
-  const auto found = place_finder_->update(observation.motion, observation, measured(observation),
-                                           setup_.camera, range_noise_);
-  if (!found) return false;
-  start_ = {StartKind::kPose, found->x(), found->y(), found->theta(), kFound_m, kFound_rad};
-  place_finder_.reset();
-  is_confirmed_ = true;
-  motion_ = {};
-  note_reason(EstimateReason::kRelocalised);
-  return true;
-}
-
-Estimate WaymarkEstimator::unplaced(const Observation& observation) const {
-  Estimate estimate = describe_observation(observation, {}, setup_.range_sigma_m);
-  estimate.has_pose = false;
-  estimate.health = Health::kInitialising;
-  return estimate;
 }
 
 const NdtMap& WaymarkEstimator::surfaces_of(const MatchedScan& scan) const {

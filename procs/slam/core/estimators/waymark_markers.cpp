@@ -13,8 +13,6 @@ constexpr double kContradicts_m = 0.5;  // a marker this far from all of its id
 // The same while the odometry stands still: at least, and in standard deviations of the sighting.
 constexpr double kStandsStill_m = 0.03;
 constexpr double kStandsStillSigmas = 4.0;
-constexpr double kReturned_m = 0.3;  // sigma of a pose that a relocalisation is taken back to
-constexpr double kReturned_rad = 0.1;
 // A marker counts as missed if no frame of the last moments has shown it.
 constexpr Duration kSightingAge = std::chrono::seconds{1};
 
@@ -131,23 +129,6 @@ void WaymarkEstimator::note_misses(const Observation& observation) {
     return is_expected_in_view(base_from_marker, setup_.camera, observation.beams);
   };
   book_.note_misses(graph_.state(), newest(), is_in_view, observation.time - kSightingAge);
-}
-
-void WaymarkEstimator::relocate(const Se2& map_from_base) {
-  ++findings_.relocalisations;
-  graph_.relocate_newest(map_from_base);
-  if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
-    const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
-    graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
-  }
-  graph_.optimise();
-  is_put_elsewhere_ = true;
-  begin_submaps_anew();
-}
-
-void WaymarkEstimator::begin_submaps_anew() {
-  growing_submaps_.clear();
-  loop_finder_.forget_candidate();
 }
 
 }  // namespace waymark

@@ -139,9 +139,7 @@ LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& 
   }
   linear.residual = root * residual;
   LinearFactor::Jacobian by_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
-  if (!is_cut) {
-    by_calibration.leftCols<kOdometryTerms>() = -root * moved.by_errors.leftCols<kOdometryTerms>();
-  }
+  if (!is_cut) by_calibration.leftCols<kOdometryTerms>() = -root * moved.by_errors;
   linear.blocks = {{keyframe_variable(from), root * found.by_from},
                    {keyframe_variable(to), root * found.by_to},
                    {{VariableKind::kCalibration, 0}, by_calibration}};

@@ -18,15 +18,13 @@ namespace waymark {
 /// What odometry and camera get wrong in the same way all the time. Odometry: scale of distances,
 /// drift [rad/m], scale of turns, LiDAR ahead of the wheels' axis [m] (OdometryErrors). Camera: yaw
 /// of its mounting [rad], focal length (relative), standoff of the markers from their walls [m].
-inline constexpr Eigen::Index kOdometryTerms = 4;
+inline constexpr Eigen::Index kOdometryTerms = OdometryErrors::SizeAtCompileTime;
 inline constexpr Eigen::Index kCameraTerms = 3;
 inline constexpr Eigen::Index kCalibrationSize = kOdometryTerms + kCameraTerms;
 using Calibration = Eigen::Matrix<double, kCalibrationSize, 1>;
 
 inline OdometryErrors odometry_part(const Calibration& calibration) {
-  OdometryErrors errors = OdometryErrors::Zero();
-  errors.head<kOdometryTerms>() = calibration.head<kOdometryTerms>();
-  return errors;
+  return calibration.head<kOdometryTerms>();
 }
 
 inline Eigen::Vector3d camera_part(const Calibration& calibration) {

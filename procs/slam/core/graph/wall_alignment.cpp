@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/wall_alignment.hpp"
 
+#include "slam/core/grid/occupied_points.hpp"
 #include "slam/core/registration/correlative_search.hpp"
 #include "slam/core/registration/scan_match.hpp"
 
@@ -13,7 +14,6 @@
 namespace waymark {
 namespace {
 
-constexpr double kWall = 0.5;       // occupancy
 constexpr double kStretch_m = 4.0;  // radius of what is looked for at once
 constexpr double kStretchesEvery_m = 3.0;
 constexpr std::size_t kMostStretches = 24;
@@ -28,16 +28,6 @@ constexpr double kAgree_rad = 0.1;
 constexpr std::size_t kAgreeing = 2;    // stretches, at least
 constexpr double kRangeSigma_m = 0.02;  // of points that stand for cells
 const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
-
-Points wall_points_of(const GridMap& grid) {
-  Points points;
-  grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
-    for (std::size_t offset = 0; offset < kTileCells; ++offset)
-      if (cells[offset].occupancy() > kWall)
-        points.push_back(grid.frame.centre_of(cell_at(index, offset)));
-  });
-  return points;
-}
 
 /// Places along the way of a map, some metres apart.
 std::vector<Se2> places_of(const PoseGraph& graph) {
@@ -93,8 +83,8 @@ Se2 mean_of(const std::vector<Se2>& poses) {
 }  // namespace
 
 std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapshot& b) {
-  const Points walls_a = wall_points_of(a.grid);
-  const Points walls_b = wall_points_of(b.grid);
+  const Points walls_a = occupied_points(a.grid);
+  const Points walls_b = occupied_points(b.grid);
   if (walls_a.empty() || walls_b.empty()) return std::nullopt;
   Eigen::Vector2d least = walls_a.front();
   Eigen::Vector2d most = least;

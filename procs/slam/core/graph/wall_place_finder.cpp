@@ -2,6 +2,7 @@
 #include "slam/core/graph/wall_place_finder.hpp"
 
 #include "slam/core/graph/state.hpp"
+#include "slam/core/grid/occupied_points.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -10,7 +11,6 @@
 namespace waymark {
 namespace {
 
-constexpr double kWall = 0.5;  // occupancy
 constexpr double kSearchEvery_m = 0.4;
 constexpr int kAgreeing = 3;  // scans
 constexpr std::size_t kBeams = 150;
@@ -30,12 +30,7 @@ const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
 WallPlaceFinder::WallPlaceFinder(std::shared_ptr<const MapSnapshot> map,
                                  const ScanMatchConfig& scan)
     : map_{std::move(map)}, scan_{scan} {
-  Points walls;
-  map_->grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
-    for (std::size_t offset = 0; offset < kTileCells; ++offset)
-      if (cells[offset].occupancy() > kWall)
-        walls.push_back(map_->grid.frame.centre_of(cell_at(index, offset)));
-  });
+  const Points walls = occupied_points(map_->grid);
   if (walls.empty()) return;
   Eigen::Vector2d least = walls.front();
   Eigen::Vector2d most = least;

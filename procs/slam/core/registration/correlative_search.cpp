@@ -12,7 +12,6 @@
 namespace waymark {
 namespace {
 
-constexpr double kUsualResolution_m = 0.05;
 constexpr int kFull = 255;           // the byte that stands for a field value of 1
 constexpr int kTopLevel = 6;         // of 64 cells: 3.2 m at 5 cm
 constexpr int kMaxHalfSide = 1024;   // [cells] from the median: 51 m at 5 cm, beyond indoor LiDARs
@@ -72,7 +71,7 @@ CorrelativeField::CorrelativeField(std::span<const Eigen::Vector2d> points_in_su
 }
 
 CorrelativeField CorrelativeField::of_map(std::span<const Eigen::Vector2d> points) {
-  double resolution_m = kUsualResolution_m;
+  double resolution_m = kResolution_m;
   if (!points.empty()) {
     const Eigen::Vector2d centre = median(points);
     for (const Eigen::Vector2d& point : points) {

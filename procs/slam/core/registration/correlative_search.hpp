@@ -35,12 +35,14 @@ struct SearchMatch {
 /// Immutable after construction, so that threads may share it.
 class CorrelativeField {
  public:
+  static constexpr double kResolution_m = 0.05;  ///< unless said otherwise: cells of a map
+
   /// @param points_in_submap  any number. Points that are not finite, or more than 1024 cells in x
   ///                          or y from the median, are ignored: that bounds memory (7 levels of
   ///                          at most 4.6 MB each while sigma is about a cell).
   /// @param sigma_m           standard deviation of the fall-off, cut at three of them.
   explicit CorrelativeField(std::span<const Eigen::Vector2d> points_in_submap,
-                            double resolution_m = 0.05, double sigma_m = 0.05);
+                            double resolution_m = kResolution_m, double sigma_m = kResolution_m);
 
   /// Of a whole map: coarser where it has to be, so that no point is ignored.
   static CorrelativeField of_map(std::span<const Eigen::Vector2d> points);

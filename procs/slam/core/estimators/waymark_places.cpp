@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the graph estimator begins, is put by a command, or finds itself anew.
+#include "slam/core/estimators/waymark.hpp"
+
+#include <utility>
+
+namespace waymark {
+namespace {
+
+constexpr double kFound_m = 0.1;  // sigmas of a place that markers and walls have shown
+constexpr double kFound_rad = 0.05;
+constexpr double kReturned_m = 0.3;  // sigma of a pose that a relocalisation is taken back to
+constexpr double kReturned_rad = 0.1;
+
+}  // namespace
+
+void WaymarkEstimator::add_first_keyframe() {
+  const Se2 map_from_base{start_.x_m, start_.y_m, start_.yaw_rad};
+  graph_.add_keyframe(map_from_base);
+  const bool defines_frame = !setup_.loaded_map;
+  const Eigen::Vector3d sigmas =
+      defines_frame ? Eigen::Vector3d::Constant(kFirstPoseSigma)
+                    : Eigen::Vector3d{start_.sigma_m, start_.sigma_m, start_.sigma_rad};
+  graph_.add(PosePrior{0, map_from_base, sigmas.cwiseInverse().asDiagonal()});
+}
+
+bool WaymarkEstimator::set_pose(const StartPose& pose) {
+  const bool has_begun = !graph_.state().keyframes.empty();
+  if (!has_begun && !setup_.loaded_map) return false;  // there is no map that it could be in
+  const Eigen::Vector2d given{pose.x_m, pose.y_m};
+  Eigen::Vector2d known = given;
+  if (has_begun)
+    known = graph_.state().keyframes.back().translation();
+  else if (!loaded_points_.empty())
+    known = loaded_points_.front();
+  if ((given - known).norm() > kFarthestPose_m) return false;
+  if (has_begun)
+    given_pose_ = pose;
+  else
+    start_ = pose;
+  if (place_finder_) is_confirmed_ = false;
+  place_finder_.reset();
+  note_reason(pose.kind == StartKind::kLast ? EstimateReason::kRelocalised
+                                            : EstimateReason::kCommand);
+  return true;
+}
+
+/// A new keyframe, which nothing but the given pose ties to the ones before.
+void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
+  const Se2 map_from_base{pose.x_m, pose.y_m, pose.yaw_rad};
+  const std::size_t keyframe = graph_.add_keyframe(map_from_base);
+  graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_, true});
+  const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
+  graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
+  is_confirmed_ = !setup_.loaded_map;
+  relocalisation_ = {};
+  forget_way_here();
+  begin_submaps_anew();
+}
+
+/// The robot was put elsewhere, or its place has other coordinates: the step there was not driven.
+/// (A relocalisation may be what shows that odometry was stuck, and keeps the standstill.)
+void WaymarkEstimator::forget_way_here() {
+  is_put_elsewhere_ = true;
+  standstill_.reset();
+  keyframes_standing_ = 0;
+  motion_doubt_.note_observed();
+}
+
+/// @return whether the robot's place in the loaded map is known by now.
+bool WaymarkEstimator::place(const Observation& observation) {
+  const auto found = place_finder_->update(observation.motion, observation, measured(observation),
+                                           setup_.camera, range_noise_);
+  if (!found) return false;
+  start_ = {StartKind::kPose, found->x(), found->y(), found->theta(), kFound_m, kFound_rad};
+  place_finder_.reset();
+  is_confirmed_ = true;
+  motion_ = {};
+  note_reason(EstimateReason::kRelocalised);
+  return true;
+}
+
+Estimate WaymarkEstimator::unplaced(const Observation& observation) const {
+  Estimate estimate = describe_observation(observation, {}, setup_.range_sigma_m);
+  estimate.has_pose = false;
+  estimate.health = Health::kInitialising;
+  return estimate;
+}
+
+void WaymarkEstimator::relocate(const Se2& map_from_base) {
+  ++findings_.relocalisations;
+  graph_.relocate_newest(map_from_base);
+  if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
+    const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
+    graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
+  }
+  graph_.optimise();
+  is_put_elsewhere_ = true;
+  begin_submaps_anew();
+}
+
+void WaymarkEstimator::begin_submaps_anew() {
+  growing_submaps_.clear();
+  loop_finder_.forget_candidate();
+}
+
+}  // namespace waymark
