@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/correction.hpp"
 
-#include "slam/core/graph/state.hpp"
-#include "slam/core/motion/pose_deviation.hpp"
+#include "common/geometry/se2.hpp"
 #include "slam/slam_messages.hpp"
 
 namespace waymark {

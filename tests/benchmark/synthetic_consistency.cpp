@@ -81,7 +81,7 @@ Stations drive_once(const Drives& drives, std::uint64_t seed) {
        test::run(estimator, log_of(drives, corridor), test::setup_of(corridor))) {
     const int travel_m = static_cast<int>(step.truth.x());
     if (travel_m < 1 || stations.contains(travel_m)) continue;
-    const Eigen::Vector3d error = deviation(step.truth, step.estimate.map_from_base);
+    const Eigen::Vector3d error = pose_difference(step.estimate.map_from_base, step.truth);
     const Eigen::Matrix3d& covariance = step.estimate.covariance;
     const Eigen::Vector3d squares = error.cwiseAbs2();
     stations[travel_m] = {error.dot(covariance.ldlt().solve(error)), squares, covariance.diagonal(),

@@ -2,9 +2,9 @@
 #include "placement/covariance_model.hpp"
 
 #include "common/geometry/principal_axes.hpp"
+#include "common/geometry/se2.hpp"
 #include "placement/keyframe_schedule.hpp"
 #include "placement/pose_covariance.hpp"
-#include "slam/core/motion/pose_deviation.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -43,9 +43,9 @@ void drive_step(const Se2& before, const Step& step, const OdometryNoise& descri
   }
   Eigen::Matrix<double, 3, kCalibrationSize> by_calibration =
       Eigen::Matrix<double, 3, kCalibrationSize>::Zero();
-  by_calibration.leftCols<kOdometryTerms>() = turning(before) * moved.by_errors;
+  by_calibration.leftCols<kOdometryTerms>() = turning(before.rotation()) * moved.by_errors;
   known.move(carried_along(step.map_from_base.translation() - before.translation()), by_calibration,
-             turned(before, moved.covariance));
+             in_axes(before.rotation(), moved.covariance));
 }
 
 /// @param steps_of  variables of the factor's keyframes by their number there.

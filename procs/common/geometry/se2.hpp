@@ -58,18 +58,45 @@ inline Se2 interpolate(const Se2& from, const Se2& to, double fraction) {
           from.theta() + fraction * angle_difference(to.theta(), from.theta())};
 }
 
-/// Turns (x, y, theta) in the child's axes into the parent's.
-inline Eigen::Matrix3d turning(const Se2& parent_from_child) {
+/// (x, y, theta) of one pose minus those of another; the angle in (-pi, pi].
+inline Eigen::Vector3d pose_difference(const Se2& to, const Se2& from) {
+  return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
+}
+
+/// The pose that differs by so much: pose_difference(moved_by(pose, d), pose) is d.
+inline Se2 moved_by(const Se2& pose, const Eigen::Vector3d& difference) {
+  return {Eigen::Vector2d{pose.translation() + difference.head<2>()},
+          pose.theta() + difference.z()};
+}
+
+/// Turns (x, y, theta) into axes that are turned by `rotation`.
+inline Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = parent_from_child.rotation();
+  turn.topLeftCorner<2, 2>() = rotation;
   return turn;
 }
 
-/// Covariance of (x, y, theta) in the child's axes, in the parent's.
-inline Eigen::Matrix3d turned(const Se2& parent_from_child,
-                              const Eigen::Matrix3d& covariance_in_child) {
-  const Eigen::Matrix3d turn = turning(parent_from_child);
-  return turn * covariance_in_child * turn.transpose();
+/// Covariance or information of (x, y, theta) in axes that are turned by `rotation`: of the child
+/// in the parent's axes with the rotation of parent_from_child.
+inline Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix) {
+  const Eigen::Matrix3d turn = turning(rotation);
+  return turn * matrix * turn.transpose();
+}
+
+/// How a difference of poses at one place shows at another, `step_in_map` further on: a turn moves
+/// it sideways.
+inline Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map) {
+  Eigen::Matrix3d by = Eigen::Matrix3d::Identity();
+  by(0, 2) = -step_in_map.y();
+  by(1, 2) = step_in_map.x();
+  return by;
+}
+
+/// The same for the covariance of such differences.
+inline Eigen::Matrix3d carried_along(const Eigen::Matrix3d& covariance,
+                                     const Eigen::Vector2d& step_in_map) {
+  const Eigen::Matrix3d by = carried_along(step_in_map);
+  return by * covariance * by.transpose();
 }
 
 }  // namespace waymark

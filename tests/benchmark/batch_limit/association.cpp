@@ -70,8 +70,9 @@ Se2 next_pose(const Stop& stop, const Se2& map_from_last, const OdometryNoise& n
   std::vector<std::optional<std::size_t>> seen;
   for (const LineOfScan& line : stop.lines)
     seen.push_back(wall_of(line, map_from_base, walls));
-  return deviated(map_from_base, step_to_walls(stop, seen, map_from_base, walls,
-                                               turned(map_from_last, motion.covariance)));
+  return moved_by(map_from_base,
+                  step_to_walls(stop, seen, map_from_base, walls,
+                                in_axes(map_from_last.rotation(), motion.covariance)));
 }
 
 void link_walls(const Stop& stop, std::size_t index, Scene& scene) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/odometry.hpp"
 
-#include "slam/core/motion/pose_deviation.hpp"
+#include "common/geometry/se2.hpp"
 
 namespace waymark {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/waymark.hpp"
 
-#include "slam/core/motion/pose_deviation.hpp"
+#include "slam/core/mapping/moving_beams.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -54,6 +54,8 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
       thinning_{config.keyframes_per_place, 2 * config.submap_keyframes},
+      submaps_{config.scan.cell_spacing_m, config.submap_keyframes},
+      usual_fit_{config.scan.min_inliers, config.min_inlier_share},
       map_{setup.grid, ground_of(setup)},
       weighed_with_{graph_.odometry_noise()},
       start_{setup.start},
@@ -73,7 +75,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   findings_.beams_moving += static_cast<std::int64_t>(look.beams_moving);
   const std::optional<Observation> corrected = with_right_scale(measured, look);
   const Observation& observation = corrected ? *corrected : measured;
-  bool is_keyframe = given_pose_ || odometry_refused_ || is_keyframe_due(observation) ||
+  bool is_keyframe = given_pose_ || odometry_check_.is_refused() || is_keyframe_due(observation) ||
                      is_contradicted_by(observation);
   const Se2 map_from_last = graph_.state().keyframes.empty()
                                 ? Se2{}
@@ -95,8 +97,8 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   Estimate now =
       is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation, between);
   now.updated = is_keyframe;
-  last_step_ = is_put_elsewhere_ ? Se2{} : map_from_last.inverse() * now.map_from_base;
-  last_step_s_ = measured.elapsed_s;
+  odometry_check_.note_estimated(
+      is_put_elsewhere_ ? Se2{} : map_from_last.inverse() * now.map_from_base, measured.elapsed_s);
   newest_from_last_scan_ = graph_.state().keyframes.back().inverse() * now.map_from_base;
   reason_ = EstimateReason::kOdometry;
   if (!is_frozen()) {
@@ -118,10 +120,13 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
   look.expected = prediction();
   Prediction searched = look.expected;
   if (motion_doubt_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
-  leave_out_moving(searched, look);
+  const std::size_t all = look.points.size();
+  look.points =
+      without_moving(look.points, map_.map(), searched.map_from_base, searched.covariance);
+  look.beams_moving = all - look.points.size();
   look.scan = matched(look.points, searched);
   // Before its ranges are blamed, a scan that contradicts the map is looked for elsewhere.
-  if (look.scan && fits_badly(look.scan->match)) search_widely(look);
+  if (look.scan && usual_fit_.is_contradicted(look.scan->match)) search_widely(look);
   return look;
 }
 
@@ -137,7 +142,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
     const Prediction& expected = look.expected;
     if (look.scan) search_widely(look);
     const auto& scan = look.scan;
-    is_refuted_scan = scan && is_refuted(scan->match);
+    is_refuted_scan = scan && usual_fit_.is_refuted(scan->match);
     const bool is_used = scan && !is_refuted_scan && scan->match.is_usable(config_.scan);
     // Odometry that stands still is so sure that no step of the solver would leave it.
     const bool is_moved = is_used && motion_doubt_.is_standing();
@@ -155,7 +160,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
         add_scan_factor(keyframe, *scan->submap, scan->match, false);
       else
         add_map_factor(keyframe, scan->match);
-      learn_usual_fit(scan->match);
+      usual_fit_.note_keyframe(scan->match);
     }
     unobserved_m_ += motion_.distance_m;
   }
@@ -198,7 +203,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
 
 void WaymarkEstimator::map_keyframe(const Observation& observation, const Points& points) {
   const Se2& map_from_base = graph_.state().keyframes.back();
-  insert_scan(points);
+  submaps_.add_keyframe(points, graph_.state().keyframes);
   map_.add(observation, map_from_base);
   map_.follow(poses_of(graph_));
 }
@@ -213,12 +218,12 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
   if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||
-      is_bad_fit(match) || verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
+      usual_fit_.is_worse_than_usual(match) ||
+      verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
     return;
   }
   since_insertion_m_ = 0.0;
-  for (Submap& submap : growing_submaps_)
-    submap.add(points, submap_from_map(submap) * map_from_base);
+  submaps_.add_between(points, map_from_base, graph_.state().keyframes);
 }
 
 WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Look& look) {
@@ -226,7 +231,8 @@ WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Loo
   BetweenKeyframes between{expected.map_from_base, expected.covariance};
   const auto& scan = look.scan;
   if (scan) note_fit(scan->match);
-  if (!scan || !scan->match.is_usable(config_.scan) || is_refuted(scan->match)) return between;
+  if (!scan || !scan->match.is_usable(config_.scan) || usual_fit_.is_refuted(scan->match))
+    return between;
   const Se2 found = scan->map_from_submap * scan->match.map_from_base;
   const Eigen::Matrix3d information =
       in_axes(scan->map_from_submap.rotation(), scan->match.observed.information);
@@ -234,9 +240,7 @@ WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Loo
   between.covariance = (expected.covariance.inverse() + information).inverse();
   const Eigen::Vector3d pull = information * off;
   const Eigen::Vector3d step = between.covariance * pull;
-  between.map_from_base = {expected.map_from_base.x() + step.x(),
-                           expected.map_from_base.y() + step.y(),
-                           expected.map_from_base.theta() + step.z()};
+  between.map_from_base = moved_by(expected.map_from_base, step);
   between.match = scan->match;
   between.shows_all_axes = !scan->match.observed.is_degenerate;
   const double chi2 = off.dot(pull) - pull.dot(between.covariance * pull);
@@ -262,12 +266,13 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   estimate.covariance = 0.5 * (covariance + covariance.transpose());
   estimate.covariance +=
       in_axes(map_from_base.rotation(), unmeasured_covariance(motion_doubt_.suspected_m()));
-  if (setup_.loaded_map) estimate.covariance += loaded_map_covariance(map_from_base);
+  if (setup_.loaded_map)
+    estimate.covariance += covariance_at(*setup_.loaded_map, map_from_base.translation());
   if (relocalisation_.alternative()) {
     const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
     estimate.covariance += away * away.transpose();
   }
-  estimate.odometry_refused = odometry_refused_;
+  estimate.odometry_refused = odometry_check_.is_refused();
   estimate.reason = reason_;
   estimate.calibration_widened = graph_.is_calibration_doubted();
   estimate.weak_axis_source = motion_doubt_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing

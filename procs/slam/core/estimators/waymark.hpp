@@ -11,15 +11,16 @@
 #include "slam/core/graph/odometry_noise_learner.hpp"
 #include "slam/core/graph/place_finder.hpp"
 #include "slam/core/graph/relocalisation.hpp"
+#include "slam/core/graph/solve_schedule.hpp"
 #include "slam/core/graph/survey.hpp"
 #include "slam/core/graph/wall_change_detector.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/mapping/drawn_map.hpp"
-#include "slam/core/motion/speed_limits.hpp"
-#include "slam/core/registration/submap.hpp"
+#include "slam/core/motion/odometry_check.hpp"
+#include "slam/core/registration/submaps.hpp"
+#include "slam/core/registration/usual_fit.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -149,12 +150,9 @@ class WaymarkEstimator final : public Estimator {
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
   void confirm_place(const MatchedScan& scan);
-  Eigen::Matrix3d loaded_map_covariance(const Se2& map_from_base) const;
   std::optional<Observation> with_right_scale(const Observation& observation, Look& look);
-  bool fits_badly(const ScanMatch& match) const;
   void note_fit(const ScanMatch& match);
   void follow_odometry(const Observation& observation);
-  Motion believable_motion(const Observation& observation);
   void add_odometry_factor(std::size_t keyframe, bool is_observed);
   void compare_with_odometry();
   void spread_kept_back(const Observation& observation);
@@ -165,9 +163,7 @@ class WaymarkEstimator final : public Estimator {
   bool agrees_with_markers(const Observation& observation) const;
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
-  std::vector<Se2> without_odometry() const;
   void search_widely(Look& look) const;
-  void leave_out_moving(const Prediction& where, Look& look) const;
   Look look_from_expected(const Observation& observation) const;
   void add_keyframe(const Observation& observation, Look& look);
   void add_first_keyframe();
@@ -191,17 +187,12 @@ class WaymarkEstimator final : public Estimator {
   void relocate(const Se2& map_from_base);
   void begin_submaps_anew();
   void map_keyframe(const Observation& observation, const Points& points);
-  void insert_scan(const Points& points);
   Estimate estimate(const Observation& observation, const Se2& map_from_base,
                     const Eigen::Matrix3d& covariance) const;
   Estimate estimate_at_keyframe(const Observation& observation) const;
   BetweenKeyframes between_keyframes(const Look& look);
   Estimate estimate_between(const Observation& observation, const BetweenKeyframes& between) const;
   void insert_between(const Points& points, const ScanMatch& match, const Se2& map_from_base);
-  void learn_usual_fit(const ScanMatch& match);
-  bool is_bad_fit(const ScanMatch& match) const;
-  bool is_refuted(const ScanMatch& match) const;
-  Se2 submap_from_map(const Submap& submap) const;
 
   std::size_t newest() const { return graph_.state().keyframes.size() - 1; }
 
@@ -215,23 +206,16 @@ class WaymarkEstimator final : public Estimator {
   LoopFinder loop_finder_;
   KeyframeThinning thinning_;
   double since_loop_search_m_{0.0};
-  std::size_t solved_keyframes_{0};        ///< of the whole graph, when it was solved last
-  int solve_steps_left_{0};                ///< of that: one at each keyframe
-  bool has_new_loops_{false};              ///< since then
-  bool loops_matter_{false};               ///< one of them contradicts the pose
+  SolveSchedule solve_schedule_{};
   mutable std::optional<Graph> solved_{};  ///< see solved()
-  std::deque<Submap> submaps_{};           ///< finished
-  std::deque<Submap> growing_submaps_{};   ///< one or two; the first is matched
-  Motion motion_{};                        ///< since the keyframe `moved_from_`
-  std::size_t moved_from_{0};              ///< the newest one, unless odometry was stuck
+  Submaps submaps_;
+  UsualFit usual_fit_;
+  Motion motion_{};            ///< since the keyframe `moved_from_`
+  std::size_t moved_from_{0};  ///< the newest one, unless odometry was stuck
   std::optional<Standstill> standstill_{};
   int keyframes_standing_{0};  ///< in a row
-  SpeedLimits speed_limits_{};
-  bool odometry_refused_{false};  ///< since the last scan
-  Se2 refused_step_{};            ///< what it said
-  Se2 newest_from_last_scan_{};   ///< pose of the last scan in the newest keyframe's frame
-  Se2 last_step_{};               ///< from the scan before it
-  double last_step_s_{0.0};
+  OdometryCheck odometry_check_{};
+  Se2 newest_from_last_scan_{};  ///< pose of the last scan in the newest keyframe's frame
   MotionDoubt motion_doubt_{};
   bool is_observed_{true};  ///< markers or walls showed the way to the newest keyframe
   double since_insertion_m_{0.0};
@@ -255,12 +239,10 @@ class WaymarkEstimator final : public Estimator {
   // Of the newest keyframe:
   RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kSettled};
   double inlier_share_{1.0};
-  double usual_fit_{0.0};  ///< mean of inlier share times mapped share
   bool markers_known_{false};
   EstimateReason reason_{EstimateReason::kOdometry};
 
   // Of the newest scan that was compared with a map:
-  double usual_inliers_{0.0};  ///< mean of inlier shares
   bool is_rescaled_{false};
 };
 

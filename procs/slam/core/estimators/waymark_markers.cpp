@@ -118,7 +118,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     graph_.add(factor);
   }
   if (!matches.empty()) graph_.optimise();
-  if (!returning.empty()) has_new_loops_ = loops_matter_ = true;
+  if (!returning.empty()) solve_schedule_.note_loop(true);
 }
 
 /// Absence is evidence where the camera could have seen the marker, and nothing stood before it:

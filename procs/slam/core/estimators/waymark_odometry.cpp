@@ -46,7 +46,8 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
     }
     spread_kept_back(observation);
   }
-  motion_ = motion_.then(believable_motion(observation));
+  motion_ = motion_.then(odometry_check_.believable(observation.motion, observation.elapsed_s,
+                                                    observation.odometry_caught_up));
   if (!motion_doubt_.is_standing()) {
     standstill_.reset();
     keyframes_standing_ = 0;
@@ -55,25 +56,11 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
     standstill_ = Standstill{moved_from_, motion_, here, here, observation.time, clock_s_};
   }
   ++findings_.observations;
-  if (observation.odometry_doubtful || odometry_refused_) {
+  if (observation.odometry_doubtful || odometry_check_.is_refused()) {
     ++findings_.odometry_jumping;
   } else if (motion_doubt_.is_silent()) {
     ++findings_.odometry_stuck;
   }
-}
-
-/// What no robot can have driven that has driven as this one: then it went on as before.
-Motion WaymarkEstimator::believable_motion(const Observation& observation) {
-  const double step_s = observation.elapsed_s;
-  odometry_refused_ =
-      !observation.odometry_caught_up && !speed_limits_.allow(observation.motion, step_s);
-  if (!odometry_refused_) return observation.motion;
-  refused_step_ = observation.motion.start_from_end;
-  const double share = last_step_s_ > 0.0 ? std::min(1.0, step_s / last_step_s_) : 0.0;
-  const Se2 guess{share * last_step_.x(), share * last_step_.y(), share * last_step_.theta()};
-  Motion motion = Motion::between({}, guess);
-  motion.guessed_s = step_s;
-  return motion;
 }
 
 bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
@@ -194,10 +181,9 @@ void WaymarkEstimator::weigh_past_anew() {
       is_other(along_m2_per_m(noise), along_m2_per_m(weighed_with_)) ||
       is_other(noise.turn_per_sqrt_m * noise.turn_per_sqrt_m,
                weighed_with_.turn_per_sqrt_m * weighed_with_.turn_per_sqrt_m);
-  if (is_frozen() || !is_other_noise ||
-      graph_.state().keyframes.size() < solved_keyframes_ + kWeighedEvery) {
+  const std::size_t all = graph_.state().keyframes.size();
+  if (is_frozen() || !is_other_noise || solve_schedule_.num_since_solution(all) < kWeighedEvery)
     return;
-  }
   weighed_with_ = noise;
   step_everything({});
 }

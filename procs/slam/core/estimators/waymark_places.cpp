@@ -100,7 +100,7 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
 }
 
 void WaymarkEstimator::begin_submaps_anew() {
-  growing_submaps_.clear();
+  submaps_.begin_anew();
   loop_finder_.forget_candidate();
 }
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the graph estimator monitors the LiDAR: the noise of its ranges, and their scale.
 #include "slam/core/estimators/waymark.hpp"
+#include "slam/core/registration/range_scale.hpp"
 
 #include <cmath>
 
 namespace waymark {
 namespace {
 
-constexpr double kSuspect = 0.8;       // of the usual share of inliers; below, ranges may be wrong
-constexpr double kUsualMemory = 0.05;  // weight of the newest scan in what is usual
-constexpr double kLeastShare = 0.01;   // of the ranges; less is within what LiDARs are good for
+constexpr double kLeastShare = 0.01;  // of the ranges; less is within what LiDARs are good for
 constexpr double kLeastSigmas = 5.0;
 constexpr double kClearlyBetter = 1.15;           // inliers with the ranges scaled
 const Eigen::Vector3d kAround{0.05, 0.05, 0.02};  // where the pose may be beside the prediction
@@ -38,7 +37,7 @@ Points points_of(const Observation& observation) {
 std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,
                                                               Look& look) {
   is_rescaled_ = false;
-  if (!look.scan || !fits_badly(look.scan->match)) return std::nullopt;
+  if (!look.scan || !usual_fit_.is_contradicted(look.scan->match)) return std::nullopt;
   const Prediction& expected = look.expected;
   const auto& plain = look.scan;
   const Se2 submap_from_map = plain->map_from_submap.inverse();
@@ -53,7 +52,7 @@ std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation&
   const Points points = points_of(corrected);
   const auto fitted = matched(points, expected);
   if (!fitted || fitted->match.inliers < kClearlyBetter * plain->match.inliers ||
-      fits_badly(fitted->match)) {
+      usual_fit_.is_contradicted(fitted->match)) {
     return std::nullopt;
   }
   look.points = points;
@@ -64,19 +63,15 @@ std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation&
   return corrected;
 }
 
-bool WaymarkEstimator::fits_badly(const ScanMatch& match) const {
-  return is_refuted(match) || match.inlier_share < kSuspect * usual_inliers_;
-}
-
 void WaymarkEstimator::note_fit(const ScanMatch& match) {
   ++findings_.scans;
-  if (is_refuted(match)) {
+  if (usual_fit_.is_refuted(match)) {
     ++findings_.scans_refuted;
   } else if (!match.is_usable(config_.scan)) {
     ++findings_.scans_unusable;
   }
-  if (fits_badly(match)) return;
-  usual_inliers_ += kUsualMemory * (match.inlier_share - usual_inliers_);
+  if (usual_fit_.is_contradicted(match)) return;
+  usual_fit_.note_scan(match);
   if (match.is_usable(config_.scan) && !is_rescaled_)
     range_noise_.observe(match.range_scatter_m * match.range_scatter_m, match.num_scattered);
 }

@@ -74,9 +74,8 @@ template <class State>
 Eigen::Matrix3d covariance_about(const Se2& map_from_base, const ParticleSet<State>& particles) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    const Se2& pose = particles.state(i).map_from_base;
-    const Eigen::Vector3d deviation{pose.x() - map_from_base.x(), pose.y() - map_from_base.y(),
-                                    angle_difference(pose.theta(), map_from_base.theta())};
+    const Eigen::Vector3d deviation =
+        pose_difference(particles.state(i).map_from_base, map_from_base);
     covariance += particles.weights()[i] * deviation * deviation.transpose();
   }
   return covariance;

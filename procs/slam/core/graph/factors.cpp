@@ -56,7 +56,7 @@ void State::retract(const Variable& variable, const Eigen::Ref<const Eigen::Vect
   }
   Se2& pose = variable.kind == VariableKind::kKeyframe ? keyframes[variable.index]
                                                        : landmarks[variable.index];
-  pose = {pose.x() + step.x(), pose.y() + step.y(), pose.theta() + step.z()};
+  pose = moved_by(pose, step);
 }
 
 Eigen::Matrix3d root_of(const Eigen::Matrix3d& information) {

@@ -117,9 +117,8 @@ Pairs agreeing(const Pairs& pairs, const Se2& a_from_b) {
 Landmark mean_of(const Landmark& a, const Landmark& b) {
   Landmark mean = a;
   const Eigen::Matrix3d gain = a.covariance * (a.covariance + b.covariance).inverse();
-  const Eigen::Vector3d step = gain * pose_difference(b.map_from_marker, a.map_from_marker);
-  mean.map_from_marker = {a.map_from_marker.x() + step.x(), a.map_from_marker.y() + step.y(),
-                          a.map_from_marker.theta() + step.z()};
+  mean.map_from_marker =
+      moved_by(a.map_from_marker, gain * pose_difference(b.map_from_marker, a.map_from_marker));
   mean.covariance = a.covariance - gain * a.covariance;
   mean.sightings = a.sightings + b.sightings;
   return mean;

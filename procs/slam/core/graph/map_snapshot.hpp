@@ -2,6 +2,7 @@
 // A map that outlives its run: all that another run needs to know the place again.
 #pragma once
 
+#include "slam/core/graph/pose_graph.hpp"
 #include "slam/core/graph/state.hpp"
 #include "slam/core/grid/grid_map.hpp"
 #include "slam/core/mapping/landmark_map.hpp"
@@ -15,20 +16,6 @@
 namespace waymark {
 
 class Fields;
-
-/// One pose of a graph as it was measured from another.
-struct GraphEdge {
-  std::size_t from{0};
-  std::size_t to{0};
-  Se2 from_from_to{};
-  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};  ///< order x y theta, frame of `from`
-};
-
-/// The poses that a map was drawn along, and what ties them.
-struct PoseGraph {
-  std::vector<Se2> poses{};  ///< map_from_base
-  std::vector<GraphEdge> edges{};
-};
 
 /// What a drive has shown about the robot's description.
 struct LearntCalibration {
@@ -47,6 +34,13 @@ struct MapSnapshot {
   PoseGraph graph{};
   LearntCalibration calibration{};
 };
+
+/// The walls of a map that is to be saved: without those that the grid shows to be free by now, and
+/// of the others no more points than newer ones can outweigh.
+NdtMap walls_to_save(const NdtMap& walls, const GridMap& grid, double point_variance_m2);
+
+/// How well a place in a map is known: as well as the nearest marker; zero without markers.
+Eigen::Matrix3d covariance_at(const MapSnapshot& map, const Eigen::Vector2d& place);
 
 /// What a run does with a loaded map.
 enum class MapMode {

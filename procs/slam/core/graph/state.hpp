@@ -4,13 +4,12 @@
 
 #include "common/geometry/se2.hpp"
 #include "slam/core/motion/odometry_errors.hpp"
+#include "slam/core/motion/pose_sequence.hpp"
 
 #include <Eigen/Core>
 
 #include <compare>
 #include <cstddef>
-#include <deque>
-#include <initializer_list>
 #include <vector>
 
 namespace waymark {
@@ -42,38 +41,6 @@ struct Variable {
   Eigen::Index size() const { return kind == VariableKind::kCalibration ? kCalibrationSize : 3; }
 };
 
-/// Poses by their number; the oldest ones may be forgotten, and the others keep their numbers.
-class PoseSequence {
- public:
-  PoseSequence() = default;
-
-  PoseSequence(std::initializer_list<Se2> poses) : poses_{poses} {}
-
-  std::size_t size() const { return first_ + poses_.size(); }
-
-  bool empty() const { return size() == 0; }
-
-  /// @param index  of one that is not forgotten.
-  Se2& operator[](std::size_t index) { return poses_[index - first_]; }
-
-  const Se2& operator[](std::size_t index) const { return poses_[index - first_]; }
-
-  Se2& back() { return poses_.back(); }
-
-  const Se2& back() const { return poses_.back(); }
-
-  void push_back(const Se2& pose) { poses_.push_back(pose); }
-
-  void forget_before(std::size_t index) {
-    for (; first_ < index; ++first_)
-      poses_.pop_front();
-  }
-
- private:
-  std::size_t first_{0};  ///< that is not forgotten
-  std::deque<Se2> poses_{};
-};
-
 /// Map frame. Poses move by additive (x, y, theta).
 struct State {
   PoseSequence keyframes{};      ///< map_from_base
@@ -82,17 +49,5 @@ struct State {
 
   void retract(const Variable& variable, const Eigen::Ref<const Eigen::VectorXd>& step);
 };
-
-/// (x, y, theta) of one pose minus those of another.
-inline Eigen::Vector3d pose_difference(const Se2& to, const Se2& from) {
-  return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
-}
-
-/// Covariance or information of (x, y, theta) in axes that are turned by `rotation`.
-inline Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = rotation;
-  return turn * matrix * turn.transpose();
-}
 
 }  // namespace waymark

@@ -145,15 +145,21 @@ double Survey::sigmas_off(const Entry& entry, const Graph& graph) const {
   return prior.linearise(graph.state()).residual.norm();
 }
 
-std::vector<Survey::Contradiction> Survey::contradictions(const Graph& graph) const {
-  std::vector<Contradiction> found;
+std::vector<MapChange> Survey::changes(const Graph& graph) const {
+  std::vector<MapChange> changes;
   for (const Entry& entry : entries_) {
     if (!entry.has_prior) continue;
     const double sigmas = sigmas_off(entry, graph);
-    if (sigmas > kWrong)
-      found.push_back({entry.marker, graph.state().landmarks[*entry.landmark], sigmas});
+    if (sigmas <= kWrong) continue;
+    MapChange change;
+    change.kind = MapChange::Kind::kSurveyOff;
+    change.id = entry.marker.id;
+    change.place = graph.state().landmarks[*entry.landmark];
+    change.was_at = entry.marker.survey_from_marker.translation();
+    change.sigmas = sigmas;
+    changes.push_back(change);
   }
-  return found;
+  return changes;
 }
 
 }  // namespace waymark

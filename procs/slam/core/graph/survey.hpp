@@ -5,6 +5,7 @@
 #include "slam/core/graph/association.hpp"
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/landmark/surveyed_marker.hpp"
+#include "slam/core/mapping/map_change.hpp"
 
 #include <optional>
 #include <vector>
@@ -32,14 +33,8 @@ class Survey {
   /// Adds the priors of new matches, solves, and tests those that are contradicted.
   void apply(Graph& graph, int solve_steps);
 
-  struct Contradiction {
-    SurveyedMarker marker{};
-    Se2 map_from_marker{};  ///< by the graph
-    double sigmas{0.0};
-  };
-
-  /// Entries that are more than kWrong sigma off.
-  std::vector<Contradiction> contradictions(const Graph& graph) const;
+  /// Markers that the graph has more than kWrong sigma away from where the survey has them.
+  std::vector<MapChange> changes(const Graph& graph) const;
 
  private:
   struct Entry {

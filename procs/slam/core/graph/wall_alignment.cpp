@@ -76,8 +76,7 @@ Se2 mean_of(const std::vector<Se2>& poses) {
   for (const Se2& pose : poses)
     sum += pose_difference(pose, poses.front());
   sum /= static_cast<double>(poses.size());
-  return {poses.front().x() + sum.x(), poses.front().y() + sum.y(),
-          poses.front().theta() + sum.z()};
+  return moved_by(poses.front(), sum);
 }
 
 }  // namespace

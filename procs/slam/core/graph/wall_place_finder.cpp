@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/wall_place_finder.hpp"
 
-#include "slam/core/graph/state.hpp"
+#include "common/geometry/se2.hpp"
 #include "slam/core/grid/occupied_points.hpp"
 
 #include <cmath>

@@ -127,7 +127,7 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
 
   const Eigen::Matrix<double, 3, 2> gain =
       measurement.covariance * rows.transpose() * innovation.covariance.inverse();
-  measurement.base_from_marker = deviated(seen, gain * innovation.residual);
+  measurement.base_from_marker = moved_by(seen, gain * innovation.residual);
   measurement.by_camera += gain * innovation.by_camera;
   measurement.by_standoff = gain * innovation.by_standoff;
   measurement.held -= gain * rows;

@@ -2,9 +2,9 @@
 // Where a marker is from the robot: the camera's view of it, held to the wall that the LiDAR sees.
 #pragma once
 
+#include "common/geometry/se2.hpp"
 #include "slam/core/landmark/sighting_sigmas.hpp"
 #include "slam/core/motion/odometry_errors.hpp"
-#include "slam/core/motion/pose_deviation.hpp"
 #include "slam/core/scan/observation.hpp"
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/mapping/landmark_map.hpp"
 
-#include "slam/core/motion/pose_deviation.hpp"
+#include "common/geometry/se2.hpp"
 
 #include <Eigen/LU>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr double kSigmaFloor = 1e-3;
 
 Eigen::Matrix3d in_map(const Eigen::Matrix3d& covariance_in_base, const Se2& map_from_base) {
-  return turned(map_from_base, covariance_in_base) +
+  return in_axes(map_from_base.rotation(), covariance_in_base) +
          kSigmaFloor * kSigmaFloor * Eigen::Matrix3d::Identity();
 }
 
@@ -25,9 +25,7 @@ Landmark LandmarkMap::Entry::landmark() const {
   const Eigen::Matrix3d averaged = information.inverse();
   const Eigen::Vector3d deviation = averaged * weighted_deviation;
   Landmark landmark = first;
-  landmark.map_from_marker = {
-      Eigen::Vector2d{first.map_from_marker.translation() + deviation.head<2>()},
-      first.map_from_marker.theta() + deviation.z()};
+  landmark.map_from_marker = moved_by(first.map_from_marker, deviation);
   landmark.covariance = averaged + pose_covariance_sum / landmark.sightings;
   return landmark;
 }
@@ -55,9 +53,8 @@ void LandmarkMap::add(const MarkerSighting& sighting, const Se2& map_from_base,
     nearest->first.map_from_marker = map_from_marker;
     nearest->first.first_seen = sighting.time;
   }
-  const Se2& first = nearest->first.map_from_marker;
-  const Eigen::Vector3d deviation{map_from_marker.x() - first.x(), map_from_marker.y() - first.y(),
-                                  angle_difference(map_from_marker.theta(), first.theta())};
+  const Eigen::Vector3d deviation =
+      pose_difference(map_from_marker, nearest->first.map_from_marker);
   const Eigen::Matrix3d information = in_map(sighting.covariance_in_base, map_from_base).inverse();
   nearest->information += information;
   nearest->weighted_deviation += information * deviation;

@@ -26,11 +26,6 @@ constexpr int kWellSeen = 20;               // points of a cell
 constexpr double kSquareOn = 0.5;           // cosine of a beam's incidence
 constexpr double kSigmaOverMedian = 1.483;  // of the absolute values of a normal distribution
 
-// Scale of ranges.
-constexpr int kScaleSteps = 8;
-constexpr double kScaleKernel_m = 0.1;
-constexpr double kScalePrior = 0.2;
-
 double squared(double x) {
   return x * x;
 }
@@ -133,14 +128,6 @@ class PointsInMap {
   std::vector<Place> places_;
 };
 
-Se2 moved(const Se2& pose, const Eigen::Vector3d& step) {
-  return {Eigen::Vector2d{pose.translation() + step.head<2>()}, pose.theta() + step.z()};
-}
-
-Eigen::Vector3d difference(const Se2& to, const Se2& from) {
-  return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
-}
-
 void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
                const ScanMatchConfig& config, ScanMatch& match) {
   int mapped = 0;
@@ -179,62 +166,7 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
         share / match.inliers;
 }
 
-using Vector4 = Eigen::Vector4d;
-
-struct ScaleEquations {
-  Eigen::Matrix4d information{Eigen::Matrix4d::Zero()};
-  Vector4 gradient{Vector4::Zero()};
-};
-
-/// Of (x, y, theta, share of the ranges), about a pose and a share.
-ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
-                               const Eigen::Vector2d& origin, const NdtMap& map, const Se2& pose,
-                               double share, double point_variance_m2) {
-  ScaleEquations sum;
-  const Eigen::Matrix2d rotation = pose.rotation();
-  for (const Eigen::Vector2d& measured : points) {
-    const Eigen::Vector2d ray = measured - origin;
-    const Eigen::Vector2d lever = rotation * (origin + ray / (1.0 + share));
-    const Eigen::Vector2d there = lever + pose.translation();
-    const NdtSurface* surface = map.at(there, point_variance_m2);
-    if (surface == nullptr || !surface->is_line) continue;
-    const Eigen::Vector2d& normal = surface->normal;
-    const double off_m = normal.dot(there - surface->mean);
-    const double robust =
-        squared(squared(kScaleKernel_m) / (squared(kScaleKernel_m) + squared(off_m)));
-    const double weight = robust / (surface->across_m2 + point_variance_m2);
-    const Vector4 by{normal.x(), normal.y(), normal.dot(Eigen::Vector2d{-lever.y(), lever.x()}),
-                     -normal.dot(rotation * ray) / squared(1.0 + share)};
-    sum.information += weight * by * by.transpose();
-    sum.gradient += weight * off_m * by;
-  }
-  return sum;
-}
-
 }  // namespace
-
-RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
-                           const Eigen::Vector2d& origin_in_base, const NdtMap& map,
-                           const Se2& guess, const Eigen::Matrix3d& guess_covariance,
-                           const RangeNoise& noise) {
-  Eigen::Matrix4d prior = Eigen::Matrix4d::Zero();
-  prior.topLeftCorner<3, 3>() = guess_covariance.inverse();
-  prior(3, 3) = 1.0 / squared(kScalePrior);
-  Se2 pose = guess;
-  RangeScale scale;
-  for (int i = 0; i < kScaleSteps; ++i) {
-    const ScaleEquations seen = scale_equations(points_in_base, origin_in_base, map, pose,
-                                                scale.share, noise.variance_m2());
-    Vector4 off;
-    off << difference(pose, guess), scale.share;
-    const Eigen::Matrix4d covariance = (seen.information + prior).inverse();
-    const Vector4 step = -covariance * (seen.gradient + prior * off);
-    pose = moved(pose, step.head<3>());
-    scale.share = std::clamp(scale.share + step[3], -kScalePrior, kScalePrior);
-    scale.sigma = std::sqrt(covariance(3, 3));
-  }
-  return scale;
-}
 
 Points thinned(const Points& points, std::size_t most) {
   const std::size_t step = std::max<std::size_t>(1, (points.size() + most - 1) / most);
@@ -287,11 +219,11 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
         gradient.head<2>() -=
             observed.weak_direction * observed.weak_direction.dot(gradient.head<2>());
       }
-      const Eigen::Vector3d off = difference(match.map_from_base, guess);
+      const Eigen::Vector3d off = pose_difference(match.map_from_base, guess);
       const Eigen::Vector3d step = -(observed.information + guess_information)
                                         .ldlt()
                                         .solve(gradient + guess_information * off);
-      match.map_from_base = moved(match.map_from_base, step);
+      match.map_from_base = moved_by(match.map_from_base, step);
       if (step.cwiseAbs().maxCoeff() < kConverged_m) break;
     }
   }
@@ -310,7 +242,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
         full_rank.topLeftCorner<2, 2>().trace() * weak * weak.transpose();
   }
   if (full_rank.topLeftCorner<2, 2>().determinant() > 0.0 && full_rank(2, 2) > 0.0)
-    match.map_from_base = moved(match.map_from_base, -full_rank.ldlt().solve(gradient));
+    match.map_from_base = moved_by(match.map_from_base, -full_rank.ldlt().solve(gradient));
   match.observed.information *= config.information_share;
   summarise(points_in_base, map, point_variance_m2, config, match);
   return match;

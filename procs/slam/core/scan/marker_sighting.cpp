@@ -49,7 +49,7 @@ std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Tim
   return MarkerSighting{detection.id,
                         time,
                         scan_base_from_frame_base * frame_base_from_marker,
-                        turned(scan_base_from_frame_base, covariance),
+                        in_axes(scan_base_from_frame_base.rotation(), covariance),
                         size_m,
                         scan_base_from_frame_base.translation().norm(),
                         std::abs(scan_base_from_frame_base.theta()),

@@ -62,13 +62,13 @@ TEST(MeasureMarkers, OdometryBetweenFrameAndScanMovesASighting) {
 
   const Eigen::Matrix3d walk = random_walk(0.05, 0.02, odometry);
   const auto seen_after = [&](const Eigen::Vector3d& error) {
-    return deviated(Se2{}, error).inverse() * sighting.base_from_marker;
+    return moved_by(Se2{}, error).inverse() * sighting.base_from_marker;
   };
   constexpr double kStep = 1e-6;
   Eigen::Matrix3d by_motion;
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(axis);
-    by_motion.col(axis) = deviation(seen_after(-step), seen_after(step)) / (2.0 * kStep);
+    by_motion.col(axis) = pose_difference(seen_after(step), seen_after(-step)) / (2.0 * kStep);
   }
   EXPECT_TRUE(more.isApprox(by_motion * walk * by_motion.transpose(), 1e-6)) << more;
   EXPECT_GT(more(2, 2), 0.0);

@@ -2,6 +2,8 @@
 // Places that beams pass through.
 #include "slam/core/mapping/seen_through.hpp"
 
+#include "slam/core/mapping/moving_beams.hpp"
+
 #include <gtest/gtest.h>
 
 namespace waymark {
@@ -44,6 +46,29 @@ TEST(SeenThrough, NotWhatNobodyHasSeen) {
   const GridMap map = room_with_a_wall();
   EXPECT_FALSE(is_seen_through(map, {3.0, 0.5}));
   EXPECT_FALSE(is_seen_through(map, {0.0, 0.5}));  // at the edge of what was seen
+}
+
+Eigen::Matrix3d sigmas(double m, double rad) {
+  return Eigen::Vector3d{m * m, m * m, rad * rad}.asDiagonal();
+}
+
+TEST(MovingBeams, ABeamThatEndsInFreeSpaceIsLeftOut) {
+  const std::vector<Eigen::Vector2d> points{{0.5, 0.3}, {0.25, 0.5}, {0.5, 0.6}};
+  const auto standing = without_moving(points, room_with_a_wall(), {}, sigmas(0.01, 0.01));
+  ASSERT_EQ(standing.size(), 2U);
+  EXPECT_EQ(standing[0], points[0]);
+  EXPECT_EQ(standing[1], points[2]);
+}
+
+TEST(MovingBeams, NotIfAnotherPoseWouldPutItOnAWall) {
+  const std::vector<Eigen::Vector2d> points{{0.5, 0.3}, {0.35, 0.5}, {0.5, 0.6}};
+  EXPECT_EQ(without_moving(points, room_with_a_wall(), {}, sigmas(0.01, 0.01)).size(), 2U);
+  EXPECT_EQ(without_moving(points, room_with_a_wall(), {}, sigmas(0.05, 0.01)).size(), 3U);
+}
+
+TEST(MovingBeams, WhereMostBeamsSeemToMoveThePoseIsWrong) {
+  const std::vector<Eigen::Vector2d> points{{0.2, 0.3}, {0.25, 0.5}, {0.5, 0.6}};
+  EXPECT_EQ(without_moving(points, room_with_a_wall(), {}, sigmas(0.01, 0.01)).size(), 3U);
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/map_snapshot.hpp"
+
+#include "slam/core/mapping/seen_through.hpp"
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+constexpr double kMostPoints = 400.0;  // of a wall's cell: newer ones outweigh older ones in time
+
+}  // namespace
+
+NdtMap walls_to_save(const NdtMap& walls, const GridMap& grid, double point_variance_m2) {
+  NdtMap kept{walls.spacing_m()};
+  for (NdtCellSums cell : walls.sums()) {
+    const Eigen::Vector2d centre = kept.spacing_m() * Eigen::Vector2d{cell.column, cell.row};
+    const NdtSurface* surface = walls.at(centre, point_variance_m2);
+    // Between the walls of a corner, where their mean is, it is free.
+    const bool has_free_middle = surface != nullptr && !surface->is_line;
+    if (has_free_middle ? is_seen_through(grid, centre, kept.spacing_m())
+                        : is_seen_through(grid, centre + cell.sum_m / cell.count)) {
+      continue;
+    }
+    const double share = std::min(1.0, kMostPoints / cell.count);
+    cell.count *= share;
+    cell.sum_m *= share;
+    cell.squares_m2 *= share;
+    kept.add(cell);
+  }
+  return kept;
+}
+
+Eigen::Matrix3d covariance_at(const MapSnapshot& map, const Eigen::Vector2d& place) {
+  const Landmark* nearest = nullptr;
+  const auto away = [&place](const Landmark& landmark) {
+    return (landmark.map_from_marker.translation() - place).norm();
+  };
+  for (const Landmark& landmark : map.landmarks)
+    if (nearest == nullptr || away(landmark) < away(*nearest)) nearest = &landmark;
+  return nearest == nullptr ? Eigen::Matrix3d::Zero() : nearest->covariance;
+}
+
+}  // namespace waymark

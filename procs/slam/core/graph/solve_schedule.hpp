@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When the whole graph is solved.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace waymark {
+
+/// Loops ask for a solution, which takes some steps, one at each keyframe. It begins when the graph
+/// has grown by a share of itself since the last one, so that the cost per keyframe is bounded.
+class SolveSchedule {
+ public:
+  /// @param contradicts_pose  it does more than confirm what is believed.
+  void note_loop(bool contradicts_pose) {
+    has_new_loops_ = true;
+    loops_matter_ |= contradicts_pose;
+  }
+
+  /// At a new keyframe. @return whether a step is due.
+  bool is_step_due(std::size_t num_keyframes) {
+    const std::size_t share = num_keyframes / (loops_matter_ ? kShare : kRoutineShare);
+    if (has_new_loops_ && num_since_solution(num_keyframes) >= std::max(kEvery, share)) {
+      steps_left_ = kSteps;
+      solved_keyframes_ = num_keyframes;
+      has_new_loops_ = false;
+      loops_matter_ = false;
+    }
+    return steps_left_ > 0;
+  }
+
+  /// @param moved  the poses behind the window by a step of the solution, at most [m, rad].
+  void note_step(double moved) {
+    steps_left_ = moved < kSettled ? 0 : std::max(0, steps_left_ - 1);
+  }
+
+  std::size_t num_since_solution(std::size_t num_keyframes) const {
+    return num_keyframes - solved_keyframes_;
+  }
+
+  static constexpr int kSteps = 12;  ///< of a solution, at most
+
+ private:
+  static constexpr std::size_t kEvery = 10;  ///< keyframes
+  static constexpr std::size_t kShare = 40;  ///< a share of all, of loops that contradict the pose
+  static constexpr std::size_t kRoutineShare = 8;  ///< and of loops that only confirm it
+  static constexpr double kSettled = 5e-3;         ///< [m, rad] less is not worth a further step
+
+  std::size_t solved_keyframes_{0};  ///< of the graph, when the last solution began
+  int steps_left_{0};
+  bool has_new_loops_{false};  ///< since then
+  bool loops_matter_{false};   ///< one of them contradicts the pose
+};
+
+}  // namespace waymark

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/mapping/moving_beams.hpp"
+
+#include "slam/core/mapping/seen_through.hpp"
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr double kSigmas = 3.0;
+constexpr double kMostOff_m = 0.3;  // of a beam's end; farther, walls stand in free places, too
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> without_moving(const std::vector<Eigen::Vector2d>& points_in_base,
+                                            const GridMap& map, const Se2& map_from_base,
+                                            const Eigen::Matrix3d& covariance) {
+  const double position_m2 = 0.5 * covariance.topLeftCorner<2, 2>().trace();
+  std::vector<Eigen::Vector2d> standing;
+  standing.reserve(points_in_base.size());
+  for (const Eigen::Vector2d& point : points_in_base) {
+    const double off_m = kSigmas * std::sqrt(position_m2 + covariance(2, 2) * point.squaredNorm());
+    if (off_m > kMostOff_m || !is_seen_through(map, map_from_base * point, off_m))
+      standing.push_back(point);
+  }
+  return 2 * standing.size() < points_in_base.size() ? points_in_base : standing;
+}
+
+}  // namespace waymark

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/registration/range_scale.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+constexpr int kScaleSteps = 8;
+constexpr double kScaleKernel_m = 0.1;
+constexpr double kScalePrior = 0.2;
+
+using Vector4 = Eigen::Vector4d;
+
+double square(double x) {
+  return x * x;
+}
+
+struct ScaleEquations {
+  Eigen::Matrix4d information{Eigen::Matrix4d::Zero()};
+  Vector4 gradient{Vector4::Zero()};
+};
+
+/// Of (x, y, theta, share of the ranges), about a pose and a share.
+ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
+                               const Eigen::Vector2d& origin, const NdtMap& map, const Se2& pose,
+                               double share, double point_variance_m2) {
+  ScaleEquations sum;
+  const Eigen::Matrix2d rotation = pose.rotation();
+  for (const Eigen::Vector2d& measured : points) {
+    const Eigen::Vector2d ray = measured - origin;
+    const Eigen::Vector2d lever = rotation * (origin + ray / (1.0 + share));
+    const Eigen::Vector2d there = lever + pose.translation();
+    const NdtSurface* surface = map.at(there, point_variance_m2);
+    if (surface == nullptr || !surface->is_line) continue;
+    const Eigen::Vector2d& normal = surface->normal;
+    const double off_m = normal.dot(there - surface->mean);
+    const double robust = square(square(kScaleKernel_m) / (square(kScaleKernel_m) + square(off_m)));
+    const double weight = robust / (surface->across_m2 + point_variance_m2);
+    const Vector4 by{normal.x(), normal.y(), normal.dot(Eigen::Vector2d{-lever.y(), lever.x()}),
+                     -normal.dot(rotation * ray) / square(1.0 + share)};
+    sum.information += weight * by * by.transpose();
+    sum.gradient += weight * off_m * by;
+  }
+  return sum;
+}
+
+}  // namespace
+
+RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
+                           const Eigen::Vector2d& origin_in_base, const NdtMap& map,
+                           const Se2& guess, const Eigen::Matrix3d& guess_covariance,
+                           const RangeNoise& noise) {
+  Eigen::Matrix4d prior = Eigen::Matrix4d::Zero();
+  prior.topLeftCorner<3, 3>() = guess_covariance.inverse();
+  prior(3, 3) = 1.0 / square(kScalePrior);
+  Se2 pose = guess;
+  RangeScale scale;
+  for (int i = 0; i < kScaleSteps; ++i) {
+    const ScaleEquations seen = scale_equations(points_in_base, origin_in_base, map, pose,
+                                                scale.share, noise.variance_m2());
+    Vector4 off;
+    off << pose_difference(pose, guess), scale.share;
+    const Eigen::Matrix4d covariance = (seen.information + prior).inverse();
+    const Vector4 step = -covariance * (seen.gradient + prior * off);
+    pose = moved_by(pose, step.head<3>());
+    scale.share = std::clamp(scale.share + step[3], -kScalePrior, kScalePrior);
+    scale.sigma = std::sqrt(covariance(3, 3));
+  }
+  return scale;
+}
+
+}  // namespace waymark

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/registration/submaps.hpp"
+
+#include <utility>
+
+namespace waymark {
+namespace {
+
+Se2 submap_from_map(const Submap& submap, const PoseSequence& keyframes) {
+  return keyframes[submap.first_keyframe()].inverse();
+}
+
+}  // namespace
+
+const Submap* Submaps::find(std::size_t first_keyframe) const {
+  const auto found = std::find_if(
+      finished_.begin(), finished_.end(),
+      [first_keyframe](const Submap& submap) { return submap.first_keyframe() == first_keyframe; });
+  return found == finished_.end() ? nullptr : &*found;
+}
+
+void Submaps::add_keyframe(const Points& points_in_base, const PoseSequence& keyframes) {
+  if (growing_.empty() || growing_.back().num_keyframes() >= half_) {
+    if (growing_.size() > 1) {
+      finished_.push_back(std::move(growing_.front()));
+      finished_.back().finish();
+      growing_.pop_front();
+    }
+    growing_.emplace_back(cell_spacing_m_, keyframes.size() - 1);
+  }
+  for (Submap& submap : growing_)
+    submap.insert(points_in_base, submap_from_map(submap, keyframes) * keyframes.back());
+}
+
+void Submaps::add_between(const Points& points_in_base, const Se2& map_from_base,
+                          const PoseSequence& keyframes) {
+  for (Submap& submap : growing_)
+    submap.add(points_in_base, submap_from_map(submap, keyframes) * map_from_base);
+}
+
+void Submaps::forget(const std::function<bool(std::size_t)>& is_removed) {
+  std::erase_if(finished_, [&is_removed](const Submap& submap) {
+    for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k)
+      if (is_removed(k)) return true;
+    return false;
+  });
+}
+
+}  // namespace waymark

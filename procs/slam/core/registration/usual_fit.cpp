@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/registration/usual_fit.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr double kMemory = 0.05;       // weight of the newest scan in what is usual
+constexpr double kContradicted = 0.8;  // of the usual share of inliers among the mapped beams
+constexpr double kWorse = 0.93;        // of the usual share of inliers among all beams
+
+}  // namespace
+
+bool UsualFit::is_refuted(const ScanMatch& match) const {
+  return match.num_mapped >= min_inliers_ && match.inlier_share < min_inlier_share_;
+}
+
+bool UsualFit::is_contradicted(const ScanMatch& match) const {
+  return is_refuted(match) || match.inlier_share < kContradicted * inlier_share_;
+}
+
+bool UsualFit::is_worse_than_usual(const ScanMatch& match) const {
+  return match.inlier_share * match.mapped_share < kWorse * agreeing_;
+}
+
+void UsualFit::note_scan(const ScanMatch& match) {
+  inlier_share_ += kMemory * (match.inlier_share - inlier_share_);
+}
+
+void UsualFit::note_keyframe(const ScanMatch& match) {
+  agreeing_ += kMemory * (match.inlier_share * match.mapped_share - agreeing_);
+}
+
+}  // namespace waymark

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When the whole graph is solved.
+#include "slam/core/graph/solve_schedule.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+constexpr double kMoved = 0.1;
+
+/// Keyframes until a step is due, at most so many.
+int keyframes_until_due(SolveSchedule& schedule, std::size_t from, int most) {
+  for (int i = 1; i <= most; ++i)
+    if (schedule.is_step_due(from + static_cast<std::size_t>(i))) return i;
+  return most + 1;
+}
+
+TEST(SolveSchedule, NothingIsDueWithoutLoops) {
+  SolveSchedule schedule;
+  EXPECT_GT(keyframes_until_due(schedule, 0, 1000), 1000);
+}
+
+TEST(SolveSchedule, ALoopIsDueAtOnceIfTheGraphHasGrown) {
+  SolveSchedule schedule;
+  schedule.note_loop(true);
+  EXPECT_TRUE(schedule.is_step_due(1000));
+  EXPECT_EQ(schedule.num_since_solution(1000), 0U);
+}
+
+TEST(SolveSchedule, ASolutionEndsWhenNothingMoves) {
+  SolveSchedule schedule;
+  schedule.note_loop(true);
+  EXPECT_TRUE(schedule.is_step_due(1000));
+  schedule.note_step(kMoved);
+  EXPECT_TRUE(schedule.is_step_due(1001));
+  schedule.note_step(0.0);
+  EXPECT_FALSE(schedule.is_step_due(1002));
+}
+
+TEST(SolveSchedule, ASolutionHasAnEnd) {
+  SolveSchedule schedule;
+  schedule.note_loop(true);
+  for (int i = 0; i < SolveSchedule::kSteps; ++i) {
+    EXPECT_TRUE(schedule.is_step_due(1000));
+    schedule.note_step(kMoved);
+  }
+  EXPECT_FALSE(schedule.is_step_due(1000));
+}
+
+TEST(SolveSchedule, LoopsThatOnlyConfirmWaitLonger) {
+  const auto wait = [](bool contradicts_pose) {
+    SolveSchedule schedule;
+    schedule.note_loop(true);
+    EXPECT_TRUE(schedule.is_step_due(1000));
+    schedule.note_step(0.0);
+    schedule.note_loop(contradicts_pose);
+    return keyframes_until_due(schedule, 1000, 1000);
+  };
+  EXPECT_EQ(wait(true), 25);    // a fortieth of all
+  EXPECT_EQ(wait(false), 142);  // an eighth
+}
+
+}  // namespace
+}  // namespace waymark

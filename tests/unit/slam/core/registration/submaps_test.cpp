@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which submaps grow, are matched, and are finished.
+#include "slam/core/registration/submaps.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+constexpr int kKeyframesEach = 10;
+
+struct Drive {
+  Submaps submaps{0.25, kKeyframesEach};
+  PoseSequence keyframes{};
+
+  void go(int num_keyframes) {
+    for (int i = 0; i < num_keyframes; ++i) {
+      keyframes.push_back({0.1 * static_cast<double>(keyframes.size()), 0.0, 0.0});
+      submaps.add_keyframe({{1.0, 0.0}}, keyframes);
+    }
+  }
+};
+
+TEST(Submaps, NoneAtFirst) {
+  const Submaps submaps{0.25, kKeyframesEach};
+  EXPECT_EQ(submaps.matched(), nullptr);
+  EXPECT_TRUE(submaps.finished().empty());
+}
+
+TEST(Submaps, WhatIsMatchedHoldsHalfALengthAtLeast) {
+  Drive drive;
+  drive.go(kKeyframesEach / 2);
+  for (int i = 0; i < 40; ++i) {
+    EXPECT_GE(drive.submaps.matched()->num_keyframes(), kKeyframesEach / 2U);
+    EXPECT_LE(drive.submaps.matched()->num_keyframes(), static_cast<std::size_t>(kKeyframesEach));
+    drive.go(1);
+  }
+}
+
+TEST(Submaps, FinishedOnesFollowEachOtherByHalfALength) {
+  Drive drive;
+  drive.go(41);
+  ASSERT_EQ(drive.submaps.finished().size(), 7U);
+  for (std::size_t i = 0; i < 7; ++i) {
+    const Submap& submap = drive.submaps.finished()[i];
+    EXPECT_EQ(submap.first_keyframe(), i * kKeyframesEach / 2);
+    EXPECT_EQ(submap.num_keyframes(), static_cast<std::size_t>(kKeyframesEach));
+    EXPECT_EQ(drive.submaps.find(submap.first_keyframe()), &submap);
+  }
+  EXPECT_EQ(drive.submaps.find(1), nullptr);
+}
+
+TEST(Submaps, ScansAreWhereTheirKeyframesAre) {
+  Drive drive;
+  drive.go(3);
+  drive.submaps.add_between({{1.0, 0.5}}, {0.25, 0.0, 0.0}, drive.keyframes);
+  const Points& points = drive.submaps.matched()->points();
+  ASSERT_EQ(points.size(), 4U);
+  EXPECT_NEAR(points[2].x(), 1.2, 1e-9);
+  EXPECT_NEAR(points[3].x(), 1.25, 1e-9);
+  EXPECT_NEAR(points[3].y(), 0.5, 1e-9);
+}
+
+TEST(Submaps, BeginningAnewKeepsWhatIsFinished) {
+  Drive drive;
+  drive.go(21);
+  const std::size_t finished = drive.submaps.finished().size();
+  drive.submaps.begin_anew();
+  EXPECT_EQ(drive.submaps.matched(), nullptr);
+  drive.go(1);
+  EXPECT_EQ(drive.submaps.matched()->first_keyframe(), 21U);
+  EXPECT_EQ(drive.submaps.finished().size(), finished);
+}
+
+TEST(Submaps, OnesWithRemovedKeyframesAreForgotten) {
+  Drive drive;
+  drive.go(41);
+  drive.submaps.forget([](std::size_t keyframe) { return keyframe == 7; });
+  EXPECT_EQ(drive.submaps.find(0), nullptr);
+  EXPECT_EQ(drive.submaps.find(5), nullptr);
+  EXPECT_NE(drive.submaps.find(10), nullptr);
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scans that fit worse than others, and what is done about them.
+#include "slam/core/registration/usual_fit.hpp"
+
+#include "slam/core/registration/submap.hpp"
+#include "slam/core/registration/wide_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace waymark {
+namespace {
+
+constexpr int kMinInliers = 15;
+
+ScanMatch fit(double inlier_share, double mapped_share) {
+  ScanMatch match;
+  match.inlier_share = inlier_share;
+  match.mapped_share = mapped_share;
+  match.num_mapped = static_cast<int>(100.0 * mapped_share);
+  match.inliers = static_cast<int>(inlier_share * match.num_mapped);
+  return match;
+}
+
+UsualFit after_good_scans() {
+  UsualFit usual{kMinInliers, 0.5};
+  for (int i = 0; i < 100; ++i) {
+    usual.note_scan(fit(0.95, 1.0));
+    usual.note_keyframe(fit(0.95, 1.0));
+  }
+  return usual;
+}
+
+TEST(UsualFit, AViewOfANewPlaceIsWorseThanUsualAndNotContradicted) {
+  const UsualFit usual = after_good_scans();
+  const ScanMatch new_place = fit(0.95, 0.5);
+  EXPECT_TRUE(usual.is_worse_than_usual(new_place));
+  EXPECT_FALSE(usual.is_contradicted(new_place));
+  EXPECT_FALSE(usual.is_refuted(new_place));
+}
+
+TEST(UsualFit, WallsInOtherPlacesContradict) {
+  const UsualFit usual = after_good_scans();
+  EXPECT_TRUE(usual.is_contradicted(fit(0.7, 1.0)));
+  EXPECT_FALSE(usual.is_refuted(fit(0.7, 1.0)));
+  EXPECT_TRUE(usual.is_refuted(fit(0.4, 1.0)));
+}
+
+TEST(UsualFit, FewMappedBeamsRefuteNothing) {
+  EXPECT_FALSE(after_good_scans().is_refuted(fit(0.0, 0.1)));
+}
+
+TEST(UsualFit, AtFirstNothingIsUsual) {
+  const UsualFit usual{kMinInliers, 0.5};
+  EXPECT_FALSE(usual.is_worse_than_usual(fit(0.6, 0.3)));
+  EXPECT_FALSE(usual.is_contradicted(fit(0.6, 0.3)));
+}
+
+// Wide search, in a room of 6 m x 4 m that was mapped to x = 3 m only.
+
+constexpr double kSpacing_m = 0.05;
+
+Points walls(double from_x, double to_x) {
+  Points points;
+  for (double x = from_x; x <= to_x; x += kSpacing_m) {
+    points.emplace_back(x, -2.0);
+    points.emplace_back(x, 2.0);
+  }
+  return points;
+}
+
+Points end_wall(double x, double from_y) {
+  Points points;
+  for (double y = from_y; y <= 2.0; y += kSpacing_m)
+    points.emplace_back(x, y);
+  return points;
+}
+
+Points together(Points a, const Points& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Points seen_from(const Se2& map_from_base, Points points) {
+  for (Eigen::Vector2d& point : points)
+    point = map_from_base.inverse() * point;
+  return points;
+}
+
+Submap mapped_room() {
+  Submap submap{0.25, 0};
+  for (int i = 0; i < 5; ++i)
+    submap.insert(together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0))),
+                  {});
+  return submap;
+}
+
+struct Searched {
+  ScanMatch plain{};
+  ScanMatch best{};
+};
+
+Searched look_for(const Submap& submap, const Points& points, const Se2& guess,
+                  const Se2& elsewhere) {
+  const Eigen::Matrix3d sigmas = Eigen::Vector3d{1e-4, 1e-4, 1e-4}.asDiagonal();
+  const RangeNoise noise{0.01};
+  const ScanMatchConfig config;
+  Searched searched;
+  searched.plain = match_scan(points, submap.surfaces(), guess, sigmas, noise, config);
+  searched.best =
+      searched_widely(searched.plain, points, submap.surfaces(), submap.points(),
+                      std::vector<Se2>{elsewhere}, after_good_scans(), noise, config, 0.1);
+  return searched;
+}
+
+TEST(WideSearch, FindsAPoseThatIsFarFromItsGuess) {
+  const Se2 truth{3.0, 0.3, 0.0};
+  const Points scan = seen_from(
+      truth, together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0))));
+  const Se2 guess{2.6, 0.1, 0.4};
+  const Searched found = look_for(mapped_room(), scan, guess, guess);
+  EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.02);
+  EXPECT_GT(found.best.inliers, found.plain.inliers);
+}
+
+TEST(WideSearch, AViewOfANewPlaceIsNotLeftForAPlaceWithMoreMappedBeams) {
+  // Half of the scan lies behind what is mapped. Nearer to the middle more of it would lie on
+  // walls, but the new end of the room would still be nowhere.
+  const Se2 truth{5.8, 0.0, 0.0};
+  const Points scan = seen_from(truth, together(walls(4.0, 10.0), end_wall(10.0, -2.0)));
+  const Searched found = look_for(mapped_room(), scan, truth, {5.4, 0.0, 0.0});
+  EXPECT_LT(found.plain.mapped_share, 0.6);
+  EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.05);
+}
+
+}  // namespace
+}  // namespace waymark
