@@ -22,6 +22,9 @@ void WaymarkEstimator::close_loops(const Points& points) {
     search.covariance.diagonal() +=
         Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
     search.first_recent_keyframe = graph_.first_active_keyframe();
+    search.covariance_since = [this](std::size_t keyframe) {
+      return graph_.covariance_since(keyframe);
+    };
     for (const LoopFinder::Found& found : loop_finder_.find(
              newest(), points, search, submaps_.finished(), graph_.state(), range_noise_)) {
       const Submap* submap = submaps_.find(found.loop.submap);

@@ -69,7 +69,7 @@ void WaymarkEstimator::use_survey() {
     graph_.move_to_frame(*survey_from_map);
     map_.redraw(poses_of(graph_));
     relocalisation_ = {};
-    loop_finder_.forget_candidate();
+    loop_finder_.forget_places();
     forget_way_here();
   }
   if (!survey_.has_frame()) return;

@@ -101,7 +101,7 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
 
 void WaymarkEstimator::begin_submaps_anew() {
   submaps_.begin_anew();
-  loop_finder_.forget_candidate();
+  loop_finder_.forget_places();
 }
 
 }  // namespace waymark

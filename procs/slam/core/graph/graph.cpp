@@ -299,6 +299,18 @@ Eigen::MatrixXd Graph::covariance(const Variable& a, const Variable& b) const {
   return covariance_.block(row->second, column->second, a.size(), b.size());
 }
 
+Eigen::Matrix3d Graph::covariance_since(std::size_t keyframe) const {
+  const std::size_t newest = state_.keyframes.size() - 1;
+  const Eigen::Vector2d way =
+      state_.keyframes[newest].translation() - state_.keyframes[keyframe].translation();
+  Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(prior_.g.size(), 3);
+  difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, newest})).setIdentity();
+  difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, keyframe})) -=
+      carried_along(way).transpose();
+  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root{window_equations().h};
+  return difference.transpose() * root.solve(difference);
+}
+
 Eigen::Matrix3d Graph::landmark_covariance(std::size_t landmark) const {
   return landmark_covariances_[landmark];
 }

@@ -119,6 +119,10 @@ class Graph {
 
   Eigen::Matrix3d covariance_of(const Variable& a) const { return covariance(a, a); }
 
+  /// Of the newest keyframe's pose relative to an earlier one of the window, map's axes. Factorises
+  /// the window.
+  Eigen::Matrix3d covariance_since(std::size_t keyframe) const;
+
   /// The last one that was known: of landmarks behind the window, from when they left it.
   Eigen::Matrix3d landmark_covariance(std::size_t landmark) const;
 

@@ -15,8 +15,10 @@ constexpr double kSigmas = 3.0;         // of the pose that a search covers
 constexpr double kDirectReach_m = 0.3;  // below, plain matching finds it
 constexpr double kDirectReach_rad = 0.15;
 constexpr std::size_t kSearchBeams = 120;
-constexpr std::size_t kFields = 8;  // kept
-constexpr double kApart_m = 0.3;    // of a runner-up
+constexpr std::size_t kFields = 8;                     // kept
+constexpr double kDriftMargin = 4.0;                   // on a covariance: it is a model
+const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a pose in a submap, once found
+constexpr double kApart_m = 0.3;                       // of a runner-up
 constexpr double kApart_rad = 0.35;
 constexpr double kAlongWeak = 0.98;  // cosine
 /// Covariance of what a search finds: 0.1 m, 0.03 rad.
@@ -118,17 +120,42 @@ bool LoopFinder::is_good(const ScanMatch& match) const {
          match.mapped_share >= config_.min_mapped_share;
 }
 
+/// Of the pose in a submap. Where the robot was found in it or in a neighbour shortly before, it
+/// cannot be farther off than then, and what it has drifted since: loops that are consistent
+/// (Mangelson et al. 2018) support each other, and what contradicts them has to be clearer.
+Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& search) const {
+  const auto is_near = [&old](const Confirmed& confirmed) {
+    return confirmed.submap + old.num_keyframes() >= old.first_keyframe() &&
+           confirmed.submap <= old.first_keyframe() + old.num_keyframes();
+  };
+  const auto last = std::find_if(confirmed_.rbegin(), confirmed_.rend(), is_near);
+  if (last == confirmed_.rend()) return search.covariance;
+  // Whether the pose has followed that loop meanwhile or not.
+  Eigen::Matrix3d since =
+      last->off * last->off.transpose() + kDriftMargin * search.covariance_since(last->keyframe);
+  since.diagonal() += kFoundSigmas.cwiseAbs2();
+  return since.determinant() < search.covariance.determinant() ? since : search.covariance;
+}
+
+/// Along a bare corridor a loop says nothing.
+void LoopFinder::note_confirmed(const Found& found, const Eigen::Vector3d& off) {
+  if (!found.loop.match.observed.is_degenerate)
+    confirmed_.push_back({found.loop.submap, found.keyframe, off});
+}
+
 std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Points& points,
                                                 const LoopSearch& search,
                                                 const std::deque<Submap>& submaps,
                                                 const State& state, const RangeNoise& noise) {
+  while (!confirmed_.empty() && confirmed_.front().keyframe < search.first_recent_keyframe)
+    confirmed_.pop_front();
   const Submap* old = nearest_submap(search, submaps, state);
   if (old == nullptr) return {};
   const auto loop = match(*old, points, search, state, noise);
   if (!loop) return {};
   const Se2 map_from_base = state.keyframes[old->first_keyframe()] * loop->match.map_from_base;
   const Eigen::Vector3d off = pose_difference(map_from_base, search.map_from_base);
-  const double chi2 = off.dot(search.covariance.ldlt().solve(off));
+  const double chi2 = off.dot(covariance_in(*old, search).ldlt().solve(off));
   const Found found{keyframe, *loop, chi2};
   const bool is_surprise = chi2 > config_.gate;
   if (is_surprise && (loop->match.inlier_share < config_.surprise_share ||
@@ -138,6 +165,7 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
   if (!is_surprise && off.head<2>().norm() < kDirectReach_m &&
       std::abs(off.z()) < kDirectReach_rad) {
     candidate_.reset();
+    note_confirmed(found, off);
     return {found};
   }
   const Candidate candidate{found, map_from_base * search.map_from_base.inverse(),
@@ -153,6 +181,7 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
   std::vector<Found> both;
   if (candidate_ && agrees(*candidate_)) {
     both = {candidate_->found, found};
+    note_confirmed(found, off);
     candidate_.reset();
   } else {
     candidate_ = candidate;

@@ -7,6 +7,7 @@
 #include "slam/core/registration/submap.hpp"
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -41,6 +42,9 @@ struct LoopSearch {
   Se2 map_from_base{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< of it, relative to what is old
   std::size_t first_recent_keyframe{0};                 ///< submaps with later ones are not old
+  /// Of the pose relative to that of an earlier keyframe, which is none before
+  /// first_recent_keyframe.
+  std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_since{};
 };
 
 class LoopFinder {
@@ -63,8 +67,11 @@ class LoopFinder {
 
   int num_ambiguous() const { return num_ambiguous_; }
 
-  /// Of a loop that waits for a second one: it is in coordinates that are no more.
-  void forget_candidate() { candidate_.reset(); }
+  /// Where the robot was found is in coordinates that are no more, or it was carried away since.
+  void forget_places() {
+    candidate_.reset();
+    confirmed_.clear();
+  }
 
  private:
   /// Found from one scan alone, far from where the robot was believed to be.
@@ -74,6 +81,15 @@ class LoopFinder {
     Se2 map_from_base{};
   };
 
+  /// A submap in which the robot was found.
+  struct Confirmed {
+    std::size_t submap{0};  ///< its first keyframe
+    std::size_t keyframe{0};
+    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus believed
+  };
+
+  void note_confirmed(const Found& found, const Eigen::Vector3d& off);
+  Eigen::Matrix3d covariance_in(const Submap& old, const LoopSearch& search) const;
   const Submap* nearest_submap(const LoopSearch& search, const std::deque<Submap>& submaps,
                                const State& state) const;
   std::optional<LoopMatch> match(const Submap& old, const Points& points, const LoopSearch& search,
@@ -87,6 +103,7 @@ class LoopFinder {
   /// Of submaps, by first keyframe; the one searched last is last.
   std::deque<std::pair<std::size_t, CorrelativeField>> fields_{};
   std::optional<Candidate> candidate_{};
+  std::deque<Confirmed> confirmed_{};  ///< of keyframes that are not old
   int num_ambiguous_{0};
 };
 

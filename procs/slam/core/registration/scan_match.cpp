@@ -47,13 +47,18 @@ struct BeamTerm {
   double robust{0.0};  ///< that weight
 };
 
-BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point, double blur_m2,
+/// @param ray  from the robot to the point, which is as good as from the LiDAR.
+BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point,
+                 const Eigen::Vector2d& ray, double point_variance_m2, double blur_m2,
                  const ScanMatchConfig& config) {
   BeamTerm term;
   const Eigen::Vector2d distance = point - surface.mean;
   term.normal = surface.normal;
   term.across_m = term.normal.dot(distance);
-  term.across_weight = 1.0 / (surface.across_m2 + squared(config.roughness_m) + blur_m2);
+  // A surface may look thin by chance, but noise of the range is across it by its cosine.
+  const double by_range_m2 = point_variance_m2 * squared(term.normal.dot(ray)) / ray.squaredNorm();
+  term.across_weight =
+      1.0 / (std::max(surface.across_m2, by_range_m2) + squared(config.roughness_m) + blur_m2);
   double chi2 = term.across_weight * squared(term.across_m);
   if (!surface.is_line) {
     term.along_m = term.normal.x() * distance.y() - term.normal.y() * distance.x();
@@ -81,7 +86,7 @@ class PointsInMap {
       const Eigen::Vector2d there = lever + pose.translation();
       const NdtSurface* surface = surface_of(i, there);
       if (surface == nullptr) continue;
-      const BeamTerm term = compare(*surface, there, blur_m2, config);
+      const BeamTerm term = compare(*surface, there, lever, point_variance_m2_, blur_m2, config);
       add(term.normal, lever, term.across_m, term.across_weight, sum);
       if (term.along_weight > 0.0) {
         const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
@@ -133,13 +138,15 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
   int mapped = 0;
   std::map<int, double> shares;
   std::vector<double> off_range_m;
+  const Eigen::Matrix2d rotation = match.map_from_base.rotation();
   for (const Eigen::Vector2d& point : points) {
-    const NdtSurface* surface = map.at(match.map_from_base * point, point_variance_m2);
+    const Eigen::Vector2d ray = rotation * point;
+    const Eigen::Vector2d there = ray + match.map_from_base.translation();
+    const NdtSurface* surface = map.at(there, point_variance_m2);
     if (surface == nullptr) continue;
     ++mapped;
-    const BeamTerm term = compare(*surface, match.map_from_base * point, 0.0, config);
-    const double square_on =
-        std::abs(surface->normal.dot(match.map_from_base.rotation() * point.normalized()));
+    const BeamTerm term = compare(*surface, there, ray, point_variance_m2, 0.0, config);
+    const double square_on = std::abs(surface->normal.dot(ray.normalized()));
     if (surface->is_line && surface->count >= kWellSeen && square_on > kSquareOn)
       off_range_m.push_back(std::abs(term.across_m) / square_on);
     if (term.robust < kInlierWeight) continue;

@@ -317,6 +317,23 @@ TEST(Graph, CovariancesAreSymmetricAndPositive) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{covariance}.eigenvalues()[0], 0.0);
 }
 
+TEST(Graph, SinceAKeyframeThatIsKnownThePoseIsAsUncertainAsItself) {
+  Drive drive{100};  // its first pose defines the map
+  const Eigen::Matrix3d covariance = drive.graph().covariance_of(drive.newest());
+  EXPECT_LT((drive.graph().covariance_since(0) - covariance).norm(), 0.01 * covariance.norm());
+}
+
+TEST(Graph, UncertaintySinceAKeyframeGrowsWithTheWay) {
+  Drive drive{100};
+  const std::size_t newest = drive.newest().index;
+  EXPECT_LT(drive.graph().covariance_since(newest).norm(), 1e-12);
+  for (std::size_t k = newest; k > 0; --k) {
+    EXPECT_GT(drive.graph().covariance_since(k - 1).trace(),
+              drive.graph().covariance_since(k).trace())
+        << k;
+  }
+}
+
 TEST(Graph, ARemovedKeyframeMovesWithItsCarrierAndSaysNothing) {
   Drive drive{6};
   Graph& graph = drive.graph();

@@ -66,13 +66,29 @@ class Corridor {
     search.map_from_base = believed;
     search.covariance = Eigen::Vector3d{1.0, 0.04, 0.04}.asDiagonal();
     search.first_recent_keyframe = 1000;
-    return finder_.find(1000, view(truth, has_pillar_), search, submaps_, state_, RangeNoise{0.01});
+    search.covariance_since = [this](std::size_t) {
+      return covariance_since_;
+    };
+    Points points = view(truth, has_pillar_);
+    const std::size_t num_walls = points.size();
+    for (std::size_t i = 0; i < num_walls / 4 && has_clutter_; ++i)  // behind the walls
+      points.emplace_back(0.01 * static_cast<double>(i), 3.0);
+    return finder_.find(1000, points, search, submaps_, state_, RangeNoise{0.01});
+  }
+
+  /// A fifth of each view is nowhere in the map.
+  void add_clutter() { has_clutter_ = true; }
+
+  void set_drift_since_found(double sigma) {
+    covariance_since_ = sigma * sigma * Eigen::Matrix3d::Identity();
   }
 
   const LoopFinder& finder() const { return finder_; }
 
  private:
   HasPillar has_pillar_;
+  bool has_clutter_{false};
+  Eigen::Matrix3d covariance_since_{Eigen::Matrix3d::Identity()};
   LoopFinder finder_{LoopConfig{}, ScanMatchConfig{}};
   std::deque<Submap> submaps_{};
   State state_{};
@@ -87,6 +103,22 @@ TEST(LoopFinder, TwoScansThatAgreeCloseALoop) {
   const auto found = corridor.look_around(second, drift * second);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NEAR((Se2{3.0, 0.0, 0.0} * found[1].loop.match.map_from_base).x(), second.x(), 0.05);
+}
+
+TEST(LoopFinder, WhatContradictsALoopOfJustNowHasToBeClearer) {
+  const Se2 drift{0.7, 0.0, 0.0};
+  const Se2 first{6.0, 0.0, 0.0};
+  const Se2 second{6.5, 0.0, 0.0};
+  for (const double drift_since_found : {0.01, 1.0}) {
+    Corridor corridor{irregularly};
+    corridor.add_clutter();
+    corridor.set_drift_since_found(drift_since_found);
+    const Se2 before{5.5, 0.0, 0.0};
+    EXPECT_EQ(corridor.look_around(before, before).size(), 1U);
+    EXPECT_TRUE(corridor.look_around(first, drift * first).empty());
+    EXPECT_EQ(corridor.look_around(second, drift * second).size(),
+              drift_since_found < 0.1 ? 0U : 2U);
+  }
 }
 
 /// Half a period, a whole one, and none: the scan fits in all three places.

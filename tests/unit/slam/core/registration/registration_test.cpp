@@ -104,6 +104,37 @@ TEST(ScanMatch, ABareCorridorStaysOneForALidarThatScatters) {
   EXPECT_TRUE(match.observed.is_degenerate);
 }
 
+TEST(ScanMatch, WallsThatHappenToLookThinMakeNoScanSurerThanItsRanges) {
+  constexpr double kScatter_m = 0.05;
+  Submap wall{0.25, 0};
+  Points points;
+  for (double y = -0.5; y <= 0.5; y += 0.02)
+    points.emplace_back(3.0, y);  // none is off by chance
+  for (int i = 0; i < 20; ++i)
+    wall.insert(points, {});
+  const ScanMatch match =
+      match_scan(points, wall.surfaces(), {}, sigmas(0.02, 0.01), RangeNoise{kScatter_m}, {});
+  const double all = static_cast<double>(points.size());
+  EXPECT_LE(match.observed.information(0, 0),
+            ScanMatchConfig{}.information_share * all / (kScatter_m * kScatter_m) * 1.03);
+  EXPECT_EQ(match.inlier_share, 1.0);
+}
+
+TEST(ScanMatch, NoiseOfRangesIsLittleAcrossWallsThatBeamsMeetFlatly) {
+  constexpr double kScatter_m = 0.05;
+  Submap wall{0.25, 0};
+  Points points;
+  for (double x = 4.0; x <= 5.0; x += 0.02)
+    points.emplace_back(x, 1.0);
+  for (int i = 0; i < 20; ++i)
+    wall.insert(points, {});
+  const ScanMatch match =
+      match_scan(points, wall.surfaces(), {}, sigmas(0.02, 0.01), RangeNoise{kScatter_m}, {});
+  const double all = static_cast<double>(points.size());
+  EXPECT_GT(match.observed.information(1, 1),
+            4.0 * ScanMatchConfig{}.information_share * all / (kScatter_m * kScatter_m));
+}
+
 TEST(ScanMatch, SharesOfKeyframesSumToOne) {
   const Submap room = submap_of(room_from);
   const ScanMatch match = match_scan(room_from({1.0, 0.0, 0.0}, 99), room.surfaces(),
