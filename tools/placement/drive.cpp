@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace waymark::placement {
 namespace {
@@ -40,7 +43,15 @@ ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
   const ScanMatchConfig& scan = config.slam.waymark.scan;
   const Se2 map_from_lidar = map_from_base * lidar.base_from_lidar();
   const Eigen::Matrix2d base_from_map = map_from_base.rotation().transpose();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+
+  struct Beam {
+    Eigen::Vector3d by_pose{};
+    double across_m2{0.0};
+    std::pair<long, long> surface{};
+  };
+
+  std::vector<Beam> beams;
+  std::map<std::pair<long, long>, int> beams_on;
   hits.clear();
   for (int beam = 0; beam < lidar.num_beams; ++beam) {
     const double angle_rad =
@@ -64,7 +75,15 @@ ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
     const double across_m2 =
         squared(lidar.range_sigma_m) * std::max(kMeanFacing2, squared(facing)) +
         squared(scan.roughness_m);
-    information += by_pose * by_pose.transpose() / across_m2;
+    const std::pair surface{std::lround(end.x() / scan.cell_spacing_m),
+                            std::lround(end.y() / scan.cell_spacing_m)};
+    beams.push_back({by_pose, across_m2, surface});
+    ++beams_on[surface];
+  }
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  for (const Beam& beam : beams) {
+    information += independent_share(beams_on[beam.surface]) / beam.across_m2 * beam.by_pose *
+                   beam.by_pose.transpose();
   }
   ObservedAxes observed = observed_axes(information, scan.weak_share);
   observed.information *= scan.information_share;

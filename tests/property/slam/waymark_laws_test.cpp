@@ -215,7 +215,9 @@ TEST(WaymarkEstimator, OdometryThatCatchesUpIsNotCountedTwice) {
     with_gap = stuck.update(scan).map_from_base;
   for (const Observation& scan : test::observations_of(drive(corridor), corridor))
     without_gap = sound.update(scan).map_from_base;
-  EXPECT_LT((with_gap.translation() - without_gap.translation()).norm(), 0.1);
+  // Counted twice, it would be off by all of it.
+  EXPECT_LT((with_gap.translation() - without_gap.translation()).norm(),
+            0.05 * kept_back.distance_m);
 }
 
 TEST(WaymarkEstimator, AScanOfGarbageIsNotMapped) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_map>
 
 namespace waymark {
 namespace {
@@ -20,6 +21,9 @@ constexpr int kFinalSteps = 6;
 constexpr double kConverged_m = 2e-5;   // or radians
 constexpr double kMaxBlur_m = 0.25;     // a cell knows no more than its own half
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
+// Beams of a cell share an error, whose variance is that of a beam's own by this number: the wall's
+// mean is not the wall, and a person is off with all of his beams.
+constexpr double kIndependentBeams = 4.0;
 
 // Noise of ranges.
 constexpr int kWellSeen = 20;               // points of a cell
@@ -81,16 +85,19 @@ class PointsInMap {
   Quadratic quadratic_about(const Se2& pose, double blur_m2, const ScanMatchConfig& config) {
     Quadratic sum;
     const Eigen::Matrix2d rotation = pose.rotation();
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      find_place(i, rotation * points_[i] + pose.translation());
     for (std::size_t i = 0; i < points_.size(); ++i) {
+      const NdtSurface* surface = places_[i].surface;
+      if (surface == nullptr) continue;
       const Eigen::Vector2d lever = rotation * points_[i];
       const Eigen::Vector2d there = lever + pose.translation();
-      const NdtSurface* surface = surface_of(i, there);
-      if (surface == nullptr) continue;
       const BeamTerm term = compare(*surface, there, lever, point_variance_m2_, blur_m2, config);
-      add(term.normal, lever, term.across_m, term.across_weight, sum);
+      const double share = independent_share(*places_[i].beams);
+      add(term.normal, lever, term.across_m, share * term.across_weight, sum);
       if (term.along_weight > 0.0) {
         const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
-        add(along, lever, term.along_m, term.along_weight, sum);
+        add(along, lever, term.along_m, share * term.along_weight, sum);
       }
     }
     sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
@@ -102,14 +109,19 @@ class PointsInMap {
   struct Place {
     NdtMap::Key key{0};
     const NdtSurface* surface{nullptr};
+    int* beams{nullptr};  ///< of the scan, on that surface
     bool is_known{false};
   };
 
-  const NdtSurface* surface_of(std::size_t point, const Eigen::Vector2d& there) {
+  void find_place(std::size_t point, const Eigen::Vector2d& there) {
     Place& place = places_[point];
     const NdtMap::Key key = map_.key_at(there);
-    if (!place.is_known || place.key != key) place = {key, map_.at(key, point_variance_m2_), true};
-    return place.surface;
+    if (place.is_known && place.key == key) return;
+    if (place.surface != nullptr) --*place.beams;
+    place = {key, map_.at(key, point_variance_m2_), nullptr, true};
+    if (place.surface == nullptr) return;
+    place.beams = &beams_on_[place.surface];
+    ++*place.beams;
   }
 
   /// A distance along `direction`, which follows the pose by (direction, direction x lever).
@@ -131,6 +143,7 @@ class PointsInMap {
   const NdtMap& map_;
   double point_variance_m2_;
   std::vector<Place> places_;
+  std::unordered_map<const NdtSurface*, int> beams_on_{};  ///< never iterated over
 };
 
 void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
@@ -174,6 +187,10 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
 }
 
 }  // namespace
+
+double independent_share(int beams) {
+  return (kIndependentBeams + 1.0) / (kIndependentBeams + beams);
+}
 
 Points thinned(const Points& points, std::size_t most) {
   const std::size_t step = std::max<std::size_t>(1, (points.size() + most - 1) / most);

@@ -23,7 +23,7 @@ Points thinned(const Points& points, std::size_t most);
 struct ScanMatchConfig {
   double cell_spacing_m{0.25};
   double kernel_sigmas{3.0};
-  double information_share{0.3};
+  double information_share{0.5};
   double roughness_m{0.003};
   double weak_share{0.03};
   int min_inliers{15};
@@ -38,6 +38,10 @@ struct ObservedAxes {
   Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit
   bool is_degenerate{false};
 };
+
+/// Of a beam's information, where so many beams of the scan, itself included, end on one surface:
+/// 1 for one, and less for each of many, since they err together.
+double independent_share(int beams);
 
 /// Cuts off what noise of the walls' normals has leaked into a direction that they do not show
 /// (Zhang, Kaess, Singh 2016). Frame: that of the information, origin at the robot.

@@ -3,7 +3,6 @@
 #include "slam/core/graph/graph.hpp"
 
 #include "common/random/random.hpp"
-#include "slam/core/graph/odometry_noise_learner.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -168,46 +167,6 @@ TEST(OdometryMixture, OdometryThatStandsStillDoesNotHoldARobotThatMoves) {
   EXPECT_GT(std::sqrt(believed(0, 0)), 0.05);
   EXPECT_NEAR(std::sqrt(likeliest_covariance({3e-5, 0.0, 0.0}, standing, 0.14)(0, 0)),
               std::sqrt(1e-9), 1e-6);
-}
-
-TEST(OdometryNoiseLearner, BelievesTheDescriptionUntilInnovationsSayOtherwise) {
-  OdometryNoiseLearner described;
-  OdometryNoiseLearner worse;
-  Random random{{7}};
-  for (int i = 0; i < 200; ++i) {
-    const double normal = random.normal();
-    described.observe_turn({1e-3 * normal, 1e-6, 1e-8});
-    worse.observe_turn({8e-3 * normal, 1e-6, 1e-8});
-  }
-  EXPECT_NEAR(described.scale().turn, 1.0, 1e-3);
-  EXPECT_NEAR(worse.scale().turn, 8.0, 3.0);
-  EXPECT_GT(worse.scale().along, 1.5);  // wheels that are bad in the turn are so along the way
-}
-
-/// 40 m in steps of 5 cm, each seen to 5 mm; `slips_per_m` of 10 cm.
-OdometryNoiseLearner learner_after(double slips_per_m) {
-  OdometryNoiseLearner learner;
-  Random random{{8}};
-  for (int i = 0; i < 800; ++i) {
-    const double slip_m = random.uniform() < 0.05 * slips_per_m ? 0.1 : 0.0;
-    const OdometryInnovation innovation{0.005 * random.normal() - slip_m, 0.05 * 0.003 * 0.003,
-                                        2.5e-5, 0.05};
-    learner.observe_slip(innovation);
-    learner.observe_along(innovation);
-  }
-  return learner;
-}
-
-TEST(OdometryNoiseLearner, SlipsAddTheirSecondMomentByMetre) {
-  const OdometryNoiseLearner learner = learner_after(0.7);
-  EXPECT_NEAR(learner.num_slips(), 28, 12);
-  EXPECT_GT(learner.scale().slip_m2_per_m, 0.7 * 0.01);
-  EXPECT_LT(learner.scale().slip_m2_per_m, 2.0 * 0.7 * 0.01);
-  EXPECT_LT(learner.scale().slip_per_m, -0.7 * 0.05);
-}
-
-TEST(OdometryNoiseLearner, WithoutSlipsHardlyAnyAreAdded) {
-  EXPECT_LT(learner_after(0.0).scale().slip_m2_per_m, 2e-5);
 }
 
 /// A drive of short steps past two markers, with noise; every keyframe is tied to the two before.
