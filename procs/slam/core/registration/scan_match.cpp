@@ -21,8 +21,8 @@ constexpr int kFinalSteps = 6;
 constexpr double kConverged_m = 2e-5;   // or radians
 constexpr double kMaxBlur_m = 0.25;     // a cell knows no more than its own half
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
-// Beams of a cell share an error, whose variance is that of a beam's own by this number: the wall's
-// mean is not the wall, and a person is off with all of his beams.
+// Beams on one surface err together beyond so many: the wall's mean is not the wall, and a person
+// is off with all of his beams.
 constexpr double kIndependentBeams = 4.0;
 
 // Noise of ranges.
@@ -189,7 +189,7 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
 }  // namespace
 
 double independent_share(int beams) {
-  return (kIndependentBeams + 1.0) / (kIndependentBeams + beams);
+  return std::min(1.0, kIndependentBeams / beams);
 }
 
 Points thinned(const Points& points, std::size_t most) {

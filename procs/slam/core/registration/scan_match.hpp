@@ -40,7 +40,7 @@ struct ObservedAxes {
 };
 
 /// Of a beam's information, where so many beams of the scan, itself included, end on one surface:
-/// 1 for one, and less for each of many, since they err together.
+/// 1 for each of a few, and less for each of many, since they err together.
 double independent_share(int beams);
 
 /// Cuts off what noise of the walls' normals has leaked into a direction that they do not show
