@@ -9,6 +9,7 @@
 // Columns: length [m], RMS over the seeds of: error of the length of the way [m], that per metre,
 // error along the way [m], error across [m]. The last line is the exponent b of length^b that fits
 // the second column best.
+#include "common/geometry/squared.hpp"
 #include "property/slam/estimator_run.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
@@ -28,10 +29,6 @@ struct Errors {
   double along_m{0.0};
   double across_m{0.0};
 };
-
-double squared(double x) {
-  return x * x;
-}
 
 test::SyntheticCorridor corridor_of(double length_m, bool is_exact, std::uint64_t seed) {
   test::SyntheticCorridor corridor;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placement/drive.hpp"
 
+#include "common/geometry/squared.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -19,10 +21,6 @@ constexpr double kStep_rad = 0.3;
 // along it: the spot is as thick as they make it, whoever looks at it now. (Even in the bearing b
 // from the wall's normal, -90 to 90 degrees: the mean of cos^2 b.)
 constexpr double kMeanFacing2 = 0.5;
-
-double squared(double x) {
-  return x * x;
-}
 
 /// The direction in which the walls say nothing; where they show all, the last one: what is
 /// uncertain there was carried along from where they did not.
@@ -47,11 +45,12 @@ ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
   struct Beam {
     Eigen::Vector3d by_pose{};
     double across_m2{0.0};
-    std::pair<long, long> surface{};
+    NdtMap::Key surface{0};
   };
 
   std::vector<Beam> beams;
-  std::map<std::pair<long, long>, int> beams_on;
+  std::map<NdtMap::Key, int> beams_on;
+  const NdtMap surfaces{scan.cell_spacing_m};
   hits.clear();
   for (int beam = 0; beam < lidar.num_beams; ++beam) {
     const double angle_rad =
@@ -75,8 +74,7 @@ ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
     const double across_m2 =
         squared(lidar.range_sigma_m) * std::max(kMeanFacing2, squared(facing)) +
         squared(scan.roughness_m);
-    const std::pair surface{std::lround(end.x() / scan.cell_spacing_m),
-                            std::lround(end.y() / scan.cell_spacing_m)};
+    const NdtMap::Key surface = surfaces.key_at(end);
     beams.push_back({by_pose, across_m2, surface});
     ++beams_on[surface];
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "batch_limit/wall_lines.hpp"
 
+#include "common/geometry/squared.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -17,10 +19,6 @@ constexpr double kMinExtent_m = 0.5;  // shorter lines are clutter
 constexpr double kBandSigmas = 4.0;   // beams further off a line end it
 constexpr double kCutSigmas = 5.0;    // noise takes beams away that near to the longest range
 constexpr double kBeginningSigmas = 2.0;  // a beginning that is rougher is no wall
-
-double squared(double x) {
-  return x * x;
-}
 
 /// A run of neighbouring beams, circular: beams [first, first + count).
 struct Run {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "doctor/camera/camera_calibration.hpp"
 
+#include "common/geometry/squared.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 
 #include <Eigen/Dense>
@@ -36,10 +37,6 @@ constexpr double kWallReach_m = 1.5;
 constexpr double kWalk_m2_per_m = 9e-6;
 constexpr double kWalk_rad2_per_m = 7.6e-5;
 constexpr double kWalk_rad2_per_rad = 1e-4;
-
-double squared(double x) {
-  return x * x;
-}
 
 /// What one track adds to the normal equations.
 struct Share {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 namespace waymark {
+
 std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
     const Points& points, const Prediction& prediction) const {
   if (points.empty()) return std::nullopt;

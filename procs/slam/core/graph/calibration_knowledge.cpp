@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/calibration_knowledge.hpp"
 
+#include "common/geometry/squared.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -15,10 +17,6 @@ constexpr double kTail = 2.0;         // a component k times as wide has 1 / k^2
 constexpr double kLeastShare = 1e-9;  // of the prior's information; with less nothing is measured
 constexpr double kDoubtSigmas = 5.0;  // beyond, the description is called wrong
 constexpr double kExactSigma = 1e-9;  // instead of 0
-
-double squared(double x) {
-  return x * x;
-}
 
 }  // namespace
 

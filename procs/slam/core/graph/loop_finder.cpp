@@ -75,9 +75,7 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& poin
                                            const RangeNoise& noise) {
   const Se2 submap_from_map = state.keyframes[old.first_keyframe()].inverse();
   Se2 guess = submap_from_map * search.map_from_base;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = submap_from_map.rotation();
-  Eigen::Matrix3d covariance = turn * search.covariance * turn.transpose();
+  const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), search.covariance);
   // The nearest place that fits is the likeliest; a search is for those that have drifted.
   LoopMatch loop{old.first_keyframe(),
                  match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
@@ -112,7 +110,7 @@ bool LoopFinder::is_other_place(const SearchMatch& other, const ScanMatch& match
   const Eigen::Vector2d apart =
       other.submap_from_base.translation() - match.map_from_base.translation();
   if (!match.observed.is_degenerate || apart.norm() < kApart_m) return true;
-  return std::abs(match.observed.weak_direction.head<2>().dot(apart.normalized())) < kAlongWeak;
+  return std::abs(match.observed.weak_direction.dot(apart.normalized())) < kAlongWeak;
 }
 
 bool LoopFinder::is_good(const ScanMatch& match) const {

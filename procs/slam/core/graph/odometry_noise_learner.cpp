@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/odometry_noise_learner.hpp"
 
+#include "common/geometry/squared.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,10 +24,6 @@ constexpr double kForgotten_m = 50.0;    // driven until a slip counts e times l
 constexpr double kPriorSlips_m2 = 4e-4;  // sum of squares before the first observation: one of 2 cm
 constexpr double kPriorDistance_m = 5.0;  // on so much driving
 constexpr double kMeanIsUncertain = 1.5;  // factor on the variance: the mean is estimated, too
-
-double squared(double x) {
-  return x * x;
-}
 
 double log_normal(double value, double variance) {
   return -0.5 * (std::log(variance) + squared(value) / variance);

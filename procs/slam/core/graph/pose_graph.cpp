@@ -21,9 +21,7 @@ GraphEdge edge_of(const ScanFactor& factor) {
   const auto main =
       std::max_element(factor.references.begin(), factor.references.end(),
                        [](const auto& a, const auto& b) { return a.share < b.share; });
-  const Eigen::Matrix2d turn = main->reference_from_keyframe.rotation();
-  Eigen::Matrix3d in_reference = Eigen::Matrix3d::Identity();
-  in_reference.topLeftCorner<2, 2>() = turn;
+  const Eigen::Matrix3d in_reference = turning(main->reference_from_keyframe.rotation());
   const Eigen::Matrix3d root = factor.weight * factor.root_information * in_reference.transpose();
   return {main->keyframe, factor.keyframe, main->reference_from_keyframe, root.transpose() * root};
 }

@@ -2,6 +2,7 @@
 #include "slam/core/landmark/marker_measurement.hpp"
 
 #include "common/geometry/principal_axes.hpp"
+#include "common/geometry/squared.hpp"
 
 #include <Eigen/LU>
 
@@ -28,10 +29,6 @@ constexpr double kWallOverMeanSweep = 3.0;
 /// A view that is off by what a worse camera would get wrong is no flipped one: it shows that the
 /// calibration is wrong (SightingSigmas::learnt).
 const Eigen::Vector3d kCalibrated{0.01, 0.005, 0.005};
-
-double squared(double x) {
-  return x * x;
-}
 
 struct Line {
   Eigen::Vector2d point;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/motion/odometry_errors.hpp"
 
+#include "common/geometry/squared.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,10 +13,6 @@ namespace {
 constexpr double kTellingSigmas = 3.0;
 constexpr double kGuessed_m_s = 0.25;    // sigma of a guessed speed; [rad/s] of a turn
 constexpr double kVarianceFloor = 1e-9;  // [m^2, rad^2] of a step: 0.03 mm, 0.002 degrees
-
-double squared(double x) {
-  return x * x;
-}
 
 Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   const double length_m = motion.start_from_end.translation().norm();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/range_scale.hpp"
 
+#include "common/geometry/squared.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -14,10 +16,6 @@ constexpr double kScaleKernel_m = 0.1;
 constexpr double kScalePrior = 0.2;
 
 using Vector4 = Eigen::Vector4d;
-
-double square(double x) {
-  return x * x;
-}
 
 struct ScaleEquations {
   Eigen::Matrix4d information{Eigen::Matrix4d::Zero()};
@@ -38,10 +36,11 @@ ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
     if (surface == nullptr || !surface->is_line) continue;
     const Eigen::Vector2d& normal = surface->normal;
     const double off_m = normal.dot(there - surface->mean);
-    const double robust = square(square(kScaleKernel_m) / (square(kScaleKernel_m) + square(off_m)));
+    const double robust =
+        squared(squared(kScaleKernel_m) / (squared(kScaleKernel_m) + squared(off_m)));
     const double weight = robust / (surface->across_m2 + point_variance_m2);
     const Vector4 by{normal.x(), normal.y(), normal.dot(Eigen::Vector2d{-lever.y(), lever.x()}),
-                     -normal.dot(rotation * ray) / square(1.0 + share)};
+                     -normal.dot(rotation * ray) / squared(1.0 + share)};
     sum.information += weight * by * by.transpose();
     sum.gradient += weight * off_m * by;
   }
@@ -56,7 +55,7 @@ RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
                            const RangeNoise& noise) {
   Eigen::Matrix4d prior = Eigen::Matrix4d::Zero();
   prior.topLeftCorner<3, 3>() = guess_covariance.inverse();
-  prior(3, 3) = 1.0 / square(kScalePrior);
+  prior(3, 3) = 1.0 / squared(kScalePrior);
   Se2 pose = guess;
   RangeScale scale;
   for (int i = 0; i < kScaleSteps; ++i) {

@@ -2,6 +2,7 @@
 #include "slam/core/registration/scan_match.hpp"
 
 #include "common/geometry/principal_axes.hpp"
+#include "common/geometry/squared.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -29,10 +30,6 @@ constexpr double kIndependentBeams = 4.0;
 constexpr int kWellSeen = 20;               // points of a cell
 constexpr double kSquareOn = 0.5;           // cosine of a beam's incidence
 constexpr double kSigmaOverMedian = 1.483;  // of the absolute values of a normal distribution
-
-double squared(double x) {
-  return x * x;
-}
 
 /// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
 struct Quadratic {

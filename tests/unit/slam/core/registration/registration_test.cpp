@@ -104,35 +104,48 @@ TEST(ScanMatch, ABareCorridorStaysOneForALidarThatScatters) {
   EXPECT_TRUE(match.observed.is_degenerate);
 }
 
-TEST(ScanMatch, WallsThatHappenToLookThinMakeNoScanSurerThanItsRanges) {
-  constexpr double kScatter_m = 0.05;
+constexpr double kManyScatter_m = 0.05;
+
+/// Of a scan whose points lie exactly on what was mapped, with a LiDAR that scatters.
+ScanMatch match_without_a_deviation(const Points& points) {
   Submap wall{0.25, 0};
-  Points points;
-  for (double y = -0.5; y <= 0.5; y += 0.02)
-    points.emplace_back(3.0, y);  // none is off by chance
   for (int i = 0; i < 20; ++i)
     wall.insert(points, {});
-  const ScanMatch match =
-      match_scan(points, wall.surfaces(), {}, sigmas(0.02, 0.01), RangeNoise{kScatter_m}, {});
-  const double all = static_cast<double>(points.size());
-  EXPECT_LE(match.observed.information(0, 0),
-            ScanMatchConfig{}.information_share * all / (kScatter_m * kScatter_m) * 1.03);
+  return match_scan(points, wall.surfaces(), {}, sigmas(0.02, 0.01), RangeNoise{kManyScatter_m},
+                    {});
+}
+
+/// Of so many beams that meet a wall squarely, if they were independent.
+double information_of(std::size_t beams) {
+  return ScanMatchConfig{}.information_share * static_cast<double>(beams) /
+         (kManyScatter_m * kManyScatter_m);
+}
+
+TEST(ScanMatch, WallsThatHappenToLookThinMakeNoScanSurerThanItsRanges) {
+  Points points;
+  for (double y = -0.5; y <= 0.5; y += 0.02)
+    points.emplace_back(3.0, y);
+  const ScanMatch match = match_without_a_deviation(points);
+  EXPECT_LE(match.observed.information(0, 0), information_of(points.size()) * 1.03);
   EXPECT_EQ(match.inlier_share, 1.0);
 }
 
 TEST(ScanMatch, NoiseOfRangesIsLittleAcrossWallsThatBeamsMeetFlatly) {
-  constexpr double kScatter_m = 0.05;
-  Submap wall{0.25, 0};
   Points points;
   for (double x = 4.0; x <= 5.0; x += 0.02)
     points.emplace_back(x, 1.0);
-  for (int i = 0; i < 20; ++i)
-    wall.insert(points, {});
-  const ScanMatch match =
-      match_scan(points, wall.surfaces(), {}, sigmas(0.02, 0.01), RangeNoise{kScatter_m}, {});
-  const double all = static_cast<double>(points.size());
-  EXPECT_GT(match.observed.information(1, 1),
-            4.0 * ScanMatchConfig{}.information_share * all / (kScatter_m * kScatter_m));
+  const ScanMatch match = match_without_a_deviation(points);
+  EXPECT_GT(match.observed.information(1, 1), 4.0 * information_of(points.size()));
+}
+
+TEST(ScanMatch, ManyBeamsOnOneSurfaceSayNoMoreThanAFew) {
+  EXPECT_EQ(independent_share(1), 1.0);
+  EXPECT_EQ(20 * independent_share(20), 10 * independent_share(10));
+  Points points;
+  for (int i = 0; i < 40; ++i)
+    points.emplace_back(3.0, 0.05 * i / 40.0);
+  const ScanMatch match = match_without_a_deviation(points);
+  EXPECT_LT(match.observed.information(0, 0), 0.15 * information_of(points.size()));
 }
 
 TEST(ScanMatch, SharesOfKeyframesSumToOne) {
