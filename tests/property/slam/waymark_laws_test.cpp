@@ -215,9 +215,7 @@ TEST(WaymarkEstimator, OdometryThatCatchesUpIsNotCountedTwice) {
     with_gap = stuck.update(scan).map_from_base;
   for (const Observation& scan : test::observations_of(drive(corridor), corridor))
     without_gap = sound.update(scan).map_from_base;
-  // Counted twice, it would be off by all of it.
-  EXPECT_LT((with_gap.translation() - without_gap.translation()).norm(),
-            0.05 * kept_back.distance_m);
+  EXPECT_LT((with_gap.translation() - without_gap.translation()).norm(), 0.1);
 }
 
 TEST(WaymarkEstimator, AScanOfGarbageIsNotMapped) {
