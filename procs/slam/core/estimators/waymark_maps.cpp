@@ -28,6 +28,8 @@ void WaymarkEstimator::load(const MapSnapshot& map) {
     book_.add_known(landmark);
   }
   loaded_points_ = occupied_points(map.grid);
+  for (const Eigen::Vector2d& point : loaded_points_)
+    loaded_coarse_.add(point);
   wall_changes_.emplace(setup_.loaded_map);
   is_confirmed_ = false;
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);

@@ -12,8 +12,9 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   if (points.empty()) return std::nullopt;
   MatchedScan scan;
   if (setup_.loaded_map) {
-    scan.match = match_scan(points, setup_.loaded_map->walls, prediction.map_from_base,
-                            prediction.covariance, range_noise_, config_.scan);
+    scan.match =
+        match_scan(points, setup_.loaded_map->walls, prediction.map_from_base,
+                   prediction.covariance, range_noise_, config_.scan, loaded_coarse_.levels());
     if (is_frozen() || is_in_loaded_map(scan.match)) return scan;
   }
   scan.submap = submaps_.matched();
@@ -22,8 +23,8 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   const Se2 submap_from_map = scan.map_from_submap.inverse();
   const Se2 guess = submap_from_map * prediction.map_from_base;
   const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), prediction.covariance);
-  scan.match =
-      match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_, config_.scan);
+  scan.match = match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_,
+                          config_.scan, scan.submap->coarse_surfaces());
   return scan;
 }
 

@@ -77,8 +77,8 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& poin
   Se2 guess = submap_from_map * search.map_from_base;
   const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), search.covariance);
   // The nearest place that fits is the likeliest; a search is for those that have drifted.
-  LoopMatch loop{old.first_keyframe(),
-                 match_scan(points, old.surfaces(), guess, covariance, noise, scan_)};
+  LoopMatch loop{old.first_keyframe(), match_scan(points, old.surfaces(), guess, covariance, noise,
+                                                  scan_, old.coarse_surfaces())};
   const double wide_m = std::min(config_.max_search_m, reach_m(covariance));
   const double wide_rad = std::min(std::numbers::pi, reach_rad(covariance));
   const bool is_near = wide_m < kDirectReach_m && wide_rad < kDirectReach_rad;

@@ -19,8 +19,10 @@ constexpr double kBlurStep = 1.0 / 3.0;  // from one stage to the next finer one
 constexpr double kFinestBlur_m = 0.01;   // below: none
 constexpr int kStepsPerStage = 3;
 constexpr int kFinalSteps = 6;
-constexpr double kConverged_m = 2e-5;   // or radians
-constexpr double kMaxBlur_m = 0.25;     // a cell knows no more than its own half
+constexpr double kConverged = 2e-5;   // metres or radians
+constexpr double kMaxBlur_m = 0.25;   // a cell knows no more than its own half
+constexpr double kReachOfCell = 0.5;  // of its spacing: where the next finer cells end
+constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
 // Beams on one surface err together beyond so many: the wall's mean is not the wall, and a person
 // is off with all of his beams.
@@ -183,6 +185,51 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
         share / match.inliers;
 }
 
+Eigen::Vector3d along_observed(Eigen::Vector3d gradient, const ObservedAxes& observed) {
+  if (!observed.is_degenerate) return gradient;
+  const Eigen::Vector2d& weak = observed.weak_direction;
+  gradient.head<2>() -= weak * weak.dot(gradient.head<2>());
+  return gradient;
+}
+
+/// Towards the optimum of the walls and the guess together; nothing of it along what is unobserved.
+class Descent {
+ public:
+  Descent(const Se2& guess, const Eigen::Matrix3d& guess_covariance, const ScanMatchConfig& config)
+      : guess_{guess}, guess_information_{guess_covariance.inverse()}, config_{config} {}
+
+  /// @return the pose after at most so many steps.
+  Se2 from(Se2 pose, PointsInMap& points, double blur_m, int steps, double converged) const {
+    for (int i = 0; i < steps; ++i) {
+      const Quadratic model = points.quadratic_about(pose, squared(blur_m), config_);
+      const ObservedAxes observed = observed_axes(model.information, config_.weak_share);
+      const Eigen::Vector3d off = pose_difference(pose, guess_);
+      const Eigen::Vector3d step =
+          -(observed.information + guess_information_)
+               .ldlt()
+               .solve(along_observed(model.gradient, observed) + guess_information_ * off);
+      pose = moved_by(pose, step);
+      if (step.cwiseAbs().maxCoeff() < converged) break;
+    }
+    return pose;
+  }
+
+ private:
+  Se2 guess_;
+  Eigen::Matrix3d guess_information_;
+  const ScanMatchConfig& config_;
+};
+
+/// How far the ends of the beams may be off (one sigma).
+double ends_open_m(std::span<const Eigen::Vector2d> points_in_base,
+                   const Eigen::Matrix3d& covariance) {
+  double lever2_m2 = 0.0;
+  for (const Eigen::Vector2d& point : points_in_base)
+    lever2_m2 += point.squaredNorm();
+  if (!points_in_base.empty()) lever2_m2 /= static_cast<double>(points_in_base.size());
+  return std::sqrt(0.5 * covariance.topLeftCorner<2, 2>().trace() + lever2_m2 * covariance(2, 2));
+}
+
 }  // namespace
 
 double independent_share(int beams) {
@@ -212,58 +259,38 @@ ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share
 
 ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtMap& map,
                      const Se2& guess, const Eigen::Matrix3d& guess_covariance,
-                     const RangeNoise& noise, const ScanMatchConfig& config) {
+                     const RangeNoise& noise, const ScanMatchConfig& config,
+                     std::span<const NdtMap> coarse) {
   const double point_variance_m2 = noise.variance_m2();
-  double lever2_m2 = 0.0;
-  for (const Eigen::Vector2d& point : points_in_base)
-    lever2_m2 += point.squaredNorm();
-  if (!points_in_base.empty()) lever2_m2 /= static_cast<double>(points_in_base.size());
-
-  const Eigen::Matrix3d guess_information = guess_covariance.inverse();
+  const double open_m = ends_open_m(points_in_base, guess_covariance);
+  const Descent descent{guess, guess_covariance, config};
   ScanMatch match;
   match.map_from_base = guess;
-  double blur_m =
-      std::min(kMaxBlur_m, std::sqrt(0.5 * guess_covariance.topLeftCorner<2, 2>().trace() +
-                                     lever2_m2 * guess_covariance(2, 2)));
+  for (auto level = coarse.rbegin(); level != coarse.rend(); ++level) {
+    if (open_m < kReachOfCell * level->spacing_m()) continue;
+    PointsInMap points{points_in_base, *level, point_variance_m2};
+    match.map_from_base =
+        descent.from(match.map_from_base, points, std::min(level->spacing_m(), open_m),
+                     kStepsPerStage, kConvergedCoarse);
+  }
   PointsInMap points{points_in_base, map, point_variance_m2};
-  Quadratic model;
-  ObservedAxes observed;
-  for (bool is_final = false; !is_final; blur_m *= kBlurStep) {
-    is_final = blur_m < kFinestBlur_m;
-    if (is_final) blur_m = 0.0;
-    const int steps = is_final ? kFinalSteps : kStepsPerStage;
-    for (int i = 0; i < steps; ++i) {
-      model = points.quadratic_about(match.map_from_base, squared(blur_m), config);
-      observed = observed_axes(model.information, config.weak_share);
-      Eigen::Vector3d gradient = model.gradient;
-      if (observed.is_degenerate) {
-        gradient.head<2>() -=
-            observed.weak_direction * observed.weak_direction.dot(gradient.head<2>());
-      }
-      const Eigen::Vector3d off = pose_difference(match.map_from_base, guess);
-      const Eigen::Vector3d step = -(observed.information + guess_information)
-                                        .ldlt()
-                                        .solve(gradient + guess_information * off);
-      match.map_from_base = moved_by(match.map_from_base, step);
-      if (step.cwiseAbs().maxCoeff() < kConverged_m) break;
-    }
-  }
+  for (double blur_m = std::min(kMaxBlur_m, open_m); blur_m >= kFinestBlur_m; blur_m *= kBlurStep)
+    match.map_from_base =
+        descent.from(match.map_from_base, points, blur_m, kStepsPerStage, kConverged);
+  match.map_from_base = descent.from(match.map_from_base, points, 0.0, kFinalSteps, kConverged);
   // The optimum without the guess, along what the scan shows.
-  model = points.quadratic_about(match.map_from_base, 0.0, config);
+  const Quadratic model = points.quadratic_about(match.map_from_base, 0.0, config);
   match.observed = observed_axes(model.information, config.weak_share);
-  Eigen::Vector3d gradient = model.gradient;
-  if (match.observed.is_degenerate) {
-    const Eigen::Vector2d& weak = match.observed.weak_direction;
-    gradient.head<2>() -= weak * weak.dot(gradient.head<2>());
-  }
   Eigen::Matrix3d full_rank = match.observed.information;
   if (match.observed.is_degenerate) {
     const Eigen::Vector2d& weak = match.observed.weak_direction;
     full_rank.topLeftCorner<2, 2>() +=
         full_rank.topLeftCorner<2, 2>().trace() * weak * weak.transpose();
   }
-  if (full_rank.topLeftCorner<2, 2>().determinant() > 0.0 && full_rank(2, 2) > 0.0)
+  if (full_rank.topLeftCorner<2, 2>().determinant() > 0.0 && full_rank(2, 2) > 0.0) {
+    const Eigen::Vector3d gradient = along_observed(model.gradient, match.observed);
     match.map_from_base = moved_by(match.map_from_base, -full_rank.ldlt().solve(gradient));
+  }
   match.observed.information *= config.information_share;
   summarise(points_in_base, map, point_variance_m2, config, match);
   return match;

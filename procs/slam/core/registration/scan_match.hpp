@@ -72,8 +72,11 @@ struct ScanMatch {
 /// @param guess            map_from_base.
 /// @param guess_covariance of (x, y, theta), map's axes: how far the optimum may be. Only the way
 ///                         there depends on it, and where the scan is silent, the result.
+/// @param coarse           the same walls in larger cells, the smallest first: where the guess may
+///                         be off by more than a cell of `map` reaches, the way begins there.
 ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtMap& map,
                      const Se2& guess, const Eigen::Matrix3d& guess_covariance,
-                     const RangeNoise& noise, const ScanMatchConfig& config);
+                     const RangeNoise& noise, const ScanMatchConfig& config,
+                     std::span<const NdtMap> coarse = {});
 
 }  // namespace waymark

@@ -2,12 +2,14 @@
 // A few metres of scans, anchored to a keyframe.
 #pragma once
 
+#include "slam/core/registration/coarse_ndt.hpp"
 #include "slam/core/registration/scan_match.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,7 +19,7 @@ class Submap {
  public:
   /// Its frame is the first keyframe's base.
   Submap(double cell_spacing_m, std::size_t first_keyframe)
-      : first_keyframe_{first_keyframe}, surfaces_{cell_spacing_m} {}
+      : first_keyframe_{first_keyframe}, surfaces_{cell_spacing_m}, coarse_{cell_spacing_m} {}
 
   /// Keyframes come one after the other, without a gap.
   void insert(const Points& points_in_base, const Se2& submap_from_base) {
@@ -34,7 +36,9 @@ class Submap {
       surfaces_.add(there, keyframe);
       const std::pair cell{std::lround(there.x() / kThinned_m),
                            std::lround(there.y() / kThinned_m)};
-      if (occupied_.insert(cell).second) points_.push_back(there);
+      if (!occupied_.insert(cell).second) continue;
+      points_.push_back(there);
+      coarse_.add(there);
     }
   }
 
@@ -45,6 +49,8 @@ class Submap {
   std::size_t num_keyframes() const { return poses_.size(); }
 
   const NdtMap& surfaces() const { return surfaces_; }
+
+  std::span<const NdtMap> coarse_surfaces() const { return coarse_.levels(); }
 
   /// One for each occupied cell of 5 cm.
   const Points& points() const { return points_; }
@@ -65,6 +71,7 @@ class Submap {
 
   std::size_t first_keyframe_;
   NdtMap surfaces_;
+  CoarseNdt coarse_;
   std::vector<Se2> poses_{};
   double reach_m_{0.0};
   std::set<std::pair<long, long>> occupied_{};

@@ -76,6 +76,20 @@ TEST(ScanMatch, FindsThePoseInARoom) {
   EXPECT_GT(match.inlier_share, 0.9);
 }
 
+TEST(ScanMatch, LargerCellsFindThePoseFromAGuessThatTheSmallestDoNotReach) {
+  const Submap room = submap_of(room_from);
+  const Se2 truth{1.2, 0.3, 0.2};
+  const Se2 guess{0.5, 0.8, -0.05};
+  const Points points = room_from(truth, 99);
+  const auto off_m = [&](std::span<const NdtMap> coarse) {
+    const ScanMatch match = match_scan(points, room.surfaces(), guess, sigmas(0.5, 0.2),
+                                       RangeNoise{kSigma_m}, {}, coarse);
+    return pose_difference(match.map_from_base, truth).norm();
+  };
+  EXPECT_LT(off_m(room.coarse_surfaces()), 0.01);
+  EXPECT_GT(off_m({}), 0.3);
+}
+
 TEST(ScanMatch, ABareCorridorSaysExactlyNothingAlongItsAxis) {
   const Submap corridor =
       submap_of([](const Se2& pose, std::uint64_t seed) { return corridor_from(pose, seed); });

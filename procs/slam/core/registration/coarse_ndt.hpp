@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Walls in larger cells, from which a match begins whose guess the smallest ones do not reach.
+#pragma once
+
+#include "slam/core/registration/ndt_map.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+
+namespace waymark {
+
+/// Each level's cells are twice as large as those of the level before (multi-layered NDT; Ulas and
+/// Temeltas 2013). Of sparse points, such as those of walls far away, only large cells see enough.
+class CoarseNdt {
+ public:
+  /// @param finest_spacing_m  of the map that they complement.
+  explicit CoarseNdt(double finest_spacing_m)
+      : levels_{NdtMap{2.0 * finest_spacing_m}, NdtMap{4.0 * finest_spacing_m}} {}
+
+  void add(const Eigen::Vector2d& point) {
+    for (NdtMap& level : levels_)
+      level.add(point, 0);
+  }
+
+  /// The finest first.
+  std::span<const NdtMap> levels() const { return levels_; }
+
+ private:
+  std::array<NdtMap, 2> levels_;
+};
+
+}  // namespace waymark
