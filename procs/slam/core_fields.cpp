@@ -173,8 +173,9 @@ void ScanMatchConfig::describe(Fields& fields) {
   fields.field("information_share", information_share, kFraction,
                "of independent beams: those on one wall err together");
   fields.field("roughness_m", roughness_m, kNotNegative, "of walls, beside the noise of ranges");
-  fields.field("weak_share", weak_share, kFraction,
-               "directions with less than this share of the strongest are unobserved");
+  fields.field(
+      "weak_share", weak_share, kFraction,
+      "directions that lasting surfaces show less than this share of the strongest are unobserved");
   fields.field("min_inliers", min_inliers, {1, 100000}, "beams; a scan with fewer is not used");
 }
 

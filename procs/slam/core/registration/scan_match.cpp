@@ -27,6 +27,8 @@ constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
 // Beams on one surface err together beyond so many: the wall's mean is not the wall, and a person
 // is off with all of his beams.
 constexpr double kIndependentBeams = 4.0;
+// A surface that was seen from n keyframes counts as n / (n + this) of one that lasts.
+constexpr double kBrief = 3.0;
 
 // Noise of ranges.
 constexpr int kWellSeen = 20;               // points of a cell
@@ -36,6 +38,7 @@ constexpr double kSigmaOverMedian = 1.483;  // of the absolute values of a norma
 /// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
 struct Quadratic {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix2d lasting{Eigen::Matrix2d::Zero()};  ///< part of it, by surfaces that last
   Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
 };
 
@@ -75,6 +78,13 @@ BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point,
   return term;
 }
 
+/// Walls are in sight for metres, people in one place for a scan or two.
+double lasting_share(const NdtSurface& surface) {
+  if (surface.last_keyframe == 0) return 1.0;  // of a map without keyframes
+  const int seen_from = surface.last_keyframe - surface.first_keyframe + 1;
+  return seen_from / (seen_from + kBrief);
+}
+
 /// A scan in a map, from pose to pose: points mostly stay in the cells that they were in.
 class PointsInMap {
  public:
@@ -93,10 +103,11 @@ class PointsInMap {
       const Eigen::Vector2d there = lever + pose.translation();
       const BeamTerm term = compare(*surface, there, lever, point_variance_m2_, blur_m2, config);
       const double share = independent_share(*places_[i].beams);
-      add(term.normal, lever, term.across_m, share * term.across_weight, sum);
+      const double lasting = lasting_share(*surface);
+      add(term.normal, lever, term.across_m, share * term.across_weight, lasting, sum);
       if (term.along_weight > 0.0) {
         const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
-        add(along, lever, term.along_m, share * term.along_weight, sum);
+        add(along, lever, term.along_m, share * term.along_weight, lasting, sum);
       }
     }
     sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
@@ -125,10 +136,11 @@ class PointsInMap {
 
   /// A distance along `direction`, which follows the pose by (direction, direction x lever).
   static void add(const Eigen::Vector2d& direction, const Eigen::Vector2d& lever, double distance_m,
-                  double weight, Quadratic& sum) {
+                  double weight, double lasting, Quadratic& sum) {
     const double by_turn = lever.x() * direction.y() - lever.y() * direction.x();
     const double wx = weight * direction.x();
     const double wy = weight * direction.y();
+    sum.lasting += lasting * weight * direction * direction.transpose();
     sum.information(0, 0) += wx * direction.x();
     sum.information(0, 1) += wx * direction.y();
     sum.information(1, 1) += wy * direction.y();
@@ -202,7 +214,8 @@ class Descent {
   Se2 from(Se2 pose, PointsInMap& points, double blur_m, int steps, double converged) const {
     for (int i = 0; i < steps; ++i) {
       const Quadratic model = points.quadratic_about(pose, squared(blur_m), config_);
-      const ObservedAxes observed = observed_axes(model.information, config_.weak_share);
+      const ObservedAxes observed =
+          observed_axes(model.information, model.lasting, config_.weak_share);
       const Eigen::Vector3d off = pose_difference(pose, guess_);
       const Eigen::Vector3d step =
           -(observed.information + guess_information_)
@@ -244,12 +257,14 @@ Points thinned(const Points& points, std::size_t most) {
   return kept;
 }
 
-ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share) {
+ObservedAxes observed_axes(const Eigen::Matrix3d& information, const Eigen::Matrix2d& lasting,
+                           double weak_share) {
   ObservedAxes observed;
   observed.information = information;
   const PrincipalAxes axes = principal_axes(information.topLeftCorner<2, 2>());
   observed.weak_direction = axes.directions.col(0);
-  observed.is_degenerate = axes.values[0] <= weak_share * axes.values[1];
+  const double along_weak = observed.weak_direction.dot(lasting * observed.weak_direction);
+  observed.is_degenerate = along_weak <= weak_share * axes.values[1];
   if (!observed.is_degenerate) return observed;
   Eigen::Matrix3d keep = Eigen::Matrix3d::Identity();
   keep.topLeftCorner<2, 2>() -= observed.weak_direction * observed.weak_direction.transpose();
@@ -280,7 +295,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
   match.map_from_base = descent.from(match.map_from_base, points, 0.0, kFinalSteps, kConverged);
   // The optimum without the guess, along what the scan shows.
   const Quadratic model = points.quadratic_about(match.map_from_base, 0.0, config);
-  match.observed = observed_axes(model.information, config.weak_share);
+  match.observed = observed_axes(model.information, model.lasting, config.weak_share);
   Eigen::Matrix3d full_rank = match.observed.information;
   if (match.observed.is_degenerate) {
     const Eigen::Vector2d& weak = match.observed.weak_direction;

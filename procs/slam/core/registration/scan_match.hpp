@@ -25,7 +25,7 @@ struct ScanMatchConfig {
   double kernel_sigmas{3.0};
   double information_share{0.5};
   double roughness_m{0.003};
-  double weak_share{0.03};
+  double weak_share{0.01};
   int min_inliers{15};
 
   /// What they are, in words: core_fields.cpp.
@@ -45,7 +45,10 @@ double independent_share(int beams);
 
 /// Cuts off what noise of the walls' normals has leaked into a direction that they do not show
 /// (Zhang, Kaess, Singh 2016). Frame: that of the information, origin at the robot.
-ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share);
+/// @param lasting     the part about (x, y) that surfaces hold that last: what moves shows nothing.
+/// @param weak_share  of the strongest direction's information, below which one is not shown.
+ObservedAxes observed_axes(const Eigen::Matrix3d& information, const Eigen::Matrix2d& lasting,
+                           double weak_share);
 
 struct ScanMatch {
   /// Where the scan alone would put the base: along unobserved axes, where the guess was.

@@ -118,6 +118,45 @@ TEST(ScanMatch, ABareCorridorStaysOneForALidarThatScatters) {
   EXPECT_TRUE(match.observed.is_degenerate);
 }
 
+/// A corridor with pillars of 60 cm on one side, 3 m apart.
+Points pillars_from(const Se2& map_from_base, std::uint64_t seed) {
+  Points points = corridor_from(map_from_base, seed);
+  for (const double x : {0.0, 3.0})
+    for (double y = 0.4; y <= 1.0; y += 0.05)
+      points.push_back(map_from_base.inverse() * Eigen::Vector2d{x, y});
+  return points;
+}
+
+TEST(ScanMatch, AFewPillarsShowTheWayAlongACorridor) {
+  const Submap corridor = submap_of(pillars_from);
+  const Se2 truth{1.0, 0.1, 0.05};
+  const Se2 guess{1.04, 0.05, 0.03};
+  const ScanMatch match = match_scan(pillars_from(truth, 99), corridor.surfaces(), guess,
+                                     sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
+  EXPECT_FALSE(match.observed.is_degenerate);
+  EXPECT_NEAR(match.map_from_base.x(), truth.x(), 0.01);
+}
+
+/// Somebody who walks ahead of the robot.
+Points companion_from(const Se2& map_from_base, std::uint64_t seed) {
+  Points points = corridor_from(map_from_base, seed);
+  for (double y = -0.2; y <= 0.2; y += 0.05)
+    points.push_back(map_from_base.inverse() * Eigen::Vector2d{map_from_base.x() + 1.0, y});
+  return points;
+}
+
+TEST(ScanMatch, SomebodyWhoWalksAheadShowsNoWay) {
+  Submap corridor{0.25, 0};
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    const Se2 pose{0.3 * static_cast<double>(k), 0.0, 0.0};
+    corridor.insert(companion_from(pose, k + 1), pose);
+  }
+  const Se2 truth{6.0, 0.0, 0.0};
+  const ScanMatch match = match_scan(companion_from(truth, 99), corridor.surfaces(), truth,
+                                     sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
+  EXPECT_TRUE(match.observed.is_degenerate);
+}
+
 constexpr double kManyScatter_m = 0.05;
 
 /// Of a scan whose points lie exactly on what was mapped, with a LiDAR that scatters.
@@ -179,11 +218,16 @@ TEST(ScanMatch, AScanOfNothingIsNotUsable) {
   EXPECT_FALSE(match.is_usable({}));
 }
 
-TEST(ObservedAxes, TwoWallsAtRightAnglesObserveEverything) {
+TEST(ObservedAxes, ADirectionIsObservedIfLastingSurfacesShowIt) {
   Eigen::Matrix3d information = Eigen::Vector3d{100.0, 80.0, 300.0}.asDiagonal();
-  EXPECT_FALSE(observed_axes(information, 0.03).is_degenerate);
+  const auto is_degenerate = [&](double lasting_share) {
+    return observed_axes(information, lasting_share * information.topLeftCorner<2, 2>(), 0.03)
+        .is_degenerate;
+  };
+  EXPECT_FALSE(is_degenerate(1.0));
+  EXPECT_TRUE(is_degenerate(0.02));
   information(1, 1) = 1.0;
-  EXPECT_TRUE(observed_axes(information, 0.03).is_degenerate);
+  EXPECT_TRUE(is_degenerate(1.0));
 }
 
 }  // namespace
