@@ -27,13 +27,17 @@ struct Corridors {
   int clutter{4};          ///< things in each room
 };
 
+Vector2d between(const Vector2d& low, const Vector2d& high, Random& random) {
+  return {random.uniform(low.x(), high.x()), random.uniform(low.y(), high.y())};
+}
+
 void scatter(Building& building, const Vector2d& low, const Vector2d& high, int things,
              Random& random) {
   if ((high - low).minCoeff() <= 0.0) return;
   for (int i = 0; i < things; ++i) {
-    const Vector2d place{random.uniform(low.x(), high.x()), random.uniform(low.y(), high.y())};
+    const Vector2d place = between(low, high, random);
     if (random.uniform() < 0.5)
-      building.fill(place, place + Vector2d{random.uniform(0.2, 1.2), random.uniform(0.2, 0.9)});
+      building.fill(place, place + between({0.2, 0.2}, {1.2, 0.9}, random));
     else
       building.fill_disc(place, random.uniform(0.05, 0.3));
   }
@@ -113,9 +117,9 @@ Building draw_hall(Random& random) {
   Building hall{60.0, 45.0};
   hall.carve({2.0, 2.0}, {58.0, 43.0});
   for (int i = 0; i < 30; ++i) {
-    const Vector2d place{random.uniform(4.0, 56.0), random.uniform(4.0, 41.0)};
+    const Vector2d place = between({4.0, 4.0}, {56.0, 41.0}, random);
     if (random.uniform() < 0.5)
-      hall.fill(place, place + Vector2d{random.uniform(0.5, 3.0), random.uniform(0.5, 3.0)});
+      hall.fill(place, place + between({0.5, 0.5}, {3.0, 3.0}, random));
     else
       hall.fill_disc(place, 0.3);
   }
@@ -127,12 +131,13 @@ Building draw_outdoors(Random& random) {
   Building ground{160.0, 140.0};
   ground.carve({1.0, 1.0}, {159.0, 139.0});
   for (int i = 0; i < 16; ++i) {
-    const Vector2d place{random.uniform(5.0, 140.0), random.uniform(5.0, 120.0)};
-    ground.fill(place, place + Vector2d{random.uniform(6.0, 25.0), random.uniform(6.0, 20.0)});
+    const Vector2d place = between({5.0, 5.0}, {140.0, 120.0}, random);
+    ground.fill(place, place + between({6.0, 6.0}, {25.0, 20.0}, random));
   }
-  for (int i = 0; i < 70; ++i)
-    ground.fill_disc({random.uniform(3.0, 157.0), random.uniform(3.0, 137.0)},
-                     random.uniform(0.1, 0.5));
+  for (int i = 0; i < 70; ++i) {
+    const double radius_m = random.uniform(0.1, 0.5);
+    ground.fill_disc(between({3.0, 3.0}, {157.0, 137.0}, random), radius_m);
+  }
   scatter(ground, {3.0, 3.0}, {157.0, 137.0}, 60, random);
   return ground;
 }
@@ -143,6 +148,10 @@ Building::Building(double width_m, double height_m)
     : columns_{static_cast<int>(width_m / kCell_m)},
       rows_{static_cast<int>(height_m / kCell_m)},
       walls_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), true) {}
+
+std::vector<std::string> Building::kinds() {
+  return {"office", "grid", "long", "bare", "hall", "outdoors"};
+}
 
 Building Building::draw(const std::string& kind, Random& random) {
   const double width_m = random.uniform(1.8, 3.0);

@@ -19,6 +19,8 @@ class Building {
   /// Solid; what is carved is free.
   Building(double width_m, double height_m);
 
+  static std::vector<std::string> kinds();
+
   /// `office` (rooms and clutter around two loops), `grid` (four blocks of rooms), `long` (two
   /// blocks of 60 to 80 m), `bare` (one block of 70 to 90 m, hardly a door), `hall`, `outdoors`.
   /// @throws std::invalid_argument  of another kind.
