@@ -228,7 +228,7 @@ class WaymarkEstimator final : public Estimator {
   StartPose start_;
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
   Points loaded_points_{};                     ///< of the loaded map's walls
-  CoarseNdt loaded_coarse_{config_.scan.cell_spacing_m};
+  CoarseNdt loaded_coarse_{config_.scan.cell_spacing_m};  ///< the same
   bool is_confirmed_{true};  ///< the place in the loaded map, by markers or by walls
   std::optional<WallChangeDetector> wall_changes_{};  ///< against the loaded map
   Survey survey_;

@@ -80,7 +80,7 @@ BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point,
 
 /// Walls are in sight for metres, people in one place for a scan or two.
 double lasting_share(const NdtSurface& surface) {
-  if (surface.last_keyframe == 0) return 1.0;  // of a map without keyframes
+  if (surface.last_keyframe == 0) return 1.0;  // of a map without keyframes, or the first scan
   const int seen_from = surface.last_keyframe - surface.first_keyframe + 1;
   return seen_from / (seen_from + kBrief);
 }

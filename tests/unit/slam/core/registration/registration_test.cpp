@@ -54,10 +54,10 @@ Points room_from(const Se2& map_from_base, std::uint64_t seed) {
 }
 
 template <class View>
-Submap submap_of(View view) {
+Submap submap_of(View view, double step_m = 0.1) {
   Submap submap{0.25, 0};
   for (std::uint64_t k = 0; k < 20; ++k) {
-    const Se2 pose{0.1 * static_cast<double>(k), 0.0, 0.0};
+    const Se2 pose{step_m * static_cast<double>(k), 0.0, 0.0};
     submap.insert(view(pose, k + 1), pose);
   }
   return submap;
@@ -118,11 +118,11 @@ TEST(ScanMatch, ABareCorridorStaysOneForALidarThatScatters) {
   EXPECT_TRUE(match.observed.is_degenerate);
 }
 
-/// A corridor with pillars of 60 cm on one side, 3 m apart.
+/// A corridor with pillars of 40 cm on one side, 3 m apart.
 Points pillars_from(const Se2& map_from_base, std::uint64_t seed) {
   Points points = corridor_from(map_from_base, seed);
   for (const double x : {0.0, 3.0})
-    for (double y = 0.4; y <= 1.0; y += 0.05)
+    for (double y = 0.6; y <= 1.0; y += 0.05)
       points.push_back(map_from_base.inverse() * Eigen::Vector2d{x, y});
   return points;
 }
@@ -140,18 +140,14 @@ TEST(ScanMatch, AFewPillarsShowTheWayAlongACorridor) {
 /// Somebody who walks ahead of the robot.
 Points companion_from(const Se2& map_from_base, std::uint64_t seed) {
   Points points = corridor_from(map_from_base, seed);
-  for (double y = -0.2; y <= 0.2; y += 0.05)
+  for (double y = -0.1; y < 0.12; y += 0.05)
     points.push_back(map_from_base.inverse() * Eigen::Vector2d{map_from_base.x() + 1.0, y});
   return points;
 }
 
 TEST(ScanMatch, SomebodyWhoWalksAheadShowsNoWay) {
-  Submap corridor{0.25, 0};
-  for (std::uint64_t k = 0; k < 20; ++k) {
-    const Se2 pose{0.3 * static_cast<double>(k), 0.0, 0.0};
-    corridor.insert(companion_from(pose, k + 1), pose);
-  }
-  const Se2 truth{6.0, 0.0, 0.0};
+  const Submap corridor = submap_of(companion_from, 0.3);
+  const Se2 truth{5.8, 0.0, 0.0};
   const ScanMatch match = match_scan(companion_from(truth, 99), corridor.surfaces(), truth,
                                      sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
   EXPECT_TRUE(match.observed.is_degenerate);
