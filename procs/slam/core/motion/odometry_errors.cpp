@@ -22,10 +22,12 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   const Eigen::Vector2d left{-along.y(), along.x()};
   const double turn_rad2 =
       turn_variance(noise, motion.distance_m, motion.turn_rad) + kVarianceFloor;
-  const double along_m2 = squared(noise.along_per_sqrt_m) * motion.distance_m + kVarianceFloor;
+  // The wheels roll on the spot, too.
+  const double rolled_m = std::max(motion.distance_m, noise.half_track_m * motion.turn_rad);
+  const double along_m2 = squared(noise.along_per_sqrt_m) * rolled_m + kVarianceFloor;
   // Integrated random walk: L^2 / 3 of the final heading's variance, L / 2 in common with it.
   const double across_m2 = squared(length_m) * turn_rad2 / 3.0 +
-                           squared(noise.across_per_sqrt_m) * motion.distance_m + kVarianceFloor;
+                           squared(noise.across_per_sqrt_m) * rolled_m + kVarianceFloor;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   covariance.topLeftCorner<2, 2>() =
       along_m2 * along * along.transpose() + across_m2 * left * left.transpose();

@@ -34,6 +34,18 @@ TEST(OdometryErrors, DriftTurnsTheOtherWayInReverse) {
   EXPECT_NEAR(turn_rad(-2.0), -0.02, 1e-12);
 }
 
+/// The wheels roll, so the middle between them is as uncertain as on a way of that length.
+TEST(OdometryErrors, ATurnOnTheSpotIsNoStandstill) {
+  OdometryNoise noise;
+  noise.half_track_m = 0.2;
+  const auto along_m2 = [&](const Se2& end) {
+    return corrected_motion(Motion::between({}, end), OdometryErrors::Zero(), noise)
+        .covariance(0, 0);
+  };
+  EXPECT_NEAR(along_m2({0.0, 0.0, 0.5}), along_m2({0.1, 0.0, 0.0}), 1e-8);
+  EXPECT_NEAR(along_m2({0.3, 0.0, 0.0}), along_m2({0.3, 0.0, 0.5}), 1e-8);
+}
+
 TEST(OdometryBuffer, InterpolatesBetweenSamples) {
   OdometryBuffer buffer;
   buffer.add({at_ms(0), Se2{0.0, 0.0, 0.0}});
