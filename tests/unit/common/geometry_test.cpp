@@ -82,6 +82,20 @@ TEST(Random, HasTheRightMoments) {
   EXPECT_NEAR(uniform_sum / kDraws, 0.5, three_sigma * std::sqrt(1.0 / 12.0));
 }
 
+TEST(Se2, PosesOnArcsAboutOnePointKeepWhatLiesBetweenThem) {
+  const double turn_rad = 0.7;
+  const Se2 turn{0.0, 0.0, turn_rad};
+  for (const Se2& pose : {Se2{3.0, -1.0, 0.4}, Se2{-2.0, 5.0, 2.9}}) {
+    // How it begins to move, as seen from itself.
+    const Eigen::Vector2d begins =
+        pose.rotation().transpose() * Eigen::Vector2d{-turn_rad * pose.y(), turn_rad * pose.x()};
+    const Se2 moved = pose * along_arc({begins.x(), begins.y(), turn_rad});
+    EXPECT_LT(pose_difference(moved, turn * pose).norm(), 1e-12);
+  }
+  const Se2 small = along_arc({0.2, 0.1, 1e-6});
+  EXPECT_NEAR(small.y(), 0.1 + 0.5 * 1e-6 * 0.2, 1e-12);
+}
+
 TEST(CameraConfig, LooksForwardByDefault) {
   CameraConfig camera{};
   camera.x_m = camera.y_m = camera.z_m = 0.0;

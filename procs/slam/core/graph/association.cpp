@@ -14,6 +14,14 @@ constexpr int kTurnedUp = 3;         // sightings of a marker that another one m
 constexpr double kSamePlace = 0.25;  // of a marker's side; boards have them side by side
 constexpr double kSameFacing_rad = radians(45.0);  // a wall has two sides
 
+/// By differences of poses in the map's axes, which the graph's covariances are of.
+LinearFactor in_map_axes(LinearFactor linear, const State& state) {
+  for (LinearFactor::Block& block : linear.blocks)
+    if (block.variable.kind != VariableKind::kCalibration)
+      block.jacobian *= turning(state.pose(block.variable).rotation().transpose());
+  return linear;
+}
+
 }  // namespace
 
 MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t landmark,
@@ -22,8 +30,8 @@ MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t l
   factor.keyframe = keyframe;
   factor.landmark = landmark;
   factor.measurement = measurement;
-  const LinearFactor linear =
-      factor.linearise(graph.state(), std::numeric_limits<double>::infinity());
+  const LinearFactor linear = in_map_axes(
+      factor.linearise(graph.state(), std::numeric_limits<double>::infinity()), graph.state());
   MarkerInnovation innovation;
   innovation.landmark = landmark;
   innovation.residual = -linear.residual;

@@ -13,9 +13,7 @@
 namespace waymark {
 namespace {
 
-const Eigen::Matrix2d kQuarterTurn = (Eigen::Matrix2d{} << 0.0, -1.0, 1.0, 0.0).finished();
-
-/// Pose of one frame in another, and how it follows both (additive, map frame).
+/// Pose of one frame in another, and how it follows steps of both (State::retract).
 struct Relative {
   Eigen::Vector3d pose{Eigen::Vector3d::Zero()};
   Eigen::Matrix3d by_from{Eigen::Matrix3d::Zero()};
@@ -23,14 +21,12 @@ struct Relative {
 };
 
 Relative relative(const Se2& map_from_from, const Se2& map_from_to) {
-  const Eigen::Matrix2d turn = map_from_from.rotation().transpose();
-  const Eigen::Vector2d there = turn * (map_from_to.translation() - map_from_from.translation());
+  const Se2 from_from_to = map_from_from.inverse() * map_from_to;
   Relative result;
-  result.pose << there, angle_difference(map_from_to.theta(), map_from_from.theta());
-  result.by_to = Eigen::Matrix3d::Identity();
-  result.by_to.topLeftCorner<2, 2>() = turn;
-  result.by_from = -result.by_to;
-  result.by_from.topRightCorner<2, 1>() = -kQuarterTurn * there;
+  result.pose << from_from_to.translation(),
+      angle_difference(map_from_to.theta(), map_from_from.theta());
+  result.by_to = turning(from_from_to.rotation());
+  result.by_from = -carried_along(from_from_to.translation());
   return result;
 }
 
@@ -56,7 +52,7 @@ void State::retract(const Variable& variable, const Eigen::Ref<const Eigen::Vect
   }
   Se2& pose = variable.kind == VariableKind::kKeyframe ? keyframes[variable.index]
                                                        : landmarks[variable.index];
-  pose = moved_by(pose, step);
+  pose = pose * along_arc(step);
 }
 
 Eigen::Matrix3d root_of(const Eigen::Matrix3d& information) {
@@ -73,35 +69,45 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {
   return noise;
 }
 
-Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
-                                     const Eigen::Matrix3d& rolling, double half_track_m) {
-  struct Component {
-    Eigen::Matrix3d covariance;
+MotionKind likeliest_kind(const Eigen::Vector3d& residual, const Eigen::Matrix3d& rolling,
+                          double half_track_m) {
+  struct Kind {
+    MotionKind kind;
     double penalty;  // -2 log of its share: 0.95, 0.03, 0.015, 0.005
   };
 
+  const std::array<Kind, 4> kinds{
+      {{MotionKind::kRolling, 0.1},
+       {residual.z() > 0.0 ? MotionKind::kLeftSpins : MotionKind::kRightSpins, 7.0},
+       {MotionKind::kJerked, 8.4},
+       {MotionKind::kAnything, 10.6}}};
+  const auto cost = [&](const Kind& kind) {
+    const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind.kind, rolling, half_track_m)};
+    return residual.dot(root.solve(residual)) + kind.penalty +
+           2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
+  };
+  return std::min_element(kinds.begin(), kinds.end(),
+                          [&](const Kind& a, const Kind& b) { return cost(a) < cost(b); })
+      ->kind;
+}
+
+Eigen::Matrix3d covariance_of(MotionKind kind, const Eigen::Matrix3d& rolling,
+                              double half_track_m) {
   constexpr double kSpinning = 25.0;  // turn by a spinning wheel, in standard deviations of rolling
   constexpr double kPushed_m = 0.1;   // while the odometry stands still
   constexpr double kPushed_rad = 0.1;
+  if (kind == MotionKind::kRolling) return rolling;
+  if (kind == MotionKind::kJerked) return 25.0 * 25.0 * rolling;
+  if (kind == MotionKind::kAnything) {
+    const Eigen::Matrix3d anything =
+        Eigen::Vector3d{kPushed_m, kPushed_m, kPushed_rad}.cwiseAbs2().asDiagonal();
+    return 125.0 * 125.0 * rolling + anything;
+  }
   // A wheel that spins is counted too far: its side is shorter than measured, and with that the
   // way.
-  const Eigen::Vector3d spin{residual.z() > 0.0 ? -half_track_m : half_track_m, 0.0, 1.0};
-  const Eigen::Matrix3d anything =
-      Eigen::Vector3d{kPushed_m, kPushed_m, kPushed_rad}.cwiseAbs2().asDiagonal();
-  const double spin_rad2 = kSpinning * kSpinning * rolling(2, 2);
-  const std::array<Component, 4> components{
-      {{rolling, 0.1},
-       {Eigen::Matrix3d{9.0 * rolling + spin_rad2 * spin * spin.transpose()}, 7.0},
-       {Eigen::Matrix3d{25.0 * 25.0 * rolling}, 8.4},
-       {Eigen::Matrix3d{125.0 * 125.0 * rolling + anything}, 10.6}}};
-  const auto cost = [&](const Component& component) {
-    const Eigen::LLT<Eigen::Matrix3d> root{component.covariance};
-    return residual.dot(root.solve(residual)) + component.penalty +
-           2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
-  };
-  return std::min_element(components.begin(), components.end(),
-                          [&](const Component& a, const Component& b) { return cost(a) < cost(b); })
-      ->covariance;
+  const bool is_left = kind == MotionKind::kLeftSpins;
+  const Eigen::Vector3d spin{is_left ? -half_track_m : half_track_m, 0.0, 1.0};
+  return 9.0 * rolling + kSpinning * kSpinning * rolling(2, 2) * spin * spin.transpose();
 }
 
 Eigen::Matrix3d unmeasured_covariance(double sigma_m) {
@@ -121,25 +127,38 @@ CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const Odome
   return moved;
 }
 
+CorrectedMotion OdometryFactor::moved(const State& state, const OdometryNoise& noise,
+                                      const OdometryScale& scale) const {
+  const CorrectedMotion moved = corrected_motion(motion, odometry_part(state.calibration), noise);
+  return is_unobserved ? with_slips(moved, motion.distance_m, scale) : moved;
+}
+
+void OdometryFactor::choose_kind(const State& state, const OdometryNoise& noise,
+                                 const OdometryScale& scale) {
+  if (is_cut || !noise.may_slip) return;
+  const CorrectedMotion measured = moved(state, noise, scale);
+  const Relative found = relative(state.keyframes[from], state.keyframes[to]);
+  kind = likeliest_kind(pose_residual(found.pose - vector_of(measured.start_from_end)),
+                        measured.covariance, noise.half_track_m);
+}
+
 LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise,
                                        const OdometryScale& scale) const {
+  const CorrectedMotion measured = moved(state, noise, scale);
   LinearFactor linear;
-  CorrectedMotion moved = corrected_motion(motion, odometry_part(state.calibration), noise);
-  if (is_unobserved) moved = with_slips(moved, motion.distance_m, scale);
   const Relative found = relative(state.keyframes[from], state.keyframes[to]);
-  const Eigen::Vector3d residual = pose_residual(found.pose - vector_of(moved.start_from_end));
+  const Eigen::Vector3d residual = pose_residual(found.pose - vector_of(measured.start_from_end));
   constexpr double kCarried_m = 1000.0;  // as good as nothing; keeps the normal equations regular
   Eigen::Matrix3d root = Eigen::Matrix3d::Identity() / kCarried_m;
   if (!is_cut) {
-    const Eigen::Matrix3d measured =
-        noise.may_slip ? likeliest_covariance(residual, moved.covariance, noise.half_track_m)
-                       : moved.covariance;
-    const Eigen::LLT<Eigen::Matrix3d> covariance{measured + unmeasured_covariance(unmeasured_m)};
+    const Eigen::LLT<Eigen::Matrix3d> covariance{
+        covariance_of(kind, measured.covariance, noise.half_track_m) +
+        unmeasured_covariance(unmeasured_m)};
     root = covariance.matrixL().solve(Eigen::Matrix3d::Identity());
   }
   linear.residual = root * residual;
   LinearFactor::Jacobian by_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
-  if (!is_cut) by_calibration.leftCols<kOdometryTerms>() = -root * moved.by_errors;
+  if (!is_cut) by_calibration.leftCols<kOdometryTerms>() = -root * measured.by_errors;
   linear.blocks = {{keyframe_variable(from), root * found.by_from},
                    {keyframe_variable(to), root * found.by_to},
                    {{VariableKind::kCalibration, 0}, by_calibration}};
@@ -175,10 +194,9 @@ LinearFactor ScanFactor::linearise(const State& state) const {
     const Relative off = relative(expected, map_from_keyframe);
     residual += reference.share * off.pose;
     by_keyframe += reference.share * off.by_to;
-    // The expected pose swings about the reference.
-    Eigen::Matrix3d expected_by_reference = Eigen::Matrix3d::Identity();
-    expected_by_reference.topRightCorner<2, 1>() =
-        kQuarterTurn * (expected.translation() - map_from_reference.translation());
+    const Se2& to_keyframe = reference.reference_from_keyframe;
+    const Eigen::Matrix3d expected_by_reference =
+        turning(to_keyframe.rotation().transpose()) * carried_along(to_keyframe.translation());
     linear.blocks.push_back({keyframe_variable(reference.keyframe),
                              reference.share * root * off.by_from * expected_by_reference});
   }
@@ -208,16 +226,18 @@ LinearFactor MarkerFactor::linearise(const State& state, double gate) const {
 
 LinearFactor LandmarkPrior::linearise(const State& state) const {
   const Eigen::Matrix3d root = (is_off ? 0.0 : 1.0) * root_information;
+  const Se2& found = state.landmarks[landmark];
   LinearFactor linear;
-  linear.residual = root * pose_difference(state.landmarks[landmark], map_from_marker);
-  linear.blocks = {{{VariableKind::kLandmark, landmark}, root}};
+  linear.residual = root * pose_difference(found, map_from_marker);
+  linear.blocks = {{{VariableKind::kLandmark, landmark}, root * turning(found.rotation())}};
   return linear;
 }
 
 LinearFactor PosePrior::linearise(const State& state) const {
+  const Se2& found = state.keyframes[keyframe];
   LinearFactor linear;
-  linear.residual = root_information * pose_difference(state.keyframes[keyframe], map_from_base);
-  linear.blocks = {{keyframe_variable(keyframe), root_information}};
+  linear.residual = root_information * pose_difference(found, map_from_base);
+  linear.blocks = {{keyframe_variable(keyframe), root_information * turning(found.rotation())}};
   return linear;
 }
 

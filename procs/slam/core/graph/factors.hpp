@@ -44,15 +44,24 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
 /// The motion that the wheels measured where nothing else showed the way.
 CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const OdometryScale& scale);
 
-/// The odometry's noise is a mixture of normal distributions: the wheels roll; one of them spins,
-/// which errs in the way as it errs in the turn; or something worse has happened. The likeliest
-/// component counts (Olson and Agarwal 2013, "Inference on networks of mixtures").
+/// The odometry's noise is a mixture of normal distributions, of which the likeliest counts (Olson
+/// and Agarwal 2013, "Inference on networks of mixtures").
+enum class MotionKind : std::uint8_t {
+  kRolling,
+  kLeftSpins,  ///< a wheel that spins errs in the way as it errs in the turn
+  kRightSpins,
+  kJerked,
+  kAnything,
+};
+
 /// @param residual       observed minus measured (x, y, theta), in the frame at the start.
 /// @param rolling        covariance of it while the wheels roll.
 /// @param half_track_m   half of the distance between the wheels.
-/// @return the covariance of the likeliest component.
-Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
-                                     const Eigen::Matrix3d& rolling, double half_track_m);
+MotionKind likeliest_kind(const Eigen::Vector3d& residual, const Eigen::Matrix3d& rolling,
+                          double half_track_m);
+
+/// Of a motion of that kind.
+Eigen::Matrix3d covariance_of(MotionKind kind, const Eigen::Matrix3d& rolling, double half_track_m);
 
 /// Of a motion that was not measured: mostly ahead. Axes of the base.
 /// @param sigma_m  how far that may have been.
@@ -66,10 +75,19 @@ struct OdometryFactor {
   bool is_cut{false};         ///< the robot was carried: it says nothing
   bool is_unobserved{false};  ///< neither markers nor walls showed the way: wheels may have slipped
   double unmeasured_m{0.0};   ///< what may have been driven without being measured (one sigma)
+  MotionKind kind{MotionKind::kRolling};
 
   /// @param noise  scaled.
   LinearFactor linearise(const State& state, const OdometryNoise& noise,
                          const OdometryScale& scale = {}) const;
+
+  /// Of poses and a calibration that fit together: what the newest calibration says of poses that
+  /// do not follow it yet looks like a slip.
+  void choose_kind(const State& state, const OdometryNoise& noise, const OdometryScale& scale);
+
+ private:
+  CorrectedMotion moved(const State& state, const OdometryNoise& noise,
+                        const OdometryScale& scale) const;
 };
 
 /// A scan against surfaces that other keyframes have seen: the mean of what these keyframes say.

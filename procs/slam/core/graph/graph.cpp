@@ -190,6 +190,11 @@ void Graph::cut_odometry_since(std::size_t keyframe) {
   }
 }
 
+void Graph::choose_kind(Factor& factor) const {
+  if (auto* odometry = std::get_if<OdometryFactor>(&factor))
+    odometry->choose_kind(state_, odometry_noise(), noise_.scale);
+}
+
 LinearFactor Graph::linearised(const Factor& factor) const {
   struct Visitor {
     const Graph& graph;
@@ -267,6 +272,13 @@ void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& r
   Eigen::MatrixXd half = Eigen::MatrixXd::Identity(size, size);
   root.matrixLLT().bottomRightCorner(size, size).triangularView<Eigen::Lower>().solveInPlace(half);
   covariance_.noalias() = half.transpose() * half;
+  for (const auto& [variable, offset] : covariance_offsets_) {
+    if (variable.kind == VariableKind::kCalibration) continue;
+    const Eigen::Matrix2d to_map = state_.pose(variable).rotation();
+    covariance_.middleRows<2>(offset) = (to_map * covariance_.middleRows<2>(offset)).eval();
+    covariance_.middleCols<2>(offset) =
+        (covariance_.middleCols<2>(offset) * to_map.transpose()).eval();
+  }
   for (const auto& [variable, offset] : covariance_offsets_)
     if (variable.kind == VariableKind::kLandmark)
       landmark_covariances_[variable.index] = covariance_.block<3, 3>(offset, offset);
@@ -278,6 +290,8 @@ Eigen::VectorXd Graph::solve_window() {
   Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root;
   double step_size = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMaxIterations && step_size >= kConverged; ++i) {
+    for (const std::size_t index : active_factors_)
+      choose_kind(factors_[index]);
     const NormalEquations equations = window_equations();
     root.compute(equations.h);
     const Eigen::VectorXd step = root.solve(-equations.g);
@@ -303,10 +317,13 @@ Eigen::Matrix3d Graph::covariance_since(std::size_t keyframe) const {
   const std::size_t newest = state_.keyframes.size() - 1;
   const Eigen::Vector2d way =
       state_.keyframes[newest].translation() - state_.keyframes[keyframe].translation();
+  const auto to_own_frame = [this](std::size_t index) {
+    return turning(state_.keyframes[index].rotation().transpose());
+  };
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(prior_.g.size(), 3);
-  difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, newest})).setIdentity();
+  difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, newest})) = to_own_frame(newest);
   difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, keyframe})) -=
-      carried_along(way).transpose();
+      to_own_frame(keyframe) * carried_along(way).transpose();
   const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root{window_equations().h};
   return difference.transpose() * root.solve(difference);
 }

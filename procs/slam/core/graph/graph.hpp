@@ -139,6 +139,9 @@ class Graph {
 
   bool forget_removed(Factor& factor) const;
   void carry_removed();
+
+  /// See OdometryFactor.
+  void choose_kind(Factor& factor) const;
   LinearFactor linearised(const Factor& factor) const;
   double cost_of(const MarkerFactor& factor) const;
   bool is_within_window(const Factor& factor) const;

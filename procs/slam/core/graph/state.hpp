@@ -41,12 +41,20 @@ struct Variable {
   Eigen::Index size() const { return kind == VariableKind::kCalibration ? kCalibrationSize : 3; }
 };
 
-/// Map frame. Poses move by additive (x, y, theta).
+/// Map frame.
 struct State {
   PoseSequence keyframes{};      ///< map_from_base
   std::vector<Se2> landmarks{};  ///< map_from_marker
   Calibration calibration{Calibration::Zero()};
 
+  /// Of a keyframe or a landmark.
+  const Se2& pose(const Variable& variable) const {
+    return variable.kind == VariableKind::kKeyframe ? keyframes[variable.index]
+                                                    : landmarks[variable.index];
+  }
+
+  /// Poses step in their own frames, along arcs: what is known of poses relative to each other,
+  /// such as the prior of the window, stays true where all of them turn together.
   void retract(const Variable& variable, const Eigen::Ref<const Eigen::VectorXd>& step);
 };
 

@@ -154,9 +154,11 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   for (const Variable& variable : variables)
     state_.retract(variable, x.segment(place_of(variable), 3));
   carry_removed();
-  for (Factor& factor : factors_)
+  for (Factor& factor : factors_) {
+    choose_kind(factor);
     if (auto* scan = std::get_if<ScanFactor>(&factor); scan != nullptr && scan->is_loop)
       scan->reweigh(state_);
+  }
   return x.head(num_behind).cwiseAbs().maxCoeff();
 }
 

@@ -114,14 +114,21 @@ TEST(Factors, AMarkerFarBeyondTheGateHardlyPulls) {
   EXPECT_LT(pull(far), 0.01 * pull(near));
 }
 
+constexpr double kHalfTrack_m = 0.14;
+
+Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
+                                     const Eigen::Matrix3d& rolling) {
+  return covariance_of(likeliest_kind(residual, rolling, kHalfTrack_m), rolling, kHalfTrack_m);
+}
+
 TEST(OdometryMixture, ATurnThatRollingCannotExplainShortensTheWay) {
   const Eigen::Matrix3d rolling = Eigen::Vector3d{1e-6, 1e-6, 1e-5}.asDiagonal();
   for (const double turn_rad : {0.05, -0.05}) {
-    const Eigen::Matrix3d spins = likeliest_covariance({0.0, 0.0, turn_rad}, rolling, 0.14);
+    const Eigen::Matrix3d spins = likeliest_covariance({0.0, 0.0, turn_rad}, rolling);
     // What the turn says about the way: negative, whichever wheel spins.
     EXPECT_LT(spins(0, 2) / spins(2, 2) * turn_rad, -0.1 * std::abs(turn_rad));
   }
-  EXPECT_EQ(likeliest_covariance({0.0005, 0.0, 0.002}, rolling, 0.14), rolling);
+  EXPECT_EQ(likeliest_covariance({0.0005, 0.0, 0.002}, rolling), rolling);
 }
 
 TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
@@ -163,10 +170,10 @@ TEST(CalibrationKnowledge, ADescriptionThatHoldsKeepsItsWeight) {
 
 TEST(OdometryMixture, OdometryThatStandsStillDoesNotHoldARobotThatMoves) {
   const Eigen::Matrix3d standing = 1e-9 * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d believed = likeliest_covariance({0.2, 0.0, 0.0}, standing, 0.14);
+  const Eigen::Matrix3d believed = likeliest_covariance({0.2, 0.0, 0.0}, standing);
   EXPECT_GT(std::sqrt(believed(0, 0)), 0.05);
-  EXPECT_NEAR(std::sqrt(likeliest_covariance({3e-5, 0.0, 0.0}, standing, 0.14)(0, 0)),
-              std::sqrt(1e-9), 1e-6);
+  EXPECT_NEAR(std::sqrt(likeliest_covariance({3e-5, 0.0, 0.0}, standing)(0, 0)), std::sqrt(1e-9),
+              1e-6);
 }
 
 /// A drive of short steps past two markers, with noise; every keyframe is tied to the two before.
