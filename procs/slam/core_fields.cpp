@@ -205,7 +205,8 @@ void WaymarkConfig::describe(Fields& fields) {
                "scans in between enter the submaps after this much driving");
   fields.field("window_keyframes", window_keyframes, {2, 100000},
                "keyframes that are solved for at each update; 16 at most with mode = localise");
-  fields.field("submap_keyframes", submap_keyframes, {2, 100000}, "keyframes of a submap");
+  fields.field("submap_keyframes", submap_keyframes, {2, 100000}, "keyframes of a submap, at most");
+  fields.field("submap_length_m", submap_length_m, {0.1, 1e4}, "[m] driven along it, at most");
   fields.field("keyframes_per_place", keyframes_per_place, {1, 100000},
                "kept of a square metre and a quarter of a turn; later ones are forgotten once they "
                "have been tied to those");

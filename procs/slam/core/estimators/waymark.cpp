@@ -54,7 +54,7 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       range_noise_{setup.range_sigma_m},
       loop_finder_{config.loops, config.scan},
       thinning_{config.keyframes_per_place, 2 * config.submap_keyframes},
-      submaps_{config.scan.cell_spacing_m, config.submap_keyframes},
+      submaps_{config.scan.cell_spacing_m, config.submap_keyframes, config.submap_length_m},
       usual_fit_{config.scan.min_inliers, config.min_inlier_share},
       map_{setup.grid, ground_of(setup)},
       weighed_with_{graph_.odometry_noise()},

@@ -36,6 +36,7 @@ struct WaymarkConfig {
   double insert_distance_m{0.04};
   int window_keyframes{48};
   int submap_keyframes{40};
+  double submap_length_m{9.0};
   int keyframes_per_place{60};
   bool learn_noise{true};
   bool calibrate{true};

@@ -23,6 +23,8 @@ class Submap {
 
   /// Keyframes come one after the other, without a gap.
   void insert(const Points& points_in_base, const Se2& submap_from_base) {
+    if (!poses_.empty())
+      length_m_ += (submap_from_base.translation() - poses_.back().translation()).norm();
     poses_.push_back(submap_from_base);
     reach_m_ = std::max(reach_m_, submap_from_base.translation().norm());
     add(points_in_base, submap_from_base);
@@ -61,6 +63,9 @@ class Submap {
   /// Of the keyframes, from the first one.
   double reach_m() const { return reach_m_; }
 
+  /// Driven from the first keyframe to the last.
+  double length_m() const { return length_m_; }
+
   /// As it was inserted.
   const Se2& submap_from_keyframe(std::size_t keyframe) const {
     return poses_[keyframe - first_keyframe_];
@@ -74,6 +79,7 @@ class Submap {
   CoarseNdt coarse_;
   std::vector<Se2> poses_{};
   double reach_m_{0.0};
+  double length_m_{0.0};
   std::set<std::pair<long, long>> occupied_{};
   Points points_{};
 };

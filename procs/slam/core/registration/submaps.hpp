@@ -16,9 +16,12 @@ namespace waymark {
 /// and holds half a length of scans at least. When it is full it is finished.
 class Submaps {
  public:
-  Submaps(double cell_spacing_m, int keyframes_each)
+  /// @param keyframes_each  of a submap, or fewer where they are far apart:
+  /// @param length_m        so long at most, because the drift along it bends it.
+  Submaps(double cell_spacing_m, int keyframes_each, double length_m)
       : cell_spacing_m_{cell_spacing_m},
-        half_{static_cast<std::size_t>(std::max(1, keyframes_each / 2))} {}
+        half_{static_cast<std::size_t>(std::max(1, keyframes_each / 2))},
+        half_m_{0.5 * length_m} {}
 
   /// That scans are matched with; null: none has begun.
   const Submap* matched() const { return growing_.empty() ? nullptr : &growing_.front(); }
@@ -44,6 +47,7 @@ class Submaps {
  private:
   double cell_spacing_m_;
   std::size_t half_;  ///< of the keyframes of one
+  double half_m_;     ///< of its length
   std::deque<Submap> finished_{};
   std::deque<Submap> growing_{};  ///< one or two
 };

@@ -10,7 +10,7 @@ namespace {
 constexpr int kKeyframesEach = 10;
 
 struct Drive {
-  Submaps submaps{0.25, kKeyframesEach};
+  Submaps submaps{0.25, kKeyframesEach, 100.0};
   PoseSequence keyframes{};
 
   void go(int num_keyframes) {
@@ -22,7 +22,7 @@ struct Drive {
 };
 
 TEST(Submaps, NoneAtFirst) {
-  const Submaps submaps{0.25, kKeyframesEach};
+  const Submaps submaps{0.25, kKeyframesEach, 100.0};
   EXPECT_EQ(submaps.matched(), nullptr);
   EXPECT_TRUE(submaps.finished().empty());
 }
@@ -48,6 +48,18 @@ TEST(Submaps, FinishedOnesFollowEachOtherByHalfALength) {
     EXPECT_EQ(drive.submaps.find(submap.first_keyframe()), &submap);
   }
   EXPECT_EQ(drive.submaps.find(1), nullptr);
+}
+
+/// Keyframes of a LiDAR that is slow or a robot that is fast are far apart.
+TEST(Submaps, AreNoLongerThanTheLengthGiven) {
+  Drive drive;
+  drive.submaps = Submaps{0.25, 1000, 2.0};
+  drive.go(60);
+  ASSERT_FALSE(drive.submaps.finished().empty());
+  for (const Submap& submap : drive.submaps.finished()) {
+    EXPECT_GE(submap.length_m(), 2.0);
+    EXPECT_LT(submap.length_m(), 2.4);  // by a keyframe of each half
+  }
 }
 
 TEST(Submaps, ScansAreWhereTheirKeyframesAre) {
