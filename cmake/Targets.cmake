@@ -35,14 +35,12 @@ endfunction()
 
 add_custom_target(programs COMMENT "All installed programs")
 
-# waymark_program(NAME SOURCES ... LIBRARIES ...): an installed program, built into the top of the build folder. Its main.cpp
-# does nothing but read the command line, once: the optimiser would spend half of the compile time on CLI11's templates.
+# waymark_program(NAME SOURCES ... LIBRARIES ...): an installed program, built into the top of the build folder.
 function(waymark_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} waymark_warnings)
   target_precompile_headers(${name} REUSE_FROM precompiled_plain)
-  set_source_files_properties(main.cpp PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}")
   add_dependencies(programs ${name})
   install(TARGETS ${name} RUNTIME DESTINATION bin)

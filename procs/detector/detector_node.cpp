@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/detector_node.hpp"
 
+#include "common/logging/logging.hpp"
 #include "common/messages/convert.hpp"
 #include "detector/image_message.hpp"
 
 #include <opencv2/core/utility.hpp>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <functional>
@@ -69,7 +69,7 @@ void DetectorNode::count(const MarkerDetections& detections) {
 void DetectorNode::reject(const DecodedFrame& frame) {
   const std::string name = "CAMERA rejected: " + std::string{to_string(frame.problem)};
   if (frame.problem == FrameProblem::kWrongSize && inbox_.counters().get(name) == 0) {
-    spdlog::error(
+    logging::error(
         "an image of {} x {} px is refused: robot.camera.width_px and height_px say {} x {}",
         frame.wrong_size.width, frame.wrong_size.height, image_size_.width, image_size_.height);
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The slam process: commands, and the last pose.
+#include "common/logging/logging.hpp"
 #include "slam/estimator_factory.hpp"
 #include "slam/last_pose.hpp"
 #include "slam/map_file.hpp"
 #include "slam/slam_node.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,9 +46,9 @@ StartPose start_at(const Estimate& estimate) {
 
 std::int64_t SlamNode::save_map_to(const std::filesystem::path& file, const MapSnapshot& map) {
   const std::int64_t map_id = write_map_file(file, map, map_info(config_, frame_));
-  spdlog::info("map {:016x} is in '{}': {} markers, {} keyframes",
-               static_cast<std::uint64_t>(map_id), file.string(), map.landmarks.size(),
-               map.graph.poses.size());
+  logging::info("map {:016x} is in '{}': {} markers, {} keyframes",
+                static_cast<std::uint64_t>(map_id), file.string(), map.landmarks.size(),
+                map.graph.poses.size());
   frame_map_id_ = map_id;
   return map_id;
 }
@@ -159,15 +159,15 @@ void SlamNode::resume_last_pose(const Observation& first) {
     if (const auto last = read_last_pose(config_.slam.state_folder))
       resumption = resume(*last, frame_map_id_, first.time, first.odom_from_base);
   } catch (const std::exception& error) {
-    spdlog::warn("{}", error.what());
+    logging::warn("{}", error.what());
     resumption.why_not = "it cannot be read";
   }
   if (resumption.start && estimator_->set_pose(*resumption.start)) {
-    spdlog::info("resumes at ({:.2f}, {:.2f}) m", resumption.start->x_m, resumption.start->y_m);
+    logging::info("resumes at ({:.2f}, {:.2f}) m", resumption.start->x_m, resumption.start->y_m);
     return;
   }
-  spdlog::info("the last pose is not used: {}; the robot is looked for anywhere in the map",
-               resumption.why_not);
+  logging::info("the last pose is not used: {}; the robot is looked for anywhere in the map",
+                resumption.why_not);
 }
 
 void SlamNode::keep_last_pose() {

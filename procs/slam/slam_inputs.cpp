@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/slam_inputs.hpp"
 
+#include "common/logging/logging.hpp"
 #include "slam/map_file.hpp"
 #include "slam/survey_file.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <utility>
 
@@ -64,12 +64,12 @@ std::vector<SurveyedMarker> load_survey(const SlamConfig& config) {
   const std::string& file = config.robot.markers.survey_file;
   if (file.empty()) return {};
   if (config.slam.estimator != EstimatorName::kWaymark) {
-    spdlog::info("the survey '{}' is not used: only the estimator 'waymark' can", file);
+    logging::info("the survey '{}' is not used: only the estimator 'waymark' can", file);
     return {};
   }
   std::vector<SurveyedMarker> survey = read_survey(file, config.robot.markers.dictionary);
   if (!config.load_map.empty())
-    spdlog::info("the survey '{}' is checked, but not used: the loaded map has its frame", file);
+    logging::info("the survey '{}' is checked, but not used: the loaded map has its frame", file);
   return survey;
 }
 

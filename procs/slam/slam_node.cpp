@@ -2,13 +2,12 @@
 #include "slam/slam_node.hpp"
 
 #include "common/files/writable_folder.hpp"
+#include "common/logging/logging.hpp"
 #include "common/messages/convert.hpp"
 #include "common/robot/described_sensors.hpp"
 #include "slam/estimator_factory.hpp"
 #include "slam/slam_inputs.hpp"
 #include "slam/slam_messages.hpp"
-
-#include <spdlog/spdlog.h>
 
 #include <string_view>
 #include <utility>
@@ -107,8 +106,8 @@ void SlamNode::finish() {
       outbox_.publish(channels::kMapGraph, part);
   }
   publish_findings(*last_estimate_);
-  if (const auto found = findings()) spdlog::info("found: {}", sentence_of(*found));
-  spdlog::info("{}", timer_.summary());
+  if (const auto found = findings()) logging::info("found: {}", sentence_of(*found));
+  logging::info("{}", timer_.summary());
 }
 
 std::optional<std::vector<Finding>> SlamNode::findings() const {
@@ -133,14 +132,14 @@ void SlamNode::save_map() {
   const auto map = estimator_->snapshot();
   if (!map) {
     failed_ = true;
-    spdlog::error("no map to save: no scan could be placed");
+    logging::error("no map to save: no scan could be placed");
     return;
   }
   try {
     save_map_to(config_.save_map, *map);
   } catch (const std::exception& error) {
     failed_ = true;
-    spdlog::error("{}", error.what());
+    logging::error("{}", error.what());
   }
 }
 
@@ -151,25 +150,26 @@ void SlamNode::judge_input() {
   const std::int64_t unplaced = counters_.get(kUnplaced);
   if (!last_estimate_ && unplaced > 0 && loaded_map_ == nullptr) {
     failed_ = true;
-    spdlog::error(
+    logging::error(
         "no pose: in {} estimates the survey's frame was never known; that takes two surveyed "
         "markers, or one with yaw, three times sighted",
         unplaced);
   } else if (!last_estimate_ && unplaced > 0) {
     failed_ = true;
-    spdlog::error(
+    logging::error(
         "no pose: in {} estimates the robot's place in '{}' was never certain; more than one "
         "place, or none, agrees with what was seen",
         unplaced, config_.load_map.string());
   } else if (!last_estimate_ && scans + odometry > 0) {
     failed_ = true;
-    spdlog::error("no pose: of LIDAR {} and of ODOMETRY {} messages could be read; both are needed",
-                  scans, odometry);
+    logging::error(
+        "no pose: of LIDAR {} and of ODOMETRY {} messages could be read; both are needed", scans,
+        odometry);
   }
   const std::int64_t processed = counters_.get(kScansProcessed);
   if (processed > 0 && counters_.get(to_string(Skip::kScanWithoutReturns)) >= processed) {
     failed_ = true;
-    spdlog::error(
+    logging::error(
         "no map: no scan has a range from {} to {} m; are they in metres, and is [robot.lidar] "
         "that of this robot?",
         config_.robot.lidar.range_min_m, config_.robot.lidar.range_max_m);
@@ -253,8 +253,8 @@ void SlamNode::publish_markers(Timestamp time) {
   outbox_.publish(channels::kSlamChanges, to_message(changes, time, map_id_));
   for (const MapChange& change : changes)
     if (change.kind == MapChange::Kind::kSurveyOff && named_survey_ids_.insert(change.id).second)
-      spdlog::warn("surveyed marker {} is {:.1f} sigma from where the survey has it", change.id,
-                   change.sigmas);
+      logging::warn("surveyed marker {} is {:.1f} sigma from where the survey has it", change.id,
+                    change.sigmas);
 }
 
 void SlamNode::publish_grid(Timestamp time) {
@@ -276,14 +276,14 @@ void SlamNode::obey(const mbot_slam_reset_t& reset) {
   const std::int32_t mode = mbot_mode(config_.slam.mode);
   if (reset.slam_mode != mode || reset.retain_pose != 0) {
     counters_.add("MBOT_SYSTEM_RESET refused");
-    spdlog::warn(
+    logging::warn(
         "MBOT_SYSTEM_RESET refused: it asks for mode {}{}, but this slam was started for mode {} "
         "and begins at slam.start",
         reset.slam_mode, reset.retain_pose != 0 ? " at the present pose" : "", mode);
     return;
   }
   counters_.add("MBOT_SYSTEM_RESET obeyed");
-  spdlog::info("MBOT_SYSTEM_RESET: begins anew");
+  logging::info("MBOT_SYSTEM_RESET: begins anew");
   queue_ = SensorQueue{sensor_setup(config_)};
   begin_estimator(config_.slam.mode, loaded_map_, config_.slam.start);
 }

@@ -3,6 +3,7 @@
 
 #include "common/bus/ask_slam.hpp"
 #include "common/bus/bus.hpp"
+#include "common/logging/logging.hpp"
 #include "common/runtime/signals.hpp"
 #include "viewer/core/painters/layer_painter.hpp"
 #include "viewer/core/painters/map_painter.hpp"
@@ -15,7 +16,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <array>
 #include <thread>
@@ -52,9 +52,9 @@ bool has_heard_of_slam(const viewer::Scene& scene) {
 
 void log_change(const viewer::Change& change) {
   if (change.kind == viewer::Change::Kind::kAlarm) {
-    spdlog::warn("{}", change.text);
+    logging::warn("{}", change.text);
   } else {
-    spdlog::info("{}", change.text);
+    logging::info("{}", change.text);
   }
 }
 
@@ -82,9 +82,9 @@ void ViewerNode::start_page() {
                      config_.is_replay ? Pace::kMessageTime : Pace::kWallClock);
   page_server_ =
       std::make_unique<viewer::PageServer>(address, board_, folder_.path(), page_commands());
-  spdlog::info("the live page is {}", address.url());
+  logging::info("the live page is {}", address.url());
   if (!address.is_loopback())
-    spdlog::warn("everybody who reaches {} can look at the live page", address.host);
+    logging::warn("everybody who reaches {} can look at the live page", address.host);
 }
 
 /// Nothing without a token: the page is read-only.
@@ -168,7 +168,7 @@ bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
   if (map_id == map_id_) return true;
   if (map_id_ && time < map_began_) return false;
   if (map_id_) {
-    spdlog::info("slam has begun map {:016x}", static_cast<std::uint64_t>(map_id));
+    logging::info("slam has begun map {:016x}", static_cast<std::uint64_t>(map_id));
     set_old_map_aside();
     updater_.begin_map();
     change_monitor_ = {};
@@ -190,9 +190,9 @@ void ViewerNode::set_old_map_aside() {
     viewer::OutputFolder current = std::exchange(folder_, viewer::OutputFolder{path});
     write_files();
     folder_ = std::move(current);
-    spdlog::info("the map before is in '{}'", path.string());
+    logging::info("the map before is in '{}'", path.string());
   } catch (const SetupError& error) {
-    spdlog::error("the map before is lost: {}", error.what());
+    logging::error("the map before is lost: {}", error.what());
   }
 }
 
@@ -263,14 +263,14 @@ void ViewerNode::finish() {
   if (!live_feed_) return;
   live_feed_->post_last();
   if (!config_.is_replay) return;
-  spdlog::info("the log is at its end; the page stays until Ctrl-C");
+  logging::info("the log is at its end; the page stays until Ctrl-C");
   while (stop_signal() == 0)
     std::this_thread::sleep_for(std::chrono::milliseconds{50});
 }
 
 void ViewerNode::write_files() {
   if (!has_heard_of_slam(scene_)) {
-    spdlog::warn("nothing has come from slam: no file is written to {}", folder_.path().string());
+    logging::warn("nothing has come from slam: no file is written to {}", folder_.path().string());
     return;
   }
   write_data();
@@ -280,8 +280,8 @@ void ViewerNode::write_files() {
   write_marker_layer();
   write_scan_and_plain_map();
   if (failed()) {
-    spdlog::error("{}: could not always be written: {}", folder_.path().string(),
-                  fmt::join(folder_.failed_files(), ", "));
+    logging::error("{}: could not always be written: {}", folder_.path().string(),
+                   fmt::join(folder_.failed_files(), ", "));
   }
 }
 

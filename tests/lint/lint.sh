@@ -33,7 +33,7 @@ cores() { find procs -type d -path 'procs/*/core' 2>/dev/null; }
 # A core takes values and returns values: no bus, no messages, no log, no files, no clock.
 core_is_pure() {
   files "$(cores)" '*.hpp' '*.cpp' | xargs -r grep -nHE \
-    '#include [<"](lcm/|waymark/|spdlog/|fstream|filesystem|iostream|thread|common/(bus|lockstep|log|messages|node|runtime)/|opencv2/(highgui|viz))|(system|steady|high_resolution)_clock' |
+    '#include [<"](lcm/|waymark/|spdlog/|fstream|filesystem|iostream|thread|common/(bus|command_line|lockstep|log|logging|messages|node|runtime)/|opencv2/(highgui|viz))|(system|steady|high_resolution)_clock' |
     none_of "not for a core"
   files procs/slam/core '*.hpp' '*.cpp' | xargs -r grep -nHE '#include <(opencv2|mujoco|nlohmann|tbb|oneapi|fmt|toml)' |
     none_of "procs/slam/core is Eigen and the standard library"

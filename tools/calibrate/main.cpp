@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "calibrate/camera_report.hpp"
+#include "common/command_line/command_line.hpp"
 #include "common/errors/exit_codes.hpp"
 #include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
+#include "common/logging/logging.hpp"
 #include "common/runtime/guard.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <spdlog/spdlog.h>
 
 namespace waymark::calibrate {
 namespace {
@@ -42,7 +42,7 @@ int run(const Options& options) {
   fmt::print("{}", to_text(calibration));
   write_coverage(calibration, options.coverage);
   if (!calibration.missing.empty()) {
-    spdlog::error("{}", refusal(calibration, options.input.string()));
+    logging::error("{}", refusal(calibration, options.input.string()));
     return kExitFailed;
   }
   write_whole_file(options.out, to_camera_toml(calibration, options.input.filename().string()));
@@ -56,34 +56,26 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace waymark;
   calibrate::Options options;
-  CLI::App app{
+  Program app{
       "Measures a robot's camera with a board.\nExit code: 0 written; 1 views are missing, or a "
       "file cannot be written; 2 wrong usage, or no frames.",
       "waymark-calibrate"};
-  app.set_version_flag("--version", "waymark-calibrate " WAYMARK_VERSION);
-  app.require_subcommand(1);
-  CLI::App& camera = *app.add_subcommand(
+  app.require_subcommand();
+  Command camera = app.add_subcommand(
       "camera", "focal length, principal point and distortion, from frames that show a board");
   camera.add_option("INPUT", options.input, "folder with pictures, or LCM log with CAMERA")
-      ->required();
+      .required();
   camera.add_option("--board", options.board_type, "kind of board")
-      ->check(CLI::IsMember({"charuco"}))
-      ->capture_default_str();
-  camera.add_option("--squares", options.board.squares, "columns x rows")->capture_default_str();
-  camera.add_option("--square-m", options.board.square_m, "side of a square [m]")
-      ->capture_default_str();
-  camera.add_option("--marker-m", options.board.marker_m, "side of a marker [m]")
-      ->capture_default_str();
+      .one_of({"charuco"})
+      .show_default();
+  camera.add_option("--squares", options.board.squares, "columns x rows").show_default();
+  camera.add_option("--square-m", options.board.square_m, "side of a square [m]").show_default();
+  camera.add_option("--marker-m", options.board.marker_m, "side of a marker [m]").show_default();
   camera.add_option("--dictionary", options.board.dictionary, "of its markers, OpenCV's name")
-      ->capture_default_str();
-  camera.add_option("--out", options.out, "TOML file for [robot.camera]; replaces none")
-      ->required();
+      .show_default();
+  camera.add_option("--out", options.out, "TOML file for [robot.camera]; replaces none").required();
   camera.add_option("--coverage", options.coverage,
                     "PNG of the corners seen, with their residuals 100 times as long");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   return run_guarded(calibrate::kTraits, [&] { return calibrate::run(options); });
 }

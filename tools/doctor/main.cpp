@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/command_line/command_line.hpp"
 #include "common/errors/exit_codes.hpp"
 #include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
@@ -7,7 +8,6 @@
 #include "doctor/live_log.hpp"
 #include "doctor/report.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -75,21 +75,21 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace waymark;
   Options options;
-  CLI::App app{
+  Program app{
       std::string{kTraits.purpose} + "\nExit code: 0 no FAIL, 1 a FAIL, 2 the log cannot be used.",
       "waymark-doctor"};
-  app.set_version_flag("--version", "waymark-doctor " WAYMARK_VERSION);
-  CLI::Option* log =
+  CommandOption log =
       app.add_option("LOG", options.file, "LCM log, bag of ROS, or CARMEN log (text, gzip, bzip2)");
-  CLI::Option* seconds =
+  CommandOption seconds =
       app.add_option(
              "--seconds", options.seconds,
              "instead of a log: listen to a running robot for so long; drive and turn meanwhile")
-          ->check(CLI::Range(1, 3600))
-          ->excludes(log);
+          .check({[](double s) { return s >= 1.0 && s <= 3600.0; }, "1 to 3600 seconds",
+                  "INT in [1 - 3600]"})
+          .excludes(log);
   app.add_option("--lcm-url", options.lcm_url,
                  "LCM network (default: $LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)")
-      ->needs(seconds);
+      .needs(seconds);
   app.add_option("--config", options.robot,
                  "robot.toml to hold it against; of several, later files win (default: the one "
                  "beside the log)");
@@ -101,11 +101,7 @@ int main(int argc, char** argv) {
                  "of an LCM log (default: ODOMETRY)");
   app.add_option("--encoder-channel", options.channels.encoders,
                  "of an LCM log without odometry (default: the only one with a MAEBot's ticks)");
-  try {
-    app.parse(argc, argv);
-    if (log->empty() && seconds->empty()) throw CLI::RequiredError{"LOG or --seconds"};
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
+  if (!log.is_given() && !seconds.is_given()) return app.refuse_without("LOG or --seconds");
   return run_guarded(kTraits, [&] { return run(options); });
 }

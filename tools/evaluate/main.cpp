@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-evaluate: how good a map and a trajectory are.
-#include "common/runtime/number_checks.hpp"
+#include "common/command_line/command_line.hpp"
 #include "evaluate/commands.hpp"
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
 #include <cerrno>
 #include <functional>
-#include <map>
 #include <system_error>
 
 namespace {
 
 using namespace waymark::evaluate;
+using waymark::Command;
 
 struct Arguments {
   std::filesystem::path map_yaml{};
@@ -27,63 +26,60 @@ struct Arguments {
   Output output{};
 };
 
-using Command = std::function<int()>;
+using Action = std::function<int()>;
 
-void add_alignment(CLI::App& command, Arguments& arguments) {
-  const std::map<std::string, Alignment> names{{"origin", Alignment::kOrigin},
-                                               {"se2", Alignment::kSe2}};
-  command
-      .add_option("--align", arguments.options.alignment,
-                  "along, across and heading errors after alignment on the first pose (origin) or "
-                  "after the best rigid fit (se2)")
-      ->transform(CLI::CheckedTransformer(names))
-      ->default_str("origin");
+void add_alignment(Command& command, Arguments& arguments) {
+  command.add_choice(
+      "--align", arguments.options.alignment,
+      {{"origin", Alignment::kOrigin}, {"se2", Alignment::kSe2}},
+      "along, across and heading errors after alignment on the first pose (origin; default) or "
+      "after the best rigid fit (se2)");
 }
 
-void add_output(CLI::App& command, Arguments& arguments, const std::string& json_help) {
+void add_output(Command& command, Arguments& arguments, const std::string& json_help) {
   command.add_flag("--json", arguments.output.json, json_help);
 }
 
-void add_tolerant(CLI::App& command, Arguments& arguments) {
+void add_tolerant(Command& command, Arguments& arguments) {
   command.add_flag("--tolerant", arguments.output.tolerant,
                    "exit with 0 although lines were skipped (they are named all the same)");
 }
 
-void add_true_length(CLI::App& command, Arguments& arguments) {
+void add_true_length(Command& command, Arguments& arguments) {
   command
       .add_option("--true-length-m", arguments.options.true_length_m,
                   "true corridor length between inner faces [m], for the accuracy")
-      ->check(waymark::positive_number());
+      .check(waymark::positive_number());
 }
 
-void add_length(CLI::App& program, Arguments& arguments, Command& chosen) {
-  CLI::App& command = *program.add_subcommand(
+void add_length(Command& program, Arguments& arguments, Action& chosen) {
+  Command command = program.add_subcommand(
       "length", "corridor length on a map image alone, from end wall to end wall");
-  command.add_option("MAP", arguments.map_yaml, "map.yaml beside its PGM image")->required();
+  command.add_option("MAP", arguments.map_yaml, "map.yaml beside its PGM image").required();
   add_true_length(command, arguments);
   add_output(command, arguments, "print JSON");
-  command.callback([&] {
+  command.when_given([&] {
     chosen = [&] {
       return run_length(arguments.map_yaml, arguments.options.true_length_m, arguments.output);
     };
   });
 }
 
-void add_run(CLI::App& program, Arguments& arguments, Command& chosen) {
-  CLI::App& command = *program.add_subcommand(
+void add_run(Command& program, Arguments& arguments, Action& chosen) {
+  Command command = program.add_subcommand(
       "run", "every estimator folder of a run: writes metrics.json, results.json, results.md");
   command
       .add_option("RUN_DIR", arguments.run_dir,
                   "folder with truth.tum, truth_markers.csv, scenario.toml (each if there is one) "
                   "and one sub-folder per estimator")
-      ->required();
+      .required();
   command.add_option("--estimators", arguments.estimators, "only these, separated by commas")
-      ->delimiter(',');
+      .delimiter(',');
   command
       .add_option("--marker-gate-m", arguments.options.marker_gate_m,
                   "a marker estimated further from its true place counts as missing and spurious")
-      ->check(waymark::positive_number())
-      ->capture_default_str();
+      .check(waymark::positive_number())
+      .show_default();
   command.add_option("--mapped-in", arguments.options.mapped_in,
                      "run folder that made the map which this run has loaded: errors are in that "
                      "map's frame (ate_frame_m), without alignment");
@@ -91,22 +87,22 @@ void add_run(CLI::App& program, Arguments& arguments, Command& chosen) {
   add_alignment(command, arguments);
   add_output(command, arguments, "print results.json instead of the table");
   add_tolerant(command, arguments);
-  command.callback([&] {
+  command.when_given([&] {
     chosen = [&] {
       return run_run(arguments.run_dir, arguments.estimators, arguments.options, arguments.output);
     };
   });
 }
 
-void add_trajectory(CLI::App& program, Arguments& arguments, Command& chosen) {
-  CLI::App& command =
-      *program.add_subcommand("trajectory", "a trajectory against a reference: ATE and RPE");
-  command.add_option("ESTIMATE", arguments.trajectory, "TUM file: t x y z qx qy qz qw")->required();
-  command.add_option("REFERENCE", arguments.reference, "TUM file, interpolated")->required();
+void add_trajectory(Command& program, Arguments& arguments, Action& chosen) {
+  Command command =
+      program.add_subcommand("trajectory", "a trajectory against a reference: ATE and RPE");
+  command.add_option("ESTIMATE", arguments.trajectory, "TUM file: t x y z qx qy qz qw").required();
+  command.add_option("REFERENCE", arguments.reference, "TUM file, interpolated").required();
   add_alignment(command, arguments);
   add_output(command, arguments, "print JSON");
   add_tolerant(command, arguments);
-  command.callback([&] {
+  command.when_given([&] {
     chosen = [&] {
       return run_trajectory(arguments.trajectory, arguments.reference, arguments.options.alignment,
                             arguments.output);
@@ -114,43 +110,43 @@ void add_trajectory(CLI::App& program, Arguments& arguments, Command& chosen) {
   });
 }
 
-void add_relations(CLI::App& program, Arguments& arguments, Command& chosen) {
-  CLI::App& command = *program.add_subcommand(
+void add_relations(Command& program, Arguments& arguments, Action& chosen) {
+  Command command = program.add_subcommand(
       "relations", "a trajectory against known relative poses (Kümmerle et al. 2009)");
   command.add_option("TRAJECTORY", arguments.trajectory, "TUM file: t x y z qx qy qz qw")
-      ->required();
+      .required();
   command.add_option("RELATIONS", arguments.relations, "lines t1 t2 x y z roll pitch yaw")
-      ->required();
+      .required();
   add_output(command, arguments, "print JSON");
   add_tolerant(command, arguments);
-  command.callback([&] {
+  command.when_given([&] {
     chosen = [&] {
       return run_relations(arguments.trajectory, arguments.relations, arguments.output);
     };
   });
 }
 
-void add_sweep(CLI::App& program, Arguments& arguments, Command& chosen) {
-  CLI::App& command = *program.add_subcommand(
+void add_sweep(Command& program, Arguments& arguments, Action& chosen) {
+  Command command = program.add_subcommand(
       "sweep", "all runs of deploy/sweep.sh: writes results.md, results.csv, runs.csv, index.html");
-  command.add_option("DIR", arguments.run_dir, "the sweep's folder")->required();
+  command.add_option("DIR", arguments.run_dir, "the sweep's folder").required();
   add_output(command, arguments, "print JSON instead of the table");
-  command.callback([&] {
+  command.when_given([&] {
     chosen = [&] {
       return run_sweep(arguments.run_dir, arguments.output);
     };
   });
 }
 
-void add_consistency(CLI::App& program, Arguments& arguments, Command& chosen) {
-  CLI::App& command = *program.add_subcommand(
+void add_consistency(Command& program, Arguments& arguments, Action& chosen) {
+  Command command = program.add_subcommand(
       "consistency", "mean NEES per metre over many runs, against its 95 % band");
   command
       .add_option("ROW_DIR", arguments.row_dirs,
                   "estimator folders of several runs, each with a stations.csv (see run)")
-      ->required();
+      .required();
   add_output(command, arguments, "print JSON");
-  command.callback([&] {
+  command.when_given([&] {
     chosen = [&] {
       return run_consistency(arguments.row_dirs, arguments.output);
     };
@@ -169,14 +165,13 @@ int run_placement_program(const std::vector<std::string>& arguments) {
   throw std::system_error{errno, std::generic_category(), program};
 }
 
-void add_placement(CLI::App& program, Command& chosen) {
-  CLI::App& command = *program.add_subcommand(
+void add_placement(Command& program, Action& chosen) {
+  Command command = program.add_subcommand(
       "placement", "where the estimate is too uncertain, and the fewest new markers that cure it");
-  command.set_help_flag();  // --help is for the other program, too
-  command.prefix_command();
-  command.callback([&] {
+  command.pass_on_the_rest();
+  command.when_given([&] {
     chosen = [&] {
-      return run_placement_program(command.remaining());
+      return run_placement_program(command.rest());
     };
   });
 }
@@ -185,13 +180,13 @@ void add_placement(CLI::App& program, Command& chosen) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  Command chosen;
-  CLI::App program{
+  Action chosen;
+  waymark::Program program{
       "Measures how good a map and a trajectory are.\n"
       "Exit code: 0 fine; 1 a figure could not be had, or lines were skipped; 2 wrong usage or "
-      "files."};
-  program.set_version_flag("--version", "waymark-evaluate " WAYMARK_VERSION);
-  program.require_subcommand(1);
+      "files.",
+      "waymark-evaluate"};
+  program.require_subcommand();
   add_length(program, arguments, chosen);
   add_run(program, arguments, chosen);
   add_trajectory(program, arguments, chosen);
@@ -199,10 +194,6 @@ int main(int argc, char** argv) {
   add_sweep(program, arguments, chosen);
   add_consistency(program, arguments, chosen);
   add_placement(program, chosen);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? kFine : kUsage;
-  }
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   return run_command("waymark-evaluate", chosen);
 }

@@ -1,35 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-export: runs in the formats of other programs.
+#include "common/command_line/command_line.hpp"
 #include "common/log/log_file.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/replay.hpp"
 #include "export/mcap_export.hpp"
-
-#include <CLI/CLI.hpp>
 
 int main(int argc, char** argv) {
   using namespace waymark;
   ProcessOptions options;
   std::filesystem::path out;
 
-  CLI::App program{
+  Program program{
       "Writes runs in the formats of other programs.\n"
       "Exit code: 0 fine; 1 a log is damaged or not understood, or the file could not be written;\n"
-      "2 wrong usage."};
-  program.set_version_flag("--version", "waymark-export " WAYMARK_VERSION);
-  program.require_subcommand(1);
-  CLI::App& mcap = *program.add_subcommand(
+      "2 wrong usage.",
+      "waymark-export"};
+  program.require_subcommand();
+  Command mcap = program.add_subcommand(
       "mcap", "MCAP for Foxglove: map, scans, poses, frames, markers, camera");
   mcap.add_option("log", options.logs,
                   "LCM log; of several, a channel is taken from the last one that has it (run.lcm "
                   "ROW/slam.lcm)")
-      ->required();
-  mcap.add_option("--out", out, "the MCAP file")->required();
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : 2;
-  }
+      .required();
+  mcap.add_option("--out", out, "the MCAP file").required();
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   return run_guarded({"export", "", false}, [&] {
     protect_inputs("--out", out, options.logs);
     Inbox inbox;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "export/mcap_export.hpp"
 
+#include "common/logging/logging.hpp"
 #include "common/messages/convert.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -105,7 +105,7 @@ void McapExport::write(McapWriter::ChannelId channel, Timestamp time, const Json
     writer_->write(channel, time, message.dump());
   } catch (const std::exception& error) {
     failed_ = true;
-    spdlog::error("{}", error.what());
+    logging::error("{}", error.what());
   }
 }
 
@@ -236,10 +236,10 @@ void McapExport::finish() {
   try {
     const std::uint64_t num_messages = writer_->num_messages();
     writer_->close();
-    spdlog::info("{} messages", num_messages);
+    logging::info("{} messages", num_messages);
   } catch (const std::exception& error) {
     failed_ = true;
-    spdlog::error("{}", error.what());
+    logging::error("{}", error.what());
   }
 }
 

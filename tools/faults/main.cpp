@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-faults: a recorded run with faults put into its messages.
+#include "common/command_line/command_line.hpp"
 #include "common/errors/setup_error.hpp"
 #include "common/log/log_file.hpp"
 #include "faults/faulty_run.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -47,13 +47,14 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  using namespace waymark;
   Arguments arguments;
-  CLI::App program{
+  Program program{
       "Writes a recorded run once more, with faults in its messages: wrong ids, ghosts, flipped "
       "poses, lost messages, wrong odometry. The same run and variant give the same bytes. What "
       "was "
-      "put in stands in variant_applied.toml beside the log."};
-  program.set_version_flag("--version", "waymark-faults " WAYMARK_VERSION);
+      "put in stands in variant_applied.toml beside the log.",
+      "waymark-faults"};
   program.add_option("RUN_DIR", arguments.run_dir,
                      "folder with run.lcm, robot.toml, scenario.toml and the truth");
   program.add_option("--variants", arguments.variants, "TOML file with [[variant]] tables");
@@ -62,16 +63,13 @@ int main(int argc, char** argv) {
   program.add_flag("--list", arguments.list, "print the names of the variants, and exit");
   program.add_flag("--explain", arguments.explain,
                    "print a variant with every key explained, and exit");
-  try {
-    program.parse(argc, argv);
-    const bool is_complete = !arguments.run_dir.empty() && !arguments.variants.empty() &&
-                             !arguments.variant.empty() && !arguments.out.empty();
-    const bool is_list = arguments.list && !arguments.variants.empty();
-    if (!is_complete && !is_list && !arguments.explain)
-      throw CLI::RequiredError{"RUN_DIR, --variants, --variant and --out (or --list, --explain)"};
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : kUsage;
-  }
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
+  const bool is_complete = !arguments.run_dir.empty() && !arguments.variants.empty() &&
+                           !arguments.variant.empty() && !arguments.out.empty();
+  const bool is_list = arguments.list && !arguments.variants.empty();
+  if (!is_complete && !is_list && !arguments.explain)
+    return program.refuse_without(
+        "RUN_DIR, --variants, --variant and --out (or --list, --explain)");
   try {
     return run(arguments);
   } catch (const waymark::ConfigError& error) {

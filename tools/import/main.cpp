@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/command_line/command_line.hpp"
 #include "common/errors/exit_codes.hpp"
 #include "common/log/log_file.hpp"
+#include "common/logging/logging.hpp"
 #include "common/runtime/guard.hpp"
-#include "common/runtime/number_checks.hpp"
 #include "import/carmen/carmen_reader.hpp"
 #include "import/findings/findings.hpp"
 #include "import/log/log_output.hpp"
 #include "import/mbot/mbot_reader.hpp"
 #include "import/rosbag/rosbag_reader.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <map>
 
@@ -36,122 +35,115 @@ struct Options {
 };
 
 /// What all kinds of logs have.
-void add_common_options(CLI::App& app, Options& options, LidarMounting& mounting) {
-  app.add_option("FILE", options.file, "the log to read")->required();
+void add_common_options(Command& app, Options& options, LidarMounting& mounting) {
+  app.add_option("FILE", options.file, "the log to read").required();
   app.add_option("--out", options.out,
                  "LCM log to write; robot.toml (and reference.tum) go beside it")
-      ->required();
+      .required();
   app.add_flag("--tolerant", options.tolerant, "exit with 0 although lines or events were skipped");
   app.add_flag(
       "--fix-reversed-odometry", options.fix_reversed_odometry,
       "where scans show that odometry counts backing up as driving forward, turn it round");
   app.add_option("--lidar-x-m", mounting.x_m, "where the LiDAR sits in the base frame")
-      ->check(finite_number());
+      .check(finite_number());
   app.add_option("--lidar-y-m", mounting.y_m, "where the LiDAR sits in the base frame")
-      ->check(finite_number());
+      .check(finite_number());
   app.add_option("--lidar-yaw-deg", options.lidar_yaw_deg, "direction of the LiDAR's x axis")
-      ->check(angle_deg());
+      .check(angle_deg());
 }
 
 /// Of logs whose scans do not say it.
-void add_range_min(CLI::App& app, double& range_min_m) {
+void add_range_min(Command& app, double& range_min_m) {
   app.add_option("--min-range-m", range_min_m, "shortest range measured")
-      ->check(nonnegative_number())
-      ->capture_default_str();
+      .check(nonnegative_number())
+      .show_default();
 }
 
-CLI::App* add_carmen(CLI::App& app, Options& options) {
-  CLI::App* carmen = app.add_subcommand(
+Command add_carmen(Command& app, Options& options) {
+  Command carmen = app.add_subcommand(
       "carmen",
       "CARMEN text log: FLASER, RLASER, ROBOTLASER1, ROBOTLASER2, ODOM; gzip, bzip2 or not");
-  add_common_options(*carmen, options, options.carmen.mounting);
-  add_range_min(*carmen, options.carmen.range_min_m);
+  add_common_options(carmen, options, options.carmen.mounting);
+  add_range_min(carmen, options.carmen.range_min_m);
+  carmen.add_choice("--lidar", options.carmen.lidar,
+                    {{"front", CarmenLidar::kFront}, {"rear", CarmenLidar::kRear}},
+                    "front (FLASER, ROBOTLASER1; default) or rear (RLASER, ROBOTLASER2)");
+  carmen.add_choice(
+      "--odometry", options.carmen.odometry,
+      {{"laser", CarmenOdometrySource::kLaserLines}, {"odom", CarmenOdometrySource::kOdomLines}},
+      "laser (odometry poses of the LiDAR's lines; default) or odom (ODOM lines)");
+  carmen.add_choice(
+      "--stamps", options.carmen.stamps,
+      {{"ipc", CarmenStamps::kIpc}, {"logger", CarmenStamps::kLogger}},
+      "ipc or logger: which timestamp is a line's time (default: ipc if it advances)");
   carmen
-      ->add_option("--lidar", options.carmen.lidar,
-                   "front (FLASER, ROBOTLASER1; default) or rear (RLASER, ROBOTLASER2)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, CarmenLidar>{
-          {"front", CarmenLidar::kFront}, {"rear", CarmenLidar::kRear}}));
+      .add_option("--max-range-m", options.carmen.range_max_m,
+                  "ranges from here on are no returns (default: where a pile-up shows, else as the "
+                  "line says, else 81.83)")
+      .check(positive_number());
   carmen
-      ->add_option("--odometry", options.carmen.odometry,
-                   "laser (odometry poses of the LiDAR's lines; default) or odom (ODOM lines)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, CarmenOdometrySource>{{"laser", CarmenOdometrySource::kLaserLines},
-                                                      {"odom", CarmenOdometrySource::kOdomLines}}));
+      .add_option("--first-angle-deg", options.first_angle_deg,
+                  "beam 0 (default: -90 for FLASER and RLASER, else as the line says)")
+      .check(angle_deg());
   carmen
-      ->add_option("--stamps", options.carmen.stamps,
-                   "ipc or logger: which timestamp is a line's time (default: ipc if it advances)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, CarmenStamps>{
-          {"ipc", CarmenStamps::kIpc}, {"logger", CarmenStamps::kLogger}}));
-  carmen
-      ->add_option(
-          "--max-range-m", options.carmen.range_max_m,
-          "ranges from here on are no returns (default: where a pile-up shows, else as the "
-          "line says, else 81.83)")
-      ->check(positive_number());
-  carmen
-      ->add_option("--first-angle-deg", options.first_angle_deg,
-                   "beam 0 (default: -90 for FLASER and RLASER, else as the line says)")
-      ->check(angle_deg());
-  carmen
-      ->add_option(
+      .add_option(
           "--angle-step-deg", options.angle_step_deg,
           "between beams (default: for FLASER and RLASER 1 with 180 and 181 beams, 0.5 with "
           "360 and 361, else as the line says)")
-      ->check(angle_deg());
+      .check(angle_deg());
   return carmen;
 }
 
-CLI::App* add_mbot(CLI::App& app, Options& options) {
-  CLI::App* mbot = app.add_subcommand(
+Command add_mbot(Command& app, Options& options) {
+  Command mbot = app.add_subcommand(
       "mbot", "LCM log of an MBot robot (lidar_t) or of one with bot_core's planar_lidar_t");
   MbotOptions& chosen = options.mbot;
-  add_common_options(*mbot, options, chosen.mounting);
-  add_range_min(*mbot, chosen.range_min_m);
-  mbot->add_option("--lidar-channel", chosen.lidar_channel, "lidar_t or planar_lidar_t")
-      ->capture_default_str();
-  mbot->add_option("--odometry-channel", chosen.odometry_channel,
-                   "pose2D_t, pose_xyt_t, odometry_t or bot_core.pose_t");
-  mbot->add_option(
-      "--encoder-channel", chosen.encoder_channel,
-      "left and right ticks of a MAEBot (default, without --odometry-channel: the only "
-      "channel that has some)");
-  mbot->add_option("--reference-channel", chosen.reference_channel,
-                   "poses to write as reference.tum, types as for --odometry-channel");
-  mbot->add_option("--meters-per-tick", chosen.meters_per_tick,
-                   "way of a wheel per tick (default: the MAEBot's whose messages they are)")
-      ->check(positive_number());
-  mbot->add_option("--wheel-base-m", chosen.wheel_base_m,
-                   "distance between the wheels (default: the MAEBot's)")
-      ->check(positive_number());
-  mbot->add_option("--max-range-m", chosen.range_max_m,
-                   "ranges from here on are no returns (default: where a pile-up shows, else 6 for "
-                   "lidar_t or the longest range)")
-      ->check(positive_number());
+  add_common_options(mbot, options, chosen.mounting);
+  add_range_min(mbot, chosen.range_min_m);
+  mbot.add_option("--lidar-channel", chosen.lidar_channel, "lidar_t or planar_lidar_t")
+      .show_default();
+  mbot.add_option("--odometry-channel", chosen.odometry_channel,
+                  "pose2D_t, pose_xyt_t, odometry_t or bot_core.pose_t");
+  mbot.add_option("--encoder-channel", chosen.encoder_channel,
+                  "left and right ticks of a MAEBot (default, without --odometry-channel: the only "
+                  "channel that has some)");
+  mbot.add_option("--reference-channel", chosen.reference_channel,
+                  "poses to write as reference.tum, types as for --odometry-channel");
+  mbot.add_option("--meters-per-tick", chosen.meters_per_tick,
+                  "way of a wheel per tick (default: the MAEBot's whose messages they are)")
+      .check(positive_number());
+  mbot.add_option("--wheel-base-m", chosen.wheel_base_m,
+                  "distance between the wheels (default: the MAEBot's)")
+      .check(positive_number());
+  mbot.add_option("--max-range-m", chosen.range_max_m,
+                  "ranges from here on are no returns (default: where a pile-up shows, else 6 for "
+                  "lidar_t or the longest range)")
+      .check(positive_number());
   return mbot;
 }
 
-CLI::App* add_rosbag(CLI::App& app, Options& options) {
-  CLI::App* rosbag = app.add_subcommand(
+Command add_rosbag(Command& app, Options& options) {
+  Command rosbag = app.add_subcommand(
       "rosbag",
       "bag of ROS 1 (.bag) or ROS 2 (.db3, .mcap): LaserScan, Odometry, images, tf_static");
   RosbagOptions& chosen = options.rosbag;
-  add_common_options(*rosbag, options, chosen.mounting);
-  rosbag->add_option("--scan-topic", chosen.scan_topic,
-                     "sensor_msgs/LaserScan (default: the only one)");
-  rosbag->add_option("--odometry-topic", chosen.odometry_topic,
-                     "nav_msgs/Odometry (default: the only one)");
-  rosbag->add_option("--image-topic", chosen.image_topic,
-                     "sensor_msgs/CompressedImage or Image (default: the only one, if any)");
-  rosbag->add_option("--camera-info-topic", chosen.camera_info_topic,
-                     "sensor_msgs/CameraInfo (default: the only one)");
+  add_common_options(rosbag, options, chosen.mounting);
+  rosbag.add_option("--scan-topic", chosen.scan_topic,
+                    "sensor_msgs/LaserScan (default: the only one)");
+  rosbag.add_option("--odometry-topic", chosen.odometry_topic,
+                    "nav_msgs/Odometry (default: the only one)");
+  rosbag.add_option("--image-topic", chosen.image_topic,
+                    "sensor_msgs/CompressedImage or Image (default: the only one, if any)");
+  rosbag.add_option("--camera-info-topic", chosen.camera_info_topic,
+                    "sensor_msgs/CameraInfo (default: the only one)");
   rosbag
-      ->add_option("--max-range-m", chosen.range_max_m,
-                   "ranges from here on are no returns (default: where a pile-up shows, else as "
-                   "the scans say)")
-      ->check(positive_number());
-  rosbag->add_flag("--no-images", chosen.without_images, "leave the camera out");
-  rosbag->add_option("--base-frame", chosen.base_frame,
-                     "frame of the base in tf_static (default: the child frame of odometry)");
+      .add_option("--max-range-m", chosen.range_max_m,
+                  "ranges from here on are no returns (default: where a pile-up shows, else as "
+                  "the scans say)")
+      .check(positive_number());
+  rosbag.add_flag("--no-images", chosen.without_images, "leave the camera out");
+  rosbag.add_option("--base-frame", chosen.base_frame,
+                    "frame of the base in tf_static (default: the child frame of odometry)");
   return rosbag;
 }
 
@@ -169,9 +161,9 @@ void convert_angles(Options& options) {
 
 void tell(const ImportReport& report) {
   for (const std::string& message : report.messages())
-    spdlog::warn("{}", message);
+    logging::warn("{}", message);
   for (const std::string& note : report.notes())
-    spdlog::info("{}", note);
+    logging::info("{}", note);
 }
 
 enum class Kind { kCarmen, kMbot, kRosbag };
@@ -198,7 +190,7 @@ int import(const Options& options, Kind kind) {
     throw;
   }
   if (report.num_skipped() == 0 || options.tolerant) return kExitOk;
-  spdlog::error("skipped {} (--tolerant accepts that)", report.num_skipped());
+  logging::error("skipped {} (--tolerant accepts that)", report.num_skipped());
   return kExitFailed;
 }
 
@@ -208,20 +200,15 @@ int import(const Options& options, Kind kind) {
 int main(int argc, char** argv) {
   using namespace waymark;
   Options options;
-  CLI::App app{std::string{kTraits.purpose}, "waymark-import"};
-  app.set_version_flag("--version", "waymark-import " WAYMARK_VERSION);
-  app.require_subcommand(1);
-  const CLI::App* carmen = add_carmen(app, options);
+  Program app{std::string{kTraits.purpose}, "waymark-import"};
+  app.require_subcommand();
+  const Command carmen = add_carmen(app, options);
   add_mbot(app, options);
-  const CLI::App* rosbag = add_rosbag(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
-  }
+  const Command rosbag = add_rosbag(app, options);
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   convert_angles(options);
-  const Kind kind = carmen->parsed()   ? Kind::kCarmen
-                    : rosbag->parsed() ? Kind::kRosbag
-                                       : Kind::kMbot;
+  const Kind kind = carmen.is_given()   ? Kind::kCarmen
+                    : rosbag.is_given() ? Kind::kRosbag
+                                        : Kind::kMbot;
   return run_guarded(kTraits, [&] { return import(options, kind); });
 }

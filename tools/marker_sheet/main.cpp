@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-marker-sheet: printable markers and ChArUco boards at their true size.
+#include "common/command_line/command_line.hpp"
 #include "common/files/whole_file.hpp"
 #include "marker_sheet/pdf_pages.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -53,58 +53,57 @@ void write_markers(const Options& options) {
 }  // namespace waymark::marker_sheet
 
 int main(int argc, char** argv) {
+  using namespace waymark;
   using namespace waymark::marker_sheet;
   Options options;
   std::string dictionary;
-  CLI::App program{
+  Program program{
       "Writes ArUco markers, or a ChArUco board to calibrate a camera with, at their true size "
       "when "
       "printed without scaling: PNGs, or the pages of a PDF.\n"
-      "Exit code: 0 fine; 2 wrong usage, or nothing can be written there."};
-  program.set_version_flag("--version", "waymark-marker-sheet " WAYMARK_VERSION);
+      "Exit code: 0 fine; 2 wrong usage, or nothing can be written there.",
+      "waymark-marker-sheet"};
   program.add_option("--dictionary", dictionary,
                      fmt::format("OpenCV's name [{}; of a board {}]", options.sheet.dictionary,
                                  options.board.dictionary));
-  CLI::Option* ids = program.add_option("--ids", options.ids, "ids and ranges of ids, as in 0-5,9")
-                         ->capture_default_str();
-  CLI::Option* size_m =
+  CommandOption ids =
+      program.add_option("--ids", options.ids, "ids and ranges of ids, as in 0-5,9").show_default();
+  CommandOption size_m =
       program.add_option("--size-m", options.sheet.size_m, "side of the black square [m]")
-          ->capture_default_str();
-  CLI::Option* quiet_zone =
+          .show_default();
+  CommandOption quiet_zone =
       program
           .add_option("--quiet-zone-modules", options.sheet.quiet_zone_modules,
                       "white border, in modules (the squares that a marker is made of)")
-          ->capture_default_str();
-  CLI::Option* charuco =
+          .show_default();
+  CommandOption charuco =
       program.add_flag("--charuco", options.is_board, "a ChArUco board instead of markers")
-          ->excludes(ids, size_m, quiet_zone);
+          .excludes(ids)
+          .excludes(size_m)
+          .excludes(quiet_zone);
   program.add_option("--squares", options.board.squares, "of the board: columns x rows")
-      ->capture_default_str()
-      ->needs(charuco);
+      .show_default()
+      .needs(charuco);
   program.add_option("--square-m", options.board.square_m, "side of its squares [m]")
-      ->capture_default_str()
-      ->needs(charuco);
+      .show_default()
+      .needs(charuco);
   program.add_option("--marker-m", options.board.marker_m, "side of its markers [m]")
-      ->capture_default_str()
-      ->needs(charuco);
-  program.add_option("--dpi", options.sheet.dpi, "of PNGs: pixels per inch")->capture_default_str();
-  CLI::Option* out =
+      .show_default()
+      .needs(charuco);
+  program.add_option("--dpi", options.sheet.dpi, "of PNGs: pixels per inch").show_default();
+  CommandOption out =
       program.add_option("--out", options.folder, "folder for PNGs; made if need be");
-  CLI::Option* to_pdf =
+  CommandOption to_pdf =
       program.add_option("--pdf", options.pdf_file, "instead: one PDF with all of them");
-  to_pdf->excludes(out);
+  to_pdf.excludes(out);
   program.add_option("--page", options.page.page, "of the PDF: A4, A3 or Letter")
-      ->capture_default_str()
-      ->needs(to_pdf);
+      .show_default()
+      .needs(to_pdf);
   program
       .add_flag("--tile", options.page.tiles, "spread what does not fit over pages with cut marks")
-      ->needs(to_pdf);
-  try {
-    program.parse(argc, argv);
-    if (out->empty() && to_pdf->empty()) throw CLI::RequiredError{"--out or --pdf"};
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : 2;
-  }
+      .needs(to_pdf);
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
+  if (!out.is_given() && !to_pdf.is_given()) return program.refuse_without("--out or --pdf");
   if (!dictionary.empty()) options.sheet.dictionary = options.board.dictionary = dictionary;
   try {
     options.is_board ? write_board(options) : write_markers(options);

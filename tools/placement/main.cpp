@@ -1,27 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-placement, which is `waymark-evaluate placement`: where more markers would make a map
 // better.
-#include "common/runtime/number_checks.hpp"
+#include "common/command_line/command_line.hpp"
 #include "evaluate/commands.hpp"
 #include "placement/placement_command.hpp"
-
-#include <CLI/CLI.hpp>
 
 namespace {
 
 using waymark::placement::PlacementOptions;
 
-void add_options(CLI::App& program, PlacementOptions& options) {
+void add_options(waymark::Command& program, PlacementOptions& options) {
   program
       .add_option("RUN|MAP", options.source,
                   "folder of a run or of its row, or a map file (NAME.map.lcm)")
-      ->required();
+      .required();
   program
       .add_option("--target-sigma-m", options.target_m,
                   "standard deviation of the position along the axis that the walls do not show "
                   "that is wanted everywhere on the way [m]")
-      ->check(waymark::positive_number())
-      ->capture_default_str();
+      .check(waymark::positive_number())
+      .show_default();
   program.add_option("--config", options.config,
                      "robot.toml or slam configuration, for a map file, or instead of the run's");
   program.add_option("--json", options.json, "write the advice there for programs");
@@ -35,17 +33,12 @@ void add_options(CLI::App& program, PlacementOptions& options) {
 
 int main(int argc, char** argv) {
   PlacementOptions options;
-  CLI::App program{
+  waymark::Program program{
       "Says where the estimate is too uncertain, and the fewest new markers that cure it.\n"
       "Exit code: 0 the target is met, or will be; 1 it cannot be; 2 wrong usage or files.",
       "waymark-evaluate placement"};
-  program.set_version_flag("--version", "waymark-placement " WAYMARK_VERSION);
   add_options(program, options);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? waymark::evaluate::kFine : waymark::evaluate::kUsage;
-  }
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   return waymark::evaluate::run_command("waymark-evaluate placement",
                                         [&] { return waymark::placement::run_placement(options); });
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "recorder/recorder_node.hpp"
 
+#include "common/logging/logging.hpp"
 #include "common/messages/channels.hpp"
-
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -85,7 +84,7 @@ void RecorderNode::finish() {
 
 void RecorderNode::fail(const std::string& what) {
   failed_ = true;
-  spdlog::error("{}; the log ends here, the run goes on", what);
+  logging::error("{}; the log ends here, the run goes on", what);
 }
 
 }  // namespace waymark

@@ -3,10 +3,10 @@
 
 #include "common/bus/channel_owners.hpp"
 #include "common/bus/datagram_receiver.hpp"
+#include "common/logging/logging.hpp"
 #include "common/messages/codec.hpp"
 
 #include <lcm/lcm.h>
-#include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <condition_variable>
@@ -204,7 +204,7 @@ class Bus::Implementation {
     const auto [warned, is_first] = warned_.try_emplace(channel, now);
     if (!is_first && now - warned->second < kBetweenWarnings) return;
     warned->second = now;
-    spdlog::warn(
+    logging::warn(
         "{}: {} publishes, too, and is refused as long as {} is heard; two drivers or stacks on "
         "one network? (ss -uap 'sport = :{}' says whose it is)",
         channel, to_string(rival), to_string(owners_.owner_of(channel)), rival.port);

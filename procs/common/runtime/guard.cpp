@@ -3,11 +3,10 @@
 
 #include "common/config/config.hpp"
 #include "common/errors/exit_codes.hpp"
+#include "common/logging/logging.hpp"
 #include "common/runtime/signals.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <map>
 #include <utility>
@@ -15,20 +14,18 @@
 namespace waymark {
 
 int run_guarded(const ProcessTraits& traits, const std::function<int()>& body) {
-  const std::string name{traits.name};
-  spdlog::set_default_logger(spdlog::stderr_color_mt(name));
-  spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
+  logging::begin(std::string{traits.name});
   install_stop_signals();
   try {
     return body();
   } catch (const ConfigError& error) {
-    spdlog::error("configuration:\n{}", error.what());
+    logging::error("configuration:\n{}", error.what());
     return kExitUsage;
   } catch (const SetupError& error) {
-    spdlog::error("{}", error.what());
+    logging::error("{}", error.what());
     return kExitUsage;
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
+    logging::error("{}", error.what());
     return kExitFailed;
   }
 }
@@ -40,11 +37,11 @@ void log_counters(const Counters& counters) {
     if (count.value != 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, count.value);
   }
-  spdlog::info("counted: {}",
-               texts[CountKind::kEvent].empty() ? "nothing" : texts[CountKind::kEvent]);
+  logging::info("counted: {}",
+                texts[CountKind::kEvent].empty() ? "nothing" : texts[CountKind::kEvent]);
   for (const auto& [kind, name] :
        {std::pair{CountKind::kLoss, "lost"}, std::pair{CountKind::kRejection, "rejected"}}) {
-    if (!texts[kind].empty()) spdlog::warn("{}: {}", name, texts[kind]);
+    if (!texts[kind].empty()) logging::warn("{}: {}", name, texts[kind]);
   }
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/runtime/options.hpp"
 
-#include "common/errors/exit_codes.hpp"
-
-#include <CLI/CLI.hpp>
+#include "common/command_line/command_line.hpp"
 
 namespace waymark {
 
@@ -20,14 +18,11 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
   ParsedOptions parsed;
   ProcessOptions& options = parsed.options;
   const std::string name = "waymark-" + std::string{traits.name};
-  CLI::App app{std::string{traits.purpose}, name};
-  app.set_version_flag("--version", name + " " WAYMARK_VERSION);
+  Program app{std::string{traits.purpose}, name};
   app.add_option("--config", options.config_sources.files,
-                 "TOML file; may be given several times, later files win")
-      ->take_all();
+                 "TOML file; may be given several times, later files win");
   app.add_option("--set", options.config_sources.overrides,
-                 "key.subkey=value; wins over the files; may be given several times")
-      ->take_all();
+                 "key.subkey=value; wins over the files; may be given several times");
   app.add_flag("--dump-config", options.dump_config,
                "print the effective configuration with every key explained, and exit");
   app.add_option("--print-config", options.print_config,
@@ -47,18 +42,17 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
       "camera driver; only in a network that you trust (see docs/reference.md, Limits)");
   if (option_set.log) {
     app.add_option(
-           "--log", options.logs,
-           "replay this LCM log instead of listening; may be given several times: a channel is "
-           "taken from the last log that has it")
-        ->take_all();
+        "--log", options.logs,
+        "replay this LCM log instead of listening; may be given several times: a channel is "
+        "taken from the last log that has it");
     app.add_option("--report", options.report,
                    "after a replay, write its timing, memory and counts there (JSON)");
     app.add_option("--skip-s", options.skip_s,
                    "with --log: leave out so many seconds of the log's beginning")
-        ->check(CLI::NonNegativeNumber);
+        .check(nonnegative_number());
     app.add_option("--until-s", options.until_s,
                    "with --log: read so many seconds from the log's beginning")
-        ->check(CLI::PositiveNumber);
+        .check(positive_number());
   }
   if (option_set.out_log) {
     app.add_option("--out-log", options.out_log, "write what is published to this LCM log");
@@ -86,12 +80,7 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
     app.add_flag("--dump-robot-config", options.dump_robot_config,
                  "print what the other processes may know (section [robot]), and exit");
   }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    parsed.exit_code = code == 0 ? kExitOk : kExitUsage;
-  }
+  parsed.exit_code = app.parse(argc, argv);
   return parsed;
 }
 

@@ -4,6 +4,7 @@
 #include "common/errors/exit_codes.hpp"
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
+#include "common/logging/logging.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/replay_report.hpp"
@@ -11,7 +12,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <map>
@@ -89,8 +89,8 @@ bool report_skipped(const std::vector<Source>& sources) {
   bool any = false;
   for (const Source& source : sources) {
     if (source.reader.skipped_bytes() == 0) continue;
-    spdlog::error("{}: {} bytes from offset {} on are no events; skipped", source.path.string(),
-                  source.reader.skipped_bytes(), source.reader.first_skipped_offset());
+    logging::error("{}: {} bytes from offset {} on are no events; skipped", source.path.string(),
+                   source.reader.skipped_bytes(), source.reader.first_skipped_offset());
     any = true;
   }
   return any;
@@ -109,9 +109,9 @@ bool report_useless(const std::vector<Source>& sources,
       continue;
     any = true;
     if (source.all_channels.empty()) {
-      spdlog::error("{}: has no LCM event; is it an LCM log?", source.path.string());
+      logging::error("{}: has no LCM event; is it an LCM log?", source.path.string());
     } else {
-      spdlog::error(
+      logging::error(
           "{}: has none of the channels that this process reads ({}), but {}; logs of other robots "
           "are for waymark-import first",
           source.path.string(), fmt::join(wanted, ", "), fmt::join(source.all_channels, ", "));
@@ -151,7 +151,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
   std::int64_t num_messages = 0;
   while (Source* source = oldest(sources)) {
     if (stop_signal() != 0) {
-      spdlog::warn("interrupted");
+      logging::warn("interrupted");
       return kExitSignal + stop_signal();
     }
     if (end && source->head->time > *end) break;
@@ -174,7 +174,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
                             .log_s = to_seconds(last - begin),
                             .wall_s = progress.elapsed_s(),
                             .peak_memory_mb = peak_memory_mb()};
-  spdlog::info(
+  logging::info(
       "replayed {} messages, {:.1f} s of log in {:.2f} s ({:.1f} x real time), peak memory {:.0f} "
       "MB",
       report.messages, report.log_s, report.wall_s, report.real_time_factor(),

@@ -5,6 +5,7 @@
 #include "common/errors/exit_codes.hpp"
 #include "common/lockstep/participant.hpp"
 #include "common/log/log_file.hpp"
+#include "common/logging/logging.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/reorder_buffer.hpp"
 #include "common/runtime/replay.hpp"
@@ -13,7 +14,6 @@
 #include "common/runtime/supervisor.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <optional>
 
@@ -68,8 +68,8 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
                  Outbox& outbox) {
   std::vector<Inbox::Subscription> subscriptions = inbox.subscriptions();
   if (std::erase_if(subscriptions, [](const auto& s) { return is_command(s.channel); }) > 0)
-    spdlog::warn("{} is not heard in lockstep: it belongs to no tick",
-                 channels::kMbotSystemReset.name);
+    logging::warn("{} is not heard in lockstep: it belongs to no tick",
+                  channels::kMbotSystemReset.name);
   LockstepParticipant participant{std::string{traits.name}, names_in_ticks(subscriptions),
                                   traits.joins_midway,
                                   [&](const std::vector<Message>& messages, bool is_last) {
@@ -86,7 +86,7 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
   }
   Bus bus{network.url, subscriptions, LargeMessages::kRefused, network.names};
   StatusReporter reporter{traits.name};
-  spdlog::info("ready, waits for ticks on {}", network.url);
+  logging::info("ready, waits for ticks on {}", network.url);
   const auto start = steady_clock::now();
   auto last_tick = start;
   Timestamp newest{};
@@ -102,7 +102,7 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
     }
     if (participant.finished() && steady_clock::now() - last_tick > kLinger) break;
     if (!hinted && !participant.has_seen_tick() && steady_clock::now() - start > kNothingHint) {
-      spdlog::info("no TICK so far: start waymark-sim, or use --real-time with a real robot");
+      logging::info("no TICK so far: start waymark-sim, or use --real-time with a real robot");
       hinted = true;
     }
     reporter.report(bus, inbox.counters(), newest, "lockstep");
@@ -111,7 +111,7 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
   log_counters(inbox.counters());
   if (participant.finished()) return node.failed() ? kExitFailed : kExitOk;
   if (stop_signal() == 0) {
-    spdlog::error("the simulator ended the run before its last tick");
+    logging::error("the simulator ended the run before its last tick");
     return kExitFailed;
   }
   return kExitSignal + stop_signal();
@@ -170,7 +170,7 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
           Publishers::kOnePerChannel};
   StatusReporter reporter{traits.name};
   RealTimeFeed feed{bus, inbox, outbox};
-  spdlog::info("ready, real time on {}", network.url);
+  logging::info("ready, real time on {}", network.url);
   tell_supervisor(kReady);
   const auto start = steady_clock::now();
   bool hinted = false;
@@ -178,7 +178,7 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
     const auto last = feed.last_arrival();
     if (!feed.take(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
     if (!hinted && !last && steady_clock::now() - start > kNothingHint) {
-      spdlog::warn("nothing has come on {} so far; is it the robot's LCM network?", network.url);
+      logging::warn("nothing has come on {} so far; is it the robot's LCM network?", network.url);
       hinted = true;
     }
     if (reporter.report(bus, inbox.counters(), feed.newest(), "real-time")) tell_supervisor(kAlive);
@@ -193,7 +193,7 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   bus.collect_counts(inbox.counters());
   log_counters(inbox.counters());
   if (!feed.last_arrival())
-    spdlog::error("nothing came on {} on the channels of this process", network.url);
+    logging::error("nothing came on {} on the channels of this process", network.url);
   return !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
 }
 

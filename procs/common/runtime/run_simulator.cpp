@@ -7,13 +7,13 @@
 #include "common/lockstep/command_relay.hpp"
 #include "common/lockstep/master.hpp"
 #include "common/log/log_file.hpp"
+#include "common/logging/logging.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/signals.hpp"
 #include "common/runtime/status.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <memory>
@@ -79,7 +79,7 @@ class Run {
     for (int i = 0; i < kClosingRepeats; ++i)
       bus_.publish(master.closing());
     for (const auto& [who, hash] : master.state_hashes()) {
-      spdlog::info("state hash of {}: {:016x}", who, static_cast<std::uint64_t>(hash));
+      logging::info("state hash of {}: {:016x}", who, static_cast<std::uint64_t>(hash));
     }
     return kExitOk;
   }
@@ -109,8 +109,8 @@ class Run {
     progress_.done();
     const double simulated_s = to_seconds(tick_end_);
     const double wall_s = progress_.elapsed_s();
-    spdlog::info("simulated {:.1f} s in {:.1f} s ({:.2f} x real time), peak memory {:.0f} MB",
-                 simulated_s, wall_s, simulated_s / std::max(wall_s, 1e-9), peak_memory_mb());
+    logging::info("simulated {:.1f} s in {:.1f} s ({:.2f} x real time), peak memory {:.0f} MB",
+                  simulated_s, wall_s, simulated_s / std::max(wall_s, 1e-9), peak_memory_mb());
     bus_.collect_counts(inbox_.counters());
     log_counters(inbox_.counters());
   }
@@ -132,8 +132,8 @@ class Run {
       const auto now = steady_clock::now();
       if (stop_signal() != 0) return kExitSignal + stop_signal();
       if (now - start > kReadyTimeout) {
-        spdlog::error("not ready after {} s: {} (is it running, with the same --lcm-url?)",
-                      kReadyTimeout.count(), fmt::join(master.not_ready(), ", "));
+        logging::error("not ready after {} s: {} (is it running, with the same --lcm-url?)",
+                       kReadyTimeout.count(), fmt::join(master.not_ready(), ", "));
         return kExitTimeout;
       }
       if (now - last_probe >= kProbePeriod) {
@@ -142,7 +142,7 @@ class Run {
       }
       take_messages(master, kPoll);
     }
-    spdlog::info("all ready: {}", fmt::join(source_.participants(), ", "));
+    logging::info("all ready: {}", fmt::join(source_.participants(), ", "));
     return kExitOk;
   }
 
@@ -174,7 +174,7 @@ class Run {
   int name_the_silent(const LockstepMaster& master) const {
     const std::vector<std::string> silent = master.silent();
     const std::span waiting = std::span{silent}.subspan(1);
-    spdlog::error(
+    logging::error(
         "no acknowledgement of tick {} ({:.1f} s simulated) for {} s from {}{}",
         master.oldest_open_tick(), to_seconds(tick_end_), kSilenceTimeout.count(), silent.front(),
         waiting.empty() ? "" : fmt::format("; waiting behind it: {}", fmt::join(waiting, ", ")));

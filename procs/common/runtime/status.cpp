@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/runtime/status.hpp"
 
-#include <spdlog/spdlog.h>
+#include "common/logging/logging.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -44,7 +44,7 @@ void StatusReporter::warn_of_new_losses(const Counters& counters) {
     const std::int64_t warned = warned_.get(name);
     if (count.kind == CountKind::kEvent || count.value < std::max<std::int64_t>(1, 2 * warned))
       continue;
-    spdlog::warn("{}: {} so far", name, count.value);
+    logging::warn("{}: {} so far", name, count.value);
     warned_.add(name, count.kind, count.value - warned);
   }
 }

@@ -3,8 +3,7 @@
 
 #include "common/files/whole_file.hpp"
 #include "common/files/writable_folder.hpp"
-
-#include <spdlog/spdlog.h>
+#include "common/logging/logging.hpp"
 
 #include <system_error>
 #include <utility>
@@ -19,7 +18,7 @@ void OutputFolder::write(const std::string& name, std::string_view bytes) {
   try {
     write_whole_file(folder_ / name, bytes);
   } catch (const std::system_error& error) {
-    spdlog::error("{}", error.what());
+    logging::error("{}", error.what());
     failed_files_.insert(name);
   }
 }
@@ -28,7 +27,7 @@ void OutputFolder::remove(const std::string& name) {
   std::error_code error;
   std::filesystem::remove(folder_ / name, error);
   if (!error) return;
-  spdlog::error("{}: cannot be removed", (folder_ / name).string());
+  logging::error("{}: cannot be removed", (folder_ / name).string());
   failed_files_.insert(name);
 }
 
