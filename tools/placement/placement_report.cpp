@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <iterator>
-
 namespace waymark::placement {
 namespace {
 
@@ -51,27 +49,26 @@ Json or_null(const std::optional<Number>& value) {
 
 std::string placement_text(const PlacementInput& input, const Placement& placement) {
   std::string text;
-  auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}: {} markers, {:.1f} m driven; target {} m\n", input.source.string(),
-                 input.markers.size(), placement.steps.back().travel_m, placement.target_m);
+  text += fmt::format("{}: {} markers, {:.1f} m driven; target {} m\n", input.source.string(),
+                      input.markers.size(), placement.steps.back().travel_m, placement.target_m);
   for (const std::string& note : input.notes)
-    fmt::format_to(out, "note: {}\n", note);
-  fmt::format_to(out,
-                 "sigma of the position along the axis that the walls do not show: {:.4f} m at "
-                 "worst by the model",
-                 placement.worst_now_m());
+    text += fmt::format("note: {}\n", note);
+  text += fmt::format(
+      "sigma of the position along the axis that the walls do not show: {:.4f} m at "
+      "worst by the model",
+      placement.worst_now_m());
   if (placement.worst_run_m) {
-    fmt::format_to(out, ", {:.4f} m in the run at {:.1f} m", *placement.worst_run_m,
-                   placement.steps[*placement.worst_run_at].travel_m);
+    text += fmt::format(", {:.4f} m in the run at {:.1f} m", *placement.worst_run_m,
+                        placement.steps[*placement.worst_run_at].travel_m);
   }
   if (placement.model_over_run)
-    fmt::format_to(out, "; model / run {:.2f} (median)", *placement.model_over_run);
+    text += fmt::format("; model / run {:.2f} (median)", *placement.model_over_run);
   text += "\n";
   if (placement.across_m > placement.target_m) {
-    fmt::format_to(out,
-                   "In its worst direction the position has {:.4f} m: what grows across the walls "
-                   "is the heading's drift, which markers hardly change.\n",
-                   placement.across_m);
+    text += fmt::format(
+        "In its worst direction the position has {:.4f} m: what grows across the walls "
+        "is the heading's drift, which markers hardly change.\n",
+        placement.across_m);
   }
   if (!placement.stretches.empty())
     text +=
@@ -80,9 +77,9 @@ std::string placement_text(const PlacementInput& input, const Placement& placeme
   for (const Stretch& stretch : placement.stretches) {
     const Step& from = placement.steps[stretch.first];
     const Step& to = placement.steps[stretch.last];
-    fmt::format_to(out, "{:10.1f}{:10.1f}   ({:7.2f},{:7.2f})   ({:7.2f},{:7.2f})   {:9.4f}\n",
-                   from.travel_m, to.travel_m, from.map_from_base.x(), from.map_from_base.y(),
-                   to.map_from_base.x(), to.map_from_base.y(), stretch.worst_m);
+    text += fmt::format("{:10.1f}{:10.1f}   ({:7.2f},{:7.2f})   ({:7.2f},{:7.2f})   {:9.4f}\n",
+                        from.travel_m, to.travel_m, from.map_from_base.x(), from.map_from_base.y(),
+                        to.map_from_base.x(), to.map_from_base.y(), stretch.worst_m);
   }
   if (!placement.markers.empty())
     text +=
@@ -90,15 +87,15 @@ std::string placement_text(const PlacementInput& input, const Placement& placeme
         "worst sigma then [m]\n";
   for (const NewMarker& marker : placement.markers) {
     const Se2& pose = marker.place.map_from_marker;
-    fmt::format_to(out, "{:4}  {:6}{:15.1f}{:11.2f}{:11.2f}{:11.1f}{:22.4f}\n", marker.id,
-                   marker.place.wall, marker.place.travel_m, pose.x(), pose.y(),
-                   degrees(pose.theta()), marker.worst_after_m);
+    text += fmt::format("{:4}  {:6}{:15.1f}{:11.2f}{:11.2f}{:11.1f}{:22.4f}\n", marker.id,
+                        marker.place.wall, marker.place.travel_m, pose.x(), pose.y(),
+                        degrees(pose.theta()), marker.worst_after_m);
   }
   text += "\n";
   text += verdict(placement);
   for (const Limit& limit : placement.limits)
-    fmt::format_to(out, "It is limited by {}: {:.4f} m without that.\n", limit.cause,
-                   limit.without_it_m);
+    text += fmt::format("It is limited by {}: {:.4f} m without that.\n", limit.cause,
+                        limit.without_it_m);
   return text;
 }
 
@@ -141,8 +138,8 @@ std::string placement_csv(const Placement& placement) {
       "id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state\n";
   for (const NewMarker& marker : placement.markers) {
     const Se2& pose = marker.place.map_from_marker;
-    fmt::format_to(std::back_inserter(text), "{},0,{:.6f},{:.6f},{:.6f},0,0,0,0,0\n", marker.id,
-                   pose.x(), pose.y(), pose.theta());
+    text += fmt::format("{},0,{:.6f},{:.6f},{:.6f},0,0,0,0,0\n", marker.id, pose.x(), pose.y(),
+                        pose.theta());
   }
   return text;
 }

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <tuple>
 #include <vector>
 
 namespace waymark {
@@ -22,14 +21,13 @@ struct TypedChannel {
 
 /// Every channel that may be on a network.
 const std::vector<TypedChannel>& typed_channels() {
-  static const std::vector<TypedChannel> all = std::apply(
-      []<class... Types>(const Channel<Types>&... channels) {
+  static const std::vector<TypedChannel> all =
+      channels::visit_all([]<class... Types>(const Channel<Types>&... channels) {
         std::vector<TypedChannel> typed{
             {channels.name, Types::getTypeName(), Types::getHash(), channels.use}...};
         std::erase_if(typed, [](const auto& one) { return one.use == ChannelUse::kMapFiles; });
         return typed;
-      },
-      channels::kAll);
+      });
   return all;
 }
 

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
-
 namespace waymark::viewer {
 namespace {
 
@@ -25,18 +23,17 @@ Eigen::Matrix3d information_in_to(const graph_edge_t& edge) {
 
 std::string g2o_text(std::span<const pose_graph_t> parts) {
   std::string text;
-  auto out = std::back_inserter(text);
   int vertex = 0;
   for (const pose_graph_t& part : parts)
     for (const auto& pose : part.vertices)
-      fmt::format_to(out, "VERTEX_SE2 {} {:.9g} {:.9g} {:.9g}\n", vertex++, pose[0], pose[1],
-                     pose[2]);
+      text +=
+          fmt::format("VERTEX_SE2 {} {:.9g} {:.9g} {:.9g}\n", vertex++, pose[0], pose[1], pose[2]);
   if (vertex > 0) text += "FIX 0\n";
   for (const pose_graph_t& part : parts) {
     for (const graph_edge_t& edge : part.edges) {
       const Eigen::Matrix3d information = information_in_to(edge);
-      fmt::format_to(
-          out, "EDGE_SE2 {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n",
+      text += fmt::format(
+          "EDGE_SE2 {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n",
           edge.from_vertex, edge.to_vertex, edge.pose[0], edge.pose[1], edge.pose[2],
           information(0, 0), information(0, 1), information(0, 2), information(1, 1),
           information(1, 2), information(2, 2));

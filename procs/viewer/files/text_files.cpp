@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <tuple>
 
 namespace waymark::viewer {
@@ -23,9 +22,9 @@ struct Seconds {
 
 void append_tum_line(std::string& text, Timestamp time, const Se2& frame_from_base) {
   const Seconds t{time};
-  fmt::format_to(std::back_inserter(text), "{}.{:06d} {:.9f} {:.9f} 0 0 0 {:.12f} {:.12f}\n",
-                 t.whole, t.micro, frame_from_base.x(), frame_from_base.y(),
-                 std::sin(frame_from_base.theta() / 2), std::cos(frame_from_base.theta() / 2));
+  text += fmt::format("{}.{:06d} {:.9f} {:.9f} 0 0 0 {:.12f} {:.12f}\n", t.whole, t.micro,
+                      frame_from_base.x(), frame_from_base.y(),
+                      std::sin(frame_from_base.theta() / 2), std::cos(frame_from_base.theta() / 2));
 }
 
 double sigma(double variance) {
@@ -53,10 +52,9 @@ std::string covariance_csv_text(std::span<const EstimatedPose> path) {
   for (const EstimatedPose& pose : path) {
     const Seconds t{pose.time};
     const Eigen::Matrix3d& c = pose.covariance;
-    fmt::format_to(std::back_inserter(text),
-                   "{}.{:06d},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{}\n", t.whole, t.micro,
-                   c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2),
-                   static_cast<int>(pose.health));
+    text += fmt::format("{}.{:06d},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{}\n", t.whole,
+                        t.micro, c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2),
+                        static_cast<int>(pose.health));
   }
   return text;
 }
@@ -71,10 +69,10 @@ std::string markers_csv_text(std::vector<Landmark> landmarks) {
   for (const Landmark& landmark : landmarks) {
     const Se2& pose = landmark.map_from_marker;
     const Eigen::Matrix3d& c = landmark.covariance;
-    fmt::format_to(
-        std::back_inserter(text), "{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n",
-        landmark.id, landmark.instance, pose.x(), pose.y(), pose.theta(), sigma(c(0, 0)),
-        sigma(c(1, 1)), sigma(c(2, 2)), landmark.sightings, static_cast<int>(landmark.state));
+    text += fmt::format("{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n", landmark.id,
+                        landmark.instance, pose.x(), pose.y(), pose.theta(), sigma(c(0, 0)),
+                        sigma(c(1, 1)), sigma(c(2, 2)), landmark.sightings,
+                        static_cast<int>(landmark.state));
   }
   return text;
 }
@@ -113,11 +111,10 @@ std::string findings_json_text(std::span<const Finding> findings) {
 std::string changes_csv_text(std::span<const MapChange> changes) {
   std::string text = "change,id,instance,x_m,y_m,yaw_rad,was_x_m,was_y_m,size_m,sigmas,support\n";
   for (const MapChange& change : changes) {
-    fmt::format_to(std::back_inserter(text),
-                   "{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.3f},{:.1f},{}\n",
-                   name_of(change.kind), change.id, change.instance, change.place.x(),
-                   change.place.y(), change.place.theta(), change.was_at.x(), change.was_at.y(),
-                   change.size_m, change.sigmas, change.support);
+    text += fmt::format("{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.3f},{:.1f},{}\n",
+                        name_of(change.kind), change.id, change.instance, change.place.x(),
+                        change.place.y(), change.place.theta(), change.was_at.x(),
+                        change.was_at.y(), change.size_m, change.sigmas, change.support);
   }
   return text;
 }

@@ -12,7 +12,6 @@
 #include <fstream>
 #include <set>
 #include <string>
-#include <tuple>
 
 namespace waymark {
 namespace {
@@ -100,11 +99,9 @@ std::set<std::string> channels_in_readme() {
 
 TEST(Channels, AreThoseOfTheReadme) {
   std::set<std::string> listed;
-  std::apply(
-      [&]<class... Types>(const Channel<Types>&... channels) {
-        (listed.insert(std::string{channels.name} + " " + Types::getTypeName()), ...);
-      },
-      channels::kAll);
+  channels::visit_all([&]<class... Types>(const Channel<Types>&... channels) {
+    (listed.insert(std::string{channels.name} + " " + Types::getTypeName()), ...);
+  });
   listed.erase("LIDAR lidar_t");  // in LIDAR's row
   EXPECT_EQ(listed, channels_in_readme());
 }

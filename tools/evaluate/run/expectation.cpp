@@ -21,10 +21,6 @@ Figure ate_origin_m(const EstimatorResult& result) {
   return result.trajectory ? Figure{result.trajectory->ate_origin_m} : std::nullopt;
 }
 
-Figure rms_of(const std::optional<Spread>& spread) {
-  return spread ? Figure{spread->rms} : std::nullopt;
-}
-
 Figure along_rmse_m(const EstimatorResult& result) {
   return result.trajectory ? rms_of(result.trajectory->along_m) : std::nullopt;
 }

@@ -18,10 +18,6 @@ Json number(const std::optional<double>& value) {
   return value ? number(*value) : Json{};
 }
 
-Json rms_of(const std::optional<Spread>& spread) {
-  return spread ? number(spread->rms) : Json{};
-}
-
 Json max_of(const std::optional<Spread>& spread) {
   return spread ? number(spread->max) : Json{};
 }
@@ -123,9 +119,9 @@ Json json_of(const TrajectoryError& error) {
   json["ate_se2_m"] = number(error.ate_se2_m);
   if (error.ate_frame_m) json["ate_frame_m"] = number(*error.ate_frame_m);
   json["alignment"] = name_of(error.alignment);  // of the keys that follow, but for RPE
-  json["along_rmse_m"] = rms_of(error.along_m);
+  json["along_rmse_m"] = number(rms_of(error.along_m));
   json["along_max_m"] = max_of(error.along_m);
-  json["across_rmse_m"] = rms_of(error.across_m);
+  json["across_rmse_m"] = number(rms_of(error.across_m));
   json["across_max_m"] = max_of(error.across_m);
   json["heading_rmse_deg"] = number(error.heading_deg.rms);
   json["heading_max_deg"] = number(error.heading_deg.max);
@@ -133,9 +129,9 @@ Json json_of(const TrajectoryError& error) {
   json["end_distance_m"] = number(error.end_distance_m);
   json["end_heading_deg"] = number(error.end_heading_deg);
   json["rpe_pairs_1m"] = error.rpe_pairs;
-  json["rpe_translation_rmse_m"] = rms_of(error.rpe_translation_m);
+  json["rpe_translation_rmse_m"] = number(rms_of(error.rpe_translation_m));
   json["rpe_translation_max_m"] = max_of(error.rpe_translation_m);
-  json["rpe_rotation_rmse_deg"] = rms_of(error.rpe_rotation_deg);
+  json["rpe_rotation_rmse_deg"] = number(rms_of(error.rpe_rotation_deg));
   json["rpe_rotation_max_deg"] = max_of(error.rpe_rotation_deg);
   return json;
 }

@@ -52,10 +52,6 @@ std::string pixel_count(double pixels) {
   return fmt::format("{:.{}f} pixel", pixels, whole ? 0 : 1);
 }
 
-std::optional<double> rms_of(const std::optional<Spread>& spread) {
-  return spread ? std::optional{spread->rms} : std::nullopt;
-}
-
 /// Whether slam has counted any message of a kind ("loss", "rejection") in timings.json.
 bool has_counted(const EstimatorResult& result, std::string_view kind) {
   if (!result.timings_json) return false;

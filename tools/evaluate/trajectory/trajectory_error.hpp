@@ -38,6 +38,10 @@ struct Spread {
   double max{};
 };
 
+inline std::optional<double> rms_of(const std::optional<Spread>& spread) {
+  return spread ? std::optional{spread->rms} : std::nullopt;
+}
+
 struct TrajectoryError {
   Alignment alignment{};
   std::size_t poses{};

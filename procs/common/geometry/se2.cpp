@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/geometry/se2.hpp"
+
+#include <cmath>
+
+namespace waymark {
+
+Eigen::Matrix2d Se2::rotation() const {
+  const double c = std::cos(theta_rad_);
+  const double s = std::sin(theta_rad_);
+  return (Eigen::Matrix2d{} << c, -s, s, c).finished();
+}
+
+Se2 Se2::inverse() const {
+  return {-(rotation().transpose() * translation_), -theta_rad_};
+}
+
+Se2 Se2::operator*(const Se2& child) const {
+  return {rotation() * child.translation_ + translation_, theta_rad_ + child.theta_rad_};
+}
+
+Eigen::Vector2d Se2::operator*(const Eigen::Vector2d& point_in_child) const {
+  return rotation() * point_in_child + translation_;
+}
+
+Se2 interpolate(const Se2& from, const Se2& to, double fraction) {
+  return {from.translation() + fraction * (to.translation() - from.translation()),
+          from.theta() + fraction * angle_difference(to.theta(), from.theta())};
+}
+
+Eigen::Vector3d pose_difference(const Se2& to, const Se2& from) {
+  return {to.x() - from.x(), to.y() - from.y(), angle_difference(to.theta(), from.theta())};
+}
+
+Se2 moved_by(const Se2& pose, const Eigen::Vector3d& difference) {
+  return {Eigen::Vector2d{pose.translation() + difference.head<2>()},
+          pose.theta() + difference.z()};
+}
+
+Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = rotation;
+  return turn;
+}
+
+Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix) {
+  const Eigen::Matrix3d turn = turning(rotation);
+  return turn * matrix * turn.transpose();
+}
+
+Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map) {
+  Eigen::Matrix3d by = Eigen::Matrix3d::Identity();
+  by(0, 2) = -step_in_map.y();
+  by(1, 2) = step_in_map.x();
+  return by;
+}
+
+Eigen::Matrix3d carried_along(const Eigen::Matrix3d& covariance,
+                              const Eigen::Vector2d& step_in_map) {
+  const Eigen::Matrix3d by = carried_along(step_in_map);
+  return by * covariance * by.transpose();
+}
+
+}  // namespace waymark
