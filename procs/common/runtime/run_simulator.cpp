@@ -33,7 +33,7 @@ constexpr seconds kReadyTimeout{30};
 constexpr milliseconds kFirstResend{250};
 constexpr milliseconds kLongestResend{4000};
 constexpr seconds kSilenceTimeout{60};
-constexpr milliseconds kPoll{20};
+constexpr milliseconds kReceiveFor{20};
 constexpr int kClosingRepeats = 3;
 
 /// Wall-clock side of a run: network, time-outs, progress.
@@ -60,7 +60,7 @@ class Run {
         send_tick(master);
         last_sent = steady_clock::now();
       }
-      if (take_messages(master, may_advance ? milliseconds{0} : kPoll)) {
+      if (take_messages(master, may_advance ? milliseconds{0} : kReceiveFor)) {
         last_ack = steady_clock::now();
         resend_after = kFirstResend;
       }
@@ -95,7 +95,7 @@ class Run {
         const auto due = start + message.time.time_since_epoch() + kRealTimeLatency;
         while (stop_signal() == 0 && steady_clock::now() < due) {
           take_commands(std::min<milliseconds>(
-              kPoll, duration_cast<milliseconds>(due - steady_clock::now())));
+              kReceiveFor, duration_cast<milliseconds>(due - steady_clock::now())));
         }
         if (stop_signal() != 0) return kExitSignal + stop_signal();
         bus_.publish(message);
@@ -140,7 +140,7 @@ class Run {
         bus_.publish(master.probe());
         last_probe = now;
       }
-      take_messages(master, kPoll);
+      take_messages(master, kReceiveFor);
     }
     logging::info("all ready: {}", fmt::join(source_.participants(), ", "));
     return kExitOk;

@@ -14,8 +14,9 @@ constexpr std::size_t kFewestWalls = 100;
 constexpr double kModeWidth = 0.3;       // of the logarithm: spread of seven beams' scatter
 constexpr double kStraight = 2.0;        // scatter over the mode: chance exceeds it in 2 of 10,000
 constexpr double kSigmaOfStep = 0.2887;  // of the error of rounding, in steps: 1 / sqrt(12)
-constexpr double kRounding_m = 1e-4;     // less is the rounding of a float
-constexpr double kStepQuantile = 0.05;   // of the differences: single garbled ranges do not count
+constexpr double kFloatRounding_m = 1e-4;  // less is the rounding of a float
+constexpr double kSmallStepQuantile =
+    0.05;  // of the differences: single garbled ranges do not count
 
 /// All are returns, and the angles go on in one direction without a gap.
 bool is_one_sweep(std::span<const double> ranges_m, std::span<const double> angles_rad) {
@@ -71,7 +72,7 @@ void WallScatter::add(const LidarScan& scan) {
   const std::span<const double> angles_rad{scan.angles_rad};
   for (std::size_t i = 1; i < ranges_m.size(); ++i) {
     const double difference_m = std::abs(ranges_m[i] - ranges_m[i - 1]);
-    if (std::isfinite(difference_m) && difference_m > kRounding_m)
+    if (std::isfinite(difference_m) && difference_m > kFloatRounding_m)
       differences_m_.push_back(difference_m);
   }
   for (std::size_t i = 0; i + kBeams <= ranges_m.size();) {
@@ -87,11 +88,11 @@ void WallScatter::add(const LidarScan& scan) {
 }
 
 double WallScatter::step_m() const {
-  if (differences_m_.empty()) return kRounding_m;
+  if (differences_m_.empty()) return kFloatRounding_m;
   std::vector<double> differences_m = differences_m_;
   const auto place =
       differences_m.begin() +
-      static_cast<std::ptrdiff_t>(kStepQuantile * static_cast<double>(differences_m.size()));
+      static_cast<std::ptrdiff_t>(kSmallStepQuantile * static_cast<double>(differences_m.size()));
   std::ranges::nth_element(differences_m, place);
   return *place;
 }

@@ -11,8 +11,8 @@
 namespace waymark {
 namespace {
 
-constexpr double kShortest_m = 0.01;    // of a step that decides anything: less is noise
-constexpr double kLongest_m = 1.0;      // more, and too little of the two scans overlaps
+constexpr double kShortestApart_m = 0.01;  // of a step that decides anything: less is noise
+constexpr double kLongestApart_m = 1.0;    // more, and too little of the two scans overlaps
 constexpr double kFloor_m = 1e-4;       // of a misfit, so that the ratio of two perfect fits is 1
 constexpr double kSmallestScore = 0.2;  // of a step that decides: less is chance, as along a wall
 constexpr double kLargestScore = 2.0;   // of one step: a factor of 7
@@ -28,7 +28,7 @@ struct Step {
 double score_of(const LidarScan& first, const LidarScan& second, const Se2& motion,
                 const Se2& base_from_lidar) {
   const double distance_m = motion.translation().norm();
-  if (distance_m < kShortest_m || distance_m > kLongest_m) return 0.0;
+  if (distance_m < kShortestApart_m || distance_m > kLongestApart_m) return 0.0;
   const auto misfit_with = [&](const Se2& moved) {
     return misfit_m(first, second, base_from_lidar.inverse() * moved * base_from_lidar);
   };
@@ -95,7 +95,7 @@ std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log) {
   const std::vector<bool> is_reversed = most_likely(steps);
   std::vector<ReversedStep> reversed;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (is_reversed[i] && steps[i].step.distance_m >= kShortest_m)
+    if (is_reversed[i] && steps[i].step.distance_m >= kShortestApart_m)
       reversed.push_back(steps[i].step);
   }
   return reversed;

@@ -11,7 +11,7 @@ namespace {
 constexpr double kLargestError_m = 0.3;  // of a beam: more is something else than the same wall
 constexpr double kSameWall_m = 0.3;      // between ranges that are interpolated
 constexpr double kWidestGap_rad = 0.1;   // between beams that are interpolated
-constexpr std::size_t kFewestBeams = 30;
+constexpr std::size_t kFewestSharedBeams = 30;
 
 /// The scan's range in a direction [rad], interpolated; nothing at edges, gaps and outside.
 std::optional<double> range_towards(const LidarScan& scan, double angle_rad) {
@@ -56,7 +56,7 @@ std::optional<double> misfit_m(const LidarScan& first, const LidarScan& second,
     sum_m += std::min(std::abs(*expected_m - end.norm()), kLargestError_m);
     ++count;
   }
-  if (count < kFewestBeams) return std::nullopt;
+  if (count < kFewestSharedBeams) return std::nullopt;
   return sum_m / static_cast<double>(count);
 }
 

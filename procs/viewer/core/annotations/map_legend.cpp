@@ -18,7 +18,7 @@
 namespace waymark::viewer {
 namespace {
 
-constexpr double kText_px = 17.0;
+constexpr double kLegendText_px = 17.0;
 constexpr double kFirstLine_px = 40.0;
 constexpr double kLineHeight_px = 44.0;
 
@@ -47,7 +47,7 @@ class LegendWriter {
       : page_{page}, area_px_{area_px}, x_px_(area_px.x), y_px_(area_px.y + kFirstLine_px) {}
 
   void add(const std::string& meaning, const DrawSample& draw_sample) {
-    const Font font{.height_px = kText_px, .colour = palette::kInk};
+    const Font font{.height_px = kLegendText_px, .colour = palette::kInk};
     const double width_px = kSampleWidth_px + 14.0 + text_width_px(meaning, font);
     if (x_px_ > area_px_.x && x_px_ + width_px > area_px_.br().x) new_line();
     draw_sample({x_px_, y_px_}, {x_px_ + kSampleWidth_px, y_px_});
@@ -77,7 +77,7 @@ class LegendWriter {
                     .box_px = box,
                     .state = state,
                     .colour = colour_of(state)}},
-                  kText_px);
+                  kLegendText_px);
     });
   }
 

@@ -13,8 +13,8 @@ namespace {
 constexpr int kWidth_px = 4;
 constexpr double kMark_m = 0.2;  // half of a marker's usual side
 constexpr double kLeast_px = 7.0;
-constexpr double kDash_px = 10.0;
-constexpr double kGap_px = 7.0;
+constexpr double kOutlineDash_px = 10.0;
+constexpr double kOutlineGap_px = 7.0;
 
 void draw_box(cv::Mat& panel, cv::Point2d centre_px, double half_px, bool is_dashed) {
   const Pen pen{palette::kMoved, kWidth_px};
@@ -23,7 +23,7 @@ void draw_box(cv::Mat& panel, cv::Point2d centre_px, double half_px, bool is_das
       centre_px + cv::Point2d{half_px, half_px}, centre_px + cv::Point2d{-half_px, half_px},
       centre_px + cv::Point2d{-half_px, -half_px}};
   if (is_dashed)
-    draw_dashed_polyline(panel, corners, pen, kDash_px, kGap_px);
+    draw_dashed_polyline(panel, corners, pen, kOutlineDash_px, kOutlineGap_px);
   else
     draw_polyline(panel, corners, pen);
 }
