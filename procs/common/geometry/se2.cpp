@@ -37,6 +37,13 @@ Se2 moved_by(const Se2& pose, const Eigen::Vector3d& difference) {
           pose.theta() + difference.z()};
 }
 
+Se2 along_arc(const Eigen::Vector3d& step) {
+  const double half_rad = 0.5 * step.z();
+  const double chord =
+      std::abs(half_rad) < 1e-4 ? 1.0 - half_rad * half_rad / 6.0 : std::sin(half_rad) / half_rad;
+  return {Eigen::Vector2d{chord * (Se2{0.0, 0.0, half_rad} * step.head<2>())}, step.z()};
+}
+
 Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = rotation;

@@ -52,12 +52,7 @@ Se2 moved_by(const Se2& pose, const Eigen::Vector3d& difference);
 /// The motion along an arc that begins with this (x, y, theta) (the exponential map of SE(2)).
 /// Poses that are moved so, each by a common turn as seen from its own frame, keep what lies
 /// between them.
-inline Se2 along_arc(const Eigen::Vector3d& step) {
-  const double half_rad = 0.5 * step.z();
-  const double chord =
-      std::abs(half_rad) < 1e-4 ? 1.0 - half_rad * half_rad / 6.0 : std::sin(half_rad) / half_rad;
-  return {Eigen::Vector2d{chord * (Se2{0.0, 0.0, half_rad} * step.head<2>())}, step.z()};
-}
+Se2 along_arc(const Eigen::Vector3d& step);
 
 /// Turns (x, y, theta) into axes that are turned by `rotation`.
 Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation);
