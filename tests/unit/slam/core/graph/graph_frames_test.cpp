@@ -75,9 +75,9 @@ TEST(GraphFrames, ANewCalibrationIsNoSlipOfPosesThatDoNotFollowItYet) {
   tie_newest_to(graph, truth);
   graph.optimise();
   ASSERT_NEAR(graph.state().calibration[0], 1.0 / kScale - 1.0, 0.01);
-  const double known = graph.covariance_of(Variable{})(0, 0);
+  const double known = graph.covariance({}, {})(0, 0);
   graph.step_all();
-  EXPECT_LT(graph.covariance_of(Variable{})(0, 0), 1.5 * known);
+  EXPECT_LT(graph.covariance({}, {})(0, 0), 1.5 * known);
 }
 
 }  // namespace
