@@ -278,10 +278,9 @@ void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& r
     covariance_.middleRows<2>(offset) = (to_map * covariance_.middleRows<2>(offset)).eval();
     covariance_.middleCols<2>(offset) =
         (covariance_.middleCols<2>(offset) * to_map.transpose()).eval();
-  }
-  for (const auto& [variable, offset] : covariance_offsets_)
     if (variable.kind == VariableKind::kLandmark)
       landmark_covariances_[variable.index] = covariance_.block<3, 3>(offset, offset);
+  }
 }
 
 /// @return the steps' sum.
