@@ -68,6 +68,7 @@ CommandOption Command::add_option(const std::string& name, Value& value, const s
 }
 
 template CommandOption Command::add_option(const std::string&, int&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::uint64_t&, const std::string&);
 template CommandOption Command::add_option(const std::string&, double&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::string&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::filesystem::path&,

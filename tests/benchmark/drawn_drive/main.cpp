@@ -2,9 +2,10 @@
 // Drives a robot through a building that is drawn at random, and writes what it measured as a
 // CARMEN log with true relations: for deploy/real_logs.sh. Plane geometry, no physics: odometry
 // with wrong scales and noise, a LiDAR of 180 degrees, people who walk about the robot.
+#include "common/command_line/command_line.hpp"
+#include "common/errors/exit_codes.hpp"
 #include "drawn_drive/drive.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/os.h>
 
 #include <algorithm>
@@ -53,49 +54,50 @@ void run(const DriveOptions& options, std::uint64_t seed, const std::filesystem:
 }  // namespace waymark::drawn
 
 int main(int argc, char** argv) {
-  waymark::drawn::DriveOptions options;
+  using namespace waymark;
+  drawn::DriveOptions options;
   std::uint64_t seed = 1;
   std::filesystem::path out{"."};
-  CLI::App app{
+  Program program{
       "Writes the CARMEN log of a drive through a building that is drawn at random, with true "
-      "relations"};
-  app.add_option("kind", options.kind, "of building")
-      ->check(CLI::IsMember(waymark::drawn::Building::kinds()))
-      ->capture_default_str();
-  app.add_option("--seed", seed, "other building, way and noise")->capture_default_str();
-  app.add_option("--out", out, "folder for KIND_SEED.clf and .relations")->capture_default_str();
-  app.add_option("--length-m", options.length_m, "of the way")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--speed-mps", options.speed_mps, "of the robot")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--period-s", options.period_s, "of scans")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--range-m", options.range_m, "of the LiDAR")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--range-sigma-m", options.range_sigma_m, "noise")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_option("--beams", options.beams, "over 180 degrees")
-      ->check(CLI::IsMember({181, 361}))
-      ->capture_default_str();
-  app.add_option("--odometry-noise", options.odometry_noise, "times that of a good robot")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_option("--people", options.people, "about the robot")
-      ->check(CLI::Range(0, 50))
-      ->capture_default_str();
+      "relations",
+      "drawn_drive"};
+  program.add_option("kind", options.kind, "of building")
+      .one_of(drawn::Building::kinds())
+      .show_default();
+  program.add_option("--seed", seed, "other building, way and noise").show_default();
+  program.add_option("--out", out, "folder for KIND_SEED.clf and .relations").show_default();
+  program.add_option("--length-m", options.length_m, "of the way")
+      .check(positive_number())
+      .show_default();
+  program.add_option("--speed-mps", options.speed_mps, "of the robot")
+      .check(positive_number())
+      .show_default();
+  program.add_option("--period-s", options.period_s, "of scans")
+      .check(positive_number())
+      .show_default();
+  program.add_option("--range-m", options.range_m, "of the LiDAR")
+      .check(positive_number())
+      .show_default();
+  program.add_option("--range-sigma-m", options.range_sigma_m, "noise")
+      .check(nonnegative_number())
+      .show_default();
+  program.add_option("--beams", options.beams, "over 180 degrees")
+      .one_of({"181", "361"})
+      .show_default();
+  program.add_option("--odometry-noise", options.odometry_noise, "times that of a good robot")
+      .check(nonnegative_number())
+      .show_default();
+  program.add_option("--people", options.people, "about the robot")
+      .check({[](double people) { return people >= 0.0 && people <= 50.0; }, "0 to 50 people",
+              "INT in [0 - 50]"})
+      .show_default();
+  if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   try {
-    app.parse(argc, argv);
-    waymark::drawn::run(options, seed, out);
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    drawn::run(options, seed, out);
+    return kExitOk;
   } catch (const std::exception& error) {
     fmt::print(stderr, "drawn_drive: {}\n", error.what());
-    return 2;
+    return kExitUsage;
   }
 }
