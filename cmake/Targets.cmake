@@ -46,11 +46,11 @@ function(waymark_program name)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
-foreach(label unit property process simulation)
+foreach(label unit property drives process simulation)
   add_custom_target(${label}_tests)
 endforeach()
 
-# waymark_test(NAME LABEL unit|property|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one GoogleTest program,
+# waymark_test(NAME LABEL unit|property|drives|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one GoogleTest program,
 # which is one test of CTest; the target LABEL_tests builds all of a label. What is tested is optimised as it is used; the
 # tests' own code runs once, and its optimisation would take a third of its compile time.
 # (GCC warns wrongly of std::optional at -O1.)
