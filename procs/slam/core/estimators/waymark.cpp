@@ -117,6 +117,7 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
 WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& observation) const {
   Look look{points_of(observation)};
   if (graph_.state().keyframes.empty() || given_pose_) return look;
+  look.since_last_s = observation.elapsed_s;
   look.expected = prediction();
   Prediction searched = look.expected;
   if (motion_doubt_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
@@ -174,6 +175,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   }
   const bool is_doubtful = verdict_ == RelocalisationMonitor::Verdict::kDoubtful;
   markers_known_ = false;
+  if (!is_frozen())
+    drift_.add_keyframe(graph_.state().keyframes.back(), graph_.covariance_of_newest_step());
   if (!is_doubtful) {
     use_markers(measurements);
     note_misses(observation);

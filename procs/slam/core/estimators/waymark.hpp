@@ -4,6 +4,7 @@
 
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/graph/association.hpp"
+#include "slam/core/graph/drift.hpp"
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/keyframe_thinning.hpp"
 #include "slam/core/graph/loop_finder.hpp"
@@ -104,6 +105,7 @@ class WaymarkEstimator final : public Estimator {
     Points points{};
     Prediction expected{};
     std::optional<MatchedScan> scan{};
+    double since_last_s{0.0};     ///< scan
     bool is_searched{false};      ///< widely
     std::size_t beams_moving{0};  ///< left out of the points
   };
@@ -175,6 +177,7 @@ class WaymarkEstimator final : public Estimator {
   void add_map_factor(std::size_t keyframe, const ScanMatch& match);
   void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
+  Eigen::Matrix3d covariance_against(std::size_t old_keyframe) const;
   void close_loops(const Points& points);
   void forget_surplus();
   void step_everything(const std::vector<std::size_t>& returning_landmarks);
@@ -204,6 +207,7 @@ class WaymarkEstimator final : public Estimator {
   RelocalisationMonitor relocalisation_{};
   RangeNoise range_noise_;
   OdometryNoiseLearner noise_learner_{};
+  Drift drift_{};
   LoopFinder loop_finder_;
   KeyframeThinning thinning_;
   double since_loop_search_m_{0.0};

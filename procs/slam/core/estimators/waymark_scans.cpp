@@ -39,14 +39,15 @@ void WaymarkEstimator::search_widely(Look& look) const {
   const Se2 submap_from_last =
       submap_from_map * (graph_.state().keyframes.back() * newest_from_last_scan_);
   const Se2 expected = submap_from_map * look.expected.map_from_base;
-  std::vector<Se2> guesses;
+  WideSearch search;
   for (const Se2& step : odometry_check_.steps_without_odometry())
-    guesses.push_back(submap_from_last * step);
-  guesses.push_back(expected);
-  scan.match =
-      searched_widely(scan.match, look.points, surfaces_of(scan),
-                      points_near(scan, expected, wide_search_reach_m(look.points)), guesses,
-                      usual_fit_, range_noise_, config_.scan, config_.loops.min_score);
+    search.guesses.push_back(submap_from_last * step);
+  search.guesses.push_back(expected);
+  search.since_last_s = look.since_last_s;
+  search.min_score = config_.loops.min_score;
+  scan.match = searched_widely(scan.match, look.points, surfaces_of(scan),
+                               points_near(scan, expected, wide_search_reach_m(look.points)),
+                               search, usual_fit_, range_noise_, config_.scan);
 }
 
 void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,

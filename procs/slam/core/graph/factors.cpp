@@ -69,8 +69,7 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {
   return noise;
 }
 
-MotionKind likeliest_kind(const Eigen::Vector3d& residual, const Eigen::Matrix3d& rolling,
-                          double half_track_m) {
+MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& noise) {
   struct Kind {
     MotionKind kind;
     double penalty;  // -2 log of its share: 0.95, 0.03, 0.015, 0.005
@@ -82,7 +81,7 @@ MotionKind likeliest_kind(const Eigen::Vector3d& residual, const Eigen::Matrix3d
        {MotionKind::kJerked, 8.4},
        {MotionKind::kAnything, 10.6}}};
   const auto cost = [&](const Kind& kind) {
-    const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind.kind, rolling, half_track_m)};
+    const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind.kind, noise)};
     return residual.dot(root.solve(residual)) + kind.penalty +
            2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
   };
@@ -91,23 +90,23 @@ MotionKind likeliest_kind(const Eigen::Vector3d& residual, const Eigen::Matrix3d
       ->kind;
 }
 
-Eigen::Matrix3d covariance_of(MotionKind kind, const Eigen::Matrix3d& rolling,
-                              double half_track_m) {
-  constexpr double kSpinning = 25.0;  // turn by a spinning wheel, in standard deviations of rolling
+Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise) {
+  constexpr double kSpinning = 25.0;  // turn by a spinning wheel, in standard deviations
   constexpr double kPushed_m = 0.1;   // while the odometry stands still
   constexpr double kPushed_rad = 0.1;
-  if (kind == MotionKind::kRolling) return rolling;
-  if (kind == MotionKind::kJerked) return 25.0 * 25.0 * rolling;
+  if (kind == MotionKind::kRolling) return noise.rolling;
+  if (kind == MotionKind::kJerked) return noise.rolling + 25.0 * 25.0 * noise.described;
   if (kind == MotionKind::kAnything) {
     const Eigen::Matrix3d anything =
         Eigen::Vector3d{kPushed_m, kPushed_m, kPushed_rad}.cwiseAbs2().asDiagonal();
-    return 125.0 * 125.0 * rolling + anything;
+    return noise.rolling + 125.0 * 125.0 * noise.described + anything;
   }
   // A wheel that spins is counted too far: its side is shorter than measured, and with that the
   // way.
   const bool is_left = kind == MotionKind::kLeftSpins;
-  const Eigen::Vector3d spin{is_left ? -half_track_m : half_track_m, 0.0, 1.0};
-  return 9.0 * rolling + kSpinning * kSpinning * rolling(2, 2) * spin * spin.transpose();
+  const Eigen::Vector3d spin{is_left ? -noise.half_track_m : noise.half_track_m, 0.0, 1.0};
+  return noise.rolling + 9.0 * noise.described +
+         kSpinning * kSpinning * noise.described(2, 2) * spin * spin.transpose();
 }
 
 Eigen::Matrix3d unmeasured_covariance(double sigma_m) {
@@ -129,7 +128,8 @@ CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const Odome
 
 CorrectedMotion OdometryFactor::moved(const State& state, const OdometryNoise& noise,
                                       const OdometryScale& scale) const {
-  const CorrectedMotion moved = corrected_motion(motion, odometry_part(state.calibration), noise);
+  const CorrectedMotion moved =
+      corrected_motion(motion, odometry_part(state.calibration), scaled(noise, scale));
   return is_unobserved ? with_slips(moved, motion.distance_m, scale) : moved;
 }
 
@@ -139,7 +139,7 @@ void OdometryFactor::choose_kind(const State& state, const OdometryNoise& noise,
   const CorrectedMotion measured = moved(state, noise, scale);
   const Relative found = relative(state.keyframes[from], state.keyframes[to]);
   kind = likeliest_kind(pose_residual(found.pose - vector_of(measured.start_from_end)),
-                        measured.covariance, noise.half_track_m);
+                        {measured.covariance, random_walk(motion, noise), noise.half_track_m});
 }
 
 LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise,
@@ -152,7 +152,7 @@ LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& 
   Eigen::Matrix3d root = Eigen::Matrix3d::Identity() / kCarried_m;
   if (!is_cut) {
     const Eigen::LLT<Eigen::Matrix3d> covariance{
-        covariance_of(kind, measured.covariance, noise.half_track_m) +
+        covariance_of(kind, {measured.covariance, random_walk(motion, noise), noise.half_track_m}) +
         unmeasured_covariance(unmeasured_m)};
     root = covariance.matrixL().solve(Eigen::Matrix3d::Identity());
   }

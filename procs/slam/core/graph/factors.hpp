@@ -54,14 +54,19 @@ enum class MotionKind : std::uint8_t {
   kAnything,
 };
 
-/// @param residual       observed minus measured (x, y, theta), in the frame at the start.
-/// @param rolling        covariance of it while the wheels roll.
-/// @param half_track_m   half of the distance between the wheels.
-MotionKind likeliest_kind(const Eigen::Vector3d& residual, const Eigen::Matrix3d& rolling,
-                          double half_track_m);
+/// Covariances of (x, y, theta) of a motion, in the frame at its start, while the wheels roll.
+struct MixtureNoise {
+  Eigen::Matrix3d rolling{Eigen::Matrix3d::Zero()};    ///< as learnt
+  Eigen::Matrix3d described{Eigen::Matrix3d::Zero()};  ///< slips are measured by: bad odometry
+                                                       ///< does not make them larger
+  double half_track_m{0.0};                            ///< half of the distance between the wheels
+};
+
+/// @param residual  observed minus measured (x, y, theta), in the frame at the start.
+MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& noise);
 
 /// Of a motion of that kind.
-Eigen::Matrix3d covariance_of(MotionKind kind, const Eigen::Matrix3d& rolling, double half_track_m);
+Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise);
 
 /// Of a motion that was not measured: mostly ahead. Axes of the base.
 /// @param sigma_m  how far that may have been.
@@ -77,7 +82,8 @@ struct OdometryFactor {
   double unmeasured_m{0.0};   ///< what may have been driven without being measured (one sigma)
   MotionKind kind{MotionKind::kRolling};
 
-  /// @param noise  scaled.
+  /// @param noise  as described.
+  /// @param scale  of it, as learnt.
   LinearFactor linearise(const State& state, const OdometryNoise& noise,
                          const OdometryScale& scale = {}) const;
 

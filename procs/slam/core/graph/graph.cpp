@@ -10,7 +10,8 @@ namespace waymark {
 namespace {
 
 constexpr int kMaxIterations = 5;
-constexpr double kConverged = 1e-4;  // [m, rad]; what is left is that squared
+constexpr double kConverged = 1e-4;   // [m, rad]; what is left is that squared
+constexpr std::size_t kAskedFor = 2;  // keyframes whose covariance is
 
 }  // namespace
 
@@ -192,7 +193,7 @@ void Graph::cut_odometry_since(std::size_t keyframe) {
 
 void Graph::choose_kind(Factor& factor) const {
   if (auto* odometry = std::get_if<OdometryFactor>(&factor))
-    odometry->choose_kind(state_, odometry_noise(), noise_.scale);
+    odometry->choose_kind(state_, noise_.odometry, noise_.scale);
 }
 
 LinearFactor Graph::linearised(const Factor& factor) const {
@@ -200,7 +201,7 @@ LinearFactor Graph::linearised(const Factor& factor) const {
     const Graph& graph;
 
     LinearFactor operator()(const OdometryFactor& f) const {
-      return f.linearise(graph.state_, graph.odometry_noise(), graph.noise_.scale);
+      return f.linearise(graph.state_, graph.noise_.odometry, graph.noise_.scale);
     }
 
     LinearFactor operator()(const ScanFactor& f) const { return f.linearise(graph.state_); }
@@ -261,10 +262,11 @@ void Graph::retract_window(const Eigen::VectorXd& step) {
 /// Of what comes after the older keyframes, which nobody asks for: the inverse of the lower right
 /// corner of L L' takes that of the root alone.
 void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root) {
+  const std::size_t count = state_.keyframes.size();
   const Eigen::Index first =
-      state_.keyframes.empty()
-          ? 0
-          : offsets_.at({VariableKind::kKeyframe, state_.keyframes.size() - 1});
+      count == 0 ? 0
+                 : offsets_.at({VariableKind::kKeyframe,
+                                std::max(first_keyframe_, count - std::min(count, kAskedFor))});
   const Eigen::Index size = root.rows() - first;
   covariance_offsets_.clear();
   for (const auto& [variable, offset] : offsets_)
@@ -325,6 +327,18 @@ Eigen::Matrix3d Graph::covariance_since(std::size_t keyframe) const {
       to_own_frame(keyframe) * carried_along(way).transpose();
   const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root{window_equations().h};
   return difference.transpose() * root.solve(difference);
+}
+
+Eigen::Matrix3d Graph::covariance_of_newest_step() const {
+  const std::size_t count = state_.keyframes.size();
+  if (count < 2) return Eigen::Matrix3d::Zero();
+  const Variable newest{VariableKind::kKeyframe, count - 1};
+  const Variable before{VariableKind::kKeyframe, count - 2};
+  const Eigen::Matrix3d carried =
+      carried_along(state_.pose(newest).translation() - state_.pose(before).translation());
+  const Eigen::Matrix3d common = carried * covariance(before, newest);
+  return covariance_of(newest) + carried * covariance_of(before) * carried.transpose() - common -
+         common.transpose();
 }
 
 Eigen::Matrix3d Graph::landmark_covariance(std::size_t landmark) const {

@@ -114,7 +114,7 @@ class Graph {
   }
 
   /// Joint covariance of two variables of the window as of optimise(): the calibration, landmarks
-  /// and the newest keyframe. Zero for those that have come since.
+  /// and the two newest keyframes. Zero for those that have come since.
   Eigen::MatrixXd covariance(const Variable& a, const Variable& b) const;
 
   Eigen::Matrix3d covariance_of(const Variable& a) const { return covariance(a, a); }
@@ -122,6 +122,9 @@ class Graph {
   /// Of the newest keyframe's pose relative to an earlier one of the window, map's axes. Factorises
   /// the window.
   Eigen::Matrix3d covariance_since(std::size_t keyframe) const;
+
+  /// The same of the newest one relative to the one before, as of optimise(); zero of the first.
+  Eigen::Matrix3d covariance_of_newest_step() const;
 
   /// The last one that was known: of landmarks behind the window, from when they left it.
   Eigen::Matrix3d landmark_covariance(std::size_t landmark) const;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace waymark {
@@ -41,15 +42,18 @@ const Submap* LoopFinder::nearest_submap(const LoopSearch& search,
                                          const std::deque<Submap>& submaps,
                                          const State& state) const {
   const Submap* nearest = nullptr;
-  double least_m = config_.reach_m + std::min(config_.max_search_m, reach_m(search.covariance));
+  double least_m = std::numeric_limits<double>::infinity();
   for (const Submap& submap : submaps) {
     if (submap.last_keyframe() >= search.first_recent_keyframe) break;
     const Eigen::Vector2d place =
         state.keyframes[submap.first_keyframe()].inverse() * search.map_from_base.translation();
-    if (place.norm() - submap.reach_m() >= least_m) continue;
+    const double off_m = reach_m(search.covariance_against(submap.first_keyframe()));
+    const double near_m =
+        std::min(least_m, config_.reach_m + std::min(config_.max_search_m, off_m));
+    if (place.norm() - submap.reach_m() >= near_m) continue;
     for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k) {
       const double distance_m = (submap.submap_from_keyframe(k).translation() - place).norm();
-      if (distance_m >= least_m) continue;
+      if (distance_m >= std::min(least_m, near_m)) continue;
       least_m = distance_m;
       nearest = &submap;
     }
@@ -75,7 +79,8 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& poin
                                            const RangeNoise& noise) {
   const Se2 submap_from_map = state.keyframes[old.first_keyframe()].inverse();
   Se2 guess = submap_from_map * search.map_from_base;
-  const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), search.covariance);
+  const Eigen::Matrix3d covariance =
+      in_axes(submap_from_map.rotation(), search.covariance_against(old.first_keyframe()));
   // The nearest place that fits is the likeliest; a search is for those that have drifted.
   LoopMatch loop{old.first_keyframe(), match_scan(points, old.surfaces(), guess, covariance, noise,
                                                   scan_, old.coarse_surfaces())};
@@ -127,12 +132,13 @@ Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& s
            confirmed.submap <= old.first_keyframe() + old.num_keyframes();
   };
   const auto last = std::find_if(confirmed_.rbegin(), confirmed_.rend(), is_near);
-  if (last == confirmed_.rend()) return search.covariance;
+  const Eigen::Matrix3d covariance = search.covariance_against(old.first_keyframe());
+  if (last == confirmed_.rend()) return covariance;
   // Whether the pose has followed that loop meanwhile or not.
   Eigen::Matrix3d since =
       last->off * last->off.transpose() + kDriftMargin * search.covariance_since(last->keyframe);
   since.diagonal() += kFoundSigmas.cwiseAbs2();
-  return since.determinant() < search.covariance.determinant() ? since : search.covariance;
+  return since.determinant() < covariance.determinant() ? since : covariance;
 }
 
 /// Along a bare corridor a loop says nothing.

@@ -40,8 +40,9 @@ struct LoopMatch {
 
 struct LoopSearch {
   Se2 map_from_base{};
-  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< of it, relative to what is old
-  std::size_t first_recent_keyframe{0};                 ///< submaps with later ones are not old
+  /// Of it, relative to the pose of an old keyframe; map's axes.
+  std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_against{};
+  std::size_t first_recent_keyframe{0};  ///< submaps with later ones are not old
   /// Of the pose relative to that of an earlier keyframe, which is none before
   /// first_recent_keyframe.
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_since{};

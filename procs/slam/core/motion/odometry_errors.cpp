@@ -14,6 +14,19 @@ constexpr double kTellingSigmas = 3.0;
 constexpr double kGuessed_m_s = 0.25;    // sigma of a guessed speed; [rad/s] of a turn
 constexpr double kVarianceFloor = 1e-9;  // [m^2, rad^2] of a step: 0.03 mm, 0.002 degrees
 
+/// The noise is in what was measured: a turn that is mostly noise would show a scale below one
+/// (regression dilution), so only what stands out of the noise is held against the scale.
+double telling_turn(double turn_rad, double noise_rad2) {
+  const double share = 1.0 - squared(kTellingSigmas) * noise_rad2 / squared(turn_rad);
+  return turn_rad != 0.0 ? std::max(0.0, share) * turn_rad : 0.0;
+}
+
+}  // namespace
+
+double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad) {
+  return squared(noise.turn_per_sqrt_m) * distance_m + squared(noise.turn_per_sqrt_rad) * turn_rad;
+}
+
 Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   const double length_m = motion.start_from_end.translation().norm();
   const Eigen::Vector2d along =
@@ -35,19 +48,6 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   covariance.topRightCorner<2, 1>() = 0.5 * length_m * turn_rad2 * left;
   covariance.bottomLeftCorner<1, 2>() = covariance.topRightCorner<2, 1>().transpose();
   return covariance;
-}
-
-/// The noise is in what was measured: a turn that is mostly noise would show a scale below one
-/// (regression dilution), so only what stands out of the noise is held against the scale.
-double telling_turn(double turn_rad, double noise_rad2) {
-  const double share = 1.0 - squared(kTellingSigmas) * noise_rad2 / squared(turn_rad);
-  return turn_rad != 0.0 ? std::max(0.0, share) * turn_rad : 0.0;
-}
-
-}  // namespace
-
-double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad) {
-  return squared(noise.turn_per_sqrt_m) * distance_m + squared(noise.turn_per_sqrt_rad) * turn_rad;
 }
 
 Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNoise& noise) {

@@ -34,6 +34,9 @@ double turn_variance(const OdometryNoise& noise, double distance_m, double turn_
 /// its start; zero where nothing was driven.
 Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNoise& noise);
 
+/// The same of any motion.
+Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
+
 /// Systematic errors, as a vector (scale, drift, turn scale, ahead): true distance = (1 + scale)
 /// measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance.
 /// What the LiDAR localises is `ahead` [m] before what the wheels turn about, beyond its

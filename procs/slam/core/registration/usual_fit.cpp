@@ -7,6 +7,7 @@ namespace {
 constexpr double kMemory = 0.05;       // weight of the newest scan in what is usual
 constexpr double kContradicted = 0.8;  // of the usual share of inliers among the mapped beams
 constexpr double kWorse = 0.93;        // of the usual share of inliers among all beams
+constexpr double kNearly = 0.8;
 
 }  // namespace
 
@@ -20,6 +21,10 @@ bool UsualFit::is_contradicted(const ScanMatch& match) const {
 
 bool UsualFit::is_worse_than_usual(const ScanMatch& match) const {
   return match.inlier_share * match.mapped_share < kWorse * agreeing_;
+}
+
+bool UsualFit::is_nearly_usual(const ScanMatch& match) const {
+  return match.inlier_share * match.mapped_share > kNearly * agreeing_;
 }
 
 void UsualFit::note_scan(const ScanMatch& match) {

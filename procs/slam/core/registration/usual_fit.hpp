@@ -24,6 +24,9 @@ class UsualFit {
   /// Less of it agrees with the map than usual: it is contradicted, or much of its view is new.
   bool is_worse_than_usual(const ScanMatch& match) const;
 
+  /// Nearly as much of it agrees with the map as usual.
+  bool is_nearly_usual(const ScanMatch& match) const;
+
   /// A scan that is not contradicted.
   void note_scan(const ScanMatch& match);
 

@@ -4,6 +4,8 @@
 #include "slam/core/registration/correlative_search.hpp"
 
 #include <algorithm>
+#include <numbers>
+#include <optional>
 
 namespace waymark {
 namespace {
@@ -11,30 +13,35 @@ namespace {
 constexpr double kReach_m = 0.5;
 constexpr double kReach_rad = 0.6;
 constexpr std::size_t kBeams = 120;
-constexpr double kClearlyMore = 1.05;                  // inliers than the best match so far has
+constexpr double kUnseen_rad_s = 0.5;  // that the robot may have turned meanwhile
+constexpr double kClearlyMore = 1.05;  // inliers than the plain match
+constexpr double kFarMore = 2.0;
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
 
 }  // namespace
 
 ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& surfaces,
-                          const Points& occupied, std::span<const Se2> guesses,
-                          const UsualFit& usual, const RangeNoise& noise,
-                          const ScanMatchConfig& config, double min_score) {
+                          const Points& occupied, const WideSearch& search, const UsualFit& usual,
+                          const RangeNoise& noise, const ScanMatchConfig& config) {
   const CorrelativeField field{occupied};
   const Points beams = thinned(points, kBeams);
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
-  ScanMatch best = plain;
-  for (const Se2& guess : guesses) {
-    const auto place = field.best(beams, guess, {kReach_m, kReach_rad}, min_score);
+  const SearchWindow window{
+      kReach_m, std::min(std::numbers::pi, kReach_rad + kUnseen_rad_s * search.since_last_s)};
+  std::optional<ScanMatch> found;
+  for (const Se2& guess : search.guesses) {
+    const auto place = field.best(beams, guess, window, search.min_score);
     if (!place) continue;
-    const ScanMatch other =
+    const ScanMatch match =
         match_scan(points, surfaces, place->submap_from_base, near, noise, config);
-    if (other.inliers > kClearlyMore * best.inliers &&
-        (usual.is_contradicted(best) || !usual.is_worse_than_usual(other))) {
-      best = other;
-    }
+    if (!found || match.inliers > found->inliers) found = match;
   }
-  return best;
+  const auto fits_better = [&] {
+    if (found->inliers <= kClearlyMore * plain.inliers) return false;
+    return usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
+           (found->inliers > kFarMore * plain.inliers && usual.is_nearly_usual(*found));
+  };
+  return found && fits_better() ? *found : plain;
 }
 
 double wide_search_reach_m(const Points& points) {

@@ -5,23 +5,27 @@
 #include "slam/core/registration/scan_match.hpp"
 #include "slam/core/registration/usual_fit.hpp"
 
-#include <span>
+#include <vector>
 
 namespace waymark {
 
-/// The best of a plain match and of matches that begin at the best places in wide windows about
-/// `guesses`. The plain match is left only if the map contradicts it, or for a place where the scan
-/// fits as well as others do: a view of a new place has few inliers where it is right.
+struct WideSearch {
+  std::vector<Se2> guesses{};  ///< map_from_base; windows about them are searched
+  double since_last_s{0.0};    ///< scan: odometry apart, the longer the more it may have turned
+  double min_score{0.0};       ///< of a place (SearchMatch)
+};
+
+/// The plain match, or the one with the most inliers of those that begin at the best places in the
+/// windows. The plain match is left if the map contradicts it, for a place where the scan fits as
+/// well as others do, or for one where it fits nearly as well and has twice the inliers: a view of
+/// a new place has few of them where it is right.
 ///
 /// @param points     ends of beams, base frame.
 /// @param surfaces   what the scan is matched with,
 /// @param occupied   and its points around the guesses.
-/// @param guesses    map_from_base.
-/// @param min_score  of a place (SearchMatch).
 ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& surfaces,
-                          const Points& occupied, std::span<const Se2> guesses,
-                          const UsualFit& usual, const RangeNoise& noise,
-                          const ScanMatchConfig& config, double min_score);
+                          const Points& occupied, const WideSearch& search, const UsualFit& usual,
+                          const RangeNoise& noise, const ScanMatchConfig& config);
 
 /// That `occupied` has to reach from the guesses on, for a scan of these points.
 double wide_search_reach_m(const Points& points);

@@ -118,7 +118,8 @@ constexpr double kHalfTrack_m = 0.14;
 
 Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
                                      const Eigen::Matrix3d& rolling) {
-  return covariance_of(likeliest_kind(residual, rolling, kHalfTrack_m), rolling, kHalfTrack_m);
+  const MixtureNoise noise{rolling, rolling, kHalfTrack_m};
+  return covariance_of(likeliest_kind(residual, noise), noise);
 }
 
 TEST(OdometryMixture, ATurnThatRollingCannotExplainShortensTheWay) {
@@ -129,6 +130,17 @@ TEST(OdometryMixture, ATurnThatRollingCannotExplainShortensTheWay) {
     EXPECT_LT(spins(0, 2) / spins(2, 2) * turn_rad, -0.1 * std::abs(turn_rad));
   }
   EXPECT_EQ(likeliest_covariance({0.0005, 0.0, 0.002}, rolling), rolling);
+}
+
+TEST(OdometryMixture, ASlipIsNoLargerWhereOdometryIsWorse) {
+  const Eigen::Matrix3d described = Eigen::Vector3d{1e-6, 1e-6, 1e-5}.asDiagonal();
+  const Eigen::Matrix3d learnt = 400.0 * described;
+  for (const MotionKind kind :
+       {MotionKind::kLeftSpins, MotionKind::kJerked, MotionKind::kAnything}) {
+    const Eigen::Matrix3d as_described = covariance_of(kind, {described, described, kHalfTrack_m});
+    const Eigen::Matrix3d as_learnt = covariance_of(kind, {learnt, described, kHalfTrack_m});
+    EXPECT_LT((as_learnt - as_described - (learnt - described)).norm(), 1e-12);
+  }
 }
 
 TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
@@ -287,6 +299,12 @@ TEST(Graph, SinceAKeyframeThatIsKnownThePoseIsAsUncertainAsItself) {
   Drive drive{100};  // its first pose defines the map
   const Eigen::Matrix3d covariance = drive.graph().covariance_of(drive.newest());
   EXPECT_LT((drive.graph().covariance_since(0) - covariance).norm(), 0.01 * covariance.norm());
+}
+
+TEST(Graph, TheNewestStepIsAsUncertainAsThePoseSinceTheKeyframeBefore) {
+  Drive drive{6};
+  const Eigen::Matrix3d since = drive.graph().covariance_since(drive.newest().index - 1);
+  EXPECT_LT((drive.graph().covariance_of_newest_step() - since).norm(), 1e-6 * since.norm());
 }
 
 TEST(Graph, UncertaintySinceAKeyframeGrowsWithTheWay) {

@@ -64,7 +64,9 @@ class Corridor {
   std::vector<LoopFinder::Found> look_around(const Se2& truth, const Se2& believed) {
     LoopSearch search;
     search.map_from_base = believed;
-    search.covariance = Eigen::Vector3d{1.0, 0.04, 0.04}.asDiagonal();
+    search.covariance_against = [this](std::size_t) {
+      return covariance_against_;
+    };
     search.first_recent_keyframe = 1000;
     search.covariance_since = [this](std::size_t) {
       return covariance_since_;
@@ -83,11 +85,15 @@ class Corridor {
     covariance_since_ = sigma * sigma * Eigen::Matrix3d::Identity();
   }
 
+  /// Along the corridor, since the submap.
+  void set_drift_along(double sigma_m) { covariance_against_(0, 0) = sigma_m * sigma_m; }
+
   const LoopFinder& finder() const { return finder_; }
 
  private:
   HasPillar has_pillar_;
   bool has_clutter_{false};
+  Eigen::Matrix3d covariance_against_{Eigen::Vector3d{1.0, 0.04, 0.04}.asDiagonal()};
   Eigen::Matrix3d covariance_since_{Eigen::Matrix3d::Identity()};
   LoopFinder finder_{LoopConfig{}, ScanMatchConfig{}};
   std::deque<Submap> submaps_{};
@@ -103,6 +109,19 @@ TEST(LoopFinder, TwoScansThatAgreeCloseALoop) {
   const auto found = corridor.look_around(second, drift * second);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NEAR((Se2{3.0, 0.0, 0.0} * found[1].loop.match.map_from_base).x(), second.x(), 0.05);
+}
+
+/// However alike it looks.
+TEST(LoopFinder, APlaceIsNotLookedForFartherThanThePoseMayHaveDriftedSinceIt) {
+  const Se2 first{6.0, 0.0, 0.0};
+  const Se2 second{6.5, 0.0, 0.0};
+  const Se2 drift{12.0, 0.0, 0.0};
+  for (const double drift_m : {0.1, 4.0}) {
+    Corridor corridor{irregularly};
+    corridor.set_drift_along(drift_m);
+    EXPECT_TRUE(corridor.look_around(first, drift * first).empty());
+    EXPECT_EQ(corridor.look_around(second, drift * second).size(), drift_m < 1.0 ? 0U : 2U);
+  }
 }
 
 TEST(LoopFinder, WhatContradictsALoopOfJustNowHasToBeClearer) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <vector>
 
 namespace waymark {
@@ -96,21 +97,24 @@ Submap mapped_room() {
   return submap;
 }
 
+WideSearch around(const Se2& guess, double since_last_s = 0.0) {
+  return {{guess}, since_last_s, 0.1};
+}
+
 struct Searched {
   ScanMatch plain{};
   ScanMatch best{};
 };
 
 Searched look_for(const Submap& submap, const Points& points, const Se2& guess,
-                  const Se2& elsewhere) {
+                  const WideSearch& search) {
   const Eigen::Matrix3d sigmas = Eigen::Vector3d{1e-4, 1e-4, 1e-4}.asDiagonal();
   const RangeNoise noise{0.01};
   const ScanMatchConfig config;
   Searched searched;
   searched.plain = match_scan(points, submap.surfaces(), guess, sigmas, noise, config);
-  searched.best =
-      searched_widely(searched.plain, points, submap.surfaces(), submap.points(),
-                      std::vector<Se2>{elsewhere}, after_good_scans(), noise, config, 0.1);
+  searched.best = searched_widely(searched.plain, points, submap.surfaces(), submap.points(),
+                                  search, after_good_scans(), noise, config);
   return searched;
 }
 
@@ -119,9 +123,38 @@ TEST(WideSearch, FindsAPoseThatIsFarFromItsGuess) {
   const Points scan = seen_from(
       truth, together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0))));
   const Se2 guess{2.6, 0.1, 0.4};
-  const Searched found = look_for(mapped_room(), scan, guess, guess);
+  const Searched found = look_for(mapped_room(), scan, guess, around(guess));
   EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.02);
   EXPECT_GT(found.best.inliers, found.plain.inliers);
+}
+
+TEST(WideSearch, TheLongerNothingWasSeenTheMoreTheRobotMayHaveTurned) {
+  const Se2 truth{3.0, 0.3, 0.0};
+  const Points scan = seen_from(
+      truth, together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0))));
+  const Se2 guess{3.0, 0.3, 1.4};
+  const auto off = [&](double since_last_s) {
+    const Searched found = look_for(mapped_room(), scan, guess, around(guess, since_last_s));
+    return pose_difference(found.best.map_from_base, truth).norm();
+  };
+  EXPECT_GT(off(0.2), 0.5);
+  EXPECT_LT(off(3.0), 0.02);
+}
+
+/// The room looks almost the same to a robot that has turned round.
+TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenThoughItComesLast) {
+  Submap submap = mapped_room();
+  Points crate;
+  for (double x = 4.0; x < 4.4; x += kSpacing_m)
+    crate.emplace_back(x, 1.0);
+  for (int i = 0; i < 5; ++i)
+    submap.insert(crate, {});
+  const Se2 truth{3.0, 0.3, 0.0};
+  const Points room = together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0)));
+  const Points scan = seen_from(truth, together(room, crate));
+  const Se2 turned_round{3.0, -0.3, std::numbers::pi};
+  const Searched found = look_for(submap, scan, {3.0, 0.0, 1.5}, {{turned_round, truth}, 0.0, 0.1});
+  EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.05);
 }
 
 TEST(WideSearch, AViewOfANewPlaceIsNotLeftForAPlaceWithMoreMappedBeams) {
@@ -129,7 +162,7 @@ TEST(WideSearch, AViewOfANewPlaceIsNotLeftForAPlaceWithMoreMappedBeams) {
   // walls, but the new end of the room would still be nowhere.
   const Se2 truth{5.8, 0.0, 0.0};
   const Points scan = seen_from(truth, together(walls(4.0, 10.0), end_wall(10.0, -2.0)));
-  const Searched found = look_for(mapped_room(), scan, truth, {5.4, 0.0, 0.0});
+  const Searched found = look_for(mapped_room(), scan, truth, around({5.4, 0.0, 0.0}));
   EXPECT_LT(found.plain.mapped_share, 0.6);
   EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.05);
 }
