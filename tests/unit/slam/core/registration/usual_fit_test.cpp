@@ -157,6 +157,29 @@ TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenThoughItComesLast) {
   EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.05);
 }
 
+/// A seventh of the scan is nowhere in the map.
+TEST(WideSearch, APlaceWhereTheScanFitsNearlyAsUsualNeedsTwiceTheInliers) {
+  const Submap submap = mapped_room();
+  const Se2 truth{3.0, 0.3, 0.0};
+  Points room = together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0)));
+  const std::size_t all = room.size();
+  for (std::size_t i = 0; i < all / 6; ++i)
+    room.emplace_back(kSpacing_m * static_cast<double>(i), 7.0);
+  const Points scan = seen_from(truth, room);
+  for (const double share_of_plain : {0.4, 0.6}) {
+    ScanMatch plain;
+    plain.map_from_base = {2.0, 0.0, 0.3};
+    plain.inliers = static_cast<int>(share_of_plain * static_cast<double>(all));
+    plain.inlier_share = 1.0;
+    plain.mapped_share = share_of_plain;
+    const ScanMatch best =
+        searched_widely(plain, scan, submap.surfaces(), submap.points(), around(truth),
+                        after_good_scans(), RangeNoise{0.01}, ScanMatchConfig{});
+    const Se2& expected = share_of_plain < 0.5 ? truth : plain.map_from_base;
+    EXPECT_LT(pose_difference(best.map_from_base, expected).norm(), 0.02) << share_of_plain;
+  }
+}
+
 TEST(WideSearch, AViewOfANewPlaceIsNotLeftForAPlaceWithMoreMappedBeams) {
   // Half of the scan lies behind what is mapped. Nearer to the middle more of it would lie on
   // walls, but the new end of the room would still be nowhere.
