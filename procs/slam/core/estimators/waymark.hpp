@@ -177,7 +177,6 @@ class WaymarkEstimator final : public Estimator {
   void add_map_factor(std::size_t keyframe, const ScanMatch& match);
   void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
-  Eigen::Matrix3d covariance_against(std::size_t old_keyframe) const;
   void close_loops(const Points& points);
   void forget_surplus();
   void step_everything(const std::vector<std::size_t>& returning_landmarks);

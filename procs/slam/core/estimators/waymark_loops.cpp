@@ -10,6 +10,15 @@ constexpr double kLoopMatters = 3.0;   // chi^2 of a loop that does more
 constexpr double kLoopSlack_m = 0.05;  // of old poses, whose covariance is not known any more
 constexpr double kLoopSlack_rad = 0.01;
 
+/// Of a pose relative to an old one: as in the map, unless the way between them tells more.
+Eigen::Matrix3d covariance_against_old(const Eigen::Matrix3d& in_map,
+                                       const Eigen::Matrix3d& drifted) {
+  Eigen::Matrix3d covariance =
+      kLoopMargin * (drifted.determinant() < in_map.determinant() ? drifted : in_map);
+  covariance.diagonal() += Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
+  return covariance;
+}
+
 }  // namespace
 
 void WaymarkEstimator::close_loops(const Points& points) {
@@ -18,8 +27,9 @@ void WaymarkEstimator::close_loops(const Points& points) {
     since_loop_search_m_ = 0.0;
     LoopSearch search;
     search.map_from_base = graph_.state().keyframes.back();
-    search.covariance_against = [this](std::size_t keyframe) {
-      return covariance_against(keyframe);
+    const Eigen::Matrix3d in_map = graph_.covariance_of({VariableKind::kKeyframe, newest()});
+    search.covariance_against = [this, in_map](std::size_t keyframe) {
+      return covariance_against_old(in_map, drift_.since(keyframe));
     };
     search.first_recent_keyframe = graph_.first_active_keyframe();
     search.covariance_since = [this](std::size_t keyframe) {
@@ -35,17 +45,6 @@ void WaymarkEstimator::close_loops(const Points& points) {
     }
   }
   if (solve_schedule_.is_step_due(graph_.state().keyframes.size())) step_everything({});
-}
-
-/// Of the newest keyframe's pose relative to an old one: as in the map, unless the way between them
-/// tells more. That of the old pose itself is not known any more.
-Eigen::Matrix3d WaymarkEstimator::covariance_against(std::size_t old_keyframe) const {
-  const Eigen::Matrix3d in_map = graph_.covariance_of({VariableKind::kKeyframe, newest()});
-  const Eigen::Matrix3d drifted = drift_.since(old_keyframe);
-  Eigen::Matrix3d covariance =
-      kLoopMargin * (drifted.determinant() < in_map.determinant() ? drifted : in_map);
-  covariance.diagonal() += Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
-  return covariance;
 }
 
 /// The published map follows.

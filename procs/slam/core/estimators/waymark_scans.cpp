@@ -29,7 +29,7 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
 }
 
 /// Odometry may be off by more than plain matching can find: where a scan fits worse than the scans
-/// before, places in wide windows are tried, too, first where the robot would be without odometry:
+/// before, places in wide windows are tried, too, also about where the robot would be without it:
 /// that is wrong by a scan's motion at most. Needs a scan that was matched; once is enough.
 void WaymarkEstimator::search_widely(Look& look) const {
   MatchedScan& scan = *look.scan;

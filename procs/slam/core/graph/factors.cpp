@@ -139,7 +139,12 @@ void OdometryFactor::choose_kind(const State& state, const OdometryNoise& noise,
   const CorrectedMotion measured = moved(state, noise, scale);
   const Relative found = relative(state.keyframes[from], state.keyframes[to]);
   kind = likeliest_kind(pose_residual(found.pose - vector_of(measured.start_from_end)),
-                        {measured.covariance, random_walk(motion, noise), noise.half_track_m});
+                        noise_of(measured, noise));
+}
+
+MixtureNoise OdometryFactor::noise_of(const CorrectedMotion& measured,
+                                      const OdometryNoise& noise) const {
+  return {measured.covariance, random_walk(motion, noise), noise.half_track_m};
 }
 
 LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise,
@@ -151,9 +156,8 @@ LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& 
   constexpr double kCarried_m = 1000.0;  // as good as nothing; keeps the normal equations regular
   Eigen::Matrix3d root = Eigen::Matrix3d::Identity() / kCarried_m;
   if (!is_cut) {
-    const Eigen::LLT<Eigen::Matrix3d> covariance{
-        covariance_of(kind, {measured.covariance, random_walk(motion, noise), noise.half_track_m}) +
-        unmeasured_covariance(unmeasured_m)};
+    const Eigen::LLT<Eigen::Matrix3d> covariance{covariance_of(kind, noise_of(measured, noise)) +
+                                                 unmeasured_covariance(unmeasured_m)};
     root = covariance.matrixL().solve(Eigen::Matrix3d::Identity());
   }
   linear.residual = root * residual;

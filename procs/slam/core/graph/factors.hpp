@@ -94,6 +94,7 @@ struct OdometryFactor {
  private:
   CorrectedMotion moved(const State& state, const OdometryNoise& noise,
                         const OdometryScale& scale) const;
+  MixtureNoise noise_of(const CorrectedMotion& measured, const OdometryNoise& noise) const;
 };
 
 /// A scan against surfaces that other keyframes have seen: the mean of what these keyframes say.

@@ -48,13 +48,12 @@ const Submap* LoopFinder::nearest_submap(const LoopSearch& search,
     const Eigen::Vector2d place =
         state.keyframes[submap.first_keyframe()].inverse() * search.map_from_base.translation();
     const double off_m = reach_m(search.covariance_against(submap.first_keyframe()));
-    const double near_m =
-        std::min(least_m, config_.reach_m + std::min(config_.max_search_m, off_m));
+    double near_m = std::min(least_m, config_.reach_m + std::min(config_.max_search_m, off_m));
     if (place.norm() - submap.reach_m() >= near_m) continue;
     for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k) {
       const double distance_m = (submap.submap_from_keyframe(k).translation() - place).norm();
-      if (distance_m >= std::min(least_m, near_m)) continue;
-      least_m = distance_m;
+      if (distance_m >= near_m) continue;
+      least_m = near_m = distance_m;
       nearest = &submap;
     }
   }

@@ -11,7 +11,7 @@ namespace waymark {
 
 struct WideSearch {
   std::vector<Se2> guesses{};  ///< map_from_base; windows about them are searched
-  double since_last_s{0.0};    ///< scan: odometry apart, the longer the more it may have turned
+  double since_last_s{0.0};    ///< scan: the longer, the more the robot may have turned
   double min_score{0.0};       ///< of a place (SearchMatch)
 };
 

@@ -89,11 +89,14 @@ Points seen_from(const Se2& map_from_base, Points points) {
   return points;
 }
 
+Points whole_room() {
+  return together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0)));
+}
+
 Submap mapped_room() {
   Submap submap{0.25, 0};
   for (int i = 0; i < 5; ++i)
-    submap.insert(together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0))),
-                  {});
+    submap.insert(whole_room(), {});
   return submap;
 }
 
@@ -120,8 +123,7 @@ Searched look_for(const Submap& submap, const Points& points, const Se2& guess,
 
 TEST(WideSearch, FindsAPoseThatIsFarFromItsGuess) {
   const Se2 truth{3.0, 0.3, 0.0};
-  const Points scan = seen_from(
-      truth, together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0))));
+  const Points scan = seen_from(truth, whole_room());
   const Se2 guess{2.6, 0.1, 0.4};
   const Searched found = look_for(mapped_room(), scan, guess, around(guess));
   EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.02);
@@ -130,8 +132,7 @@ TEST(WideSearch, FindsAPoseThatIsFarFromItsGuess) {
 
 TEST(WideSearch, TheLongerNothingWasSeenTheMoreTheRobotMayHaveTurned) {
   const Se2 truth{3.0, 0.3, 0.0};
-  const Points scan = seen_from(
-      truth, together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0))));
+  const Points scan = seen_from(truth, whole_room());
   const Se2 guess{3.0, 0.3, 1.4};
   const auto off = [&](double since_last_s) {
     const Searched found = look_for(mapped_room(), scan, guess, around(guess, since_last_s));
@@ -150,8 +151,7 @@ TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenThoughItComesLast) {
   for (int i = 0; i < 5; ++i)
     submap.insert(crate, {});
   const Se2 truth{3.0, 0.3, 0.0};
-  const Points room = together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0)));
-  const Points scan = seen_from(truth, together(room, crate));
+  const Points scan = seen_from(truth, together(whole_room(), crate));
   const Se2 turned_round{3.0, -0.3, std::numbers::pi};
   const Searched found = look_for(submap, scan, {3.0, 0.0, 1.5}, {{turned_round, truth}, 0.0, 0.1});
   EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.05);
@@ -161,7 +161,7 @@ TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenThoughItComesLast) {
 TEST(WideSearch, APlaceWhereTheScanFitsNearlyAsUsualNeedsTwiceTheInliers) {
   const Submap submap = mapped_room();
   const Se2 truth{3.0, 0.3, 0.0};
-  Points room = together(walls(0.0, 6.0), together(end_wall(0.0, -2.0), end_wall(6.0, -2.0)));
+  Points room = whole_room();
   const std::size_t all = room.size();
   for (std::size_t i = 0; i < all / 6; ++i)
     room.emplace_back(kSpacing_m * static_cast<double>(i), 7.0);
