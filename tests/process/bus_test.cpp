@@ -2,12 +2,14 @@
 // The bus over real LCM: nothing that anybody sends kills a receiver or makes it grow.
 #include "common/bus/bus.hpp"
 
+#include "common/bus/simulator_lock.hpp"
 #include "common/messages/codec.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/run_process.hpp"
 #include "support/lcm_network.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <thread>
 
@@ -262,6 +264,15 @@ TEST(BusSetup, TheCommandLineWinsOverTheEnvironment) {
   EXPECT_EQ(lcm_url_or_default(""), "udpm://239.255.76.67:1?ttl=0");
   unsetenv("LCM_DEFAULT_URL");
   EXPECT_EQ(lcm_url_or_default(""), "udpm://239.255.76.67:7667?ttl=0");
+}
+
+TEST(SimulatorLockTest, WhereTheSystemRefusesItNobodyRunsWithoutIt) {
+  rlimit files{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &files), 0);
+  const rlimit none{0, files.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  EXPECT_THROW(SimulatorLock("udpm://239.255.76.67:7667?ttl=0", ChannelNames{}), SetupError);
+  setrlimit(RLIMIT_NOFILE, &files);
 }
 
 }  // namespace

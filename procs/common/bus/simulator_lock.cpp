@@ -29,15 +29,18 @@ SimulatorLock::SimulatorLock(const std::string& lcm_url, const ChannelNames& nam
   std::memcpy(address.sun_path + 1, name.data(), size);
   socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + size);
-  if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), length) == 0) return;
-  const bool is_taken = errno == EADDRINUSE;
-  ::close(socket_);
-  socket_ = -1;
-  if (is_taken)
-    throw SetupError{fmt::format(
-        "another simulator runs in lockstep on UDP port {}; wait for its end, or give --lcm-url "
-        "another port, e.g. udpm://239.255.76.67:{}?ttl=0",
-        group->port, group->port < 65535 ? group->port + 1 : 1024)};
+  if (socket_ >= 0 && ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), length) == 0) {
+    return;
+  }
+  const int error = errno;
+  if (socket_ >= 0) ::close(socket_);
+  if (error != EADDRINUSE)
+    throw SetupError{fmt::format("UDP port {} cannot be kept for one simulator: {}", group->port,
+                                 std::strerror(error))};
+  throw SetupError{fmt::format(
+      "another simulator runs in lockstep on UDP port {}; wait for its end, or give --lcm-url "
+      "another port, e.g. udpm://239.255.76.67:{}?ttl=0",
+      group->port, group->port < 65535 ? group->port + 1 : 1024)};
 }
 
 SimulatorLock::~SimulatorLock() {

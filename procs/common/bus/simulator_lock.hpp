@@ -13,7 +13,7 @@ namespace waymark {
 /// udpm it keeps nobody out; nor does it with another name of TICK, under which runs do not meet.
 class SimulatorLock {
  public:
-  /// @throws SetupError when another simulator has the port.
+  /// @throws SetupError when another simulator has the port, or the system refuses the lock.
   SimulatorLock(const std::string& lcm_url, const ChannelNames& names);
   ~SimulatorLock();
   SimulatorLock(const SimulatorLock&) = delete;
