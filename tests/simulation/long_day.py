@@ -21,6 +21,7 @@ import sys
 import tempfile
 
 from loaded_core import cpu_and_memory
+from poses import compose, inverse, trajectory
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = SOURCE / "build/release"
@@ -29,25 +30,6 @@ SENSORS = ("LIDAR", "ODOMETRY", "MARKERS")
 ODOMETRY = struct.Struct(">qqfff")  # fingerprint, utime, x, y, theta
 WAY_MB_PER_HOUR = 5.0
 MARGIN_S = 120.0  # of the run's two ends
-
-
-def compose(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], math.remainder(a[2] + b[2], math.tau)
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return -c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]
-
-
-def truth_of(run):
-    """Poses by time [us]."""
-    poses = {}
-    for line in (run / "truth.tum").read_text().splitlines():
-        t, x, y, _, _, _, qz, qw = map(float, line.split())
-        poses[round(1e6 * t)] = (x, y, 2.0 * math.atan2(qz, qw))
-    return poses
 
 
 def same_place(truth):
@@ -63,7 +45,7 @@ def write_day(run, hours, path):
     from waymark_log import LogReader, LogWriter
     from waymark_log.events import Event
 
-    truth = truth_of(run)
+    truth = trajectory(run / "truth.tum")
     begin, end = same_place(truth)
     with LogReader(run / "run.lcm") as reader:
         events = [event for event in reader if event.channel in SENSORS and begin <= event.time_us < end]
