@@ -13,6 +13,7 @@ namespace waymark {
 namespace {
 
 constexpr Duration kLongPause = std::chrono::minutes{10};
+constexpr Duration kRestart = std::chrono::seconds{30};  // nobody carries the robot away meanwhile
 constexpr double kStands_m = 0.1;
 constexpr double kStands_rad = 0.1;
 constexpr double kFastest_m_s = 2.0;  // of our robots, on average
@@ -107,6 +108,7 @@ Resumption resume(const LastPose& last, std::int64_t map_id, Timestamp now,
   StartPose start{StartKind::kLast, map_from_base.x(), map_from_base.y(), map_from_base.theta()};
   start.sigma_m = std::hypot(last.sigmas.head<2>().maxCoeff(), kNotSaid_m + kOdometryError * way_m);
   start.sigma_rad = std::hypot(last.sigmas.z(), kNotSaid_rad + kOdometryError_rad_per_m * way_m);
+  start.is_certain = now - last.time <= kRestart;
   return {start, ""};
 }
 

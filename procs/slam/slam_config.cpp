@@ -90,6 +90,10 @@ void SlamSection::describe(Fields& fields) {
                   "(by state_folder, else as anywhere), or unknown");
     fields.when(start.kind == StartKind::kPose, "only slam.start = pose uses it",
                 [&] { fields.section("start_pose", start); });
+    fields.field(
+        "save_map_every_s", save_map_every_s, {0.0, 86400.0},
+        "message time between two saves to --save-map while the map is drawn, so that a "
+        "slam that is started again with start = last goes on with it; 0: only at the end");
   });
   fields.field("state_folder", state_folder,
                "folder for last_pose.toml and for maps that are saved on command; empty: none");
@@ -112,9 +116,10 @@ void SlamConfig::describe(Fields& fields) {
 
 void SlamConfig::check(Problems& problems) const {
   robot.check(problems);
-  if (slam.mode == MapMode::kMap && slam.start.kind != StartKind::kOrigin)
-    problems.add("slam.start",
-                 "only a loaded map has another start than \"origin\": set slam.mode");
+  const bool is_within_a_map =
+      slam.start.kind == StartKind::kPose || slam.start.kind == StartKind::kAnywhere;
+  if (slam.mode == MapMode::kMap && is_within_a_map)
+    problems.add("slam.start", "only a loaded map has such a start: set slam.mode");
   if (slam.start.kind == StartKind::kLast && slam.state_folder.empty())
     problems.add("slam.start", "\"last\" needs slam.state_folder, where the last pose is kept");
   if (slam.grid.face_spacing_m > slam.grid.resolution_m) {

@@ -27,7 +27,8 @@ struct SlamSection {
   double map_period_s{1.0};
   MapMode mode{MapMode::kMap};
   StartPose start{};
-  std::string state_folder{};  ///< empty: none
+  double save_map_every_s{0.0};  ///< 0: only at the end
+  std::string state_folder{};    ///< empty: none
   bool commands{false};
   Preprocessing preprocessing{};
   MotionNoise motion{};

@@ -2,11 +2,14 @@
 #include "slam/slam_inputs.hpp"
 
 #include "common/logging/logging.hpp"
+#include "slam/last_pose.hpp"
 #include "slam/map_file.hpp"
 #include "slam/survey_file.hpp"
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <optional>
 #include <utility>
 
 namespace waymark {
@@ -24,18 +27,51 @@ void check_map_options(const SlamConfig& config) {
   }
   if (!is_loaded && config.slam.mode != MapMode::kMap)
     throw SetupError{"slam.mode = localise and extend need a map: --load-map FILE"};
+  if (config.slam.mode == MapMode::kMap && config.slam.start.kind == StartKind::kLast &&
+      config.save_map.empty()) {
+    throw SetupError{
+        "slam.start = last goes on in a map: give it with --load-map, or with --save-map the file "
+        "that it is saved to"};
+  }
+  if (config.slam.save_map_every_s > 0.0 && config.save_map.empty())
+    throw SetupError{"slam.save_map_every_s needs the file: --save-map FILE"};
   if (config.slam.mode == MapMode::kLocalise && !config.save_map.empty())
     throw SetupError{
         "slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
 }
 
+/// What --save-map has of the map in which the robot was when slam stopped.
+std::optional<MapFile> left_unfinished(const SlamConfig& config) {
+  if (config.slam.start.kind != StartKind::kLast || config.save_map.empty() ||
+      !std::filesystem::exists(config.save_map)) {
+    return std::nullopt;
+  }
+  try {
+    const auto last = read_last_pose(config.slam.state_folder);
+    MapFile file = read_map_file(config.save_map);
+    if (last && last->map_id == file.map.map_id) return file;
+  } catch (const std::exception& error) {
+    logging::warn("{}", error.what());
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-std::shared_ptr<const MapSnapshot> load_map(const SlamConfig& config, std::string& frame) {
+std::shared_ptr<const MapSnapshot> load_map(SlamConfig& config, std::string& frame) {
   frame = config.robot.markers.survey_file.empty() ? "map" : "survey";
   check_map_options(config);
-  if (config.load_map.empty()) return nullptr;
-  MapFile file = read_map_file(config.load_map);
+  std::optional<MapFile> found = left_unfinished(config);
+  if (found) {
+    logging::info("goes on with the map in '{}'", config.save_map.string());
+    config.load_map = config.save_map;
+    config.slam.mode = MapMode::kExtend;
+  }
+  if (config.load_map.empty()) {
+    config.slam.start = {};
+    return nullptr;
+  }
+  MapFile file = found ? std::move(*found) : read_map_file(config.load_map);
   const MarkerConfig& markers = config.robot.markers;
   const auto refuse = [&](const std::string& why) {
     throw SetupError{fmt::format("map '{}' {}", config.load_map.string(), why)};

@@ -58,11 +58,11 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
       counters_{inbox.counters()},
       outbox_{outbox},
       queue_{sensor_setup(config)},
-      loaded_map_{load_map(config, frame_)},
-      survey_{load_survey(config)},
-      map_id_{loaded_map_ && config.slam.mode == MapMode::kLocalise ? loaded_map_->map_id : 0},
+      loaded_map_{load_map(config_, frame_)},
+      survey_{load_survey(config_)},
+      map_id_{loaded_map_ && config_.slam.mode == MapMode::kLocalise ? loaded_map_->map_id : 0},
       frame_map_id_{loaded_map_ ? loaded_map_->map_id : 0},
-      estimator_{make_estimator(config, loaded_map_, survey_)} {
+      estimator_{make_estimator(config_, loaded_map_, survey_)} {
   if (!config.slam.state_folder.empty()) make_writable_folder(config.slam.state_folder);
   inbox.on<planar_lidar_t>(channels::kLidar, [this](const auto& m) { take(to_scan(m)); });
   inbox.on<lidar_t>(channels::kMbotLidar, [this](const auto& m) { take(to_scan(m)); });
@@ -233,7 +233,25 @@ void SlamNode::publish_map_when_due(Timestamp time) {
   publish_markers(time);
   publish_grid(time);
   publish_findings(time);
+  save_map_when_due(time);
   keep_last_pose();
+}
+
+/// What cannot be saved now may be later: only the last one counts as failure.
+void SlamNode::save_map_when_due(Timestamp time) {
+  if (config_.slam.save_map_every_s <= 0.0 || config_.slam.mode == MapMode::kLocalise) return;
+  const Duration period = duration_from_seconds(config_.slam.save_map_every_s);
+  if (!next_save_ || time < *next_save_ - period) next_save_ = time + period;
+  if (time < *next_save_) return;
+  next_save_ = time + period;
+  const auto map = estimator_->snapshot();
+  if (!map) return;
+  try {
+    save_map_to(config_.save_map, *map);
+  } catch (const std::exception& error) {
+    counters_.add("map not saved", CountKind::kLoss);
+    logging::warn("{}", error.what());
+  }
 }
 
 void SlamNode::publish_tiles(std::vector<map_tiles_t> parts) {

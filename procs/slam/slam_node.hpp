@@ -60,6 +60,7 @@ class SlamNode final : public Node {
   void process_ready_scans();
   void process(const SensorQueue::Ready& ready);
   void publish_map_when_due(Timestamp time);
+  void save_map_when_due(Timestamp time);
   void publish_tiles(std::vector<map_tiles_t> parts);
   void publish_markers(Timestamp time);
   void publish_findings(Timestamp time);
@@ -88,6 +89,7 @@ class SlamNode final : public Node {
   std::set<int> named_survey_ids_{};
   bool was_resumed_{false};  ///< or could not be
   std::optional<Timestamp> next_map_{};
+  std::optional<Timestamp> next_save_{};
   UpdateTimer timer_{};
   bool failed_{false};
 };

@@ -120,11 +120,14 @@ TEST(LastPose, IsUsedOnlyWhereMapAndOdometryFit) {
   ASSERT_TRUE(resumed.start);
   EXPECT_NEAR(resumed.start->x_m, 11.0, 1e-9);
   EXPECT_GT(resumed.start->sigma_m, 0.1);
+  EXPECT_TRUE(resumed.start->is_certain);
   EXPECT_FALSE(resume(last, 8, at(102.0), driven_on).start);  // another map
   EXPECT_FALSE(resume(last, 7, at(99.0), driven_on).start);   // the clock went back
   EXPECT_FALSE(resume(last, 7, at(102.0), Se2{}).start);      // odometry began anew
   EXPECT_FALSE(resume(last, 7, at(100'000.0), driven_on).start);
-  EXPECT_TRUE(resume(last, 7, at(100'000.0), last.odom_from_base).start);  // it stood all night
+  const Resumption in_the_morning = resume(last, 7, at(100'000.0), last.odom_from_base);
+  ASSERT_TRUE(in_the_morning.start);  // it stood all night
+  EXPECT_FALSE(in_the_morning.start->is_certain);
 }
 
 TEST_F(DailyLife, ARestartedSlamGoesOnWhereItWas) {
@@ -140,6 +143,68 @@ TEST_F(DailyLife, ARestartedSlamGoesOnWhereItWas) {
   write_last_pose(folder_, {timestamp_from_us(22'000'000), 99, {}, {0.1, 0.1, 0.1}, {}});
   const test::Drive lost = test::drive_through(config, messages_of(today, 22.5));
   EXPECT_LT(test::worst_error_m(lost, today, map_from_world(*drive_)), 0.1);
+}
+
+// Killed, so that nothing but what it saved on the way is left.
+TEST_F(DailyLife, ASlamThatIsKilledWhileItDrawsAMapGoesOnWithIt) {
+  SlamConfig config = config_for(MapMode::kMap, folder_ / "unfinished.map.lcm");
+  config.slam.state_folder = folder_;
+  config.slam.start.kind = StartKind::kLast;
+  config.slam.save_map_every_s = 5.0;
+  {
+    Inbox inbox;
+    Outbox outbox;
+    SlamNode killed{config, inbox, outbox};
+    for (const Message& message : messages_of(*drive_, 0.0, 21.0))
+      inbox.deliver(message);
+  }
+  const std::size_t num_saved = read_map_file(config.save_map).map.landmarks.size();
+  const test::Drive rest = test::drive_through(config, messages_of(*drive_, 22.5));
+  EXPECT_EQ(test::with_pose(rest), rest.estimates.size());
+  EXPECT_LT(test::worst_error_m(rest, *drive_, map_from_world(*drive_)), 0.1);
+  const std::size_t num_markers = corridor_of(1).markers.size();
+  EXPECT_LT(num_saved, num_markers);
+  EXPECT_EQ(read_map_file(config.save_map).map.landmarks.size(), num_markers);
+}
+
+// Ahead of it there is nothing of its map, and no marker anywhere.
+TEST_F(DailyLife, ARestartWithinSecondsNeedsNothingToConfirmThePlace) {
+  test::SyntheticCorridor bare = corridor_of(1);
+  bare.markers.clear();
+  const test::SensorLog log = test::drive(bare);
+  SlamConfig config = config_for(MapMode::kMap, folder_ / "bare.map.lcm");
+  config.slam.state_folder = folder_;
+  config.slam.start.kind = StartKind::kLast;
+  test::drive_through(config, messages_of(log, 0.0, 21.0));
+  const auto num_cells = [&] {
+    return read_map_file(config.save_map).map.walls.sums().size();
+  };
+  const std::size_t num_saved = num_cells();
+  const test::Drive rest = test::drive_through(config, messages_of(log, 22.5, 30.0));
+  EXPECT_EQ(test::with_pose(rest), rest.estimates.size());
+  EXPECT_GT(num_cells(), num_saved + num_saved / 10);
+}
+
+TEST_F(DailyLife, AMapInWhichTheRobotWasNotLastIsNotGoneOnWith) {
+  SlamConfig config = config_for(MapMode::kMap, folder_ / "other.map.lcm");
+  config.slam.state_folder = folder_;
+  fs::copy_file(*file_, config.save_map);
+  write_last_pose(folder_, {timestamp_from_us(1), 99, {5.0, 0.0, 0.0}, {0.1, 0.1, 0.1}, {}});
+  config.slam.start.kind = StartKind::kLast;
+  const test::Drive drive = test::drive_through(config, messages_of(*drive_, 0.0, 5.0));
+  ASSERT_FALSE(drive.estimates.empty());
+  EXPECT_EQ(drive.estimates.front().has_pose, 1);
+  EXPECT_NEAR(drive.estimates.front().x_m, 0.0, 0.05);
+}
+
+TEST_F(DailyLife, SavingOnTheWayAndGoingOnNeedAFile) {
+  SlamConfig config;
+  config.slam.save_map_every_s = 5.0;
+  EXPECT_THROW(test::drive_through(config, {}), SetupError);
+  config.slam.save_map_every_s = 0.0;
+  config.slam.state_folder = folder_;
+  config.slam.start.kind = StartKind::kLast;
+  EXPECT_THROW(test::drive_through(config, {}), SetupError);
 }
 
 // One marker is gone, one hangs a metre further on, one is new, and a wall has come.

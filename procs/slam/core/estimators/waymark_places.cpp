@@ -38,7 +38,7 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
     given_pose_ = pose;
   else
     start_ = pose;
-  if (place_finder_) is_confirmed_ = false;
+  if (place_finder_) is_confirmed_ = pose.is_certain;
   place_finder_.reset();
   note_reason(pose.kind == StartKind::kLast ? EstimateReason::kRelocalised
                                             : EstimateReason::kCommand);
@@ -52,7 +52,7 @@ void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_, true});
   const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
-  is_confirmed_ = !setup_.loaded_map;
+  is_confirmed_ = !setup_.loaded_map || pose.is_certain;
   relocalisation_ = {};
   forget_way_here();
   begin_submaps_anew();

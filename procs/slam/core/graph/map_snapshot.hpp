@@ -64,6 +64,7 @@ struct StartPose {
   double yaw_rad{0.0};
   double sigma_m{0.1};
   double sigma_rad{0.05};
+  bool is_certain{false};  ///< it was there a moment ago: markers or walls need not confirm it
 
   /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
