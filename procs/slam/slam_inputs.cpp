@@ -48,8 +48,9 @@ std::optional<MapFile> left_unfinished(const SlamConfig& config) {
   }
   try {
     const auto last = read_last_pose(config.slam.state_folder);
+    if (!last) return std::nullopt;
     MapFile file = read_map_file(config.save_map);
-    if (last && last->map_id == file.map.map_id) return file;
+    if (last->map_id == file.map.map_id) return file;
   } catch (const std::exception& error) {
     logging::warn("{}", error.what());
   }
@@ -68,7 +69,7 @@ std::shared_ptr<const MapSnapshot> load_map(SlamConfig& config, std::string& fra
     config.slam.mode = MapMode::kExtend;
   }
   if (config.load_map.empty()) {
-    config.slam.start = {};
+    config.slam.start = {};  // nothing to go on with: a new map
     return nullptr;
   }
   MapFile file = found ? std::move(*found) : read_map_file(config.load_map);

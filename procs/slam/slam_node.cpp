@@ -91,7 +91,7 @@ void SlamNode::finish() {
   queue_.finish();
   process_ready_scans();
   judge_input();
-  if (!config_.save_map.empty()) save_map();
+  if (!config_.save_map.empty() && !save_map()) failed_ = true;
   keep_last_pose();
   if (!last_estimate_) return;
   publish_tiles(map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_));
@@ -128,19 +128,20 @@ void SlamNode::publish_findings(Timestamp time) {
   }
 }
 
-void SlamNode::save_map() {
+/// @return whether it was saved; if not, it has been said why.
+bool SlamNode::save_map() {
   const auto map = estimator_->snapshot();
   if (!map) {
-    failed_ = true;
     logging::error("no map to save: no scan could be placed");
-    return;
+    return false;
   }
   try {
     save_map_to(config_.save_map, *map);
   } catch (const std::exception& error) {
-    failed_ = true;
     logging::error("{}", error.what());
+    return false;
   }
+  return true;
 }
 
 /// An input that nothing can be made of shall not look like success.
@@ -239,19 +240,12 @@ void SlamNode::publish_map_when_due(Timestamp time) {
 
 /// What cannot be saved now may be later: only the last one counts as failure.
 void SlamNode::save_map_when_due(Timestamp time) {
-  if (config_.slam.save_map_every_s <= 0.0 || config_.slam.mode == MapMode::kLocalise) return;
+  if (config_.slam.save_map_every_s <= 0.0) return;
   const Duration period = duration_from_seconds(config_.slam.save_map_every_s);
   if (!next_save_ || time < *next_save_ - period) next_save_ = time + period;
   if (time < *next_save_) return;
   next_save_ = time + period;
-  const auto map = estimator_->snapshot();
-  if (!map) return;
-  try {
-    save_map_to(config_.save_map, *map);
-  } catch (const std::exception& error) {
-    counters_.add("map not saved", CountKind::kLoss);
-    logging::warn("{}", error.what());
-  }
+  if (!save_map()) counters_.add("map not saved", CountKind::kLoss);
 }
 
 void SlamNode::publish_tiles(std::vector<map_tiles_t> parts) {

@@ -44,7 +44,7 @@ class SlamNode final : public Node {
 
  private:
   std::int64_t save_map_to(const std::filesystem::path& file, const MapSnapshot& map);
-  void save_map();
+  bool save_map();
   std::string obey(const Command& command);
   std::string save_named(const std::string& name);
   std::string reset();

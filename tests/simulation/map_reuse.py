@@ -181,7 +181,8 @@ def say_localised(name, by_seed):
               f"{sum(fix > FIX_S for fix in fixes)}")
     for line in wrong:
         print(f"  wrong: seed {line['seed']} from {line['from']:.1f} s, {line['wrong']} poses, ATE {line['ate']:.3f} m")
-    return not wrong and (name == "equal" or len(fixed) == len(lines) and max(line["ate"] for line in fixed) <= ATE_M)
+    return not wrong and (name == "equal" or len(fixed) == len(lines) and
+                          all(line["ate"] <= ATE_M and line["fix"] <= FIX_S for line in fixed))
 
 
 def say_whole(name, by_seed, markers):
