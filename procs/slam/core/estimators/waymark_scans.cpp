@@ -43,6 +43,8 @@ void WaymarkEstimator::search_widely(Look& look) const {
   for (const Se2& step : odometry_check_.steps_without_odometry())
     search.guesses.push_back(submap_from_last * step);
   search.guesses.push_back(expected);
+  search.by_odometry = expected;
+  search.odometry_covariance = in_axes(submap_from_map.rotation(), look.expected.covariance);
   search.since_last_s = look.since_last_s;
   search.min_score = config_.loops.min_score;
   scan.match = searched_widely(scan.match, look.points, surfaces_of(scan),

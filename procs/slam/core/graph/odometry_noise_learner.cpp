@@ -15,6 +15,7 @@ constexpr double kMemory = 0.99;       // of an innovation, at the next one
 constexpr double kPriorLogOdds = 3.0;  // natural: of the description against any worse scale
 constexpr double kCoupling = 0.7;      // standard deviation of log(along / turn)
 constexpr double kSlipFactor = 5.0;    // on the odometry's standard deviation, in a slip
+constexpr double kGoesOnSigmas = 5.0;  // an innovation beyond may go on as it was
 const double kLogSlipShare = std::log(0.03);
 
 constexpr double kSlipSigmas = 4.0;      // an innovation beyond is a slip
@@ -35,15 +36,23 @@ double OdometryNoiseLearner::scale_at(std::size_t i) {
   return std::pow(2.0, 0.5 * static_cast<double>(i));
 }
 
-void OdometryNoiseLearner::add(const OdometryInnovation& innovation, LogLikelihoods& to) {
+void OdometryNoiseLearner::Axis::add(const OdometryInnovation& innovation) {
+  const double same_m = last_.distance_m > 0.0 ? innovation.distance_m / last_.distance_m : 0.0;
+  const double change = innovation.value - same_m * last_.value;
   for (std::size_t i = 0; i < kScales; ++i) {
+    Model& model = models_[i];
     const double by_odometry = squared(scale_at(i)) * innovation.odometry_variance;
-    const double rolls = log_normal(innovation.value, innovation.other_variance + by_odometry);
-    const double slips =
+    const double rolling = innovation.other_variance + by_odometry;
+    const double rolls = log_normal(innovation.value, rolling);
+    double slips =
         kLogSlipShare + log_normal(innovation.value,
                                    innovation.other_variance + squared(kSlipFactor) * by_odometry);
-    to[i] = kMemory * to[i] + std::max(rolls, slips);
+    if (slips_go_on_ && model.slips)
+      slips = std::max(slips, log_normal(change, (1.0 + squared(same_m)) * rolling));
+    model.slips = slips > rolls && squared(innovation.value) > squared(kGoesOnSigmas) * rolling;
+    model.log_likelihood = kMemory * model.log_likelihood + std::max(rolls, slips);
   }
+  last_ = innovation;
 }
 
 void OdometryNoiseLearner::observe_slip(const OdometryInnovation& innovation) {
@@ -83,8 +92,9 @@ OdometryScale OdometryNoiseLearner::scale() const {
   for (std::size_t a = 0; a < kScales; ++a) {
     for (std::size_t t = 0; t < kScales; ++t) {
       const double apart = std::log(scale_at(a) / scale_at(t)) / kCoupling;
-      const double log_posterior = along_[a] + turn_[t] - 0.5 * squared(apart) -
-                                   (a > 0 ? kPriorLogOdds : 0.0) - (t > 0 ? kPriorLogOdds : 0.0);
+      const double log_posterior = along_.log_likelihood(a) + turn_.log_likelihood(t) -
+                                   0.5 * squared(apart) - (a > 0 ? kPriorLogOdds : 0.0) -
+                                   (t > 0 ? kPriorLogOdds : 0.0);
       models.push_back({log_posterior, scale_at(a), scale_at(t)});
       best = std::max(best, log_posterior);
     }

@@ -18,8 +18,11 @@ struct OdometryInnovation {
 };
 
 /// Mean variance over a grid of noise scales, each with the posterior probability of what was seen;
-/// old innovations are forgotten slowly. A single slip is no noise: innovations may come from the
-/// wide components of its mixture (likeliest_covariance() in factors.hpp). Wheels that are bad in
+/// old innovations are forgotten slowly. A slip is no noise: an innovation may come from a wide
+/// component of the mixture (likeliest_kind() in factors.hpp). In the turn those after it may go on
+/// as it was: a wheel that spins over a wet floor turns too far by the same share of each step,
+/// and noise changes from step to step. Along the way innovations follow each other anyway, for
+/// the pose is drawn to a marker within some of them. Wheels that are bad in
 /// the turn, which walls show everywhere, are probably as bad along the way, which a bare corridor
 /// does not show. Source: innovation-based adaptive estimation (Mehra 1972), as a bank of models
 /// (Magill 1965).
@@ -29,9 +32,9 @@ struct OdometryInnovation {
 /// Poisson process, with pseudo-observations as its prior).
 class OdometryNoiseLearner {
  public:
-  void observe_along(const OdometryInnovation& innovation) { add(innovation, along_); }
+  void observe_along(const OdometryInnovation& innovation) { along_.add(innovation); }
 
-  void observe_turn(const OdometryInnovation& innovation) { add(innovation, turn_); }
+  void observe_turn(const OdometryInnovation& innovation) { turn_.add(innovation); }
 
   /// The same of a marker: it shows a slip, or none. Scans are not used, for along a corridor
   /// they are pulled back to where they were matched before, which looks like a slip.
@@ -43,14 +46,32 @@ class OdometryNoiseLearner {
 
  private:
   static constexpr std::size_t kScales = 12;  ///< 1, sqrt(2), 2 ... 45
-  using LogLikelihoods = std::array<double, kScales>;
+
+  /// What the innovations of one axis say of every scale.
+  class Axis {
+   public:
+    explicit Axis(bool slips_go_on) : slips_go_on_{slips_go_on} {}
+
+    void add(const OdometryInnovation& innovation);
+
+    double log_likelihood(std::size_t scale) const { return models_[scale].log_likelihood; }
+
+   private:
+    struct Model {
+      double log_likelihood{0.0};
+      bool slips{false};  ///< the newest innovation was a slip, if the wheels are that noisy
+    };
+
+    std::array<Model, kScales> models_{};
+    OdometryInnovation last_{};
+    bool slips_go_on_{false};
+  };
 
   static double scale_at(std::size_t i);
-  static void add(const OdometryInnovation& innovation, LogLikelihoods& to);
   double slip_m2_per_m() const;
 
-  LogLikelihoods along_{};
-  LogLikelihoods turn_{};
+  Axis along_{false};
+  Axis turn_{true};
   double slips_m_{0.0};     ///< sum, forgotten with the distance
   double slips_m2_{0.0};    ///< sum of squares, forgotten alike
   double observed_m_{0.0};  ///< driven where slips would have shown, forgotten alike

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/wide_search.hpp"
 
+#include "common/geometry/squared.hpp"
 #include "slam/core/registration/correlative_search.hpp"
+
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <numbers>
@@ -16,7 +19,13 @@ constexpr std::size_t kBeams = 120;
 constexpr double kUnseen_rad_s = 0.5;  // that the robot may have turned meanwhile
 constexpr double kClearlyMore = 1.05;  // inliers than the plain match
 constexpr double kFarMore = 2.0;
+constexpr double kContradictedSigmas = 5.0;
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
+
+bool is_contradicted_by_odometry(const ScanMatch& match, const WideSearch& search) {
+  const Eigen::Vector3d off = pose_difference(match.map_from_base, search.by_odometry);
+  return off.dot(search.odometry_covariance.ldlt().solve(off)) > squared(kContradictedSigmas);
+}
 
 }  // namespace
 
@@ -39,7 +48,8 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   const auto fits_better = [&] {
     if (found->inliers <= kClearlyMore * plain.inliers) return false;
     return usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
-           (found->inliers > kFarMore * plain.inliers && usual.is_nearly_usual(*found));
+           (usual.is_nearly_usual(*found) && (found->inliers > kFarMore * plain.inliers ||
+                                              is_contradicted_by_odometry(plain, search)));
   };
   return found && fits_better() ? *found : plain;
 }

@@ -11,14 +11,18 @@ namespace waymark {
 
 struct WideSearch {
   std::vector<Se2> guesses{};  ///< map_from_base; windows about them are searched
-  double since_last_s{0.0};    ///< scan: the longer, the more the robot may have turned
-  double min_score{0.0};       ///< of a place (SearchMatch)
+  Se2 by_odometry{};           ///< map_from_base
+  Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of it, map's axes
+  double since_last_s{0.0};  ///< scan: the longer, the more the robot may have turned
+  double min_score{0.0};     ///< of a place (SearchMatch)
 };
 
 /// The plain match, or the one with the most inliers of those that begin at the best places in the
 /// windows. The plain match is left if the map contradicts it, for a place where the scan fits as
 /// well as others do, or for one where it fits nearly as well and has twice the inliers: a view of
-/// a new place has few of them where it is right.
+/// a new place has few of them where it is right. A plain match that odometry contradicts is no
+/// likelier than another place: one with more inliers is enough, if the scan fits nearly as well as
+/// others do.
 ///
 /// @param points     ends of beams, base frame.
 /// @param surfaces   what the scan is matched with,

@@ -2,9 +2,12 @@
 // Noise of the odometry, learnt from innovations.
 #include "slam/core/graph/odometry_noise_learner.hpp"
 
+#include "common/geometry/squared.hpp"
 #include "common/random/random.hpp"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace waymark {
 namespace {
@@ -21,6 +24,22 @@ TEST(OdometryNoiseLearner, BelievesTheDescriptionUntilInnovationsSayOtherwise) {
   EXPECT_NEAR(described.scale().turn, 1.0, 1e-3);
   EXPECT_NEAR(worse.scale().turn, 8.0, 3.0);
   EXPECT_GT(worse.scale().along, 1.5);  // wheels that are bad in the turn are so along the way
+}
+
+TEST(OdometryNoiseLearner, AWheelThatSpinsForMetresIsNoNoise) {
+  OdometryNoiseLearner spins;
+  OdometryNoiseLearner worse;
+  Random random{{9}};
+  for (int i = 0; i < 200; ++i) {
+    const double distance_m = 0.04 + 0.04 * random.uniform();
+    const double sigma_rad = 0.0087 * std::sqrt(distance_m);
+    const double noise_rad = sigma_rad * random.normal();
+    const double spin_rad = i >= 100 && i < 160 ? 0.35 * distance_m : 0.0;
+    spins.observe_turn({noise_rad + spin_rad, squared(sigma_rad), 1e-7, distance_m});
+    worse.observe_turn({8.0 * noise_rad, squared(sigma_rad), 1e-7, distance_m});
+    EXPECT_LT(spins.scale().turn, 2.0) << i;
+  }
+  EXPECT_NEAR(worse.scale().turn, 8.0, 3.0);
 }
 
 /// 40 m in steps of 5 cm, each seen to 5 mm; `slips_per_m` of 10 cm.
