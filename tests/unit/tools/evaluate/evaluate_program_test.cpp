@@ -60,5 +60,20 @@ TEST(EvaluateProgram, SkippedRelationsAreOneUnlessTolerated) {
   EXPECT_EQ(exit_code("relations --tolerant " + tum + " " + none), 1);
 }
 
+TEST(EvaluateProgram, ConsistencyNeedsStationsAndSkipsNone) {
+  const std::string columns =
+      "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,sigma_heading_rad,"
+      "health\n";
+  const std::string station = "1,10.0,0.01,0.01,0.001,3.0,0.01,0.01,0.001,2\n";
+  const auto code = [&](const std::string& lines) {
+    const TemporaryFolder row;
+    row.file("stations.csv", columns + lines);
+    return exit_code("consistency " + row.path().string());
+  };
+  EXPECT_EQ(code(station), 0);
+  EXPECT_EQ(code(station + "2,much\n"), 1);
+  EXPECT_EQ(code(""), 1);
+}
+
 }  // namespace
 }  // namespace waymark::evaluate

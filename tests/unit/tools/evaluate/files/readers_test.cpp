@@ -4,6 +4,8 @@
 #include "evaluate/files/tum.hpp"
 #include "unit/tools/temporary_folder.hpp"
 
+#include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,6 +70,9 @@ TEST(ReadMap, WhatIsWrongIsNamed) {
   EXPECT_THAT(map_error("just text", pgm), HasSubstr("map.yaml:1: got 'just text'"));
   EXPECT_THAT(map_error(kYaml, "P2 1 1 255\n0"), HasSubstr("map.pgm: not a binary 8-bit PGM"));
   EXPECT_THAT(map_error(kYaml, "P5 9999999999 9999999999 255\n"), HasSubstr("not a binary"));
+  EXPECT_THAT(map_error(kYaml, "P5 0 1 255\nx"), HasSubstr("not a binary"));
+  EXPECT_THAT(map_error(kYaml, "P5 1 0 255\nx"), HasSubstr("not a binary"));
+  EXPECT_THAT(map_error(kYaml, "P5 1 1 0\nx"), HasSubstr("not a binary"));
   EXPECT_THAT(map_error(kYaml, "P5 10 10 255\nabc"), HasSubstr("truncated: 3 of 100 pixels"));
   EXPECT_THAT(map_error(kYaml, "P5 10 10 255"), HasSubstr("truncated: 0 of 100 pixels"));
   EXPECT_THAT(map_error(kYaml, ""), HasSubstr("not a binary"));
@@ -89,6 +94,19 @@ TEST(ReadTum, YawIsThatOfTheQuaternion) {
   EXPECT_NEAR(trajectory[0].parent_from_base.theta(), radians(60), kExact);
   EXPECT_NEAR(std::abs(trajectory[1].parent_from_base.theta()), radians(180), kExact);
   EXPECT_THAT(skipped, IsEmpty());
+}
+
+TEST(ReadTum, YawIsThatOfTheXAxisOfARobotThatIsTilted) {
+  const TemporaryFolder folder;
+  const Eigen::Quaterniond turned{Eigen::AngleAxisd{0.7, Eigen::Vector3d::UnitZ()} *
+                                  Eigen::AngleAxisd{0.3, Eigen::Vector3d::UnitY()} *
+                                  Eigen::AngleAxisd{0.4, Eigen::Vector3d::UnitX()}};
+  Skipped skipped;
+  const Trajectory trajectory =
+      read_tum(folder.file("a.tum", fmt::format("1 0 0 0 {} {} {} {}\n", turned.x(), turned.y(),
+                                                turned.z(), turned.w())),
+               skipped);
+  EXPECT_NEAR(trajectory.at(0).parent_from_base.theta(), 0.7, kExact);
 }
 
 TEST(ReadTum, BadLinesAreNamedAndLeftOut) {

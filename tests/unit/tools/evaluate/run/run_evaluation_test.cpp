@@ -246,6 +246,22 @@ TEST(Run, AnEstimatorWithoutAMapIsAFailureOfThatRowOnly) {
   EXPECT_EQ(run_run(run.path(), {"odometry"}, {}, kQuietly), kFine);
 }
 
+TEST(Run, MemoryIsCountedByMetreOfARobotThatHasDriven) {
+  for (const double factor : {0.0, 1.0}) {
+    const TemporaryFolder run;
+    add_estimator(run, "waymark", 200, factor);
+    run.file("scenario.toml", "[world]\nlength_m = 10\n");
+    run.file("truth.tum", tum(1.0, factor));
+    run.file("waymark/timings.json", "{\"slam\": {\"peak_memory_mb\": 40.0}}");
+    run_run(run.path(), {}, {}, kQuietly);
+    const Json metrics = json_in(run.path() / "waymark/metrics.json");
+    if (factor == 0.0)
+      EXPECT_TRUE(metrics["memory_mb_per_m"].is_null()) << metrics["memory_mb_per_m"];
+    else
+      EXPECT_NEAR(metrics["memory_mb_per_m"].get<double>(), 40.0 / 8.0, 1e-9);
+  }
+}
+
 TEST(Run, SkippedLinesFailUnlessTolerated) {
   const TemporaryFolder run;
   add_truth(run);

@@ -134,10 +134,15 @@ TEST(Nees, IsThreeForRightCovariances) {
 }
 
 TEST(Nees, CovariancesThatCannotBeInvertedAreCounted) {
-  const std::vector<PosePair> pairs{{1.0, Se2{}, Se2{}}, {2.0, Se2{}, Se2{}}};
-  const Nees result = nees(pairs, {{1.0, Eigen::Matrix3d::Zero()}}, Se2{});
+  const std::vector<PosePair> pairs{
+      {1.0, Se2{}, Se2{}}, {2.0, Se2{}, Se2{}}, {3.0, Se2{}, Se2{}}, {4.0, Se2{}, Se2{}}};
+  const Eigen::Matrix3d indefinite = Eigen::Vector3d{1.0, 1.0, 1.0}.asDiagonal().toDenseMatrix() +
+                                     2.0 * (Eigen::Matrix3d::Ones() - Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d tiny = Eigen::Vector3d{1e-200, 1.0, 1.0}.asDiagonal();
+  const Nees result =
+      nees(pairs, {{1.0, Eigen::Matrix3d::Zero()}, {2.0, indefinite}, {3.0, tiny}}, Se2{});
   EXPECT_EQ(result.poses, 0u);
-  EXPECT_EQ(result.singular, 1u);
+  EXPECT_EQ(result.singular, 3u);
   EXPECT_TRUE(std::isnan(result.mean));
 }
 
