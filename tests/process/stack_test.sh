@@ -267,6 +267,25 @@ a_rival_in_real_time() {
   expect_nothing_left
 }
 
+# Each process hangs for a while, one after the other: the run goes on, and every scan is used.
+stopped_processes_in_real_time() {
+  local name run pid
+  begin run --real-time --lcm-url "udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
+  run=$!
+  until_under_way run
+  for name in detector slam viewer recorder; do
+    pid=$(pgrep -f -- "$work/bin/waymark-$name ") || fail "no $name"
+    kill -STOP "$pid"
+    sleep 0.4
+    kill -CONT "$pid"
+    sleep 0.2
+  done
+  expect_code 0 $run
+  ! grep -q "scans dropped" "$work/run/logs/slam.log" || fail "scans are lost"
+  [[ $("$work/bin/waymark-evaluate" length "$work/run/waymark/map.yaml" --json) =~ \"length_px\":\ *1(39|40|41) ]] || fail "a wrong map"
+  expect_nothing_left
+}
+
 # The units, with the programs where they are: nothing that systemd does not know, and hardly a privilege.
 systemd_units() {
   command -v systemd-analyze >/dev/null || exit 77

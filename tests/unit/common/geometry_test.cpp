@@ -27,6 +27,11 @@ TEST(Angle, WrapsIntoTheHalfOpenInterval) {
   EXPECT_NEAR(angle_difference(-3.0, 3.0), 2.0 * kPi - 6.0, 1e-12);
 }
 
+TEST(Angle, HalfATurnIs180Degrees) {
+  EXPECT_NEAR(radians(180.0), kPi, 1e-15);
+  EXPECT_NEAR(degrees(kPi), 180.0, 1e-12);
+}
+
 TEST(Se2, MovesPointsCounterClockwise) {
   const Se2 map_from_base{1.0, 2.0, kPi / 2.0};
   const Eigen::Vector2d point_in_map = map_from_base * Eigen::Vector2d{1.0, 0.0};

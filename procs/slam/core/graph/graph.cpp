@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/graph.hpp"
 
-#include <Eigen/Cholesky>
+#include "slam/core/graph/damped_root.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -288,7 +288,7 @@ void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& r
 /// @return the steps' sum.
 Eigen::VectorXd Graph::solve_window() {
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(prior_.g.size());
-  Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root;
+  DampedRoot root;
   double step_size = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMaxIterations && step_size >= kConverged; ++i) {
     for (const std::size_t index : active_factors_)
@@ -325,7 +325,8 @@ Eigen::Matrix3d Graph::covariance_since(std::size_t keyframe) const {
   difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, newest})) = to_own_frame(newest);
   difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, keyframe})) -=
       to_own_frame(keyframe) * carried_along(way).transpose();
-  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> root{window_equations().h};
+  DampedRoot root;
+  root.compute(window_equations().h);
   return difference.transpose() * root.solve(difference);
 }
 

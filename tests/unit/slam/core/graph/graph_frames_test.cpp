@@ -80,5 +80,18 @@ TEST(GraphFrames, ANewCalibrationIsNoSlipOfPosesThatDoNotFollowItYet) {
   EXPECT_LT(graph.covariance({}, {})(0, 0), 1.5 * known);
 }
 
+TEST(GraphFrames, AfterAPoseWasPutElsewhereWhatIsMeasuredCountsOnce) {
+  Graph graph = drive({}, 1e-4, 1e-4, 1.0);
+  tie_newest_to(graph, graph.state().keyframes.back());
+  const Se2 elsewhere{50.0, 0.0, 1.0};
+  graph.relocate_newest(elsewhere);
+  const Motion motion = step_of(kStep_m);
+  graph.add_keyframe(elsewhere * motion.start_from_end);
+  graph.add(OdometryFactor{kKeyframes - 1, kKeyframes, motion});
+  graph.optimise();
+  const Eigen::Matrix3d of_step = graph.covariance_of_newest_step();
+  EXPECT_NEAR(of_step(2, 2), random_walk(motion, OdometryNoise{})(2, 2), 0.1 * of_step(2, 2));
+}
+
 }  // namespace
 }  // namespace waymark

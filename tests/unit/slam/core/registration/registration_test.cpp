@@ -214,6 +214,16 @@ TEST(ScanMatch, AScanOfNothingIsNotUsable) {
   EXPECT_FALSE(match.is_usable({}));
 }
 
+TEST(ScanMatch, FewInliersOrNoHeadingAreNotUsable) {
+  ScanMatch match;
+  match.inliers = ScanMatchConfig{}.min_inliers;
+  EXPECT_FALSE(match.is_usable({}));
+  match.observed.information(2, 2) = 1.0;
+  EXPECT_TRUE(match.is_usable({}));
+  --match.inliers;
+  EXPECT_FALSE(match.is_usable({}));
+}
+
 TEST(ObservedAxes, ADirectionIsObservedIfLastingSurfacesShowIt) {
   Eigen::Matrix3d information = Eigen::Vector3d{100.0, 80.0, 300.0}.asDiagonal();
   const auto is_degenerate = [&](double lasting_share) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/geometry/squared.hpp"
 #include "common/random/random.hpp"
+#include "slam/core/filter/particle_set.hpp"
 #include "slam/core/mapping/insert_scan.hpp"
 #include "slam/core/resampling/systematic.hpp"
 #include "slam/core/scan/observability.hpp"
@@ -9,8 +11,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -81,6 +86,20 @@ TEST(MarkerScore, SumsOverSpotsWithTheirTrust) {
   const double one = marker_score(map, {3.0, 1.0}, 2, kRewards);
   const double other = marker_score(map, {3.05, 1.0}, 2, kRewards);
   EXPECT_NEAR(marker_score(map, spots, map_from_base, kRewards), 0.5 * one + other, 1e-12);
+}
+
+TEST(MarkerScore, ASightingIsTrustedAsItIsKnown) {
+  constexpr double kUsualSigma_m = 0.02;
+  Observation observation;
+  observation.sightings = {sighting_at(2, 3.0)};
+  for (const double sigmas : {0.1, 1.0, 3.0}) {
+    observation.sightings[0].covariance_in_base =
+        squared(sigmas * kUsualSigma_m) * Eigen::Matrix3d::Identity();
+    const auto spots = judged_spots(observation, 0.05, 0.1, kUsualSigma_m);
+    ASSERT_FALSE(spots.empty());
+    for (const JudgedSpot& spot : spots)
+      EXPECT_NEAR(spot.trust, 1.0 / (1.0 + squared(sigmas)), 1e-9);
+  }
 }
 
 /// Map of a noisy drive with true poses from x = 5 m to x_m, and the next scan.
@@ -208,6 +227,26 @@ TEST(Resampling, CountsAreTheRoundedShares) {
 TEST(Resampling, EffectiveNumberGoesFromOneToAll) {
   EXPECT_NEAR(effective_number(std::vector{0.25, 0.25, 0.25, 0.25}), 4.0, 1e-12);
   EXPECT_NEAR(effective_number(std::vector{1.0, 0.0, 0.0, 0.0}), 1.0, 1e-12);
+}
+
+std::vector<double> weights_after(const std::vector<double>& log_weights) {
+  ParticleSet<int> particles{log_weights.size(), 0};
+  for (std::size_t i = 0; i < log_weights.size(); ++i)
+    particles.add_log_weight(i, log_weights[i]);
+  particles.normalise();
+  return particles.weights();
+}
+
+TEST(ParticleSet, WeightsThatUnderflowKeepTheirShares) {
+  const std::vector<double> weights = weights_after({-1e5, -1e5 + std::log(3.0)});
+  EXPECT_NEAR(weights[0], 0.25, 1e-9);
+  EXPECT_NEAR(weights[1], 0.75, 1e-9);
+}
+
+TEST(ParticleSet, WhereNoParticleIsPossibleAllWeighTheSame) {
+  constexpr double kImpossible = -std::numeric_limits<double>::infinity();
+  EXPECT_EQ(weights_after({kImpossible, kImpossible}), (std::vector{0.5, 0.5}));
+  EXPECT_EQ(weights_after({kImpossible, -3.0}), (std::vector{0.0, 1.0}));
 }
 
 }  // namespace
