@@ -4,17 +4,18 @@
 # UndefinedBehaviorSanitizer. Goes on from its corpus, which begins with the messages, the map and the files of a short run.
 #
 # usage: tests/fuzz/run.sh [options] [TARGET...]
-#   TARGET       messages datagram log map config survey carmen mbot rosbag jpeg (default: all, one after the other)
+#   TARGET       messages datagram log map config survey carmen mbot rosbag jpeg slam (default: all, one after the other)
 #   --runs N     executions of each (default: 100000)
 #   --seconds N  instead so many seconds for each
 #   --corpus DIR (default: build/fuzz/corpus)
 #
-# An input that crashes, takes more than 2 s under the sanitizers, or allocates more than 16 MB at once (map: 64 MB, for
-# the table of tiles of a large building; rosbag: 300 MB, for a chunk) is kept in CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE" repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
+# An input that crashes, takes more than 2 s under the sanitizers (slam: 20 s, for 200 messages), or allocates more than
+# 16 MB at once (map, slam: 64 MB, for the table of tiles of a large building; rosbag: 300 MB, for a chunk) is kept in
+# CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE" repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../../deploy/common.sh"
 
-readonly kTargets=(messages datagram log map config survey carmen mbot rosbag jpeg)
+readonly kTargets=(messages datagram log map config survey carmen mbot rosbag jpeg slam)
 readonly kMaxInput_bytes=65536
 amount=-runs=100000 targets=() corpus=$source_dir/build/fuzz/corpus
 while (($# > 0)); do
@@ -53,10 +54,11 @@ failed=()
 for target in "${targets[@]}"; do
   mkdir -p "$corpus/$target"
   log=$corpus/$target.log
-  max_MB=16
-  [[ $target != map ]] || max_MB=64
+  max_MB=16 longest_s=2
+  [[ $target != map && $target != slam ]] || max_MB=64
+  [[ $target != slam ]] || longest_s=20
   [[ $target != rosbag ]] || max_MB=300
-  "$source_dir/build/fuzz/tests/fuzz/fuzz_$target" "$corpus/$target" "$amount" -max_len=$kMaxInput_bytes -timeout=2 \
+  "$source_dir/build/fuzz/tests/fuzz/fuzz_$target" "$corpus/$target" "$amount" -max_len=$kMaxInput_bytes -timeout=$longest_s \
     -rss_limit_mb=1024 -malloc_limit_mb=$max_MB -print_final_stats=1 -artifact_prefix="$corpus/findings/$target-" >"$log" 2>&1 ||
     failed+=("$target")
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")

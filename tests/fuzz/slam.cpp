@@ -37,7 +37,6 @@ class Drive {
     config_.slam.gmapping.particles = 2;
     config_.slam.marker_matching.particles = 3;
     half_m_ = {size_m(), size_m()};
-    if (getenv("DUMP")) fprintf(stderr, "EST %d room %g %g\n", int(config_.slam.estimator), half_m_[0], half_m_[1]);
   }
 
   void run() {
@@ -88,7 +87,6 @@ class Drive {
         bytes_.ConsumeBool() ? step : here_ * Se2{std::min(step.x(), 0.1), 0.0, 0.1 * step.y()};
     here_ = {std::clamp(moved.x(), -bounds::kPosition_m, bounds::kPosition_m),
              std::clamp(moved.y(), -bounds::kPosition_m, bounds::kPosition_m), moved.theta()};
-    if (getenv("DUMP")) fprintf(stderr, "ODO t %ld  %g %g %g\n", long(time_us_), here_.x(), here_.y(), here_.theta());
     return encode(channels::kOdometry, to_pose_message(time(), here_));
   }
 
@@ -110,7 +108,6 @@ class Drive {
       std::fill(scan.ranges_m.begin() + first, scan.ranges_m.begin() + last,
                 bytes_.PickValueInArray(kRanges_m));
     }
-    if (getenv("DUMP")) { fprintf(stderr, "LIDAR t %ld n %zu:", long(time_us_), scan.ranges_m.size()); for (size_t i = 0; i < scan.ranges_m.size(); i += 1 + scan.ranges_m.size()/12) fprintf(stderr, " %g", scan.ranges_m[i]); fprintf(stderr, "\n"); }
     return encode(channels::kLidar, to_planar_lidar(scan));
   }
 
@@ -147,7 +144,6 @@ class Drive {
       seen.width_px = bytes_.ConsumeFloatingPointInRange(0.0, 600.0);
       frame.detections.push_back(seen);
     }
-    if (getenv("DUMP")) { fprintf(stderr, "MARKERS t %ld\n", long(time_us_)); for (auto& d : frame.detections) fprintf(stderr, "   id %d at %g %g %g cov %g %g %g\n", d.id, d.base_from_marker.translation().x(), d.base_from_marker.translation().y(), d.base_from_marker.translation().z(), d.covariance_in_base(0,0), d.covariance_in_base(1,1), d.covariance_in_base(5,5)); }
     return encode(channels::kMarkers, to_detections_message(frame));
   }
 
