@@ -107,11 +107,12 @@ TEST(OdometryBuffer, WhatWasDrivenDuringGarbageIsToldAfterIt) {
   EXPECT_NEAR(reported.start_from_end.y() + kept_back->start_from_end.y(), whole.y(), 1e-9);
 }
 
-/// Stands at (5, 1, 0.5) for a second, then tells another pose.
-OdometryBuffer::Outcome outcome_after_standing(const Se2& then, OdometryBuffer& buffer) {
-  for (int ms = 0; ms <= 1000; ms += 50)
+/// Stands at (5, 1, 0.5), for a second unless said, then tells another pose.
+OdometryBuffer::Outcome outcome_after_standing(const Se2& then, OdometryBuffer& buffer,
+                                               int standing_ms = 1000) {
+  for (int ms = 0; ms <= standing_ms; ms += 50)
     EXPECT_EQ(buffer.add({at_ms(ms), Se2{5.0, 1.0, 0.5}}), OdometryBuffer::Outcome::kAdded);
-  return buffer.add({at_ms(1050), then});
+  return buffer.add({at_ms(standing_ms + 50), then});
 }
 
 TEST(OdometryBuffer, AStuckOdometryTellsAtOnceWhatItHasKeptBack) {
@@ -127,6 +128,17 @@ TEST(OdometryBuffer, AStuckOdometryTellsAtOnceWhatItHasKeptBack) {
   EXPECT_NEAR(kept_back->start_from_end.theta(), 0.2, 1e-12);
   EXPECT_FALSE(buffer.kept_back(at_ms(950), at_ms(1000)));
   EXPECT_FALSE(buffer.kept_back(at_ms(1050), at_ms(1100)));
+}
+
+TEST(OdometryBuffer, TheLongerOdometryWasStuckTheMoreItMayHaveKeptBack) {
+  for (const Se2& driven : {Se2{7.0, 0.0, 0.0}, Se2{0.1, 0.0, 2.8}}) {
+    for (const int standing_ms : {1000, 4000}) {
+      OdometryBuffer buffer;
+      EXPECT_EQ(outcome_after_standing(Se2{5.0, 1.0, 0.5} * driven, buffer, standing_ms),
+                standing_ms < 2000 ? OdometryBuffer::Outcome::kJumped
+                                   : OdometryBuffer::Outcome::kCaughtUp);
+    }
+  }
 }
 
 TEST(OdometryBuffer, AResetOfAParkedRobotIsNoMotion) {

@@ -80,6 +80,8 @@ TEST(Run, WritesMetricsAndTheTable) {
   EXPECT_EQ(waymark["marker_error_mean_m"], 0.02);
   EXPECT_EQ(waymark["markers_missing"], 1);
   EXPECT_EQ(waymark["nees_poses"], 1);
+  EXPECT_TRUE(waymark["max_jump_m"].is_number());
+  EXPECT_TRUE(waymark["lifted_at_s"].is_null()) << "nobody lifted the robot";
   EXPECT_EQ(waymark["timings"]["scan_ms"], 1.5);
   const Json odometry = json_in(run.path() / "odometry/metrics.json");
   EXPECT_EQ(odometry["accuracy_percent"], 99.0);
