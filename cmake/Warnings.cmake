@@ -12,4 +12,6 @@ add_library(waymark_warnings INTERFACE)
 target_compile_options(waymark_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wold-style-cast
   -Woverloaded-virtual -Wnon-virtual-dtor
-  $<$<BOOL:${WAYMARK_WARNINGS_AS_ERRORS}>:-Werror>)
+  $<$<BOOL:${WAYMARK_WARNINGS_AS_ERRORS}>:-Werror>
+  # GCC takes instrumented code for uninitialised reads.
+  $<$<AND:$<BOOL:${WAYMARK_SANITIZE}>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>)
