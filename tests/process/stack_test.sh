@@ -25,6 +25,8 @@ speed_mps = 0.5
 END
 
 readonly page="127.0.0.1:$((20000 + $$ % 10000))" token=0123456789abcdef0123  # of the live page
+readonly port=$((8700 + $$ % 1000))
+readonly url="udpm://239.255.76.67:$port?ttl=0"
 
 fail() {
   echo "FAILED: $*" >&2
@@ -102,7 +104,6 @@ a_signal_while_it_starts() {
 
 # A second stack in lockstep on the port of the first is refused before anything of it runs; the first one is as ever.
 two_stacks_on_one_port() {
-  url="udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
   begin alone --lcm-url "$url"
   expect_code 0 $!
   begin first --lcm-url "$url"
@@ -180,7 +181,6 @@ post_command() {
 
 # A map that is saved on command; the replay of the log saves the same bytes.
 commands_while_it_runs() {
-  url="udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
   ask 4 "no answer within 2 s" reset
   ask 2 "" fly
   ask 2 "no_such_channel" --channels <(printf '[channels]\nno_such_channel = "A"\n') reset
@@ -235,7 +235,6 @@ sweep() {
 
 # A program with an MBot's own types reads a live run by an MBot's names, and resets it.
 mbot_client() {
-  local url="udpm://239.255.76.67:$((8700 + $$ % 200))?ttl=0"
   sed -i 's/^length_m.*/length_m = 14.0/; s/^end_x_m.*/end_x_m = 12.0/' "$work/short.toml"
   printf '[run]\nrolling_scan = true\n' >>"$work/short.toml"  # an MBot's lidar_t
   begin run --real-time --channels "$source_dir/deploy/mbot.toml" --lcm-url "$url"
@@ -250,8 +249,8 @@ mbot_client() {
 
 # Somebody else publishes wrong copies of the sensors' messages, 1,500 a second and stamped up to 30 s ahead.
 a_rival_in_real_time() {
-  local port=$((8700 + $$ % 200)) rival file
-  begin run --real-time --lcm-url "udpm://239.255.76.67:$port?ttl=0"
+  local rival file
+  begin run --real-time --lcm-url "$url"
   local run=$!
   until_under_way run
   /usr/bin/python3 -B "$source_dir/tests/support/rival.py" "$port" 300 >"$work/rival.output" 2>&1 &
@@ -270,7 +269,7 @@ a_rival_in_real_time() {
 # Each process hangs for a while, one after the other: the run goes on, and every scan is used.
 stopped_processes_in_real_time() {
   local name run pid
-  begin run --real-time --lcm-url "udpm://239.255.76.67:$((8700 + RANDOM % 200))?ttl=0"
+  begin run --real-time --lcm-url "$url"
   run=$!
   until_under_way run
   for name in detector slam viewer recorder; do
@@ -302,7 +301,6 @@ systemd_units() {
 
 # Type=notify and WatchdogSec: what a program says to its supervisor.
 a_supervisor_is_told() {
-  local url="udpm://239.255.76.67:$((8700 + $$ % 200))?ttl=0"
   /usr/bin/python3 -c '
 import socket, sys
 s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
