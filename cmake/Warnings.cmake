@@ -12,6 +12,7 @@ add_library(waymark_warnings INTERFACE)
 target_compile_options(waymark_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wold-style-cast
   -Woverloaded-virtual -Wnon-virtual-dtor
-  $<$<BOOL:${WAYMARK_WARNINGS_AS_ERRORS}>:-Werror>
-  # GCC takes instrumented code for uninitialised reads.
-  $<$<AND:$<BOOL:${WAYMARK_SANITIZE}>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>)
+  $<$<BOOL:${WAYMARK_WARNINGS_AS_ERRORS}>:-Werror>)
+if(WAYMARK_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # takes instrumented code for uninitialised reads
+  target_compile_options(waymark_warnings INTERFACE -Wno-maybe-uninitialized)
+endif()
