@@ -8,6 +8,10 @@
 # usage: tests/simulation/thread_sanitizer.sh
 set -euo pipefail
 
+case ${1:-} in
+  --help | -h) sed -nE '3,/^set/{/^set/q; s/^# ?//p}' "$0" && exit 0 ;;
+  ?*) echo "thread_sanitizer: takes no arguments (see --help)" >&2 && exit 2 ;;
+esac
 build_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/build/release
 # shellcheck source=tests/process/installed.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../process/installed.sh"
