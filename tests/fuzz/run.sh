@@ -17,6 +17,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../../deploy/common.sh"
 
 readonly kTargets=(messages datagram log map config survey carmen mbot rosbag jpeg slam)
 readonly kMaxInput_bytes=65536
+declare -rA max_MB=([map]=64 [slam]=64 [rosbag]=300) longest_s=([slam]=20)
 amount=-runs=100000 targets=() corpus=$source_dir/build/fuzz/corpus
 while (($# > 0)); do
   case $1 in
@@ -54,12 +55,8 @@ failed=()
 for target in "${targets[@]}"; do
   mkdir -p "$corpus/$target"
   log=$corpus/$target.log
-  max_MB=16 longest_s=2
-  [[ $target != map && $target != slam ]] || max_MB=64
-  [[ $target != slam ]] || longest_s=20
-  [[ $target != rosbag ]] || max_MB=300
-  "$source_dir/build/fuzz/tests/fuzz/fuzz_$target" "$corpus/$target" "$amount" -max_len=$kMaxInput_bytes -timeout=$longest_s \
-    -rss_limit_mb=1024 -malloc_limit_mb=$max_MB -print_final_stats=1 -artifact_prefix="$corpus/findings/$target-" >"$log" 2>&1 ||
+  "$source_dir/build/fuzz/tests/fuzz/fuzz_$target" "$corpus/$target" "$amount" -max_len=$kMaxInput_bytes -timeout="${longest_s[$target]:-2}" \
+    -rss_limit_mb=1024 -malloc_limit_mb="${max_MB[$target]:-16}" -print_final_stats=1 -artifact_prefix="$corpus/findings/$target-" >"$log" 2>&1 ||
     failed+=("$target")
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   features=$(grep -oE 'cov: [0-9]+ ft: [0-9]+' "$log" | tail -n 1)

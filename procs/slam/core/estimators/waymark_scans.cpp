@@ -41,8 +41,7 @@ void WaymarkEstimator::search_widely(Look& look) const {
   const Se2 expected = submap_from_map * look.expected.map_from_base;
   WideSearch search;
   for (const Se2& step : odometry_check_.steps_without_odometry())
-    search.guesses.push_back(submap_from_last * step);
-  search.guesses.push_back(expected);
+    search.without_odometry.push_back(submap_from_last * step);
   search.by_odometry = expected;
   search.odometry_covariance = in_axes(submap_from_map.rotation(), look.expected.covariance);
   search.since_last_s = look.since_last_s;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/association.hpp"
 
-#include <Eigen/Cholesky>
+#include "common/geometry/chi2.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,8 +49,7 @@ MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t l
       }
     }
   }
-  innovation.chi2 =
-      innovation.residual.dot(innovation.covariance.ldlt().solve(innovation.residual));
+  innovation.chi2 = chi2(innovation.residual, innovation.covariance);
   return innovation;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/loop_finder.hpp"
 
-#include <Eigen/Cholesky>
+#include "common/geometry/chi2.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -158,9 +159,8 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
   if (!loop) return {};
   const Se2 map_from_base = state.keyframes[old->first_keyframe()] * loop->match.map_from_base;
   const Eigen::Vector3d off = pose_difference(map_from_base, search.map_from_base);
-  const double chi2 = off.dot(covariance_in(*old, search).ldlt().solve(off));
-  const Found found{keyframe, *loop, chi2};
-  const bool is_surprise = chi2 > config_.gate;
+  const Found found{keyframe, *loop, chi2(off, covariance_in(*old, search))};
+  const bool is_surprise = found.chi2 > config_.gate;
   if (is_surprise && (loop->match.inlier_share < config_.surprise_share ||
                       loop->match.mapped_share < config_.surprise_share)) {
     return {};

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/wide_search.hpp"
 
+#include "common/geometry/chi2.hpp"
 #include "common/geometry/squared.hpp"
 #include "slam/core/registration/correlative_search.hpp"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -24,7 +24,7 @@ const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a
 
 bool is_contradicted_by_odometry(const ScanMatch& match, const WideSearch& search) {
   const Eigen::Vector3d off = pose_difference(match.map_from_base, search.by_odometry);
-  return off.dot(search.odometry_covariance.ldlt().solve(off)) > squared(kContradictedSigmas);
+  return chi2(off, search.odometry_covariance) > squared(kContradictedSigmas);
 }
 
 }  // namespace
@@ -38,7 +38,9 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   const SearchWindow window{
       kReach_m, std::min(std::numbers::pi, kReach_rad + kUnseen_rad_s * search.since_last_s)};
   std::optional<ScanMatch> found;
-  for (const Se2& guess : search.guesses) {
+  std::vector<Se2> guesses = search.without_odometry;
+  guesses.push_back(search.by_odometry);
+  for (const Se2& guess : guesses) {
     const auto place = field.best(beams, guess, window, search.min_score);
     if (!place) continue;
     const ScanMatch match =

@@ -10,9 +10,9 @@
 namespace waymark {
 
 struct WideSearch {
-  std::vector<Se2> guesses{};  ///< map_from_base; windows about them are searched
-  Se2 by_odometry{};           ///< map_from_base
+  Se2 by_odometry{};  ///< map_from_base; windows about it and the others are searched
   Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of it, map's axes
+  std::vector<Se2> without_odometry{};                               ///< map_from_base
   double since_last_s{0.0};  ///< scan: the longer, the more the robot may have turned
   double min_score{0.0};     ///< of a place (SearchMatch)
 };

@@ -103,17 +103,11 @@ Submap mapped_room() {
   return submap;
 }
 
-WideSearch among(const std::vector<Se2>& guesses) {
-  WideSearch search;
-  search.guesses = guesses;
-  search.by_odometry = guesses.back();
-  search.min_score = 0.1;
-  return search;
-}
-
 WideSearch around(const Se2& guess, double since_last_s = 0.0) {
-  WideSearch search = among({guess});
+  WideSearch search;
+  search.by_odometry = guess;
   search.since_last_s = since_last_s;
+  search.min_score = 0.1;
   return search;
 }
 
@@ -166,7 +160,9 @@ TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenThoughItComesLast) {
   const Se2 truth{3.0, 0.3, 0.0};
   const Points scan = seen_from(truth, together(whole_room(), crate));
   const Se2 turned_round{3.0, -0.3, std::numbers::pi};
-  const Searched found = look_for(submap, scan, {3.0, 0.0, 1.5}, among({turned_round, truth}));
+  WideSearch search = around(truth);
+  search.without_odometry = {turned_round};
+  const Searched found = look_for(submap, scan, {3.0, 0.0, 1.5}, search);
   EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.05);
 }
 
@@ -183,8 +179,8 @@ ScanMatch searched_from_plain(double share_of_plain, double odometry_sigma_m) {
   plain.inliers = static_cast<int>(share_of_plain * static_cast<double>(all));
   plain.inlier_share = 1.0;
   plain.mapped_share = share_of_plain;
-  WideSearch search = around(kTruth);
-  search.by_odometry = {2.5, 0.0, 0.3};
+  WideSearch search = around({2.5, 0.0, 0.3});
+  search.without_odometry = {kTruth};
   search.odometry_covariance = squared(odometry_sigma_m) * Eigen::Matrix3d::Identity();
   return searched_widely(plain, seen_from(kTruth, room), submap.surfaces(), submap.points(), search,
                          after_good_scans(), RangeNoise{0.01}, ScanMatchConfig{});
