@@ -88,7 +88,7 @@ std::string SlamNode::save_named(const std::string& name) {
 /// @param start  where in the map; of a new map: nowhere.
 void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> map,
                                const StartPose& start) {
-  const bool keeps_map_id = map != nullptr;
+  const bool keeps_frame = map != nullptr;
   config_.slam.mode = mode;
   config_.slam.start = start;
   loaded_map_ = std::move(map);
@@ -100,12 +100,14 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
     publish_tiles(map_publisher_.complete(estimator_->map(), *last_estimate_));
     publish_markers(*last_estimate_);
   }
-  if (keeps_map_id) return;
+  if (mode == MapMode::kLocalise) return;
+  // A map of its own begins, of the loaded one's frame or of a new one.
   map_id_ = 0;
-  frame_map_id_ = 0;
-  frame_ = survey_.empty() ? "map" : "survey";
   map_publisher_ = {};
   correction_.forget();
+  if (keeps_frame) return;
+  frame_map_id_ = 0;
+  frame_ = survey_.empty() ? "map" : "survey";
 }
 
 std::string SlamNode::reset() {

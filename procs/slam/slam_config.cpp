@@ -74,7 +74,7 @@ void SlamSection::describe(Fields& fields) {
                  "for the particles; any number gives the same result");
   });
   fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
-  fields.field("map_period_s", map_period_s, kPositive,
+  fields.field("map_period_s", map_period_s, {0.001, 86400.0},
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
   of({EstimatorName::kWaymark}, [&] {
     fields.choice(

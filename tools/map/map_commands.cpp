@@ -54,6 +54,13 @@ void need_same_markers(const MapFile& a, const MapFile& b) {
   const double cell_b_m = b.map.grid.frame.resolution_m;
   if (cell_a_m != cell_b_m)
     throw SetupError{fmt::format("the maps have other cells: {} m and {} m", cell_a_m, cell_b_m)};
+  const double spacing_a_m = a.map.walls.spacing_m();
+  const double spacing_b_m = b.map.walls.spacing_m();
+  if (spacing_a_m != spacing_b_m) {
+    throw SetupError{
+        fmt::format("the maps were made with other slam.waymark.scan.cell_spacing_m: {} and {}",
+                    spacing_a_m, spacing_b_m)};
+  }
 }
 
 struct CalibrationTerm {

@@ -194,6 +194,29 @@ TEST(WaymarkEstimator, APlaceThatIsKnownWellDoesNotMakeTheGraphGrow) {
   EXPECT_LT(error_m, 1.1 * error_of_all_m + 0.001);
 }
 
+/// The first one makes the solver step the whole graph, for which the second one must not stand in
+/// the window without a measurement.
+TEST(WaymarkEstimator, AMarkerThatReturnsAndANewOneBesideItAreUsedTogether) {
+  SyntheticCorridor corridor = corridor_with_markers(3);
+  corridor.speed_m_s = 1.0;
+  corridor.length_m = 40.0;
+  corridor.turn_back_every_m = 30.0;
+  corridor.drive_m = 60.0;
+  corridor.markers = test::opposite_markers(corridor, 4.0, 4.0);
+  SensorLog log = drive(corridor);
+  constexpr int kHungUpMeanwhile = 4;  // opposite of marker 5
+  for (std::size_t i = 0; i < log.frames.size() / 2; ++i) {
+    std::erase_if(log.frames[i].detections, [](const MarkerDetection& detection) {
+      return detection.id == kHungUpMeanwhile;
+    });
+  }
+  const std::vector<Step> steps = run_graph(log, corridor);
+  for (const Step& step : steps)
+    ASSERT_TRUE(step.estimate.covariance.allFinite());
+  EXPECT_LT(test::along_rmse_m(steps), 0.05);
+  EXPECT_FALSE(steps.back().estimate.calibration_widened);
+}
+
 /// A stuck encoder: nothing for a while, then at once what was driven meanwhile.
 TEST(WaymarkEstimator, OdometryThatCatchesUpIsNotCountedTwice) {
   const SyntheticCorridor corridor = corridor_with_markers(1);

@@ -231,6 +231,21 @@ TEST_F(CommandedSlam, AMapBecomesOneToLocaliseIn) {
 }
 
 // Carried 3 m back by hand, and told so; the odometry knows nothing of it.
+TEST_F(CommandedSlam, AMapThatIsAddedToIsAnotherOne) {
+  const test::Drive drive = drive_with(mapping(), messages_of(*drive_, 0.0, 18.0),
+                                       {{13.0, mode_command(command_t::MODE_LOCALISE)},
+                                        {15.0, mode_command(command_t::MODE_EXTEND)}});
+  const auto map_id_at = [&](double time_s) {
+    return std::find_if(drive.estimates.begin(), drive.estimates.end(),
+                        [&](const slam_estimate_t& estimate) {
+                          return static_cast<double>(estimate.utime) > 1e6 * time_s;
+                        })
+        ->map_id;
+  };
+  EXPECT_EQ(map_id_at(14.5), map_id_at(12.5));
+  EXPECT_NE(map_id_at(15.5), map_id_at(14.5));
+}
+
 TEST_F(CommandedSlam, AGivenPoseIsWhereTheRobotIs) {
   std::vector<Message> messages = messages_of(*drive_, 0.0, 20.0);
   std::vector<Message> later = messages_of(*drive_, 10.0, 40.0);

@@ -89,6 +89,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
     add_keyframe(observation, look);
     since_insertion_m_ = observation.motion.distance_m;
   } else {
+    if (look.scan) note_fit(look.scan->match);
     since_insertion_m_ += observation.motion.distance_m;
     if (between.shows_all_axes || agrees_with_markers(observation)) motion_doubt_.note_observed();
     if (between.match) insert_between(look.points, *between.match, between.map_from_base);
@@ -151,7 +152,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
         is_moved ? scan->map_from_submap * scan->match.map_from_base : expected.map_from_base);
     shows_all_axes = is_used && !scan->match.observed.is_degenerate;
     add_odometry_factor(keyframe, shows_all_axes || agrees_with_markers(observation));
-    if (scan) inlier_share_ = scan->match.inlier_share;
+    if (scan && scan->match.num_mapped >= config_.scan.min_inliers)
+      inlier_share_ = scan->match.inlier_share;
     if (scan) note_fit(scan->match);
     if (is_used) {
       note_reason(EstimateReason::kScan);
@@ -233,7 +235,6 @@ WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Loo
   const Prediction& expected = look.expected;
   BetweenKeyframes between{expected.map_from_base, expected.covariance};
   const auto& scan = look.scan;
-  if (scan) note_fit(scan->match);
   if (!scan || !scan->match.is_usable(config_.scan) || usual_fit_.is_refuted(scan->match))
     return between;
   const Se2 found = scan->map_from_submap * scan->match.map_from_base;

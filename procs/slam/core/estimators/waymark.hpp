@@ -62,9 +62,6 @@ inline constexpr std::size_t kGroupedKeyframes = 15;
 /// How well the robot's description knows its calibration.
 Calibration calibration_sigmas(const EstimatorSetup& setup, const WaymarkConfig& config);
 
-/// Ends of its beams, base frame.
-Points points_of(const Observation& observation);
-
 class WaymarkEstimator final : public Estimator {
  public:
   WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config);
@@ -186,6 +183,7 @@ class WaymarkEstimator final : public Estimator {
   std::vector<MarkerMeasurement> measured(const Observation& observation) const;
   std::vector<PoseHint> hints(std::span<const MarkerMeasurement> measurements) const;
   void use_markers(std::span<const MarkerMeasurement> measurements);
+  std::size_t new_landmark(const MarkerMeasurement& measurement, std::size_t first_new);
   void note_misses(const Observation& observation);
   void relocate(const Se2& map_from_base);
   void begin_submaps_anew();
@@ -232,7 +230,8 @@ class WaymarkEstimator final : public Estimator {
   StartPose start_;
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
   Points loaded_points_{};                     ///< of the loaded map's walls
-  CoarseNdt loaded_coarse_{config_.scan.cell_spacing_m};  ///< the same
+  CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
+                                             : config_.scan.cell_spacing_m};  ///< the same
   bool is_confirmed_{true};  ///< the place in the loaded map, by markers or by walls
   std::optional<WallChangeDetector> wall_changes_{};  ///< against the loaded map
   Survey survey_;

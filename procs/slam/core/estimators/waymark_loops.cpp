@@ -38,7 +38,7 @@ void WaymarkEstimator::close_loops(const Points& points) {
     for (const LoopFinder::Found& found : loop_finder_.find(
              newest(), points, search, submaps_.finished(), graph_.state(), range_noise_)) {
       const Submap* submap = submaps_.find(found.loop.submap);
-      if (submap == nullptr) continue;  // forgotten meanwhile
+      if (submap == nullptr || graph_.is_removed(found.keyframe)) continue;  // forgotten meanwhile
       add_scan_factor(found.keyframe, *submap, found.loop.match, true);
       solve_schedule_.note_loop(found.chi2 > kLoopMatters);
       note_reason(EstimateReason::kLoop);

@@ -77,8 +77,8 @@ std::vector<PoseHint> WaymarkEstimator::hints(
 
 void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measurements) {
   struct Match {
-    std::size_t landmark;
     const MarkerMeasurement* measurement;
+    std::optional<std::size_t> landmark{};  ///< none: a new one
   };
 
   std::vector<Match> matches;
@@ -90,35 +90,49 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     if (!is_it && book_.is_misread(graph_.state(), newest(), measurement)) continue;
     if (measurement.wall) graph_.calibration_knowledge().observe(*measurement.wall);
     if (measurement.focal) graph_.calibration_knowledge().observe(*measurement.focal);
-    std::size_t landmark = 0;
-    if (is_it) {
-      landmark = nearest->landmark;
-      book_.note_sighting(landmark, measurement.time);
-      if (!markers_known_) learn_noise(*nearest, measurement);
-      markers_known_ = true;
-      if (graph_.is_fixed(landmark))
-        is_confirmed_ = true;
-      else if (!graph_.is_active({VariableKind::kLandmark, landmark}))
-        returning.push_back(landmark);
-    } else {
-      landmark = graph_.add_landmark(map_from_measured(graph_.state(), newest(), measurement));
-      book_.add(measurement.id, measurement.time);
-    }
-    matches.push_back({landmark, &measurement});
+    matches.push_back({&measurement});
+    if (!is_it) continue;
+    matches.back().landmark = nearest->landmark;
+    book_.note_sighting(nearest->landmark, measurement.time);
+    if (!markers_known_) learn_noise(*nearest, measurement);
+    markers_known_ = true;
+    if (graph_.is_fixed(nearest->landmark))
+      is_confirmed_ = true;
+    else if (!graph_.is_active({VariableKind::kLandmark, nearest->landmark}))
+      returning.push_back(nearest->landmark);
   }
   if (!matches.empty()) note_reason(EstimateReason::kMarker);
   if (markers_known_) unobserved_m_ = 0.0;
+  // Before landmarks are added: it solves the window, where none may be without a measurement.
   if (!returning.empty()) step_everything(returning);
+  const std::size_t first_new = book_.entries().size();
   for (const Match& match : matches) {
     MarkerFactor factor;
     factor.keyframe = newest();
-    factor.landmark = match.landmark;
+    factor.landmark =
+        match.landmark ? *match.landmark : new_landmark(*match.measurement, first_new);
     factor.measurement = *match.measurement;
     factor.root_information = root_of(match.measurement->covariance.inverse());
     graph_.add(factor);
   }
   if (!matches.empty()) graph_.optimise();
   if (!returning.empty()) solve_schedule_.note_loop(true);
+}
+
+/// A marker that was measured twice at once is one.
+/// @param first_new  of the landmarks that this scan has added.
+std::size_t WaymarkEstimator::new_landmark(const MarkerMeasurement& measurement,
+                                           std::size_t first_new) {
+  const Se2 there = map_from_measured(graph_.state(), newest(), measurement);
+  for (std::size_t i = first_new; i < book_.entries().size(); ++i) {
+    const double apart_m = (graph_.state().landmarks[i].translation() - there.translation()).norm();
+    if (book_.entries()[i].id != measurement.id || apart_m >= config_.same_marker_within_m)
+      continue;
+    book_.note_sighting(i, measurement.time);
+    return i;
+  }
+  book_.add(measurement.id, measurement.time);
+  return graph_.add_landmark(there);
 }
 
 /// Absence is evidence where the camera could have seen the marker, and nothing stood before it:

@@ -24,14 +24,6 @@ Observation scaled_ranges(Observation observation, double share) {
 
 }  // namespace
 
-Points points_of(const Observation& observation) {
-  Points points;
-  points.reserve(observation.beams.size());
-  for (const AnnotatedBeam& annotated : observation.beams)
-    points.push_back(annotated.beam.end_in_base);
-  return points;
-}
-
 /// Walls on both sides that are all too far away, or all too near, are no other pose: the ranges
 /// are at another scale.
 std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,

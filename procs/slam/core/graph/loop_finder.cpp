@@ -27,7 +27,7 @@ constexpr double kAlongWeak = 0.98;  // cosine
 const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
 constexpr double kAgree_m = 0.3;  // two candidates' corrections
 constexpr double kAgree_rad = 0.05;
-constexpr double kAgreeWithin_m = 5.0;  // driven between them
+constexpr double kAgreeWithin_m = 5.0;  // driven between them, and between their places
 
 double reach_m(const Eigen::Matrix3d& covariance) {
   return kSigmas * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
@@ -141,7 +141,7 @@ Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& s
   return since.determinant() < covariance.determinant() ? since : covariance;
 }
 
-/// Along a bare corridor a loop says nothing.
+/// A loop along a bare corridor does not bound the drift along it.
 void LoopFinder::note_confirmed(const Found& found, const Eigen::Vector3d& off) {
   if (!found.loop.match.observed.is_degenerate)
     confirmed_.push_back({found.loop.submap, found.keyframe, off});
@@ -153,6 +153,8 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
                                                 const State& state, const RangeNoise& noise) {
   while (!confirmed_.empty() && confirmed_.front().keyframe < search.first_recent_keyframe)
     confirmed_.pop_front();
+  candidate_age_m_ += config_.every_m;
+  if (candidate_age_m_ > kAgreeWithin_m) candidate_.reset();
   const Submap* old = nearest_submap(search, submaps, state);
   if (old == nullptr) return {};
   const auto loop = match(*old, points, search, state, noise);
@@ -188,6 +190,7 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
     candidate_.reset();
   } else {
     candidate_ = candidate;
+    candidate_age_m_ = 0.0;
   }
   return both;
 }

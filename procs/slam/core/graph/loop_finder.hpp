@@ -104,6 +104,7 @@ class LoopFinder {
   /// Of submaps, by first keyframe; the one searched last is last.
   std::deque<std::pair<std::size_t, CorrelativeField>> fields_{};
   std::optional<Candidate> candidate_{};
+  double candidate_age_m_{0.0};        ///< driven since
   std::deque<Confirmed> confirmed_{};  ///< of keyframes that are not old
   int num_ambiguous_{0};
 };

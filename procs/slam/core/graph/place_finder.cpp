@@ -223,9 +223,7 @@ bool PlaceFinder::is_crossed(const Eigen::Vector2d& from, const Eigen::Vector2d&
 
 void PlaceFinder::weigh_walls(Hypothesis& place, const Observation& observation,
                               const RangeNoise& noise) const {
-  Points points;
-  for (const AnnotatedBeam& annotated : observation.beams)
-    points.push_back(annotated.beam.end_in_base);
+  const Points points = points_of(observation);
   const Eigen::Matrix3d near = kMatchSigmas.cwiseAbs2().asDiagonal();
   const ScanMatch match = match_scan(points, map_->walls, place.map_from_base, near, noise, scan_);
   if (match.is_usable(scan_)) place.map_from_base = match.map_from_base;

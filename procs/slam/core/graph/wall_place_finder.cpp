@@ -50,10 +50,7 @@ std::optional<Se2> WallPlaceFinder::update(const Motion& motion, const Observati
   if (!field_ || observation.beams.size() < kLeastBeams || since_search_m_ < kSearchEvery_m)
     return std::nullopt;
   since_search_m_ = 0.0;
-  Points points;
-  for (const AnnotatedBeam& annotated : observation.beams)
-    points.push_back(annotated.beam.end_in_base);
-  const auto there = found(thinned(points, kBeams), noise);
+  const auto there = found(thinned(points_of(observation), kBeams), noise);
   if (!there) return std::nullopt;
   const Eigen::Vector3d off = candidate_ ? pose_difference(*there, *candidate_)
                                          : Eigen::Vector3d::Constant(std::numbers::pi);

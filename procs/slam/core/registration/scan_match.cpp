@@ -249,14 +249,6 @@ double independent_share(int beams) {
   return std::min(1.0, kIndependentBeams / beams);
 }
 
-Points thinned(const Points& points, std::size_t most) {
-  const std::size_t step = std::max<std::size_t>(1, (points.size() + most - 1) / most);
-  Points kept;
-  for (std::size_t i = 0; i < points.size(); i += step)
-    kept.push_back(points[i]);
-  return kept;
-}
-
 ObservedAxes observed_axes(const Eigen::Matrix3d& information, const Eigen::Matrix2d& lasting,
                            double weak_share) {
   ObservedAxes observed;

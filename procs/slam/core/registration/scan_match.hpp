@@ -4,6 +4,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "slam/core/registration/ndt_map.hpp"
+#include "slam/core/registration/points.hpp"
 #include "slam/core/registration/range_noise.hpp"
 
 #include <Eigen/Core>
@@ -14,11 +15,6 @@
 namespace waymark {
 
 class Fields;
-
-using Points = std::vector<Eigen::Vector2d>;
-
-/// At most so many of them, evenly spread.
-Points thinned(const Points& points, std::size_t most);
 
 struct ScanMatchConfig {
   double cell_spacing_m{0.25};

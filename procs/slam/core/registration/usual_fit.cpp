@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/usual_fit.hpp"
 
+#include <algorithm>
+
 namespace waymark {
 namespace {
 
@@ -16,7 +18,8 @@ bool UsualFit::is_refuted(const ScanMatch& match) const {
 }
 
 bool UsualFit::is_contradicted(const ScanMatch& match) const {
-  return is_refuted(match) || match.inlier_share < kContradicted * inlier_share_;
+  return match.num_mapped >= min_inliers_ &&
+         match.inlier_share < std::max(min_inlier_share_, kContradicted * inlier_share_);
 }
 
 bool UsualFit::is_worse_than_usual(const ScanMatch& match) const {
@@ -28,6 +31,7 @@ bool UsualFit::is_nearly_usual(const ScanMatch& match) const {
 }
 
 void UsualFit::note_scan(const ScanMatch& match) {
+  if (match.num_mapped < min_inliers_) return;
   inlier_share_ += kMemory * (match.inlier_share - inlier_share_);
 }
 

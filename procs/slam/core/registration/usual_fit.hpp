@@ -8,7 +8,7 @@ namespace waymark {
 
 class UsualFit {
  public:
-  /// @param min_inliers       of a scan that says anything.
+  /// @param min_inliers       mapped beams that a scan needs to contradict anything.
   /// @param min_inlier_share  of the mapped beams; below, the map refutes the scan.
   UsualFit(int min_inliers, double min_inlier_share)
       : min_inliers_{min_inliers}, min_inlier_share_{min_inlier_share} {}

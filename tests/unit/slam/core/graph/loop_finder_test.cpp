@@ -111,6 +111,18 @@ TEST(LoopFinder, TwoScansThatAgreeCloseALoop) {
   EXPECT_NEAR((Se2{3.0, 0.0, 0.0} * found[1].loop.match.map_from_base).x(), second.x(), 0.05);
 }
 
+/// Its keyframe may be forgotten meanwhile.
+TEST(LoopFinder, AScanDoesNotAgreeWithOneOfLongAgo) {
+  Corridor corridor{irregularly};
+  const Se2 drift{1.2, 0.1, 0.3};
+  const Se2 place{6.0, 0.0, 0.0};
+  EXPECT_TRUE(corridor.look_around(place, drift * place).empty());
+  const Se2 far_from_any_submap{500.0, 0.0, 0.0};
+  for (double driven_m = 0.0; driven_m < 6.0; driven_m += LoopConfig{}.every_m)
+    EXPECT_TRUE(corridor.look_around(far_from_any_submap, far_from_any_submap).empty());
+  EXPECT_TRUE(corridor.look_around(place, drift * place).empty());
+}
+
 /// However alike it looks.
 TEST(LoopFinder, APlaceIsNotLookedForFartherThanThePoseMayHaveDriftedSinceIt) {
   const Se2 first{6.0, 0.0, 0.0};

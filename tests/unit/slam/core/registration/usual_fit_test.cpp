@@ -53,6 +53,14 @@ TEST(UsualFit, FewMappedBeamsRefuteNothing) {
   EXPECT_FALSE(after_good_scans().is_refuted(fit(0.0, 0.1)));
 }
 
+TEST(UsualFit, AScanWhereNothingIsMappedContradictsNothingAndIsNotUsual) {
+  UsualFit usual = after_good_scans();
+  EXPECT_FALSE(usual.is_contradicted(fit(0.0, 0.0)));
+  for (int i = 0; i < 100; ++i)
+    usual.note_scan(fit(0.0, 0.0));
+  EXPECT_TRUE(usual.is_contradicted(fit(0.7, 1.0)));
+}
+
 TEST(UsualFit, AtFirstNothingIsUsual) {
   const UsualFit usual{kMinInliers, 0.5};
   EXPECT_FALSE(usual.is_worse_than_usual(fit(0.6, 0.3)));
