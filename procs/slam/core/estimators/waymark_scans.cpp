@@ -4,6 +4,7 @@
 #include "slam/core/registration/wide_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace waymark {
 
@@ -56,18 +57,21 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
   ScanFactor factor;
   factor.is_loop = is_loop;
   factor.keyframe = keyframe;
-  // Keyframes are put together: one stands for its neighbours. It is the same one for every scan,
-  // so that the whole graph stays sparse.
+  // Keyframes are put together, so that the whole graph stays sparse: the middle one of those that
+  // saw the walls stands for its neighbours.
   const auto count = match.keyframe_shares.size();
   const auto first = static_cast<std::size_t>(match.first_keyframe);
   for (std::size_t begin = 0; begin < count;) {
     const std::size_t group = (first + begin) / kGroupedKeyframes * kGroupedKeyframes;
     const std::size_t end = std::min(count, group + kGroupedKeyframes - first);
     double share = 0.0;
-    for (std::size_t i = begin; i < end; ++i)
+    double middle = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
       share += match.keyframe_shares[i];
-    std::size_t reference =
-        std::clamp(group + kGroupedKeyframes / 2, first + begin, first + end - 1);
+      middle += static_cast<double>(i) * match.keyframe_shares[i];
+    }
+    if (share > 0.0) middle /= share;
+    std::size_t reference = first + static_cast<std::size_t>(std::lround(middle));
     if (!is_loop) reference = std::max(reference, graph_.first_active_keyframe());
     begin = end;
     if (share <= 0.0 || reference >= first + end) continue;

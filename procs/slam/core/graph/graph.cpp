@@ -2,6 +2,7 @@
 #include "slam/core/graph/graph.hpp"
 
 #include "slam/core/graph/damped_root.hpp"
+#include "slam/core/graph/step_share.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -295,7 +296,9 @@ Eigen::VectorXd Graph::solve_window() {
       choose_kind(factors_[index]);
     const NormalEquations equations = window_equations();
     root.compute(equations.h);
-    const Eigen::VectorXd step = root.solve(-equations.g);
+    Eigen::VectorXd step = root.solve(-equations.g);
+    step *= step_share(step, layout_,
+                       [this](const Variable& variable) { return offsets_.at(variable); });
     retract_window(step);
     moved += step;
     step_size = step.cwiseAbs().maxCoeff();

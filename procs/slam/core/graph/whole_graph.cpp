@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Graph::step_all(): sparse Gauss-Newton over every variable.
 #include "slam/core/graph/graph.hpp"
+#include "slam/core/graph/step_share.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
@@ -151,6 +152,7 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   x.head(num_behind) = -x.head(num_behind).cwiseQuotient(solver.vectorD().head(num_behind));
   x.tail(num_window).noalias() = corner.transpose() * window_step;
   solver.matrixU().solveInPlace(x);
+  x.head(num_behind) *= step_share(x, variables, place_of);
   for (const Variable& variable : variables)
     state_.retract(variable, x.segment(place_of(variable), 3));
   carry_removed();

@@ -22,7 +22,7 @@ struct ScanMatchConfig {
   double information_share{0.5};
   double roughness_m{0.003};
   double weak_share{0.01};
-  int min_inliers{15};
+  int min_inliers{8};
 
   /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
