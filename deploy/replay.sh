@@ -17,7 +17,7 @@
 #
 # Deletes the results of an earlier replay in DIR/ROW, and its logs DIR/logs/ROW.slam.log and .viewer.log; other
 # files there stay. A damaged log gives what is left of it, and exit code 1.
-# Writes map, pictures, trajectory and markers into DIR/ROW (README.md, "What a run leaves"), with slam.lcm
+# Writes map, pictures, trajectory and markers into DIR/ROW (docs/reference.md, "What a run leaves"), with slam.lcm
 # (what slam published), config.toml and timings.json. The seed is that of the run when its scenario.toml
 # is beside the log, so that a run and its replay give the same bytes.
 # shellcheck source=deploy/common.sh
@@ -81,8 +81,7 @@ check_slam() {
   fi
   slam_options=(--config "$robot" ${seed:+--set "slam.seed=$seed"} --set "slam.estimator=$estimator" "${slam_options[@]}")
   config=$("$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config) || exit $?
-  ((${#map_options[@]} == 0)) ||
-    "$bin_dir/waymark-slam" "${slam_options[@]}" "${map_options[@]}" --log "$log" --check || exit $?
+  "$bin_dir/waymark-slam" "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --check || exit $?
 }
 
 # clear_old_results: so that a replay that fails leaves none that look new. config.toml stays until it is
@@ -118,7 +117,7 @@ show_progress_bars
 put_text "$folder/config.toml" "$config"
 incomplete=()
 run slam "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --out-log "$folder/slam.lcm"
-run viewer --log "$log" --log "$folder/slam.lcm" --out "$folder"
+run viewer "${part[@]}" --log "$log" --log "$folder/slam.lcm" --out "$folder"
 [[ -f $folder/map.pgm ]] || die $kExitFailed "the log has given no map; see $logs/$row.slam.log"
 write_timings
 ((${#incomplete[@]} == 0)) ||

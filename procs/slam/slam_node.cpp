@@ -87,6 +87,13 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
   });
 }
 
+void SlamNode::check(const Config& config) {
+  Config read = config;
+  std::string frame;
+  const auto map = load_map(read, frame);
+  make_estimator(read, map, load_survey(read));
+}
+
 void SlamNode::finish() {
   queue_.finish();
   process_ready_scans();
@@ -207,6 +214,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   if (!estimate.has_pose) {
     counters_.add(kUnplaced);
     outbox_.publish(channels::kSlamEstimate, message);
+    if (loaded_map_) publish_map_when_due(time);  // where to look at, or to give a pose in
     return;
   }
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();

@@ -35,6 +35,9 @@ class SlamNode final : public Node {
 
   SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox);
 
+  /// Reads the map and the survey that are given, and writes nothing. @throws SetupError
+  static void check(const Config& config);
+
   /// Uses the scans that still wait for camera frames; sends the whole map, and on SLAM_TRAJECTORY
   /// the way there as it is known at the end.
   void finish() override;

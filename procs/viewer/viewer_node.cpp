@@ -71,7 +71,7 @@ ViewerNode::ViewerNode(const Config& config, Inbox& inbox, Outbox& /*outbox*/)
 }
 
 void ViewerNode::check(const Config& config) {
-  if (!config.http.empty()) viewer::parse_http_address(config.http);
+  if (!config.http.empty()) viewer::check_http_address(viewer::parse_http_address(config.http));
   if (!config.http_token.empty()) viewer::parse_http_token(config.http_token);
 }
 
@@ -154,7 +154,10 @@ void ViewerNode::subscribe(Inbox& inbox) {
   inbox.on<pose2D_t>(channels::kTruePose, [this](const auto& m) { updater_.add_truth(m); });
   inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) {
     if (!follow(m.map_id, timestamp_from_us(m.utime))) return;
-    if (m.has_pose != 0) updater_.add(m);
+    if (m.has_pose != 0)
+      updater_.add(m);
+    else if (live_feed_)
+      live_feed_->add_unplaced(timestamp_from_us(m.utime));
     if (m.has_pose != 0 && !scene_.estimates.empty()) {
       if (const auto change = change_monitor_.update(scene_.estimates.back())) log_change(*change);
       if (live_feed_) live_feed_->add(m, scene_.estimates.back());
@@ -270,7 +273,8 @@ void ViewerNode::finish() {
 
 void ViewerNode::write_files() {
   if (!has_heard_of_slam(scene_)) {
-    logging::warn("nothing has come from slam: no file is written to {}", folder_.path().string());
+    logging::warn("slam has given neither a pose nor a map: no map is written to {}",
+                  folder_.path().string());
     return;
   }
   write_data();

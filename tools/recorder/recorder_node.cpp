@@ -17,7 +17,7 @@ constexpr std::array kDataChannels{
     channels::kSlamGrid.name,     channels::kSlamMarkers.name,    channels::kSlamParticles.name,
     channels::kSlamScan.name,     channels::kSlamTrajectory.name, channels::kSlamCorrection.name,
     channels::kSlamChanges.name,  channels::kSlamCommand.name,    channels::kSlamReply.name,
-    channels::kMapGraph.name};
+    channels::kSlamFindings.name, channels::kMapGraph.name};
 
 /// @throws SetupError when there is a recording of that name, or what is left of one.
 void protect_recordings(const std::filesystem::path& log) {

@@ -36,7 +36,7 @@ SetupError no_network(const std::string& url) {
                     "\n  without a network, give multicast a route over loopback:"
                     "\n    ip link set lo up"
                     "\n    ip route add 224.0.0.0/4 dev lo"
-                    "\n  or set another --lcm-url (see README, \"No multicast route\")"};
+                    "\n  or set another --lcm-url (see docs/reference.md, \"No multicast route\")"};
 }
 
 /// Statuses and commands may come from everybody, acknowledgements from all in the lockstep.

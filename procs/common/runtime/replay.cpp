@@ -35,10 +35,11 @@ struct Source {
 };
 
 /// A channel is taken from the last log that has it. What SLAM publishes belongs together: a log
-/// with any SLAM_* channel replaces all of them in the logs before it.
+/// with any SLAM_* or MAP_* channel replaces all of them in the logs before it.
 std::string group_of(const std::string& channel) {
   constexpr std::string_view kSlam = "SLAM_";
-  return channel.starts_with(kSlam) ? std::string{kSlam} : channel;
+  constexpr std::string_view kMap = "MAP_";
+  return channel.starts_with(kSlam) || channel.starts_with(kMap) ? std::string{kSlam} : channel;
 }
 
 std::vector<Source> open_sources(const std::vector<std::filesystem::path>& paths,
@@ -165,6 +166,11 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
     ++num_messages;
     progress.show(share_read(sources), fmt::format("{:.1f} s", to_seconds(last - first)));
     source->advance();
+  }
+  if (num_messages == 0) {
+    logging::error("nothing is left of the log, which is {:.1f} s long: see --skip-s and --until-s",
+                   to_seconds(last - first));
+    return kExitFailed;
   }
   node.finish();
   write_out();

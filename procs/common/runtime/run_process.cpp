@@ -14,6 +14,7 @@
 #include "common/runtime/supervisor.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <optional>
 
@@ -222,17 +223,14 @@ void check(const ProcessOptions& options, const OptionSet& option_set) {
   std::vector<std::filesystem::path> inputs = inputs_of(options);
   std::erase(inputs, options.load_map);  // a map may be extended in its place
   protect_inputs("--save-map", options.save_map, inputs);
-  const std::filesystem::path folder = options.save_map.parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder))
+  const std::filesystem::path folder =
+      options.save_map.has_parent_path() ? options.save_map.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder))
     throw SetupError{"--save-map: there is no folder '" + folder.string() + "'"};
-}
-
-/// Reads the map that is to be loaded.
-void check_maps(const ProcessDescription& description, const ProcessOptions& options) {
-  if (options.load_map.empty() && options.save_map.empty()) return;
-  Inbox inbox;
-  Outbox outbox;
-  description.make_node(options, inbox, outbox);
+  if (std::filesystem::is_directory(options.save_map))
+    throw SetupError{"--save-map: '" + options.save_map.string() + "' is a folder"};
+  if (::access(folder.c_str(), W_OK) != 0)
+    throw SetupError{"--save-map: cannot write to the folder '" + folder.string() + "'"};
 }
 
 }  // namespace
@@ -247,7 +245,6 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
       description.dump_config(options);
       check(options, description.option_set);
       description.check_node(options);
-      check_maps(description, options);
       if (options.logs.empty()) check_network(lcm_url_or_default(options.lcm_url));
       return int{kExitOk};
     }

@@ -36,8 +36,8 @@ std::string weak_axis_sentence(const WeakAxis& axis) {
   return sentence("what else measures it is not known");
 }
 
-std::string state_sentence(const EstimatedPose& estimate) {
-  switch (estimate.health) {
+std::string_view state_sentence(Health health) {
+  switch (health) {
     case Health::kLost:
       return "What the sensors see does not fit the map at this place.";
     case Health::kInitialising:
@@ -48,8 +48,14 @@ std::string state_sentence(const EstimatedPose& estimate) {
     case Health::kDegenerate:
       break;
   }
-  if (estimate.weak_axis) return weak_axis_sentence(*estimate.weak_axis);
   return "The walls fix the position in every direction.";
+}
+
+std::string state_sentence(const EstimatedPose& estimate) {
+  const bool is_placed =
+      estimate.health == Health::kTracking || estimate.health == Health::kDegenerate;
+  if (is_placed && estimate.weak_axis) return weak_axis_sentence(*estimate.weak_axis);
+  return std::string{state_sentence(estimate.health)};
 }
 
 std::string findings_sentence(const std::vector<Finding>& findings) {
@@ -60,6 +66,11 @@ std::string findings_sentence(const std::vector<Finding>& findings) {
 }
 
 }  // namespace
+
+std::string_view health_name(const LiveView& view) {
+  if (view.estimate) return health_name(view.estimate->health);
+  return view.is_unplaced ? health_name(Health::kInitialising) : "waiting";
+}
 
 std::string_view health_name(Health health) {
   switch (health) {
@@ -97,8 +108,9 @@ std::optional<double> seconds_since(const std::optional<Timestamp>& then, Timest
 }
 
 std::string health_reason(const LiveView& view) {
-  if (!view.estimate) return "Nothing has come from slam yet.";
-  std::string reason = state_sentence(*view.estimate);
+  if (!view.estimate && !view.is_unplaced) return "Nothing has come from slam yet.";
+  std::string reason = view.estimate ? state_sentence(*view.estimate)
+                                     : std::string{state_sentence(Health::kInitialising)};
   const auto since_camera_s = seconds_since(view.last_camera, view.time);
   const auto since_marker_s = seconds_since(view.last_marker, view.time);
   if (since_camera_s && *since_camera_s > kCameraSilent_s) {

@@ -12,6 +12,9 @@ namespace waymark::viewer {
 /// "tracking", "degenerate", ...: the names of HEALTH_* in lcmtypes/slam_estimate_t.lcm.
 std::string_view health_name(Health health);
 
+/// The same, or "waiting" where slam has not said anything yet.
+std::string_view health_name(const LiveView& view);
+
 std::string_view source_name(WeakAxisSource source);
 
 /// One to three sentences for people.

@@ -125,9 +125,16 @@ void LiveFeed::add(const process_status_t& message) {
 
 void LiveFeed::add(const slam_estimate_t& message, const EstimatedPose& estimate) {
   current_.estimate = estimate;
+  current_.is_unplaced = false;
   if (message.markers_in_view > 0) current_.last_marker = estimate.time;
   grow_path(estimate.map_from_base);
   advance_to(estimate.time);
+}
+
+void LiveFeed::add_unplaced(Timestamp time) {
+  current_.estimate.reset();
+  current_.is_unplaced = true;
+  advance_to(time);
 }
 
 void LiveFeed::add_markers(Timestamp time, const std::vector<Landmark>& landmarks) {

@@ -29,6 +29,10 @@ class LiveFeed {
   void add(const marker_detections_t& message);
   void add(const process_status_t& message);
   void add(const slam_estimate_t& message, const EstimatedPose& estimate);
+
+  /// An estimate without a pose.
+  void add_unplaced(Timestamp time);
+
   /// @param landmarks  all markers in the map.
   void add_markers(Timestamp time, const std::vector<Landmark>& landmarks);
 

@@ -63,6 +63,7 @@ struct LiveView {
   Timestamp time{};         ///< newest message
   std::string title{};
   std::optional<EstimatedPose> estimate{};
+  bool is_unplaced{false};  ///< slam runs, and looks for the robot's place in its map
   std::shared_ptr<const LiveMap> map{std::make_shared<LiveMap>()};
   std::vector<Landmark> markers{};
   std::vector<Finding> findings{};  ///< of the sensors, by slam

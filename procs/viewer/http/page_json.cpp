@@ -111,11 +111,10 @@ Json processes_json(const std::vector<ProcessState>& processes) {
 }
 
 Json to_json(const LiveView& view, const Board::Span& history) {
-  const Health health = view.estimate ? view.estimate->health : Health::kUnknown;
   return {{"time_s", to_seconds(view.time)},
           {"history_s", {to_seconds(history.first), to_seconds(history.last)}},
           {"title", view.title},
-          {"health", view.estimate ? health_name(health) : "waiting"},
+          {"health", health_name(view)},
           {"reason", health_reason(view)},
           {"estimate", view.estimate ? estimate_json(*view.estimate) : Json(nullptr)},
           {"since_marker_s", seconds_json(seconds_since(view.last_marker, view.time))},

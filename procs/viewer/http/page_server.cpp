@@ -136,6 +136,16 @@ class EventStream {
   steady_clock::time_point last_{};
 };
 
+/// @throws SetupError
+void bind_to(httplib::Server& server, const HttpAddress& address) {
+  errno = 0;
+  if (server.bind_to_port(address.host, address.port)) return;
+  const std::string why = errno == 0 ? "the host is not known" : std::strerror(errno);
+  throw SetupError{fmt::format(
+      "--http: cannot listen on {}:{}: {}; give an address of this machine and a free port",
+      address.host, address.port, why)};
+}
+
 }  // namespace
 
 class PageServer::Implementation {
@@ -148,13 +158,7 @@ class PageServer::Implementation {
         commands_{std::move(commands)} {
     set_limits();
     add_routes();
-    errno = 0;
-    if (!server_.bind_to_port(address.host, address.port)) {
-      const std::string why = errno == 0 ? "the host is not known" : std::strerror(errno);
-      throw SetupError{fmt::format(
-          "--http: cannot listen on {}:{}: {}; give an address of this machine and a free port",
-          address.host, address.port, why)};
-    }
+    bind_to(server_, address);
     thread_ = std::thread{[this] {
       // Of this thread and those that it starts: the run comes first.
       ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
@@ -312,6 +316,11 @@ class PageServer::Implementation {
   httplib::Server server_;
   std::thread thread_;
 };
+
+void check_http_address(const HttpAddress& address) {
+  httplib::Server server;
+  bind_to(server, address);
+}
 
 PageServer::PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder,
                        std::optional<PageCommands> commands)

@@ -20,6 +20,9 @@ namespace waymark::viewer {
 /// With commands: POST `/command` (see parse_page_command) with the header "Authorization: Bearer
 /// TOKEN"; 200 done, 401 wrong token, 409 refused by slam and why, 429 one is on its way already,
 /// 504 no answer. Without: 405.
+/// @throws SetupError when the address cannot be listened on.
+void check_http_address(const HttpAddress& address);
+
 class PageServer {
  public:
   /// @param board  closed when this ends; outlives this.
