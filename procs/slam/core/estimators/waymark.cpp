@@ -89,7 +89,6 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
     add_keyframe(observation, look);
     since_insertion_m_ = observation.motion.distance_m;
   } else {
-    if (look.scan) note_fit(look.scan->match);
     since_insertion_m_ += observation.motion.distance_m;
     if (between.shows_all_axes || agrees_with_markers(observation)) motion_doubt_.note_observed();
     if (between.match) insert_between(look.points, *between.match, between.map_from_base);
@@ -235,6 +234,7 @@ WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Loo
   const Prediction& expected = look.expected;
   BetweenKeyframes between{expected.map_from_base, expected.covariance};
   const auto& scan = look.scan;
+  if (scan) note_fit(scan->match);
   if (!scan || !scan->match.is_usable(config_.scan) || usual_fit_.is_refuted(scan->match))
     return between;
   const Se2 found = scan->map_from_submap * scan->match.map_from_base;

@@ -19,12 +19,17 @@ constexpr std::size_t kBeams = 120;
 constexpr double kUnseen_rad_s = 0.5;  // that the robot may have turned meanwhile
 constexpr double kClearlyMore = 1.05;  // inliers than the plain match
 constexpr double kFarMore = 2.0;
+constexpr double kLeavesFarMore = 3.0;  // beams unexplained
 constexpr double kContradictedSigmas = 5.0;
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
 
 bool is_contradicted_by_odometry(const ScanMatch& match, const WideSearch& search) {
   const Eigen::Vector3d off = pose_difference(match.map_from_base, search.by_odometry);
   return chi2(off, search.odometry_covariance) > squared(kContradictedSigmas);
+}
+
+double unexplained(const ScanMatch& match, const Points& points) {
+  return static_cast<double>(points.size()) - match.inliers;
 }
 
 }  // namespace
@@ -49,6 +54,14 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   }
   const auto fits_better = [&] {
     if (found->inliers <= kClearlyMore * plain.inliers) return false;
+    if (is_contradicted_by_odometry(*found, search) &&
+        !is_contradicted_by_odometry(plain, search)) {
+      // A view that is new is more usual than odometry that is wrong.
+      if (usual.is_contradicted(plain) && found->inliers > kFarMore * plain.inliers) return true;
+      return !usual.is_worse_than_usual(*found) &&
+             (usual.is_contradicted(plain) ||
+              unexplained(plain, points) > kLeavesFarMore * unexplained(*found, points));
+    }
     return usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
            (usual.is_nearly_usual(*found) && (found->inliers > kFarMore * plain.inliers ||
                                               is_contradicted_by_odometry(plain, search)));

@@ -174,20 +174,22 @@ TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenThoughItComesLast) {
   EXPECT_LT(pose_difference(found.best.map_from_base, truth).norm(), 0.05);
 }
 
-/// A seventh of the scan is nowhere in the map; of the rest, so much lies on walls where plain
+/// A part of the scan is nowhere in the map; of the rest, so much lies on walls where plain
 /// matching ended.
-ScanMatch searched_from_plain(double share_of_plain, double odometry_sigma_m) {
+ScanMatch searched_from_plain(double share_of_plain, double odometry_sigma_m,
+                              const Se2& by_odometry = {2.5, 0.0, 0.3},
+                              std::size_t nowhere_one_in = 6) {
   const Submap submap = mapped_room();
   Points room = whole_room();
   const std::size_t all = room.size();
-  for (std::size_t i = 0; i < all / 6; ++i)
+  for (std::size_t i = 0; i < all / nowhere_one_in; ++i)
     room.emplace_back(kSpacing_m * static_cast<double>(i), 7.0);
   ScanMatch plain;
   plain.map_from_base = kPlain;
   plain.inliers = static_cast<int>(share_of_plain * static_cast<double>(all));
   plain.inlier_share = 1.0;
   plain.mapped_share = share_of_plain;
-  WideSearch search = around({2.5, 0.0, 0.3});
+  WideSearch search = around(by_odometry);
   search.without_odometry = {kTruth};
   search.odometry_covariance = squared(odometry_sigma_m) * Eigen::Matrix3d::Identity();
   return searched_widely(plain, seen_from(kTruth, room), submap.surfaces(), submap.points(), search,
@@ -205,6 +207,14 @@ TEST(WideSearch, APlaceWhereTheScanFitsNearlyAsUsualNeedsTwiceTheInliers) {
 TEST(WideSearch, OfTwoPlacesThatOdometryContradictsTheOneWithMoreInliersIsTaken) {
   const ScanMatch best = searched_from_plain(0.6, 0.05);
   EXPECT_LT(pose_difference(best.map_from_base, kTruth).norm(), 0.02);
+}
+
+TEST(WideSearch, APlaceThatOdometryContradictsHasToExplainMostOfWhatIsLeft) {
+  for (const double share_of_plain : {0.7, 0.85}) {
+    const ScanMatch best = searched_from_plain(share_of_plain, 0.05, kPlain, 10);
+    const Se2& expected = share_of_plain < 0.8 ? kTruth : kPlain;
+    EXPECT_LT(pose_difference(best.map_from_base, expected).norm(), 0.02) << share_of_plain;
+  }
 }
 
 TEST(WideSearch, AViewOfANewPlaceIsNotLeftForAPlaceWithMoreMappedBeams) {
