@@ -81,6 +81,8 @@ Command add_carmen(Command& app, Options& options) {
                   "ranges from here on are no returns (default: where a pile-up shows, else as the "
                   "line says, else 81.83)")
       .check(positive_number());
+  carmen.add_choice("--range-unit", options.carmen.range_unit_m,
+                    {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}}, "of ranges (default: m)");
   carmen
       .add_option("--first-angle-deg", options.first_angle_deg,
                   "beam 0 (default: -90 for FLASER and RLASER, else as the line says)")

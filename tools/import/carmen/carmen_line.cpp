@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -50,15 +52,15 @@ Se2 take_pose(FieldCursor& fields, std::string_view name) {
   return {x_m, y_m, theta_rad};
 }
 
-std::vector<double> take_ranges(FieldCursor& fields, int num_beams) {
-  std::vector<double> ranges_m;
-  ranges_m.reserve(static_cast<std::size_t>(num_beams));
+/// A range that is negative or NaN is none.
+void take_ranges(FieldCursor& fields, int num_beams, CarmenScan& scan) {
+  scan.ranges_m.reserve(static_cast<std::size_t>(num_beams));
   for (int i = 0; i < num_beams && !fields.failed(); ++i) {
-    const double range_m = fields.number_or_infinity(fmt::format("range {} of {}", i, num_beams));
-    if (range_m < 0.0) fields.fail("negative range", fmt::format("range {} is {}", i, range_m));
-    ranges_m.push_back(range_m);
+    const double range_m = fields.any_number(fmt::format("range {} of {}", i, num_beams));
+    const bool is_none = std::isnan(range_m) || range_m < 0.0;
+    if (is_none) ++scan.num_no_ranges;
+    scan.ranges_m.push_back(is_none ? std::numeric_limits<double>::quiet_NaN() : range_m);
   }
-  return ranges_m;
 }
 
 /// The three fields that end every line; checks that nothing follows.
@@ -93,7 +95,7 @@ CarmenLine parse_old_laser(FieldCursor& fields, CarmenLidar lidar, const CarmenB
   CarmenScan scan{};
   scan.lidar = lidar;
   const int num_beams = fields.integer("the number of ranges", 1, kMaxBeams);
-  scan.ranges_m = take_ranges(fields, num_beams);
+  take_ranges(fields, num_beams, scan);
   scan.odom_from_lidar = take_pose(fields, "the LiDAR pose");
   scan.odom_from_base = take_pose(fields, "the odometry pose");
   take_times(fields, scan);
@@ -138,7 +140,7 @@ CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const Carme
   fields.number("accuracy");
   fields.number("remission_mode");
   const int num_beams = fields.integer("the number of ranges", 1, kMaxBeams);
-  scan.ranges_m = take_ranges(fields, num_beams);
+  take_ranges(fields, num_beams, scan);
   const int num_remissions = fields.integer("the number of remissions", 0, kMaxBeams);
   for (int i = 0; i < num_remissions && !fields.failed(); ++i)
     fields.number("a remission");
@@ -157,7 +159,8 @@ CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const Carme
   if (std::abs(scan.first_angle_rad) > kTurn_rad || field_of_view_rad <= 0.0 ||
       field_of_view_rad > 1.01 * kTurn_rad || *scan.range_max_m <= 0.0) {
     fields.fail("contradictory header",
-                fmt::format("start angle {} rad, field of view {} rad, maximum range {} m",
+                fmt::format("start angle {} rad, field of view {} rad, maximum range {} m: give "
+                            "--first-angle-deg and --angle-step-deg",
                             scan.first_angle_rad, field_of_view_rad, *scan.range_max_m));
   }
   scan.angle_step_rad = angle_step(fields, field_of_view_rad, resolution_rad, num_beams);

@@ -33,7 +33,8 @@ struct CarmenScan {
   CarmenLidar lidar{CarmenLidar::kFront};
   double time_s{0.0};              ///< ipc_timestamp
   double logger_time_s{0.0};       ///< may be anything finite
-  std::vector<double> ranges_m{};  ///< as written, not negative; may be +inf
+  std::vector<double> ranges_m{};  ///< as written; may be +inf; NaN where the line has none
+  int num_no_ranges{0};            ///< of these
   double first_angle_rad{0.0};
   double angle_step_rad{0.0};
   std::optional<double> range_max_m{};  ///< when the line says it

@@ -22,7 +22,7 @@ namespace {
 // A SICK LMS 200 measures up to 80 m; from 8183 on, in centimetres, its values are error codes
 // (SICK, Telegrams for configuring and operating the LMS 2xx).
 constexpr double kSickRangeMax_m = 81.83;
-constexpr Duration kLongestBurst = std::chrono::milliseconds{1};
+constexpr double kFarthest_m = 150.0;  // median of ranges: no 2D LiDAR sees that far
 
 Timestamp timestamp_from_seconds(double seconds) {
   return Timestamp{duration_from_seconds(seconds)};
@@ -65,7 +65,8 @@ class CarmenReader {
   void take_content(const LineProblem& problem) { report_.skip(problem.kind, at_, problem.detail); }
 
   void apply_stamps();
-  void part_equal_times();
+  void note_assumptions();
+  std::string what_is_not_read() const;
   void add_scan(const Read<CarmenScan>& read);
   void apply_mounting();
   double usual_range_max_m();
@@ -83,6 +84,8 @@ class CarmenReader {
 void CarmenReader::take_content(CarmenScan scan) {
   ++counts_[scan.lidar == CarmenLidar::kFront ? "front scans" : "rear scans"];
   if (scan.lidar != options_.lidar) return;
+  for (double& range : scan.ranges_m)
+    range *= options_.range_unit_m;
   scans_.push_back({times_of(scan), at_, std::move(scan), {}});
 }
 
@@ -101,23 +104,6 @@ void CarmenReader::apply_stamps() {
     scan.time = scan.times.by(stamps);
   for (auto& sample : odometry_) {
     log_.odometry.push_back({sample.times.by(stamps), sample.at, sample.line.odom_from_base});
-  }
-}
-
-/// Scans that a driver stamps alike because it sends them in a burst: order is kept, and each one
-/// gets the next microsecond, so that none is taken for a repetition.
-void CarmenReader::part_equal_times() {
-  std::int64_t parted = 0;
-  for (std::size_t i = 1; i < scans_.size(); ++i) {
-    const Timestamp before = scans_[i - 1].time;
-    // Only right behind scans of the same stamp; a larger step back is another fault.
-    if (scans_[i].time > before || before - scans_[i].time > kLongestBurst) continue;
-    scans_[i].time = before + std::chrono::microseconds{1};
-    ++parted;
-  }
-  if (parted > 0) {
-    report_.note(
-        fmt::format("{} scans have the time of the one before: stamped 1 us apart", parted));
   }
 }
 
@@ -166,18 +152,65 @@ double CarmenReader::usual_range_max_m() {
   return *middle;
 }
 
+std::string CarmenReader::what_is_not_read() const {
+  const bool is_front = options_.lidar == CarmenLidar::kFront;
+  if (counts_.contains(is_front ? "rear scans" : "front scans"))
+    return fmt::format(": give --lidar {}", is_front ? "rear" : "front");
+  if (counts_.contains("RAWLASER1"))
+    return ": RAWLASER lines, which have no odometry, are not read; write them as ROBOTLASER1";
+  return "";
+}
+
+/// What lines leave open, and what in them cannot be.
+/// @throws SetupError for ranges that are not metres.
+void CarmenReader::note_assumptions() {
+  std::int64_t no_ranges = 0;
+  std::vector<double> ranges_m;
+  for (const auto& scan : scans_) {
+    no_ranges += scan.line.num_no_ranges;
+    for (const double range_m : scan.line.ranges_m)
+      if (std::isfinite(range_m)) ranges_m.push_back(range_m);
+  }
+  if (no_ranges > 0)
+    report_.note(fmt::format("{} ranges are negative or NaN: taken as not measured", no_ranges));
+  const CarmenScan& first = scans_.front().line;
+  const bool is_assumed =
+      !first.range_max_m && (!options_.beams.first_angle_rad || !options_.beams.angle_step_rad);
+  if (is_assumed) {
+    report_.note(fmt::format(
+        "the lines do not say the beams' angles: {} beams of {:g} degrees from {:g} are assumed "
+        "(--first-angle-deg, --angle-step-deg)",
+        first.ranges_m.size(), degrees(first.angle_step_rad), degrees(first.first_angle_rad)));
+  }
+  if (ranges_m.empty() || options_.range_max_m) return;
+  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
+  std::ranges::nth_element(ranges_m, middle);
+  if (*middle > kFarthest_m) {
+    throw SetupError{fmt::format(
+        "half of the ranges are above {:g} m: are they in cm or mm? Give --range-unit cm or mm, "
+        "or --max-range-m if they are metres",
+        *middle)};
+  }
+}
+
 ImportedLog CarmenReader::finish() {
   for (const auto& [name, count] : counts_) {
     log_.contents += fmt::format("{}{} {}", log_.contents.empty() ? "" : ", ", name, count);
   }
   if (scans_.empty()) {
     throw SetupError{"no LiDAR scan could be read" +
-                     (log_.contents.empty() ? "" : "; the log holds " + log_.contents)};
+                     (log_.contents.empty() ? "" : "; the log holds " + log_.contents) +
+                     what_is_not_read()};
   }
+  note_assumptions();
   apply_stamps();
+  remove_absurd_times(scans_, "a scan", report_);
+  remove_absurd_times(log_.odometry, "odometry", report_);
   apply_mounting();
   settle_small_disorder(scans_, "scan", report_);
-  part_equal_times();
+  spread_equal_stamps(scans_, "scan", report_);
+  settle_small_disorder(log_.odometry, "odometry sample", report_);
+  spread_equal_stamps(log_.odometry, "odometry sample", report_);
   for (const auto& scan : scans_)
     add_scan(scan);
   keep_usual_beam_count(log_.scans, report_);

@@ -25,6 +25,7 @@ struct CarmenOptions {
   std::optional<CarmenStamps> stamps{};  ///< nullopt = ipc_timestamp if it advances
   std::optional<double> range_max_m{};   ///< nullopt = see mark_no_returns(); usual: SICK LMS
   double range_min_m{0.0};
+  double range_unit_m{1.0};  ///< of the lines' ranges
   LidarMounting mounting{};
 };
 

@@ -42,22 +42,19 @@ std::string_view FieldCursor::word(std::string_view name) {
   return field;
 }
 
-double FieldCursor::number_or_infinity(std::string_view name) {
+double FieldCursor::any_number(std::string_view name) {
   const std::string_view field = word(name);
   double value = 0.0;
   if (failed()) return 0.0;
-  if (!parse(field, value)) {
-    fail("not a number", fmt::format("{} is {}", name, quoted(field)));
-  } else if (std::isnan(value)) {
-    fail("NaN", fmt::format("{} is {}", name, quoted(field)));
-  }
-  return failed() ? 0.0 : value;
+  if (parse(field, value)) return value;
+  fail("not a number", fmt::format("{} is {}", name, quoted(field)));
+  return 0.0;
 }
 
 double FieldCursor::number(std::string_view name) {
-  const double value = number_or_infinity(name);
-  if (!std::isinf(value)) return value;
-  fail("not finite", fmt::format("{} is infinite", name));
+  const double value = any_number(name);
+  if (std::isfinite(value)) return value;
+  fail(std::isnan(value) ? "NaN" : "not finite", fmt::format("{} is {}", name, value));
   return 0.0;
 }
 

@@ -20,7 +20,7 @@ class FieldCursor {
   /// Any finite number; 0 once something was wrong.
   double number(std::string_view name);
   /// A number or infinity.
-  double number_or_infinity(std::string_view name);
+  double any_number(std::string_view name);
   int integer(std::string_view name, int low, int high);
   /// Complains about fields that nobody took.
   void expect_end();

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kScansForNoise = 1000;  // evenly over the log
 constexpr double kLargestSigma_m = 1.0;
+constexpr double kNearlyAll = 0.7;          // of the way
 constexpr std::size_t kFewestReversed = 5;  // steps: fewer are found by chance
 
 void estimate_range_noise(ImportedLog& log, ImportReport& report) {
@@ -30,10 +31,11 @@ void estimate_range_noise(ImportedLog& log, ImportReport& report) {
     return;
   }
   log.robot.lidar.range_sigma_m = std::min(*sigma_m, kLargestSigma_m);
-  report.note(fmt::format(
-      "ranges scatter by {:.4f} m about straight walls: written as the LiDAR's noise; if you know "
-      "better, change range_sigma_m in robot.toml",
-      log.robot.lidar.range_sigma_m));
+  report.note(
+      fmt::format("ranges scatter by {:.4f} m{} about straight walls: written as the LiDAR's "
+                  "noise; if you know "
+                  "better, change range_sigma_m in robot.toml",
+                  log.robot.lidar.range_sigma_m, *sigma_m > kLargestSigma_m ? " or more" : ""));
 }
 
 void check_that_odometry_moves(const ImportedLog& log, ImportReport& report) {
@@ -47,8 +49,43 @@ void check_that_odometry_moves(const ImportedLog& log, ImportReport& report) {
       log.odometry.size(), *change_m));
 }
 
-void check_direction(ImportedLog& log, ReversedOdometry wanted, ImportReport& report) {
-  const std::vector<ReversedStep> steps = find_reversed_steps(log);
+/// No LiDAR measures as near: what is written there is a code.
+void check_short_ranges(ImportedLog& log, ImportReport& report) {
+  constexpr double kShortest_m = 0.05;
+  constexpr double kFew = 1e-3;
+  std::int64_t all = 0;
+  std::int64_t shorter = 0;
+  for (const ImportedScan& imported : log.scans) {
+    for (const double range_m : scan_of(imported).ranges_m) {
+      ++all;
+      if (range_m > 0.0 && range_m < kShortest_m) ++shorter;
+    }
+  }
+  if (log.robot.lidar.range_min_m >= kShortest_m ||
+      static_cast<double>(shorter) <= kFew * static_cast<double>(all)) {
+    return;
+  }
+  log.robot.lidar.range_min_m = kShortest_m;
+  report.note(
+      fmt::format("{} ranges are below {} m: taken as not measured; --min-range-m says "
+                  "otherwise",
+                  shorter, kShortest_m));
+}
+
+BodyBeams check_body(const ImportedLog& log, ImportReport& report) {
+  BodyBeams body = find_body_beams(log);
+  if (body.count > 0 && log.robot.lidar.range_min_m < body.longest_m) {
+    report.note(fmt::format(
+        "{} beams always show the same {:.2f} m or less, as if they ended on the robot: left as "
+        "they are; --min-range-m {:.2f} leaves them out",
+        body.count, body.longest_m, body.longest_m + 0.1));
+  }
+  return body;
+}
+
+void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry wanted,
+                     ImportReport& report) {
+  const std::vector<ReversedStep> steps = find_reversed_steps(log, body);
   if (steps.size() < kFewestReversed) return;
   double distance_m = 0.0;
   for (const ReversedStep& step : steps)
@@ -57,7 +94,13 @@ void check_direction(ImportedLog& log, ReversedOdometry wanted, ImportReport& re
       "odometry counts backing up as driving forward in {} steps between scans, {:.1f} m, first at "
       "{:.3f} s",
       steps.size(), distance_m, to_seconds(steps.front().after));
-  if (wanted == ReversedOdometry::kMend) {
+  const bool is_nearly_all = distance_m > kNearlyAll * path_length_m(log.odometry);
+  if (is_nearly_all && wanted == ReversedOdometry::kName) {
+    report.note(fmt::format(
+        "scans move against odometry nearly everywhere ({:.1f} m): does the LiDAR look backwards "
+        "(--lidar-yaw-deg 180)?",
+        distance_m));
+  } else if (wanted == ReversedOdometry::kMend) {
     log.odometry = with_steps_mended(log.odometry, steps);
     report.note(found + ": turned round, as asked for");
   } else {
@@ -68,9 +111,11 @@ void check_direction(ImportedLog& log, ReversedOdometry wanted, ImportReport& re
 }  // namespace
 
 void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report) {
+  check_short_ranges(log, report);
   estimate_range_noise(log, report);
   check_that_odometry_moves(log, report);
-  check_direction(log, reversed, report);
+  const BodyBeams body = check_body(log, report);
+  check_direction(log, body, reversed, report);
 }
 
 }  // namespace waymark

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kShortestApart_m = 0.01;  // of a step that decides anything: less is noise
 constexpr double kLongestApart_m = 1.0;    // more, and too little of the two scans overlaps
+constexpr double kLargestMisfit_m = 0.15;  // of the better of both: above, neither is right
 constexpr double kFloor_m = 1e-4;       // of a misfit, so that the ratio of two perfect fits is 1
 constexpr double kSmallestScore = 0.2;  // of a step that decides: less is chance, as along a wall
 constexpr double kLargestScore = 2.0;   // of one step: a factor of 7
@@ -34,19 +35,19 @@ double score_of(const LidarScan& first, const LidarScan& second, const Se2& moti
   };
   const auto counted_m = misfit_with(motion);
   const auto reversed_m = misfit_with(Se2{-motion.translation(), motion.theta()});
-  if (!counted_m || !reversed_m) return 0.0;
+  if (!counted_m || !reversed_m || std::min(*counted_m, *reversed_m) > kLargestMisfit_m) return 0.0;
   const double score = std::log((*counted_m + kFloor_m) / (*reversed_m + kFloor_m));
   if (std::abs(score) < kSmallestScore) return 0.0;
   return std::clamp(score, -kLargestScore, kLargestScore);
 }
 
-std::vector<Step> steps_of(const ImportedLog& log) {
+std::vector<Step> steps_of(const ImportedLog& log, const BodyBeams& body) {
   std::vector<Step> steps;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
-  LidarScan before = in_order_of_angles(scan_of(log.scans.front()));
+  LidarScan before = in_order_of_angles(without_body(scan_of(log.scans.front()), body));
   Se2 odom_from_before = pose_at(log.odometry, before.time);
   for (std::size_t i = 1; i < log.scans.size(); ++i) {
-    LidarScan now = in_order_of_angles(scan_of(log.scans[i]));
+    LidarScan now = in_order_of_angles(without_body(scan_of(log.scans[i]), body));
     const Se2 odom_from_now = pose_at(log.odometry, now.time);
     const Se2 motion = odom_from_before.inverse() * odom_from_now;
     steps.push_back({{before.time, now.time, motion.translation().norm()},
@@ -90,8 +91,8 @@ std::vector<bool> most_likely(const std::vector<Step>& steps) {
 
 }  // namespace
 
-std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log) {
-  const std::vector<Step> steps = steps_of(log);
+std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log, const BodyBeams& body) {
+  const std::vector<Step> steps = steps_of(log, body);
   const std::vector<bool> is_reversed = most_likely(steps);
   std::vector<ReversedStep> reversed;
   for (std::size_t i = 0; i < steps.size(); ++i) {

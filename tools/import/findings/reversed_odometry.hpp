@@ -2,6 +2,7 @@
 // Odometry that counts backing up as driving forward: its encoders do not know the direction.
 #pragma once
 
+#include "import/findings/body_beams.hpp"
 #include "import/log/imported_log.hpp"
 
 #include <vector>
@@ -20,7 +21,8 @@ struct ReversedStep {
 /// decide nothing) adds up over stretches of steps: the most likely sequence of the two directions
 /// (Viterbi), in which a stretch has to fit twice as well reversed, and more where the direction
 /// would change at a speed at which no robot can turn back.
-std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log);
+/// @param body  beams that say nothing.
+std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log, const BodyBeams& body = {});
 
 /// Odometry with the translation of these steps negated; headings stay.
 std::vector<ImportedPose> with_steps_mended(const std::vector<ImportedPose>& odometry,

@@ -17,6 +17,33 @@ std::vector<std::size_t> settled_order(std::span<const Timestamp> times) {
   return order;
 }
 
+std::vector<Timestamp> spread_over_gaps(std::span<const Timestamp> stamps) {
+  constexpr Duration kSameStamp = std::chrono::milliseconds{1};
+  constexpr Duration kLongestPeriod = std::chrono::seconds{1};
+  constexpr Duration kLeast = std::chrono::microseconds{1};
+  std::vector<Timestamp> spread;
+  for (std::size_t first = 0; first < stamps.size();) {
+    std::size_t end = first + 1;
+    while (end < stamps.size() && stamps[end] <= stamps[first] &&
+           stamps[first] - stamps[end] <= kSameStamp)
+      ++end;
+    const auto count = static_cast<Duration::rep>(end - first);
+    const bool has_before = first > 0 && stamps[first] > stamps[first - 1];
+    const bool has_after = end < stamps.size() && stamps[end] > stamps[first];
+    const Duration before = has_before ? stamps[first] - spread.back() : Duration::zero();
+    const Duration after = has_after ? stamps[end] - stamps[first] : Duration::zero();
+    const bool has_stalled = has_before && (!has_after || before > 2 * after);
+    const Duration period =
+        std::clamp((has_stalled ? before : after) / count, kLeast, kLongestPeriod);
+    for (Duration::rep i = 0; i < count; ++i) {
+      const auto steps = has_stalled ? i + 1 - count : i;
+      spread.push_back(count == 1 ? stamps[first] : stamps[first] + steps * period);
+    }
+    first = end;
+  }
+  return spread;
+}
+
 std::vector<bool> longest_ascending(std::span<const Timestamp> times) {
   // ends[k]: index of the smallest time that ends an ascending subsequence of length k + 1.
   std::vector<std::size_t> ends;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -43,6 +45,53 @@ void settle_small_disorder(std::vector<Record>& records, std::string_view what,
         "{}s out of order by at most {} ms: {} put in order", what,
         std::chrono::duration_cast<std::chrono::milliseconds>(kSmallDisorder).count(), moved));
   }
+}
+
+/// Times for records that have equal stamps (a step back of a millisecond at most is one, too):
+/// stamps that were cut off spread over the time until the next one, records that were stamped when
+/// a stalled logger went on over the time before. Order is kept; at least a microsecond apart.
+/// @param stamps  as read, equal ones beside each other.
+std::vector<Timestamp> spread_over_gaps(std::span<const Timestamp> stamps);
+
+/// Spreads records (with a member `time`) that have equal stamps, and says so.
+template <class Record>
+void spread_equal_stamps(std::vector<Record>& records, std::string_view what,
+                         ImportReport& report) {
+  std::vector<Timestamp> stamps;
+  for (const Record& record : records)
+    stamps.push_back(record.time);
+  const std::vector<Timestamp> spread = spread_over_gaps(stamps);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (records[i].time != spread[i]) ++moved;
+    records[i].time = spread[i];
+  }
+  if (moved > 0) {
+    report.note(fmt::format("{} {}s have the stamp of others: spread over the time between stamps",
+                            moved, what));
+  }
+}
+
+/// Removes records (with members `time` and `at`) whose time is months from the others': a clock
+/// that was not set. Otherwise they would make the log that long.
+template <class Record>
+void remove_absurd_times(std::vector<Record>& records, std::string_view what,
+                         ImportReport& report) {
+  constexpr Duration kLongestLog = std::chrono::hours{24 * 30};
+  if (records.empty()) return;
+  std::vector<Timestamp> times;
+  for (const Record& record : records)
+    times.push_back(record.time);
+  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+  std::nth_element(times.begin(), middle, times.end());
+  const Timestamp usual = *middle;
+  std::erase_if(records, [&](const Record& record) {
+    if (record.time - usual < kLongestLog && usual - record.time < kLongestLog) return false;
+    report.skip(
+        "bad time", record.at,
+        fmt::format("{} at {:.6f} s, months from the others", what, to_seconds(record.time)));
+    return true;
+  });
 }
 
 /// Removes records (with members `time` and `at`) out of order, naming them.

@@ -132,6 +132,14 @@ struct BadLine {
   std::string detail;
 };
 
+TEST(CarmenLine, ARangeThatIsNoneCostsNoScan) {
+  const auto scan = parse<CarmenScan>("FLASER 3 1 NaN -0.5 0 0 0 0 0 0 1 host 0", {0.0, 0.1});
+  EXPECT_EQ(scan.num_no_ranges, 2);
+  EXPECT_EQ(scan.ranges_m[0], 1.0);
+  EXPECT_TRUE(std::isnan(scan.ranges_m[1]));
+  EXPECT_TRUE(std::isnan(scan.ranges_m[2]));
+}
+
 TEST(CarmenLine, BadLinesSayWhatIsWrong) {
   const std::string tail = " 0 0 0 0 0 0 1 host 0";
   const std::vector<BadLine> lines{
@@ -143,8 +151,6 @@ TEST(CarmenLine, BadLinesSayWhatIsWrong) {
       {"FLASER 1.5 1" + tail, "not a number", "1.5"},
       {"FLASER 2 1 1e" + tail, "not a number", "range 1 of 2"},
       {"FLASER 2 1 1e999" + tail, "not a number", "1e999"},
-      {"FLASER 2 1 NaN" + tail, "NaN", "range 1 of 2"},
-      {"FLASER 2 1 -0.5" + tail, "negative range", "-0.5"},
       {"FLASER 2 1 1 5" + tail, "not a number", "host"},
       {"FLASER 2 1 1" + tail + " 3", "surplus fields", "3"},
       {"FLASER 2 1 1 0 0 0 0 0 0 -1 host 0", "bad time", "-1"},

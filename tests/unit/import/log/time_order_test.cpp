@@ -38,6 +38,24 @@ TEST(LongestAscending, EqualTimesDoNotAscend) {
   EXPECT_EQ(std::ranges::count(keep, true), 1);
 }
 
+TEST(SpreadOverGaps, StampsThatAreCutOffSpreadUntilTheNextOne) {
+  EXPECT_EQ(spread_over_gaps(times({100, 100, 200, 200, 300, 300})),
+            times({100, 150, 200, 250, 275, 300}));
+}
+
+TEST(SpreadOverGaps, ABurstAfterAStallSpreadsOverTheStall) {
+  EXPECT_EQ(spread_over_gaps(times({100, 200, 600, 600, 600, 600, 700})),
+            times({100, 200, 300, 400, 500, 600, 700}));
+}
+
+TEST(SpreadOverGaps, APauseIsNotFilled) {
+  EXPECT_EQ(spread_over_gaps(times({100, 100, 60'000'100})), times({100, 1'000'100, 60'000'100}));
+}
+
+TEST(SpreadOverGaps, OtherStampsStayAsTheyAre) {
+  EXPECT_EQ(spread_over_gaps(times({5, 7, 6'000'000, 9})), times({5, 7, 6'000'000, 9}));
+}
+
 TEST(SettledOrder, RecordsThatOvertakeEachOtherChangePlaces) {
   EXPECT_THAT(settled_order(times({1, 2, 3})), ElementsAre(0, 1, 2));
   EXPECT_THAT(settled_order(times({1000, 150'900, 150'000, 300'000, 290'000, 280'000})),
