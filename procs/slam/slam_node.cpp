@@ -273,7 +273,7 @@ void SlamNode::publish_markers(Timestamp time) {
   outbox_.publish(channels::kSlamChanges, to_message(changes, time, map_id_));
   for (const MapChange& change : changes)
     if (change.kind == MapChange::Kind::kSurveyOff && named_survey_ids_.insert(change.id).second)
-      logging::warn("surveyed marker {} is {:.1f} sigma from where the survey has it", change.id,
+      logging::warn("surveyed marker {} contradicts the survey by {:.1f} sigma", change.id,
                     change.sigmas);
 }
 

@@ -44,6 +44,11 @@ struct Placement {
       const;  ///< worst sigma with a marker everywhere; the target if that meets it
 
   bool is_met() const { return worst_then_m() <= target_m; }
+
+  /// Met by the model as it is, but not in the run: the model does not hold for it.
+  bool is_model_refuted() const {
+    return worst_now_m() <= target_m && worst_run_m && *worst_run_m > target_m;
+  }
 };
 
 /// @throws evaluate::InputError where the dictionary is not known.

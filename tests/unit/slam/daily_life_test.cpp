@@ -308,6 +308,25 @@ TEST_F(SurveyedMap, PosesComeOutInItsCoordinates) {
   EXPECT_EQ(drive.markers.size(), markers.size());
 }
 
+TEST_F(SurveyedMap, OfTwoEntriesThatContradictEachOtherBothAreNamedAndTheMapIsNotTorn) {
+  const auto markers = corridor_of(1).markers;
+  const test::SyntheticMarker& first = markers.front();
+  const test::SyntheticMarker& last = markers.back();
+  SlamConfig config;
+  config.robot.markers.survey_file = survey(
+      fmt::format("id,x_m,y_m,sigma_x_m,sigma_y_m\n{},{},{},0.002,0.002\n{},{},{},0.002,0.002\n",
+                  first.id, first.position_m.x(), first.position_m.y(), last.id,
+                  last.position_m.x() + 1.0, last.position_m.y()));
+  const test::Drive drive = test::drive_through(config, messages_of(*drive_));
+  ASSERT_EQ(drive.changes.size(), 2U);
+  EXPECT_GT(drive.changes[0].sigmas, 5.0);
+  for (const marker_landmark_t& landmark : drive.markers) {
+    const auto& marker = markers[static_cast<std::size_t>(landmark.id)];
+    EXPECT_NEAR(landmark.x_m, marker.position_m.x(), 1.1) << landmark.id;
+    EXPECT_NEAR(landmark.y_m, marker.position_m.y(), 0.3) << landmark.id;
+  }
+}
+
 TEST_F(SurveyedMap, AnEntryThatIsWrongIsNamedAndDoesNoHarm) {
   const auto markers = corridor_of(1).markers;
   for (const std::size_t wrong : {std::size_t{1}, markers.size() - 1}) {

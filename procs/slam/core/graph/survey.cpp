@@ -106,6 +106,7 @@ void Survey::apply(Graph& graph, int solve_steps) {
     std::optional<Graph> best;
     double least = graph.cost() - kClearlyBetter;
     for (const Entry* entry : most_suspicious(graph)) {
+      if (!holds_frame(graph, *entry)) continue;  // of two, nobody knows which one is wrong
       Graph without = graph;
       without.switch_prior(*entry->landmark, false);
       without.optimise_all(solve_steps);
@@ -113,9 +114,21 @@ void Survey::apply(Graph& graph, int solve_steps) {
       least = without.cost();
       best = std::move(without);
     }
-    if (!best) return;
+    if (!best) break;
     graph = std::move(*best);
   }
+  const double contradiction = graph.cost() - free.cost();
+  unresolved_sigmas_ = contradiction > kContradiction ? std::sqrt(contradiction) : 0.0;
+}
+
+bool Survey::holds_frame(const Graph& graph, const Entry& without) const {
+  int num_places = 0;
+  for (const Entry& entry : entries_) {
+    if (&entry == &without || !entry.has_prior || !graph.is_prior_on(*entry.landmark)) continue;
+    if (entry.marker.has_yaw) return true;
+    ++num_places;
+  }
+  return num_places >= 2;
 }
 
 void Survey::switch_all(Graph& graph, bool is_on) const {
@@ -149,7 +162,8 @@ std::vector<MapChange> Survey::changes(const Graph& graph) const {
   std::vector<MapChange> changes;
   for (const Entry& entry : entries_) {
     if (!entry.has_prior) continue;
-    const double sigmas = sigmas_off(entry, graph);
+    const bool is_on = graph.is_prior_on(*entry.landmark);
+    const double sigmas = std::max(sigmas_off(entry, graph), is_on ? unresolved_sigmas_ : 0.0);
     if (sigmas <= kWrong) continue;
     MapChange change;
     change.kind = MapChange::Kind::kSurveyOff;

@@ -33,7 +33,8 @@ class Survey {
   /// Adds the priors of new matches, solves, and tests those that are contradicted.
   void apply(Graph& graph, int solve_steps);
 
-  /// Markers that the graph has more than kWrong sigma away from where the survey has them.
+  /// Markers that the graph has more than kWrong sigma away from where the survey has them; and
+  /// those that contradict each other, where nobody can know which one is wrong.
   std::vector<MapChange> changes(const Graph& graph) const;
 
  private:
@@ -43,12 +44,15 @@ class Survey {
     bool has_prior{false};  ///< in the graph
   };
 
+  /// Whether the other entries fix where the map is, and how it is turned.
+  bool holds_frame(const Graph& graph, const Entry& without) const;
   void switch_all(Graph& graph, bool is_on) const;
   std::vector<const Entry*> most_suspicious(const Graph& graph) const;
   double sigmas_off(const Entry& entry, const Graph& graph) const;
 
   std::vector<Entry> entries_{};
   bool has_frame_{false};
+  double unresolved_sigmas_{0.0};  ///< by which entries contradict each other, none clearly wrong
 };
 
 }  // namespace waymark
