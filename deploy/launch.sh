@@ -113,7 +113,10 @@ check_scenario() {
   [[ -z $seed ]] || sim_options+=(--seed "$seed")
   "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-config >"$checked/scenario.toml" || exit $?
   "$bin_dir/waymark-sim" "${sim_options[@]}" --dump-robot-config >"$checked/robot.toml" || exit $?
-  [[ -z $robot ]] || cp -- "$robot" "$checked/robot.toml"
+  if [[ -n $robot ]]; then
+    "$bin_dir/waymark-detector" --config "$robot" --dump-config >/dev/null || exit $?  # which names that file
+    cp -- "$robot" "$checked/robot.toml"
+  fi
   seed=$("$bin_dir/waymark-sim" "${sim_options[@]}" --print-config run.seed) || exit $?
 }
 

@@ -120,6 +120,8 @@ run slam "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --ou
 run viewer "${part[@]}" --log "$log" --log "$folder/slam.lcm" --out "$folder"
 [[ -f $folder/map.pgm ]] || die $kExitFailed "the log has given no map; see $logs/$row.slam.log"
 write_timings
-((${#incomplete[@]} == 0)) ||
-  die $kExitFailed "$row is in $folder, of a log that is damaged or was not understood in part; see ${incomplete[*]}"
+if ((${#incomplete[@]} > 0)); then
+  grep -h ' error: ' "${incomplete[@]}" >&2 || true
+  die $kExitFailed "$row is in $folder, but not everything went well (see above and ${incomplete[*]})"
+fi
 say "$row is in $folder"

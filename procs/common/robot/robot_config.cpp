@@ -95,7 +95,7 @@ void MarkerConfig::describe(Fields& fields) {
   fields.field("skew_sigma_rad", skew_sigma_rad, kNotNegative, "how skew they hang");
   fields.field("survey_file", survey_file,
                "CSV with the columns of markers.csv: surveyed markers, which define the map's "
-               "frame; empty: none");
+               "frame; a path from where slam is started; empty: none");
 }
 
 void RobotConfig::describe(Fields& fields) {

@@ -134,6 +134,7 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
 void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) {
   inlier_share_ = 1.0;
   bool is_refuted_scan = false;
+  bool is_used = false;
   bool shows_all_axes = false;
   if (graph_.state().keyframes.empty()) {
     add_first_keyframe();
@@ -144,7 +145,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
     if (look.scan) search_widely(look);
     const auto& scan = look.scan;
     is_refuted_scan = scan && usual_fit_.is_refuted(scan->match);
-    const bool is_used = scan && !is_refuted_scan && scan->match.is_usable(config_.scan);
+    is_used = scan && !is_refuted_scan && scan->match.is_usable(config_.scan);
     // Odometry that stands still is so sure that no step of the solver would leave it.
     const bool is_moved = is_used && motion_doubt_.is_standing();
     const std::size_t keyframe = graph_.add_keyframe(
@@ -176,8 +177,12 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   }
   const bool is_doubtful = verdict_ == RelocalisationMonitor::Verdict::kDoubtful;
   markers_known_ = false;
-  if (!is_frozen())
-    drift_.add_keyframe(graph_.state().keyframes.back(), graph_.covariance_of_newest_step());
+  if (!is_frozen()) {
+    const Se2& map_from_base = graph_.state().keyframes.back();
+    const Eigen::Matrix3d step = graph_.covariance_of_newest_step();
+    drift_.add_keyframe(map_from_base, step);
+    unmatched_drift_.add_keyframe(map_from_base, is_used ? Eigen::Matrix3d::Zero() : step);
+  }
   if (!is_doubtful) {
     use_markers(measurements);
     note_misses(observation);

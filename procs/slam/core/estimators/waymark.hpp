@@ -205,6 +205,7 @@ class WaymarkEstimator final : public Estimator {
   RangeNoise range_noise_;
   OdometryNoiseLearner noise_learner_{};
   Drift drift_{};
+  Drift unmatched_drift_{};  ///< of it, over keyframes that no scan has held in place
   LoopFinder loop_finder_;
   KeyframeThinning thinning_;
   double since_loop_search_m_{0.0};

@@ -70,6 +70,7 @@ void WaymarkEstimator::use_survey() {
   if (const auto survey_from_map = survey_.new_frame(graph_)) {
     graph_.move_to_frame(*survey_from_map);
     drift_.move_to_frame(*survey_from_map);
+    unmatched_drift_.move_to_frame(*survey_from_map);
     map_.redraw(poses_of(graph_));
     relocalisation_ = {};
     loop_finder_.forget_places();

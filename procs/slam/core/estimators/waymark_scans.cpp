@@ -3,10 +3,23 @@
 #include "slam/core/estimators/waymark.hpp"
 #include "slam/core/registration/wide_search.hpp"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 
 namespace waymark {
+namespace {
+
+/// Of a measurement whose covariance grows by `noise`; also where it says nothing along an axis.
+Eigen::Matrix3d with_more_noise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& noise) {
+  if (noise.isZero(0.0)) return information;
+  const Eigen::Matrix3d reduced =
+      (Eigen::Matrix3d::Identity() + information * noise).inverse() * information;
+  return 0.5 * (reduced + reduced.transpose());
+}
+
+}  // namespace
 
 std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
     const Points& points, const Prediction& prediction) const {
@@ -57,8 +70,10 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
   ScanFactor factor;
   factor.is_loop = is_loop;
   factor.keyframe = keyframe;
-  // Keyframes are put together, so that the whole graph stays sparse: the middle one of those that
-  // saw the walls stands for its neighbours.
+  // Keyframes are put together: one stands for its neighbours. It is the same one for every scan,
+  // so that the whole graph stays sparse. Where no scan has held the neighbours in place, it may be
+  // off from those that saw the walls.
+  Eigen::Matrix3d off = Eigen::Matrix3d::Zero();
   const auto count = match.keyframe_shares.size();
   const auto first = static_cast<std::size_t>(match.first_keyframe);
   for (std::size_t begin = 0; begin < count;) {
@@ -68,19 +83,24 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
     double middle = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       share += match.keyframe_shares[i];
-      middle += static_cast<double>(i) * match.keyframe_shares[i];
+      middle += static_cast<double>(first + i) * match.keyframe_shares[i];
     }
-    if (share > 0.0) middle /= share;
-    std::size_t reference = first + static_cast<std::size_t>(std::lround(middle));
+    std::size_t reference =
+        std::clamp(group + kGroupedKeyframes / 2, first + begin, first + end - 1);
     if (!is_loop) reference = std::max(reference, graph_.first_active_keyframe());
     begin = end;
     if (share <= 0.0 || reference >= first + end) continue;
     factor.references.push_back(
         {reference, share, submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
+    const auto seen_from = static_cast<std::size_t>(std::lround(middle / share));
+    off += share * share * unmatched_drift_.between(seen_from, reference);
   }
   if (!factor.normalise_shares()) return;
-  factor.root_information =
-      root_of(in_axes(match.map_from_base.rotation().transpose(), match.observed.information));
+  const Eigen::Matrix3d information =
+      in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
+  const Eigen::Matrix3d off_in_base =
+      in_axes(graph_.state().keyframes[keyframe].rotation().transpose(), off);
+  factor.root_information = root_of(with_more_noise(information, off_in_base));
   graph_.add(factor);
 }
 

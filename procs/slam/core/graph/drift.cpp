@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/drift.hpp"
 
+#include <algorithm>
+
 namespace waymark {
 
 void Drift::add_keyframe(const Se2& map_from_base, const Eigen::Matrix3d& covariance) {
@@ -17,6 +19,11 @@ void Drift::move_to_frame(const Se2& new_from_old) {
 
 Eigen::Matrix3d Drift::since(std::size_t keyframe) const {
   return carried_along(Eigen::Matrix3d{sums_.back() - sums_[keyframe]}, newest_);
+}
+
+Eigen::Matrix3d Drift::between(std::size_t one, std::size_t other) const {
+  const auto [first, last] = std::minmax(one, other);
+  return carried_along(Eigen::Matrix3d{sums_[last] - sums_[first]}, newest_);
 }
 
 }  // namespace waymark

@@ -24,6 +24,9 @@ class Drift {
   /// Covariance of the newest keyframe's pose relative to that of an earlier one, map's axes.
   Eigen::Matrix3d since(std::size_t keyframe) const;
 
+  /// Of the poses of two keyframes relative to each other, as it shows at the newest one.
+  Eigen::Matrix3d between(std::size_t one, std::size_t other) const;
+
  private:
   Eigen::Vector2d newest_{Eigen::Vector2d::Zero()};
   std::vector<Eigen::Matrix3d> sums_{};  ///< up to each keyframe, as of a pose at the map's origin
