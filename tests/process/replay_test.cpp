@@ -33,7 +33,7 @@ Message pose(std::string_view channel, std::int64_t utime_us, float x_m) {
 class Listener final : public Node {
  public:
   Listener(Inbox& inbox, Outbox& outbox) : outbox_{outbox} {
-    for (const std::string_view channel : {"ODOMETRY", "SLAM_POSE", "SLAM_ESTIMATE"}) {
+    for (const std::string_view channel : {"ODOMETRY", "SLAM_POSE", "SLAM_ESTIMATE", "MAP_GRAPH"}) {
       inbox.on<pose2D_t>({channel}, [this, channel](const pose2D_t& message) {
         heard_ += std::string{channel} + " " + std::to_string(message.utime) + " " +
                   std::to_string(static_cast<int>(message.x)) + "\n";
@@ -141,6 +141,26 @@ TEST_F(Replay, ALaterLogReplacesAChannelAndAllOfSlam) {
   EXPECT_EQ(heard_, "ODOMETRY 1 1\nSLAM_POSE 1 2\nend\n");
 }
 
+TEST_F(Replay, AGraphOfAnotherSlamIsNotTaken) {
+  const auto run =
+      log("run.lcm", {pose("ODOMETRY", 1, 1), pose("SLAM_POSE", 1, 1), pose("MAP_GRAPH", 2, 1)});
+  const auto again = log("again.lcm", {pose("SLAM_ESTIMATE", 1, 2)});
+  EXPECT_EQ(replay({run, again}), kExitOk);
+  EXPECT_EQ(heard_.find("MAP_GRAPH"), std::string::npos);
+  EXPECT_EQ(replay({run}), kExitOk);
+  EXPECT_NE(heard_.find("MAP_GRAPH"), std::string::npos);
+}
+
+TEST_F(Replay, APartThatIsEmptyFailsAndFinishesNothing) {
+  ProcessOptions options;
+  options.skip_s = 1000.0;
+  const auto path = log("a.lcm", {pose("ODOMETRY", 1'000'000, 1), pose("ODOMETRY", 5'000'000, 1)});
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(replay({path}, options), kExitFailed);
+  EXPECT_THAT(::testing::internal::GetCapturedStdout(), HasSubstr("which is 4.0 s long"));
+  EXPECT_EQ(heard_, "");
+}
+
 TEST_F(Replay, ADamagedLogIsReadToItsEndAndFails) {
   const auto path = log("damaged.lcm", {pose("ODOMETRY", 1, 1)});
   std::ofstream{path, std::ios::app} << "garbage";
@@ -152,10 +172,12 @@ TEST_F(Replay, ALogWithoutOurChannelsFailsAndSaysWhatItHas) {
   ::testing::internal::CaptureStdout();
   EXPECT_EQ(replay({log("other.lcm", {pose("TRUE_POSE", 1, 1), pose("LASER", 2, 1)})}),
             kExitFailed);
-  EXPECT_THAT(::testing::internal::GetCapturedStdout(),
-              HasSubstr("other.lcm: has none of the channels that this process reads (ODOMETRY, "
-                        "SLAM_ESTIMATE, SLAM_POSE), but LASER, TRUE_POSE; logs of other robots are "
-                        "for waymark-import first"));
+  EXPECT_THAT(
+      ::testing::internal::GetCapturedStdout(),
+      HasSubstr(
+          "other.lcm: has none of the channels that this process reads (MAP_GRAPH, "
+          "ODOMETRY, SLAM_ESTIMATE, SLAM_POSE), but LASER, TRUE_POSE; logs of other robots are "
+          "for waymark-import first"));
 }
 
 TEST_F(Replay, OneOfSeveralLogsThatHasNothingIsNamedAndTheOthersAreReplayed) {

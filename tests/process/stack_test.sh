@@ -136,12 +136,26 @@ an_old_run_stays_when_the_new_one_cannot_start() {
   begin run --lcm-url nonsense://
   expect_code 2 $!
   grep -q "cannot join the LCM network nonsense://" "$work/run.output" || fail "the network is not named"
+  begin run --mode localise
+  expect_code 2 $!
+  grep -q "slam refuses its settings" "$work/run.output" || fail "the missing map is not named"
   printf '[robot.markers]\nids = [400]\n' >>"$work/short.toml"
   begin run --lcm-url memq://
   expect_code 2 $!
   grep -q "got 400, but DICT_6X6_250 has the ids 0 to 249" "$work/run.output" || fail "the id is not named"
   grep -q "detector refuses its settings" "$work/run.output" || fail "the detector is not named"
   [[ -e $work/run/run.lcm ]] || fail "the old run is gone"
+}
+
+# timeout(1) signals its command, and then its own group: one wish, twice.
+a_recording_that_timeout_ends_is_whole() {
+  local i code
+  for ((i = 0; i < 5; ++i)); do
+    code=0
+    timeout --preserve-status --signal INT 1 "$work/bin/waymark-recorder" --real-time --lcm-url "$url" \
+      --out-log "$work/$i.lcm" >"$work/$i.output" 2>&1 || code=$?
+    [[ -e $work/$i.lcm && ! -e $work/$i.lcm.part ]] || fail "recording $i ended with code $code and is cut short"
+  done
 }
 
 # The last event of the log is cut short.
@@ -152,7 +166,8 @@ replay_of_a_damaged_log() {
   truncate --size=-1 "$work/run/run.lcm"
   "${launch%launch.sh}replay.sh" "$work/run/run.lcm" --estimator odometry >"$work/replay.output" 2>&1 || code=$?
   ((code == 1)) || fail "exit code $code"
-  grep -q "odometry is in .*, of a log that is damaged" "$work/replay.output" || fail "the damage is not named"
+  grep -q "run.lcm: .* bytes from offset .* are no events" "$work/replay.output" || fail "the damage is not named"
+  grep -q "odometry is in .*, but not everything went well" "$work/replay.output" || fail "the result is not named"
   for file in map.pgm map.yaml trajectory.tum timings.json; do
     [[ -s $work/run/odometry/$file ]] || fail "no $file"
   done

@@ -43,6 +43,14 @@ TEST(Drift, EveryErrorOfTheHeadingMovesThePlaceAsFarAsTheWaySince) {
   }
 }
 
+TEST(Drift, BetweenTwoKeyframesIsWhatCameBetweenThemAsTheNewestOneSeesIt) {
+  const Drift drift = drift_of_headings(31);
+  const Eigen::Matrix3d between = drift.between(7, 25);
+  EXPECT_LT((between - (drift.since(7) - drift.since(25))).norm(), 1e-12);
+  EXPECT_LT((between - drift.between(25, 7)).norm(), 1e-12);
+  EXPECT_TRUE(drift.between(9, 9).isZero());
+}
+
 TEST(Drift, IsTheSameInAnotherFrame) {
   Drift drift = drift_of_headings(30);
   const Se2 new_from_old{-40.0, 13.0, 2.0};
