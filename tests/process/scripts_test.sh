@@ -333,7 +333,7 @@ replay_of_case() {
 
 replay_of_a_damaged_log_gives_what_is_left() {
   FAKE_slam_replayed=1 FAKE_viewer_replayed=1 replay_of_case 1
-  expect_output "odometry is in $work/odometry, but not everything went well (see above and $work/logs/odometry.slam.log .*viewer.log"
+  expect_output "odometry is in $work/odometry, but not everything went well .see above and $work/logs/odometry.slam.log .*viewer.log"
   [[ -e $work/viewer.replay && -e $work/odometry/map.pgm ]] || fail "no map"
   grep -q messages "$work/odometry/timings.json" || fail "no timings"
 }
