@@ -6,6 +6,7 @@
 #include "slam/core/registration/correlative_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -19,13 +20,21 @@ constexpr std::size_t kBeams = 120;
 constexpr double kUnseen_rad_s = 0.5;  // that the robot may have turned meanwhile
 constexpr double kClearlyMore = 1.05;  // inliers than the plain match
 constexpr double kFarMore = 2.0;
-constexpr double kLeavesFarMore = 3.0;  // beams unexplained
+constexpr double kManyContradict = 0.06;  // of all beams
+constexpr double kLeavesFarMore = 3.0;    // beams unexplained
 constexpr double kContradictedSigmas = 5.0;
+constexpr double kFarFarther = 4.0;                    // from odometry than the plain match
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
 
-bool is_contradicted_by_odometry(const ScanMatch& match, const WideSearch& search) {
+/// How far odometry has the robot from there, in sigmas.
+double sigmas_from_odometry(const ScanMatch& match, const WideSearch& search) {
   const Eigen::Vector3d off = pose_difference(match.map_from_base, search.by_odometry);
-  return chi2(off, search.odometry_covariance) > squared(kContradictedSigmas);
+  return std::sqrt(chi2(off, search.odometry_covariance));
+}
+
+/// Of all beams: those that end where the map has something else.
+double contradicting_share(const ScanMatch& match) {
+  return match.mapped_share * (1.0 - match.inlier_share);
 }
 
 double unexplained(const ScanMatch& match, const Points& points) {
@@ -54,17 +63,21 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   }
   const auto fits_better = [&] {
     if (found->inliers <= kClearlyMore * plain.inliers) return false;
-    if (is_contradicted_by_odometry(*found, search) &&
-        !is_contradicted_by_odometry(plain, search)) {
+    const double plain_sigmas = sigmas_from_odometry(plain, search);
+    if (sigmas_from_odometry(*found, search) >
+        std::max(kContradictedSigmas, kFarFarther * plain_sigmas)) {
       // A view that is new is more usual than odometry that is wrong.
-      if (usual.is_contradicted(plain) && found->inliers > kFarMore * plain.inliers) return true;
+      if (usual.is_contradicted(plain) && contradicting_share(plain) > kManyContradict &&
+          found->inliers > kFarMore * plain.inliers) {
+        return true;
+      }
       return !usual.is_worse_than_usual(*found) &&
              (usual.is_contradicted(plain) ||
               unexplained(plain, points) > kLeavesFarMore * unexplained(*found, points));
     }
     return usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
-           (usual.is_nearly_usual(*found) && (found->inliers > kFarMore * plain.inliers ||
-                                              is_contradicted_by_odometry(plain, search)));
+           (usual.is_nearly_usual(*found) &&
+            (found->inliers > kFarMore * plain.inliers || plain_sigmas > kContradictedSigmas));
   };
   return found && fits_better() ? *found : plain;
 }
