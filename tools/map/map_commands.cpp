@@ -43,7 +43,7 @@ Extent extent_of(const GridMap& grid) {
   return extent;
 }
 
-void need_same_markers(const MapFile& a, const MapFile& b) {
+void need_mergeable(const MapFile& a, const MapFile& b) {
   if (a.info.marker_dictionary != b.info.marker_dictionary ||
       a.info.marker_size_m != b.info.marker_size_m) {
     throw SetupError{fmt::format("the maps have other markers: {} of {} m and {} of {} m",
@@ -179,7 +179,7 @@ std::string merge_maps(const std::filesystem::path& a, const std::filesystem::pa
                        const std::filesystem::path& out) {
   const MapFile first = read_map_file(a);
   const MapFile second = read_map_file(b);
-  need_same_markers(first, second);
+  need_mergeable(first, second);
   auto alignment = align_by_markers(first.map, second.map);
   const bool is_by_markers = alignment.has_value();
   if (!is_by_markers) alignment = align_by_walls(first.map, second.map);

@@ -13,8 +13,7 @@ std::string verdict(const Placement& placement) {
   if (placement.is_model_refuted()) {
     return fmt::format(
         "By the model the target is met as it is, but not in the run, whose sigma was {:.4f} m: "
-        "the "
-        "model does not hold for this log, so that it cannot say where markers would help.\n",
+        "the model does not hold for this log, so that it cannot say where markers would help.\n",
         *placement.worst_run_m);
   }
   if (placement.worst_now_m() <= placement.target_m)

@@ -3,6 +3,7 @@
 
 #include "import/findings/range_noise.hpp"
 #include "import/findings/reversed_odometry.hpp"
+#include "import/findings/scan_overlay.hpp"
 #include "import/findings/standing_odometry.hpp"
 
 #include <fmt/format.h>
@@ -51,25 +52,24 @@ void check_that_odometry_moves(const ImportedLog& log, ImportReport& report) {
 
 /// No LiDAR measures as near: what is written there is a code.
 void check_short_ranges(ImportedLog& log, ImportReport& report) {
-  constexpr double kShortest_m = 0.05;
   constexpr double kFew = 1e-3;
   std::int64_t all = 0;
   std::int64_t shorter = 0;
   for (const ImportedScan& imported : log.scans) {
     for (const double range_m : scan_of(imported).ranges_m) {
       ++all;
-      if (range_m > 0.0 && range_m < kShortest_m) ++shorter;
+      if (range_m > 0.0 && range_m < kShortestRange_m) ++shorter;
     }
   }
-  if (log.robot.lidar.range_min_m >= kShortest_m ||
+  if (log.robot.lidar.range_min_m >= kShortestRange_m ||
       static_cast<double>(shorter) <= kFew * static_cast<double>(all)) {
     return;
   }
-  log.robot.lidar.range_min_m = kShortest_m;
+  log.robot.lidar.range_min_m = kShortestRange_m;
   report.note(
       fmt::format("{} ranges are below {} m: taken as not measured; --min-range-m says "
                   "otherwise",
-                  shorter, kShortest_m));
+                  shorter, kShortestRange_m));
 }
 
 BodyBeams check_body(const ImportedLog& log, ImportReport& report) {

@@ -8,7 +8,6 @@
 namespace waymark {
 namespace {
 
-constexpr double kShortest_m = 0.05;     // no LiDAR measures as near
 constexpr double kLargestError_m = 0.3;  // of a beam: more is something else than the same wall
 constexpr double kSameWall_m = 0.3;      // between ranges that are interpolated
 constexpr double kWidestGap_rad = 0.1;   // between beams that are interpolated
@@ -31,7 +30,7 @@ std::optional<double> range_towards(const LidarScan& scan, double angle_rad) {
 LidarScan in_order_of_angles(const LidarScan& scan) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
-    if (std::isfinite(scan.ranges_m[i]) && scan.ranges_m[i] > kShortest_m) order.push_back(i);
+    if (std::isfinite(scan.ranges_m[i]) && scan.ranges_m[i] > kShortestRange_m) order.push_back(i);
   }
   std::ranges::stable_sort(order, {},
                            [&scan](std::size_t i) { return wrap_angle(scan.angles_rad[i]); });

@@ -8,6 +8,8 @@
 
 namespace waymark {
 
+inline constexpr double kShortestRange_m = 0.05;  ///< no LiDAR measures as near
+
 /// The scan with angles in (-pi, pi], ascending; beams without a return are left out.
 LidarScan in_order_of_angles(const LidarScan& scan);
 

@@ -26,13 +26,19 @@ inline constexpr Duration kSmallDisorder = std::chrono::milliseconds{200};
 /// behind the one before. Larger steps back stay where they are. O(n k), k records within it.
 std::vector<std::size_t> settled_order(std::span<const Timestamp> times);
 
+template <class Record>
+std::vector<Timestamp> times_of(const std::vector<Record>& records) {
+  std::vector<Timestamp> times;
+  for (const Record& record : records)
+    times.push_back(record.time);
+  return times;
+}
+
 /// Puts records (with a member `time`) that are slightly out of order into order, and says so.
 template <class Record>
 void settle_small_disorder(std::vector<Record>& records, std::string_view what,
                            ImportReport& report) {
-  std::vector<Timestamp> times;
-  for (const Record& record : records)
-    times.push_back(record.time);
+  const std::vector<Timestamp> times = times_of(records);
   std::vector<Record> settled;
   std::size_t moved = 0;
   for (const std::size_t index : settled_order(times)) {
@@ -57,10 +63,7 @@ std::vector<Timestamp> spread_over_gaps(std::span<const Timestamp> stamps);
 template <class Record>
 void spread_equal_stamps(std::vector<Record>& records, std::string_view what,
                          ImportReport& report) {
-  std::vector<Timestamp> stamps;
-  for (const Record& record : records)
-    stamps.push_back(record.time);
-  const std::vector<Timestamp> spread = spread_over_gaps(stamps);
+  const std::vector<Timestamp> spread = spread_over_gaps(times_of(records));
   std::size_t moved = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (records[i].time != spread[i]) ++moved;
@@ -79,9 +82,7 @@ void remove_absurd_times(std::vector<Record>& records, std::string_view what,
                          ImportReport& report) {
   constexpr Duration kLongestLog = std::chrono::hours{24 * 30};
   if (records.empty()) return;
-  std::vector<Timestamp> times;
-  for (const Record& record : records)
-    times.push_back(record.time);
+  std::vector<Timestamp> times = times_of(records);
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
   std::nth_element(times.begin(), middle, times.end());
   const Timestamp usual = *middle;
@@ -97,9 +98,7 @@ void remove_absurd_times(std::vector<Record>& records, std::string_view what,
 /// Removes records (with members `time` and `at`) out of order, naming them.
 template <class Record>
 void keep_ascending(std::vector<Record>& records, std::string_view what, ImportReport& report) {
-  std::vector<Timestamp> times;
-  for (const Record& record : records)
-    times.push_back(record.time);
+  const std::vector<Timestamp> times = times_of(records);
   const std::vector<bool> keep = longest_ascending(times);
   std::vector<Record> kept;
   for (std::size_t i = 0; i < records.size(); ++i) {
