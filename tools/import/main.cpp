@@ -29,6 +29,7 @@ struct Options {
   std::optional<double> first_angle_deg{};
   std::optional<double> angle_step_deg{};
   std::optional<double> lidar_yaw_deg{};
+  double odometry_scale{1.0};
   CarmenOptions carmen{};
   MbotOptions mbot{};
   RosbagOptions rosbag{};
@@ -44,6 +45,9 @@ void add_common_options(Command& app, Options& options, LidarMounting& mounting)
   app.add_flag(
       "--fix-reversed-odometry", options.fix_reversed_odometry,
       "where scans show that odometry counts backing up as driving forward, turn it round");
+  app.add_option("--odometry-scale", options.odometry_scale,
+                 "odometry's distances are multiplied by it (0.0254 where they are inches)")
+      .check(positive_number());
   app.add_option("--lidar-x-m", mounting.x_m, "where the LiDAR sits in the base frame")
       .check(finite_number());
   app.add_option("--lidar-y-m", mounting.y_m, "where the LiDAR sits in the base frame")
@@ -71,11 +75,20 @@ Command add_carmen(Command& app, Options& options) {
   carmen.add_choice(
       "--odometry", options.carmen.odometry,
       {{"laser", CarmenOdometrySource::kLaserLines}, {"odom", CarmenOdometrySource::kOdomLines}},
-      "laser (odometry poses of the LiDAR's lines; default) or odom (ODOM lines)");
+      "laser (odometry poses of the LiDAR's lines) or odom (ODOM lines; default: laser if they "
+      "move)");
+  carmen.add_choice("--heading-unit", options.carmen.units.odometry_rad,
+                    {{"rad", 1.0}, {"deg", radians(1.0)}}, "of poses (default: rad)");
   carmen.add_choice(
       "--stamps", options.carmen.stamps,
       {{"ipc", CarmenStamps::kIpc}, {"logger", CarmenStamps::kLogger}},
       "ipc or logger: which timestamp is a line's time (default: ipc if it advances)");
+  carmen.add_choice("--time-unit", options.carmen.units.time_s,
+                    {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}, "of both timestamps (default: s)");
+  carmen
+      .add_option("--scan-period-s", options.carmen.scan_period_s,
+                  "time between scans, of lines that have none")
+      .check(positive_number());
   carmen
       .add_option("--max-range-m", options.carmen.range_max_m,
                   "ranges from here on are no returns (default: where a pile-up shows, else as the "
@@ -149,7 +162,8 @@ Command add_rosbag(Command& app, Options& options) {
   return rosbag;
 }
 
-void convert_angles(Options& options) {
+void convert_units(Options& options) {
+  options.carmen.units.odometry_m = options.odometry_scale;
   const auto to_radians = [](const std::optional<double>& angle_deg) {
     return angle_deg ? std::optional{radians(*angle_deg)} : std::nullopt;
   };
@@ -182,6 +196,7 @@ int import(const Options& options, Kind kind) {
                       kind == Kind::kCarmen ? AddressUnit::kLine : AddressUnit::kByte};
   try {
     ImportedLog log = read(options, kind, report);
+    if (kind != Kind::kCarmen) scale_distances(log.odometry, options.odometry_scale);
     examine(log, options.fix_reversed_odometry ? ReversedOdometry::kMend : ReversedOdometry::kName,
             report);
     write_imported_log(log, report, options.out);
@@ -208,7 +223,7 @@ int main(int argc, char** argv) {
   add_mbot(app, options);
   const Command rosbag = add_rosbag(app, options);
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
-  convert_angles(options);
+  convert_units(options);
   const Kind kind = carmen.is_given()   ? Kind::kCarmen
                     : rosbag.is_given() ? Kind::kRosbag
                                         : Kind::kMbot;

@@ -4,6 +4,7 @@
 #include "common/errors/setup_error.hpp"
 
 #include <bzlib.h>
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <array>
@@ -14,6 +15,22 @@ namespace waymark {
 namespace {
 
 constexpr std::string_view kBzip2Magic = "BZh";
+
+/// What people download logs in, and we do not read.
+struct Archive {
+  std::string_view magic;
+  std::string_view kind;
+  std::string_view unpack;  ///< program that does it
+};
+
+constexpr std::array<Archive, 5> kArchives{{{"PK\x03\x04", "a zip archive", "unzip"},
+                                            {"\xFD"
+                                             "7zXZ",
+                                             "compressed by xz", "unxz"},
+                                            {"7z\xBC\xAF", "a 7z archive", "7z x"},
+                                            {"\x28\xB5\x2F\xFD", "compressed by zstd", "unzstd"},
+                                            {"Rar!", "a rar archive", "unrar x"}}};
+constexpr std::size_t kLongestMagic = 5;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -115,10 +132,16 @@ std::unique_ptr<ByteSource> open_bytes(const std::filesystem::path& path) {
   if (std::filesystem::file_size(path, error) == 0) throw SetupError{path.string() + ": is empty"};
   File file{std::fopen(path.c_str(), "rb")};
   if (!file) throw SetupError{path.string() + ": cannot be read"};
-  std::array<char, kBzip2Magic.size()> start{};
-  const std::size_t size = std::fread(start.data(), 1, start.size(), file.get());
-  if (std::string_view{start.data(), size} != kBzip2Magic)
-    return std::make_unique<GzipSource>(path);
+  std::array<char, kLongestMagic> bytes{};
+  const std::size_t size = std::fread(bytes.data(), 1, bytes.size(), file.get());
+  const std::string_view start{bytes.data(), size};
+  for (const Archive& archive : kArchives) {
+    if (start.starts_with(archive.magic)) {
+      throw SetupError{fmt::format("{}: is {}; unpack it first ({} {})", path.string(),
+                                   archive.kind, archive.unpack, path.filename().string())};
+    }
+  }
+  if (!start.starts_with(kBzip2Magic)) return std::make_unique<GzipSource>(path);
   std::rewind(file.get());
   return std::make_unique<Bzip2Source>(std::move(file));
 }

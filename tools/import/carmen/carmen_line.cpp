@@ -41,10 +41,18 @@ std::optional<BeamAngles> beam_angles(int num_beams, const CarmenBeams& given) {
                     given.angle_step_rad.value_or(conventional_step_rad)};
 }
 
-Se2 take_pose(FieldCursor& fields, std::string_view name) {
-  const double x_m = fields.number(name);
-  const double y_m = fields.number(name);
-  const double theta_rad = fields.number(name);
+/// What a user may say of all lines.
+struct Given {
+  const CarmenBeams& beams;
+  const CarmenUnits& units;
+};
+
+Se2 take_pose(FieldCursor& fields, std::string_view name, const CarmenUnits& units,
+              double* heading_rad = nullptr) {
+  const double x_m = fields.number(name) * units.odometry_m;
+  const double y_m = fields.number(name) * units.odometry_m;
+  const double theta_rad = fields.number(name) * units.odometry_rad;
+  if (heading_rad != nullptr) *heading_rad = theta_rad;
   if (std::max({std::abs(x_m), std::abs(y_m), std::abs(theta_rad)}) > kLargestPose) {
     fields.fail("number out of range",
                 fmt::format("{} is ({}, {}, {})", name, x_m, y_m, theta_rad));
@@ -63,15 +71,27 @@ void take_ranges(FieldCursor& fields, int num_beams, CarmenScan& scan) {
   }
 }
 
-/// The three fields that end every line; checks that nothing follows.
+constexpr std::size_t kAllTimes = 3;
+
+/// The three fields that end every line, or those that an older logger writes; checks that nothing
+/// follows.
 template <class Line>
-void take_times(FieldCursor& fields, Line& line) {
-  line.time_s = fields.number("ipc_timestamp");
-  fields.word("ipc_hostname");
-  line.logger_time_s = fields.number("logger_timestamp");
+void take_times(FieldCursor& fields, const CarmenUnits& units, Line& line) {
+  line.num_times = std::min(fields.num_left(), kAllTimes);
+  if (line.num_times == 0) return;
+  const bool has_host = line.num_times == kAllTimes || !fields.ends_with_number();
+  line.time_s = fields.number("ipc_timestamp") * units.time_s;
+  if (line.num_times > 1) {
+    if (has_host) fields.word("ipc_hostname");
+    line.logger_time_s = fields.number("logger_timestamp") * units.time_s;
+  }
   fields.expect_end();
   if (line.time_s < 0.0 || line.time_s > kLatestTime_s) {
-    fields.fail("bad time", fmt::format("ipc_timestamp is {}", line.time_s));
+    fields.fail("bad time", fmt::format("ipc_timestamp is {}{}", line.time_s,
+                                        line.time_s > kLatestTime_s
+                                            ? " s, a year after 2096: are times in ms or us? Give "
+                                              "--time-unit ms or us"
+                                            : ""));
   }
   // Nobody needs a logger's time unless ipc_timestamp is of no use.
   line.logger_time_s = std::clamp(line.logger_time_s, 0.0, kLatestTime_s);
@@ -82,24 +102,28 @@ CarmenLine finish(FieldCursor& fields, CarmenLine line) {
   return line;
 }
 
-CarmenLine parse_odometry(FieldCursor& fields) {
+CarmenLine parse_odometry(FieldCursor& fields, const CarmenUnits& units) {
   CarmenOdometry odometry{};
-  odometry.odom_from_base = take_pose(fields, "the odometry pose");
+  odometry.odom_from_base = take_pose(fields, "the odometry pose", units);
   for (const std::string_view name : {"tv", "rv", "accel"})
     fields.number(name);
-  take_times(fields, odometry);
+  take_times(fields, units, odometry);
   return finish(fields, odometry);
 }
 
-CarmenLine parse_old_laser(FieldCursor& fields, CarmenLidar lidar, const CarmenBeams& given) {
+void take_poses(FieldCursor& fields, const CarmenUnits& units, CarmenScan& scan) {
+  scan.odom_from_lidar = take_pose(fields, "the LiDAR pose", units);
+  scan.odom_from_base = take_pose(fields, "the odometry pose", units, &scan.heading_rad);
+}
+
+CarmenLine parse_old_laser(FieldCursor& fields, CarmenLidar lidar, const Given& given) {
   CarmenScan scan{};
   scan.lidar = lidar;
   const int num_beams = fields.integer("the number of ranges", 1, kMaxBeams);
   take_ranges(fields, num_beams, scan);
-  scan.odom_from_lidar = take_pose(fields, "the LiDAR pose");
-  scan.odom_from_base = take_pose(fields, "the odometry pose");
-  take_times(fields, scan);
-  const auto angles = beam_angles(num_beams, given);
+  take_poses(fields, given.units, scan);
+  take_times(fields, given.units, scan);
+  const auto angles = beam_angles(num_beams, given.beams);
   if (!angles) {
     fields.fail("unknown field of view",
                 fmt::format("{} beams: give --first-angle-deg and --angle-step-deg", num_beams));
@@ -129,7 +153,7 @@ double angle_step(FieldCursor& fields, double field_of_view_rad, double resoluti
   return resolution_rad;
 }
 
-CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const CarmenBeams& given) {
+CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const Given& given) {
   CarmenScan scan{};
   scan.lidar = lidar;
   fields.number("laser_type");
@@ -144,14 +168,13 @@ CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const Carme
   const int num_remissions = fields.integer("the number of remissions", 0, kMaxBeams);
   for (int i = 0; i < num_remissions && !fields.failed(); ++i)
     fields.number("a remission");
-  scan.odom_from_lidar = take_pose(fields, "the LiDAR pose");
-  scan.odom_from_base = take_pose(fields, "the odometry pose");
+  take_poses(fields, given.units, scan);
   for (const std::string_view name : {"tv", "rv", "forward_safety", "side_safety", "turn_axis"})
     fields.number(name);
-  take_times(fields, scan);
-  scan.first_angle_rad = given.first_angle_rad.value_or(scan.first_angle_rad);
-  if (given.angle_step_rad) {
-    scan.angle_step_rad = *given.angle_step_rad;
+  take_times(fields, given.units, scan);
+  scan.first_angle_rad = given.beams.first_angle_rad.value_or(scan.first_angle_rad);
+  if (given.beams.angle_step_rad) {
+    scan.angle_step_rad = *given.beams.angle_step_rad;
     if (*scan.range_max_m <= 0.0) scan.range_max_m.reset();
     return finish(fields, scan);
   }
@@ -193,17 +216,19 @@ CarmenLine parse_parameter(FieldCursor& fields) {
 
 }  // namespace
 
-CarmenLine parse_carmen_line(std::string_view line, const CarmenBeams& beams) {
+CarmenLine parse_carmen_line(std::string_view line, const CarmenBeams& beams,
+                             const CarmenUnits& units) {
   const bool is_blank = line.find_first_not_of(" \t\r") == std::string_view::npos;
   if (is_blank || line.front() == '#') return CarmenOther{};
   FieldCursor fields{line};
+  const Given given{beams, units};
   const std::string_view keyword = fields.word("the keyword");
   if (keyword == "PARAM") return parse_parameter(fields);
-  if (keyword == "ODOM") return parse_odometry(fields);
-  if (keyword == "FLASER") return parse_old_laser(fields, CarmenLidar::kFront, beams);
-  if (keyword == "RLASER") return parse_old_laser(fields, CarmenLidar::kRear, beams);
-  if (keyword == "ROBOTLASER1") return parse_robot_laser(fields, CarmenLidar::kFront, beams);
-  if (keyword == "ROBOTLASER2") return parse_robot_laser(fields, CarmenLidar::kRear, beams);
+  if (keyword == "ODOM") return parse_odometry(fields, units);
+  if (keyword == "FLASER") return parse_old_laser(fields, CarmenLidar::kFront, given);
+  if (keyword == "RLASER") return parse_old_laser(fields, CarmenLidar::kRear, given);
+  if (keyword == "ROBOTLASER1") return parse_robot_laser(fields, CarmenLidar::kFront, given);
+  if (keyword == "ROBOTLASER2") return parse_robot_laser(fields, CarmenLidar::kRear, given);
   const auto other = std::ranges::find(kOtherKeywords, keyword);
   if (other != kOtherKeywords.end()) return CarmenOther{*other};
   return LineProblem{"unknown line", quoted(keyword) + " is no keyword of a CARMEN log"};

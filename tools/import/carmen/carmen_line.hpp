@@ -6,6 +6,7 @@
 //     accuracy remission_mode n range*n n_remissions remission*n_remissions laser_x laser_y
 //     laser_theta odom_x odom_y odom_theta laser_tv laser_rv forward_safety side_safety turn_axis
 //     | the same three
+//     Of the three that end a line, older loggers write no host, or ipc_timestamp alone, or none.
 //   PARAM name value | the same three: of them, where the LiDARs are mounted
 // FLASER and ROBOTLASER1 are the front LiDAR, RLASER and ROBOTLASER2 the rear one.
 #pragma once
@@ -29,10 +30,18 @@ struct CarmenBeams {
   std::optional<double> angle_step_rad{};
 };
 
+/// What the numbers of a line count, where it is not seconds, metres and radians.
+struct CarmenUnits {
+  double time_s{1.0};
+  double odometry_m{1.0};    ///< of the poses
+  double odometry_rad{1.0};  ///< of their headings
+};
+
 struct CarmenScan {
   CarmenLidar lidar{CarmenLidar::kFront};
   double time_s{0.0};              ///< ipc_timestamp
   double logger_time_s{0.0};       ///< may be anything finite
+  std::size_t num_times{0};        ///< fields that the line has for the times: 3, or 2, 1, 0
   std::vector<double> ranges_m{};  ///< as written; may be +inf; NaN where the line has none
   int num_no_ranges{0};            ///< of these
   double first_angle_rad{0.0};
@@ -40,11 +49,13 @@ struct CarmenScan {
   std::optional<double> range_max_m{};  ///< when the line says it
   Se2 odom_from_lidar{};
   Se2 odom_from_base{};
+  double heading_rad{0.0};  ///< of odom_from_base, as written
 };
 
 struct CarmenOdometry {
   double time_s{0.0};
   double logger_time_s{0.0};
+  std::size_t num_times{0};
   Se2 odom_from_base{};
 };
 
@@ -66,6 +77,7 @@ using CarmenLine =
     std::variant<CarmenScan, CarmenOdometry, CarmenMounting, CarmenOther, LineProblem>;
 
 /// Never throws on account of the line. O(length).
-CarmenLine parse_carmen_line(std::string_view line, const CarmenBeams& beams);
+CarmenLine parse_carmen_line(std::string_view line, const CarmenBeams& beams,
+                             const CarmenUnits& units = {});
 
 }  // namespace waymark

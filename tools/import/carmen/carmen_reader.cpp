@@ -4,7 +4,9 @@
 #include "common/errors/setup_error.hpp"
 #include "common/messages/bounds.hpp"
 #include "common/messages/codec.hpp"
+#include "import/carmen/line_times.hpp"
 #include "import/carmen/mounting.hpp"
+#include "import/carmen/odometry_lines.hpp"
 #include "import/carmen/text_lines.hpp"
 #include "import/findings/no_return.hpp"
 #include "import/log/time_order.hpp"
@@ -29,17 +31,9 @@ Timestamp timestamp_from_seconds(double seconds) {
 }
 
 template <class Line>
-CarmenTimes times_of(const Line& line) {
+CarmenTimes line_times(const Line& line) {
   return {timestamp_from_seconds(line.time_s), timestamp_from_seconds(line.logger_time_s)};
 }
-
-template <class Line>
-struct Read {
-  CarmenTimes times{};
-  std::int64_t at{0};
-  Line line{};
-  Timestamp time{};  ///< the one of both that is taken
-};
 
 class CarmenReader {
  public:
@@ -67,7 +61,7 @@ class CarmenReader {
   void apply_stamps();
   void note_assumptions();
   std::string what_is_not_read() const;
-  void add_scan(const Read<CarmenScan>& read);
+  void add_scan(const ReadScan& read);
   void apply_mounting();
   double usual_range_max_m();
 
@@ -76,8 +70,8 @@ class CarmenReader {
   ImportedLog log_{};
   std::int64_t at_{0};
   std::map<std::string, std::int64_t> counts_{};
-  std::vector<Read<CarmenScan>> scans_{};
-  std::vector<Read<CarmenOdometry>> odometry_{};
+  std::vector<ReadScan> scans_{};
+  std::vector<ReadOdometry> odometry_{};
   std::vector<CarmenMounting> mountings_{};
 };
 
@@ -86,13 +80,12 @@ void CarmenReader::take_content(CarmenScan scan) {
   if (scan.lidar != options_.lidar) return;
   for (double& range : scan.ranges_m)
     range *= options_.range_unit_m;
-  scans_.push_back({times_of(scan), at_, std::move(scan), {}});
+  scans_.push_back({line_times(scan), at_, std::move(scan), {}});
 }
 
 void CarmenReader::take_content(const CarmenOdometry& odometry) {
   ++counts_["ODOM"];
-  if (options_.odometry != CarmenOdometrySource::kOdomLines) return;
-  odometry_.push_back({times_of(odometry), at_, odometry, {}});
+  if (odometry.num_times > 0) odometry_.push_back({line_times(odometry), at_, odometry, {}});
 }
 
 void CarmenReader::apply_stamps() {
@@ -102,12 +95,14 @@ void CarmenReader::apply_stamps() {
   const CarmenStamps stamps = choose_stamps(times, options_.stamps, report_);
   for (auto& scan : scans_)
     scan.time = scan.times.by(stamps);
-  for (auto& sample : odometry_) {
-    log_.odometry.push_back({sample.times.by(stamps), sample.at, sample.line.odom_from_base});
-  }
+  for (auto& sample : odometry_)
+    sample.time = sample.times.by(stamps);
+  mend_order(scans_, odometry_, report_);
+  for (const ReadOdometry& sample : odometry_)
+    log_.odometry.push_back({sample.time, sample.at, sample.line.odom_from_base});
 }
 
-void CarmenReader::add_scan(const Read<CarmenScan>& read) {
+void CarmenReader::add_scan(const ReadScan& read) {
   const CarmenScan& scan = read.line;
   planar_lidar_t message{};
   message.utime = to_us(read.time);
@@ -118,16 +113,13 @@ void CarmenReader::add_scan(const Read<CarmenScan>& read) {
     message.ranges.push_back(static_cast<float>(std::min(range_m, bounds::kRange_m)));
   log_.scans.push_back(
       {read.time, read.time, read.at, message.nranges, 0.0, encode(channels::kLidar, message), {}});
-  if (options_.odometry == CarmenOdometrySource::kLaserLines) {
+  if (log_.odometry.empty()) {
     log_.scans.back().odom_from_base = scan.odom_from_base;
   }
 }
 
 void CarmenReader::apply_mounting() {
-  std::vector<Se2> poses;
-  for (const auto& scan : scans_)
-    poses.push_back(scan.line.odom_from_base.inverse() * scan.line.odom_from_lidar);
-  Se2 base_from_lidar = find_mounting(poses, mountings_, options_.lidar, report_);
+  Se2 base_from_lidar = find_mounting(lidar_poses(scans_), mountings_, options_.lidar, report_);
   // Loggers write the robot's heading for the rear LiDAR, too, whose beam angles count from behind.
   if (options_.lidar == CarmenLidar::kRear && std::abs(base_from_lidar.theta()) < radians(90.0)) {
     base_from_lidar = base_from_lidar * Se2{0.0, 0.0, radians(180.0)};
@@ -156,6 +148,9 @@ std::string CarmenReader::what_is_not_read() const {
   const bool is_front = options_.lidar == CarmenLidar::kFront;
   if (counts_.contains(is_front ? "rear scans" : "front scans"))
     return fmt::format(": give --lidar {}", is_front ? "rear" : "front");
+  if (report_.skipped_by_kind().contains("bad time"))
+    return ": the times of its lines are none: if they are milliseconds or microseconds, give "
+           "--time-unit ms or us";
   if (counts_.contains("RAWLASER1"))
     return ": RAWLASER lines, which have no odometry, are not read; write them as ROBOTLASER1";
   return "";
@@ -203,9 +198,16 @@ ImportedLog CarmenReader::finish() {
                      what_is_not_read()};
   }
   note_assumptions();
+  complete_times(scans_, options_.scan_period_s, report_);
+  keep_one_lidar(scans_, report_);
+  if (choose_odometry(scans_, odometry_, options_.odometry, report_) ==
+      CarmenOdometrySource::kLaserLines)
+    odometry_.clear();
+  check_headings(scans_);
   apply_stamps();
   remove_absurd_times(scans_, "a scan", report_);
   remove_absurd_times(log_.odometry, "odometry", report_);
+  check_time_unit(scans_, report_);
   apply_mounting();
   settle_small_disorder(scans_, "scan", report_);
   spread_equal_stamps(scans_, "scan", report_);
@@ -227,7 +229,7 @@ ImportedLog read_carmen_log(const std::filesystem::path& file, const CarmenOptio
   TextLines lines{file};
   CarmenReader reader{options, report};
   while (const auto line = lines.next())
-    reader.take(parse_carmen_line(*line, options.beams), lines.line_number());
+    reader.take(parse_carmen_line(*line, options.beams, options.units), lines.line_number());
   if (!lines.fault().empty()) {
     report.skip("damaged file", lines.line_number(), "the file ends here: " + lines.fault());
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "import/carmen/carmen_line.hpp"
+#include "import/carmen/odometry_lines.hpp"
 #include "import/carmen/stamps.hpp"
 #include "import/log/imported_log.hpp"
 
@@ -11,19 +12,14 @@
 
 namespace waymark {
 
-/// Which lines the odometry comes from. Never from both: they are stamped by different processes,
-/// and where they disagree by milliseconds the robot would seem to jump to and fro.
-enum class CarmenOdometrySource {
-  kLaserLines,  ///< the odometry pose in each scan's line: exact at the scan; what GMapping reads
-  kOdomLines,   ///< ODOM
-};
-
 struct CarmenOptions {
   CarmenLidar lidar{CarmenLidar::kFront};
-  CarmenOdometrySource odometry{CarmenOdometrySource::kLaserLines};
+  std::optional<CarmenOdometrySource> odometry{};  ///< nullopt = the scans' lines, if they move
   CarmenBeams beams{};
-  std::optional<CarmenStamps> stamps{};  ///< nullopt = ipc_timestamp if it advances
-  std::optional<double> range_max_m{};   ///< nullopt = see mark_no_returns(); usual: SICK LMS
+  CarmenUnits units{};
+  std::optional<double> scan_period_s{};  ///< of lines without times
+  std::optional<CarmenStamps> stamps{};   ///< nullopt = ipc_timestamp if it advances
+  std::optional<double> range_max_m{};    ///< nullopt = see mark_no_returns(); usual: SICK LMS
   double range_min_m{0.0};
   double range_unit_m{1.0};  ///< of the lines' ranges
   LidarMounting mounting{};

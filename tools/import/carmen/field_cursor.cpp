@@ -70,6 +70,23 @@ int FieldCursor::integer(std::string_view name, int low, int high) {
   return failed() ? low : value;
 }
 
+std::size_t FieldCursor::num_left() const {
+  FieldCursor ahead{rest_};
+  std::size_t count = 0;
+  while (!ahead.take().empty())
+    ++count;
+  return count;
+}
+
+bool FieldCursor::ends_with_number() const {
+  FieldCursor ahead{rest_};
+  double value = 0.0;
+  bool is_number = false;
+  for (std::string_view field = ahead.take(); !field.empty(); field = ahead.take())
+    is_number = parse(field, value);
+  return is_number;
+}
+
 void FieldCursor::expect_end() {
   if (failed()) return;
   const std::string_view field = take();

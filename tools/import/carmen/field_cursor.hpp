@@ -22,6 +22,10 @@ class FieldCursor {
   /// A number or infinity.
   double any_number(std::string_view name);
   int integer(std::string_view name, int low, int high);
+  /// Fields that nobody took yet.
+  std::size_t num_left() const;
+  /// Whether the line's last field is a number.
+  bool ends_with_number() const;
   /// Complains about fields that nobody took.
   void expect_end();
 

@@ -38,6 +38,28 @@ void remove_repeats(std::vector<ImportedPose>& poses) {
   poses.erase(repeats.begin(), repeats.end());
 }
 
+/// The first pose, or where a robot that drives there already was before it; by symmetry the last.
+/// Odometry of fewer than two samples a second says nothing of its speed.
+Se2 carried_to(const std::vector<ImportedPose>& poses, Timestamp time) {
+  constexpr Duration kBeside = kLongestHold;
+  const bool is_before = time < poses.front().time;
+  const ImportedPose& end = is_before ? poses.front() : poses.back();
+  const Timestamp beside = is_before ? end.time + kBeside : end.time - kBeside;
+  const auto [first, last] = std::minmax(end.time, beside);
+  const auto shown = std::ranges::count_if(poses, [&, low = first, high = last](const auto& pose) {
+    return pose.time >= low && pose.time <= high;
+  });
+  if (shown < 3) return end.pose;
+  const Se2 step = end.pose.inverse() * pose_at(poses, beside);
+  const double share = to_seconds(time - end.time) / to_seconds(beside - end.time);
+  return end.pose * Se2{share * step.translation(), share * step.theta()};
+}
+
+std::string held_or_carried(const Se2& held, const Se2& pose, std::string_view which) {
+  const bool is_held = held.translation() == pose.translation() && held.theta() == pose.theta();
+  return fmt::format("{} {}", which, is_held ? "pose held" : "motion goes on");
+}
+
 }  // namespace
 
 LidarScan scan_of(const ImportedScan& scan) {
@@ -105,8 +127,9 @@ void cover_scans(ImportedLog& log, ImportReport& report) {
                               std::string_view what) {
     if (start >= first - kLongestHold && end <= last + kLongestHold) return false;
     report.skip("no odometry at its time", at,
-                fmt::format("{} at {:.6f} s, odometry from {:.6f} to {:.6f} s", what,
-                            to_seconds(start), to_seconds(first), to_seconds(last)));
+                start < first
+                    ? fmt::format("{} {:.3f} s before odometry", what, to_seconds(first - start))
+                    : fmt::format("{} {:.3f} s behind odometry", what, to_seconds(end - last)));
     return true;
   };
   std::erase_if(log.scans, [&](const ImportedScan& scan) {
@@ -119,16 +142,18 @@ void cover_scans(ImportedLog& log, ImportReport& report) {
   const Timestamp first_scan = log.scans.front().time;
   const Timestamp last_scan = log.scans.back().last_beam_time;
   if (first_scan < first) {
-    log.odometry.insert(log.odometry.begin(), log.odometry.front());
-    log.odometry.front().time = first_scan;
-    report.note(fmt::format("odometry starts {:.3f} s after the first scan: first pose held",
-                            to_seconds(first - first_scan)));
+    const Se2 pose = carried_to(log.odometry, first_scan);
+    log.odometry.insert(log.odometry.begin(), {first_scan, log.odometry.front().at, pose});
+    report.note(fmt::format("odometry starts {:.3f} s after the first scan: {}",
+                            to_seconds(first - first_scan),
+                            held_or_carried(log.odometry[1].pose, pose, "first")));
   }
   if (last_scan > last) {
-    log.odometry.push_back(log.odometry.back());
-    log.odometry.back().time = last_scan;
-    report.note(fmt::format("odometry ends {:.3f} s before the last scan: last pose held",
-                            to_seconds(last_scan - last)));
+    const Se2 pose = carried_to(log.odometry, last_scan);
+    log.odometry.push_back({last_scan, log.odometry.back().at, pose});
+    report.note(
+        fmt::format("odometry ends {:.3f} s before the last scan: {}", to_seconds(last_scan - last),
+                    held_or_carried(log.odometry[log.odometry.size() - 2].pose, pose, "last")));
   }
 }
 
@@ -156,6 +181,11 @@ void complete(ImportedLog& log, ImportReport& report) {
   std::ranges::sort(log.images, {}, &ImportedImage::time);
   if (log.images.size() > 1) log.robot.camera.rate_hz = rate_hz(log.images, 0.1, 200.0);
   log.robot.lidar.num_beams = std::ranges::max(log.scans, {}, &ImportedScan::num_beams).num_beams;
+}
+
+void scale_distances(std::vector<ImportedPose>& odometry, double factor) {
+  for (ImportedPose& sample : odometry)
+    sample.pose = Se2{factor * sample.pose.translation(), sample.pose.theta()};
 }
 
 double path_length_m(const std::vector<ImportedPose>& poses) {

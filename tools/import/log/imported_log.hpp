@@ -72,14 +72,17 @@ Se2 pose_at(const std::vector<ImportedPose>& poses, Timestamp time);
 void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& report);
 
 /// A scan is processed when odometry has reached it. Where odometry starts after the first scan or
-/// ends before the last one by at most a second, its first or last pose is held; scans and images
-/// further out are removed.
+/// ends before the last one by at most a second, its first or last pose is held, or the motion of
+/// the second beside it carried on; scans and images further out are removed.
 void cover_scans(ImportedLog& log, ImportReport& report);
 
 /// Puts everything in order, takes the odometry from the scans where there is no other, and fills
 /// in the robot's rates and beams.
 /// @throws SetupError when no scan or no odometry is left.
 void complete(ImportedLog& log, ImportReport& report);
+
+/// Multiplies the distances of odometry.
+void scale_distances(std::vector<ImportedPose>& odometry, double factor);
 
 /// Length of a path [m].
 double path_length_m(const std::vector<ImportedPose>& poses);

@@ -95,7 +95,8 @@ void remove_absurd_times(std::vector<Record>& records, std::string_view what,
   });
 }
 
-/// Removes records (with members `time` and `at`) out of order, naming them.
+/// Removes records (with members `time` and `at`) out of order, naming them; more than a twentieth
+/// is said with what to do.
 template <class Record>
 void keep_ascending(std::vector<Record>& records, std::string_view what, ImportReport& report) {
   const std::vector<Timestamp> times = times_of(records);
@@ -109,6 +110,14 @@ void keep_ascending(std::vector<Record>& records, std::string_view what, ImportR
                   fmt::format("{} at {:.6f} s does not fit between the times around it", what,
                               to_seconds(times[i])));
     }
+  }
+  constexpr double kMany = 0.05;
+  const std::size_t lost = times.size() - kept.size();
+  if (static_cast<double>(lost) > kMany * static_cast<double>(times.size())) {
+    report.note(fmt::format(
+        "{} of {} records ({}) are out of order in time and left out: was the clock set while the "
+        "log was recorded? Cut the log there, and import both parts",
+        lost, times.size(), what));
   }
   records = std::move(kept);
 }

@@ -38,6 +38,25 @@ TEST(LongestAscending, EqualTimesDoNotAscend) {
   EXPECT_EQ(std::ranges::count(keep, true), 1);
 }
 
+struct Record {
+  Timestamp time{};
+  std::int64_t at{0};
+};
+
+TEST(KeepAscending, ALossOfManyRecordsIsSaidWithWhatToDo) {
+  for (const std::int64_t late : {1, 10}) {
+    std::vector<Record> records;
+    for (std::int64_t i = 0; i < 100; ++i)
+      records.push_back({timestamp_from_us(i < late ? 1'000 + i : i), i});
+    ImportReport report{"log", AddressUnit::kByte};
+
+    keep_ascending(records, "a scan", report);
+
+    EXPECT_EQ(report.num_skipped(), late);
+    EXPECT_EQ(report.notes().size(), late > 5 ? 1U : 0U);
+  }
+}
+
 TEST(SpreadOverGaps, StampsThatAreCutOffSpreadUntilTheNextOne) {
   EXPECT_EQ(spread_over_gaps(times({100, 100, 200, 200, 300, 300})),
             times({100, 150, 200, 250, 275, 300}));
