@@ -41,10 +41,19 @@ struct Found {
   ImportReport report{"", AddressUnit::kLine};
 };
 
+/// Of faults that none of these logs has.
+void expect_no_false_finding(const ImportReport& report) {
+  for (const char* finding : {"further to the", "distances are about", "moved meanwhile", "anew",
+                              "jumps away", "clock was set", "two LiDARs", "pairs of one time",
+                              "out of order in time", "is 0 for the first"})
+    EXPECT_THAT(report.notes(), Not(Contains(HasSubstr(finding))));
+}
+
 Found import_carmen(const std::filesystem::path& file, const CarmenOptions& options = {}) {
   Found found{{}, {file, AddressUnit::kLine}};
   found.log = read_carmen_log(file, options, found.report);
   examine(found.log, ReversedOdometry::kName, found.report);
+  expect_no_false_finding(found.report);
   return found;
 }
 

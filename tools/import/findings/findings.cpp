@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/findings/findings.hpp"
 
+#include "common/time/date_text.hpp"
+#include "import/findings/motion_fit.hpp"
+#include "import/findings/odometry_breaks.hpp"
 #include "import/findings/range_noise.hpp"
 #include "import/findings/reversed_odometry.hpp"
 #include "import/findings/scan_overlay.hpp"
@@ -9,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace waymark {
 namespace {
@@ -83,6 +87,45 @@ BodyBeams check_body(const ImportedLog& log, ImportReport& report) {
   return body;
 }
 
+std::string unit_text(double factor) {
+  struct Unit {
+    double per_m;
+    std::string_view name;
+  };
+
+  constexpr std::array<Unit, 4> kUnits{
+      {{0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}, {0.3048, "feet"}}};
+  constexpr double kSame = 1.15;  // the factor is found to 5 %
+  for (const Unit& unit : kUnits) {
+    if (factor < kSame * unit.per_m && unit.per_m < kSame * factor)
+      return fmt::format("they may be {}: --odometry-scale {}", unit.name, unit.per_m);
+  }
+  return fmt::format("--odometry-scale {:.2g} puts that right", factor);
+}
+
+/// @return whether odometry's distances are those of the scans.
+bool check_distances(const ImportedLog& log, const BodyBeams& body, ImportReport& report) {
+  const auto factor = odometry_factor(log, body);
+  if (!factor) return true;
+  report.note(
+      fmt::format("odometry's distances are about {:.3g} times those that the scans show: {}",
+                  1.0 / *factor, unit_text(*factor)));
+  return false;
+}
+
+void check_yaw(const ImportedLog& log, const BodyBeams& body, ImportReport& report) {
+  constexpr double kLeast_rad = radians(3.0);  // real logs are within 2.1 degrees
+  constexpr double kSigmas = 5.0;
+  const auto error = lidar_yaw_error(log, body);
+  if (!error || std::abs(error->yaw_rad) < std::max(kLeast_rad, kSigmas * error->sigma_rad)) return;
+  report.note(fmt::format(
+      "the walls pass by as if the LiDAR looked {:.1f} +- {:.1f} degrees further to the {} than "
+      "described: left as it is; if it is mounted like that, give --lidar-yaw-deg {:.1f}",
+      degrees(std::abs(error->yaw_rad)), degrees(error->sigma_rad),
+      error->yaw_rad > 0.0 ? "left" : "right",
+      degrees(wrap_angle(log.robot.lidar.yaw_rad + error->yaw_rad))));
+}
+
 void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry wanted,
                      ImportReport& report) {
   const std::vector<ReversedStep> steps = find_reversed_steps(log, body);
@@ -92,8 +135,8 @@ void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry w
     distance_m += step.distance_m;
   const std::string found = fmt::format(
       "odometry counts backing up as driving forward in {} steps between scans, {:.1f} m, first at "
-      "{:.3f} s",
-      steps.size(), distance_m, to_seconds(steps.front().after));
+      "{}",
+      steps.size(), distance_m, date_text(steps.front().after));
   const bool is_nearly_all = distance_m > kNearlyAll * path_length_m(log.odometry);
   if (is_nearly_all && wanted == ReversedOdometry::kName) {
     report.note(fmt::format(
@@ -112,9 +155,12 @@ void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry w
 
 void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report) {
   check_short_ranges(log, report);
+  mend_odometry_breaks(log, report);
   estimate_range_noise(log, report);
   check_that_odometry_moves(log, report);
   const BodyBeams body = check_body(log, report);
+  if (!check_distances(log, body, report)) return;  // no motion is right, in no direction
+  check_yaw(log, body, report);
   check_direction(log, body, reversed, report);
 }
 

@@ -41,13 +41,18 @@ double score_of(const LidarScan& first, const LidarScan& second, const Se2& moti
   return std::clamp(score, -kLargestScore, kLargestScore);
 }
 
+/// Scans in order of angles, without the beams that say nothing.
+LidarScan usable(const ImportedScan& scan, const BodyBeams& body) {
+  return in_order_of_angles(without_body(scan_of(scan), body));
+}
+
 std::vector<Step> steps_of(const ImportedLog& log, const BodyBeams& body) {
   std::vector<Step> steps;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
-  LidarScan before = in_order_of_angles(without_body(scan_of(log.scans.front()), body));
+  LidarScan before = usable(log.scans.front(), body);
   Se2 odom_from_before = pose_at(log.odometry, before.time);
   for (std::size_t i = 1; i < log.scans.size(); ++i) {
-    LidarScan now = in_order_of_angles(without_body(scan_of(log.scans[i]), body));
+    LidarScan now = usable(log.scans[i], body);
     const Se2 odom_from_now = pose_at(log.odometry, now.time);
     const Se2 motion = odom_from_before.inverse() * odom_from_now;
     steps.push_back({{before.time, now.time, motion.translation().norm()},
@@ -89,11 +94,47 @@ std::vector<bool> most_likely(const std::vector<Step>& steps) {
   return reversed;
 }
 
+/// How much better ways of 0.4 m along a stretch of steps [begin, end) fit reversed. Steps whose
+/// scans differ because somebody walks by do not add up to a way back.
+double score_of_ways(const ImportedLog& log, const BodyBeams& body, std::size_t begin,
+                     std::size_t end) {
+  constexpr double kWay_m = 0.4;
+  const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
+  double sum = 0.0;
+  for (std::size_t first = begin; first < end;) {
+    Se2 motion{};
+    std::size_t last = first;
+    while (last < end && motion.translation().norm() < kWay_m) {
+      ++last;
+      motion = pose_at(log.odometry, log.scans[first].time).inverse() *
+               pose_at(log.odometry, log.scans[last].time);
+    }
+    sum += score_of(usable(log.scans[first], body), usable(log.scans[last], body), motion,
+                    base_from_lidar);
+    first = last;
+  }
+  return sum;
+}
+
+/// Whether the ways of all stretches together fit twice as well reversed.
+bool ways_agree(const ImportedLog& log, const BodyBeams& body, const std::vector<bool>& reversed) {
+  double sum = 0.0;
+  for (std::size_t begin = 0; begin < reversed.size();) {
+    std::size_t end = begin;
+    while (end < reversed.size() && reversed[end])
+      ++end;
+    if (end > begin) sum += score_of_ways(log, body, begin, end);
+    begin = end + 1;
+  }
+  return sum >= std::numbers::ln2;
+}
+
 }  // namespace
 
 std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log, const BodyBeams& body) {
   const std::vector<Step> steps = steps_of(log, body);
   const std::vector<bool> is_reversed = most_likely(steps);
+  if (!ways_agree(log, body, is_reversed)) return {};
   std::vector<ReversedStep> reversed;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (is_reversed[i] && steps[i].step.distance_m >= kShortestApart_m)

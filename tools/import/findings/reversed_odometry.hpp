@@ -20,7 +20,8 @@ struct ReversedStep {
 /// How much better the latter fits (logarithm of the misfits' ratio, 0 where walls along the motion
 /// decide nothing) adds up over stretches of steps: the most likely sequence of the two directions
 /// (Viterbi), in which a stretch has to fit twice as well reversed, and more where the direction
-/// would change at a speed at which no robot can turn back.
+/// would change at a speed at which no robot can turn back. None where ways of 0.4 m along all
+/// stretches do not fit twice as well, too.
 /// @param body  beams that say nothing.
 std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log, const BodyBeams& body = {});
 

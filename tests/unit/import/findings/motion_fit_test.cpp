@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/findings/motion_fit.hpp"
+
+#include "import/findings/findings.hpp"
+#include "synthetic_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// To and fro in the room with straight ways, 80 s.
+ImportedLog long_drive() {
+  std::vector<Se2> steps;
+  for (int i = 0; i < 400; ++i) {
+    const double forward_m = i / 20 % 2 == 0 ? 0.07 : -0.07;
+    steps.emplace_back(forward_m, 0.0, i % 20 == 0 ? 0.2 : 0.0);
+  }
+  return drive(steps, CountedAs::kDriven);
+}
+
+std::vector<std::string> what_is_found(ImportedLog log) {
+  ImportReport report{"log", AddressUnit::kLine};
+  examine(log, ReversedOdometry::kName, report);
+  return report.notes();
+}
+
+TEST(MotionFit, OdometryInInchesIsNamedAndNothingElseOfItsMotion) {
+  ImportedLog log = long_drive();
+  scale_distances(log.odometry, 1.0 / 0.0254);
+
+  EXPECT_NEAR(odometry_factor(log, {}).value_or(0.0), 0.0254, 0.0025);
+  EXPECT_THAT(what_is_found(log), Contains(HasSubstr("inches: --odometry-scale 0.0254")));
+  EXPECT_THAT(what_is_found(log), Not(Contains(HasSubstr("--fix-reversed-odometry"))));
+}
+
+TEST(MotionFit, OdometryInMetresIsNot) {
+  EXPECT_FALSE(odometry_factor(long_drive(), {}));
+  EXPECT_THAT(what_is_found(long_drive()), Not(Contains(HasSubstr("distances"))));
+}
+
+TEST(MotionFit, ALidarThatIsTurnedByFiveDegreesIsNamedWithItsYaw) {
+  ImportedLog log = long_drive();
+  const auto seen = [&](const auto& change) {
+    for (ImportedScan& scan : log.scans) {
+      auto message = decode<planar_lidar_t>(scan.message.payload).message.value();
+      change(message);
+      scan.message = encode(channels::kLidar, message);
+    }
+  };
+  // Its own zero is 5 degrees to the left of the base's.
+  seen([](planar_lidar_t& message) { message.rad0 -= static_cast<float>(radians(5.0)); });
+
+  const auto error = lidar_yaw_error(log, {});
+
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(degrees(error->yaw_rad), 5.0, 0.5);
+  EXPECT_THAT(what_is_found(log), Contains(HasSubstr("further to the left than described")));
+}
+
+TEST(MotionFit, ALidarThatLooksAheadHasNoYaw) {
+  const auto error = lidar_yaw_error(long_drive(), {});
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(degrees(error->yaw_rad), 0.0, 0.5);
+  EXPECT_THAT(what_is_found(long_drive()), Not(Contains(HasSubstr("further to the"))));
+}
+
+}  // namespace
+}  // namespace waymark

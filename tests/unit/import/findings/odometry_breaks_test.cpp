@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/findings/odometry_breaks.hpp"
+
+#include "synthetic_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr double kExact = 1e-9;
+
+/// Two ways of 20 steps with a stop of 20 between them.
+ImportedLog drive_with_stop() {
+  std::vector<Se2> steps;
+  for (int i = 0; i < 60; ++i)
+    steps.push_back(i / 20 == 1 ? Se2{} : Se2{0.05, 0.0, 0.01});
+  return drive(steps, CountedAs::kDriven);
+}
+
+struct Mended {
+  ImportedLog log{};
+  ImportReport report{"log", AddressUnit::kLine};
+};
+
+Mended mend(ImportedLog log) {
+  Mended mended{std::move(log)};
+  mend_odometry_breaks(mended.log, mended.report);
+  return mended;
+}
+
+/// Everything from scan `first` on is this much later.
+void delay(ImportedLog& log, std::size_t first, Duration later) {
+  for (std::size_t i = first; i < log.scans.size(); ++i) {
+    auto message = decode<planar_lidar_t>(log.scans[i].message.payload).message.value();
+    message.utime += later.count();
+    log.scans[i].message = encode(channels::kLidar, message);
+    log.scans[i].time += later;
+    log.scans[i].last_beam_time += later;
+    log.odometry[i].time += later;
+  }
+}
+
+void begin_anew(ImportedLog& log, std::size_t first) {
+  const Se2 old_from_new = log.odometry[first].pose;
+  for (std::size_t i = first; i < log.odometry.size(); ++i)
+    log.odometry[i].pose = Se2{7.0, 3.0, 2.0} * old_from_new.inverse() * log.odometry[i].pose;
+}
+
+double way_m(const ImportedLog& log) {
+  return path_length_m(log.odometry);
+}
+
+TEST(OdometryBreaks, OdometryWithoutOnesStays) {
+  const ImportedLog log = drive_with_stop();
+  const Mended mended = mend(log);
+  EXPECT_THAT(mended.report.notes(), IsEmpty());
+  EXPECT_EQ(way_m(mended.log), way_m(log));
+}
+
+TEST(OdometryBreaks, ANewBeginningAfterAPauseGoesOnWhereItWasAndIsNoSetClock) {
+  ImportedLog log = drive_with_stop();
+  begin_anew(log, 30);
+  delay(log, 30, std::chrono::minutes{12});
+
+  const Mended mended = mend(log);
+
+  EXPECT_NEAR(way_m(mended.log), way_m(drive_with_stop()), kExact);
+  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("odometry begins anew at")));
+  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("the longest of 12.0 min")));
+  for (std::size_t i = 1; i < mended.log.odometry.size(); ++i)
+    EXPECT_LE(mended.log.odometry[i].time - mended.log.odometry[i - 1].time,
+              std::chrono::minutes{5});
+}
+
+TEST(OdometryBreaks, ANewBeginningWhileTheRobotDrivesGoesOnAsItDrove) {
+  ImportedLog log = drive_with_stop();
+  begin_anew(log, 50);
+
+  const Mended mended = mend(log);
+
+  EXPECT_NEAR(way_m(mended.log), way_m(drive_with_stop()), 0.01);
+}
+
+TEST(OdometryBreaks, ASinglePoseElsewhereIsInterpolated) {
+  ImportedLog log = drive_with_stop();
+  log.odometry[10].pose = Se2{-9.0, 4.0, 0.0};
+
+  const Mended mended = mend(log);
+
+  EXPECT_NEAR(way_m(mended.log), way_m(drive_with_stop()), 1e-4);
+  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("1 single poses")));
+}
+
+TEST(OdometryBreaks, OdometryThatIs0UntilItStartsIsJoinedWhereTheRobotStands) {
+  std::vector<Se2> steps(60);
+  std::fill(steps.begin() + 30, steps.end(), Se2{0.05, 0.0, 0.0});
+  ImportedLog log = drive(steps, CountedAs::kDriven);
+  for (std::size_t i = 0; i < log.odometry.size(); ++i)
+    log.odometry[i].pose = i < 20 ? Se2{} : Se2{5.0, 5.0, 1.0} * log.odometry[i].pose;
+
+  const Mended mended = mend(log);
+
+  EXPECT_NEAR(way_m(mended.log), 1.5, kExact);
+  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("odometry is 0 for the first 4.0 s")));
+}
+
+TEST(OdometryBreaks, ScansOfAWayThatOdometryDidNotSeeAtFirstAreLeftOut) {
+  ImportedLog log = drive_with_stop();
+  for (std::size_t i = 0; i < log.odometry.size(); ++i)
+    log.odometry[i].pose = i < 15 ? Se2{} : Se2{5.0, 5.0, 1.0} * log.odometry[i].pose;
+
+  const Mended mended = mend(log);
+
+  EXPECT_EQ(mended.report.num_skipped(), 15);
+  EXPECT_THAT(mended.log.scans, SizeIs(61 - 15));
+  EXPECT_EQ(mended.log.odometry.front().time, mended.log.scans.front().time);
+}
+
+TEST(OdometryBreaks, AGapInWhichTheRobotIsMovedIsNamed) {
+  ImportedLog log = drive(std::vector<Se2>(60, Se2{0.05, 0.0, 0.0}), CountedAs::kDriven);
+  const Se2 held = log.odometry[20].pose;
+  const Se2 moved = log.odometry[50].pose;
+  log.scans.erase(log.scans.begin() + 21, log.scans.begin() + 50);
+  log.odometry.erase(log.odometry.begin() + 21, log.odometry.begin() + 50);
+  for (std::size_t i = 21; i < log.odometry.size(); ++i)
+    log.odometry[i].pose = held * moved.inverse() * log.odometry[i].pose;
+
+  EXPECT_THAT(mend(log).report.notes(), Contains(HasSubstr("the robot was moved meanwhile")));
+}
+
+}  // namespace
+}  // namespace waymark

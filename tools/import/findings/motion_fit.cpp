@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/findings/motion_fit.hpp"
+
+#include "import/findings/scan_overlay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kPairs = 240;  // evenly over the log
+constexpr std::size_t kFewestPairs = 40;
+constexpr Duration kApart = std::chrono::milliseconds{800};  // of the two scans of a pair
+constexpr double kNoOverlap_m = 0.3;                         // as misfit_m() limits each beam
+
+/// Two scans, in order of angles, and odometry's motion between them.
+struct Pair {
+  LidarScan before{};
+  LidarScan now{};
+  Se2 motion{};
+};
+
+/// What odometry says of pairs that decide.
+struct Wanted {
+  double least_m{0.0};
+  double most_m{0.0};
+  double most_rad{0.0};
+};
+
+Se2 motion_between(const ImportedLog& log, std::size_t before, std::size_t now) {
+  return pose_at(log.odometry, log.scans[before].time).inverse() *
+         pose_at(log.odometry, log.scans[now].time);
+}
+
+std::vector<Pair> pairs_of(const ImportedLog& log, const BodyBeams& body, const Wanted& wanted) {
+  std::vector<std::pair<std::size_t, std::size_t>> found;
+  for (std::size_t before = 0, now = 1; now < log.scans.size(); ++now) {
+    if (log.scans[now].time - log.scans[before].time < kApart) continue;
+    const Se2 motion = motion_between(log, before, now);
+    const double distance_m = motion.translation().norm();
+    if (distance_m >= wanted.least_m && distance_m <= wanted.most_m &&
+        std::abs(motion.theta()) <= wanted.most_rad)
+      found.emplace_back(before, now);
+    before = now;
+  }
+  std::vector<Pair> pairs;
+  const std::size_t every = 1 + found.size() / kPairs;
+  const auto scan = [&](std::size_t index) {
+    return in_order_of_angles(without_body(scan_of(log.scans[index]), body));
+  };
+  for (std::size_t i = 0; i < found.size(); i += every) {
+    const auto [before, now] = found[i];
+    pairs.push_back({scan(before), scan(now), motion_between(log, before, now)});
+  }
+  return pairs;
+}
+
+/// Mean misfit of the pairs [m] with odometry's translations scaled, and turned about the base.
+double mean_misfit_m(std::span<const Pair> pairs, const Se2& base_from_lidar, double factor,
+                     double turn_rad) {
+  const Eigen::Rotation2Dd turn{turn_rad};
+  double sum_m = 0.0;
+  for (const Pair& pair : pairs) {
+    const Se2 motion{turn * (factor * pair.motion.translation()), pair.motion.theta()};
+    sum_m += misfit_m(pair.before, pair.now, base_from_lidar.inverse() * motion * base_from_lidar)
+                 .value_or(kNoOverlap_m);
+  }
+  return sum_m / static_cast<double>(pairs.size());
+}
+
+/// The turn of least misfit; the vertex of a parabola through it and its neighbours 4 degrees off.
+double best_turn_rad(std::span<const Pair> pairs, const Se2& base_from_lidar) {
+  constexpr double kStep_rad = radians(1.0);
+  constexpr std::size_t kSteps = 34;  // on both sides
+  constexpr std::size_t kAside = 4;
+  std::array<double, 2 * kSteps + 1> misfits_m{};
+  for (std::size_t i = 0; i < misfits_m.size(); ++i) {
+    const double turn_rad = kStep_rad * (static_cast<double>(i) - static_cast<double>(kSteps));
+    misfits_m[i] = mean_misfit_m(pairs, base_from_lidar, 1.0, turn_rad);
+  }
+  const auto least = std::min_element(misfits_m.begin() + kAside, misfits_m.end() - kAside);
+  const double below_m = *(least - kAside);
+  const double above_m = *(least + kAside);
+  const double curvature_m = below_m - 2.0 * *least + above_m;
+  const double aside = curvature_m > 0.0 ? 0.5 * (below_m - above_m) / curvature_m : 0.0;
+  return kStep_rad * (static_cast<double>(least - misfits_m.begin()) - static_cast<double>(kSteps) +
+                      static_cast<double>(kAside) * aside);
+}
+
+}  // namespace
+
+std::optional<double> odometry_factor(const ImportedLog& log, const BodyBeams& body) {
+  constexpr Wanted kAnyDistance{1e-3, 1e9, 0.2};
+  constexpr double kLeast = 5e-4;  // inches are 0.0254, millimetres 0.001
+  constexpr double kMost = 50.0;
+  constexpr double kStep = 1.1;
+  constexpr double kFarFrom1 = 1.25;   // less is for the estimators to find
+  constexpr double kMuchBetter = 0.7;  // a LiDAR that looks elsewhere: 0.85 at best
+  const std::vector<Pair> pairs = pairs_of(log, body, kAnyDistance);
+  if (pairs.size() < kFewestPairs) return std::nullopt;
+  const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
+  const double as_it_is_m = mean_misfit_m(pairs, base_from_lidar, 1.0, 0.0);
+  double best = 1.0;
+  double least_m = as_it_is_m;
+  for (double factor = kLeast; factor < kMost; factor *= kStep) {
+    const double misfit_m = mean_misfit_m(pairs, base_from_lidar, factor, 0.0);
+    if (misfit_m >= least_m) continue;
+    least_m = misfit_m;
+    best = factor;
+  }
+  const bool is_near_1 = best < kFarFrom1 && best > 1.0 / kFarFrom1;
+  return least_m > kMuchBetter * as_it_is_m || is_near_1 ? std::nullopt : std::optional{best};
+}
+
+std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams& body) {
+  constexpr Wanted kStraightOn{0.2, 1.5, 0.06};
+  constexpr std::size_t kParts = 8;  // of the log, that have to agree
+  const std::vector<Pair> pairs = pairs_of(log, body, kStraightOn);
+  if (pairs.size() < kFewestPairs) return std::nullopt;
+  const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
+  std::array<double, kParts> found_rad{};
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const std::size_t begin = part * pairs.size() / kParts;
+    const std::size_t end = (part + 1) * pairs.size() / kParts;
+    // A LiDAR that is turned to the left sees the walls pass by as if the robot drove to the right.
+    found_rad[part] = -best_turn_rad(std::span{pairs}.subspan(begin, end - begin), base_from_lidar);
+  }
+  const double mean_rad =
+      std::accumulate(found_rad.begin(), found_rad.end(), 0.0) / static_cast<double>(kParts);
+  double sum_rad2 = 0.0;
+  for (const double yaw_rad : found_rad)
+    sum_rad2 += (yaw_rad - mean_rad) * (yaw_rad - mean_rad);
+  return YawError{mean_rad, std::sqrt(sum_rad2 / static_cast<double>(kParts * (kParts - 1)))};
+}
+
+}  // namespace waymark
