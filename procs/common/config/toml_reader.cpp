@@ -38,7 +38,11 @@ std::string shown(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (node.is_array()) return "an array";
   node.visit([&text](const auto& n) {
-    if constexpr (toml::is_value<decltype(n)>) text << n;
+    if constexpr (toml::is_floating_point<decltype(n)>) {
+      text << fmt::format("{}", n.get());  // shortest: toml++ prints 17 digits
+    } else if constexpr (toml::is_value<decltype(n)>) {
+      text << n;
+    }
   });
   return text.str();
 }
@@ -291,6 +295,12 @@ std::string described(const toml::parse_error& error) {
   return std::string{error.description()};
 }
 
+std::string_view why_not(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return "there is no such file";
+  if (std::filesystem::is_directory(file)) return "it is a folder; name a TOML file in it";
+  return "no permission, or no regular file";
+}
+
 }  // namespace
 
 void read_toml_file(const std::filesystem::path& file, const std::function<void(Fields&)>& describe,
@@ -298,10 +308,8 @@ void read_toml_file(const std::filesystem::path& file, const std::function<void(
   std::ifstream stream{file};
   std::stringstream text;
   if (std::filesystem::is_directory(file) || !stream || !(text << stream.rdbuf())) {
-    if (!std::filesystem::is_regular_file(file) || std::filesystem::file_size(file) > 0) {
-      log.problems.push_back(
-          fmt::format("{}: cannot be read as a configuration file", file.string()));
-    }
+    if (!std::filesystem::is_regular_file(file) || std::filesystem::file_size(file) > 0)
+      log.problems.push_back(fmt::format("{}: cannot be read: {}", file.string(), why_not(file)));
     return;
   }
   try {

@@ -103,10 +103,16 @@ TEST(Config, AllProblemsAreReportedWithTheirLines) {
           "config_test.toml:4: robot.lidar.range_sigma_m: got -1, expected a number above 0"));
 }
 
+TEST(Config, NumbersAreShownAsTheyWereWritten) {
+  EXPECT_THAT(error_of({{}, {"robot.lidar.range_sigma_m=-0.4"}}), HasSubstr("got -0.4, expected"));
+}
+
 TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
   EXPECT_THAT(error_of({{file_with("[robot\n")}, {}}), HasSubstr("config_test.toml:1: not TOML"));
   EXPECT_THAT(error_of({{file_with("[\x01")}, {}}), HasSubstr("config_test.toml:1: not TOML"));
-  EXPECT_THAT(error_of({{"/no/such.toml"}, {}}), HasSubstr("/no/such.toml: cannot be read"));
+  EXPECT_THAT(error_of({{"/no/such.toml"}, {}}),
+              HasSubstr("/no/such.toml: cannot be read: there is no such file"));
+  EXPECT_THAT(error_of({{::testing::TempDir()}, {}}), HasSubstr("cannot be read: it is a folder"));
 }
 
 TEST(Config, APartOfAFileMayBeRead) {
