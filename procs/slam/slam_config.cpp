@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/slam_config.hpp"
 
+#include "common/markers/marker_dictionary.hpp"
 #include "common/robot/camera_model.hpp"
 #include "slam/parallel.hpp"
 
@@ -116,6 +117,7 @@ void SlamConfig::describe(Fields& fields) {
 
 void SlamConfig::check(Problems& problems) const {
   robot.check(problems);
+  check_markers(robot.markers, problems);
   const bool is_within_a_map =
       slam.start.kind == StartKind::kPose || slam.start.kind == StartKind::kAnywhere;
   if (slam.mode == MapMode::kMap && is_within_a_map)

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/markers/marker_dictionary.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <array>
 
 namespace waymark {
@@ -67,6 +70,21 @@ int size_of(const cv::aruco::Dictionary& dictionary) {
 
 int modules_per_side(const cv::aruco::Dictionary& dictionary) {
   return dictionary.markerSize + 2;
+}
+
+void check_markers(const MarkerConfig& markers, Problems& problems) {
+  const auto dictionary = find_dictionary(markers.dictionary);
+  if (!dictionary) {
+    problems.add("robot.markers.dictionary",
+                 fmt::format("got '{}', expected one of {}", markers.dictionary,
+                             fmt::join(dictionary_names(), ", ")));
+    return;
+  }
+  for (const int id : markers.ids) {
+    if (id < size_of(*dictionary)) continue;
+    problems.add("robot.markers.ids", fmt::format("got {}, but {} has the ids 0 to {}", id,
+                                                  markers.dictionary, size_of(*dictionary) - 1));
+  }
 }
 
 }  // namespace waymark

@@ -2,6 +2,8 @@
 // Marker dictionaries by name, with their error correction set right.
 #pragma once
 
+#include "common/robot/robot_config.hpp"
+
 #include <opencv2/aruco.hpp>
 
 #include <optional>
@@ -17,6 +19,9 @@ namespace waymark {
 std::optional<cv::aruco::Dictionary> find_dictionary(std::string_view name);
 
 std::vector<std::string> dictionary_names();
+
+/// Whether robot.markers names a dictionary, and ids that it has.
+void check_markers(const MarkerConfig& markers, Problems& problems);
 
 /// Number of ids: they are 0 to one less.
 int size_of(const cv::aruco::Dictionary& dictionary);

@@ -283,5 +283,14 @@ TEST_F(CommandedSlam, AReplayRepeatsThem) {
   EXPECT_TRUE(first.messages == second.messages);
 }
 
+TEST(SlamConfig, AnUnknownDictionaryIsNamedWithTheKnownOnes) {
+  try {
+    load_config<SlamConfig>({{}, {"robot.markers.dictionary=DICT_9X9_50"}});
+    ADD_FAILURE() << "no error";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("got 'DICT_9X9_50', expected one of DICT_4X4"));
+  }
+}
+
 }  // namespace
 }  // namespace waymark
