@@ -45,6 +45,10 @@ class SlamNode final : public Node {
   /// True when sensors were heard, but no pose or no map could be made of them.
   bool failed() const override { return failed_; }
 
+  std::vector<std::string_view> needed_channels() const override {
+    return {channels::kLidar.name, channels::kOdometry.name};
+  }
+
  private:
   std::int64_t save_map_to(const std::filesystem::path& file, const MapSnapshot& map);
   bool save_map();

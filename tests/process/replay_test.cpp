@@ -44,7 +44,10 @@ class Listener final : public Node {
 
   void finish() override { heard_ += "end\n"; }
 
+  std::vector<std::string_view> needed_channels() const override { return needed_; }
+
   std::string heard_;
+  std::vector<std::string_view> needed_{};
 
  private:
   Outbox& outbox_;
@@ -75,6 +78,7 @@ class Replay : public ::testing::Test {
     Inbox inbox;
     Outbox outbox;
     Listener listener{inbox, outbox};
+    listener.needed_ = needed_;
     const int code = run_replay(options, listener, inbox, outbox);
     heard_ = listener.heard_;
     return code;
@@ -82,6 +86,7 @@ class Replay : public ::testing::Test {
 
   std::filesystem::path folder_;
   std::string heard_;
+  std::vector<std::string_view> needed_{};
 };
 
 /// What the lines of progress say, "replay  30 %  ...".
@@ -178,6 +183,15 @@ TEST_F(Replay, ALogWithoutOurChannelsFailsAndSaysWhatItHas) {
           "other.lcm: has none of the channels that this process reads (MAP_GRAPH, "
           "ODOMETRY, SLAM_ESTIMATE, SLAM_POSE), but LASER, TRUE_POSE; logs of other robots are "
           "for waymark-import first"));
+}
+
+TEST_F(Replay, ALogWithoutAChannelThatIsNeededFailsAndSaysWhatItHas) {
+  needed_ = {"LIDAR", "ODOMETRY"};
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(replay({log("blind.lcm", {pose("ODOMETRY", 1, 1), pose("LASER", 2, 1)})}), kExitFailed);
+  const std::string said = ::testing::internal::GetCapturedStdout();
+  EXPECT_THAT(said, HasSubstr("blind.lcm: has no LIDAR, but LASER, ODOMETRY: did the driver run"));
+  EXPECT_THAT(said, Not(HasSubstr("has no ODOMETRY")));
 }
 
 TEST_F(Replay, OneOfSeveralLogsThatHasNothingIsNamedAndTheOthersAreReplayed) {

@@ -17,6 +17,7 @@
 
 #include <array>
 #include <fstream>
+#include <ranges>
 #include <set>
 
 namespace waymark {
@@ -53,16 +54,26 @@ Contents contents_of(const std::filesystem::path& file) {
   return contents;
 }
 
+std::string names_of(const Contents& contents) {
+  if (contents.channels.empty()) return "no channel";
+  return fmt::format("{}", fmt::join(contents.channels | std::views::keys, ", "));
+}
+
 MbotOptions choose(const Contents& contents, const InputChannels& wanted) {
   MbotOptions options{};
   options.lidar_channel = wanted.lidar;
   options.odometry_channel = wanted.odometry;
   options.encoder_channel = wanted.encoders;
   if (wanted.lidar.empty()) {
-    if (contents.lidars.size() != 1) {
+    if (contents.lidars.empty()) {
       throw SetupError{fmt::format(
-          "{} channels have LiDAR scans ({}): give --lidar-channel", contents.lidars.size(),
-          contents.lidars.empty() ? "none" : fmt::format("{}", fmt::join(contents.lidars, ", ")))};
+          "no channel has LiDAR scans (lidar_t or planar_lidar_t); the log has {}: did the LiDAR's "
+          "driver run while it was recorded?",
+          names_of(contents))};
+    }
+    if (contents.lidars.size() > 1) {
+      throw SetupError{fmt::format("{} channels have LiDAR scans ({}): give --lidar-channel",
+                                   contents.lidars.size(), fmt::join(contents.lidars, ", "))};
     }
     options.lidar_channel = *contents.lidars.begin();
   }
@@ -70,6 +81,20 @@ MbotOptions choose(const Contents& contents, const InputChannels& wanted) {
   if (wanted.odometry.empty() && wanted.encoders.empty() && contents.channels.contains(ours))
     options.odometry_channel = ours;
   return options;
+}
+
+ImportedLog read_log(const std::filesystem::path& file, const Contents& contents,
+                     const MbotOptions& options, ImportReport& report) {
+  try {
+    return read_mbot_log(file, options, report);
+  } catch (const SetupError& error) {
+    const bool was_chosen = !options.odometry_channel.empty() || !options.encoder_channel.empty();
+    if (was_chosen) throw;
+    throw SetupError{fmt::format(
+        "the log has no {}, but {}: did the driver of odometry run while it was recorded? If "
+        "another channel has it, {}",
+        channels::kOdometry.name, names_of(contents), error.what())};
+  }
 }
 
 void estimate_noise(DoctorInput& input) {
@@ -92,7 +117,7 @@ DoctorInput read_input(const std::filesystem::path& file,
   if (is_lcm_log(file)) {
     const Contents contents = contents_of(file);
     input.channels = contents.channels;
-    input.log = read_mbot_log(file, choose(contents, wanted), input.report);
+    input.log = read_log(file, contents, choose(contents, wanted), input.report);
     input.mounting = Mounting::kUnknown;
   } else if (is_bag(file)) {
     input.log = read_rosbag(file, {.without_images = true}, input.report);

@@ -97,6 +97,9 @@ class Node {
   /// Something that was asked for could not be done (say, a file not written); the process goes on,
   /// and its exit code says so. The node has logged what it was.
   virtual bool failed() const { return false; }
+
+  /// Channels without which nothing can be made of a log.
+  virtual std::vector<std::string_view> needed_channels() const { return {}; }
 };
 
 struct ProcessTraits {

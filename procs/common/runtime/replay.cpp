@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace waymark {
 namespace {
@@ -121,11 +122,33 @@ bool report_useless(const std::vector<Source>& sources,
   return any;
 }
 
+/// Reports of each channel that no log has what they have instead.
+bool report_missing(const std::vector<Source>& sources,
+                    const std::vector<std::string_view>& needed) {
+  std::set<std::string> held;
+  std::vector<std::string> names;
+  for (const Source& source : sources) {
+    held.insert(source.all_channels.begin(), source.all_channels.end());
+    names.push_back(source.path.string());
+  }
+  bool any = false;
+  for (const std::string_view channel : needed) {
+    if (held.empty() || held.contains(std::string{channel})) continue;
+    any = true;
+    logging::error(
+        "{}: has no {}, but {}: did the driver run while it was recorded? Where the channel has "
+        "another name, waymark-import mbot makes a log with ours",
+        fmt::join(names, ", "), channel, fmt::join(held, ", "));
+  }
+  return any;
+}
+
 }  // namespace
 
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox) {
   std::vector<Source> sources = open_sources(options.logs, inbox.subscriptions());
   const bool useless = report_useless(sources, inbox.subscriptions());
+  const bool missing = !useless && report_missing(sources, node.needed_channels());
   if (oldest(sources) == nullptr) {
     report_skipped(sources);
     return kExitFailed;
@@ -188,7 +211,8 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
   if (!options.report.empty()) write_whole_file(options.report, to_json(report, inbox.counters()));
   log_counters(inbox.counters());
   const bool skipped = report_skipped(sources);
-  return useless || skipped || inbox.counters().total(CountKind::kRejection) > 0 || node.failed()
+  return useless || missing || skipped || inbox.counters().total(CountKind::kRejection) > 0 ||
+                 node.failed()
              ? kExitFailed
              : kExitOk;
 }
