@@ -216,9 +216,11 @@ void ViewerNode::write_data() {
   folder_.write("map.pgm", viewer::pgm_text(map, config_.viewer.map_page.thresholds));
   folder_.write("map.yaml",
                 viewer::map_yaml_text(map, config_.viewer.map_page.thresholds, "map.pgm"));
-  folder_.write("trajectory.tum", viewer::tum_text(scene_.estimates));
-  folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
-  folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
+  if (!scene_.estimates.empty()) {  // a map file has none
+    folder_.write("trajectory.tum", viewer::tum_text(scene_.estimates));
+    folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
+    folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
+  }
   folder_.write("markers.csv", viewer::markers_csv_text(scene_.landmarks));
   if (scene_.findings) folder_.write("findings.json", viewer::findings_json_text(*scene_.findings));
   if (scene_.changes) folder_.write("changes.csv", viewer::changes_csv_text(*scene_.changes));

@@ -220,6 +220,17 @@ commands_while_it_runs() {
   "$work/bin/waymark-map" check "$work/state/day1.map.lcm" >"$work/check.output" 2>&1 || fail "the map is not whole"
   "$work/bin/waymark-map" info "$work/state/day1.map.lcm" >"$work/info.output" 2>&1 || fail "the map cannot be read"
   grep -q 'differs from its description by: distances' "$work/info.output" || fail "no calibration in the map"
+  "$work/bin/waymark-map" export "$work/state/day1.map.lcm" --out "$work/exported" >"$work/export.output" 2>&1 \
+    || fail "the map cannot be exported"
+  [[ -s $work/exported/map.png && -z $(find "$work/exported" -empty) && ! -e $work/exported/trajectory.tum ]] \
+    || fail "the export has empty files: $(ls -s "$work/exported")"
+  local again
+  for again in "export --out $work/exported" "transform --out $work/state/day1.map.lcm" \
+    "merge $work/state/day1.map.lcm --out $work/state/day1.map.lcm"; do
+    # shellcheck disable=SC2086  # words of a command
+    "$work/bin/waymark-map" ${again%% *} "$work/state/day1.map.lcm" ${again#* } >"$work/again.output" 2>&1
+    (($? == 2)) && grep -q 'is there already' "$work/again.output" || fail "waymark-map ${again%% *} replaces files"
+  done
   expect_code 0 $run
   cp "$work/state/day1.map.lcm" "$work/live.map.lcm"
   "${launch%launch.sh}replay.sh" "$work/run/run.lcm" --estimator waymark --row again "${options[@]}" \

@@ -25,6 +25,7 @@ import multiprocessing
 import os
 import pathlib
 import random
+import shutil
 import statistics
 import subprocess
 import sys
@@ -149,6 +150,8 @@ def merge(seed):
     maps = [seed.out / name for name in ("west.map.lcm", "east.map.lcm", "both.map.lcm")]
     replay(seed.log("own"), seed.out / "west", "--until-s", MIDDLE_S + OVERLAP_S, "--save-map", maps[0])
     replay(seed.log("own"), seed.out / "east", "--skip-s", MIDDLE_S - OVERLAP_S, "--save-map", maps[1])
+    maps[2].unlink(missing_ok=True)
+    shutil.rmtree(seed.out / "both", ignore_errors=True)
     run(BUILD / "waymark-map", "merge", maps[0], maps[1], "--out", maps[2])
     run(BUILD / "waymark-map", "export", maps[2], "--out", seed.out / "both")
     return {"px": length_px(seed.out / "both/map.yaml"), "markers": num_markers(seed.out / "both/markers.csv")}

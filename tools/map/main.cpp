@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     };
   });
   Command exported = add("export", "map.pgm, map.yaml, map.png, markers.csv and graph.g2o");
-  exported.add_option("--out", out, "folder; made if need be").required();
+  exported.add_option("--out", out, "folder without a map; made if need be").required();
   exported.when_given([&] {
     command = [&] {
       export_map(file, out);
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   transform.add_option("--yaw-rad", yaw_rad, "direction of the old x axis in the new frame")
       .check(finite_number());
   transform.add_option("--frame", frame, "name of the new frame");
-  transform.add_option("--out", out, "the new map file").required();
+  transform.add_option("--out", out, "the new map file; must not be there yet").required();
   transform.when_given([&] {
     command = [&] {
       return transform_map(file, {x_m, y_m, yaw_rad}, frame, out) + "\n";
@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   });
   Command merge = add("merge", "two maps as one, by the markers in both, else by their walls");
   merge.add_option("other", other, "map file; comes out in the frame of the first").required();
-  merge.add_option("--out", out, "the new map file").required();
+  merge.add_option("--out", out, "the new map file; must not be there yet").required();
   merge.when_given([&] {
     command = [&] {
       return merge_maps(file, other, out) + "\n";

@@ -43,6 +43,13 @@ Extent extent_of(const GridMap& grid) {
   return extent;
 }
 
+/// A map took a drive: none is replaced.
+/// @throws SetupError
+void check_is_new(const std::filesystem::path& out) {
+  if (!std::filesystem::exists(out)) return;
+  throw SetupError{out.string() + ": is there already; give --out another name, or move it away"};
+}
+
 void need_mergeable(const MapFile& a, const MapFile& b) {
   if (a.info.marker_dictionary != b.info.marker_dictionary ||
       a.info.marker_size_m != b.info.marker_size_m) {
@@ -151,9 +158,11 @@ std::string map_info(const std::filesystem::path& file, bool as_json) {
 
 void export_map(const std::filesystem::path& file, const std::filesystem::path& folder) {
   const MapFile map = read_map_file(file);
+  check_is_new(folder / "map.yaml");
   std::filesystem::create_directories(folder);
   ViewerConfig config;
   config.out_dir = folder;
+  config.viewer.title = file.filename().string();
   config.is_replay = true;
   Inbox inbox;
   Outbox outbox;
@@ -167,6 +176,7 @@ void export_map(const std::filesystem::path& file, const std::filesystem::path& 
 
 std::string transform_map(const std::filesystem::path& file, const Se2& new_from_old,
                           const std::string& frame, const std::filesystem::path& out) {
+  check_is_new(out);
   MapFile map = read_map_file(file);
   MapSnapshot moved = transformed(map.map, new_from_old);
   moved.parent_map_id = map.map.map_id;
@@ -177,6 +187,7 @@ std::string transform_map(const std::filesystem::path& file, const Se2& new_from
 
 std::string merge_maps(const std::filesystem::path& a, const std::filesystem::path& b,
                        const std::filesystem::path& out) {
+  check_is_new(out);
   const MapFile first = read_map_file(a);
   const MapFile second = read_map_file(b);
   need_mergeable(first, second);

@@ -47,11 +47,10 @@ std::string summary(const PageContent& content, const Se2& view_from_map,
                     const MapThresholds& thresholds) {
   std::string text = size_text(content.map, view_from_map, thresholds);
   text += fmt::format("   |   {} markers", content.landmarks.size());
-  if (!content.estimates.empty()) {
-    text += fmt::format(
-        "   |   path {:.2f} m in {}", path_length_m(content.estimates),
-        duration_text(to_seconds(content.estimates.back().time - content.estimates.front().time)));
-  }
+  if (content.estimates.empty()) return text;
+  text += fmt::format("   |   path {:.2f} m", path_length_m(content.estimates));
+  const double seconds = to_seconds(content.estimates.back().time - content.estimates.front().time);
+  if (seconds >= 1.0) text += " in " + duration_text(seconds);  // less: a path without times
   return text;
 }
 

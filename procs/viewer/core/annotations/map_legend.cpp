@@ -103,8 +103,11 @@ class LegendWriter {
 
 void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content, Odometry odometry) {
   const StrokeWidths widths{};
-  legend.add_line("estimated path, as known during the run",
-                  {palette::kEstimated, widths.estimated_px});
+  const bool has_estimate = !content.estimates.empty();
+  if (has_estimate) {
+    legend.add_line("estimated path, as known during the run",
+                    {palette::kEstimated, widths.estimated_px});
+  }
   if (!content.final_in_map.empty()) {
     legend.add("the same as known at the end", [&](cv::Point2d left, cv::Point2d right) {
       draw_dashed_polyline(page, std::array{left, right}, {palette::kFinal, widths.estimated_px},
@@ -116,6 +119,7 @@ void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content, 
     legend.add_line(odometry == Odometry::kIncluded ? "odometry" : "odometry, above only",
                     {palette::kOdometry, widths.odometry_px});
   }
+  if (!has_estimate) return;
   legend.add("start", [&](cv::Point2d left, cv::Point2d right) {
     draw_circle(page, 0.5 * (left + right), 11.0, {palette::kEstimated, 5});
   });

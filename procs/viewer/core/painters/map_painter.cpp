@@ -49,9 +49,9 @@ void draw_strip(cv::Mat& page, const Panel& strip, const PageContent& content,
   draw_ends(panel, view, content.estimates);
   const double text_px = label_height_px(view.px_per_m);
   const auto labels = place_labels(content.landmarks, content.map, view, text_px);
+  draw_changes(panel, view, content.changes);
   draw_labels(panel, labels, text_px);
   draw_plates(panel, view, content.landmarks, style.marker_size_m, widths.plate_px);
-  draw_changes(panel, view, content.changes);
   draw_ruler(page, strip);
 }
 
