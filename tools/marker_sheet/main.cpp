@@ -45,8 +45,8 @@ void write_board(const Options& options) {
 
 void write_markers(const Options& options) {
   if (!options.pdf_file.empty()) return write_pdf(options, marker_patterns(options));
-  for (const int id : parse_ids(options.ids))
-    fmt::print("{}\n", write_sheet(options.sheet, id, options.folder).string());
+  for (const auto& file : write_sheets(options.sheet, parse_ids(options.ids), options.folder))
+    fmt::print("{}\n", file.string());
 }
 
 }  // namespace

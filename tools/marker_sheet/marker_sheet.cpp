@@ -41,6 +41,11 @@ int parse_id(std::string_view text, const std::string& whole) {
   return id;
 }
 
+/// Not rounded.
+double module_px(const SheetOptions& options, int modules_per_side) {
+  return options.size_m / modules_per_side * options.dpi / kInch_m;
+}
+
 void append_uint32(std::string& bytes, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8)
     bytes += static_cast<char>((value >> shift) & 0xffu);
@@ -106,22 +111,25 @@ cv::Mat marker_modules(const SheetOptions& options, int id) {
   return marker;
 }
 
-Sheet draw_sheet(const SheetOptions& options, int id) {
-  const cv::Mat drawn = marker_modules(options, id);
-  const int modules = drawn.cols;
-  const double exact_px = options.size_m / modules * options.dpi / kInch_m;
+void check_sheet(const SheetOptions& options, int id) {
+  const int modules = marker_modules(options, id).cols;
+  const double exact_px = module_px(options, modules);
   const double sheet_px = exact_px * (modules + 2.0 * options.quiet_zone_modules);
   if (!(options.dpi > 0.0 && exact_px >= 1.0 && sheet_px <= kMaxSide_px))
     throw std::runtime_error{fmt::format(
         "--size-m {} at --dpi {}: a module must have at least a pixel, the sheet at most {} pixels",
         options.size_m, options.dpi, kMaxSide_px)};
+}
 
-  const int module_px = static_cast<int>(std::lround(exact_px));
-  const int side_px = modules * module_px;
-  const int margin_px = options.quiet_zone_modules * module_px;
+Sheet draw_sheet(const SheetOptions& options, int id) {
+  check_sheet(options, id);
+  const cv::Mat drawn = marker_modules(options, id);
+  const int of_module_px = static_cast<int>(std::lround(module_px(options, drawn.cols)));
+  const int side_px = drawn.cols * of_module_px;
+  const int margin_px = options.quiet_zone_modules * of_module_px;
   cv::Mat marker;
   cv::resize(drawn, marker, {side_px, side_px}, 0.0, 0.0, cv::INTER_NEAREST);
-  const int text_px = std::max(module_px, 12);
+  const int text_px = std::max(of_module_px, 12);
   Sheet sheet{
       cv::Mat(side_px + 2 * margin_px + text_px, side_px + 2 * margin_px, CV_8UC1, cv::Scalar{255}),
       side_px / options.size_m};
@@ -148,11 +156,17 @@ void write_png(const Sheet& sheet, const std::filesystem::path& file) {
   write_whole_file(file, bytes);
 }
 
-std::filesystem::path write_sheet(const SheetOptions& options, int id,
-                                  const std::filesystem::path& folder) {
-  const auto file = folder / fmt::format("marker_{}_{:04}.png", options.dictionary, id);
-  write_png(draw_sheet(options, id), file);
-  return file;
+std::vector<std::filesystem::path> write_sheets(const SheetOptions& options,
+                                                const std::vector<int>& ids,
+                                                const std::filesystem::path& folder) {
+  for (const int id : ids)
+    check_sheet(options, id);
+  std::vector<std::filesystem::path> files;
+  for (const int id : ids) {
+    files.push_back(folder / fmt::format("marker_{}_{:04}.png", options.dictionary, id));
+    write_png(draw_sheet(options, id), files.back());
+  }
+  return files;
 }
 
 }  // namespace waymark::marker_sheet

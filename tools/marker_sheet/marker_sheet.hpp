@@ -33,15 +33,20 @@ struct Sheet {
 };
 
 /// @throws std::runtime_error if the options or the id make no marker.
+void check_sheet(const SheetOptions& options, int id);
+
+/// @throws std::runtime_error if the options or the id make no marker.
 Sheet draw_sheet(const SheetOptions& options, int id);
 
 /// With its resolution, so that it prints at its true size; makes the folder.
 /// @throws std::runtime_error if it cannot be written.
 void write_png(const Sheet& sheet, const std::filesystem::path& file);
 
-/// Writes marker_<dictionary>_<id>.png with its resolution, so that it prints at its true size.
-/// @throws std::runtime_error if the sheet cannot be drawn or written.
-std::filesystem::path write_sheet(const SheetOptions& options, int id,
-                                  const std::filesystem::path& folder);
+/// Writes marker_<dictionary>_<id>.png for each id with its resolution, so that it prints at its
+/// true size; nothing where one of them cannot be drawn.
+/// @throws std::runtime_error if a sheet cannot be drawn or written.
+std::vector<std::filesystem::path> write_sheets(const SheetOptions& options,
+                                                const std::vector<int>& ids,
+                                                const std::filesystem::path& folder);
 
 }  // namespace waymark::marker_sheet

@@ -48,7 +48,8 @@ TEST(MarkerSheet, TheDetectorReadsWhatIsDrawnAtItsPlaceAndSize) {
 
 TEST(MarkerSheet, ThePictureKnowsItsSize) {
   const evaluate::TemporaryFolder folder;
-  const auto file = write_sheet({"DICT_4X4_50", 0.1, 1, 100.0}, 7, folder.path() / "sheets");
+  const auto file =
+      write_sheets({"DICT_4X4_50", 0.1, 1, 100.0}, {7}, folder.path() / "sheets").front();
   EXPECT_EQ(file.filename(), "marker_DICT_4X4_50_0007.png");
   EXPECT_FALSE(cv::imread(file.string(), cv::IMREAD_GRAYSCALE).empty());
   std::ifstream input{file, std::ios::binary};
@@ -56,6 +57,13 @@ TEST(MarkerSheet, ThePictureKnowsItsSize) {
   // 6 modules of 66 pixels on 0.1 m: 3960 = 0x0f78 per metre.
   const std::string per_m{"\0\0\x0f\x78", 4};
   EXPECT_THAT(bytes, HasSubstr("pHYs" + per_m + per_m + '\1'));
+}
+
+TEST(MarkerSheet, NothingIsWrittenWhereOneIdIsRefused) {
+  const evaluate::TemporaryFolder folder;
+  EXPECT_THROW(write_sheets({"DICT_4X4_50", 0.1, 1, 100.0}, {7, 50}, folder.path() / "sheets"),
+               std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "sheets"));
 }
 
 TEST(MarkerSheet, WhatMakesNoMarkerIsRefused) {
