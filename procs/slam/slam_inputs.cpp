@@ -23,7 +23,7 @@ void check_map_options(const SlamConfig& config) {
   if (is_loaded && config.slam.mode == MapMode::kMap) {
     throw SetupError{
         "--load-map needs to know what for: --set slam.mode=localise (the map stays as it is) or "
-        "--set slam.mode=extend"};
+        "--set slam.mode=extend; of launch.sh and replay.sh: --mode localise or --mode extend"};
   }
   if (!is_loaded && config.slam.mode != MapMode::kMap)
     throw SetupError{"slam.mode = localise and extend need a map: --load-map FILE"};

@@ -57,16 +57,20 @@ int main(int argc, char** argv) {
       "waymark-faults"};
   program.add_option("RUN_DIR", arguments.run_dir,
                      "folder with run.lcm, robot.toml, scenario.toml and the truth");
-  program.add_option("--variants", arguments.variants, "TOML file with [[variant]] tables");
+  program.add_option("--variants", arguments.variants,
+                     "TOML file with [[variant]] tables, such as deploy/faults/messages.toml");
   program.add_option("--variant", arguments.variant, "name of the one to apply");
   program.add_option("--out", arguments.out, "folder for the faulty run");
-  program.add_flag("--list", arguments.list, "print the names of the variants, and exit");
+  program.add_flag("--list", arguments.list,
+                   "print the names of the variants of --variants, and exit");
   program.add_flag("--explain", arguments.explain,
                    "print a variant with every key explained, and exit");
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   const bool is_complete = !arguments.run_dir.empty() && !arguments.variants.empty() &&
                            !arguments.variant.empty() && !arguments.out.empty();
   const bool is_list = arguments.list && !arguments.variants.empty();
+  if (arguments.list && !is_list)
+    return program.refuse_without("--variants, the file whose variants are listed,");
   if (!is_complete && !is_list && !arguments.explain)
     return program.refuse_without(
         "RUN_DIR, --variants, --variant and --out (or --list, --explain)");
