@@ -43,6 +43,15 @@ double path_length_m(const std::vector<EstimatedPose>& path) {
   return length_m;
 }
 
+double duration_s(const std::vector<EstimatedPose>& path) {
+  return path.empty() ? 0.0 : to_seconds(path.back().time - path.front().time);
+}
+
+/// A path that was computed, and not driven, has none, and no health.
+bool has_times(const std::vector<EstimatedPose>& path) {
+  return duration_s(path) >= 1.0;
+}
+
 std::string summary(const PageContent& content, const Se2& view_from_map,
                     const MapThresholds& thresholds) {
   std::string text = size_text(content.map, view_from_map, thresholds);
@@ -116,7 +125,8 @@ void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& tit
   draw_text(page, title, {area_px.x + 0.0, area_px.y + 46.0}, Anchor::kLeft,
             {.height_px = 32.0, .colour = palette::kInk, .bold = true});
   draw_fitting(page, summary(content, view_from_map, thresholds), area_px, 94.0);
-  draw_fitting(page, health_summary(content.estimates), area_px, 128.0);
+  if (has_times(content.estimates))
+    draw_fitting(page, health_summary(content.estimates), area_px, 128.0);
 }
 
 void draw_ruler(cv::Mat& page, const Panel& panel) {
