@@ -81,18 +81,25 @@ void draw_black(cairo_t* to, const Pattern& pattern, const SheetLayout& sheet) {
   cairo_fill(to);
 }
 
-void draw_ruler(cairo_t* to, const SheetLayout& sheet) {
-  const double y_mm = sheet.ruler_y_mm;
-  draw_line(to, sheet.ruler_x_mm, y_mm, sheet.ruler_x_mm + kRuler_mm, y_mm);
+void draw_ruler(cairo_t* to, double left_mm, double y_mm, double tick_mm) {
+  draw_line(to, left_mm, y_mm, left_mm + kRuler_mm, y_mm);
   constexpr double kStep_mm = 10.0;
   for (int tick = 0; tick <= static_cast<int>(kRuler_mm / kStep_mm); ++tick) {
-    const double x_mm = sheet.ruler_x_mm + tick * kStep_mm;
+    const double x_mm = left_mm + tick * kStep_mm;
     const bool is_end = tick == 0 || tick * kStep_mm == kRuler_mm;
-    draw_line(to, x_mm, y_mm - (is_end ? 1.0 : 0.5) * kTick_mm, x_mm, y_mm);
+    draw_line(to, x_mm, y_mm - (is_end ? 1.0 : 0.5) * tick_mm, x_mm, y_mm);
   }
 }
 
-/// At the height of the pattern's middle, on the outer half of its border.
+/// In the lower margin, which is cut off: each tile is checked by itself.
+void draw_ruler_of_tile(cairo_t* to, const Tiling& tiling) {
+  constexpr double kText_mm = 3.0;
+  const double left_mm = kMargin_mm + kCutMark_mm;
+  const double y_mm = 1.5 * kMargin_mm + tiling.cell_height_mm;
+  draw_ruler(to, left_mm, y_mm, 0.5 * kTick_mm);
+  draw_text(to, "100 mm", left_mm + kRuler_mm + kText_mm, y_mm - kText_mm, kText_mm, 20.0);
+}
+
 void draw_height_marks(cairo_t* to, const SheetLayout& sheet) {
   const double y_mm = sheet.pattern_y_mm + 0.5 * sheet.pattern_height_mm;
   const double length_mm = std::min(kTick_mm, 0.5 * sheet.quiet_mm);
@@ -122,7 +129,7 @@ void draw_sheet_of(cairo_t* to, const Pattern& pattern, const SheetLayout& sheet
   draw_height_marks(to, sheet);
   draw_text(to, pattern.caption + "   the line below has 100 mm", sheet.ruler_x_mm,
             sheet.caption_y_mm, kCaption_mm, kRuler_mm);
-  draw_ruler(to, sheet);
+  draw_ruler(to, sheet.ruler_x_mm, sheet.ruler_y_mm, kTick_mm);
 }
 
 void draw_page(cairo_t* to, const Pattern& pattern, const SheetLayout& sheet, const Tiling& tiling,
@@ -139,6 +146,7 @@ void draw_page(cairo_t* to, const Pattern& pattern, const SheetLayout& sheet, co
   cairo_restore(to);
   if (tiling.columns * tiling.rows > 1) {
     draw_cut_marks(to, tiling);
+    draw_ruler_of_tile(to, tiling);
     constexpr double kLabel_mm = 3.0;
     draw_text(to,
               fmt::format("{}: row {} of {}, column {} of {}; cut at the marks", pattern.name,

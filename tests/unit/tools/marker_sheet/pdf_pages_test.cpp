@@ -167,6 +167,21 @@ TEST(PdfPages, TilesThatAreCutAndPutTogetherReadBack) {
   expect_marker(whole, "DICT_6X6_250", 23, 400.0, kPxPerMm);
 }
 
+TEST(PdfPages, EveryTileHasARulerInItsMargin) {
+  if (!has_poppler())
+    GTEST_SKIP() << "no pdftoppm here; deploy/install-deps.sh --tests installs it";
+  constexpr double kPxPerMm = 10.0;
+  const Tiling tiling =
+      tiling_of(layout_of(marker_pattern({"DICT_6X6_250", 0.4, 2, 300.0}, 3)), "A3", true);
+  const auto pages = rendered(draw_pdf(options_of("DICT_6X6_250", 0.4, "A3", true), {3}), kPxPerMm);
+  ASSERT_GT(pages.size(), 1U);
+  for (const cv::Mat& page : pages) {
+    const int row = static_cast<int>(kPxPerMm * (1.5 * kMargin_mm + tiling.cell_height_mm));
+    const int length_px = std::max(longest_line_px(page, row), longest_line_px(page, row - 1));
+    EXPECT_NEAR(length_px / kPxPerMm, kRuler_mm, kSame_mm);
+  }
+}
+
 TEST(PdfPages, TheSameInputGivesTheSameBytes) {
   const PdfOptions options = options_of("DICT_6X6_250", 0.1, "A4", false);
   EXPECT_EQ(draw_pdf(options, {1, 2}).bytes, draw_pdf(options, {1, 2}).bytes);
