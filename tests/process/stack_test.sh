@@ -206,7 +206,7 @@ commands_while_it_runs() {
   expect_code 2 $!
   grep -q "expected 16 to 200 printable characters" "$work/run.output" || fail "a short token is not named"
   begin run --lcm-url "$url" --http "$page" --http-token "$token" "${options[@]}"
-  local run=$!
+  local run=$! arguments
   until_under_way run
   ask 1 "letters, digits" save ../map
   ask 1 "in that mode already" set-mode map
@@ -220,19 +220,16 @@ commands_while_it_runs() {
   "$work/bin/waymark-map" check "$work/state/day1.map.lcm" >"$work/check.output" 2>&1 || fail "the map is not whole"
   "$work/bin/waymark-map" info "$work/state/day1.map.lcm" >"$work/info.output" 2>&1 || fail "the map cannot be read"
   grep -q 'differs from its description by: distances' "$work/info.output" || fail "no calibration in the map"
-  "$work/bin/waymark-map" export "$work/state/day1.map.lcm" --out "$work/exported" >"$work/export.output" 2>&1 \
-    || fail "the map cannot be exported"
-  [[ -s $work/exported/map.png && -z $(find "$work/exported" -empty) && ! -e $work/exported/trajectory.tum ]] \
-    || fail "the export has empty files: $(ls -s "$work/exported")"
-  local again
-  for again in "export --out $work/exported" "transform --out $work/state/day1.map.lcm" \
-    "merge $work/state/day1.map.lcm --out $work/state/day1.map.lcm"; do
-    # shellcheck disable=SC2086  # words of a command
-    "$work/bin/waymark-map" ${again%% *} "$work/state/day1.map.lcm" ${again#* } >"$work/again.output" 2>&1
-    (($? == 2)) && grep -q 'is there already' "$work/again.output" || fail "waymark-map ${again%% *} replaces files"
-  done
   expect_code 0 $run
   cp "$work/state/day1.map.lcm" "$work/live.map.lcm"
+  "$work/bin/waymark-map" export "$work/live.map.lcm" --out "$work/exported" >"$work/export.output" 2>&1 || fail "no export"
+  [[ -s $work/exported/map.png && -z $(find "$work/exported" -empty) ]] || fail "the export has empty files"
+  for arguments in "export --out $work/exported" "transform --out $work/live.map.lcm" \
+    "merge $work/live.map.lcm --out $work/live.map.lcm"; do
+    # shellcheck disable=SC2086  # words of a command
+    "$work/bin/waymark-map" ${arguments%% *} "$work/live.map.lcm" ${arguments#* } >"$work/again.output" 2>&1 && fail "replaced"
+    grep -q 'is there already' "$work/again.output" || fail "waymark-map $arguments"
+  done
   "${launch%launch.sh}replay.sh" "$work/run/run.lcm" --estimator waymark --row again "${options[@]}" \
     >"$work/replay.output" 2>&1 || fail "replay: exit code $?"
   cmp "$work/live.map.lcm" "$work/state/day1.map.lcm" || fail "the replay saves another map"
