@@ -13,8 +13,8 @@ int main(int argc, char** argv) {
 
   Program program{
       "Writes runs in the formats of other programs.\n"
-      "Exit code: 0 fine; 1 a log is damaged or not understood, or the file could not be written;\n"
-      "2 wrong usage.",
+      "Exit code: 0 fine; 1 a log is damaged or not understood, or the disk became full;\n"
+      "2 wrong usage, no such log, or nothing can be written there.",
       "waymark-export"};
   program.require_subcommand();
   Command mcap = program.add_subcommand(

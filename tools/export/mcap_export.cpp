@@ -72,7 +72,7 @@ std::optional<Se2> RecentPoses::at(Timestamp time) const {
 }
 
 McapExport::McapExport(const std::filesystem::path& out, Inbox& inbox)
-    : counters_{inbox.counters()}, updater_{scene_, inbox.counters()} {
+    : file_{out}, counters_{inbox.counters()}, updater_{scene_, inbox.counters()} {
   try {
     writer_.emplace(out);
   } catch (const std::exception& error) {
@@ -236,7 +236,8 @@ void McapExport::finish() {
   try {
     const std::uint64_t num_messages = writer_->num_messages();
     writer_->close();
-    logging::info("{} messages", num_messages);
+    logging::info("{}: {} messages, {:.1f} MB", file_.string(), num_messages,
+                  1e-6 * static_cast<double>(std::filesystem::file_size(file_)));
   } catch (const std::exception& error) {
     failed_ = true;
     logging::error("{}", error.what());

@@ -52,6 +52,7 @@ class McapExport final : public Node {
   void write(McapWriter::ChannelId channel, Timestamp time, const Json& message);
 
   std::optional<McapWriter> writer_{};
+  std::filesystem::path file_;
   Counters& counters_;
   viewer::Scene scene_{};
   viewer::SceneUpdater updater_;
