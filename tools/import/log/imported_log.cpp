@@ -127,9 +127,10 @@ void cover_scans(ImportedLog& log, ImportReport& report) {
                               std::string_view what) {
     if (start >= first - kLongestHold && end <= last + kLongestHold) return false;
     report.skip("no odometry at its time", at,
-                start < first
-                    ? fmt::format("{} {:.3f} s before odometry", what, to_seconds(first - start))
-                    : fmt::format("{} {:.3f} s behind odometry", what, to_seconds(end - last)));
+                start < first ? fmt::format("{} at {:.6f} s, {:.3f} s before odometry", what,
+                                            to_seconds(start), to_seconds(first - start))
+                              : fmt::format("{} at {:.6f} s, {:.3f} s behind odometry", what,
+                                            to_seconds(start), to_seconds(end - last)));
     return true;
   };
   std::erase_if(log.scans, [&](const ImportedScan& scan) {
