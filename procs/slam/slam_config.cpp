@@ -117,7 +117,7 @@ void SlamConfig::describe(Fields& fields) {
 
 void SlamConfig::check(Problems& problems) const {
   robot.check(problems);
-  check_markers(robot.markers, problems);
+  check_dictionary(robot.markers, problems);
   const bool is_within_a_map =
       slam.start.kind == StartKind::kPose || slam.start.kind == StartKind::kAnywhere;
   if (slam.mode == MapMode::kMap && is_within_a_map)

@@ -20,8 +20,8 @@ std::optional<cv::aruco::Dictionary> find_dictionary(std::string_view name);
 
 std::vector<std::string> dictionary_names();
 
-/// Whether robot.markers names a dictionary, and ids that it has.
-void check_markers(const MarkerConfig& markers, Problems& problems);
+/// Whether robot.markers names a dictionary.
+void check_dictionary(const MarkerConfig& markers, Problems& problems);
 
 /// Number of ids: they are 0 to one less.
 int size_of(const cv::aruco::Dictionary& dictionary);
