@@ -97,7 +97,7 @@ void SlamNode::check(const Config& config) {
 void SlamNode::finish() {
   queue_.finish();
   process_ready_scans();
-  judge_input();
+  check_input();
   if (!config_.save_map.empty() && !save_map()) failed_ = true;
   keep_last_pose();
   if (!last_estimate_) return;
@@ -152,7 +152,7 @@ bool SlamNode::save_map() {
 }
 
 /// An input that nothing can be made of shall not look like success.
-void SlamNode::judge_input() {
+void SlamNode::check_input() {
   const std::int64_t scans = counters_.get(received_on(channels::kLidar.name));
   const std::int64_t odometry = counters_.get(received_on(channels::kOdometry.name));
   const std::int64_t unplaced = counters_.get(kUnplaced);

@@ -58,7 +58,7 @@ class SlamNode final : public Node {
   void resume_last_pose(const Observation& first);
   void keep_last_pose();
   void take(LidarScan scan);
-  void judge_input();
+  void check_input();
   std::optional<std::vector<Finding>> findings() const;
   void process_ready_scans();
   void process(const SensorQueue::Ready& ready);

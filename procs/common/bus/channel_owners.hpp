@@ -33,9 +33,9 @@ class ChannelOwners {
   /// Anything that a sender sends shows that it is there.
   void hear(const Sender& sender, Time now);
 
-  Verdict judge(std::string_view channel, const Sender& sender, Time now);
+  Verdict check(std::string_view channel, const Sender& sender, Time now);
 
-  /// Needs a channel that was judged.
+  /// Needs a channel that was checked.
   const Sender& owner_of(std::string_view channel) const;
 
  private:

@@ -52,7 +52,7 @@ class ReorderBuffer {
   Misfit misfit(const Message& message) const;
   Message stamped(Message message) const;
   bool leads(const Stream& stream, Timestamp time) const;
-  void judge_aside(Stream& stream, Timestamp time, Counters& counters);
+  void resolve_aside(Stream& stream, Timestamp time, Counters& counters);
   void put_into_order(Stream& stream, Message message);
   std::vector<Message> begin_anew(Message message);
   std::vector<Message> release_until(Timestamp time);

@@ -165,7 +165,7 @@ std::shared_ptr<const StoredScan> random_scan(Random& random) {
   return scan;
 }
 
-TEST(PublishedMap, ComesOutAsIfDrawnFromTheFirstScanOn) {
+TEST(PublishedMap, EqualsAMapDrawnFromScratch) {
   struct Particle {
     Trajectory trajectory{};
     std::vector<std::pair<Se2, std::shared_ptr<const StoredScan>>> way{};
@@ -193,7 +193,7 @@ TEST(PublishedMap, ComesOutAsIfDrawnFromTheFirstScanOn) {
         trajectories.push_back(particle.trajectory);
       }
       if (resamples) {
-        if (const Trajectory trunk = common_ancestor(trajectories)) published.settle(trunk);
+        if (const Trajectory trunk = common_ancestor(trajectories)) published.finalise(trunk);
       }
       if (random.uniform() < 0.6) {
         const Particle& best = particles[any_of(particles.size(), random)];
@@ -203,7 +203,7 @@ TEST(PublishedMap, ComesOutAsIfDrawnFromTheFirstScanOn) {
   }
 }
 
-TEST(PublishedMap, MemoryIsBoundedWhereTheParticlesAgree) {
+TEST(PublishedMap, MemoryIsBoundedAsParticlesShareTheirPast) {
   // Ever one survivor: what is behind it must be gone, however long the run.
   PublishedMap published{kFrame, kUsableRange_m, kOccupied};
   Random random{1};
@@ -218,7 +218,7 @@ TEST(PublishedMap, MemoryIsBoundedWhereTheParticlesAgree) {
       particle = std::make_shared<TrajectoryNode>(Se2{}, scan, particle);
       nodes.push_back(particle);
     }
-    if (const Trajectory trunk = common_ancestor(particles)) published.settle(trunk);
+    if (const Trajectory trunk = common_ancestor(particles)) published.finalise(trunk);
     published.along(particles[2]);
   }
   const auto alive = [](const auto& all) {

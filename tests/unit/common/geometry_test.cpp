@@ -113,7 +113,7 @@ TEST(CameraConfig, LooksForwardByDefault) {
   EXPECT_TRUE((camera.base_from_camera() * ahead).isApprox(-Eigen::Vector3d::UnitZ()));
 }
 
-TEST(Counters, TheKindIsNotInTheName) {
+TEST(Counters, CountersAreNamedWithoutTheirKind) {
   Counters counters;
   counters.add("late rejected words that were dropped");
   EXPECT_EQ(counters.total(CountKind::kEvent), 1);
@@ -125,7 +125,7 @@ TEST(Counters, TheKindIsNotInTheName) {
   EXPECT_EQ(counters.get("something else"), 0);
 }
 
-TEST(PrincipalAxes, AreThoseOfATurnedEllipse) {
+TEST(PrincipalAxes, EqualThoseOfARotatedEllipse) {
   const double angle_rad = 0.4;
   const Eigen::Matrix2d turn = Eigen::Rotation2Dd{angle_rad}.toRotationMatrix();
   const Eigen::Matrix2d ellipse = turn * Eigen::Vector2d{9.0, 4.0}.asDiagonal() * turn.transpose();

@@ -90,7 +90,8 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
     since_insertion_m_ = observation.motion.distance_m;
   } else {
     since_insertion_m_ += observation.motion.distance_m;
-    if (between.shows_all_axes || agrees_with_markers(observation)) motion_doubt_.note_observed();
+    if (between.shows_all_axes || sees_known_markers(observation))
+      unmeasured_motion_.note_observed();
     if (between.match) insert_between(look.points, *between.match, between.map_from_base);
   }
   if (between.match) note_reason(EstimateReason::kScan);
@@ -120,7 +121,7 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
   look.since_last_s = observation.elapsed_s;
   look.expected = prediction();
   Prediction searched = look.expected;
-  if (motion_doubt_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
+  if (unmeasured_motion_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
   const std::size_t all = look.points.size();
   look.points =
       without_moving(look.points, map_.map(), searched.map_from_base, searched.covariance);
@@ -147,11 +148,11 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
     is_refuted_scan = scan && usual_fit_.is_refuted(scan->match);
     is_used = scan && !is_refuted_scan && scan->match.is_usable(config_.scan);
     // Odometry that stands still is so sure that no step of the solver would leave it.
-    const bool is_moved = is_used && motion_doubt_.is_standing();
+    const bool is_moved = is_used && unmeasured_motion_.is_standing();
     const std::size_t keyframe = graph_.add_keyframe(
         is_moved ? scan->map_from_submap * scan->match.map_from_base : expected.map_from_base);
     shows_all_axes = is_used && !scan->match.observed.is_degenerate;
-    add_odometry_factor(keyframe, shows_all_axes || agrees_with_markers(observation));
+    add_odometry_factor(keyframe, shows_all_axes || sees_known_markers(observation));
     if (scan && scan->match.num_mapped >= config_.scan.min_inliers)
       inlier_share_ = scan->match.inlier_share;
     if (scan) note_fit(scan->match);
@@ -169,13 +170,13 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   }
   graph_.optimise();
   const std::vector<MarkerMeasurement> measurements = measured(observation);
-  verdict_ = relocalisation_.judge(graph_.state().keyframes.back(), hints(measurements), motion_);
-  if (verdict_ == RelocalisationMonitor::Verdict::kElsewhere ||
-      verdict_ == RelocalisationMonitor::Verdict::kBack) {
+  verdict_ = relocalisation_.update(graph_.state().keyframes.back(), hints(measurements), motion_);
+  if (verdict_ == RelocalisationMonitor::Verdict::kRelocated ||
+      verdict_ == RelocalisationMonitor::Verdict::kReverted) {
     relocate(relocalisation_.map_from_base());
     note_reason(EstimateReason::kRelocalised);
   }
-  const bool is_doubtful = verdict_ == RelocalisationMonitor::Verdict::kDoubtful;
+  const bool is_doubtful = verdict_ == RelocalisationMonitor::Verdict::kSuspicious;
   markers_known_ = false;
   if (!is_frozen()) {
     const Se2& map_from_base = graph_.state().keyframes.back();
@@ -191,7 +192,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   }
   weigh_past_anew();
   compare_with_odometry();
-  if (markers_known_ || shows_all_axes) motion_doubt_.note_observed();
+  if (markers_known_ || shows_all_axes) unmeasured_motion_.note_observed();
   // What cannot be placed is not mapped.
   const bool is_mapped = !is_doubtful && !is_refuted_scan && is_confirmed_;
   if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
@@ -228,7 +229,7 @@ void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& mat
                                       const Se2& map_from_base) {
   if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||
       usual_fit_.is_worse_than_usual(match) ||
-      verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
+      verdict_ == RelocalisationMonitor::Verdict::kSuspicious) {
     return;
   }
   since_insertion_m_ = 0.0;
@@ -274,7 +275,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = 0.5 * (covariance + covariance.transpose());
   estimate.covariance +=
-      in_axes(map_from_base.rotation(), unmeasured_covariance(motion_doubt_.suspected_m()));
+      in_axes(map_from_base.rotation(), unmeasured_covariance(unmeasured_motion_.suspected_m()));
   if (setup_.loaded_map)
     estimate.covariance += covariance_at(*setup_.loaded_map, map_from_base.translation());
   if (relocalisation_.alternative()) {
@@ -284,11 +285,11 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   estimate.odometry_refused = odometry_check_.is_refused();
   estimate.reason = reason_;
   estimate.calibration_widened = graph_.is_calibration_doubted();
-  estimate.weak_axis_source = motion_doubt_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing
-                              : markers_known_                   ? WeakAxisSource::kMarkers
-                                                                 : WeakAxisSource::kOdometry;
+  estimate.weak_axis_source = unmeasured_motion_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing
+                              : markers_known_                        ? WeakAxisSource::kMarkers
+                                                                      : WeakAxisSource::kOdometry;
   estimate.ranges_wrong = is_rescaled_;
-  const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kDoubtful ||
+  const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kSuspicious ||
                        inlier_share_ < config_.lost_inlier_share;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
                               !estimate.observability.is_degenerate ||

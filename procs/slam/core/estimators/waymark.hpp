@@ -8,12 +8,12 @@
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/keyframe_thinning.hpp"
 #include "slam/core/graph/loop_finder.hpp"
-#include "slam/core/graph/motion_doubt.hpp"
 #include "slam/core/graph/odometry_noise_learner.hpp"
 #include "slam/core/graph/place_finder.hpp"
 #include "slam/core/graph/relocalisation.hpp"
 #include "slam/core/graph/solve_schedule.hpp"
 #include "slam/core/graph/survey.hpp"
+#include "slam/core/graph/unmeasured_motion.hpp"
 #include "slam/core/graph/wall_change_detector.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/mapping/drawn_map.hpp"
@@ -146,7 +146,7 @@ class WaymarkEstimator final : public Estimator {
     return is_frozen() ? std::min(all, kFrozenWindow) : all;
   }
 
-  const NdtMap& surfaces_of(const MatchedScan& scan) const;
+  const NdtMap& ndt_of(const MatchedScan& scan) const;
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
   void confirm_place(const MatchedScan& scan);
@@ -155,12 +155,12 @@ class WaymarkEstimator final : public Estimator {
   void follow_odometry(const Observation& observation);
   void add_odometry_factor(std::size_t keyframe, bool is_observed);
   void compare_with_odometry();
-  void spread_kept_back(const Observation& observation);
+  void spread_late_motion(const Observation& observation);
   void weigh_past_anew();
   bool is_keyframe_due(const Observation& observation) const;
   bool has_moved_silently(const Se2& map_from_base) const;
   bool is_contradicted_by(const Observation& observation) const;
-  bool agrees_with_markers(const Observation& observation) const;
+  bool sees_known_markers(const Observation& observation) const;
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   void search_widely(Look& look) const;
@@ -168,7 +168,7 @@ class WaymarkEstimator final : public Estimator {
   void add_keyframe(const Observation& observation, Look& look);
   void add_first_keyframe();
   void put_elsewhere(const StartPose& pose);
-  void forget_way_here();
+  void forget_recent_motion();
   void use_survey();
   void note_reason(EstimateReason reason);
   void add_map_factor(std::size_t keyframe, const ScanMatch& match);
@@ -219,7 +219,7 @@ class WaymarkEstimator final : public Estimator {
   int keyframes_standing_{0};  ///< in a row
   OdometryCheck odometry_check_{};
   Se2 newest_from_last_scan_{};  ///< pose of the last scan in the newest keyframe's frame
-  MotionDoubt motion_doubt_{};
+  UnmeasuredMotion unmeasured_motion_{};
   bool is_observed_{true};  ///< markers or walls showed the way to the newest keyframe
   double since_insertion_m_{0.0};
   double unobserved_m_{0.0};  ///< driven since markers or walls showed the way
@@ -242,7 +242,7 @@ class WaymarkEstimator final : public Estimator {
   bool is_put_elsewhere_{false};  ///< by the newest observation
 
   // Of the newest keyframe:
-  RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kSettled};
+  RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kConsistent};
   double inlier_share_{1.0};
   bool markers_known_{false};
   EstimateReason reason_{EstimateReason::kOdometry};

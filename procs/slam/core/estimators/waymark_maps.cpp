@@ -35,8 +35,8 @@ void WaymarkEstimator::load(const MapSnapshot& map) {
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);
 }
 
-const NdtMap& WaymarkEstimator::surfaces_of(const MatchedScan& scan) const {
-  return scan.submap != nullptr ? scan.submap->surfaces() : setup_.loaded_map->walls;
+const NdtMap& WaymarkEstimator::ndt_of(const MatchedScan& scan) const {
+  return scan.submap != nullptr ? scan.submap->ndt() : setup_.loaded_map->walls;
 }
 
 Points WaymarkEstimator::points_near(const MatchedScan& scan, const Se2& submap_from_base,
@@ -73,8 +73,8 @@ void WaymarkEstimator::use_survey() {
     unmatched_drift_.move_to_frame(*survey_from_map);
     map_.redraw(poses_of(graph_));
     relocalisation_ = {};
-    loop_finder_.forget_places();
-    forget_way_here();
+    loop_finder_.reset();
+    forget_recent_motion();
   }
   if (!survey_.has_frame()) return;
   survey_.apply(graph_, kSurveySteps);

@@ -28,7 +28,7 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
       observation.sightings.begin(), observation.sightings.end(), [&](const MarkerSighting& seen) {
         const Eigen::Vector2d place = map_from_base * seen.base_from_marker.translation();
         const double off_m =
-            motion_doubt_.is_standing()
+            unmeasured_motion_.is_standing()
                 ? std::max(kStandsStill_m, kStandsStillSigmas * seen.sigma_along_m())
                 : kContradicts_m;
         return book_.knows(seen.id) && !book_.has_one_near(graph_.state(), place, off_m, seen.id);
@@ -36,7 +36,7 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
 }
 
 /// Markers are seen that are known: they will say where the robot is.
-bool WaymarkEstimator::agrees_with_markers(const Observation& observation) const {
+bool WaymarkEstimator::sees_known_markers(const Observation& observation) const {
   return std::any_of(observation.sightings.begin(), observation.sightings.end(),
                      [&](const MarkerSighting& seen) { return book_.knows(seen.id); });
 }

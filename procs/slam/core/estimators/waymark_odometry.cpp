@@ -30,7 +30,7 @@ bool is_other(double a, double b) {
 /// it got stuck. Keyframes that were made in between, because markers or walls said that the robot
 /// moves, hang on those alone then.
 void WaymarkEstimator::follow_odometry(const Observation& observation) {
-  motion_doubt_.follow(observation);
+  unmeasured_motion_.follow(observation);
   if (observation.odometry_caught_up) ++findings_.odometry_caught_up;
   if (observation.odometry_caught_up && standstill_) {
     const std::size_t start = standstill_->keyframe;
@@ -44,11 +44,11 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
       motion_.start_from_end =
           graph_.state().keyframes.back().inverse() * standstill_->map_from_start;
     }
-    spread_kept_back(observation);
+    spread_late_motion(observation);
   }
-  motion_ = motion_.then(odometry_check_.believable(observation.motion, observation.elapsed_s,
-                                                    observation.odometry_caught_up));
-  if (!motion_doubt_.is_standing()) {
+  motion_ = motion_.then(odometry_check_.plausible(observation.motion, observation.elapsed_s,
+                                                   observation.odometry_caught_up));
+  if (!unmeasured_motion_.is_standing()) {
     standstill_.reset();
     keyframes_standing_ = 0;
   } else if (!standstill_ && !graph_.state().keyframes.empty()) {
@@ -56,9 +56,9 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
     standstill_ = Standstill{moved_from_, motion_, here, here, observation.time, clock_s_};
   }
   ++findings_.observations;
-  if (observation.odometry_doubtful || odometry_check_.is_refused()) {
+  if (observation.odometry_jumped || odometry_check_.is_refused()) {
     ++findings_.odometry_jumping;
-  } else if (motion_doubt_.is_silent()) {
+  } else if (unmeasured_motion_.is_silent()) {
     ++findings_.odometry_stuck;
   }
 }
@@ -66,7 +66,7 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
 bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
   if (graph_.state().keyframes.empty()) return true;
   const bool is_seen = !observation.sightings.empty();
-  if (is_seen && motion_doubt_.is_silent() && keyframes_standing_ < kMaxStanding) return true;
+  if (is_seen && unmeasured_motion_.is_silent() && keyframes_standing_ < kMaxStanding) return true;
   return motion_.start_from_end.translation().norm() >=
              (is_seen ? config_.marker_keyframe_distance_m : config_.keyframe_distance_m) ||
          std::abs(motion_.start_from_end.theta()) >= config_.keyframe_turn_rad;
@@ -74,7 +74,7 @@ bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
 
 /// As far as from keyframe to keyframe, while odometry says nothing.
 bool WaymarkEstimator::has_moved_silently(const Se2& map_from_base) const {
-  if (!motion_doubt_.is_silent()) return false;
+  if (!unmeasured_motion_.is_silent()) return false;
   const Eigen::Vector3d moved = pose_difference(map_from_base, graph_.state().keyframes.back());
   return moved.head<2>().norm() >= config_.keyframe_distance_m ||
          std::abs(moved.z()) >= config_.keyframe_turn_rad;
@@ -85,7 +85,7 @@ WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
       corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
   if (!is_observed_) moved = with_slips(moved, motion_.distance_m, graph_.noise().scale);
   const Eigen::Matrix3d covariance =
-      moved.covariance + unmeasured_covariance(motion_doubt_.unmeasured_m());
+      moved.covariance + unmeasured_covariance(unmeasured_motion_.unmeasured_m());
   const Se2& from = graph_.state().keyframes[moved_from_];
   return {from * moved.start_from_end, in_axes(from.rotation(), covariance)};
 }
@@ -97,7 +97,7 @@ void WaymarkEstimator::add_odometry_factor(std::size_t keyframe, bool is_observe
   odometry.from = moved_from_;
   odometry.to = keyframe;
   odometry.motion = motion_;
-  odometry.unmeasured_m = motion_doubt_.take_unmeasured_m();
+  odometry.unmeasured_m = unmeasured_motion_.take_unmeasured_m();
   graph_.add(odometry);
   // From where the robot got stuck long ago.
   if (!graph_.is_active({VariableKind::kKeyframe, moved_from_})) step_everything({});
@@ -110,14 +110,14 @@ void WaymarkEstimator::compare_with_odometry() {
   const Se2& now = graph_.state().keyframes.back();
   const Eigen::Vector3d moved = pose_difference(now, standstill_->map_from_base);
   if (moved.head<2>().norm() < kMoved_m && std::abs(moved.z()) < kMoved_rad) return;
-  motion_doubt_.note_moved(moved.head<2>().norm(), clock_s_ - standstill_->moved_at_s);
+  unmeasured_motion_.note_moved(moved.head<2>().norm(), clock_s_ - standstill_->moved_at_s);
   keyframes_standing_ = 0;
   standstill_->map_from_base = now;
   standstill_->moved_at_s = clock_s_;
 }
 
 /// The way that was driven while odometry stood still is drawn evenly into the final trajectory.
-void WaymarkEstimator::spread_kept_back(const Observation& observation) {
+void WaymarkEstimator::spread_late_motion(const Observation& observation) {
   const double whole_s = to_seconds(observation.time - standstill_->since);
   const Motion& before = standstill_->motion;
   for (auto scan = scan_poses_.rbegin(); scan != scan_poses_.rend(); ++scan) {
@@ -131,8 +131,8 @@ void WaymarkEstimator::spread_kept_back(const Observation& observation) {
 
 /// What the scan says about the motion since the keyframe before, against what odometry says.
 void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
-  if (!config_.learn_noise || motion_.guessed_s > 0.0 || motion_doubt_.is_standing() ||
-      motion_doubt_.is_silent()) {
+  if (!config_.learn_noise || motion_.guessed_s > 0.0 || unmeasured_motion_.is_standing() ||
+      unmeasured_motion_.is_silent()) {
     return;
   }
   const OdometryNoise& described = graph_.noise().odometry;
@@ -159,7 +159,7 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
 /// The same of a known marker, where nothing else showed the way since the last one.
 void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
                                    const MarkerMeasurement& measurement) {
-  if (!config_.learn_noise || unobserved_m_ <= 0.0 || motion_doubt_.is_silent()) return;
+  if (!config_.learn_noise || unobserved_m_ <= 0.0 || unmeasured_motion_.is_silent()) return;
   const double by_odometry = along_m2_per_m(graph_.noise().odometry) * unobserved_m_;
   const double blind_m = std::max(0.0, unobserved_m_ - motion_.distance_m);
   const double believed = along_m2_per_m(graph_.odometry_noise()) * unobserved_m_ +

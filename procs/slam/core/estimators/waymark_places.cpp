@@ -54,17 +54,17 @@ void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
   is_confirmed_ = !setup_.loaded_map || pose.is_certain;
   relocalisation_ = {};
-  forget_way_here();
+  forget_recent_motion();
   begin_submaps_anew();
 }
 
 /// The robot was put elsewhere, or its place has other coordinates: the step there was not driven.
 /// (A relocalisation may be what shows that odometry was stuck, and keeps the standstill.)
-void WaymarkEstimator::forget_way_here() {
+void WaymarkEstimator::forget_recent_motion() {
   is_put_elsewhere_ = true;
   standstill_.reset();
   keyframes_standing_ = 0;
-  motion_doubt_.note_observed();
+  unmeasured_motion_.note_observed();
 }
 
 /// @return whether the robot's place in the loaded map is known by now.
@@ -90,7 +90,7 @@ Estimate WaymarkEstimator::unplaced(const Observation& observation) const {
 void WaymarkEstimator::relocate(const Se2& map_from_base) {
   ++findings_.relocalisations;
   graph_.relocate_newest(map_from_base);
-  if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
+  if (verdict_ == RelocalisationMonitor::Verdict::kReverted) {
     const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
     graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
   }
@@ -101,7 +101,7 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
 
 void WaymarkEstimator::begin_submaps_anew() {
   submaps_.begin_anew();
-  loop_finder_.forget_places();
+  loop_finder_.reset();
 }
 
 }  // namespace waymark

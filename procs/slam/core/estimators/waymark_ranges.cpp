@@ -35,9 +35,9 @@ std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation&
   const Se2 submap_from_map = plain->map_from_submap.inverse();
   Eigen::Matrix3d around = in_axes(submap_from_map.rotation(), expected.covariance);
   around.diagonal() += kAround.cwiseAbs2();
-  const RangeScale scale = fit_range_scale(
-      look.points, observation.beams.front().beam.start_in_base, surfaces_of(*plain),
-      submap_from_map * expected.map_from_base, around, range_noise_);
+  const RangeScale scale =
+      fit_range_scale(look.points, observation.beams.front().beam.start_in_base, ndt_of(*plain),
+                      submap_from_map * expected.map_from_base, around, range_noise_);
   if (std::abs(scale.share) < std::max(kLeastShare, kLeastSigmas * scale.sigma))
     return std::nullopt;
   Observation corrected = scaled_ranges(observation, scale.share);

@@ -37,8 +37,8 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   const Se2 submap_from_map = scan.map_from_submap.inverse();
   const Se2 guess = submap_from_map * prediction.map_from_base;
   const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), prediction.covariance);
-  scan.match = match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_,
-                          config_.scan, scan.submap->coarse_surfaces());
+  scan.match = match_scan(points, scan.submap->ndt(), guess, covariance, range_noise_, config_.scan,
+                          scan.submap->coarse_ndt());
   return scan;
 }
 
@@ -60,7 +60,7 @@ void WaymarkEstimator::search_widely(Look& look) const {
   search.odometry_covariance = in_axes(submap_from_map.rotation(), look.expected.covariance);
   search.since_last_s = look.since_last_s;
   search.min_score = config_.loops.min_score;
-  scan.match = searched_widely(scan.match, look.points, surfaces_of(scan),
+  scan.match = searched_widely(scan.match, look.points, ndt_of(scan),
                                points_near(scan, expected, wide_search_reach_m(look.points)),
                                search, usual_fit_, range_noise_, config_.scan);
 }

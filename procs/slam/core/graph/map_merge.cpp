@@ -106,7 +106,7 @@ double distance_m(const Se2& a_from_b, const std::pair<Eigen::Vector2d, Eigen::V
   return (a_from_b * pair.second - pair.first).norm();
 }
 
-Pairs agreeing(const Pairs& pairs, const Se2& a_from_b) {
+Pairs inliers_of(const Pairs& pairs, const Se2& a_from_b) {
   Pairs agree;
   for (const auto& pair : pairs)
     if (distance_m(a_from_b, pair) < kAgree_m) agree.push_back(pair);
@@ -175,7 +175,7 @@ std::optional<MapAlignment> align_by_markers(const MapSnapshot& a, const MapSnap
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     for (std::size_t k = i + 1; k < pairs.size(); ++k) {
       if ((pairs[i].first - pairs[k].first).norm() < kLeastApart_m) continue;
-      const Pairs agree = agreeing(pairs, fitted({pairs[i], pairs[k]}));
+      const Pairs agree = inliers_of(pairs, fitted({pairs[i], pairs[k]}));
       if (agree.size() > best.size()) best = agree;
     }
   }

@@ -25,8 +25,8 @@ constexpr double kApart_m = 0.5;
 constexpr double kApart_rad = 0.3;
 constexpr double kAgree_m = 0.3;
 constexpr double kAgree_rad = 0.1;
-constexpr std::size_t kAgreeing = 2;    // stretches, at least
-constexpr double kRangeSigma_m = 0.02;  // of points that stand for cells
+constexpr std::size_t kLeastConsistent = 2;  // stretches, at least
+constexpr double kRangeSigma_m = 0.02;       // of points that stand for cells
 const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
 
 /// Places along the way of a map, some metres apart.
@@ -114,12 +114,12 @@ std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapsh
       found.push_back({*there, place});
   std::vector<Found> best;
   for (const Found& one : found) {
-    std::vector<Found> agreeing;
-    std::copy_if(found.begin(), found.end(), std::back_inserter(agreeing),
+    std::vector<Found> consistent;
+    std::copy_if(found.begin(), found.end(), std::back_inserter(consistent),
                  [&](const Found& other) { return one.agrees_with(other); });
-    if (agreeing.size() > best.size()) best = agreeing;
+    if (consistent.size() > best.size()) best = consistent;
   }
-  if (best.size() < kAgreeing) return std::nullopt;
+  if (best.size() < kLeastConsistent) return std::nullopt;
   // The middle of the stretches is known best: the mean is taken there.
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   for (const Found& one : best)

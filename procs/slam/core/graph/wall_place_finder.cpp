@@ -12,18 +12,18 @@ namespace waymark {
 namespace {
 
 constexpr double kSearchEvery_m = 0.4;
-constexpr int kAgreeing = 3;  // scans
+constexpr int kConsistentScans = 3;  // scans
 constexpr std::size_t kBeams = 150;
 constexpr std::size_t kLeastBeams = 60;
 constexpr double kLeastScore = 0.7;
-constexpr double kRunnerUpShare = 0.8;
-constexpr double kApart_m = 0.5;
+constexpr double kRunnerUpShare = 0.8;  // of the best score, that makes a place ambiguous
+constexpr double kApart_m = 0.5;        // of a runner-up from the best place
 constexpr double kApart_rad = 0.3;
-constexpr double kAgree_m = 0.2;
+constexpr double kAgree_m = 0.2;  // of a pose from the candidate
 constexpr double kAgree_rad = 0.1;
-constexpr double kLeastInliers = 0.8;  // share of the mapped beams
-constexpr double kLeastMapped = 0.8;   // share of all beams
-const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
+constexpr double kLeastInliers = 0.8;                // share of the mapped beams
+constexpr double kLeastMapped = 0.8;                 // share of all beams
+const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};  // of the search's best place [m, m, rad]
 
 }  // namespace
 
@@ -55,9 +55,9 @@ std::optional<Se2> WallPlaceFinder::update(const Motion& motion, const Observati
   const Eigen::Vector3d off = candidate_ ? pose_difference(*there, *candidate_)
                                          : Eigen::Vector3d::Constant(std::numbers::pi);
   const bool agrees = off.head<2>().norm() < kAgree_m && std::abs(off.z()) < kAgree_rad;
-  agreed_ = agrees ? agreed_ + 1 : 1;
+  num_consistent_ = agrees ? num_consistent_ + 1 : 1;
   candidate_ = there;
-  return agreed_ >= kAgreeing ? there : std::nullopt;
+  return num_consistent_ >= kConsistentScans ? there : std::nullopt;
 }
 
 std::optional<Se2> WallPlaceFinder::found(const Points& points, const RangeNoise& noise) const {

@@ -76,7 +76,7 @@ OdometryStream::News OdometryStream::take(const OdometrySample& sample, Skips& s
   if (!is_refused(outcome)) {
     usual_step_ = std::min(step, 2 * usual_step_);
     clock_steps_.see_fitting();
-    news.has_begun = is_first;
+    news.is_first = is_first;
   } else if (clock_steps_.see_misfit(sample.time)) {
     news.clock_set = set_clock(skips);
     count(buffer_.add(sample), skips);

@@ -17,7 +17,7 @@ class OdometryStream {
  public:
   /// What other sensors have to know of a sample.
   struct News {
-    bool has_begun{false};                ///< it is the first: from now on stamps can be judged
+    bool is_first{false};                 ///< it is the first: from now on stamps can be judged
     std::optional<Duration> clock_set{};  ///< by so much: stamps from before are worth nothing
   };
 

@@ -55,7 +55,7 @@ SensorQueue::SensorQueue(const SensorSetup& setup)
 
 void SensorQueue::add(const OdometrySample& sample) {
   const OdometryStream::News news = odometry_.add(sample, skips_);
-  if (news.has_begun) {  // what came before it could not be judged
+  if (news.is_first) {  // what came before it could not be judged
     scans_.drop_after(odometry_.lead_limit(), skips_);
     frames_.drop_after(odometry_.lead_limit(), skips_);
   }
@@ -86,7 +86,8 @@ void SensorQueue::finish() {
 bool SensorQueue::is_ready(const LidarScan& scan) const {
   if (has_finished_) return true;
   if (!odometry_.has_passed(last_beam_time(scan))) return false;
-  if (scans_.is_doubtful(scan.time) && !odometry_.has_passed(scan.time + scan_wait_)) return false;
+  if (scans_.may_be_dropped(scan.time) && !odometry_.has_passed(scan.time + scan_wait_))
+    return false;
   return frames_.has_reached(scan.time) || odometry_.has_passed(scan.time + marker_wait_);
 }
 
@@ -169,9 +170,9 @@ void SensorQueue::drive_to(Timestamp time, Observation& observation) const {
   observation.odom_from_base = odometry.sent_pose_at(time);
   if (!last_observed_ || !odometry.covers(*last_observed_)) return;
   observation.motion = odometry.motion_between(*last_observed_, time);
-  observation.odometry_doubtful = odometry.is_doubtful(*last_observed_, time);
-  if (const auto kept_back = odometry.kept_back(*last_observed_, time)) {
-    observation.motion = kept_back->then(observation.motion);
+  observation.odometry_jumped = odometry.has_jumped(*last_observed_, time);
+  if (const auto late_motion = odometry.late_motion(*last_observed_, time)) {
+    observation.motion = late_motion->then(observation.motion);
     observation.odometry_caught_up = true;
   }
 }

@@ -65,7 +65,7 @@ class StampedQueue {
   bool has_reached(Timestamp time) const { return newest_ && *newest_ >= time; }
 
   /// Whether it may turn out that what is stamped with that time is wrong.
-  bool is_doubtful(Timestamp time) const { return aside_ && time > aside_->time; }
+  bool may_be_dropped(Timestamp time) const { return aside_ && time > aside_->time; }
 
   /// The one aside comes too late once the time is past.
   void drop_aside_until(Timestamp time, Skips& skips) {

@@ -11,7 +11,7 @@
 namespace waymark {
 
 /// What the points of one cell look like.
-struct NdtSurface {
+struct NdtCell {
   Eigen::Vector2d mean{Eigen::Vector2d::Zero()};
   Eigen::Vector2d normal{
       Eigen::Vector2d::UnitX()};  ///< direction of least variance; unit, any sign
@@ -51,9 +51,9 @@ class NdtMap {
 
   /// The surface of a cell, nullptr where too few points were seen.
   /// @param point_variance_m2  of single points across a wall: what few points cannot show.
-  const NdtSurface* at(Key key, double point_variance_m2) const;
+  const NdtCell* at(Key key, double point_variance_m2) const;
 
-  const NdtSurface* at(const Eigen::Vector2d& point, double point_variance_m2) const {
+  const NdtCell* at(const Eigen::Vector2d& point, double point_variance_m2) const {
     return at(key_at(point), point_variance_m2);
   }
 
@@ -72,7 +72,7 @@ class NdtMap {
     double xx{0.0};
     double xy{0.0};
     double yy{0.0};
-    NdtSurface surface{};
+    NdtCell distribution{};
     bool is_stale{true};
   };
 

@@ -36,8 +36,8 @@ class UsualFit {
  private:
   int min_inliers_;
   double min_inlier_share_;
-  double inlier_share_{0.0};  ///< mean over scans
-  double agreeing_{0.0};      ///< share of all beams that are inliers, mean over keyframes
+  double inlier_share_{0.0};   ///< mean over scans
+  double overall_share_{0.0};  ///< share of all beams that are inliers, mean over keyframes
 };
 
 }  // namespace waymark

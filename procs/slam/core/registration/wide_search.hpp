@@ -25,9 +25,9 @@ struct WideSearch {
 /// others do.
 ///
 /// @param points     ends of beams, base frame.
-/// @param surfaces   what the scan is matched with,
+/// @param ndt        what the scan is matched with,
 /// @param occupied   and its points around the guesses.
-ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& surfaces,
+ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& ndt,
                           const Points& occupied, const WideSearch& search, const UsualFit& usual,
                           const RangeNoise& noise, const ScanMatchConfig& config);
 

@@ -20,7 +20,7 @@ struct Observation {
   /// The motion begins with one that odometry has kept back while it stood still, and has reported
   /// at once. Observations meanwhile had no motion.
   bool odometry_caught_up{false};
-  bool odometry_doubtful{false};  ///< it jumped about: what was driven is not known
+  bool odometry_jumped{false};  ///< it jumped about: what was driven is not known
   bool camera_reported{false};  ///< a frame came since the observation before, even without markers
 };
 

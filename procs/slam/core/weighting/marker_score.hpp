@@ -34,10 +34,10 @@ double marker_score(const GridMap& map, const Eigen::Vector2d& point_in_map, int
 
 /// A spot that the camera has judged: where a beam ended, or a point that stands for a marker's
 /// face.
-struct JudgedSpot {
+struct ObservedSpot {
   Eigen::Vector2d in_base{Eigen::Vector2d::Zero()};
   int marker_id{kNoMarker};
-  double trust{1.0};  ///< factor on the score
+  double weight{1.0};  ///< factor on the score
 };
 
 /// A sighting with this error along its wall counts half.
@@ -46,12 +46,12 @@ inline constexpr double kSightingSigma_m = 0.025;
 /// The ends of beams that the camera has judged, and points all over the sighted markers' faces.
 /// @param face_spacing_m  between the points of a face.
 /// @param face_margin_m  bare wall beside a marker, seen together with it.
-std::vector<JudgedSpot> judged_spots(const Observation& observation, double face_spacing_m,
-                                     double face_margin_m,
-                                     double sighting_sigma_m = kSightingSigma_m);
+std::vector<ObservedSpot> observed_spots(const Observation& observation, double face_spacing_m,
+                                         double face_margin_m,
+                                         double sighting_sigma_m = kSightingSigma_m);
 
 /// Sum over spots.
-double marker_score(const GridMap& map, std::span<const JudgedSpot> spots, const Se2& map_from_base,
-                    const MatchingRewards& rewards);
+double marker_score(const GridMap& map, std::span<const ObservedSpot> spots,
+                    const Se2& map_from_base, const MatchingRewards& rewards);
 
 }  // namespace waymark

@@ -135,7 +135,7 @@ TEST(MarkerCell, AWrongIdDoesNotOverwriteARightOne) {
   EXPECT_EQ(cell.most_supported(), 7);
 }
 
-TEST(MarkerCell, AFrequentIdGetsInAfterManyStrayOnes) {
+TEST(MarkerCell, AFrequentIdReplacesManyStrayOnes) {
   MarkerCell cell;
   for (int stray = 0; stray < 9; ++stray)
     cell.vote(stray, 1.0F);

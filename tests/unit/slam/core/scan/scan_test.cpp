@@ -170,7 +170,7 @@ TEST(Annotate, NoMarkerIsSeenOnlyWhereTheCameraLooks) {
     EXPECT_EQ(beam.sight, Sight::kUnknown);
 }
 
-TEST(Observability, ACorridorTellsNothingAlongItsAxis) {
+TEST(Observability, ABareCorridorIsDegenerateAlongItsAxis) {
   const auto beams = annotate(beams_from(Se2{20.0, 0.2, 0.1}), {}, nullptr, 0.08);
   const Observability walls = observability_of(beams, Se2{20.0, 0.2, 0.1}, 0.01);
   EXPECT_TRUE(walls.is_degenerate);
@@ -182,12 +182,12 @@ TEST(Observability, ACorridorTellsNothingAlongItsAxis) {
   EXPECT_EQ(moved.theta(), 0.2);
 }
 
-TEST(Observability, AnEndWallTellsIt) {
+TEST(Observability, AnEndWallObservesTheAxis) {
   const auto beams = annotate(beams_from(Se2{48.5, 0.0, 0.0}), {}, nullptr, 0.08);
   EXPECT_FALSE(observability_of(beams, Se2{48.5, 0.0, 0.0}, 0.01).is_degenerate);
 }
 
-TEST(Observability, GarbageShowsNoSurfaces) {
+TEST(Observability, RandomRangesHaveNoSurfaces) {
   auto beams = annotate(beams_from(Se2{20.0, 0.2, 0.1}), {}, nullptr, 0.08);
   EXPECT_GT(surface_share(beams), 0.5);
   Random random{3};
