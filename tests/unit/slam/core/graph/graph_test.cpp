@@ -37,7 +37,7 @@ MarkerMeasurement some_measurement() {
   measurement.base_from_marker = {1.7, 0.4, -1.9};
   measurement.covariance = Eigen::Vector3d{1e-4, 2e-4, 4e-4}.asDiagonal();
   measurement.base_from_camera = {0.08, 0.0, 0.0};
-  measurement.held = 0.4 * Eigen::Matrix3d::Identity();
+  measurement.jacobian_view = 0.4 * Eigen::Matrix3d::Identity();
   measurement.jacobian_standoff = {0.1, 0.9, 0.0};
   return measurement;
 }
