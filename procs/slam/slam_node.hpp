@@ -10,6 +10,7 @@
 #include "slam/correction.hpp"
 #include "slam/findings_text.hpp"
 #include "slam/map_publisher.hpp"
+#include "slam/period.hpp"
 #include "slam/slam_config.hpp"
 #include "slam/update_timer.hpp"
 
@@ -91,8 +92,8 @@ class SlamNode final : public Node {
   Timestamp newest_{};                ///< observation
   std::set<int> named_survey_ids_{};
   bool was_resumed_{false};  ///< or could not be
-  std::optional<Timestamp> next_map_{};
-  std::optional<Timestamp> next_save_{};
+  Period map_period_;
+  Period save_period_;
   UpdateTimer timer_{};
   bool failed_{false};
 };
