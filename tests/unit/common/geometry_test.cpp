@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/geometry/principal_axes.hpp"
+#include "common/geometry/rigid_fit.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/node/counters.hpp"
 #include "common/random/random.hpp"
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -123,6 +125,15 @@ TEST(Counters, CountersAreNamedWithoutTheirKind) {
   EXPECT_EQ(counters.total(CountKind::kRejection), 4);
   EXPECT_EQ(counters.get("nothing suspicious"), 4);
   EXPECT_EQ(counters.get("something else"), 0);
+}
+
+TEST(RigidFit, RecoversTheMotionOfTransformedPoints) {
+  const Se2 target_from_source{1.0, -2.0, 2.5};
+  std::vector<PointPair> pairs;
+  for (const Eigen::Vector2d& source :
+       {Eigen::Vector2d{0.0, 0.0}, Eigen::Vector2d{3.0, 1.0}, Eigen::Vector2d{-1.0, 4.0}})
+    pairs.push_back({target_from_source * source, source});
+  expect_near(rigid_fit(pairs), target_from_source);
 }
 
 TEST(PrincipalAxes, EqualThoseOfARotatedEllipse) {

@@ -5,7 +5,7 @@
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "common/random/random.hpp"
-#include "slam/core/graph/map_merge.hpp"
+#include "map/map_merge.hpp"
 #include "unit/slam/map_drives.hpp"
 
 #include <fmt/format.h>

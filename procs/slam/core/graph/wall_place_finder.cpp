@@ -3,6 +3,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "slam/core/grid/occupied_points.hpp"
+#include "slam/core/registration/unique_place.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -15,10 +16,8 @@ constexpr double kSearchEvery_m = 0.4;
 constexpr int kConsistentScans = 3;  // scans
 constexpr std::size_t kBeams = 150;
 constexpr std::size_t kLeastBeams = 60;
-constexpr double kLeastScore = 0.7;
-constexpr double kRunnerUpShare = 0.8;  // of the best score, that makes a place ambiguous
-constexpr double kApart_m = 0.5;        // of a runner-up from the best place
-constexpr double kApart_rad = 0.3;
+constexpr UniquePlaceLimits kUnique{
+    .min_score = 0.7, .runner_up_share = 0.8, .apart_m = 0.5, .apart_rad = 0.3};
 constexpr double kAgree_m = 0.2;  // of a pose from the candidate
 constexpr double kAgree_rad = 0.1;
 constexpr double kLeastInliers = 0.8;                // share of the mapped beams
@@ -61,12 +60,8 @@ std::optional<Se2> WallPlaceFinder::update(const Motion& motion, const Observati
 }
 
 std::optional<Se2> WallPlaceFinder::found(const Points& points, const RangeNoise& noise) const {
-  const auto best = field_->best(points, middle_, window_, kLeastScore);
+  const auto best = unique_place(*field_, points, middle_, window_, kUnique);
   if (!best) return std::nullopt;
-  const auto runner_up =
-      field_->best_apart_from(best->submap_from_base, kApart_m, kApart_rad, points, middle_,
-                              window_, kRunnerUpShare * best->score);
-  if (runner_up) return std::nullopt;
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
   const ScanMatch match =
       match_scan(points, map_->walls, best->submap_from_base, near, noise, scan_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/graph/wall_alignment.hpp"
+#include "map/wall_alignment.hpp"
 
 #include <gtest/gtest.h>
 
