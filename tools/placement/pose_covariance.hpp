@@ -33,8 +33,6 @@ class PoseCovariance {
 
   Eigen::Matrix3d of_pose() const { return p_.block<3, 3>(kPoseAt, kPoseAt); }
 
-  Calibration calibration_variances() const { return p_.diagonal().head<kCalibrationSize>(); }
-
   /// pose = jacobian_pose * pose + jacobian_calibration * calibration + noise.
   void move(const Eigen::Matrix3d& jacobian_pose,
             const Eigen::Matrix<double, 3, kCalibrationSize>& jacobian_calibration,
