@@ -10,10 +10,10 @@
 namespace waymark {
 namespace {
 
-// Off by more than that, odometry that stood still was stuck.
+// Motion of the estimate while odometry stands still, by which it is stuck.
 constexpr double kMoved_m = 0.03;
 constexpr double kMoved_rad = 0.05;
-constexpr double kOtherNoise = 2.0;        // ratio of variances; beyond, the past is weighed anew
+constexpr double kOtherNoise = 2.0;  // ratio of variances beyond which the whole graph is re-solved
 constexpr std::size_t kWeighedEvery = 10;  // keyframes
 
 double along_m2_per_m(const OdometryNoise& noise) {
@@ -26,9 +26,8 @@ bool is_other(double a, double b) {
 
 }  // namespace
 
-/// Odometry that was stuck reports at once what was driven meanwhile: from where the robot was when
-/// it got stuck. Keyframes that were made in between, because markers or walls said that the robot
-/// moves, hang on those alone then.
+/// Late motion of odometry that was stuck begins at the keyframe where it got stuck. Keyframes
+/// since then, which markers or walls have caused, lose their odometry factors.
 void WaymarkEstimator::follow_odometry(const Observation& observation) {
   unmeasured_motion_.follow(observation);
   if (observation.odometry_caught_up) ++findings_.odometry_caught_up;
@@ -72,7 +71,7 @@ bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
          std::abs(motion_.start_from_end.theta()) >= config_.keyframe_turn_rad;
 }
 
-/// As far as from keyframe to keyframe, while odometry says nothing.
+/// The estimate has moved as far as from keyframe to keyframe while odometry is silent.
 bool WaymarkEstimator::has_moved_silently(const Se2& map_from_base) const {
   if (!unmeasured_motion_.is_silent()) return false;
   const Eigen::Vector3d moved = pose_difference(map_from_base, graph_.state().keyframes.back());
@@ -99,11 +98,11 @@ void WaymarkEstimator::add_odometry_factor(std::size_t keyframe, bool is_observe
   odometry.motion = motion_;
   odometry.unmeasured_m = unmeasured_motion_.take_unmeasured_m();
   graph_.add(odometry);
-  // From where the robot got stuck long ago.
+  // The keyframe at which odometry got stuck has left the window.
   if (!graph_.is_active({VariableKind::kKeyframe, moved_from_})) step_everything({});
 }
 
-/// Keyframes of a robot that stands are few: those after kMaxStanding are not made.
+/// Detects that odometry is stuck, and limits the number of keyframes of a standing robot.
 void WaymarkEstimator::compare_with_odometry() {
   if (!standstill_) return;
   ++keyframes_standing_;
@@ -116,7 +115,7 @@ void WaymarkEstimator::compare_with_odometry() {
   standstill_->moved_at_s = clock_s_;
 }
 
-/// The way that was driven while odometry stood still is drawn evenly into the final trajectory.
+/// Distributes late motion evenly over the scans of the standstill, for the final trajectory.
 void WaymarkEstimator::spread_late_motion(const Observation& observation) {
   const double whole_s = to_seconds(observation.time - standstill_->since);
   const Motion& before = standstill_->motion;
@@ -129,7 +128,7 @@ void WaymarkEstimator::spread_late_motion(const Observation& observation) {
   }
 }
 
-/// What the scan says about the motion since the keyframe before, against what odometry says.
+/// Learns from the innovation of a scan: the motion since the keyframe before, minus odometry's.
 void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
   if (!config_.learn_noise || motion_.guessed_s > 0.0 || unmeasured_motion_.is_standing() ||
       unmeasured_motion_.is_silent()) {
@@ -143,7 +142,7 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
   off.head<2>() = (to_base * off.head<2>()).eval();
   const Eigen::Matrix3d information =
       in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
-  // Two scans err, this one and the one before.
+  // The noise of two scans: this one and the one before.
   noise_learner_.observe_turn({off.z(),
                                turn_variance(described, motion_.distance_m, motion_.turn_rad),
                                2.0 / information(2, 2), motion_.distance_m});
@@ -156,25 +155,26 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
   graph_.set_odometry_scale(noise_learner_.scale());
 }
 
-/// The same of a known marker, where nothing else showed the way since the last one.
+/// Learns from the innovation of a known marker, if nothing else has observed the motion since the
+/// last one.
 void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
                                    const MarkerMeasurement& measurement) {
   if (!config_.learn_noise || unobserved_m_ <= 0.0 || unmeasured_motion_.is_silent()) return;
-  const double by_odometry = along_m2_per_m(graph_.noise().odometry) * unobserved_m_;
+  const double configured_m2 = along_m2_per_m(graph_.noise().odometry) * unobserved_m_;
   const double blind_m = std::max(0.0, unobserved_m_ - motion_.distance_m);
-  const double believed = along_m2_per_m(graph_.odometry_noise()) * unobserved_m_ +
-                          graph_.noise().scale.slip_m2_per_m * blind_m;
-  // A marker that is further ahead than expected: the robot has driven less.
+  const double learnt_m2 = along_m2_per_m(graph_.odometry_noise()) * unobserved_m_ +
+                           graph_.noise().scale.slip_m2_per_m * blind_m;
+  // If the marker is further ahead than expected, the robot has driven less.
   const OdometryInnovation along{
-      -innovation.residual.x(), by_odometry,
-      std::max(innovation.covariance(0, 0) - believed, measurement.covariance(0, 0)),
+      -innovation.residual.x(), configured_m2,
+      std::max(innovation.covariance(0, 0) - learnt_m2, measurement.covariance(0, 0)),
       unobserved_m_};
   noise_learner_.observe_slip(along);
   noise_learner_.observe_along(along);
   graph_.set_odometry_scale(noise_learner_.scale());
 }
 
-/// What was driven before odometry was known to be that bad is uncertain alike.
+/// Solves the whole graph again when the learnt noise has changed, so that the past has it, too.
 void WaymarkEstimator::weigh_past_anew() {
   const OdometryNoise noise = graph_.odometry_noise();
   const bool is_other_noise =

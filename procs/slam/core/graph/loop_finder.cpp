@@ -138,7 +138,7 @@ Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& s
   Eigen::Matrix3d since = last->off * last->off.transpose() +
                           kLoopCovarianceMargin * search.covariance_since(last->keyframe);
   since.diagonal() += kFoundSigmas.cwiseAbs2();
-  return smaller(since, covariance);
+  return smaller_covariance(since, covariance);
 }
 
 /// A degenerate match does not bound the drift along its weak direction.

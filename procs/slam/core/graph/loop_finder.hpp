@@ -53,7 +53,8 @@ struct LoopSearch {
 inline constexpr double kLoopCovarianceMargin = 4.0;
 
 /// The smaller one of two bounds, by determinant.
-inline const Eigen::Matrix3d& smaller(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+inline const Eigen::Matrix3d& smaller_covariance(const Eigen::Matrix3d& a,
+                                                 const Eigen::Matrix3d& b) {
   return a.determinant() < b.determinant() ? a : b;
 }
 
