@@ -5,7 +5,7 @@
 // usage: length_curve [SEEDS [CAMERA]]
 //   SEEDS   default: 10
 //   CAMERA  drawn: focal length and mounting are off as much as usual calibrations; exact: they are
-//           as told, and the filter knows that they are. default: drawn
+//           as configured, with zero prior sigmas. default: drawn
 // Columns: length [m], RMS over the seeds of: error of the length of the way [m], that per metre,
 // error along the way [m], error across [m]. The last line is the exponent b of length^b that fits
 // the second column best.

@@ -89,8 +89,8 @@ WallLine best_tilt(double offset_px, const Band& band) {
   return best;
 }
 
-/// Innermost line that covers enough rows; then, as a tilted line may touch the wall too early, the
-/// fullest one just behind it.
+/// Innermost line that covers enough rows; then, since a tilted line may touch the wall too early,
+/// the line with the most rows within `search_px` behind it.
 std::optional<WallLine> innermost_wall(const Band& band, double from_px, double to_px,
                                        double search_px) {
   for (double offset_px = from_px; offset_px <= to_px; offset_px += kOffsetStep_px) {

@@ -4,7 +4,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kConsecutive = 20;
+constexpr int kConsecutive = 20;                     // stamps that show that the clock was set
 constexpr Duration kNear = std::chrono::seconds{2};  // between stamps that follow each other
 
 }  // namespace

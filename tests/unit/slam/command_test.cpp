@@ -230,7 +230,7 @@ TEST_F(CommandedSlam, ItsOwnMapCanBeSwitchedToLocalisation) {
   EXPECT_LT(test::worst_error_m(drive, *drive_, test::map_from_world(*drive_)), 0.15);
 }
 
-// Carried 3 m back by hand, and told so; the odometry knows nothing of it.
+// Carried 3 m back by hand, and set there by a command; odometry does not measure it.
 TEST_F(CommandedSlam, AnExtendedMapHasANewId) {
   const test::Drive drive = drive_with(mapping(), messages_of(*drive_, 0.0, 18.0),
                                        {{13.0, mode_command(command_t::MODE_LOCALISE)},

@@ -7,8 +7,8 @@
 namespace waymark {
 namespace {
 
-constexpr int kMinPoints = 4;         // of a cell that says something
-constexpr double kPriorPoints = 6.0;  // that the pooled point noise counts as in a cell
+constexpr int kMinPoints = 4;         // of a cell that has a distribution
+constexpr double kPriorPoints = 6.0;  // weight of the prior on a cell's variance, in points
 constexpr double kLineRatio = 0.1;    // of a line's variances, across to along
 
 }  // namespace
@@ -77,7 +77,7 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   fitted.across_m2 =
       (cell.count * across_m2 + kPriorPoints * point_variance_m2) / (cell.count + kPriorPoints);
   fitted.along_m2 = half_trace + radius;
-  // A wall stays a line for a LiDAR that scatters: what counts is the shape behind the noise.
+  // Without the range noise, so that a wall stays a line for a noisy LiDAR.
   fitted.is_line =
       fitted.across_m2 - point_variance_m2 < kLineRatio * (fitted.along_m2 - point_variance_m2);
   fitted.count = static_cast<int>(cell.count);

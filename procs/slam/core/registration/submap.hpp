@@ -30,7 +30,7 @@ class Submap {
     add(points_in_base, submap_from_base);
   }
 
-  /// A scan that hangs on the newest keyframe.
+  /// A scan between keyframes; it counts for the newest keyframe.
   void add(const Points& points_in_base, const Se2& submap_from_base) {
     const auto keyframe = static_cast<int>(last_keyframe());
     for (const Eigen::Vector2d& point : points_in_base) {
@@ -60,13 +60,13 @@ class Submap {
   /// Nothing is added any more.
   void finish() { occupied_.clear(); }
 
-  /// Of the keyframes, from the first one.
+  /// Largest distance of a keyframe from the first one.
   double reach_m() const { return reach_m_; }
 
   /// Driven from the first keyframe to the last.
   double length_m() const { return length_m_; }
 
-  /// As it was inserted.
+  /// The pose at which it was inserted.
   const Se2& submap_from_keyframe(std::size_t keyframe) const {
     return poses_[keyframe - first_keyframe_];
   }

@@ -60,7 +60,7 @@ class Corridor {
     }
   }
 
-  /// The robot is at `truth`, and believes to be at `estimated`.
+  /// The robot is at `truth`; its estimate is `estimated`.
   std::vector<LoopFinder::Found> look_around(const Se2& truth, const Se2& estimated) {
     LoopSearch search;
     search.map_from_base = estimated;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Odometry that is not believed.
+// Steps of the odometry that are rejected.
 #include "slam/core/motion/odometry_check.hpp"
 
 #include <gtest/gtest.h>

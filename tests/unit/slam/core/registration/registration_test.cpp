@@ -103,7 +103,7 @@ TEST(ScanMatch, ABareCorridorHasNoInformationAlongItsAxis) {
   EXPECT_GT(std::abs(weak.x()), 0.999);
   const Eigen::Matrix3d& information = match.observed.information;
   EXPECT_LT((information * weak).norm(), 1e-9 * information.norm());
-  EXPECT_NEAR(match.map_from_base.x(), guess.x(), 0.01);  // stays where it was believed to be
+  EXPECT_NEAR(match.map_from_base.x(), guess.x(), 0.01);  // stays at the guess
   EXPECT_NEAR(match.map_from_base.y(), truth.y(), 0.005);
   EXPECT_NEAR(match.map_from_base.theta(), truth.theta(), 0.002);
 }
