@@ -167,14 +167,18 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
                       loop->match.mapped_share < config_.surprise_share)) {
     return {};
   }
-  if (!is_surprise && off.head<2>().norm() < kDirectReach_m &&
-      std::abs(off.z()) < kDirectReach_rad) {
-    candidate_.reset();
-    note_confirmed(found, off);
-    return {found};
-  }
-  const Candidate candidate{found, map_from_base * search.map_from_base.inverse(),
-                            search.map_from_base};
+  const bool is_close =
+      off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad;
+  if (is_surprise || !is_close) return confirmed_pair(found, map_from_base, search);
+  candidate_.reset();
+  note_confirmed(found, off);
+  return {found};
+}
+
+/// The candidate and this match, if they agree; else this match is the next candidate.
+std::vector<LoopFinder::Found> LoopFinder::confirmed_pair(const Found& found,
+                                                          const Se2& map_from_base,
+                                                          const LoopSearch& search) {
   const auto agrees = [&](const Candidate& earlier) {
     // Both corrections are compared at the present pose.
     const Eigen::Vector3d apart =
@@ -183,16 +187,15 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
                kAgreeWithin_m &&
            apart.head<2>().norm() < kAgree_m && std::abs(apart.z()) < kAgree_rad;
   };
-  std::vector<Found> both;
   if (candidate_ && agrees(*candidate_)) {
-    both = {candidate_->found, found};
-    note_confirmed(found, off);
+    const Found first = candidate_->found;
     candidate_.reset();
-  } else {
-    candidate_ = candidate;
-    candidate_age_m_ = 0.0;
+    note_confirmed(found, pose_difference(map_from_base, search.map_from_base));
+    return {first, found};
   }
-  return both;
+  candidate_ = {found, map_from_base * search.map_from_base.inverse(), search.map_from_base};
+  candidate_age_m_ = 0.0;
+  return {};
 }
 
 }  // namespace waymark

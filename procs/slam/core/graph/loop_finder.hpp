@@ -102,6 +102,8 @@ class LoopFinder {
     Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus estimated pose, then
   };
 
+  std::vector<Found> confirmed_pair(const Found& found, const Se2& map_from_base,
+                                    const LoopSearch& search);
   void note_confirmed(const Found& found, const Eigen::Vector3d& off);
   Eigen::Matrix3d covariance_in(const Submap& old, const LoopSearch& search) const;
   const Submap* nearest_submap(const LoopSearch& search, const std::deque<Submap>& submaps,

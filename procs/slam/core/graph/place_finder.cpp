@@ -154,6 +154,13 @@ std::optional<int> PlaceFinder::landmark_at(int id, const Eigen::Vector2d& place
 void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observation,
                                 std::span<const MarkerMeasurement> measurements,
                                 const CameraView& view) const {
+  const std::vector<int> seen = weigh_sightings(place, measurements);
+  if (observation.camera_reported) weigh_misses(place, observation, seen, view);
+}
+
+/// @return the map's landmarks that were sighted, by index.
+std::vector<int> PlaceFinder::weigh_sightings(
+    Hypothesis& place, std::span<const MarkerMeasurement> measurements) const {
   std::vector<int> seen;
   for (const MarkerMeasurement& measurement : measurements) {
     const Eigen::Vector2d there =
@@ -175,7 +182,11 @@ void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observatio
         });
     if (contradicts) place.add(Clue::kUnexpectedId, measurement.id, kUnexpected);
   }
-  if (!observation.camera_reported) return;
+  return seen;
+}
+
+void PlaceFinder::weigh_misses(Hypothesis& place, const Observation& observation,
+                               std::span<const int> seen, const CameraView& view) const {
   const Se2 base_from_map = place.map_from_base.inverse();
   for (std::size_t i = 0; i < map_->landmarks.size(); ++i) {
     const Landmark& landmark = map_->landmarks[i];

@@ -64,6 +64,10 @@ class PlaceFinder {
   void propose(std::span<const MarkerMeasurement> measurements);
   void weigh_markers(Hypothesis& place, const Observation& observation,
                      std::span<const MarkerMeasurement> measurements, const CameraView& view) const;
+  std::vector<int> weigh_sightings(Hypothesis& place,
+                                   std::span<const MarkerMeasurement> measurements) const;
+  void weigh_misses(Hypothesis& place, const Observation& observation, std::span<const int> seen,
+                    const CameraView& view) const;
   void weigh_walls(Hypothesis& place, const Observation& observation,
                    const RangeNoise& noise) const;
   bool is_occupied(const Eigen::Vector2d& point) const;
