@@ -25,7 +25,7 @@ class DetectorNode final : public Node {
   void finish() override {}
 
  private:
-  /// Answers every frame, an unreadable one with an empty list, so that nobody waits for it.
+  /// Answers every frame, an unreadable one with an empty list, so that slam does not wait for it.
   void handle(const image_t& image);
   void leave_out_what_does_not_fit(std::vector<MarkerDetection>& markers);
   void count(const MarkerDetections& detections);

@@ -97,7 +97,7 @@ std::optional<reply_t> CommandDesk::take(const command_t& message, Timestamp now
   } catch (const Refusal& refusal) {
     answers_.push_back(reply_to(message, now, reply_t::STATE_REFUSED, refusal.what()));
   }
-  if (answers_.size() > kRemembered) answers_.pop_front();
+  if (answers_.size() > kKeptAnswers) answers_.pop_front();
   return answers_.back();
 }
 

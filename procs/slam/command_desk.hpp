@@ -53,7 +53,7 @@ class CommandDesk {
   std::optional<reply_t> take(const command_t& message, Timestamp now, const Act& act);
 
  private:
-  static constexpr std::size_t kRemembered = 32;  ///< answers
+  static constexpr std::size_t kKeptAnswers = 32;  ///< answers
 
   std::optional<reply_t> refused_as_flood(const command_t& message, Timestamp now);
 

@@ -99,7 +99,7 @@ void GmappingConfig::describe(Fields& fields) {
                "maxUrange: longer beams are not matched, and clear the map up to here; 0 = "
                "max_range_m");
   fields.field("minimum_score", minimum_score, kNotNegative,
-               "minimumScore: a match must score more, else odometry is believed");
+               "minimumScore: a match must score more, else the pose is odometry's");
   fields.field("resample_threshold", resample_threshold, kFraction,
                "resampleThreshold: share of effective particles below which to resample");
   fields.field("likelihood_gain", likelihood_gain, kPositive,
@@ -107,7 +107,7 @@ void GmappingConfig::describe(Fields& fields) {
   fields.field("occupied_threshold", occupied_threshold, kFraction,
                "occ_thresh: share of hits above which a cell is published as occupied");
   fields.field("watch_turns", watch_turns,
-               "where scans contradict odometry's turn, believe them; the released code: false");
+               "where scans contradict odometry's turn, use theirs; the released code: false");
   fields.section("motion", motion);
   fields.section("gate", gate);
   fields.section("matcher", matcher);
@@ -154,7 +154,8 @@ void OdometryNoise::describe(Fields& fields) {
 }
 
 void MarkerMeasurementConfig::describe(Fields& fields) {
-  fields.field("reach_m", reach_m, kPositive, "wall around a marker that is believed straight");
+  fields.field("reach_m", reach_m, kPositive,
+               "length of wall around a marker that is taken for straight");
   fields.field("perspective_sigma", perspective_sigma, kPositive,
                "of the focal length from one view of a marker; views err alike");
   fields.field("perspective_max_sigma", perspective_max_sigma, kPositive,
@@ -163,7 +164,8 @@ void MarkerMeasurementConfig::describe(Fields& fields) {
                "on the detector's covariances: neighbouring frames err alike");
   fields.field(
       "gate", gate, kPositive,
-      "chi^2 (3 degrees of freedom; 16.3 = 99.9 %) between camera and wall that is still believed");
+      "chi^2 (2 degrees of freedom; 13.8 = 99.9 %) between camera and wall beyond which a sighting "
+      "is rejected");
 }
 
 void ScanMatchConfig::describe(Fields& fields) {
@@ -175,7 +177,7 @@ void ScanMatchConfig::describe(Fields& fields) {
   fields.field("roughness_m", roughness_m, kNotNegative, "of walls, beside the noise of ranges");
   fields.field(
       "weak_share", weak_share, kFraction,
-      "directions that lasting surfaces show less than this share of the strongest are unobserved");
+      "share of the strongest direction's information below which a direction is unobserved");
   fields.field("min_inliers", min_inliers, {1, 100000}, "beams; a scan with fewer is not used");
 }
 
@@ -184,7 +186,7 @@ void LoopConfig::describe(Fields& fields) {
   fields.field("every_m", every_m, kPositive, "driven between two attempts");
   fields.field("reach_m", reach_m, kPositive, "how far from its keyframes a submap is tried");
   fields.field("max_search_m", max_search_m, kPositive, "half of the widest search");
-  fields.field("min_inlier_share", min_inlier_share, kFraction, "of the beams on mapped surfaces");
+  fields.field("min_inlier_share", min_inlier_share, kFraction, "of the beams on mapped walls");
   fields.field("min_mapped_share", min_mapped_share, kFraction, "of all beams");
   fields.field("min_score", min_score, kFraction, "of the wide search");
   fields.field("runner_up_share", runner_up_share, kFraction,
@@ -214,9 +216,9 @@ void WaymarkConfig::describe(Fields& fields) {
   fields.field("calibrate", calibrate,
                "whether systematic errors of odometry and camera are learnt; else they are 0");
   fields.field("marker_gate", marker_gate, kPositive,
-               "chi^2 (3 degrees of freedom) of a marker's innovation that is still believed");
+               "chi^2 (3 degrees of freedom) of a marker's innovation that still associates it");
   fields.field("marker_near_m", marker_near_m, kNotNegative,
-               "a known marker that is off by less is believed, but counts less");
+               "a known marker that is off by less is associated, too, with a smaller weight");
   fields.field("same_marker_within_m", same_marker_within_m, kPositive,
                "no second marker of one id nearer than this");
   fields.field("lost_inlier_share", lost_inlier_share, kFraction,

@@ -94,7 +94,7 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
   loaded_map_ = std::move(map);
   estimator_ = make_estimator(config_, loaded_map_, survey_);
   placed_.reset();
-  next_map_.reset();
+  map_period_.reset();
   if (last_estimate_) {
     // Nobody shall draw the new map over the old one.
     publish_tiles(map_publisher_.complete(estimator_->map(), *last_estimate_));

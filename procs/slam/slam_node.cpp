@@ -62,7 +62,9 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
       survey_{load_survey(config_)},
       map_id_{loaded_map_ && config_.slam.mode == MapMode::kLocalise ? loaded_map_->map_id : 0},
       frame_map_id_{loaded_map_ ? loaded_map_->map_id : 0},
-      estimator_{make_estimator(config_, loaded_map_, survey_)} {
+      estimator_{make_estimator(config_, loaded_map_, survey_)},
+      map_period_{config.slam.map_period_s, Period::First::kAtOnce},
+      save_period_{config.slam.save_map_every_s, Period::First::kAfterAPeriod} {
   if (!config.slam.state_folder.empty()) make_writable_folder(config.slam.state_folder);
   inbox.on<planar_lidar_t>(channels::kLidar, [this](const auto& m) { take(to_scan(m)); });
   inbox.on<lidar_t>(channels::kMbotLidar, [this](const auto& m) { take(to_scan(m)); });
@@ -97,7 +99,7 @@ void SlamNode::check(const Config& config) {
 void SlamNode::finish() {
   queue_.finish();
   process_ready_scans();
-  judge_input();
+  check_input();
   if (!config_.save_map.empty() && !save_map()) failed_ = true;
   keep_last_pose();
   if (!last_estimate_) return;
@@ -152,7 +154,7 @@ bool SlamNode::save_map() {
 }
 
 /// An input that nothing can be made of shall not look like success.
-void SlamNode::judge_input() {
+void SlamNode::check_input() {
   const std::int64_t scans = counters_.get(received_on(channels::kLidar.name));
   const std::int64_t odometry = counters_.get(received_on(channels::kOdometry.name));
   const std::int64_t unplaced = counters_.get(kUnplaced);
@@ -220,7 +222,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
   last_estimate_ = time;
   placed_ = estimate;
-  if (estimate.odometry_refused) counters_.add("steps of the odometry that were not believed");
+  if (estimate.odometry_refused) counters_.add("steps of the odometry that were rejected");
   if (estimate.calibration_widened) counters_.add("calibration found worse than configured");
   if (ready.scan && estimate.ranges_wrong) counters_.add("scans with wrong ranges");
   if (ready.scan)
@@ -234,10 +236,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
 }
 
 void SlamNode::publish_map_when_due(Timestamp time) {
-  const Duration period = duration_from_seconds(config_.slam.map_period_s);
-  // Further away than a period it is of a clock that was set back.
-  if (next_map_ && time < *next_map_ && time >= *next_map_ - period) return;
-  next_map_ = time + period;
+  if (!map_period_.is_due(time)) return;
   publish_tiles(map_publisher_.changes(estimator_->map(), time));
   publish_markers(time);
   publish_grid(time);
@@ -248,11 +247,7 @@ void SlamNode::publish_map_when_due(Timestamp time) {
 
 /// What cannot be saved now may be later: only the last one counts as failure.
 void SlamNode::save_map_when_due(Timestamp time) {
-  if (config_.slam.save_map_every_s <= 0.0) return;
-  const Duration period = duration_from_seconds(config_.slam.save_map_every_s);
-  if (!next_save_ || time < *next_save_ - period) next_save_ = time + period;
-  if (time < *next_save_) return;
-  next_save_ = time + period;
+  if (config_.slam.save_map_every_s <= 0.0 || !save_period_.is_due(time)) return;
   if (!save_map()) counters_.add("map not saved", CountKind::kLoss);
 }
 

@@ -10,6 +10,7 @@
 #include "slam/correction.hpp"
 #include "slam/findings_text.hpp"
 #include "slam/map_publisher.hpp"
+#include "slam/period.hpp"
 #include "slam/slam_config.hpp"
 #include "slam/update_timer.hpp"
 
@@ -62,7 +63,7 @@ class SlamNode final : public Node {
   void resume_last_pose(const Observation& first);
   void keep_last_pose();
   void take(LidarScan scan);
-  void judge_input();
+  void check_input();
   std::optional<std::vector<Finding>> findings() const;
   void process_ready_scans();
   void process(const SensorQueue::Ready& ready);
@@ -95,8 +96,8 @@ class SlamNode final : public Node {
   Timestamp newest_{};                ///< observation
   std::set<int> named_survey_ids_{};
   bool was_resumed_{false};  ///< or could not be
-  std::optional<Timestamp> next_map_{};
-  std::optional<Timestamp> next_save_{};
+  Period map_period_;
+  Period save_period_;
   UpdateTimer timer_{};
   bool failed_{false};
 };

@@ -166,7 +166,7 @@ void ViewerNode::subscribe(Inbox& inbox) {
   });
 }
 
-/// Slam was started again, or told to begin anew.
+/// Slam was restarted, or reset by a command.
 bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
   if (map_id == map_id_) return true;
   if (map_id_ && time < map_began_) return false;

@@ -132,10 +132,10 @@ class Bench {
 
     const cv::Mat picture =
         camera_.expose(renderer_.render(world_from_base * camera.base_from_camera()), frames_++);
-    judge(plate.id, truth, picture, raw);
+    evaluate(plate.id, truth, picture, raw);
     const CameraFrame frame = camera_.compress(picture, Timestamp{});
     smallest_quality_ = std::min(smallest_quality_, frame.jpeg_quality);
-    judge_compressed(plate.id, truth, frame, compressed);
+    evaluate_compressed(plate.id, truth, frame, compressed);
   }
 
   int smallest_quality() const { return smallest_quality_; }
@@ -167,18 +167,18 @@ class Bench {
     return true;
   }
 
-  void judge_compressed(int id, const Eigen::Isometry3d& truth, const CameraFrame& frame,
-                        Tally& tally) {
+  void evaluate_compressed(int id, const Eigen::Isometry3d& truth, const CameraFrame& frame,
+                           Tally& tally) {
     const double start_ms = cpu_ms();
     const DecodedFrame decoded =
         decode_frame({PixelFormat::kMjpeg, frame.width_px, frame.height_px, 0, frame.jpeg},
                      {frame.width_px, frame.height_px});
     const double decoding_ms = cpu_ms() - start_ms;
-    judge(id, truth, decoded.gray, tally);
+    evaluate(id, truth, decoded.gray, tally);
     tally.milliseconds.back() += decoding_ms;
   }
 
-  void judge(int id, const Eigen::Isometry3d& truth, const cv::Mat& gray, Tally& tally) {
+  void evaluate(int id, const Eigen::Isometry3d& truth, const cv::Mat& gray, Tally& tally) {
     const double start_ms = cpu_ms();
     const auto detections = detector_.detect(gray);
     tally.milliseconds.push_back(cpu_ms() - start_ms);

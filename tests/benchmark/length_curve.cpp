@@ -5,7 +5,7 @@
 // usage: length_curve [SEEDS [CAMERA]]
 //   SEEDS   default: 10
 //   CAMERA  drawn: focal length and mounting are off as much as usual calibrations; exact: they are
-//           as told, and the filter knows that they are. default: drawn
+//           as configured, with zero prior sigmas. default: drawn
 // Columns: length [m], RMS over the seeds of: error of the length of the way [m], that per metre,
 // error along the way [m], error across [m]. The last line is the exponent b of length^b that fits
 // the second column best.
@@ -38,10 +38,10 @@ test::SyntheticCorridor corridor_of(double length_m, bool is_exact, std::uint64_
   corridor.seed = seed;
   corridor.scale_error = seed % 2 == 0 ? -0.01 : 0.01;
   Random random{seed};
-  const Eigen::Vector3d believed = SightingSigmas{}.learnt;
+  const Eigen::Vector3d estimated = SightingSigmas{}.learnt;
   if (!is_exact) {
-    corridor.camera_focal_error = random.normal(0.0, believed[SightingSigmas::kFocal]);
-    corridor.camera_yaw_error_rad = random.normal(0.0, believed[SightingSigmas::kYaw]);
+    corridor.camera_focal_error = random.normal(0.0, estimated[SightingSigmas::kFocal]);
+    corridor.camera_yaw_error_rad = random.normal(0.0, estimated[SightingSigmas::kYaw]);
   }
   corridor.markers = test::opposite_markers(corridor);
   return corridor;

@@ -85,7 +85,7 @@ TEST_F(BusTest, TooLargeToSendIsAnErrorOfTheSender) {
 }
 
 // research/lcm.md A11.
-TEST_F(BusTest, CorruptDatagramsAreSurvived) {
+TEST_F(BusTest, CorruptDatagramsAreCountedAndTheNextMessageIsReceived) {
   const auto good = pose(5).payload;
   auto bad_magic = lcm_datagram("ODOMETRY", good);
   bad_magic[0] = 0;
@@ -120,7 +120,7 @@ TEST_F(BusTest, ForgedFragmentOffsetsAreRefused) {
   EXPECT_EQ(counted(kMalformed), 200);
 }
 
-TEST(BusSetup, FragmentedMessagesAreTakenWhereLargeOnesAreAllowed) {
+TEST(BusSetup, FragmentedMessagesAreReceivedWhereLargeOnesAreAllowed) {
   const PrivateNetwork network;
   Bus bus{network.url(), {{"CAMERA"}}, LargeMessages::kAccepted};
   std::vector<std::uint8_t> payload(80000);
@@ -146,7 +146,7 @@ TEST_F(BusTest, LargeMessagesOfOthersAreRefused) {
   EXPECT_EQ(counted(kMalformed), 2);
 }
 
-TEST_F(BusTest, AFloodStaysBounded) {
+TEST_F(BusTest, QueuesStayBoundedInAFlood) {
   Message large = pose(1);
   large.payload.resize(60000);
   const double before_mb = peak_memory_mb();
@@ -170,7 +170,7 @@ Bus one_publisher_per_channel(const PrivateNetwork& network) {
 }
 
 /// Two publishers of the same channel, in turn.
-TEST(BusPublishers, OfTwoOnAChannelTheFirstOneIsHeard) {
+TEST(BusPublishers, OfTwoPublishersOnAChannelTheFirstIsAccepted) {
   const PrivateNetwork network;
   Bus bus = one_publisher_per_channel(network);
   Bus driver{network.url(), {}};
@@ -187,7 +187,7 @@ TEST(BusPublishers, OfTwoOnAChannelTheFirstOneIsHeard) {
   EXPECT_EQ(counters.get(kSomebodyElse), 50);
 }
 
-TEST(BusPublishers, EverybodyMayCommand) {
+TEST(BusPublishers, CommandsAreAcceptedFromAnyPublisher) {
   const PrivateNetwork network;
   Bus bus = one_publisher_per_channel(network);
   Bus first{network.url(), {}};
@@ -200,7 +200,7 @@ TEST(BusPublishers, EverybodyMayCommand) {
 }
 
 // In liblcm 1.3.1 all groups of a port hear each other.
-TEST(BusSetup, OtherGroupsOnTheSamePortAreNotHeard) {
+TEST(BusSetup, OtherMulticastGroupsOnTheSamePortAreIgnored) {
   const PrivateNetwork network;
   std::string elsewhere = network.url();
   elsewhere.replace(elsewhere.find("239.255.76.67"), 13, "239.255.76.99");
@@ -215,7 +215,7 @@ ChannelNames named(const std::vector<std::string>& settings) {
   return config.channels;
 }
 
-TEST(BusNames, OfTheNetworkStayOutOfTheMessages) {
+TEST(BusNames, MappedChannelNamesDoNotAppearInMessages) {
   const PrivateNetwork network;
   Bus mapped{network.url(),
              {{"ODOMETRY"}},
@@ -229,7 +229,7 @@ TEST(BusNames, OfTheNetworkStayOutOfTheMessages) {
   EXPECT_EQ(mapped.receive(milliseconds{1000}), pose(1));
 }
 
-TEST(BusNames, ThatAreSharedAreToldApartByType) {
+TEST(BusNames, ChannelsOfOneNameAreDistinguishedByType) {
   const PrivateNetwork network;
   const ChannelNames names = named({"channels.slam_grid=SLAM_MAP"});
   Bus bus{network.url(), {{"SLAM_GRID"}, {"SLAM_MAP"}}, LargeMessages::kRefused, names};
@@ -248,7 +248,7 @@ TEST(BusNames, ThatAreSharedAreToldApartByType) {
   EXPECT_EQ(second->channel, "SLAM_MAP");
 }
 
-TEST(BusNames, ThereIsNoSendingOnAChannelWithoutOne) {
+TEST(BusNames, AChannelWithoutANameIsNotPublished) {
   const PrivateNetwork network;
   Bus bus{network.url(), {}};
   EXPECT_THROW(bus.publish(encode(channels::kMbotSlamStatus, slam_status_t{})), std::logic_error);
@@ -266,7 +266,7 @@ TEST(BusSetup, TheCommandLineWinsOverTheEnvironment) {
   EXPECT_EQ(lcm_url_or_default(""), "udpm://239.255.76.67:7667?ttl=0");
 }
 
-TEST(SimulatorLockTest, WhereTheSystemRefusesItNobodyRunsWithoutIt) {
+TEST(SimulatorLockTest, WithoutTheLockNoSimulatorRuns) {
   rlimit files{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &files), 0);
   const rlimit none{0, files.rlim_max};

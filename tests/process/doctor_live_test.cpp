@@ -50,7 +50,7 @@ TEST(DoctorLive, AMirroredLidarIsNamedWhileTheRobotRuns) {
   EXPECT_EQ(mirrored->verdict, Verdict::kFail) << to_text(diagnosis.checks);
 }
 
-TEST(DoctorLive, ASilentNetworkIsASentence) {
+TEST(DoctorLive, ASilentNetworkIsReportedInASentence) {
   const PrivateNetwork network;
   try {
     const LiveLog live{network.url(), {.lidar = "SCAN"}, std::chrono::seconds{1}};

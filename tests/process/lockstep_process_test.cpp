@@ -52,7 +52,7 @@ std::int64_t count_in(const process_status_t& status, const std::string& name) {
   return found == status.counters.end() ? 0 : found->value;
 }
 
-TEST(LockstepProcess, ItsStatusCountsWhatTheNodeRefused) {
+TEST(LockstepProcess, TheStatusCountsMessagesThatTheNodeRejected) {
   const PrivateNetwork network;
   Bus bus{network.url(), {{std::string{channels::kAck.name}}, {std::string{kListenerStatus.name}}}};
   std::thread process{run_listener, network.url()};

@@ -146,7 +146,7 @@ TEST_F(Replay, ALaterLogReplacesAChannelAndAllOfSlam) {
   EXPECT_EQ(heard_, "ODOMETRY 1 1\nSLAM_POSE 1 2\nend\n");
 }
 
-TEST_F(Replay, AGraphOfAnotherSlamIsNotTaken) {
+TEST_F(Replay, APoseGraphOfAnotherSlamIsIgnored) {
   const auto run =
       log("run.lcm", {pose("ODOMETRY", 1, 1), pose("SLAM_POSE", 1, 1), pose("MAP_GRAPH", 2, 1)});
   const auto again = log("again.lcm", {pose("SLAM_ESTIMATE", 1, 2)});
@@ -156,7 +156,7 @@ TEST_F(Replay, AGraphOfAnotherSlamIsNotTaken) {
   EXPECT_NE(heard_.find("MAP_GRAPH"), std::string::npos);
 }
 
-TEST_F(Replay, APartThatIsEmptyFailsAndFinishesNothing) {
+TEST_F(Replay, AnEmptyTimeRangeFailsAndWritesNoOutput) {
   ProcessOptions options;
   options.skip_s = 1000.0;
   const auto path = log("a.lcm", {pose("ODOMETRY", 1'000'000, 1), pose("ODOMETRY", 5'000'000, 1)});
@@ -194,7 +194,7 @@ TEST_F(Replay, ALogWithoutAChannelThatIsNeededFailsAndSaysWhatItHas) {
   EXPECT_THAT(said, Not(HasSubstr("has no ODOMETRY")));
 }
 
-TEST_F(Replay, OneOfSeveralLogsThatHasNothingIsNamedAndTheOthersAreReplayed) {
+TEST_F(Replay, OfSeveralLogsAnEmptyOneIsNamedAndTheOthersAreReplayed) {
   const auto good = log("good.lcm", {pose("ODOMETRY", 1, 1)});
   ::testing::internal::CaptureStdout();
   EXPECT_EQ(replay({good, log("empty.lcm", {})}), kExitFailed);
@@ -207,12 +207,12 @@ TEST_F(Replay, OneOfSeveralLogsThatHasNothingIsNamedAndTheOthersAreReplayed) {
   EXPECT_THAT(said, Not(HasSubstr("good.lcm:")));
 }
 
-TEST_F(Replay, ALogThatLaterOnesReplaceIsNoFault) {
+TEST_F(Replay, ALogWhoseChannelsAreAllReplacedIsNoError) {
   const auto run = log("run.lcm", {pose("SLAM_POSE", 1, 1)});
   EXPECT_EQ(replay({run, log("again.lcm", {pose("SLAM_POSE", 1, 2)})}), kExitOk);
 }
 
-TEST_F(Replay, WhatIsNoLogFailsAndSaysSo) {
+TEST_F(Replay, AFileThatIsNoLogIsAnError) {
   const auto text = folder_ / "notes.txt";
   std::ofstream{text} << "no log";
   ::testing::internal::CaptureStdout();
@@ -226,14 +226,14 @@ TEST_F(Replay, AMissingLogIsASetupError) {
   EXPECT_THROW(replay({folder_ / "none.lcm"}), SetupError);
 }
 
-TEST_F(Replay, AnEarlierOutLogStaysWhereNothingIsRead) {
+TEST_F(Replay, AnEarlierOutputLogIsKeptWhenNothingCanBeRead) {
   const auto earlier = log("out.lcm", {pose("SLAM_POSE", 1, 1)});
   EXPECT_EQ(replay({log("other.lcm", {pose("LASER", 2, 1)})}), kExitFailed);
   EXPECT_EQ(channels_in(earlier), std::vector<std::string>{"SLAM_POSE"});
   EXPECT_EQ(heard_, "");
 }
 
-TEST_F(Replay, AFolderInTheOutputsPlaceIsFoundAtTheStart) {
+TEST_F(Replay, AFolderAtTheOutputPathIsAnErrorBeforeReading) {
   const auto path = log("a.lcm", {pose("ODOMETRY", 1, 1)});
   std::filesystem::remove(folder_ / "out.lcm");
   std::filesystem::create_directory(folder_ / "out.lcm");

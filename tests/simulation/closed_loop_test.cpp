@@ -165,7 +165,7 @@ TEST_F(ClosedLoop, AKilledViewerIsRestartedAndTheFilesAreWhole) {
   expect_same_result("viewer-killed");
 }
 
-TEST_F(ClosedLoop, AKilledSlamEndsTheRunAndIsNamed) {
+TEST_F(ClosedLoop, AKilledSlamEndsTheRunAndIsReported) {
   auto run = launch_in_background("slam-killed");
   kill(process_of_run("slam-killed", "slam"), SIGKILL);
   const Finished finished = run.get();
@@ -188,7 +188,7 @@ TEST_F(ClosedLoop, AReplayGivesTheSameMapAsTheLiveRun) {
 }
 
 /// The smoke test of deploy/sweep.sh's scenarios; they themselves take hours.
-TEST_F(ClosedLoop, WaymarkHoldsWithFaultsInTheMessages) {
+TEST_F(ClosedLoop, WaymarkIsAccurateDespiteFaultyMessages) {
   const std::string variants = (kSource / "tests/data/faults/short.toml").string();
   const std::string faults = (kPrograms / "waymark-faults").string();
   std::istringstream names{run_command(faults + " --variants " + variants + " --list").output};
@@ -242,7 +242,7 @@ TEST_F(ClosedLoop, TwoStacksAtOnceDoNotDisturbEachOther) {
   expect_same_result("twin-2");
 }
 
-TEST_F(ClosedLoop, OnRealTimeNothingIsLost) {
+TEST_F(ClosedLoop, InRealTimeNothingIsLost) {
   const Finished finished = launch("real-time", "--real-time");
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
   const auto lockstep = events_by_channel(folder() / "reference/run.lcm");
@@ -277,7 +277,7 @@ TEST_F(ClosedLoop, BlankMarkersAreNotSeen) {
 }
 
 // LCM's own tools on our runs.
-TEST_F(ClosedLoop, LogplayerAndLoggerWork) {
+TEST_F(ClosedLoop, LcmLogplayerAndLoggerWork) {
   PrivateNetwork network;
   const fs::path copy = folder() / "logger.lcm";
   auto logger = std::async(std::launch::async, [&] {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a network that loses, doubles, delays, mixes up and spoils messages costs in real time.
+"""What a network that loses, doubles, delays, mixes up and corrupts messages costs in real time.
 
 Simulator and detector are on one network, slam and viewer on another, and tests/support/chaos.py carries the messages
 from one to the other. Prints a row per fault: exit codes of slam and viewer, scans used, error of the path on line,

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Carries the messages of one LCM network to another one, and spoils some of them: the network between two processes.
+"""Carries the messages of one LCM network to another one, and corrupts some of them: the network between two processes.
 
 usage: chaos.py FROM_PORT TO_PORT SECONDS [--seed N] [--channels A,B] [--drop SHARE] [--duplicate SHARE]
                 [--delay SHARE --delay-s SECONDS] [--corrupt SHARE] [--burst EVERY_S LENGTH_S] [--stamp SHARE --stamp-s SECONDS]
@@ -38,7 +38,7 @@ class Chaos:
         self.channels = options.channels.encode().split(b",")
         self.counts = collections.Counter()
 
-    def spoil(self, channel, payload, now_s):
+    def corrupt(self, channel, payload, now_s):
         """Copies of the message to send, each with its delay."""
         options, name = self.options, channel.decode(errors="replace")
         if channel not in self.channels:
@@ -51,10 +51,10 @@ class Chaos:
             self.counts[f"{name} dropped"] += 1
             return []
         if corrupt < options.corrupt and payload:
-            spoilt = bytearray(payload)
+            corrupted = bytearray(payload)
             for _ in range(rng.randint(1, 4)):
-                spoilt[rng.randrange(len(spoilt))] = rng.randrange(256)
-            payload = bytes(spoilt)
+                corrupted[rng.randrange(len(corrupted))] = rng.randrange(256)
+            payload = bytes(corrupted)
             self.counts[f"{name} corrupted"] += 1
         if stamp < options.stamp and len(payload) >= 16:
             utime = struct.unpack(">q", payload[8:16])[0] + int(1e6 * rng.uniform(-options.stamp_s, options.stamp_s))
@@ -93,7 +93,7 @@ def carry(options):
         if datagram[:4] != MAGIC or not zero:
             continue
         now = time.monotonic()
-        for wait_s, copy in chaos.spoil(channel, payload, now - begin):
+        for wait_s, copy in chaos.corrupt(channel, payload, now - begin):
             heapq.heappush(waiting, (now + wait_s, next(order), channel, copy))
     print("carried:", ", ".join(f"{name} {count}" for name, count in sorted(chaos.counts.items())) or "nothing")
 

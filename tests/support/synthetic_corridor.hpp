@@ -41,8 +41,8 @@ struct SyntheticCorridor {
 
   double camera_x_m{0.076};
   double camera_half_view_rad{0.543};
-  double camera_focal_error{0.0};    ///< relative: its focal length is longer than told
-  double camera_yaw_error_rad{0.0};  ///< it is mounted further left than told
+  double camera_focal_error{0.0};    ///< relative: its focal length is longer than configured
+  double camera_yaw_error_rad{0.0};  ///< it is mounted further left than configured
   double marker_size_m{0.4};
   double sighting_noise{2.0};  ///< factor on the errors measured on rendered frames
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kFocalSigma = 0.005;   // relative; waymark-doctor warns of errors from 1 % on
 constexpr double kLargestRms_px = 2.0;  // a board that is bent, or not as described
 
-void judge(const LensFit& fit, std::vector<std::string>& missing) {
+void add_missing(const LensFit& fit, std::vector<std::string>& missing) {
   if (!(fit.rms_px <= kLargestRms_px))
     missing.push_back(
         fmt::format("a board that is flat, still, and as --squares and --marker-m say "
@@ -40,7 +40,7 @@ void fit_views(CameraCalibration& calibration, const std::vector<BoardView>& fou
   }
   // Without those that do not fit: what is left has to be enough, too.
   calibration.missing = missing_in(calibration.fit->views, image);
-  judge(*calibration.fit, calibration.missing);
+  add_missing(*calibration.fit, calibration.missing);
 }
 
 CameraCalibration calibrate_camera(const std::filesystem::path& input,

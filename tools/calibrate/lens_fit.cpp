@@ -152,7 +152,7 @@ std::size_t drop_corners(std::vector<BoardView>& views,
   return num_dropped;
 }
 
-/// Views first, the worst one first: it spoils the others' errors.
+/// Views first, the worst one first: it distorts the others' errors.
 LensFit fit_without_outliers(std::vector<BoardView> views, cv::Size image) {
   std::vector<std::string> dropped;
   std::size_t num_dropped_corners = 0;

@@ -2,7 +2,7 @@
 // Checks of camera and markers.
 #include "common/markers/marker_dictionary.hpp"
 #include "doctor/checks.hpp"
-#include "doctor/judge.hpp"
+#include "doctor/verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -58,7 +58,7 @@ Check frames_check(const CameraRecord& camera, const RobotConfig& robot) {
   }
   const double share = static_cast<double>(bad) /
                        static_cast<double>(std::max<std::int64_t>(1, camera.num_looked_at));
-  return {"camera_frames", judge(share, 0.0, kUnreadable),
+  return {"camera_frames", verdict_of(share, 0.0, kUnreadable),
           fmt::format("{} of {} frames cannot be used{}", bad, camera.num_looked_at, reasons),
           fmt::format("send images of {}x{} (robot.camera.width_px, height_px), whole and as JPEG "
                       "or grey",
@@ -103,7 +103,7 @@ Check blur_check(const CameraRecord& camera) {
                      "drive past markers");
   }
   const Measured blur = median_of(camera.blurs_px);
-  const Verdict verdict = judge(blur.value, blur.sigma, kBlur_px);
+  const Verdict verdict = verdict_of(blur.value, blur.sigma, kBlur_px);
   return {"blur", verdict,
           fmt::format("edges of markers are blurred by {:.2f} +- {:.2f} px (standard deviation); a "
                       "module has {:.1f} px",
@@ -145,7 +145,7 @@ std::vector<Check> check_camera(const DoctorInput& input,
                        const auto& remedy) {
     if (!is_known(measured, limits)) return checks.push_back(no_sightings(name));
     const double deviation = measured.value - expected;
-    const Verdict verdict = judge(deviation, measured.sigma, limits);
+    const Verdict verdict = verdict_of(deviation, measured.sigma, limits);
     const std::string to_do = verdict == Verdict::kPass ? "" : remedy();
     if (is_worth_writing(deviation, measured.sigma, limits)) write();
     checks.push_back({name, verdict, finding, to_do, unit * measured.value});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks of odometry, mounting and times against the LiDAR's own motion.
 #include "doctor/checks.hpp"
-#include "doctor/judge.hpp"
+#include "doctor/verdict.hpp"
 #include "import/findings/reversed_odometry.hpp"
 #include "import/findings/standing_odometry.hpp"
 
@@ -74,7 +74,7 @@ Check check_mirror(const std::optional<TurnComparison>& turns, RobotConfig& robo
 Check check_turn_scale(const std::optional<TurnComparison>& turns) {
   if (!turns) return no_turns("odometry_turn_scale");
   const double scale = std::abs(turns->ratio.value);
-  const Verdict verdict = judge(scale - 1.0, turns->ratio.sigma, kScale);
+  const Verdict verdict = verdict_of(scale - 1.0, turns->ratio.sigma, kScale);
   return {"odometry_turn_scale", verdict,
           fmt::format("odometry turns {:.3f} +- {:.3f} times as far as the LiDAR", scale,
                       turns->ratio.sigma),
@@ -95,7 +95,7 @@ Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig&
         fmt::format("the turns are too even (standard deviation {:.0f} ms)", 1e3 * late.sigma),
         "record a log with turns that start and stop");
   }
-  const Verdict verdict = judge(late.value, late.sigma, kOffset_s);
+  const Verdict verdict = verdict_of(late.value, late.sigma, kOffset_s);
   const double described_s = robot.lidar.late_s;
   const double found_s = described_s + late.value;
   if (is_worth_writing(late.value, late.sigma, kOffset_s)) robot.lidar.late_s = found_s;
@@ -115,7 +115,7 @@ Check check_distance_scale(const std::optional<HandEye>& calibration) {
   if (!calibration) return no_motions("odometry_distance_scale");
   const Measured& scale = calibration->scale;
   if (!is_known(scale, kScale)) return no_motions("odometry_distance_scale");
-  const Verdict verdict = judge(scale.value - 1.0, scale.sigma, kScale);
+  const Verdict verdict = verdict_of(scale.value - 1.0, scale.sigma, kScale);
   return {"odometry_distance_scale", verdict,
           fmt::format("odometry drives {:.3f} +- {:.3f} times as far as the LiDAR", scale.value,
                       scale.sigma),
@@ -160,7 +160,7 @@ std::vector<Check> check_mounting(const DoctorInput& input,
       return;
     }
     const bool is_known_before = input.mounting != Mounting::kUnknown;
-    const Verdict difference = judge(deviation, measured.sigma, limits);
+    const Verdict difference = verdict_of(deviation, measured.sigma, limits);
     // Nothing said where it sits: nothing is contradicted, but whoever starts at 0 is wrong.
     const Verdict verdict =
         is_known_before || difference == Verdict::kPass ? difference : Verdict::kWarn;

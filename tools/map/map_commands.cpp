@@ -3,8 +3,8 @@
 
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
-#include "slam/core/graph/map_merge.hpp"
-#include "slam/core/graph/wall_alignment.hpp"
+#include "map/map_merge.hpp"
+#include "map/wall_alignment.hpp"
 #include "slam/map_file.hpp"
 #include "viewer/viewer_node.hpp"
 

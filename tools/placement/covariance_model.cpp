@@ -41,11 +41,12 @@ void drive_step(const Se2& before, const Step& step, const OdometryNoise& descri
     slips.slip_per_m = 0.0;
     moved = with_slips(moved, step.motion.distance_m, slips);
   }
-  Eigen::Matrix<double, 3, kCalibrationSize> by_calibration =
+  Eigen::Matrix<double, 3, kCalibrationSize> jacobian_calibration =
       Eigen::Matrix<double, 3, kCalibrationSize>::Zero();
-  by_calibration.leftCols<kOdometryTerms>() = turning(before.rotation()) * moved.by_errors;
-  known.move(carried_along(step.map_from_base.translation() - before.translation()), by_calibration,
-             in_axes(before.rotation(), moved.covariance));
+  jacobian_calibration.leftCols<kOdometryTerms>() =
+      turning(before.rotation()) * moved.jacobian_calibration;
+  known.move(carried_along(step.map_from_base.translation() - before.translation()),
+             jacobian_calibration, in_axes(before.rotation(), moved.covariance));
 }
 
 /// @param steps_of  variables of the factor's keyframes by their number there.
@@ -89,7 +90,8 @@ void learn_calibration(const MarkerMeasurement& measured, double keyframes, Pose
   if (measured.wall) {
     const Eigen::LLT<Eigen::Matrix2d> root{measured.wall->covariance};
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2, kCalibrationSize);
-    rows.rightCols<kCameraTerms>() = root_weight * root.matrixL().solve(measured.wall->by_errors());
+    rows.rightCols<kCameraTerms>() =
+        root_weight * root.matrixL().solve(measured.wall->jacobian_calibration());
     known.measure({{PoseCovariance::kCalibration, rows}});
   }
   if (measured.focal) {

@@ -43,14 +43,14 @@ ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
   const Eigen::Matrix2d base_from_map = map_from_base.rotation().transpose();
 
   struct Beam {
-    Eigen::Vector3d by_pose{};
+    Eigen::Vector3d jacobian_pose{};
     double across_m2{0.0};
-    NdtMap::Key surface{0};
+    NdtMap::Key cell{0};
   };
 
   std::vector<Beam> beams;
   std::map<NdtMap::Key, int> beams_on;
-  const NdtMap surfaces{scan.cell_spacing_m};
+  const NdtMap ndt{scan.cell_spacing_m};
   hits.clear();
   for (int beam = 0; beam < lidar.num_beams; ++beam) {
     const double angle_rad =
@@ -69,19 +69,19 @@ ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
     hits.push_back(in_base);
     if (!patch.is_line) continue;
     const Eigen::Vector2d normal = base_from_map * patch.normal;
-    const Eigen::Vector3d by_pose{normal.x(), normal.y(),
-                                  in_base.x() * normal.y() - in_base.y() * normal.x()};
+    const Eigen::Vector3d jacobian_pose{normal.x(), normal.y(),
+                                        in_base.x() * normal.y() - in_base.y() * normal.x()};
     const double across_m2 =
         squared(lidar.range_sigma_m) * std::max(kMeanFacing2, squared(facing)) +
         squared(scan.roughness_m);
-    const NdtMap::Key surface = surfaces.key_at(end);
-    beams.push_back({by_pose, across_m2, surface});
-    ++beams_on[surface];
+    const NdtMap::Key ndt_cell = ndt.key_at(end);
+    beams.push_back({jacobian_pose, across_m2, ndt_cell});
+    ++beams_on[ndt_cell];
   }
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const Beam& beam : beams) {
-    information += independent_share(beams_on[beam.surface]) / beam.across_m2 * beam.by_pose *
-                   beam.by_pose.transpose();
+    information += independent_share(beams_on[beam.cell]) / beam.across_m2 * beam.jacobian_pose *
+                   beam.jacobian_pose.transpose();
   }
   ObservedAxes observed =
       observed_axes(information, information.topLeftCorner<2, 2>(), scan.weak_share);

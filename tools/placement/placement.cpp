@@ -12,11 +12,11 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kMargin = 0.85;       // planned for: the model is good to that
-constexpr double kQuietModules = 2.0;  // on each side, as the marker sheets have it
-constexpr double kSpacing_m = 0.5;     // between places of one wall that are tried
-constexpr double kTelling_m = 1e-3;    // sigmas below say nothing about the model
-constexpr double kMatters = 0.9;       // a cause without which the worst sigma is below this share
+constexpr double kMargin = 0.85;         // planned for: the model is good to that
+constexpr double kQuietModules = 2.0;    // on each side, as the marker sheets have it
+constexpr double kSpacing_m = 0.5;       // between places of one wall that are tried
+constexpr double kSignificant_m = 1e-3;  // sigmas below say nothing about the model
+constexpr double kMatters = 0.9;  // a cause without which the worst sigma is below this share
 
 /// Smallest first.
 std::vector<int> free_ids(const MarkerConfig& markers, int dictionary_size,
@@ -45,7 +45,7 @@ void compare_with_run(const PlacementInput& input, Placement& placement) {
       placement.worst_run_m = sigma_m;
       placement.worst_run_at = i;
     }
-    if (sigma_m > kTelling_m) ratios.push_back(placement.advice.now_m[i] / sigma_m);
+    if (sigma_m > kSignificant_m) ratios.push_back(placement.advice.now_m[i] / sigma_m);
   }
   if (ratios.empty()) return;
   const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);

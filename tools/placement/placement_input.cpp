@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace waymark::placement {
 namespace {
@@ -21,7 +22,8 @@ using evaluate::InputError;
 constexpr double kLongestStep_m = 1.0;  // between two poses; more is no drive
 
 PlacedMapImage image_in(const fs::path& yaml_file) {
-  return {evaluate::read_map(yaml_file), evaluate::read_map_origin(yaml_file)};
+  evaluate::MapWithOrigin map = evaluate::read_map_with_origin(yaml_file);
+  return {std::move(map.image), map.origin_m};
 }
 
 PlacedMapImage image_of(const GridMap& grid) {
@@ -88,10 +90,10 @@ void read_row(const fs::path& config, PlacementInput& input) {
   if (!config.empty()) input.config.robot = load_part<RobotOnly>(config).robot;
   check_is_mapping(input);
   evaluate::Skipped skipped;
-  const fs::path final_way = row / "trajectory_final.tum";
-  const auto way =
-      evaluate::read_tum(fs::exists(final_way) ? final_way : row / "trajectory.tum", skipped);
-  for (const evaluate::StampedPose& pose : way)
+  const fs::path final_trajectory = row / "trajectory_final.tum";
+  const auto trajectory = evaluate::read_tum(
+      fs::exists(final_trajectory) ? final_trajectory : row / "trajectory.tum", skipped);
+  for (const evaluate::StampedPose& pose : trajectory)
     input.places.push_back({pose.t_s, pose.parent_from_base});
   if (fs::exists(row / "markers.csv")) {
     const auto table = evaluate::read_csv(row / "markers.csv",
@@ -148,7 +150,7 @@ PlacementInput read_placement_input(const fs::path& source, const fs::path& conf
                               .norm();
     if (step_m > kLongestStep_m)
       throw InputError{fmt::format(
-          "{}: the way jumps by {:.1f} m: the robot was carried, which no model predicts",
+          "{}: the trajectory jumps by {:.1f} m: the robot was carried, which no model predicts",
           input.source.string(), step_m)};
   }
   if (std::find(input.image.cells.begin(), input.image.cells.end(), Cell::kOccupied) ==

@@ -14,13 +14,13 @@ PoseCovariance::PoseCovariance(const Calibration& calibration_sigmas, double pos
   p_.diagonal().tail<3>().setConstant(pose_sigma * pose_sigma);
 }
 
-void PoseCovariance::move(const Eigen::Matrix3d& by_pose,
-                          const Eigen::Matrix<double, 3, kCalibrationSize>& by_calibration,
+void PoseCovariance::move(const Eigen::Matrix3d& jacobian_pose,
+                          const Eigen::Matrix<double, 3, kCalibrationSize>& jacobian_calibration,
                           const Eigen::Matrix3d& noise) {
-  const Eigen::MatrixXd rows =
-      by_pose * p_.middleRows<3>(kPoseAt) + by_calibration * p_.topRows<kCalibrationSize>();
-  const Eigen::Matrix3d own = rows.middleCols<3>(kPoseAt) * by_pose.transpose() +
-                              rows.leftCols<kCalibrationSize>() * by_calibration.transpose() +
+  const Eigen::MatrixXd rows = jacobian_pose * p_.middleRows<3>(kPoseAt) +
+                               jacobian_calibration * p_.topRows<kCalibrationSize>();
+  const Eigen::Matrix3d own = rows.middleCols<3>(kPoseAt) * jacobian_pose.transpose() +
+                              rows.leftCols<kCalibrationSize>() * jacobian_calibration.transpose() +
                               noise;
   p_.middleRows<3>(kPoseAt) = rows;
   p_.middleCols<3>(kPoseAt) = rows.transpose();

@@ -33,11 +33,9 @@ class PoseCovariance {
 
   Eigen::Matrix3d of_pose() const { return p_.block<3, 3>(kPoseAt, kPoseAt); }
 
-  Calibration calibration_variances() const { return p_.diagonal().head<kCalibrationSize>(); }
-
-  /// pose = by_pose * pose + by_calibration * calibration + noise.
-  void move(const Eigen::Matrix3d& by_pose,
-            const Eigen::Matrix<double, 3, kCalibrationSize>& by_calibration,
+  /// pose = jacobian_pose * pose + jacobian_calibration * calibration + noise.
+  void move(const Eigen::Matrix3d& jacobian_pose,
+            const Eigen::Matrix<double, 3, kCalibrationSize>& jacobian_calibration,
             const Eigen::Matrix3d& noise);
 
   /// A new variable = sum of jacobian * variable + noise.

@@ -12,7 +12,7 @@
 
 namespace waymark {
 
-/// How far a pose may be off that somebody has pointed at in a map.
+/// Standard deviations of a pose that a person has pointed at in a map.
 inline constexpr double kPointedSigma_m = 0.1;
 inline constexpr double kPointedSigma_rad = 0.1;
 

@@ -186,7 +186,7 @@ class Bus::Implementation {
   }
 
   bool is_accepted(const std::string& channel, const Sender& sender, ChannelOwners::Time now) {
-    switch (owners_.judge(channel, sender, now)) {
+    switch (owners_.check(channel, sender, now)) {
       case ChannelOwners::Verdict::kAccepted:
         return true;
       case ChannelOwners::Verdict::kSucceeds:

@@ -14,13 +14,13 @@
 
 namespace waymark {
 
-/// Messages of several datagrams: none of ours is one, but a robot's camera driver may send them.
+/// Messages of several datagrams: we send none, but a robot's camera driver may.
 enum class LargeMessages {
   kRefused,
   kAccepted,  ///< up to 4 MiB; who can send to the network can crash liblcm 1.3.1 then
 };
 
-/// Who may publish what we hear. Statuses and commands may come from everybody.
+/// Which publishers are accepted. Statuses and commands are accepted from all.
 enum class Publishers {
   kAny,            ///< in lockstep: its ticks say which messages are theirs
   kOnePerChannel,  ///< ChannelOwners; known on udpm and without large messages only

@@ -10,7 +10,7 @@ void ChannelOwners::hear(const Sender& sender, Time now) {
     if (owner.sender == sender) owner.heard = now;
 }
 
-ChannelOwners::Verdict ChannelOwners::judge(std::string_view channel, const Sender& sender,
+ChannelOwners::Verdict ChannelOwners::check(std::string_view channel, const Sender& sender,
                                             Time now) {
   const auto [found, is_first] = owners_.try_emplace(std::string{channel}, Owner{sender, now});
   Owner& owner = found->second;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whose messages a channel carries: two publishers on it are told apart, not mixed.
+// Accepts one publisher per channel.
 #pragma once
 
 #include "common/bus/datagram_receiver.hpp"
@@ -12,16 +12,16 @@
 
 namespace waymark {
 
-/// A sensor has one driver, and a robot one stack: a channel belongs to the sender that was heard
-/// first on it, as long as anything is heard of that sender; others are refused. Of two senders
-/// that meet on several channels one has all of these, so that two drives are not mixed: the one
-/// that owned the channel on which they met first. Who is right cannot be known from here; that
-/// there are two can.
+/// A channel belongs to the first sender on it while that sender is active on any channel; other
+/// senders are refused. Where two senders share several channels, the owner of the channel on which
+/// they met first gets all of them, so that two drives are never mixed. Which sender is the right
+/// one cannot be known here.
 class ChannelOwners {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Our processes send a status every second, drivers much more.
+  /// Time without a message after which a sender is inactive. Our processes send a status every
+  /// second, drivers more often.
   static constexpr std::chrono::milliseconds kSilence{2000};
 
   enum class Verdict {
@@ -30,12 +30,12 @@ class ChannelOwners {
     kRefused
   };
 
-  /// Anything that a sender sends shows that it is there.
+  /// To be called for every message: the sender is active.
   void hear(const Sender& sender, Time now);
 
-  Verdict judge(std::string_view channel, const Sender& sender, Time now);
+  Verdict check(std::string_view channel, const Sender& sender, Time now);
 
-  /// Needs a channel that was judged.
+  /// Needs a channel that was checked.
   const Sender& owner_of(std::string_view channel) const;
 
  private:
@@ -53,7 +53,7 @@ class ChannelOwners {
   bool precedes(const Sender& sender, const Sender& owner) const;
   void put_behind(const Sender& junior, const Sender& senior);
 
-  // More than anybody runs at once; whatever is sent, no more is kept.
+  // More than anybody runs at once: bounds memory against forged senders.
   static constexpr std::size_t kMaxPrecedences = 64;
 
   std::map<std::string, Owner, std::less<>> owners_{};  ///< by channel

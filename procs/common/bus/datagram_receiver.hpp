@@ -13,7 +13,7 @@
 
 namespace waymark {
 
-/// Socket that a datagram came from: every process that publishes has one of its own.
+/// Socket that a datagram came from: each publishing process has its own.
 struct Sender {
   std::uint32_t address{0};  ///< IPv4, in the order of this machine
   std::uint16_t port{0};
@@ -31,7 +31,7 @@ struct MulticastGroup {
 
 /// The group of udpm://ADDRESS:PORT?..., with LCM's defaults for what is missing; nothing when the
 /// URL is of another kind of network.
-/// @throws SetupError when address or port is none.
+/// @throws SetupError when address or port is invalid.
 std::optional<MulticastGroup> multicast_group_of(const std::string& lcm_url);
 
 /// A message in one datagram. Source: lcm_udpm.c, "short message".
@@ -61,13 +61,13 @@ class DatagramReceiver {
   DatagramReceiver(const DatagramReceiver&) = delete;
   DatagramReceiver& operator=(const DatagramReceiver&) = delete;
 
-  /// Nothing when no datagram comes within kWait, or one that is no message.
+  /// Nothing when within kWait no datagram comes, or an invalid one.
   std::optional<Received> receive();
 
   /// Datagrams since the last call that were no message.
   std::int64_t take_malformed();
 
-  /// Datagrams since the last call for which there was no room: nobody took the others away.
+  /// Datagrams since the last call that were dropped because the queue was full.
   std::int64_t take_overflowed();
 
  private:

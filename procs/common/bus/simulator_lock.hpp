@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One simulator in lockstep per UDP port of this machine: processes would answer the ticks of
-// another's run.
+// Allows one lockstep simulator per UDP port of this machine: else processes would answer the ticks
+// of another run.
 #pragma once
 
 #include "common/bus/channel_names.hpp"
@@ -9,8 +9,8 @@
 
 namespace waymark {
 
-/// Held while it lives, and let go by the system however the process ends. On other networks than
-/// udpm it keeps nobody out; nor does it with another name of TICK, under which runs do not meet.
+/// Held during the object's lifetime; the system releases it however the process ends. No lock is
+/// needed, nor taken, on networks other than udpm, and for other names of the channel TICK.
 class SimulatorLock {
  public:
   /// @throws SetupError when another simulator has the port, or the system refuses the lock.

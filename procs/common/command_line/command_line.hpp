@@ -30,7 +30,7 @@ class CommandOption {
   CommandOption check(const NumberCheck& check);
   CommandOption one_of(const std::vector<std::string>& words);
   CommandOption existing_file();
-  /// One value holds several, with this between them.
+  /// Delimiter between several values in one argument.
   CommandOption delimiter(char between);
   CommandOption needs(CommandOption other);
   CommandOption excludes(CommandOption other);
@@ -69,9 +69,9 @@ class Command {
 
   CommandOption add_flag(const std::string& name, bool& value, const std::string& help);
   Command add_subcommand(const std::string& name, const std::string& help);
-  /// What comes with a subcommand can be the options of this one, too.
+  /// Options of this command may also follow the subcommand.
   void take_options_of_subcommands();
-  /// All that follows is for another program, --help too.
+  /// Passes all remaining arguments on unparsed, --help included.
   void pass_on_the_rest();
   std::vector<std::string> rest() const;
   void when_given(const std::function<void()>& action);

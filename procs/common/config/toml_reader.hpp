@@ -17,7 +17,7 @@ enum class UnknownKeys {
   kIgnored  ///< the file holds more than the struct describes
 };
 
-/// What came of reading sources one after the other.
+/// Result of reading several sources.
 struct ReadLog {
   std::vector<std::string> problems{};  ///< one line each
   Locations set_by{};                   ///< key -> the last source that set it, with line
@@ -31,7 +31,7 @@ void read_toml_file(const std::filesystem::path& file, const std::function<void(
 void read_toml_override(const std::string& text, const std::function<void(Fields&)>& describe,
                         ReadLog& log);
 
-/// The candidate that `key` may have been meant for; empty if none is near.
+/// The candidate nearest to a misspelt `key`; empty if none is near.
 std::string nearest(const std::string& key, const std::vector<std::string>& candidates);
 
 }  // namespace waymark::config_detail

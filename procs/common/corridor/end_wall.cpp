@@ -89,15 +89,15 @@ WallLine best_tilt(double offset_px, const Band& band) {
   return best;
 }
 
-/// Innermost line that covers enough rows; then, as a tilted line may touch the wall too early, the
-/// fullest one just behind it.
+/// Innermost line that covers enough rows; then, since a tilted line may touch the wall too early,
+/// the line with the most rows within `search_px` behind it.
 std::optional<WallLine> innermost_wall(const Band& band, double from_px, double to_px,
-                                       double settle_px) {
+                                       double search_px) {
   for (double offset_px = from_px; offset_px <= to_px; offset_px += kOffsetStep_px) {
     WallLine wall = best_tilt(offset_px, band);
     if (wall.rows < kCoverage * band.rows()) continue;
-    const double settled_px = offset_px + settle_px;
-    for (double behind_px = offset_px; behind_px <= settled_px; behind_px += kOffsetStep_px) {
+    const double last_px = offset_px + search_px;
+    for (double behind_px = offset_px; behind_px <= last_px; behind_px += kOffsetStep_px) {
       const WallLine line = best_tilt(behind_px, band);
       if (line.rows > wall.rows) wall = line;
     }

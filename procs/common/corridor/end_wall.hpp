@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a corridor ends, seen along its middle from the inside.
+// Finds the end walls of a corridor, from the inside along its middle.
 #pragma once
 
 #include "common/corridor/map_image.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a user has to put right before a program can do its work.
+// Problems of usage or set-up that the user has to fix.
 #pragma once
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that are whole when they are there.
+// Files that are written atomically.
 #pragma once
 
 #include <filesystem>

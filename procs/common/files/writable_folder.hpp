@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Folders for output: found wanting before the work, not after it.
+// Output folders, checked before the work begins.
 #pragma once
 
 #include <filesystem>
 
 namespace waymark {
 
-/// Creates the folder if need be, and tries whether files can be written there; leaves none.
+/// Creates the folder if it does not exist, and checks by a temporary file that it is writable.
 /// @throws SetupError when they cannot.
 void make_writable_folder(const std::filesystem::path& folder);
 

@@ -46,23 +46,21 @@ Se2 interpolate(const Se2& from, const Se2& to, double fraction);
 /// (x, y, theta) of one pose minus those of another; the angle in (-pi, pi].
 Eigen::Vector3d pose_difference(const Se2& to, const Se2& from);
 
-/// The pose that differs by so much: pose_difference(moved_by(pose, d), pose) is d.
+/// Inverse of pose_difference(): pose_difference(moved_by(pose, d), pose) is d.
 Se2 moved_by(const Se2& pose, const Eigen::Vector3d& difference);
 
-/// The motion along an arc that begins with this (x, y, theta) (the exponential map of SE(2)).
-/// Poses that are moved so, each by a common turn as seen from its own frame, keep what lies
-/// between them.
+/// Exponential map of SE(2): the motion along an arc with the twist (x, y, theta). When several
+/// poses move so about one common point, their relative poses do not change.
 Se2 along_arc(const Eigen::Vector3d& step);
 
-/// Turns (x, y, theta) into axes that are turned by `rotation`.
+/// 3 x 3 matrix that rotates (x, y) of (x, y, theta) by `rotation`.
 Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation);
 
 /// Covariance or information of (x, y, theta) in axes that are turned by `rotation`: of the child
 /// in the parent's axes with the rotation of parent_from_child.
 Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix);
 
-/// How a difference of poses at one place shows at another, `step_in_map` further on: a turn moves
-/// it sideways.
+/// Carries a difference of poses along a lever arm, `step_in_map`: d(x, y)/d(theta) = (-dy, dx).
 Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map);
 
 /// The same for the covariance of such differences.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gives commands from outside a place in the lockstep.
+// Assigns commands from outside to a tick of the lockstep.
 #pragma once
 
 #include "common/messages/message.hpp"
@@ -17,7 +17,7 @@ class CommandRelay {
 
   explicit CommandRelay(Counters& counters) : counters_{counters} {}
 
-  /// Commands that are in a tick already (the relay hears itself) are left alone.
+  /// Ignores commands that it has published itself in a tick.
   void take(const Message& message);
 
   /// Adds the commands that wait to the messages of a tick.

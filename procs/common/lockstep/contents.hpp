@@ -20,11 +20,10 @@ inline constexpr int kMaxWindowTicks = 100;
 /// Lists messages by channel, hashes in the order of comes_before.
 std::vector<channel_content_t> contents_of(std::vector<Message> messages);
 
-/// Received messages by their content. A message has no number of its own: two ticks may name the
-/// same bytes (a marker map that did not change), and the copy that comes second cannot be
-/// distinguished from one that was sent again. So what was taken stays for a while, and satisfies
-/// whoever names it next. Bounded: the oldest go first, and come back when their tick is sent
-/// again.
+/// Received messages by their content hash. Messages have no sequence numbers: two ticks may name
+/// the same bytes (a marker map that did not change), and the second copy looks like a re-sent one.
+/// So a message is kept after its use, for the next tick that names it. Bounded: the oldest
+/// messages are dropped, and come again when their tick is re-sent.
 class MessagePool {
  public:
   /// False when the same message is here already.
@@ -36,7 +35,7 @@ class MessagePool {
   Message take(std::int64_t hash);
 
  private:
-  /// Messages in the order in which they are to be forgotten.
+  /// Messages in the order in which they are dropped.
   struct Queue {
     std::deque<std::int64_t> hashes{};
     std::size_t bytes{0};

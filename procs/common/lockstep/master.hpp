@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulator's side of the lockstep: sends ticks, a small window of them in flight, and sees to
-// it that every participant acknowledges every tick.
+// The simulator's side of the lockstep: sends ticks, with a small window of them in flight, and
+// waits until every participant has acknowledged each.
 #pragma once
 
 #include "common/lockstep/contents.hpp"

@@ -18,8 +18,8 @@ namespace waymark {
 ///
 /// A tick is processed when everything that TICK names on the wanted channels has come, and
 /// everything that the participants before this one in the list named in their ACKs. Ticks are
-/// processed in order. A tick that comes again is answered from a cache, so every loss is mended by
-/// the simulator's re-sending.
+/// processed in order. A re-sent tick is answered from a cache, so that the simulator repairs every
+/// loss by re-sending.
 class LockstepParticipant {
  public:
   /// Processes the messages of one tick, in order, and returns what it publishes for it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values beyond these no robot has: a message with one is wrong, however finite it is.
+// Physical bounds: a message with a value beyond them is rejected.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
   }
   clock_steps_.see_fitting();
   Stream& stream = streams_[message.channel];
-  judge_aside(stream, message.time, counters);
+  resolve_aside(stream, message.time, counters);
   if (waiting_.contains(message) ||
       std::ranges::find(stream.aside, message) != stream.aside.end()) {
     counters.add(message.channel + " duplicates");
@@ -62,7 +62,7 @@ bool ReorderBuffer::leads(const Stream& stream, Timestamp time) const {
 }
 
 /// @param time  of a message of the same channel that follows.
-void ReorderBuffer::judge_aside(Stream& stream, Timestamp time, Counters& counters) {
+void ReorderBuffer::resolve_aside(Stream& stream, Timestamp time, Counters& counters) {
   if (stream.aside.empty() || stream.aside.front().time == time) return;
   if (time > stream.aside.front().time) {
     for (Message& message : std::exchange(stream.aside, {}))

@@ -15,12 +15,12 @@
 namespace waymark {
 
 /// Holds messages until one is `window` newer, then releases them by (time, channel, payload). A
-/// channel may lag behind the others by more, as what is computed from them does. Dropped and
-/// counted is what comes later than something newer of its own channel, and what jumps absurdly
-/// ahead, which would let nothing else wait; unless the clock was set.
+/// channel may lag behind the others by more than the window, as results computed from them do.
+/// Drops and counts messages that are older than a released one of their channel, and messages
+/// that are absurdly far ahead, which would flush all others; unless the clock was set.
 ///
-/// What leads its channel and all others by far is set aside: either there was a pause, or it is
-/// stamped wrong. The next message of its channel decides: one that is newer, or one that is not.
+/// A message far ahead of all channels is set aside: either there was a pause, or its stamp is
+/// wrong. The next message of its channel decides: a newer one confirms it, an older one drops it.
 class ReorderBuffer {
  public:
   explicit ReorderBuffer(Duration window);
@@ -34,7 +34,7 @@ class ReorderBuffer {
     bool operator()(const Message& a, const Message& b) const { return comes_before(a, b); }
   };
 
-  /// How a message does not fit what came before.
+  /// How a stamp relates to the messages before.
   enum class Misfit { kNone, kLate, kAhead };
 
   // Sensors' periods and the jitter between processes; being set aside costs one period of delay.
@@ -52,7 +52,7 @@ class ReorderBuffer {
   Misfit misfit(const Message& message) const;
   Message stamped(Message message) const;
   bool leads(const Stream& stream, Timestamp time) const;
-  void judge_aside(Stream& stream, Timestamp time, Counters& counters);
+  void resolve_aside(Stream& stream, Timestamp time, Counters& counters);
   void put_into_order(Stream& stream, Message message);
   std::vector<Message> begin_anew(Message message);
   std::vector<Message> release_until(Timestamp time);

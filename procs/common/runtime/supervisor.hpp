@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a process says to the supervisor that has started it (systemd, where a unit asks for it).
+// Notifications to the supervisor that has started the process (systemd, units of Type=notify).
 #pragma once
 
 #include <string_view>

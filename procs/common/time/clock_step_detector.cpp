@@ -4,7 +4,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kBelieved = 20;
+constexpr int kConsecutive = 20;                     // stamps that show that the clock was set
 constexpr Duration kNear = std::chrono::seconds{2};  // between stamps that follow each other
 
 }  // namespace
@@ -16,7 +16,7 @@ bool ClockStepDetector::see_misfit(Timestamp time) {
     first_misfit_ = time;
   }
   last_misfit_ = time;
-  if (++misfits_ < kBelieved) return false;
+  if (++misfits_ < kConsecutive) return false;
   misfits_ = 0;
   return true;
 }

@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the clock that stamps messages was set, or single stamps are wrong.
+// Distinguishes a step of the clock from single wrong stamps.
 #pragma once
 
 #include "common/time/time.hpp"
 
 namespace waymark {
 
-/// A computer without a battery finds its time server, a log begins anew: from then on no stamp
-/// fits what came before. One that is wrong is followed by one that fits.
+/// After a step of the clock (a computer without a battery finds its time server, a log starts
+/// again) all stamps are inconsistent with those before; after a single wrong stamp, the next one
+/// is consistent again.
 class ClockStepDetector {
  public:
-  /// A stamp later than everything by more than this is wrong, until others agree.
+  /// A stamp later than all before by more than this is inconsistent.
   static constexpr Duration kLongestPause = std::chrono::minutes{10};
 
   void see_fitting() { misfits_ = 0; }
 
-  /// @return true when the clock was set: so many stamps in a row do not fit what came before, but
-  /// each other.
+  /// @return true when the clock was set: many inconsistent stamps in a row are consistent with
+  /// each
+  ///         other.
   bool see_misfit(Timestamp time);
 
-  /// Of the stamps that agree now.
+  /// The first of the present row of inconsistent stamps.
   Timestamp first_misfit() const { return first_misfit_; }
 
  private:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Message time: microseconds on the one clock that stamps all messages. Nothing in a core knows
-// another.
+// Message time: microseconds on the clock that stamps all messages. Cores use no other clock.
 #pragma once
 
 #include <chrono>

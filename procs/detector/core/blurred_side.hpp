@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What blur makes of the sides of a marker.
+// Model of a marker's blurred side.
 #pragma once
 
 #include "detector/core/edge_profile.hpp"
@@ -15,7 +15,7 @@ struct BlurredSide {
   /// Black is 0, white is 1, and the edge lies at 0.
   EdgeProfile profile(double reach_px) const;
 
-  /// How far off, outwards, EdgeProfile::edge_px() finds the edge.
+  /// Bias of EdgeProfile::edge_px(), outwards.
   double bias_px(double reach_px, double black_level, double half_window_px) const;
 };
 

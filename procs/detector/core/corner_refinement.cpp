@@ -18,7 +18,7 @@ namespace {
 // off.
 constexpr int kMinPasses = 2;
 constexpr int kMaxPasses = 6;
-constexpr double kSettledPx = 0.1;  // a pass that moves corners by less was the last
+constexpr double kConvergedPx = 0.1;  // a pass that moves corners by less was the last
 // Neighbouring profiles share pixels, so N of them count as N / 2.2 independent ones (measured:
 // makes the squared errors of rendered markers agree with their covariance).
 constexpr double kSharedNoise = 2.2;
@@ -244,7 +244,7 @@ MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
     if (!(largest_move_px(unrefined.ideal_px, measured.ideal_px) <= config.max_move_px)) {
       return unrefined;
     }
-    if (pass >= kMinPasses && !(quad->is_blurred && moved_px > kSettledPx)) break;
+    if (pass >= kMinPasses && !(quad->is_blurred && moved_px > kConvergedPx)) break;
   }
   return measured;
 }

@@ -55,7 +55,7 @@ struct EdgeProfile {
   std::optional<double> blur_px(double black_level) const;
 };
 
-/// Levels that are read off a profile across a border of that thickness.
+/// Brightness levels of a profile across a border of that thickness.
 void read_levels(EdgeProfile& profile, double border_px);
 
 /// About one profile per pixel along the side, 2 to 80, away from its corners. Places from which

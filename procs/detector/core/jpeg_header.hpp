@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a JPEG says about itself, read without a decoder that would believe it.
+// Reads the size in a JPEG's header, to check it before a decoder allocates memory for it.
 #pragma once
 
 #include <cstdint>

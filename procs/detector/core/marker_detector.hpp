@@ -17,9 +17,9 @@
 
 namespace waymark {
 
-/// What the camera's calibration adds to every pose: it is wrong in the same way in all frames, so
-/// no single frame shows it. Zero = intrinsics and mounting are exact, as in simulation. A
-/// carefully calibrated real camera: 0.005, 0.005 rad (0.3 degrees), 0.017 rad (1 degree).
+/// Standard deviations of the camera's calibration, which add to the covariance of every pose.
+/// Zero: intrinsics and mounting are exact, as in simulation. A carefully calibrated real camera:
+/// 0.005, 0.005 rad (0.3 degrees), 0.017 rad (1 degree).
 struct CalibrationErrorConfig {
   double range_rate{0.0};
   double bearing_rad{0.0};
@@ -44,7 +44,7 @@ class MarkerDetector {
   MarkerDetector(const RobotConfig& robot, const MarkerDetectorConfig& config);
 
   /// Markers of the configured ids, ordered by id, then from left to right. One id may occur more
-  /// than once: ids are what markers look like, not which ones they are.
+  /// than once: an id is a class of markers, not a key.
   /// @param gray 8-bit, one channel, of the configured camera's size.
   std::vector<MarkerDetection> detect(const cv::Mat& gray) const;
 

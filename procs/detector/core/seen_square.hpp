@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The four sides of a marker as an image shows them: brightness across them, border, blur.
+// The four sides of a marker in an image: brightness across them, border, blur.
 #pragma once
 
 #include "common/robot/camera_model.hpp"
@@ -35,7 +35,7 @@ struct SeenSquare {
 
   bool is_blurred() const;
 
-  /// How much of a side's ends is bent by the blur of its neighbours.
+  /// Length at a side's ends that the blur of the neighbouring sides distorts.
   double corner_px(std::size_t side) const;
 
   /// The first of the two opposite sides with the thicker borders.

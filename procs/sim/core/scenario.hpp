@@ -36,7 +36,7 @@ struct RunConfig {
 
 /// The simulated robot knows that its camera is as described, and that markers hang straight:
 /// what rendering and detection leave, 0.02 px, is all that is wrong. [camera_errors] makes its
-/// camera another one than that; what it then believes is for the scenario to say.
+/// camera another one than that; the robot is configured by the scenario then.
 RobotConfig simulated_robot();
 
 struct Scenario {

@@ -195,15 +195,15 @@ class PageServer::Implementation {
                                   "default-src 'self' 'unsafe-inline'; img-src 'self' blob: data:; "
                                   "frame-ancestors 'none'"}});
     server_.set_pre_routing_handler([this](const auto& request, auto& response) {
-      return refuse_strangers(request, response);
+      return refuse_other_origins(request, response);
     });
     server_.set_exception_handler([](const auto&, auto& response, std::exception_ptr) {
       answer(response, 400, "the query is not understood");
     });
   }
 
-  httplib::Server::HandlerResponse refuse_strangers(const httplib::Request& request,
-                                                    httplib::Response& response) const {
+  httplib::Server::HandlerResponse refuse_other_origins(const httplib::Request& request,
+                                                        httplib::Response& response) const {
     using Outcome = httplib::Server::HandlerResponse;
     const bool is_command = request.method == "POST" && request.path == "/command";
     if (is_command && !commands_) {

@@ -69,7 +69,7 @@ class Batch {
     for (std::size_t i = 1; i < stops_.size(); ++i) {
       const CorrectedMotion motion =
           corrected_motion(stops_[i].motion, solution_.odometry_errors, noise);
-      add<MotionResidual, 3, 3, 3, kOdometryErrors>(
+      add<MotionResidual, 3, 3, 3, kOdometryTerms>(
           {motion, solution_.odometry_errors, whitening(motion.covariance)}, nullptr,
           poses_[i - 1].data(), poses_[i].data(), solution_.odometry_errors.data());
     }
@@ -135,7 +135,7 @@ class Batch {
 
   void add_priors(const BatchModel& model) {
     const OdometryNoise& odometry = model.odometry;
-    add<PriorResidual<kOdometryErrors>, kOdometryErrors, kOdometryErrors>(
+    add<PriorResidual<kOdometryTerms>, kOdometryTerms, kOdometryTerms>(
         {{odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
           odometry.lidar_ahead_sigma_m}},
         nullptr, solution_.odometry_errors.data());

@@ -20,12 +20,12 @@ std::vector<MarkerMeasurement> camera_measurements(const Observation& observatio
                                                    const EstimatorSetup& setup,
                                                    const MarkerMeasurementConfig& config) {
   MarkerSensors sensors{setup.range_sigma_m, setup.camera.base_from_camera, setup.sighting_sigmas};
-  const auto believed = measure_markers(observation, sensors, {}, config);
+  const auto estimated = measure_markers(observation, sensors, {}, config);
   sensors.sigmas.bulge_m = kNoWall;
   sensors.sigmas.skew_rad = kNoWall;
   auto measured = measure_markers(observation, sensors, {}, config);
   std::erase_if(measured, [&](const MarkerMeasurement& one) {
-    return std::ranges::none_of(believed, [&](const MarkerMeasurement& other) {
+    return std::ranges::none_of(estimated, [&](const MarkerMeasurement& other) {
       return one.id == other.id &&
              (one.base_from_marker.translation() - other.base_from_marker.translation()).norm() <
                  kSamePlace_m;

@@ -54,11 +54,11 @@ struct MotionResidual {
 
   template <class T>
   bool operator()(const T* from, const T* to, const T* errors, T* out) const {
-    const Eigen::Matrix<T, kOdometryErrors, 1> change =
-        Eigen::Map<const Eigen::Matrix<T, kOdometryErrors, 1>>{errors} - about.cast<T>();
+    const Eigen::Matrix<T, kOdometryTerms, 1> change =
+        Eigen::Map<const Eigen::Matrix<T, kOdometryTerms, 1>>{errors} - about.cast<T>();
     const Se2& measured = motion.start_from_end;
     const Vector3<T> expected = Vector3<T>{T{measured.x()}, T{measured.y()}, T{measured.theta()}} +
-                                motion.by_errors.cast<T>() * change;
+                                motion.jacobian_calibration.cast<T>() * change;
     Vector3<T> residual = relative(from, to) - expected;
     residual.z() = wrapped(residual.z());
     Eigen::Map<Vector3<T>>{out} = whiten.cast<T>() * residual;
@@ -113,7 +113,7 @@ struct WallResidual {
 };
 
 /// Not held to its wall. What the camera's errors do to it is taken where the marker is, not where
-/// it was measured (MarkerMeasurement::by_errors_at).
+/// it was measured (MarkerMeasurement::jacobian_calibration_at).
 struct MarkerResidual {
   MarkerMeasurement measurement;
   Eigen::Matrix3d whiten;

@@ -36,7 +36,7 @@ SyntheticCorridor corridor_of(std::uint64_t seed) {
 
 /// Four seeds. The estimator knows the description only. NEES counts from `from_m` driven on.
 Drives drive_all(const std::function<void(SyntheticCorridor&)>& make_worse,
-                 const std::function<void(SensorLog&, Random&)>& spoil, double from_m = 0.0) {
+                 const std::function<void(SensorLog&, Random&)>& corrupt, double from_m = 0.0) {
   constexpr std::uint64_t kSeeds = 4;
   Drives drives;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -45,7 +45,7 @@ Drives drive_all(const std::function<void(SyntheticCorridor&)>& make_worse,
     make_worse(corridor);
     SensorLog log = test::drive(corridor);
     Random random{seed, 99};
-    spoil(log, random);
+    corrupt(log, random);
     WaymarkEstimator estimator{described, {}};
     const std::vector<Step> steps = test::run(estimator, log, test::setup_of(corridor));
     double nees = 0.0;
@@ -90,7 +90,7 @@ std::pair<std::size_t, std::size_t> samples_of(double way_m) {
           static_cast<std::size_t>((8.0 + way_m) * kPerMetre)};
 }
 
-TEST(BadRobots, ARobotAsDescribedIsNotAccused) {
+TEST(BadRobots, ARobotAsDescribedHasNoFindings) {
   const Drives drives = drive_all(as_described, not_at_all);
   EXPECT_LT(drives.nees, 5.0);
   EXPECT_LT(drives.findings.odometry_turn, 1.9);
@@ -101,7 +101,7 @@ TEST(BadRobots, ARobotAsDescribedIsNotAccused) {
   EXPECT_LT(100 * drives.findings.beams_moving, drives.findings.beams);
 }
 
-TEST(BadRobots, NoisyOdometryIsFoundAndItsCovarianceHonest) {
+TEST(BadRobots, NoisyOdometryIsDetectedAndTheCovarianceHonest) {
   const Drives drives = drive_all(
       [](SyntheticCorridor& corridor) {
         corridor.along_noise_per_sqrt_m = 0.02;
@@ -114,7 +114,7 @@ TEST(BadRobots, NoisyOdometryIsFoundAndItsCovarianceHonest) {
 }
 
 /// From the second pair of markers on: nothing can show slips before the first one.
-TEST(BadRobots, WheelsThatSlipAreFoundAndTheCovarianceIsHonest) {
+TEST(BadRobots, WheelSlipIsDetectedAndTheCovarianceHonest) {
   constexpr double kSecondMarkers_m = 8.0;
   const Drives drives = drive_all(
       as_described,
@@ -128,7 +128,7 @@ TEST(BadRobots, WheelsThatSlipAreFoundAndTheCovarianceIsHonest) {
   EXPECT_GT(drives.findings.slips, 2);
 }
 
-TEST(BadRobots, BurstsOfGarbageCostNothingAndAreNamed) {
+TEST(BadRobots, BurstsOfGarbageDoNotDegradeThePoseAndAreReported) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random& random) {
     for (const double way_m : {0.1, 0.3}) {
       const auto [from, to] = samples_of(way_m);
@@ -144,7 +144,7 @@ TEST(BadRobots, BurstsOfGarbageCostNothingAndAreNamed) {
   EXPECT_GT(drives.findings.odometry_jumping, 0);
 }
 
-TEST(BadRobots, OdometryThatIsStuckIsNoticedAndCatchesUp) {
+TEST(BadRobots, StuckOdometryIsDetectedAndItsLateMotionUsed) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
     const auto [from, to] = samples_of(2.0);
     for (std::size_t i = from; i < to; ++i)
@@ -156,7 +156,7 @@ TEST(BadRobots, OdometryThatIsStuckIsNoticedAndCatchesUp) {
 }
 
 /// So long that the keyframe where it began is behind the window.
-TEST(BadRobots, WhatOdometryHasKeptBackForLongIsUsed) {
+TEST(BadRobots, LateMotionAfterALongStandstillIsUsed) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
     const auto [from, to] = samples_of(6.0);
     for (std::size_t i = from; i < to; ++i)
@@ -166,7 +166,7 @@ TEST(BadRobots, WhatOdometryHasKeptBackForLongIsUsed) {
   EXPECT_LT(drives.end_m, 0.06);
 }
 
-TEST(BadRobots, OdometryThatNeverMovesIsNamedAndTheCovarianceHonest) {
+TEST(BadRobots, OdometryThatNeverMovesIsReportedAndTheCovarianceHonest) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
     for (OdometrySample& sample : log.odometry)
       sample.odom_from_base = {};
@@ -175,7 +175,7 @@ TEST(BadRobots, OdometryThatNeverMovesIsNamedAndTheCovarianceHonest) {
   EXPECT_LT(drives.nees, 5.0);
 }
 
-TEST(BadRobots, TurnsThatOdometryInventsAreNotTakenForRangesOfAnotherScale) {
+TEST(BadRobots, FalseTurnsAreNotTakenForARangeScale) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random& random) {
     for (std::size_t i = 600; i < log.odometry.size(); i += 300) {
       const double turn_rad = random.uniform(0.2, 0.5);
@@ -186,7 +186,7 @@ TEST(BadRobots, TurnsThatOdometryInventsAreNotTakenForRangesOfAnotherScale) {
   EXPECT_LT(drives.ate_m, 0.06);
 }
 
-TEST(BadRobots, OdometryThatLosesWhatWasDrivenIsNoticed) {
+TEST(BadRobots, OdometryThatLosesMotionIsDetected) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
     const auto [from, to] = samples_of(2.0);
     const Se2 held = log.odometry[from].odom_from_base;
@@ -201,7 +201,7 @@ TEST(BadRobots, OdometryThatLosesWhatWasDrivenIsNoticed) {
   EXPECT_GT(drives.findings.odometry_stuck, 10);
 }
 
-TEST(BadRobots, PeopleWhoWalkAlongAreLeftOutAndNamed) {
+TEST(BadRobots, PeopleWalkingAlongAreExcludedAndReported) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random& random) {
     for (std::size_t i = 0; i < log.scans.size(); ++i) {
       const double time_s = 0.2 * static_cast<double>(i);
@@ -222,14 +222,14 @@ TEST(BadRobots, PeopleWhoWalkAlongAreLeftOutAndNamed) {
   EXPECT_GT(20 * drives.findings.beams_moving, drives.findings.beams);
 }
 
-TEST(BadRobots, NoiseOfRangesIsFound) {
+TEST(BadRobots, RangeNoiseIsLearnt) {
   const Drives drives =
       drive_all([](SyntheticCorridor& corridor) { corridor.range_sigma_m = 0.04; }, not_at_all);
   EXPECT_LT(drives.nees, 5.0);
   EXPECT_NEAR(drives.findings.range_sigma_m, 0.04, 0.008);
 }
 
-TEST(BadRobots, RangesOfAnotherScaleAreCorrectedAndNamed) {
+TEST(BadRobots, AWrongRangeScaleIsCorrectedAndReported) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
     for (std::size_t i = log.scans.size() / 2; i < log.scans.size() / 2 + 50; ++i)
       for (double& range_m : log.scans[i].ranges_m)

@@ -29,7 +29,7 @@ std::vector<Step> match_markers(const SensorLog& log, const SensorSetup& setup,
 }
 
 // The paper's claim in small, with its controls: odometry, and the same filter without ids.
-TEST(MarkerMatching, BeatsOdometryAndItselfWithoutIds) {
+TEST(MarkerMatching, IsBetterThanOdometryAndThanWithoutIds) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const SyntheticCorridor corridor = short_corridor(seed);
     const SensorLog log = test::drive(corridor);
@@ -51,7 +51,7 @@ TEST(MarkerMatching, BeatsOdometryAndItselfWithoutIds) {
 
 // Without markers nothing in a corridor tells how far the robot has come, and nothing may pretend
 // to.
-TEST(MarkerMatching, WithoutMarkersVarianceAlongTheCorridorGrowsAndNothingPulls) {
+TEST(MarkerMatching, WithoutMarkersVarianceAlongTheCorridorGrowsWithoutBias) {
   double mean_pull_m = 0.0;
   constexpr int kSeeds = 6;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {

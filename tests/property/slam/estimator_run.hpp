@@ -30,7 +30,7 @@ inline EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std:
   return setup;
 }
 
-/// What the filter is told of a camera that is as good as the simulator's; markers hang as usual.
+/// Sigmas of a camera as accurate as the simulated one; markers hang as usual.
 inline SightingSigmas exact_camera() {
   return {.learnt = {0.0005, 0.0001, 0.003}, .bearing_rad = 0.00003, .position_m = 0.0001};
 }

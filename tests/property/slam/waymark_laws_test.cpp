@@ -119,7 +119,7 @@ TEST(WaymarkEstimator, AnEmptyScanNeitherCrashesNorMoves) {
     EXPECT_EQ(estimator.update(nothing).map_from_base.x(), before.x());
 }
 
-TEST(WaymarkEstimator, APoseThatIsGivenIsNoMotionOfOdometryThatStandsStill) {
+TEST(WaymarkEstimator, ACommandedPoseIsNotTakenForStuckOdometry) {
   const SyntheticCorridor corridor = corridor_with_markers(1);
   WaymarkEstimator estimator{estimator_setup_of(corridor, 1), {}};
   run(estimator, drive(corridor), setup_of(corridor));
@@ -144,7 +144,7 @@ TEST(WaymarkEstimator, APoseThatIsGivenIsNoMotionOfOdometryThatStandsStill) {
   EXPECT_LT(std::sqrt(after.covariance(0, 0)), 1.0);
 }
 
-TEST(WaymarkEstimator, APoseThatNoGridCouldHoldIsRefused) {
+TEST(WaymarkEstimator, ACommandedPoseOutsideTheLargestGridIsRefused) {
   const SyntheticCorridor corridor = corridor_with_markers(1);
   WaymarkEstimator estimator{estimator_setup_of(corridor, 1), {}};
   run(estimator, drive(corridor), setup_of(corridor));
@@ -168,7 +168,7 @@ TEST(WaymarkEstimator, TheFinalTrajectoryIsNoWorseThanTheOneWhileDriving) {
 
 /// Up and down the same corridor: the graph grows with the area, and is as good as one that keeps
 /// everything.
-TEST(WaymarkEstimator, APlaceThatIsKnownWellDoesNotMakeTheGraphGrow) {
+TEST(WaymarkEstimator, RevisitingAPlaceDoesNotMakeTheGraphGrow) {
   SyntheticCorridor corridor = corridor_with_markers(5);
   corridor.speed_m_s = 1.0;
   corridor.length_m = 7.0;
@@ -196,7 +196,7 @@ TEST(WaymarkEstimator, APlaceThatIsKnownWellDoesNotMakeTheGraphGrow) {
 
 /// The first one makes the solver step the whole graph, for which the second one must not stand in
 /// the window without a measurement.
-TEST(WaymarkEstimator, AMarkerThatReturnsAndANewOneBesideItAreUsedTogether) {
+TEST(WaymarkEstimator, AReturningMarkerAndANewOneInOneScanAreBothUsed) {
   SyntheticCorridor corridor = corridor_with_markers(3);
   corridor.speed_m_s = 1.0;
   corridor.length_m = 40.0;
@@ -218,17 +218,17 @@ TEST(WaymarkEstimator, AMarkerThatReturnsAndANewOneBesideItAreUsedTogether) {
 }
 
 /// A stuck encoder: nothing for a while, then at once what was driven meanwhile.
-TEST(WaymarkEstimator, OdometryThatCatchesUpIsNotCountedTwice) {
+TEST(WaymarkEstimator, LateMotionIsNotCountedTwice) {
   const SyntheticCorridor corridor = corridor_with_markers(1);
   std::vector<Observation> scans = test::observations_of(drive(corridor), corridor);
   const std::size_t begin = scans.size() / 3;
   const std::size_t end = 2 * scans.size() / 3;
-  Motion kept_back;
+  Motion late_motion;
   for (std::size_t i = begin; i < end; ++i) {
-    kept_back = kept_back.then(scans[i].motion);
+    late_motion = late_motion.then(scans[i].motion);
     scans[i].motion = {};
   }
-  scans[end].motion = kept_back.then(scans[end].motion);
+  scans[end].motion = late_motion.then(scans[end].motion);
   scans[end].odometry_caught_up = true;
   WaymarkEstimator stuck{estimator_setup_of(corridor, 1), {}};
   WaymarkEstimator sound{estimator_setup_of(corridor, 1), {}};
@@ -241,7 +241,7 @@ TEST(WaymarkEstimator, OdometryThatCatchesUpIsNotCountedTwice) {
   EXPECT_LT((with_gap.translation() - without_gap.translation()).norm(), 0.1);
 }
 
-TEST(WaymarkEstimator, AScanOfGarbageIsNotMapped) {
+TEST(WaymarkEstimator, ARandomScanIsNotMapped) {
   const SyntheticCorridor corridor = corridor_with_markers(2);
   std::vector<Observation> scans = test::observations_of(drive(corridor), corridor);
   WaymarkEstimator dirty{estimator_setup_of(corridor, 1), {}};

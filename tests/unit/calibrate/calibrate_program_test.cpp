@@ -143,7 +143,7 @@ TEST(CalibrateProgram, ALogGivesACameraToo) {
   expect_known_camera(toml);
 }
 
-TEST(CalibrateProgram, WhatIsNotEnoughGives1AndWhatCannotBeUsed2) {
+TEST(CalibrateProgram, TooFewViewsGive1AndUnusableInputGives2) {
   const evaluate::TemporaryFolder folder;
   const std::string few = write_frames(folder.path() / "few", pictures(5));
   const std::string empty = write_frames(folder.path() / "empty", {});

@@ -101,7 +101,7 @@ TEST(Lens, TheConfiguredModelPredictsPixelsAtTheEdgesOfTheImage) {
   EXPECT_LT(calibration.fit->bearing_sigma_rad, 0.0001) << "0.05 px: nothing is left of this lens";
 }
 
-TEST(Lens, WhatTheModelCannotDescribeShowsInTheBearingSigma) {
+TEST(Lens, ModelErrorsIncreaseTheBearingSigma) {
   Random random{4, 26};
   std::vector<BoardView> views = views_of(24, 0.7, kTilt_rad, random);
   const double without_rad = calibrated(views).fit.value().bearing_sigma_rad;
@@ -113,7 +113,7 @@ TEST(Lens, WhatTheModelCannotDescribeShowsInTheBearingSigma) {
   EXPECT_GT(with_rad, 2.0 * without_rad);
 }
 
-TEST(Lens, AViewThatDoesNotFitIsLeftOutAndNamed) {
+TEST(Lens, AnOutlierViewIsExcludedAndNamed) {
   Random random{5, 26};
   std::vector<BoardView> views = views_of(24, 0.7, kTilt_rad, random);
   for (std::size_t i = 0; i < views[7].corners_px.size(); i += 2)
@@ -129,7 +129,7 @@ std::string refused(const std::vector<BoardView>& views) {
   return calibration.missing.empty() ? "not refused" : refusal(calibration, "frames");
 }
 
-TEST(Lens, ACornerAtTheWrongPlaceIsLeftOut) {
+TEST(Lens, AnOutlierCornerIsExcluded) {
   Random random{10, 26};
   std::vector<BoardView> views = views_of(24, 0.7, kTilt_rad, random);
   const std::size_t without = calibrated(views).fit.value().num_dropped_corners;
@@ -150,7 +150,7 @@ TEST(Lens, TooFewAndRepeatedViewsAreRefused) {
   EXPECT_THAT(refused(views), HasSubstr("3 more different views of the board (there are 7 of 10)"));
 }
 
-TEST(Lens, ViewsInTheMiddleOnlyAreRefusedWithThePartsThatAreMissing) {
+TEST(Lens, ViewsThatCoverOnlyTheMiddleAreRefused) {
   Random random{7, 26};
   std::vector<BoardView> views = views_of(24, 0.6, kTilt_rad, random);
   std::erase_if(views, [](const BoardView& view) {

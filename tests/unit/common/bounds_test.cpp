@@ -41,7 +41,7 @@ RejectReason reason_of(const Type& message) {
   return decode<Type>(payload).reason;
 }
 
-TEST(Bounds, NumbersThatNoRobotHasAreOutOfBounds) {
+TEST(Bounds, PhysicallyImpossibleNumbersAreOutOfBounds) {
   for (const double absurd_m : {1.1e7, 1e308, -1e308}) {
     slam_estimate_t estimate{};
     EXPECT_EQ(reason_of(estimate), RejectReason::kNone);

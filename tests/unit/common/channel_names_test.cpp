@@ -74,7 +74,7 @@ TEST(ChannelNames, TwoOfDifferentTypesMayShareAName) {
   EXPECT_EQ(ChannelNames::of_type(sharing, 7), "SLAM_MAP");
 }
 
-TEST(ChannelNames, ThatLcmWouldNotTakeAreRefused) {
+TEST(ChannelNames, NamesThatLcmRejectsAreRefused) {
   EXPECT_THAT(error_of({{}, {"channels.odometry='MBOT.*'"}}), HasSubstr("letters, digits"));
   EXPECT_THAT(error_of({{}, {"channels.odometry=''"}}), HasSubstr("letters, digits"));
   EXPECT_THAT(error_of({{}, {"channels.odometry=" + std::string(64, 'A')}}), HasSubstr("1 to 63"));

@@ -93,7 +93,7 @@ void expect_round_trip(Channel<Type> channel, const Type& message) {
 
 // LCM's fingerprint is made of field names and types only, so a type with the fields of another is
 // that type on the wire: drivers, viewers and logs of bot_core and MBot are ours.
-TEST(Fingerprint, IsThatOfTheTypesOfOthers) {
+TEST(Fingerprint, EqualsThatOfForeignTypesWithTheSameLayout) {
   EXPECT_EQ(planar_lidar_t::getHash(), bot_core::planar_lidar_t::getHash());
   EXPECT_EQ(image_t::getHash(), bot_core::image_t::getHash());
   EXPECT_EQ(pose2D_t::getHash(), mbot_lcm_msgs::pose2D_t::getHash());
@@ -295,7 +295,7 @@ TEST(Codec, MutatedBytesAreRefusedOrDecodeToWhatTheySay) {
   EXPECT_GT(accepted, 1000);  // changed numbers and letters are as good as the original ones
 }
 
-TEST(Codec, SensesNonsense) {
+TEST(Codec, RejectsImplausibleValues) {
   planar_lidar_t lidar = small_lidar();
   lidar.radstep = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(encode(channels::kLidar, lidar), std::logic_error);
@@ -330,7 +330,7 @@ TEST(Codec, TilesFarOutAreRefused) {
   }
 }
 
-TEST(Convert, MbotAnglesTurnRoundAndZeroMeansNoReturn) {
+TEST(Convert, MbotAnglesAreNegatedAndZeroMeansNoReturn) {
   lidar_t m{};
   m.utime = 100;
   m.num_ranges = 2;

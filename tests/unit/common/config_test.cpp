@@ -77,7 +77,7 @@ TEST(Config, ALaterListReplacesAnEarlierOne) {
   EXPECT_EQ(config.shelves[0].vases, Shelf{}.vases);
 }
 
-TEST(Config, AListStandsWhenALaterSourceHasNone) {
+TEST(Config, AListIsKeptWhenALaterSourceOmitsIt) {
   const auto file = file_with("[[shelves]]\nbooks = 30\n");
 
   const auto config = load_config<Room>({{file}, {"chairs=2"}});
@@ -162,7 +162,7 @@ std::string house_error_of(const ConfigSources& sources) {
   return "no error";
 }
 
-TEST(Config, AKeyThatTheOtherSettingsDoNotUseIsAnError) {
+TEST(Config, AKeyThatOtherSettingsMakeUselessIsAnError) {
   const auto file = file_with("[wood]\nbooks = 2\n");
   EXPECT_THAT(house_error_of({{file}, {}}),
               HasSubstr("config_test.toml:2: wood.books: only heating = stove uses it"));

@@ -26,7 +26,7 @@ TEST(DescribedSensors, AMirroredLidarsAnglesAreNegated) {
   EXPECT_EQ(described.time, scan.time);
 }
 
-TEST(DescribedSensors, StampsThatComeLateAreTakenBack) {
+TEST(DescribedSensors, ConfiguredDelaysAreSubtractedFromStamps) {
   LidarConfig lidar;
   lidar.late_s = 0.03;
   CameraConfig camera;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/geometry/principal_axes.hpp"
+#include "common/geometry/rigid_fit.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/node/counters.hpp"
 #include "common/random/random.hpp"
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -113,7 +115,7 @@ TEST(CameraConfig, LooksForwardByDefault) {
   EXPECT_TRUE((camera.base_from_camera() * ahead).isApprox(-Eigen::Vector3d::UnitZ()));
 }
 
-TEST(Counters, TheKindIsNotInTheName) {
+TEST(Counters, CountersAreNamedWithoutTheirKind) {
   Counters counters;
   counters.add("late rejected words that were dropped");
   EXPECT_EQ(counters.total(CountKind::kEvent), 1);
@@ -125,7 +127,16 @@ TEST(Counters, TheKindIsNotInTheName) {
   EXPECT_EQ(counters.get("something else"), 0);
 }
 
-TEST(PrincipalAxes, AreThoseOfATurnedEllipse) {
+TEST(RigidFit, RecoversTheMotionOfTransformedPoints) {
+  const Se2 target_from_source{1.0, -2.0, 2.5};
+  std::vector<PointPair> pairs;
+  for (const Eigen::Vector2d& source :
+       {Eigen::Vector2d{0.0, 0.0}, Eigen::Vector2d{3.0, 1.0}, Eigen::Vector2d{-1.0, 4.0}})
+    pairs.push_back({target_from_source * source, source});
+  expect_near(rigid_fit(pairs), target_from_source);
+}
+
+TEST(PrincipalAxes, EqualThoseOfARotatedEllipse) {
   const double angle_rad = 0.4;
   const Eigen::Matrix2d turn = Eigen::Rotation2Dd{angle_rad}.toRotationMatrix();
   const Eigen::Matrix2d ellipse = turn * Eigen::Vector2d{9.0, 4.0}.asDiagonal() * turn.transpose();

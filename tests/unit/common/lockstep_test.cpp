@@ -150,7 +150,7 @@ TEST(Lockstep, ARestartedDetectorChangesNothing) {
   EXPECT_EQ(stack.slam_input_, expected_input(50));
 }
 
-TEST(Lockstep, StateHashesTellWhatWasSent) {
+TEST(Lockstep, StateHashesDependOnTheOutputs) {
   Stack a{0.0, 1};
   Stack b{0.3, 2};
   Stack c{0.0, 1};
@@ -161,7 +161,7 @@ TEST(Lockstep, StateHashesTellWhatWasSent) {
   EXPECT_NE(a.master_.state_hashes().at("detector"), c.master_.state_hashes().at("detector"));
 }
 
-TEST(Lockstep, StrangersMessagesAreNotProcessed) {
+TEST(Lockstep, MessagesOfOtherPublishersAreIgnored) {
   Stack stack{0.0, 1};
   while (!stack.master_.all_ready())
     stack.send({stack.master_.probe()});
@@ -184,7 +184,7 @@ TEST(Lockstep, TicksOfAnotherRunAreIgnoredAndCounted) {
 
 // What a restarted process sees first may be a tick that was opened when older ones were still
 // open.
-TEST(Lockstep, ARestartedProcessBeginsWithTheOldestTickOpenNow) {
+TEST(Lockstep, ARestartedProcessStartsAtTheOldestOpenTick) {
   LockstepMaster master{1, {"viewer"}, 4};
   Counters counters;
   const auto make = [&counters] {
@@ -234,7 +234,7 @@ TEST(Lockstep, AStatefulProcessRefusesToJoinMidway) {
   EXPECT_THROW(late.take(tick.back()), std::runtime_error);
 }
 
-TEST(Lockstep, TheMasterNamesTheSilentInTheOrderInWhichTheyWaitForEachOther) {
+TEST(Lockstep, TheMasterNamesSilentParticipantsInOrderOfTheirDependencies) {
   LockstepMaster master{1, {"slam", "recorder", "detector"}, 2};
   EXPECT_THAT(master.not_ready(), ::testing::ElementsAre("slam", "recorder", "detector"));
   master.open_tick(timestamp_from_us(1), {}, false);

@@ -78,7 +78,7 @@ class LogFile : public ::testing::Test {
   }
 };
 
-TEST_F(LogFile, IsOnTheDiskBeforeItTakesTheNameWhereAPowerCutMatters) {
+TEST_F(LogFile, IsSyncedBeforeItIsRenamed) {
   disk_calls.clear();
   LogWriter writer{path_};
   writer.write(event(3));
@@ -106,7 +106,7 @@ TEST_F(LogFile, HasTheFormatOfLcm) {
   EXPECT_EQ(bytes, expected);
 }
 
-TEST_F(LogFile, OnlyAClosedLogHasItsName) {
+TEST_F(LogFile, OnlyAClosedLogGetsItsFinalName) {
   {
     LogWriter writer{path_};
     writer.write(event(1));

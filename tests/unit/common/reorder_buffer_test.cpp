@@ -60,7 +60,7 @@ TEST(ReorderBuffer, AChannelMayLagBehindTheOthers) {
   EXPECT_EQ(counters.get("ANSWER late, dropped"), 1);
 }
 
-TEST(ReorderBuffer, AClockThatWasSetIsFollowed) {
+TEST(ReorderBuffer, AClockStepIsFollowed) {
   constexpr std::int64_t kHour_us = 3'600'000'000;
   for (const std::int64_t step_us : {-kHour_us, kHour_us}) {
     Counters counters;
@@ -75,7 +75,7 @@ TEST(ReorderBuffer, AClockThatWasSetIsFollowed) {
   }
 }
 
-TEST(ReorderBuffer, AJumpOfTheClockDoesNotSilenceEverybodyElse) {
+TEST(ReorderBuffer, AClockJumpOfOneSenderDoesNotBlockTheOthers) {
   Counters counters;
   ReorderBuffer buffer{Duration{0}};
   EXPECT_EQ(buffer.add(at(1000), counters).size(), 1U);
@@ -109,7 +109,7 @@ TEST(ReorderBuffer, AfterAPauseNothingIsLost) {
   EXPECT_EQ(counters.total(CountKind::kRejection) + counters.total(CountKind::kLoss), 0);
 }
 
-TEST(ReorderBuffer, WhatIsAloneAfterAPauseIsReleasedWhenNothingFollows) {
+TEST(ReorderBuffer, ASingleMessageAfterAPauseIsReleasedByFlush) {
   Counters counters;
   ReorderBuffer buffer{Duration{0}};
   EXPECT_EQ(buffer.add(at(0), counters).size(), 1U);

@@ -92,13 +92,13 @@ TEST_F(ProtectedInputs, ALogIsNotOverwrittenByAnyName) {
   expect_refused("log_linked", "link.lcm", "run.lcm");
 }
 
-TEST_F(ProtectedInputs, NorIsAConfigurationFile) {
+TEST_F(ProtectedInputs, AConfigurationFileIsNotOverwritten) {
   expect_refused("file", "slam.toml", "slam.toml");
   expect_refused("file_spelt", "./deeper/../slam.toml", "slam.toml");
   expect_refused("file_linked", "link.toml", "slam.toml");
 }
 
-TEST_F(ProtectedInputs, ThatAreLinksThemselvesAreTheSameFile) {
+TEST_F(ProtectedInputs, LinksToAnInputAreTheSameFile) {
   const Refused refused = run("links", {"--log", path("link.lcm"), "--out-log", path("run.lcm")});
   EXPECT_EQ(refused.exit_code, kExitUsage);
   EXPECT_THAT(refused.output, HasSubstr("would overwrite " + path("link.lcm")));

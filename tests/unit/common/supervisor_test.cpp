@@ -31,14 +31,14 @@ std::string heard_on(const std::string& name, std::string_view state) {
   return text;
 }
 
-TEST(Supervisor, IsToldOnItsSocket) {
+TEST(Supervisor, IsNotifiedOnItsSocket) {
   const std::string name = "/tmp/waymark-notify-" + std::to_string(getpid());
   EXPECT_EQ(heard_on(name, kReady), "READY=1");
   unlink(name.c_str());
   EXPECT_EQ(heard_on("@waymark-notify-" + std::to_string(getpid()), kAlive), "WATCHDOG=1");
 }
 
-TEST(Supervisor, NobodyIsNoProblem) {
+TEST(Supervisor, AMissingSupervisorIsIgnored) {
   unsetenv("NOTIFY_SOCKET");
   tell_supervisor(kReady);
   for (const std::string& name :

@@ -67,7 +67,7 @@ TEST(Validate, BeamsOfAnMbotAreMeasuredNearTheirScan) {
   EXPECT_NE(reason_of(scan), RejectReason::kNone);
 }
 
-TEST(Validate, AnArrayOfAnotherSizeIsNotSent) {
+TEST(Validate, AnArrayOfTheWrongSizeIsNotSent) {
   lidar_t scan{};
   scan.num_ranges = 1;
   scan.ranges = scan.thetas = scan.intensities = {1.0F};
@@ -85,7 +85,7 @@ TEST(Validate, AnArrayOfAnotherSizeIsNotSent) {
   }
 }
 
-TEST(Validate, AGridHasAsManyCellsAsItsSides) {
+TEST(Validate, TheCellsOfAGridMatchItsSize) {
   occupancy_grid_t grid{};
   grid.meters_per_cell = 0.1F;
   grid.width = 2;
@@ -104,7 +104,7 @@ TEST(Validate, AGridHasAsManyCellsAsItsSides) {
                                     }});
 }
 
-TEST(Validate, ChangesOfTheMapAreOfAKindThatThereIs) {
+TEST(Validate, MapChangesHaveAKnownKind) {
   map_changes_t changes{};
   changes.num_changes = 1;
   changes.changes.resize(1, map_change_t{});

@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(WholeFile, ReadersOfTheOldFileKeepIt) {
+TEST(WholeFile, ReadersOfTheReplacedFileKeepItsContent) {
   const auto file = std::filesystem::path{::testing::TempDir()} / "whole_file_test";
   write_whole_file(file, "old content");
   std::ifstream reader{file};

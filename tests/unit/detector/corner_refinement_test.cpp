@@ -109,7 +109,7 @@ TEST(CornerRefinement, CornersInACorridorAreUnbiasedOnBothWalls) {
 
 // White bits behind a thin border brighten it. Were that taken for its black, all four sides would
 // move outwards, and the marker nearer.
-TEST(CornerRefinement, SmallMarkersLookAsLargeAsTheyAre) {
+TEST(CornerRefinement, SmallMarkersHaveNoSizeBias) {
   for (const double ahead_m : {8.0, 8.7, 9.4, 10.1, 10.8}) {  // the border is 2.5 to 3.3 px thick
     for (const double shift_m : {0.0, 0.005, 0.01, 0.015}) {
       const Scene scene = scene_with(
@@ -144,7 +144,7 @@ TEST(CornerRefinement, BlurMakesCornersLessCertain) {
   EXPECT_GT(variance_of(1.0), 1.5 * variance_of(0.3));
 }
 
-TEST(BlurredSide, HasItsEdgeWhereItIsUnlessTheBorderIsThin) {
+TEST(BlurredSide, EdgeIsUnbiasedUnlessTheBorderIsThin) {
   const auto bias_px = [](double border_px, double inner_white) {
     const BlurredSide side{1.1, border_px, inner_white};
     const double black = BlurredSide{1.1, 10.0, 0.5}.profile(3.0).black;
@@ -164,7 +164,7 @@ TEST(EdgeProfile, MeasuresTheBlurAcrossAnEdge) {
   }
 }
 
-TEST(CornerRefinement, BentEdgesOfALensDoNotMatter) {
+TEST(CornerRefinement, EdgesBentByALensDoNotBiasCorners) {
   RobotConfig robot;
   robot.camera.distortion = {-0.3, 0.1, 0.001, -0.001, 0.0};
   const Scene scene =
@@ -174,7 +174,7 @@ TEST(CornerRefinement, BentEdgesOfALensDoNotMatter) {
     EXPECT_LT(error.norm(), 0.03);
 }
 
-TEST(CornerRefinement, CornersThatWouldMoveFarStayWithALargeCovariance) {
+TEST(CornerRefinement, CornersThatWouldMoveFarAreKeptWithALargeCovariance) {
   const Scene scene =
       scene_with({}, base_from_upright_marker({1.5, 0.0, 0.1}, std::numbers::pi), {});
   const CameraModel camera{scene.robot.camera};

@@ -87,7 +87,7 @@ TEST_F(DetectorNodeTest, BadFramesAreCountedAndAnsweredAndTheNextGoodOneIsRead) 
   EXPECT_EQ(answer_to(good).num_detections, 1);
 }
 
-TEST_F(DetectorNodeTest, WhatIsFoundIsCounted) {
+TEST_F(DetectorNodeTest, DetectionsAreCounted) {
   DetectorNode node{DetectorConfig{}, inbox_, outbox_};
   answer_to(jpeg_message(picture_of_marker_seven(), 1000));
   answer_to(jpeg_message(picture_of_marker_seven(), 2000));

@@ -72,7 +72,7 @@ RobotConfig robot_for(const cv::Mat& gray, const std::string& dictionary) {
   return robot;
 }
 
-TEST(Photographs, AtLeastAsManyMarkersAsOpenCvAndNoFalseId) {
+TEST(Photographs, DetectsAtLeastAsManyMarkersAsOpenCvAndNoFalseId) {
   const auto folder = photograph_folder();
   if (!folder) GTEST_SKIP() << "no photographs in shared/data/photos beside the source folder";
   for (const Photograph& photograph : photographs()) {

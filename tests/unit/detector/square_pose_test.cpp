@@ -73,7 +73,7 @@ TEST(SquarePose, TheRightSolutionComesFirstAtCorridorAngles) {
   }
 }
 
-TEST(SquarePose, SeenFromTheFrontTheRatioOfErrorsTellsTheDoubt) {
+TEST(SquarePose, InAFrontalViewTheErrorRatioShowsTheAmbiguity) {
   constexpr int kTrials = 100;
   const auto doubtful_at = [](double turn_rad) {
     Random random{3};

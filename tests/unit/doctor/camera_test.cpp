@@ -26,14 +26,14 @@ TEST(DoctorsCamera, ACameraThatIsTwentyMillisecondsLateIsAWarning) {
   EXPECT_THAT(check.remedy, HasSubstr("robot.camera.late_s = 0.0"));
 }
 
-TEST(DoctorsCamera, WhatIsFoundIsWrittenIntoTheRobot) {
+TEST(DoctorsCamera, MeasuredParametersAreWrittenIntoTheRobotFile) {
   const DoctorInput input = drive_in_room({.marker_size = 0.96});
   const Diagnosis diagnosis = diagnose(input);
   EXPECT_NEAR(diagnosis.robot.markers.size_m, 0.96 * input.described->markers.size_m, 0.004);
   EXPECT_NEAR(diagnosis.robot.camera.fx_px, input.described->camera.fx_px, 1.6);  // 0.3 %
 }
 
-TEST(DoctorsCamera, OdometryOfAnotherScaleIsNoOtherFocalLength) {
+TEST(DoctorsCamera, AWrongOdometryScaleDoesNotBiasTheFocalLength) {
   const DoctorInput input = drive_in_room({.distance_scale = 0.95});
   EXPECT_EQ(check_of(input, "focal_length").verdict, Verdict::kPass);
   EXPECT_EQ(check_of(input, "odometry_distance_scale").verdict, Verdict::kWarn);
@@ -64,7 +64,7 @@ TEST(DoctorsCamera, BlurAndUnreadableFramesAreNamed) {
   EXPECT_THAT(frames.finding, HasSubstr("another size"));
 }
 
-TEST(DoctorsCamera, WithoutMarkersNothingIsSaidOfThem) {
+TEST(DoctorsCamera, WithoutMarkersTheirChecksAreSkipped) {
   DoctorInput input = drive_in_room({.duration_s = 20.0});
   input.camera->sightings.clear();
   input.camera->blurs_px.clear();

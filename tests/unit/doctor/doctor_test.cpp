@@ -28,7 +28,7 @@ TEST(Doctor, AHealthyRobotPassesEverything) {
 
 /// Between samples interpolation smooths odometry's noise: a fit there is better, and no sign of an
 /// offset.
-TEST(Doctor, NoiseOfOdometryIsNoTimeOffset) {
+TEST(Doctor, NoisyOdometryIsNotReportedAsATimeOffset) {
   const Diagnosis diagnosis = diagnosis_of({.odometry_noise_rad = 0.004});
   const Check& check = find(diagnosis, "time_offset");
   EXPECT_EQ(check.verdict, Verdict::kPass);
@@ -41,7 +41,7 @@ TEST(Doctor, BackingUpThatIsCountedAsForwardIsNamed) {
       << to_text(diagnosis.checks);
 }
 
-TEST(Doctor, WhatTheLogDoesNotSayIsNoPass) {
+TEST(Doctor, WhatTheLogDoesNotShowIsUnknownAndNotPassed) {
   const Diagnosis standing =
       diagnosis_of({.distance_scale = 0.0, .duration_s = 2.0, .turning = 0.0});
   for (const char* name : {"lidar_mirrored", "odometry_turn_scale", "time_offset", "lidar_x",
@@ -57,7 +57,7 @@ TEST(Doctor, WithoutTurnsTheLidarsPlaceIsUnknown) {
     EXPECT_EQ(find(straight, name).verdict, Verdict::kUnchecked) << find(straight, name).finding;
 }
 
-TEST(Doctor, WritesWhatItFoundIntoTheRobot) {
+TEST(Doctor, WritesMeasuredParametersIntoTheRobotFile) {
   const Diagnosis diagnosis =
       diagnosis_of({.base_from_lidar = Se2{-0.2, -0.05, 0.0}, .no_return_m = 12.0});
 

@@ -19,7 +19,7 @@ struct Fault {
   double tolerance;
 };
 
-TEST(Doctor, EachFaultIsNamedWithItsNumberAndNoOther) {
+TEST(Doctor, EachFaultIsMeasuredAndNoOtherIsReported) {
   const std::vector<Fault> faults{
       {"lidar_mirrored", {.is_mirrored = true}, -1.0, 0.05},
       {"odometry_turn_scale", {.turn_scale = 1.15}, 1.15, 0.02},

@@ -36,13 +36,13 @@ TEST(ImportProgram, SkippedLinesGive1UnlessTolerated) {
   EXPECT_EQ(exit_code(carmen(data_file("bad.clf")) + " --tolerant"), 0);
 }
 
-TEST(ImportProgram, ALogThatIsThereGives2) {
+TEST(ImportProgram, AnExistingOutputGives2) {
   EXPECT_EQ(exit_code(carmen(data_file("small.clf"))), 0);
   EXPECT_EQ(exit_code(carmen(data_file("small.clf"))), 2);
   EXPECT_THAT(read_file(test_folder() / "stdout.txt"), HasSubstr("out.lcm: is there already"));
 }
 
-TEST(ImportProgram, NumbersThatAreNoneGive2) {
+TEST(ImportProgram, InvalidNumbersGive2) {
   for (const char* option : {"--lidar-x-m", "--lidar-y-m", "--lidar-yaw-deg", "--first-angle-deg",
                              "--angle-step-deg", "--min-range-m", "--max-range-m"}) {
     for (const char* number : {"nan", "inf", "-inf"}) {

@@ -63,7 +63,7 @@ TEST(Encoders, WithoutErrorsAStraightLineIsExact) {
   EXPECT_EQ(end.y(), 0.0);
 }
 
-TEST(Encoders, WithoutErrorsAQuarterCircleIsOne) {
+TEST(Encoders, WithoutErrorsAQuarterCircleIsExact) {
   const double radius_m = 1.0;
   const double half_separation_m = 0.287 / 2;
   const double quarter = std::numbers::pi / 2;
@@ -100,7 +100,7 @@ TEST(Encoders, AStandingRobotDoesNotDrift) {
   EXPECT_EQ(end.theta(), 0.0);
 }
 
-TEST(Encoders, TicksRoundTheWheelButDoNotAddUp) {
+TEST(Encoders, TickRoundingDoesNotAccumulate) {
   OdometryErrorConfig errors = no_errors();
   errors.ticks_per_turn = 64;
   const double tick_m = 2 * std::numbers::pi * 0.033 / 64;

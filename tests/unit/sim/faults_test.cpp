@@ -48,7 +48,7 @@ Sent send_ten(const FaultConfig& config) {
   return sent;
 }
 
-TEST(Span, ClockAndWayMustBothBeWithin) {
+TEST(Span, TimeAndDistanceMustBothBeWithin) {
   const Span span{.from_s = 1.0, .to_s = 2.0, .from_m = 5.0};
   EXPECT_TRUE(span.covers({1.0, 5.0}));
   EXPECT_FALSE(span.covers({2.0, 5.0}));
@@ -57,7 +57,7 @@ TEST(Span, ClockAndWayMustBothBeWithin) {
   EXPECT_FALSE(span.is_always());
 }
 
-TEST(FaultyOutlet, OffIsSilent) {
+TEST(FaultyOutlet, ADisabledSensorIsSilent) {
   EXPECT_THAT(send_ten(fault(FaultKind::kOff, {.from_s = 2.0, .to_s = 8.0})).values,
               ElementsAre(0, 1, 8, 9));
   EXPECT_THAT(send_ten(fault(FaultKind::kOff, {.from_m = 0.15})).values, ElementsAre(0, 1));
@@ -69,19 +69,19 @@ TEST(FaultyOutlet, AnotherSensorsFaultsDoNotMatter) {
   EXPECT_EQ(camera.release(timestamp_from_us(1)).size(), 1U);
 }
 
-TEST(FaultyOutlet, StuckRepeatsTheLastGoodOneWithNewStamps) {
+TEST(FaultyOutlet, AStuckSensorRepeatsItsLastValueWithNewStamps) {
   const Sent sent = send_ten(fault(FaultKind::kStuck, {.from_s = 3.0, .to_s = 6.0}));
   EXPECT_THAT(sent.values, ElementsAre(0, 1, 2, 2, 2, 2, 6, 7, 8, 9));
   EXPECT_THAT(sent.stamps_s, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
 }
 
-TEST(FaultyOutlet, SlowKeepsEverySoManyth) {
+TEST(FaultyOutlet, ASlowSensorKeepsEveryNthMessage) {
   FaultConfig config = fault(FaultKind::kSlow);
   config.keep_every = 4;
   EXPECT_THAT(send_ten(config).values, ElementsAre(0, 4, 8));
 }
 
-TEST(FaultyOutlet, DelayedIsStampedAndSentLate) {
+TEST(FaultyOutlet, ADelayedSensorIsStampedAndSentLate) {
   FaultConfig config = fault(FaultKind::kDelayed, {.from_s = 1.0, .to_s = 3.0});
   config.delay_s = 1.5;
   const Sent sent = send_ten(config);
@@ -89,7 +89,7 @@ TEST(FaultyOutlet, DelayedIsStampedAndSentLate) {
   EXPECT_THAT(sent.values, ElementsAre(0, 1, 3, 2, 4, 5, 6, 7, 8, 9));
 }
 
-TEST(FaultyOutlet, IntermittentLosesItsShare) {
+TEST(FaultyOutlet, AnIntermittentSensorLosesItsShare) {
   FaultConfig config = fault(FaultKind::kIntermittent);
   config.share = 1.0;
   EXPECT_THAT(send_ten(config).values, IsEmpty());
@@ -101,7 +101,7 @@ TEST(FaultyOutlet, IntermittentLosesItsShare) {
   EXPECT_NEAR(static_cast<double>(outlet.release(timestamp_from_us(1000)).size()), 700.0, 58.0);
 }
 
-TEST(Corruption, ScaledRangesBeyondTheGreatestHaveNoReturn) {
+TEST(Corruption, ScaledRangesBeyondTheMaximumHaveNoReturn) {
   LidarScan scan{};
   scan.ranges_m = {1.0, 3.4, std::nan("")};
   scale_ranges(scan, {}, 0.05);
@@ -110,7 +110,7 @@ TEST(Corruption, ScaledRangesBeyondTheGreatestHaveNoReturn) {
   EXPECT_TRUE(std::isnan(scan.ranges_m[2]));
 }
 
-TEST(Corruption, OneWheelSpinsForAWhileAndEncodersKeepWhatItCounted) {
+TEST(Corruption, AWheelSlipIsLimitedInTimeAndStaysInTheOdometry) {
   FaultConfig config = fault(FaultKind::kWrong, {.from_s = 1.0, .to_s = 2.0});
   config.sensor = Sensor::kOdometry;
   config.share = 0.1;

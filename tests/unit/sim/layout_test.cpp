@@ -93,7 +93,7 @@ TEST(Layout, RecessesAndRoomsOpenFromTheirCorridor) {
   EXPECT_NEAR(ray_m(physics, 12.0, -1.1, 0.0), 0.45, 1e-6);        // the jamb
 }
 
-TEST(Layout, WhatDoesNotFitIsFound) {
+TEST(Layout, OverlappingPartsAreReported) {
   WorldConfig config{};
   config.length_m = 20.0;
   config.openings = {{0, Side::kLeft, 6.0}, {0, Side::kLeft, 6.5}};
@@ -191,7 +191,7 @@ TEST(Markers, ASharedIdNumbersItsInstances) {
   EXPECT_EQ(world.markers[3].instance, 3);
 }
 
-TEST(Markers, TheSeedSparesAShare) {
+TEST(Markers, ASeededShareOfMarkersIsMissing) {
   MarkerLayoutConfig markers{};
   markers.missing_share = 0.5;
   std::size_t hanging = 0;

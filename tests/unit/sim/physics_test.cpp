@@ -70,7 +70,7 @@ TEST(Physics, WallsStopTheRobotAndItsWheelsSlip) {
   EXPECT_GT(rolled_m, travelled_m + 0.1);
 }
 
-TEST(Physics, NonsenseModelsAreExplained) {
+TEST(Physics, InvalidModelsAreExplained) {
   EXPECT_THROW(Physics{"<mujoco><nonsense/></mujoco>"}, SimulatorError);
 }
 

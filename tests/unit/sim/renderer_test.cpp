@@ -173,7 +173,7 @@ TEST(Renderer, EdgesAlongPixelRowsAreUnbiased) {
   }
 }
 
-TEST(Renderer, WhatStandsInFrontOfAPlateIsNotPrintedOn) {
+TEST(Renderer, OccludersOfAPlateAreNotPrintedOn) {
   WorldConfig world{};
   BoxConfig box{};
   box.x_m = 4.0;

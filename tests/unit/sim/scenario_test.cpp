@@ -45,7 +45,7 @@ TEST(Scenario, TheShippedDefaultCorridorIsTheDefault) {
   EXPECT_EQ(dump_config(shipped), dump_config(Scenario{}));
 }
 
-TEST(Scenario, EveryHardCorridorSaysWhatItExpects) {
+TEST(Scenario, EveryHardCorridorHasExpectations) {
   const std::filesystem::path folder =
       std::filesystem::path{WAYMARK_SOURCE_DIR} / "deploy" / "scenarios" / "hard";
   int count = 0;
@@ -106,7 +106,7 @@ TEST(Scenario, TheWholeWayMustBeFree) {
   EXPECT_THAT(error_of({"kidnaps=[{at_m=3.0, to_x_m=60.0}]"}), HasSubstr("kidnaps[0]"));
 }
 
-TEST(Scenario, WhatCannotHappenIsAnError) {
+TEST(Scenario, ImpossibleEventsAreErrors) {
   EXPECT_THAT(error_of({"kidnaps=[{to_x_m=9.0}]"}), HasSubstr("expected an at_s or at_m"));
   EXPECT_THAT(error_of({"markers.missing=[24]"}), HasSubstr("there is no place 24"));
   EXPECT_THAT(error_of({"markers.missing=[3]", "markers.moved=[{place=3, at_m=5.0, dx_m=1.0}]"}),

@@ -47,7 +47,7 @@ FaultConfig fault(Sensor sensor, FaultKind kind, Span during = {}) {
   return config;
 }
 
-TEST(Kidnap, TruthJumpsOdometryDoesNotAndTheRouteIsFinished) {
+TEST(Kidnap, TruthJumpsWithoutOdometryAndTheRouteIsFinished) {
   Scenario scenario = small_scenario();
   scenario.kidnaps = {{{.at_m = 0.5}, 2.0, 0.1, 0.2}};
   double largest_true_m = 0.0, largest_counted_m = 0.0, counted_m = 0.0;
@@ -92,7 +92,7 @@ TEST(Faults, ALidarThatIsStuckRepeatsItsScan) {
   EXPECT_EQ(repeated, 5);
 }
 
-TEST(Faults, ACameraThatIsOffSendsNothing) {
+TEST(Faults, ADisabledCameraSendsNothing) {
   Scenario scenario = small_scenario();
   scenario.faults = {fault(Sensor::kCamera, FaultKind::kOff)};
   for (const Tick& tick : all_ticks(scenario))
@@ -117,7 +117,7 @@ TEST(Faults, DelayedStampsBelongToTheTickThatSendsThem) {
   EXPECT_GT(count, 10U);
 }
 
-TEST(Faults, NoFaultsNoDifference) {
+TEST(Faults, WithoutFaultsTheOutputIsUnchanged) {
   Scenario later = small_scenario();
   later.faults = {fault(Sensor::kLidar, FaultKind::kGarbage, {.from_s = 1000.0}),
                   fault(Sensor::kCamera, FaultKind::kStuck, {.from_s = 1000.0})};
@@ -133,7 +133,7 @@ TEST(Faults, NoFaultsNoDifference) {
   }
 }
 
-TEST(SceneDynamics, ABoxIsThereOnlyWhileItIsPresent) {
+TEST(SceneDynamics, ABoxIsVisibleOnlyDuringItsTimes) {
   Scenario scenario = small_scenario();
   BoxConfig box{};
   box.x_m = 4.4;
@@ -154,7 +154,7 @@ TEST(SceneDynamics, ABoxIsThereOnlyWhileItIsPresent) {
   }
 }
 
-TEST(SceneDynamics, AMovedMarkerIsReportedOnceAndSeenElsewhere) {
+TEST(SceneDynamics, AMovedMarkerIsReportedOnceAndSeenAtItsNewPlace) {
   Scenario scenario = small_scenario();
   scenario.camera_noise.sigma_grey_levels = 0.0;
   scenario.route.start_x_m = 1.0;
@@ -175,7 +175,7 @@ TEST(SceneDynamics, AMovedMarkerIsReportedOnceAndSeenElsewhere) {
   EXPECT_NE(ticks[6].frames[0].jpeg, still_ticks[6].frames[0].jpeg);
 }
 
-TEST(RealCamera, DiffersFromTheNominalOneAsSaid) {
+TEST(RealCamera, DiffersFromTheNominalOneByTheConfiguredErrors) {
   const CameraConfig real = real_camera({}, {.focal_share = 0.005, .yaw_deg = 0.3}, 1);
   EXPECT_NEAR(real.fx_px, 1.005 * CameraConfig{}.fx_px, 1e-9);
   EXPECT_NEAR(real.yaw_rad, radians(0.3), 1e-12);

@@ -71,7 +71,7 @@ TEST(SimNode, RollingScansAreMbotMessages) {
   EXPECT_EQ(scans, 1);
 }
 
-TEST(SimNode, WritesWhatIsTrueAndTellsTheOthersOnlyOfTheRobot) {
+TEST(SimNode, WritesTheTruthAndARobotFileWithoutIt) {
   SimConfig config = short_run();
   config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_test";
   std::filesystem::remove_all(config.out_dir);
@@ -98,7 +98,7 @@ TEST(SimNode, WritesWhatIsTrueAndTellsTheOthersOnlyOfTheRobot) {
   EXPECT_THAT(truth, ::testing::StartsWith("0.000000 1.0000"));
 }
 
-TEST(SimNode, AStartThatFailsLeavesWhatIsThere) {
+TEST(SimNode, AFailedStartLeavesExistingFiles) {
   SimConfig config = short_run();
   config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_start_test";
   std::filesystem::remove_all(config.out_dir);
@@ -131,16 +131,16 @@ TEST(SimNode, MovedMarkersAreWrittenDown) {
   EXPECT_THAT(content(config.out_dir / "truth_markers.csv"), HasSubstr("1,0,4.000000,-0.998000"));
 }
 
-TEST(SimNode, TheRobotIsToldOfTheNominalCameraOnly) {
+TEST(SimNode, TheRobotFileHasTheNominalCameraOnly) {
   SimConfig config = short_run();
   config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_camera_test";
   config.camera_errors.focal_share = 0.005;
   Inbox inbox;
   SimNode node{config, inbox};
   node.begin();
-  const std::string told = content(config.out_dir / "robot.toml");
-  EXPECT_THAT(told, HasSubstr("fx_px = 530.4663 "));
-  EXPECT_THAT(told, Not(HasSubstr("camera_errors")));
+  const std::string robot_toml = content(config.out_dir / "robot.toml");
+  EXPECT_THAT(robot_toml, HasSubstr("fx_px = 530.4663 "));
+  EXPECT_THAT(robot_toml, Not(HasSubstr("camera_errors")));
 }
 
 TEST(SimNode, AnUnwritableFolderIsASetupError) {
@@ -150,7 +150,7 @@ TEST(SimNode, AnUnwritableFolderIsASetupError) {
   EXPECT_THROW((SimNode{config, inbox}), SetupError);
 }
 
-TEST(SimNode, RunIdsTellScenariosApart) {
+TEST(SimNode, RunIdsDifferBetweenScenarios) {
   Inbox inbox;
   SimConfig other = short_run();
   other.run.seed = 2;

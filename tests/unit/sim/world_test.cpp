@@ -60,7 +60,7 @@ TEST(World, StaggeredShiftsTheRightWallByHalfASpacing) {
   EXPECT_EQ(world.markers.back().id, 4);
 }
 
-TEST(World, StationsDoNotSufferFromRounding) {
+TEST(World, MarkerPlacesAreNotAffectedByRounding) {
   MarkerLayoutConfig markers{};
   markers.first_m = 0.1;
   markers.spacing_m = 0.1;

@@ -49,7 +49,7 @@ std::string why_refused(const command_t& command) {
   return {};
 }
 
-TEST(Command, NamesThatAreNoNamesAreRefused) {
+TEST(Command, InvalidMapNamesAreRefused) {
   for (const std::string name : {"a", "Corridor_2-b", "0"})
     EXPECT_EQ(why_refused(save_command(name)), "") << name;
   for (const std::string& name :
@@ -58,7 +58,7 @@ TEST(Command, NamesThatAreNoNamesAreRefused) {
     EXPECT_NE(why_refused(save_command(name)).find("letters, digits"), std::string::npos) << name;
 }
 
-TEST(Command, PosesThatAreNoPosesAreRefused) {
+TEST(Command, InvalidPosesAreRefused) {
   EXPECT_EQ(why_refused(pose_command(1.0, 3.0)), "");
   EXPECT_NE(why_refused(pose_command(std::numeric_limits<double>::quiet_NaN(), 0.0)), "");
   EXPECT_NE(why_refused(pose_command(0.0, std::numeric_limits<double>::infinity())), "");
@@ -113,7 +113,7 @@ TEST(CommandDesk, AFloodIsRefusedWithOneAnswerASecond) {
   EXPECT_NE(last.find("more than 5 commands"), std::string::npos);
 }
 
-TEST(CommandRelay, StampsCommandsOfOneTickAndLeavesItsOwnAlone) {
+TEST(CommandRelay, StampsCommandsOfATickAndIgnoresItsOwn) {
   Counters counters;
   CommandRelay relay{counters};
   for (int i = 0; i < 20; ++i) {
@@ -201,7 +201,7 @@ TEST_F(CommandedSlam, SavesAMapThatCanBeLocalisedIn) {
   EXPECT_GT(test::with_pose(localised), localised.estimates.size() / 2);
 }
 
-TEST_F(CommandedSlam, AResetBeginsAnotherMapAtTheRobot) {
+TEST_F(CommandedSlam, AResetStartsANewMapAtTheRobot) {
   command_t reset{};
   reset.kind = command_t::KIND_RESET;
   const test::Drive drive = drive_with(mapping(), messages_of(*drive_), {{20.0, reset}});
@@ -215,7 +215,7 @@ TEST_F(CommandedSlam, AResetBeginsAnotherMapAtTheRobot) {
   EXPECT_LT(drive.markers.size(), corridor_of(1).markers.size());
 }
 
-TEST_F(CommandedSlam, AMapBecomesOneToLocaliseIn) {
+TEST_F(CommandedSlam, ItsOwnMapCanBeSwitchedToLocalisation) {
   const test::Drive drive = drive_with(mapping(), messages_of(*drive_, 0.0, 18.0),
                                        {{13.0, mode_command(command_t::MODE_EXTEND)},
                                         {14.0, mode_command(command_t::MODE_LOCALISE)},
@@ -230,8 +230,8 @@ TEST_F(CommandedSlam, AMapBecomesOneToLocaliseIn) {
   EXPECT_LT(test::worst_error_m(drive, *drive_, test::map_from_world(*drive_)), 0.15);
 }
 
-// Carried 3 m back by hand, and told so; the odometry knows nothing of it.
-TEST_F(CommandedSlam, AMapThatIsAddedToIsAnotherOne) {
+// Carried 3 m back by hand, and set there by a command; odometry does not measure it.
+TEST_F(CommandedSlam, AnExtendedMapHasANewId) {
   const test::Drive drive = drive_with(mapping(), messages_of(*drive_, 0.0, 18.0),
                                        {{13.0, mode_command(command_t::MODE_LOCALISE)},
                                         {15.0, mode_command(command_t::MODE_EXTEND)}});
@@ -246,7 +246,7 @@ TEST_F(CommandedSlam, AMapThatIsAddedToIsAnotherOne) {
   EXPECT_NE(map_id_at(15.5), map_id_at(14.5));
 }
 
-TEST_F(CommandedSlam, AGivenPoseIsWhereTheRobotIs) {
+TEST_F(CommandedSlam, ACommandedPoseIsTheRobotsPose) {
   std::vector<Message> messages = messages_of(*drive_, 0.0, 20.0);
   std::vector<Message> later = messages_of(*drive_, 10.0, 40.0);
   const std::int64_t shift_us = 10'100'000;
@@ -275,7 +275,7 @@ TEST_F(CommandedSlam, AGivenPoseIsWhereTheRobotIs) {
   }
 }
 
-TEST_F(CommandedSlam, AReplayRepeatsThem) {
+TEST_F(CommandedSlam, AReplayRepeatsRecordedCommands) {
   const std::vector<std::pair<double, command_t>> commands{
       {15.0, save_command("m")}, {20.0, mode_command(command_t::MODE_LOCALISE)}};
   const test::Drive first = drive_with(mapping(), messages_of(*drive_), commands);

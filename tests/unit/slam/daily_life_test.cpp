@@ -70,7 +70,7 @@ TEST_F(DailyLife, TheCorrectionComposedWithOdometryIsTheEstimate) {
   }
 }
 
-TEST_F(DailyLife, ACorrectionsCovarianceCarriedToTheRobotIsThatOfItsPose) {
+TEST_F(DailyLife, TheCorrectionsCovarianceAtTheRobotIsThatOfItsPose) {
   const test::Drive drive = test::drive_through(SlamConfig{}, messages_of(*drive_, 0.0, 20.0));
   const correction_t correction = sent_on(channels::kSlamCorrection, drive).back();
   const slam_estimate_t& estimate = drive.estimates.back();
@@ -130,7 +130,7 @@ TEST(LastPose, IsUsedOnlyWhereMapAndOdometryFit) {
   EXPECT_FALSE(in_the_morning.start->is_certain);
 }
 
-TEST_F(DailyLife, ARestartedSlamGoesOnWhereItWas) {
+TEST_F(DailyLife, ARestartedSlamContinuesAtItsLastPose) {
   const test::SensorLog today = test::drive(corridor_of(2));
   SlamConfig config = config_for(MapMode::kLocalise, *file_);
   config.slam.state_folder = folder_;
@@ -146,7 +146,7 @@ TEST_F(DailyLife, ARestartedSlamGoesOnWhereItWas) {
 }
 
 // Killed, so that nothing but what it saved on the way is left.
-TEST_F(DailyLife, ASlamThatIsKilledWhileItDrawsAMapGoesOnWithIt) {
+TEST_F(DailyLife, AKilledSlamContinuesWithTheMapThatItWasDrawing) {
   SlamConfig config = config_for(MapMode::kMap, folder_ / "unfinished.map.lcm");
   config.slam.state_folder = folder_;
   config.slam.start.kind = StartKind::kLast;
@@ -168,7 +168,7 @@ TEST_F(DailyLife, ASlamThatIsKilledWhileItDrawsAMapGoesOnWithIt) {
 }
 
 // Ahead of it there is nothing of its map, and no marker anywhere.
-TEST_F(DailyLife, ARestartWithinSecondsNeedsNothingToConfirmThePlace) {
+TEST_F(DailyLife, ARestartWithinSecondsNeedsNoConfirmationOfThePose) {
   test::SyntheticCorridor bare = corridor_of(1);
   bare.markers.clear();
   const test::SensorLog log = test::drive(bare);
@@ -185,7 +185,7 @@ TEST_F(DailyLife, ARestartWithinSecondsNeedsNothingToConfirmThePlace) {
   EXPECT_GT(num_cells(), num_saved + num_saved / 10);
 }
 
-TEST_F(DailyLife, AMapInWhichTheRobotWasNotLastIsNotGoneOnWith) {
+TEST_F(DailyLife, AMapWithoutTheLastPoseIsNotContinued) {
   SlamConfig config = config_for(MapMode::kMap, folder_ / "other.map.lcm");
   config.slam.state_folder = folder_;
   fs::copy_file(*file_, config.save_map);
@@ -197,7 +197,7 @@ TEST_F(DailyLife, AMapInWhichTheRobotWasNotLastIsNotGoneOnWith) {
   EXPECT_NEAR(drive.estimates.front().x_m, 0.0, 0.05);
 }
 
-TEST_F(DailyLife, SavingOnTheWayAndGoingOnNeedAFile) {
+TEST_F(DailyLife, SavingPeriodicallyAndContinuingNeedAFile) {
   SlamConfig config;
   config.slam.save_map_every_s = 5.0;
   EXPECT_THROW(test::drive_through(config, {}), SetupError);
@@ -208,7 +208,7 @@ TEST_F(DailyLife, SavingOnTheWayAndGoingOnNeedAFile) {
 }
 
 // One marker is gone, one hangs a metre further on, one is new, and a wall has come.
-TEST_F(DailyLife, WhatContradictsTheMapIsNamed) {
+TEST_F(DailyLife, ChangesOfTheMapAreReported) {
   test::SyntheticCorridor changed = corridor_of(2);
   changed.markers[2].position_m.x() += 1.0;
   changed.markers.push_back(
@@ -234,7 +234,7 @@ TEST_F(DailyLife, WhatContradictsTheMapIsNamed) {
     }
 }
 
-TEST_F(DailyLife, NothingContradictsAMapThatIsRight) {
+TEST_F(DailyLife, ACorrectMapHasNoChanges) {
   const test::Drive today = test::drive_through(config_for(MapMode::kLocalise, *file_),
                                                 messages_of(test::drive(corridor_of(2))));
   EXPECT_TRUE(today.changes.empty());
@@ -266,7 +266,7 @@ class SurveyedMap : public DailyLife {
   static constexpr const char* kHeader = "id,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad\n";
 };
 
-TEST_F(SurveyedMap, WhatIsWrongInTheFileIsNamedWithItsLine) {
+TEST_F(SurveyedMap, ErrorsInTheFileAreReportedWithTheirLine) {
   const std::string header = kHeader;
   const std::string good = header + "1,0,0,0,0.01,0.01,0.01\n";
   EXPECT_EQ(why_refused(good), "");
@@ -287,7 +287,7 @@ TEST_F(SurveyedMap, WhatIsWrongInTheFileIsNamedWithItsLine) {
   EXPECT_THROW(read_survey(folder_ / "nowhere.csv", "DICT_6X6_250"), SetupError);
 }
 
-TEST_F(SurveyedMap, PosesComeOutInItsCoordinates) {
+TEST_F(SurveyedMap, PosesAreInTheSurveysFrame) {
   const auto markers = corridor_of(1).markers;
   SlamConfig config;
   config.robot.markers.survey_file =
@@ -308,7 +308,7 @@ TEST_F(SurveyedMap, PosesComeOutInItsCoordinates) {
   EXPECT_EQ(drive.markers.size(), markers.size());
 }
 
-TEST_F(SurveyedMap, OfTwoEntriesThatContradictEachOtherBothAreNamedAndTheMapIsNotTorn) {
+TEST_F(SurveyedMap, OfTwoContradictoryEntriesBothAreReportedAndTheMapStaysConsistent) {
   const auto markers = corridor_of(1).markers;
   const test::SyntheticMarker& first = markers.front();
   const test::SyntheticMarker& last = markers.back();
@@ -327,7 +327,7 @@ TEST_F(SurveyedMap, OfTwoEntriesThatContradictEachOtherBothAreNamedAndTheMapIsNo
   }
 }
 
-TEST_F(SurveyedMap, AnEntryThatIsWrongIsNamedAndDoesNoHarm) {
+TEST_F(SurveyedMap, AWrongEntryIsReportedAndDoesNotDistortTheMap) {
   const auto markers = corridor_of(1).markers;
   for (const std::size_t wrong : {std::size_t{1}, markers.size() - 1}) {
     std::string text = kHeader;

@@ -18,13 +18,13 @@ Findings as_described() {
   return findings;
 }
 
-TEST(FindingsText, SaysNothingOfARobotThatIsAsDescribed) {
+TEST(FindingsText, ARobotAsDescribedHasNoFindings) {
   const auto nothing = worth_saying(as_described(), 0);
   EXPECT_TRUE(nothing.empty());
   EXPECT_EQ(sentence_of(nothing), "nothing");
 }
 
-TEST(FindingsText, NamesWhatIsWorseWithNumbersAndShares) {
+TEST(FindingsText, DeviationsAreReportedWithNumbers) {
   Findings findings = as_described();
   findings.odometry_along = 5.7;
   findings.range_sigma_m = 0.041;
@@ -41,7 +41,7 @@ TEST(FindingsText, NamesWhatIsWorseWithNumbersAndShares) {
   EXPECT_EQ(found[1].share, 0.02);
 }
 
-TEST(FindingsText, AFewScansThatDoNotFitAreNotWorthSaying) {
+TEST(FindingsText, AFewScansThatDoNotFitAreNotReported) {
   Findings findings = as_described();
   findings.scans_refuted = 5;
   EXPECT_TRUE(worth_saying(findings, 0).empty());

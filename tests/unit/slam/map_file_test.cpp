@@ -5,7 +5,7 @@
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "common/random/random.hpp"
-#include "slam/core/graph/map_merge.hpp"
+#include "map/map_merge.hpp"
 #include "unit/slam/map_drives.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ TEST_F(SavedMap, IsReadAsItWasWritten) {
   fs::remove(copy);
 }
 
-TEST_F(SavedMap, ThatIsDamagedAnywhereIsRefusedOrTheSame) {
+TEST_F(SavedMap, ADamagedFileIsRefusedOrReadsTheSame) {
   const std::string whole = read_whole_file(*file_);
   const std::int64_t map_id = read_map_file(*file_).map.map_id;
   const fs::path damaged = other_file("damaged");
@@ -71,7 +71,7 @@ TEST_F(SavedMap, ThatIsDamagedAnywhereIsRefusedOrTheSame) {
   fs::remove(damaged);
 }
 
-TEST_F(SavedMap, WithATileFarFromTheOthersIsRefused) {
+TEST_F(SavedMap, ATileFarFromTheOthersIsRefused) {
   const fs::path stray = other_file("stray");
   LogReader reader{*file_};
   LogWriter writer{stray};
@@ -92,7 +92,7 @@ TEST_F(SavedMap, WithATileFarFromTheOthersIsRefused) {
   fs::remove(stray);
 }
 
-TEST_F(SavedMap, OfAnotherFormatIsRefused) {
+TEST_F(SavedMap, AnotherFormatVersionIsRefused) {
   const MapFile map = read_map_file(*file_);
   std::vector<Message> messages = to_map_messages(map.map, map.info);
   map_header_t header = *decode<map_header_t>(messages.front().payload).message;
@@ -149,7 +149,7 @@ TEST_F(SavedMap, IsWholeWhenItsWriterIsKilled) {
   fs::remove(part_path_of(file));
 }
 
-TEST_F(SavedMap, IsWhereAnotherDayIsLocalised) {
+TEST_F(SavedMap, ALaterRunLocalisesInIt) {
   const test::SensorLog today = test::drive(corridor_of(2));
   const std::string before = read_whole_file(*file_);
   const Drive localised = drive_through(config_for(MapMode::kLocalise, *file_), messages_of(today));
@@ -164,7 +164,7 @@ TEST_F(SavedMap, IsWhereAnotherDayIsLocalised) {
     EXPECT_EQ(estimate.map_id, map.map.map_id);
 }
 
-TEST_F(SavedMap, GivesNoPoseBeforeAMarkerIsSeen) {
+TEST_F(SavedMap, WithUnknownStartThereIsNoPoseBeforeAMarkerIsSeen) {
   test::SensorLog blind = test::drive(corridor_of(3));
   for (MarkerDetections& frame : blind.frames)
     frame.detections.clear();
@@ -176,7 +176,7 @@ TEST_F(SavedMap, GivesNoPoseBeforeAMarkerIsSeen) {
 }
 
 // Twins: nothing but the corridor's ends tells where the robot is.
-TEST_F(SavedMap, OfTwinsGivesNoPoseThatIsWrong) {
+TEST_F(SavedMap, AmongMarkersOfOneIdNoWrongPoseIsPublished) {
   test::SyntheticCorridor twins = corridor_of(4);
   for (test::SyntheticMarker& marker : twins.markers)
     marker.id = 5;
@@ -193,7 +193,7 @@ TEST_F(SavedMap, OfTwinsGivesNoPoseThatIsWrong) {
   fs::remove(map);
 }
 
-TEST_F(SavedMap, IsExtendedInItsFrame) {
+TEST_F(SavedMap, ExtendingKeepsItsFrame) {
   const fs::path half = other_file("half");
   const fs::path whole = other_file("whole");
   const test::SensorLog today = test::drive(corridor_of(6));
@@ -218,7 +218,7 @@ TEST_F(SavedMap, IsExtendedInItsFrame) {
   fs::remove(whole);
 }
 
-TEST_F(SavedMap, IsRefusedWhereItDoesNotSuit) {
+TEST_F(SavedMap, AMapOfAnotherConfigurationIsRefused) {
   SlamConfig config = config_for(MapMode::kLocalise, *file_);
   config.robot.markers.size_m = 0.2;
   EXPECT_THROW(drive_through(config, {}), SetupError);
@@ -235,7 +235,7 @@ TEST_F(SavedMap, IsRefusedWhereItDoesNotSuit) {
                SetupError);
 }
 
-TEST_F(SavedMap, InAnotherFrameIsTheSamePlace) {
+TEST_F(SavedMap, ATransformedMapLocalisesAtTheTransformedPose) {
   const MapFile map = read_map_file(*file_);
   const Se2 new_from_old{3.0, -2.0, 0.7};
   const fs::path file = other_file("turned");
@@ -247,7 +247,7 @@ TEST_F(SavedMap, InAnotherFrameIsTheSamePlace) {
   fs::remove(file);
 }
 
-TEST_F(SavedMap, AndOneThatOverlapsAreMergedIntoOne) {
+TEST_F(SavedMap, OverlappingMapsAreMerged) {
   const fs::path left = other_file("left");
   const fs::path right = other_file("right");
   const test::SensorLog day1 = test::drive(corridor_of(8));
@@ -271,7 +271,7 @@ TEST_F(SavedMap, AndOneThatOverlapsAreMergedIntoOne) {
   fs::remove(right);
 }
 
-TEST_F(SavedMap, ThatIsEmptyIsNoPlaceToLookForTheRobot) {
+TEST_F(SavedMap, GlobalLocalisationInAnEmptyMapGivesNoPose) {
   MapSnapshot empty;
   empty.grid.frame = GridFrame::centred_on_map_origin(0.05);
   const fs::path file = other_file("empty");

@@ -34,7 +34,7 @@ Message reset_message(std::int32_t mode, bool retain_pose) {
   return encode(channels::kMbotSystemReset, message);
 }
 
-TEST(MbotSlam, TheGridCoversTheMapAndNothingElse) {
+TEST(MbotSlam, TheGridCoversExactlyTheMap) {
   const auto output = Slam{mbot_config()}.feed(messages_of_drive());
   const auto grid = last_grid(output);
   ASSERT_TRUE(grid);
@@ -50,7 +50,7 @@ TEST(MbotSlam, TheGridCoversTheMapAndNothingElse) {
   EXPECT_TRUE(known_in(grid->width - 1, grid->width, grid->height)) << "rightmost column";
 }
 
-TEST(OccupancyGrid, OfALargeMapHasLargerCellsAndKeepsItsWalls) {
+TEST(OccupancyGrid, ALargeMapIsSentWithLargerCellsAndKeepsItsWalls) {
   GridMap map;
   map.frame.resolution_m = 0.05;
   for (int x = -1500; x < 1500; ++x) {  // 150 m of two walls, 20 m apart
@@ -94,7 +94,7 @@ TEST(MbotSlam, AResetIsObeyedOnlyInTheSameModeWithoutRetainPose) {
   EXPECT_NEAR(anew.back(), 1.0, 0.15);
 }
 
-TEST(MbotSlam, AResetClearsTheMapOfWhoeverDrawsIt) {
+TEST(MbotSlam, AResetClearsTheMapOfSubscribers) {
   auto input = messages_of_drive(1.0);
   Slam slam{mbot_config()};
   for (const Message& message : input)

@@ -30,7 +30,7 @@ TEST(SlamNode, AnswersEveryScan) {
     EXPECT_LE(message.payload.size(), kMaxPayloadBytes) << message.channel;
 }
 
-TEST(SlamNode, NeverHearsTheTruth) {
+TEST(SlamNode, DoesNotSubscribeToTheTruePose) {
   Slam slam;
   for (const auto& subscription : slam.inbox.subscriptions())
     EXPECT_NE(subscription.channel, "TRUE_POSE");
@@ -99,7 +99,7 @@ std::vector<trajectory_t> trajectories_in(const std::vector<Message>& output) {
   return trajectories;
 }
 
-TEST(SlamNode, AnEstimatorThatCorrectsThePastSendsItsWayAtTheEnd) {
+TEST(SlamNode, ASmoothersTrajectoryIsSentAtTheEnd) {
   SlamConfig config = small_config();
   config.slam.estimator = EstimatorName::kGmapping;
   const auto input = messages_of_drive();
@@ -112,7 +112,7 @@ TEST(SlamNode, AnEstimatorThatCorrectsThePastSendsItsWayAtTheEnd) {
   EXPECT_TRUE(trajectories_in(Slam{config}.feed(input)).empty());
 }
 
-TEST(SlamMessages, ALongTrajectoryComesInParts) {
+TEST(SlamMessages, ALongTrajectoryIsSplitIntoParts) {
   std::vector<TimedPose> way;
   for (int i = 0; i < 7000; ++i)
     way.push_back({timestamp_from_us(i), Se2{1.0 * i, 0.0, 0.0}});
@@ -128,7 +128,7 @@ TEST(SlamMessages, ALongTrajectoryComesInParts) {
   EXPECT_EQ(next, 7000);
 }
 
-TEST(SlamNode, NothingInNothingOut) {
+TEST(SlamNode, WithoutInputNothingIsPublished) {
   Slam slam;
   EXPECT_TRUE(slam.feed({}).empty());
 }
@@ -215,7 +215,7 @@ TEST(SlamNode, ScansDoNotWaitForeverForACamera) {
   EXPECT_EQ(count_by_channel(Slam{}.feed(input))["SLAM_POSE"], scans);
 }
 
-TEST(SlamNode, BlankIdsForgetAllMarkers) {
+TEST(SlamNode, WithBlankIdsAllMarkersAreIgnored) {
   SlamConfig config = small_config();
   config.slam.blank_ids = true;
   const auto input = messages_of_drive();
@@ -237,7 +237,7 @@ Message unchecked(const std::string& channel, const Type& message) {
   return {channel, timestamp_from_us(message.utime), payload};
 }
 
-TEST(SlamNode, AbsurdOdometryAndMarkersDoNotKillItOrCarryItOff) {
+TEST(SlamNode, AbsurdOdometryAndMarkersCauseNeitherACrashNorAJump) {
   auto input = messages_of_drive();
   for (const float absurd_m : {1e20F, 3e38F, 9e6F}) {
     pose2D_t pose{};

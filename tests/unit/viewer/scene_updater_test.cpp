@@ -30,7 +30,7 @@ slam_estimate_t estimate_at(std::int64_t utime) {
   return message;
 }
 
-TEST(SceneUpdater, ALongWayLosesPosesOfItsPastAndNoneOfItsPresent) {
+TEST(SceneUpdater, ALongPathIsThinnedInItsPastOnly) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};

@@ -136,7 +136,7 @@ TEST_F(ViewerNodeTest, EveryPictureIsWrittenDuringTheRun) {
   EXPECT_THAT(names(), IsSupersetOf({"map.png", "marker_layer.png", "plain.png"}));
 }
 
-TEST_F(ViewerNodeTest, WhatIsWrittenAtTheEndDoesNotDependOnThePace) {
+TEST_F(ViewerNodeTest, TheFinalFilesDoNotDependOnThePace) {
   const std::vector<std::string> files{"map.pgm",          "map.yaml",  "map.png",
                                        "marker_layer.png", "plain.png", "trajectory.tum",
                                        "covariance.csv"};
@@ -172,7 +172,7 @@ TEST_F(ViewerNodeTest, ATrajectoryHasOneLinePerEstimateWithoutRepeats) {
   EXPECT_EQ(inbox_.counters().get("SLAM_ESTIMATE left out: not newer"), 2);
 }
 
-TEST_F(ViewerNodeTest, PutsTheMapTogetherFromPartsInAnyOrder) {
+TEST_F(ViewerNodeTest, AssemblesTheMapFromPartsInAnyOrder) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamMap, tile_at(0, 1, 2));
   deliver(channels::kSlamMap, tile_at(-1, 0, 2));
@@ -183,7 +183,7 @@ TEST_F(ViewerNodeTest, PutsTheMapTogetherFromPartsInAnyOrder) {
   EXPECT_THAT(content_of("map.yaml"), HasSubstr("origin: [-0.100000000, 0.000000000, 0.0]"));
 }
 
-TEST_F(ViewerNodeTest, WritesAFinalTrajectoryWhenOneCameWhole) {
+TEST_F(ViewerNodeTest, WritesACompleteFinalTrajectory) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamTrajectory, trajectory_part(0, 2));
   node.finish();
@@ -196,7 +196,7 @@ TEST_F(ViewerNodeTest, WritesAFinalTrajectoryWhenOneCameWhole) {
   EXPECT_FALSE(node.failed());
 }
 
-TEST_F(ViewerNodeTest, AFinalTrajectoryWithoutItsFirstPartIsLeftOut) {
+TEST_F(ViewerNodeTest, AnIncompleteFinalTrajectoryIsNotWritten) {
   ViewerNode node{config_, inbox_, outbox_};
   std::ofstream{folder_ / "trajectory_final.tum"} << "of an earlier run";
   deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
@@ -225,7 +225,7 @@ pose_graph_t graph_part(int part, int num_parts) {
   return graph;
 }
 
-TEST_F(ViewerNodeTest, WritesTheGraphForOtherToolsWhenItCameWhole) {
+TEST_F(ViewerNodeTest, WritesACompletePoseGraph) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
   deliver(channels::kMapGraph, graph_part(0, 2));
@@ -253,7 +253,7 @@ TEST_F(ViewerNodeTest, WritesTheGraphForOtherToolsWhenItCameWhole) {
   }
 }
 
-TEST_F(ViewerNodeTest, AFileThatCannotBeWrittenMakesItFailAndTheOthersAreWritten) {
+TEST_F(ViewerNodeTest, AFileThatCannotBeWrittenIsAFailureAndTheOthersAreWritten) {
   ViewerNode node{config_, inbox_, outbox_};
   fs::create_directories(folder_ / "map.yaml" / "in the way");
   deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
@@ -283,7 +283,7 @@ TEST_F(ViewerNodeTest, FollowsANewMapAndKeepsTheFilesOfTheOneBefore) {
   EXPECT_NE(content_of("map-00000000000000ab/map.pgm"), content_of("map.pgm"));
 }
 
-TEST_F(ViewerNodeTest, WritesWhatContradictsTheMap) {
+TEST_F(ViewerNodeTest, WritesChangesOfTheMap) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
   map_changes_t changes{};
@@ -305,7 +305,7 @@ TEST_F(ViewerNodeTest, WritesWhatContradictsTheMap) {
             "wall_gone,-1,0,0.000000,0.000000,0.000000,0.000000,0.000000,0.900,0.0,0\n");
 }
 
-TEST_F(ViewerNodeTest, WritesWhatSlamHasFoundOfItsSensors) {
+TEST_F(ViewerNodeTest, WritesTheFindingsAboutSensors) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));
   findings_t findings{};

@@ -136,7 +136,7 @@ struct Solution {
 /// Robust least squares (Cauchy's weights, cutoff from the median residual); covariance from the
 /// residuals of twelve stretches, nowhere below that of independent ones: what wheels and walls get
 /// wrong lasts, so that equations of a stretch err together.
-/// @param least_residual  a median below it is not believed
+/// @param least_residual  lower bound of the median residual
 template <int kRows, int kUnknowns>
 std::optional<Solution<kUnknowns>> solve_robustly(const Equations<kRows, kUnknowns>& equations,
                                                   double least_residual) {

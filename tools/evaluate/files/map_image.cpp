@@ -115,10 +115,8 @@ Picture read_pgm(const fs::path& file) {
           bytes.substr(begin, size)};
 }
 
-}  // namespace
-
-MapImage read_map(const fs::path& yaml_file) {
-  const MapYaml yaml{yaml_file};
+/// @param folder  of the file that `yaml` was read from.
+MapImage image_of(const MapYaml& yaml, const fs::path& folder) {
   const double resolution_m = yaml.number("resolution");
   if (resolution_m <= 0.0) yaml.refuse("resolution", "a length above 0 [m]");
   const double negate = yaml.number("negate");
@@ -129,7 +127,7 @@ MapImage read_map(const fs::path& yaml_file) {
     yaml.refuse("free_thresh", "0 <= free_thresh <= occupied_thresh <= 1");
   if (yaml.text_or("mode", "trinary") != "trinary") yaml.refuse("mode", "trinary");
 
-  const Picture picture = read_pgm(yaml_file.parent_path() / yaml.text("image"));
+  const Picture picture = read_pgm(folder / yaml.text("image"));
   MapImage map{picture.width_px, picture.height_px, resolution_m, {}};
   map.cells.reserve(picture.pixels.size());
   for (int row = picture.height_px - 1; row >= 0; --row) {
@@ -146,8 +144,15 @@ MapImage read_map(const fs::path& yaml_file) {
   return map;
 }
 
-Eigen::Vector2d read_map_origin(const fs::path& yaml_file) {
-  return MapYaml{yaml_file}.origin();
+}  // namespace
+
+MapImage read_map(const fs::path& yaml_file) {
+  return image_of(MapYaml{yaml_file}, yaml_file.parent_path());
+}
+
+MapWithOrigin read_map_with_origin(const fs::path& yaml_file) {
+  const MapYaml yaml{yaml_file};
+  return {image_of(yaml, yaml_file.parent_path()), yaml.origin()};
 }
 
 }  // namespace waymark::evaluate

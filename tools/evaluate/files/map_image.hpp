@@ -19,9 +19,13 @@ using corridor::MapImage;
 /// @throws InputError naming file, line and what was expected.
 MapImage read_map(const std::filesystem::path& yaml_file);
 
-/// Lower left corner of that image in the map frame [m]; (0, 0) where the file has no `origin`, and
-/// its yaw is left aside.
+struct MapWithOrigin {
+  MapImage image{};
+  Eigen::Vector2d origin_m{Eigen::Vector2d::Zero()};  ///< lower left corner of the image, map frame
+};
+
+/// The same with the first two numbers of `origin` [m]; (0, 0) where the file has no `origin`.
 /// @throws InputError as above.
-Eigen::Vector2d read_map_origin(const std::filesystem::path& yaml_file);
+MapWithOrigin read_map_with_origin(const std::filesystem::path& yaml_file);
 
 }  // namespace waymark::evaluate

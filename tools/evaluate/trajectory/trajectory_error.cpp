@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/trajectory/trajectory_error.hpp"
 
+#include "common/geometry/rigid_fit.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,23 +39,12 @@ double ate_m(const std::vector<PosePair>& pairs, const Se2& world_from_map) {
   return distances.get().rms;
 }
 
+/// world_from_map.
 Se2 best_fit(const std::vector<PosePair>& pairs) {
-  Vector2d estimate_mean = Vector2d::Zero();
-  Vector2d truth_mean = Vector2d::Zero();
-  for (const PosePair& pair : pairs) {
-    estimate_mean += pair.map_from_estimate.translation() / static_cast<double>(pairs.size());
-    truth_mean += pair.world_from_truth.translation() / static_cast<double>(pairs.size());
-  }
-  double dot = 0.0;
-  double cross = 0.0;
-  for (const PosePair& pair : pairs) {
-    const Vector2d e = pair.map_from_estimate.translation() - estimate_mean;
-    const Vector2d t = pair.world_from_truth.translation() - truth_mean;
-    dot += e.dot(t);
-    cross += e.x() * t.y() - e.y() * t.x();
-  }
-  const Se2 turn{Vector2d::Zero(), std::atan2(cross, dot)};
-  return {truth_mean - turn * estimate_mean, turn.theta()};
+  std::vector<PointPair> points;
+  for (const PosePair& pair : pairs)
+    points.push_back({pair.world_from_truth.translation(), pair.map_from_estimate.translation()});
+  return rigid_fit(points);
 }
 
 /// Relative pose errors over a metre of true travel, from every pose that has so much ahead of it.

@@ -209,9 +209,9 @@ ImportedLog CarmenReader::finish() {
   remove_absurd_times(log_.odometry, "odometry", report_);
   check_time_unit(scans_, report_);
   apply_mounting();
-  settle_small_disorder(scans_, "scan", report_);
+  restore_order(scans_, "scan", report_);
   spread_equal_stamps(scans_, "scan", report_);
-  settle_small_disorder(log_.odometry, "odometry sample", report_);
+  restore_order(log_.odometry, "odometry sample", report_);
   spread_equal_stamps(log_.odometry, "odometry sample", report_);
   for (const auto& scan : scans_)
     add_scan(scan);

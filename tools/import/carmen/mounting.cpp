@@ -68,26 +68,26 @@ std::string text_of(const Se2& pose) {
 Se2 find_mounting(std::span<const Se2> base_from_lidar,
                   const std::vector<CarmenMounting>& parameters, CarmenLidar lidar,
                   ImportReport& report) {
-  const auto by_poses = constant_one(base_from_lidar);
-  const auto by_parameters = of_parameters(parameters, lidar);
-  const bool poses_are_equal = by_poses && is_same(*by_poses, Se2{}, kEqual_m, kEqual_rad);
-  if (by_poses && !poses_are_equal) {
-    if (by_parameters && !is_same(*by_poses, *by_parameters, kSame_m, kSame_rad)) {
+  const auto from_poses = constant_one(base_from_lidar);
+  const auto from_parameters = of_parameters(parameters, lidar);
+  const bool poses_are_equal = from_poses && is_same(*from_poses, Se2{}, kEqual_m, kEqual_rad);
+  if (from_poses && !poses_are_equal) {
+    if (from_parameters && !is_same(*from_poses, *from_parameters, kSame_m, kSame_rad)) {
       report.note(fmt::format(
           "LiDAR mounting: the LiDAR's lines say {}, the PARAM lines {}: the former is taken; {}",
-          text_of(*by_poses), text_of(*by_parameters), kRemedy));
+          text_of(*from_poses), text_of(*from_parameters), kRemedy));
     }
-    return *by_poses;
+    return *from_poses;
   }
-  if (by_parameters) {
+  if (from_parameters) {
     report.note(fmt::format("LiDAR mounting taken from the PARAM lines: {}; {}",
-                            text_of(*by_parameters), kRemedy));
-    return *by_parameters;
+                            text_of(*from_parameters), kRemedy));
+    return *from_parameters;
   }
   report.note(fmt::format(
       "the log does not say where the LiDAR sits (its pose and that of odometry {}): the base's "
       "origin is taken; {}",
-      by_poses ? "are equal" : "differ by a changing amount, as in a corrected log", kRemedy));
+      from_poses ? "are equal" : "differ by a changing amount, as in a corrected log", kRemedy));
   return {};
 }
 

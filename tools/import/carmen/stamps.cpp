@@ -20,7 +20,7 @@ std::size_t num_usable(const std::vector<CarmenTimes>& scans, CarmenStamps stamp
   for (const CarmenTimes& scan : scans)
     times.push_back(scan.by(stamps));
   std::vector<Timestamp> settled;
-  for (const std::size_t index : settled_order(times))
+  for (const std::size_t index : order_within_tolerance(times))
     settled.push_back(times[index]);
   return static_cast<std::size_t>(std::ranges::count(longest_ascending(settled), true));
 }

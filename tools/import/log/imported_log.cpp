@@ -159,10 +159,10 @@ void cover_scans(ImportedLog& log, ImportReport& report) {
 }
 
 void complete(ImportedLog& log, ImportReport& report) {
-  settle_small_disorder(log.scans, "scan", report);
+  restore_order(log.scans, "scan", report);
   keep_ascending(log.scans, "a scan", report);
-  settle_small_disorder(log.odometry, "odometry sample", report);
-  settle_small_disorder(log.reference, "reference pose", report);
+  restore_order(log.odometry, "odometry sample", report);
+  restore_order(log.reference, "reference pose", report);
   if (log.odometry.empty()) {
     for (const ImportedScan& scan : log.scans) {
       if (scan.odom_from_base) log.odometry.push_back({scan.time, scan.at, *scan.odom_from_base});

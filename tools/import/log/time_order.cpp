@@ -5,7 +5,7 @@
 
 namespace waymark {
 
-std::vector<std::size_t> settled_order(std::span<const Timestamp> times) {
+std::vector<std::size_t> order_within_tolerance(std::span<const Timestamp> times) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < times.size(); ++i) {
     auto place = order.end();

@@ -24,7 +24,7 @@ inline constexpr Duration kSmallDisorder = std::chrono::milliseconds{200};
 
 /// The order in which records have to be read so that none goes back by at most kSmallDisorder
 /// behind the one before. Larger steps back stay where they are. O(n k), k records within it.
-std::vector<std::size_t> settled_order(std::span<const Timestamp> times);
+std::vector<std::size_t> order_within_tolerance(std::span<const Timestamp> times);
 
 template <class Record>
 std::vector<Timestamp> times_of(const std::vector<Record>& records) {
@@ -36,12 +36,11 @@ std::vector<Timestamp> times_of(const std::vector<Record>& records) {
 
 /// Puts records (with a member `time`) that are slightly out of order into order, and says so.
 template <class Record>
-void settle_small_disorder(std::vector<Record>& records, std::string_view what,
-                           ImportReport& report) {
+void restore_order(std::vector<Record>& records, std::string_view what, ImportReport& report) {
   const std::vector<Timestamp> times = times_of(records);
   std::vector<Record> settled;
   std::size_t moved = 0;
-  for (const std::size_t index : settled_order(times)) {
+  for (const std::size_t index : order_within_tolerance(times)) {
     if (index != settled.size()) ++moved;
     settled.push_back(std::move(records[index]));
   }

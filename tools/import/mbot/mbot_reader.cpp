@@ -161,7 +161,7 @@ void MbotReader::check_channels() {
 
 void MbotReader::apply_ticks() {
   if (ticks_.empty()) return;
-  settle_small_disorder(ticks_, "encoder reading", report_);
+  restore_order(ticks_, "encoder reading", report_);
   keep_ascending(ticks_, "an encoder reading", report_);
   WheelGeometry wheels = geometry_of(ticks_.front().encoders);
   wheels.meters_per_tick = options_.meters_per_tick.value_or(wheels.meters_per_tick);

@@ -38,7 +38,7 @@ struct CameraErrorConfig {
   void describe(Fields& fields);
 };
 
-/// The camera that takes the pictures, given the one that the robot believes in.
+/// The camera that takes the pictures, given the one that the robot is configured with.
 CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors,
                          std::int64_t seed);
 

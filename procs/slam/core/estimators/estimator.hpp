@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the process knows about a method.
+// The interface that all SLAM methods implement.
 #pragma once
 
 #include "slam/core/filter/estimate.hpp"
 #include "slam/core/filter/findings.hpp"
 #include "slam/core/filter/parallel_for.hpp"
-#include "slam/core/filter/scan_trail.hpp"
+#include "slam/core/filter/scan_trajectory.hpp"
 #include "slam/core/filter/update_gate.hpp"
 #include "slam/core/graph/map_snapshot.hpp"
 #include "slam/core/grid/grid_map.hpp"
@@ -24,7 +24,7 @@
 
 namespace waymark {
 
-/// A pose that is given is at most so far from the one before, or from the map: about half of the
+/// A commanded pose may be at most so far from the pose before, or from the map: about half of the
 /// side of the largest grid (TileMap::kMaxTableTiles).
 inline constexpr double kFarthestPose_m = 1500.0;
 
@@ -58,8 +58,8 @@ class Estimator {
  public:
   virtual ~Estimator() = default;
 
-  /// Takes the next scan. Whether it is weighed and mapped or only followed by odometry is the
-  /// method's business; it always says where the robot is.
+  /// Processes the next scan. The method decides whether to update its filter and map with it or
+  /// only to follow odometry; it always returns the robot's pose.
   virtual Estimate update(const Observation& observation) = 0;
 
   /// The map so far. Copies are cheap, and tiles that did not change keep their address.
@@ -67,27 +67,29 @@ class Estimator {
   virtual std::vector<Landmark> landmarks() const = 0;
   virtual std::vector<PublishedParticle> particles() const = 0;
 
-  /// The whole way as it is known now, one pose per scan, in the frame of map(): what came later
-  /// has corrected it. Empty when the method never changes its mind about the past. O(scans).
+  /// The smoothed trajectory, one pose per scan, in the frame of map(). Empty when the method is a
+  /// filter that never corrects past poses. O(scans).
   virtual std::vector<TimedPose> trajectory() const { return {}; }
 
-  /// The map as it is when drawn along trajectory(). O(scans).
+  /// The map drawn along trajectory(). O(scans).
   virtual GridMap redrawn_map() const { return map(); }
 
-  /// The poses that redrawn_map() is drawn along, and what ties them; of methods that have a graph.
+  /// The poses that redrawn_map() is drawn along, and the constraints between them; only of methods
+  /// that have a graph.
   virtual std::optional<PoseGraph> pose_graph() const { return std::nullopt; }
 
-  /// What contradicts the loaded map or the survey, of methods that notice.
+  /// What contradicts the loaded map or the survey; only of methods that look for it.
   virtual std::vector<MapChange> changes() const { return {}; }
 
-  /// The robot is at that pose by the time of the next update, of methods that can be corrected.
-  /// @return false: this one cannot, has no map yet, or is more than kFarthestPose_m away.
+  /// Sets the robot's pose for the next update.
+  /// @return false: the method does not support it, has no map yet, or the pose is more than
+  ///         kFarthestPose_m away.
   virtual bool set_pose(const StartPose& /*pose*/) { return false; }
 
-  /// What the sensors have turned out to be, of methods that look.
+  /// What was learnt about the sensors; only of methods that learn it.
   virtual std::optional<Findings> findings() const { return std::nullopt; }
 
-  /// All that another run needs to go on in this map, of methods that can. O(scans).
+  /// All that another run needs to continue in this map; only of methods that support it. O(scans).
   virtual std::optional<MapSnapshot> snapshot() const { return std::nullopt; }
 };
 

@@ -38,9 +38,9 @@ Estimate GmappingEstimator::update(const Observation& observation) {
   since_update_ = since_update_.then(motion);
   const bool is_due = config_.gate.is_open(since_update_, observation.time - updated_at_);
   const bool is_update = is_first || (is_due && !observation.beams.empty());
-  trail_.add(observation.time, motion, is_update);
+  scan_trajectory_.add(observation.time, motion, is_update);
   if (is_update) {
-    auto scan = std::make_shared<const StoredScan>(trusted_beams(observation));
+    auto scan = std::make_shared<const StoredScan>(beams_in_range(observation));
     if (!is_first) match_and_weigh(*scan);
     resample_and_register(scan);
     since_update_ = {};
@@ -63,7 +63,7 @@ void GmappingEstimator::propagate(const Motion& motion) {
   }
 }
 
-StoredScan GmappingEstimator::trusted_beams(const Observation& observation) const {
+StoredScan GmappingEstimator::beams_in_range(const Observation& observation) const {
   StoredScan beams;
   beams.reserve(observation.beams.size());
   for (const AnnotatedBeam& annotated : observation.beams) {
@@ -122,20 +122,20 @@ void GmappingEstimator::resample_and_register(const std::shared_ptr<const Stored
   }
   map_from_best_ = particles_.state(best_).map_from_base;
   if (!has_resampled) return;
-  if (const Trajectory trunk = common_ancestor(std::move(trajectories))) settle(trunk);
+  if (const Trajectory trunk = common_ancestor(std::move(trajectories))) finalise(trunk);
 }
 
-void GmappingEstimator::settle(const Trajectory& trunk) {
-  const std::vector<Se2> way = way_of(trunk);
-  settled_way_.insert(settled_way_.end(), way.begin(), way.end());
-  published_map_.settle(trunk);
+void GmappingEstimator::finalise(const Trajectory& trunk) {
+  const std::vector<Se2> poses = poses_along(trunk);
+  common_poses_.insert(common_poses_.end(), poses.begin(), poses.end());
+  published_map_.finalise(trunk);
 }
 
 std::vector<TimedPose> GmappingEstimator::trajectory() const {
-  std::vector<Se2> way = settled_way_;
-  const std::vector<Se2> unsettled = way_of(particles_.state(best_).trajectory);
-  way.insert(way.end(), unsettled.begin(), unsettled.end());
-  return trail_.along(way);
+  std::vector<Se2> poses = common_poses_;
+  const std::vector<Se2> newer = poses_along(particles_.state(best_).trajectory);
+  poses.insert(poses.end(), newer.begin(), newer.end());
+  return scan_trajectory_.along(poses);
 }
 
 const GridMap& GmappingEstimator::map() const {

@@ -27,8 +27,8 @@ struct GmappingConfig {
   double resample_threshold{0.5};
   double likelihood_gain{3.0};
   double occupied_threshold{0.25};
-  /// Where the scans contradict odometry's turn, the particles turn as the scans tell. The released
-  /// code comes through such places by chance.
+  /// Where the scans contradict odometry's turn, the particles turn by what the scans measure. The
+  /// released code has nothing like it.
   bool watch_turns{false};
   StepNoise motion{};
   ScanGate gate{};
@@ -52,7 +52,7 @@ class GmappingEstimator final : public Estimator {
 
   std::vector<PublishedParticle> particles() const override;
 
-  /// The way of the particle that is the best one now.
+  /// Of the particle that is the best one now.
   std::vector<TimedPose> trajectory() const override;
 
  private:
@@ -68,8 +68,8 @@ class GmappingEstimator final : public Estimator {
   void propagate(const Motion& motion);
   void match_and_weigh(std::span<const Beam> beams);
   void resample_and_register(const std::shared_ptr<const StoredScan>& scan);
-  void settle(const Trajectory& trunk);
-  StoredScan trusted_beams(const Observation& observation) const;
+  void finalise(const Trajectory& trunk);
+  StoredScan beams_in_range(const Observation& observation) const;
   Estimate estimate(const Observation& observation) const;
 
   EstimatorSetup setup_;
@@ -78,8 +78,8 @@ class GmappingEstimator final : public Estimator {
   ParticleSet<State> particles_;
   std::uint64_t observations_{0};
   TurnMonitor turn_monitor_{};
-  ScanTrail trail_{};
-  std::vector<Se2> settled_way_{};  ///< poses at the updates that all particles share
+  ScanTrajectory scan_trajectory_{};
+  std::vector<Se2> common_poses_{};  ///< at the updates that all particles have in common
 
   // Of the last update:
   std::uint64_t updates_{0};

@@ -53,7 +53,7 @@ void MarkerMatchingEstimator::propagate() {
 }
 
 void MarkerMatchingEstimator::weigh(const Observation& observation) {
-  const std::vector<JudgedSpot> spots = judged_spots(
+  const std::vector<ObservedSpot> spots = observed_spots(
       observation, setup_.grid.face_spacing_m, setup_.grid.face_margin_m, config_.sighting_sigma_m);
   const Se2 predicted = mean_pose(particles_);
   const Observability walls_tell =

@@ -15,12 +15,13 @@ namespace {
 
 constexpr double kFixed = 1e-6;  // of the sigmas of a calibration that is not learnt
 
-// A scan that odometry contradicts becomes a keyframe, where a slip is weighed.
+// A scan that contradicts odometry becomes a keyframe, so that the graph chooses the component of
+// the odometry's noise.
 constexpr double kContradiction = 25.0;  // chi^2
 constexpr double kContradiction_m = 0.03;
 constexpr double kContradiction_rad = 0.02;
 
-// Of a robot whose odometry stands still, from scan to scan: it may be stuck.
+// Standard deviations from scan to scan while odometry stands still, since it may be stuck.
 const Eigen::Vector3d kStuckStep{0.1, 0.1, 0.05};
 
 GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config) {
@@ -31,7 +32,7 @@ GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config)
   return noise;
 }
 
-/// That the map is drawn upon.
+/// The map on which scans are drawn.
 GridMap ground_of(const EstimatorSetup& setup) {
   if (setup.loaded_map) return setup.loaded_map->grid;
   return {GridFrame::centred_on_map_origin(setup.grid.resolution_m), {}, {}};
@@ -90,7 +91,8 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
     since_insertion_m_ = observation.motion.distance_m;
   } else {
     since_insertion_m_ += observation.motion.distance_m;
-    if (between.shows_all_axes || agrees_with_markers(observation)) motion_doubt_.note_observed();
+    if (between.shows_all_axes || sees_known_markers(observation))
+      unmeasured_motion_.note_observed();
     if (between.match) insert_between(look.points, *between.match, between.map_from_base);
   }
   if (between.match) note_reason(EstimateReason::kScan);
@@ -113,90 +115,74 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
-/// Without a match where nothing is expected: at the beginning, and where the pose was given.
+/// At the beginning and after a commanded pose there is no prediction, and no match.
 WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& observation) const {
   Look look{points_of(observation)};
   if (graph_.state().keyframes.empty() || given_pose_) return look;
   look.since_last_s = observation.elapsed_s;
   look.expected = prediction();
   Prediction searched = look.expected;
-  if (motion_doubt_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
+  if (unmeasured_motion_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
   const std::size_t all = look.points.size();
   look.points =
       without_moving(look.points, map_.map(), searched.map_from_base, searched.covariance);
   look.beams_moving = all - look.points.size();
   look.scan = matched(look.points, searched);
-  // Before its ranges are blamed, a scan that contradicts the map is looked for elsewhere.
+  // A scan that contradicts the map may be elsewhere; only if not, its range scale is tested.
   if (look.scan && usual_fit_.is_contradicted(look.scan->match)) search_widely(look);
   return look;
 }
 
-void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) {
-  inlier_share_ = 1.0;
-  bool is_refuted_scan = false;
-  bool is_used = false;
-  bool shows_all_axes = false;
-  if (graph_.state().keyframes.empty()) {
-    add_first_keyframe();
-  } else if (given_pose_) {
-    put_elsewhere(*std::exchange(given_pose_, std::nullopt));
-  } else {
-    const Prediction& expected = look.expected;
-    if (look.scan) search_widely(look);
-    const auto& scan = look.scan;
-    is_refuted_scan = scan && usual_fit_.is_refuted(scan->match);
-    is_used = scan && !is_refuted_scan && scan->match.is_usable(config_.scan);
-    // Odometry that stands still is so sure that no step of the solver would leave it.
-    const bool is_moved = is_used && motion_doubt_.is_standing();
-    const std::size_t keyframe = graph_.add_keyframe(
-        is_moved ? scan->map_from_submap * scan->match.map_from_base : expected.map_from_base);
-    shows_all_axes = is_used && !scan->match.observed.is_degenerate;
-    add_odometry_factor(keyframe, shows_all_axes || agrees_with_markers(observation));
-    if (scan && scan->match.num_mapped >= config_.scan.min_inliers)
-      inlier_share_ = scan->match.inlier_share;
-    if (scan) note_fit(scan->match);
-    if (is_used) {
-      note_reason(EstimateReason::kScan);
-      learn_noise(expected, *scan);
-      confirm_place(*scan);
-      if (scan->submap != nullptr)
-        add_scan_factor(keyframe, *scan->submap, scan->match, false);
-      else
-        add_map_factor(keyframe, scan->match);
-      usual_fit_.note_keyframe(scan->match);
-    }
-    unobserved_m_ += motion_.distance_m;
+/// Adds the newest keyframe at its predicted pose, with odometry and scan factor.
+WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
+    const Observation& observation, Look& look) {
+  if (look.scan) search_widely(look);
+  const auto& scan = look.scan;
+  KeyframeScan used;
+  used.is_refuted = scan && usual_fit_.is_refuted(scan->match);
+  used.is_used = scan && !used.is_refuted && scan->match.is_usable(config_.scan);
+  used.shows_all_axes = used.is_used && !scan->match.observed.is_degenerate;
+  // The noise of standing odometry is so small that the solver would not leave its pose: the
+  // keyframe begins at the match.
+  const bool is_moved = used.is_used && unmeasured_motion_.is_standing();
+  const std::size_t keyframe = graph_.add_keyframe(
+      is_moved ? scan->map_from_submap * scan->match.map_from_base : look.expected.map_from_base);
+  add_odometry_factor(keyframe, used.shows_all_axes || sees_known_markers(observation));
+  if (scan && scan->match.num_mapped >= config_.scan.min_inliers)
+    inlier_share_ = scan->match.inlier_share;
+  if (scan) note_fit(scan->match);
+  if (used.is_used) {
+    note_reason(EstimateReason::kScan);
+    learn_noise(look.expected, *scan);
+    confirm_place(*scan);
+    if (scan->submap != nullptr)
+      add_scan_factor(keyframe, *scan->submap, scan->match, false);
+    else
+      add_map_factor(keyframe, scan->match);
+    usual_fit_.note_keyframe(scan->match);
   }
-  graph_.optimise();
-  const std::vector<MarkerMeasurement> measurements = measured(observation);
-  verdict_ = relocalisation_.judge(graph_.state().keyframes.back(), hints(measurements), motion_);
-  if (verdict_ == RelocalisationMonitor::Verdict::kElsewhere ||
-      verdict_ == RelocalisationMonitor::Verdict::kBack) {
+  unobserved_m_ += motion_.distance_m;
+  return used;
+}
+
+/// Relocates the newest keyframe if the markers say that the robot was carried.
+void WaymarkEstimator::check_pose(std::span<const MarkerMeasurement> measurements) {
+  verdict_ = relocalisation_.update(graph_.state().keyframes.back(), hints(measurements), motion_);
+  if (verdict_ == RelocalisationMonitor::Verdict::kRelocated ||
+      verdict_ == RelocalisationMonitor::Verdict::kReverted) {
     relocate(relocalisation_.map_from_base());
     note_reason(EstimateReason::kRelocalised);
   }
-  const bool is_doubtful = verdict_ == RelocalisationMonitor::Verdict::kDoubtful;
-  markers_known_ = false;
-  if (!is_frozen()) {
-    const Se2& map_from_base = graph_.state().keyframes.back();
-    const Eigen::Matrix3d step = graph_.covariance_of_newest_step();
-    drift_.add_keyframe(map_from_base, step);
-    unmatched_drift_.add_keyframe(map_from_base, is_used ? Eigen::Matrix3d::Zero() : step);
-  }
-  if (!is_doubtful) {
-    use_markers(measurements);
-    note_misses(observation);
-    if (!measurements.empty()) use_survey();
-    if (config_.loops.enabled && !is_refuted_scan && !is_frozen()) close_loops(look.points);
-  }
-  weigh_past_anew();
-  compare_with_odometry();
-  if (markers_known_ || shows_all_axes) motion_doubt_.note_observed();
-  // What cannot be placed is not mapped.
-  const bool is_mapped = !is_doubtful && !is_refuted_scan && is_confirmed_;
-  if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
-  if (!is_frozen())
-    map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? look.points : Points{});
+}
+
+void WaymarkEstimator::add_drift(bool has_scan_factor) {
+  const Se2& map_from_base = graph_.state().keyframes.back();
+  const Eigen::Matrix3d step = graph_.covariance_of_newest_step();
+  drift_.add_keyframe(map_from_base, step);
+  unmatched_drift_.add_keyframe(map_from_base, has_scan_factor ? Eigen::Matrix3d::Zero() : step);
+}
+
+void WaymarkEstimator::slide_window() {
   while (graph_.num_active_keyframes() > num_window_keyframes())
     graph_.marginalise_oldest(kNear_m);
   if (is_frozen()) {
@@ -205,6 +191,38 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   } else {
     forget_surplus();
   }
+}
+
+void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) {
+  inlier_share_ = 1.0;
+  KeyframeScan scan;
+  if (graph_.state().keyframes.empty())
+    add_first_keyframe();
+  else if (given_pose_)
+    put_elsewhere(*std::exchange(given_pose_, std::nullopt));
+  else
+    scan = add_predicted_keyframe(observation, look);
+  graph_.optimise();
+  const std::vector<MarkerMeasurement> measurements = measured(observation);
+  check_pose(measurements);
+  const bool is_suspicious = verdict_ == RelocalisationMonitor::Verdict::kSuspicious;
+  markers_known_ = false;
+  if (!is_frozen()) add_drift(scan.is_used);
+  if (!is_suspicious) {
+    use_markers(measurements);
+    note_misses(observation);
+    if (!measurements.empty()) use_survey();
+    if (config_.loops.enabled && !scan.is_refuted && !is_frozen()) close_loops(look.points);
+  }
+  weigh_past_anew();
+  compare_with_odometry();
+  if (markers_known_ || scan.shows_all_axes) unmeasured_motion_.note_observed();
+  // A scan whose pose is uncertain is not mapped.
+  const bool is_mapped = !is_suspicious && !scan.is_refuted && is_confirmed_;
+  if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
+  if (!is_frozen())
+    map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? look.points : Points{});
+  slide_window();
   motion_ = {};
   moved_from_ = newest();
   if (standstill_ && standstill_->keyframe == moved_from_) standstill_->motion = {};
@@ -222,13 +240,13 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
                   graph_.covariance_of({VariableKind::kKeyframe, newest()}));
 }
 
-/// Scans in between average the noise of the submaps. One that fits worse than usual might be in
-/// the wrong place, and would confirm that to the next ones.
+/// Scans between keyframes average the noise of the submaps. One that fits worse than usual may
+/// have a wrong pose, and the next scans would be matched with it.
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
   if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||
       usual_fit_.is_worse_than_usual(match) ||
-      verdict_ == RelocalisationMonitor::Verdict::kDoubtful) {
+      verdict_ == RelocalisationMonitor::Verdict::kSuspicious) {
     return;
   }
   since_insertion_m_ = 0.0;
@@ -261,10 +279,10 @@ WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Loo
 
 Estimate WaymarkEstimator::estimate_between(const Observation& observation,
                                             const BetweenKeyframes& between) const {
-  const Eigen::Vector2d way =
+  const Eigen::Vector2d lever =
       between.map_from_base.translation() - graph_.state().keyframes.back().translation();
   const Eigen::Matrix3d covariance =
-      carried_along(graph_.covariance_of({VariableKind::kKeyframe, newest()}), way) +
+      carried_along(graph_.covariance_of({VariableKind::kKeyframe, newest()}), lever) +
       between.covariance;
   return estimate(observation, between.map_from_base, covariance);
 }
@@ -274,7 +292,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = 0.5 * (covariance + covariance.transpose());
   estimate.covariance +=
-      in_axes(map_from_base.rotation(), unmeasured_covariance(motion_doubt_.suspected_m()));
+      in_axes(map_from_base.rotation(), unmeasured_covariance(unmeasured_motion_.suspected_m()));
   if (setup_.loaded_map)
     estimate.covariance += covariance_at(*setup_.loaded_map, map_from_base.translation());
   if (relocalisation_.alternative()) {
@@ -284,11 +302,11 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   estimate.odometry_refused = odometry_check_.is_refused();
   estimate.reason = reason_;
   estimate.calibration_widened = graph_.is_calibration_doubted();
-  estimate.weak_axis_source = motion_doubt_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing
-                              : markers_known_                   ? WeakAxisSource::kMarkers
-                                                                 : WeakAxisSource::kOdometry;
+  estimate.weak_axis_source = unmeasured_motion_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing
+                              : markers_known_                        ? WeakAxisSource::kMarkers
+                                                                      : WeakAxisSource::kOdometry;
   estimate.ranges_wrong = is_rescaled_;
-  const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kDoubtful ||
+  const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kSuspicious ||
                        inlier_share_ < config_.lost_inlier_share;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
                               !estimate.observability.is_degenerate ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Our method: a smoother over keyframes, markers and calibration.
+// Our method: a fixed-lag smoother over keyframes, markers and calibration, with loop closure.
 #pragma once
 
 #include "slam/core/estimators/estimator.hpp"
@@ -8,12 +8,12 @@
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/keyframe_thinning.hpp"
 #include "slam/core/graph/loop_finder.hpp"
-#include "slam/core/graph/motion_doubt.hpp"
 #include "slam/core/graph/odometry_noise_learner.hpp"
 #include "slam/core/graph/place_finder.hpp"
 #include "slam/core/graph/relocalisation.hpp"
 #include "slam/core/graph/solve_schedule.hpp"
 #include "slam/core/graph/survey.hpp"
+#include "slam/core/graph/unmeasured_motion.hpp"
 #include "slam/core/graph/wall_change_detector.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/mapping/drawn_map.hpp"
@@ -56,10 +56,10 @@ struct WaymarkConfig {
 };
 
 inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]: the map's frame is the first pose
-/// A scan factor ties a scan to one keyframe for so many of those that saw the walls.
+/// Keyframes in a group, which one of them stands for in scan factors.
 inline constexpr std::size_t kGroupedKeyframes = 15;
 
-/// How well the robot's description knows its calibration.
+/// Prior standard deviations of the calibration.
 Calibration calibration_sigmas(const EstimatorSetup& setup, const WaymarkConfig& config);
 
 class WaymarkEstimator final : public Estimator {
@@ -82,13 +82,19 @@ class WaymarkEstimator final : public Estimator {
 
  private:
   static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
-  static constexpr int kMaxStanding = 20;  ///< keyframes of a robot that does not move
-  /// Keyframes of the window where each is tied to a map that does not move.
+  static constexpr int kMaxStanding = 20;  ///< keyframes in a row while odometry stands still
+  /// Keyframes of the window while the map is frozen: each has a prior by the map.
   static constexpr std::size_t kFrozenWindow = 16;
 
   struct Prediction {
     Se2 map_from_base{};
     Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes
+  };
+
+  /// A prediction in the frame of a submap.
+  struct SubmapPrediction {
+    Se2 submap_from_base{};
+    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< submap axes
   };
 
   struct MatchedScan {
@@ -97,24 +103,38 @@ class WaymarkEstimator final : public Estimator {
     Se2 map_from_submap{};
   };
 
-  /// A scan where the robot is expected to be.
+  /// Neighbouring keyframes that saw the walls of a match.
+  struct KeyframeGroup {
+    std::size_t reference{0};  ///< keyframe that stands for the group in the graph
+    double share{0.0};         ///< of the inliers
+    std::size_t middle{0};     ///< mean keyframe, weighted by inliers
+  };
+
+  /// A scan, matched at the predicted pose.
   struct Look {
     Points points{};
     Prediction expected{};
     std::optional<MatchedScan> scan{};
-    double since_last_s{0.0};     ///< scan
-    bool is_searched{false};      ///< widely
-    std::size_t beams_moving{0};  ///< left out of the points
+    double since_last_s{0.0};     ///< time since the last scan
+    bool is_searched{false};      ///< in wide windows, too
+    std::size_t beams_moving{0};  ///< excluded from the points
   };
 
-  /// A scan hangs on the keyframe before it.
+  /// How the scan of a keyframe was used.
+  struct KeyframeScan {
+    bool is_refuted{false};      ///< it contradicts the map
+    bool is_used{false};         ///< it has a factor
+    bool shows_all_axes{false};  ///< and observes every direction
+  };
+
+  /// Pose of a scan, relative to the keyframe before it.
   struct ScanPose {
     Timestamp time{};
     std::size_t keyframe{0};
     Se2 keyframe_from_base{};
   };
 
-  /// Where the robot is at a scan that is no keyframe.
+  /// Pose at a scan that is no keyframe.
   struct BetweenKeyframes {
     Se2 map_from_base{};
     Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes
@@ -123,12 +143,12 @@ class WaymarkEstimator final : public Estimator {
     bool shows_all_axes{false};
   };
 
-  /// Odometry has not changed; it may be stuck.
+  /// A time in which odometry stands still; it may be stuck.
   struct Standstill {
     std::size_t keyframe{0};
     Motion motion{};       ///< since that keyframe
-    Se2 map_from_start{};  ///< the robot, when it began
-    Se2 map_from_base{};   ///< the robot, as of the last keyframe that showed it moving
+    Se2 map_from_start{};  ///< pose when it began
+    Se2 map_from_base{};   ///< pose of the last keyframe at which the robot was observed to move
     Timestamp since{};
     double moved_at_s{0.0};  ///< time of that keyframe, as clock_s_
   };
@@ -146,7 +166,7 @@ class WaymarkEstimator final : public Estimator {
     return is_frozen() ? std::min(all, kFrozenWindow) : all;
   }
 
-  const NdtMap& surfaces_of(const MatchedScan& scan) const;
+  const NdtMap& ndt_of(const MatchedScan& scan) const;
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
   void confirm_place(const MatchedScan& scan);
@@ -155,23 +175,29 @@ class WaymarkEstimator final : public Estimator {
   void follow_odometry(const Observation& observation);
   void add_odometry_factor(std::size_t keyframe, bool is_observed);
   void compare_with_odometry();
-  void spread_kept_back(const Observation& observation);
+  void spread_late_motion(const Observation& observation);
   void weigh_past_anew();
   bool is_keyframe_due(const Observation& observation) const;
   bool has_moved_silently(const Se2& map_from_base) const;
   bool is_contradicted_by(const Observation& observation) const;
-  bool agrees_with_markers(const Observation& observation) const;
+  bool sees_known_markers(const Observation& observation) const;
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
+  static SubmapPrediction in_submap(const Prediction& prediction, const Se2& map_from_submap);
   void search_widely(Look& look) const;
   Look look_from_expected(const Observation& observation) const;
   void add_keyframe(const Observation& observation, Look& look);
+  KeyframeScan add_predicted_keyframe(const Observation& observation, Look& look);
+  void check_pose(std::span<const MarkerMeasurement> measurements);
+  void add_drift(bool has_scan_factor);
+  void slide_window();
   void add_first_keyframe();
   void put_elsewhere(const StartPose& pose);
-  void forget_way_here();
+  void forget_recent_motion();
   void use_survey();
   void note_reason(EstimateReason reason);
   void add_map_factor(std::size_t keyframe, const ScanMatch& match);
+  std::vector<KeyframeGroup> keyframe_groups(const ScanMatch& match, bool is_loop) const;
   void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
   void close_loops(const Points& points);
@@ -205,7 +231,7 @@ class WaymarkEstimator final : public Estimator {
   RangeNoise range_noise_;
   OdometryNoiseLearner noise_learner_{};
   Drift drift_{};
-  Drift unmatched_drift_{};  ///< of it, over keyframes that no scan has held in place
+  Drift unmatched_drift_{};  ///< the part of drift_ by keyframes without a scan factor
   LoopFinder loop_finder_;
   KeyframeThinning thinning_;
   double since_loop_search_m_{0.0};
@@ -219,13 +245,13 @@ class WaymarkEstimator final : public Estimator {
   int keyframes_standing_{0};  ///< in a row
   OdometryCheck odometry_check_{};
   Se2 newest_from_last_scan_{};  ///< pose of the last scan in the newest keyframe's frame
-  MotionDoubt motion_doubt_{};
-  bool is_observed_{true};  ///< markers or walls showed the way to the newest keyframe
+  UnmeasuredMotion unmeasured_motion_{};
+  bool is_observed_{true};  ///< markers or walls observed the motion to the newest keyframe
   double since_insertion_m_{0.0};
-  double unobserved_m_{0.0};  ///< driven since markers or walls showed the way
+  double unobserved_m_{0.0};  ///< driven since markers or walls observed the motion
   DrawnMap map_;
   std::vector<ScanPose> scan_poses_{};
-  OdometryNoise weighed_with_;  ///< what lies behind the window
+  OdometryNoise weighed_with_;  ///< noise with which the graph behind the window was solved
   Findings findings_{};         ///< counts
 
   StartPose start_;
@@ -233,16 +259,16 @@ class WaymarkEstimator final : public Estimator {
   Points loaded_points_{};                     ///< of the loaded map's walls
   CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
                                              : config_.scan.cell_spacing_m};  ///< the same
-  bool is_confirmed_{true};  ///< the place in the loaded map, by markers or by walls
+  bool is_confirmed_{true};  ///< the pose in the loaded map, by markers or walls
   std::optional<WallChangeDetector> wall_changes_{};  ///< against the loaded map
   Survey survey_;
-  std::optional<StartPose> given_pose_{};  ///< where the next keyframe is
+  std::optional<StartPose> given_pose_{};  ///< by a command: pose of the next keyframe
   Timestamp newest_time_{};
-  double clock_s_{0.0};           ///< since the first observation; nobody sets it
-  bool is_put_elsewhere_{false};  ///< by the newest observation
+  double clock_s_{0.0};           ///< since the first observation, without steps of the clock
+  bool is_put_elsewhere_{false};  ///< the newest observation changed the pose without a motion
 
   // Of the newest keyframe:
-  RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kSettled};
+  RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kConsistent};
   double inlier_share_{1.0};
   bool markers_known_{false};
   EstimateReason reason_{EstimateReason::kOdometry};

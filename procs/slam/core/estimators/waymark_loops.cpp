@@ -5,16 +5,14 @@
 namespace waymark {
 namespace {
 
-constexpr double kLoopMargin = 4.0;    // on the covariance of the pose: it is a model
-constexpr double kLoopMatters = 3.0;   // chi^2 of a loop that does more
-constexpr double kLoopSlack_m = 0.05;  // of old poses, whose covariance is not known any more
+constexpr double kLoopMatters = 3.0;   // chi^2 beyond which a loop contradicts the pose
+constexpr double kLoopSlack_m = 0.05;  // sigma of old poses, whose covariance is not kept
 constexpr double kLoopSlack_rad = 0.01;
 
-/// Of a pose relative to an old one: as in the map, unless the way between them tells more.
+/// Of a pose relative to an old one: as in the map, or by the drift since, if that is smaller.
 Eigen::Matrix3d covariance_against_old(const Eigen::Matrix3d& in_map,
                                        const Eigen::Matrix3d& drifted) {
-  Eigen::Matrix3d covariance =
-      kLoopMargin * (drifted.determinant() < in_map.determinant() ? drifted : in_map);
+  Eigen::Matrix3d covariance = kLoopCovarianceMargin * smaller_covariance(drifted, in_map);
   covariance.diagonal() += Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
   return covariance;
 }
@@ -47,7 +45,7 @@ void WaymarkEstimator::close_loops(const Points& points) {
   if (solve_schedule_.is_step_due(graph_.state().keyframes.size())) step_everything({});
 }
 
-/// The published map follows.
+/// Steps the whole graph; the published map follows it.
 void WaymarkEstimator::step_everything(const std::vector<std::size_t>& returning_landmarks) {
   std::vector<std::size_t> activated = returning_landmarks;
   for (std::size_t i = 0; i < book_.entries().size(); ++i) {
@@ -66,7 +64,7 @@ std::function<Se2(std::size_t)> WaymarkEstimator::poses_of(const Graph& graph) {
   };
 }
 
-/// Of places that are known well, so that memory and time grow with the area.
+/// Removes redundant keyframes, so that memory and time grow with the mapped area.
 void WaymarkEstimator::forget_surplus() {
   const std::vector<RemovedKeyframe> surplus = thinning_.surplus(graph_);
   if (surplus.empty()) return;

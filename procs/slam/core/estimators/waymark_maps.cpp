@@ -35,8 +35,8 @@ void WaymarkEstimator::load(const MapSnapshot& map) {
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);
 }
 
-const NdtMap& WaymarkEstimator::surfaces_of(const MatchedScan& scan) const {
-  return scan.submap != nullptr ? scan.submap->surfaces() : setup_.loaded_map->walls;
+const NdtMap& WaymarkEstimator::ndt_of(const MatchedScan& scan) const {
+  return scan.submap != nullptr ? scan.submap->ndt() : setup_.loaded_map->walls;
 }
 
 Points WaymarkEstimator::points_near(const MatchedScan& scan, const Se2& submap_from_base,
@@ -53,18 +53,18 @@ bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
          match.mapped_share >= kLeastMapped;
 }
 
-/// Walls that show every direction confirm a place.
+/// A match that observes every direction confirms the pose in the loaded map.
 void WaymarkEstimator::confirm_place(const MatchedScan& scan) {
   if (scan.submap == nullptr && !scan.match.observed.is_degenerate && is_in_loaded_map(scan.match))
     is_confirmed_ = true;
 }
 
-/// The loaded map does not move.
+/// The loaded map does not move: a match with it is a prior on the pose.
 void WaymarkEstimator::add_map_factor(std::size_t keyframe, const ScanMatch& match) {
   graph_.add(PosePrior{keyframe, match.map_from_base, root_of(match.observed.information)});
 }
 
-/// A surveyed marker that has become sure pulls the whole graph.
+/// A surveyed marker with enough sightings becomes a prior, and the whole graph is solved.
 void WaymarkEstimator::use_survey() {
   if (survey_.is_empty() || !survey_.match(graph_, book_)) return;
   if (const auto survey_from_map = survey_.new_frame(graph_)) {
@@ -73,8 +73,8 @@ void WaymarkEstimator::use_survey() {
     unmatched_drift_.move_to_frame(*survey_from_map);
     map_.redraw(poses_of(graph_));
     relocalisation_ = {};
-    loop_finder_.forget_places();
-    forget_way_here();
+    loop_finder_.reset();
+    forget_recent_motion();
   }
   if (!survey_.has_frame()) return;
   survey_.apply(graph_, kSurveySteps);

@@ -8,8 +8,8 @@
 namespace waymark {
 namespace {
 
-constexpr double kSamePlace_m = 0.5;    // two markers this near hang in one place
-constexpr double kContradicts_m = 0.5;  // a marker this far from all of its id
+constexpr double kSamePlace_m = 0.5;    // between two markers that hang in one place
+constexpr double kContradicts_m = 0.5;  // of a sighting from all markers of its id
 // The same while the odometry stands still: at least, and in standard deviations of the sighting.
 constexpr double kStandsStill_m = 0.03;
 constexpr double kStandsStillSigmas = 4.0;
@@ -18,9 +18,8 @@ constexpr Duration kSightingAge = std::chrono::seconds{1};
 
 }  // namespace
 
-/// A marker where none of its id should be may mean that the robot was carried away: that cannot
-/// wait until it has driven on. One that moves while the odometry stands still may mean that the
-/// odometry is stuck.
+/// A sighting far from all markers of its id needs a keyframe at once, since the robot may have
+/// been carried away. While odometry stands still, a smaller distance is enough: it may be stuck.
 bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const {
   if (observation.sightings.empty() || keyframes_standing_ >= kMaxStanding) return false;
   const Se2 map_from_base = prediction().map_from_base;
@@ -28,15 +27,15 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
       observation.sightings.begin(), observation.sightings.end(), [&](const MarkerSighting& seen) {
         const Eigen::Vector2d place = map_from_base * seen.base_from_marker.translation();
         const double off_m =
-            motion_doubt_.is_standing()
+            unmeasured_motion_.is_standing()
                 ? std::max(kStandsStill_m, kStandsStillSigmas * seen.sigma_along_m())
                 : kContradicts_m;
         return book_.knows(seen.id) && !book_.has_one_near(graph_.state(), place, off_m, seen.id);
       });
 }
 
-/// Markers are seen that are known: they will say where the robot is.
-bool WaymarkEstimator::agrees_with_markers(const Observation& observation) const {
+/// Known markers are in view: they will observe the motion.
+bool WaymarkEstimator::sees_known_markers(const Observation& observation) const {
   return std::any_of(observation.sightings.begin(), observation.sightings.end(),
                      [&](const MarkerSighting& seen) { return book_.knows(seen.id); });
 }
@@ -119,7 +118,8 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
   if (!returning.empty()) solve_schedule_.note_loop(true);
 }
 
-/// A marker that was measured twice at once is one.
+/// The landmark of a marker that was not in the map; a second sighting of it in the same scan gets
+/// the same landmark.
 /// @param first_new  of the landmarks that this scan has added.
 std::size_t WaymarkEstimator::new_landmark(const MarkerMeasurement& measurement,
                                            std::size_t first_new) {
@@ -135,8 +135,8 @@ std::size_t WaymarkEstimator::new_landmark(const MarkerMeasurement& measurement,
   return graph_.add_landmark(there);
 }
 
-/// Absence is evidence where the camera could have seen the marker, and nothing stood before it:
-/// the LiDAR sees its wall.
+/// Negative information: a marker was missed if it should have been in the camera's view, and is
+/// not occluded, because the LiDAR sees its wall.
 void WaymarkEstimator::note_misses(const Observation& observation) {
   if (!observation.camera_reported) return;
   const auto is_in_view = [&](const Se2& base_from_marker) {

@@ -10,10 +10,10 @@
 namespace waymark {
 namespace {
 
-// Off by more than that, odometry that stood still was stuck.
+// Motion of the estimate while odometry stands still, by which it is stuck.
 constexpr double kMoved_m = 0.03;
 constexpr double kMoved_rad = 0.05;
-constexpr double kOtherNoise = 2.0;        // ratio of variances; beyond, the past is weighed anew
+constexpr double kOtherNoise = 2.0;  // ratio of variances beyond which the whole graph is re-solved
 constexpr std::size_t kWeighedEvery = 10;  // keyframes
 
 double along_m2_per_m(const OdometryNoise& noise) {
@@ -26,11 +26,10 @@ bool is_other(double a, double b) {
 
 }  // namespace
 
-/// Odometry that was stuck reports at once what was driven meanwhile: from where the robot was when
-/// it got stuck. Keyframes that were made in between, because markers or walls said that the robot
-/// moves, hang on those alone then.
+/// Late motion of odometry that was stuck begins at the keyframe where it got stuck. Keyframes
+/// since then, which markers or walls have caused, lose their odometry factors.
 void WaymarkEstimator::follow_odometry(const Observation& observation) {
-  motion_doubt_.follow(observation);
+  unmeasured_motion_.follow(observation);
   if (observation.odometry_caught_up) ++findings_.odometry_caught_up;
   if (observation.odometry_caught_up && standstill_) {
     const std::size_t start = standstill_->keyframe;
@@ -44,11 +43,11 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
       motion_.start_from_end =
           graph_.state().keyframes.back().inverse() * standstill_->map_from_start;
     }
-    spread_kept_back(observation);
+    spread_late_motion(observation);
   }
-  motion_ = motion_.then(odometry_check_.believable(observation.motion, observation.elapsed_s,
-                                                    observation.odometry_caught_up));
-  if (!motion_doubt_.is_standing()) {
+  motion_ = motion_.then(odometry_check_.plausible(observation.motion, observation.elapsed_s,
+                                                   observation.odometry_caught_up));
+  if (!unmeasured_motion_.is_standing()) {
     standstill_.reset();
     keyframes_standing_ = 0;
   } else if (!standstill_ && !graph_.state().keyframes.empty()) {
@@ -56,9 +55,9 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
     standstill_ = Standstill{moved_from_, motion_, here, here, observation.time, clock_s_};
   }
   ++findings_.observations;
-  if (observation.odometry_doubtful || odometry_check_.is_refused()) {
+  if (observation.odometry_jumped || odometry_check_.is_refused()) {
     ++findings_.odometry_jumping;
-  } else if (motion_doubt_.is_silent()) {
+  } else if (unmeasured_motion_.is_silent()) {
     ++findings_.odometry_stuck;
   }
 }
@@ -66,15 +65,15 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
 bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
   if (graph_.state().keyframes.empty()) return true;
   const bool is_seen = !observation.sightings.empty();
-  if (is_seen && motion_doubt_.is_silent() && keyframes_standing_ < kMaxStanding) return true;
+  if (is_seen && unmeasured_motion_.is_silent() && keyframes_standing_ < kMaxStanding) return true;
   return motion_.start_from_end.translation().norm() >=
              (is_seen ? config_.marker_keyframe_distance_m : config_.keyframe_distance_m) ||
          std::abs(motion_.start_from_end.theta()) >= config_.keyframe_turn_rad;
 }
 
-/// As far as from keyframe to keyframe, while odometry says nothing.
+/// The estimate has moved as far as from keyframe to keyframe while odometry is silent.
 bool WaymarkEstimator::has_moved_silently(const Se2& map_from_base) const {
-  if (!motion_doubt_.is_silent()) return false;
+  if (!unmeasured_motion_.is_silent()) return false;
   const Eigen::Vector3d moved = pose_difference(map_from_base, graph_.state().keyframes.back());
   return moved.head<2>().norm() >= config_.keyframe_distance_m ||
          std::abs(moved.z()) >= config_.keyframe_turn_rad;
@@ -85,7 +84,7 @@ WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
       corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
   if (!is_observed_) moved = with_slips(moved, motion_.distance_m, graph_.noise().scale);
   const Eigen::Matrix3d covariance =
-      moved.covariance + unmeasured_covariance(motion_doubt_.unmeasured_m());
+      moved.covariance + unmeasured_covariance(unmeasured_motion_.unmeasured_m());
   const Se2& from = graph_.state().keyframes[moved_from_];
   return {from * moved.start_from_end, in_axes(from.rotation(), covariance)};
 }
@@ -97,27 +96,27 @@ void WaymarkEstimator::add_odometry_factor(std::size_t keyframe, bool is_observe
   odometry.from = moved_from_;
   odometry.to = keyframe;
   odometry.motion = motion_;
-  odometry.unmeasured_m = motion_doubt_.take_unmeasured_m();
+  odometry.unmeasured_m = unmeasured_motion_.take_unmeasured_m();
   graph_.add(odometry);
-  // From where the robot got stuck long ago.
+  // The keyframe at which odometry got stuck has left the window.
   if (!graph_.is_active({VariableKind::kKeyframe, moved_from_})) step_everything({});
 }
 
-/// Keyframes of a robot that stands are few: those after kMaxStanding are not made.
+/// Detects that odometry is stuck, and limits the number of keyframes of a standing robot.
 void WaymarkEstimator::compare_with_odometry() {
   if (!standstill_) return;
   ++keyframes_standing_;
   const Se2& now = graph_.state().keyframes.back();
   const Eigen::Vector3d moved = pose_difference(now, standstill_->map_from_base);
   if (moved.head<2>().norm() < kMoved_m && std::abs(moved.z()) < kMoved_rad) return;
-  motion_doubt_.note_moved(moved.head<2>().norm(), clock_s_ - standstill_->moved_at_s);
+  unmeasured_motion_.note_moved(moved.head<2>().norm(), clock_s_ - standstill_->moved_at_s);
   keyframes_standing_ = 0;
   standstill_->map_from_base = now;
   standstill_->moved_at_s = clock_s_;
 }
 
-/// The way that was driven while odometry stood still is drawn evenly into the final trajectory.
-void WaymarkEstimator::spread_kept_back(const Observation& observation) {
+/// Distributes late motion evenly over the scans of the standstill, for the final trajectory.
+void WaymarkEstimator::spread_late_motion(const Observation& observation) {
   const double whole_s = to_seconds(observation.time - standstill_->since);
   const Motion& before = standstill_->motion;
   for (auto scan = scan_poses_.rbegin(); scan != scan_poses_.rend(); ++scan) {
@@ -129,10 +128,10 @@ void WaymarkEstimator::spread_kept_back(const Observation& observation) {
   }
 }
 
-/// What the scan says about the motion since the keyframe before, against what odometry says.
+/// Learns from the innovation of a scan: the motion since the keyframe before, minus odometry's.
 void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
-  if (!config_.learn_noise || motion_.guessed_s > 0.0 || motion_doubt_.is_standing() ||
-      motion_doubt_.is_silent()) {
+  if (!config_.learn_noise || motion_.guessed_s > 0.0 || unmeasured_motion_.is_standing() ||
+      unmeasured_motion_.is_silent()) {
     return;
   }
   const OdometryNoise& described = graph_.noise().odometry;
@@ -143,7 +142,7 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
   off.head<2>() = (to_base * off.head<2>()).eval();
   const Eigen::Matrix3d information =
       in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
-  // Two scans err, this one and the one before.
+  // The noise of two scans: this one and the one before.
   noise_learner_.observe_turn({off.z(),
                                turn_variance(described, motion_.distance_m, motion_.turn_rad),
                                2.0 / information(2, 2), motion_.distance_m});
@@ -156,25 +155,26 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
   graph_.set_odometry_scale(noise_learner_.scale());
 }
 
-/// The same of a known marker, where nothing else showed the way since the last one.
+/// Learns from the innovation of a known marker, if nothing else has observed the motion since the
+/// last one.
 void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
                                    const MarkerMeasurement& measurement) {
-  if (!config_.learn_noise || unobserved_m_ <= 0.0 || motion_doubt_.is_silent()) return;
-  const double by_odometry = along_m2_per_m(graph_.noise().odometry) * unobserved_m_;
+  if (!config_.learn_noise || unobserved_m_ <= 0.0 || unmeasured_motion_.is_silent()) return;
+  const double configured_m2 = along_m2_per_m(graph_.noise().odometry) * unobserved_m_;
   const double blind_m = std::max(0.0, unobserved_m_ - motion_.distance_m);
-  const double believed = along_m2_per_m(graph_.odometry_noise()) * unobserved_m_ +
-                          graph_.noise().scale.slip_m2_per_m * blind_m;
-  // A marker that is further ahead than expected: the robot has driven less.
+  const double learnt_m2 = along_m2_per_m(graph_.odometry_noise()) * unobserved_m_ +
+                           graph_.noise().scale.slip_m2_per_m * blind_m;
+  // If the marker is further ahead than expected, the robot has driven less.
   const OdometryInnovation along{
-      -innovation.residual.x(), by_odometry,
-      std::max(innovation.covariance(0, 0) - believed, measurement.covariance(0, 0)),
+      -innovation.residual.x(), configured_m2,
+      std::max(innovation.covariance(0, 0) - learnt_m2, measurement.covariance(0, 0)),
       unobserved_m_};
   noise_learner_.observe_slip(along);
   noise_learner_.observe_along(along);
   graph_.set_odometry_scale(noise_learner_.scale());
 }
 
-/// What was driven before odometry was known to be that bad is uncertain alike.
+/// Solves the whole graph again when the learnt noise has changed, so that the past has it, too.
 void WaymarkEstimator::weigh_past_anew() {
   const OdometryNoise noise = graph_.odometry_noise();
   const bool is_other_noise =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the graph estimator begins, is put by a command, or finds itself anew.
+// How the graph estimator initialises, takes a commanded pose, and relocalises.
 #include "slam/core/estimators/waymark.hpp"
 
 #include <utility>
@@ -7,9 +7,9 @@
 namespace waymark {
 namespace {
 
-constexpr double kFound_m = 0.1;  // sigmas of a place that markers and walls have shown
+constexpr double kFound_m = 0.1;  // sigmas of a pose by global localisation
 constexpr double kFound_rad = 0.05;
-constexpr double kReturned_m = 0.3;  // sigma of a pose that a relocalisation is taken back to
+constexpr double kReturned_m = 0.3;  // sigmas of the pose after a relocalisation was reverted
 constexpr double kReturned_rad = 0.1;
 
 }  // namespace
@@ -45,7 +45,7 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
   return true;
 }
 
-/// A new keyframe, which nothing but the given pose ties to the ones before.
+/// Adds a keyframe at a commanded pose, without odometry from the keyframe before.
 void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   const Se2 map_from_base{pose.x_m, pose.y_m, pose.yaw_rad};
   const std::size_t keyframe = graph_.add_keyframe(map_from_base);
@@ -54,17 +54,17 @@ void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
   is_confirmed_ = !setup_.loaded_map || pose.is_certain;
   relocalisation_ = {};
-  forget_way_here();
+  forget_recent_motion();
   begin_submaps_anew();
 }
 
-/// The robot was put elsewhere, or its place has other coordinates: the step there was not driven.
-/// (A relocalisation may be what shows that odometry was stuck, and keeps the standstill.)
-void WaymarkEstimator::forget_way_here() {
+/// The pose changed without a motion: by a command, or by a new map frame. (A relocalisation does
+/// not call it, since odometry may have been stuck: it keeps the standstill.)
+void WaymarkEstimator::forget_recent_motion() {
   is_put_elsewhere_ = true;
   standstill_.reset();
   keyframes_standing_ = 0;
-  motion_doubt_.note_observed();
+  unmeasured_motion_.note_observed();
 }
 
 /// @return whether the robot's place in the loaded map is known by now.
@@ -90,7 +90,7 @@ Estimate WaymarkEstimator::unplaced(const Observation& observation) const {
 void WaymarkEstimator::relocate(const Se2& map_from_base) {
   ++findings_.relocalisations;
   graph_.relocate_newest(map_from_base);
-  if (verdict_ == RelocalisationMonitor::Verdict::kBack) {
+  if (verdict_ == RelocalisationMonitor::Verdict::kReverted) {
     const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
     graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
   }
@@ -101,7 +101,7 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
 
 void WaymarkEstimator::begin_submaps_anew() {
   submaps_.begin_anew();
-  loop_finder_.forget_places();
+  loop_finder_.reset();
 }
 
 }  // namespace waymark

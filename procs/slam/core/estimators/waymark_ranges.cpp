@@ -11,7 +11,7 @@ namespace {
 constexpr double kLeastShare = 0.01;  // of the ranges; less is within what LiDARs are good for
 constexpr double kLeastSigmas = 5.0;
 constexpr double kClearlyBetter = 1.15;           // inliers with the ranges scaled
-const Eigen::Vector3d kAround{0.05, 0.05, 0.02};  // where the pose may be beside the prediction
+const Eigen::Vector3d kAround{0.05, 0.05, 0.02};  // sigmas of the pose about the prediction
 
 Observation scaled_ranges(Observation observation, double share) {
   for (AnnotatedBeam& annotated : observation.beams) {
@@ -24,20 +24,19 @@ Observation scaled_ranges(Observation observation, double share) {
 
 }  // namespace
 
-/// Walls on both sides that are all too far away, or all too near, are no other pose: the ranges
-/// are at another scale.
+/// If walls on opposite sides are all too far away, or all too near, no pose explains the scan: the
+/// ranges are scaled.
 std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,
                                                               Look& look) {
   is_rescaled_ = false;
   if (!look.scan || !usual_fit_.is_contradicted(look.scan->match)) return std::nullopt;
   const Prediction& expected = look.expected;
   const auto& plain = look.scan;
-  const Se2 submap_from_map = plain->map_from_submap.inverse();
-  Eigen::Matrix3d around = in_axes(submap_from_map.rotation(), expected.covariance);
-  around.diagonal() += kAround.cwiseAbs2();
-  const RangeScale scale = fit_range_scale(
-      look.points, observation.beams.front().beam.start_in_base, surfaces_of(*plain),
-      submap_from_map * expected.map_from_base, around, range_noise_);
+  SubmapPrediction guess = in_submap(expected, plain->map_from_submap);
+  guess.covariance.diagonal() += kAround.cwiseAbs2();
+  const RangeScale scale =
+      fit_range_scale(look.points, observation.beams.front().beam.start_in_base, ndt_of(*plain),
+                      guess.submap_from_base, guess.covariance, range_noise_);
   if (std::abs(scale.share) < std::max(kLeastShare, kLeastSigmas * scale.sigma))
     return std::nullopt;
   Observation corrected = scaled_ranges(observation, scale.share);

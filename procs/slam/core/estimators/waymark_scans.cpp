@@ -11,7 +11,7 @@
 namespace waymark {
 namespace {
 
-/// Of a measurement whose covariance grows by `noise`; also where it says nothing along an axis.
+/// Information of a measurement whose covariance grows by `noise`; it may be singular.
 Eigen::Matrix3d with_more_noise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& noise) {
   if (noise.isZero(0.0)) return information;
   const Eigen::Matrix3d reduced =
@@ -20,6 +20,13 @@ Eigen::Matrix3d with_more_noise(const Eigen::Matrix3d& information, const Eigen:
 }
 
 }  // namespace
+
+WaymarkEstimator::SubmapPrediction WaymarkEstimator::in_submap(const Prediction& prediction,
+                                                               const Se2& map_from_submap) {
+  const Se2 submap_from_map = map_from_submap.inverse();
+  return {submap_from_map * prediction.map_from_base,
+          in_axes(submap_from_map.rotation(), prediction.covariance)};
+}
 
 std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
     const Points& points, const Prediction& prediction) const {
@@ -34,46 +41,41 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   scan.submap = submaps_.matched();
   if (scan.submap == nullptr) return std::nullopt;
   scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
-  const Se2 submap_from_map = scan.map_from_submap.inverse();
-  const Se2 guess = submap_from_map * prediction.map_from_base;
-  const Eigen::Matrix3d covariance = in_axes(submap_from_map.rotation(), prediction.covariance);
-  scan.match = match_scan(points, scan.submap->surfaces(), guess, covariance, range_noise_,
-                          config_.scan, scan.submap->coarse_surfaces());
+  const SubmapPrediction guess = in_submap(prediction, scan.map_from_submap);
+  scan.match = match_scan(points, scan.submap->ndt(), guess.submap_from_base, guess.covariance,
+                          range_noise_, config_.scan, scan.submap->coarse_ndt());
   return scan;
 }
 
-/// Odometry may be off by more than plain matching can find: where a scan fits worse than the scans
-/// before, places in wide windows are tried, too, also about where the robot would be without it:
-/// that is wrong by a scan's motion at most. Needs a scan that was matched; once is enough.
+/// Where a scan fits worse than the scans before, odometry may be off by more than plain matching
+/// converges from: then wide windows are searched, about the predicted pose and about poses that do
+/// not use odometry, which are off by a scan's motion at most. Needs a scan that was matched.
 void WaymarkEstimator::search_widely(Look& look) const {
   MatchedScan& scan = *look.scan;
   if (look.is_searched || !usual_fit_.is_worse_than_usual(scan.match)) return;
   look.is_searched = true;
-  const Se2 submap_from_map = scan.map_from_submap.inverse();
   const Se2 submap_from_last =
-      submap_from_map * (graph_.state().keyframes.back() * newest_from_last_scan_);
-  const Se2 expected = submap_from_map * look.expected.map_from_base;
+      scan.map_from_submap.inverse() * (graph_.state().keyframes.back() * newest_from_last_scan_);
+  const SubmapPrediction expected = in_submap(look.expected, scan.map_from_submap);
   WideSearch search;
   for (const Se2& step : odometry_check_.steps_without_odometry())
     search.without_odometry.push_back(submap_from_last * step);
-  search.by_odometry = expected;
-  search.odometry_covariance = in_axes(submap_from_map.rotation(), look.expected.covariance);
+  search.by_odometry = expected.submap_from_base;
+  search.odometry_covariance = expected.covariance;
   search.since_last_s = look.since_last_s;
   search.min_score = config_.loops.min_score;
-  scan.match = searched_widely(scan.match, look.points, surfaces_of(scan),
-                               points_near(scan, expected, wide_search_reach_m(look.points)),
-                               search, usual_fit_, range_noise_, config_.scan);
+  scan.match = searched_widely(
+      scan.match, look.points, ndt_of(scan),
+      points_near(scan, expected.submap_from_base, wide_search_reach_m(look.points)), search,
+      usual_fit_, range_noise_, config_.scan);
 }
 
-void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
-                                       const ScanMatch& match, bool is_loop) {
-  ScanFactor factor;
-  factor.is_loop = is_loop;
-  factor.keyframe = keyframe;
-  // Keyframes are put together: one stands for its neighbours. It is the same one for every scan,
-  // so that the whole graph stays sparse. Where no scan has held the neighbours in place, it may be
-  // off from those that saw the walls.
-  Eigen::Matrix3d off = Eigen::Matrix3d::Zero();
+/// Inliers of a match by the keyframes that saw their walls: neighbouring keyframes are grouped,
+/// and one keyframe stands for its group. It is the same one for every scan, so that the graph
+/// stays sparse.
+std::vector<WaymarkEstimator::KeyframeGroup> WaymarkEstimator::keyframe_groups(
+    const ScanMatch& match, bool is_loop) const {
+  std::vector<KeyframeGroup> groups;
   const auto count = match.keyframe_shares.size();
   const auto first = static_cast<std::size_t>(match.first_keyframe);
   for (std::size_t begin = 0; begin < count;) {
@@ -90,17 +92,31 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
     if (!is_loop) reference = std::max(reference, graph_.first_active_keyframe());
     begin = end;
     if (share <= 0.0 || reference >= first + end) continue;
+    groups.push_back({reference, share, static_cast<std::size_t>(std::lround(middle / share))});
+  }
+  return groups;
+}
+
+void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
+                                       const ScanMatch& match, bool is_loop) {
+  ScanFactor factor;
+  factor.is_loop = is_loop;
+  factor.keyframe = keyframe;
+  // Where no scan constrains a group, its reference may have drifted from the keyframes that saw
+  // the walls.
+  Eigen::Matrix3d drift = Eigen::Matrix3d::Zero();
+  for (const KeyframeGroup& group : keyframe_groups(match, is_loop)) {
     factor.references.push_back(
-        {reference, share, submap.submap_from_keyframe(reference).inverse() * match.map_from_base});
-    const auto seen_from = static_cast<std::size_t>(std::lround(middle / share));
-    off += share * share * unmatched_drift_.between(seen_from, reference);
+        {group.reference, group.share,
+         submap.submap_from_keyframe(group.reference).inverse() * match.map_from_base});
+    drift += group.share * group.share * unmatched_drift_.between(group.middle, group.reference);
   }
   if (!factor.normalise_shares()) return;
   const Eigen::Matrix3d information =
       in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
-  const Eigen::Matrix3d off_in_base =
-      in_axes(graph_.state().keyframes[keyframe].rotation().transpose(), off);
-  factor.root_information = root_of(with_more_noise(information, off_in_base));
+  const Eigen::Matrix3d drift_in_base =
+      in_axes(graph_.state().keyframes[keyframe].rotation().transpose(), drift);
+  factor.root_information = root_of(with_more_noise(information, drift_in_base));
   graph_.add(factor);
 }
 

@@ -19,7 +19,7 @@ enum class Health { kInitialising, kTracking, kDegenerate, kLost };
 /// What observes the motion along the weakest direction of the walls.
 enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
 
-/// What an estimate rests on beside odometry; the last of these that holds.
+/// What observed the estimate beside odometry: the last of these that applies.
 enum class EstimateReason { kOdometry, kScan, kMarker, kLoop, kRelocalised, kSurvey, kCommand };
 
 struct Estimate {
@@ -37,8 +37,8 @@ struct Estimate {
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
   EstimateReason reason{EstimateReason::kScan};
   bool updated{false};  ///< the scan was weighed and mapped, not only followed by odometry
-  /// The odometry's newest step was not believed: scans (gmapping), or how this robot drives
-  /// (waymark), say otherwise.
+  /// The odometry's newest step was rejected: scans contradict it (gmapping), or it exceeds the
+  /// robot's speed limits (waymark).
   bool odometry_refused{false};
   bool ranges_wrong{false};  ///< the scan shows known walls, but at another scale: it was scaled
   /// Camera or markers are further from their description than their standard deviations allow.

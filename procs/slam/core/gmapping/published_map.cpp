@@ -48,26 +48,26 @@ void draw_scan(const StoredScan& scan, const Se2& map_from_base, double usable_r
 }
 
 PublishedMap::PublishedMap(const GridFrame& frame, double usable_range_m, double occupied_threshold)
-    : settled_{frame, {}, {}},
-      drawn_{settled_},
-      decided_of_{settled_},
-      decided_{settled_},
+    : final_{frame, {}, {}},
+      drawn_{final_},
+      decided_of_{final_},
+      decided_{final_},
       usable_range_m_{usable_range_m},
       occupied_threshold_{occupied_threshold} {}
 
-void PublishedMap::settle(const Trajectory& trunk) {
+void PublishedMap::finalise(const Trajectory& trunk) {
   for (const TrajectoryNode* node : nodes_after(nullptr, trunk.get())) {
-    draw_scan(*node->scan, node->map_from_base, usable_range_m_, settled_);
+    draw_scan(*node->scan, node->map_from_base, usable_range_m_, final_);
   }
   trunk->scan.reset();
   trunk->parent.reset();
-  // A drawing that ended on the trunk or on a branch that died would keep both alive.
+  // Else the pointer would keep the freed trunk, or a dead branch, in memory.
   if (!passes_through(trunk.get(), drawn_until_.get())) drawn_until_.reset();
 }
 
 void PublishedMap::draw(const Trajectory& trajectory) {
   if (!drawn_until_ || !passes_through(drawn_until_.get(), trajectory.get())) {
-    drawn_ = settled_;
+    drawn_ = final_;
     drawn_until_.reset();
   }
   for (const TrajectoryNode* node : nodes_after(drawn_until_.get(), trajectory.get())) {
@@ -91,7 +91,7 @@ const GridMap& PublishedMap::along(const Trajectory& trajectory) {
   drawn_.occupancy.for_each_tile([&](TileIndex tile, const auto& cells) {
     if (decided_of_.occupancy.tile(tile) != &cells) decide(tile);
   });
-  // What another trajectory had drawn and this one has not.
+  // Tiles that the previous trajectory had drawn and this one has not.
   decided_of_.occupancy.for_each_tile([&](TileIndex tile, const auto&) {
     if (!drawn_.occupancy.tile(tile)) decide(tile);
   });

@@ -8,7 +8,7 @@
 namespace waymark {
 
 /// Draws a scan: cells up to a beam's end are crossed, the last one is hit. A beam longer than
-/// `usable_range_m` clears its way up to there and hits nothing.
+/// `usable_range_m` clears the cells up to there and hits nothing.
 void draw_scan(const StoredScan& scan, const Se2& map_from_base, double usable_range_m,
                GridMap& map);
 
@@ -17,9 +17,9 @@ class PublishedMap {
  public:
   PublishedMap(const GridFrame& frame, double usable_range_m, double occupied_threshold);
 
-  /// Nobody will ever take another way than `trunk` up to its newest node: draws it for good and
-  /// frees its scans and all nodes but the newest.
-  void settle(const Trajectory& trunk);
+  /// All particles descend from `trunk`'s newest node: draws the trunk for good, and frees its
+  /// scans and all of its nodes but the newest.
+  void finalise(const Trajectory& trunk);
 
   /// The map along a trajectory as slam_gmapping publishes it: a mapped cell counts one visit, and
   /// a hit when more than the threshold of its beams ended there. When the trajectory continues the
@@ -30,7 +30,7 @@ class PublishedMap {
   void draw(const Trajectory& trajectory);
   void decide(TileIndex tile);
 
-  GridMap settled_;           ///< along the trunk, which all trajectories share
+  GridMap final_;             ///< along the trunk, which all trajectories share
   GridMap drawn_;             ///< along the last trajectory asked for
   GridMap decided_of_;        ///< what decided_ was made from
   GridMap decided_;           ///< drawn_ after the threshold

@@ -24,12 +24,12 @@ Trajectory common_ancestor(std::vector<Trajectory> trajectories) {
   return trajectories.front();
 }
 
-std::vector<Se2> way_of(const Trajectory& trajectory) {
-  std::vector<Se2> way;
+std::vector<Se2> poses_along(const Trajectory& trajectory) {
+  std::vector<Se2> poses;
   for (const TrajectoryNode* node = trajectory.get(); node && node->scan; node = node->parent.get())
-    way.push_back(node->map_from_base);
-  std::reverse(way.begin(), way.end());
-  return way;
+    poses.push_back(node->map_from_base);
+  std::reverse(poses.begin(), poses.end());
+  return poses;
 }
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ways of the particles as a tree: what they share is stored once, what none needs is freed.
+// Trajectories of the particles as a tree: common parts are stored once, dead branches are freed.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -13,7 +13,7 @@ namespace waymark {
 
 using StoredScan = std::vector<Beam>;
 
-/// One processed scan on the way of one particle, or of several that descend from it.
+/// One processed scan on the trajectory of one particle, or of several that descend from it.
 struct TrajectoryNode {
   TrajectoryNode(const Se2& pose, std::shared_ptr<const StoredScan> beams,
                  std::shared_ptr<TrajectoryNode> before)
@@ -35,6 +35,6 @@ using Trajectory = std::shared_ptr<TrajectoryNode>;  ///< its newest node
 Trajectory common_ancestor(std::vector<Trajectory> trajectories);
 
 /// map_from_base of the nodes that still have their scan, oldest first.
-std::vector<Se2> way_of(const Trajectory& trajectory);
+std::vector<Se2> poses_along(const Trajectory& trajectory);
 
 }  // namespace waymark

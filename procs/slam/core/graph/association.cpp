@@ -10,11 +10,12 @@
 namespace waymark {
 namespace {
 
-constexpr int kTurnedUp = 3;         // sightings of a marker that another one may have become
-constexpr double kSamePlace = 0.25;  // of a marker's side; boards have them side by side
+constexpr int kLeastNewSightings = 3;  // of the marker at its new place, to retire the old one
+constexpr double kSamePlace = 0.25;    // of a marker's side, since boards have markers side by side
 constexpr double kSameFacing_rad = radians(45.0);  // a wall has two sides
 
-/// By differences of poses in the map's axes, which the graph's covariances are of.
+/// Converts the Jacobians from steps in the poses' own frames to differences in the map's axes, in
+/// which the graph's covariances are.
 LinearFactor in_map_axes(LinearFactor linear, const State& state) {
   for (LinearFactor::Block& block : linear.blocks)
     if (block.variable.kind != VariableKind::kCalibration)
@@ -55,7 +56,7 @@ MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t l
 
 Se2 map_from_measured(const State& state, std::size_t keyframe,
                       const MarkerMeasurement& measurement) {
-  const Eigen::Vector3d off = measurement.by_errors() * camera_part(state.calibration);
+  const Eigen::Vector3d off = measurement.jacobian_calibration() * camera_part(state.calibration);
   const Se2& seen = measurement.base_from_marker;
   return state.keyframes[keyframe] *
          Se2{seen.x() - off.x(), seen.y() - off.y(), seen.theta() - off.z()};
@@ -103,7 +104,7 @@ void MarkerBook::note_misses(const State& state, std::size_t keyframe,
     for (std::size_t k = 0; k < entries_.size(); ++k) {
       Landmark& other = entries_[k];
       if (k == i || is_retired_[k] || other.id != entries_[i].id ||
-          other.first_seen <= entries_[i].last_seen || other.sightings < kTurnedUp) {
+          other.first_seen <= entries_[i].last_seen || other.sightings < kLeastNewSightings) {
         continue;
       }
       other.instance = entries_[i].instance;

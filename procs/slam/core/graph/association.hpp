@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which landmark a measured marker is. An id is a class, not a key: several markers may carry it.
+// Data association of markers. An id is a class, not a key: several markers may carry it.
 #pragma once
 
 #include "slam/core/graph/graph.hpp"
@@ -22,36 +22,36 @@ struct MarkerInnovation {
   double distance_m() const { return residual.head<2>().norm(); }
 };
 
-/// By the joint covariance of pose, landmark and camera; a landmark behind the window counts as
-/// independent of the pose.
+/// Innovation by the joint covariance of pose, landmark and camera. A landmark behind the window is
+/// taken as independent of the pose.
 MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t landmark,
                          const MarkerMeasurement& measurement);
 
-/// Where the marker is if the keyframe's pose and the calibration are right, map frame.
+/// map_from_marker by the measurement, the keyframe's pose and the calibration.
 Se2 map_from_measured(const State& state, std::size_t keyframe,
                       const MarkerMeasurement& measurement);
 
-/// The markers that are known, by the index of their landmark in the graph.
+/// Sightings and misses of the graph's landmarks, by the index of a landmark.
 class MarkerBook {
  public:
   const std::vector<Landmark>& entries() const { return entries_; }
 
-  /// A marker that was met for the first time.
+  /// A marker at its first sighting.
   void add(int id, Timestamp time);
 
-  /// One of a loaded map.
+  /// A marker of a loaded map.
   void add_known(const Landmark& landmark);
 
   void note_sighting(std::size_t landmark, Timestamp time);
 
-  /// Counts one more missed detection for every marker that should be in view and was not sighted
-  /// since `now`. One that is missed while another of its id has turned up was moved: it is
-  /// retired.
+  /// Counts a missed detection for every marker that should be in view and has not been sighted
+  /// since `now`. A missing marker of whose id another one has appeared since was moved: its old
+  /// landmark is retired.
   void note_misses(const State& state, std::size_t keyframe,
                    const std::function<bool(const Se2& base_from_marker)>& is_in_view,
                    Timestamp now);
 
-  /// The retired landmark that it was before it was moved.
+  /// The retired landmark of the same marker, from before it was moved.
   std::optional<std::size_t> moved_from(std::size_t landmark) const {
     return moved_from_[landmark];
   }
@@ -60,8 +60,8 @@ class MarkerBook {
 
   bool knows(int id) const;
 
-  /// Some marker is known to hang within `near_m` of a place.
-  /// @param id  of it; kNoMarker for any.
+  /// Whether a marker hangs within `near_m` of a place.
+  /// @param id  of the marker; kNoMarker: any.
   bool has_one_near(const State& state, const Eigen::Vector2d& place, double near_m,
                     int id = kNoMarker) const;
 
@@ -72,13 +72,13 @@ class MarkerBook {
   /// The landmark of that id, if there is exactly one and it is confirmed.
   std::optional<std::size_t> unique(int id) const;
 
-  /// Two markers cannot hang in one place: a new id where a known one is still being seen was
-  /// misread.
+  /// Whether a new id was misread: a marker of another id hangs there and is still being seen, and
+  /// two markers cannot hang in one place.
   bool is_misread(const State& state, std::size_t keyframe,
                   const MarkerMeasurement& measurement) const;
 
  private:
-  std::vector<Landmark> entries_{};  ///< without pose and covariance: the graph has these
+  std::vector<Landmark> entries_{};  ///< pose and covariance are not set: the graph has these
   std::vector<bool> is_retired_{};
   std::vector<std::optional<std::size_t>> moved_from_{};
 };

@@ -12,11 +12,11 @@
 namespace waymark {
 namespace {
 
-constexpr double kWidest = 256.0;     // component of the mixture
+constexpr double kWidest = 256.0;     // width of the mixture's widest component
 constexpr double kTail = 2.0;         // a component k times as wide has 1 / k^2 of the probability
-constexpr double kLeastShare = 1e-9;  // of the prior's information; with less nothing is measured
-constexpr double kDoubtSigmas = 5.0;  // beyond, the description is called wrong
-constexpr double kExactSigma = 1e-9;  // instead of 0
+constexpr double kLeastShare = 1e-9;  // of the prior's information, that counts as a measurement
+constexpr double kDoubtSigmas = 5.0;  // error from which the description counts as wrong
+constexpr double kExactSigma = 1e-9;  // stands for 0, which has no inverse
 
 }  // namespace
 
@@ -24,10 +24,10 @@ CalibrationKnowledge::CalibrationKnowledge(const Calibration& sigmas)
     : sigmas_{sigmas.cwiseMax(kExactSigma)} {}
 
 void CalibrationKnowledge::observe(const WallInnovation& wall) {
-  const Eigen::Matrix<double, 2, 3> by = wall.by_errors();
+  const Eigen::Matrix<double, 2, 3> jacobian = wall.jacobian_calibration();
   const Eigen::Matrix2d information = wall.covariance.inverse();
-  camera_information_ += by.transpose() * information * by;
-  camera_vector_ += by.transpose() * information * wall.residual;
+  camera_information_ += jacobian.transpose() * information * jacobian;
+  camera_vector_ += jacobian.transpose() * information * wall.residual;
 }
 
 void CalibrationKnowledge::observe(const FocalSighting& focal) {
@@ -52,8 +52,8 @@ void CalibrationKnowledge::weigh(const Calibration& value, const Calibration& va
   }
 }
 
-/// What measurements alone say follows from the estimate, for the prior's mean is 0. An exact value
-/// stays exact.
+/// The measurements alone: since the prior's mean is 0, their mean and information follow from the
+/// estimate by removing the prior. Exact terms are left as they are.
 void CalibrationKnowledge::weigh(std::initializer_list<Eigen::Index> terms,
                                  const Calibration& value, const Calibration& variances) {
   const Calibration prior = prior_information();

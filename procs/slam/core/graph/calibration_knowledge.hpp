@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of the calibration apart from poses and markers.
+// Information about the calibration that does not depend on poses and landmarks.
 #pragma once
 
 #include "slam/core/graph/state.hpp"
@@ -11,42 +11,43 @@
 
 namespace waymark {
 
-/// The robot's description as a prior, and what walls and perspective say about the camera: linear
-/// in the calibration, so that their sum is one quadratic. The description is believed as a scale
-/// mixture of normal distributions, which has the long tails of a Student-t: where measurements
-/// alone say that a value is many standard deviations off, it is taken as that much less certain
-/// (West 1987, "On scale mixtures of normal distributions").
+/// The robot's description as a prior, and measurements of the camera by walls and by perspective:
+/// all linear in the calibration, so that their sum is one quadratic. The prior is a scale mixture
+/// of normal distributions, which has the long tails of a Student-t: a value that the measurements
+/// contradict by many standard deviations gets a prior that is as much wider (West 1987, "On scale
+/// mixtures of normal distributions").
 class CalibrationKnowledge {
  public:
-  /// @param sigmas  of the description; 0 is exact.
+  /// @param sigmas  standard deviations of the description; 0: exact.
   explicit CalibrationKnowledge(const Calibration& sigmas);
 
   void observe(const WallInnovation& wall);
   void observe(const FocalSighting& focal);
 
-  /// What was observed is forgotten but for `share`.
+  /// Multiplies the information of all observations by `share`.
   void fade(double share);
 
-  /// A random walk over `driven_m`: variances that it adds. A payload, a tyre or a knock changes a
-  /// calibration; after kMemory_m little is left of what was known.
+  /// Variances that the calibration's random walk adds over `driven_m`: a payload, a tyre or a
+  /// knock changes it. After kMemory_m the walk's variance equals the prior's.
   Calibration wander(double driven_m) const {
     return driven_m / kMemory_m * prior_information().cwiseInverse();
   }
 
   static constexpr double kMemory_m = 1000.0;
 
-  /// Adds to the normal equations H step = -g at a value of the calibration.
+  /// Adds to the normal equations H step = -g, linearised at `value`.
   void add_to(const Calibration& value, Eigen::Ref<Eigen::MatrixXd> h,
               Eigen::Ref<Eigen::VectorXd> g) const;
 
-  /// Chooses the components of the mixtures: one of each term of the odometry, and one of all of
-  /// the camera's, for a description that is wrong in one of them was not made
-  /// carefully: it is believed no better than one that is usual.
-  /// @param value      estimate with the components chosen before,
-  /// @param variances  of it.
+  /// Chooses the likeliest components of the mixtures: one for each term of the odometry, and a
+  /// common one for the camera's terms. Where that common component is wide, the camera was
+  /// described carelessly, and none of its terms gets a prior narrower than the usual one
+  /// (SightingSigmas::learnt).
+  /// @param value      estimate with the components chosen before.
+  /// @param variances  of `value`.
   void weigh(const Calibration& value, const Calibration& variances);
 
-  /// The description is off by more than chance explains.
+  /// Whether the estimate differs significantly from the description.
   bool is_doubted(const Calibration& value) const;
 
  private:
@@ -58,9 +59,10 @@ class CalibrationKnowledge {
   }
 
   Calibration sigmas_;
-  Calibration widened_{Calibration::Ones()};  ///< by the chosen component, a factor on the sigma
+  Calibration widened_{
+      Calibration::Ones()};  ///< width of the chosen component, a factor on sigmas_
   Eigen::Matrix3d camera_information_{Eigen::Matrix3d::Zero()};
-  Eigen::Vector3d camera_vector_{Eigen::Vector3d::Zero()};  ///< information * what is measured
+  Eigen::Vector3d camera_vector_{Eigen::Vector3d::Zero()};  ///< information * measured value
 };
 
 }  // namespace waymark

@@ -6,11 +6,11 @@
 
 namespace waymark {
 
-/// L of h = L L'. Where some unknowns are known to micrometres and others to kilometres, rounding
-/// may leave h indefinite: it is damped as little as it needs then (Levenberg 1944).
+/// L of h = L L'. Where some unknowns are certain to micrometres and others to kilometres, rounding
+/// may make h indefinite: then h is damped, as little as necessary (Levenberg 1944).
 class DampedRoot : public Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> {
  public:
-  /// @param h  symmetric, the lower half counts; without a diagonal that is zero or below.
+  /// @param h  symmetric, of which the lower half is read; its diagonal is positive.
   void compute(const Eigen::MatrixXd& h) {
     LLT::compute(h);
     for (double damping = kLeast; info() != Eigen::Success && damping < kMost; damping *= 10.0) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/factors.hpp"
 
+#include "common/geometry/squared.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -13,11 +15,37 @@
 namespace waymark {
 namespace {
 
-/// Pose of one frame in another, and how it follows steps of both (State::retract).
+// The mixture of the odometry's noise; all of these were chosen, not fitted.
+// Penalties: -2 log of the prior probabilities of the components, rounded.
+constexpr double kRollingPenalty = 0.1;    // 0.95
+constexpr double kSpinningPenalty = 7.0;   // 0.03
+constexpr double kJerkedPenalty = 8.4;     // 0.015
+constexpr double kAnythingPenalty = 10.6;  // 0.005
+// Widths, in standard deviations of the configured noise.
+constexpr double kSpinningTurn = 25.0;  // turn by a wheel that spins, and the distance with it
+constexpr double kSpinningRest = 3.0;   // all else meanwhile
+constexpr double kJerked = 25.0;
+constexpr double kAnything = 125.0;
+// A push while the odometry stands still, whose configured noise is zero.
+constexpr double kPushed_m = 0.1;
+constexpr double kPushed_rad = 0.1;
+
+// Of a motion that was not measured, per metre ahead: sideways, and the turn.
+constexpr double kSideways = 0.1;
+constexpr double kTurn_rad_per_m = 0.2;
+
+// chi^2 at which a loop begins to lose weight: loops are accurate to centimetres, but submaps bend
+// by as much. 25 is 5 sigmas of one axis.
+constexpr double kLoopKernel = 25.0;
+
+// Sigma of the motion over a cut [m, rad]: no information, but the normal equations stay regular.
+constexpr double kCutSigma = 1000.0;
+
+/// Pose of one frame in another, with the Jacobians by steps of both (State::retract).
 struct Relative {
   Eigen::Vector3d pose{Eigen::Vector3d::Zero()};
-  Eigen::Matrix3d by_from{Eigen::Matrix3d::Zero()};
-  Eigen::Matrix3d by_to{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d jacobian_from{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d jacobian_to{Eigen::Matrix3d::Zero()};
 };
 
 Relative relative(const Se2& map_from_from, const Se2& map_from_to) {
@@ -25,8 +53,8 @@ Relative relative(const Se2& map_from_from, const Se2& map_from_to) {
   Relative result;
   result.pose << from_from_to.translation(),
       angle_difference(map_from_to.theta(), map_from_from.theta());
-  result.by_to = turning(from_from_to.rotation());
-  result.by_from = -carried_along(from_from_to.translation());
+  result.jacobian_to = turning(from_from_to.rotation());
+  result.jacobian_from = -carried_along(from_from_to.translation());
   return result;
 }
 
@@ -72,14 +100,14 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {
 MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& noise) {
   struct Kind {
     MotionKind kind;
-    double penalty;  // -2 log of its share: 0.95, 0.03, 0.015, 0.005
+    double penalty;
   };
 
   const std::array<Kind, 4> kinds{
-      {{MotionKind::kRolling, 0.1},
-       {residual.z() > 0.0 ? MotionKind::kLeftSpins : MotionKind::kRightSpins, 7.0},
-       {MotionKind::kJerked, 8.4},
-       {MotionKind::kAnything, 10.6}}};
+      {{MotionKind::kRolling, kRollingPenalty},
+       {residual.z() > 0.0 ? MotionKind::kLeftSpins : MotionKind::kRightSpins, kSpinningPenalty},
+       {MotionKind::kJerked, kJerkedPenalty},
+       {MotionKind::kAnything, kAnythingPenalty}}};
   const auto cost = [&](const Kind& kind) {
     const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind.kind, noise)};
     return residual.dot(root.solve(residual)) + kind.penalty +
@@ -91,35 +119,29 @@ MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& n
 }
 
 Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise) {
-  constexpr double kSpinning = 25.0;  // turn by a spinning wheel, in standard deviations
-  constexpr double kPushed_m = 0.1;   // while the odometry stands still
-  constexpr double kPushed_rad = 0.1;
   if (kind == MotionKind::kRolling) return noise.rolling;
-  if (kind == MotionKind::kJerked) return noise.rolling + 25.0 * 25.0 * noise.described;
+  if (kind == MotionKind::kJerked) return noise.rolling + squared(kJerked) * noise.described;
   if (kind == MotionKind::kAnything) {
-    const Eigen::Matrix3d anything =
+    const Eigen::Matrix3d pushed =
         Eigen::Vector3d{kPushed_m, kPushed_m, kPushed_rad}.cwiseAbs2().asDiagonal();
-    return noise.rolling + 125.0 * 125.0 * noise.described + anything;
+    return noise.rolling + squared(kAnything) * noise.described + pushed;
   }
-  // A wheel that spins is counted too far: its side is shorter than measured, and with that the
-  // way.
+  // The encoder of a spinning wheel counts too much: d(x, y)/d(theta) = (-+half track, 0).
   const bool is_left = kind == MotionKind::kLeftSpins;
   const Eigen::Vector3d spin{is_left ? -noise.half_track_m : noise.half_track_m, 0.0, 1.0};
-  return noise.rolling + 9.0 * noise.described +
-         kSpinning * kSpinning * noise.described(2, 2) * spin * spin.transpose();
+  return noise.rolling + squared(kSpinningRest) * noise.described +
+         squared(kSpinningTurn) * noise.described(2, 2) * spin * spin.transpose();
 }
 
 Eigen::Matrix3d unmeasured_covariance(double sigma_m) {
-  constexpr double kAside = 0.1;  // of the way
-  constexpr double kTurn_rad_per_m = 0.2;
-  return (sigma_m * Eigen::Vector3d{1.0, kAside, kTurn_rad_per_m}).cwiseAbs2().asDiagonal();
+  return (sigma_m * Eigen::Vector3d{1.0, kSideways, kTurn_rad_per_m}).cwiseAbs2().asDiagonal();
 }
 
 CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const OdometryScale& scale) {
-  const Eigen::Vector2d way = moved.start_from_end.translation();
-  if (way.norm() == 0.0) return moved;
-  const Eigen::Vector2d along = way.normalized();
-  moved.start_from_end = {Eigen::Vector2d{way + scale.slip_per_m * distance_m * along},
+  const Eigen::Vector2d step = moved.start_from_end.translation();
+  if (step.norm() == 0.0) return moved;
+  const Eigen::Vector2d along = step.normalized();
+  moved.start_from_end = {Eigen::Vector2d{step + scale.slip_per_m * distance_m * along},
                           moved.start_from_end.theta()};
   moved.covariance.topLeftCorner<2, 2>() +=
       scale.slip_m2_per_m * distance_m * along * along.transpose();
@@ -153,19 +175,19 @@ LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& 
   LinearFactor linear;
   const Relative found = relative(state.keyframes[from], state.keyframes[to]);
   const Eigen::Vector3d residual = pose_residual(found.pose - vector_of(measured.start_from_end));
-  constexpr double kCarried_m = 1000.0;  // as good as nothing; keeps the normal equations regular
-  Eigen::Matrix3d root = Eigen::Matrix3d::Identity() / kCarried_m;
+  Eigen::Matrix3d root = Eigen::Matrix3d::Identity() / kCutSigma;
   if (!is_cut) {
     const Eigen::LLT<Eigen::Matrix3d> covariance{covariance_of(kind, noise_of(measured, noise)) +
                                                  unmeasured_covariance(unmeasured_m)};
     root = covariance.matrixL().solve(Eigen::Matrix3d::Identity());
   }
   linear.residual = root * residual;
-  LinearFactor::Jacobian by_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
-  if (!is_cut) by_calibration.leftCols<kOdometryTerms>() = -root * measured.by_errors;
-  linear.blocks = {{keyframe_variable(from), root * found.by_from},
-                   {keyframe_variable(to), root * found.by_to},
-                   {{VariableKind::kCalibration, 0}, by_calibration}};
+  LinearFactor::Jacobian jacobian_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
+  if (!is_cut)
+    jacobian_calibration.leftCols<kOdometryTerms>() = -root * measured.jacobian_calibration;
+  linear.blocks = {{keyframe_variable(from), root * found.jacobian_from},
+                   {keyframe_variable(to), root * found.jacobian_to},
+                   {{VariableKind::kCalibration, 0}, jacobian_calibration}};
   return linear;
 }
 
@@ -180,9 +202,8 @@ bool ScanFactor::normalise_shares() {
 }
 
 void ScanFactor::reweigh(const State& state) {
-  constexpr double kKernel = 25.0;  // chi^2: loops are known to centimetres, submaps bend by some
   const double chi2 = linearise(state).residual.squaredNorm() / (weight * weight);
-  weight = std::min(1.0, 2.0 * kKernel / (kKernel + chi2));
+  weight = std::min(1.0, 2.0 * kLoopKernel / (kLoopKernel + chi2));
 }
 
 LinearFactor ScanFactor::linearise(const State& state) const {
@@ -190,41 +211,42 @@ LinearFactor ScanFactor::linearise(const State& state) const {
   const Eigen::Matrix3d root = weight * root_information;
   LinearFactor linear;
   linear.blocks.reserve(references.size() + 1);
-  Eigen::Matrix3d by_keyframe = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d jacobian_keyframe = Eigen::Matrix3d::Zero();
   Eigen::Vector3d residual = Eigen::Vector3d::Zero();
   for (const Reference& reference : references) {
     const Se2& map_from_reference = state.keyframes[reference.keyframe];
     const Se2 expected = map_from_reference * reference.reference_from_keyframe;
     const Relative off = relative(expected, map_from_keyframe);
     residual += reference.share * off.pose;
-    by_keyframe += reference.share * off.by_to;
+    jacobian_keyframe += reference.share * off.jacobian_to;
     const Se2& to_keyframe = reference.reference_from_keyframe;
-    const Eigen::Matrix3d expected_by_reference =
+    const Eigen::Matrix3d jacobian_expected =
         turning(to_keyframe.rotation().transpose()) * carried_along(to_keyframe.translation());
     linear.blocks.push_back({keyframe_variable(reference.keyframe),
-                             reference.share * root * off.by_from * expected_by_reference});
+                             reference.share * root * off.jacobian_from * jacobian_expected});
   }
   linear.residual = root * residual;
-  linear.blocks.push_back({keyframe_variable(keyframe), root * by_keyframe});
+  linear.blocks.push_back({keyframe_variable(keyframe), root * jacobian_keyframe});
   return linear;
 }
 
 LinearFactor MarkerFactor::linearise(const State& state, double gate) const {
   const Relative expected = relative(state.keyframes[keyframe], state.landmarks[landmark]);
-  const Eigen::Matrix3d by_camera = measurement.by_errors_at(expected.pose.head<2>());
+  const Eigen::Matrix3d jacobian_camera =
+      measurement.jacobian_calibration_at(expected.pose.head<2>());
   LinearFactor linear;
-  linear.residual =
-      root_information * pose_residual(expected.pose + by_camera * camera_part(state.calibration) -
-                                       vector_of(measurement.base_from_marker));
+  linear.residual = root_information *
+                    pose_residual(expected.pose + jacobian_camera * camera_part(state.calibration) -
+                                  vector_of(measurement.base_from_marker));
   const double chi2 = linear.residual.squaredNorm();
   const double weight = chi2 > gate ? gate / chi2 : 1.0;  // of the root: squared in the cost
   const Eigen::Matrix3d root = weight * root_information;
   linear.residual *= weight;
-  LinearFactor::Jacobian by_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
-  by_calibration.rightCols<kCameraTerms>() = root * by_camera;
-  linear.blocks = {{keyframe_variable(keyframe), root * expected.by_from},
-                   {{VariableKind::kLandmark, landmark}, root * expected.by_to},
-                   {{VariableKind::kCalibration, 0}, by_calibration}};
+  LinearFactor::Jacobian jacobian_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
+  jacobian_calibration.rightCols<kCameraTerms>() = root * jacobian_camera;
+  linear.blocks = {{keyframe_variable(keyframe), root * expected.jacobian_from},
+                   {{VariableKind::kLandmark, landmark}, root * expected.jacobian_to},
+                   {{VariableKind::kCalibration, 0}, jacobian_calibration}};
   return linear;
 }
 

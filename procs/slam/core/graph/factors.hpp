@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known about the unknowns: one residual each, in standard deviations, with its Jacobians.
+// Factors of the graph: whitened residuals with their Jacobians.
 #pragma once
 
 #include "slam/core/graph/state.hpp"
@@ -13,10 +13,10 @@
 
 namespace waymark {
 
-/// residual + sum of jacobian * step, whitened and robustly weighted.
+/// A linearised factor: residual + sum of jacobian * step, whitened and robustly weighted.
 struct LinearFactor {
   using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kCalibrationSize>;
-  /// Of two Jacobians.
+  /// Transpose of one Jacobian times another one.
   using Product = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
                                 kCalibrationSize, kCalibrationSize>;
 
@@ -29,66 +29,67 @@ struct LinearFactor {
   std::vector<Block> blocks{};
 };
 
-/// How much worse than configured the random walk of odometry is: factors on standard deviations,
-/// and what slips add where nothing shows them.
+/// Noise of the odometry as learnt: factors on the configured standard deviations, and what slips
+/// add where neither markers nor walls observe the motion along the path.
 struct OdometryScale {
   double along{1.0};
   double turn{1.0};
   double slip_per_m{0.0};     ///< mean; negative where wheels spin
-  double slip_m2_per_m{0.0};  ///< variance along the way
+  double slip_m2_per_m{0.0};  ///< variance along the path
 };
 
-/// Noise of the odometry, times the scale.
+/// The noise with its standard deviations multiplied by the scale.
 OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
 
-/// The motion that the wheels measured where nothing else showed the way.
+/// Adds mean and variance of slips to a motion that only the wheels have measured.
 CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const OdometryScale& scale);
 
-/// The odometry's noise is a mixture of normal distributions, of which the likeliest counts (Olson
-/// and Agarwal 2013, "Inference on networks of mixtures").
+/// Components of the odometry's noise, a mixture of normal distributions of which each factor uses
+/// the likeliest one (Olson and Agarwal 2013, "Inference on networks of mixtures").
 enum class MotionKind : std::uint8_t {
   kRolling,
-  kLeftSpins,  ///< a wheel that spins errs in the way as it errs in the turn
+  kLeftSpins,  ///< the left wheel: its slip changes distance and turn together
   kRightSpins,
-  kJerked,
-  kAnything,
+  kJerked,    ///< a slip or a push within a normal drive
+  kAnything,  ///< a gross error: the robot was pushed, or odometry jumped
 };
 
 /// Covariances of (x, y, theta) of a motion, in the frame at its start, while the wheels roll.
 struct MixtureNoise {
   Eigen::Matrix3d rolling{Eigen::Matrix3d::Zero()};    ///< as learnt
-  Eigen::Matrix3d described{Eigen::Matrix3d::Zero()};  ///< slips are measured by: bad odometry
-                                                       ///< does not make them larger
+  Eigen::Matrix3d described{Eigen::Matrix3d::Zero()};  ///< as configured: the unit for slips, which
+                                                       ///< are not larger where odometry is worse
   double half_track_m{0.0};                            ///< half of the distance between the wheels
 };
 
 /// @param residual  observed minus measured (x, y, theta), in the frame at the start.
 MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& noise);
 
-/// Of a motion of that kind.
+/// Covariance of one component, in the frame at the start.
 Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise);
 
-/// Of a motion that was not measured: mostly ahead. Axes of the base.
-/// @param sigma_m  how far that may have been.
+/// Covariance of a motion that was not measured, mostly straight ahead; axes of the base.
+/// @param sigma_m  standard deviation of the distance.
 Eigen::Matrix3d unmeasured_covariance(double sigma_m);
 
-/// From one keyframe to the next, by the wheels.
+/// Motion from one keyframe to the next, by the wheels.
 struct OdometryFactor {
   std::size_t from{0};
   std::size_t to{0};
   Motion motion{};
-  bool is_cut{false};         ///< the robot was carried: it says nothing
-  bool is_unobserved{false};  ///< neither markers nor walls showed the way: wheels may have slipped
-  double unmeasured_m{0.0};   ///< what may have been driven without being measured (one sigma)
+  bool is_cut{false};         ///< the robot was carried: the factor has no information
+  bool is_unobserved{false};  ///< neither markers nor walls observed the motion: wheels may have
+                              ///< slipped
+  double unmeasured_m{0.0};   ///< distance that odometry may have missed (one sigma)
   MotionKind kind{MotionKind::kRolling};
 
-  /// @param noise  as described.
-  /// @param scale  of it, as learnt.
+  /// @param noise  as configured.
+  /// @param scale  as learnt.
   LinearFactor linearise(const State& state, const OdometryNoise& noise,
                          const OdometryScale& scale = {}) const;
 
-  /// Of poses and a calibration that fit together: what the newest calibration says of poses that
-  /// do not follow it yet looks like a slip.
+  /// Chooses the component of the mixture. The poses of `state` have to be optimised for its
+  /// calibration: else a change of the calibration looks like a slip.
   void choose_kind(const State& state, const OdometryNoise& noise, const OdometryScale& scale);
 
  private:
@@ -97,7 +98,8 @@ struct OdometryFactor {
   MixtureNoise noise_of(const CorrectedMotion& measured, const OdometryNoise& noise) const;
 };
 
-/// A scan against surfaces that other keyframes have seen: the mean of what these keyframes say.
+/// A scan that was matched with walls which other keyframes have seen: the keyframe's pose relative
+/// to the weighted mean of these keyframes' poses.
 struct ScanFactor {
   struct Reference {
     std::size_t keyframe{0};
@@ -109,32 +111,31 @@ struct ScanFactor {
   std::vector<Reference> references{};
   Eigen::Matrix3d root_information{Eigen::Matrix3d::Zero()};  ///< base axes of `keyframe`
   bool is_loop{false};
-  /// Of a loop: how far it is believed, 0..1, on its residual; see reweigh().
-  double weight{1.0};
+  double weight{1.0};  ///< of a loop: robust weight on its residual, 0..1; see reweigh()
 
   LinearFactor linearise(const State& state) const;
 
-  /// Makes the shares sum to 1.
-  /// @return whether there is any.
+  /// Scales the shares so that they sum to 1.
+  /// @return false: they are all zero.
   bool normalise_shares();
 
-  /// Dynamic covariance scaling (Agarwal et al. 2013): a loop that the others contradict loses its
-  /// weight. A new one has all of it, so that the graph follows it before it is judged.
+  /// Dynamic covariance scaling (Agarwal et al. 2013): a loop that other factors contradict loses
+  /// weight. A new loop has its full weight at first, so that the graph can move to it.
   void reweigh(const State& state);
 };
 
-/// A marker as it was measured from a keyframe.
+/// A marker, measured from a keyframe.
 struct MarkerFactor {
   std::size_t keyframe{0};
   std::size_t landmark{0};
   MarkerMeasurement measurement{};
   Eigen::Matrix3d root_information{Eigen::Matrix3d::Identity()};
 
-  /// Beyond `gate` (chi^2) the weight falls off with its square.
+  /// @param gate  chi^2 beyond which the robust weight in the cost is (gate / chi^2)^2.
   LinearFactor linearise(const State& state, double gate) const;
 };
 
-/// A pose is known: the first one, or one of a map.
+/// Prior on a keyframe's pose: the first one, or one in a loaded map.
 struct PosePrior {
   std::size_t keyframe{0};
   Se2 map_from_base{};
@@ -143,12 +144,12 @@ struct PosePrior {
   LinearFactor linearise(const State& state) const;
 };
 
-/// A marker's place is known, by a survey.
+/// Prior on a landmark's pose, by a survey.
 struct LandmarkPrior {
   std::size_t landmark{0};
   Se2 map_from_marker{};
   Eigen::Matrix3d root_information{Eigen::Matrix3d::Identity()};
-  bool is_off{false};  ///< it has turned out to be wrong
+  bool is_off{false};  ///< switched off, since the graph contradicts it
 
   LinearFactor linearise(const State& state) const;
 };

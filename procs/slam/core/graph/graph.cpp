@@ -11,8 +11,8 @@ namespace waymark {
 namespace {
 
 constexpr int kMaxIterations = 5;
-constexpr double kConverged = 1e-4;   // [m, rad]; what is left is that squared
-constexpr std::size_t kAskedFor = 2;  // keyframes whose covariance is
+constexpr double kConverged = 1e-4;         // [m, rad]; the error that remains is about its square
+constexpr std::size_t kWithCovariance = 2;  // keyframes, the newest ones
 
 }  // namespace
 
@@ -139,7 +139,7 @@ bool Graph::is_prior_on(std::size_t landmark) const {
   });
 }
 
-/// The loss whose weight MarkerFactor has.
+/// The loss that belongs to the robust weight of MarkerFactor.
 double Graph::cost_of(const MarkerFactor& factor) const {
   const double gate = noise_.marker_gate;
   const double chi2 =
@@ -260,14 +260,15 @@ void Graph::retract_window(const Eigen::VectorXd& step) {
   prior_.g += prior_.h.selfadjointView<Eigen::Lower>() * step;
 }
 
-/// Of what comes after the older keyframes, which nobody asks for: the inverse of the lower right
-/// corner of L L' takes that of the root alone.
+/// Of all variables but the older keyframes, which come first in the layout: the lower right corner
+/// of (L L')^-1 needs only that corner of L.
 void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root) {
   const std::size_t count = state_.keyframes.size();
   const Eigen::Index first =
-      count == 0 ? 0
-                 : offsets_.at({VariableKind::kKeyframe,
-                                std::max(first_keyframe_, count - std::min(count, kAskedFor))});
+      count == 0
+          ? 0
+          : offsets_.at({VariableKind::kKeyframe,
+                         std::max(first_keyframe_, count - std::min(count, kWithCovariance))});
   const Eigen::Index size = root.rows() - first;
   covariance_offsets_.clear();
   for (const auto& [variable, offset] : offsets_)
@@ -286,7 +287,7 @@ void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& r
   }
 }
 
-/// @return the steps' sum.
+/// @return sum of the steps.
 Eigen::VectorXd Graph::solve_window() {
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(prior_.g.size());
   DampedRoot root;
@@ -319,7 +320,7 @@ Eigen::MatrixXd Graph::covariance(const Variable& a, const Variable& b) const {
 
 Eigen::Matrix3d Graph::covariance_since(std::size_t keyframe) const {
   const std::size_t newest = state_.keyframes.size() - 1;
-  const Eigen::Vector2d way =
+  const Eigen::Vector2d lever =
       state_.keyframes[newest].translation() - state_.keyframes[keyframe].translation();
   const auto to_own_frame = [this](std::size_t index) {
     return turning(state_.keyframes[index].rotation().transpose());
@@ -327,7 +328,7 @@ Eigen::Matrix3d Graph::covariance_since(std::size_t keyframe) const {
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(prior_.g.size(), 3);
   difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, newest})) = to_own_frame(newest);
   difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, keyframe})) -=
-      to_own_frame(keyframe) * carried_along(way).transpose();
+      to_own_frame(keyframe) * carried_along(lever).transpose();
   DampedRoot root;
   root.compute(window_equations().h);
   return difference.transpose() * root.solve(difference);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The factor graph: a window of the newest keyframes that is solved at every update, and the whole
-// of it, which is solved when a loop closes.
+// The factor graph: a window of the newest keyframes is solved at every update, the whole graph
+// when a loop closes.
 #pragma once
 
 #include "slam/core/graph/calibration_knowledge.hpp"
@@ -20,7 +20,7 @@ struct GraphNoise {
   double marker_gate{16.3};  ///< chi^2, 3 degrees of freedom
 };
 
-/// A keyframe that is no unknown any more: it moves with another one, which stays.
+/// A keyframe that was taken out of the graph: it moves rigidly with another one, its carrier.
 struct RemovedKeyframe {
   std::size_t keyframe{0};
   std::size_t carrier{0};
@@ -47,32 +47,32 @@ class Graph {
   std::size_t add_keyframe(const Se2& map_from_base);
   std::size_t add_landmark(const Se2& map_from_marker);
 
-  /// One of a loaded map, which does not move.
+  /// A landmark of a loaded map: a constant.
   std::size_t add_fixed_landmark(const Se2& map_from_marker, const Eigen::Matrix3d& covariance);
 
   bool is_fixed(std::size_t landmark) const { return is_fixed_[landmark]; }
 
-  /// All its variables are in the window, or it waits for optimise_all().
+  /// A factor with a variable behind the window takes effect in step_all().
   void add(const Factor& factor);
 
-  /// Moves everything into another frame. The first pose, which defined the old one, is as good as
-  /// unknown then: priors of landmarks must say where the frame is.
+  /// Transforms the whole state into another map frame. The prior of the first pose, which defined
+  /// the old frame, is dropped: priors of landmarks must define the new one.
   void move_to_frame(const Se2& new_from_old);
 
-  /// Whether the LandmarkPrior of a landmark counts. Takes effect in optimise_all().
+  /// Switches the LandmarkPrior of a landmark on or off. Takes effect in step_all().
   void switch_prior(std::size_t landmark, bool is_on);
   bool is_prior_on(std::size_t landmark) const;
 
-  /// Sum of chi^2 of all factors, robust where they are.
+  /// Sum of chi^2 of all factors, with their robust losses.
   double cost() const;
 
-  /// The same of the measurements of one landmark.
+  /// The same for the measurements of one landmark.
   double cost_of_landmark(std::size_t landmark) const;
 
-  /// Puts the newest keyframe elsewhere: what has been said about it is forgotten.
+  /// Gives the newest keyframe another pose, and drops all factors on it.
   void relocate_newest(const Se2& map_from_base);
 
-  /// Odometry from that keyframe on has turned out to say nothing.
+  /// Drops the odometry from that keyframe on: it has turned out to be wrong.
   void cut_odometry_since(std::size_t keyframe);
 
   bool is_active(const Variable& variable) const { return offsets_.contains(variable); }
@@ -84,28 +84,28 @@ class Graph {
   /// Gauss-Newton over the window.
   void optimise() { solve_window(); }
 
-  /// One step of Gauss-Newton over everything. What lies behind the window is eliminated where it
-  /// is now, which makes the window's prior anew; the window is solved; the rest follows it.
-  /// @param activated  landmarks that come back into the window.
-  /// @return how far anything behind the window has moved [m, rad].
+  /// One step of Gauss-Newton over the whole graph: eliminates what lies behind the window, which
+  /// rebuilds the window's prior; solves the window; substitutes back.
+  /// @param activated  landmarks that are put back into the window.
+  /// @return largest step of any variable behind the window [m, rad].
   double step_all(const std::vector<std::size_t>& activated = {});
 
-  /// At most so many steps, until nothing moves.
+  /// step_all() until it has converged, at most so many times.
   void optimise_all(int steps);
 
-  /// Takes the oldest keyframe out of the window, and landmarks that nothing in it has seen and
-  /// that are `far_m` from the newest one.
+  /// Marginalises the window's oldest keyframe, and landmarks that no keyframe of the window has
+  /// measured and that are more than `far_m` from the newest one.
   void marginalise_oldest(double far_m);
 
-  /// Keeps nothing but the window and its prior: keyframes and factors behind it are dropped,
-  /// landmarks behind it do not move any more. After that optimise_all() must not be called.
+  /// Keeps only the window and its prior: drops keyframes and factors behind it, and makes
+  /// landmarks behind it constants. After that step_all() must not be called.
   void forget_behind_window();
 
-  /// The calibration changes slowly: what is known of it fades while the robot drives. Not for a
-  /// graph that is solved as a whole, where it is one constant.
+  /// Random walk of the calibration: information about it fades while the robot drives. Not for a
+  /// graph that is solved as a whole, where the calibration is one constant.
   void let_calibration_wander(double driven_m);
 
-  /// Takes keyframes behind the window out: what was measured from and against them is forgotten.
+  /// Takes keyframes behind the window out of the graph, with all factors on them.
   /// @param removed  in order.
   void remove_keyframes(const std::vector<RemovedKeyframe>& removed);
 
@@ -113,20 +113,20 @@ class Graph {
     return keyframe < is_removed_.size() && is_removed_[keyframe];
   }
 
-  /// Joint covariance of two variables of the window as of optimise(): the calibration, landmarks
-  /// and the two newest keyframes. Zero for those that have come since.
+  /// Joint covariance of two variables of the window as of optimise(), map's axes: the calibration,
+  /// landmarks and the two newest keyframes. Zero for variables that were added since.
   Eigen::MatrixXd covariance(const Variable& a, const Variable& b) const;
 
   Eigen::Matrix3d covariance_of(const Variable& a) const { return covariance(a, a); }
 
-  /// Of the newest keyframe's pose relative to an earlier one of the window, map's axes. Factorises
-  /// the window.
+  /// Covariance of the newest keyframe's pose relative to an earlier one of the window, map's axes.
+  /// Factorises the window.
   Eigen::Matrix3d covariance_since(std::size_t keyframe) const;
 
-  /// The same of the newest one relative to the one before, as of optimise(); zero of the first.
+  /// The same relative to the keyframe before, as of optimise(); zero for the first keyframe.
   Eigen::Matrix3d covariance_of_newest_step() const;
 
-  /// The last one that was known: of landmarks behind the window, from when they left it.
+  /// As of optimise(), or of a landmark behind the window from when it left the window.
   Eigen::Matrix3d landmark_covariance(std::size_t landmark) const;
 
  private:
@@ -171,8 +171,8 @@ class Graph {
   Eigen::MatrixXd covariance_{};  ///< of the variables in covariance_offsets_
   std::map<Variable, Eigen::Index> covariance_offsets_{};
   std::vector<Eigen::Matrix3d> landmark_covariances_{};
-  std::vector<bool> is_fixed_{};    ///< landmarks
-  std::vector<bool> is_removed_{};  ///< keyframes; may be shorter than all
+  std::vector<bool> is_fixed_{};    ///< by landmark
+  std::vector<bool> is_removed_{};  ///< by keyframe; the newest ones may be missing: not removed
   std::vector<Carried> carried_{};
 };
 

@@ -9,10 +9,10 @@ namespace waymark {
 namespace {
 
 constexpr double kPlace_m = 1.0;
-constexpr std::size_t kLookEvery = 100;      // keyframes: a look goes through all factors
-constexpr std::size_t kLeastTies = 10;       // of an end: some may be wrong
-constexpr std::size_t kLeastSightings = 20;  // of a marker, by keyframes that stay: it is mapped
-constexpr double kLeastInformation = 10.0;   // of a tie: a loop known to 0.1 m and 0.1 rad
+constexpr std::size_t kLookEvery = 100;      // keyframes, since it goes through all factors
+constexpr std::size_t kLeastTies = 10;       // of an end, since some may be wrong
+constexpr std::size_t kLeastSightings = 20;  // of a marker by needed keyframes, to be well mapped
+constexpr double kLeastInformation = 10.0;   // its root, of a loop: 0.1 m and 0.1 rad
 
 bool shows_all_axes(const ScanFactor& loop) {
   return loop.root_information.rowwise().norm().minCoeff() > kLeastInformation;
@@ -29,15 +29,15 @@ KeyframeThinning::Place KeyframeThinning::place_of(const Se2& map_from_base) {
 
 std::vector<RemovedKeyframe> KeyframeThinning::surplus(const Graph& graph) {
   const std::size_t behind = graph.first_active_keyframe();
-  if (behind < judgements_.size() + kLookEvery) return {};
+  if (behind < assessments_.size() + kLookEvery) return {};
   for (const Ties& ties : ties_of_new(graph))
-    judgements_.push_back(judged(judgements_.size(), ties, graph.state()));
+    assessments_.push_back(assess(assessments_.size(), ties, graph.state()));
   std::vector<RemovedKeyframe> surplus;
   for (std::size_t begin = open_run_, end = begin; end < behind; begin = end) {
-    while (begin < behind && judgements_[begin].is_needed)
+    while (begin < behind && assessments_[begin].is_needed)
       ++begin;
     end = begin;
-    while (end < behind && !judgements_[end].is_needed)
+    while (end < behind && !assessments_[end].is_needed)
       ++end;
     add_surplus(begin, end, graph, surplus);
     open_run_ = begin;
@@ -47,7 +47,7 @@ std::vector<RemovedKeyframe> KeyframeThinning::surplus(const Graph& graph) {
 
 /// Of the keyframes that have left the window since the last look.
 std::vector<KeyframeThinning::Ties> KeyframeThinning::ties_of_new(const Graph& graph) const {
-  const std::size_t first = judgements_.size();
+  const std::size_t first = assessments_.size();
   std::vector<Ties> ties(graph.first_active_keyframe() - first);
   for (std::size_t i = 0; i < ties.size(); ++i)
     ties[i].oldest = first + i;
@@ -69,37 +69,37 @@ std::vector<KeyframeThinning::Ties> KeyframeThinning::ties_of_new(const Graph& g
   return ties;
 }
 
-KeyframeThinning::Judgement KeyframeThinning::judged(std::size_t keyframe, const Ties& ties,
-                                                     const State& state) {
-  Judgement judgement{false, 0, ties.oldest};
+KeyframeThinning::Assessment KeyframeThinning::assess(std::size_t keyframe, const Ties& ties,
+                                                      const State& state) {
+  Assessment assessment{false, 0, ties.oldest};
   const Se2& map_from_base = state.keyframes[keyframe];
   std::vector<std::size_t>& there = needed_[place_of(map_from_base)];
-  judgement.is_needed = there.size() < per_place_;
+  assessment.is_needed = there.size() < per_place_;
   for (const std::size_t landmark : ties.landmarks) {
     const auto [seen, is_new] = sightings_.try_emplace(landmark, Sightings{keyframe, 0});
-    judgement.tied_to = std::min(judgement.tied_to, seen->second.first_keyframe);
-    judgement.is_needed |= seen->second.needed < kLeastSightings;
+    assessment.tied_to = std::min(assessment.tied_to, seen->second.first_keyframe);
+    assessment.is_needed |= seen->second.needed < kLeastSightings;
   }
-  if (judgement.is_needed) {
+  if (assessment.is_needed) {
     there.push_back(keyframe);
     for (const std::size_t landmark : ties.landmarks)
       ++sightings_.at(landmark).needed;
-    return judgement;
+    return assessment;
   }
-  judgement.carrier = *std::min_element(there.begin(), there.end(), [&](auto a, auto b) {
+  assessment.carrier = *std::min_element(there.begin(), there.end(), [&](auto a, auto b) {
     const auto away_m = [&](std::size_t other) {
       return (state.keyframes[other].translation() - map_from_base.translation()).norm();
     };
     return away_m(a) < away_m(b);
   });
-  return judgement;
+  return assessment;
 }
 
 /// Behind the last keyframe of a run's beginning that stays; `end` if all of it has to.
 std::size_t KeyframeThinning::end_of_head(std::size_t begin, std::size_t end) const {
   std::size_t ties = 0;
   for (std::size_t k = begin; k < end; ++k) {
-    ties += judgements_[k].tied_to < begin;
+    ties += assessments_[k].tied_to < begin;
     if (ties >= kLeastTies && k + 1 - begin >= least_end_) return k + 1;
   }
   return end;
@@ -110,7 +110,7 @@ std::size_t KeyframeThinning::begin_of_tail(std::size_t begin, std::size_t end,
                                             const Graph& graph) const {
   std::size_t ties = 0;
   for (std::size_t k = end; k-- > begin && !graph.is_removed(k);) {
-    ties += judgements_[k].tied_to < begin;
+    ties += assessments_[k].tied_to < begin;
     if (ties >= kLeastTies && end - k >= least_end_) return k;
   }
   return begin;
@@ -120,7 +120,7 @@ void KeyframeThinning::add_surplus(std::size_t begin, std::size_t end, const Gra
                                    std::vector<RemovedKeyframe>& surplus) const {
   const std::size_t tail = begin_of_tail(begin, end, graph);
   for (std::size_t k = end_of_head(begin, end); k < tail; ++k)
-    if (!graph.is_removed(k)) surplus.push_back({k, judgements_[k].carrier});
+    if (!graph.is_removed(k)) surplus.push_back({k, assessments_[k].carrier});
 }
 
 }  // namespace waymark

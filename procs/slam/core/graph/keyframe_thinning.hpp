@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which keyframes a graph can do without, so that it grows with the area and not with time.
+// Which keyframes are redundant, so that the graph grows with the mapped area and not with time.
 #pragma once
 
 #include "slam/core/graph/graph.hpp"
@@ -11,9 +11,10 @@
 
 namespace waymark {
 
-/// The first keyframes of a place, and those that see a marker which few have seen, are needed.
-/// Where the robot comes by again, a run of other keyframes is surplus, except for its two ends:
-/// each is long enough to be tied to keyframes older than the run, by markers and loops.
+/// Needed are the first keyframes of each place, and keyframes that see a marker which few have
+/// seen. Consecutive keyframes that are not needed form a run; it is surplus but for its two ends.
+/// Each end is long enough to have constraints to keyframes older than the run, by markers and
+/// loops.
 class KeyframeThinning {
  public:
   /// @param per_place  keyframes that a square metre and a quarter of a turn need.
@@ -23,28 +24,29 @@ class KeyframeThinning {
       : per_place_{static_cast<std::size_t>(per_place)},
         least_end_{static_cast<std::size_t>(least_end)} {}
 
-  /// To be asked after each keyframe. Looks only now and then.
-  /// @return keyframes behind the window that may be removed, with the nearest needed one as their
-  ///         carrier.
+  /// To be called after each keyframe; goes through the graph at every hundredth.
+  /// @return keyframes behind the window that may be removed. The carrier of each is the nearest
+  ///         needed one.
   std::vector<RemovedKeyframe> surplus(const Graph& graph);
 
  private:
   using Place = std::array<int, 3>;  ///< column, row, direction
 
-  struct Judgement {
+  struct Assessment {
     bool is_needed{true};
     std::size_t carrier{0};  ///< of a keyframe that is not needed
-    std::size_t tied_to{0};  ///< oldest keyframe that it is tied to in every direction, or itself
+    std::size_t tied_to{0};  ///< oldest keyframe with a constraint of full rank to it, or itself
   };
 
+  /// Constraints of one keyframe.
   struct Ties {
-    std::vector<std::size_t> landmarks{};
-    std::size_t oldest{0};
+    std::vector<std::size_t> landmarks{};  ///< that it has measured
+    std::size_t oldest{0};                 ///< keyframe, by a loop or a prior; itself: none
   };
 
   static Place place_of(const Se2& map_from_base);
   std::vector<Ties> ties_of_new(const Graph& graph) const;
-  Judgement judged(std::size_t keyframe, const Ties& ties, const State& state);
+  Assessment assess(std::size_t keyframe, const Ties& ties, const State& state);
   std::size_t end_of_head(std::size_t begin, std::size_t end) const;
   std::size_t begin_of_tail(std::size_t begin, std::size_t end, const Graph& graph) const;
   void add_surplus(std::size_t begin, std::size_t end, const Graph& graph,
@@ -52,8 +54,8 @@ class KeyframeThinning {
 
   std::size_t per_place_;
   std::size_t least_end_;
-  std::vector<Judgement> judgements_{};  ///< of the keyframes behind the window
-  std::size_t open_run_{0};              ///< first keyframe of a run that may still grow
+  std::vector<Assessment> assessments_{};  ///< of the keyframes behind the window
+  std::size_t open_run_{0};                ///< first keyframe of a run that may still grow
   std::map<Place, std::vector<std::size_t>> needed_{};
 
   struct Sightings {

@@ -13,19 +13,18 @@
 namespace waymark {
 namespace {
 
-constexpr double kSigmas = 3.0;         // of the pose that a search covers
-constexpr double kDirectReach_m = 0.3;  // below, plain matching finds it
+constexpr double kSigmas = 3.0;         // half of a search window, in sigmas of the pose
+constexpr double kDirectReach_m = 0.3;  // plain matching converges from this far away
 constexpr double kDirectReach_rad = 0.15;
 constexpr std::size_t kSearchBeams = 120;
-constexpr std::size_t kFields = 8;                     // kept
-constexpr double kDriftMargin = 4.0;                   // on a covariance: it is a model
-const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a pose in a submap, once found
-constexpr double kApart_m = 0.3;                       // of a runner-up
+constexpr std::size_t kFields = 8;                     // kept in the cache
+const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a match in a submap
+constexpr double kApart_m = 0.3;                       // of a runner-up from the best place
 constexpr double kApart_rad = 0.35;
-constexpr double kAlongWeak = 0.98;  // cosine
-/// Covariance of what a search finds: 0.1 m, 0.03 rad.
+constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
+/// Covariance of the best place of a correlative search: 0.1 m, 0.03 rad.
 const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
-constexpr double kAgree_m = 0.3;  // two candidates' corrections
+constexpr double kAgree_m = 0.3;  // between two candidates' corrections
 constexpr double kAgree_rad = 0.05;
 constexpr double kAgreeWithin_m = 5.0;  // driven between them, and between their places
 
@@ -81,9 +80,9 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& poin
   Se2 guess = submap_from_map * search.map_from_base;
   const Eigen::Matrix3d covariance =
       in_axes(submap_from_map.rotation(), search.covariance_against(old.first_keyframe()));
-  // The nearest place that fits is the likeliest; a search is for those that have drifted.
-  LoopMatch loop{old.first_keyframe(), match_scan(points, old.surfaces(), guess, covariance, noise,
-                                                  scan_, old.coarse_surfaces())};
+  // Plain matching first: the place nearest to the estimated pose is the likeliest.
+  LoopMatch loop{old.first_keyframe(),
+                 match_scan(points, old.ndt(), guess, covariance, noise, scan_, old.coarse_ndt())};
   const double wide_m = std::min(config_.max_search_m, reach_m(covariance));
   const double wide_rad = std::min(std::numbers::pi, reach_rad(covariance));
   const bool is_near = wide_m < kDirectReach_m && wide_rad < kDirectReach_rad;
@@ -94,10 +93,10 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& poin
   if (!is_good(loop.match)) {
     const auto best = field.best(beams, guess, window, config_.min_score);
     if (!best) return std::nullopt;
-    loop.match = match_scan(points, old.surfaces(), best->submap_from_base, kFound, noise, scan_);
+    loop.match = match_scan(points, old.ndt(), best->submap_from_base, kFound, noise, scan_);
     if (!is_good(loop.match)) return std::nullopt;
   }
-  // About the match, so that its own place is one of those that are compared.
+  // A runner-up is searched around the match itself, so that the window contains it.
   const Se2& found = loop.match.map_from_base;
   const double moved_m = (found.translation() - guess.translation()).norm();
   const auto other =
@@ -110,7 +109,8 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& poin
   return loop;
 }
 
-/// Along a bare corridor the score is flat, and the match does not use that direction.
+/// A runner-up that is shifted along the weak direction is no other place: along a bare corridor
+/// the score is flat, and the match does not use that direction.
 bool LoopFinder::is_other_place(const SearchMatch& other, const ScanMatch& match) {
   const Eigen::Vector2d apart =
       other.submap_from_base.translation() - match.map_from_base.translation();
@@ -123,9 +123,9 @@ bool LoopFinder::is_good(const ScanMatch& match) const {
          match.mapped_share >= config_.min_mapped_share;
 }
 
-/// Of the pose in a submap. Where the robot was found in it or in a neighbour shortly before, it
-/// cannot be farther off than then, and what it has drifted since: loops that are consistent
-/// (Mangelson et al. 2018) support each other, and what contradicts them has to be clearer.
+/// Covariance of the estimated pose relative to a submap. After a recent loop with it or with a
+/// neighbour, the error is bounded by that loop's and the drift since: consistent loops support
+/// each other (Mangelson et al. 2018), and one that contradicts them exceeds the gate sooner.
 Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& search) const {
   const auto is_near = [&old](const Confirmed& confirmed) {
     return confirmed.submap + old.num_keyframes() >= old.first_keyframe() &&
@@ -134,14 +134,14 @@ Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& s
   const auto last = std::find_if(confirmed_.rbegin(), confirmed_.rend(), is_near);
   const Eigen::Matrix3d covariance = search.covariance_against(old.first_keyframe());
   if (last == confirmed_.rend()) return covariance;
-  // Whether the pose has followed that loop meanwhile or not.
-  Eigen::Matrix3d since =
-      last->off * last->off.transpose() + kDriftMargin * search.covariance_since(last->keyframe);
+  // Valid whether the graph has already followed that loop or not.
+  Eigen::Matrix3d since = last->off * last->off.transpose() +
+                          kLoopCovarianceMargin * search.covariance_since(last->keyframe);
   since.diagonal() += kFoundSigmas.cwiseAbs2();
-  return since.determinant() < covariance.determinant() ? since : covariance;
+  return smaller_covariance(since, covariance);
 }
 
-/// A loop along a bare corridor does not bound the drift along it.
+/// A degenerate match does not bound the drift along its weak direction.
 void LoopFinder::note_confirmed(const Found& found, const Eigen::Vector3d& off) {
   if (!found.loop.match.observed.is_degenerate)
     confirmed_.push_back({found.loop.submap, found.keyframe, off});
@@ -167,32 +167,35 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
                       loop->match.mapped_share < config_.surprise_share)) {
     return {};
   }
-  if (!is_surprise && off.head<2>().norm() < kDirectReach_m &&
-      std::abs(off.z()) < kDirectReach_rad) {
-    candidate_.reset();
-    note_confirmed(found, off);
-    return {found};
-  }
-  const Candidate candidate{found, map_from_base * search.map_from_base.inverse(),
-                            search.map_from_base};
+  const bool is_close =
+      off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad;
+  if (is_surprise || !is_close) return confirmed_pair(found, map_from_base, search);
+  candidate_.reset();
+  note_confirmed(found, off);
+  return {found};
+}
+
+/// The candidate and this match, if they agree; else this match is the next candidate.
+std::vector<LoopFinder::Found> LoopFinder::confirmed_pair(const Found& found,
+                                                          const Se2& map_from_base,
+                                                          const LoopSearch& search) {
   const auto agrees = [&](const Candidate& earlier) {
-    // Both corrections, applied to the pose now.
+    // Both corrections are compared at the present pose.
     const Eigen::Vector3d apart =
         pose_difference(earlier.correction * search.map_from_base, map_from_base);
     return (earlier.map_from_base.translation() - search.map_from_base.translation()).norm() <
                kAgreeWithin_m &&
            apart.head<2>().norm() < kAgree_m && std::abs(apart.z()) < kAgree_rad;
   };
-  std::vector<Found> both;
   if (candidate_ && agrees(*candidate_)) {
-    both = {candidate_->found, found};
-    note_confirmed(found, off);
+    const Found first = candidate_->found;
     candidate_.reset();
-  } else {
-    candidate_ = candidate;
-    candidate_age_m_ = 0.0;
+    note_confirmed(found, pose_difference(map_from_base, search.map_from_base));
+    return {first, found};
   }
-  return both;
+  candidate_ = {found, map_from_base * search.map_from_base.inverse(), search.map_from_base};
+  candidate_age_m_ = 0.0;
+  return {};
 }
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds where the robot is in what it mapped long ago.
+// Loop closure: finds the newest scan in old submaps.
 #pragma once
 
 #include "slam/core/graph/factors.hpp"
@@ -32,63 +32,78 @@ struct LoopConfig {
   void describe(Fields& fields);
 };
 
-/// A scan of the newest keyframe found in an old submap.
+/// The scan of a keyframe, registered in an old submap.
 struct LoopMatch {
   std::size_t submap{0};  ///< its first keyframe
   ScanMatch match{};      ///< submap frame
 };
 
+/// The pose of the newest keyframe, and how uncertain it is; covariances in the map's axes.
 struct LoopSearch {
   Se2 map_from_base{};
-  /// Of it, relative to the pose of an old keyframe; map's axes.
+  /// Of map_from_base relative to the pose of an old keyframe.
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_against{};
-  std::size_t first_recent_keyframe{0};  ///< submaps with later ones are not old
-  /// Of the pose relative to that of an earlier keyframe, which is none before
-  /// first_recent_keyframe.
+  std::size_t first_recent_keyframe{0};  ///< submaps with this one or later ones are not old
+  /// Of map_from_base relative to the pose of a recent keyframe (first_recent_keyframe or later).
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_since{};
 };
 
+/// On the covariances by which loops are searched and gated, which come from a linearised graph and
+/// a model of the odometry: twice their standard deviations. Chosen, not measured.
+inline constexpr double kLoopCovarianceMargin = 4.0;
+
+/// The smaller one of two bounds, by determinant.
+inline const Eigen::Matrix3d& smaller_covariance(const Eigen::Matrix3d& a,
+                                                 const Eigen::Matrix3d& b) {
+  return a.determinant() < b.determinant() ? a : b;
+}
+
+/// A match closes a loop if the pose's covariance explains it, or if two scans from different
+/// places agree about the correction.
 class LoopFinder {
  public:
   LoopFinder(const LoopConfig& config, const ScanMatchConfig& scan)
       : config_{config}, scan_{scan} {}
 
-  /// Matches that two scans agree about, or that what is known of the pose supports. May be empty;
-  /// the older ones of a pair were found from an earlier keyframe.
-  /// @param keyframe  the newest.
   struct Found {
-    std::size_t keyframe{0};
+    std::size_t keyframe{0};  ///< whose scan was matched
     LoopMatch loop{};
-    double chi2{0.0};  ///< against the pose as it was believed
+    double chi2{0.0};  ///< of the match against the estimated pose
   };
 
+  /// Loops to close: none, one, or a pair that agrees, whose first one was found at an earlier
+  /// keyframe.
+  /// @param keyframe  the newest.
+  /// @param points    its scan, base frame.
   std::vector<Found> find(std::size_t keyframe, const Points& points, const LoopSearch& search,
                           const std::deque<Submap>& submaps, const State& state,
                           const RangeNoise& noise);
 
   int num_ambiguous() const { return num_ambiguous_; }
 
-  /// Where the robot was found is in coordinates that are no more, or it was carried away since.
-  void forget_places() {
+  /// Drops the history of matches: the map frame has changed, or the robot was carried away.
+  void reset() {
     candidate_.reset();
     confirmed_.clear();
   }
 
  private:
-  /// Found from one scan alone, far from where the robot was believed to be.
+  /// A match far from the estimated pose, which a second scan has to confirm.
   struct Candidate {
     Found found{};
-    Se2 correction{};  ///< map_from_base as found, relative to map_from_base as believed
-    Se2 map_from_base{};
+    Se2 correction{};     ///< found map_from_base * estimated map_from_base ^ -1
+    Se2 map_from_base{};  ///< as estimated
   };
 
-  /// A submap in which the robot was found.
+  /// A loop that was closed.
   struct Confirmed {
-    std::size_t submap{0};  ///< its first keyframe
-    std::size_t keyframe{0};
-    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus believed
+    std::size_t submap{0};                         ///< its first keyframe
+    std::size_t keyframe{0};                       ///< that was matched with it
+    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus estimated pose, then
   };
 
+  std::vector<Found> confirmed_pair(const Found& found, const Se2& map_from_base,
+                                    const LoopSearch& search);
   void note_confirmed(const Found& found, const Eigen::Vector3d& off);
   Eigen::Matrix3d covariance_in(const Submap& old, const LoopSearch& search) const;
   const Submap* nearest_submap(const LoopSearch& search, const std::deque<Submap>& submaps,
@@ -101,11 +116,11 @@ class LoopFinder {
 
   LoopConfig config_;
   ScanMatchConfig scan_;
-  /// Of submaps, by first keyframe; the one searched last is last.
+  /// Cache of submaps' search fields, by first keyframe; the most recently used one is last.
   std::deque<std::pair<std::size_t, CorrelativeField>> fields_{};
   std::optional<Candidate> candidate_{};
-  double candidate_age_m_{0.0};        ///< driven since
-  std::deque<Confirmed> confirmed_{};  ///< of keyframes that are not old
+  double candidate_age_m_{0.0};        ///< driven since the candidate
+  std::deque<Confirmed> confirmed_{};  ///< at recent keyframes, oldest first
   int num_ambiguous_{0};
 };
 

@@ -8,7 +8,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kMostPoints = 400.0;  // of a wall's cell: newer ones outweigh older ones in time
+constexpr double kMostPoints = 400.0;  // kept in a cell, so that newer ones outweigh them in time
 
 }  // namespace
 
@@ -16,9 +16,9 @@ NdtMap walls_to_save(const NdtMap& walls, const GridMap& grid, double point_vari
   NdtMap kept{walls.spacing_m()};
   for (NdtCellSums cell : walls.sums()) {
     const Eigen::Vector2d centre = kept.spacing_m() * Eigen::Vector2d{cell.column, cell.row};
-    const NdtSurface* surface = walls.at(centre, point_variance_m2);
-    // Between the walls of a corner, where their mean is, it is free.
-    const bool has_free_middle = surface != nullptr && !surface->is_line;
+    const NdtCell* shape = walls.at(centre, point_variance_m2);
+    // The mean of a corner's two walls lies in free space.
+    const bool has_free_middle = shape != nullptr && !shape->is_line;
     if (has_free_middle ? is_seen_through(grid, centre, kept.spacing_m())
                         : is_seen_through(grid, centre + cell.sum_m / cell.count)) {
       continue;

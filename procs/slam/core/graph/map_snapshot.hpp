@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map that outlives its run: all that another run needs to know the place again.
+// A map that outlives its run: all that another run needs to localise in it.
 #pragma once
 
 #include "slam/core/graph/pose_graph.hpp"
@@ -17,7 +17,7 @@ namespace waymark {
 
 class Fields;
 
-/// What a drive has shown about the robot's description.
+/// Estimate of the calibration at the end of a drive.
 struct LearntCalibration {
   Calibration mean{Calibration::Zero()};
   Eigen::Matrix<double, kCalibrationSize, kCalibrationSize> covariance{
@@ -35,25 +35,25 @@ struct MapSnapshot {
   LearntCalibration calibration{};
 };
 
-/// The walls of a map that is to be saved: without those that the grid shows to be free by now, and
-/// of the others no more points than newer ones can outweigh.
+/// The walls to save: without cells that the grid shows to be free by now, and with so few points
+/// in each cell that later observations can outweigh them.
 NdtMap walls_to_save(const NdtMap& walls, const GridMap& grid, double point_variance_m2);
 
-/// How well a place in a map is known: as well as the nearest marker; zero without markers.
+/// Covariance of a map at a place: that of its nearest marker; zero without markers.
 Eigen::Matrix3d covariance_at(const MapSnapshot& map, const Eigen::Vector2d& place);
 
 /// What a run does with a loaded map.
 enum class MapMode {
-  kMap,       ///< none is loaded: a new one is drawn
-  kLocalise,  ///< it stays as it is; memory is constant
-  kExtend,    ///< it stays where it is, and what is new is added in its frame
+  kMap,       ///< none is loaded: a new map is drawn
+  kLocalise,  ///< the map does not change; memory is constant
+  kExtend,    ///< the map stays where it is, and new places are added in its frame
 };
 
-/// Where the robot is in a loaded map at first.
+/// Where in a loaded map the robot starts.
 enum class StartKind {
-  kOrigin,    ///< where mapping began, set down by hand
+  kOrigin,    ///< at the map's origin, where mapping began
   kPose,      ///< at a given pose
-  kLast,      ///< where it was when slam stopped, if map and odometry still fit; else unknown
+  kLast,      ///< where slam stopped, if map and odometry still fit; else unknown
   kAnywhere,  ///< unknown
 };
 
@@ -64,7 +64,7 @@ struct StartPose {
   double yaw_rad{0.0};
   double sigma_m{0.1};
   double sigma_rad{0.05};
-  bool is_certain{false};  ///< it was there a moment ago: markers or walls need not confirm it
+  bool is_certain{false};  ///< need not be confirmed by markers or walls
 
   /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);

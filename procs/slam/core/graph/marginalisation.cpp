@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What leaves the window, and what is kept of it: the prior.
+// Marginalisation: the window's prior keeps the information of what leaves the window.
 #include "slam/core/graph/graph.hpp"
 
 #include <Eigen/Cholesky>
@@ -12,7 +12,7 @@
 
 namespace waymark {
 
-/// Schur complement (of prior and factors that touch it).
+/// Schur complement of the prior and of all factors on the variable.
 void Graph::eliminate(const Variable& variable) {
   std::vector<std::size_t> kept;
   for (const std::size_t index : active_factors_) {
@@ -29,7 +29,7 @@ void Graph::eliminate(const Variable& variable) {
   prior_.h = Eigen::MatrixXd{prior_.h.selfadjointView<Eigen::Lower>()};
   const Eigen::MatrixXd own = prior_.h.block(at, at, size, size);
   const Eigen::MatrixXd column = prior_.h.middleCols(at, size);
-  // What was never measured has no information to pass on.
+  // A variable without any measurement has no information to pass on.
   const Eigen::MatrixXd gain =
       own.llt().info() == Eigen::Success
           ? Eigen::MatrixXd{own.llt().solve(column.transpose()).transpose()}
@@ -57,8 +57,9 @@ void Graph::remove_from_layout(const Variable& variable) {
     if (offset > at) offset -= size;
 }
 
-/// The prior of c' = c + w, with w of covariance Q, in place of that of c: with N = (I + H Q)^-1
-/// c' has the information N H, and the rest keeps what does not hang on the difference.
+/// Replaces the prior's calibration c by c' = c + w, with w of covariance Q: with N = (I + H Q)^-1,
+/// where H is the information about c, that about c' is N H. The other blocks follow from
+/// marginalising c.
 void Graph::let_calibration_wander(double driven_m) {
   calibration_.fade(std::exp(-driven_m / CalibrationKnowledge::kMemory_m));
   const Eigen::Index at = offsets_.at({VariableKind::kCalibration, 0});

@@ -4,7 +4,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kBeforeMarker_m = 0.3;  // free space that the map has there
+constexpr double kBeforeMarker_m = 0.3;  // where the map has to be mapped for a marker to be new
 
 }  // namespace
 
@@ -24,7 +24,7 @@ std::vector<MapChange> marker_changes(const MapSnapshot& map, const MarkerBook& 
       change.kind = MapChange::Kind::kMarkerMoved;
       change.was_at = state.landmarks[*before].translation();
     } else if (i >= map.landmarks.size()) {
-      // Where the map has not been, everything is new.
+      // A marker in an unmapped place is no contradiction.
       const Eigen::Vector2d before_it = change.place * Eigen::Vector2d{kBeforeMarker_m, 0.0};
       if (!map.grid.occupancy[map.grid.frame.cell_of(before_it)].is_mapped()) continue;
       change.kind = MapChange::Kind::kMarkerNew;

@@ -11,20 +11,22 @@
 namespace waymark {
 namespace {
 
-constexpr double kMemory = 0.99;       // of an innovation, at the next one
-constexpr double kPriorLogOdds = 3.0;  // natural: of the description against any worse scale
-constexpr double kCoupling = 0.7;      // standard deviation of log(along / turn)
-constexpr double kSlipFactor = 5.0;    // on the odometry's standard deviation, in a slip
-constexpr double kGoesOnSigmas = 5.0;  // an innovation beyond may go on as it was
-const double kLogSlipShare = std::log(0.03);
+// The bank of models. All constants were chosen, not fitted.
+constexpr double kMemory = 0.99;       // weight of an innovation when the next one comes
+constexpr double kPriorLogOdds = 3.0;  // of the configured scale against each larger one
+constexpr double kCoupling = 0.7;      // prior standard deviation of log(along / turn)
+constexpr double kSlipFactor = 5.0;    // sigma of the odometry in a slip, in that of its noise
+constexpr double kGoesOnSigmas = 5.0;  // a slip beyond may continue at the next innovation
+const double kLogSlipShare = std::log(0.03);  // probability of a slip, as kSpinningPenalty
 
-constexpr double kSlipSigmas = 4.0;      // an innovation beyond is a slip
-constexpr double kSlipShows_m = 0.03;    // standard deviation of all else with which slips show
-constexpr double kLongestSlip_m = 0.5;   // what is longer was no slip
-constexpr double kForgotten_m = 50.0;    // driven until a slip counts e times less
-constexpr double kPriorSlips_m2 = 4e-4;  // sum of squares before the first observation: one of 2 cm
-constexpr double kPriorDistance_m = 5.0;  // on so much driving
-constexpr double kMeanIsUncertain = 1.5;  // factor on the variance: the mean is estimated, too
+// Moments of slips along the path.
+constexpr double kSlipSigmas = 4.0;       // an innovation beyond is a slip
+constexpr double kSlipShows_m = 0.03;     // sigma of all else below which a slip is observable
+constexpr double kLongestSlip_m = 0.5;    // a larger innovation is no slip
+constexpr double kForgotten_m = 50.0;     // distance over which old slips fade by a factor e
+constexpr double kPriorSlips_m2 = 4e-4;   // pseudo-observation: one slip of 2 cm
+constexpr double kPriorDistance_m = 5.0;  // within this distance
+constexpr double kMeanIsUncertain = 1.5;  // on the variance, since the mean is estimated, too
 
 double log_normal(double value, double variance) {
   return -0.5 * (std::log(variance) + squared(value) / variance);
@@ -41,12 +43,12 @@ void OdometryNoiseLearner::Axis::add(const OdometryInnovation& innovation) {
   const double change = innovation.value - same_m * last_.value;
   for (std::size_t i = 0; i < kScales; ++i) {
     Model& model = models_[i];
-    const double by_odometry = squared(scale_at(i)) * innovation.odometry_variance;
-    const double rolling = innovation.other_variance + by_odometry;
+    const double odometry_variance = squared(scale_at(i)) * innovation.odometry_variance;
+    const double rolling = innovation.other_variance + odometry_variance;
     const double rolls = log_normal(innovation.value, rolling);
-    double slips =
-        kLogSlipShare + log_normal(innovation.value,
-                                   innovation.other_variance + squared(kSlipFactor) * by_odometry);
+    double slips = kLogSlipShare +
+                   log_normal(innovation.value,
+                              innovation.other_variance + squared(kSlipFactor) * odometry_variance);
     if (slips_go_on_ && model.slips)
       slips = std::max(slips, log_normal(change, (1.0 + squared(same_m)) * rolling));
     model.slips = slips > rolls && squared(innovation.value) > squared(kGoesOnSigmas) * rolling;
@@ -68,7 +70,7 @@ void OdometryNoiseLearner::observe_slip(const OdometryInnovation& innovation) {
     slip_m_ = 0.0;
     return;
   }
-  // The pose follows a slip within some observations: together they are one.
+  // It takes some observations until the pose has followed a slip: they count once, by the largest.
   if (slip_m_ == 0.0) ++num_slips_;
   if (size_m <= std::abs(slip_m_)) return;
   slips_m_ += innovation.value - slip_m_;

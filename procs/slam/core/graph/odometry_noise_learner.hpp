@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much worse the odometry is than described, from how far observations are off its predictions.
+// Learns how much larger the odometry's noise is than configured, from innovations.
 #pragma once
 
 #include "slam/core/graph/factors.hpp"
@@ -9,35 +9,36 @@
 
 namespace waymark {
 
-/// One axis of an innovation: observed minus predicted, and why they may differ.
+/// One axis of an innovation: observed minus predicted, and the parts of its variance.
 struct OdometryInnovation {
   double value{0.0};
   double odometry_variance{0.0};  ///< by the odometry's noise as configured
   double other_variance{0.0};     ///< by all else
-  double distance_m{0.0};         ///< driven meanwhile
+  double distance_m{0.0};         ///< driven since the prediction began
 };
 
-/// Mean variance over a grid of noise scales, each with the posterior probability of what was seen;
-/// old innovations are forgotten slowly. A slip is no noise: an innovation may come from a wide
-/// component of the mixture (likeliest_kind() in factors.hpp). In the turn those after it may go on
-/// as it was: a wheel that spins over a wet floor turns too far by the same share of each step,
-/// and noise changes from step to step. Along the way innovations follow each other anyway, for
-/// the pose is drawn to a marker within some of them. Wheels that are bad in
-/// the turn, which walls show everywhere, are probably as bad along the way, which a bare corridor
-/// does not show. Source: innovation-based adaptive estimation (Mehra 1972), as a bank of models
-/// (Magill 1965).
+/// A bank of models (Magill 1965), one for each noise scale of a grid; their log-likelihoods of the
+/// innovations (Mehra 1972) fade exponentially. scale() is the mean over the bank.
 ///
-/// Slips along the way are no noise of wheels that roll, but where nothing shows them they add to
-/// the variance all the same: the first two moments of those that were seen, by metre (a compound
-/// Poisson process, with pseudo-observations as its prior).
+/// Slips must not count as noise: in each model an innovation may also come from a wide component,
+/// as in likeliest_kind() of factors.hpp. A slip in the turn may continue: a wheel that spins over
+/// a wet floor exaggerates every step by the same share, while noise differs from step to step.
+/// Along the path successive innovations are correlated anyway, for it takes some of them until the
+/// pose has followed a marker. The scales of both axes are coupled by a prior: noise in the turn,
+/// which walls observe everywhere, is probably as large along the path, which a bare corridor does
+/// not observe.
+///
+/// Where neither markers nor walls observe them, slips add mean and variance to the motion along
+/// the path: the first two moments per metre of those that markers showed (a compound Poisson
+/// process, with pseudo-observations as its prior).
 class OdometryNoiseLearner {
  public:
   void observe_along(const OdometryInnovation& innovation) { along_.add(innovation); }
 
   void observe_turn(const OdometryInnovation& innovation) { turn_.add(innovation); }
 
-  /// The same of a marker: it shows a slip, or none. Scans are not used, for along a corridor
-  /// they are pulled back to where they were matched before, which looks like a slip.
+  /// Along the path, by a marker. Scans are not used: along a corridor they are pulled back to
+  /// where the scans before were matched, which looks like a slip.
   void observe_slip(const OdometryInnovation& innovation);
 
   OdometryScale scale() const;
@@ -47,7 +48,7 @@ class OdometryNoiseLearner {
  private:
   static constexpr std::size_t kScales = 12;  ///< 1, sqrt(2), 2 ... 45
 
-  /// What the innovations of one axis say of every scale.
+  /// Log-likelihoods of all scales, given the innovations of one axis.
   class Axis {
    public:
     explicit Axis(bool slips_go_on) : slips_go_on_{slips_go_on} {}
@@ -59,7 +60,7 @@ class OdometryNoiseLearner {
    private:
     struct Model {
       double log_likelihood{0.0};
-      bool slips{false};  ///< the newest innovation was a slip, if the wheels are that noisy
+      bool slips{false};  ///< by this model the newest innovation was a slip
     };
 
     std::array<Model, kScales> models_{};
@@ -72,11 +73,12 @@ class OdometryNoiseLearner {
 
   Axis along_{false};
   Axis turn_{true};
-  double slips_m_{0.0};     ///< sum, forgotten with the distance
-  double slips_m2_{0.0};    ///< sum of squares, forgotten alike
-  double observed_m_{0.0};  ///< driven where slips would have shown, forgotten alike
+  // Sums that fade with the distance:
+  double slips_m_{0.0};
+  double slips_m2_{0.0};    ///< of squares
+  double observed_m_{0.0};  ///< driven where a slip would have been observed
   int num_slips_{0};
-  double slip_m_{0.0};  ///< the one that is being followed
+  double slip_m_{0.0};  ///< the newest slip, while innovations still show it; 0: none
 };
 
 }  // namespace waymark

@@ -10,39 +10,42 @@
 namespace waymark {
 namespace {
 
-// One hypothesis.
+// All scores are natural logarithms of likelihood ratios, chosen so that a marker has to be sighted
+// in three frames to decide, since a single frame may be wrong.
+constexpr double kDecided = 2.5;  // lead over the next best hypothesis, and over none
+
+// Hypotheses.
 constexpr double kSame_m = 0.5;  // two hypotheses nearer than this are one
 constexpr double kSame_rad = 0.3;
 constexpr std::size_t kMaxHypotheses = 500;
-constexpr double kHopeless = 12.0;  // score below the best at which one is given up
+constexpr double kHopeless = 12.0;  // score below the best one at which a hypothesis is dropped
 
-// Scores of markers; a third of what decides, for one frame may be wrong.
-constexpr double kSighting = 1.0;     // a marker is seen where the map has it
-constexpr double kUnexpected = -1.0;  // it is seen where the map has none of its id
-constexpr double kFollowed = 0.5;     // share of its offset that a sighting moves a hypothesis by
-constexpr double kMissed = -0.5;      // it should be seen and is not
-constexpr double kMostOfOne = 3.0;    // what one marker can add or take
-constexpr double kAtMarker_m = 0.5;   // off by less, it is that marker
-constexpr double kInItsPlace_m = 0.25;
-constexpr double kPassed_m = 1.0;  // driven without a clue: the next is another one
+// Markers.
+constexpr double kSighting = 1.0;       // score of a marker that is sighted where the map has it,
+constexpr double kUnexpected = -1.0;    // of one where the map has none of its id,
+constexpr double kMissed = -0.5;        // and of one that should be in view and is not sighted
+constexpr double kMostOfOne = 3.0;      // bound of one marker's score, either way
+constexpr double kFollowed = 0.5;       // gain with which a sighting corrects a hypothesis
+constexpr double kAtMarker_m = 0.5;     // a sighting nearer than this is of that marker
+constexpr double kInItsPlace_m = 0.25;  // and here another marker cannot hang
+constexpr double kPassed_m = 1.0;       // driven until a marker may contribute once more
 
-// Scores of walls.
+// Walls.
 constexpr double kWallsEvery_m = 0.1;
-constexpr double kUsualMisfit = 0.15;  // share of beams, from what has changed and from noise
-constexpr double kMisfit = 3.0;        // per share
-constexpr int kLeastBeams = 20;
-constexpr double kLeastMapped = 0.3;  // share of beams on mapped walls of a place that is right
-constexpr double kMostMisfit = 0.3;
 constexpr std::size_t kBeams = 120;
-constexpr double kBeforeEnd_m = 0.3;
-constexpr double kOccupied = 0.4;  // share of beams that ended in a cell
-constexpr double kFree = 0.1;
-const Eigen::Vector3d kMatchSigmas{0.15, 0.15, 0.06};  // of a place by one marker [m, m, rad]
+constexpr int kLeastBeams = 20;
+constexpr double kUsualMisfit = 0.15;  // share of beams that noise and changes misplace
+constexpr double kMisfit = 3.0;        // score of all beams beyond that
+constexpr double kMostMisfit = 0.3;    // of the right place
+constexpr double kLeastMapped = 0.3;   // share of beams on mapped walls at the right place
+constexpr double kBeforeEnd_m = 0.3;   // of a beam, where it may graze its own wall
+constexpr double kOccupied = 0.4;      // least occupancy of a wall, and
+constexpr double kFree = 0.1;          // largest one of free space
+const Eigen::Vector3d kMatchSigmas{0.15, 0.15, 0.06};  // of a pose by one marker [m, m, rad]
 
-constexpr double kDecided = 2.5;
-
-constexpr double kMinFacing = 0.3;
-constexpr double kWallInSight_m = 0.2;
+// Markers in view.
+constexpr double kMinFacing = 0.3;      // cosine between a marker's normal and the camera
+constexpr double kWallInSight_m = 0.2;  // of a beam's end from a marker that nothing occludes
 
 }  // namespace
 
@@ -57,7 +60,7 @@ bool is_expected_in_view(const Se2& base_from_marker, const CameraView& view,
 }
 
 double PlaceFinder::Hypothesis::score() const {
-  double sum = settled + wall_score;
+  double sum = passed_score + wall_score;
   for (const auto& [clue, episode] : clues)
     sum += episode.score;
   return sum;
@@ -67,7 +70,7 @@ void PlaceFinder::Hypothesis::add(Clue clue, int index, double score) {
   Episode& episode = clues[{clue, index}];
   episode.score = std::clamp(episode.score + score, -kMostOfOne, kMostOfOne);
   episode.idle_m = 0.0;
-  if (clue == Clue::kLandmark && episode.score >= kMostOfOne) agreed.insert(index);
+  if (clue == Clue::kLandmark && episode.score >= kMostOfOne) seen_in_place.insert(index);
 }
 
 void PlaceFinder::Hypothesis::drive(double distance_m) {
@@ -77,7 +80,7 @@ void PlaceFinder::Hypothesis::drive(double distance_m) {
       ++it;
       continue;
     }
-    settled += it->second.score;
+    passed_score += it->second.score;
     it = clues.erase(it);
   }
 }
@@ -109,8 +112,8 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
   const Hypothesis& best = hypotheses_.front();
   const bool beats_others =
       hypotheses_.size() == 1 || best.score() - hypotheses_[1].score() >= kDecided;
-  // Two markers do not lie to each other as in the map by chance, whatever others are missing.
-  const bool beats_none = best.score() >= kDecided || best.agreed.size() >= 2;
+  // Two markers at their mapped relative pose are no chance, whatever other markers are missing.
+  const bool beats_none = best.score() >= kDecided || best.seen_in_place.size() >= 2;
   if (beats_others && beats_none && best.fits_walls) return best.map_from_base;
   const double least = best.score() - kHopeless;
   std::erase_if(hypotheses_, [&](const Hypothesis& place) { return place.score() < least; });
@@ -151,6 +154,13 @@ std::optional<int> PlaceFinder::landmark_at(int id, const Eigen::Vector2d& place
 void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observation,
                                 std::span<const MarkerMeasurement> measurements,
                                 const CameraView& view) const {
+  const std::vector<int> seen = weigh_sightings(place, measurements);
+  if (observation.camera_reported) weigh_misses(place, observation, seen, view);
+}
+
+/// @return the map's landmarks that were sighted, by index.
+std::vector<int> PlaceFinder::weigh_sightings(
+    Hypothesis& place, std::span<const MarkerMeasurement> measurements) const {
   std::vector<int> seen;
   for (const MarkerMeasurement& measurement : measurements) {
     const Eigen::Vector2d there =
@@ -172,7 +182,11 @@ void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observatio
         });
     if (contradicts) place.add(Clue::kUnexpectedId, measurement.id, kUnexpected);
   }
-  if (!observation.camera_reported) return;
+  return seen;
+}
+
+void PlaceFinder::weigh_misses(Hypothesis& place, const Observation& observation,
+                               std::span<const int> seen, const CameraView& view) const {
   const Se2 base_from_map = place.map_from_base.inverse();
   for (std::size_t i = 0; i < map_->landmarks.size(); ++i) {
     const Landmark& landmark = map_->landmarks[i];
@@ -209,7 +223,7 @@ bool PlaceFinder::is_free(const Eigen::Vector2d& point) const {
   return cell.is_mapped() && cell.occupancy() < kFree;
 }
 
-/// A wall stands between them.
+/// Whether a mapped wall lies between the two points.
 bool PlaceFinder::is_crossed(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
   const double length_m = (to - from).norm();
   if (length_m <= kBeforeEnd_m) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where in a loaded map the robot is when nothing is known of it.
+// Global localisation in a loaded map, by markers and walls.
 #pragma once
 
 #include "slam/core/graph/map_snapshot.hpp"
@@ -18,21 +18,22 @@
 
 namespace waymark {
 
-/// Follows every place that a sighted marker allows, until the sensors have refuted all but one.
+/// Tracks a hypothesis for every pose at which a sighted marker would be one of the map's, until
+/// one of them is left.
 ///
-/// Each hypothesis has a score, in natural logarithms of likelihood ratios: what one marker or one
-/// stretch of wall can add or take is bounded, for markers are taken down and doors are opened. The
-/// best hypothesis is the place once it beats both the next best and the empty one (the robot is
-/// nowhere in the map) clearly. So a marker whose id is unique is enough if nothing speaks against
-/// it; twins have to wait until their surroundings differ. While no marker has been seen, walls
-/// alone may decide (WallPlaceFinder).
+/// Each hypothesis has a score, a log-likelihood ratio against the null hypothesis that the robot
+/// is nowhere in the map. What one marker or one stretch of wall can contribute is bounded, for
+/// markers are taken down and doors are opened. The best hypothesis wins once it is clearly better
+/// than both the next best and the null hypothesis. So one marker whose id is unique is enough if
+/// nothing contradicts it; among markers of one id, their surroundings have to decide. While no
+/// marker has been seen, walls alone may decide (WallPlaceFinder).
 class PlaceFinder {
  public:
   PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
 
   /// @param motion        since the last call.
   /// @param measurements  of the markers in the newest frame.
-  /// @param view          of the camera; what it should show and does not speaks against a place.
+  /// @param view          of the camera: a marker that it should show and does not is a miss.
   /// @return map_from_base, once it is decided.
   std::optional<Se2> update(const Motion& motion, const Observation& observation,
                             std::span<const MarkerMeasurement> measurements, const CameraView& view,
@@ -44,13 +45,14 @@ class PlaceFinder {
   struct Hypothesis {
     struct Episode {
       double score{0.0};
-      double idle_m{0.0};  ///< driven since it was added to
+      double idle_m{0.0};  ///< driven since the last contribution
     };
 
     Se2 map_from_base{};
-    double settled{0.0};  ///< score of what has been passed
+    double passed_score{0.0};  ///< of episodes that are over
     std::map<std::pair<Clue, int>, Episode> clues{};
-    std::set<int> agreed{};  ///< landmarks that have surely been seen where they should be
+    std::set<int>
+        seen_in_place{};  ///< landmarks that have been sighted where the map has them, surely
     double wall_score{0.0};
     bool fits_walls{true};
 
@@ -62,6 +64,10 @@ class PlaceFinder {
   void propose(std::span<const MarkerMeasurement> measurements);
   void weigh_markers(Hypothesis& place, const Observation& observation,
                      std::span<const MarkerMeasurement> measurements, const CameraView& view) const;
+  std::vector<int> weigh_sightings(Hypothesis& place,
+                                   std::span<const MarkerMeasurement> measurements) const;
+  void weigh_misses(Hypothesis& place, const Observation& observation, std::span<const int> seen,
+                    const CameraView& view) const;
   void weigh_walls(Hypothesis& place, const Observation& observation,
                    const RangeNoise& noise) const;
   bool is_occupied(const Eigen::Vector2d& point) const;

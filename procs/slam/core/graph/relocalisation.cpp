@@ -7,59 +7,59 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMarkersNeeded = 2;  // that agree
+constexpr std::size_t kMarkersNeeded = 2;  // that support the same pose
 constexpr int kSightingsNeeded = 2;        // of each of them: misread ids do not repeat
 constexpr double kSamePlace_m = 0.5;
 constexpr double kSameHeading_rad = 0.35;
 constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
-constexpr double kMisread_m = 0.5;   // driven without another sighting that ends such a doubt
-constexpr double kPatience_m = 5.0;  // the same for a marker that was really there
+constexpr double kMisread_m = 0.5;   // driven without another sighting: it was a misreading
+constexpr double kPatience_m = 5.0;  // the same after kRealSightings or more
 constexpr double kReturn_m = 30.0;   // driven after which a relocalisation is final
 
 }  // namespace
 
-RelocalisationMonitor::Verdict RelocalisationMonitor::judge(const Se2& map_from_base,
-                                                            std::span<const PoseHint> hints,
-                                                            const Motion& motion) {
-  follow(motion);
+RelocalisationMonitor::Verdict RelocalisationMonitor::update(const Se2& map_from_base,
+                                                             std::span<const PoseHint> hints,
+                                                             const Motion& motion) {
+  propagate(motion);
   if (is_twin_place(hints)) {
-    relocated_ = *given_up_;
-    given_up_.reset();
-    forget_doubt();
-    return Verdict::kBack;
+    relocated_ = *abandoned_;
+    abandoned_.reset();
+    drop_alternative();
+    return Verdict::kReverted;
   }
   bool is_confirmed = false;
   for (const PoseHint& hint : hints) {
     if (hint.kind == PoseHint::Kind::kElsewhere) support_alternative(hint);
     is_confirmed |= hint.kind == PoseHint::Kind::kAgrees || hint.kind == PoseHint::Kind::kNew;
   }
-  if (is_confirmed) forget_doubt();
-  if (!alternative_) return Verdict::kSettled;
-  if (!is_supported()) return Verdict::kDoubtful;
+  if (is_confirmed) drop_alternative();
+  if (!alternative_) return Verdict::kConsistent;
+  if (!is_supported()) return Verdict::kSuspicious;
   relocated_ = *alternative_;
-  forget_doubt();
-  given_up_ = map_from_base;
+  drop_alternative();
+  abandoned_ = map_from_base;
   unexpected_ids_.clear();
   relocated_m_ = 0.0;
-  return Verdict::kElsewhere;
+  return Verdict::kRelocated;
 }
 
-void RelocalisationMonitor::follow(const Motion& motion) {
+void RelocalisationMonitor::propagate(const Motion& motion) {
   if (alternative_) {
     alternative_ = *alternative_ * motion.start_from_end;
     unsupported_m_ += motion.distance_m;
     if (unsupported_m_ > (num_sightings() < kRealSightings ? kMisread_m : kPatience_m))
-      forget_doubt();
+      drop_alternative();
   }
-  if (given_up_) {
-    given_up_ = *given_up_ * motion.start_from_end;
+  if (abandoned_) {
+    abandoned_ = *abandoned_ * motion.start_from_end;
     relocated_m_ += motion.distance_m;
-    if (relocated_m_ > kReturn_m) given_up_.reset();
+    if (relocated_m_ > kReturn_m) abandoned_.reset();
   }
 }
 
 bool RelocalisationMonitor::is_twin_place(std::span<const PoseHint> hints) {
-  if (!given_up_) return false;
+  if (!abandoned_) return false;
   for (const PoseHint& hint : hints)
     if (hint.kind == PoseHint::Kind::kNew && hint.is_in_known_place)
       unexpected_ids_.insert(hint.id);
@@ -91,7 +91,7 @@ bool RelocalisationMonitor::is_supported() const {
          }) >= static_cast<std::ptrdiff_t>(kMarkersNeeded);
 }
 
-void RelocalisationMonitor::forget_doubt() {
+void RelocalisationMonitor::drop_alternative() {
   alternative_.reset();
   sightings_.clear();
   unsupported_m_ = 0.0;

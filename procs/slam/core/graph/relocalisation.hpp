@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Notices that the robot is not where it is believed to be, and where it is instead.
+// Detects by markers that the estimated pose is wrong, and finds the right one.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -12,42 +12,42 @@
 
 namespace waymark {
 
-/// What one sighted marker says about the believed pose.
+/// What one sighted marker says about the estimated pose.
 struct PoseHint {
   enum class Kind {
-    kAgrees,     ///< it is where it is expected
-    kNew,        ///< its id is not known
-    kElsewhere,  ///< it is known, confirmed, the only one of its id, and not where it is seen
-    kAmbiguous,  ///< it is not where it is expected, but might be another one of its id
+    kAgrees,     ///< it is seen where the map has it
+    kNew,        ///< its id is not in the map
+    kElsewhere,  ///< confirmed and the only one of its id, but seen far from its place in the map
+    kAmbiguous,  ///< far from its place in the map, but may be another marker of the same id
   };
 
   Kind kind{Kind::kNew};
   int id{-1};
-  Se2 map_from_base{};  ///< of kElsewhere: where the robot is if the marker is where it was
-  bool is_in_known_place{false};  ///< of kNew: another marker is known to hang there
+  Se2 map_from_base{};            ///< of kElsewhere: pose of the robot if the marker has not moved
+  bool is_in_known_place{false};  ///< of kNew: the map has another marker at that place
 };
 
-/// Weighs two hypotheses: the robot is where it is believed to be, and a marker that seems to be
-/// elsewhere was moved, is misread or has a twin; or the robot was carried, and is where the known
-/// places of those markers say. Two markers that agree about the other place, while none supports
-/// the present one, decide. A robot that was relocated to the twin of a place meets new ids where
-/// other markers should hang: two of them take it back.
+/// Decides between two hypotheses: the estimated pose is right, and a marker that is seen elsewhere
+/// was moved, is misread or has a twin; or the robot was carried, and the mapped places of those
+/// markers give its pose. The robot is relocated when two markers agree on the other pose while
+/// none supports the present one. After a relocalisation to a place that only looks alike, new ids
+/// appear where the map has other markers: two of them revert it.
 class RelocalisationMonitor {
  public:
-  enum class Verdict { kSettled, kDoubtful, kElsewhere, kBack };
+  enum class Verdict { kConsistent, kSuspicious, kRelocated, kReverted };
 
   /// @param motion  since the last call.
-  Verdict judge(const Se2& map_from_base, std::span<const PoseHint> hints, const Motion& motion);
+  Verdict update(const Se2& map_from_base, std::span<const PoseHint> hints, const Motion& motion);
 
-  /// After kElsewhere and kBack: where the robot is.
+  /// After kRelocated and kReverted: the robot's new pose.
   const Se2& map_from_base() const { return relocated_; }
 
-  /// While there is a doubt: the other place.
+  /// While the pose is suspicious: the other hypothesis.
   const std::optional<Se2>& alternative() const { return alternative_; }
 
  private:
-  void follow(const Motion& motion);
-  void forget_doubt();
+  void propagate(const Motion& motion);
+  void drop_alternative();
   void support_alternative(const PoseHint& hint);
   int num_sightings() const;
   bool is_supported() const;
@@ -55,12 +55,12 @@ class RelocalisationMonitor {
 
   Se2 relocated_{};
   std::optional<Se2> alternative_{};
-  std::map<int, int> sightings_{};  ///< by id, that support the alternative
+  std::map<int, int> sightings_{};  ///< that support the alternative, by id
   double unsupported_m_{0.0};       ///< driven since the last of them
 
-  std::optional<Se2> given_up_{};  ///< the pose before the relocalisation, carried on by odometry
+  std::optional<Se2> abandoned_{};  ///< pose before the relocalisation, propagated by odometry
   std::set<int> unexpected_ids_{};
-  double relocated_m_{0.0};  ///< driven since
+  double relocated_m_{0.0};  ///< driven since the relocalisation
 };
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Graph::remove_keyframes(): the graph without some of its past.
+// Graph::remove_keyframes().
 #include "slam/core/graph/graph.hpp"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace waymark {
 
-/// A scan keeps what it says about keyframes that stay.
-/// @return whether anything is left of the factor.
+/// Drops a scan factor's references to removed keyframes.
+/// @return whether the factor still constrains keyframes that stay.
 bool Graph::forget_removed(Factor& factor) const {
   const std::vector<Variable> variables = variables_of(factor);
   const auto is_gone = [this](const Variable& variable) {
@@ -42,7 +42,7 @@ void Graph::remove_keyframes(const std::vector<RemovedKeyframe>& removed) {
     kept.push_back(std::move(factors_[index]));
   }
   factors_ = std::move(kept);
-  // Between the ends of a gap nothing is known of the way.
+  // The motion between the ends of a gap is not known.
   std::size_t filled = 0;
   for (const RemovedKeyframe& gone : removed) {
     if (gone.keyframe < filled) continue;

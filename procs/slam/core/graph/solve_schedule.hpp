@@ -7,11 +7,12 @@
 
 namespace waymark {
 
-/// Loops ask for a solution, which takes some steps, one at each keyframe. It begins when the graph
-/// has grown by a share of itself since the last one, so that the cost per keyframe is bounded.
+/// After loop closures the whole graph is solved, one step of Gauss-Newton at each keyframe. A
+/// solution begins once the graph has grown by a share of itself since the last one, so that the
+/// cost per keyframe is bounded.
 class SolveSchedule {
  public:
-  /// @param contradicts_pose  it does more than confirm what is believed.
+  /// @param contradicts_pose  the loop does more than confirm the estimated pose.
   void note_loop(bool contradicts_pose) {
     has_new_loops_ = true;
     loops_matter_ |= contradicts_pose;
@@ -29,9 +30,9 @@ class SolveSchedule {
     return steps_left_ > 0;
   }
 
-  /// @param moved  the poses behind the window by a step of the solution, at most [m, rad].
+  /// @param moved  largest step of any pose behind the window [m, rad].
   void note_step(double moved) {
-    steps_left_ = moved < kSettled ? 0 : std::max(0, steps_left_ - 1);
+    steps_left_ = moved < kConverged ? 0 : std::max(0, steps_left_ - 1);
   }
 
   std::size_t num_since_solution(std::size_t num_keyframes) const {
@@ -44,7 +45,7 @@ class SolveSchedule {
   static constexpr std::size_t kEvery = 10;  ///< keyframes
   static constexpr std::size_t kShare = 40;  ///< a share of all, of loops that contradict the pose
   static constexpr std::size_t kRoutineShare = 8;  ///< and of loops that only confirm it
-  static constexpr double kSettled = 5e-3;         ///< [m, rad] less is not worth a further step
+  static constexpr double kConverged = 5e-3;       ///< [m, rad] less is not worth a further step
 
   std::size_t solved_keyframes_{0};  ///< of the graph, when the last solution began
   int steps_left_{0};

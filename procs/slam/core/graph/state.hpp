@@ -14,10 +14,9 @@
 
 namespace waymark {
 
-/// What odometry and camera get wrong in the same way all the time. Odometry: scale of distances,
-/// drift [rad/m], scale of turns, LiDAR ahead of the wheels' axis [m] (OdometryErrors). Camera: yaw
-/// of its mounting [rad], focal length (relative), standoff of the markers from their walls [m].
-inline constexpr Eigen::Index kOdometryTerms = OdometryErrors::SizeAtCompileTime;
+/// Systematic errors of odometry and camera. Odometry: scale of distances, drift [rad/m], scale of
+/// turns, LiDAR ahead of the wheels' axis [m] (OdometryErrors). Camera: yaw of its mounting [rad],
+/// focal length (relative), standoff of the markers from their walls [m].
 inline constexpr Eigen::Index kCameraTerms = 3;
 inline constexpr Eigen::Index kCalibrationSize = kOdometryTerms + kCameraTerms;
 using Calibration = Eigen::Matrix<double, kCalibrationSize, 1>;
@@ -41,20 +40,20 @@ struct Variable {
   Eigen::Index size() const { return kind == VariableKind::kCalibration ? kCalibrationSize : 3; }
 };
 
-/// Map frame.
+/// Values of all unknowns; poses in the map frame.
 struct State {
   PoseSequence keyframes{};      ///< map_from_base
   std::vector<Se2> landmarks{};  ///< map_from_marker
   Calibration calibration{Calibration::Zero()};
 
-  /// Of a keyframe or a landmark.
+  /// Needs a keyframe or a landmark.
   const Se2& pose(const Variable& variable) const {
     return variable.kind == VariableKind::kKeyframe ? keyframes[variable.index]
                                                     : landmarks[variable.index];
   }
 
-  /// Poses step in their own frames, along arcs: what is known of poses relative to each other,
-  /// such as the prior of the window, stays true where all of them turn together.
+  /// Applies a step. Poses step in their own frames, along arcs: relative information, such as the
+  /// prior of the window, stays valid when all poses turn together.
   void retract(const Variable& variable, const Eigen::Ref<const Eigen::VectorXd>& step);
 };
 

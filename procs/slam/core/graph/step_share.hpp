@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much of a Gauss-Newton step is gone.
+// Step length of Gauss-Newton.
 #pragma once
 
 #include "slam/core/graph/state.hpp"
@@ -12,8 +12,9 @@
 
 namespace waymark {
 
-/// The whole step, unless it turns a keyframe so far that its factors are not linear on the way.
-/// @param place_of  where in `step` a variable is.
+/// Share of the step to take: all of it, unless it turns a keyframe so far that the linearisation
+/// of its factors does not hold.
+/// @param place_of  index of a variable in `step`.
 template <class PlaceOf>
 double step_share(const Eigen::VectorXd& step, const std::vector<Variable>& variables,
                   const PlaceOf& place_of) {

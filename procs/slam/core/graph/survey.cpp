@@ -9,13 +9,13 @@ namespace waymark {
 namespace {
 
 constexpr double kWrong = 5.0;           // sigmas
-constexpr double kLeastApart_m = 1.0;    // markers that say which way a frame is turned
-constexpr double kClearlyBetter = 25.0;  // chi^2 that leaving out the wrong one saves
-constexpr int kLeastSightings = 3;
-constexpr double kContradiction = 50.0;  // chi^2 that priors add where all are right, at most
-constexpr double kGauge = 1e3;           // 1 over the sigmas of a pose that holds the frame
-constexpr int kMostLeftOut = 5;          // more wrong entries are no survey
-constexpr std::size_t kMostTried = 8;    // of the entries that are off most
+constexpr double kLeastApart_m = 1.0;    // between two markers that define a frame's rotation
+constexpr double kClearlyBetter = 25.0;  // chi^2 that switching the wrong prior off has to save
+constexpr int kConfirmed = 3;            // sightings of a landmark
+constexpr double kContradiction = 50.0;  // chi^2 that correct priors add at most
+constexpr double kGauge = 1e3;           // 1 / sigma [m, rad] of the prior that fixes the gauge
+constexpr int kMostLeftOut = 5;          // priors to switch off
+constexpr std::size_t kMostTried = 8;    // entries, the most suspicious ones
 
 LandmarkPrior prior_of(const SurveyedMarker& marker, std::size_t landmark) {
   LandmarkPrior prior;
@@ -42,8 +42,7 @@ bool Survey::match(const Graph& graph, const MarkerBook& book) {
     int candidates = 0;
     for (std::size_t i = 0; i < book.entries().size(); ++i) {
       const Landmark& landmark = book.entries()[i];
-      if (landmark.id != entry.marker.id || book.is_retired(i) ||
-          landmark.sightings < kLeastSightings) {
+      if (landmark.id != entry.marker.id || book.is_retired(i) || landmark.sightings < kConfirmed) {
         continue;
       }
       const double away_m =
@@ -53,7 +52,7 @@ bool Survey::match(const Graph& graph, const MarkerBook& book) {
       least_m = away_m;
       entry.landmark = i;
     }
-    // Before there is a frame, twins cannot be distinguished.
+    // Without a frame, markers of the same id cannot be distinguished.
     if (!has_frame_ && candidates > 1) entry.landmark.reset();
     is_new |= entry.landmark.has_value();
   }
@@ -96,17 +95,17 @@ void Survey::apply(Graph& graph, int solve_steps) {
   }
   Graph free = graph;
   switch_all(free, false);
-  // Without priors nothing would hold the frame.
+  // Without priors the gauge would be free.
   free.add(PosePrior{0, free.state().keyframes[0], kGauge * Eigen::Matrix3d::Identity()});
   free.optimise_all(solve_steps);
   switch_all(graph, true);  // tested again, with the new measurements
   graph.optimise_all(solve_steps);
   for (int i = 0; i < kMostLeftOut && graph.cost() - free.cost() > kContradiction; ++i) {
-    // The contradiction goes away with the entry that is wrong, and with none that is right.
+    // The wrong prior is the one without which the contradiction is smallest by far.
     std::optional<Graph> best;
     double least = graph.cost() - kClearlyBetter;
     for (const Entry* entry : most_suspicious(graph)) {
-      if (!holds_frame(graph, *entry)) continue;  // of two, nobody knows which one is wrong
+      if (!holds_frame(graph, *entry)) continue;  // of the last two, either may be wrong
       Graph without = graph;
       without.switch_prior(*entry->landmark, false);
       without.optimise_all(solve_steps);
@@ -136,7 +135,7 @@ void Survey::switch_all(Graph& graph, bool is_on) const {
     if (entry.has_prior) graph.switch_prior(*entry.landmark, is_on);
 }
 
-/// Those that are off, or that have pulled their landmark away from its measurements.
+/// Entries by their own chi^2 plus that of their landmark's measurements, the largest first.
 std::vector<const Survey::Entry*> Survey::most_suspicious(const Graph& graph) const {
   std::vector<std::pair<double, const Entry*>> costs;
   for (const Entry& entry : entries_) {

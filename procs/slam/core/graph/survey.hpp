@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Surveyed markers: which landmarks they are, and which frame they define.
+// Surveyed markers: data association, the frame that they define, and their priors.
 #pragma once
 
 #include "slam/core/graph/association.hpp"
@@ -13,8 +13,8 @@
 namespace waymark {
 
 /// Two surveyed markers, or one with yaw, define the map frame. From then on each surveyed marker
-/// that is met is a prior of its landmark. One that the drive and the others contradict is taken
-/// out where leaving it out alone mends the contradiction.
+/// that is sighted becomes a prior of its landmark. Where measurements and other priors contradict
+/// a prior, and switching it off alone removes the contradiction, it is switched off.
 class Survey {
  public:
   explicit Survey(std::vector<SurveyedMarker> markers);
@@ -23,18 +23,18 @@ class Survey {
 
   bool has_frame() const { return has_frame_; }
 
-  /// Looks for landmarks that are surveyed and have become sure.
+  /// Associates surveyed markers with landmarks that have enough sightings.
   /// @return whether there are new ones.
   bool match(const Graph& graph, const MarkerBook& book);
 
-  /// Once there is a frame: survey_from_map, by which the graph is to be moved.
+  /// survey_from_map, once, when the survey first defines the frame.
   std::optional<Se2> new_frame(const Graph& graph);
 
-  /// Adds the priors of new matches, solves, and tests those that are contradicted.
+  /// Adds the priors of new associations, solves, and switches contradicted priors off.
   void apply(Graph& graph, int solve_steps);
 
-  /// Markers that the graph has more than kWrong sigma away from where the survey has them; and
-  /// those that contradict each other, where nobody can know which one is wrong.
+  /// Surveyed markers whose landmarks are more than kWrong sigmas from their surveyed places, and
+  /// all that contradict each other while it is undecidable which one is wrong.
   std::vector<MapChange> changes(const Graph& graph) const;
 
  private:
@@ -44,7 +44,7 @@ class Survey {
     bool has_prior{false};  ///< in the graph
   };
 
-  /// Whether the other entries fix where the map is, and how it is turned.
+  /// Whether the other entries determine the frame's position and rotation.
   bool holds_frame(const Graph& graph, const Entry& without) const;
   void switch_all(Graph& graph, bool is_on) const;
   std::vector<const Entry*> most_suspicious(const Graph& graph) const;
@@ -52,7 +52,7 @@ class Survey {
 
   std::vector<Entry> entries_{};
   bool has_frame_{false};
-  double unresolved_sigmas_{0.0};  ///< by which entries contradict each other, none clearly wrong
+  double unresolved_sigmas_{0.0};  ///< contradiction between entries of which none is clearly wrong
 };
 
 }  // namespace waymark

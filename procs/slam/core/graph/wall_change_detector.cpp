@@ -10,13 +10,13 @@
 namespace waymark {
 namespace {
 
-constexpr std::uint32_t kLeastVisits = 8;  // beams; a person who passes leaves fewer
-constexpr double kWall = 0.5;              // occupancy
-constexpr double kFree = 0.1;
+constexpr std::uint32_t kLeastVisits = 8;   // beams; a person who passes leaves fewer
+constexpr double kWall = 0.5;               // least occupancy of a wall, and
+constexpr double kFree = 0.1;               // largest one of free space
 constexpr int kAgedEvery = 100;             // scans
-constexpr std::uint32_t kMostVisits = 200;  // of a cell that is not aged
+constexpr std::uint32_t kMostVisits = 200;  // beyond, the counts of a cell are halved
 constexpr std::size_t kLeastCells = 6;      // 0.3 m of wall in cells of 0.05 m
-constexpr int kGap = 2;                     // cells of one change are at most so far apart
+constexpr int kGap = 2;                     // largest distance of cells in a cluster
 
 template <class Condition>
 bool all_around(CellIndex centre, Condition&& holds) {
@@ -28,7 +28,7 @@ bool all_around(CellIndex centre, Condition&& holds) {
 
 using Cells = std::map<std::pair<int, int>, bool>;  ///< (y, x): whether it is in a cluster
 
-/// All cells that hang together with the first one.
+/// Flood fill from the first cell.
 std::vector<CellIndex> cluster_from(const std::pair<int, int>& first, Cells& cells) {
   std::vector<CellIndex> cluster;
   std::vector<std::pair<int, int>> open{first};
@@ -87,7 +87,7 @@ void WallChangeDetector::add(const Observation& observation, const Se2& map_from
   if (++num_scans_ % kAgedEvery == 0) age();
 }
 
-/// What was seen long ago counts less and less.
+/// Halves large counts, so that old observations fade.
 void WallChangeDetector::age() {
   std::vector<TileIndex> tiles;
   seen_.occupancy.for_each_tile([&](TileIndex tile, const auto&) { tiles.push_back(tile); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Walls that are there and not in the map, or in the map and not there any more.
+// Detects walls that have appeared or disappeared since a map was made.
 #pragma once
 
 #include "slam/core/graph/map_snapshot.hpp"
@@ -12,9 +12,10 @@
 
 namespace waymark {
 
-/// Counts the beams of this run in a grid of its own, and compares it with the map's cell by cell.
-/// A pose that is off by a cell makes no change: a cell has changed only where all of its
-/// neighbours differ, too. Memory is bounded by the map's area and the LiDAR's reach.
+/// Counts the beams of this run in a grid of its own, and compares it with the map's, cell by cell.
+/// A wall cell has appeared where the map is free in it and in all of its neighbours, and the other
+/// way round, so that a pose error of a cell makes no change. Memory is bounded by the map's area
+/// and the LiDAR's reach.
 class WallChangeDetector {
  public:
   explicit WallChangeDetector(std::shared_ptr<const MapSnapshot> map);

@@ -3,6 +3,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "slam/core/grid/occupied_points.hpp"
+#include "slam/core/registration/unique_place.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -12,18 +13,16 @@ namespace waymark {
 namespace {
 
 constexpr double kSearchEvery_m = 0.4;
-constexpr int kAgreeing = 3;  // scans
+constexpr int kConsistentScans = 3;  // scans
 constexpr std::size_t kBeams = 150;
 constexpr std::size_t kLeastBeams = 60;
-constexpr double kLeastScore = 0.7;
-constexpr double kRunnerUpShare = 0.8;
-constexpr double kApart_m = 0.5;
-constexpr double kApart_rad = 0.3;
-constexpr double kAgree_m = 0.2;
+constexpr UniquePlaceLimits kUnique{
+    .min_score = 0.7, .runner_up_share = 0.8, .apart_m = 0.5, .apart_rad = 0.3};
+constexpr double kAgree_m = 0.2;  // of a pose from the candidate
 constexpr double kAgree_rad = 0.1;
-constexpr double kLeastInliers = 0.8;  // share of the mapped beams
-constexpr double kLeastMapped = 0.8;   // share of all beams
-const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
+constexpr double kLeastInliers = 0.8;                // share of the mapped beams
+constexpr double kLeastMapped = 0.8;                 // share of all beams
+const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};  // of the search's best place [m, m, rad]
 
 }  // namespace
 
@@ -55,18 +54,14 @@ std::optional<Se2> WallPlaceFinder::update(const Motion& motion, const Observati
   const Eigen::Vector3d off = candidate_ ? pose_difference(*there, *candidate_)
                                          : Eigen::Vector3d::Constant(std::numbers::pi);
   const bool agrees = off.head<2>().norm() < kAgree_m && std::abs(off.z()) < kAgree_rad;
-  agreed_ = agrees ? agreed_ + 1 : 1;
+  num_consistent_ = agrees ? num_consistent_ + 1 : 1;
   candidate_ = there;
-  return agreed_ >= kAgreeing ? there : std::nullopt;
+  return num_consistent_ >= kConsistentScans ? there : std::nullopt;
 }
 
 std::optional<Se2> WallPlaceFinder::found(const Points& points, const RangeNoise& noise) const {
-  const auto best = field_->best(points, middle_, window_, kLeastScore);
+  const auto best = unique_place(*field_, points, middle_, window_, kUnique);
   if (!best) return std::nullopt;
-  const auto runner_up =
-      field_->best_apart_from(best->submap_from_base, kApart_m, kApart_rad, points, middle_,
-                              window_, kRunnerUpShare * best->score);
-  if (runner_up) return std::nullopt;
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
   const ScanMatch match =
       match_scan(points, map_->walls, best->submap_from_base, near, noise, scan_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where in a loaded map the robot is, by walls alone.
+// Global localisation in a loaded map, by walls alone.
 #pragma once
 
 #include "slam/core/graph/map_snapshot.hpp"
@@ -13,9 +13,9 @@
 
 namespace waymark {
 
-/// Looks for each scan in the whole map. A scan counts where it fits at one place only and shows
-/// every direction, which a bare corridor never does; the place is decided when scans from places
-/// that are apart have agreed with each other, by odometry.
+/// Searches the whole map for a scan, every some decimetres. A scan counts if it fits at one place
+/// only and observes every direction, which it never does in a bare corridor. The pose is decided
+/// when several such scans in a row are consistent with the odometry between them.
 class WallPlaceFinder {
  public:
   WallPlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
@@ -30,12 +30,12 @@ class WallPlaceFinder {
 
   std::shared_ptr<const MapSnapshot> map_;
   ScanMatchConfig scan_;
-  std::optional<CorrelativeField> field_{};  ///< of the map's walls; none: it has none
+  std::optional<CorrelativeField> field_{};  ///< of the map's walls; none: the map has no walls
   Se2 middle_{};
   SearchWindow window_{};
   double since_search_m_{1e9};
-  std::optional<Se2> candidate_{};  ///< map_from_base, carried on by odometry
-  int agreed_{0};                   ///< scans, with the candidate
+  std::optional<Se2> candidate_{};  ///< map_from_base, propagated by odometry
+  int num_consistent_{0};           ///< scans in a row, the candidate's included
 };
 
 }  // namespace waymark

@@ -39,8 +39,6 @@ class SparseTile {
     return (touched_[row_of(offset)] & bit_of(offset)) != 0;
   }
 
-  std::size_t num_touched() const { return cells_.size(); }
-
   /// Calls visit(column, cell) for the touched cells of a row in columns [low, high] of the tile.
   template <class Visit>
   void visit_row(int row, int low, int high, Visit&& visit) const {

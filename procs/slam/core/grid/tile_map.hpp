@@ -61,12 +61,6 @@ class TileMap {
         std::count_if(table_.begin(), table_.end(), [](const auto& tile) { return tile.get(); }));
   }
 
-  /// Tiles that no other map shares.
-  std::size_t num_private_tiles() const {
-    return static_cast<std::size_t>(std::count_if(
-        table_.begin(), table_.end(), [](const auto& tile) { return tile.is_private(); }));
-  }
-
   /// [tile] Bound of the table's area: 3.2 km by 3.2 km of 0.05 m cells, 32 MB of pointers.
   static constexpr std::int64_t kMaxTableTiles = 1 << 22;
 

@@ -44,7 +44,7 @@ void OdometryStream::finish(Skips& skips) {
   if (const auto leading = std::exchange(leading_, std::nullopt)) take(*leading, skips);
 }
 
-/// By the next sample. It fits what came before it, so it is no news.
+/// Accepts or drops the sample that is held back, given the next one.
 void OdometryStream::weigh_leading(const OdometrySample& sample, Skips& skips) {
   if (sample.time > leading_->time) {
     const OdometrySample leading = *std::exchange(leading_, std::nullopt);
@@ -61,7 +61,7 @@ bool OdometryStream::leads(const OdometrySample& sample) const {
   return step > 2 * usual_step_ && step <= ClockStepDetector::kLongestPause;
 }
 
-/// Nothing before it could tell.
+/// Whether the first sample of all, which could not be checked, was stamped ahead.
 bool OdometryStream::shows_first_was_ahead(const OdometrySample& sample) const {
   return buffer_.has_one() && !has_been_read_ && sample.time < buffer_.newest() &&
          sample.time >= buffer_.newest() - kLongestLead;
@@ -76,7 +76,7 @@ OdometryStream::News OdometryStream::take(const OdometrySample& sample, Skips& s
   if (!is_refused(outcome)) {
     usual_step_ = std::min(step, 2 * usual_step_);
     clock_steps_.see_fitting();
-    news.has_begun = is_first;
+    news.is_first = is_first;
   } else if (clock_steps_.see_misfit(sample.time)) {
     news.clock_set = set_clock(skips);
     count(buffer_.add(sample), skips);
@@ -84,9 +84,8 @@ OdometryStream::News OdometryStream::take(const OdometrySample& sample, Skips& s
   return news;
 }
 
-/// What was stamped by the clock as it was is moved to where odometry goes on, so that no motion is
-/// lost.
-/// @return by how much.
+/// Moves the stamps of old samples so that odometry continues without a gap, and no motion is lost.
+/// @return added to the stamps.
 Duration OdometryStream::set_clock(Skips& skips) {
   skips.add(Skip::kClockSet);
   const Duration later = clock_steps_.first_misfit() - buffer_.newest();

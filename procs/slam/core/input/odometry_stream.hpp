@@ -11,35 +11,36 @@
 
 namespace waymark {
 
-/// A sample that comes more than two usual steps after the one before may be stamped wrong. It is
-/// held back ("leading") until a newer one confirms it; until then its time has not been reached.
+/// A sample that is more than two usual steps newer than the one before may have a wrong stamp. It
+/// is held back (`leading_`) until a newer one confirms it; until then it does not count as
+/// received.
 class OdometryStream {
  public:
-  /// What other sensors have to know of a sample.
+  /// Consequences of a sample for the other sensors' queues.
   struct News {
-    bool has_begun{false};                ///< it is the first: from now on stamps can be judged
-    std::optional<Duration> clock_set{};  ///< by so much: stamps from before are worth nothing
+    bool is_first{false};                 ///< of all samples: stamps can be checked from now on
+    std::optional<Duration> clock_set{};  ///< step of the clock: earlier stamps are invalid
   };
 
   News add(const OdometrySample& sample, Skips& skips);
 
-  /// No more samples will come: the one that leads counts.
+  /// No more samples will come: uses the one that is held back.
   void finish(Skips& skips);
 
   bool has_passed(Timestamp time) const { return !buffer_.is_empty() && buffer_.newest() >= time; }
 
-  /// Including the one that leads; needs a sample.
+  /// Including the sample that is held back; needs a sample.
   Timestamp newest() const { return leading_ ? leading_->time : buffer_.newest(); }
 
-  /// What another sensor stamps later than this is wrong. Sensors may wait for odometry that comes
-  /// in bursts; needs a sample.
+  /// A stamp of another sensor later than this is wrong; below, it may be ahead of odometry that
+  /// comes in bursts. Needs a sample.
   Timestamp lead_limit() const { return newest() + kLongestLead; }
 
   bool is_ahead(Timestamp time) const { return !buffer_.is_empty() && time > lead_limit(); }
 
   const OdometryBuffer& buffer() const { return buffer_; }
 
-  /// What is older will not be read any more.
+  /// Drops samples that are not needed to read at `time` or later.
   void forget_before(Timestamp time) {
     has_been_read_ = true;
     buffer_.forget_before(time);

@@ -24,7 +24,7 @@ constexpr QueuePolicy kFramePolicy{.capacity = kCapacity,
                                    .ahead = Skip::kFrameAhead,
                                    .overflow = Skip::kFrameOverflow};
 
-/// No camera sees the same twice to the last bit, unless it does not look again.
+/// Two different images never give the same corners to the last bit.
 bool are_repeated(std::span<const MarkerDetection> before, std::span<const MarkerDetection> now) {
   return !now.empty() &&
          std::equal(before.begin(), before.end(), now.begin(), now.end(),
@@ -34,10 +34,10 @@ bool are_repeated(std::span<const MarkerDetection> before, std::span<const Marke
                     });
 }
 
-/// A robot that stands may see the same again; this much further on it cannot.
+/// Motion after which an identical scan cannot be a new one.
 constexpr double kElsewhere_m = 0.05;
 constexpr double kElsewhere_rad = 0.05;
-constexpr std::size_t kTooMany = 20;  // returns that agree by chance
+constexpr std::size_t kTooMany = 20;  // returns that cannot be identical by chance
 
 bool are_same(const std::vector<double>& before, const std::vector<double>& now) {
   return std::equal(before.begin(), before.end(), now.begin(), now.end(),
@@ -55,7 +55,7 @@ SensorQueue::SensorQueue(const SensorSetup& setup)
 
 void SensorQueue::add(const OdometrySample& sample) {
   const OdometryStream::News news = odometry_.add(sample, skips_);
-  if (news.has_begun) {  // what came before it could not be judged
+  if (news.is_first) {  // earlier stamps could not be checked
     scans_.drop_after(odometry_.lead_limit(), skips_);
     frames_.drop_after(odometry_.lead_limit(), skips_);
   }
@@ -86,7 +86,8 @@ void SensorQueue::finish() {
 bool SensorQueue::is_ready(const LidarScan& scan) const {
   if (has_finished_) return true;
   if (!odometry_.has_passed(last_beam_time(scan))) return false;
-  if (scans_.is_doubtful(scan.time) && !odometry_.has_passed(scan.time + scan_wait_)) return false;
+  if (scans_.may_be_dropped(scan.time) && !odometry_.has_passed(scan.time + scan_wait_))
+    return false;
   return frames_.has_reached(scan.time) || odometry_.has_passed(scan.time + marker_wait_);
 }
 
@@ -135,12 +136,12 @@ bool SensorQueue::repeats_the_one_before(const MarkerDetections& frame) {
   return is_repeated;
 }
 
-/// One that is further ahead may be stamped wrong, and holds nothing up.
+/// A scan further ahead may have a wrong stamp, and must not block.
 bool SensorQueue::scan_is_due() const {
   return !scans_.is_empty() && scans_.front().time <= odometry_.newest() + scan_wait_;
 }
 
-/// Only where odometry was measured: where it stays away, too, there is nothing to observe.
+/// Time of an observation without a scan, at a sample of the odometry.
 std::optional<Timestamp> SensorQueue::next_without_scan() const {
   if (!last_observed_ || scan_is_due()) return std::nullopt;
   const auto time = odometry_.buffer().first_from(*last_observed_ + kStepWithoutScan);
@@ -169,9 +170,9 @@ void SensorQueue::drive_to(Timestamp time, Observation& observation) const {
   observation.odom_from_base = odometry.sent_pose_at(time);
   if (!last_observed_ || !odometry.covers(*last_observed_)) return;
   observation.motion = odometry.motion_between(*last_observed_, time);
-  observation.odometry_doubtful = odometry.is_doubtful(*last_observed_, time);
-  if (const auto kept_back = odometry.kept_back(*last_observed_, time)) {
-    observation.motion = kept_back->then(observation.motion);
+  observation.odometry_jumped = odometry.has_jumped(*last_observed_, time);
+  if (const auto late_motion = odometry.late_motion(*last_observed_, time)) {
+    observation.motion = late_motion->then(observation.motion);
     observation.odometry_caught_up = true;
   }
 }

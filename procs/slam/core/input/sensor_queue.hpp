@@ -28,12 +28,12 @@ struct SensorSetup {
 };
 
 /// A scan becomes an observation when odometry covers it and the camera frames up to its time have
-/// come (or marker_wait_s of odometry has passed without them). While the LiDAR is silent, so that
-/// scan_wait_s of odometry has passed without a scan, odometry and camera make observations of
-/// their own. So the result depends on the values and not on how they were grouped on their way.
+/// come, or when marker_wait_s of odometry has passed without them. When scan_wait_s of odometry
+/// has passed without a scan, the LiDAR is silent, and odometry and camera make observations of
+/// their own. So the result depends on the values only, and not on how they are interleaved.
 ///
-/// A value that is stamped wrong costs itself: what it leads or lags behind is judged by the values
-/// of its own sensor that follow it. Only when the clock was set do all stamps count anew.
+/// A wrong stamp costs its own value only: the next values of the same sensor decide whether a
+/// value that is ahead or late is wrong. When the clock was set, all earlier stamps are dropped.
 class SensorQueue {
  public:
   explicit SensorQueue(const SensorSetup& setup);
@@ -41,15 +41,15 @@ class SensorQueue {
   void add(const OdometrySample& sample);
   void add(LidarScan scan);
   void add(MarkerDetections frame);
-  /// No more values will come: stop waiting for them.
+  /// No more values will come: stops waiting for them.
   void finish();
 
-  /// The next observation that is ready; call until there is none.
   struct Ready {
     Observation observation{};
     std::optional<LidarScan> scan{};  ///< nothing while the LiDAR is silent
   };
 
+  /// The next observation that is ready; call until there is none.
   std::optional<Ready> next();
 
   /// What was skipped since the last call, in order.

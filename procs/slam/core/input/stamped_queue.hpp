@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The values of one sensor that wait for the others, and which of their stamps are wrong.
+// Queue of one sensor's values that drops those with wrong stamps.
 #pragma once
 
 #include "common/time/time.hpp"
@@ -12,19 +12,19 @@
 
 namespace waymark {
 
-/// How many values of a sensor wait, and what to call those that are not used.
+/// Bounds of a queue, and by which reasons its dropped values are counted.
 struct QueuePolicy {
-  std::size_t capacity{0};  ///< of more the oldest is dropped
-  Duration longest{};       ///< so is one that is older than the newest by more
+  std::size_t capacity{0};  ///< beyond, the oldest value is dropped
+  Duration longest{};       ///< so are values that are older than the newest by more
   Skip out_of_order{};
   Skip ahead{};
   Skip overflow{};
 };
 
-/// Values (with a member `time`) in order of time. Where one is not newer than those before it,
-/// either it is stamped too early or they are stamped too late: it waits aside, and the next one
-/// decides. If that is newer than all, the one aside was wrong; if it follows the one aside, those
-/// that lead the two were.
+/// Values (with a member `time`) in order of time. A value that is not newer than those before it
+/// is set aside: either its own stamp is too early, or theirs are too late. The next value decides:
+/// if it is newer than all, the value aside is dropped; if it is newer than the value aside only,
+/// the later ones are.
 template <class Value>
 class StampedQueue {
  public:
@@ -64,10 +64,10 @@ class StampedQueue {
   /// Whether a value of that time or a later one has come; it may have been popped.
   bool has_reached(Timestamp time) const { return newest_ && *newest_ >= time; }
 
-  /// Whether it may turn out that what is stamped with that time is wrong.
-  bool is_doubtful(Timestamp time) const { return aside_ && time > aside_->time; }
+  /// Whether values with that stamp may still be dropped because of the value aside.
+  bool may_be_dropped(Timestamp time) const { return aside_ && time > aside_->time; }
 
-  /// The one aside comes too late once the time is past.
+  /// Drops the value aside if it is not newer than `time`.
   void drop_aside_until(Timestamp time, Skips& skips) {
     if (!aside_ || aside_->time > time) return;
     aside_.reset();
@@ -80,7 +80,7 @@ class StampedQueue {
     if (newest_ && *newest_ > time) newest_.reset();
   }
 
-  /// As when the clock was set.
+  /// Drops everything, after the clock was set.
   void clear(Skips& skips) {
     skips.add(policy_.out_of_order, values_.size() + (aside_ ? 1 : 0));
     *this = StampedQueue{policy_};

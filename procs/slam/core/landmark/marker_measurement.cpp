@@ -12,23 +12,23 @@
 namespace waymark {
 namespace {
 
-constexpr double kFirstBand_m = 0.15;  // beams this near to the expected line count at first
-constexpr double kBand_m = 0.04;       // and to the line once fitted
+constexpr double kFirstBand_m = 0.15;  // distance of inliers from the expected line,
+constexpr double kBand_m = 0.04;       // and from a line that was fitted
 constexpr double kFirstReach_m = 1.0;
-constexpr double kSurveyed_m = 0.5;
+constexpr double kCovered_m = 0.5;
 constexpr int kFits = 4;
 constexpr int kMinBeams = 8;
 constexpr double kMinExtent_m = 0.1;            // [m] root mean square length of the fitted stretch
 constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
 constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
 
-// A wall is seen at one time of the sweep, on average a quarter of it away from the middle; the
-// mean over all beams is as uncertain as a twelfth.
+// All beams on one wall are measured at about the same time, on average a quarter of the sweep from
+// its middle; the mean over all beams (MeanSweep) has the noise of a twelfth of the sweep.
 constexpr double kWallOverMeanSweep = 3.0;
 
-/// A view that is off by what a worse camera would get wrong is no flipped one: it shows that the
-/// calibration is wrong (SightingSigmas::learnt).
-const Eigen::Vector3d kCalibrated{0.01, 0.005, 0.005};
+/// Least standard deviations of the calibration (as SightingSigmas::learnt) in the gate for flipped
+/// views: else views by a camera that was described too confidently would all be rejected.
+const Eigen::Vector3d kLeastCalibrationSigmas{0.01, 0.005, 0.005};
 
 struct Line {
   Eigen::Vector2d point;
@@ -76,30 +76,32 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const MarkerSenso
       squared(sensors.sigmas.bearing_rad) * across * across.transpose();
   covariance.topLeftCorner<2, 2>().diagonal().array() += squared(sensors.sigmas.position_m);
   covariance(2, 2) += squared(sensors.sigmas.bearing_rad);
-  // What odometry gets wrong in between: its heading turns the sighting about the robot.
+  // Odometry's noise since the camera frame: an error of its heading turns the sighting about the
+  // robot.
   return covariance + carried_along(random_walk(sighting.carried_m, sighting.carried_rad, odometry),
                                     sighting.base_from_marker.translation());
 }
 
-/// How the camera's errors move what it sees: a camera that is mounted further left than described
-/// sees everything turned to the right; a longer focal length brings everything nearer to the
-/// image.
-Eigen::Matrix<double, 3, 2> by_camera_errors(const Eigen::Vector2d& place_in_base,
-                                             const Se2& base_from_camera) {
+/// d(marker's pose) / d(yaw of the mounting, relative focal length): a camera that is mounted
+/// further left than described sees everything turned to the right; with a longer focal length
+/// everything seems nearer.
+Eigen::Matrix<double, 3, 2> camera_jacobian(const Eigen::Vector2d& place_in_base,
+                                            const Se2& base_from_camera) {
   const Eigen::Vector2d ray = place_in_base - base_from_camera.translation();
   const Eigen::Vector2d forward = base_from_camera.rotation().col(0);
-  Eigen::Matrix<double, 3, 2> by_camera;
-  by_camera.col(0) << ray.y(), -ray.x(), -1.0;
-  by_camera.col(1) << -forward.dot(ray) * forward, 0.0;
-  return by_camera;
+  Eigen::Matrix<double, 3, 2> jacobian_camera;
+  jacobian_camera.col(0) << ray.y(), -ray.x(), -1.0;
+  jacobian_camera.col(1) << -forward.dot(ray) * forward, 0.0;
+  return jacobian_camera;
 }
 
-/// Kalman update of the camera's pose with "it lies in the wall and faces as the wall does".
-/// @param by_sweep  how far the wall may be off for its beams were measured at another time than
-/// the scan's: covariance (x, y, theta) about the robot.
-std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, const WallLine& wall,
-                                              const Eigen::Matrix3d& by_sweep,
-                                              const SightingSigmas& sigmas, double gate) {
+/// Kalman update of the camera's view with the constraint that the marker lies in the wall and has
+/// its normal.
+/// @param sweep_covariance  of the motion between the scan's time and that of the wall's beams.
+std::optional<MarkerMeasurement> constrain_to_wall(MarkerMeasurement measurement,
+                                                   const WallLine& wall,
+                                                   const Eigen::Matrix3d& sweep_covariance,
+                                                   const SightingSigmas& sigmas, double gate) {
   Eigen::Matrix<double, 2, 3> rows = Eigen::Matrix<double, 2, 3>::Zero();
   rows.topLeftCorner<1, 2>() = wall.normal.transpose();
   rows(1, 2) = 1.0;
@@ -108,26 +110,28 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
   WallInnovation innovation;
   innovation.residual << wall.normal.dot(wall.point - seen.translation()),
       angle_difference(normal_rad, seen.theta());
-  innovation.by_camera = -rows * measurement.by_camera;
-  innovation.by_standoff = -Eigen::Vector2d::UnitX();  // the normal points to the robot
-  const Eigen::Matrix3d of_both = measurement.covariance + carried_along(by_sweep, wall.point);
+  innovation.jacobian_camera = -rows * measurement.jacobian_camera;
+  innovation.jacobian_standoff = -Eigen::Vector2d::UnitX();  // the normal points to the robot
+  const Eigen::Matrix3d of_both =
+      measurement.covariance + carried_along(sweep_covariance, wall.point);
   innovation.covariance = rows * of_both * rows.transpose();
   innovation.covariance(0, 0) += squared(wall.sigma_m) + squared(sigmas.bulge_m);
   innovation.covariance(1, 1) += squared(wall.sigma_rad) + squared(sigmas.skew_rad);
 
-  const Eigen::Vector3d error_variance = sigmas.learnt.cwiseMax(kCalibrated).cwiseAbs2();
-  const Eigen::Matrix2d spread = innovation.covariance + innovation.by_errors() *
-                                                             error_variance.asDiagonal() *
-                                                             innovation.by_errors().transpose();
+  const Eigen::Vector3d error_variance =
+      sigmas.learnt.cwiseMax(kLeastCalibrationSigmas).cwiseAbs2();
+  const Eigen::Matrix2d spread =
+      innovation.covariance + innovation.jacobian_calibration() * error_variance.asDiagonal() *
+                                  innovation.jacobian_calibration().transpose();
   if (!(innovation.residual.dot(spread.inverse() * innovation.residual) < gate))
     return std::nullopt;
 
   const Eigen::Matrix<double, 3, 2> gain =
       measurement.covariance * rows.transpose() * innovation.covariance.inverse();
   measurement.base_from_marker = moved_by(seen, gain * innovation.residual);
-  measurement.by_camera += gain * innovation.by_camera;
-  measurement.by_standoff = gain * innovation.by_standoff;
-  measurement.held -= gain * rows;
+  measurement.jacobian_camera += gain * innovation.jacobian_camera;
+  measurement.jacobian_standoff = gain * innovation.jacobian_standoff;
+  measurement.jacobian_view -= gain * rows;
   measurement.covariance -= (gain * rows * measurement.covariance).eval();
   measurement.covariance =
       (0.5 * (measurement.covariance + measurement.covariance.transpose())).eval();
@@ -135,19 +139,21 @@ std::optional<MarkerMeasurement> hold_to_wall(MarkerMeasurement measurement, con
   return measurement;
 }
 
-/// The LiDAR sees the surroundings of a marker: if no wall fits it there, its pose is wrong.
-bool is_surveyed(std::span<const AnnotatedBeam> beams, const MarkerSighting& sighting) {
+/// The LiDAR covers the surroundings of a marker: if no wall fits there, the marker's pose is
+/// wrong.
+bool is_covered(std::span<const AnnotatedBeam> beams, const MarkerSighting& sighting) {
   const auto is_near = [&](const AnnotatedBeam& beam) {
-    return (beam.beam.end_in_base - sighting.base_from_marker.translation()).norm() < kSurveyed_m;
+    return (beam.beam.end_in_base - sighting.base_from_marker.translation()).norm() < kCovered_m;
   };
   return std::count_if(beams.begin(), beams.end(), is_near) >= kMinBeams;
 }
 
 }  // namespace
 
-Eigen::Matrix3d MarkerMeasurement::by_errors_at(const Eigen::Vector2d& place_in_base) const {
-  return (Eigen::Matrix3d{} << held * by_camera_errors(place_in_base, base_from_camera),
-          by_standoff)
+Eigen::Matrix3d MarkerMeasurement::jacobian_calibration_at(
+    const Eigen::Vector2d& place_in_base) const {
+  return (Eigen::Matrix3d{} << jacobian_view * camera_jacobian(place_in_base, base_from_camera),
+          jacobian_standoff)
       .finished();
 }
 
@@ -195,11 +201,11 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
                                                const MarkerSensors& sensors,
                                                const OdometryNoise& odometry,
                                                const MarkerMeasurementConfig& config) {
-  // The newest frame only: what one frame gets wrong, the next gets wrong in the same way.
+  // The newest frame only, since the errors of successive frames are correlated.
   Timestamp newest{};
   for (const MarkerSighting& sighting : observation.sightings)
     newest = std::max(newest, sighting.time);
-  const Eigen::Matrix3d by_sweep =
+  const Eigen::Matrix3d sweep_covariance =
       kWallOverMeanSweep *
       random_walk(observation.mean_sweep.distance_m, observation.mean_sweep.turn_rad, odometry);
   std::vector<MarkerMeasurement> measurements;
@@ -211,7 +217,7 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
         sighting.size_m,
         sighting.base_from_marker,
         in_robot_frame(sighting, sensors, odometry, config),
-        by_camera_errors(sighting.base_from_marker.translation(), sensors.base_from_camera),
+        camera_jacobian(sighting.base_from_marker.translation(), sensors.base_from_camera),
         Eigen::Vector3d::Zero(),
         sensors.base_from_camera,
         Eigen::Matrix3d::Identity(),
@@ -220,10 +226,10 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
         fit_wall(observation.beams, sighting.base_from_marker.translation(),
                  sighting.base_from_marker.theta(), sensors.range_sigma_m, config.reach_m);
     if (!wall) {
-      if (!is_surveyed(observation.beams, sighting)) measurements.push_back(measurement);
-    } else if (const auto held =
-                   hold_to_wall(measurement, *wall, by_sweep, sensors.sigmas, config.gate)) {
-      measurements.push_back(*held);
+      if (!is_covered(observation.beams, sighting)) measurements.push_back(measurement);
+    } else if (const auto constrained = constrain_to_wall(measurement, *wall, sweep_covariance,
+                                                          sensors.sigmas, config.gate)) {
+      measurements.push_back(*constrained);
     }
   }
   return measurements;

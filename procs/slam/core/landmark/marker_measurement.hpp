@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a marker is from the robot: the camera's view of it, held to the wall that the LiDAR sees.
+// Pose of a marker in the base frame, by the camera and by the wall that the LiDAR sees behind it.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -26,7 +26,7 @@ struct MarkerMeasurementConfig {
   void describe(Fields& fields);
 };
 
-/// What markers are measured with.
+/// The sensors that measure markers.
 struct MarkerSensors {
   double range_sigma_m{0.01};  ///< of the LiDAR
   Se2 base_from_camera{};
@@ -35,29 +35,28 @@ struct MarkerSensors {
 
 /// A piece of straight wall, base frame.
 struct WallLine {
-  Eigen::Vector2d point{Eigen::Vector2d::Zero()};    ///< on it, nearest to the marker
+  Eigen::Vector2d point{Eigen::Vector2d::Zero()};    ///< of the wall, nearest to the marker
   Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< unit, towards the robot
   double sigma_m{0.0};                               ///< of the distance at `point`
   double sigma_rad{0.0};                             ///< of the direction
 };
 
-/// The line through the beams' ends around a place with an expected normal; nothing where too few
-/// beams lie on one. The line may be extended: its uncertainty grows with the distance to the
-/// beams.
+/// Fits a line to the beams' ends around a place, given its expected normal; nothing where too few
+/// beams lie on a line. The place may lie beyond the beams: sigma_m grows with the distance.
 std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
                                  const Eigen::Vector2d& place_in_base, double normal_rad,
                                  double range_sigma_m, double reach_m);
 
-/// What the wall says about the camera: by how much the marker's view misses it.
+/// Innovation of a marker's view by its wall.
 struct WallInnovation {
   /// Wall minus view: distance [m] and direction [rad] of the wall's normal.
   Eigen::Vector2d residual{Eigen::Vector2d::Zero()};
-  Eigen::Matrix2d by_camera{Eigen::Matrix2d::Zero()};  ///< as in MarkerMeasurement
-  Eigen::Vector2d by_standoff{Eigen::Vector2d::UnitX()};
+  Eigen::Matrix2d jacobian_camera{Eigen::Matrix2d::Zero()};  ///< columns as in MarkerMeasurement
+  Eigen::Vector2d jacobian_standoff{Eigen::Vector2d::UnitX()};
   Eigen::Matrix2d covariance{Eigen::Matrix2d::Identity()};
 
-  Eigen::Matrix<double, 2, 3> by_errors() const {
-    return (Eigen::Matrix<double, 2, 3>{} << by_camera, by_standoff).finished();
+  Eigen::Matrix<double, 2, 3> jacobian_calibration() const {
+    return (Eigen::Matrix<double, 2, 3>{} << jacobian_camera, jacobian_standoff).finished();
   }
 };
 
@@ -68,29 +67,31 @@ struct MarkerMeasurement {
   double size_m{0.0};  ///< side of the black square
   Se2 base_from_marker{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
-  /// By the camera's errors: mounted further left [rad], longer focal length (relative).
-  Eigen::Matrix<double, 3, 2> by_camera{Eigen::Matrix<double, 3, 2>::Zero()};
-  Eigen::Vector3d by_standoff{Eigen::Vector3d::Zero()};  ///< by the marker hanging before its wall
+  /// By the camera's errors: yaw of the mounting [rad], focal length (relative).
+  Eigen::Matrix<double, 3, 2> jacobian_camera{Eigen::Matrix<double, 3, 2>::Zero()};
+  Eigen::Vector3d jacobian_standoff{
+      Eigen::Vector3d::Zero()};  ///< by the marker's standoff from its wall [m]
   Se2 base_from_camera{};
-  Eigen::Matrix3d held{Eigen::Matrix3d::Zero()};  ///< what its wall leaves of an error of the view
-  std::optional<FocalSighting> focal{};           ///< what the marker's perspective says
-  std::optional<WallInnovation> wall{};           ///< its error is independent of the pose's
+  Eigen::Matrix3d jacobian_view{Eigen::Matrix3d::Zero()};  ///< by the camera's view: I - K H of the
+                                                           ///< update with the wall
+  std::optional<FocalSighting> focal{};                    ///< by the marker's perspective
+  std::optional<WallInnovation> wall{};  ///< uncorrelated with the error of base_from_marker
 
   /// By (camera yaw [rad], focal length (relative), standoff [m]).
-  Eigen::Matrix3d by_errors() const {
-    return (Eigen::Matrix3d{} << by_camera, by_standoff).finished();
+  Eigen::Matrix3d jacobian_calibration() const {
+    return (Eigen::Matrix3d{} << jacobian_camera, jacobian_standoff).finished();
   }
 
-  /// The same if the marker is at another place than it was measured at, base frame: where it is
-  /// known to be. Derivatives that have the measurement's own noise in them are correlated with the
-  /// residual, and what is learnt by them is pushed to one side.
-  Eigen::Matrix3d by_errors_at(const Eigen::Vector2d& place_in_base) const;
+  /// The same, linearised at another place of the marker, base frame: the estimated one. A Jacobian
+  /// that contains the measurement's own noise is correlated with the residual, and biases the
+  /// calibration.
+  Eigen::Matrix3d jacobian_calibration_at(const Eigen::Vector2d& place_in_base) const;
 };
 
-/// The sightings of an observation's newest frame as measurements. The corners tell the bearing
-/// best and the range worst; where along that bearing the marker is, follows from the wall. A view
-/// that the wall contradicts (a flipped pose) gives no measurement.
-/// @param odometry  that carried the sightings from their frames' times to the scan's.
+/// The sightings of an observation's newest frame as measurements. The camera measures the bearing
+/// best and the range worst; the wall complements the range. A view that the wall contradicts (a
+/// flipped pose) gives no measurement.
+/// @param odometry  noise between the time of a sighting's frame and that of the scan.
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
                                                const MarkerSensors& sensors,
                                                const OdometryNoise& odometry,

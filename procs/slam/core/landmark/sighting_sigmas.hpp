@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How good camera and markers are.
+// Accuracy of camera and markers.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace waymark {
 
-/// How far camera and markers may differ from their description: standard
-/// deviations. Keys and meanings: [robot.camera] and [robot.markers]; the defaults are theirs.
+/// Standard deviations of camera and markers from their description. Keys, meanings and defaults:
+/// [robot.camera] and [robot.markers].
 struct SightingSigmas {
   /// Indices into `learnt`.
   static constexpr Eigen::Index kYaw = 0;
   static constexpr Eigen::Index kFocal = 1;
   static constexpr Eigen::Index kStandoff = 2;
 
-  /// Of what all sightings get wrong in the same way: mounting's yaw [rad], focal length
-  /// (relative), standoff of the markers [m]. Learnt while driving; one of 0 is not.
+  /// Of systematic errors, which the calibration learns unless they are 0: yaw of the mounting
+  /// [rad], focal length (relative), standoff of the markers [m].
   Eigen::Vector3d learnt{0.0087, 0.002, 0.003};
   double bearing_rad{0.0001};
   double position_m{0.0003};

@@ -10,12 +10,12 @@
 namespace waymark {
 namespace {
 
-// What one follow() may cost: a loop of 1000 scans has been drawn anew after 40 of them.
+// Scans that one follow() redraws: a share of all, within bounds, so that 40 calls redraw the map.
 constexpr std::size_t kLeastDrawn = 8;
 constexpr std::size_t kMostDrawn = 64;
 constexpr std::size_t kDrawnShare = 40;
-constexpr std::size_t kCheckedPerDrawn = 32;  // that have not moved
-constexpr double kLever_m = 5.0;              // walls are usually this near
+constexpr std::size_t kCheckedPerDrawn = 32;  // checking so many costs as much as redrawing one
+constexpr double kLever_m = 5.0;              // usual distance of walls from the robot
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void DrawnMap::draw_markers(std::size_t scan, const Se2& map_from_base, GridMap&
 }
 
 void DrawnMap::add(const Observation& observation, const Se2& map_from_base) {
-  // As it is kept, in single precision, so that it can be taken out again to the cell.
+  // Drawn from the archive, which is in single precision, so that erasing it is exact.
   if (const auto old = scans_.emptied_by(observation, map_from_base))
     erase_beams(scans_.at(*old).beams, drawn_at_[*old], map_);
   scans_.add(observation, map_from_base);

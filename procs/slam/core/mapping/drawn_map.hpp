@@ -11,25 +11,25 @@
 
 namespace waymark {
 
-/// Holds the scans that it is drawn from. When their poses change, scans are taken out of it where
-/// they were and drawn again where they are, a few at a time: cells count beams, so that this is
-/// exact. What is not in the archive any more is not in the map.
+/// Keeps the scans that it is drawn from. When their poses change, scans are erased at their old
+/// poses and drawn at the new ones, a few at a time. Erasing is exact, since cells count beams. A
+/// scan that the archive has emptied is not in the map.
 class DrawnMap {
  public:
-  /// @param ground  that it is drawn upon: a loaded map, or an empty one.
+  /// @param ground  map on which it is drawn: a loaded one, or an empty one.
   DrawnMap(const MapperConfig& config, const GridMap& ground);
 
   /// The next scan, with its markers.
   void add(const Observation& observation, const Se2& map_from_base);
 
-  /// The poses have changed: follow() has all of them to look at.
+  /// The poses have changed: makes follow() check all scans.
   void begin_to_follow() { unchecked_ = scans_.size(); }
 
-  /// Draws scans anew that have moved by a cell.
+  /// Redraws scans that have moved by a cell, some at each call.
   /// @param pose_of  map_from_base of a scan, by its number.
   void follow(const std::function<Se2(std::size_t)>& pose_of);
 
-  /// Draws all of them anew at once: as where the map's frame has changed.
+  /// Redraws all scans at once, for a new map frame.
   void redraw(const std::function<Se2(std::size_t)>& pose_of);
 
   /// The same map drawn along other poses.
@@ -47,9 +47,9 @@ class DrawnMap {
   GridMap map_;
   ScanArchive scans_{};
   std::vector<Se2> drawn_at_{};
-  std::size_t next_{0};       ///< to be looked at, before this one; after 0 the newest
+  std::size_t next_{0};       ///< the scan before this one is checked next; before 0: the newest
   std::size_t unchecked_{0};  ///< scans that may have moved
-  bool has_moved_{false};     ///< a scan, since the markers were drawn anew
+  bool has_moved_{false};     ///< a scan was redrawn, and the markers were not yet
 };
 
 }  // namespace waymark

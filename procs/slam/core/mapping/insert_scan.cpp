@@ -47,7 +47,7 @@ class CellSet {
   std::vector<bool> is_in_{};
 };
 
-/// @param count  1 to put the beams in, -1 (modulo 2^32) to take them out.
+/// @param count  1 to insert the beams, -1 (modulo 2^32) to erase them.
 void count_beams(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
                  std::uint32_t count, GridMap& map) {
   const Eigen::Matrix2d rotation = map_from_base.rotation();

@@ -10,11 +10,11 @@
 namespace waymark {
 
 /// Counts a hit where each beam ends and a visit in each cell that it crosses. A cell that this
-/// scan hits is not at the same time crossed by it: grazing beams would else wear away the wall
-/// that they run along.
+/// scan hits counts no crossing by the same scan: else grazing beams would erase the wall that they
+/// run along.
 void insert_beams(std::span<const AnnotatedBeam> beams, const Se2& map_from_base, GridMap& map);
 
-/// Takes out what insert_beams() has put in with the same arguments.
+/// Undoes insert_beams() with the same arguments.
 void erase_beams(std::span<const AnnotatedBeam> beams, const Se2& map_from_base, GridMap& map);
 
 /// A sample of a wall as the camera saw it: on a marker, or beside one.

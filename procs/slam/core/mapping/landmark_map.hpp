@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The markers as things with a place: id, instance, pose, covariance.
+// Markers as landmarks, averaged over their sightings.
 #pragma once
 
 #include "slam/core/scan/marker_sighting.hpp"
@@ -19,8 +19,8 @@ struct Landmark {
   int sightings{0};
   Timestamp first_seen{};
   Timestamp last_seen{};
-  int misses{0};          ///< updates since the last sighting at which it should have been in view
-  bool was_moved{false};  ///< it used to be at another place
+  int misses{0};          ///< missed detections since the last sighting
+  bool was_moved{false};  ///< it was mapped at another place before
 
   /// Fewer sightings may be of a misread marker.
   bool is_confirmed() const { return sightings >= 3; }

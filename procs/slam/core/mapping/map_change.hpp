@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is not as a loaded map, or a survey, has it.
+// Differences between the world and a loaded map or a survey.
 #pragma once
 
 #include "common/geometry/se2.hpp"

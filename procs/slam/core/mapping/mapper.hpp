@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One shared map, drawn along one trajectory: what methods without a map per particle have.
+// One map, drawn along one trajectory, for methods without a map per particle.
 #pragma once
 
 #include "slam/core/grid/grid_map.hpp"
@@ -23,10 +23,6 @@ struct MapperConfig {
 class Mapper {
  public:
   explicit Mapper(const MapperConfig& config);
-
-  /// @param map  that is drawn into.
-  Mapper(const MapperConfig& config, const GridMap& map)
-      : config_{config}, map_{map}, landmarks_{config.same_marker_within_m} {}
 
   void insert(const Observation& observation, const Se2& map_from_base,
               const Eigen::Matrix3d& pose_covariance);

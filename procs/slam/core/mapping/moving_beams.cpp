@@ -9,7 +9,7 @@ namespace waymark {
 namespace {
 
 constexpr double kSigmas = 3.0;
-constexpr double kMostOff_m = 0.3;  // of a beam's end; farther, walls stand in free places, too
+constexpr double kMostOff_m = 0.3;  // uncertainty of a beam's end beyond which it is kept
 
 }  // namespace
 

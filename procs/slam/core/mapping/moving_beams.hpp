@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Beams that end on what moves.
+// Excludes beams that end on moving objects.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -11,9 +11,9 @@
 
 namespace waymark {
 
-/// Ends of beams without those that lie where the map is free, wherever about the expected pose the
-/// robot is: people who walk along would hold the matches back. Where most of a scan is so, it is
-/// the pose that is wrong, and all of them stay.
+/// The points without those that lie in free space of the map for every pose within the covariance:
+/// people who walk along would bias the match. If most points of a scan do, the pose is wrong, and
+/// all are kept.
 ///
 /// @param covariance  of map_from_base: (x, y, theta), map's axes.
 std::vector<Eigen::Vector2d> without_moving(const std::vector<Eigen::Vector2d>& points_in_base,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scans of a run, packed, to be drawn again.
+// The scans of a run, packed, to redraw the map from.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -14,18 +14,18 @@
 
 namespace waymark {
 
-/// 16 bytes a beam: single precision is 0.1 mm at 1 km. Where the robot comes by again and again,
-/// the newest scans of each place and direction stay and the others are emptied, so that memory
-/// grows with the area and not with time.
+/// 16 bytes per beam: single precision is 0.1 mm at 1 km. Only the newest scans of each place and
+/// direction are kept and older ones are emptied, so that memory grows with the mapped area and not
+/// with time.
 class ScanArchive {
  public:
-  /// Scans that stay within a quarter of a metre and an eighth of a turn; one pass makes two or
-  /// three, a turn on the spot nine.
+  /// Scans that are kept within a quarter of a metre and an eighth of a turn. Driving through once
+  /// makes two or three, a turn on the spot nine.
   static constexpr std::size_t kScansPerPlace = 10;
 
   void add(const Observation& observation, const Se2& map_from_base);
 
-  /// The scan that this one will empty.
+  /// The old scan that adding this one will empty.
   std::optional<std::size_t> emptied_by(const Observation& observation,
                                         const Se2& map_from_base) const;
 
@@ -37,10 +37,10 @@ class ScanArchive {
     return scans_[index].sightings;
   }
 
-  /// Also counts those that have been emptied.
+  /// Emptied scans included.
   std::size_t size() const { return scans_.size(); }
 
-  /// Where its beams went and which markers it showed; nothing else of it is kept.
+  /// Its beams and markers; the other members are not kept.
   Observation at(std::size_t index) const;
 
  private:
@@ -56,7 +56,7 @@ class ScanArchive {
     std::vector<MarkerSighting> sightings{};
   };
 
-  /// None of one that shows nothing.
+  /// None for an empty scan.
   static std::optional<Place> place_of(const Observation& observation, const Se2& map_from_base);
 
   std::vector<Scan> scans_{};

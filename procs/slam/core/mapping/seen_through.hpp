@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Places that beams pass through.
+// Places that are certainly free.
 #pragma once
 
 #include "slam/core/grid/grid_map.hpp"
@@ -8,8 +8,8 @@
 
 namespace waymark {
 
-/// Beams have passed through the cell of a place, through its neighbours and through all others
-/// within so far, and next to none ended there.
+/// Whether beams have crossed the cell of a place, its neighbours and all other cells within
+/// `within_m`, and hardly any ended there.
 /// @param place  map frame.
 inline bool is_seen_through(const GridMap& map, const Eigen::Vector2d& place,
                             double within_m = 0.0) {
@@ -19,7 +19,7 @@ inline bool is_seen_through(const GridMap& map, const Eigen::Vector2d& place,
     const OccupancyCell& cell = map.occupancy[{centre.x + x, centre.y + y}];
     return cell.is_mapped() && cell.occupancy() <= kMostOccupied;
   };
-  if (!is_free(0, 0)) return false;  // as of nearly every beam
+  if (!is_free(0, 0)) return false;  // most calls end here
   const int reach = 1 + static_cast<int>(within_m / map.frame.resolution_m);
   for (int x = -reach; x <= reach; ++x)
     for (int y = -reach; y <= reach; ++y)

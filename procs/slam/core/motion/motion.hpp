@@ -14,8 +14,8 @@ struct Motion {
   Se2 start_from_end{};    ///< pose at the end in the base frame at the start
   double distance_m{0.0};  ///< length of the path
   double turn_rad{0.0};    ///< sum of the turns, without sign
-  double guessed_s{0.0};   ///< of its duration, in which odometry was wrong and it is a guess
-  double advance_m{0.0};   ///< `distance_m`, of which what was driven backwards counts negative
+  double guessed_s{0.0};   ///< time in which odometry was rejected and the motion is a guess
+  double advance_m{0.0};   ///< like `distance_m`, but driving backwards counts negative
 
   /// The motion of one step.
   static Motion between(const Se2& odom_from_start, const Se2& odom_from_end) {

@@ -24,7 +24,7 @@ OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
   }
   if (samples_.empty() || is_other(sample.odom_from_base, last_raw_)) changed_ = sample.time;
   last_raw_ = sample.odom_from_base;
-  const bool is_held = doubt_ || outcome == Outcome::kCaughtUp;
+  const bool is_held = jump_ || outcome == Outcome::kCaughtUp;
   samples_.push_back(
       {sample.time,
        is_held ? samples_.back().odom_from_base : smooth_from_raw_ * sample.odom_from_base,
@@ -38,51 +38,51 @@ OdometryBuffer::Outcome OdometryBuffer::add_newer(const OdometrySample& sample) 
   const Se2 step = last_raw_.inverse() * sample.odom_from_base;
   const bool jumps = !(step.translation().norm() <= kMaxSpeed_m_s * elapsed_s) ||
                      !(std::abs(step.theta()) <= kMaxTurnRate_rad_s * elapsed_s);
-  if (!jumps && !doubt_) return Outcome::kAdded;
+  if (!jumps && !jump_) return Outcome::kAdded;
   const Se2 held = samples_.back().odom_from_base;
-  if (!doubt_ && has_kept_back(step, sample)) {
+  if (!jump_ && is_catching_up(step, sample)) {
     catch_up_ = {sample.time, Motion::between(last_raw_, sample.odom_from_base)};
     smooth_from_raw_ = held * sample.odom_from_base.inverse();
     return Outcome::kCaughtUp;
   }
-  if (!doubt_) {
-    doubt_ = Doubt{{newest(), last_raw_}, sample.odom_from_base, 0};
-    doubted_ = Interval{newest(), sample.time};
+  if (!jump_) {
+    jump_ = Jump{{newest(), last_raw_}, sample.odom_from_base, 0};
+    jump_interval_ = Interval{newest(), sample.time};
   }
   smooth_from_raw_ = held * sample.odom_from_base.inverse();
-  return weigh(sample, jumps);
+  return resolve_jump(sample, jumps);
 }
 
-OdometryBuffer::Outcome OdometryBuffer::weigh(const OdometrySample& sample, bool jumps) {
-  doubted_->to = sample.time;
-  if (jumps) doubt_->begin = sample.odom_from_base;
-  doubt_->agreeing = jumps ? 0 : doubt_->agreeing + 1;
-  if (doubt_->agreeing < kAgreeing) return jumps ? Outcome::kJumped : Outcome::kAdded;
-  const Doubt doubt = *doubt_;
-  doubt_.reset();
-  const Se2 since = doubt.before.odom_from_base.inverse() * sample.odom_from_base;
-  const double elapsed_s = to_seconds(sample.time - doubt.before.time);
-  const bool went_on = is_other(doubt.begin, Se2{}) &&
+OdometryBuffer::Outcome OdometryBuffer::resolve_jump(const OdometrySample& sample, bool jumps) {
+  jump_interval_->to = sample.time;
+  if (jumps) jump_->begin = sample.odom_from_base;
+  jump_->consistent = jumps ? 0 : jump_->consistent + 1;
+  if (jump_->consistent < kConsistentSamples) return jumps ? Outcome::kJumped : Outcome::kAdded;
+  const Jump jump = *jump_;
+  jump_.reset();
+  const Se2 since = jump.before.odom_from_base.inverse() * sample.odom_from_base;
+  const double elapsed_s = to_seconds(sample.time - jump.before.time);
+  const bool went_on = is_other(jump.begin, Se2{}) &&
                        since.translation().norm() <= kMaxDrive_m_s * elapsed_s &&
                        std::abs(since.theta()) <= kMaxDrive_rad_s * elapsed_s;
   if (went_on) {
-    catch_up_ = {sample.time, Motion::between(doubt.before.odom_from_base, sample.odom_from_base)};
+    catch_up_ = {sample.time, Motion::between(jump.before.odom_from_base, sample.odom_from_base)};
     return Outcome::kCaughtUp;
   }
-  // A reset: what the samples that agree say was driven.
-  smooth_from_raw_ = samples_.back().odom_from_base * doubt.begin.inverse();
+  // A reset: only the motion within the consistent samples was driven.
+  smooth_from_raw_ = samples_.back().odom_from_base * jump.begin.inverse();
   return Outcome::kAdded;
 }
 
-/// Odometry that begins anew does so at the origin.
-bool OdometryBuffer::has_kept_back(const Se2& step, const OdometrySample& sample) const {
+/// A pose at the origin is a reset, however near it is.
+bool OdometryBuffer::is_catching_up(const Se2& step, const OdometrySample& sample) const {
   const double stuck_s = to_seconds(newest() - changed_);
   return is_other(sample.odom_from_base, Se2{}) &&
          step.translation().norm() <= kMaxDrive_m_s * stuck_s &&
          std::abs(step.theta()) <= kMaxDrive_rad_s * stuck_s;
 }
 
-std::optional<Motion> OdometryBuffer::kept_back(Timestamp from, Timestamp to) const {
+std::optional<Motion> OdometryBuffer::late_motion(Timestamp from, Timestamp to) const {
   if (!catch_up_ || catch_up_->time <= from || catch_up_->time > to) return std::nullopt;
   return catch_up_->motion;
 }
@@ -131,8 +131,8 @@ void OdometryBuffer::shift(Duration later) {
     sample.time += later;
   changed_ += later;
   if (catch_up_) catch_up_->time += later;
-  if (doubt_) doubt_->before.time += later;
-  if (doubted_) *doubted_ = {doubted_->from + later, doubted_->to + later};
+  if (jump_) jump_->before.time += later;
+  if (jump_interval_) *jump_interval_ = {jump_interval_->from + later, jump_interval_->to + later};
 }
 
 void OdometryBuffer::forget_before(Timestamp time) {

@@ -16,12 +16,12 @@ class OdometryBuffer {
   /// How a sample was taken.
   enum class Outcome { kAdded, kOutOfOrder, kTooFarAhead, kJumped, kCaughtUp };
 
-  /// A sample that is not newer than the last is refused, and one that is newer by more than any
-  /// pause (ClockStepDetector::kLongestPause). Odometry that stood still and then jumps as far as
-  /// can be driven meanwhile had been stuck: the jump is what it has kept back. After a jump that
-  /// no robot can drive nothing is believed until some samples in a row agree: if they are where
-  /// the robot can have driven since the jump, what came in between was garbage, and the way from
-  /// before it is what was kept back; else the odometry was reset, which is no motion.
+  /// Refuses a sample that is not newer than the last one, or newer by more than any pause
+  /// (ClockStepDetector::kLongestPause). Odometry that stood still and then jumps as far as the
+  /// robot can have driven meanwhile was stuck: the jump is late motion. After a jump that no robot
+  /// can drive, the pose is held until some samples in a row are consistent: if the robot can have
+  /// driven there since the jump, the samples in between were garbage, and the motion since before
+  /// them is late motion; else the odometry was reset, which is no motion.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }
@@ -32,30 +32,30 @@ class OdometryBuffer {
     return !samples_.empty() && samples_.front().time <= time && time <= samples_.back().time;
   }
 
-  /// Interpolated, without jumps; needs covers(time).
+  /// Interpolated, with jumps taken out; needs covers(time).
   Se2 pose_at(Timestamp time) const;
 
-  /// The same as it was sent, with jumps.
+  /// Interpolated as it was sent, jumps included.
   Se2 sent_pose_at(Timestamp time) const;
 
-  /// Along the path of the samples, without what kept_back() reports. Needs both times covered,
+  /// Along the path of the samples, without late_motion(). Needs both times covered,
   /// from <= to.
   Motion motion_between(Timestamp from, Timestamp to) const;
 
-  /// Motion that a sample in (from, to] has reported late, after odometry was stuck or jumped.
-  std::optional<Motion> kept_back(Timestamp from, Timestamp to) const;
+  /// Motion that a sample in (from, to] reported at once, after odometry was stuck or had jumped.
+  std::optional<Motion> late_motion(Timestamp from, Timestamp to) const;
 
-  /// Whether samples of that time are not believed.
-  bool is_doubtful(Timestamp from, Timestamp to) const {
-    return doubted_ && doubted_->from < to && from < doubted_->to;
+  /// Whether the pose was held after a jump at some time in (from, to).
+  bool has_jumped(Timestamp from, Timestamp to) const {
+    return jump_interval_ && jump_interval_->from < to && from < jump_interval_->to;
   }
 
-  /// Of the first sample that is not before that time.
+  /// Time of the first sample at or after that time.
   std::optional<Timestamp> first_from(Timestamp time) const;
 
   Timestamp newest() const { return samples_.back().time; }
 
-  /// As if every sample had been taken so much later.
+  /// Adds to the time of every sample.
   void shift(Duration later);
 
   /// Forgets what is not needed to read at `time` or later.
@@ -68,17 +68,17 @@ class OdometryBuffer {
     Se2 smooth_from_raw{};
   };
 
-  /// What was kept back since the odometry last changed.
+  /// Late motion.
   struct CatchUp {
     Timestamp time{};  ///< of the sample that reported it
     Motion motion{};
   };
 
-  /// Since a jump.
-  struct Doubt {
-    OdometrySample before{};  ///< the jump
-    Se2 begin{};              ///< of the samples that agree
-    int agreeing{0};
+  /// A jump that is not explained yet.
+  struct Jump {
+    OdometrySample before{};  ///< the last sample before it
+    Se2 begin{};              ///< odom_from_base at the first of the consistent samples
+    int consistent{0};        ///< samples since then
   };
 
   struct Interval {
@@ -88,14 +88,14 @@ class OdometryBuffer {
 
   std::deque<Sample>::const_iterator sample_from(Timestamp time) const;
   Outcome add_newer(const OdometrySample& sample);
-  Outcome weigh(const OdometrySample& sample, bool jumps);
-  bool has_kept_back(const Se2& step, const OdometrySample& sample) const;
+  Outcome resolve_jump(const OdometrySample& sample, bool jumps);
+  bool is_catching_up(const Se2& step, const OdometrySample& sample) const;
 
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
   static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
   static constexpr double kMaxDrive_m_s = 2.0;        ///< on average, while it was stuck
   static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
-  static constexpr int kAgreeing = 4;                 ///< samples that end a doubt
+  static constexpr int kConsistentSamples = 4;        ///< samples that end a jump
   static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz, if nobody forgets
 
   std::deque<Sample> samples_{};
@@ -103,8 +103,8 @@ class OdometryBuffer {
   Se2 last_raw_{};
   Timestamp changed_{};  ///< when its pose last changed
   std::optional<CatchUp> catch_up_{};
-  std::optional<Doubt> doubt_{};
-  std::optional<Interval> doubted_{};  ///< the last one, perhaps still going on
+  std::optional<Jump> jump_{};
+  std::optional<Interval> jump_interval_{};  ///< the last one, perhaps still going on
 };
 
 }  // namespace waymark

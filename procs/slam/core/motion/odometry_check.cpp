@@ -5,7 +5,7 @@
 
 namespace waymark {
 
-Motion OdometryCheck::believable(const Motion& step, double step_s, bool has_caught_up) {
+Motion OdometryCheck::plausible(const Motion& step, double step_s, bool has_caught_up) {
   is_refused_ = !has_caught_up && !limits_.allow(step, step_s);
   if (!is_refused_) return step;
   refused_step_ = step.start_from_end;

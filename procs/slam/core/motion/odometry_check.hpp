@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps of the odometry that are not believed, and what may have been driven instead.
+// Rejects steps of the odometry that this robot cannot have driven, and extrapolates instead.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -11,20 +11,20 @@ namespace waymark {
 
 class OdometryCheck {
  public:
-  /// The step itself; or, where no robot can have driven it that has driven as this one, that it
-  /// went on as before, vaguely.
+  /// The step itself; where it exceeds the robot's speed limits, the estimated step before once
+  /// more, marked as a guess (Motion::guessed_s).
   ///
-  /// @param has_caught_up  odometry was stuck: the step took longer than it seems.
-  Motion believable(const Motion& step, double step_s, bool has_caught_up);
+  /// @param has_caught_up  odometry was stuck: the step took longer than `step_s`, and is accepted.
+  Motion plausible(const Motion& step, double step_s, bool has_caught_up);
 
-  /// The last step was not believed.
+  /// Whether the last step was rejected.
   bool is_refused() const { return is_refused_; }
 
-  /// The last step as it was estimated.
+  /// The last step as the estimator corrected it.
   void note_estimated(const Se2& start_from_end, double step_s);
 
-  /// What may have been driven since the last scan, whatever odometry says of it: nothing, the
-  /// step before once more, and what a gap in a log left over of a step that was refused.
+  /// Hypotheses of the motion since the last scan that do not use odometry's latest step: none, the
+  /// estimated step before once more, and a step that was rejected.
   std::vector<Se2> steps_without_odometry() const;
 
  private:

@@ -9,15 +9,15 @@
 namespace waymark {
 namespace {
 
-// A turn below so many standard deviations of its noise says nothing about the scale of turns.
-constexpr double kTellingSigmas = 3.0;
+// A turn below so many standard deviations of its noise does not observe the scale of turns.
+constexpr double kSignificantSigmas = 3.0;
 constexpr double kGuessed_m_s = 0.25;    // sigma of a guessed speed; [rad/s] of a turn
 constexpr double kVarianceFloor = 1e-9;  // [m^2, rad^2] of a step: 0.03 mm, 0.002 degrees
 
-/// The noise is in what was measured: a turn that is mostly noise would show a scale below one
-/// (regression dilution), so only what stands out of the noise is held against the scale.
-double telling_turn(double turn_rad, double noise_rad2) {
-  const double share = 1.0 - squared(kTellingSigmas) * noise_rad2 / squared(turn_rad);
+/// A measured turn that is mostly noise would bias the estimated scale below one (regression
+/// dilution): only the part of the turn that exceeds the noise is multiplied by the scale.
+double significant_turn(double turn_rad, double noise_rad2) {
+  const double share = 1.0 - squared(kSignificantSigmas) * noise_rad2 / squared(turn_rad);
   return turn_rad != 0.0 ? std::max(0.0, share) * turn_rad : 0.0;
 }
 
@@ -35,10 +35,11 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   const Eigen::Vector2d left{-along.y(), along.x()};
   const double turn_rad2 =
       turn_variance(noise, motion.distance_m, motion.turn_rad) + kVarianceFloor;
-  // The wheels roll on the spot, too.
+  // The wheels also roll when the robot turns on the spot.
   const double rolled_m = std::max(motion.distance_m, noise.half_track_m * motion.turn_rad);
   const double along_m2 = squared(noise.along_per_sqrt_m) * rolled_m + kVarianceFloor;
-  // Integrated random walk: L^2 / 3 of the final heading's variance, L / 2 in common with it.
+  // Integrated random walk of the heading over a length L: the lateral variance is L^2 / 3 of the
+  // final heading's, their covariance L / 2 of it.
   const double across_m2 = squared(length_m) * turn_rad2 / 3.0 +
                            squared(noise.across_per_sqrt_m) * rolled_m + kVarianceFloor;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -58,20 +59,20 @@ Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNo
 CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& errors,
                                  const OdometryNoise& noise) {
   const double turn_rad = measured.start_from_end.theta();
-  const double telling_rad = telling_turn(turn_rad, random_walk(measured, noise)(2, 2));
-  const double extra_rad = errors[1] * measured.advance_m + errors[2] * telling_rad;
-  // A turn that grows evenly along the way bends the path by half of it.
+  const double significant_rad = significant_turn(turn_rad, random_walk(measured, noise)(2, 2));
+  const double extra_rad = errors[1] * measured.advance_m + errors[2] * significant_rad;
+  // A heading error that grows evenly along the path turns the displacement by half of it.
   const Eigen::Vector2d bent =
       Se2{0.0, 0.0, 0.5 * extra_rad} * measured.start_from_end.translation();
   const Eigen::Vector2d moved = (1.0 + errors[0]) * bent;
   CorrectedMotion corrected;
-  const Eigen::Vector2d swing{std::cos(telling_rad) - 1.0, std::sin(telling_rad)};
+  const Eigen::Vector2d swing{std::cos(significant_rad) - 1.0, std::sin(significant_rad)};
   corrected.start_from_end = {Eigen::Vector2d{moved + errors[3] * swing}, turn_rad + extra_rad};
-  const Eigen::Vector3d by_extra{-0.5 * moved.y(), 0.5 * moved.x(), 1.0};
-  corrected.by_errors.col(0) << bent, 0.0;
-  corrected.by_errors.col(1) = measured.advance_m * by_extra;
-  corrected.by_errors.col(2) = telling_rad * by_extra;
-  corrected.by_errors.col(3) << swing, 0.0;
+  const Eigen::Vector3d jacobian_turn{-0.5 * moved.y(), 0.5 * moved.x(), 1.0};
+  corrected.jacobian_calibration.col(0) << bent, 0.0;
+  corrected.jacobian_calibration.col(1) = measured.advance_m * jacobian_turn;
+  corrected.jacobian_calibration.col(2) = significant_rad * jacobian_turn;
+  corrected.jacobian_calibration.col(3) << swing, 0.0;
   corrected.covariance =
       random_walk(measured, noise) +
       Eigen::Matrix3d{Eigen::Matrix3d::Identity() * squared(kGuessed_m_s * measured.guessed_s)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the odometry gets wrong: by chance at every step, and in the same way all the time.
+// Errors of the odometry: a random walk, and systematic ones.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -20,18 +20,19 @@ struct OdometryNoise {
   double turn_scale_sigma{0.02};
   double drift_sigma_rad_per_m{0.01};
   double lidar_ahead_sigma_m{0.05};
-  double half_track_m{0.14};  ///< between the wheels; taken from the robot
+  double half_track_m{0.14};  ///< half of the distance between the wheels; from the robot's file
   bool may_slip{true};
 
   /// What they are, in words: core_fields.cpp.
   void describe(Fields& fields);
 };
 
-/// Variance of the heading's random walk [rad^2] on a way of `distance_m` with turns of `turn_rad`.
+/// Variance of the heading's random walk [rad^2] over `distance_m` of driving and turns of
+/// `turn_rad`.
 double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad);
 
-/// Covariance of (x, y, theta) that the random walk adds on a way straight ahead, in the frame at
-/// its start; zero where nothing was driven.
+/// Covariance of (x, y, theta) that the random walk adds while the robot drives straight ahead, in
+/// the frame at the start; zero where nothing was driven.
 Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNoise& noise);
 
 /// The same of any motion.
@@ -39,20 +40,20 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
 
 /// Systematic errors, as a vector (scale, drift, turn scale, ahead): true distance = (1 + scale)
 /// measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance.
-/// What the LiDAR localises is `ahead` [m] before what the wheels turn about, beyond its
-/// configured place: a robot that turns on the spot moves it sideways.
+/// The LiDAR is `ahead` [m] further in front of the wheels' axis than configured: when the robot
+/// turns on the spot, the LiDAR moves sideways.
 using OdometryErrors = Eigen::Vector4d;
-inline constexpr Eigen::Index kOdometryErrors = OdometryErrors::SizeAtCompileTime;
+inline constexpr Eigen::Index kOdometryTerms = OdometryErrors::SizeAtCompileTime;
 
-/// How (x, y, theta) follows the systematic errors.
-using MotionByErrors = Eigen::Matrix<double, 3, kOdometryErrors>;
+/// d(x, y, theta) / d(systematic errors).
+using OdometryJacobian = Eigen::Matrix<double, 3, kOdometryTerms>;
 
-/// A measured motion, corrected by systematic errors.
+/// A measured motion, corrected for systematic errors.
 struct CorrectedMotion {
   Se2 start_from_end{};
-  /// Of (x, y, theta) at the end, in the frame at the start, by the systematic errors.
-  MotionByErrors by_errors{MotionByErrors::Zero()};
-  /// Of the random walk, same order and frame.
+  /// Of the pose at the end, in the frame at the start.
+  OdometryJacobian jacobian_calibration{OdometryJacobian::Zero()};
+  /// By the random walk, of (x, y, theta) in the same frame.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Poses of keyframes, numbered from the first of a run.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -9,7 +10,7 @@
 
 namespace waymark {
 
-/// Poses by their number; the oldest ones may be forgotten, and the others keep their numbers.
+/// Poses by their number. The oldest ones may be dropped; the others keep their numbers.
 class PoseSequence {
  public:
   PoseSequence() = default;
@@ -20,7 +21,7 @@ class PoseSequence {
 
   bool empty() const { return size() == 0; }
 
-  /// @param index  of one that is not forgotten.
+  /// @param index  of a pose that has not been dropped.
   Se2& operator[](std::size_t index) { return poses_[index - first_]; }
 
   const Se2& operator[](std::size_t index) const { return poses_[index - first_]; }
@@ -37,7 +38,7 @@ class PoseSequence {
   }
 
  private:
-  std::size_t first_{0};  ///< that is not forgotten
+  std::size_t first_{0};  ///< number of the first pose that is kept
   std::deque<Se2> poses_{};
 };
 

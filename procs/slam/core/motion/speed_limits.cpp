@@ -41,9 +41,9 @@ double SpeedLimits::Usual::high() const {
 
 bool SpeedLimits::allow(const Motion& step, double step_s) {
   if (step_s <= 0.0) return true;
-  // Stamps may come in bursts, which makes speeds of steps that are near each other meaningless.
+  // Messages may be stamped in bursts: the speed over a very short step means nothing.
   mean_step_s_ = mean_step_s_ == 0.0 ? step_s : mean_step_s_ + kNewStep * (step_s - mean_step_s_);
-  // A step that took longer than usual may have left a part of its motion to this one.
+  // After a step that took longer than usual, this one may include a part of its motion.
   const double left_over_s = std::max(0.0, std::exchange(last_step_s_, step_s) - mean_step_s_);
   const double lasted_s = std::max(step_s, mean_step_s_) + left_over_s;
   const double drive_m_s = step.distance_m / lasted_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Motions that this robot cannot have made.
+// How fast this robot can have driven, learnt from its steps so far.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -9,21 +9,21 @@
 
 namespace waymark {
 
-/// A robot hardly ever drives much faster than it usually does, unless it gets there by an
-/// acceleration that wheels have. Odometry that says so in one step is wrong, though along a bare
-/// corridor nothing else contradicts it.
+/// A robot hardly ever drives much faster than it usually does, unless it accelerates as wheels
+/// can. A single step of the odometry that is faster is wrong, even along a bare corridor, where no
+/// other sensor contradicts it.
 class SpeedLimits {
  public:
-  /// @param step  one step of the odometry, that took `step_s` seconds.
-  /// @return whether it is believable, given all steps before.
+  /// @param@param step  one step of the odometry, which took `step_s` seconds.
+  /// @return whether it is plausible, given all steps before.
   bool allow(const Motion& step, double step_s);
 
  private:
-  /// Counts of speeds by their size, of steps in which the robot moved.
+  /// Histogram of the speeds of steps in which the robot moved.
   class Usual {
    public:
     void add(double speed);
-    double high() const;  ///< hardly ever exceeded
+    double high() const;  ///< 95 % quantile
 
     int count() const { return count_; }
 
@@ -38,7 +38,7 @@ class SpeedLimits {
   int refused_in_a_row_{0};
   double mean_step_s_{0.0};
   double last_step_s_{0.0};
-  double drive_m_s_{0.0};  ///< of the newest step that was believed
+  double drive_m_s_{0.0};  ///< of the newest step that was accepted
   double turn_rad_s_{0.0};
 };
 

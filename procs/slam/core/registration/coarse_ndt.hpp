@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Walls in larger cells, from which a match begins whose guess the smallest ones do not reach.
+// NDT maps with larger cells, to begin a match whose guess is far off.
 #pragma once
 
 #include "slam/core/registration/ndt_map.hpp"
@@ -12,7 +12,8 @@
 namespace waymark {
 
 /// Each level's cells are twice as large as those of the level before (multi-layered NDT; Ulas and
-/// Temeltas 2013). Of sparse points, such as those of walls far away, only large cells see enough.
+/// Temeltas 2013). Large cells also collect enough points where points are sparse, on distant
+/// walls.
 class CoarseNdt {
  public:
   /// @param finest_spacing_m  of the map that they complement.

@@ -7,8 +7,8 @@
 namespace waymark {
 namespace {
 
-constexpr int kMinPoints = 4;         // of a cell that says something
-constexpr double kPriorPoints = 6.0;  // that the pooled point noise counts as in a cell
+constexpr int kMinPoints = 4;         // of a cell that has a distribution
+constexpr double kPriorPoints = 6.0;  // weight of the prior on a cell's variance, in points
 constexpr double kLineRatio = 0.1;    // of a line's variances, across to along
 
 }  // namespace
@@ -25,8 +25,8 @@ void NdtMap::add(const Eigen::Vector2d& point, int keyframe, double weight) {
     for (int k = row; k <= row + 1; ++k) {
       Cell& cell = cells_[key(i, k)];
       const Eigen::Vector2d offset = point - spacing_m_ * Eigen::Vector2d{i, k};
-      if (cell.count == 0.0) cell.surface.first_keyframe = keyframe;
-      cell.surface.last_keyframe = keyframe;
+      if (cell.count == 0.0) cell.distribution.first_keyframe = keyframe;
+      cell.distribution.last_keyframe = keyframe;
       cell.count += weight;
       cell.sum += weight * offset;
       cell.xx += weight * offset.x() * offset.x();
@@ -71,16 +71,16 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   // Two parameters of the line were fitted to the points.
   const double across_m2 =
       std::max(0.0, half_trace - radius) * cell.count / std::max(1.0, cell.count - 2.0);
-  NdtSurface& surface = cell.surface;
-  surface.mean = centre + mean;
-  surface.normal = {-std::sin(along_rad), std::cos(along_rad)};
-  surface.across_m2 =
+  NdtCell& fitted = cell.distribution;
+  fitted.mean = centre + mean;
+  fitted.normal = {-std::sin(along_rad), std::cos(along_rad)};
+  fitted.across_m2 =
       (cell.count * across_m2 + kPriorPoints * point_variance_m2) / (cell.count + kPriorPoints);
-  surface.along_m2 = half_trace + radius;
-  // A wall stays a line for a LiDAR that scatters: what counts is the shape behind the noise.
-  surface.is_line =
-      surface.across_m2 - point_variance_m2 < kLineRatio * (surface.along_m2 - point_variance_m2);
-  surface.count = static_cast<int>(cell.count);
+  fitted.along_m2 = half_trace + radius;
+  // Without the range noise, so that a wall stays a line for a noisy LiDAR.
+  fitted.is_line =
+      fitted.across_m2 - point_variance_m2 < kLineRatio * (fitted.along_m2 - point_variance_m2);
+  fitted.count = static_cast<int>(cell.count);
   cell.is_stale = false;
 }
 
@@ -89,7 +89,7 @@ NdtMap::Key NdtMap::key_at(const Eigen::Vector2d& point) const {
              static_cast<int>(std::floor(point.y() / spacing_m_ + 0.5)));
 }
 
-const NdtSurface* NdtMap::at(Key key, double point_variance_m2) const {
+const NdtCell* NdtMap::at(Key key, double point_variance_m2) const {
   const auto found = cells_.find(key);
   if (found == cells_.end() || found->second.count < kMinPoints) return nullptr;
   Cell& cell = found->second;
@@ -98,7 +98,7 @@ const NdtSurface* NdtMap::at(Key key, double point_variance_m2) const {
     const auto row = static_cast<std::int32_t>(key);
     refresh(cell, spacing_m_ * Eigen::Vector2d{column, row}, point_variance_m2);
   }
-  return &cell.surface;
+  return &cell.distribution;
 }
 
 }  // namespace waymark

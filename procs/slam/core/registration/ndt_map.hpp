@@ -10,8 +10,8 @@
 
 namespace waymark {
 
-/// What the points of one cell look like.
-struct NdtSurface {
+/// Distribution of the points of one cell.
+struct NdtCell {
   Eigen::Vector2d mean{Eigen::Vector2d::Zero()};
   Eigen::Vector2d normal{
       Eigen::Vector2d::UnitX()};  ///< direction of least variance; unit, any sign
@@ -20,7 +20,7 @@ struct NdtSurface {
   int count{0};                   ///< points
   int first_keyframe{0};          ///< the points came from keyframes in [first, last]
   int last_keyframe{0};
-  bool is_line{false};  ///< a piece of wall; else a corner, a leg, clutter: without a direction
+  bool is_line{false};  ///< a piece of wall; else a corner, a leg or clutter, without a direction
 };
 
 /// The points of one cell, summed up about its centre.
@@ -49,11 +49,11 @@ class NdtMap {
   /// The cell whose centre is nearest.
   Key key_at(const Eigen::Vector2d& point) const;
 
-  /// The surface of a cell, nullptr where too few points were seen.
-  /// @param point_variance_m2  of single points across a wall: what few points cannot show.
-  const NdtSurface* at(Key key, double point_variance_m2) const;
+  /// The distribution of a cell; nullptr if it has too few points.
+  /// @param point_variance_m2  of points across a wall: a prior for cells with few points.
+  const NdtCell* at(Key key, double point_variance_m2) const;
 
-  const NdtSurface* at(const Eigen::Vector2d& point, double point_variance_m2) const {
+  const NdtCell* at(const Eigen::Vector2d& point, double point_variance_m2) const {
     return at(key_at(point), point_variance_m2);
   }
 
@@ -72,7 +72,7 @@ class NdtMap {
     double xx{0.0};
     double xy{0.0};
     double yy{0.0};
-    NdtSurface surface{};
+    NdtCell distribution{};
     bool is_stale{true};
   };
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Learns the noise of ranges.
 #pragma once
 
 #include <algorithm>
 
 namespace waymark {
 
-/// How far LiDAR points scatter across walls: the description, corrected by what the walls show.
+/// Variance of LiDAR points across walls: that of the description, updated by residuals of walls.
 class RangeNoise {
  public:
   explicit RangeNoise(double described_sigma_m)
@@ -24,8 +25,8 @@ class RangeNoise {
   double variance_m2() const { return sum_m2_ / weight_; }
 
  private:
-  static constexpr double kDescribedPoints = 2000.0;  ///< that the description counts as
-  static constexpr double kMaxPooled = 2e5;           ///< older points are forgotten
+  static constexpr double kDescribedPoints = 2000.0;  ///< weight of the description, in points
+  static constexpr double kMaxPooled = 2e5;           ///< largest weight; older points fade
 
   double sum_m2_;
   double weight_;

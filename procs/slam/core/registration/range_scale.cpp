@@ -32,17 +32,18 @@ ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
     const Eigen::Vector2d ray = measured - origin;
     const Eigen::Vector2d lever = rotation * (origin + ray / (1.0 + share));
     const Eigen::Vector2d there = lever + pose.translation();
-    const NdtSurface* surface = map.at(there, point_variance_m2);
-    if (surface == nullptr || !surface->is_line) continue;
-    const Eigen::Vector2d& normal = surface->normal;
-    const double off_m = normal.dot(there - surface->mean);
+    const NdtCell* cell = map.at(there, point_variance_m2);
+    if (cell == nullptr || !cell->is_line) continue;
+    const Eigen::Vector2d& normal = cell->normal;
+    const double off_m = normal.dot(there - cell->mean);
     const double robust =
         squared(squared(kScaleKernel_m) / (squared(kScaleKernel_m) + squared(off_m)));
-    const double weight = robust / (surface->across_m2 + point_variance_m2);
-    const Vector4 by{normal.x(), normal.y(), normal.dot(Eigen::Vector2d{-lever.y(), lever.x()}),
-                     -normal.dot(rotation * ray) / squared(1.0 + share)};
-    sum.information += weight * by * by.transpose();
-    sum.gradient += weight * off_m * by;
+    const double weight = robust / (cell->across_m2 + point_variance_m2);
+    const Vector4 jacobian{normal.x(), normal.y(),
+                           normal.dot(Eigen::Vector2d{-lever.y(), lever.x()}),
+                           -normal.dot(rotation * ray) / squared(1.0 + share)};
+    sum.information += weight * jacobian * jacobian.transpose();
+    sum.gradient += weight * off_m * jacobian;
   }
   return sum;
 }

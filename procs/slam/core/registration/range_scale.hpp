@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A LiDAR whose ranges are at another scale than the map.
+// Scale of a LiDAR's ranges, relative to the map's.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -18,9 +18,9 @@ struct RangeScale {
   double sigma{0.0};
 };
 
-/// Fits the scale of ranges together with the pose: walls on both sides show it.
-/// @param origin_in_base  of the beams.
-/// @param guess           map_from_base; of it, too, is known only so much:
+/// Fits the scale of ranges together with the pose; walls on opposite sides observe it.
+/// @param origin_in_base    of the beams.
+/// @param guess             map_from_base.
 /// @param guess_covariance  of (x, y, theta), map's axes.
 RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
                            const Eigen::Vector2d& origin_in_base, const NdtMap& map,

@@ -20,14 +20,14 @@ constexpr double kFinestBlur_m = 0.01;   // below: none
 constexpr int kStepsPerStage = 3;
 constexpr int kFinalSteps = 6;
 constexpr double kConverged = 2e-5;   // metres or radians
-constexpr double kMaxBlur_m = 0.25;   // a cell knows no more than its own half
-constexpr double kReachOfCell = 0.5;  // of its spacing: where the next finer cells end
+constexpr double kMaxBlur_m = 0.25;   // no more than half of a cell
+constexpr double kReachOfCell = 0.5;  // of a level's spacing: the next finer level converges below
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
-// Beams on one surface err together beyond so many: the wall's mean is not the wall, and a person
-// is off with all of his beams.
+// Beams in one cell whose errors count as independent: the cell's mean has an error, too, and a
+// person displaces all beams that end on him.
 constexpr double kIndependentBeams = 4.0;
-// A surface that was seen from n keyframes counts as n / (n + this) of one that lasts.
+// A cell that was seen from n keyframes counts as lasting with the weight n / (n + this).
 constexpr double kBrief = 3.0;
 
 // Noise of ranges.
@@ -38,7 +38,7 @@ constexpr double kSigmaOverMedian = 1.483;  // of the absolute values of a norma
 /// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
 struct Quadratic {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
-  Eigen::Matrix2d lasting{Eigen::Matrix2d::Zero()};  ///< part of it, by surfaces that last
+  Eigen::Matrix2d lasting{Eigen::Matrix2d::Zero()};  ///< part of it, by cells that last
   Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
 };
 
@@ -54,21 +54,20 @@ struct BeamTerm {
 };
 
 /// @param ray  from the robot to the point, which is as good as from the LiDAR.
-BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point,
-                 const Eigen::Vector2d& ray, double point_variance_m2, double blur_m2,
-                 const ScanMatchConfig& config) {
+BeamTerm compare(const NdtCell& cell, const Eigen::Vector2d& point, const Eigen::Vector2d& ray,
+                 double point_variance_m2, double blur_m2, const ScanMatchConfig& config) {
   BeamTerm term;
-  const Eigen::Vector2d distance = point - surface.mean;
-  term.normal = surface.normal;
+  const Eigen::Vector2d distance = point - cell.mean;
+  term.normal = cell.normal;
   term.across_m = term.normal.dot(distance);
-  // A surface may look thin by chance, but noise of the range is across it by its cosine.
+  // A cell may look thin by chance: the variance is at least the range noise, projected onto it.
   const double by_range_m2 = point_variance_m2 * squared(term.normal.dot(ray)) / ray.squaredNorm();
   term.across_weight =
-      1.0 / (std::max(surface.across_m2, by_range_m2) + squared(config.roughness_m) + blur_m2);
+      1.0 / (std::max(cell.across_m2, by_range_m2) + squared(config.roughness_m) + blur_m2);
   double chi2 = term.across_weight * squared(term.across_m);
-  if (!surface.is_line) {
+  if (!cell.is_line) {
     term.along_m = term.normal.x() * distance.y() - term.normal.y() * distance.x();
-    term.along_weight = 1.0 / (surface.along_m2 + blur_m2);
+    term.along_weight = 1.0 / (cell.along_m2 + blur_m2);
     chi2 += term.along_weight * squared(term.along_m);
   }
   const double kernel2 = squared(config.kernel_sigmas);
@@ -78,14 +77,14 @@ BeamTerm compare(const NdtSurface& surface, const Eigen::Vector2d& point,
   return term;
 }
 
-/// Walls are in sight for metres, people in one place for a scan or two.
-double lasting_share(const NdtSurface& surface) {
-  if (surface.last_keyframe == 0) return 1.0;  // of a map without keyframes, or the first scan
-  const int seen_from = surface.last_keyframe - surface.first_keyframe + 1;
+/// Walls are seen from many keyframes, people in one place from one or two.
+double lasting_share(const NdtCell& cell) {
+  if (cell.last_keyframe == 0) return 1.0;  // of a map without keyframes, or the first scan
+  const int seen_from = cell.last_keyframe - cell.first_keyframe + 1;
   return seen_from / (seen_from + kBrief);
 }
 
-/// A scan in a map, from pose to pose: points mostly stay in the cells that they were in.
+/// A scan in a map, with the cells of its points cached: most stay the same from step to step.
 class PointsInMap {
  public:
   PointsInMap(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2)
@@ -97,13 +96,13 @@ class PointsInMap {
     for (std::size_t i = 0; i < points_.size(); ++i)
       find_place(i, rotation * points_[i] + pose.translation());
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const NdtSurface* surface = places_[i].surface;
-      if (surface == nullptr) continue;
+      const NdtCell* cell = places_[i].cell;
+      if (cell == nullptr) continue;
       const Eigen::Vector2d lever = rotation * points_[i];
       const Eigen::Vector2d there = lever + pose.translation();
-      const BeamTerm term = compare(*surface, there, lever, point_variance_m2_, blur_m2, config);
+      const BeamTerm term = compare(*cell, there, lever, point_variance_m2_, blur_m2, config);
       const double share = independent_share(*places_[i].beams);
-      const double lasting = lasting_share(*surface);
+      const double lasting = lasting_share(*cell);
       add(term.normal, lever, term.across_m, share * term.across_weight, lasting, sum);
       if (term.along_weight > 0.0) {
         const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
@@ -118,7 +117,7 @@ class PointsInMap {
  private:
   struct Place {
     NdtMap::Key key{0};
-    const NdtSurface* surface{nullptr};
+    const NdtCell* cell{nullptr};
     int* beams{nullptr};  ///< of the scan, on that surface
     bool is_known{false};
   };
@@ -127,10 +126,10 @@ class PointsInMap {
     Place& place = places_[point];
     const NdtMap::Key key = map_.key_at(there);
     if (place.is_known && place.key == key) return;
-    if (place.surface != nullptr) --*place.beams;
+    if (place.cell != nullptr) --*place.beams;
     place = {key, map_.at(key, point_variance_m2_), nullptr, true};
-    if (place.surface == nullptr) return;
-    place.beams = &beams_on_[place.surface];
+    if (place.cell == nullptr) return;
+    place.beams = &beams_on_[place.cell];
     ++*place.beams;
   }
 
@@ -154,7 +153,7 @@ class PointsInMap {
   const NdtMap& map_;
   double point_variance_m2_;
   std::vector<Place> places_;
-  std::unordered_map<const NdtSurface*, int> beams_on_{};  ///< never iterated over
+  std::unordered_map<const NdtCell*, int> beams_on_{};  ///< never iterated over
 };
 
 void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
@@ -166,17 +165,17 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
   for (const Eigen::Vector2d& point : points) {
     const Eigen::Vector2d ray = rotation * point;
     const Eigen::Vector2d there = ray + match.map_from_base.translation();
-    const NdtSurface* surface = map.at(there, point_variance_m2);
-    if (surface == nullptr) continue;
+    const NdtCell* cell = map.at(there, point_variance_m2);
+    if (cell == nullptr) continue;
     ++mapped;
-    const BeamTerm term = compare(*surface, there, ray, point_variance_m2, 0.0, config);
-    const double square_on = std::abs(surface->normal.dot(ray.normalized()));
-    if (surface->is_line && surface->count >= kWellSeen && square_on > kSquareOn)
+    const BeamTerm term = compare(*cell, there, ray, point_variance_m2, 0.0, config);
+    const double square_on = std::abs(cell->normal.dot(ray.normalized()));
+    if (cell->is_line && cell->count >= kWellSeen && square_on > kSquareOn)
       off_range_m.push_back(std::abs(term.across_m) / square_on);
     if (term.robust < kInlierWeight) continue;
     ++match.inliers;
-    const int keyframes = surface->last_keyframe - surface->first_keyframe + 1;
-    for (int k = surface->first_keyframe; k <= surface->last_keyframe; ++k)
+    const int keyframes = cell->last_keyframe - cell->first_keyframe + 1;
+    for (int k = cell->first_keyframe; k <= cell->last_keyframe; ++k)
       shares[k] += 1.0 / keyframes;
   }
   match.num_mapped = mapped;
@@ -204,7 +203,8 @@ Eigen::Vector3d along_observed(Eigen::Vector3d gradient, const ObservedAxes& obs
   return gradient;
 }
 
-/// Towards the optimum of the walls and the guess together; nothing of it along what is unobserved.
+/// Gauss-Newton on the cost of the walls and of the guess; walls have no effect along unobserved
+/// directions.
 class Descent {
  public:
   Descent(const Se2& guess, const Eigen::Matrix3d& guess_covariance, const ScanMatchConfig& config)
@@ -233,7 +233,7 @@ class Descent {
   const ScanMatchConfig& config_;
 };
 
-/// How far the ends of the beams may be off (one sigma).
+/// Standard deviation of the beams' ends, by that of the pose.
 double ends_open_m(std::span<const Eigen::Vector2d> points_in_base,
                    const Eigen::Matrix3d& covariance) {
   double lever2_m2 = 0.0;
@@ -285,7 +285,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
     match.map_from_base =
         descent.from(match.map_from_base, points, blur_m, kStepsPerStage, kConverged);
   match.map_from_base = descent.from(match.map_from_base, points, 0.0, kFinalSteps, kConverged);
-  // The optimum without the guess, along what the scan shows.
+  // The optimum without the guess, in observed directions.
   const Quadratic model = points.quadratic_about(match.map_from_base, 0.0, config);
   match.observed = observed_axes(model.information, model.lasting, config.weak_share);
   Eigen::Matrix3d full_rank = match.observed.information;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a scan fits into a map of normal distributions.
+// Registration of a scan in an NDT map.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -28,36 +28,38 @@ struct ScanMatchConfig {
   void describe(Fields& fields);
 };
 
-/// Information about a pose, and which directions it leaves open.
+/// Information about a pose, with unobserved directions removed.
 struct ObservedAxes {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};     ///< nothing along weak_direction
   Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit
   bool is_degenerate{false};
 };
 
-/// Of a beam's information, where so many beams of the scan, itself included, end on one surface:
-/// 1 for each of a few, and less for each of many, since they err together.
+/// Factor on the information of each beam where so many beams of the scan end in one cell: 1 for a
+/// few, less for many, since their errors are correlated.
 double independent_share(int beams);
 
-/// Cuts off what noise of the walls' normals has leaked into a direction that they do not show
+/// Removes the information that noise of the walls' normals leaks into an unobserved direction
 /// (Zhang, Kaess, Singh 2016). Frame: that of the information, origin at the robot.
-/// @param lasting     the part about (x, y) that surfaces hold that last: what moves shows nothing.
-/// @param weak_share  of the strongest direction's information, below which one is not shown.
+/// @param lasting     part of the information about (x, y) by cells that were seen from several
+///                    keyframes: moving objects must not observe a direction.
+/// @param weak_share  of the strongest direction's information, below which a direction is
+///                    unobserved.
 ObservedAxes observed_axes(const Eigen::Matrix3d& information, const Eigen::Matrix2d& lasting,
                            double weak_share);
 
 struct ScanMatch {
-  /// Where the scan alone would put the base: along unobserved axes, where the guess was.
+  /// Optimum of the scan alone; along unobserved axes, the guess.
   Se2 map_from_base{};
   ObservedAxes observed{};      ///< information about (x, y, theta), map's axes
-  double inlier_share{0.0};     ///< of the beams that ended on something mapped
-  double mapped_share{0.0};     ///< of all beams
-  int num_mapped{0};            ///< beams that ended on something mapped
+  double inlier_share{0.0};     ///< inliers / num_mapped
+  double mapped_share{0.0};     ///< num_mapped / all beams
+  int num_mapped{0};            ///< beams that ended in a cell with a distribution
   int inliers{0};               ///< of these
-  double range_scatter_m{0.0};  ///< of ranges about the lines that they end on (one sigma)
-  int num_scattered{0};         ///< beams that show it
-  /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the surfaces that the
-  /// inliers lie on; sums to 1.
+  double range_scatter_m{0.0};  ///< of ranges about the walls that they end on (one sigma)
+  int num_scattered{0};         ///< beams that range_scatter_m was computed from
+  /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the cells of the
+  /// inliers; sums to 1.
   int first_keyframe{0};
   std::vector<double> keyframe_shares{};
 
@@ -69,10 +71,10 @@ struct ScanMatch {
 /// Gauss-Newton on robust point-to-distribution distances, from coarse to fine.
 /// @param points_in_base   ends of beams.
 /// @param guess            map_from_base.
-/// @param guess_covariance of (x, y, theta), map's axes: how far the optimum may be. Only the way
-///                         there depends on it, and where the scan is silent, the result.
-/// @param coarse           the same walls in larger cells, the smallest first: where the guess may
-///                         be off by more than a cell of `map` reaches, the way begins there.
+/// @param guess_covariance of (x, y, theta), map's axes. It decides at which scale the descent
+///                         begins; the result depends on it in unobserved directions only.
+/// @param coarse           the same walls in larger cells, the smallest first: the descent begins
+///                         in them if the guess may be off by more than a cell of `map`.
 ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtMap& map,
                      const Se2& guess, const Eigen::Matrix3d& guess_covariance,
                      const RangeNoise& noise, const ScanMatchConfig& config,

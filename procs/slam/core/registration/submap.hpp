@@ -19,7 +19,7 @@ class Submap {
  public:
   /// Its frame is the first keyframe's base.
   Submap(double cell_spacing_m, std::size_t first_keyframe)
-      : first_keyframe_{first_keyframe}, surfaces_{cell_spacing_m}, coarse_{cell_spacing_m} {}
+      : first_keyframe_{first_keyframe}, ndt_{cell_spacing_m}, coarse_{cell_spacing_m} {}
 
   /// Keyframes come one after the other, without a gap.
   void insert(const Points& points_in_base, const Se2& submap_from_base) {
@@ -30,12 +30,12 @@ class Submap {
     add(points_in_base, submap_from_base);
   }
 
-  /// A scan that hangs on the newest keyframe.
+  /// A scan between keyframes; it counts for the newest keyframe.
   void add(const Points& points_in_base, const Se2& submap_from_base) {
     const auto keyframe = static_cast<int>(last_keyframe());
     for (const Eigen::Vector2d& point : points_in_base) {
       const Eigen::Vector2d there = submap_from_base * point;
-      surfaces_.add(there, keyframe);
+      ndt_.add(there, keyframe);
       const std::pair cell{std::lround(there.x() / kThinned_m),
                            std::lround(there.y() / kThinned_m)};
       if (!occupied_.insert(cell).second) continue;
@@ -50,9 +50,9 @@ class Submap {
 
   std::size_t num_keyframes() const { return poses_.size(); }
 
-  const NdtMap& surfaces() const { return surfaces_; }
+  const NdtMap& ndt() const { return ndt_; }
 
-  std::span<const NdtMap> coarse_surfaces() const { return coarse_.levels(); }
+  std::span<const NdtMap> coarse_ndt() const { return coarse_.levels(); }
 
   /// One for each occupied cell of 5 cm.
   const Points& points() const { return points_; }
@@ -60,13 +60,13 @@ class Submap {
   /// Nothing is added any more.
   void finish() { occupied_.clear(); }
 
-  /// Of the keyframes, from the first one.
+  /// Largest distance of a keyframe from the first one.
   double reach_m() const { return reach_m_; }
 
   /// Driven from the first keyframe to the last.
   double length_m() const { return length_m_; }
 
-  /// As it was inserted.
+  /// The pose at which it was inserted.
   const Se2& submap_from_keyframe(std::size_t keyframe) const {
     return poses_[keyframe - first_keyframe_];
   }
@@ -75,7 +75,7 @@ class Submap {
   static constexpr double kThinned_m = 0.05;
 
   std::size_t first_keyframe_;
-  NdtMap surfaces_;
+  NdtMap ndt_;
   CoarseNdt coarse_;
   std::vector<Se2> poses_{};
   double reach_m_{0.0};

@@ -16,32 +16,32 @@ namespace waymark {
 /// and holds half a length of scans at least. When it is full it is finished.
 class Submaps {
  public:
-  /// @param keyframes_each  of a submap, or fewer where they are far apart:
-  /// @param length_m        so long at most, because the drift along it bends it.
+  /// @param keyframes_each  of a submap, at most.
+  /// @param length_m        driven along a submap, at most: drift bends longer ones.
   Submaps(double cell_spacing_m, int keyframes_each, double length_m)
       : cell_spacing_m_{cell_spacing_m},
         half_{static_cast<std::size_t>(std::max(1, keyframes_each / 2))},
         half_m_{0.5 * length_m} {}
 
-  /// That scans are matched with; null: none has begun.
+  /// The one to match scans with; null: none has begun.
   const Submap* matched() const { return growing_.empty() ? nullptr : &growing_.front(); }
 
   const std::deque<Submap>& finished() const { return finished_; }
 
-  /// A finished one, by its first keyframe; null: it is forgotten.
+  /// A finished one, by its first keyframe; null: it was dropped.
   const Submap* find(std::size_t first_keyframe) const;
 
   /// The newest keyframe's scan.
   void add_keyframe(const Points& points_in_base, const PoseSequence& keyframes);
 
-  /// A scan that hangs on the newest keyframe.
+  /// A scan between keyframes; it counts for the newest keyframe.
   void add_between(const Points& points_in_base, const Se2& map_from_base,
                    const PoseSequence& keyframes);
 
-  /// The robot is elsewhere: what grows is dropped.
+  /// Drops unfinished submaps, after the robot was relocated.
   void begin_anew() { growing_.clear(); }
 
-  /// Drops finished ones with such keyframes.
+  /// Drops finished submaps that have removed keyframes.
   void forget(const std::function<bool(std::size_t)>& is_removed);
 
  private:

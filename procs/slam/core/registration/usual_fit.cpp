@@ -23,11 +23,11 @@ bool UsualFit::is_contradicted(const ScanMatch& match) const {
 }
 
 bool UsualFit::is_worse_than_usual(const ScanMatch& match) const {
-  return match.inlier_share * match.mapped_share < kWorse * agreeing_;
+  return match.inlier_share * match.mapped_share < kWorse * overall_share_;
 }
 
 bool UsualFit::is_nearly_usual(const ScanMatch& match) const {
-  return match.inlier_share * match.mapped_share > kNearly * agreeing_;
+  return match.inlier_share * match.mapped_share > kNearly * overall_share_;
 }
 
 void UsualFit::note_scan(const ScanMatch& match) {
@@ -36,7 +36,7 @@ void UsualFit::note_scan(const ScanMatch& match) {
 }
 
 void UsualFit::note_keyframe(const ScanMatch& match) {
-  agreeing_ += kMemory * (match.inlier_share * match.mapped_share - agreeing_);
+  overall_share_ += kMemory * (match.inlier_share * match.mapped_share - overall_share_);
 }
 
 }  // namespace waymark

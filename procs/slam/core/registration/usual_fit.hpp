@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How well scans usually fit, and what it means if one fits worse.
+// Running means of how well scans fit the map, to classify scans that fit worse.
 #pragma once
 
 #include "slam/core/registration/scan_match.hpp"
@@ -8,36 +8,34 @@ namespace waymark {
 
 class UsualFit {
  public:
-  /// @param min_inliers       mapped beams that a scan needs to contradict anything.
-  /// @param min_inlier_share  of the mapped beams; below, the map refutes the scan.
+  /// @param min_inliers       mapped beams below which a scan is not classified.
+  /// @param min_inlier_share  of the mapped beams, below which a scan is refuted.
   UsualFit(int min_inliers, double min_inlier_share)
       : min_inliers_{min_inliers}, min_inlier_share_{min_inlier_share} {}
 
-  /// Most of what the scan shows stands where the map has something else, so that it is no view of
-  /// a place that is new: the sensor is wrong, or the pose.
+  /// Most mapped beams are outliers: sensor or pose are wrong. (In a new place beams are unmapped.)
   bool is_refuted(const ScanMatch& match) const;
 
-  /// Much more than usual of it stands where the map has something else: the pose may be wrong, or
-  /// the ranges.
+  /// Many more mapped beams are outliers than usual: pose or ranges may be wrong.
   bool is_contradicted(const ScanMatch& match) const;
 
-  /// Less of it agrees with the map than usual: it is contradicted, or much of its view is new.
+  /// Fewer of all beams are inliers than usual: the scan contradicts the map, or shows a new place.
   bool is_worse_than_usual(const ScanMatch& match) const;
 
-  /// Nearly as much of it agrees with the map as usual.
+  /// Nearly as many of all beams are inliers as usual.
   bool is_nearly_usual(const ScanMatch& match) const;
 
   /// A scan that is not contradicted.
   void note_scan(const ScanMatch& match);
 
-  /// The scan of a keyframe that was used.
+  /// The scan of a keyframe that was added to the graph.
   void note_keyframe(const ScanMatch& match);
 
  private:
   int min_inliers_;
   double min_inlier_share_;
-  double inlier_share_{0.0};  ///< mean over scans
-  double agreeing_{0.0};      ///< share of all beams that are inliers, mean over keyframes
+  double inlier_share_{0.0};   ///< of the mapped beams, mean over scans
+  double overall_share_{0.0};  ///< share of all beams that are inliers, mean over keyframes
 };
 
 }  // namespace waymark

@@ -43,7 +43,7 @@ double unexplained(const ScanMatch& match, const Points& points) {
 
 }  // namespace
 
-ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& surfaces,
+ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& ndt,
                           const Points& occupied, const WideSearch& search, const UsualFit& usual,
                           const RangeNoise& noise, const ScanMatchConfig& config) {
   const CorrelativeField field{occupied};
@@ -57,8 +57,7 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   for (const Se2& guess : guesses) {
     const auto place = field.best(beams, guess, window, search.min_score);
     if (!place) continue;
-    const ScanMatch match =
-        match_scan(points, surfaces, place->submap_from_base, near, noise, config);
+    const ScanMatch match = match_scan(points, ndt, place->submap_from_base, near, noise, config);
     if (!found || match.inliers > found->inliers) found = match;
   }
   const auto fits_better = [&] {

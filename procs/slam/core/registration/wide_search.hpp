@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Registration of a scan whose guess may be off by more than plain matching can find.
+// Registration of a scan whose guess may be off by more than plain matching converges from.
 #pragma once
 
 #include "slam/core/registration/scan_match.hpp"
@@ -13,25 +13,28 @@ struct WideSearch {
   Se2 by_odometry{};  ///< map_from_base; windows about it and the others are searched
   Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of it, map's axes
   std::vector<Se2> without_odometry{};                               ///< map_from_base
-  double since_last_s{0.0};  ///< scan: the longer, the more the robot may have turned
+  double since_last_s{0.0};  ///< time since the last scan: it widens the window of turns
   double min_score{0.0};     ///< of a place (SearchMatch)
 };
 
-/// The plain match, or the one with the most inliers of those that begin at the best places in the
-/// windows. The plain match is left if the map contradicts it, for a place where the scan fits as
-/// well as others do, or for one where it fits nearly as well and has twice the inliers: a view of
-/// a new place has few of them where it is right. A plain match that odometry contradicts is no
-/// likelier than another place: one with more inliers is enough, if the scan fits nearly as well as
-/// others do.
+/// Matches the scan from the best place of each window, and compares the match with the most
+/// inliers with the plain match. It replaces the plain one if it has more inliers, and
+///   - the map contradicts the plain match, or
+///   - the scan fits there as well as usual, or
+///   - it fits nearly as well, and either has twice the inliers or odometry contradicts the plain
+///     match.
+/// A match that odometry contradicts much more than the plain one has to fit better still. The
+/// conditions keep the plain match for a view of a new place, which has few inliers where it is
+/// right.
 ///
 /// @param points     ends of beams, base frame.
-/// @param surfaces   what the scan is matched with,
+/// @param ndt        what the scan is matched with,
 /// @param occupied   and its points around the guesses.
-ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& surfaces,
+ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& ndt,
                           const Points& occupied, const WideSearch& search, const UsualFit& usual,
                           const RangeNoise& noise, const ScanMatchConfig& config);
 
-/// That `occupied` has to reach from the guesses on, for a scan of these points.
+/// Radius around the guesses that `occupied` has to cover for a scan of these points.
 double wide_search_reach_m(const Points& points);
 
 }  // namespace waymark

@@ -27,15 +27,15 @@ struct Beam {
   double range_m{0.0};
 };
 
-/// How far odometry may have put the beams of a sweep off from the scan's pose, on average: as far
-/// as its random walk would grow on such a way. Zero where all beams were measured at once.
+/// Motion whose odometry noise equals the mean noise of the beams of a sweep, relative to the
+/// scan's pose. Zero if all beams were measured at once.
 struct MeanSweep {
   double distance_m{0.0};
   double turn_rad{0.0};  ///< without sign
 };
 
-/// The same scan, for the middle of its sweep: the pose at that time is the one that odometry's
-/// noise moves its beams off the least.
+/// The same scan, stamped with the middle of its sweep: relative to the pose at that time, the
+/// beams have the least odometry noise.
 LidarScan at_middle_of_sweep(LidarScan scan);
 
 /// Newest moment at which a beam of the scan was measured.

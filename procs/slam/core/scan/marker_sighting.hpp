@@ -23,11 +23,11 @@ struct MarkerSighting {
   /// [m^2, m rad, rad^2] order x y yaw, base frame.
   Eigen::Matrix3d covariance_in_base{Eigen::Matrix3d::Zero()};
   double size_m{0.0};  ///< side of the black square
-  /// How far odometry has carried it, from the frame's time to the scan's; the covariance does not
-  /// know.
+  /// Motion by odometry from the frame's time to the scan's; the covariance does not include its
+  /// noise.
   double carried_m{0.0};
   double carried_rad{0.0};
-  std::optional<FocalSighting> focal{};  ///< what it says about the camera
+  std::optional<FocalSighting> focal{};  ///< measurement of the camera's focal length
 
   /// Point on the marker's line, `right_m` to the right of its centre as it is printed.
   Eigen::Vector2d point_at(double right_m) const {

@@ -51,13 +51,6 @@ std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> bea
   return normal.normalized();
 }
 
-double surface_share(std::span<const AnnotatedBeam> beams) {
-  int on_surface = 0;
-  for (std::size_t i = 0; i < beams.size(); ++i)
-    on_surface += surface_normal(beams, static_cast<int>(i)).has_value();
-  return beams.empty() ? 0.0 : on_surface / static_cast<double>(beams.size());
-}
-
 Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
                                double range_sigma_m) {
   Observability result;
@@ -67,7 +60,7 @@ Observability observability_of(std::span<const AnnotatedBeam> beams, const Se2& 
     if (!normal_in_base) continue;
     const Eigen::Vector2d& end = beams[i].beam.end_in_base;
     const Eigen::Vector2d normal = turn * *normal_in_base;
-    // A turn moves the end by (-y, x) in the base frame.
+    // d(x, y)/d(theta) = (-y, x) in the base frame.
     const Eigen::Vector3d row{normal.x(), normal.y(),
                               normal_in_base->dot(Eigen::Vector2d{-end.y(), end.x()})};
     result.information += row * row.transpose() / (range_sigma_m * range_sigma_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which directions of motion the walls in a scan can tell.
+// Which directions of motion the walls in a scan observe.
 #pragma once
 
 #include "slam/core/scan/annotated_scan.hpp"
@@ -17,10 +17,10 @@ struct Observability {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
   Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit, map frame
   double weak_information{0.0};                             ///< [1/m^2] along weak_direction
-  bool is_degenerate{true};  ///< the walls are all but silent about weak_direction
+  bool is_degenerate{true};  ///< the walls do not observe weak_direction
 
-  /// `pose` moved along the weak direction to where `reference` is, if there is a weak direction.
-  /// What is computed from it can pull nobody along a bare corridor.
+  /// `pose`, moved to `reference` along the weak direction, if there is one: scores of the result
+  /// cannot pull a particle along a bare corridor.
   Se2 without_weak_part(const Se2& pose, const Se2& reference) const {
     if (!is_degenerate) return pose;
     const Eigen::Vector2d deviation = pose.translation() - reference.translation();
@@ -32,10 +32,6 @@ struct Observability {
 /// Unit normal of the surface around a beam's end, base frame, either way; nothing at edges and on
 /// small things.
 std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> beams, int beam);
-
-/// Share of the beams that lie on a surface; 0 without beams. Of a real scan, even among clutter,
-/// more than a tenth do.
-double surface_share(std::span<const AnnotatedBeam> beams);
 
 /// Each beam that lies on a smooth surface measures its distance along the surface's normal
 /// (point-to-line; Censi 2007), with `range_sigma_m`.

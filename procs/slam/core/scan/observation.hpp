@@ -17,10 +17,10 @@ struct Observation {
   std::vector<AnnotatedBeam> beams{};  ///< none while the LiDAR is silent
   MeanSweep mean_sweep{};
   std::vector<MarkerSighting> sightings{};  ///< of the camera frames since the observation before
-  /// The motion begins with one that odometry has kept back while it stood still, and has reported
-  /// at once. Observations meanwhile had no motion.
+  /// The motion begins with late motion (OdometryBuffer): odometry had stood still, and the
+  /// observations before had no motion.
   bool odometry_caught_up{false};
-  bool odometry_doubtful{false};  ///< it jumped about: what was driven is not known
+  bool odometry_jumped{false};  ///< the motion since the observation before is not known
   bool camera_reported{false};  ///< a frame came since the observation before, even without markers
 };
 

@@ -20,11 +20,10 @@ struct TurnByScans {
   bool contradicts_odometry{false};
 };
 
-/// Compares the range profile of a scan with that of an earlier one, for all turns within 50
-/// degrees of the odometry's, or just near to that if it fits. It takes part in no estimate as long
-/// as odometry is plausible: it is coarser than matching with the map, but has no basin of
-/// attraction to miss.
-/// @param motion  since the earlier scan, by odometry; its way is taken for right.
+/// Compares the range profile of a scan with that of an earlier one, for turns near the odometry's,
+/// and if these do not fit, for all within 50 degrees. Coarser than matching with the map, but it
+/// needs no initial guess; so it serves only to detect that odometry is wrong.
+/// @param motion  since the earlier scan, by odometry; its translation is assumed to be correct.
 /// @return nothing when the scans have too little in common.
 std::optional<TurnByScans> turn_between(std::span<const AnnotatedBeam> earlier,
                                         std::span<const AnnotatedBeam> later, const Motion& motion);

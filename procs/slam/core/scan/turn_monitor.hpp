@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Turns of the robot that its wheels did not measure.
+// Detects turns of the robot that its wheels did not measure.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -18,8 +18,7 @@ class TurnMonitor {
   /// The next observation.
   /// @param beams  of its scan; none: nothing is compared.
   /// @param motion  since the observation before, by odometry.
-  /// @return [rad] how far the robot turned beyond that; nothing where odometry is plausible. What
-  /// has been returned is not returned again.
+  /// @return [rad] turn beyond odometry's, once; nothing where odometry is plausible.
   std::optional<double> missing_turn(std::span<const AnnotatedBeam> beams, const Motion& motion);
 
  private:

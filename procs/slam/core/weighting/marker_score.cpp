@@ -19,35 +19,35 @@ double marker_score(const GridMap& map, const Eigen::Vector2d& point_in_map, int
     if (marker_id != kNoMarker) votes_for_id += weight * cell.votes_for(marker_id);
   });
   if (votes <= 0.0) return 0.0;
-  const double trust = votes / (votes + 1.0);  // one look is half of what can be known
-  if (marker_id == kNoMarker) return -trust * rewards.penalty * votes_for_markers / votes;
+  const double weight = votes / (votes + 1.0);  // of the cell: one vote is worth a half
+  if (marker_id == kNoMarker) return -weight * rewards.penalty * votes_for_markers / votes;
   const double match = votes_for_id / votes;
-  return trust * (rewards.strong_reward * match - rewards.penalty * (1.0 - match));
+  return weight * (rewards.strong_reward * match - rewards.penalty * (1.0 - match));
 }
 
-std::vector<JudgedSpot> judged_spots(const Observation& observation, double face_spacing_m,
-                                     double face_margin_m, double sighting_sigma_m) {
-  std::vector<JudgedSpot> spots;
+std::vector<ObservedSpot> observed_spots(const Observation& observation, double face_spacing_m,
+                                         double face_margin_m, double sighting_sigma_m) {
+  std::vector<ObservedSpot> spots;
   for (const AnnotatedBeam& annotated : observation.beams) {
     if (annotated.sight == Sight::kUnknown) continue;
     spots.push_back({annotated.beam.end_in_base, annotated.marker_id, 1.0});
   }
   for (const MarkerSighting& sighting : observation.sightings) {
     const double sigmas = sighting.sigma_along_m() / sighting_sigma_m;
-    const double trust = 1.0 / (1.0 + sigmas * sigmas);
+    const double weight = 1.0 / (1.0 + sigmas * sigmas);
     for (const FacePoint& point : face_points(sighting, face_spacing_m, face_margin_m))
-      spots.push_back({point.in_base, point.marker_id, trust});
+      spots.push_back({point.in_base, point.marker_id, weight});
   }
   return spots;
 }
 
-double marker_score(const GridMap& map, std::span<const JudgedSpot> spots, const Se2& map_from_base,
-                    const MatchingRewards& rewards) {
+double marker_score(const GridMap& map, std::span<const ObservedSpot> spots,
+                    const Se2& map_from_base, const MatchingRewards& rewards) {
   const Eigen::Matrix2d turn = map_from_base.rotation();
   double sum = 0.0;
-  for (const JudgedSpot& spot : spots) {
+  for (const ObservedSpot& spot : spots) {
     const Eigen::Vector2d in_map = turn * spot.in_base + map_from_base.translation();
-    sum += spot.trust * marker_score(map, in_map, spot.marker_id, rewards);
+    sum += spot.weight * marker_score(map, in_map, spot.marker_id, rewards);
   }
   return sum;
 }

@@ -25,33 +25,32 @@ struct MatchingRewards {
   void describe(Fields& fields);
 };
 
-/// Score of one spot that the camera has judged, against the votes of the cells around it: between
-/// strong_reward (the cells agree on the same id) and -penalty (they agree on something else). Zero
-/// where both say "no marker", and where no camera has looked before: a new spot is worth what a
-/// confirmed bare wall is worth, so nothing pulls the robot back to where it has been.
+/// Score of one spot that the camera has observed, against the votes of the cells around it:
+/// between strong_reward (the cells have the same id) and -penalty (they have something else). Zero
+/// where both are "no marker", and where the map has no votes: an unmapped spot scores like a
+/// confirmed bare wall, so that mapped places do not attract the robot.
 double marker_score(const GridMap& map, const Eigen::Vector2d& point_in_map, int marker_id,
                     const MatchingRewards& rewards);
 
-/// A spot that the camera has judged: where a beam ended, or a point that stands for a marker's
-/// face.
-struct JudgedSpot {
+/// A spot that the camera has observed: the end of a beam, or a point of a marker's face.
+struct ObservedSpot {
   Eigen::Vector2d in_base{Eigen::Vector2d::Zero()};
   int marker_id{kNoMarker};
-  double trust{1.0};  ///< factor on the score
+  double weight{1.0};  ///< factor on the score
 };
 
 /// A sighting with this error along its wall counts half.
 inline constexpr double kSightingSigma_m = 0.025;
 
-/// The ends of beams that the camera has judged, and points all over the sighted markers' faces.
+/// The ends of beams in the camera's view, and points of the sighted markers' faces.
 /// @param face_spacing_m  between the points of a face.
 /// @param face_margin_m  bare wall beside a marker, seen together with it.
-std::vector<JudgedSpot> judged_spots(const Observation& observation, double face_spacing_m,
-                                     double face_margin_m,
-                                     double sighting_sigma_m = kSightingSigma_m);
+std::vector<ObservedSpot> observed_spots(const Observation& observation, double face_spacing_m,
+                                         double face_margin_m,
+                                         double sighting_sigma_m = kSightingSigma_m);
 
 /// Sum over spots.
-double marker_score(const GridMap& map, std::span<const JudgedSpot> spots, const Se2& map_from_base,
-                    const MatchingRewards& rewards);
+double marker_score(const GridMap& map, std::span<const ObservedSpot> spots,
+                    const Se2& map_from_base, const MatchingRewards& rewards);
 
 }  // namespace waymark

@@ -17,72 +17,72 @@ constexpr ChannelOwners::Time at(int time_ms) {
   return ChannelOwners::Time{} + milliseconds{time_ms};
 }
 
-TEST(ChannelOwners, ASecondPublisherIsRefusedAsLongAsTheFirstIsHeard) {
+TEST(ChannelOwners, ASecondPublisherIsRefusedWhileTheFirstIsActive) {
   ChannelOwners owners;
-  EXPECT_EQ(owners.judge("LIDAR", kDriver, at(0)), Verdict::kAccepted);
-  EXPECT_EQ(owners.judge("LIDAR", kOther, at(1)), Verdict::kRefused);
-  EXPECT_EQ(owners.judge("LIDAR", kDriver, at(1900)), Verdict::kAccepted);
-  EXPECT_EQ(owners.judge("LIDAR", kOther, at(3900)), Verdict::kRefused);
+  EXPECT_EQ(owners.check("LIDAR", kDriver, at(0)), Verdict::kAccepted);
+  EXPECT_EQ(owners.check("LIDAR", kOther, at(1)), Verdict::kRefused);
+  EXPECT_EQ(owners.check("LIDAR", kDriver, at(1900)), Verdict::kAccepted);
+  EXPECT_EQ(owners.check("LIDAR", kOther, at(3900)), Verdict::kRefused);
   EXPECT_EQ(owners.owner_of("LIDAR"), kDriver);
 }
 
-TEST(ChannelOwners, ADriverThatIsStartedAgainSucceedsTheOneThatIsGone) {
+TEST(ChannelOwners, ARestartedDriverBecomesTheOwner) {
   ChannelOwners owners;
-  owners.judge("LIDAR", kDriver, at(0));
-  EXPECT_EQ(owners.judge("LIDAR", kOther, at(2000)), Verdict::kRefused);
-  EXPECT_EQ(owners.judge("LIDAR", kOther, at(2001)), Verdict::kSucceeds);
-  EXPECT_EQ(owners.judge("LIDAR", kOther, at(2002)), Verdict::kAccepted);
+  owners.check("LIDAR", kDriver, at(0));
+  EXPECT_EQ(owners.check("LIDAR", kOther, at(2000)), Verdict::kRefused);
+  EXPECT_EQ(owners.check("LIDAR", kOther, at(2001)), Verdict::kSucceeds);
+  EXPECT_EQ(owners.check("LIDAR", kOther, at(2002)), Verdict::kAccepted);
 }
 
-TEST(ChannelOwners, AnythingThatTheOwnerSendsShowsThatItIsThere) {
+TEST(ChannelOwners, AnyMessageOfTheOwnerKeepsItActive) {
   ChannelOwners owners;
-  owners.judge("MARKERS", kDriver, at(0));
+  owners.check("MARKERS", kDriver, at(0));
   for (int time_ms = 1000; time_ms <= 60000; time_ms += 1000)
     owners.hear(kDriver, at(time_ms));
-  EXPECT_EQ(owners.judge("MARKERS", kOther, at(61000)), Verdict::kRefused);
+  EXPECT_EQ(owners.check("MARKERS", kOther, at(61000)), Verdict::kRefused);
 }
 
 TEST(ChannelOwners, ChannelsOfSeveralDriversAreNoConflict) {
   ChannelOwners owners;
   for (int time_ms = 0; time_ms < 5000; time_ms += 100) {
-    EXPECT_EQ(owners.judge("LIDAR", kDriver, at(time_ms)), Verdict::kAccepted);
-    EXPECT_EQ(owners.judge("ODOMETRY", kOther, at(time_ms)), Verdict::kAccepted);
+    EXPECT_EQ(owners.check("LIDAR", kDriver, at(time_ms)), Verdict::kAccepted);
+    EXPECT_EQ(owners.check("ODOMETRY", kOther, at(time_ms)), Verdict::kAccepted);
   }
 }
 
 // Both begin in the same moment, each first on another channel.
 TEST(ChannelOwners, TwoDrivesOnTheSameChannelsAreNotMixed) {
   ChannelOwners owners;
-  EXPECT_EQ(owners.judge("ODOMETRY", kDriver, at(0)), Verdict::kAccepted);
-  EXPECT_EQ(owners.judge("LIDAR", kOther, at(1)), Verdict::kAccepted);
-  EXPECT_EQ(owners.judge("ODOMETRY", kOther, at(2)), Verdict::kRefused);
-  EXPECT_EQ(owners.judge("LIDAR", kDriver, at(3)), Verdict::kSucceeds);
+  EXPECT_EQ(owners.check("ODOMETRY", kDriver, at(0)), Verdict::kAccepted);
+  EXPECT_EQ(owners.check("LIDAR", kOther, at(1)), Verdict::kAccepted);
+  EXPECT_EQ(owners.check("ODOMETRY", kOther, at(2)), Verdict::kRefused);
+  EXPECT_EQ(owners.check("LIDAR", kDriver, at(3)), Verdict::kSucceeds);
   for (int time_ms = 10; time_ms < 5000; time_ms += 10) {
     for (const char* channel : {"LIDAR", "ODOMETRY", "CAMERA"}) {
-      EXPECT_EQ(owners.judge(channel, kDriver, at(time_ms)), Verdict::kAccepted);
-      EXPECT_EQ(owners.judge(channel, kOther, at(time_ms)), Verdict::kRefused);
+      EXPECT_EQ(owners.check(channel, kDriver, at(time_ms)), Verdict::kAccepted);
+      EXPECT_EQ(owners.check(channel, kOther, at(time_ms)), Verdict::kRefused);
     }
   }
 }
 
 // A log that holds MARKERS is played while a detector runs: the rest of the log is still heard.
-TEST(ChannelOwners, WhoIsRefusedOnOneChannelIsHeardOnOthers) {
+TEST(ChannelOwners, ARefusedSenderIsAcceptedOnOtherChannels) {
   ChannelOwners owners;
-  owners.judge("MARKERS", kDriver, at(0));
-  EXPECT_EQ(owners.judge("MARKERS", kOther, at(1)), Verdict::kRefused);
-  EXPECT_EQ(owners.judge("LIDAR", kOther, at(2)), Verdict::kAccepted);
+  owners.check("MARKERS", kDriver, at(0));
+  EXPECT_EQ(owners.check("MARKERS", kOther, at(1)), Verdict::kRefused);
+  EXPECT_EQ(owners.check("LIDAR", kOther, at(2)), Verdict::kAccepted);
 }
 
-TEST(ChannelOwners, ManySendersCostNoMemoryAndGetNothing) {
+TEST(ChannelOwners, ManyForgedSendersAreRefusedInBoundedMemory) {
   ChannelOwners owners;
-  owners.judge("LIDAR", kDriver, at(0));
+  owners.check("LIDAR", kDriver, at(0));
   for (int i = 0; i < 100000; ++i) {
     owners.hear(kDriver, at(i));
     const Sender forged{0x0a000000U + static_cast<std::uint32_t>(i), 1};
-    ASSERT_EQ(owners.judge("LIDAR", forged, at(i)), Verdict::kRefused);
+    ASSERT_EQ(owners.check("LIDAR", forged, at(i)), Verdict::kRefused);
   }
-  EXPECT_EQ(owners.judge("LIDAR", kThird, at(100000)), Verdict::kRefused);
-  EXPECT_EQ(owners.judge("LIDAR", kDriver, at(100000)), Verdict::kAccepted);
+  EXPECT_EQ(owners.check("LIDAR", kThird, at(100000)), Verdict::kRefused);
+  EXPECT_EQ(owners.check("LIDAR", kDriver, at(100000)), Verdict::kAccepted);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(MulticastGroup, IsReadFromTheUrlWithTheDefaultsOfLcm) {
   EXPECT_FALSE(multicast_group_of("tcpq://127.0.0.1:7700"));
 }
 
-TEST(MulticastGroup, OneThatIsNoneIsASetupError) {
+TEST(MulticastGroup, AnInvalidGroupIsASetupError) {
   for (const char* url : {"udpm://127.0.0.1:7667", "udpm://239.255.76:7667", "udpm://lidar:7667",
                           "udpm://239.255.76.67:", "udpm://239.255.76.67:0",
                           "udpm://239.255.76.67:65536", "udpm://239.255.76.67:77x"}) {
@@ -47,7 +47,7 @@ TEST(WholeMessage, IsMagicSequenceNumberChannelAndPayload) {
   EXPECT_TRUE(whole_message_in(without_payload)->payload.empty());
 }
 
-TEST(WholeMessage, AnythingElseIsNone) {
+TEST(WholeMessage, RejectsOtherDatagrams) {
   const std::string long_name(64, 'A');
   for (const std::string& text :
        {""s, "LC02"s, "LC02\0\0\0"s, "LC02\0\0\0\7"s, "LC02\0\0\0\7\0abc"s, "LC02\0\0\0\7LIDAR"s,

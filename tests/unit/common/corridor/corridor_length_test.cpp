@@ -63,7 +63,7 @@ TEST(CorridorLength, ABentMapIsMeasuredAlongItsArc) {
   }
 }
 
-TEST(CorridorLength, ABendThatMakesNoDifferenceIsStraight) {
+TEST(CorridorLength, ANegligibleBendIsMeasuredAsStraight) {
   const auto map = draw({1200, 900, 1000}, arc_shape(60, 400, -radians(1), 1000.0 / radians(2)));
   const CorridorLength measured = measure_corridor(map);
   EXPECT_NEAR(measured.length_px, 1000.0, 1.0);
@@ -129,7 +129,7 @@ TEST(CorridorLength, ThickWallsAreMeasuredAtTheirInnermostCells) {
   }
 }
 
-TEST(CorridorLength, AMissingEndCountsAsTheExtentOfFreeSpace) {
+TEST(CorridorLength, AMissingEndWallGivesTheExtentOfFreeSpace) {
   Drawing drawing{1020, 61, 1000};
   drawing.has_end = false;
   const CorridorLength no_end = measure_corridor(draw(drawing, straight_shape(7, 30, 0)));

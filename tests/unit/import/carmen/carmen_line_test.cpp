@@ -72,7 +72,7 @@ TEST(CarmenLine, AnotherNumberOfBeamsNeedsItsAngles) {
   EXPECT_EQ(parse<CarmenScan>(flaser(4, "RLASER"), {0.5, 0.125}).lidar, CarmenLidar::kRear);
 }
 
-TEST(CarmenLine, RobotLaserSaysItsBeamsItself) {
+TEST(CarmenLine, RobotLaserDefinesItsOwnBeams) {
   const auto scan = parse<CarmenScan>(
       "ROBOTLASER1 0 -1.570796 3.141593 1.570796 20 0.01 1 3 1 2 50 2 7 8 "
       "1 2 0.5 3 4 0.25 9 9 9 9 9 100.25 host 0.75");
@@ -132,7 +132,7 @@ struct BadLine {
   std::string detail;
 };
 
-TEST(CarmenLine, ARangeThatIsNoneCostsNoScan) {
+TEST(CarmenLine, AnInvalidRangeInvalidatesItsBeamOnly) {
   const auto scan = parse<CarmenScan>("FLASER 3 1 NaN -0.5 0 0 0 0 0 0 1 host 0", {0.0, 0.1});
   EXPECT_EQ(scan.num_no_ranges, 2);
   EXPECT_EQ(scan.ranges_m[0], 1.0);
@@ -140,7 +140,7 @@ TEST(CarmenLine, ARangeThatIsNoneCostsNoScan) {
   EXPECT_TRUE(std::isnan(scan.ranges_m[2]));
 }
 
-TEST(CarmenLine, BadLinesSayWhatIsWrong) {
+TEST(CarmenLine, BadLinesAreExplained) {
   const std::string tail = " 0 0 0 0 0 0 1 host 0";
   const std::vector<BadLine> lines{
       {"FLASER", "missing field", "the number of ranges"},

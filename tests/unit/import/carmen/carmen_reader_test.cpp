@@ -99,7 +99,7 @@ TEST(CarmenReader, MountingIsTheDifferenceOfThePoses) {
   EXPECT_EQ(log.robot.lidar.range_max_m, 81.83);
 }
 
-TEST(CarmenReader, ACorrectedLogTellsNoMounting) {
+TEST(CarmenReader, ACorrectedLogHasNoMounting) {
   const auto file = write_file("corrected.clf",
                                "FLASER 4 1 1 1 1 5 0 0 0 0 0 1 h 0\n"
                                "FLASER 4 1 1 1 1 7 1 0 0 0 0 2 h 0\n");
@@ -120,13 +120,13 @@ std::string scan_line(int num_beams, double time_s, double logger_time_s = 0.0) 
                      fmt::join(ranges_m, " "), time_s, logger_time_s);
 }
 
-TEST(CarmenReader, MountingComesFromParametersWhereTheLinesSayNothing) {
+TEST(CarmenReader, MountingComesFromParametersWhereTheLinesHaveNone) {
   const std::string parameter = "PARAM robot_frontlaser_offset -0.04 1 host 0\n";
   EXPECT_EQ(read_text(parameter + scan_line(180, 1) + scan_line(180, 2)).robot.lidar.x_m, -0.04);
   EXPECT_EQ(read_text(scan_line(180, 1) + scan_line(180, 2)).robot.lidar.x_m, 0.0);
 }
 
-TEST(CarmenReader, NumbersOfBeamsThatAlternateCostNoScan) {
+TEST(CarmenReader, AlternatingNumbersOfBeamsLoseNoScan) {
   std::string text;
   for (int i = 0; i < 20; ++i)
     text += scan_line(180 + i % 2, 1.0 + i);
@@ -142,7 +142,7 @@ TEST(CarmenReader, NumbersOfBeamsThatAlternateCostNoScan) {
               ::testing::Contains(HasSubstr("180 (in 10 scans), 181 (in 10 scans)")));
 }
 
-TEST(CarmenReader, BurstsAndSlightDisorderCostNoScan) {
+TEST(CarmenReader, BurstsAndSlightDisorderLoseNoScan) {
   std::string text;
   for (int i = 0; i < 30; ++i)
     text += scan_line(180, 1.0 + i - i % 3) + scan_line(180, 0.9 + i - i % 3);
@@ -159,7 +159,7 @@ TEST(CarmenReader, BurstsAndSlightDisorderCostNoScan) {
   EXPECT_THAT(report.notes(), ::testing::Contains(HasSubstr("put in order")));
 }
 
-TEST(CarmenReader, StampsOfTheLoggerAreTakenWhereIpcStandsStill) {
+TEST(CarmenReader, LoggerTimesAreUsedWhereIpcTimesStandStill) {
   std::string text;
   for (int i = 0; i < 10; ++i)
     text += scan_line(180, 7.0, 0.5 + i);
@@ -170,7 +170,7 @@ TEST(CarmenReader, StampsOfTheLoggerAreTakenWhereIpcStandsStill) {
   EXPECT_EQ(to_us(log.scans[3].time), 3'500'000);
 }
 
-TEST(CarmenReader, RearLidarOnRequestLooksBack) {
+TEST(CarmenReader, TheRearLidarIsReadOnRequest) {
   CarmenOptions options = four_beams();
   options.lidar = CarmenLidar::kRear;
 
@@ -279,7 +279,7 @@ TEST(CarmenReader, BadLinesAreNamedCountedAndLeftOut) {
               ::testing::Contains("bad.clf:3: skipped: not a number: range 1 of 4 is \"x\""));
 }
 
-TEST(CarmenReader, RangesThatAreNoMetresAreRefusedUnlessTheirUnitIsGiven) {
+TEST(CarmenReader, RangesThatAreNotInMetresAreRefusedUnlessTheirUnitIsGiven) {
   std::string text;
   for (int i = 1; i <= 3; ++i)
     text += "FLASER 4 412 390 380 512 0 0 0 0 0 0 " + std::to_string(i) + " h 0\n";
@@ -292,7 +292,7 @@ TEST(CarmenReader, RangesThatAreNoMetresAreRefusedUnlessTheirUnitIsGiven) {
               1e-5);
 }
 
-TEST(CarmenReader, ATimeOfAnotherYearCostsItsOwnScanOnly) {
+TEST(CarmenReader, ATimeOfAnotherYearLosesItsOwnScanOnly) {
   std::string text = "FLASER 4 1 1 1 1 0 0 0 0 0 0 0 h 0\n";
   for (int i = 1; i <= 5; ++i)
     text += "FLASER 4 1 1 1 1 0 0 0 0 0 0 100000000" + std::to_string(i) + " h 0\n";
@@ -302,7 +302,7 @@ TEST(CarmenReader, ATimeOfAnotherYearCostsItsOwnScanOnly) {
   EXPECT_EQ(report.skipped_by_kind().at("bad time"), 1);
 }
 
-TEST(CarmenReader, AnglesThatAreAssumedAreSaid) {
+TEST(CarmenReader, AssumedAnglesAreReported) {
   const auto file = write_file("log.clf", scan_line(180, 1.0) + scan_line(180, 2.0));
   ImportReport report{file, AddressUnit::kLine};
   read_carmen_log(file, {}, report);

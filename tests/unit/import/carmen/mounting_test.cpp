@@ -42,13 +42,13 @@ void expect_is(const Se2& pose, double x_m, double y_m, double yaw_rad) {
   EXPECT_NEAR(pose.theta(), yaw_rad, 1e-9);
 }
 
-TEST(Mounting, IsThatOfNearlyAllLines) {
+TEST(Mounting, IsThatOfTheMajorityOfLines) {
   const auto [mounting, notes] = find(lines({0.2, -0.1, 0.3}), {});
   expect_is(mounting, 0.2, -0.1, 0.3);
   EXPECT_THAT(notes, IsEmpty());
 }
 
-TEST(Mounting, YawsAroundHalfATurnHaveAMiddle) {
+TEST(Mounting, YawsAroundHalfATurnAreAveraged) {
   std::vector<Se2> poses;
   for (int i = 0; i < 100; ++i)
     poses.emplace_back(0.1, 0.0, wrap_angle(radians(180.0) + (i % 2 == 0 ? 1e-4 : -1e-4)));
@@ -57,7 +57,7 @@ TEST(Mounting, YawsAroundHalfATurnHaveAMiddle) {
   EXPECT_THAT(notes, IsEmpty());
 }
 
-TEST(Mounting, ComesFromParametersWhereTheLinesSayNothing) {
+TEST(Mounting, ComesFromParametersWhereTheLinesHaveNone) {
   const std::vector<CarmenMounting> parameters{{kFront, What::kForward, -0.04},
                                                {kFront, What::kSideward, 0.01},
                                                {kFront, What::kAngle, 0.02},
@@ -77,14 +77,14 @@ TEST(Mounting, TheLastOfAParametersValuesCounts) {
       0.0, 0.0);
 }
 
-TEST(Mounting, LinesThatContradictTheParametersWinAndItIsSaid) {
+TEST(Mounting, LinesThatContradictTheParametersWinWithANote) {
   const auto [mounting, notes] = find(lines({0.2, 0, 0}), {{kFront, What::kForward, 0.1}});
   expect_is(mounting, 0.2, 0.0, 0.0);
   EXPECT_THAT(notes, ElementsAre(HasSubstr("the PARAM lines x 0.100 m")));
   EXPECT_THAT(find(lines({0.2, 0, 0}), {{kFront, What::kForward, 0.205}}).notes, IsEmpty());
 }
 
-TEST(Mounting, ThatNobodySaysIsTheOriginAndItIsSaid) {
+TEST(Mounting, AnUnknownMountingIsTheOriginWithANote) {
   EXPECT_THAT(find(lines({}), {}).notes, ElementsAre(HasSubstr("are equal")));
   const auto [mounting, notes] = find({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {});
   expect_is(mounting, 0.0, 0.0, 0.0);

@@ -36,7 +36,7 @@ int jumps(int scan) {
   return 1000 + 200 * scan + (scan % 2 == 0 ? 5000 : 0);
 }
 
-TEST(Stamps, IpcIsTakenWhenItAdvances) {
+TEST(Stamps, IpcTimesAreUsedIfTheyAdvance) {
   ImportReport report{"log", AddressUnit::kLine};
   EXPECT_EQ(choose_stamps(times(advances, advances), {}, report), CarmenStamps::kIpc);
   EXPECT_EQ(choose_stamps(times(advances, stands), {}, report), CarmenStamps::kIpc);
@@ -51,7 +51,7 @@ TEST(Stamps, IpcIsTakenWhenItAdvances) {
   EXPECT_THAT(report.notes(), IsEmpty());
 }
 
-TEST(Stamps, TheLoggersAreTakenWhenIpcStandsStillOrJumps) {
+TEST(Stamps, LoggerTimesAreUsedIfIpcTimesStandStillOrJump) {
   for (const Clock& ipc : {Clock{stands}, Clock{jumps}}) {
     ImportReport report{"log", AddressUnit::kLine};
     EXPECT_EQ(choose_stamps(times(ipc, advances), {}, report), CarmenStamps::kLogger);

@@ -50,7 +50,7 @@ double none(std::mt19937& /*random*/) {
   return std::nan("");
 }
 
-TEST(NoReturn, APileUpAtOneRangeIsFoundWhateverNoiseAndSteps) {
+TEST(NoReturn, ACodeForNoReturnIsFoundWhateverNoiseAndResolution) {
   for (const double code_m : {8.0, 29.9, 50.0, 81.91}) {
     for (const double sigma_m : {0.0, 0.01, 0.05}) {
       for (const double step_m : {0.001, 0.01, 0.05, 0.1}) {
@@ -65,7 +65,7 @@ TEST(NoReturn, APileUpAtOneRangeIsFoundWhateverNoiseAndSteps) {
   }
 }
 
-TEST(NoReturn, ASickHasSeveralCodes) {
+TEST(NoReturn, SeveralCodesOfASickAreFound) {
   const auto scans = hall(60.0, 0.01, 0.01, [](std::mt19937& random) {
     const auto kind = random() % 20;
     return kind < 2 ? 81.83 : kind < 5 ? 81.87 : 81.91;
@@ -77,7 +77,7 @@ TEST(NoReturn, ASickHasSeveralCodes) {
   EXPECT_THAT(code->codes_m, ElementsAre(81.83, 81.87, 81.91));
 }
 
-TEST(NoReturn, TheFarthestWallsAreNone) {
+TEST(NoReturn, TheFarthestWallsAreNoCode) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     for (const double sigma_m : {0.0, 0.003, 0.01, 0.05}) {
       for (const double step_m : {0.001, 0.01, 0.05, 0.1}) {
@@ -92,7 +92,7 @@ TEST(NoReturn, TheFarthestWallsAreNone) {
   EXPECT_FALSE(find_no_return_code({}));
 }
 
-TEST(NoReturn, WhatAStandingRobotSeesIsNone) {
+TEST(NoReturn, AStandingRobotsConstantRangesAreNoCode) {
   for (const double step_m : {0.001, 0.01, 0.05}) {
     const auto one = hall(100.0, 0.003, step_m, none);
     const std::vector<LidarScan> standing(200, one.front());
@@ -100,7 +100,7 @@ TEST(NoReturn, WhatAStandingRobotSeesIsNone) {
   }
 }
 
-TEST(NoReturn, IsMarkedSaidAndWrittenIntoTheRobot) {
+TEST(NoReturn, IsReplacedReportedAndWrittenIntoTheRobotFile) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kDriven);
   edit_ranges(log, [](float range_m, std::size_t beam) {
     return std::isinf(range_m) || beam % 15 == 0 ? 50.0F : beam == 1 ? 0.0F : range_m;
@@ -118,7 +118,7 @@ TEST(NoReturn, IsMarkedSaidAndWrittenIntoTheRobot) {
                                           HasSubstr("ranges of 0 m (61 of")));
 }
 
-TEST(NoReturn, ACleanLogGetsTheUsualLimitAndNoNote) {
+TEST(NoReturn, ALogWithoutACodeGetsTheDefaultLimitAndNoNote) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kDriven);
   ImportReport report{"log", AddressUnit::kLine};
 
@@ -128,7 +128,7 @@ TEST(NoReturn, ACleanLogGetsTheUsualLimitAndNoNote) {
   EXPECT_THAT(report.notes(), IsEmpty());
 }
 
-TEST(NoReturn, AGivenLimitIsTakenAndNothingIsLookedFor) {
+TEST(NoReturn, AConfiguredLimitIsUsedWithoutASearch) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kDriven);
   edit_ranges(log,
               [](float range_m, std::size_t beam) { return beam % 30 == 0 ? 8.19F : range_m; });
@@ -142,7 +142,7 @@ TEST(NoReturn, AGivenLimitIsTakenAndNothingIsLookedFor) {
   EXPECT_THAT(report.notes(), IsEmpty());
 }
 
-TEST(NoReturn, WithoutAnyLimitTheLongestRangeIsIt) {
+TEST(NoReturn, WithoutALimitTheLongestRangeIsUsed) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kDriven);
   ImportReport report{"log", AddressUnit::kLine};
 
@@ -158,7 +158,7 @@ TEST(NoReturn, WithoutAnyLimitTheLongestRangeIsIt) {
   EXPECT_THAT(report.notes(), ElementsAre(HasSubstr("written as the maximum")));
 }
 
-TEST(NoReturn, OfARotatingLidarIs0AndScansWithoutACodeStayAsTheyAre) {
+TEST(NoReturn, ARotatingLidarsCodeIsZeroAndOtherScansAreUnchanged) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kDriven);
   edit_ranges(log, [](float range_m, std::size_t) { return std::isinf(range_m) ? 5.0F : range_m; });
   for (ImportedScan& scan : log.scans)

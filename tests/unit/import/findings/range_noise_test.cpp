@@ -37,7 +37,7 @@ TEST(WallScatter, IsTheRangeNoiseFromMillimetresToDecimetres) {
     EXPECT_NEAR(estimated_sigma_m(sigma_m), sigma_m, 0.1 * sigma_m) << sigma_m;
 }
 
-TEST(WallScatter, ClutterInMoreThanHalfOfTheBeamsIsNoNoise) {
+TEST(WallScatter, ClutterInHalfOfTheBeamsDoesNotRaiseTheNoise) {
   for (const double sigma_m : {0.005, 0.02}) {
     std::mt19937 random{9};
     std::uniform_real_distribution<double> depth{-1.0, 1.0};
@@ -56,12 +56,12 @@ TEST(WallScatter, ClutterInMoreThanHalfOfTheBeamsIsNoNoise) {
   }
 }
 
-TEST(WallScatter, ContainsThatOfRounding) {
+TEST(WallScatter, IncludesRounding) {
   EXPECT_NEAR(estimated_sigma_m(0.0, 0.01), 0.01 / std::sqrt(12.0), 5e-4);
   EXPECT_NEAR(estimated_sigma_m(0.01, 0.05), std::hypot(0.01, 0.05 / std::sqrt(12.0)), 2e-3);
 }
 
-TEST(WallScatter, MissingRangesAreLeftOutAndFewGiveNothing) {
+TEST(WallScatter, MissingRangesAreSkippedAndTooFewGiveNothing) {
   std::mt19937 random{3};
   LidarScan scan = room(0.01, 1e-3, random);
   WallScatter few;

@@ -32,7 +32,7 @@ TEST(ReversedOdometry, BackingUpThatIsCountedAsForwardIsFound) {
   EXPECT_NEAR(steps[5].distance_m, 0.05, 1e-9);
 }
 
-TEST(ReversedOdometry, RightOdometryIsLeftInPeace) {
+TEST(ReversedOdometry, CorrectOdometryIsUnchanged) {
   EXPECT_THAT(find_reversed_steps(drive(to_and_fro(), CountedAs::kDriven)), IsEmpty());
 }
 
@@ -54,7 +54,7 @@ TEST(ReversedOdometry, ABareCorridorDecidesNothing) {
   EXPECT_THAT(find_reversed_steps(log), IsEmpty());
 }
 
-TEST(ReversedOdometry, StepsThatDecideNothingFollowThoseAroundThem) {
+TEST(ReversedOdometry, UndecidedStepsFollowTheirNeighbours) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kForward);
   // The scans of five steps in the middle of backing up see hardly anything.
   for (std::size_t i = 28; i < 33; ++i) {
@@ -65,7 +65,7 @@ TEST(ReversedOdometry, StepsThatDecideNothingFollowThoseAroundThem) {
   EXPECT_THAT(find_reversed_steps(log), SizeIs(20));
 }
 
-TEST(ReversedOdometry, IsMendedOnRequestAndSaidAlways) {
+TEST(ReversedOdometry, IsCorrectedOnRequestAndAlwaysReported) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kForward);
   const Se2 wrong_end = log.odometry.back().pose;
   ImportReport named{"log", AddressUnit::kLine};

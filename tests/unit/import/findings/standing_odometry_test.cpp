@@ -33,7 +33,7 @@ TEST(StandingOdometry, IsFoundWhenTheScansChange) {
   EXPECT_THAT(notes_of(log), Contains(HasSubstr("odometry says nothing: all 61 poses are equal")));
 }
 
-TEST(StandingOdometry, ARobotThatMovesOrReallyStandsHasNone) {
+TEST(StandingOdometry, ARobotThatMovesOrReallyStandsIsNotReported) {
   const ImportedLog moving = drive(to_and_fro(), CountedAs::kDriven);
   EXPECT_FALSE(change_of_scans_while_standing_m(moving));
   EXPECT_THAT(notes_of(moving), Not(Contains(HasSubstr("odometry says nothing"))));

@@ -52,7 +52,7 @@ TEST(LogOutput, RobotFileIsAConfiguration) {
   EXPECT_NEAR(config.robot.lidar.rate_hz, 2.0 / 1.999999, 1e-9);
 }
 
-TEST(LogOutput, WhatWasFoundIsACommentOfTheRobotFile) {
+TEST(LogOutput, FindingsAreCommentsOfTheRobotFile) {
   ImportReport report{"small.clf", AddressUnit::kLine};
   const ImportedLog log = small_log(report);
   report.note("ranges pile up at 50 m");

@@ -57,33 +57,35 @@ TEST(KeepAscending, ALossOfManyRecordsIsSaidWithWhatToDo) {
   }
 }
 
-TEST(SpreadOverGaps, StampsThatAreCutOffSpreadUntilTheNextOne) {
+TEST(SpreadOverGaps, TruncatedStampsAreSpreadUntilTheNextOne) {
   EXPECT_EQ(spread_over_gaps(times({100, 100, 200, 200, 300, 300})),
             times({100, 150, 200, 250, 275, 300}));
 }
 
-TEST(SpreadOverGaps, ABurstAfterAStallSpreadsOverTheStall) {
+TEST(SpreadOverGaps, ABurstAfterAStallIsSpreadOverTheStall) {
   EXPECT_EQ(spread_over_gaps(times({100, 200, 600, 600, 600, 600, 700})),
             times({100, 200, 300, 400, 500, 600, 700}));
 }
 
-TEST(SpreadOverGaps, APauseIsNotFilled) {
+TEST(SpreadOverGaps, APauseWithoutRecordsIsKept) {
   EXPECT_EQ(spread_over_gaps(times({100, 100, 60'000'100})), times({100, 1'000'100, 60'000'100}));
 }
 
-TEST(SpreadOverGaps, OtherStampsStayAsTheyAre) {
+TEST(SpreadOverGaps, DistinctStampsAreUnchanged) {
   EXPECT_EQ(spread_over_gaps(times({5, 7, 6'000'000, 9})), times({5, 7, 6'000'000, 9}));
 }
 
-TEST(SettledOrder, RecordsThatOvertakeEachOtherChangePlaces) {
-  EXPECT_THAT(settled_order(times({1, 2, 3})), ElementsAre(0, 1, 2));
-  EXPECT_THAT(settled_order(times({1000, 150'900, 150'000, 300'000, 290'000, 280'000})),
+TEST(OrderWithinTolerance, SlightlyDisorderedRecordsAreSorted) {
+  EXPECT_THAT(order_within_tolerance(times({1, 2, 3})), ElementsAre(0, 1, 2));
+  EXPECT_THAT(order_within_tolerance(times({1000, 150'900, 150'000, 300'000, 290'000, 280'000})),
               ElementsAre(0, 2, 1, 5, 4, 3));
-  EXPECT_THAT(settled_order(times({5, 5, 5})), ElementsAre(0, 1, 2)) << "equal ones keep theirs";
+  EXPECT_THAT(order_within_tolerance(times({5, 5, 5})), ElementsAre(0, 1, 2))
+      << "equal ones keep theirs";
 }
 
-TEST(SettledOrder, ALargeStepBackIsAnotherFault) {
-  EXPECT_THAT(settled_order(times({1'000'000, 2'000'000, 1'500'000})), ElementsAre(0, 1, 2));
+TEST(OrderWithinTolerance, ALargeStepBackIsKept) {
+  EXPECT_THAT(order_within_tolerance(times({1'000'000, 2'000'000, 1'500'000})),
+              ElementsAre(0, 1, 2));
 }
 
 /// Length of the longest ascending subsequence by trying all of them.

@@ -38,7 +38,7 @@ Result put(const ChannelClock& lidar, const ChannelClock& odometry, std::int64_t
   return {poses[0].time, report.notes()};
 }
 
-TEST(Clocks, AnotherClockIsShiftedByTheLoggersTimes) {
+TEST(Clocks, StampsOfAnotherClockAreShiftedByTheLogTimes) {
   // Odometry's clock began with its microcontroller, the LiDAR's is the host's.
   const auto [time, notes] = put(channel(5'000 * kSecond_us, 0),
                                  channel(3 * kSecond_us, 4'997 * kSecond_us), 10 * kSecond_us);
@@ -47,7 +47,7 @@ TEST(Clocks, AnotherClockIsShiftedByTheLoggersTimes) {
   EXPECT_THAT(notes, ElementsAre(HasSubstr("4997.000 s apart by the logger's times")));
 }
 
-TEST(Clocks, OneClockIsLeftAsItIs) {
+TEST(Clocks, StampsOfOneClockAreUnchanged) {
   const ChannelClock lidar = channel(5'000 * kSecond_us, 0);
   const auto [time, notes] = put(lidar, channel(5'000 * kSecond_us, 400'000), 10 * kSecond_us);
   EXPECT_EQ(time, timestamp_from_us(10 * kSecond_us)) << "a late driver is no other clock";

@@ -105,7 +105,7 @@ TEST(MbotReader, RotatingScansAreKeptAsTheyAre) {
   EXPECT_EQ(report.num_skipped(), 0);
 }
 
-TEST(MbotReader, TicksBecomePoses) {
+TEST(MbotReader, EncoderTicksBecomePoses) {
   const auto [log, report] = read({ticks_event(kStart_us, 7, 7), rotating_event(kStart_us),
                                    ticks_event(kStart_us + 500'000, 207, 207)},
                                   encoder_options());
@@ -115,7 +115,7 @@ TEST(MbotReader, TicksBecomePoses) {
   EXPECT_EQ(log.robot.base.wheel_separation_m, 0.1);
 }
 
-TEST(MbotReader, OdometryThatStartsLateIsHeldBackToTheFirstScan) {
+TEST(MbotReader, OdometryThatStartsLateIsExtendedBackToTheFirstScan) {
   const auto [log, report] =
       read({rotating_event(kStart_us), ticks_event(kStart_us + 127'000, 0, 0)}, encoder_options());
 
@@ -124,7 +124,7 @@ TEST(MbotReader, OdometryThatStartsLateIsHeldBackToTheFirstScan) {
   EXPECT_THAT(report.notes(), Contains(HasSubstr("0.127 s after the first scan")));
 }
 
-TEST(MbotReader, TheLastBeamIsCoveredToo) {
+TEST(MbotReader, OdometryCoversTheLastBeamOfAScan) {
   const auto [log, report] = read(
       {ticks_event(kStart_us - 1, 0, 0), ticks_event(kStart_us, 5, 5), rotating_event(kStart_us)},
       encoder_options());
@@ -164,7 +164,7 @@ TEST(MbotReader, PosesOfEitherTypeAreOdometryOrReference) {
   EXPECT_EQ(log.reference[0].pose.x(), 8.0);
 }
 
-TEST(MbotReader, PlanarScansBecomeRep117) {
+TEST(MbotReader, PlanarScansFollowRep117) {
   MbotOptions options = encoder_options();
   options.range_max_m = 6.0;
   const auto [log, report] =
@@ -176,7 +176,7 @@ TEST(MbotReader, PlanarScansBecomeRep117) {
   EXPECT_TRUE(std::isnan(scan.ranges[2]));
 }
 
-TEST(MbotReader, ABeamThatIsNaNCostsNoScan) {
+TEST(MbotReader, ANanRangeInvalidatesItsBeamOnly) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const auto [log, report] = read({ticks_event(kStart_us, 0, 0), rotating_event(kStart_us, kNan),
                                    rotating_event(kStart_us + 200'000)},
@@ -284,7 +284,7 @@ TEST(MbotReader, WithoutOdometryThereIsAClearSentence) {
               HasSubstr("there are poses in POSE, encoder ticks in none"));
 }
 
-TEST(MbotReader, OdometryOfAnotherClockIsPutOntoTheLidars) {
+TEST(MbotReader, OdometryOfAnotherClockIsShiftedToTheLidarsClock) {
   std::vector<Message> events;
   for (int i = 0; i < 10; ++i) {
     events.push_back(rotating_event(kStart_us + 200'000 * i));

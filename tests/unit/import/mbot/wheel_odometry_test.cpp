@@ -52,7 +52,7 @@ TEST(WheelOdometry, CountersMayWrapAround) {
   EXPECT_EQ(report.num_skipped(), 0);
 }
 
-TEST(WheelOdometry, ACounterResetIsNamedAndMovesNothing) {
+TEST(WheelOdometry, ACounterResetIsReportedAndIsNoMotion) {
   ImportReport report{"log", AddressUnit::kByte};
   const std::vector ticks{reading(0, 90000, 90000), reading(0.1, 90100, 90100), reading(0.2, 0, 0),
                           reading(0.3, 100, 100)};

@@ -84,7 +84,7 @@ Faulty with(const FaultConfig& config, std::uint64_t seed = 1) {
   return faulty;
 }
 
-TEST(Faults, WithoutAnyTheLogStaysAsItIs) {
+TEST(Faults, WithoutFaultsTheLogIsUnchanged) {
   EXPECT_EQ(with({}).log, drive());
 }
 
@@ -104,7 +104,7 @@ void expect_share(const FaultConfig& config, const std::string& fault, double sh
   EXPECT_NEAR(found, share * count, slack(share, count)) << fault;
 }
 
-TEST(Faults, SharesAreKept) {
+TEST(Faults, MessagesAreAffectedInTheConfiguredShare) {
   constexpr double kSightings = kFrames * kMarkersPerFrame;
   expect_share({.wrong_id_share = 0.05}, "wrong ids", 0.05, kSightings);
   expect_share({.ghost_share = 0.1}, "ghosts", 0.1, kFrames);
@@ -112,7 +112,7 @@ TEST(Faults, SharesAreKept) {
   expect_share({.dropped_share = 0.5}, "sightings dropped", 0.5, kSightings);
 }
 
-TEST(Faults, AWrongIdIsAnotherMarkersAndNothingElseChanges) {
+TEST(Faults, AWrongIdIsThatOfAnotherMarkerAndNothingElseChanges) {
   const Faulty faulty = with({.wrong_id_share = 1.0});
   const marker_detections_t frame = faulty.frame(5);
   for (const auto& [detection, id] :
@@ -124,7 +124,7 @@ TEST(Faults, AWrongIdIsAnotherMarkersAndNothingElseChanges) {
   EXPECT_EQ(frame.detections[0].position_m[0], 6.0);
 }
 
-TEST(Faults, FlippedIsTheOtherSolution) {
+TEST(Faults, AFlippedMarkerHasTheSecondPoseSolution) {
   const marker_detection_t flipped = with({.flipped_share = 1.0}).frame(3).detections[0];
   EXPECT_EQ(flipped.id, 3);
   EXPECT_EQ(flipped.position_m[0], -4.0);
@@ -133,7 +133,7 @@ TEST(Faults, FlippedIsTheOtherSolution) {
   EXPECT_EQ(flipped.reprojection_error_px, 0.9);
 }
 
-TEST(Faults, AGhostIsAdded) {
+TEST(Faults, AFalseDetectionIsAdded) {
   const marker_detections_t frame = with({.ghost_share = 1.0}).frame(3);
   EXPECT_EQ(frame.num_detections, 3);
   EXPECT_EQ(frame.detections[0].id, 3);
@@ -150,7 +150,7 @@ TEST(Faults, IdsCanBeMadeEqual) {
       "id,instance,x_m\n2,0,1.5\n2,1,3.5\n1,0,4.5\n");
 }
 
-TEST(Faults, ADarkSpellShowsEmptyFramesAndADeadCameraNone) {
+TEST(Faults, DarknessGivesEmptyFramesAndADeadCameraNone) {
   const Faulty dark = with({.markers_off_s = {1.0, 2.0}});
   EXPECT_EQ(dark.log.size(), drive().size());
   EXPECT_EQ(dark.frame(9).num_detections, 2);
@@ -200,7 +200,7 @@ TEST(FaultyRun, WritesACompleteRunFolder) {
   EXPECT_EQ(first.message->detections[1].id, 0);
 }
 
-TEST(FaultyRun, ARecordedRunIsThereAndIsNotOverwritten) {
+TEST(FaultyRun, TheRecordedRunIsNotOverwritten) {
   const TemporaryFolder folder;
   const Variant variant{.name = "equal", .faults = {.every_id = 0}};
   EXPECT_THROW(write_faulty_run(folder.path() / "none", variant, folder.path() / "out"),
@@ -223,7 +223,7 @@ std::string problem_of(const std::filesystem::path& run_dir, const std::filesyst
   return "";
 }
 
-TEST(FaultyRun, GetsNoFaultsTwice) {
+TEST(FaultyRun, FaultsAreNotInjectedTwice) {
   const TemporaryFolder folder;
   folder.file("run/run.lcm", "");
   const auto faulty = folder.path() / "faulty";
@@ -235,7 +235,7 @@ TEST(FaultyRun, GetsNoFaultsTwice) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "twice"));
 }
 
-TEST(FaultyRun, TakesNoOtherRunsPlace) {
+TEST(FaultyRun, AnotherRunsFolderIsNotOverwritten) {
   const TemporaryFolder folder;
   folder.file("run/run.lcm", "");
   const auto other = folder.file("other/run.lcm", "another recording");
@@ -245,7 +245,7 @@ TEST(FaultyRun, TakesNoOtherRunsPlace) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "other" / kMark));
 }
 
-TEST(Variants, WrongOnesAreNamed) {
+TEST(Variants, InvalidVariantsAreNamed) {
   const TemporaryFolder folder;
   const auto problem_of = [&](const std::string& text) -> std::string {
     try {
@@ -264,7 +264,7 @@ TEST(Variants, WrongOnesAreNamed) {
               HasSubstr("did you mean"));
 }
 
-TEST(Variants, TheFileInDeployIsRight) {
+TEST(Variants, TheFileInDeployIsValid) {
   const auto file =
       load_config<VariantsFile>({{WAYMARK_SOURCE_DIR "/deploy/faults/messages.toml"}, {}});
   EXPECT_EQ(file.named("wrong_ids").faults.wrong_id_share, 0.05);

@@ -72,7 +72,7 @@ std::string error_of(const BoardOptions& options) {
   return "no error";
 }
 
-TEST(Charuco, WhatMakesNoBoardIsRefused) {
+TEST(Charuco, InvalidBoardsAreRefused) {
   for (const char* squares : {"", "7", "7x", "x5", "7x5x3", "2x5", "7x-5", "7x61", "axb"})
     EXPECT_THAT(error_of({.squares = squares}), HasSubstr("--squares: got")) << squares;
   for (const double square_m : {0.0, -1.0, 1.1, std::nan("")})

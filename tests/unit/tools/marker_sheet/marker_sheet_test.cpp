@@ -46,7 +46,7 @@ TEST(MarkerSheet, TheDetectorReadsWhatIsDrawnAtItsPlaceAndSize) {
   EXPECT_NEAR(corners[0][2].x, 98 + 391, 1.0);
 }
 
-TEST(MarkerSheet, ThePictureKnowsItsSize) {
+TEST(MarkerSheet, ThePictureFileHasItsPhysicalSize) {
   const evaluate::TemporaryFolder folder;
   const auto file =
       write_sheets({"DICT_4X4_50", 0.1, 1, 100.0}, {7}, folder.path() / "sheets").front();
@@ -66,7 +66,7 @@ TEST(MarkerSheet, NothingIsWrittenWhereOneIdIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "sheets"));
 }
 
-TEST(MarkerSheet, WhatMakesNoMarkerIsRefused) {
+TEST(MarkerSheet, InvalidMarkersAreRefused) {
   EXPECT_THAT(error_of({"DICT_9X9", 0.4, 2, 300}, 0), HasSubstr("expected one of DICT_4X4_50"));
   EXPECT_THAT(error_of({"DICT_6X6_250", 0.4, 2, 300}, 250), HasSubstr("ids 0 to 249, got 250"));
   EXPECT_THAT(error_of({"DICT_6X6_250", 0.4, 0, 300}, 0), HasSubstr("--quiet-zone-modules"));

@@ -145,7 +145,7 @@ TEST(PdfPages, TheRulerHasAHundredMillimetres) {
   EXPECT_NEAR(length_px / kPxPerMm, kRuler_mm, kSame_mm);
 }
 
-TEST(PdfPages, TilesThatAreCutAndPutTogetherReadBack) {
+TEST(PdfPages, TiledPagesReadBackWhenAssembled) {
   if (!has_poppler())
     GTEST_SKIP() << "no pdftoppm here; deploy/install-deps.sh --tests installs it";
   constexpr double kPxPerMm = 5.0;
@@ -196,7 +196,7 @@ std::string error_of(const PdfOptions& options, int id) {
   return "no error";
 }
 
-TEST(PdfPages, WhatDoesNotFitOrMakesNoMarkerIsRefused) {
+TEST(PdfPages, MarkersThatDoNotFitOrAreInvalidAreRefused) {
   EXPECT_THAT(error_of(options_of("DICT_6X6_250", 0.4, "A4", false), 0),
               HasSubstr("A4 has 190 x 277 mm inside its margins: "
                         "give --tile (then it is 12 pages"));
@@ -209,7 +209,7 @@ TEST(PdfPages, WhatDoesNotFitOrMakesNoMarkerIsRefused) {
   EXPECT_EQ(error_of(options_of("DICT_6X6_250", 0.1, "A4", false), 0), "no error");
 }
 
-TEST(PdfPages, APageIsTurnedWhereThatNeedsFewer) {
+TEST(PdfPages, PagesAreRotatedIfThatNeedsFewer) {
   const SheetLayout wide{.width_mm = 250.0, .height_mm = 100.0};
   const Tiling tiling = tiling_of(wide, "A4", false);
   EXPECT_EQ(tiling.page.width_mm, 297.0);

@@ -69,7 +69,7 @@ std::vector<double> sigmas(const PlacementInput& input) {
   return place_markers(input, kNoTarget_m).advice.now_m;
 }
 
-TEST(Placement, ScanInABareCorridorSaysNothingAlongIt) {
+TEST(Placement, AScanInABareCorridorHasNoInformationAlongIt) {
   const PlacementInput input = drive(20.0);
   std::vector<Eigen::Vector2d> hits;
   const ObservedAxes observed =
@@ -83,7 +83,7 @@ TEST(Placement, ScanInABareCorridorSaysNothingAlongIt) {
   EXPECT_THAT(hits, Not(IsEmpty()));
 }
 
-TEST(Placement, ScanAtTheEndOfACorridorShowsEveryAxis) {
+TEST(Placement, AScanAtTheEndOfACorridorObservesEveryAxis) {
   const PlacementInput input = drive(20.0, true);
   std::vector<Eigen::Vector2d> hits;
   const OccupiedWalls walls{input.image};
@@ -134,19 +134,20 @@ TEST(Placement, CovarianceOfMeasuredVariablesIsTheInverseOfTheirInformation) {
   const Variable other{VariableKind::kLandmark, 0};
   known.add(other, {{PoseCovariance::kPose, Eigen::Matrix3d::Identity()}},
             0.01 * Eigen::Matrix3d::Identity());
-  const Eigen::MatrixXd by_pose = Eigen::Vector3d{2.0, -1.0, 3.0}.asDiagonal();
-  const Eigen::MatrixXd by_anchor = (Eigen::Matrix3d{} << 1, 2, 0, 0, 1, 0, 4, 0, 1).finished();
+  const Eigen::MatrixXd jacobian_pose = Eigen::Vector3d{2.0, -1.0, 3.0}.asDiagonal();
+  const Eigen::MatrixXd jacobian_anchor =
+      (Eigen::Matrix3d{} << 1, 2, 0, 0, 1, 0, 4, 0, 1).finished();
   known.drop(anchor);
   known.add(anchor, {{PoseCovariance::kPose, Eigen::Matrix3d::Identity()}},
             0.04 * Eigen::Matrix3d::Identity());
-  known.measure({{PoseCovariance::kPose, by_pose}, {anchor, by_anchor}});
+  known.measure({{PoseCovariance::kPose, jacobian_pose}, {anchor, jacobian_anchor}});
   // Oracle: pose ~ 0.04, anchor - pose ~ 0.04, and the measurement, as one information matrix.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   information.topLeftCorner<3, 3>().diagonal().array() += 1.0 / 0.04;
   Eigen::Matrix<double, 3, 6> rows;
   rows << -Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity();
   information += rows.transpose() * rows / 0.04;
-  rows << by_pose, by_anchor;
+  rows << jacobian_pose, jacobian_anchor;
   information += rows.transpose() * rows;
   const Eigen::Matrix3d expected =
       Eigen::Matrix<double, 6, 6>{information.inverse()}.topLeftCorner<3, 3>();
@@ -174,7 +175,7 @@ TEST(Placement, PlacesLieOnWallsAndFaceTheRobot) {
   }
 }
 
-TEST(Placement, NothingIsAdvisedWhereTheTargetIsMet) {
+TEST(Placement, WithTheTargetMetNoMarkerIsAdvised) {
   PlacementInput input = drive(12.0);
   const Placement placement = place_markers(input, 1.0);
   EXPECT_TRUE(placement.is_met());
@@ -203,7 +204,7 @@ TEST(Placement, AdvisedMarkersMeetTheTargetAndAllOfThemAreNeeded) {
   }
 }
 
-TEST(Placement, AScaleThatNobodyKnowsIsNamedAsTheLimit) {
+TEST(Placement, AnUnobservedScaleIsNamedAsTheLimit) {
   PlacementInput input = drive(16.0);
   input.config.robot.camera.focal_sigma = 0.02;
   input.config.slam.waymark.markers.perspective_max_sigma = 1e-9;  // perspective says nothing
@@ -229,14 +230,14 @@ TEST(Placement, IdsThatAreInUseAreNotGivenAway) {
               testing::StartsWith("id,instance,x_m,y_m,yaw_rad,sigma_x_m"));
 }
 
-TEST(Placement, SmallModulesAreReadSeldom) {
+TEST(Placement, SmallModulesAreDetectedRarely) {
   EXPECT_EQ(read_share_of(0.5), 0.0);
   EXPECT_EQ(read_share_of(4.0), 1.0);
   for (double module_px = 0.5; module_px < 4.0; module_px += 0.1)
     EXPECT_LE(read_share_of(module_px), read_share_of(module_px + 0.1));
 }
 
-TEST(Placement, WhatIsNoRunIsRefusedInOneSentence) {
+TEST(Placement, AFolderThatIsNoRunIsRefusedInOneSentence) {
   EXPECT_THROW(read_placement_input("/nowhere.map.lcm", ""), std::runtime_error);
   EXPECT_THROW(read_placement_input(std::filesystem::temp_directory_path(), ""),
                evaluate::InputError);

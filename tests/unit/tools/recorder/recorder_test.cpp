@@ -32,14 +32,14 @@ TEST_F(Recorder, AnEarlierLogIsNotReplaced) {
   EXPECT_EQ(std::filesystem::file_size(log), 18U);
 }
 
-TEST_F(Recorder, WhatACrashedRecordingLeftIsNotReplaced) {
+TEST_F(Recorder, AFileOfACrashedRecordingIsNotReplaced) {
   const auto part = folder_.file("run.lcm.part", "an hour of driving");
   EXPECT_THROW(record(folder_.path() / "run.lcm"), SetupError);
   EXPECT_EQ(std::filesystem::file_size(part), 18U);
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "run.lcm"));
 }
 
-TEST_F(Recorder, AStartThatFailsLeavesNothingInTheWayOfTheNext) {
+TEST_F(Recorder, AFailedStartDoesNotBlockTheNext) {
   {
     const RecorderNode never_joined{
         {.recorder = {}, .out_log = folder_.path() / "run.lcm"}, inbox_, outbox_};

@@ -58,7 +58,7 @@ class HealthText : public ::testing::Test {
   LiveView view_{};
 };
 
-TEST_F(HealthText, NamesWhatHoldsTheWeakAxis) {
+TEST_F(HealthText, NamesWhatObservesTheWeakAxis) {
   EXPECT_EQ(health_reason(view_), "The walls fix the position in every direction.");
   view_.estimate->weak_axis = WeakAxis{.direction = {1, 0, 0}, .source = WeakAxisSource::kMarkers};
   EXPECT_THAT(health_reason(view_), EndsWith("markers measure it."));
@@ -104,7 +104,7 @@ TEST(Board, KeepsAnEvenHistoryOfBoundedSize) {
   }
 }
 
-TEST(Board, WaitsForWhatIsNewerAndNotLonger) {
+TEST(Board, WaitsUntilThereIsANewerView) {
   Board board;
   EXPECT_EQ(board.wait_for_newer(0, std::chrono::milliseconds{1}), nullptr);
   board.post(view_at(1.0, 7), {});
@@ -148,7 +148,7 @@ TEST(LiveFeed, OnlyTilesThatChangedAreNew) {
   EXPECT_EQ(bytes.substr(bytes.size() - 4), std::string(4, 99));
 }
 
-TEST(LiveFeed, AnotherLayoutOfTilesBeginsANewMap) {
+TEST(LiveFeed, AnotherTileLayoutStartsANewMap) {
   Board board;
   LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
   feed.add(tile(0, 10));
@@ -160,7 +160,7 @@ TEST(LiveFeed, AnotherLayoutOfTilesBeginsANewMap) {
   EXPECT_THAT(board.newest()->map->tiles, SizeIs(1));
 }
 
-TEST(LiveFeed, ShowsTheStateThatWasAtATimeOfALog) {
+TEST(LiveFeed, ShowsTheStateAtAGivenTimeOfALog) {
   Board board;
   LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
   for (int i = 0; i <= 100; ++i) {
@@ -177,7 +177,7 @@ TEST(LiveFeed, ShowsTheStateThatWasAtATimeOfALog) {
   EXPECT_EQ(json["history_s"], Json::parse("[0.0, 100.0]"));
 }
 
-TEST(LiveFeed, IsSlowWhileNobodyLooks) {
+TEST(LiveFeed, UpdatesSlowlyWithoutClients) {
   Board board;
   LiveFeed feed{board, "run", LiveFeed::Pace::kWallClock};
   const auto number_after_300_ms = [&] {

@@ -145,7 +145,7 @@ class PageCommandsTest : public PageServerTest {
   httplib::Client commander_{"127.0.0.1", command_port_};
 };
 
-TEST_F(PageCommandsTest, CommandsGoToSlamAndItsAnswerComesBack) {
+TEST_F(PageCommandsTest, CommandsAreForwardedToSlamAndItsReplyReturned) {
   const auto saved = post_command(R"({"command": "save", "name": "day1"})");
   ASSERT_TRUE(saved);
   EXPECT_EQ(saved->status, 200);
@@ -163,7 +163,7 @@ TEST_F(PageCommandsTest, CommandsGoToSlamAndItsAnswerComesBack) {
   EXPECT_EQ(asked_[3].kind, command_t::KIND_RESET);
 }
 
-TEST_F(PageCommandsTest, WhatSlamRefusesOrDoesNotAnswerIsSaid) {
+TEST_F(PageCommandsTest, RefusalsAndTimeoutsAreReported) {
   reply_->state = reply_t::STATE_REFUSED;
   reply_->text = "commands are off";
   const auto refused = post_command(R"({"command": "reset"})");
@@ -173,7 +173,7 @@ TEST_F(PageCommandsTest, WhatSlamRefusesOrDoesNotAnswerIsSaid) {
   EXPECT_EQ(post_command(R"({"command": "reset"})")->status, 504);
 }
 
-TEST_F(PageCommandsTest, WithoutTheTokenNothingIsAsked) {
+TEST_F(PageCommandsTest, WithoutTheTokenNoCommandIsSent) {
   const std::string reset = R"({"command": "reset"})";
   EXPECT_EQ(post_command(reset, "0123456789abcdeX")->status, 401);
   EXPECT_EQ(post_command(reset, "")->status, 401);
@@ -184,7 +184,7 @@ TEST_F(PageCommandsTest, WithoutTheTokenNothingIsAsked) {
   EXPECT_THAT(asked_, ::testing::IsEmpty());
 }
 
-TEST_F(PageCommandsTest, WhatIsNoCommandIsRefused) {
+TEST_F(PageCommandsTest, MalformedCommandsAreRefused) {
   for (const std::string body : {"", "{", "[]", R"({"command": "fly"})", R"({"command": "save"})",
                                  R"({"command": "set-pose", "pose": [1, 2]})",
                                  R"({"command": "set-pose", "pose": [1e999, 2, 3]})",
@@ -212,7 +212,7 @@ TEST_F(PageServerTest, ATakenPortIsASetupError) {
   EXPECT_THROW((PageServer{{.host = "127.0.0.1", .port = port_}, board, "."}), SetupError);
 }
 
-TEST_F(PageServerTest, AnswersGarbageWith4xxAndLivesOn) {
+TEST_F(PageServerTest, AnswersGarbageWith4xxAndKeepsServing) {
   std::mt19937 random{5};
   const std::string good =
       "GET /view?time_s=1 HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
@@ -241,7 +241,7 @@ TEST_F(PageServerTest, AnswersGarbageWith4xxAndLivesOn) {
   EXPECT_EQ(status_of("/view"), 200);
 }
 
-TEST_F(PageServerTest, AClientThatNeverReadsIsCutAndNobodyWaits) {
+TEST_F(PageServerTest, AClientThatNeverReadsIsDisconnectedWithoutBlockingOthers) {
   const int deaf = connect();
   const std::string request = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
   ::send(deaf, request.data(), request.size(), MSG_NOSIGNAL);

@@ -154,7 +154,7 @@ TEST(GmappingEstimator, FollowsOdometryBetweenUpdates) {
   EXPECT_EQ(corrections, 4);  // 4.2 m of odometry
 }
 
-TEST(GmappingEstimator, AnUnreachableScoreLeavesOdometryAndSaysSo) {
+TEST(GmappingEstimator, AnUnreachableMinimumScoreFollowsOdometryAndIsLost) {
   const SyntheticCorridor corridor = room();
   GmappingConfig config;
   config.minimum_score = 1000.0;
@@ -204,7 +204,7 @@ TEST(GmappingEstimator, ResultsDoNotDependOnThreads) {
 }
 
 // Oracle: from the best particle back from parent to parent, as they were published.
-TEST(GmappingEstimator, TheTrajectoryIsTheWayOfTheBestParticlesAncestors) {
+TEST(GmappingEstimator, TheTrajectoryIsThatOfTheBestParticlesAncestors) {
   const SyntheticCorridor corridor = room();
   const auto observations = observations_of(drive(corridor), corridor);
   for (const double resample_threshold : {0.0, 0.99}) {

@@ -59,7 +59,7 @@ TEST(ScanGate, OpensByDistanceTurnOrTime) {
   EXPECT_FALSE((ScanGate{.temporal_update_s = -1.0}.is_open({}, 1000 * second)));
 }
 
-TEST(BellCurve, KeepsItsPromiseEverywhere) {
+TEST(BellCurve, ApproximationErrorIsWithinItsBound) {
   for (const double width : {2.0, 20.0, 30.0}) {
     constexpr double kLimit = 8.0;
     const BellCurve curve{width, kLimit};
@@ -70,7 +70,7 @@ TEST(BellCurve, KeepsItsPromiseEverywhere) {
   }
 }
 
-TEST(Trajectory, BranchesThatNobodyFollowsAreFreed) {
+TEST(Trajectory, DeadBranchesAreFreed) {
   const Trajectory root = appended(nullptr);
   Trajectory a = appended(appended(root));
   const std::weak_ptr<TrajectoryNode> dead = a;
@@ -83,7 +83,7 @@ TEST(Trajectory, BranchesThatNobodyFollowsAreFreed) {
   EXPECT_EQ(common_ancestor({a, b}), b);
 }
 
-TEST(Trajectory, StrangersHaveNoCommonAncestor) {
+TEST(Trajectory, UnrelatedTrajectoriesHaveNoCommonAncestor) {
   EXPECT_EQ(common_ancestor({appended(nullptr), appended(nullptr)}), nullptr);
 }
 
@@ -130,14 +130,14 @@ TEST(PublishedMap, ACellIsOccupiedAboveTheThreshold) {
   EXPECT_EQ((published.along(trajectory).occupancy[{4, 0}]), (OccupancyCell{0, 1}));  // 1 of 4
 }
 
-TEST(PublishedMap, SettlingFreesTheScansAndKeepsTheMap) {
+TEST(PublishedMap, FinalisingFreesTheScansAndKeepsTheMap) {
   PublishedMap published{kFrame, 3.0, 0.25};
   Trajectory trajectory = appended(nullptr, beam_to(0.2));
   const std::weak_ptr<const StoredScan> first = trajectory->scan;
   for (int i = 0; i < 5; ++i)
     trajectory = appended(trajectory, beam_to(0.4));
   const GridMap before = published.along(trajectory);
-  published.settle(trajectory->parent);
+  published.finalise(trajectory->parent);
   EXPECT_TRUE(first.expired());
   const GridMap& after = published.along(trajectory);
   for (int x = -1; x < 12; ++x)

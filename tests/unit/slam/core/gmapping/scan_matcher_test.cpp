@@ -105,7 +105,7 @@ TEST(ScanMatcher, AgreesWithThePlainMatcherAtRandomPoses) {
   }
 }
 
-TEST(ScanMatcher, AScoreToBeatDecidesAsTheWholeScoreDoes) {
+TEST(ScanMatcher, EarlyTerminationGivesTheSameDecisionAsTheFullScore) {
   const MappedRoom room{3};
   Random random{4};
   const std::vector<Beam> beams = beams_to(room_as_seen({0.2, 0.1, 0.3}, random));
@@ -115,16 +115,16 @@ TEST(ScanMatcher, AScoreToBeatDecidesAsTheWholeScoreDoes) {
     const Se2 pose{random.normal(0.2, 0.05), random.normal(0.1, 0.05), random.normal(0.3, 0.05)};
     const double whole = matcher.score(pose);
     const double to_beat = whole + random.normal(0.0, 5.0);
-    const double told = matcher.score(pose, to_beat);
+    const double early = matcher.score(pose, to_beat);
     if (whole > to_beat) {
-      EXPECT_EQ(told, whole);
+      EXPECT_EQ(early, whole);
     } else {
-      EXPECT_LE(told, to_beat);
+      EXPECT_LE(early, to_beat);
     }
   }
 }
 
-TEST(ScanMatcher, AWallBeforeTheHitRefusesItOnlyAsIntended) {
+TEST(ScanMatcher, AWallBeforeTheHitRejectsItOnlyInModeIntended) {
   // Two walls, one sqrt(2) cells behind the other: the far one's free cell is the near one.
   HitMap map;
   add_hit(kFrame, {1.0, 0.0}, map);
@@ -137,7 +137,7 @@ TEST(ScanMatcher, AWallBeforeTheHitRefusesItOnlyAsIntended) {
   EXPECT_EQ(score_here(config, map, beams), 0.0);
 }
 
-TEST(ScanMatcher, SkipsBeamsByTheirPlaceInTheScan) {
+TEST(ScanMatcher, SkipsBeamsByTheirIndexInTheScan) {
   HitMap map;
   add_hit(kFrame, {1.0, 0.0}, map);
   std::vector<Beam> beams = beams_to({{1.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}});
@@ -147,7 +147,7 @@ TEST(ScanMatcher, SkipsBeamsByTheirPlaceInTheScan) {
   EXPECT_NEAR(score_here(config, map, beams), 2.0, kRounding);
 }
 
-TEST(ScanMatcher, ClimbsToWhereExhaustiveSearchEnds) {
+TEST(ScanMatcher, HillClimbFindsTheOptimumOfExhaustiveSearch) {
   const MatcherConfig config;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const MappedRoom room{seed};

@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-TEST(DampedRoot, WhatIsPositiveDefiniteIsNotDamped) {
+TEST(DampedRoot, APositiveDefiniteMatrixIsNotDamped) {
   const Eigen::Matrix2d h{{4.0, 1.0}, {1.0, 3.0}};
   DampedRoot root;
   root.compute(h);
@@ -14,7 +14,7 @@ TEST(DampedRoot, WhatIsPositiveDefiniteIsNotDamped) {
             Eigen::MatrixXd{Eigen::LLT<Eigen::MatrixXd>{h}.matrixL()});
 }
 
-TEST(DampedRoot, WhatRoundingLeftIndefiniteIsSolvedNearlyAsItIs) {
+TEST(DampedRoot, AMatrixThatRoundingMadeIndefiniteIsDampedMinimally) {
   const Eigen::Matrix2d h{{1e20, 1e10}, {1e10, 1.0 - 1e-9}};
   ASSERT_NE(Eigen::LLT<Eigen::MatrixXd>{h}.info(), Eigen::Success);
   DampedRoot root;

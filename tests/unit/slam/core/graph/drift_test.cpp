@@ -29,7 +29,7 @@ Drift drift_of_headings(int keyframes) {
   return drift;
 }
 
-TEST(Drift, EveryErrorOfTheHeadingMovesThePlaceAsFarAsTheWaySince) {
+TEST(Drift, AHeadingErrorMovesThePositionByItsLeverArm) {
   constexpr int kNewest = 30;
   const Drift drift = drift_of_headings(kNewest + 1);
   for (const int since : {0, 7, 25, kNewest}) {
@@ -43,7 +43,7 @@ TEST(Drift, EveryErrorOfTheHeadingMovesThePlaceAsFarAsTheWaySince) {
   }
 }
 
-TEST(Drift, BetweenTwoKeyframesIsWhatCameBetweenThemAsTheNewestOneSeesIt) {
+TEST(Drift, BetweenTwoKeyframesIsTheSumOfTheirStepsAtTheNewestOne) {
   const Drift drift = drift_of_headings(31);
   const Eigen::Matrix3d between = drift.between(7, 25);
   EXPECT_LT((between - (drift.since(7) - drift.since(25))).norm(), 1e-12);
@@ -51,7 +51,7 @@ TEST(Drift, BetweenTwoKeyframesIsWhatCameBetweenThemAsTheNewestOneSeesIt) {
   EXPECT_TRUE(drift.between(9, 9).isZero());
 }
 
-TEST(Drift, IsTheSameInAnotherFrame) {
+TEST(Drift, IsInvariantUnderAChangeOfFrame) {
   Drift drift = drift_of_headings(30);
   const Se2 new_from_old{-40.0, 13.0, 2.0};
   const Eigen::Matrix3d before = drift.since(3);

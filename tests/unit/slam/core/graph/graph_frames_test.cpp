@@ -66,7 +66,7 @@ TEST(GraphFrames, CovariancesAreInTheMapsAxes) {
 }
 
 /// The poses behind the window follow a new calibration with the next solution of the whole graph.
-TEST(GraphFrames, ANewCalibrationIsNoSlipOfPosesThatDoNotFollowItYet) {
+TEST(GraphFrames, AChangeOfTheCalibrationIsNotTakenForASlip) {
   constexpr double kScale = 1.03;
   Graph graph = drive({}, 1e-4, 0.05, kScale);
   Se2 truth;
@@ -80,7 +80,7 @@ TEST(GraphFrames, ANewCalibrationIsNoSlipOfPosesThatDoNotFollowItYet) {
   EXPECT_LT(graph.covariance({}, {})(0, 0), 1.5 * known);
 }
 
-TEST(GraphFrames, AfterAPoseWasPutElsewhereWhatIsMeasuredCountsOnce) {
+TEST(GraphFrames, AfterARelocalisationEachMeasurementCountsOnce) {
   Graph graph = drive({}, 1e-4, 1e-4, 1.0);
   tie_newest_to(graph, graph.state().keyframes.back());
   const Se2 elsewhere{50.0, 0.0, 1.0};

@@ -37,8 +37,8 @@ MarkerMeasurement some_measurement() {
   measurement.base_from_marker = {1.7, 0.4, -1.9};
   measurement.covariance = Eigen::Vector3d{1e-4, 2e-4, 4e-4}.asDiagonal();
   measurement.base_from_camera = {0.08, 0.0, 0.0};
-  measurement.held = 0.4 * Eigen::Matrix3d::Identity();
-  measurement.by_standoff = {0.1, 0.9, 0.0};
+  measurement.jacobian_view = 0.4 * Eigen::Matrix3d::Identity();
+  measurement.jacobian_standoff = {0.1, 0.9, 0.0};
   return measurement;
 }
 
@@ -122,7 +122,7 @@ Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
   return covariance_of(likeliest_kind(residual, noise), noise);
 }
 
-TEST(OdometryMixture, ATurnThatRollingCannotExplainShortensTheWay) {
+TEST(OdometryMixture, ASlippingWheelCorrectsDistanceAndTurnTogether) {
   const Eigen::Matrix3d rolling = Eigen::Vector3d{1e-6, 1e-6, 1e-5}.asDiagonal();
   for (const double turn_rad : {0.05, -0.05}) {
     const Eigen::Matrix3d spins = likeliest_covariance({0.0, 0.0, turn_rad}, rolling);
@@ -165,7 +165,7 @@ TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
   EXPECT_NEAR(1.0 / std::sqrt(h(focal, focal)), kMeasured, 0.1 * kMeasured);
 }
 
-TEST(CalibrationKnowledge, ADescriptionThatHoldsKeepsItsWeight) {
+TEST(CalibrationKnowledge, AConsistentDescriptionKeepsItsWeight) {
   CalibrationKnowledge knowledge{Calibration::Constant(1e-3)};
   knowledge.observe(FocalSighting{1.5e-3, 1e-3});
   Calibration value = Calibration::Zero();
@@ -182,8 +182,8 @@ TEST(CalibrationKnowledge, ADescriptionThatHoldsKeepsItsWeight) {
 
 TEST(OdometryMixture, OdometryThatStandsStillDoesNotHoldARobotThatMoves) {
   const Eigen::Matrix3d standing = 1e-9 * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d believed = likeliest_covariance({0.2, 0.0, 0.0}, standing);
-  EXPECT_GT(std::sqrt(believed(0, 0)), 0.05);
+  const Eigen::Matrix3d estimated = likeliest_covariance({0.2, 0.0, 0.0}, standing);
+  EXPECT_GT(std::sqrt(estimated(0, 0)), 0.05);
   EXPECT_NEAR(std::sqrt(likeliest_covariance({3e-5, 0.0, 0.0}, standing)(0, 0)), std::sqrt(1e-9),
               1e-6);
 }
@@ -235,7 +235,7 @@ class Drive {
   Graph graph_;
 };
 
-TEST(Graph, AWindowKnowsWhatTheWholeGraphKnows) {
+TEST(Graph, TheWindowsEstimateEqualsThatOfTheWholeGraph) {
   Drive whole{100};
   Drive window{6};
   const Eigen::Vector3d apart = pose_difference(window.graph().state().keyframes.back(),
@@ -247,7 +247,7 @@ TEST(Graph, AWindowKnowsWhatTheWholeGraphKnows) {
   EXPECT_LT((windowed - covariance).norm(), 0.05 * covariance.norm());
 }
 
-TEST(Graph, SolvingEverythingRebuildsTheWindowsPrior) {
+TEST(Graph, StepAllRebuildsTheWindowsPrior) {
   Drive window{6};
   Drive whole{100};
   const Se2 before = window.graph().state().keyframes.back();
@@ -259,7 +259,7 @@ TEST(Graph, SolvingEverythingRebuildsTheWindowsPrior) {
   EXPECT_LT((rebuilt - expected).norm(), 0.01 * expected.norm());
 }
 
-TEST(Graph, SolvingEverythingSolvesAWindowThatIsAll) {
+TEST(Graph, StepAllSolvesAGraphThatIsAllWindow) {
   Drive drive{100};
   Graph& graph = drive.graph();
   graph.add(PosePrior{
@@ -269,7 +269,7 @@ TEST(Graph, SolvingEverythingSolvesAWindowThatIsAll) {
 }
 
 /// What was measured fades, the description stays.
-TEST(Graph, WhatIsKnownOfACalibrationFadesAndThePosesStay) {
+TEST(Graph, InformationAboutTheCalibrationFadesWithoutMovingPoses) {
   constexpr double kDriven_m = 20.0;
   Drive drive{6};
   Graph& graph = drive.graph();
@@ -295,19 +295,19 @@ TEST(Graph, CovariancesAreSymmetricAndPositive) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{covariance}.eigenvalues()[0], 0.0);
 }
 
-TEST(Graph, SinceAKeyframeThatIsKnownThePoseIsAsUncertainAsItself) {
+TEST(Graph, RelativeToAKnownKeyframeTheCovarianceIsThatOfThePose) {
   Drive drive{100};  // its first pose defines the map
   const Eigen::Matrix3d covariance = drive.graph().covariance_of(drive.newest());
   EXPECT_LT((drive.graph().covariance_since(0) - covariance).norm(), 0.01 * covariance.norm());
 }
 
-TEST(Graph, TheNewestStepIsAsUncertainAsThePoseSinceTheKeyframeBefore) {
+TEST(Graph, TheCovarianceOfTheNewestStepIsThatSinceTheKeyframeBefore) {
   Drive drive{6};
   const Eigen::Matrix3d since = drive.graph().covariance_since(drive.newest().index - 1);
   EXPECT_LT((drive.graph().covariance_of_newest_step() - since).norm(), 1e-6 * since.norm());
 }
 
-TEST(Graph, UncertaintySinceAKeyframeGrowsWithTheWay) {
+TEST(Graph, CovarianceSinceAKeyframeGrowsWithTheDistance) {
   Drive drive{100};
   const std::size_t newest = drive.newest().index;
   EXPECT_LT(drive.graph().covariance_since(newest).norm(), 1e-12);
@@ -318,7 +318,7 @@ TEST(Graph, UncertaintySinceAKeyframeGrowsWithTheWay) {
   }
 }
 
-TEST(Graph, ARemovedKeyframeMovesWithItsCarrierAndSaysNothing) {
+TEST(Graph, ARemovedKeyframeMovesWithItsCarrierAndHasNoFactors) {
   Drive drive{6};
   Graph& graph = drive.graph();
   const std::size_t num_factors = graph.factors().size();
@@ -345,7 +345,7 @@ TEST(Graph, ARemovedKeyframeMovesWithItsCarrierAndSaysNothing) {
   EXPECT_GT(graph.covariance_of(drive.newest()).trace(), knew.trace());
 }
 
-TEST(Graph, AScanKeepsWhatItSaysAboutKeyframesThatStay) {
+TEST(Graph, AScanFactorKeepsItsReferencesToKeyframesThatStay) {
   Drive drive{2};
   Graph& graph = drive.graph();
   ScanFactor scan;

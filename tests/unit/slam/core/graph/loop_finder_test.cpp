@@ -60,10 +60,10 @@ class Corridor {
     }
   }
 
-  /// The robot is at `truth`, and believes to be at `believed`.
-  std::vector<LoopFinder::Found> look_around(const Se2& truth, const Se2& believed) {
+  /// The robot is at `truth`; its estimate is `estimated`.
+  std::vector<LoopFinder::Found> look_around(const Se2& truth, const Se2& estimated) {
     LoopSearch search;
-    search.map_from_base = believed;
+    search.map_from_base = estimated;
     search.covariance_against = [this](std::size_t) {
       return covariance_against_;
     };
@@ -112,7 +112,7 @@ TEST(LoopFinder, TwoScansThatAgreeCloseALoop) {
 }
 
 /// Its keyframe may be forgotten meanwhile.
-TEST(LoopFinder, AScanDoesNotAgreeWithOneOfLongAgo) {
+TEST(LoopFinder, ACandidateExpiresWithTheDistance) {
   Corridor corridor{irregularly};
   const Se2 drift{1.2, 0.1, 0.3};
   const Se2 place{6.0, 0.0, 0.0};
@@ -124,7 +124,7 @@ TEST(LoopFinder, AScanDoesNotAgreeWithOneOfLongAgo) {
 }
 
 /// However alike it looks.
-TEST(LoopFinder, APlaceIsNotLookedForFartherThanThePoseMayHaveDriftedSinceIt) {
+TEST(LoopFinder, TheSearchIsBoundedByTheDriftSinceTheSubmap) {
   const Se2 first{6.0, 0.0, 0.0};
   const Se2 second{6.5, 0.0, 0.0};
   const Se2 drift{12.0, 0.0, 0.0};
@@ -136,7 +136,7 @@ TEST(LoopFinder, APlaceIsNotLookedForFartherThanThePoseMayHaveDriftedSinceIt) {
   }
 }
 
-TEST(LoopFinder, WhatContradictsALoopOfJustNowHasToBeClearer) {
+TEST(LoopFinder, AMatchThatContradictsARecentLoopNeedsABetterFit) {
   const Se2 drift{0.7, 0.0, 0.0};
   const Se2 first{6.0, 0.0, 0.0};
   const Se2 second{6.5, 0.0, 0.0};
@@ -153,7 +153,7 @@ TEST(LoopFinder, WhatContradictsALoopOfJustNowHasToBeClearer) {
 }
 
 /// Half a period, a whole one, and none: the scan fits in all three places.
-TEST(LoopFinder, PlacesThatLookTheSameAreAmbiguousHoweverOftenTheyAreSeen) {
+TEST(LoopFinder, SimilarPlacesStayAmbiguous) {
   Corridor corridor{every_two_metres};
   int looks = 0;
   for (const double drift_m : {1.0, 2.0, 0.0}) {

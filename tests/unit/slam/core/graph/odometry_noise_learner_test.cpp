@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-TEST(OdometryNoiseLearner, BelievesTheDescriptionUntilInnovationsSayOtherwise) {
+TEST(OdometryNoiseLearner, KeepsTheConfiguredNoiseUntilInnovationsContradictIt) {
   OdometryNoiseLearner described;
   OdometryNoiseLearner worse;
   Random random{{7}};
@@ -26,7 +26,7 @@ TEST(OdometryNoiseLearner, BelievesTheDescriptionUntilInnovationsSayOtherwise) {
   EXPECT_GT(worse.scale().along, 1.5);  // wheels that are bad in the turn are so along the way
 }
 
-TEST(OdometryNoiseLearner, AWheelThatSpinsForMetresIsNoNoise) {
+TEST(OdometryNoiseLearner, AWheelThatSpinsForMetresDoesNotRaiseTheNoise) {
   OdometryNoiseLearner spins;
   OdometryNoiseLearner worse;
   Random random{{9}};
@@ -56,7 +56,7 @@ OdometryNoiseLearner learner_after(double slips_per_m) {
   return learner;
 }
 
-TEST(OdometryNoiseLearner, SlipsAddTheirSecondMomentByMetre) {
+TEST(OdometryNoiseLearner, SlipsAddTheirSecondMomentPerMetre) {
   const OdometryNoiseLearner learner = learner_after(0.7);
   EXPECT_NEAR(learner.num_slips(), 28, 12);
   EXPECT_GT(learner.scale().slip_m2_per_m, 0.7 * 0.01);
@@ -64,7 +64,7 @@ TEST(OdometryNoiseLearner, SlipsAddTheirSecondMomentByMetre) {
   EXPECT_LT(learner.scale().slip_per_m, -0.7 * 0.05);
 }
 
-TEST(OdometryNoiseLearner, WithoutSlipsHardlyAnyAreAdded) {
+TEST(OdometryNoiseLearner, WithoutSlipsTheirVarianceIsSmall) {
   EXPECT_LT(learner_after(0.0).scale().slip_m2_per_m, 2e-5);
 }
 

@@ -10,14 +10,14 @@ namespace {
 
 using Verdict = RelocalisationMonitor::Verdict;
 
-const Se2 kBelieved{10.0, 0.0, 0.0};
+const Se2 kConsecutive{10.0, 0.0, 0.0};
 const Se2 kElsewhere{5.0, 0.0, 0.0};
 
 PoseHint elsewhere(int id) {
   return {PoseHint::Kind::kElsewhere, id, kElsewhere};
 }
 
-PoseHint agreeing(int id) {
+PoseHint as_expected(int id) {
   return {PoseHint::Kind::kAgrees, id, {}};
 }
 
@@ -25,44 +25,44 @@ PoseHint unexpected(int id) {
   return {PoseHint::Kind::kNew, id, {}, true};
 }
 
-TEST(RelocalisationMonitor, OneMarkerElsewhereIsADoubt) {
+TEST(RelocalisationMonitor, OneMarkerElsewhereIsSuspicious) {
   RelocalisationMonitor monitor;
   for (int i = 0; i < 5; ++i)
-    EXPECT_EQ(monitor.judge(kBelieved, std::vector{elsewhere(3)}, {}), Verdict::kDoubtful);
+    EXPECT_EQ(monitor.update(kConsecutive, std::vector{elsewhere(3)}, {}), Verdict::kSuspicious);
 }
 
-TEST(RelocalisationMonitor, TwoMarkersThatAgreeDecide) {
+TEST(RelocalisationMonitor, TwoMarkersThatAgreeRelocate) {
   RelocalisationMonitor monitor;
   const std::vector pair{elsewhere(3), elsewhere(4)};
-  EXPECT_EQ(monitor.judge(kBelieved, pair, {}), Verdict::kDoubtful);
-  EXPECT_EQ(monitor.judge(kBelieved, pair, {}), Verdict::kElsewhere);
+  EXPECT_EQ(monitor.update(kConsecutive, pair, {}), Verdict::kSuspicious);
+  EXPECT_EQ(monitor.update(kConsecutive, pair, {}), Verdict::kRelocated);
   EXPECT_EQ(monitor.map_from_base().x(), kElsewhere.x());
-  EXPECT_EQ(monitor.judge(kElsewhere, std::vector{agreeing(3)}, {}), Verdict::kSettled);
+  EXPECT_EQ(monitor.update(kElsewhere, std::vector{as_expected(3)}, {}), Verdict::kConsistent);
 }
 
-TEST(RelocalisationMonitor, AMarkerWhereItIsExpectedEndsTheDoubt) {
+TEST(RelocalisationMonitor, AMarkerWhereItIsExpectedEndsTheSuspicion) {
   RelocalisationMonitor monitor;
-  EXPECT_EQ(monitor.judge(kBelieved, std::vector{elsewhere(3)}, {}), Verdict::kDoubtful);
-  EXPECT_EQ(monitor.judge(kBelieved, std::vector{elsewhere(3), agreeing(5)}, {}),
-            Verdict::kSettled);
+  EXPECT_EQ(monitor.update(kConsecutive, std::vector{elsewhere(3)}, {}), Verdict::kSuspicious);
+  EXPECT_EQ(monitor.update(kConsecutive, std::vector{elsewhere(3), as_expected(5)}, {}),
+            Verdict::kConsistent);
 }
 
-TEST(RelocalisationMonitor, AMisreadIdIsForgottenSoon) {
+TEST(RelocalisationMonitor, AMisreadIdIsDroppedSoon) {
   RelocalisationMonitor monitor;
-  EXPECT_EQ(monitor.judge(kBelieved, std::vector{elsewhere(3)}, {}), Verdict::kDoubtful);
+  EXPECT_EQ(monitor.update(kConsecutive, std::vector{elsewhere(3)}, {}), Verdict::kSuspicious);
   const Motion onwards{{1.0, 0.0, 0.0}, 1.0, 0.0};
-  EXPECT_EQ(monitor.judge(kBelieved, {}, onwards), Verdict::kSettled);
+  EXPECT_EQ(monitor.update(kConsecutive, {}, onwards), Verdict::kConsistent);
 }
 
-TEST(RelocalisationMonitor, TwoUnexpectedNewMarkersUndoARelocalisation) {
+TEST(RelocalisationMonitor, TwoUnexpectedIdsRevertARelocalisation) {
   RelocalisationMonitor monitor;
   const std::vector pair{elsewhere(3), elsewhere(4)};
-  monitor.judge(kBelieved, pair, {});
-  ASSERT_EQ(monitor.judge(kBelieved, pair, {}), Verdict::kElsewhere);
+  monitor.update(kConsecutive, pair, {});
+  ASSERT_EQ(monitor.update(kConsecutive, pair, {}), Verdict::kRelocated);
   const Motion onwards{{1.0, 0.0, 0.0}, 1.0, 0.0};
-  EXPECT_EQ(monitor.judge(kElsewhere, std::vector{unexpected(20), unexpected(21)}, onwards),
-            Verdict::kBack);
-  EXPECT_NEAR(monitor.map_from_base().x(), kBelieved.x() + 1.0, 1e-9);
+  EXPECT_EQ(monitor.update(kElsewhere, std::vector{unexpected(20), unexpected(21)}, onwards),
+            Verdict::kReverted);
+  EXPECT_NEAR(monitor.map_from_base().x(), kConsecutive.x() + 1.0, 1e-9);
 }
 
 }  // namespace

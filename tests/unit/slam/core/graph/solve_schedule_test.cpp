@@ -38,7 +38,7 @@ TEST(SolveSchedule, ASolutionEndsWhenNothingMoves) {
   EXPECT_FALSE(schedule.is_step_due(1002));
 }
 
-TEST(SolveSchedule, ASolutionHasAnEnd) {
+TEST(SolveSchedule, ASolutionTakesABoundedNumberOfSteps) {
   SolveSchedule schedule;
   schedule.note_loop(true);
   for (int i = 0; i < SolveSchedule::kSteps; ++i) {

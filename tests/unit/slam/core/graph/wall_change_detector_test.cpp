@@ -36,7 +36,7 @@ bool names_a_wall_that_is_gone(const WallChangeDetector& detector) {
   return false;
 }
 
-TEST(WallChangeDetector, AWallThatIsRemovedAfterHoursIsNamedWithinMinutes) {
+TEST(WallChangeDetector, AWallThatIsRemovedAfterHoursIsDetectedWithinMinutes) {
   constexpr double kWall_m = 2.0;
   constexpr double kBehind_m = 3.0;
   WallChangeDetector detector{map_with_wall_at(kWall_m)};

@@ -82,7 +82,7 @@ std::optional<Se2> found_along(WallPlaceFinder& finder, const std::vector<Wall>&
   return found;
 }
 
-TEST(WallPlaceFinder, ARoomIsKnownFromThreePlaces) {
+TEST(WallPlaceFinder, ThreeConsistentScansLocaliseInARoom) {
   const std::vector<Se2> way{{0.8, 2.4, 0.1}, {1.3, 2.45, 0.1}, {1.8, 2.5, 0.1}};
   WallPlaceFinder finder{map_of(room()), {}};
   EXPECT_FALSE(found_along(finder, room(), {way[0], way[1]}));
@@ -95,13 +95,13 @@ TEST(WallPlaceFinder, ARoomIsKnownFromThreePlaces) {
 }
 
 // A rectangle is the same when it is turned by half a circle.
-TEST(WallPlaceFinder, AScanThatFitsAtTwoPlacesSaysNothing) {
+TEST(WallPlaceFinder, AScanThatFitsAtTwoPlacesIsIgnored) {
   WallPlaceFinder finder{map_of(rectangle()), {}};
   EXPECT_FALSE(found_along(finder, rectangle(),
                            {{1.0, 1.0, 0.4}, {1.5, 1.2, 0.4}, {2.0, 1.4, 0.4}, {2.5, 1.6, 0.4}}));
 }
 
-TEST(WallPlaceFinder, AnEmptyMapHoldsNoPlace) {
+TEST(WallPlaceFinder, AnEmptyMapGivesNoPose) {
   WallPlaceFinder finder{std::make_shared<MapSnapshot>(), {}};
   EXPECT_FALSE(found_along(finder, room(), {{1, 2, 0}, {1.5, 2, 0}, {2.0, 2, 0}, {2.5, 2, 0}}));
 }

@@ -68,7 +68,7 @@ std::size_t num_blind(const std::function<double(int)>& range_m) {
   return blind;
 }
 
-TEST(SensorQueue, AScanThatRepeatsOneFromElsewhereShowsNothing) {
+TEST(SensorQueue, AScanThatRepeatsOneFromElsewhereHasNoBeams) {
   EXPECT_EQ(num_blind([](int now_ms) { return 2.0 + 1e-6 * now_ms; }), 0U);
   EXPECT_GT(num_blind([](int) { return 2.0; }), 10U);
   // 3 cm apart a robot may see the same.

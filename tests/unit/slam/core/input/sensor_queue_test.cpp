@@ -67,7 +67,7 @@ TEST(SensorQueue, ThereIsNoObservationBeforeTheFirstScan) {
   EXPECT_TRUE(all_ready(queue, 5000, {}).empty());
 }
 
-TEST(SensorQueue, WhereOdometryStaysAwayTooNothingIsObserved) {
+TEST(SensorQueue, WithoutOdometryThereIsNoObservation) {
   SensorQueue queue{setup_without_waiting()};
   queue.add(scan_at(0));
   queue.add(odometry_at(0));
@@ -111,7 +111,7 @@ std::vector<SensorQueue::Ready> all_ready_by(SensorQueue& queue,
 
 constexpr int kHour_ms = 3'600'000;
 
-TEST(SensorQueue, WhenTheClockWasSetMotionGoesOn) {
+TEST(SensorQueue, AClockStepLosesNoMotion) {
   for (const int step_ms : {-kHour_ms, -5000, kHour_ms}) {
     SensorQueue queue{setup_without_waiting()};
     const auto all = all_ready_by(queue, [step_ms](int now_ms) {
@@ -264,7 +264,7 @@ TEST(SensorQueue, TheFirstOfASensorMayBeStampedAhead) {
   }
 }
 
-TEST(SensorQueue, AScanThatLeadsHoldsNothingUpWhileTheLidarIsSilent) {
+TEST(SensorQueue, AScanStampedAheadBlocksNothingWhileTheLidarIsSilent) {
   SensorQueue queue{setup_without_waiting()};
   std::vector<SensorQueue::Ready> all = all_ready(queue, 200, {0, 200});
   queue.add(scan_at(9000));
@@ -276,7 +276,7 @@ TEST(SensorQueue, AScanThatLeadsHoldsNothingUpWhileTheLidarIsSilent) {
   EXPECT_EQ(times_ms(all).back(), 2000);
 }
 
-TEST(SensorQueue, OdometryThatGoesOnAfterAPauseIsUsedWithItsNextOrAtTheEnd) {
+TEST(SensorQueue, OdometryAfterAPauseIsUsedWithItsNextSampleOrAtTheEnd) {
   for (const bool ends : {false, true}) {
     SensorQueue queue{setup_without_waiting()};
     EXPECT_EQ(all_ready(queue, 1000, {0, 1000}).size(), 2U);
@@ -295,7 +295,7 @@ TEST(SensorQueue, OdometryThatGoesOnAfterAPauseIsUsedWithItsNextOrAtTheEnd) {
   }
 }
 
-TEST(SensorQueue, WhatIsFarAheadOfTheFirstOdometryDoesNotBlock) {
+TEST(SensorQueue, AStampFarAheadOfTheFirstOdometryDoesNotBlock) {
   SensorQueue queue{setup_without_waiting()};
   queue.add(scan_at(kHour_ms));
   queue.add(frame_at(kHour_ms, {}));
@@ -303,7 +303,7 @@ TEST(SensorQueue, WhatIsFarAheadOfTheFirstOdometryDoesNotBlock) {
   EXPECT_EQ(queue.take_skips(), (std::vector<Skip>{Skip::kScanAhead, Skip::kFrameAhead}));
 }
 
-TEST(SensorQueue, AFrameThatOdometryHasForgottenIsCounted) {
+TEST(SensorQueue, AFrameOlderThanTheOdometryBufferIsCounted) {
   SensorQueue queue{setup_without_waiting()};
   EXPECT_EQ(all_ready(queue, 1000, {200, 800}).size(), 2U);
   queue.add(frame_at(300, {}));
@@ -312,7 +312,7 @@ TEST(SensorQueue, AFrameThatOdometryHasForgottenIsCounted) {
   EXPECT_EQ(queue.take_skips(), std::vector<Skip>{Skip::kFrameWithoutOdometry});
 }
 
-TEST(SensorQueue, AScanWithoutReturnsIsSaidAndStillAnObservation) {
+TEST(SensorQueue, AScanWithoutReturnsIsCountedAndStillAnObservation) {
   SensorQueue queue{setup_without_waiting()};
   LidarScan nothing = scan_at(0);
   nothing.ranges_m.assign(3, std::numeric_limits<double>::infinity());

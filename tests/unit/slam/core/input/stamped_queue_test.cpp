@@ -51,7 +51,7 @@ TEST(StampedQueue, AValueThatIsTooEarlyIsSkippedOnceTheNextOneIsNewerThanAll) {
   EXPECT_EQ(result_of({5, 6, 2, 7}), (Result{{5, 6, 7}, {Skip::kScanOutOfOrder}}));
 }
 
-TEST(StampedQueue, ValuesAheadAreSkippedOnceTwoOlderOnesFollowEachOther) {
+TEST(StampedQueue, ValuesStampedAheadAreSkippedOnceTwoOlderOnesFollow) {
   EXPECT_EQ(result_of({1, 2, 60, 61, 3, 4}),
             (Result{{1, 2, 3, 4}, {Skip::kScanAhead, Skip::kScanAhead}}));
 }
@@ -65,7 +65,7 @@ TEST(StampedQueue, OfTooManyTheOldestIsDropped) {
             (Result{{3, 4, 5, 6}, {Skip::kScanOverflow, Skip::kScanOverflow}}));
 }
 
-TEST(StampedQueue, WhatIsOlderThanTheNewestByTooMuchIsDropped) {
+TEST(StampedQueue, ValuesMuchOlderThanTheNewestAreDropped) {
   QueuePolicy policy = kPolicy;
   policy.longest = std::chrono::seconds{20};
   StampedQueue<Value> queue{policy};
@@ -76,7 +76,7 @@ TEST(StampedQueue, WhatIsOlderThanTheNewestByTooMuchIsDropped) {
   EXPECT_EQ(queue.front().time, at_s(15));
 }
 
-TEST(StampedQueue, ClearingCountsTheOneAsideAndForgetsTheNewest) {
+TEST(StampedQueue, ClearingSkipsTheValueAsideAndAcceptsOlderStampsAgain) {
   StampedQueue<Value> queue{kPolicy};
   Skips skips;
   for (const int time_s : {5, 6, 2})
@@ -89,7 +89,7 @@ TEST(StampedQueue, ClearingCountsTheOneAsideAndForgetsTheNewest) {
   EXPECT_TRUE(skips.take().empty());
 }
 
-TEST(StampedQueue, WhatTurnsOutToBeAheadOfAllElseIsDropped) {
+TEST(StampedQueue, ValuesStampedAfterAGivenTimeAreDropped) {
   StampedQueue<Value> queue{kPolicy};
   Skips skips;
   for (const int time_s : {1, 9})

@@ -13,7 +13,7 @@ namespace {
 using test::corridor_beams;
 using test::diagonal;
 
-TEST(SquarePerspective, TellsTheFocalLengthOfTheCamera) {
+TEST(SquarePerspective, MeasuresTheFocalLength) {
   for (const double error : {-0.01, 0.0, 0.02}) {
     std::array<Eigen::Vector2d, 4> corners;
     const double ahead[]{2.4, 2.0, 2.0, 2.4};
@@ -27,7 +27,7 @@ TEST(SquarePerspective, TellsTheFocalLengthOfTheCamera) {
   }
 }
 
-TEST(SquarePerspective, AViewFromTheFrontTellsNothing) {
+TEST(SquarePerspective, AFrontalViewGivesNoMeasurement) {
   EXPECT_FALSE(focal_error_of({Eigen::Vector2d{-0.1, -0.1}, Eigen::Vector2d{0.1, -0.1},
                                Eigen::Vector2d{0.1, 0.1}, Eigen::Vector2d{-0.1, 0.1}},
                               1e-4));
@@ -74,7 +74,7 @@ TEST(MeasureMarkers, OdometryBetweenFrameAndScanMovesASighting) {
   EXPECT_GT(more(2, 2), 0.0);
 }
 
-TEST(MeasureMarkers, AWallOfARollingScanIsLessSure) {
+TEST(MeasureMarkers, AWallOfARollingScanIsLessCertain) {
   Random random{8};
   Observation observation;
   observation.beams = corridor_beams(0.01, random);
@@ -116,7 +116,7 @@ TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {
 }
 
 // It could not be learnt from views that are thrown away.
-TEST(MeasureMarkers, AViewByACameraThatIsWorseThanToldIsNoFlippedOne) {
+TEST(MeasureMarkers, AViewByACameraWorseThanConfiguredIsNotRejectedAsFlipped) {
   Random random{9};
   Observation observation;
   observation.beams = corridor_beams(0.01, random);

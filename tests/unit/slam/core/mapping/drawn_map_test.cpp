@@ -52,7 +52,7 @@ void expect_equal_maps(const GridMap& one, const GridMap& other) {
   EXPECT_EQ(different, 0);
 }
 
-TEST(DrawnMap, IsTheSameAsIfItHadBeenDrawnAlongTheNewPoses) {
+TEST(DrawnMap, FollowingNewPosesEqualsDrawingAlongThem) {
   DrawnMap map{MapperConfig{}, empty_ground()};
   std::vector<Se2> poses = a_way(60);
   for (std::size_t i = 0; i < poses.size(); ++i)
@@ -68,7 +68,7 @@ TEST(DrawnMap, IsTheSameAsIfItHadBeenDrawnAlongTheNewPoses) {
   expect_equal_maps(map.map(), map.drawn_along(pose_of));
 }
 
-TEST(DrawnMap, ScansThatHaveHardlyMovedStayAsTheyAre) {
+TEST(DrawnMap, ScansThatMoveByLessThanACellAreNotRedrawn) {
   DrawnMap map{MapperConfig{}, empty_ground()};
   const std::vector<Se2> poses = a_way(10);
   for (const Se2& pose : poses)
@@ -81,7 +81,7 @@ TEST(DrawnMap, ScansThatHaveHardlyMovedStayAsTheyAre) {
 }
 
 /// Where a robot comes by again and again, the map holds what the archive holds.
-TEST(DrawnMap, WhatTheArchiveHasForgottenIsNotInTheMap) {
+TEST(DrawnMap, ScansThatTheArchiveHasEmptiedAreNotInTheMap) {
   DrawnMap map{MapperConfig{}, empty_ground()};
   const Se2 here{0.05, 0.05, 0.1};
   for (std::size_t i = 0; i < 2 * ScanArchive::kScansPerPlace; ++i)

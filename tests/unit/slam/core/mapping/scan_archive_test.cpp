@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Unit tests of the scans that are kept for a new map.
+// Unit tests of the archive of scans that a map is redrawn from.
 #include "slam/core/mapping/scan_archive.hpp"
 
-#include "slam/map_publisher.hpp"
 #include "support/observations.hpp"
 
 #include <gtest/gtest.h>
@@ -11,10 +10,6 @@
 
 namespace waymark {
 namespace {
-
-Timestamp at_s(int seconds) {
-  return Timestamp{std::chrono::seconds{seconds}};
-}
 
 TEST(ScanArchive, GivesBackWhereBeamsWent) {
   const test::SyntheticCorridor corridor = test::bare_corridor();
@@ -42,7 +37,7 @@ TEST(ScanArchive, KeepsTheNewestScansOfAPlace) {
   }
 }
 
-TEST(ScanArchive, WhatShowsNothingTakesNoPlace) {
+TEST(ScanArchive, EmptyScansDoNotCountForAPlace) {
   const test::SyntheticCorridor corridor = test::bare_corridor();
   const Observation scan = test::observations_of(test::drive(corridor), corridor).front();
   ScanArchive archive;
@@ -52,23 +47,6 @@ TEST(ScanArchive, WhatShowsNothingTakesNoPlace) {
     archive.add(Observation{}, Se2{1.1, 0.1, 0.1});
   }
   EXPECT_FALSE(archive.at(0).beams.empty());
-}
-
-TEST(MapPublisher, TilesThatAreGoneAreSentEmpty) {
-  GridMap map{GridFrame::centred_on_map_origin(0.05), {}, {}};
-  map.occupancy.edit(map.frame.cell_of(Eigen::Vector2d{0.0, 0.0})) = {1, 1};
-  MapPublisher publisher;
-  ASSERT_EQ(publisher.complete(map, at_s(0))[0].num_tiles, 1);
-  GridMap elsewhere{map.frame, {}, {}};
-  elsewhere.occupancy.edit(map.frame.cell_of(Eigen::Vector2d{20.0, 0.0})) = {1, 1};
-  const auto parts = publisher.complete(elsewhere, at_s(1));
-  ASSERT_EQ(parts[0].num_tiles, 2);
-  int emptied = 0;
-  for (const map_tile_t& tile : parts[0].tiles) {
-    emptied += std::all_of(tile.occupancy.begin(), tile.occupancy.end(),
-                           [](std::int8_t percent) { return percent == -1; });
-  }
-  EXPECT_EQ(emptied, 1);
 }
 
 }  // namespace

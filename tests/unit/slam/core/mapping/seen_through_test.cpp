@@ -24,13 +24,13 @@ GridMap room_with_a_wall() {
   return map;
 }
 
-TEST(SeenThrough, FreePlacesAreAndWallsAreNot) {
+TEST(SeenThrough, FreeSpaceIsSeenThroughAndWallsAreNot) {
   const GridMap map = room_with_a_wall();
   EXPECT_TRUE(is_seen_through(map, {0.2, 0.5}));
   EXPECT_FALSE(is_seen_through(map, {0.5, 0.5}));
 }
 
-TEST(SeenThrough, NotBesideAWall) {
+TEST(SeenThrough, NotNextToAWall) {
   const GridMap map = room_with_a_wall();
   EXPECT_FALSE(is_seen_through(map, {0.45, 0.5}));
   EXPECT_TRUE(is_seen_through(map, {0.4, 0.5}));
@@ -42,7 +42,7 @@ TEST(SeenThrough, NotWhereAWallIsWithinReach) {
   EXPECT_FALSE(is_seen_through(map, {0.3, 0.5}, 0.17));
 }
 
-TEST(SeenThrough, NotWhatNobodyHasSeen) {
+TEST(SeenThrough, NotInUnmappedCells) {
   const GridMap map = room_with_a_wall();
   EXPECT_FALSE(is_seen_through(map, {3.0, 0.5}));
   EXPECT_FALSE(is_seen_through(map, {0.0, 0.5}));  // at the edge of what was seen
@@ -60,13 +60,13 @@ TEST(MovingBeams, ABeamThatEndsInFreeSpaceIsLeftOut) {
   EXPECT_EQ(standing[1], points[2]);
 }
 
-TEST(MovingBeams, NotIfAnotherPoseWouldPutItOnAWall) {
+TEST(MovingBeams, ABeamThatMayEndOnAWallIsKept) {
   const std::vector<Eigen::Vector2d> points{{0.5, 0.3}, {0.35, 0.5}, {0.5, 0.6}};
   EXPECT_EQ(without_moving(points, room_with_a_wall(), {}, sigmas(0.01, 0.01)).size(), 2U);
   EXPECT_EQ(without_moving(points, room_with_a_wall(), {}, sigmas(0.05, 0.01)).size(), 3U);
 }
 
-TEST(MovingBeams, WhereMostBeamsSeemToMoveThePoseIsWrong) {
+TEST(MovingBeams, IfMostBeamsEndInFreeSpaceAllAreKept) {
   const std::vector<Eigen::Vector2d> points{{0.2, 0.3}, {0.25, 0.5}, {0.5, 0.6}};
   EXPECT_EQ(without_moving(points, room_with_a_wall(), {}, sigmas(0.01, 0.01)).size(), 3U);
 }

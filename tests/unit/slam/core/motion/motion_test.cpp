@@ -15,7 +15,7 @@ Timestamp at_ms(int milliseconds) {
   return timestamp_from_us(milliseconds * 1000);
 }
 
-TEST(Motion, WhatIsDrivenBackwardsIsNoAdvance) {
+TEST(Motion, DrivingBackwardsCountsNegativeInTheAdvance) {
   const Motion ahead = Motion::between({}, {0.5, 0.0, 0.0});
   const Motion back = Motion::between({}, {-0.2, 0.0, 0.0});
   EXPECT_NEAR(ahead.then(back).advance_m, 0.3, 1e-12);
@@ -35,7 +35,7 @@ TEST(OdometryErrors, DriftTurnsTheOtherWayInReverse) {
 }
 
 /// The wheels roll, so the middle between them is as uncertain as on a way of that length.
-TEST(OdometryErrors, ATurnOnTheSpotIsNoStandstill) {
+TEST(OdometryErrors, ATurnOnTheSpotHasPositionNoise) {
   OdometryNoise noise;
   noise.half_track_m = 0.2;
   const auto along_m2 = [&](const Se2& end) {
@@ -76,17 +76,17 @@ TEST(OdometryBuffer, AResetOfTheOdometryIsNoMotion) {
 
   EXPECT_NEAR(motion.start_from_end.x(), 0.06, 1e-12);
   EXPECT_NEAR(motion.start_from_end.y(), 0.0, 1e-12);
-  EXPECT_FALSE(buffer.kept_back(at_ms(0), at_ms(231)));
+  EXPECT_FALSE(buffer.late_motion(at_ms(0), at_ms(231)));
 }
 
-TEST(OdometryBuffer, WhatWasDrivenDuringGarbageIsToldAfterIt) {
+TEST(OdometryBuffer, MotionDuringGarbageIsReportedAfterIt) {
   Random random{{5}};
   OdometryBuffer buffer;
   const auto right = [](int step) {
     return Se2{3.0 + 0.005 * step, -1.0, 0.3};
   };
   int jumps = 0;
-  std::optional<Motion> kept_back;
+  std::optional<Motion> late_motion;
   for (int step = 0; step <= 40; ++step) {
     const bool is_garbage = step > 10 && step <= 25;
     const Se2 off{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-3.0, 3.0)};
@@ -94,17 +94,17 @@ TEST(OdometryBuffer, WhatWasDrivenDuringGarbageIsToldAfterIt) {
         buffer.add({at_ms(33 * step), is_garbage ? right(step) * off : right(step)});
     jumps += outcome == OdometryBuffer::Outcome::kJumped ? 1 : 0;
     if (outcome == OdometryBuffer::Outcome::kCaughtUp)
-      kept_back = buffer.kept_back(at_ms(33 * (step - 1)), at_ms(33 * step));
+      late_motion = buffer.late_motion(at_ms(33 * (step - 1)), at_ms(33 * step));
   }
   EXPECT_GE(jumps, 10);
-  EXPECT_FALSE(buffer.is_doubtful(at_ms(0), at_ms(300)));
-  EXPECT_TRUE(buffer.is_doubtful(at_ms(500), at_ms(700)));
-  EXPECT_FALSE(buffer.is_doubtful(at_ms(1100), at_ms(1300)));
-  ASSERT_TRUE(kept_back);
+  EXPECT_FALSE(buffer.has_jumped(at_ms(0), at_ms(300)));
+  EXPECT_TRUE(buffer.has_jumped(at_ms(500), at_ms(700)));
+  EXPECT_FALSE(buffer.has_jumped(at_ms(1100), at_ms(1300)));
+  ASSERT_TRUE(late_motion);
   const Motion reported = buffer.motion_between(at_ms(0), at_ms(33 * 40));
   const Se2 whole = right(0).inverse() * right(40);
-  EXPECT_NEAR(reported.start_from_end.x() + kept_back->start_from_end.x(), whole.x(), 1e-9);
-  EXPECT_NEAR(reported.start_from_end.y() + kept_back->start_from_end.y(), whole.y(), 1e-9);
+  EXPECT_NEAR(reported.start_from_end.x() + late_motion->start_from_end.x(), whole.x(), 1e-9);
+  EXPECT_NEAR(reported.start_from_end.y() + late_motion->start_from_end.y(), whole.y(), 1e-9);
 }
 
 /// Stands at (5, 1, 0.5), for a second unless said, then tells another pose.
@@ -115,22 +115,23 @@ OdometryBuffer::Outcome outcome_after_standing(const Se2& then, OdometryBuffer& 
   return buffer.add({at_ms(standing_ms + 50), then});
 }
 
-TEST(OdometryBuffer, AStuckOdometryTellsAtOnceWhatItHasKeptBack) {
+TEST(OdometryBuffer, TheJumpAfterAStandstillIsLateMotion) {
   OdometryBuffer buffer;
   const Se2 driven{1.5, 0.1, 0.2};
   EXPECT_EQ(outcome_after_standing(Se2{5.0, 1.0, 0.5} * driven, buffer),
             OdometryBuffer::Outcome::kCaughtUp);
 
   EXPECT_NEAR(buffer.motion_between(at_ms(0), at_ms(1050)).distance_m, 0.0, 1e-12);
-  const auto kept_back = buffer.kept_back(at_ms(1000), at_ms(1050));
-  ASSERT_TRUE(kept_back);
-  EXPECT_NEAR((kept_back->start_from_end.translation() - driven.translation()).norm(), 0.0, 1e-12);
-  EXPECT_NEAR(kept_back->start_from_end.theta(), 0.2, 1e-12);
-  EXPECT_FALSE(buffer.kept_back(at_ms(950), at_ms(1000)));
-  EXPECT_FALSE(buffer.kept_back(at_ms(1050), at_ms(1100)));
+  const auto late_motion = buffer.late_motion(at_ms(1000), at_ms(1050));
+  ASSERT_TRUE(late_motion);
+  EXPECT_NEAR((late_motion->start_from_end.translation() - driven.translation()).norm(), 0.0,
+              1e-12);
+  EXPECT_NEAR(late_motion->start_from_end.theta(), 0.2, 1e-12);
+  EXPECT_FALSE(buffer.late_motion(at_ms(950), at_ms(1000)));
+  EXPECT_FALSE(buffer.late_motion(at_ms(1050), at_ms(1100)));
 }
 
-TEST(OdometryBuffer, TheLongerOdometryWasStuckTheMoreItMayHaveKeptBack) {
+TEST(OdometryBuffer, LateMotionIsBoundedByTheTimeOfTheStandstill) {
   for (const Se2& driven : {Se2{7.0, 0.0, 0.0}, Se2{0.1, 0.0, 2.8}}) {
     for (const int standing_ms : {1000, 4000}) {
       OdometryBuffer buffer;
@@ -147,7 +148,7 @@ TEST(OdometryBuffer, AResetOfAParkedRobotIsNoMotion) {
   for (const Se2& then : {begins_anew, further_than_it_can_drive}) {
     OdometryBuffer buffer;
     EXPECT_EQ(outcome_after_standing(then, buffer), OdometryBuffer::Outcome::kJumped);
-    EXPECT_FALSE(buffer.kept_back(at_ms(0), at_ms(1050)));
+    EXPECT_FALSE(buffer.late_motion(at_ms(0), at_ms(1050)));
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Odometry that is not believed.
+// Steps of the odometry that are rejected.
 #include "slam/core/motion/odometry_check.hpp"
 
 #include <gtest/gtest.h>
@@ -16,33 +16,33 @@ Motion drive(double driven_m) {
 OdometryCheck after_a_drive() {
   OdometryCheck check;
   for (int i = 0; i < 100; ++i) {
-    check.believable(drive(0.08), kScan_s, false);
+    check.plausible(drive(0.08), kScan_s, false);
     check.note_estimated({0.08, 0.0, 0.02}, kScan_s);
   }
   return check;
 }
 
-TEST(OdometryCheck, WhatIsBelievableStaysAsItIs) {
+TEST(OdometryCheck, PlausibleStepsAreUnchanged) {
   OdometryCheck check = after_a_drive();
-  const Motion motion = check.believable(drive(0.09), kScan_s, false);
+  const Motion motion = check.plausible(drive(0.09), kScan_s, false);
   EXPECT_EQ(motion.start_from_end.x(), 0.09);
   EXPECT_EQ(motion.guessed_s, 0.0);
   EXPECT_FALSE(check.is_refused());
   EXPECT_EQ(check.steps_without_odometry().size(), 2U);
 }
 
-TEST(OdometryCheck, InsteadOfAJumpItWentOnAsEstimatedBefore) {
+TEST(OdometryCheck, AJumpIsReplacedByTheLastEstimatedStep) {
   OdometryCheck check = after_a_drive();
-  const Motion motion = check.believable(drive(1.5), 0.5 * kScan_s, false);
+  const Motion motion = check.plausible(drive(1.5), 0.5 * kScan_s, false);
   EXPECT_TRUE(check.is_refused());
   EXPECT_DOUBLE_EQ(motion.start_from_end.x(), 0.04);
   EXPECT_DOUBLE_EQ(motion.start_from_end.theta(), 0.01);
   EXPECT_EQ(motion.guessed_s, 0.5 * kScan_s);
 }
 
-TEST(OdometryCheck, StandingStillGoingOnAndTheRefusedStepAreGuesses) {
+TEST(OdometryCheck, HypothesesAreStandingTheLastStepAndTheRejectedStep) {
   OdometryCheck check = after_a_drive();
-  check.believable(drive(1.5), kScan_s, false);
+  check.plausible(drive(1.5), kScan_s, false);
   const std::vector<Se2> guesses = check.steps_without_odometry();
   ASSERT_EQ(guesses.size(), 3U);
   EXPECT_EQ(guesses[0].x(), 0.0);
@@ -50,9 +50,9 @@ TEST(OdometryCheck, StandingStillGoingOnAndTheRefusedStepAreGuesses) {
   EXPECT_EQ(guesses[2].x(), 1.5);
 }
 
-TEST(OdometryCheck, WhatWasKeptBackMayBeFar) {
+TEST(OdometryCheck, LateMotionIsNotRejected) {
   OdometryCheck check = after_a_drive();
-  EXPECT_EQ(check.believable(drive(1.5), kScan_s, true).start_from_end.x(), 1.5);
+  EXPECT_EQ(check.plausible(drive(1.5), kScan_s, true).start_from_end.x(), 1.5);
   EXPECT_FALSE(check.is_refused());
 }
 

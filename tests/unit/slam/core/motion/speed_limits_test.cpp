@@ -20,7 +20,7 @@ SpeedLimits after_a_drive(double speed_m_s) {
   return limits;
 }
 
-TEST(SpeedLimits, AMetreInAFifthOfASecondIsRefusedOfASlowRobot) {
+TEST(SpeedLimits, AMetreInAFifthOfASecondIsRejectedForASlowRobot) {
   SpeedLimits limits = after_a_drive(0.4);
   EXPECT_FALSE(limits.allow(step(1.0), kStep_s));
   EXPECT_FALSE(limits.allow(step(0.08, 1.0), kStep_s));
@@ -41,7 +41,7 @@ TEST(SpeedLimits, ARobotMayAccelerateAfterAnHourOfCreeping) {
     EXPECT_TRUE(limits.allow(step(speed_m_s * kStep_s), kStep_s)) << speed_m_s;
 }
 
-TEST(SpeedLimits, ABurstDoesNotBecomeUsual) {
+TEST(SpeedLimits, ABurstOfFastStepsDoesNotRaiseTheLimit) {
   SpeedLimits limits = after_a_drive(0.4);
   for (int burst = 0; burst < 3; ++burst) {
     for (int i = 0; i < 10; ++i)
@@ -50,7 +50,7 @@ TEST(SpeedLimits, ABurstDoesNotBecomeUsual) {
   }
 }
 
-TEST(SpeedLimits, ARobotThatGoesOnLikeThatIsBelievedInTheEnd) {
+TEST(SpeedLimits, FastStepsThatPersistAreAccepted) {
   SpeedLimits limits = after_a_drive(0.2);
   int refused = 0;
   for (int i = 0; i < 100; ++i)
@@ -58,14 +58,14 @@ TEST(SpeedLimits, ARobotThatGoesOnLikeThatIsBelievedInTheEnd) {
   EXPECT_LE(refused, 20);
 }
 
-TEST(SpeedLimits, WhatAGapLeftOverMayComeInTheStepAfterIt) {
+TEST(SpeedLimits, TheStepAfterAGapMayIncludeTheGapsMotion) {
   SpeedLimits limits = after_a_drive(0.4);
   EXPECT_TRUE(limits.allow(step(0.1), 3.0));
   EXPECT_TRUE(limits.allow(step(1.0), kStep_s));
   EXPECT_FALSE(limits.allow(step(1.0), kStep_s));
 }
 
-TEST(SpeedLimits, StandingTeachesNothing) {
+TEST(SpeedLimits, StandingDoesNotLowerTheLimit) {
   SpeedLimits limits;
   for (int i = 0; i < 1000; ++i)
     EXPECT_TRUE(limits.allow(step(0.0), kStep_s));

@@ -262,7 +262,7 @@ TEST(CorrelativeSearch, RunnerUpOfASquareRoomIsAsGoodAndOfAnotherRoomIsNot) {
   EXPECT_LT(elsewhere->score, 0.92 * here->score);
 }
 
-TEST(CorrelativeSearch, NothingIsFoundInNothing) {
+TEST(CorrelativeSearch, EmptyInputGivesNoMatch) {
   const Points walls = room();
   const Points none;
   const CorrelativeField empty{none};
@@ -296,7 +296,7 @@ TEST(CorrelativeSearch, OutliersInSubmapAndScanAreIgnored) {
   EXPECT_NEAR(match->submap_from_base.translation().norm(), 0.0, kRounding);
 }
 
-TEST(CorrelativeSearch, WindowsWithoutLimitEnd) {
+TEST(CorrelativeSearch, InfiniteWindowsTerminate) {
   const Points walls = rectangle(1.0, 0.6);
   const CorrelativeField field{walls};
   const auto match = field.best(walls, {0.3, 0.0, 0.0}, {1e300, 1e300}, 0.5);
@@ -304,7 +304,7 @@ TEST(CorrelativeSearch, WindowsWithoutLimitEnd) {
   EXPECT_GT(match->score, 0.9);
 }
 
-TEST(CorrelativeField, OfAMapLeavesNoWallOut) {
+TEST(CorrelativeField, AFieldOfAMapContainsEveryWall) {
   Points walls;
   draw_wall({0.0, 0.0}, {300.0, 0.0}, walls);
   draw_wall({298.0, 0.0}, {298.0, 4.0}, walls);

@@ -67,8 +67,8 @@ TEST(ScanMatch, FindsThePoseInARoom) {
   const Submap room = submap_of(room_from);
   const Se2 truth{1.2, 0.3, 0.2};
   const Se2 guess{1.28, 0.22, 0.26};
-  const ScanMatch match = match_scan(room_from(truth, 99), room.surfaces(), guess,
-                                     sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
+  const ScanMatch match = match_scan(room_from(truth, 99), room.ndt(), guess, sigmas(0.1, 0.05),
+                                     RangeNoise{kSigma_m}, {});
   EXPECT_NEAR(match.map_from_base.x(), truth.x(), 0.005);
   EXPECT_NEAR(match.map_from_base.y(), truth.y(), 0.005);
   EXPECT_NEAR(match.map_from_base.theta(), truth.theta(), 0.002);
@@ -82,20 +82,20 @@ TEST(ScanMatch, LargerCellsFindThePoseFromAGuessThatTheSmallestDoNotReach) {
   const Se2 guess{0.5, 0.8, -0.05};
   const Points points = room_from(truth, 99);
   const auto off_m = [&](std::span<const NdtMap> coarse) {
-    const ScanMatch match = match_scan(points, room.surfaces(), guess, sigmas(0.5, 0.2),
-                                       RangeNoise{kSigma_m}, {}, coarse);
+    const ScanMatch match =
+        match_scan(points, room.ndt(), guess, sigmas(0.5, 0.2), RangeNoise{kSigma_m}, {}, coarse);
     return pose_difference(match.map_from_base, truth).norm();
   };
-  EXPECT_LT(off_m(room.coarse_surfaces()), 0.01);
+  EXPECT_LT(off_m(room.coarse_ndt()), 0.01);
   EXPECT_GT(off_m({}), 0.3);
 }
 
-TEST(ScanMatch, ABareCorridorSaysExactlyNothingAlongItsAxis) {
+TEST(ScanMatch, ABareCorridorHasNoInformationAlongItsAxis) {
   const Submap corridor =
       submap_of([](const Se2& pose, std::uint64_t seed) { return corridor_from(pose, seed); });
   const Se2 truth{1.0, 0.1, 0.05};
   const Se2 guess{1.4, 0.05, 0.03};
-  const ScanMatch match = match_scan(corridor_from(truth, 99), corridor.surfaces(), guess,
+  const ScanMatch match = match_scan(corridor_from(truth, 99), corridor.ndt(), guess,
                                      sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
   ASSERT_TRUE(match.observed.is_degenerate);
   const Eigen::Vector3d weak{match.observed.weak_direction.x(), match.observed.weak_direction.y(),
@@ -103,18 +103,18 @@ TEST(ScanMatch, ABareCorridorSaysExactlyNothingAlongItsAxis) {
   EXPECT_GT(std::abs(weak.x()), 0.999);
   const Eigen::Matrix3d& information = match.observed.information;
   EXPECT_LT((information * weak).norm(), 1e-9 * information.norm());
-  EXPECT_NEAR(match.map_from_base.x(), guess.x(), 0.01);  // stays where it was believed to be
+  EXPECT_NEAR(match.map_from_base.x(), guess.x(), 0.01);  // stays at the guess
   EXPECT_NEAR(match.map_from_base.y(), truth.y(), 0.005);
   EXPECT_NEAR(match.map_from_base.theta(), truth.theta(), 0.002);
 }
 
-TEST(ScanMatch, ABareCorridorStaysOneForALidarThatScatters) {
+TEST(ScanMatch, ABareCorridorStaysDegenerateWithNoisyRanges) {
   constexpr double kScatter_m = 0.08;
   const Submap corridor = submap_of(
       [](const Se2& pose, std::uint64_t seed) { return corridor_from(pose, seed, kScatter_m); });
   const Se2 truth{1.0, 0.1, 0.05};
-  const ScanMatch match = match_scan(corridor_from(truth, 99, kScatter_m), corridor.surfaces(),
-                                     truth, sigmas(0.1, 0.05), RangeNoise{kScatter_m}, {});
+  const ScanMatch match = match_scan(corridor_from(truth, 99, kScatter_m), corridor.ndt(), truth,
+                                     sigmas(0.1, 0.05), RangeNoise{kScatter_m}, {});
   EXPECT_TRUE(match.observed.is_degenerate);
 }
 
@@ -127,11 +127,11 @@ Points pillars_from(const Se2& map_from_base, std::uint64_t seed) {
   return points;
 }
 
-TEST(ScanMatch, AFewPillarsShowTheWayAlongACorridor) {
+TEST(ScanMatch, AFewPillarsObserveTheAxisOfACorridor) {
   const Submap corridor = submap_of(pillars_from);
   const Se2 truth{1.0, 0.1, 0.05};
   const Se2 guess{1.04, 0.05, 0.03};
-  const ScanMatch match = match_scan(pillars_from(truth, 99), corridor.surfaces(), guess,
+  const ScanMatch match = match_scan(pillars_from(truth, 99), corridor.ndt(), guess,
                                      sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
   EXPECT_FALSE(match.observed.is_degenerate);
   EXPECT_NEAR(match.map_from_base.x(), truth.x(), 0.01);
@@ -145,10 +145,10 @@ Points companion_from(const Se2& map_from_base, std::uint64_t seed) {
   return points;
 }
 
-TEST(ScanMatch, SomebodyWhoWalksAheadShowsNoWay) {
+TEST(ScanMatch, APersonWalkingAheadDoesNotObserveTheAxis) {
   const Submap corridor = submap_of(companion_from, 0.3);
   const Se2 truth{5.8, 0.0, 0.0};
-  const ScanMatch match = match_scan(companion_from(truth, 99), corridor.surfaces(), truth,
+  const ScanMatch match = match_scan(companion_from(truth, 99), corridor.ndt(), truth,
                                      sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
   EXPECT_TRUE(match.observed.is_degenerate);
 }
@@ -160,8 +160,7 @@ ScanMatch match_without_a_deviation(const Points& points) {
   Submap wall{0.25, 0};
   for (int i = 0; i < 20; ++i)
     wall.insert(points, {});
-  return match_scan(points, wall.surfaces(), {}, sigmas(0.02, 0.01), RangeNoise{kManyScatter_m},
-                    {});
+  return match_scan(points, wall.ndt(), {}, sigmas(0.02, 0.01), RangeNoise{kManyScatter_m}, {});
 }
 
 /// Of so many beams that meet a wall squarely, if they were independent.
@@ -170,7 +169,7 @@ double information_of(std::size_t beams) {
          (kManyScatter_m * kManyScatter_m);
 }
 
-TEST(ScanMatch, WallsThatHappenToLookThinMakeNoScanSurerThanItsRanges) {
+TEST(ScanMatch, CellsThatLookThinByChanceAddNoInformationBeyondTheRangeNoise) {
   Points points;
   for (double y = -0.5; y <= 0.5; y += 0.02)
     points.emplace_back(3.0, y);
@@ -179,7 +178,7 @@ TEST(ScanMatch, WallsThatHappenToLookThinMakeNoScanSurerThanItsRanges) {
   EXPECT_EQ(match.inlier_share, 1.0);
 }
 
-TEST(ScanMatch, NoiseOfRangesIsLittleAcrossWallsThatBeamsMeetFlatly) {
+TEST(ScanMatch, RangeNoiseAcrossAWallShrinksAtGrazingIncidence) {
   Points points;
   for (double x = 4.0; x <= 5.0; x += 0.02)
     points.emplace_back(x, 1.0);
@@ -187,7 +186,7 @@ TEST(ScanMatch, NoiseOfRangesIsLittleAcrossWallsThatBeamsMeetFlatly) {
   EXPECT_GT(match.observed.information(1, 1), 4.0 * information_of(points.size()));
 }
 
-TEST(ScanMatch, ManyBeamsOnOneSurfaceSayNoMoreThanAFew) {
+TEST(ScanMatch, ManyBeamsInOneCellHaveTheInformationOfAFew) {
   EXPECT_EQ(independent_share(1), 1.0);
   EXPECT_EQ(20 * independent_share(20), 10 * independent_share(10));
   Points points;
@@ -199,18 +198,18 @@ TEST(ScanMatch, ManyBeamsOnOneSurfaceSayNoMoreThanAFew) {
 
 TEST(ScanMatch, SharesOfKeyframesSumToOne) {
   const Submap room = submap_of(room_from);
-  const ScanMatch match = match_scan(room_from({1.0, 0.0, 0.0}, 99), room.surfaces(),
-                                     {1.0, 0.0, 0.0}, sigmas(0.02, 0.01), RangeNoise{kSigma_m}, {});
+  const ScanMatch match = match_scan(room_from({1.0, 0.0, 0.0}, 99), room.ndt(), {1.0, 0.0, 0.0},
+                                     sigmas(0.02, 0.01), RangeNoise{kSigma_m}, {});
   double sum = 0.0;
   for (const double share : match.keyframe_shares)
     sum += share;
   EXPECT_NEAR(sum, 1.0, 1e-9);
 }
 
-TEST(ScanMatch, AScanOfNothingIsNotUsable) {
+TEST(ScanMatch, AnEmptyScanIsNotUsable) {
   const Submap room = submap_of(room_from);
   const ScanMatch match =
-      match_scan({}, room.surfaces(), {}, sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
+      match_scan({}, room.ndt(), {}, sigmas(0.1, 0.05), RangeNoise{kSigma_m}, {});
   EXPECT_FALSE(match.is_usable({}));
 }
 
@@ -224,7 +223,7 @@ TEST(ScanMatch, FewInliersOrNoHeadingAreNotUsable) {
   EXPECT_FALSE(match.is_usable({}));
 }
 
-TEST(ObservedAxes, ADirectionIsObservedIfLastingSurfacesShowIt) {
+TEST(ObservedAxes, ADirectionIsObservedIfLastingCellsConstrainIt) {
   Eigen::Matrix3d information = Eigen::Vector3d{100.0, 80.0, 300.0}.asDiagonal();
   const auto is_degenerate = [&](double lasting_share) {
     return observed_axes(information, lasting_share * information.topLeftCorner<2, 2>(), 0.03)

@@ -21,13 +21,13 @@ struct Drive {
   }
 };
 
-TEST(Submaps, NoneAtFirst) {
+TEST(Submaps, ThereIsNoneAtFirst) {
   const Submaps submaps{0.25, kKeyframesEach, 100.0};
   EXPECT_EQ(submaps.matched(), nullptr);
   EXPECT_TRUE(submaps.finished().empty());
 }
 
-TEST(Submaps, WhatIsMatchedHoldsHalfALengthAtLeast) {
+TEST(Submaps, TheMatchedSubmapHoldsAtLeastHalfOfItsLength) {
   Drive drive;
   drive.go(kKeyframesEach / 2);
   for (int i = 0; i < 40; ++i) {
@@ -73,7 +73,7 @@ TEST(Submaps, ScansAreWhereTheirKeyframesAre) {
   EXPECT_NEAR(points[3].y(), 0.5, 1e-9);
 }
 
-TEST(Submaps, BeginningAnewKeepsWhatIsFinished) {
+TEST(Submaps, StartingANewSubmapKeepsFinishedOnes) {
   Drive drive;
   drive.go(21);
   const std::size_t finished = drive.submaps.finished().size();
@@ -84,7 +84,7 @@ TEST(Submaps, BeginningAnewKeepsWhatIsFinished) {
   EXPECT_EQ(drive.submaps.finished().size(), finished);
 }
 
-TEST(Submaps, OnesWithRemovedKeyframesAreForgotten) {
+TEST(Submaps, SubmapsWithRemovedKeyframesAreDropped) {
   Drive drive;
   drive.go(41);
   drive.submaps.forget([](std::size_t keyframe) { return keyframe == 7; });

@@ -34,7 +34,7 @@ UsualFit after_good_scans() {
   return usual;
 }
 
-TEST(UsualFit, AViewOfANewPlaceIsWorseThanUsualAndNotContradicted) {
+TEST(UsualFit, AViewOfANewPlaceIsWorseThanUsualButNotContradicted) {
   const UsualFit usual = after_good_scans();
   const ScanMatch new_place = fit(0.95, 0.5);
   EXPECT_TRUE(usual.is_worse_than_usual(new_place));
@@ -49,7 +49,7 @@ TEST(UsualFit, WallsInOtherPlacesContradict) {
   EXPECT_TRUE(usual.is_refuted(fit(0.4, 1.0)));
 }
 
-TEST(UsualFit, FewMappedBeamsRefuteNothing) {
+TEST(UsualFit, TooFewMappedBeamsRefuteNothing) {
   EXPECT_FALSE(after_good_scans().is_refuted(fit(0.0, 0.1)));
 }
 
@@ -130,9 +130,9 @@ Searched look_for(const Submap& submap, const Points& points, const Se2& guess,
   const RangeNoise noise{0.01};
   const ScanMatchConfig config;
   Searched searched;
-  searched.plain = match_scan(points, submap.surfaces(), guess, sigmas, noise, config);
-  searched.best = searched_widely(searched.plain, points, submap.surfaces(), submap.points(),
-                                  search, after_good_scans(), noise, config);
+  searched.plain = match_scan(points, submap.ndt(), guess, sigmas, noise, config);
+  searched.best = searched_widely(searched.plain, points, submap.ndt(), submap.points(), search,
+                                  after_good_scans(), noise, config);
   return searched;
 }
 
@@ -145,7 +145,7 @@ TEST(WideSearch, FindsAPoseThatIsFarFromItsGuess) {
   EXPECT_GT(found.best.inliers, found.plain.inliers);
 }
 
-TEST(WideSearch, TheLongerNothingWasSeenTheMoreTheRobotMayHaveTurned) {
+TEST(WideSearch, TheWindowOfTurnsGrowsWithTheTimeSinceTheLastScan) {
   const Se2 truth{3.0, 0.3, 0.0};
   const Points scan = seen_from(truth, whole_room());
   const Se2 guess{3.0, 0.3, 1.4};
@@ -158,7 +158,7 @@ TEST(WideSearch, TheLongerNothingWasSeenTheMoreTheRobotMayHaveTurned) {
 }
 
 /// The room looks almost the same to a robot that has turned round.
-TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenThoughItComesLast) {
+TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenWhateverTheirOrder) {
   Submap submap = mapped_room();
   Points crate;
   for (double x = 4.0; x < 4.4; x += kSpacing_m)
@@ -192,7 +192,7 @@ ScanMatch searched_from_plain(double share_of_plain, double odometry_sigma_m,
   WideSearch search = around(by_odometry);
   search.without_odometry = {kTruth};
   search.odometry_covariance = squared(odometry_sigma_m) * Eigen::Matrix3d::Identity();
-  return searched_widely(plain, seen_from(kTruth, room), submap.surfaces(), submap.points(), search,
+  return searched_widely(plain, seen_from(kTruth, room), submap.ndt(), submap.points(), search,
                          after_good_scans(), RangeNoise{0.01}, ScanMatchConfig{});
 }
 
@@ -209,7 +209,7 @@ TEST(WideSearch, OfTwoPlacesThatOdometryContradictsTheOneWithMoreInliersIsTaken)
   EXPECT_LT(pose_difference(best.map_from_base, kTruth).norm(), 0.02);
 }
 
-TEST(WideSearch, APlaceThatOdometryContradictsHasToExplainMostOfWhatIsLeft) {
+TEST(WideSearch, APlaceThatOdometryContradictsHasToExplainMostOutliers) {
   for (const double share_of_plain : {0.7, 0.85}) {
     const ScanMatch best = searched_from_plain(share_of_plain, 0.05, kPlain, 10);
     const Se2& expected = share_of_plain < 0.8 ? kTruth : kPlain;
@@ -217,7 +217,7 @@ TEST(WideSearch, APlaceThatOdometryContradictsHasToExplainMostOfWhatIsLeft) {
   }
 }
 
-TEST(WideSearch, AViewOfANewPlaceIsNotLeftForAPlaceWithMoreMappedBeams) {
+TEST(WideSearch, AViewOfANewPlaceKeepsThePlainMatch) {
   // Half of the scan lies behind what is mapped. Nearer to the middle more of it would lie on
   // walls, but the new end of the room would still be nowhere.
   const Se2 truth{5.8, 0.0, 0.0};

@@ -79,26 +79,26 @@ TEST(MarkerScore, IsSharperThanACell) {
   }
 }
 
-TEST(MarkerScore, SumsOverSpotsWithTheirTrust) {
+TEST(MarkerScore, IsTheWeightedSumOverSpots) {
   const GridMap map = map_with_marker(2, 3.0);
-  const std::vector<JudgedSpot> spots{{{0.0, 0.0}, 2, 0.5}, {{0.05, 0.0}, 2, 1.0}};
+  const std::vector<ObservedSpot> spots{{{0.0, 0.0}, 2, 0.5}, {{0.05, 0.0}, 2, 1.0}};
   const Se2 map_from_base{3.0, 1.0, 0.0};
   const double one = marker_score(map, {3.0, 1.0}, 2, kRewards);
   const double other = marker_score(map, {3.05, 1.0}, 2, kRewards);
   EXPECT_NEAR(marker_score(map, spots, map_from_base, kRewards), 0.5 * one + other, 1e-12);
 }
 
-TEST(MarkerScore, ASightingIsTrustedAsItIsKnown) {
+TEST(MarkerScore, TheWeightOfASightingFollowsItsCovariance) {
   constexpr double kUsualSigma_m = 0.02;
   Observation observation;
   observation.sightings = {sighting_at(2, 3.0)};
   for (const double sigmas : {0.1, 1.0, 3.0}) {
     observation.sightings[0].covariance_in_base =
         squared(sigmas * kUsualSigma_m) * Eigen::Matrix3d::Identity();
-    const auto spots = judged_spots(observation, 0.05, 0.1, kUsualSigma_m);
+    const auto spots = observed_spots(observation, 0.05, 0.1, kUsualSigma_m);
     ASSERT_FALSE(spots.empty());
-    for (const JudgedSpot& spot : spots)
-      EXPECT_NEAR(spot.trust, 1.0 / (1.0 + squared(sigmas)), 1e-9);
+    for (const ObservedSpot& spot : spots)
+      EXPECT_NEAR(spot.weight, 1.0 / (1.0 + squared(sigmas)), 1e-9);
   }
 }
 
@@ -180,7 +180,7 @@ TEST(Scores, AreTheSameInAMirror) {
   EXPECT_NEAR(score.mapped, mirrored.mapped, 1e-9);
 }
 
-TEST(InsertBeams, GrazingBeamsDoNotWearTheWallAway) {
+TEST(InsertBeams, GrazingBeamsDoNotEraseTheWall) {
   const Mapped mapped = mapped_until(15.0);
   for (double x_m = 7.0; x_m < 14.0; x_m += 0.05) {
     const OccupancyCell& wall = mapped.map.occupancy[mapped.map.frame.cell_of({x_m, 1.0})];
@@ -243,7 +243,7 @@ TEST(ParticleSet, WeightsThatUnderflowKeepTheirShares) {
   EXPECT_NEAR(weights[1], 0.75, 1e-9);
 }
 
-TEST(ParticleSet, WhereNoParticleIsPossibleAllWeighTheSame) {
+TEST(ParticleSet, IfAllLikelihoodsAreZeroWeightsAreUniform) {
   constexpr double kImpossible = -std::numeric_limits<double>::infinity();
   EXPECT_EQ(weights_after({kImpossible, kImpossible}), (std::vector{0.5, 0.5}));
   EXPECT_EQ(weights_after({kImpossible, -3.0}), (std::vector{0.0, 1.0}));

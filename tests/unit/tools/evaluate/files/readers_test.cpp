@@ -51,14 +51,14 @@ TEST(ReadMap, TheFirstRowOfTheImageIsTheTopOfTheMap) {
   EXPECT_EQ(map.at(0, -1), Cell::kUnknown);
 }
 
-TEST(ReadMap, NegateTurnsBlackAndWhiteAround) {
+TEST(ReadMap, NegateSwapsBlackAndWhite) {
   const TemporaryFolder folder;
   folder.file("map.pgm", std::string{"P5 2 1 255\n"} + "\xfe\x01");
   const MapImage map = read_map(folder.file("map.yaml", replaced(kYaml, "negate: 0", "negate: 1")));
   EXPECT_THAT(map.cells, ElementsAre(Cell::kOccupied, Cell::kFree));
 }
 
-TEST(ReadMap, WhatIsWrongIsNamed) {
+TEST(ReadMap, ErrorsAreNamed) {
   const std::string pgm = "P5 1 1 255\nx";
   EXPECT_THAT(map_error(replaced(kYaml, "resolution: 0.05\n", ""), pgm),
               HasSubstr("map.yaml: key 'resolution' is missing"));

@@ -50,7 +50,7 @@ TEST(MarkerError, MissingAndSpuriousAreCounted) {
   EXPECT_NEAR(*error.max_position_m, 0.0, kExact);
 }
 
-TEST(MarkerError, MovedMarkersAreScoredWhereTheyAreInTheEnd) {
+TEST(MarkerError, MovedMarkersAreScoredAtTheirFinalPlace) {
   const TemporaryFolder folder;
   folder.file("truth.csv", "id,instance,x_m,y_m,yaw_rad\n5,0,4,0,0\n5,1,8,0,0\n6,0,9,0,0\n");
   folder.file("moves.csv", "t_s,id,instance,x_m,y_m,yaw_rad\n7,5,1,8.5,0,0\n9,5,1,9,0,0\n");
@@ -70,7 +70,7 @@ TEST(MarkerError, MovedMarkersAreScoredWhereTheyAreInTheEnd) {
   EXPECT_EQ(error.moved_named_share, 1.0);
 }
 
-TEST(MarkerError, MovesThatAreNotNamedAndNamesWithoutAMoveCount) {
+TEST(MarkerError, UnreportedMovesAndFalseReportsAreCounted) {
   const Marker moved{.id = 1, .has_moved = true};
   const Marker still{.id = 2};
   EXPECT_EQ(marker_error({{1, Se2{}}}, {moved, still}, Se2{}, kGate_m).moved_named_share, 0.0);
@@ -79,7 +79,7 @@ TEST(MarkerError, MovesThatAreNotNamedAndNamesWithoutAMoveCount) {
   EXPECT_FALSE(marker_error({still}, {still}, Se2{}, kGate_m).moved_named_share);
 }
 
-TEST(MarkerError, TentativeMarkersAreNoPartOfTheMap) {
+TEST(MarkerError, TentativeMarkersAreIgnored) {
   const Marker tentative{.id = 1, .is_tentative = true};
   const MarkerError error = marker_error({tentative, {2, Se2{}}}, {{2, Se2{}}}, Se2{}, kGate_m);
   EXPECT_EQ(error.tentative, 1u);

@@ -42,7 +42,7 @@ TEST(WallThickness, CornersAndCrossingsOfTwoCellsAreTwo) {
             2);
 }
 
-TEST(WallThickness, AWallThatStandsThereTwiceIsThick) {
+TEST(WallThickness, ADoubledWallIsThick) {
   EXPECT_EQ(wall_thickness_cells(picture({"..........",  //
                                           "##########",  //
                                           "..........",  //
@@ -52,7 +52,7 @@ TEST(WallThickness, AWallThatStandsThereTwiceIsThick) {
             4);
 }
 
-TEST(WallThickness, TwoWallsApartAreTwoWalls) {
+TEST(WallThickness, SeparateWallsAreMeasuredSeparately) {
   EXPECT_EQ(wall_thickness_cells(picture({"##########",  //
                                           "..........",  //
                                           "..........",  //
@@ -62,7 +62,7 @@ TEST(WallThickness, TwoWallsApartAreTwoWalls) {
             1);
 }
 
-TEST(WallThickness, NoWallNoThickness) {
+TEST(WallThickness, WithoutWallsThereIsNoThickness) {
   EXPECT_EQ(wall_thickness_cells(picture({"....", "...."})), 0);
 }
 

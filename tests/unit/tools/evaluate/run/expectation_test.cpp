@@ -72,20 +72,20 @@ TEST(Expectation, EachFigureHasItsSideOfTheLimit) {
   EXPECT_FALSE(hits({.max_wall_cells = 1}, result));
 }
 
-TEST(Expectation, RoundingIsNoMiss) {
+TEST(Expectation, RoundingDoesNotFailAnExpectation) {
   EstimatorResult result = result_of("waymark");
   result.length->length_m = 49.9;  // 100 - 99.8 > 0.2 in binary fractions
   EXPECT_TRUE(hits({.length_error_percent = 0.2}, result));
 }
 
-TEST(Expectation, WhatIsOfAllSeedsIsNotOfARun) {
+TEST(Expectation, ExpectationsOfAllSeedsAreNotAppliedToARun) {
   const ExpectConfig expect{.nees_in_band_share = 0.9, .seeds_share = 0.95};
   EXPECT_TRUE(check_expectations(expect, result_of("waymark")).empty());
   EXPECT_TRUE(is_expected_of(expect, "waymark"));
   EXPECT_FALSE(is_expected_of(expect, "odometry"));
 }
 
-TEST(Expectation, IsAboutItsEstimatorOnly) {
+TEST(Expectation, AppliesToItsEstimatorOnly) {
   const ExpectConfig expect{.estimator = "waymark", .ate_origin_m = 0.01};
   EXPECT_TRUE(check_expectations(expect, result_of("odometry")).empty());
   EXPECT_EQ(check_expectations(expect, result_of("waymark")).size(), 1u);
@@ -93,7 +93,7 @@ TEST(Expectation, IsAboutItsEstimatorOnly) {
   EXPECT_EQ(check_expectations(of_all, result_of("odometry")).size(), 1u);
 }
 
-TEST(Expectation, AFigureThatIsNotThereIsMissed) {
+TEST(Expectation, AMissingFigureFails) {
   EstimatorResult result{};
   result.name = "waymark";
   const auto figures = check_expectations({.ate_origin_m = 0.1, .found_again_s = 3.0}, result);
@@ -102,7 +102,7 @@ TEST(Expectation, AFigureThatIsNotThereIsMissed) {
   EXPECT_FALSE(figures[0].got || figures[1].got);
 }
 
-TEST(Expectation, WhoIsFoundNeedNotSayThatItIsLost) {
+TEST(Expectation, ARelocalisedRobotNeedNotReportLost) {
   EstimatorResult result = result_of("waymark");
   result.timeline->kidnap = Kidnap{.says_lost_s = std::nullopt, .found_again_s = 1.5};
   EXPECT_TRUE(hits({.says_lost_s = 2.0}, result));

@@ -145,7 +145,7 @@ TEST(Run, ExpectationsHaveATableOfTheirOwn) {
             "| waymark | marker_map_share | >= 0.9   | none | MISS |\n");
 }
 
-TEST(Run, AFaultyRunIsNotTakenForACleanOne) {
+TEST(Run, ARunWithInjectedFaultsIsMarked) {
   const TemporaryFolder run;
   add_truth(run);
   add_estimator(run, "waymark", 200, 1.0);
@@ -160,7 +160,7 @@ TEST(Run, AFaultyRunIsNotTakenForACleanOne) {
             "[[variant]]\nname = \"ghosts\"\n");
 }
 
-TEST(Run, ANeesThatSaysOnlyThatItIsHugeIsAPowerOfTen) {
+TEST(Run, AHugeNeesIsPrintedAsAPowerOfTen) {
   EstimatorResult calibrated{};
   calibrated.nees = Nees{.poses = 1, .mean = 999.0, .share_in_band = 0.0};
   EstimatorResult overconfident{};
@@ -202,7 +202,7 @@ TEST(Run, PosesInASurveysCoordinatesAreNotAligned) {
   EXPECT_FALSE(json_in(run.path() / "odometry/metrics.json").contains("ate_frame_m"));
 }
 
-TEST(Run, WhatContradictsTheMapIsInTheResults) {
+TEST(Run, MapChangesAreInTheResults) {
   const TemporaryFolder run;
   add_truth(run);
   add_estimator(run, "waymark", 200, 1.0);
@@ -301,7 +301,7 @@ TEST(Run, AWorldWithCornersHasNoLength) {
   EXPECT_EQ(json_in(run.path() / "waymark/metrics.json")["accuracy_percent"], 100.0);
 }
 
-TEST(Run, ExpectationsThatAreNoneAreNamedWithFileAndKey) {
+TEST(Run, InvalidExpectationsAreNamedWithFileAndKey) {
   const TemporaryFolder run;
   add_estimator(run, "odometry", 200, 1.0);
   const auto problem_of = [&](const std::string& text) -> std::string {

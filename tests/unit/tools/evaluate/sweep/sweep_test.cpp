@@ -53,7 +53,7 @@ struct SweptFolder {
   std::vector<SweepRow> rows() const { return sweep_rows(read_runs(folder.path())); }
 };
 
-TEST(Sweep, RowsHaveMedianWorstFailuresAndMisses) {
+TEST(Sweep, RowsHaveMedianWorstFailuresAndUnmetExpectations) {
   const SweptFolder sweep;
   const auto rows = sweep.rows();
   ASSERT_EQ(rows.size(), 4u);
@@ -80,7 +80,7 @@ TEST(Sweep, FailedAndUnfinishedRunsAreCountedAndExplained) {
   EXPECT_THAT(dark.runs[2].failure, HasSubstr("recording ended with code 3"));
 }
 
-TEST(Sweep, TheTableNamesOneCommandPerSeedToLookAt) {
+TEST(Sweep, TheTableListsACommandForEachBadSeed) {
   const SweptFolder sweep;
   const std::string table = sweep_markdown(sweep.rows());
   EXPECT_THAT(table, HasSubstr("| plain | waymark | 3 | 0.10 / 0.10 | 0.080 / 0.120 |"));
@@ -119,7 +119,7 @@ TEST(Sweep, AllSeedsCountUnlessTheScenarioSaysHowMany) {
               HasSubstr("| ate_origin_m 0.1, seeds_share 0.75 | hit |"));
 }
 
-TEST(Sweep, StationsOutsideOfTheirBandAreAMiss) {
+TEST(Sweep, StationsOutsideTheirBandAreAnUnmetExpectation) {
   const std::string wanted = R"({{"seeds_share": 0.75, "nees_in_band_share": {}}})";
   EXPECT_TRUE(rows_with(fmt::format(fmt::runtime(wanted), 0.5))[0].is_hit());
   EXPECT_FALSE(rows_with(fmt::format(fmt::runtime(wanted), 0.6))[0].is_hit());

@@ -32,7 +32,7 @@ std::vector<StampedCovariance> covariances(const std::vector<PosePair>& pairs, d
   return result;
 }
 
-TEST(Stations, StandAMetreApartWithErrorsInTheTrueBase) {
+TEST(Stations, AreAMetreApartWithErrorsInTheTrueBaseFrame) {
   const auto pairs = drive(35, {0.02, -0.01, 0.1});
   const auto found = stations(pairs, covariances(pairs, 0.01), {});
   ASSERT_EQ(found.size(), 3u);
@@ -48,7 +48,7 @@ TEST(Stations, StandAMetreApartWithErrorsInTheTrueBase) {
   EXPECT_EQ(found[2].health, Health::kTracking);
 }
 
-TEST(Stations, BeingLiftedIsNoTravel) {
+TEST(Stations, AKidnapIsNoTravel) {
   auto pairs = drive(15, {});
   for (std::size_t i = 8; i < pairs.size(); ++i)
     pairs[i].world_from_truth = Se2{5.0, 0.0, 0.0} * pairs[i].world_from_truth;
@@ -211,7 +211,7 @@ TEST(Timeline, AJumpIsWhatOdometryCannotExplain) {
   EXPECT_NEAR(timeline(pairs, {}, {}, std::nullopt, {}).max_jump_m, 0.25, 1e-9);
 }
 
-TEST(Timeline, TheTruthShowsWhenTheRobotWasLifted) {
+TEST(Timeline, KidnapsAreJumpsOfTheTruth) {
   Trajectory truth;
   for (int i = 0; i < 30; ++i)
     truth.push_back({0.1 * i, Se2{0.05 * i, 0.0, 0.0}});

@@ -40,7 +40,7 @@ TEST(TrajectoryError, IsSplitAlongTheLineFromFirstToLastTruePose) {
   EXPECT_NEAR(error.rpe_rotation_deg->max, 3.0, kExact);
 }
 
-TEST(TrajectoryError, AMovedAndTurnedCopyHasNone) {
+TEST(TrajectoryError, ARigidlyTransformedCopyHasNoError) {
   Random random{2};
   const Se2 map_from_world{3.0, -7.0, 2.5};
   std::vector<PosePair> pairs;
@@ -82,7 +82,7 @@ TEST(TrajectoryError, NoRigidMotionNearTheBestFitIsBetter) {
   }
 }
 
-TEST(TrajectoryError, ADriveThatGoesNowhereHasNoAlong) {
+TEST(TrajectoryError, ADriveWithoutDisplacementHasNoAlongAxis) {
   const std::vector<PosePair> pairs{{0.0, Se2{}, Se2{}}, {1.0, Se2{0.1, 0, 0}, Se2{}}};
   const TrajectoryError error = trajectory_error(pairs, Alignment::kOrigin);
   EXPECT_FALSE(error.along_m);

@@ -27,7 +27,7 @@ TEST(FreeExtent, CountsCellsBetweenTheWalls) {
   EXPECT_FALSE(free_extent(GridMap{}, Se2{}, {}));
 }
 
-TEST(CorridorLength, IsFromEndWallToEndWallAsEvaluateMeasuresIt) {
+TEST(CorridorLength, EqualsTheMeasurementOfEvaluate) {
   // 1000 free cells lie between the walls, so their centres are 1001 cells apart.
   const auto length = corridor_length(room(-1, -1, 49, 1), {});
   ASSERT_TRUE(length);
@@ -42,7 +42,7 @@ TEST(CorridorLength, FollowsTheThresholdsOfTheMapFile) {
   EXPECT_FALSE(corridor_length(map, {.occupied = 0.65, .free = 0.01})) << "no cell is free";
 }
 
-TEST(CorridorLength, RoomsAndBuildingsHaveAnExtentOnly) {
+TEST(CorridorLength, RoomsAndBuildingsHaveOnlyAnExtent) {
   EXPECT_FALSE(corridor_length(room(-2, -2, 3, 3), {}));
   EXPECT_EQ(size_text(room(-2, -2, 3, 3), Se2{}, {}), "free space 5.0 m x 5.0 m");
   EXPECT_EQ(size_text(GridMap{}, Se2{}, {}), "no map yet");

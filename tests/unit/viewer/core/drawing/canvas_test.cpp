@@ -41,7 +41,7 @@ TEST(DashedPolyline, DrawsNothingForEmptyOrZeroLengthPaths) {
   EXPECT_TRUE(is_blank(image));
 }
 
-TEST(DashedPolyline, ComesToAnEndForWildPoints) {
+TEST(DashedPolyline, TerminatesForAbsurdPoints) {
   Image image = white();
   const double inf = std::numeric_limits<double>::infinity();
   const std::array<cv::Point2d, 4> path{{{5, -5}, {1e300, -5}, {inf, -inf}, {5, -5}}};

@@ -72,7 +72,7 @@ PathMarks only(const EstimatedPose& pose) {
   return {.px_per_m = kPxPerM, .ellipses = {pose}, .weak_axes = {pose}};
 }
 
-TEST(TwoSigmaEllipse, HasTwiceTheSigmas) {
+TEST(TwoSigmaEllipse, SemiAxesAreTwoSigmas) {
   const auto ellipse = two_sigma_ellipse(covariance(0.01, 0.03));
   ASSERT_TRUE(ellipse);
   EXPECT_NEAR(ellipse->major_m, 0.06, 1e-12);
@@ -93,7 +93,7 @@ TEST(TwoSigmaEllipse, TurnsWithTheCovariance) {
   EXPECT_NEAR(std::sin(ellipse->angle_rad - angle_rad), 0.0, 1e-9);
 }
 
-TEST(TwoSigmaEllipse, RefusesWhatIsNoCovariance) {
+TEST(TwoSigmaEllipse, RejectsInvalidCovariances) {
   for (const double wrong : {kNan, kInf, -kInf, -1e-4}) {
     Eigen::Matrix3d matrix = covariance(0.01, 0.01);
     matrix(1, 1) = wrong;
@@ -104,26 +104,26 @@ TEST(TwoSigmaEllipse, RefusesWhatIsNoCovariance) {
   EXPECT_FALSE(two_sigma_ellipse(correlated_too_much));
 }
 
-TEST(TwoSigmaEllipse, CertaintyIsAPoint) {
+TEST(TwoSigmaEllipse, ZeroCovarianceIsAPoint) {
   const auto ellipse = two_sigma_ellipse(Eigen::Matrix3d::Zero());
   ASSERT_TRUE(ellipse);
   EXPECT_EQ(ellipse->major_m, 0.0);
 }
 
-TEST(ChooseMarks, NothingForNoPathOneEllipseForOnePose) {
+TEST(ChooseMarks, AnEmptyPathHasNoMarksAndOnePoseHasOne) {
   EXPECT_THAT(choose_marks({}, kPxPerM, kSpacing_px).ellipses, IsEmpty());
   EXPECT_EQ(choose_marks({}, kPxPerM, kSpacing_px).magnification, 1);
   EXPECT_THAT(choose_marks({pose_at(0, 1, 2, 0.1)}, kPxPerM, kSpacing_px).ellipses, SizeIs(1));
 }
 
-TEST(ChooseMarks, EveryRoundNumberOfMetresAndAtTheEnd) {
+TEST(ChooseMarks, MarksAreAtRoundDistancesAndAtTheEnd) {
   const auto marks = choose_marks(straight_path(9.0, 0.05), kPxPerM, kSpacing_px);
   EXPECT_EQ(marks.spacing_m, 2.0);
   EXPECT_THAT(marks.ellipses, SizeIs(AllOf(Ge(4U), Le(5U))));
   EXPECT_NEAR(marks.ellipses.back().map_from_base.x(), 9.0, 1e-9);
 }
 
-TEST(ChooseMarks, LeavesOutWhatIsNotFinite) {
+TEST(ChooseMarks, NonFinitePosesAreSkipped) {
   std::vector<EstimatedPose> path = straight_path(9.0, 0.05);
   for (EstimatedPose& pose : path) {
     pose.covariance(0, 0) = kNan;
@@ -135,7 +135,7 @@ TEST(ChooseMarks, LeavesOutWhatIsNotFinite) {
   EXPECT_THAT(marks.weak_axes, IsEmpty());
 }
 
-TEST(ChooseMarks, OfTwoInOnePlaceTheLessCertainStays) {
+TEST(ChooseMarks, OfOverlappingMarksTheLessCertainIsKept) {
   std::vector<EstimatedPose> path = straight_path(9.0, 0.05);
   const int there = static_cast<int>(path.size());
   for (int i = 0; i < there; ++i)
@@ -169,7 +169,7 @@ TEST(ChooseMarks, NoTwoEllipsesOnAWildPathAreCloserThanTheirClearance) {
   }
 }
 
-TEST(ChooseMarks, ALongPathHasNoMoreMarksThanAPageCanTake) {
+TEST(ChooseMarks, TheNumberOfMarksIsBounded) {
   std::vector<EstimatedPose> path = straight_path(400.0, 0.05);
   for (EstimatedPose& pose : path)
     pose.weak_axis = axis_along(1, 0, 0, WeakAxisSource::kOdometry);
@@ -195,7 +195,7 @@ TEST(ChooseMarks, AFewLargeEllipsesAreNotMagnifiedOverThePage) {
   EXPECT_EQ(choose_marks(path, kPxPerM, kSpacing_px).magnification, 2);
 }
 
-TEST(ChooseMarks, EachSourceOfTheWeakAxisIsSeen) {
+TEST(ChooseMarks, EverySourceOfTheWeakAxisHasAMark) {
   std::vector<EstimatedPose> path = straight_path(40.0, 0.01);
   for (std::size_t i = 20; i < path.size(); ++i) {
     const bool by_odometry = i >= 195 && i < 201;
@@ -225,7 +225,7 @@ TEST(ChooseMarks, AnUnobservedAxisIsNeverHidden) {
   EXPECT_EQ(marks.weak_axes[0].weak_axis->source, WeakAxisSource::kNothing);
 }
 
-TEST(DrawEllipses, OutlineWhereExpectedTintInsideNothingOutside) {
+TEST(DrawEllipses, DrawsAnOutlineAndATintInside) {
   Sheet sheet;
   EstimatedPose pose = pose_at(0, 0, 0, 0);
   pose.covariance = covariance(0.2, 0.1);  // 2 sigma: 40 px by 20 px
@@ -241,7 +241,7 @@ TEST(DrawEllipses, OutlineWhereExpectedTintInsideNothingOutside) {
   EXPECT_NEAR(box.x + box.width / 2.0, 100.0, 2.0);
 }
 
-TEST(DrawEllipses, AreMagnified) {
+TEST(DrawEllipses, ScalesByTheMagnification) {
   Sheet sheet;
   PathMarks marks = only(pose_at(0, 0, 0, 0.005));
   marks.magnification = 50;
@@ -249,14 +249,14 @@ TEST(DrawEllipses, AreMagnified) {
   EXPECT_NEAR(sheet.drawn_box().width, 100, 5);
 }
 
-TEST(DrawEllipses, AHugeOneLeavesThePanelReadable) {
+TEST(DrawEllipses, AHugeEllipseDoesNotCoverThePanel) {
   Sheet sheet;
   for (const double sigma_m : {100.0, 1e9, 1e100})
     draw_ellipses(sheet.image, sheet.view, only(pose_at(0, 0, 0, sigma_m)));
   EXPECT_TRUE(sheet.is_blank()) << "the outline is far outside, and there is no tint";
 }
 
-TEST(DrawEllipses, NothingForNoMarksAndForNan) {
+TEST(DrawEllipses, DrawsNothingWithoutMarksOrForNan) {
   Sheet sheet;
   draw_ellipses(sheet.image, sheet.view, {});
   draw_ellipses(sheet.image, sheet.view, only(pose_at(0, kNan, 0, 0.1)));
@@ -264,7 +264,7 @@ TEST(DrawEllipses, NothingForNoMarksAndForNan) {
   EXPECT_TRUE(sheet.is_blank());
 }
 
-TEST(DrawWeakAxes, ABarAlongTheAxisInTheColourOfItsSource) {
+TEST(DrawWeakAxes, DrawsABarAlongTheAxisInTheColourOfItsSource) {
   const std::vector<std::pair<WeakAxisSource, cv::Scalar>> colours{
       {WeakAxisSource::kOdometry, palette::kOdometry},
       {WeakAxisSource::kMarkers, palette::kMarker},
@@ -287,7 +287,7 @@ TEST(DrawWeakAxes, ABarAlongTheAxisInTheColourOfItsSource) {
   }
 }
 
-TEST(DrawWeakAxes, LongerIsWeakerWithinBounds) {
+TEST(DrawWeakAxes, WeakerAxesHaveLongerBarsWithinBounds) {
   int width_before_px = 0;
   for (const double information : {1e12, 100.0, 60.0, 0.0}) {
     Sheet sheet;
@@ -301,7 +301,7 @@ TEST(DrawWeakAxes, LongerIsWeakerWithinBounds) {
   }
 }
 
-TEST(DrawWeakAxes, ARingForTheHeading) {
+TEST(DrawWeakAxes, TheHeadingIsDrawnAsARing) {
   Sheet sheet;
   EstimatedPose pose = pose_at(0, 0, 0, 0.1);
   pose.weak_axis = axis_along(0, 0, 1, WeakAxisSource::kOdometry);
@@ -311,7 +311,7 @@ TEST(DrawWeakAxes, ARingForTheHeading) {
   EXPECT_TRUE(sheet.has(palette::kOdometry, 100, 111));
 }
 
-TEST(DrawWeakAxes, NothingForNanAndForNone) {
+TEST(DrawWeakAxes, DrawsNothingWithoutAnAxisOrForNan) {
   Sheet sheet;
   EstimatedPose pose = pose_at(0, 0, 0, 0.1);
   draw_weak_axes(sheet.image, sheet.view, only(pose));
@@ -324,14 +324,14 @@ TEST(DrawWeakAxes, NothingForNanAndForNone) {
   EXPECT_TRUE(sheet.is_blank());
 }
 
-TEST(DrawHealth, NothingWhileTrackingAndWithoutAPath) {
+TEST(DrawHealth, DrawsNothingWhileTrackingOrWithoutAPath) {
   Sheet sheet;
   draw_health(sheet.image, sheet.view, {}, 20);
   draw_health(sheet.image, sheet.view, straight_path(1.0, 0.1), 20);
   EXPECT_TRUE(sheet.is_blank());
 }
 
-TEST(DrawHealth, OneLostUpdateIsSeen) {
+TEST(DrawHealth, ASingleLostUpdateIsVisible) {
   Sheet sheet;
   std::vector<EstimatedPose> path = straight_path(0.9, 0.1);
   path[5].health = Health::kLost;

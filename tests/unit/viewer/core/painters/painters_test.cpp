@@ -69,14 +69,14 @@ TEST(PaintMap, ShortCorridorsAndSquareRoomsStayInOneStrip) {
   EXPECT_THAT(lay_out(content_of(scene_of(room(-1, -1, 49, 49))), kStyle).strips, SizeIs(1));
 }
 
-TEST(PaintMap, AStandingCorridorIsLaidDown) {
+TEST(PaintMap, AVerticalCorridorIsDrawnHorizontally) {
   const GridMap standing = room(-1, -1, 1, 49);
   EXPECT_NEAR(std::abs(view_from_map(standing).theta()), std::numbers::pi / 2, 1e-3);
   EXPECT_GT(lay_out(content_of(scene_of(standing)), kStyle).strips.size(), 1U);
   EXPECT_EQ(view_from_map(room(-1, -1, 49, 1)).theta(), 0.0);
 }
 
-TEST(PaintMap, ShowsEverythingInItsColour) {
+TEST(PaintMap, EachElementHasItsColour) {
   const cv::Mat page = paint_map(corridor_scene(50.0), kStyle);
   for (const cv::Scalar& colour :
        {palette::kEstimated, palette::kTrue, palette::kOdometry, palette::kMarker,
@@ -96,7 +96,7 @@ TEST(PaintMap, ShowsLostStretchesAndMovedMarkersInMapAndLegend) {
   EXPECT_TRUE(contains_colour(page, palette::kMoved));
 }
 
-TEST(PaintMap, TheLegendNamesWhatIsThereAndIsNoLongerThanNeeded) {
+TEST(PaintMap, TheLegendListsOnlyWhatIsDrawn) {
   const int height_px = paint_map(corridor_scene(50.0), kStyle).rows;
   Scene scene = corridor_scene(50.0);
   for (EstimatedPose& pose : scene.estimates)
@@ -111,7 +111,7 @@ TEST(PaintMap, TheLegendNamesWhatIsThereAndIsNoLongerThanNeeded) {
   EXPECT_LT(page.rows, height_px + 200);
 }
 
-TEST(Heading, StaysInItsAreaHoweverMuchIsInIt) {
+TEST(Heading, LongTextIsClippedToItsArea) {
   PageContent content = content_of(corridor_scene(50.0));
   for (std::size_t i = 0; i < content.estimates.size(); ++i) {
     content.estimates[i].health = static_cast<Health>(i % 5);
@@ -145,13 +145,13 @@ TEST(PaintMap, TheFinalTrajectoryIsDashedOverTheOthers) {
   EXPECT_GT(gaps, 30);
 }
 
-TEST(PaintMap, WorksWithoutAnything) {
+TEST(PaintMap, AnEmptySceneIsPainted) {
   const cv::Mat page = paint_map(Scene{}, kStyle);
   EXPECT_GE(page.cols, 800);
   EXPECT_FALSE(contains_colour(page, palette::kTrue)) << "no truth, no entry in the legend";
 }
 
-TEST(PaintMap, WorksForOneCellAndForWildNumbers) {
+TEST(PaintMap, OneCellAndAbsurdNumbersArePainted) {
   EXPECT_FALSE(paint_map(scene_of(drawn_map({"#"})), kStyle).empty());
 
   Scene scene = corridor_scene(10.0);
@@ -186,7 +186,7 @@ TEST(PaintMap, TheWholeEstimatedPathIsInTheFrame) {
   EXPECT_TRUE(contains_path(page.strips.front().view.box, scene.estimates));
 }
 
-TEST(PaintMap, OdometryThatDriftsAwayIsInTheOverviewOnly) {
+TEST(PaintMap, DriftingOdometryIsDrawnInTheOverviewOnly) {
   Scene scene = corridor_scene(10.0);
   const MapPage before = lay_out(content_of(scene), kStyle);
   EXPECT_EQ(before.odometry_in_strips, Odometry::kIncluded);
@@ -275,7 +275,7 @@ TEST(PaintMap, PosesFarFromTheMapDoNotShrinkIt) {
   EXPECT_EQ(lay_out(content_of(scene), kStyle).strips.front().view.px_per_m, px_per_m);
 }
 
-TEST(Labels, LieInsideThePanelOffTheCorridorAndApart) {
+TEST(Labels, LieInsideThePanelOutsideTheCorridorWithoutOverlap) {
   const PageContent content = content_of(corridor_scene(50.0));
   const MapPage page = lay_out(content, kStyle);
   std::size_t count = 0;
@@ -315,7 +315,7 @@ TEST(Labels, DistinguishInstances) {
   EXPECT_EQ(label_text({.id = 7, .state = LandmarkState::kMoved}), "7 moved");
 }
 
-TEST(MarkerLayer, FindsTheGroupsOfCells) {
+TEST(MarkerLayer, FindsConnectedCellsOfAnId) {
   const GridMap map = drawn_map({
       "#000####33##",
       "#..........#",
@@ -357,7 +357,7 @@ TEST(PaintPlain, HasOnePixelPerCellHighestYFirst) {
   EXPECT_EQ(image(0, 2), kUnknownGrey);
 }
 
-TEST(PaintScan, HasTheWishedSizeAndTheMarkersColours) {
+TEST(PaintScan, ImageHasTheRequestedSizeAndMarkersTheirColours) {
   const cv::Mat picture = paint_scan(corridor_scan(), 700);
   EXPECT_EQ(picture.size(), (cv::Size{700, 700}));
   EXPECT_TRUE(contains_colour(picture, colour_of_id(4)));

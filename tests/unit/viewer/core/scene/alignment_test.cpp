@@ -36,7 +36,7 @@ TEST(PoseAt, IsUnknownOutsideThePath) {
   EXPECT_FALSE(pose_at({}, at_s(1)));
 }
 
-TEST(AlignedOnFirst, PutsThePathThroughTheFirstEstimate) {
+TEST(AlignedOnFirst, AlignsThePathWithTheFirstEstimate) {
   // The robot drives along the world's +y from (5, 1); at 1 s the estimate says (0.5, 0, 0).
   const std::vector<TimedPose> truth{{at_s(0), {5, 1, kQuarterTurn_rad}},
                                      {at_s(2), {5, 3, kQuarterTurn_rad}},

@@ -30,7 +30,7 @@ Change alarm(const std::string& text) {
 
 constexpr Timestamp kNow{Duration{5'000'000}};
 
-TEST(ChangeMonitorOfHealth, SpeaksOncePerChange) {
+TEST(ChangeMonitorOfHealth, ReportsEachChangeOnce) {
   ChangeMonitor monitor;
   EXPECT_EQ(monitor.update(estimate(1, Health::kInitialising)),
             note("1.0 s: initialising at (1.00, -1.00) m"));
@@ -40,7 +40,7 @@ TEST(ChangeMonitorOfHealth, SpeaksOncePerChange) {
   EXPECT_EQ(monitor.update(estimate(4, Health::kTracking)), std::nullopt);
 }
 
-TEST(ChangeMonitorOfHealth, TellsLostAndFoundAgain) {
+TEST(ChangeMonitorOfHealth, ReportsLostAndRecovered) {
   ChangeMonitor monitor;
   monitor.update(estimate(1, Health::kTracking));
   EXPECT_EQ(monitor.update(estimate(2, Health::kLost)), alarm("2.0 s: lost at (2.00, -1.00) m"));
@@ -49,7 +49,7 @@ TEST(ChangeMonitorOfHealth, TellsLostAndFoundAgain) {
             note("4.5 s: re-localised at (4.50, -1.00) m after 2.5 s"));
 }
 
-TEST(ChangeMonitorOfHealth, AnAxisThatComesAndGoesIsNoNews) {
+TEST(ChangeMonitorOfHealth, AFlickeringWeakAxisIsNotReported) {
   ChangeMonitor monitor;
   monitor.update(estimate(1, Health::kTracking));
   EXPECT_EQ(monitor.update(estimate(2, Health::kDegenerate)), std::nullopt);
@@ -61,7 +61,7 @@ TEST(ChangeMonitorOfHealth, UnknownHealthFromTheStartIsNoChange) {
   EXPECT_EQ(monitor.update(estimate(1, Health::kUnknown)), std::nullopt);
 }
 
-TEST(ChangeMonitorOfMarkers, TellsNewAndChangedMarkersOnce) {
+TEST(ChangeMonitorOfMarkers, ReportsNewAndChangedMarkersOnce) {
   ChangeMonitor monitor;
   const std::vector tentative{landmark(7, 0, LandmarkState::kTentative)};
   const std::vector moved{landmark(7, 0, LandmarkState::kMoved)};
@@ -73,7 +73,7 @@ TEST(ChangeMonitorOfMarkers, TellsNewAndChangedMarkersOnce) {
   EXPECT_THAT(monitor.update(kNow, moved), IsEmpty());
 }
 
-TEST(ChangeMonitorOfMarkers, InstancesAreMarkersOfTheirOwn) {
+TEST(ChangeMonitorOfMarkers, InstancesOfAnIdAreDifferentMarkers) {
   ChangeMonitor monitor;
   monitor.update(kNow, {landmark(7, 0, LandmarkState::kConfirmed)});
   EXPECT_THAT(monitor.update(kNow, {landmark(7, 1, LandmarkState::kConfirmed),
@@ -81,7 +81,7 @@ TEST(ChangeMonitorOfMarkers, InstancesAreMarkersOfTheirOwn) {
               ElementsAre(note("5.0 s: marker 7.1 at (7.00, 2.00) m is new and confirmed")));
 }
 
-TEST(ChangeMonitorOfMarkers, TellsWhenOneIsGone) {
+TEST(ChangeMonitorOfMarkers, ReportsARemovedMarker) {
   ChangeMonitor monitor;
   monitor.update(kNow, {landmark(0, 0, LandmarkState::kConfirmed)});
   EXPECT_THAT(monitor.update(kNow, {}),

@@ -18,7 +18,7 @@ struct Limits {
 inline constexpr double kSigmas = 3.0;
 
 /// Deviations within the limit, or within what chance explains, pass.
-inline Verdict judge(double deviation, double sigma, Limits limits) {
+inline Verdict verdict_of(double deviation, double sigma, Limits limits) {
   const double certain = std::abs(deviation) - kSigmas * sigma;
   return certain <= limits.good  ? Verdict::kPass
          : certain <= limits.bad ? Verdict::kWarn

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/graph/motion_doubt.hpp"
+#include "slam/core/graph/unmeasured_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,20 +7,20 @@
 namespace waymark {
 namespace {
 
-constexpr double kStill_m_s =
-    0.002;  // slower is standing: odometry with a gyro is never quite still
+// Slower is standing: odometry with a gyro is never quite still.
+constexpr double kStill_m_s = 0.002;
 constexpr double kStill_rad_s = 0.005;
 constexpr double kSpeedMemory_s = 1.0;
-constexpr double kStuckShare = 0.05;        // of odometry that stops, where nothing shows the way
-constexpr double kLongestSuspect_s = 20.0;  // a robot that stands for longer parks
+constexpr double kStuckShare = 0.05;  // probability that odometry which stops is stuck; chosen
+constexpr double kLongestSuspect_s = 20.0;  // a robot that stands for longer is parked
 
 }  // namespace
 
-void MotionDoubt::follow(const Observation& observation) {
+void UnmeasuredMotion::follow(const Observation& observation) {
   const double elapsed_s = observation.elapsed_s;
   is_standing_ = observation.motion.distance_m <= kStill_m_s * elapsed_s &&
                  observation.motion.turn_rad <= kStill_rad_s * elapsed_s;
-  is_jumping_ = observation.odometry_doubtful && !observation.odometry_caught_up;
+  is_jumping_ = observation.odometry_jumped && !observation.odometry_caught_up;
   if (observation.odometry_caught_up) {
     note_observed();
     is_stuck_ = false;
@@ -37,18 +37,18 @@ void MotionDoubt::follow(const Observation& observation) {
   }
 }
 
-void MotionDoubt::note_moved(double distance_m, double elapsed_s) {
+void UnmeasuredMotion::note_moved(double distance_m, double elapsed_s) {
   is_stuck_ = is_standing_;
   if (is_stuck_ && elapsed_s > 0.0) speed_m_s_ = distance_m / elapsed_s;
 }
 
-double MotionDoubt::take_unmeasured_m() {
+double UnmeasuredMotion::take_unmeasured_m() {
   const double sigma_m = unmeasured_m();
   silent_s_ = 0.0;
   return sigma_m;
 }
 
-double MotionDoubt::suspected_m() const {
+double UnmeasuredMotion::suspected_m() const {
   return std::sqrt(kStuckShare) * speed_m_s_ * std::min(standing_s_, kLongestSuspect_s);
 }
 

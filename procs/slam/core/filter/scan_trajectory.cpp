@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/filter/scan_trail.hpp"
+#include "slam/core/filter/scan_trajectory.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-/// A radian of turning counts like so much driving where a difference is shared out.
+/// A radian of turning counts like so much driving where a difference is distributed.
 constexpr double kMetresPerRadian = 1.0;
 
 double effort(const Motion& motion) {
@@ -16,13 +16,13 @@ double effort(const Motion& motion) {
 
 }  // namespace
 
-void ScanTrail::add(Timestamp time, const Motion& motion, bool is_update) {
+void ScanTrajectory::add(Timestamp time, const Motion& motion, bool is_update) {
   assert(is_update || !scans_.empty());
   const bool continues = !scans_.empty() && !scans_.back().is_update;
   scans_.push_back({time, continues ? scans_.back().since_update.then(motion) : motion, is_update});
 }
 
-std::vector<TimedPose> ScanTrail::along(std::span<const Se2> map_from_updates) const {
+std::vector<TimedPose> ScanTrajectory::along(std::span<const Se2> map_from_updates) const {
   std::vector<TimedPose> poses;
   poses.reserve(scans_.size());
   std::size_t update = 0;  // number of updates passed

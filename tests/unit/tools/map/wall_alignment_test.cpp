@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/graph/wall_alignment.hpp"
+#include "map/wall_alignment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,14 +63,14 @@ TEST(WallAlignment, FindsWhereTheRoomsOfOneMapAreInAnother) {
   EXPECT_NEAR(off.theta(), 0.0, 0.01);
 }
 
-TEST(WallAlignment, ABareCorridorSaysNothing) {
+TEST(WallAlignment, ABareCorridorGivesNoAlignment) {
   const std::vector<Wall> corridor{{{0, 0}, {30, 0}}, {{0, 2}, {30, 2}}};
   const MapSnapshot a = map_of(corridor, way_between(5.0, 25.0), Se2{});
   const MapSnapshot b = map_of(corridor, way_between(5.0, 25.0), {1.0, 2.0, 0.5});
   EXPECT_FALSE(align_by_walls(a, b));
 }
 
-TEST(WallAlignment, MapsOfOtherBuildingsDoNotFit) {
+TEST(WallAlignment, MapsOfDifferentBuildingsGiveNoAlignment) {
   const std::vector<Wall> other{{{0, 0}, {7, 0}}, {{7, 0}, {7, 9}},  {{7, 9}, {0, 9}},
                                 {{0, 9}, {0, 0}}, {{3, 0}, {3, 4}},  {{3, 6}, {3, 9}},
                                 {{7, 5}, {5, 5}}, {{5, 5}, {5, 6.3}}};

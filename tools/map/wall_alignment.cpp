@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/graph/wall_alignment.hpp"
+#include "map/wall_alignment.hpp"
 
 #include "slam/core/grid/occupied_points.hpp"
-#include "slam/core/registration/correlative_search.hpp"
 #include "slam/core/registration/scan_match.hpp"
+#include "slam/core/registration/unique_place.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,22 +14,24 @@
 namespace waymark {
 namespace {
 
-constexpr double kStretch_m = 4.0;  // radius of what is looked for at once
+constexpr double kStretch_m = 4.0;  // radius of a stretch of walls
 constexpr double kStretchesEvery_m = 3.0;
 constexpr std::size_t kMostStretches = 24;
 constexpr std::size_t kPoints = 250;
 constexpr std::size_t kLeastPoints = 80;
 constexpr double kLeastScore = 0.6;  // of a stretch, part of which may be new or gone
-constexpr double kRunnerUpShare = 0.85;
-constexpr double kApart_m = 0.5;
-constexpr double kApart_rad = 0.3;
-constexpr double kAgree_m = 0.3;
+constexpr UniquePlaceLimits kUnique{.min_score = kLeastScore,
+                                    .runner_up_share = 0.85,
+                                    .min_runner_up = kLeastScore,
+                                    .apart_m = 0.5,
+                                    .apart_rad = 0.3};
+constexpr double kAgree_m = 0.3;  // between two stretches' alignments
 constexpr double kAgree_rad = 0.1;
-constexpr std::size_t kAgreeing = 2;    // stretches, at least
-constexpr double kRangeSigma_m = 0.02;  // of points that stand for cells
+constexpr std::size_t kLeastConsistent = 2;  // stretches
+constexpr double kRangeSigma_m = 0.02;       // of points at centres of cells
 const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
 
-/// Places along the way of a map, some metres apart.
+/// Places along the trajectory of a map, some metres apart.
 std::vector<Se2> places_of(const PoseGraph& graph) {
   std::vector<Se2> places;
   for (const Se2& pose : graph.poses) {
@@ -57,12 +59,8 @@ std::optional<Se2> found_in(const MapSnapshot& a, const CorrelativeField& field,
                             const SearchWindow& window, const Se2& middle, const Points& stretch) {
   const Points some = thinned(stretch, kPoints);
   if (some.size() < kLeastPoints) return std::nullopt;
-  const auto best = field.best(some, middle, window, kLeastScore);
+  const auto best = unique_place(field, some, middle, window, kUnique);
   if (!best) return std::nullopt;
-  const auto runner_up =
-      field.best_apart_from(best->submap_from_base, kApart_m, kApart_rad, some, middle, window,
-                            std::max(kLeastScore, kRunnerUpShare * best->score));
-  if (runner_up) return std::nullopt;
   const RangeNoise noise{kRangeSigma_m};
   const ScanMatchConfig config;
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
@@ -99,7 +97,7 @@ std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapsh
     Se2 a_from_place{};
     Se2 b_from_place{};
 
-    /// Of the other one's place, if this one is right.
+    /// The alignment by this stretch predicts the other one's place.
     bool agrees_with(const Found& other) const {
       const Se2 a_from_b = a_from_place * b_from_place.inverse();
       const Eigen::Vector3d off =
@@ -114,13 +112,13 @@ std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapsh
       found.push_back({*there, place});
   std::vector<Found> best;
   for (const Found& one : found) {
-    std::vector<Found> agreeing;
-    std::copy_if(found.begin(), found.end(), std::back_inserter(agreeing),
+    std::vector<Found> consistent;
+    std::copy_if(found.begin(), found.end(), std::back_inserter(consistent),
                  [&](const Found& other) { return one.agrees_with(other); });
-    if (agreeing.size() > best.size()) best = agreeing;
+    if (consistent.size() > best.size()) best = consistent;
   }
-  if (best.size() < kAgreeing) return std::nullopt;
-  // The middle of the stretches is known best: the mean is taken there.
+  if (best.size() < kLeastConsistent) return std::nullopt;
+  // The mean is taken at the centre of the stretches, where the alignment is most certain.
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   for (const Found& one : best)
     centre += one.b_from_place.translation() / static_cast<double>(best.size());

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/graph/map_merge.hpp"
+#include "map/map_merge.hpp"
+
+#include "common/geometry/rigid_fit.hpp"
 
 #include <Eigen/LU>
 
@@ -11,10 +13,10 @@
 namespace waymark {
 namespace {
 
-constexpr double kAgree_m = 0.3;  // two maps' places of one marker
-constexpr double kLeastApart_m = 1.0;
-constexpr int kSamplesAlong = 6;  // of a wall's cell
-constexpr double kSameMarker_m = 0.5;
+constexpr double kInlier_m = 0.3;      // between the two maps' places of one marker
+constexpr double kLeastApart_m = 1.0;  // between two markers that determine the rotation
+constexpr int kSamplesAlong = 6;       // of points in a cell of walls
+constexpr double kSameMarker_m = 0.5;  // between two landmarks of one id
 
 /// Each cell takes the content of the old one at its centre.
 GridMap transformed(const GridMap& grid, const Se2& new_from_old) {
@@ -40,8 +42,8 @@ GridMap transformed(const GridMap& grid, const Se2& new_from_old) {
   return result;
 }
 
-/// Every second cell of every second row holds each point once. Its points are replaced
-/// by twelve of the same mean and covariance.
+/// The cells overlap: every second one of every second row holds each point once. The points of
+/// such a cell are replaced by twelve with the same mean and covariance.
 void add_transformed(const NdtMap& walls, const Se2& new_from_old, NdtMap& result) {
   for (const NdtCellSums& cell : walls.sums()) {
     if (cell.column % 2 != 0 || cell.row % 2 != 0) continue;
@@ -80,40 +82,20 @@ const Landmark* only_one(const MapSnapshot& map, int id) {
   return only;
 }
 
-using Pairs = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;  ///< in a, in b
+using Pairs = std::vector<PointPair>;  ///< target: in a, source: in b
 
-/// Best rigid fit (Umeyama 1991, in the plane, without scale).
-Se2 fitted(const Pairs& pairs) {
-  Eigen::Vector2d mean_a = Eigen::Vector2d::Zero();
-  Eigen::Vector2d mean_b = Eigen::Vector2d::Zero();
-  for (const auto& [a, b] : pairs) {
-    mean_a += a / static_cast<double>(pairs.size());
-    mean_b += b / static_cast<double>(pairs.size());
-  }
-  double cosine = 0.0;
-  double sine = 0.0;
-  for (const auto& [a, b] : pairs) {
-    const Eigen::Vector2d from = b - mean_b;
-    const Eigen::Vector2d to = a - mean_a;
-    cosine += from.dot(to);
-    sine += from.x() * to.y() - from.y() * to.x();
-  }
-  const Se2 turn{0.0, 0.0, std::atan2(sine, cosine)};
-  return {mean_a - turn * mean_b, turn.theta()};
+double distance_m(const Se2& a_from_b, const PointPair& pair) {
+  return (a_from_b * pair.source - pair.target).norm();
 }
 
-double distance_m(const Se2& a_from_b, const std::pair<Eigen::Vector2d, Eigen::Vector2d>& pair) {
-  return (a_from_b * pair.second - pair.first).norm();
-}
-
-Pairs agreeing(const Pairs& pairs, const Se2& a_from_b) {
+Pairs inliers_of(const Pairs& pairs, const Se2& a_from_b) {
   Pairs agree;
-  for (const auto& pair : pairs)
-    if (distance_m(a_from_b, pair) < kAgree_m) agree.push_back(pair);
+  for (const PointPair& pair : pairs)
+    if (distance_m(a_from_b, pair) < kInlier_m) agree.push_back(pair);
   return agree;
 }
 
-/// Mean by information.
+/// Mean, weighted by information.
 Landmark mean_of(const Landmark& a, const Landmark& b) {
   Landmark mean = a;
   const Eigen::Matrix3d gain = a.covariance * (a.covariance + b.covariance).inverse();
@@ -168,20 +150,19 @@ std::optional<MapAlignment> align_by_markers(const MapSnapshot& a, const MapSnap
   for (const Landmark& landmark : a.landmarks) {
     const Landmark* other = only_one(b, landmark.id);
     if (other == nullptr || only_one(a, landmark.id) != &landmark) continue;
-    pairs.emplace_back(landmark.map_from_marker.translation(),
-                       other->map_from_marker.translation());
+    pairs.push_back({landmark.map_from_marker.translation(), other->map_from_marker.translation()});
   }
   Pairs best;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     for (std::size_t k = i + 1; k < pairs.size(); ++k) {
-      if ((pairs[i].first - pairs[k].first).norm() < kLeastApart_m) continue;
-      const Pairs agree = agreeing(pairs, fitted({pairs[i], pairs[k]}));
+      if ((pairs[i].target - pairs[k].target).norm() < kLeastApart_m) continue;
+      const Pairs agree = inliers_of(pairs, rigid_fit({pairs[i], pairs[k]}));
       if (agree.size() > best.size()) best = agree;
     }
   }
   if (best.size() < 2) return std::nullopt;
-  MapAlignment alignment{fitted(best), best.size(), 0.0};
-  for (const auto& pair : best)
+  MapAlignment alignment{rigid_fit(best), best.size(), 0.0};
+  for (const PointPair& pair : best)
     alignment.rms_m += std::pow(distance_m(alignment.a_from_b, pair), 2);
   alignment.rms_m = std::sqrt(alignment.rms_m / static_cast<double>(best.size()));
   return alignment;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scans of a run on a string of odometry, to be hung up on poses that are known better later.
+// The pose at every scan of a run, from the poses at the filter's updates and odometry in between.
 #pragma once
 
 #include "common/time/time.hpp"
@@ -16,15 +16,16 @@ struct TimedPose {
   Se2 map_from_base{};
 };
 
-/// Remembers every scan of a run: 64 bytes each.
-class ScanTrail {
+/// Keeps the odometry of every scan of a run: 64 bytes each.
+class ScanTrajectory {
  public:
   /// @param motion     since the scan before.
   /// @param is_update  the estimator gives this scan a pose of its own; the first scan must be one.
   void add(Timestamp time, const Motion& motion, bool is_update);
 
-  /// One pose per scan. Between two updates odometry is bent so that it meets both: what is left
-  /// over is shared out along the way. After the last update the pose follows odometry.
+  /// One pose per scan. Between two updates the poses follow odometry, and the difference that
+  /// remains at the second update is distributed over them in proportion to the motion. After the
+  /// last update the poses follow odometry.
   /// @param map_from_updates  one pose per update.
   std::vector<TimedPose> along(std::span<const Se2> map_from_updates) const;
 

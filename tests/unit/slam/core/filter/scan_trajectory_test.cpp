@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/filter/scan_trail.hpp"
+#include "slam/core/filter/scan_trajectory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,12 +23,12 @@ void expect_pose(const TimedPose& pose, int second, const Se2& expected) {
   EXPECT_NEAR(angle_difference(pose.map_from_base.theta(), expected.theta()), 0.0, 1e-12);
 }
 
-TEST(ScanTrail, IsEmptyWithoutScans) {
-  EXPECT_TRUE(ScanTrail{}.along({}).empty());
+TEST(ScanTrajectory, IsEmptyWithoutScans) {
+  EXPECT_TRUE(ScanTrajectory{}.along({}).empty());
 }
 
-TEST(ScanTrail, FollowsOdometryAfterTheLastUpdate) {
-  ScanTrail trail;
+TEST(ScanTrajectory, FollowsOdometryAfterTheLastUpdate) {
+  ScanTrajectory trail;
   trail.add(at(0), {}, true);
   trail.add(at(1), step(1.0, std::numbers::pi / 2), false);
   trail.add(at(2), step(2.0), false);
@@ -40,8 +40,8 @@ TEST(ScanTrail, FollowsOdometryAfterTheLastUpdate) {
   expect_pose(poses[2], 2, {6.0, 2.0, std::numbers::pi / 2});
 }
 
-TEST(ScanTrail, MeetsTheUpdatesAndSharesOutTheDifferenceAlongTheWay) {
-  ScanTrail trail;
+TEST(ScanTrajectory, PassesThroughTheUpdatesAndDistributesTheDifference) {
+  ScanTrajectory trail;
   trail.add(at(0), {}, true);
   trail.add(at(1), step(1.0), false);
   trail.add(at(2), {}, false);  // stands still: no share of the difference
@@ -56,8 +56,8 @@ TEST(ScanTrail, MeetsTheUpdatesAndSharesOutTheDifferenceAlongTheWay) {
   expect_pose(poses[4], 4, updates[2]);
 }
 
-TEST(ScanTrail, TurnsCountWhereTheDifferenceIsSharedOut) {
-  ScanTrail trail;
+TEST(ScanTrajectory, TurnsCountInTheDistributionOfTheDifference) {
+  ScanTrajectory trail;
   trail.add(at(0), {}, true);
   trail.add(at(1), step(0.0, 0.25), false);
   trail.add(at(2), step(0.0, 0.75), true);

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Global registration that refuses ambiguous places.
+#pragma once
+
+#include "slam/core/registration/correlative_search.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+namespace waymark {
+
+/// When the best place of a search counts as the only one.
+struct UniquePlaceLimits {
+  double min_score{0.0};        ///< of the best place
+  double runner_up_share{1.0};  ///< of the best score: a runner-up of so much is as good
+  double min_runner_up{0.0};    ///< score below which a runner-up never counts
+  double apart_m{0.5};          ///< a place nearer to the best one, and
+  double apart_rad{0.3};        ///< with a smaller turn, is the same place
+};
+
+/// The best place in the window, unless there is none or another one fits as well.
+inline std::optional<SearchMatch> unique_place(const CorrelativeField& field,
+                                               std::span<const Eigen::Vector2d> points_in_base,
+                                               const Se2& guess, const SearchWindow& window,
+                                               const UniquePlaceLimits& limits) {
+  const auto best = field.best(points_in_base, guess, window, limits.min_score);
+  if (!best) return std::nullopt;
+  const auto runner_up = field.best_apart_from(
+      best->submap_from_base, limits.apart_m, limits.apart_rad, points_in_base, guess, window,
+      std::max(limits.min_runner_up, limits.runner_up_share * best->score));
+  return runner_up ? std::nullopt : best;
+}
+
+}  // namespace waymark

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/unmeasured_motion.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark {
+namespace {
+
+/// Five times a second.
+class Robot {
+ public:
+  UnmeasuredMotion motion{};
+
+  void observe(double distance_m, bool is_doubtful = false, bool caught_up = false) {
+    Observation observation;
+    observation.elapsed_s = 0.2;
+    observation.motion = {{distance_m, 0.0, 0.0}, distance_m, 0.0};
+    observation.odometry_jumped = is_doubtful;
+    observation.odometry_caught_up = caught_up;
+    motion.follow(observation);
+  }
+
+  void drive() {
+    for (int i = 0; i < 50; ++i)
+      observe(0.02);
+  }
+
+  void stand(int observations) {
+    for (int i = 0; i < observations; ++i)
+      observe(0.0);
+  }
+};
+
+TEST(UnmeasuredMotion, IsZeroWhileOdometryMoves) {
+  Robot robot;
+  robot.drive();
+  EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
+  EXPECT_EQ(robot.motion.suspected_m(), 0.0);
+}
+
+TEST(UnmeasuredMotion, IsSuspectedWhileOdometryStandsUntilTheMotionIsObserved) {
+  Robot robot;
+  robot.drive();
+  robot.stand(50);
+  EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
+  EXPECT_GT(robot.motion.suspected_m(), 0.1);  // of the metre that it would have driven
+  robot.motion.note_observed();
+  EXPECT_EQ(robot.motion.suspected_m(), 0.0);
+}
+
+TEST(UnmeasuredMotion, NoiseOfAGyroIsNoMotion) {
+  Robot robot;
+  robot.drive();
+  robot.observe(0.0002);
+  EXPECT_TRUE(robot.motion.is_standing());
+  robot.observe(0.002);  // 1 cm a second
+  EXPECT_FALSE(robot.motion.is_standing());
+}
+
+TEST(UnmeasuredMotion, IsBoundedForAParkedRobot) {
+  Robot robot;
+  robot.drive();
+  robot.stand(50'000);
+  EXPECT_LT(robot.motion.suspected_m(), 0.5);
+}
+
+TEST(UnmeasuredMotion, GrowsWhileOdometryIsStuck) {
+  Robot robot;
+  robot.drive();
+  robot.stand(1);
+  robot.motion.note_moved(0.02, 0.2);
+  robot.motion.note_observed();
+  EXPECT_TRUE(robot.motion.is_silent());
+  robot.stand(50);
+  EXPECT_NEAR(robot.motion.unmeasured_m(), 1.0, 0.1);
+  robot.observe(0.02);
+  EXPECT_FALSE(robot.motion.is_silent());
+  EXPECT_NEAR(robot.motion.take_unmeasured_m(), 1.0, 0.15);  // nobody has said what was driven
+  EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
+}
+
+TEST(UnmeasuredMotion, UsesTheEstimatedSpeedIfOdometryHasNeverMoved) {
+  Robot robot;
+  robot.stand(10);
+  robot.motion.note_moved(0.1, 0.2);
+  robot.motion.note_observed();
+  robot.stand(10);
+  EXPECT_TRUE(robot.motion.is_silent());
+  EXPECT_NEAR(robot.motion.unmeasured_m(), 1.0, 0.11);  // 0.5 m/s for 2 s
+}
+
+TEST(UnmeasuredMotion, IsZeroAfterOdometryHasCaughtUp) {
+  Robot robot;
+  robot.drive();
+  robot.stand(1);
+  robot.motion.note_moved(0.02, 0.2);
+  robot.stand(50);
+  robot.observe(1.0, false, true);
+  EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
+  EXPECT_FALSE(robot.motion.is_silent());
+}
+
+TEST(UnmeasuredMotion, GrowsWhileOdometryJumps) {
+  Robot robot;
+  robot.drive();
+  for (int i = 0; i < 5; ++i)
+    robot.observe(0.0, true);
+  EXPECT_TRUE(robot.motion.is_silent());
+  EXPECT_NEAR(robot.motion.unmeasured_m(), 0.1, 0.02);
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Aligns two maps by their walls.
+#pragma once
+
+#include "map/map_merge.hpp"
+
+#include <optional>
+
+namespace waymark {
+
+/// Searches `a` for stretches of walls of `b`, anywhere and in any direction. A stretch counts if
+/// it fits at one place only, and observes every direction there, which one in a bare corridor
+/// never does. At least two stretches must be consistent; `shared` is their number. Takes seconds
+/// for maps of buildings.
+std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapshot& b);
+
+}  // namespace waymark
