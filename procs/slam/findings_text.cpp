@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/findings_text.hpp"
 
+#include "slam/core/graph/calibration_terms.hpp"
+
 #include <fmt/format.h>
 
 #include <utility>
@@ -102,8 +104,13 @@ std::vector<Finding> worth_saying(const Findings& findings, std::int64_t repeate
   List list;
   add_odometry(findings, list);
   add_ranges(findings, repeated_scans, list);
-  if (findings.is_camera_doubted)
-    list.add("calibration_doubted", "the calibration is worse than described", 1.0);
+  for (const Miscalibration& found : findings.miscalibrated) {
+    const CalibrationTerm& term = kCalibrationTerms.at(found.term);
+    list.add(fmt::format("calibration_{}", term.key),
+             fmt::format("{}: {:+.4g} +- {:.1g} {} from the description", term.name,
+                         term.per_unit * found.error, term.per_unit * found.sigma, term.unit),
+             found.error);
+  }
   if (findings.loops_ambiguous > 0) {
     list.add("loops_ambiguous",
              fmt::format("scans fitted in several places of the map {} times, which closed no loop",

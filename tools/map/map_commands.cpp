@@ -5,6 +5,7 @@
 #include "common/log/log_file.hpp"
 #include "map/map_merge.hpp"
 #include "map/wall_alignment.hpp"
+#include "slam/core/graph/calibration_terms.hpp"
 #include "slam/map_file.hpp"
 #include "viewer/viewer_node.hpp"
 
@@ -12,9 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
 namespace waymark {
 namespace {
@@ -70,23 +69,6 @@ void need_mergeable(const MapFile& a, const MapFile& b) {
   }
 }
 
-struct CalibrationTerm {
-  std::string_view key;
-  std::string_view name;
-  std::string_view unit;
-  double per_unit;
-};
-
-/// In the order of Calibration.
-constexpr std::array<CalibrationTerm, kCalibrationSize> kTerms{
-    {{"odometry_scale", "distances", "%", 100.0},
-     {"odometry_drift_rad_per_m", "drift", "rad/m", 1.0},
-     {"odometry_turn_scale", "turns", "%", 100.0},
-     {"lidar_ahead_m", "LiDAR ahead", "m", 1.0},
-     {"camera_yaw_rad", "camera yaw", "rad", 1.0},
-     {"focal_length", "focal length", "%", 100.0},
-     {"marker_standoff_m", "standoff of markers", "m", 1.0}}};
-
 double sigma_of(const LearntCalibration& calibration, std::size_t term) {
   const auto i = static_cast<Eigen::Index>(term);
   return std::sqrt(std::max(0.0, calibration.covariance(i, i)));
@@ -94,9 +76,9 @@ double sigma_of(const LearntCalibration& calibration, std::size_t term) {
 
 nlohmann::json json_of(const LearntCalibration& calibration) {
   nlohmann::json json;
-  for (std::size_t i = 0; i < kTerms.size(); ++i) {
-    json[kTerms[i].key] = {{"mean", calibration.mean[static_cast<Eigen::Index>(i)]},
-                           {"sigma", sigma_of(calibration, i)}};
+  for (std::size_t i = 0; i < kCalibrationTerms.size(); ++i) {
+    json[kCalibrationTerms[i].key] = {{"mean", calibration.mean[static_cast<Eigen::Index>(i)]},
+                                      {"sigma", sigma_of(calibration, i)}};
   }
   return json;
 }
@@ -104,8 +86,8 @@ nlohmann::json json_of(const LearntCalibration& calibration) {
 /// How the robot differs from its description.
 std::string text_of(const LearntCalibration& calibration) {
   std::string text;
-  for (std::size_t i = 0; i < kTerms.size(); ++i) {
-    const CalibrationTerm& term = kTerms[i];
+  for (std::size_t i = 0; i < kCalibrationTerms.size(); ++i) {
+    const CalibrationTerm& term = kCalibrationTerms[i];
     text += fmt::format("{}{} {:+.4f} +- {:.4f} {}", i > 0 ? ", " : "", term.name,
                         term.per_unit * calibration.mean[static_cast<Eigen::Index>(i)],
                         term.per_unit * sigma_of(calibration, i), term.unit);

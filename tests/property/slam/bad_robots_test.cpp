@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace waymark {
 namespace {
@@ -220,6 +222,27 @@ TEST(BadRobots, PeopleWalkingAlongAreExcludedAndReported) {
   EXPECT_LT(drives.ate_m, 0.04);
   EXPECT_LT(drives.findings.odometry_along, 1.9);
   EXPECT_GT(20 * drives.findings.beams_moving, drives.findings.beams);
+}
+
+/// The map's frame is the LiDAR's first pose, as it is taken to be mounted.
+TEST(BadRobots, ALidarThatIsMountedAskewIsReportedAndCorrected) {
+  constexpr double kYaw_rad = 4.0 * std::numbers::pi / 180.0;  // four beams
+  const SyntheticCorridor corridor = corridor_of(1);
+  SensorLog log = test::drive(corridor);
+  for (LidarScan& scan : log.scans)
+    std::ranges::rotate(scan.ranges_m, scan.ranges_m.begin() + 4);
+  WaymarkEstimator estimator{test::estimator_setup_of(corridor, 1), {}};
+  const std::vector<Step> steps = test::run(estimator, log, test::setup_of(corridor));
+  const Se2 mounting{0.0, 0.0, kYaw_rad};
+  for (const Step& step : steps) {
+    const Se2 expected = mounting.inverse() * step.truth * mounting;
+    EXPECT_LT(pose_difference(step.estimate.map_from_base, expected).head<2>().norm(), 0.1);
+  }
+  const std::vector<Miscalibration> found = estimator.findings()->miscalibrated;
+  const auto yaw =
+      std::ranges::find(found, std::size_t{OdometryTerm::kLidarYaw}, &Miscalibration::term);
+  ASSERT_NE(yaw, found.end());
+  EXPECT_NEAR(yaw->error, kYaw_rad, 0.005);
 }
 
 TEST(BadRobots, RangeNoiseIsLearnt) {

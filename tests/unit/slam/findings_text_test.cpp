@@ -41,6 +41,17 @@ TEST(FindingsText, DeviationsAreReportedWithNumbers) {
   EXPECT_EQ(found[1].share, 0.02);
 }
 
+TEST(FindingsText, AMountingThatIsNotAsDescribedIsNamedWithItsError) {
+  Findings findings = as_described();
+  findings.miscalibrated = {{OdometryTerm::kLidarYaw, 0.0873, 0.001},
+                            {OdometryTerm::kScale, -0.12, 0.004}};
+  const auto found = worth_saying(findings, 0);
+  EXPECT_EQ(sentence_of(found),
+            "LiDAR yaw: +0.0873 +- 0.001 rad from the description; "
+            "odometry's distances: -12 +- 0.4 % from the description");
+  EXPECT_EQ(found.front().name, "calibration_lidar_yaw_rad");
+}
+
 TEST(FindingsText, AFewScansThatDoNotFitAreNotReported) {
   Findings findings = as_described();
   findings.scans_refuted = 5;

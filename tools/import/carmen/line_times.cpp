@@ -81,7 +81,7 @@ template <class Line>
 void sort_by_time(std::vector<ReadLine<Line>>& lines, std::string_view what, ImportReport& report) {
   std::vector<Timestamp> settled;
   const std::vector<Timestamp> times = times_of(lines);
-  for (const std::size_t index : settled_order(times))
+  for (const std::size_t index : order_within_tolerance(times))
     settled.push_back(times[index]);
   const auto in_order = std::ranges::count(longest_ascending(settled), true);
   const auto all = static_cast<double>(lines.size());

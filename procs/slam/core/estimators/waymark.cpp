@@ -44,7 +44,8 @@ Calibration calibration_sigmas(const EstimatorSetup& setup, const WaymarkConfig&
   const OdometryNoise& odometry = config.odometry;
   Calibration sigmas;
   sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
-      odometry.lidar_ahead_sigma_m, setup.sighting_sigmas.learnt;
+      odometry.lidar_position_sigma_m, odometry.lidar_position_sigma_m,
+      odometry.lidar_yaw_sigma_rad, setup.sighting_sigmas.learnt;
   return config.calibrate ? sigmas : Calibration{kFixed * sigmas};
 }
 
@@ -301,7 +302,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   }
   estimate.odometry_refused = odometry_check_.is_refused();
   estimate.reason = reason_;
-  estimate.calibration_widened = graph_.is_calibration_doubted();
+  estimate.calibration_widened = !graph_.doubted_calibration_terms().empty();
   estimate.weak_axis_source = unmeasured_motion_.unmeasured_m() > 0.0 ? WeakAxisSource::kNothing
                               : markers_known_                        ? WeakAxisSource::kMarkers
                                                                       : WeakAxisSource::kOdometry;

@@ -77,7 +77,12 @@ std::optional<Findings> WaymarkEstimator::findings() const {
   findings.range_sigma_m = std::sqrt(range_noise_.variance_m2());
   findings.described_range_sigma_m = setup_.range_sigma_m;
   findings.loops_ambiguous = loop_finder_.num_ambiguous();
-  findings.is_camera_doubted = graph_.is_calibration_doubted();
+  const Calibration variances = graph_.covariance({}, {}).diagonal();
+  for (const std::size_t term : graph_.doubted_calibration_terms()) {
+    const auto i = static_cast<Eigen::Index>(term);
+    findings.miscalibrated.push_back(
+        {term, graph_.state().calibration[i], std::sqrt(variances[i])});
+  }
   return findings;
 }
 

@@ -2,9 +2,18 @@
 // What a run has shown of its sensors, beside what they are described as.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace waymark {
+
+/// A term of the calibration (kCalibrationTerms) that differs significantly from the description.
+struct Miscalibration {
+  std::size_t term{0};
+  double error{0.0};  ///< estimated minus described
+  double sigma{0.0};  ///< standard deviation of `error`
+};
 
 /// Counts are of observations.
 struct Findings {
@@ -30,7 +39,7 @@ struct Findings {
 
   std::int64_t loops_ambiguous{0};  ///< that fitted in several places, and were not closed
   std::int64_t relocalisations{0};
-  bool is_camera_doubted{false};
+  std::vector<Miscalibration> miscalibrated{};
 };
 
 }  // namespace waymark

@@ -85,8 +85,12 @@ void CalibrationKnowledge::add_to(const Calibration& value, Eigen::Ref<Eigen::Ma
   g.segment<3>(kOdometryTerms) += camera_information_ * camera_part(value) - camera_vector_;
 }
 
-bool CalibrationKnowledge::is_doubted(const Calibration& value) const {
-  return (value.cwiseAbs().array() > kDoubtSigmas * sigmas_.array()).any();
+std::vector<std::size_t> CalibrationKnowledge::doubted_terms(const Calibration& value) const {
+  std::vector<std::size_t> terms;
+  for (Eigen::Index i = 0; i < value.size(); ++i)
+    if (std::abs(value[i]) > kDoubtSigmas * sigmas_[i])
+      terms.push_back(static_cast<std::size_t>(i));
+  return terms;
 }
 
 }  // namespace waymark

@@ -7,7 +7,9 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <initializer_list>
+#include <vector>
 
 namespace waymark {
 
@@ -47,8 +49,8 @@ class CalibrationKnowledge {
   /// @param variances  of `value`.
   void weigh(const Calibration& value, const Calibration& variances);
 
-  /// Whether the estimate differs significantly from the description.
-  bool is_doubted(const Calibration& value) const;
+  /// Those whose estimate differs significantly from the description, by index, ascending.
+  std::vector<std::size_t> doubted_terms(const Calibration& value) const;
 
  private:
   void weigh(std::initializer_list<Eigen::Index> terms, const Calibration& value,

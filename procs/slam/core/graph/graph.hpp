@@ -42,7 +42,9 @@ class Graph {
 
   CalibrationKnowledge& calibration_knowledge() { return calibration_; }
 
-  bool is_calibration_doubted() const { return calibration_.is_doubted(state_.calibration); }
+  std::vector<std::size_t> doubted_calibration_terms() const {
+    return calibration_.doubted_terms(state_.calibration);
+  }
 
   std::size_t add_keyframe(const Se2& map_from_base);
   std::size_t add_landmark(const Se2& map_from_marker);
@@ -87,7 +89,7 @@ class Graph {
   /// One step of Gauss-Newton over the whole graph: eliminates what lies behind the window, which
   /// rebuilds the window's prior; solves the window; substitutes back.
   /// @param activated  landmarks that are put back into the window.
-  /// @return largest step of any variable behind the window [m, rad].
+  /// @return largest step of any variable behind the window, or of all where none is [m, rad].
   double step_all(const std::vector<std::size_t>& activated = {});
 
   /// step_all() until it has converged, at most so many times.
@@ -145,6 +147,8 @@ class Graph {
 
   /// See OdometryFactor.
   void choose_kind(Factor& factor) const;
+  /// Chooses the kinds of motion and the weights of loops at the present state.
+  void reconsider_factors();
   LinearFactor linearised(const Factor& factor) const;
   double cost_of(const MarkerFactor& factor) const;
   bool is_within_window(const Factor& factor) const;

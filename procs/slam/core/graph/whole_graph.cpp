@@ -73,6 +73,14 @@ class EliminationOrder {
 
 }  // namespace
 
+void Graph::reconsider_factors() {
+  for (Factor& factor : factors_) {
+    choose_kind(factor);
+    if (auto* scan = std::get_if<ScanFactor>(&factor); scan != nullptr && scan->is_loop)
+      scan->reweigh(state_);
+  }
+}
+
 void Graph::optimise_all(int steps) {
   for (int i = 0; i < steps; ++i)
     if (step_all() < kConverged) break;
@@ -93,8 +101,9 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   const Eigen::Index num_behind = order.size();
   const Eigen::Index num_window = prior_.g.size();
   if (num_behind == 0) {
-    solve_window();
-    return 0.0;
+    const double moved = solve_window().cwiseAbs().maxCoeff();
+    reconsider_factors();
+    return moved;
   }
 
   std::vector<bool> is_active_factor(factors_.size(), false);
@@ -156,11 +165,7 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   for (const Variable& variable : variables)
     state_.retract(variable, x.segment(place_of(variable), 3));
   carry_removed();
-  for (Factor& factor : factors_) {
-    choose_kind(factor);
-    if (auto* scan = std::get_if<ScanFactor>(&factor); scan != nullptr && scan->is_loop)
-      scan->reweigh(state_);
-  }
+  reconsider_factors();
   return x.head(num_behind).cwiseAbs().maxCoeff();
 }
 

@@ -60,19 +60,28 @@ CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& e
                                  const OdometryNoise& noise) {
   const double turn_rad = measured.start_from_end.theta();
   const double significant_rad = significant_turn(turn_rad, random_walk(measured, noise)(2, 2));
-  const double extra_rad = errors[1] * measured.advance_m + errors[2] * significant_rad;
+  const double extra_rad = errors[OdometryTerm::kDrift] * measured.advance_m +
+                           errors[OdometryTerm::kTurnScale] * significant_rad;
   // A heading error that grows evenly along the path turns the displacement by half of it.
   const Eigen::Vector2d bent =
       Se2{0.0, 0.0, 0.5 * extra_rad} * measured.start_from_end.translation();
-  const Eigen::Vector2d moved = (1.0 + errors[0]) * bent;
+  // The LiDAR's pose after the motion, in its pose before: m^-1 B m, with the motion B of the base
+  // and the LiDAR's mounting m; for the position, m^-1 B m = R(-yaw) (B + (R(turn) - I) offset).
+  const Eigen::Matrix2d to_lidar = Se2{0.0, 0.0, -errors[OdometryTerm::kLidarYaw]}.rotation();
+  const Eigen::Matrix2d swing =
+      to_lidar * (Se2{0.0, 0.0, significant_rad}.rotation() - Eigen::Matrix2d::Identity());
+  const Eigen::Vector2d driven = to_lidar * bent;
+  const Eigen::Vector2d advanced = (1.0 + errors[OdometryTerm::kScale]) * driven;
+  const Eigen::Vector2d moved = advanced + swing * errors.segment<2>(OdometryTerm::kLidarAhead);
   CorrectedMotion corrected;
-  const Eigen::Vector2d swing{std::cos(significant_rad) - 1.0, std::sin(significant_rad)};
-  corrected.start_from_end = {Eigen::Vector2d{moved + errors[3] * swing}, turn_rad + extra_rad};
-  const Eigen::Vector3d jacobian_turn{-0.5 * moved.y(), 0.5 * moved.x(), 1.0};
-  corrected.jacobian_calibration.col(0) << bent, 0.0;
-  corrected.jacobian_calibration.col(1) = measured.advance_m * jacobian_turn;
-  corrected.jacobian_calibration.col(2) = significant_rad * jacobian_turn;
-  corrected.jacobian_calibration.col(3) << swing, 0.0;
+  corrected.start_from_end = {moved, turn_rad + extra_rad};
+  const Eigen::Vector3d jacobian_turn{-0.5 * advanced.y(), 0.5 * advanced.x(), 1.0};
+  OdometryJacobian& jacobian = corrected.jacobian_calibration;
+  jacobian.col(OdometryTerm::kScale) << driven, 0.0;
+  jacobian.col(OdometryTerm::kDrift) = measured.advance_m * jacobian_turn;
+  jacobian.col(OdometryTerm::kTurnScale) = significant_rad * jacobian_turn;
+  jacobian.topRows<2>().middleCols<2>(OdometryTerm::kLidarAhead) = swing;
+  jacobian.col(OdometryTerm::kLidarYaw) << moved.y(), -moved.x(), 0.0;
   corrected.covariance =
       random_walk(measured, noise) +
       Eigen::Matrix3d{Eigen::Matrix3d::Identity() * squared(kGuessed_m_s * measured.guessed_s)};

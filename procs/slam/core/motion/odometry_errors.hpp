@@ -19,7 +19,8 @@ struct OdometryNoise {
   double scale_sigma{0.02};
   double turn_scale_sigma{0.02};
   double drift_sigma_rad_per_m{0.01};
-  double lidar_ahead_sigma_m{0.05};
+  double lidar_position_sigma_m{0.05};
+  double lidar_yaw_sigma_rad{0.01};
   double half_track_m{0.14};  ///< half of the distance between the wheels; from the robot's file
   bool may_slip{true};
 
@@ -38,12 +39,24 @@ Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNo
 /// The same of any motion.
 Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
 
-/// Systematic errors, as a vector (scale, drift, turn scale, ahead): true distance = (1 + scale)
-/// measured distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance.
-/// The LiDAR is `ahead` [m] further in front of the wheels' axis than configured: when the robot
-/// turns on the spot, the LiDAR moves sideways.
-using OdometryErrors = Eigen::Vector4d;
-inline constexpr Eigen::Index kOdometryTerms = OdometryErrors::SizeAtCompileTime;
+/// Systematic errors of odometry and of the LiDAR's mounting. True distance = (1 + scale) measured
+/// distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance. The LiDAR sits
+/// (ahead, left) [m] of its configured place on the base, turned left by yaw [rad]: it moves
+/// sideways where the robot turns on the spot, and where it drives straight ahead with a yaw.
+struct OdometryTerm {
+  enum Index : Eigen::Index {
+    kScale,
+    kDrift,
+    kTurnScale,
+    kLidarAhead,
+    kLidarLeft,
+    kLidarYaw,
+    kCount
+  };
+};
+
+inline constexpr Eigen::Index kOdometryTerms = OdometryTerm::kCount;
+using OdometryErrors = Eigen::Matrix<double, kOdometryTerms, 1>;
 
 /// d(x, y, theta) / d(systematic errors).
 using OdometryJacobian = Eigen::Matrix<double, 3, kOdometryTerms>;

@@ -27,7 +27,7 @@ State some_state() {
   State state;
   state.keyframes = {{0.3, -0.2, 0.4}, {0.5, -0.1, 0.5}, {0.75, 0.02, 0.55}};
   state.landmarks = {{2.0, 1.0, -1.5}};
-  state.calibration << 0.01, 0.005, -0.01, 0.02, 0.003, -0.002, 0.001;
+  state.calibration << 0.01, 0.005, -0.01, 0.02, -0.01, 0.004, 0.003, -0.002, 0.001;
   return state;
 }
 
@@ -161,7 +161,7 @@ TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
   }
   const Eigen::Index focal = kOdometryTerms + SightingSigmas::kFocal;
   EXPECT_NEAR(value[focal], kTrue, 3.0 * kMeasured);
-  EXPECT_TRUE(knowledge.is_doubted(value));
+  EXPECT_FALSE(knowledge.doubted_terms(value).empty());
   EXPECT_NEAR(1.0 / std::sqrt(h(focal, focal)), kMeasured, 0.1 * kMeasured);
 }
 
@@ -177,7 +177,7 @@ TEST(CalibrationKnowledge, AConsistentDescriptionKeepsItsWeight) {
     knowledge.weigh(value, h.inverse().diagonal());
   }
   EXPECT_NEAR(value[kOdometryTerms + SightingSigmas::kFocal], 0.75e-3, 1e-6);
-  EXPECT_FALSE(knowledge.is_doubted(value));
+  EXPECT_TRUE(knowledge.doubted_terms(value).empty());
 }
 
 TEST(OdometryMixture, OdometryThatStandsStillDoesNotHoldARobotThatMoves) {
@@ -223,7 +223,7 @@ class Drive {
 
   static Calibration sigmas() {
     Calibration sigmas;
-    sigmas << 0.02, 0.01, 0.02, 0.05, 0.0087, 0.002, 0.003;
+    sigmas << 0.02, 0.01, 0.02, 0.05, 0.05, 0.01, 0.0087, 0.002, 0.003;
     return sigmas;
   }
 
@@ -369,7 +369,9 @@ TEST(Graph, AScanFactorKeepsItsReferencesToKeyframesThatStay) {
 }
 
 TEST(Graph, AWrongLoopAmongRightOnesLosesItsWeight) {
-  Graph graph{GraphNoise{}, Drive::sigmas()};
+  GraphNoise noise;
+  noise.odometry.may_slip = false;  // no jerk of the odometry explains the wrong loop
+  Graph graph{noise, Drive::sigmas()};
   graph.add_keyframe({});
   graph.add(PosePrior{0, {}, Eigen::Matrix3d::Identity() * 1e4});
   for (std::size_t k = 1; k <= 40; ++k) {
@@ -389,6 +391,12 @@ TEST(Graph, AWrongLoopAmongRightOnesLosesItsWeight) {
   loop(3, 35, 1.5);
   graph.optimise_all(20);
   EXPECT_NEAR(graph.state().keyframes[35].y(), 0.0, 0.05);
+  for (const Factor& factor : graph.factors()) {
+    const auto* scan = std::get_if<ScanFactor>(&factor);
+    if (scan != nullptr) {
+      EXPECT_EQ(scan->weight < 0.5, scan->keyframe == 35) << scan->keyframe << ": " << scan->weight;
+    }
+  }
 }
 
 }  // namespace

@@ -25,13 +25,58 @@ TEST(Motion, DrivingBackwardsCountsNegativeInTheAdvance) {
 /// A wheel that is larger than the other turns the robot the other way when it backs up.
 TEST(OdometryErrors, DriftTurnsTheOtherWayInReverse) {
   OdometryErrors errors = OdometryErrors::Zero();
-  errors[1] = 0.01;  // rad/m
+  errors[OdometryTerm::kDrift] = 0.01;  // rad/m
   const auto turn_rad = [&](double drive_m) {
     return corrected_motion(Motion::between({}, {drive_m, 0.0, 0.0}), errors, {})
         .start_from_end.theta();
   };
   EXPECT_NEAR(turn_rad(2.0), 0.02, 1e-12);
   EXPECT_NEAR(turn_rad(-2.0), -0.02, 1e-12);
+}
+
+OdometryNoise without_noise() {
+  OdometryNoise noise;
+  noise.along_per_sqrt_m = 0.0;
+  noise.across_per_sqrt_m = 0.0;
+  noise.turn_per_sqrt_m = 0.0;
+  noise.turn_per_sqrt_rad = 0.0;
+  return noise;
+}
+
+TEST(OdometryErrors, ALidarThatIsMountedElsewhereMovesAsARigidBody) {
+  OdometryErrors errors = OdometryErrors::Zero();
+  errors[OdometryTerm::kLidarAhead] = 0.08;
+  errors[OdometryTerm::kLidarLeft] = -0.05;
+  errors[OdometryTerm::kLidarYaw] = 0.09;
+  const Se2 mounting{0.08, -0.05, 0.09};
+  const Se2 mounting_without_yaw{0.08, -0.05, 0.0};
+  const Se2 base{0.4, -0.1, 0.7};
+  const Se2 lidar =
+      corrected_motion(Motion::between({}, base), errors, without_noise()).start_from_end;
+  EXPECT_LT(pose_difference(lidar, mounting.inverse() * base * mounting).norm(), 1e-6);
+  EXPECT_GT(
+      pose_difference(lidar, mounting_without_yaw.inverse() * base * mounting_without_yaw).norm(),
+      0.01);
+}
+
+TEST(OdometryErrors, TheJacobianIsTheDerivativeByEachError) {
+  constexpr double kStep = 1e-6;
+  const Motion motion = Motion::between({}, {0.4, -0.1, 0.3});
+  OdometryErrors errors = OdometryErrors::Zero();
+  errors[OdometryTerm::kLidarAhead] = 0.05;
+  errors[OdometryTerm::kLidarYaw] = 0.05;
+  const CorrectedMotion at = corrected_motion(motion, errors, without_noise());
+  for (Eigen::Index i = 0; i < kOdometryTerms; ++i) {
+    OdometryErrors more = errors;
+    OdometryErrors less = errors;
+    more[i] += kStep;
+    less[i] -= kStep;
+    const Eigen::Vector3d numeric =
+        pose_difference(corrected_motion(motion, more, without_noise()).start_from_end,
+                        corrected_motion(motion, less, without_noise()).start_from_end) /
+        (2.0 * kStep);
+    EXPECT_LT((numeric - at.jacobian_calibration.col(i)).norm(), 1e-3) << i;
+  }
 }
 
 /// The wheels roll, so the middle between them is as uncertain as on a way of that length.
