@@ -219,7 +219,7 @@ commands_while_it_runs() {
   done
   "$work/bin/waymark-map" check "$work/state/day1.map.lcm" >"$work/check.output" 2>&1 || fail "the map is not whole"
   "$work/bin/waymark-map" info "$work/state/day1.map.lcm" >"$work/info.output" 2>&1 || fail "the map cannot be read"
-  grep -q 'differs from its description by: distances' "$work/info.output" || fail "no calibration in the map"
+  grep -q "differs from its description by: odometry's distances" "$work/info.output" || fail "no calibration in the map"
   expect_code 0 $run
   cp "$work/state/day1.map.lcm" "$work/live.map.lcm"
   "$work/bin/waymark-map" export "$work/live.map.lcm" --out "$work/exported" >"$work/export.output" 2>&1 || fail "no export"

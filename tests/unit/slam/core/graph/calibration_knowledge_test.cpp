@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/core/graph/calibration_knowledge.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace waymark {
+namespace {
+
+TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
+  Calibration sigmas = Calibration::Constant(0.01);
+  sigmas[kOdometryTerms + SightingSigmas::kFocal] = 1e-4;
+  CalibrationKnowledge knowledge{sigmas};
+  constexpr double kTrue = 5e-3;
+  constexpr double kMeasured = 2e-4;
+  knowledge.observe(FocalSighting{kTrue, kMeasured});
+  Calibration value = Calibration::Zero();
+  Eigen::MatrixXd h;
+  for (int i = 0; i < 3; ++i) {  // the prior's component follows the estimate
+    h = Eigen::MatrixXd::Zero(kCalibrationSize, kCalibrationSize);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(kCalibrationSize);
+    knowledge.add_to(value, h, g);
+    value -= h.ldlt().solve(g);
+    knowledge.weigh(value, h.inverse().diagonal());
+  }
+  const Eigen::Index focal = kOdometryTerms + SightingSigmas::kFocal;
+  EXPECT_NEAR(value[focal], kTrue, 3.0 * kMeasured);
+  EXPECT_EQ(knowledge.doubted_terms(value), std::vector{static_cast<std::size_t>(focal)});
+  EXPECT_NEAR(1.0 / std::sqrt(h(focal, focal)), kMeasured, 0.1 * kMeasured);
+}
+
+TEST(CalibrationKnowledge, AConsistentDescriptionKeepsItsWeight) {
+  CalibrationKnowledge knowledge{Calibration::Constant(1e-3)};
+  knowledge.observe(FocalSighting{1.5e-3, 1e-3});
+  Calibration value = Calibration::Zero();
+  for (int i = 0; i < 3; ++i) {
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(kCalibrationSize, kCalibrationSize);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(kCalibrationSize);
+    knowledge.add_to(value, h, g);
+    value -= h.ldlt().solve(g);
+    knowledge.weigh(value, h.inverse().diagonal());
+  }
+  EXPECT_NEAR(value[kOdometryTerms + SightingSigmas::kFocal], 0.75e-3, 1e-6);
+  EXPECT_TRUE(knowledge.doubted_terms(value).empty());
+}
+
+}  // namespace
+}  // namespace waymark
