@@ -19,7 +19,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 # NAME=ESTIMATOR:KEY=VALUE:... as in deploy/sweep.sh.
-readonly kFixedOdometry='slam.waymark.odometry.scale_sigma=1e-6:slam.waymark.odometry.turn_scale_sigma=1e-6:slam.waymark.odometry.drift_sigma_rad_per_m=1e-6:slam.waymark.odometry.lidar_position_sigma_m=1e-6:slam.waymark.odometry.lidar_yaw_sigma_rad=1e-6'
+readonly kFixedOdometry='slam.waymark.odometry.scale_sigma=1e-6:slam.waymark.odometry.turn_scale_sigma=1e-6:slam.waymark.odometry.drift_sigma_rad_per_m=1e-6:slam.waymark.odometry.lidar_ahead_sigma_m=1e-6:slam.waymark.odometry.lidar_yaw_sigma_rad=1e-6'
 readonly kFixedCamera='robot.camera.yaw_sigma_rad=0:robot.camera.focal_sigma=0'
 ablations=(
   odometry

@@ -147,8 +147,8 @@ void OdometryNoise::describe(Fields& fields) {
                "how wrong the scale of turns may be");
   fields.field("drift_sigma_rad_per_m", drift_sigma_rad_per_m, kPositive,
                "how much the heading may drift per metre");
-  fields.field("lidar_position_sigma_m", lidar_position_sigma_m, kPositive,
-               "how far the LiDAR may sit from its configured place, along each axis");
+  fields.field("lidar_ahead_sigma_m", lidar_ahead_sigma_m, kPositive,
+               "how far the LiDAR may be ahead of its configured place");
   fields.field("lidar_yaw_sigma_rad", lidar_yaw_sigma_rad, kPositive,
                "how far the LiDAR may be turned from its configured yaw");
   fields.field("may_slip", may_slip,

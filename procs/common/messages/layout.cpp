@@ -166,7 +166,7 @@ constexpr FieldLayout kMapChange[] = {fixed(kByte), fixed(kInt32), fixed(kInt32)
 constexpr FieldLayout kMapChanges[] = {fixed(kInt64, 2), fixed(kInt32), many(kMapChange, 1)};
 constexpr FieldLayout kFinding[] = {text(), text(), fixed(kDouble, 2)};
 constexpr FieldLayout kFindings[] = {fixed(kInt64, 2), fixed(kInt32), many(kFinding, 1)};
-constexpr FieldLayout kCalibration[] = {fixed(kInt64, 2), fixed(kDouble, 9), fixed(kDouble, 81)};
+constexpr FieldLayout kCalibration[] = {fixed(kInt64, 2), fixed(kDouble, 8), fixed(kDouble, 64)};
 constexpr FieldLayout kAnnotatedScan[] = {fixed(kInt64),          fixed(kDouble, 3),
                                           fixed(kInt32),          fixed_array(kFloat, 2),
                                           fixed_array(kFloat, 2), fixed_array(kInt32, 2)};

@@ -137,8 +137,7 @@ class Batch {
     const OdometryNoise& odometry = model.odometry;
     add<PriorResidual<kOdometryTerms>, kOdometryTerms, kOdometryTerms>(
         {{odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
-          odometry.lidar_position_sigma_m, odometry.lidar_position_sigma_m,
-          odometry.lidar_yaw_sigma_rad}},
+          odometry.lidar_ahead_sigma_m, odometry.lidar_yaw_sigma_rad}},
         nullptr, solution_.odometry_errors.data());
     add<PriorResidual<2>, 2, 2>(
         {{std::max(model.sightings.learnt[SightingSigmas::kYaw], kExact),

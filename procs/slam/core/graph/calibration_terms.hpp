@@ -22,7 +22,6 @@ inline constexpr std::array<CalibrationTerm, kCalibrationSize> kCalibrationTerms
      {"odometry_drift_rad_per_m", "odometry's drift", "rad/m", 1.0},
      {"odometry_turn_scale", "odometry's turns", "%", 100.0},
      {"lidar_ahead_m", "LiDAR ahead", "m", 1.0},
-     {"lidar_left_m", "LiDAR left", "m", 1.0},
      {"lidar_yaw_rad", "LiDAR yaw", "rad", 1.0},
      {"camera_yaw_rad", "camera yaw", "rad", 1.0},
      {"focal_length", "focal length", "%", 100.0},

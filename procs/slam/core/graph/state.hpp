@@ -14,9 +14,9 @@
 
 namespace waymark {
 
-/// Systematic errors of odometry and camera. Odometry: scale of distances, drift [rad/m], scale of
-/// turns, LiDAR ahead of the wheels' axis [m] (OdometryErrors). Camera: yaw of its mounting [rad],
-/// focal length (relative), standoff of the markers from their walls [m].
+/// Systematic errors: those of odometry and of the LiDAR's mounting (OdometryErrors), then those of
+/// the camera: yaw of its mounting [rad], focal length (relative), and standoff of the markers from
+/// their walls [m]. Names: kCalibrationTerms.
 inline constexpr Eigen::Index kCameraTerms = 3;
 inline constexpr Eigen::Index kCalibrationSize = kOdometryTerms + kCameraTerms;
 using Calibration = Eigen::Matrix<double, kCalibrationSize, 1>;

@@ -66,13 +66,14 @@ CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& e
   const Eigen::Vector2d bent =
       Se2{0.0, 0.0, 0.5 * extra_rad} * measured.start_from_end.translation();
   // The LiDAR's pose after the motion, in its pose before: m^-1 B m, with the motion B of the base
-  // and the LiDAR's mounting m; for the position, m^-1 B m = R(-yaw) (B + (R(turn) - I) offset).
+  // and the LiDAR's mounting m; for the position, m^-1 B m = R(-yaw) (B + (R(turn) - I) (ahead,
+  // 0)).
   const Eigen::Matrix2d to_lidar = Se2{0.0, 0.0, -errors[OdometryTerm::kLidarYaw]}.rotation();
-  const Eigen::Matrix2d swing =
-      to_lidar * (Se2{0.0, 0.0, significant_rad}.rotation() - Eigen::Matrix2d::Identity());
+  const Eigen::Vector2d swing =
+      to_lidar * Eigen::Vector2d{std::cos(significant_rad) - 1.0, std::sin(significant_rad)};
   const Eigen::Vector2d driven = to_lidar * bent;
   const Eigen::Vector2d advanced = (1.0 + errors[OdometryTerm::kScale]) * driven;
-  const Eigen::Vector2d moved = advanced + swing * errors.segment<2>(OdometryTerm::kLidarAhead);
+  const Eigen::Vector2d moved = advanced + errors[OdometryTerm::kLidarAhead] * swing;
   CorrectedMotion corrected;
   corrected.start_from_end = {moved, turn_rad + extra_rad};
   const Eigen::Vector3d jacobian_turn{-0.5 * advanced.y(), 0.5 * advanced.x(), 1.0};
@@ -80,7 +81,7 @@ CorrectedMotion corrected_motion(const Motion& measured, const OdometryErrors& e
   jacobian.col(OdometryTerm::kScale) << driven, 0.0;
   jacobian.col(OdometryTerm::kDrift) = measured.advance_m * jacobian_turn;
   jacobian.col(OdometryTerm::kTurnScale) = significant_rad * jacobian_turn;
-  jacobian.topRows<2>().middleCols<2>(OdometryTerm::kLidarAhead) = swing;
+  jacobian.col(OdometryTerm::kLidarAhead) << swing, 0.0;
   jacobian.col(OdometryTerm::kLidarYaw) << moved.y(), -moved.x(), 0.0;
   corrected.covariance =
       random_walk(measured, noise) +

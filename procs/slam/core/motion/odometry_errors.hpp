@@ -19,7 +19,7 @@ struct OdometryNoise {
   double scale_sigma{0.02};
   double turn_scale_sigma{0.02};
   double drift_sigma_rad_per_m{0.01};
-  double lidar_position_sigma_m{0.05};
+  double lidar_ahead_sigma_m{0.05};
   double lidar_yaw_sigma_rad{0.01};
   double half_track_m{0.14};  ///< half of the distance between the wheels; from the robot's file
   bool may_slip{true};
@@ -41,18 +41,10 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
 
 /// Systematic errors of odometry and of the LiDAR's mounting. True distance = (1 + scale) measured
 /// distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance. The LiDAR sits
-/// (ahead, left) [m] of its configured place on the base, turned left by yaw [rad]: it moves
+/// `ahead` [m] of its configured place on the base and is turned left by `yaw` [rad]: it moves
 /// sideways where the robot turns on the spot, and where it drives straight ahead with a yaw.
 struct OdometryTerm {
-  enum Index : Eigen::Index {
-    kScale,
-    kDrift,
-    kTurnScale,
-    kLidarAhead,
-    kLidarLeft,
-    kLidarYaw,
-    kCount
-  };
+  enum Index : Eigen::Index { kScale, kDrift, kTurnScale, kLidarAhead, kLidarYaw, kCount };
 };
 
 inline constexpr Eigen::Index kOdometryTerms = OdometryTerm::kCount;

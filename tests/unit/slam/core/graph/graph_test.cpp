@@ -27,7 +27,7 @@ State some_state() {
   State state;
   state.keyframes = {{0.3, -0.2, 0.4}, {0.5, -0.1, 0.5}, {0.75, 0.02, 0.55}};
   state.landmarks = {{2.0, 1.0, -1.5}};
-  state.calibration << 0.01, 0.005, -0.01, 0.02, -0.01, 0.004, 0.003, -0.002, 0.001;
+  state.calibration << 0.01, 0.005, -0.01, 0.02, 0.004, 0.003, -0.002, 0.001;
   return state;
 }
 
@@ -186,7 +186,7 @@ class Drive {
 
   static Calibration sigmas() {
     Calibration sigmas;
-    sigmas << 0.02, 0.01, 0.02, 0.05, 0.05, 0.01, 0.0087, 0.002, 0.003;
+    sigmas << 0.02, 0.01, 0.02, 0.05, 0.01, 0.0087, 0.002, 0.003;
     return sigmas;
   }
 

@@ -46,10 +46,9 @@ OdometryNoise without_noise() {
 TEST(OdometryErrors, ALidarThatIsMountedElsewhereMovesAsARigidBody) {
   OdometryErrors errors = OdometryErrors::Zero();
   errors[OdometryTerm::kLidarAhead] = 0.08;
-  errors[OdometryTerm::kLidarLeft] = -0.05;
   errors[OdometryTerm::kLidarYaw] = 0.09;
-  const Se2 mounting{0.08, -0.05, 0.09};
-  const Se2 mounting_without_yaw{0.08, -0.05, 0.0};
+  const Se2 mounting{0.08, 0.0, 0.09};
+  const Se2 mounting_without_yaw{0.08, 0.0, 0.0};
   const Se2 base{0.4, -0.1, 0.7};
   const Se2 lidar =
       corrected_motion(Motion::between({}, base), errors, without_noise()).start_from_end;
