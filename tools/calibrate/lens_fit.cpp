@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "calibrate/lens_fit.hpp"
 
+#include "common/geometry/upper_median.hpp"
+
 #include <Eigen/Dense>
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
@@ -133,13 +135,12 @@ LensFit fit_once(const std::vector<BoardView>& views, cv::Size image, std::vecto
 /// Removes corners with more than five times the median residual; returns how many.
 std::size_t drop_corners(std::vector<BoardView>& views,
                          const std::vector<std::vector<cv::Point2f>>& residuals_px) {
-  std::vector<double> sorted;
+  std::vector<double> lengths_px;
   for (const auto& residuals : residuals_px) {
     for (const cv::Point2f& residual : residuals)
-      sorted.push_back(cv::norm(residual));
+      lengths_px.push_back(cv::norm(residual));
   }
-  std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
-  const double most_px = kCornerOutlier * sorted[sorted.size() / 2];
+  const double most_px = kCornerOutlier * upper_median(std::move(lengths_px));
   std::size_t num_dropped = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
     for (std::size_t i = residuals_px[v].size(); i-- > 0;) {
@@ -160,9 +161,7 @@ LensFit fit_without_outliers(std::vector<BoardView> views, cv::Size image) {
     std::vector<double> errors;
     LensFit fit = fit_once(views, image, errors);
     const auto worst = std::ranges::max_element(errors) - errors.begin();
-    std::vector<double> sorted = errors;
-    std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
-    if (errors[static_cast<std::size_t>(worst)] > kOutlier * sorted[sorted.size() / 2]) {
+    if (errors[static_cast<std::size_t>(worst)] > kOutlier * upper_median(errors)) {
       dropped.push_back(views[static_cast<std::size_t>(worst)].name);
       views.erase(views.begin() + worst);
       continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks of camera and markers.
+#include "common/geometry/upper_median.hpp"
 #include "common/markers/marker_dictionary.hpp"
 #include "doctor/checks.hpp"
 #include "doctor/verdict.hpp"
@@ -24,18 +25,12 @@ constexpr std::size_t kFewestMarkers = 20;
 constexpr double kSigmaOfMedian = 1.2533;  // times sigma / sqrt(n), of a normal distribution
 constexpr double kSigmaOfMad = 1.4826;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 Measured median_of(const std::vector<double>& values) {
-  const double value = median(values);
+  const double value = upper_median(values);
   std::vector<double> deviations;
   for (const double other : values)
     deviations.push_back(std::abs(other - value));
-  return {value, kSigmaOfMedian * kSigmaOfMad * median(std::move(deviations)) /
+  return {value, kSigmaOfMedian * kSigmaOfMad * upper_median(std::move(deviations)) /
                      std::sqrt(static_cast<double>(values.size()))};
 }
 
@@ -107,7 +102,7 @@ Check blur_check(const CameraRecord& camera) {
   return {"blur", verdict,
           fmt::format("edges of markers are blurred by {:.2f} +- {:.2f} px (standard deviation); a "
                       "module has {:.1f} px",
-                      blur.value, blur.sigma, median(camera.modules_px)),
+                      blur.value, blur.sigma, upper_median(camera.modules_px)),
           verdict == Verdict::kPass ? "" : "focus the camera, expose shorter, or light the way",
           blur.value};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placement/placement.hpp"
 
+#include "common/geometry/upper_median.hpp"
 #include "common/markers/marker_dictionary.hpp"
 
 #include <fmt/format.h>
@@ -48,9 +49,7 @@ void compare_with_run(const PlacementInput& input, Placement& placement) {
     if (sigma_m > kSignificant_m) ratios.push_back(placement.advice.now_m[i] / sigma_m);
   }
   if (ratios.empty()) return;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  placement.model_over_run = *middle;
+  placement.model_over_run = upper_median(std::move(ratios));
 }
 
 /// The worst sigma with a marker at every place, by a robot of which more is known.

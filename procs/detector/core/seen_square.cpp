@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/seen_square.hpp"
 
+#include "common/geometry/upper_median.hpp"
 #include "detector/core/blurred_side.hpp"
-#include "detector/core/median.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,15 +64,15 @@ double black_level(const SeenSquare& square) {
   }
   if (levels.empty()) return 0.0;
   const bool is_thin = square.sides[first].border_px < kThickBorder * square.sides[first].reach_px;
-  return median(is_thin && before_black.size() >= kFewLevels ? std::move(before_black)
-                                                             : std::move(levels));
+  return upper_median(is_thin && before_black.size() >= kFewLevels ? std::move(before_black)
+                                                                   : std::move(levels));
 }
 
 double blur_of(const std::vector<EdgeProfile>& profiles, double black) {
   std::vector<double> blurs;
   for (const EdgeProfile& profile : profiles)
     if (const auto blur_px = profile.blur_px(black)) blurs.push_back(*blur_px);
-  return blurs.empty() ? 0.0 : median(std::move(blurs));
+  return blurs.empty() ? 0.0 : upper_median(std::move(blurs));
 }
 
 double mean_white(const std::vector<EdgeProfile>& profiles) {

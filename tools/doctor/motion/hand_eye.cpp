@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "doctor/motion/hand_eye.hpp"
 
+#include "common/geometry/upper_median.hpp"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -25,12 +27,6 @@ constexpr double kLeastResidual_m = 1e-4;
 constexpr double kSmallest = 1e-9;
 constexpr double kUnknownPlace_m = 1.0;  // a robot's size
 constexpr std::size_t kBlocks = 12;      // stretches whose residuals count as one each
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 bool covers(const std::vector<ImportedPose>& odometry, Timestamp from, Timestamp to) {
   return from >= odometry.front().time && to <= odometry.back().time;
@@ -168,7 +164,7 @@ std::optional<Solution<kUnknowns>> solve_robustly(const Equations<kRows, kUnknow
     std::vector<double> residuals;
     for (std::size_t i = 0; i < rows.size(); ++i)
       residuals.push_back((values[i] - rows[i] * found).norm());
-    cutoff = kCutoff * std::max(least_residual, median(std::move(residuals)));
+    cutoff = kCutoff * std::max(least_residual, upper_median(std::move(residuals)));
     sigma2 = squares / weights / kRows;
   }
   const Square inverse = (information + kSmallest * Square::Identity()).inverse();
@@ -207,7 +203,7 @@ double median_interval_s(const std::vector<ImportedPose>& odometry) {
   std::vector<double> intervals_s;
   for (std::size_t i = 1; i < odometry.size(); ++i)
     intervals_s.push_back(to_seconds(odometry[i].time - odometry[i - 1].time));
-  return std::max(kShortestInterval_s, median(std::move(intervals_s)));
+  return std::max(kShortestInterval_s, upper_median(std::move(intervals_s)));
 }
 
 /// Of odometry that is too seldom to look for one.
@@ -240,7 +236,8 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
     std::vector<double> residuals;
     for (std::size_t k = 0; k < now.lidar_rad.size(); ++k)
       residuals.push_back(std::abs(now.odometry_rad[k] - line->ratio * now.lidar_rad[k]));
-    cutoff_rad = kCutoff * std::max(kLeastResidual_rad, kSigmaOfMad * median(std::move(residuals)));
+    cutoff_rad =
+        kCutoff * std::max(kLeastResidual_rad, kSigmaOfMad * upper_median(std::move(residuals)));
   }
   // Offsets of whole odometry samples: between them odometry is interpolated, which smooths its
   // noise and makes every fit better.

@@ -2,6 +2,7 @@
 #include "import/carmen/carmen_reader.hpp"
 
 #include "common/errors/setup_error.hpp"
+#include "common/geometry/upper_median.hpp"
 #include "common/messages/bounds.hpp"
 #include "common/messages/codec.hpp"
 #include "import/carmen/line_times.hpp"
@@ -139,9 +140,7 @@ double CarmenReader::usual_range_max_m() {
   std::vector<double> limits_m;
   for (const auto& scan : scans_)
     limits_m.push_back(scan.line.range_max_m.value_or(kSickRangeMax_m));
-  const auto middle = limits_m.begin() + static_cast<std::ptrdiff_t>(limits_m.size() / 2);
-  std::ranges::nth_element(limits_m, middle);
-  return *middle;
+  return upper_median(std::move(limits_m));
 }
 
 std::string CarmenReader::what_is_not_read() const {
@@ -178,13 +177,12 @@ void CarmenReader::note_assumptions() {
         first.ranges_m.size(), degrees(first.angle_step_rad), degrees(first.first_angle_rad)));
   }
   if (ranges_m.empty() || options_.range_max_m) return;
-  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
-  std::ranges::nth_element(ranges_m, middle);
-  if (*middle > kFarthest_m) {
+  const double usual_m = upper_median(std::move(ranges_m));
+  if (usual_m > kFarthest_m) {
     throw SetupError{fmt::format(
         "half of the ranges are above {:g} m: are they in cm or mm? Give --range-unit cm or mm, "
         "or --max-range-m if they are metres",
-        *middle)};
+        usual_m)};
   }
 }
 

@@ -2,6 +2,7 @@
 #include "import/carmen/line_times.hpp"
 
 #include "common/errors/setup_error.hpp"
+#include "common/geometry/upper_median.hpp"
 #include "common/time/date_text.hpp"
 #include "import/log/clock_seams.hpp"
 #include "import/log/time_order.hpp"
@@ -129,15 +130,11 @@ void mend_order(std::vector<ReadScan>& scans, std::vector<ReadOdometry>& odometr
 }
 
 void check_time_unit(const std::vector<ReadScan>& scans, ImportReport& report) {
-  std::vector<Duration> periods;
-  for (std::size_t i = 1; i < scans.size(); ++i)
-    periods.push_back(scans[i].time - scans[i - 1].time);
-  if (periods.empty()) return;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::ranges::nth_element(periods, middle);
-  if (*middle < kLongPeriod) return;
+  if (scans.size() < 2) return;
+  const Duration usual = upper_median(periods_of(scans));
+  if (usual < kLongPeriod) return;
   report.note(
-      fmt::format("scans are {:g} s apart: are times in ms? --time-unit ms", to_seconds(*middle)));
+      fmt::format("scans are {:g} s apart: are times in ms? --time-unit ms", to_seconds(usual)));
 }
 
 }  // namespace waymark

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/carmen/mounting.hpp"
 
+#include "common/geometry/upper_median.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,9 +29,7 @@ double median(std::span<const Se2> poses, const std::function<double(const Se2&)
   std::vector<double> values;
   for (const Se2& pose : poses)
     values.push_back(value_of(pose));
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  return upper_median(std::move(values));
 }
 
 /// nullopt for a log whose LiDAR poses were corrected: another difference in each line.

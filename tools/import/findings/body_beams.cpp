@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/findings/body_beams.hpp"
 
+#include "common/geometry/upper_median.hpp"
+#include "import/findings/scan_overlay.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,9 +47,7 @@ BodyBeams find_body_beams(const ImportedLog& log) {
     const std::size_t all = of_beam.size();
     std::erase_if(of_beam, [](double range_m) { return !std::isfinite(range_m); });
     if (of_beam.empty()) continue;
-    const auto middle = of_beam.begin() + static_cast<std::ptrdiff_t>(of_beam.size() / 2);
-    std::ranges::nth_element(of_beam, middle);
-    const double usual_m = *middle;
+    const double usual_m = upper_median(of_beam);
     const auto same = std::ranges::count_if(
         of_beam, [&](double range_m) { return std::abs(range_m - usual_m) < kSame_m; });
     if (usual_m <= 0.0 || usual_m > kFarthest_m ||
@@ -65,6 +66,10 @@ LidarScan without_body(LidarScan scan, const BodyBeams& body) {
   for (std::size_t i = 0; i < body.is_body.size(); ++i)
     if (body.is_body[i]) scan.ranges_m[i] = std::numeric_limits<double>::quiet_NaN();
   return scan;
+}
+
+LidarScan usable(const ImportedScan& scan, const BodyBeams& body) {
+  return in_order_of_angles(without_body(scan_of(scan), body));
 }
 
 }  // namespace waymark

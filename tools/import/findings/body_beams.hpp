@@ -22,4 +22,7 @@ BodyBeams find_body_beams(const ImportedLog& log);
 /// The scan as it is seen past the robot.
 LidarScan without_body(LidarScan scan, const BodyBeams& body);
 
+/// The same in_order_of_angles, as misfit_m() takes it.
+LidarScan usable(const ImportedScan& scan, const BodyBeams& body);
+
 }  // namespace waymark

@@ -31,16 +31,11 @@ struct Wanted {
   double most_rad{0.0};
 };
 
-Se2 motion_between(const ImportedLog& log, std::size_t before, std::size_t now) {
-  return pose_at(log.odometry, log.scans[before].time).inverse() *
-         pose_at(log.odometry, log.scans[now].time);
-}
-
 std::vector<Pair> pairs_of(const ImportedLog& log, const BodyBeams& body, const Wanted& wanted) {
   std::vector<std::pair<std::size_t, std::size_t>> found;
   for (std::size_t before = 0, now = 1; now < log.scans.size(); ++now) {
     if (log.scans[now].time - log.scans[before].time < kApart) continue;
-    const Se2 motion = motion_between(log, before, now);
+    const Se2 motion = odometry_between(log, before, now);
     const double distance_m = motion.translation().norm();
     if (distance_m >= wanted.least_m && distance_m <= wanted.most_m &&
         std::abs(motion.theta()) <= wanted.most_rad)
@@ -49,12 +44,10 @@ std::vector<Pair> pairs_of(const ImportedLog& log, const BodyBeams& body, const 
   }
   std::vector<Pair> pairs;
   const std::size_t every = 1 + found.size() / kPairs;
-  const auto scan = [&](std::size_t index) {
-    return in_order_of_angles(without_body(scan_of(log.scans[index]), body));
-  };
   for (std::size_t i = 0; i < found.size(); i += every) {
     const auto [before, now] = found[i];
-    pairs.push_back({scan(before), scan(now), motion_between(log, before, now)});
+    pairs.push_back({usable(log.scans[before], body), usable(log.scans[now], body),
+                     odometry_between(log, before, now)});
   }
   return pairs;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/findings/odometry_breaks.hpp"
 
+#include "common/geometry/upper_median.hpp"
 #include "common/time/clock_step_detector.hpp"
 #include "common/time/date_text.hpp"
 #include "import/findings/scan_overlay.hpp"
+#include "import/log/time_order.hpp"
 
 #include <fmt/format.h>
 
@@ -136,13 +138,7 @@ void interpolate_single_jumps(Poses& odometry, ImportReport& report) {
 }
 
 Duration usual_period(const Poses& odometry) {
-  std::vector<Duration> periods;
-  for (std::size_t i = 1; i < odometry.size(); ++i)
-    periods.push_back(odometry[i].time - odometry[i - 1].time);
-  if (periods.empty()) return kShortestGap;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::ranges::nth_element(periods, middle);
-  return *middle;
+  return odometry.size() < 2 ? kShortestGap : upper_median(periods_of(odometry));
 }
 
 /// Adds up what odometry has to be moved by so that it goes on.

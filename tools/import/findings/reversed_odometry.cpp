@@ -41,11 +41,6 @@ double score_of(const LidarScan& first, const LidarScan& second, const Se2& moti
   return std::clamp(score, -kLargestScore, kLargestScore);
 }
 
-/// Scans in order of angles, without the beams that say nothing.
-LidarScan usable(const ImportedScan& scan, const BodyBeams& body) {
-  return in_order_of_angles(without_body(scan_of(scan), body));
-}
-
 std::vector<Step> steps_of(const ImportedLog& log, const BodyBeams& body) {
   std::vector<Step> steps;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
@@ -106,8 +101,7 @@ double score_of_ways(const ImportedLog& log, const BodyBeams& body, std::size_t 
     std::size_t last = first;
     while (last < end && motion.translation().norm() < kWay_m) {
       ++last;
-      motion = pose_at(log.odometry, log.scans[first].time).inverse() *
-               pose_at(log.odometry, log.scans[last].time);
+      motion = odometry_between(log, first, last);
     }
     sum += score_of(usable(log.scans[first], body), usable(log.scans[last], body), motion,
                     base_from_lidar);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/findings/standing_odometry.hpp"
 
+#include "common/geometry/upper_median.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,10 +26,7 @@ double difference_m(const LidarScan& a, const LidarScan& b) {
     const double difference_m = std::abs(a.ranges_m[i] - b.ranges_m[i]);
     if (std::isfinite(difference_m)) differences_m.push_back(difference_m);
   }
-  if (differences_m.empty()) return 0.0;
-  const auto middle = differences_m.begin() + static_cast<std::ptrdiff_t>(differences_m.size() / 2);
-  std::ranges::nth_element(differences_m, middle);
-  return *middle;
+  return differences_m.empty() ? 0.0 : upper_median(std::move(differences_m));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/log/clock_seams.hpp"
 
+#include "common/geometry/upper_median.hpp"
 #include "import/log/time_order.hpp"
 
 #include <algorithm>
@@ -9,7 +10,6 @@ namespace waymark {
 namespace {
 
 constexpr std::size_t kAgreeing = 10;
-constexpr Duration kLongestPause = std::chrono::hours{24 * 30};
 constexpr Duration kBesideEachOther = std::chrono::seconds{10};
 
 using Stamps = std::span<const Timestamp>;
@@ -17,7 +17,7 @@ using Stamps = std::span<const Timestamp>;
 bool ascend(Stamps stamps) {
   return stamps.back() > stamps.front() &&
          std::ranges::adjacent_find(stamps, [](Timestamp before, Timestamp now) {
-           return now < before - kSmallDisorder || now > before + kLongestPause;
+           return now < before - kSmallDisorder || now > before + kLongestLog;
          }) == stamps.end();
 }
 
@@ -41,9 +41,7 @@ Duration usual_period(Stamps before, Stamps behind) {
   for (const Stamps stamps : {before, behind})
     for (std::size_t i = 1; i < stamps.size(); ++i)
       periods.push_back(std::max(Duration{1}, stamps[i] - stamps[i - 1]));
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::ranges::nth_element(periods, middle);
-  return *middle;
+  return upper_median(std::move(periods));
 }
 
 }  // namespace
@@ -52,13 +50,13 @@ std::vector<ClockSeam> find_clock_seams(Stamps stamps) {
   std::vector<ClockSeam> seams;
   for (std::size_t i = kAgreeing; i + kAgreeing <= stamps.size(); ++i) {
     const bool steps =
-        stamps[i] < stamps[i - 1] - kSmallDisorder || stamps[i] > stamps[i - 1] + kLongestPause;
+        stamps[i] < stamps[i - 1] - kSmallDisorder || stamps[i] > stamps[i - 1] + kLongestLog;
     if (!steps) continue;
     const Stamps before = stamps.subspan(i - kAgreeing, kAgreeing);
     const Stamps behind = stamps.subspan(i, kAgreeing);
     if (!ascend(before) || !ascend(behind)) continue;
     const bool is_set = std::ranges::max(behind) < std::ranges::min(before) ||
-                        std::ranges::min(behind) > std::ranges::max(before) + kLongestPause;
+                        std::ranges::min(behind) > std::ranges::max(before) + kLongestLog;
     if (is_set) seams.push_back({i, stamps[i - 1] + usual_period(before, behind) - stamps[i]});
   }
   return seams;

@@ -87,6 +87,11 @@ Se2 pose_at(const std::vector<ImportedPose>& poses, Timestamp time) {
   return before->pose * Se2{share * step.translation(), share * step.theta()};
 }
 
+Se2 odometry_between(const ImportedLog& log, std::size_t first, std::size_t last) {
+  return pose_at(log.odometry, log.scans[first].time).inverse() *
+         pose_at(log.odometry, log.scans[last].time);
+}
+
 void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& report) {
   std::map<int, std::int64_t> scans_by_count;
   for (const ImportedScan& scan : scans)

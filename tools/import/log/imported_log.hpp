@@ -66,6 +66,9 @@ void put_right(ImportedScan& scan, bool is_mirrored, Duration late);
 /// @param poses  not empty, ascending times
 Se2 pose_at(const std::vector<ImportedPose>& poses, Timestamp time);
 
+/// Odometry's motion from one scan to another, by index.
+Se2 odometry_between(const ImportedLog& log, std::size_t first, std::size_t last);
+
 /// Removes scans whose number of beams is rare: garbled lines. Counts of at least two scans that
 /// differ by one beam from the usual one (of equals: the smallest number), or that a twentieth of
 /// all scans have, are a driver's habit (180 and 181) and are kept, which is said.

@@ -2,6 +2,7 @@
 // Times that go backwards: one bad time must not cost everything behind it.
 #pragma once
 
+#include "common/geometry/upper_median.hpp"
 #include "common/time/time.hpp"
 #include "import/log/import_report.hpp"
 
@@ -22,6 +23,9 @@ std::vector<bool> longest_ascending(std::span<const Timestamp> times);
 /// Messages of several processes overtake each other by as much.
 inline constexpr Duration kSmallDisorder = std::chrono::milliseconds{200};
 
+/// A step by more is of a clock that was set.
+inline constexpr Duration kLongestLog = std::chrono::hours{24 * 30};
+
 /// The order in which records have to be read so that none goes back by at most kSmallDisorder
 /// behind the one before. Larger steps back stay where they are. O(n k), k records within it.
 std::vector<std::size_t> order_within_tolerance(std::span<const Timestamp> times);
@@ -32,6 +36,15 @@ std::vector<Timestamp> times_of(const std::vector<Record>& records) {
   for (const Record& record : records)
     times.push_back(record.time);
   return times;
+}
+
+/// From each record (with a member `time`) to the next.
+template <class Record>
+std::vector<Duration> periods_of(const std::vector<Record>& records) {
+  std::vector<Duration> periods;
+  for (std::size_t i = 1; i < records.size(); ++i)
+    periods.push_back(records[i].time - records[i - 1].time);
+  return periods;
 }
 
 /// Puts records (with a member `time`) that are slightly out of order into order, and says so.
@@ -79,12 +92,8 @@ void spread_equal_stamps(std::vector<Record>& records, std::string_view what,
 template <class Record>
 void remove_absurd_times(std::vector<Record>& records, std::string_view what,
                          ImportReport& report) {
-  constexpr Duration kLongestLog = std::chrono::hours{24 * 30};
   if (records.empty()) return;
-  std::vector<Timestamp> times = times_of(records);
-  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-  std::nth_element(times.begin(), middle, times.end());
-  const Timestamp usual = *middle;
+  const Timestamp usual = upper_median(times_of(records));
   std::erase_if(records, [&](const Record& record) {
     if (record.time - usual < kLongestLog && usual - record.time < kLongestLog) return false;
     report.skip(

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/mbot/clocks.hpp"
 
+#include "common/geometry/upper_median.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,11 +30,7 @@ void ChannelClock::add(Timestamp stamp, Timestamp logged) {
 }
 
 Duration ChannelClock::logger_ahead() const {
-  std::vector<std::int64_t> differences_us = logger_minus_stamp_us_;
-  const auto middle =
-      differences_us.begin() + static_cast<std::ptrdiff_t>(differences_us.size() / 2);
-  std::ranges::nth_element(differences_us, middle);
-  return Duration{*middle};
+  return Duration{upper_median(logger_minus_stamp_us_)};
 }
 
 bool ChannelClock::is_comparable() const {

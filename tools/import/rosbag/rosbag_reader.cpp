@@ -2,6 +2,7 @@
 #include "import/rosbag/rosbag_reader.hpp"
 
 #include "common/errors/setup_error.hpp"
+#include "common/geometry/upper_median.hpp"
 #include "common/messages/bounds.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/validate.hpp"
@@ -83,12 +84,6 @@ std::string choose(const Topics& topics, const std::string& named, std::string_v
 std::string need(std::string topic, std::string_view type, const Topics& topics) {
   if (!topic.empty()) return topic;
   throw SetupError{fmt::format("the bag has no topic with {}; it holds {}", type, list_of(topics))};
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 class RosbagReader {
@@ -236,7 +231,7 @@ std::optional<double> RosbagReader::usual_range_max_m() const {
   std::vector<double> limits_m;
   for (const HeldScan& held : scans_)
     limits_m.push_back(double{held.scan.range_max_m});
-  const double limit_m = median(std::move(limits_m));
+  const double limit_m = upper_median(std::move(limits_m));
   return limit_m > 0.0 && std::isfinite(limit_m) ? std::optional{limit_m} : std::nullopt;
 }
 
@@ -254,7 +249,7 @@ ImportedLog RosbagReader::finish() {
   std::vector<double> shortest_m;
   for (const HeldScan& held : scans_)
     shortest_m.push_back(double{held.scan.range_min_m});
-  robot.lidar.range_min_m = std::max(0.0, median(std::move(shortest_m)));
+  robot.lidar.range_min_m = std::max(0.0, upper_median(std::move(shortest_m)));
   mark_no_returns(log_, {options_.range_max_m, usual_range_max_m()}, report_);
   if (!log_.images.empty()) {
     describe_camera(robot.camera, transforms_, frames_, info_, log_.images.front(), report_);

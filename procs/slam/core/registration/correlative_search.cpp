@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/correlative_search.hpp"
 
+#include "common/geometry/upper_median.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -20,12 +22,6 @@ constexpr int kMaxWindow = 1 << 20;  // [cells] on each side of the guess
 constexpr double kFar_cells = 1e8;   // farther cells are clamped: int must not overflow
 constexpr double kMinAngularStep_rad = 5e-4;  // one cell of 5 cm at 100 m; bounds the headings
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Of at least one point, in x and in y.
 Eigen::Vector2d median(std::span<const Eigen::Vector2d> points) {
   std::vector<double> xs;
@@ -34,7 +30,7 @@ Eigen::Vector2d median(std::span<const Eigen::Vector2d> points) {
     xs.push_back(point.x());
     ys.push_back(point.y());
   }
-  return {median(std::move(xs)), median(std::move(ys))};
+  return {upper_median(std::move(xs)), upper_median(std::move(ys))};
 }
 
 /// The finite points within the square of +-`half_side_m` about the median.

@@ -3,6 +3,7 @@
 
 #include "common/geometry/principal_axes.hpp"
 #include "common/geometry/squared.hpp"
+#include "common/geometry/upper_median.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -180,11 +181,8 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
   }
   match.num_mapped = mapped;
   match.num_scattered = static_cast<int>(off_range_m.size());
-  if (!off_range_m.empty()) {
-    const auto middle = off_range_m.begin() + static_cast<std::ptrdiff_t>(off_range_m.size() / 2);
-    std::nth_element(off_range_m.begin(), middle, off_range_m.end());
-    match.range_scatter_m = kSigmaOverMedian * *middle;
-  }
+  if (!off_range_m.empty())
+    match.range_scatter_m = kSigmaOverMedian * upper_median(std::move(off_range_m));
   match.mapped_share = points.empty() ? 0.0 : mapped / static_cast<double>(points.size());
   match.inlier_share = mapped == 0 ? 0.0 : match.inliers / static_cast<double>(mapped);
   if (shares.empty()) return;

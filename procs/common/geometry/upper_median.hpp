@@ -7,8 +7,10 @@
 
 namespace waymark {
 
-/// The upper one of the two in the middle where their number is even. Not of nothing.
-inline double median(std::vector<double> values) {
+/// The upper one of the two in the middle where their number is even. O(n).
+/// @param values  not empty
+template <class Value>
+Value upper_median(std::vector<Value> values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::ranges::nth_element(values, middle);
   return *middle;
