@@ -67,6 +67,16 @@ Eigen::Vector3d pose_residual(Eigen::Vector3d difference) {
   return difference;
 }
 
+double penalty(MotionKind kind) {
+  if (kind == MotionKind::kRolling) return kRollingPenalty;
+  if (kind == MotionKind::kJerked) return kJerkedPenalty;
+  return kind == MotionKind::kAnything ? kAnythingPenalty : kSpinningPenalty;
+}
+
+double log_determinant(const Eigen::LLT<Eigen::Matrix3d>& root) {
+  return 2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
+}
+
 Variable keyframe_variable(std::size_t index) {
   return {VariableKind::kKeyframe, index};
 }
@@ -98,24 +108,15 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {
 }
 
 MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& noise) {
-  struct Kind {
-    MotionKind kind;
-    double penalty;
+  const std::array<MotionKind, 4> kinds{
+      MotionKind::kRolling, residual.z() > 0.0 ? MotionKind::kLeftSpins : MotionKind::kRightSpins,
+      MotionKind::kJerked, MotionKind::kAnything};
+  const auto cost = [&](MotionKind kind) {
+    const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind, noise)};
+    return residual.dot(root.solve(residual)) + penalty(kind) + log_determinant(root);
   };
-
-  const std::array<Kind, 4> kinds{
-      {{MotionKind::kRolling, kRollingPenalty},
-       {residual.z() > 0.0 ? MotionKind::kLeftSpins : MotionKind::kRightSpins, kSpinningPenalty},
-       {MotionKind::kJerked, kJerkedPenalty},
-       {MotionKind::kAnything, kAnythingPenalty}}};
-  const auto cost = [&](const Kind& kind) {
-    const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind.kind, noise)};
-    return residual.dot(root.solve(residual)) + kind.penalty +
-           2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
-  };
-  return std::min_element(kinds.begin(), kinds.end(),
-                          [&](const Kind& a, const Kind& b) { return cost(a) < cost(b); })
-      ->kind;
+  return *std::min_element(kinds.begin(), kinds.end(),
+                           [&](MotionKind a, MotionKind b) { return cost(a) < cost(b); });
 }
 
 Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise) {
@@ -169,6 +170,18 @@ MixtureNoise OdometryFactor::noise_of(const CorrectedMotion& measured,
   return {measured.covariance, random_walk(motion, noise), noise.half_track_m};
 }
 
+double OdometryFactor::cost(const State& state, const OdometryNoise& noise,
+                            const OdometryScale& scale) const {
+  const double chi2 = linearise(state, noise, scale).residual.squaredNorm();
+  if (is_cut || kind == MotionKind::kRolling) return chi2;
+  const MixtureNoise mixture = noise_of(moved(state, noise, scale), noise);
+  const auto cost_of = [&](MotionKind of) {
+    return penalty(of) + log_determinant(Eigen::LLT<Eigen::Matrix3d>{
+                             covariance_of(of, mixture) + unmeasured_covariance(unmeasured_m)});
+  };
+  return chi2 + cost_of(kind) - cost_of(MotionKind::kRolling);
+}
+
 LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise,
                                        const OdometryScale& scale) const {
   const CorrectedMotion measured = moved(state, noise, scale);
@@ -204,6 +217,10 @@ bool ScanFactor::normalise_shares() {
 void ScanFactor::reweigh(const State& state) {
   const double chi2 = linearise(state).residual.squaredNorm() / (weight * weight);
   weight = std::min(1.0, 2.0 * kLoopKernel / (kLoopKernel + chi2));
+}
+
+double ScanFactor::cost(const State& state) const {
+  return linearise(state).residual.squaredNorm() + kLoopKernel * squared(1.0 - weight);
 }
 
 LinearFactor ScanFactor::linearise(const State& state) const {

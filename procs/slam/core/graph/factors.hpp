@@ -92,6 +92,9 @@ struct OdometryFactor {
   /// calibration: else a change of the calibration looks like a slip.
   void choose_kind(const State& state, const OdometryNoise& noise, const OdometryScale& scale);
 
+  /// -2 log likelihood, but for a constant: chi^2, and what the component costs more than rolling.
+  double cost(const State& state, const OdometryNoise& noise, const OdometryScale& scale) const;
+
  private:
   CorrectedMotion moved(const State& state, const OdometryNoise& noise,
                         const OdometryScale& scale) const;
@@ -122,6 +125,9 @@ struct ScanFactor {
   /// Dynamic covariance scaling (Agarwal et al. 2013): a loop that other factors contradict loses
   /// weight. A new loop has its full weight at first, so that the graph can move to it.
   void reweigh(const State& state);
+
+  /// chi^2 with its weight, and of a loop what the weight costs.
+  double cost(const State& state) const;
 };
 
 /// A marker, measured from a keyframe.

@@ -147,12 +147,18 @@ double Graph::cost_of(const MarkerFactor& factor) const {
   return chi2 > gate ? 2.0 * gate - gate * gate / chi2 : chi2;
 }
 
+double Graph::cost_of(const Factor& factor) const {
+  if (const auto* odometry = std::get_if<OdometryFactor>(&factor))
+    return odometry->cost(state_, noise_.odometry, noise_.scale);
+  if (const auto* scan = std::get_if<ScanFactor>(&factor)) return scan->cost(state_);
+  if (const auto* marker = std::get_if<MarkerFactor>(&factor)) return cost_of(*marker);
+  return linearised(factor).residual.squaredNorm();
+}
+
 double Graph::cost() const {
   double sum = 0.0;
-  for (const Factor& factor : factors_) {
-    const auto* marker = std::get_if<MarkerFactor>(&factor);
-    sum += marker != nullptr ? cost_of(*marker) : linearised(factor).residual.squaredNorm();
-  }
+  for (const Factor& factor : factors_)
+    sum += cost_of(factor);
   return sum;
 }
 

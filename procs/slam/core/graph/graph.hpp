@@ -65,7 +65,7 @@ class Graph {
   void switch_prior(std::size_t landmark, bool is_on);
   bool is_prior_on(std::size_t landmark) const;
 
-  /// Sum of chi^2 of all factors, with their robust losses.
+  /// Sum of the costs of all factors: chi^2 with their robust losses.
   double cost() const;
 
   /// The same for the measurements of one landmark.
@@ -151,6 +151,7 @@ class Graph {
   void reconsider_factors();
   LinearFactor linearised(const Factor& factor) const;
   double cost_of(const MarkerFactor& factor) const;
+  double cost_of(const Factor& factor) const;
   bool is_within_window(const Factor& factor) const;
   void insert_variable(const Variable& variable);
   void add_to(NormalEquations& equations, const LinearFactor& linear) const;

@@ -123,6 +123,13 @@ bool LoopFinder::is_good(const ScanMatch& match) const {
          match.mapped_share >= config_.min_mapped_share;
 }
 
+/// Enough evidence against the covariance of the pose: one wall, which leaves a direction
+/// unobserved, looks like any other one.
+bool LoopFinder::is_convincing(const ScanMatch& match) const {
+  return !match.observed.is_degenerate && match.inlier_share >= config_.surprise_share &&
+         match.mapped_share >= config_.surprise_share;
+}
+
 /// Covariance of the estimated pose relative to a submap. After a recent loop with it or with a
 /// neighbour, the error is bounded by that loop's and the drift since: consistent loops support
 /// each other (Mangelson et al. 2018), and one that contradicts them exceeds the gate sooner.
@@ -163,10 +170,7 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
   const Eigen::Vector3d off = pose_difference(map_from_base, search.map_from_base);
   const Found found{keyframe, *loop, chi2(off, covariance_in(*old, search))};
   const bool is_surprise = found.chi2 > config_.gate;
-  if (is_surprise && (loop->match.inlier_share < config_.surprise_share ||
-                      loop->match.mapped_share < config_.surprise_share)) {
-    return {};
-  }
+  if (is_surprise && !is_convincing(loop->match)) return {};
   const bool is_close =
       off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad;
   if (is_surprise || !is_close) return confirmed_pair(found, map_from_base, search);

@@ -111,6 +111,7 @@ class LoopFinder {
   std::optional<LoopMatch> match(const Submap& old, const Points& points, const LoopSearch& search,
                                  const State& state, const RangeNoise& noise);
   bool is_good(const ScanMatch& match) const;
+  bool is_convincing(const ScanMatch& match) const;
   static bool is_other_place(const SearchMatch& other, const ScanMatch& match);
   const CorrelativeField& field_of(const Submap& old);
 

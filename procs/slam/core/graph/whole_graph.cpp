@@ -17,6 +17,8 @@ using Triplet = Eigen::Triplet<double>;
 using Solver = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::NaturalOrdering<int>>;
 
 constexpr double kConverged = 1e-3;  // [m, rad]
+constexpr double kNoWorse = 1.0;     // by which a step may raise the cost: not significant
+constexpr double kLeastShare = 0.1;  // of a step that lowers the cost; else none is taken
 
 /// Places of the unknowns: those behind the window in an order that keeps the factorisation sparse,
 /// after them the window's as they are.
@@ -106,6 +108,7 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
     return moved;
   }
 
+  const double cost_before = cost();
   std::vector<bool> is_active_factor(factors_.size(), false);
   for (const std::size_t index : active_factors_)
     is_active_factor[index] = true;
@@ -157,13 +160,27 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   prior_.h.diagonal().array() -= 1.0;
   prior_.g.noalias() = corner * x.tail(num_window);
 
+  const State before = state_;
+  const Eigen::VectorXd window_g = prior_.g;
   const Eigen::VectorXd window_step = solve_window();
   x.head(num_behind) = -x.head(num_behind).cwiseQuotient(solver.vectorD().head(num_behind));
   x.tail(num_window).noalias() = corner.transpose() * window_step;
   solver.matrixU().solveInPlace(x);
   x.head(num_behind) *= step_share(x, variables, place_of);
-  for (const Variable& variable : variables)
-    state_.retract(variable, x.segment(place_of(variable), 3));
+  const auto retract_behind = [&](double share) {
+    for (const Variable& variable : variables)
+      state_.retract(variable, share * x.segment(place_of(variable), 3));
+  };
+  retract_behind(1.0);
+  double share = 1.0;
+  while (cost() > cost_before + kNoWorse) {
+    share = share > kLeastShare ? 0.5 * share : 0.0;
+    state_ = before;
+    prior_.g = window_g;
+    retract_window(share * window_step);
+    retract_behind(share);
+    if (share == 0.0) break;
+  }
   carry_removed();
   reconsider_factors();
   return x.head(num_behind).cwiseAbs().maxCoeff();

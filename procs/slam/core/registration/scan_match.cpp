@@ -31,6 +31,9 @@ constexpr double kIndependentBeams = 4.0;
 // A cell that was seen from n keyframes counts as lasting with the weight n / (n + this).
 constexpr double kBrief = 3.0;
 
+constexpr double kGuessFades = 10.0;  // on its standard deviations, for the optimum without it,
+const Eigen::Vector3d kLeastFaded{0.2, 0.2, 0.1};  // and what is added to them [m, m, rad]
+
 // Noise of ranges.
 constexpr int kWellSeen = 20;               // points of a cell
 constexpr double kSquareOn = 0.5;           // cosine of a beam's incidence
@@ -231,6 +234,15 @@ class Descent {
   const ScanMatchConfig& config_;
 };
 
+/// Information that keeps a pose where the scan observes nothing, and hardly pulls where it does:
+/// the guess's with ten times its standard deviations. Not more: steps have to stay small enough
+/// for the quadratic model.
+Eigen::Matrix3d nearly_none(const Eigen::Matrix3d& guess_covariance) {
+  Eigen::Matrix3d covariance = squared(kGuessFades) * guess_covariance;
+  covariance.diagonal() += kLeastFaded.cwiseAbs2();
+  return covariance.inverse();
+}
+
 /// Standard deviation of the beams' ends, by that of the pose.
 double ends_open_m(std::span<const Eigen::Vector2d> points_in_base,
                    const Eigen::Matrix3d& covariance) {
@@ -283,19 +295,13 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
     match.map_from_base =
         descent.from(match.map_from_base, points, blur_m, kStepsPerStage, kConverged);
   match.map_from_base = descent.from(match.map_from_base, points, 0.0, kFinalSteps, kConverged);
-  // The optimum without the guess, in observed directions.
+  // The optimum almost without the guess, in observed directions.
   const Quadratic model = points.quadratic_about(match.map_from_base, 0.0, config);
   match.observed = observed_axes(model.information, model.lasting, config.weak_share);
-  Eigen::Matrix3d full_rank = match.observed.information;
-  if (match.observed.is_degenerate) {
-    const Eigen::Vector2d& weak = match.observed.weak_direction;
-    full_rank.topLeftCorner<2, 2>() +=
-        full_rank.topLeftCorner<2, 2>().trace() * weak * weak.transpose();
-  }
-  if (full_rank.topLeftCorner<2, 2>().determinant() > 0.0 && full_rank(2, 2) > 0.0) {
-    const Eigen::Vector3d gradient = along_observed(model.gradient, match.observed);
-    match.map_from_base = moved_by(match.map_from_base, -full_rank.ldlt().solve(gradient));
-  }
+  const Eigen::Vector3d gradient = along_observed(model.gradient, match.observed);
+  match.map_from_base = moved_by(
+      match.map_from_base,
+      -(match.observed.information + nearly_none(guess_covariance)).ldlt().solve(gradient));
   match.observed.information *= config.information_share;
   summarise(points_in_base, map, point_variance_m2, config, match);
   return match;

@@ -331,36 +331,5 @@ TEST(Graph, AScanFactorKeepsItsReferencesToKeyframesThatStay) {
   EXPECT_EQ(scans, 1);
 }
 
-TEST(Graph, AWrongLoopAmongRightOnesLosesItsWeight) {
-  GraphNoise noise;
-  noise.odometry.may_slip = false;  // no jerk of the odometry explains the wrong loop
-  Graph graph{noise, Drive::sigmas()};
-  graph.add_keyframe({});
-  graph.add(PosePrior{0, {}, Eigen::Matrix3d::Identity() * 1e4});
-  for (std::size_t k = 1; k <= 40; ++k) {
-    graph.add_keyframe(Se2{0.2 * static_cast<double>(k), 0.0, 0.0});
-    graph.add(OdometryFactor{k - 1, k, straight(0.2)});
-  }
-  const auto loop = [&](std::size_t from, std::size_t to, double off_m) {
-    ScanFactor factor;
-    factor.keyframe = to;
-    factor.references = {{from, 1.0, {0.2 * static_cast<double>(to - from), off_m, 0.0}}};
-    factor.root_information = root_of(Eigen::Vector3d{1e4, 1e4, 1e5}.asDiagonal());
-    factor.is_loop = true;
-    graph.add(factor);
-  };
-  for (const std::size_t k : {30U, 32U, 34U, 36U, 38U, 40U})
-    loop(2, k, 0.0);
-  loop(3, 35, 1.5);
-  graph.optimise_all(20);
-  EXPECT_NEAR(graph.state().keyframes[35].y(), 0.0, 0.05);
-  for (const Factor& factor : graph.factors()) {
-    const auto* scan = std::get_if<ScanFactor>(&factor);
-    if (scan != nullptr) {
-      EXPECT_EQ(scan->weight < 0.5, scan->keyframe == 35) << scan->keyframe << ": " << scan->weight;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace waymark

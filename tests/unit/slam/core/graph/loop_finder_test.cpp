@@ -152,6 +152,20 @@ TEST(LoopFinder, AMatchThatContradictsARecentLoopNeedsABetterFit) {
   }
 }
 
+/// All walls look alike: one of them does not refute the covariance of the pose.
+TEST(LoopFinder, ASurpriseThatLeavesADirectionUnobservedIsRefused) {
+  const Se2 drift{0.0, 1.1, 0.0};
+  const auto found_in = [&](auto has_pillar) {
+    Corridor corridor{has_pillar};
+    const Se2 first{6.0, 0.0, 0.0};
+    const Se2 second{6.5, 0.0, 0.0};
+    EXPECT_TRUE(corridor.look_around(first, drift * first).empty());
+    return corridor.look_around(second, drift * second).size();
+  };
+  EXPECT_EQ(found_in(irregularly), 2U);
+  EXPECT_EQ(found_in([](double) { return false; }), 0U);
+}
+
 /// Half a period, a whole one, and none: the scan fits in all three places.
 TEST(LoopFinder, SimilarPlacesStayAmbiguous) {
   Corridor corridor{every_two_metres};

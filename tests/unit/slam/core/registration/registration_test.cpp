@@ -196,6 +196,28 @@ TEST(ScanMatch, ManyBeamsInOneCellHaveTheInformationOfAFew) {
   EXPECT_LT(match.observed.information(0, 0), 0.15 * information_of(points.size()));
 }
 
+/// Its turn about the pole is not observed, nor is the way across that belongs to it.
+TEST(ScanMatch, ALonePoleFarAwayLeavesTheTurnAsGuessed) {
+  const auto pole_from = [](const Se2& map_from_base, std::uint64_t seed) {
+    Random random{{seed}};
+    Points points;
+    for (int i = 0; i < 10; ++i)
+      points.push_back(map_from_base.inverse() *
+                       Eigen::Vector2d{10.0 + kSigma_m * random.normal(),
+                                       0.1 + 0.002 * i + kSigma_m * random.normal()});
+    return points;
+  };
+  const Submap submap = submap_of(pole_from);
+  for (std::uint64_t seed = 100; seed < 130; ++seed) {
+    const Se2 truth{1.0, 0.0, 0.0};
+    const Se2 guess{1.0, 0.0, 0.01};
+    const ScanMatch match = match_scan(pole_from(truth, seed), submap.ndt(), guess,
+                                       sigmas(0.01, 0.01), RangeNoise{kSigma_m}, {});
+    EXPECT_LT(std::abs(match.map_from_base.y()), 0.15) << seed;
+    EXPECT_LT(std::abs(match.map_from_base.theta()), 0.02) << seed;
+  }
+}
+
 TEST(ScanMatch, SharesOfKeyframesSumToOne) {
   const Submap room = submap_of(room_from);
   const ScanMatch match = match_scan(room_from({1.0, 0.0, 0.0}, 99), room.ndt(), {1.0, 0.0, 0.0},
