@@ -13,6 +13,7 @@ namespace {
 constexpr double kWorse = 1.9;        // factor on a standard deviation; learnt in steps of sqrt(2)
 constexpr double kNoisier = 1.3;      // the same of ranges
 constexpr double kManyBeams = 0.05;   // moving; a few are noise at the walls' edges
+constexpr double kManyScans = 0.05;   // against a loaded map; fewer are people and doors
 constexpr double kWorthShare = 0.01;  // of scans or observations; fewer may be a door that opened
 
 double share_of(std::int64_t part, std::int64_t all) {
@@ -87,6 +88,10 @@ void add_ranges(const Findings& f, std::int64_t repeated_scans, List& list) {
   }
   list.add_share("scans_refuted", "{:.1f} % of the scans contradict the map and were left out",
                  f.scans_refuted, f.scans);
+  list.add_share("scans_contradict_loaded_map",
+                 "{:.1f} % of the scans contradict the loaded map: it is of another place, or much "
+                 "has changed",
+                 f.scans_contradict_loaded_map, f.scans_in_loaded_map, kManyScans);
   list.add_share("scans_unusable",
                  "{:.1f} % of the scans show too few mapped surfaces and were left out",
                  f.scans_unusable, f.scans);

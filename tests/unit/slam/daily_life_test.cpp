@@ -241,6 +241,24 @@ TEST_F(DailyLife, ACorrectMapHasNoChanges) {
   EXPECT_FALSE(sent_on(channels::kSlamChanges, today).empty());
 }
 
+TEST_F(DailyLife, AMapOfAnotherBuildingIsNamed) {
+  const auto names_it = [](const test::SyntheticCorridor& corridor, MapMode mode) {
+    const auto sent = sent_on(channels::kSlamFindings,
+                              test::drive_through(config_for(mode, *file_, StartKind::kOrigin),
+                                                  messages_of(test::drive(corridor))));
+    const auto& found = sent.back().findings;
+    return std::any_of(found.begin(), found.end(), [](const finding_t& finding) {
+      return finding.name == "scans_contradict_loaded_map";
+    });
+  };
+  test::SyntheticCorridor other = corridor_of(2);
+  other.width_m = 3.0;
+  for (const MapMode mode : {MapMode::kLocalise, MapMode::kExtend}) {
+    EXPECT_FALSE(names_it(corridor_of(2), mode));
+    EXPECT_TRUE(names_it(other, mode));
+  }
+}
+
 class SurveyedMap : public DailyLife {
  protected:
   fs::path survey(const std::string& text) {

@@ -58,6 +58,12 @@ TEST(FindingsText, AFewScansThatDoNotFitAreNotReported) {
   EXPECT_TRUE(worth_saying(findings, 0).empty());
   findings.scans_refuted = 50;
   EXPECT_FALSE(worth_saying(findings, 0).empty());
+  findings = as_described();
+  findings.scans_in_loaded_map = 100;
+  findings.scans_contradict_loaded_map = 4;
+  EXPECT_TRUE(worth_saying(findings, 0).empty());
+  findings.scans_contradict_loaded_map = 6;
+  EXPECT_FALSE(worth_saying(findings, 0).empty());
 }
 
 }  // namespace

@@ -217,6 +217,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   weigh_past_anew();
   compare_with_odometry();
   if (markers_known_ || scan.shows_all_axes) unmeasured_motion_.note_observed();
+  compare_with_loaded_map(observation);
   // A scan whose pose is uncertain is not mapped.
   const bool is_mapped = !is_suspicious && !scan.is_refuted && is_confirmed_;
   if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());

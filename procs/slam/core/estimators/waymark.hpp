@@ -170,6 +170,7 @@ class WaymarkEstimator final : public Estimator {
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
   void confirm_place(const MatchedScan& scan);
+  void compare_with_loaded_map(const Observation& observation);
   std::optional<Observation> with_right_scale(const Observation& observation, Look& look);
   void note_fit(const ScanMatch& match);
   void follow_odometry(const Observation& observation);

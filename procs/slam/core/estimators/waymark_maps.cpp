@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the graph estimator uses a loaded map or a survey, and makes a map to be saved.
 #include "slam/core/estimators/waymark.hpp"
+#include "slam/core/graph/map_fit.hpp"
 #include "slam/core/graph/marker_changes.hpp"
 #include "slam/core/grid/occupied_points.hpp"
 
@@ -57,6 +58,16 @@ bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
 void WaymarkEstimator::confirm_place(const MatchedScan& scan) {
   if (scan.submap == nullptr && !scan.match.observed.is_degenerate && is_in_loaded_map(scan.match))
     is_confirmed_ = true;
+}
+
+/// At the newest keyframe, wherever it is believed to be.
+void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
+  if (!setup_.loaded_map) return;
+  const MapFit fit =
+      fit_in_map(setup_.loaded_map->grid, observation.beams, graph_.state().keyframes.back());
+  if (!fit.is_decisive()) return;
+  ++findings_.scans_in_loaded_map;
+  if (fit.is_contradicted()) ++findings_.scans_contradict_loaded_map;
 }
 
 /// The loaded map does not move: a match with it is a prior on the pose.

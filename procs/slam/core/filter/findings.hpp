@@ -37,6 +37,9 @@ struct Findings {
   std::int64_t beams{0};                ///< with returns
   std::int64_t beams_moving{0};         ///< of these, ended where the map is free
 
+  std::int64_t scans_in_loaded_map{0};          ///< at keyframes, where a map was loaded
+  std::int64_t scans_contradict_loaded_map{0};  ///< of these
+
   std::int64_t loops_ambiguous{0};  ///< that fitted in several places, and were not closed
   std::int64_t relocalisations{0};
   std::vector<Miscalibration> miscalibrated{};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/place_finder.hpp"
 
-#include "slam/core/grid/line.hpp"
+#include "slam/core/graph/map_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,15 +32,9 @@ constexpr double kPassed_m = 1.0;       // driven until a marker may contribute 
 
 // Walls.
 constexpr double kWallsEvery_m = 0.1;
-constexpr std::size_t kBeams = 120;
-constexpr int kLeastBeams = 20;
 constexpr double kUsualMisfit = 0.15;  // share of beams that noise and changes misplace
 constexpr double kMisfit = 3.0;        // score of all beams beyond that
-constexpr double kMostMisfit = 0.3;    // of the right place
 constexpr double kLeastMapped = 0.3;   // share of beams on mapped walls at the right place
-constexpr double kBeforeEnd_m = 0.3;   // of a beam, where it may graze its own wall
-constexpr double kOccupied = 0.4;      // least occupancy of a wall, and
-constexpr double kFree = 0.1;          // largest one of free space
 const Eigen::Vector3d kMatchSigmas{0.15, 0.15, 0.06};  // of a pose by one marker [m, m, rad]
 
 // Markers in view.
@@ -210,57 +204,16 @@ void PlaceFinder::weigh_misses(Hypothesis& place, const Observation& observation
   }
 }
 
-bool PlaceFinder::is_occupied(const Eigen::Vector2d& point) const {
-  const CellIndex centre = map_->grid.frame.cell_of(point);
-  for (int x = -1; x <= 1; ++x)
-    for (int y = -1; y <= 1; ++y)
-      if (map_->grid.occupancy[{centre.x + x, centre.y + y}].occupancy() > kOccupied) return true;
-  return false;
-}
-
-bool PlaceFinder::is_free(const Eigen::Vector2d& point) const {
-  const OccupancyCell& cell = map_->grid.occupancy[map_->grid.frame.cell_of(point)];
-  return cell.is_mapped() && cell.occupancy() < kFree;
-}
-
-/// Whether a mapped wall lies between the two points.
-bool PlaceFinder::is_crossed(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
-  const double length_m = (to - from).norm();
-  if (length_m <= kBeforeEnd_m) return false;
-  const Eigen::Vector2d before = to - kBeforeEnd_m / length_m * (to - from);
-  bool is_crossed = false;
-  visit_line(map_->grid.frame.cell_of(from), map_->grid.frame.cell_of(before), [&](CellIndex cell) {
-    is_crossed |= map_->grid.occupancy[cell].occupancy() > kOccupied;
-  });
-  return is_crossed;
-}
-
 void PlaceFinder::weigh_walls(Hypothesis& place, const Observation& observation,
                               const RangeNoise& noise) const {
   const Points points = points_of(observation);
   const Eigen::Matrix3d near = kMatchSigmas.cwiseAbs2().asDiagonal();
   const ScanMatch match = match_scan(points, map_->walls, place.map_from_base, near, noise, scan_);
   if (match.is_usable(scan_)) place.map_from_base = match.map_from_base;
-  const std::size_t step = 1 + observation.beams.size() / kBeams;
-  int all = 0;
-  int fitting = 0;
-  int contradicting = 0;
-  for (std::size_t i = 0; i < observation.beams.size(); i += step) {
-    const Beam& beam = observation.beams[i].beam;
-    const Eigen::Vector2d end = place.map_from_base * beam.end_in_base;
-    ++all;
-    if (is_crossed(place.map_from_base * beam.start_in_base, end)) {
-      ++contradicting;
-    } else if (is_occupied(end)) {
-      ++fitting;
-    } else if (is_free(end)) {
-      ++contradicting;
-    }
-  }
-  const double misfit = static_cast<double>(contradicting) / std::max(1, fitting + contradicting);
-  place.fits_walls = all < kLeastBeams || (fitting >= kLeastMapped * all && misfit < kMostMisfit);
-  if (fitting + contradicting >= kLeastBeams)
-    place.wall_score -= kMisfit * std::max(0.0, misfit - kUsualMisfit);
+  const MapFit fit = fit_in_map(map_->grid, observation.beams, place.map_from_base);
+  place.fits_walls = fit.beams < MapFit::kLeastBeams ||
+                     (fit.fitting >= kLeastMapped * fit.beams && !fit.is_contradicted());
+  if (fit.is_decisive()) place.wall_score -= kMisfit * std::max(0.0, fit.misfit() - kUsualMisfit);
 }
 
 }  // namespace waymark

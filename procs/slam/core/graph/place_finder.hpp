@@ -70,9 +70,6 @@ class PlaceFinder {
                     const CameraView& view) const;
   void weigh_walls(Hypothesis& place, const Observation& observation,
                    const RangeNoise& noise) const;
-  bool is_occupied(const Eigen::Vector2d& point) const;
-  bool is_free(const Eigen::Vector2d& point) const;
-  bool is_crossed(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
   std::optional<int> landmark_at(int id, const Eigen::Vector2d& place) const;
 
   std::shared_ptr<const MapSnapshot> map_;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a scan contradicts a map.
+#pragma once
+
+#include "common/geometry/se2.hpp"
+#include "slam/core/grid/grid_map.hpp"
+#include "slam/core/scan/annotated_scan.hpp"
+
+#include <span>
+
+namespace waymark {
+
+/// What the map says of a scan's beams. Those that end where nothing is mapped say nothing.
+struct MapFit {
+  int beams{0};          ///< looked at
+  int fitting{0};        ///< end on a mapped wall
+  int contradicting{0};  ///< cross a mapped wall, or end where the map is free
+
+  static constexpr int kLeastBeams = 20;      ///< fewer decide nothing
+  static constexpr double kMostMisfit = 0.3;  ///< of the right map at the right pose
+
+  bool is_decisive() const { return fitting + contradicting >= kLeastBeams; }
+
+  /// Share of the contradicting beams, 0 to 1.
+  double misfit() const {
+    return is_decisive() ? static_cast<double>(contradicting) / (fitting + contradicting) : 0.0;
+  }
+
+  bool is_contradicted() const { return misfit() >= kMostMisfit; }
+};
+
+/// Looks at some 120 beams of the scan, evenly spread.
+MapFit fit_in_map(const GridMap& map, std::span<const AnnotatedBeam> beams,
+                  const Se2& map_from_base);
+
+}  // namespace waymark
