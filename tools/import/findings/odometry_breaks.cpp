@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace waymark {
@@ -26,6 +27,11 @@ constexpr Duration kShortestGap = std::chrono::seconds{2};
 constexpr double kSamePlace_m = 0.06;  // misfit of two scans of one place
 constexpr double kNowhere_m = 0.15;    // misfit of two scans of which none shows the other's walls
 constexpr double kOften = 0.05;        // of all steps
+// Along a bare corridor a scan fits at every place: that it fits where the robot was before a gap
+// says nothing, unless it fits nowhere around.
+constexpr double kTold_m = 0.1;  // misfit of two scans of places that can be told apart
+const std::array<Eigen::Vector2d, 4> kSteppedAside{
+    {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}};
 
 // A gap in which odometry stands, and the scans do not.
 constexpr Duration kLongGap = std::chrono::seconds{5};
@@ -183,7 +189,13 @@ class BreakMender {
     const double standing_m = misfit_with(Se2{});
     const double going_on_m = is_gap ? standing_m : misfit_with(step_before);
     const bool goes_on = going_on_m < standing_m;
-    if (std::min(standing_m, going_on_m) < kSamePlace_m && (jumps || counted_m >= kNowhere_m)) {
+    const auto is_only_place = [&] {
+      return std::ranges::none_of(kSteppedAside, [&](const Eigen::Vector2d& aside) {
+        return misfit_with({aside, 0.0}) < kTold_m;
+      });
+    };
+    if (std::min(standing_m, going_on_m) < kSamePlace_m &&
+        (jumps || (counted_m >= kNowhere_m && is_only_place()))) {
       name_new_beginning(now, step, goes_on);
       return goes_on ? step_before : Se2{};
     }

@@ -79,6 +79,19 @@ TEST(OdometryBreaks, ANewBeginningAfterAPauseGoesOnWhereItWasAndIsNoSetClock) {
               std::chrono::minutes{5});
 }
 
+TEST(OdometryBreaks, TheWayInAGapThatABareCorridorDoesNotShowStays) {
+  const auto way_of_drive_with_gap = [](Walls walls) {
+    const std::vector<Se2> steps(60, Se2{0.05, 0.0, 0.0});
+    ImportedLog log = drive(steps, CountedAs::kDriven, walls);
+    for (std::size_t i = 30; i < log.odometry.size(); ++i)
+      log.odometry[i].pose = Se2{2.0, 0.0, 0.0} * log.odometry[i].pose;
+    delay(log, 30, std::chrono::seconds{10});
+    return way_m(mend(log).log);
+  };
+  EXPECT_NEAR(way_of_drive_with_gap(Walls::kCorridor), 5.0, kExact);
+  EXPECT_NEAR(way_of_drive_with_gap(Walls::kRoom), 2.95, kExact);  // the scans show that it stood
+}
+
 TEST(OdometryBreaks, ANewBeginningWhileTheRobotDrivesGoesOnAsItDrove) {
   ImportedLog log = drive_with_stop();
   begin_anew(log, 50);
