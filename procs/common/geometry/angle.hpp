@@ -17,6 +17,7 @@ constexpr double degrees(double radians) {
 
 /// The same direction in (-pi, pi].
 inline double wrap_angle(double angle_rad) {
+  if (angle_rad > -std::numbers::pi && angle_rad <= std::numbers::pi) return angle_rad;
   const double wrapped = std::remainder(angle_rad, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }

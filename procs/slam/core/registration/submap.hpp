@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <set>
+#include <cstdint>
 #include <span>
-#include <utility>
+#include <unordered_set>
 #include <vector>
 
 namespace waymark {
@@ -36,9 +36,9 @@ class Submap {
     for (const Eigen::Vector2d& point : points_in_base) {
       const Eigen::Vector2d there = submap_from_base * point;
       ndt_.add(there, keyframe);
-      const std::pair cell{std::lround(there.x() / kThinned_m),
-                           std::lround(there.y() / kThinned_m)};
-      if (!occupied_.insert(cell).second) continue;
+      const std::int64_t column = std::lround(there.x() / kThinned_m);
+      const std::int64_t row = std::lround(there.y() / kThinned_m);
+      if (!occupied_.insert(column * kMostRows + row).second) continue;
       points_.push_back(there);
       coarse_.add(there);
     }
@@ -73,6 +73,7 @@ class Submap {
 
  private:
   static constexpr double kThinned_m = 0.05;
+  static constexpr std::int64_t kMostRows = std::int64_t{1} << 32;
 
   std::size_t first_keyframe_;
   NdtMap ndt_;
@@ -80,7 +81,7 @@ class Submap {
   std::vector<Se2> poses_{};
   double reach_m_{0.0};
   double length_m_{0.0};
-  std::set<std::pair<long, long>> occupied_{};
+  std::unordered_set<std::int64_t> occupied_{};  ///< cells of kThinned_m; never iterated over
   Points points_{};
 };
 
