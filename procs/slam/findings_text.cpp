@@ -14,6 +14,7 @@ constexpr double kWorse = 1.9;        // factor on a standard deviation; learnt 
 constexpr double kNoisier = 1.3;      // the same of ranges
 constexpr double kManyBeams = 0.05;   // moving; a few are noise at the walls' edges
 constexpr double kManyScans = 0.05;   // against a loaded map; fewer are people and doors
+constexpr double kBriefly = 0.001;    // of observations; fewer are a push, or a wrong match
 constexpr double kWorthShare = 0.01;  // of scans or observations; fewer may be a door that opened
 
 double share_of(std::int64_t part, std::int64_t all) {
@@ -62,7 +63,7 @@ void add_odometry(const Findings& f, List& list) {
   }
   list.add_share("odometry_stuck",
                  "odometry stood still while the robot moved for {:.1f} % of the observations",
-                 f.odometry_stuck, f.observations, 0.0);
+                 f.odometry_stuck, f.observations, kBriefly);
   list.add_share("odometry_jumping", "odometry jumped about for {:.1f} % of the observations",
                  f.odometry_jumping, f.observations, 0.0);
   if (f.odometry_caught_up > 0) {

@@ -129,14 +129,14 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
   look.beams_moving = all - look.points.size();
   look.scan = matched(look.points, searched);
   // A scan that contradicts the map may be elsewhere; only if not, its range scale is tested.
-  if (look.scan && usual_fit_.is_contradicted(look.scan->match)) search_widely(look);
+  if (look.scan && usual_fit_.is_contradicted(look.scan->match)) search_widely(observation, look);
   return look;
 }
 
 /// Adds the newest keyframe at its predicted pose, with odometry and scan factor.
 WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
     const Observation& observation, Look& look) {
-  if (look.scan) search_widely(look);
+  if (look.scan) search_widely(observation, look);
   const auto& scan = look.scan;
   KeyframeScan used;
   used.is_refuted = scan && usual_fit_.is_refuted(scan->match);

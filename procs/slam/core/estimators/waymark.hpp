@@ -150,7 +150,8 @@ class WaymarkEstimator final : public Estimator {
     Se2 map_from_start{};  ///< pose when it began
     Se2 map_from_base{};   ///< pose of the last keyframe at which the robot was observed to move
     Timestamp since{};
-    double moved_at_s{0.0};  ///< time of that keyframe, as clock_s_
+    double moved_at_s{0.0};                             ///< time of that keyframe, as clock_s_
+    Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< absolute, from map_from_start
   };
 
   bool place(const Observation& observation);
@@ -185,7 +186,7 @@ class WaymarkEstimator final : public Estimator {
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   static SubmapPrediction in_submap(const Prediction& prediction, const Se2& map_from_submap);
-  void search_widely(Look& look) const;
+  void search_widely(const Observation& observation, Look& look) const;
   Look look_from_expected(const Observation& observation) const;
   void add_keyframe(const Observation& observation, Look& look);
   KeyframeScan add_predicted_keyframe(const Observation& observation, Look& look);

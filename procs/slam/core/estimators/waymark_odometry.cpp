@@ -13,6 +13,11 @@ namespace {
 // Motion of the estimate while odometry stands still, by which it is stuck.
 constexpr double kMoved_m = 0.03;
 constexpr double kMoved_rad = 0.05;
+// A robot that was never farther from where odometry came to a standstill, and is nearer again by
+// that share, stands: a scan was matched wrongly.
+constexpr double kNearStandstill_m = 0.3;
+constexpr double kNearStandstill_rad = 0.2;
+constexpr double kReturned = 0.7;
 constexpr double kOtherNoise = 2.0;  // ratio of variances beyond which the whole graph is re-solved
 constexpr std::size_t kWeighedEvery = 10;  // keyframes
 
@@ -51,7 +56,8 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
     standstill_.reset();
     keyframes_standing_ = 0;
   } else if (!standstill_ && !graph_.state().keyframes.empty()) {
-    const Se2 here = prediction().map_from_base;
+    const Se2 here = graph_.state().keyframes.back() * newest_from_last_scan_ *
+                     observation.motion.start_from_end;
     standstill_ = Standstill{moved_from_, motion_, here, here, observation.time, clock_s_};
   }
   ++findings_.observations;
@@ -109,7 +115,17 @@ void WaymarkEstimator::compare_with_odometry() {
   const Se2& now = graph_.state().keyframes.back();
   const Eigen::Vector3d moved = pose_difference(now, standstill_->map_from_base);
   if (moved.head<2>().norm() < kMoved_m && std::abs(moved.z()) < kMoved_rad) return;
-  unmeasured_motion_.note_moved(moved.head<2>().norm(), clock_s_ - standstill_->moved_at_s);
+  const Eigen::Vector3d away = pose_difference(now, standstill_->map_from_start).cwiseAbs();
+  standstill_->farthest = standstill_->farthest.cwiseMax(away);
+  const double farthest_m = standstill_->farthest.head<2>().norm();
+  const double farthest_rad = standstill_->farthest.z();
+  const bool was_near = farthest_m < kNearStandstill_m && farthest_rad < kNearStandstill_rad;
+  if (was_near && away.head<2>().norm() <= kReturned * farthest_m &&
+      away.z() <= kReturned * farthest_rad) {
+    unmeasured_motion_.note_returned();
+  } else {
+    unmeasured_motion_.note_moved(moved.head<2>().norm(), clock_s_ - standstill_->moved_at_s);
+  }
   keyframes_standing_ = 0;
   standstill_->map_from_base = now;
   standstill_->moved_at_s = clock_s_;

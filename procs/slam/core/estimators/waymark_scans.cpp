@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the graph estimator uses scans.
 #include "slam/core/estimators/waymark.hpp"
+#include "slam/core/graph/map_fit.hpp"
 #include "slam/core/registration/wide_search.hpp"
 
 #include <Eigen/LU>
@@ -50,7 +51,7 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
 /// Where a scan fits worse than the scans before, odometry may be off by more than plain matching
 /// converges from: then wide windows are searched, about the predicted pose and about poses that do
 /// not use odometry, which are off by a scan's motion at most. Needs a scan that was matched.
-void WaymarkEstimator::search_widely(Look& look) const {
+void WaymarkEstimator::search_widely(const Observation& observation, Look& look) const {
   MatchedScan& scan = *look.scan;
   if (look.is_searched || !usual_fit_.is_worse_than_usual(scan.match)) return;
   look.is_searched = true;
@@ -64,6 +65,10 @@ void WaymarkEstimator::search_widely(Look& look) const {
   search.odometry_covariance = expected.covariance;
   search.since_last_s = look.since_last_s;
   search.min_score = config_.loops.min_score;
+  search.misfit = [&](const Se2& submap_from_base) {
+    return fit_in_map(map_.map(), observation.beams, scan.map_from_submap * submap_from_base)
+        .misfit();
+  };
   scan.match = searched_widely(
       scan.match, look.points, ndt_of(scan),
       points_near(scan, expected.submap_from_base, wide_search_reach_m(look.points)), search,

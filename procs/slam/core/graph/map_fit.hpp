@@ -6,6 +6,7 @@
 #include "slam/core/grid/grid_map.hpp"
 #include "slam/core/scan/annotated_scan.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace waymark {
@@ -23,10 +24,10 @@ struct MapFit {
 
   /// Share of the contradicting beams, 0 to 1.
   double misfit() const {
-    return is_decisive() ? static_cast<double>(contradicting) / (fitting + contradicting) : 0.0;
+    return static_cast<double>(contradicting) / std::max(1, fitting + contradicting);
   }
 
-  bool is_contradicted() const { return misfit() >= kMostMisfit; }
+  bool is_contradicted() const { return is_decisive() && misfit() >= kMostMisfit; }
 };
 
 /// Looks at some 120 beams of the scan, evenly spread.

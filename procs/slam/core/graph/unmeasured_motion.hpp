@@ -24,6 +24,12 @@ class UnmeasuredMotion {
   /// They observed that the robot moved so far in that time, while the odometry stood still.
   void note_moved(double distance_m, double elapsed_s);
 
+  /// It is back: the odometry stands still because the robot does.
+  void note_returned() {
+    is_stuck_ = false;
+    note_observed();
+  }
+
   bool is_standing() const { return is_standing_; }
 
   /// The present odometry is known to be wrong.

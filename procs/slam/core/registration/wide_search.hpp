@@ -5,6 +5,7 @@
 #include "slam/core/registration/scan_match.hpp"
 #include "slam/core/registration/usual_fit.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace waymark {
@@ -15,6 +16,8 @@ struct WideSearch {
   std::vector<Se2> without_odometry{};                               ///< map_from_base
   double since_last_s{0.0};  ///< time since the last scan: it widens the window of turns
   double min_score{0.0};     ///< of a place (SearchMatch)
+  /// Share of the beams that the map contradicts at a pose, its free space included.
+  std::function<double(const Se2& map_from_base)> misfit{};
 };
 
 /// Matches the scan from the best place of each window, and compares the match with the most
@@ -23,8 +26,9 @@ struct WideSearch {
 ///   - the scan fits there as well as usual, or
 ///   - it fits nearly as well, and either has twice the inliers or odometry contradicts the plain
 ///     match.
-/// A match that odometry contradicts much more than the plain one has to fit better still. The
-/// conditions keep the plain match for a view of a new place, which has few inliers where it is
+/// A match that odometry contradicts much more than the plain one has to fit better still, and
+/// where it explains less than half of the scan, the map's free space must not contradict the rest.
+/// The conditions keep the plain match for a view of a new place, which has few inliers where it is
 /// right.
 ///
 /// @param points     ends of beams, base frame.

@@ -79,6 +79,20 @@ TEST(UnmeasuredMotion, GrowsWhileOdometryIsStuck) {
   EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
 }
 
+TEST(UnmeasuredMotion, ARobotThatIsBackWasNotStuck) {
+  Robot robot;
+  robot.drive();
+  robot.stand(1);
+  robot.motion.note_moved(0.09, 0.4);
+  robot.stand(5);
+  EXPECT_TRUE(robot.motion.is_silent());
+  EXPECT_GT(robot.motion.unmeasured_m(), 0.0);
+  robot.motion.note_returned();
+  robot.stand(5);
+  EXPECT_FALSE(robot.motion.is_silent());
+  EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
+}
+
 TEST(UnmeasuredMotion, UsesTheEstimatedSpeedIfOdometryHasNeverMoved) {
   Robot robot;
   robot.stand(10);

@@ -116,6 +116,9 @@ WideSearch around(const Se2& guess, double since_last_s = 0.0) {
   search.by_odometry = guess;
   search.since_last_s = since_last_s;
   search.min_score = 0.1;
+  search.misfit = [](const Se2&) {
+    return 0.0;
+  };
   return search;
 }
 
@@ -214,6 +217,34 @@ TEST(WideSearch, APlaceThatOdometryContradictsHasToExplainMostOutliers) {
     const ScanMatch best = searched_from_plain(share_of_plain, 0.05, kPlain, 10);
     const Se2& expected = share_of_plain < 0.8 ? kTruth : kPlain;
     EXPECT_LT(pose_difference(best.map_from_base, expected).norm(), 0.02) << share_of_plain;
+  }
+}
+
+/// After a gap in a log, a third of the scan fits into the map by chance, a turn away.
+TEST(WideSearch, AFewWallsFarFromOdometryMustNotLieAcrossTheMapsFreeSpace) {
+  const Submap submap = mapped_room();
+  Points room = whole_room();
+  const std::size_t all = room.size();
+  for (std::size_t i = 0; i < 2 * all; ++i)
+    room.emplace_back(kSpacing_m * static_cast<double>(i), 7.0);
+  ScanMatch plain;
+  plain.map_from_base = kPlain;
+  plain.inliers = static_cast<int>(0.3 * static_cast<double>(all));
+  plain.num_mapped = static_cast<int>(all);
+  plain.inlier_share = 0.3;
+  plain.mapped_share = 0.3;
+  for (const double misfit : {0.1, 0.5}) {
+    WideSearch search = around(kPlain);
+    search.without_odometry = {kTruth};
+    search.odometry_covariance = squared(0.02) * Eigen::Matrix3d::Identity();
+    search.misfit = [misfit](const Se2&) {
+      return misfit;
+    };
+    const ScanMatch best =
+        searched_widely(plain, seen_from(kTruth, room), submap.ndt(), submap.points(), search,
+                        after_good_scans(), RangeNoise{0.01}, ScanMatchConfig{});
+    const Se2& expected = misfit < 0.3 ? kTruth : kPlain;
+    EXPECT_LT(pose_difference(best.map_from_base, expected).norm(), 0.02) << misfit;
   }
 }
 
