@@ -53,7 +53,8 @@ void CalibrationKnowledge::weigh(const Calibration& value, const Calibration& va
 }
 
 /// The measurements alone: since the prior's mean is 0, their mean and information follow from the
-/// estimate by removing the prior. Exact terms are left as they are.
+/// estimate by removing the prior. Exact terms are left as they are. A term without a finite mean
+/// and variance (the window's equations were singular) says nothing about its prior.
 void CalibrationKnowledge::weigh(std::initializer_list<Eigen::Index> terms,
                                  const Calibration& value, const Calibration& variances) {
   const Calibration prior = prior_information();
@@ -63,8 +64,9 @@ void CalibrationKnowledge::weigh(std::initializer_list<Eigen::Index> terms,
     double cost = 2.0 * kTail * std::log(factor);
     for (const Eigen::Index term : terms) {
       const double information = 1.0 / variances[term] - prior[term];
-      if (sigmas_[term] <= kExactSigma || information <= kLeastShare * prior[term]) continue;
       const double measured = value[term] / (variances[term] * information);
+      const bool is_measured = information > kLeastShare * prior[term] && std::isfinite(measured);
+      if (sigmas_[term] <= kExactSigma || !is_measured) continue;
       const double variance = squared(factor * sigmas_[term]) + 1.0 / information;
       cost += std::log(variance) + squared(measured) / variance;
     }

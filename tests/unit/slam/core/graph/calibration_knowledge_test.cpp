@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace waymark {
@@ -46,6 +47,24 @@ TEST(CalibrationKnowledge, AConsistentDescriptionKeepsItsWeight) {
   }
   EXPECT_NEAR(value[kOdometryTerms + SightingSigmas::kFocal], 0.75e-3, 1e-6);
   EXPECT_TRUE(knowledge.doubted_terms(value).empty());
+}
+
+/// Of a singular or indefinite matrix, covariances are not finite or not positive.
+TEST(CalibrationKnowledge, ImpossibleVariancesLeaveThePriorAsItIs) {
+  constexpr double kSigma = 1e-3;
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const double variance : {kNan, kInfinite, 0.0, -1e-9}) {
+    for (const double estimate : {0.0, 2e-3, kNan}) {
+      CalibrationKnowledge knowledge{Calibration::Constant(kSigma)};
+      knowledge.weigh(Calibration::Constant(estimate), Calibration::Constant(variance));
+      Eigen::MatrixXd h = Eigen::MatrixXd::Zero(kCalibrationSize, kCalibrationSize);
+      Eigen::VectorXd g = Eigen::VectorXd::Zero(kCalibrationSize);
+      knowledge.add_to(Calibration::Zero(), h, g);
+      for (Eigen::Index i = 0; i < kCalibrationSize; ++i)
+        EXPECT_NEAR(h(i, i) * kSigma * kSigma, 1.0, 1e-9) << variance << ", term " << i;
+    }
+  }
 }
 
 }  // namespace
