@@ -86,6 +86,7 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
                                        std::span<const MarkerMeasurement> measurements,
                                        const CameraView& view, const RangeNoise& noise) {
   since_walls_m_ += motion.distance_m;
+  by_walls_.follow(motion);
   for (Hypothesis& place : hypotheses_) {
     place.map_from_base = place.map_from_base * motion.start_from_end;
     place.drive(motion.distance_m);
@@ -99,7 +100,7 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
       weigh_walls(place, observation, noise);
   }
   if (hypotheses_.empty()) {
-    return measurements.empty() ? by_walls_.update(motion, observation, noise) : std::nullopt;
+    return measurements.empty() ? by_walls_.search(observation, noise) : std::nullopt;
   }
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score() > b.score(); });

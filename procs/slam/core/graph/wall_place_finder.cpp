@@ -42,10 +42,13 @@ WallPlaceFinder::WallPlaceFinder(std::shared_ptr<const MapSnapshot> map,
   window_ = {0.5 * (most - least).maxCoeff(), std::numbers::pi};
 }
 
-std::optional<Se2> WallPlaceFinder::update(const Motion& motion, const Observation& observation,
-                                           const RangeNoise& noise) {
+void WallPlaceFinder::follow(const Motion& motion) {
   if (candidate_) candidate_ = *candidate_ * motion.start_from_end;
   since_search_m_ += motion.distance_m;
+}
+
+std::optional<Se2> WallPlaceFinder::search(const Observation& observation,
+                                           const RangeNoise& noise) {
   if (!field_ || observation.beams.size() < kLeastBeams || since_search_m_ < kSearchEvery_m)
     return std::nullopt;
   since_search_m_ = 0.0;

@@ -20,10 +20,11 @@ class WallPlaceFinder {
  public:
   WallPlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
 
-  /// @param motion  since the last call.
+  /// Every motion must be given, also where no scan is searched for.
+  void follow(const Motion& motion);
+
   /// @return map_from_base, once it is decided.
-  std::optional<Se2> update(const Motion& motion, const Observation& observation,
-                            const RangeNoise& noise);
+  std::optional<Se2> search(const Observation& observation, const RangeNoise& noise);
 
  private:
   std::optional<Se2> found(const Points& points, const RangeNoise& noise) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/wall_place_finder.hpp"
 
+#include "slam/core/graph/place_finder.hpp"
+
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -76,8 +78,8 @@ std::optional<Se2> found_along(WallPlaceFinder& finder, const std::vector<Wall>&
   for (std::size_t i = 0; i < way.size() && !found; ++i) {
     Observation observation;
     observation.beams = scan_of(walls, way[i]);
-    const Motion motion = i == 0 ? Motion{} : Motion::between(way[i - 1], way[i]);
-    found = finder.update(motion, observation, RangeNoise{0.01});
+    if (i > 0) finder.follow(Motion::between(way[i - 1], way[i]));
+    found = finder.search(observation, RangeNoise{0.01});
   }
   return found;
 }
@@ -104,6 +106,22 @@ TEST(WallPlaceFinder, AScanThatFitsAtTwoPlacesIsIgnored) {
 TEST(WallPlaceFinder, AnEmptyMapGivesNoPose) {
   WallPlaceFinder finder{std::make_shared<MapSnapshot>(), {}};
   EXPECT_FALSE(found_along(finder, room(), {{1, 2, 0}, {1.5, 2, 0}, {2.0, 2, 0}, {2.5, 2, 0}}));
+}
+
+// Where a marker is in view that is not in the map, no scan is searched for.
+TEST(PlaceFinder, WallsLocaliseAcrossAMarkerThatTheMapDoesNotHave) {
+  const std::vector<Se2> way{{0.8, 2.4, 0.1}, {1.3, 2.45, 0.1}, {1.8, 2.5, 0.1}, {2.3, 2.55, 0.1}};
+  PlaceFinder finder{map_of(room()), {}};
+  std::optional<Se2> found;
+  for (std::size_t i = 0; i < way.size() && !found; ++i) {
+    Observation observation;
+    observation.beams = scan_of(room(), way[i]);
+    std::vector<MarkerMeasurement> measurements(i == 1 ? 1 : 0);
+    const Motion motion = i == 0 ? Motion{} : Motion::between(way[i - 1], way[i]);
+    found = finder.update(motion, observation, measurements, {}, RangeNoise{0.01});
+  }
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->x(), way.back().x(), 0.05);
 }
 
 }  // namespace
