@@ -89,10 +89,11 @@ class Graph {
   /// One step of Gauss-Newton over the whole graph: eliminates what lies behind the window, which
   /// rebuilds the window's prior; solves the window; substitutes back.
   /// @param activated  landmarks that are put back into the window.
-  /// @return largest step of any variable behind the window, or of all where none is [m, rad].
+  /// @return largest step of any variable behind the window, or of all where none is [m, rad];
+  ///         infinite where the equations have no solution: then nothing has changed.
   double step_all(const std::vector<std::size_t>& activated = {});
 
-  /// step_all() until it has converged, at most so many times.
+  /// step_all() until it has converged or has no solution, at most so many times.
   void optimise_all(int steps);
 
   /// Marginalises the window's oldest keyframe, and landmarks that no keyframe of the window has

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 namespace waymark {
 namespace {
@@ -84,14 +86,19 @@ void Graph::reconsider_factors() {
 }
 
 void Graph::optimise_all(int steps) {
-  for (int i = 0; i < steps; ++i)
-    if (step_all() < kConverged) break;
+  for (int i = 0; i < steps; ++i) {
+    const double moved = step_all();
+    if (moved < kConverged || !std::isfinite(moved)) break;
+  }
 }
 
 double Graph::step_all(const std::vector<std::size_t>& activated) {
+  std::vector<Variable> inserted;
   for (const std::size_t landmark : activated) {
     const Variable variable{VariableKind::kLandmark, landmark};
-    if (!is_active(variable)) insert_variable(variable);
+    if (is_active(variable)) continue;
+    insert_variable(variable);
+    inserted.push_back(variable);
   }
   std::vector<Variable> variables;
   for (std::size_t i = 0; i < first_keyframe_; ++i)
@@ -146,7 +153,11 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   SparseMatrix h{num_behind + num_window, num_behind + num_window};
   h.setFromTriplets(triplets.begin(), triplets.end());
   const Solver solver{h};
-  if (solver.info() != Eigen::Success || !solver.vectorD().allFinite()) return 0.0;
+  if (solver.info() != Eigen::Success || !solver.vectorD().allFinite()) {
+    for (const Variable& variable : inserted)
+      remove_from_layout(variable);  // the window has no measurement of it
+    return std::numeric_limits<double>::infinity();
+  }
 
   // H = L D L': the lower right corner is the Schur complement's.
   const auto& l = solver.matrixL().nestedExpression();

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 
 namespace waymark {
@@ -86,6 +87,23 @@ TEST(WholeGraph, NoStepRaisesTheCostHoweverWrongTheLoopsAre) {
       EXPECT_LT(line.graph().cost(), before + kReweighed) << seed << ", step " << step;
     }
   }
+}
+
+/// No keyframe has measured the landmarks, so the equations are singular.
+TEST(WholeGraph, WithoutASolutionItHasNotConvergedAndNothingChanges) {
+  Line line{60, rolling_only()};
+  Graph& graph = line.graph();
+  const std::size_t unmeasured = graph.add_landmark({1e3, 0.0, 0.0});
+  const std::size_t returning = graph.add_landmark({1e3, 5.0, 0.0});
+  graph.marginalise_oldest(10.0);
+  line.close(0, 60, {1.5, 0.0, 0.0});
+  const double x_m = graph.state().keyframes[5].x();
+  ASSERT_FALSE(graph.is_active({VariableKind::kLandmark, unmeasured}));
+  EXPECT_TRUE(std::isinf(graph.step_all({returning})));
+  EXPECT_EQ(graph.state().keyframes[5].x(), x_m);
+  graph.optimise();
+  EXPECT_TRUE(std::isfinite(graph.state().keyframes.back().x()));
+  EXPECT_GT(graph.covariance_of({VariableKind::kKeyframe, 60}).trace(), 0.0);
 }
 
 }  // namespace
