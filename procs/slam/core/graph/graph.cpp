@@ -183,6 +183,10 @@ void Graph::relocate_newest(const Se2& map_from_base) {
     std::erase(active_factors_, factors_.size() - 1);
     factors_.pop_back();
   }
+  // By step_all() the prior may have factors on it and on what lies behind the window.
+  const Variable variable{VariableKind::kKeyframe, newest};
+  eliminate(variable);
+  insert_variable(variable);
   state_.keyframes.back() = map_from_base;
   OdometryFactor cut;
   cut.from = newest - 1;

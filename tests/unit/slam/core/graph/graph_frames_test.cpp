@@ -93,5 +93,23 @@ TEST(GraphFrames, AfterARelocalisationEachMeasurementCountsOnce) {
   EXPECT_NEAR(of_step(2, 2), random_walk(motion, OdometryNoise{})(2, 2), 0.1 * of_step(2, 2));
 }
 
+/// Odometry stood still since a keyframe behind the window, so that only a step of the whole graph
+/// could use it.
+TEST(GraphFrames, AfterARelocalisationNothingIsKnownFromBefore) {
+  constexpr double kSigma_m = 0.3;
+  Graph graph = drive({}, 1e-4, 1e-4, 1.0);
+  const std::size_t newest = graph.add_keyframe(graph.state().keyframes[1]);
+  graph.add(OdometryFactor{1, newest, Motion{}});
+  graph.step_all();
+  const Se2 elsewhere{50.0, 0.0, 1.0};
+  graph.relocate_newest(elsewhere);
+  graph.add(PosePrior{newest, elsewhere, Eigen::Matrix3d::Identity() / kSigma_m});
+  graph.optimise();
+  EXPECT_NEAR(graph.covariance_of({VariableKind::kKeyframe, newest})(0, 0), kSigma_m * kSigma_m,
+              1e-3);
+  const Eigen::Vector3d off = pose_difference(graph.state().keyframes.back(), elsewhere);
+  EXPECT_LT(off.norm(), 1e-4);
+}
+
 }  // namespace
 }  // namespace waymark
