@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 namespace waymark {
@@ -117,6 +118,34 @@ TEST(WaymarkEstimator, AnEmptyScanNeitherCrashesNorMoves) {
   const Se2 before = estimator.update(nothing).map_from_base;
   for (int i = 0; i < 5; ++i)
     EXPECT_EQ(estimator.update(nothing).map_from_base.x(), before.x());
+}
+
+/// Ids of a detector that sees markers in noise, in a map that is not added to.
+TEST(WaymarkEstimator, AFloodOfIdsIsBounded) {
+  constexpr std::size_t kMost = 4096;
+  constexpr int kInAFrame = 2;
+  constexpr double kStep_m = 5.0;  // landmarks leave the window soon
+  EstimatorSetup setup;
+  setup.map_mode = MapMode::kLocalise;
+  setup.loaded_map = std::make_shared<MapSnapshot>();
+  WaymarkEstimator estimator{setup, {}};
+  int id = 0;
+  for (int k = 0; id < 5000; ++k) {
+    Observation observation;
+    observation.time = timestamp_from_us(1'000'000 * (k + 1));
+    observation.elapsed_s = 1.0;
+    if (k > 0) observation.motion = Motion::between({}, {kStep_m, 0.0, 0.0});
+    for (int i = 0; i < kInAFrame; ++i) {
+      MarkerSighting seen;
+      seen.id = ++id;
+      seen.time = observation.time;
+      seen.base_from_marker = {1.5, 1.0 * i, 3.1};
+      seen.covariance_in_base = 1e-4 * Eigen::Matrix3d::Identity();
+      observation.sightings.push_back(seen);
+    }
+    estimator.update(observation);
+  }
+  EXPECT_EQ(estimator.landmarks().size(), kMost);
 }
 
 TEST(WaymarkEstimator, ACommandedPoseIsNotTakenForStuckOdometry) {

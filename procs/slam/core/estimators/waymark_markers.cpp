@@ -86,7 +86,8 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     const auto nearest = book_.nearest(graph_, newest(), measurement);
     const bool is_it = nearest && (nearest->chi2 < config_.marker_gate ||
                                    nearest->distance_m() < config_.same_marker_within_m);
-    if (!is_it && book_.is_misread(graph_.state(), newest(), measurement)) continue;
+    if (!is_it && (book_.is_full() || book_.is_misread(graph_.state(), newest(), measurement)))
+      continue;
     if (measurement.wall) graph_.calibration_knowledge().observe(*measurement.wall);
     if (measurement.focal) graph_.calibration_knowledge().observe(*measurement.focal);
     matches.push_back({&measurement});

@@ -78,6 +78,7 @@ void MarkerBook::add(int id, Timestamp time) {
 /// Times of another run mean nothing in this one.
 void MarkerBook::add_known(const Landmark& landmark) {
   entries_.push_back(landmark);
+  ++num_known_;
   entries_.back().first_seen = {};
   entries_.back().last_seen = {};
   entries_.back().misses = 0;

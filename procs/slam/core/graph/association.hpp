@@ -42,6 +42,9 @@ class MarkerBook {
   /// A marker of a loaded map.
   void add_known(const Landmark& landmark);
 
+  /// So many markers have been added that more are noise, or an attack: none may be added.
+  bool is_full() const { return entries_.size() - num_known_ >= kMostAdded; }
+
   void note_sighting(std::size_t landmark, Timestamp time);
 
   /// Counts a missed detection for every marker that should be in view and has not been sighted
@@ -78,6 +81,9 @@ class MarkerBook {
                   const MarkerMeasurement& measurement) const;
 
  private:
+  static constexpr std::size_t kMostAdded = 4096;
+
+  std::size_t num_known_{0};         ///< of a loaded map
   std::vector<Landmark> entries_{};  ///< pose and covariance are not set: the graph has these
   std::vector<bool> is_retired_{};
   std::vector<std::optional<std::size_t>> moved_from_{};
