@@ -31,6 +31,10 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
     return {};
   }
   if (leads(stream, message.time)) {
+    if (stream.aside.size() == kMostAside) {
+      counters.add(message.channel + " of one time, dropped", CountKind::kLoss);
+      return {};
+    }
     stream.aside.push_back(std::move(message));
     return {};
   }
@@ -105,7 +109,7 @@ std::vector<Message> ReorderBuffer::flush() {
 
 std::vector<Message> ReorderBuffer::release_until(Timestamp time) {
   std::vector<Message> released;
-  while (!waiting_.empty() && waiting_.begin()->time <= time) {
+  while (!waiting_.empty() && (waiting_.begin()->time <= time || waiting_.size() > kMostWaiting)) {
     released.push_back(std::move(waiting_.extract(waiting_.begin()).value()));
     streams_[released.back().channel].released = released.back().time;
   }

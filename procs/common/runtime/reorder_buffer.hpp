@@ -6,6 +6,7 @@
 #include "common/node/node.hpp"
 #include "common/time/clock_step_detector.hpp"
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,8 +22,15 @@ namespace waymark {
 ///
 /// A message far ahead of all channels is set aside: either there was a pause, or its stamp is
 /// wrong. The next message of its channel decides: a newer one confirms it, an older one drops it.
+///
+/// A sender whose clock stands still could fill the memory: of one stamp that is far ahead,
+/// kMostAside messages are kept, and when more than kMostWaiting wait the oldest go.
 class ReorderBuffer {
  public:
+  /// Bounds of what is held: our senders send few messages of one stamp, and some tens in a window.
+  static constexpr std::size_t kMostAside = 100;  ///< of each channel
+  static constexpr std::size_t kMostWaiting = 2000;
+
   explicit ReorderBuffer(Duration window);
 
   std::vector<Message> add(Message message, Counters& counters);

@@ -137,5 +137,24 @@ TEST(ReorderBuffer, MessagesInPartsStayTogether) {
   EXPECT_EQ(counters.total(CountKind::kRejection) + counters.total(CountKind::kLoss), 0);
 }
 
+// Its payloads differ, so that none is a duplicate.
+TEST(ReorderBuffer, AFloodOfOneStampStaysBounded) {
+  for (const std::int64_t stamp_us : {kSecond_us, 10 * kSecond_us}) {  // the other is set aside
+    Counters counters;
+    ReorderBuffer buffer{Duration{150'000}};
+    std::size_t released = buffer.add(at(kSecond_us - 1), counters).size();
+    constexpr int kFlood = 5000;
+    for (int i = 0; i < kFlood; ++i) {
+      Message message = at(stamp_us);
+      message.payload = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i / 256)};
+      released += buffer.add(std::move(message), counters).size();
+    }
+    const std::size_t held = buffer.flush().size();
+    EXPECT_LE(held, ReorderBuffer::kMostWaiting + ReorderBuffer::kMostAside);
+    EXPECT_EQ(released + held + static_cast<std::size_t>(counters.get("A of one time, dropped")),
+              kFlood + 1U);
+  }
+}
+
 }  // namespace
 }  // namespace waymark
