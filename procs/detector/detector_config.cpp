@@ -3,8 +3,6 @@
 
 #include "common/markers/marker_dictionary.hpp"
 
-#include <fmt/format.h>
-
 namespace waymark {
 
 void DetectorSection::describe(Fields& fields) {
@@ -20,15 +18,7 @@ void DetectorConfig::describe(Fields& fields) {
 
 void DetectorConfig::check(Problems& problems) const {
   robot.check(problems);
-  const MarkerConfig& markers = robot.markers;
-  check_dictionary(markers, problems);
-  const auto dictionary = find_dictionary(markers.dictionary);
-  if (!dictionary) return;
-  for (const int id : markers.ids) {
-    if (id < size_of(*dictionary)) continue;
-    problems.add("robot.markers.ids", fmt::format("got {}, but {} has the ids 0 to {}", id,
-                                                  markers.dictionary, size_of(*dictionary) - 1));
-  }
+  check_dictionary(robot.markers, problems);
   const CandidateConfig& candidates = detector.candidates;
   if (candidates.threshold_window_min_px > candidates.threshold_window_max_px) {
     problems.add("detector.candidates.threshold_window_min_px",

@@ -73,10 +73,18 @@ int modules_per_side(const cv::aruco::Dictionary& dictionary) {
 }
 
 void check_dictionary(const MarkerConfig& markers, Problems& problems) {
-  if (find_dictionary(markers.dictionary)) return;
-  problems.add("robot.markers.dictionary",
-               fmt::format("got '{}', expected one of {}", markers.dictionary,
-                           fmt::join(dictionary_names(), ", ")));
+  const auto dictionary = find_dictionary(markers.dictionary);
+  if (!dictionary) {
+    problems.add("robot.markers.dictionary",
+                 fmt::format("got '{}', expected one of {}", markers.dictionary,
+                             fmt::join(dictionary_names(), ", ")));
+    return;
+  }
+  for (const int id : markers.ids) {
+    if (id < size_of(*dictionary)) continue;
+    problems.add("robot.markers.ids", fmt::format("got {}, but {} has the ids 0 to {}", id,
+                                                  markers.dictionary, size_of(*dictionary) - 1));
+  }
 }
 
 }  // namespace waymark

@@ -20,7 +20,7 @@ std::optional<cv::aruco::Dictionary> find_dictionary(std::string_view name);
 
 std::vector<std::string> dictionary_names();
 
-/// Whether robot.markers names a dictionary.
+/// Whether robot.markers names a dictionary, and only ids that it has.
 void check_dictionary(const MarkerConfig& markers, Problems& problems);
 
 /// Number of ids: they are 0 to one less.

@@ -292,5 +292,14 @@ TEST(SlamConfig, AnUnknownDictionaryIsNamedWithTheKnownOnes) {
   }
 }
 
+TEST(SlamConfig, AnIdOutsideTheDictionaryIsNamed) {
+  try {
+    load_config<SlamConfig>({{}, {"robot.markers.ids=[0, 249, 250]"}});
+    ADD_FAILURE() << "no error";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("robot.markers.ids: got 250, but DICT_6X6_250"));
+  }
+}
+
 }  // namespace
 }  // namespace waymark
