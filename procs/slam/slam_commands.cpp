@@ -121,7 +121,7 @@ std::string SlamNode::set_pose(const StartPose& pose) {
     throw Refusal{
         fmt::format("there is no map yet that the pose could be in, it is more than {} m away, or "
                     "the estimator takes none",
-                    kFarthestPose_m)};
+                    farthest_pose_m(config_.slam.grid.resolution_m))};
   }
   return fmt::format("the robot is at ({:.3f}, {:.3f}) m, {:.4f} rad", pose.x_m, pose.y_m,
                      pose.yaw_rad);

@@ -275,6 +275,24 @@ TEST_F(CommandedSlam, ACommandedPoseIsTheRobotsPose) {
   }
 }
 
+// Grids are bounded in cells: of finer ones, half of the largest is less far.
+TEST_F(CommandedSlam, APoseBeyondTheLargestGridIsRefused) {
+  SlamConfig config = mapping();
+  config.slam.grid.resolution_m = 0.02;
+  command_t within = pose_command(420.0, 0.0);
+  within.pose[1] = 420.0;
+  command_t beyond = pose_command(-1400.0, 0.0);
+  beyond.pose[1] = 0.0;
+  const test::Drive drive =
+      drive_with(config, messages_of(*drive_, 0.0, 4.0), {{2.0, beyond}, {3.0, within}});
+  const auto replies = replies_of(drive);
+  ASSERT_EQ(replies.size(), 2U);
+  EXPECT_EQ(replies[0].state, reply_t::STATE_REFUSED) << replies[0].text;
+  EXPECT_NE(replies[0].text.find("more than 600 m away"), std::string::npos) << replies[0].text;
+  EXPECT_EQ(replies[1].state, reply_t::STATE_DONE) << replies[1].text;
+  EXPECT_NEAR(drive.estimates.back().x_m, 420.0, 1.0);
+}
+
 TEST_F(CommandedSlam, AReplayRepeatsRecordedCommands) {
   const std::vector<std::pair<double, command_t>> commands{
       {15.0, save_command("m")}, {20.0, mode_command(command_t::MODE_LOCALISE)}};

@@ -24,9 +24,12 @@
 
 namespace waymark {
 
-/// A commanded pose may be at most so far from the pose before, or from the map: about half of the
+/// A commanded pose may be at most so far from the pose before, or from the map: nearly half of the
 /// side of the largest grid (TileMap::kMaxTableTiles).
-inline constexpr double kFarthestPose_m = 1500.0;
+inline double farthest_pose_m(double resolution_m) {
+  constexpr double kFarthest_cells = 30'000.0;
+  return kFarthest_cells * resolution_m;
+}
 
 /// What all methods are given.
 struct EstimatorSetup {
@@ -83,7 +86,7 @@ class Estimator {
 
   /// Sets the robot's pose for the next update.
   /// @return false: the method does not support it, has no map yet, or the pose is more than
-  ///         kFarthestPose_m away.
+  ///         farthest_pose_m() away.
   virtual bool set_pose(const StartPose& /*pose*/) { return false; }
 
   /// What was learnt about the sensors; only of methods that learn it.

@@ -33,7 +33,7 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
     known = graph_.state().keyframes.back().translation();
   else if (!loaded_points_.empty())
     known = loaded_points_.front();
-  if ((given - known).norm() > kFarthestPose_m) return false;
+  if ((given - known).norm() > farthest_pose_m(setup_.grid.resolution_m)) return false;
   if (has_begun)
     given_pose_ = pose;
   else
