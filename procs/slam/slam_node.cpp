@@ -97,26 +97,47 @@ void SlamNode::check(const Config& config) {
 }
 
 void SlamNode::finish() {
-  queue_.finish();
-  process_ready_scans();
+  attempt("the last scans", [this] {
+    queue_.finish();
+    process_ready_scans();
+  });
   check_input();
-  if (!config_.save_map.empty() && !save_map()) failed_ = true;
+  if (!config_.save_map.empty()) attempt("the map to save", [this] { failed_ |= !save_map(); });
   keep_last_pose();
-  if (!last_estimate_) return;
-  publish_tiles(map_publisher_.complete(estimator_->redrawn_map(), *last_estimate_));
-  publish_markers(*last_estimate_);
-  publish_grid(*last_estimate_);
-  for (trajectory_t part : to_messages(estimator_->trajectory())) {
-    part.map_id = map_id_;
-    outbox_.publish(channels::kSlamTrajectory, part);
-  }
-  if (const auto graph = estimator_->pose_graph()) {
-    for (const pose_graph_t& part : to_messages(*graph, *last_estimate_))
+  if (last_estimate_) publish_end(*last_estimate_);
+}
+
+void SlamNode::publish_end(Timestamp time) {
+  attempt("the map", [&] {
+    publish_tiles(map_publisher_.complete(estimator_->redrawn_map(), time));
+    publish_markers(time);
+    publish_grid(time);
+  });
+  attempt("the trajectory", [&] {
+    for (trajectory_t part : to_messages(estimator_->trajectory())) {
+      part.map_id = map_id_;
+      outbox_.publish(channels::kSlamTrajectory, part);
+    }
+  });
+  attempt("the graph", [&] {
+    const auto graph = estimator_->pose_graph();
+    if (!graph) return;
+    for (const pose_graph_t& part : to_messages(*graph, time))
       outbox_.publish(channels::kMapGraph, part);
-  }
-  publish_findings(*last_estimate_);
+  });
+  publish_findings(time);
   if (const auto found = findings()) logging::info("found: {}", sentence_of(*found));
   logging::info("{}", timer_.summary());
+}
+
+/// One part of the end: what it throws does not cost the others.
+void SlamNode::attempt(std::string_view part, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    failed_ = true;
+    logging::error("{}: {}", part, error.what());
+  }
 }
 
 std::optional<std::vector<Finding>> SlamNode::findings() const {
@@ -194,8 +215,13 @@ void SlamNode::take(LidarScan scan) {
 }
 
 void SlamNode::process_ready_scans() {
-  while (const auto ready = queue_.next())
+  while (!is_broken_) {
+    const auto ready = queue_.next();
+    if (!ready) break;
+    is_broken_ = true;  // unless it returns
     process(*ready);
+    is_broken_ = false;
+  }
   for (const Skip skip : queue_.take_skips())
     counters_.add(to_string(skip), kind_of(skip));
 }

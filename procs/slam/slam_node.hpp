@@ -14,10 +14,12 @@
 #include "slam/slam_config.hpp"
 #include "slam/update_timer.hpp"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace waymark {
@@ -40,7 +42,8 @@ class SlamNode final : public Node {
   static void check(const Config& config);
 
   /// Uses the scans that still wait for camera frames; sends the whole map, and on SLAM_TRAJECTORY
-  /// the way there as it is known at the end.
+  /// the way there as it is known at the end. After an estimator has thrown, too: of each of these
+  /// what is known.
   void finish() override;
 
   /// True when sensors were heard, but no pose or no map could be made of them.
@@ -53,6 +56,8 @@ class SlamNode final : public Node {
  private:
   std::int64_t save_map_to(const std::filesystem::path& file, const MapSnapshot& map);
   bool save_map();
+  void publish_end(Timestamp time);
+  void attempt(std::string_view part, const std::function<void()>& work);
   std::string obey(const Command& command);
   std::string save_named(const std::string& name);
   std::string reset();
@@ -96,6 +101,7 @@ class SlamNode final : public Node {
   Timestamp newest_{};                ///< observation
   std::set<int> named_survey_ids_{};
   bool was_resumed_{false};  ///< or could not be
+  bool is_broken_{false};    ///< the estimator threw: it is given no more scans
   Period map_period_;
   Period save_period_;
   UpdateTimer timer_{};

@@ -293,6 +293,54 @@ TEST_F(CommandedSlam, APoseBeyondTheLargestGridIsRefused) {
   EXPECT_NEAR(drive.estimates.back().x_m, 420.0, 1.0);
 }
 
+// Carried further and further away, until the grid would be larger than the largest.
+TEST_F(CommandedSlam, WhatIsKnownBeforeTheEstimatorThrowsIsWritten) {
+  SlamConfig config = mapping();
+  config.slam.grid.resolution_m = 0.005;
+  config.slam.state_folder = folder_;
+  config.slam.commands = true;
+  config.save_map = other_file("thrown");
+  std::vector<Message> messages = messages_of(*drive_, 0.0, 9.0);
+  std::erase_if(messages, [](const Message& message) {
+    return message.channel == channels::kMarkers.name;  // they would say where it is
+  });
+  for (int i = 1; i <= 4; ++i) {
+    command_t command = pose_command(100.0 * i, 0.0);
+    command.pose[1] = command.pose[0];
+    command.command_id = i;
+    command.utime = 1'000'000 * (2 * i);
+    command.in_tick = 1;
+    messages.push_back(encode(channels::kSlamCommand, command));
+  }
+  std::sort(messages.begin(), messages.end(), comes_before);
+  Inbox inbox;
+  Outbox outbox;
+  SlamNode node{config, inbox, outbox};
+  std::string thrown = "nothing";
+  for (const Message& message : messages) {
+    try {
+      inbox.deliver(message);
+    } catch (const std::length_error& error) {
+      thrown = error.what();
+      break;
+    }
+  }
+  EXPECT_THAT(thrown, ::testing::HasSubstr("the map would span more tiles"));
+  const auto before = count_by_channel(outbox.take());
+  node.finish();
+  const std::vector<Message> at_end = outbox.take();
+  auto counts = count_by_channel(at_end);
+  EXPECT_EQ(counts["SLAM_ESTIMATE"], 0);
+  EXPECT_GE(counts["SLAM_MAP"], 1);
+  ASSERT_EQ(counts["SLAM_TRAJECTORY"], 1);
+  for (const Message& message : at_end) {
+    if (message.channel != channels::kSlamTrajectory.name) continue;
+    EXPECT_EQ(decode<trajectory_t>(message.payload).message->num_poses, before.at("SLAM_ESTIMATE"));
+  }
+  EXPECT_GT(read_map_file(config.save_map).map.grid.occupancy.num_tiles(), 100U);
+  fs::remove(config.save_map);
+}
+
 TEST_F(CommandedSlam, AReplayRepeatsRecordedCommands) {
   const std::vector<std::pair<double, command_t>> commands{
       {15.0, save_command("m")}, {20.0, mode_command(command_t::MODE_LOCALISE)}};

@@ -22,22 +22,23 @@ constexpr double kLever_m = 5.0;              // usual distance of walls from th
 DrawnMap::DrawnMap(const MapperConfig& config, const GridMap& ground)
     : config_{config}, ground_{ground}, map_{ground} {}
 
-void DrawnMap::draw_markers(std::size_t scan, const Se2& map_from_base, GridMap& map) const {
-  for (const MarkerSighting& sighting : scans_.sightings(scan)) {
+void DrawnMap::draw_markers(const std::vector<MarkerSighting>& sightings, const Se2& map_from_base,
+                            GridMap& map) const {
+  for (const MarkerSighting& sighting : sightings) {
     const auto points = face_points(sighting, config_.face_spacing_m, config_.face_margin_m);
     insert_face_points(points, config_.face_spacing_m, map_from_base, map);
   }
 }
 
 void DrawnMap::add(const Observation& observation, const Se2& map_from_base) {
-  // Drawn from the archive, which is in single precision, so that erasing it is exact.
+  // Drawn as the archive keeps it, which is in single precision, so that erasing it is exact; and
+  // archived last: a scan that lies outside of the largest grid throws, and the others stay.
   if (const auto old = scans_.emptied_by(observation, map_from_base))
     erase_beams(scans_.at(*old).beams, drawn_at_[*old], map_);
+  insert_beams(ScanArchive::as_kept(observation).beams, map_from_base, map_);
+  draw_markers(observation.sightings, map_from_base, map_);
   scans_.add(observation, map_from_base);
   drawn_at_.push_back(map_from_base);
-  const std::size_t newest = scans_.size() - 1;
-  insert_beams(scans_.at(newest).beams, map_from_base, map_);
-  draw_markers(newest, map_from_base, map_);
 }
 
 void DrawnMap::follow(const std::function<Se2(std::size_t)>& pose_of) {
@@ -64,7 +65,7 @@ void DrawnMap::follow(const std::function<Se2(std::size_t)>& pose_of) {
   has_moved_ = false;
   map_.markers = ground_.markers;
   for (std::size_t scan = 0; scan < scans_.size(); ++scan)
-    draw_markers(scan, drawn_at_[scan], map_);
+    draw_markers(scans_.sightings(scan), drawn_at_[scan], map_);
 }
 
 void DrawnMap::redraw(const std::function<Se2(std::size_t)>& pose_of) {
@@ -79,7 +80,7 @@ GridMap DrawnMap::drawn_along(const std::function<Se2(std::size_t)>& pose_of) co
   GridMap map = ground_;
   for (std::size_t scan = 0; scan < scans_.size(); ++scan) {
     insert_beams(scans_.at(scan).beams, pose_of(scan), map);
-    draw_markers(scan, pose_of(scan), map);
+    draw_markers(scans_.sightings(scan), pose_of(scan), map);
   }
   return map;
 }

@@ -20,6 +20,7 @@ class DrawnMap {
   DrawnMap(const MapperConfig& config, const GridMap& ground);
 
   /// The next scan, with its markers.
+  /// @throws std::length_error as TileMap does; the scan is not kept then.
   void add(const Observation& observation, const Se2& map_from_base);
 
   /// The poses have changed: makes follow() check all scans.
@@ -40,7 +41,8 @@ class DrawnMap {
   const ScanArchive& scans() const { return scans_; }
 
  private:
-  void draw_markers(std::size_t scan, const Se2& map_from_base, GridMap& map) const;
+  void draw_markers(const std::vector<MarkerSighting>& sightings, const Se2& map_from_base,
+                    GridMap& map) const;
 
   MapperConfig config_;
   GridMap ground_;

@@ -33,7 +33,7 @@ std::optional<std::size_t> ScanArchive::emptied_by(const Observation& observatio
   return here->second.front();
 }
 
-void ScanArchive::add(const Observation& observation, const Se2& map_from_base) {
+ScanArchive::Scan ScanArchive::packed(const Observation& observation) {
   Scan scan;
   scan.beams.reserve(observation.beams.size());
   for (const AnnotatedBeam& annotated : observation.beams) {
@@ -41,7 +41,11 @@ void ScanArchive::add(const Observation& observation, const Se2& map_from_base) 
         {annotated.beam.start_in_base.cast<float>(), annotated.beam.end_in_base.cast<float>()});
   }
   scan.sightings = observation.sightings;
-  scans_.push_back(std::move(scan));
+  return scan;
+}
+
+void ScanArchive::add(const Observation& observation, const Se2& map_from_base) {
+  scans_.push_back(packed(observation));
   const auto place = place_of(observation, map_from_base);
   if (!place) return;
   std::deque<std::size_t>& here = at_places_[*place];
@@ -51,8 +55,7 @@ void ScanArchive::add(const Observation& observation, const Se2& map_from_base) 
   here.pop_front();
 }
 
-Observation ScanArchive::at(std::size_t index) const {
-  const Scan& scan = scans_[index];
+Observation ScanArchive::unpacked(const Scan& scan) {
   Observation observation;
   observation.beams.reserve(scan.beams.size());
   for (const PackedBeam& packed : scan.beams) {

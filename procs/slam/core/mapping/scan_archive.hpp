@@ -25,6 +25,11 @@ class ScanArchive {
 
   void add(const Observation& observation, const Se2& map_from_base);
 
+  /// What at() gives of a scan once it is added.
+  static Observation as_kept(const Observation& observation) {
+    return unpacked(packed(observation));
+  }
+
   /// The old scan that adding this one will empty.
   std::optional<std::size_t> emptied_by(const Observation& observation,
                                         const Se2& map_from_base) const;
@@ -41,7 +46,7 @@ class ScanArchive {
   std::size_t size() const { return scans_.size(); }
 
   /// Its beams and markers; the other members are not kept.
-  Observation at(std::size_t index) const;
+  Observation at(std::size_t index) const { return unpacked(scans_[index]); }
 
  private:
   using Place = std::array<int, 4>;  ///< column, row, direction, whether it has beams
@@ -55,6 +60,9 @@ class ScanArchive {
     std::vector<PackedBeam> beams{};
     std::vector<MarkerSighting> sightings{};
   };
+
+  static Scan packed(const Observation& observation);
+  static Observation unpacked(const Scan& scan);
 
   /// None for an empty scan.
   static std::optional<Place> place_of(const Observation& observation, const Se2& map_from_base);
