@@ -88,6 +88,8 @@ class Outbox {
 ///   using Config = ...;                               a described configuration struct
 ///   static constexpr ProcessTraits kTraits{...};
 ///   Node(const Config&, Inbox&, Outbox&);             registers its handlers; throws SetupError
+/// A handler that throws ends the run: the error is named, finish() is called, and the exit code is
+/// that of a failure.
 class Node {
  public:
   virtual ~Node() = default;

@@ -30,6 +30,16 @@ int run_guarded(const ProcessTraits& traits, const std::function<int()>& body) {
   }
 }
 
+bool works(const std::function<void()>& on_messages) {
+  try {
+    on_messages();
+    return true;
+  } catch (const std::exception& error) {
+    logging::error("the run ends here: {}", error.what());
+    return false;
+  }
+}
+
 void log_counters(const Counters& counters) {
   std::map<CountKind, std::string> texts;
   for (const auto& [name, count] : counters.all()) {

@@ -173,6 +173,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
                                    : std::nullopt;
   Timestamp last = first;
   std::int64_t num_messages = 0;
+  bool is_working = true;
   while (Source* source = oldest(sources)) {
     if (stop_signal() != 0) {
       logging::warn("interrupted");
@@ -184,9 +185,10 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
       source->advance();
       continue;
     }
-    inbox.deliver(*source->head);
+    is_working = works([&] { inbox.deliver(*source->head); });
     write_out();
     ++num_messages;
+    if (!is_working) break;
     progress.show(share_read(sources), fmt::format("{:.1f} s", to_seconds(last - first)));
     source->advance();
   }
@@ -211,8 +213,8 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
   if (!options.report.empty()) write_whole_file(options.report, to_json(report, inbox.counters()));
   log_counters(inbox.counters());
   const bool skipped = report_skipped(sources);
-  return useless || missing || skipped || inbox.counters().total(CountKind::kRejection) > 0 ||
-                 node.failed()
+  return !is_working || useless || missing || skipped ||
+                 inbox.counters().total(CountKind::kRejection) > 0 || node.failed()
              ? kExitFailed
              : kExitOk;
 }

@@ -64,6 +64,17 @@ struct Network {
   LargeMessages large_messages;  ///< in real time: in lockstep nobody sends them
 };
 
+/// Thrown through the participant, so that a tick on which the node failed is not acknowledged.
+struct NodeFailed {};
+
+void deliver_or_fail(const std::vector<Message>& messages, Inbox& inbox) {
+  const bool is_working = works([&] {
+    for (const Message& message : messages)
+      inbox.deliver(message);
+  });
+  if (!is_working) throw NodeFailed{};
+}
+
 /// Live, in step with the simulator, until its last tick.
 int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node, Inbox& inbox,
                  Outbox& outbox) {
@@ -74,8 +85,7 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
   LockstepParticipant participant{std::string{traits.name}, names_in_ticks(subscriptions),
                                   traits.joins_midway,
                                   [&](const std::vector<Message>& messages, bool is_last) {
-                                    for (const Message& message : messages)
-                                      inbox.deliver(message);
+                                    deliver_or_fail(messages, inbox);
                                     if (is_last) node.finish();
                                     return outbox.take();
                                   },
@@ -95,7 +105,7 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
   while (!participant.closed() && stop_signal() == 0) {
     auto message = bus.receive(kPoll);
     if (message && is_untimed(message->channel)) {
-      inbox.deliver(*message);
+      deliver_or_fail({*message}, inbox);
     } else if (message) {
       last_tick = steady_clock::now();
       newest = std::max(newest, message->time);
@@ -175,9 +185,12 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   tell_supervisor(kReady);
   const auto start = steady_clock::now();
   bool hinted = false;
-  while (stop_signal() == 0) {
+  bool is_working = true;
+  while (is_working && stop_signal() == 0) {
     const auto last = feed.last_arrival();
-    if (!feed.take(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
+    is_working = works([&] {
+      if (!feed.take(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
+    });
     if (!hinted && !last && steady_clock::now() - start > kNothingHint) {
       logging::warn("nothing has come on {} so far; is it the robot's LCM network?", network.url);
       hinted = true;
@@ -186,16 +199,18 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   }
   tell_supervisor(kStopping);
   const auto stop = steady_clock::now();
-  while (steady_clock::now() - stop < kDrain && feed.take(milliseconds{0})) {
-  }
-  feed.flush();
+  is_working = is_working && works([&] {
+                 while (steady_clock::now() - stop < kDrain && feed.take(milliseconds{0})) {
+                 }
+                 feed.flush();
+               });
   node.finish();
   publish_all(bus, outbox.take());
   bus.collect_counts(inbox.counters());
   log_counters(inbox.counters());
   if (!feed.last_arrival())
     logging::error("nothing came on {} on the channels of this process", network.url);
-  return !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
+  return !is_working || !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
 }
 
 /// @throws SetupError for an option that would have no effect, or destroy what is to be read.
@@ -266,7 +281,12 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
         description.channel_names ? description.channel_names(options) : ChannelNames{},
         options.large_messages ? LargeMessages::kAccepted : LargeMessages::kRefused};
     const auto run = options.real_time ? run_real_time : run_lockstep;
-    return run(description.traits, network, *node, inbox, outbox);
+    try {
+      return run(description.traits, network, *node, inbox, outbox);
+    } catch (const NodeFailed&) {
+      node->finish();  // its files; what it publishes belongs to no tick
+      return int{kExitFailed};
+    }
   });
 }
 

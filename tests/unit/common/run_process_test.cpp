@@ -3,6 +3,8 @@
 #include "common/runtime/run_process.hpp"
 
 #include "common/errors/exit_codes.hpp"
+#include "common/log/log_file.hpp"
+#include "common/messages/channels.hpp"
 #include "common/runtime/run_simulator.hpp"
 
 #include <gmock/gmock.h>
@@ -53,6 +55,55 @@ TEST(RunProcess, AnOutputLogNeedsAnInputLog) {
   const Refused live = run("live", {"--out-log", "out.lcm"});
   EXPECT_EQ(live.exit_code, kExitUsage);
   EXPECT_THAT(live.output, HasSubstr("--out-log needs --log"));
+}
+
+/// Fails on its second message.
+class FailingNode final : public Node {
+ public:
+  FailingNode(Inbox& inbox, Outbox& outbox) : outbox_{outbox} {
+    inbox.on<pose2D_t>(channels::kOdometry, [this](const pose2D_t& pose) {
+      if (++heard_ == 2) throw std::length_error{"the second is too much"};
+      outbox_.publish(channels::kSlamPose, pose);
+    });
+  }
+
+  void finish() override { outbox_.publish(channels::kTruePose, pose2D_t{}); }
+
+ private:
+  Outbox& outbox_;
+  int heard_{0};
+};
+
+TEST(RunProcess, ANodeThatThrowsFinishesWithWhatItHas) {
+  const fs::path folder = fs::path{::testing::TempDir()} / "failing_node";
+  fs::create_directories(folder);
+  const std::string in = (folder / "in.lcm").string();
+  const std::string out = (folder / "out.lcm").string();
+  {
+    LogWriter log{in};
+    for (std::int64_t i = 1; i <= 3; ++i) {
+      pose2D_t pose{};
+      pose.utime = i;
+      log.write(encode(channels::kOdometry, pose));
+    }
+    log.close();
+  }
+  std::vector<std::string> words{"program", "--log", in, "--out-log", out};
+  std::vector<char*> arguments;
+  for (std::string& word : words)
+    arguments.push_back(word.data());
+  ::testing::internal::CaptureStderr();
+  const int exit_code =
+      run_described_process(static_cast<int>(arguments.size()), arguments.data(),
+                            {.traits = {"failing", "Fails.", false},
+                             .option_set = {.log = true, .out_log = true},
+                             .make_node = [](const ProcessOptions&, Inbox& inbox, Outbox& outbox) {
+                               return std::make_unique<FailingNode>(inbox, outbox);
+                             }});
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("the second is too much"));
+  EXPECT_EQ(exit_code, kExitFailed);
+  EXPECT_EQ(channels_in(out), (std::vector<std::string>{"SLAM_POSE", "TRUE_POSE"}));
+  fs::remove_all(folder);
 }
 
 class ProtectedInputs : public ::testing::Test {
