@@ -32,7 +32,7 @@ void NdtMap::add(const Eigen::Vector2d& point, int keyframe, double weight) {
       cell.xx += weight * offset.x() * offset.x();
       cell.xy += weight * offset.x() * offset.y();
       cell.yy += weight * offset.y() * offset.y();
-      cell.is_stale = true;
+      cell.fitted_with_m2 = kStale;
     }
   }
 }
@@ -57,7 +57,7 @@ void NdtMap::add(const NdtCellSums& sums) {
   cell.xx += sums.squares_m2[0];
   cell.xy += sums.squares_m2[1];
   cell.yy += sums.squares_m2[2];
-  cell.is_stale = true;
+  cell.fitted_with_m2 = kStale;
 }
 
 void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const {
@@ -81,7 +81,7 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   fitted.is_line =
       fitted.across_m2 - point_variance_m2 < kLineRatio * (fitted.along_m2 - point_variance_m2);
   fitted.count = static_cast<int>(cell.count);
-  cell.is_stale = false;
+  cell.fitted_with_m2 = point_variance_m2;
 }
 
 NdtMap::Key NdtMap::key_at(const Eigen::Vector2d& point) const {
@@ -93,7 +93,7 @@ const NdtCell* NdtMap::at(Key key, double point_variance_m2) const {
   const auto found = cells_.find(key);
   if (found == cells_.end() || found->second.count < kMinPoints) return nullptr;
   Cell& cell = found->second;
-  if (cell.is_stale) {
+  if (cell.fitted_with_m2 != point_variance_m2) {
     const auto column = static_cast<std::int32_t>(key >> 32);
     const auto row = static_cast<std::int32_t>(key);
     refresh(cell, spacing_m_ * Eigen::Vector2d{column, row}, point_variance_m2);

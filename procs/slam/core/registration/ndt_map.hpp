@@ -66,6 +66,8 @@ class NdtMap {
   void add(const NdtCellSums& sums);
 
  private:
+  static constexpr double kStale = -1.0;  ///< no variance: points have come since
+
   struct Cell {
     double count{0.0};
     Eigen::Vector2d sum{Eigen::Vector2d::Zero()};  ///< about the cell's centre
@@ -73,7 +75,7 @@ class NdtMap {
     double xy{0.0};
     double yy{0.0};
     NdtCell distribution{};
-    bool is_stale{true};
+    double fitted_with_m2{kStale};  ///< point variance that the distribution was fitted with
   };
 
   static Key key(int column, int row);

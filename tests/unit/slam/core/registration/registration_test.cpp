@@ -63,6 +63,21 @@ Submap submap_of(View view, double step_m = 0.1) {
   return submap;
 }
 
+/// The noise of ranges is learnt during a run.
+TEST(NdtMap, ACellFollowsThePointVariance) {
+  const auto wall = [] {
+    NdtMap map{0.25};
+    for (int i = 0; i < 8; ++i)
+      map.add({0.02 * i, i % 2 == 0 ? 0.001 : -0.001}, 0);
+    return map;
+  };
+  const NdtMap asked_before = wall();
+  ASSERT_NE(asked_before.at({0.0, 0.0}, 1e-2), nullptr);
+  const NdtMap fresh = wall();
+  EXPECT_EQ(asked_before.at({0.0, 0.0}, 1e-4)->across_m2, fresh.at({0.0, 0.0}, 1e-4)->across_m2);
+  EXPECT_EQ(asked_before.at({0.0, 0.0}, 1e-4)->is_line, fresh.at({0.0, 0.0}, 1e-4)->is_line);
+}
+
 TEST(ScanMatch, FindsThePoseInARoom) {
   const Submap room = submap_of(room_from);
   const Se2 truth{1.2, 0.3, 0.2};
