@@ -22,11 +22,11 @@ void check_map_options(const SlamConfig& config) {
     throw SetupError{"only the estimator 'waymark' loads and saves maps: set slam.estimator"};
   if (is_loaded && config.slam.mode == MapMode::kMap) {
     throw SetupError{
-        "--load-map needs to know what for: --set slam.mode=localise (the map stays as it is) or "
-        "--set slam.mode=extend; of launch.sh and replay.sh: --mode localise or --mode extend"};
+        "--load-map needs to know what for: --mode localise (the map stays as it is) or --mode "
+        "extend (what is new is added)"};
   }
   if (!is_loaded && config.slam.mode != MapMode::kMap)
-    throw SetupError{"slam.mode = localise and extend need a map: --load-map FILE"};
+    throw SetupError{"--mode localise and extend need a map: --load-map FILE"};
   if (config.slam.mode == MapMode::kMap && config.slam.start.kind == StartKind::kLast &&
       config.save_map.empty()) {
     throw SetupError{

@@ -17,6 +17,8 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
                             const OptionSet& option_set) {
   ParsedOptions parsed;
   ProcessOptions& options = parsed.options;
+  std::string mode;
+  std::string start;
   const std::string name = "waymark-" + std::string{traits.name};
   Program app{std::string{traits.purpose}, name};
   app.add_option("--config", options.config_sources.files,
@@ -70,7 +72,14 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
   }
   if (option_set.maps) {
     app.add_option("--load-map", options.load_map,
-                   "map file of an earlier run; needs slam.mode = localise or extend");
+                   "map file of an earlier run; needs --mode localise or extend");
+    app.add_option("--mode", mode,
+                   "what the map to load is for: localise (it stays as it is) or extend (what is "
+                   "new is added); short for --set slam.mode=NAME");
+    app.add_option(
+        "--start", start,
+        "where in it the robot is: origin (default), pose (slam.start_pose), last (needs "
+        "slam.state_folder) or anywhere; short for --set slam.start=NAME");
     app.add_option("--save-map", options.save_map, "write the map there at the end (NAME.map.lcm)");
   }
   if (option_set.seed) {
@@ -81,6 +90,9 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
                  "print what the other processes may know (section [robot]), and exit");
   }
   parsed.exit_code = app.parse(argc, argv);
+  auto& overrides = options.config_sources.overrides;
+  if (!mode.empty()) overrides.push_back("slam.mode=" + mode);
+  if (!start.empty()) overrides.push_back("slam.start=" + start);
   return parsed;
 }
 
