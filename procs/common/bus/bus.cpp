@@ -30,6 +30,9 @@ constexpr int kHandleTimeout_ms = 50;
 // LCM's own queue only bridges the moments in which our thread is not scheduled.
 constexpr int kLcmQueueCapacity = 200;
 constexpr std::chrono::seconds kBetweenWarnings{10};
+constexpr const char* kMalformed = "datagrams rejected: no whole message of LCM";
+constexpr const char* kFragments =
+    "datagrams rejected: parts of messages above 65 kB, which need --large-messages";
 
 SetupError no_network(const std::string& url) {
   return SetupError{"cannot join the LCM network " + url +
@@ -236,9 +239,11 @@ class Bus::Implementation {
       const auto received = datagrams_->receive();
       if (received) enqueue(received->message.channel, received->message.payload, received->sender);
       const std::int64_t malformed = datagrams_->take_malformed();
-      if (malformed == 0) continue;
+      const std::int64_t fragments = datagrams_->take_fragments();
+      if (malformed == 0 && fragments == 0) continue;
       const std::lock_guard lock{mutex_};
-      counts_.add("datagrams rejected: no whole message of LCM", CountKind::kRejection, malformed);
+      if (malformed > 0) counts_.add(kMalformed, CountKind::kRejection, malformed);
+      if (fragments > 0) counts_.add(kFragments, CountKind::kRejection, fragments);
     }
   }
 

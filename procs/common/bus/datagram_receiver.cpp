@@ -22,10 +22,11 @@ namespace waymark {
 namespace {
 
 constexpr std::string_view kScheme = "udpm://";
-constexpr MulticastGroup kDefaultGroup{0xefff4c43, 7667};          // 239.255.76.67
-constexpr std::size_t kHeader_bytes = 8;                           // magic, sequence number
-constexpr std::array<std::uint8_t, 4> kMagic{'L', 'C', '0', '2'};  // of a fragment: LC03
-constexpr std::size_t kMaxChannelLength = 63;                      // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr MulticastGroup kDefaultGroup{0xefff4c43, 7667};  // 239.255.76.67
+constexpr std::size_t kHeader_bytes = 8;                   // magic, sequence number
+constexpr std::array<std::uint8_t, 4> kMagic{'L', 'C', '0', '2'};
+constexpr std::array<std::uint8_t, 4> kFragmentMagic{'L', 'C', '0', '3'};
+constexpr std::size_t kMaxChannelLength = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
 constexpr std::size_t kMaxDatagram_bytes = 65536;
 // Bridges the moments in which our thread is not scheduled; the kernel gives less where
 // net.core.rmem_max is less.
@@ -91,6 +92,10 @@ std::optional<WholeMessage> whole_message_in(std::span<const std::uint8_t> datag
                       body.subspan(length + 1)};
 }
 
+bool is_fragment(std::span<const std::uint8_t> datagram) {
+  return datagram.size() >= kHeader_bytes && std::ranges::equal(datagram.first(4), kFragmentMagic);
+}
+
 DatagramReceiver::DatagramReceiver(const MulticastGroup& group)
     : socket_{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)}, bytes_(kMaxDatagram_bytes) {
   if (socket_ < 0) throw std::system_error{errno, std::generic_category(), "socket"};
@@ -129,9 +134,10 @@ std::optional<DatagramReceiver::Received> DatagramReceiver::receive() {
   const auto got =
       recvfrom(socket_, bytes_.data(), bytes_.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
   if (got < 0) return std::nullopt;
-  const auto message = whole_message_in(std::span{bytes_}.first(static_cast<std::size_t>(got)));
+  const std::span datagram = std::span{bytes_}.first(static_cast<std::size_t>(got));
+  const auto message = whole_message_in(datagram);
   if (!message) {
-    ++malformed_;
+    ++(is_fragment(datagram) ? fragments_ : malformed_);
     return std::nullopt;
   }
   return Received{{ntohl(from.sin_addr.s_addr), ntohs(from.sin_port)}, *message};
@@ -139,6 +145,10 @@ std::optional<DatagramReceiver::Received> DatagramReceiver::receive() {
 
 std::int64_t DatagramReceiver::take_malformed() {
   return std::exchange(malformed_, 0);
+}
+
+std::int64_t DatagramReceiver::take_fragments() {
+  return std::exchange(fragments_, 0);
 }
 
 std::int64_t DatagramReceiver::take_overflowed() {

@@ -43,6 +43,9 @@ struct WholeMessage {
 /// Views of the datagram's bytes; nothing where they are no whole message of LCM.
 std::optional<WholeMessage> whole_message_in(std::span<const std::uint8_t> datagram);
 
+/// Whether it is a part of a message that is larger than a datagram. Source: lcm_udpm.c.
+bool is_fragment(std::span<const std::uint8_t> datagram);
+
 /// Takes whole messages of one datagram from a multicast group.
 ///
 /// liblcm receives, too, but does not say from whom, and 1.3.1 puts large messages together from
@@ -64,8 +67,11 @@ class DatagramReceiver {
   /// Nothing when within kWait no datagram comes, or an invalid one.
   std::optional<Received> receive();
 
-  /// Datagrams since the last call that were no message.
+  /// Datagrams since the last call that were neither a message nor a fragment.
   std::int64_t take_malformed();
+
+  /// Datagrams since the last call that were fragments of large messages.
+  std::int64_t take_fragments();
 
   /// Datagrams since the last call that were dropped because the queue was full.
   std::int64_t take_overflowed();
@@ -78,6 +84,7 @@ class DatagramReceiver {
   int socket_{-1};
   std::vector<std::uint8_t> bytes_{};
   std::int64_t malformed_{0};
+  std::int64_t fragments_{0};
   std::uint32_t overflowed_before_{0};  ///< by the kernel's count, which wraps
 };
 

@@ -57,6 +57,12 @@ TEST(WholeMessage, RejectsOtherDatagrams) {
   }
 }
 
+TEST(Fragment, HasAMagicOfItsOwn) {
+  EXPECT_TRUE(is_fragment(bytes("LC03\0\0\0\7rest"s)));
+  for (const std::string& text : {""s, "LC03"s, "LC03\0\0\0"s, "LC02\0\0\0\7LIDAR\0abc"s})
+    EXPECT_FALSE(is_fragment(bytes(text))) << text;
+}
+
 TEST(Sender, IsWrittenAsAddressAndPort) {
   EXPECT_EQ(to_string(Sender{0xc0a80102, 40000}), "192.168.1.2:40000");
 }
