@@ -187,9 +187,10 @@ std::vector<Check> check_camera(const DoctorInput& input,
   const Measured total{late_s, found.late_s.sigma};
   add(
       "camera_time_offset", total, described.camera.late_s, kLate_s, 1e3,
-      fmt::format("the camera's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f}",
-                  1e3 * std::abs(late_s), 1e3 * total.sigma, late_s >= 0.0 ? "behind" : "ahead of",
-                  1e3 * described.camera.late_s),
+      fmt::format(
+          "the camera's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f} ms",
+          1e3 * std::abs(late_s), 1e3 * total.sigma, late_s >= 0.0 ? "behind" : "ahead of",
+          1e3 * described.camera.late_s),
       [&] { robot.camera.late_s = late_s; },
       [&] {
         return fmt::format("robot.camera.late_s = {:.4f}, or stamp frames when they are exposed",

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 namespace waymark {
 namespace {
@@ -99,16 +100,16 @@ Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig&
   const double described_s = robot.lidar.late_s;
   const double found_s = described_s + late.value;
   if (is_worth_writing(late.value, late.sigma, kOffset_s)) robot.lidar.late_s = found_s;
-  return {
-      "time_offset", verdict,
-      fmt::format("the LiDAR's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f}",
-                  1e3 * std::abs(found_s), 1e3 * late.sigma, found_s >= 0.0 ? "behind" : "ahead of",
-                  1e3 * described_s),
-      verdict == Verdict::kPass
-          ? ""
-          : fmt::format("robot.lidar.late_s = {:.4f}, or stamp both where they are measured",
-                        found_s),
-      1e3 * found_s};
+  return {"time_offset", verdict,
+          fmt::format(
+              "the LiDAR's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f} ms",
+              1e3 * std::abs(found_s), 1e3 * late.sigma, found_s >= 0.0 ? "behind" : "ahead of",
+              1e3 * described_s),
+          verdict == Verdict::kPass
+              ? ""
+              : fmt::format("robot.lidar.late_s = {:.4f}, or stamp both where they are measured",
+                            found_s),
+          1e3 * found_s};
 }
 
 Check check_distance_scale(const std::optional<HandEye>& calibration) {
@@ -152,7 +153,7 @@ std::vector<Check> check_mounting(const DoctorInput& input,
   if (!calibration) return {no_motions("lidar_x"), no_motions("lidar_y"), no_motions("lidar_yaw")};
   const LidarConfig described = input.log.robot.lidar;
   std::vector<Check> checks;
-  const auto add = [&](const char* name, const char* key, const Measured& measured,
+  const auto add = [&](const char* name, std::string_view key, const Measured& measured,
                        double described_value, double deviation, Limits limits, double unit,
                        const char* unit_name, double& target) {
     if (!is_known(measured, limits)) {
@@ -161,6 +162,7 @@ std::vector<Check> check_mounting(const DoctorInput& input,
     }
     const bool is_known_before = input.mounting != Mounting::kUnknown;
     const Verdict difference = verdict_of(deviation, measured.sigma, limits);
+    const std::string_view axis = key.substr(0, key.find('_'));  // without unit: yaw is in deg here
     // Nothing said where it sits: nothing is contradicted, but whoever starts at 0 is wrong.
     const Verdict verdict =
         is_known_before || difference == Verdict::kPass ? difference : Verdict::kWarn;
@@ -168,7 +170,7 @@ std::vector<Check> check_mounting(const DoctorInput& input,
       target = measured.value;
     checks.push_back(
         {name, verdict,
-         fmt::format("the LiDAR sits at {} {:.3f} +- {:.3f} {}, {}", key, unit * measured.value,
+         fmt::format("the LiDAR's {} is {:.3f} +- {:.3f} {}, {}", axis, unit * measured.value,
                      unit * measured.sigma, unit_name,
                      is_known_before ? fmt::format("described is {:.3f}", unit * described_value)
                                      : "which nothing describes"),

@@ -57,6 +57,14 @@ TEST(Doctor, WithoutTurnsTheLidarsPlaceIsUnknown) {
     EXPECT_EQ(find(straight, name).verdict, Verdict::kUnchecked) << find(straight, name).finding;
 }
 
+TEST(Doctor, SaysTheLidarsYawInDegreesAndWritesItInRadians) {
+  const Check yaw =
+      find(diagnosis_of({.base_from_lidar = Se2{0.1, -0.05, radians(12.0)}}), "lidar_yaw");
+  EXPECT_THAT(yaw.finding, HasSubstr("the LiDAR's yaw is 12.0"));
+  EXPECT_THAT(yaw.finding, HasSubstr(" deg, "));
+  EXPECT_THAT(yaw.remedy, HasSubstr("robot.lidar.yaw_rad = 0.2"));
+}
+
 TEST(Doctor, WritesMeasuredParametersIntoTheRobotFile) {
   const Diagnosis diagnosis =
       diagnosis_of({.base_from_lidar = Se2{-0.2, -0.05, 0.0}, .no_return_m = 12.0});
@@ -64,7 +72,7 @@ TEST(Doctor, WritesMeasuredParametersIntoTheRobotFile) {
   EXPECT_NEAR(diagnosis.robot.lidar.x_m, -0.2, 0.02);
   EXPECT_NEAR(diagnosis.robot.lidar.y_m, -0.05, 0.005);
   EXPECT_EQ(diagnosis.robot.lidar.range_max_m, 12.0);
-  EXPECT_THAT(to_robot_toml(diagnosis, "run.lcm"), HasSubstr("# FAIL lidar_x: the LiDAR sits at"));
+  EXPECT_THAT(to_robot_toml(diagnosis, "run.lcm"), HasSubstr("# FAIL lidar_x: the LiDAR's x is"));
 }
 
 TEST(Doctor, JsonHasEveryCheck) {
