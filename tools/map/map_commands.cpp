@@ -83,14 +83,21 @@ nlohmann::json json_of(const LearntCalibration& calibration) {
   return json;
 }
 
+/// With four decimals; zero has no minus.
+std::string signed_decimals(double value) {
+  const double rounded = std::round(value * 1e4) / 1e4;
+  return fmt::format("{:+.4f}", rounded == 0.0 ? 0.0 : rounded);
+}
+
 /// How the robot differs from its description.
 std::string text_of(const LearntCalibration& calibration) {
   std::string text;
   for (std::size_t i = 0; i < kCalibrationTerms.size(); ++i) {
     const CalibrationTerm& term = kCalibrationTerms[i];
-    text += fmt::format("{}{} {:+.4f} +- {:.4f} {}", i > 0 ? ", " : "", term.name,
-                        term.per_unit * calibration.mean[static_cast<Eigen::Index>(i)],
-                        term.per_unit * sigma_of(calibration, i), term.unit);
+    text +=
+        fmt::format("{}{} {} +- {:.4f} {}", i > 0 ? ", " : "", term.name,
+                    signed_decimals(term.per_unit * calibration.mean[static_cast<Eigen::Index>(i)]),
+                    term.per_unit * sigma_of(calibration, i), term.unit);
   }
   return text;
 }
@@ -128,7 +135,7 @@ std::string map_info(const std::filesystem::path& file, bool as_json) {
   return fmt::format(
       "map      {} (parent: {}), frame '{}'\n"
       "area     {:.1f} m x {:.1f} m, {:.1f} m2 mapped, cells of {} m\n"
-      "markers  {} of {} m: {}, {} of them confirmed\n"
+      "markers  {} of {:.4g} m: {}, {} of them confirmed\n"
       "graph    {} keyframes, {} edges\n"
       "robot    differs from its description by: {}\n"
       "file     {:.1f} kB\n",
