@@ -157,7 +157,8 @@ void add_consistency(Command& program, Arguments& arguments, Action& chosen) {
 int run_placement_program(const std::vector<std::string>& arguments) {
   const std::string program =
       std::filesystem::read_symlink("/proc/self/exe").replace_filename("waymark-placement");
-  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  std::string name = "waymark-evaluate placement";
+  std::vector<char*> argv{name.data()};
   for (const std::string& argument : arguments)
     argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

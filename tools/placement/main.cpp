@@ -5,6 +5,9 @@
 #include "evaluate/commands.hpp"
 #include "placement/placement_command.hpp"
 
+#include <filesystem>
+#include <string>
+
 namespace {
 
 using waymark::placement::PlacementOptions;
@@ -32,13 +35,15 @@ void add_options(waymark::Command& program, PlacementOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // waymark-evaluate calls it "waymark-evaluate placement".
+  const std::string name = std::filesystem::path{argv[0]}.filename();
   PlacementOptions options;
   waymark::Program program{
       "Says where the estimate is too uncertain, and the fewest new markers that cure it.\n"
       "Exit code: 0 the target is met, or will be; 1 it cannot be; 2 wrong usage or files.",
-      "waymark-evaluate placement"};
+      name};
   add_options(program, options);
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
-  return waymark::evaluate::run_command("waymark-evaluate placement",
+  return waymark::evaluate::run_command(name,
                                         [&] { return waymark::placement::run_placement(options); });
 }
