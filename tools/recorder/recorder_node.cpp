@@ -48,7 +48,8 @@ void RecorderConfig::check(Problems& problems) const {
   }
 }
 
-RecorderNode::RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox&) {
+RecorderNode::RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox&)
+    : counters_{inbox.counters()} {
   if (config.out_log.empty())
     throw SetupError{"--out-log FILE is missing: where shall the log go?"};
   protect_recordings(config.out_log);
@@ -68,6 +69,7 @@ void RecorderNode::record(const Message& message) {
   if (failed_) return;
   try {
     writer_->write(message);
+    counters_.add(message.channel + " recorded");
   } catch (const std::exception& error) {
     fail(error.what());
   }

@@ -51,6 +51,7 @@ class RecorderNode final : public Node {
   void fail(const std::string& what);
 
   std::optional<LogWriter> writer_;
+  Counters& counters_;
   bool failed_{false};
 };
 

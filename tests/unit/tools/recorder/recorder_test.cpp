@@ -26,6 +26,15 @@ TEST_F(Recorder, WritesALogEvenWithoutMessages) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "run.lcm"));
 }
 
+TEST_F(Recorder, CountsWhatItHasWrittenByChannel) {
+  RecorderNode node{
+      {.recorder = {{"CAMERA"}}, .out_log = folder_.path() / "run.lcm"}, inbox_, outbox_};
+  for (const char* channel : {"LIDAR", "LIDAR", "CAMERA"})
+    inbox_.deliver({channel, Timestamp{}, {}});
+  EXPECT_EQ(inbox_.counters().get("LIDAR recorded"), 2);
+  EXPECT_EQ(inbox_.counters().get("CAMERA recorded"), 0);
+}
+
 TEST_F(Recorder, AnEarlierLogIsNotReplaced) {
   const auto log = folder_.file("run.lcm", "an hour of driving");
   EXPECT_THROW(record(log), SetupError);
