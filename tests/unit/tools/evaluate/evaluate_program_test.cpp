@@ -23,6 +23,19 @@ TEST(EvaluateProgram, HelpAndVersionAreFine) {
   EXPECT_EQ(exit_code("--version"), 0);
 }
 
+TEST(EvaluateProgram, PlacementNamesTheProgramThatWasCalled) {
+  const TemporaryFolder folder;
+  const std::string said = (folder.path() / "said").string();
+  for (const char* program : {"waymark-placement", "waymark-evaluate placement"}) {
+    const std::string command =
+        std::string{WAYMARK_BUILD_DIR "/"} + program + " /no/such 2> " + said;
+    EXPECT_NE(std::system(command.c_str()), 0);
+    std::string line;
+    std::getline(std::ifstream{said}, line);
+    EXPECT_EQ(line, program + std::string{": map '/no/such' is not there, or no file"});
+  }
+}
+
 TEST(EvaluateProgram, WrongUsageAndMissingFilesEndWithCodeTwo) {
   EXPECT_EQ(exit_code(""), 2);
   EXPECT_EQ(exit_code("measure"), 2);
