@@ -3,13 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string_view>
 
 namespace waymark::viewer {
 namespace {
 
+/// To the centimetre; zero has no minus.
 std::string place(const Eigen::Vector2d& position_m) {
-  return fmt::format("({:.2f}, {:.2f}) m", position_m.x(), position_m.y());
+  const auto to_cm = [](double value_m) {
+    return std::round(value_m * 100.0) / 100.0 + 0.0;  // -0.0 + 0.0 is +0.0
+  };
+  return fmt::format("({:.2f}, {:.2f}) m", to_cm(position_m.x()), to_cm(position_m.y()));
 }
 
 std::string name_of(const std::pair<int, int>& id_and_instance) {

@@ -40,6 +40,13 @@ TEST(ChangeMonitorOfHealth, ReportsEachChangeOnce) {
   EXPECT_EQ(monitor.update(estimate(4, Health::kTracking)), std::nullopt);
 }
 
+TEST(ChangeMonitorOfHealth, APlaceThatRoundsToZeroHasNoMinus) {
+  ChangeMonitor monitor;
+  EstimatedPose at_origin = estimate(1, Health::kInitialising);
+  at_origin.map_from_base = {-0.001, -0.002, 0.0};
+  EXPECT_EQ(monitor.update(at_origin), note("1.0 s: initialising at (0.00, 0.00) m"));
+}
+
 TEST(ChangeMonitorOfHealth, ReportsLostAndRecovered) {
   ChangeMonitor monitor;
   monitor.update(estimate(1, Health::kTracking));
