@@ -157,5 +157,6 @@ perturbed_relations() {
 parse_arguments "$@"
 last_s=$(last_time "${files[0]}")
 [[ $last_s != 0.000000 && -n $last_s ]] || usage_error "no FLASER lines in '${files[0]}'"
+make_folder "$(dirname "${files[1]}")" >/dev/null
 unpacked "${files[0]}" | perturbed "$last_s" >"${files[1]}"
 [[ -z $relations ]] || perturbed_relations "$last_s" "$relations" >"${files[1]%.clf}.relations"

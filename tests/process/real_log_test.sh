@@ -63,8 +63,8 @@ fr079() {
 people() {
   need_log fr079.clf.gz
   need_log fr079.relations
-  "$source_dir/deploy/perturb_log.sh" "$data/fr079.clf.gz" "$work/people.clf" --people
-  "$build_dir/waymark-import" carmen "$work/people.clf" --out "$work/run.lcm" >/dev/null
+  "$source_dir/deploy/perturb_log.sh" "$data/fr079.clf.gz" "$work/perturbed/people.clf" --people
+  "$build_dir/waymark-import" carmen "$work/perturbed/people.clf" --out "$work/run.lcm" >/dev/null
   replay waymark
   "$build_dir/waymark-evaluate" relations "$work/waymark/trajectory_final.tum" "$data/fr079.relations" |
     expect_at_most translation_mean_m 0.3
