@@ -129,7 +129,7 @@ every_program_checks_without_running() {
   done
 }
 
-# The simulator has a marker 400; the detector's dictionary has not.
+# The simulator has a marker 400; the dictionary of the others has not.
 an_old_run_stays_when_the_new_one_cannot_start() {
   mkdir -p "$work/run/logs"
   touch "$work/run/"{run.lcm,logs/launch.log}
@@ -143,7 +143,7 @@ an_old_run_stays_when_the_new_one_cannot_start() {
   begin run --lcm-url memq://
   expect_code 2 $!
   grep -q "got 400, but DICT_6X6_250 has the ids 0 to 249" "$work/run.output" || fail "the id is not named"
-  grep -q "detector refuses its settings" "$work/run.output" || fail "the detector is not named"
+  grep -q "slam error: configuration" "$work/run.output" || fail "the program is not named"
   [[ -e $work/run/run.lcm ]] || fail "the old run is gone"
 }
 
