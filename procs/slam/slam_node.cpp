@@ -154,7 +154,9 @@ void SlamNode::publish_findings(Timestamp time) {
   for (const Finding& finding : *found) {
     if (!finding.share) continue;
     const auto count = static_cast<std::int64_t>(finding.value);
-    counters_.add(finding.name, CountKind::kEvent, count - counters_.get(finding.name));
+    std::string name = finding.name;
+    std::ranges::replace(name, '_', ' ');
+    counters_.add(name, CountKind::kEvent, count - counters_.get(name));
   }
 }
 
