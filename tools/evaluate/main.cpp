@@ -170,8 +170,8 @@ void add_placement(Command& program, Action& chosen) {
   Command command = program.add_subcommand(
       "placement", "where the estimate is too uncertain, and the fewest new markers that cure it");
   command.pass_on_the_rest();
-  command.when_given([&] {
-    chosen = [&] {
+  command.when_given([command, &chosen] {
+    chosen = [command] {
       return run_placement_program(command.rest());
     };
   });

@@ -132,7 +132,7 @@ TEST(WaymarkEstimator, AFloodOfIdsIsBounded) {
   int id = 0;
   for (int k = 0; id < 5000; ++k) {
     Observation observation;
-    observation.time = timestamp_from_us(1'000'000 * (k + 1));
+    observation.time = timestamp_from_us(std::int64_t{1000000} * (k + 1));
     observation.elapsed_s = 1.0;
     if (k > 0) observation.motion = Motion::between({}, {kStep_m, 0.0, 0.0});
     for (int i = 0; i < kInAFrame; ++i) {
