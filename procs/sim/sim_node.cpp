@@ -3,12 +3,12 @@
 
 #include "common/files/whole_file.hpp"
 #include "common/files/writable_folder.hpp"
+#include "common/geometry/rounded.hpp"
 #include "common/lockstep/contents.hpp"
 #include "common/messages/convert.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string_view>
 #include <system_error>
 
@@ -120,14 +120,11 @@ std::vector<Message> SimNode::advance(Timestamp& tick_end) {
 }
 
 std::string SimNode::progress() const {
-  const auto shown = [](double metres) {
-    return std::round(10.0 * metres) / 10.0 + 0.0;
-  };  // no -0
   const Se2 at = simulation_->world_from_base();
   if (config_.route.source == DriveSource::kCommand || !config_.route.waypoints.empty()) {
-    return fmt::format("at ({:.1f}, {:.1f}) m", shown(at.x()), shown(at.y()));
+    return fmt::format("at ({:.1f}, {:.1f}) m", rounded(at.x(), 10.0), rounded(at.y(), 10.0));
   }
-  return fmt::format("x {:.1f} m of {:.1f} m", shown(at.x()), config_.route.end_x_m);
+  return fmt::format("x {:.1f} m of {:.1f} m", rounded(at.x(), 10.0), config_.route.end_x_m);
 }
 
 void SimNode::finish() {

@@ -2,6 +2,7 @@
 #include "map/map_commands.hpp"
 
 #include "common/files/whole_file.hpp"
+#include "common/geometry/rounded.hpp"
 #include "common/log/log_file.hpp"
 #include "map/map_merge.hpp"
 #include "map/wall_alignment.hpp"
@@ -83,20 +84,14 @@ nlohmann::json json_of(const LearntCalibration& calibration) {
   return json;
 }
 
-/// With four decimals; zero has no minus.
-std::string signed_decimals(double value) {
-  const double rounded = std::round(value * 1e4) / 1e4;
-  return fmt::format("{:+.4f}", rounded == 0.0 ? 0.0 : rounded);
-}
-
 /// How the robot differs from its description.
 std::string text_of(const LearntCalibration& calibration) {
   std::string text;
   for (std::size_t i = 0; i < kCalibrationTerms.size(); ++i) {
     const CalibrationTerm& term = kCalibrationTerms[i];
     text +=
-        fmt::format("{}{} {} +- {:.4f} {}", i > 0 ? ", " : "", term.name,
-                    signed_decimals(term.per_unit * calibration.mean[static_cast<Eigen::Index>(i)]),
+        fmt::format("{}{} {:+.4f} +- {:.4f} {}", i > 0 ? ", " : "", term.name,
+                    rounded(term.per_unit * calibration.mean[static_cast<Eigen::Index>(i)], 1e4),
                     term.per_unit * sigma_of(calibration, i), term.unit);
   }
   return text;

@@ -349,23 +349,5 @@ TEST_F(CommandedSlam, AReplayRepeatsRecordedCommands) {
   EXPECT_TRUE(first.messages == second.messages);
 }
 
-TEST(SlamConfig, AnUnknownDictionaryIsNamedWithTheKnownOnes) {
-  try {
-    load_config<SlamConfig>({{}, {"robot.markers.dictionary=DICT_9X9_50"}});
-    ADD_FAILURE() << "no error";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("got 'DICT_9X9_50', expected one of DICT_4X4"));
-  }
-}
-
-TEST(SlamConfig, AnIdOutsideTheDictionaryIsNamed) {
-  try {
-    load_config<SlamConfig>({{}, {"robot.markers.ids=[0, 249, 250]"}});
-    ADD_FAILURE() << "no error";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("robot.markers.ids: got 250, but DICT_6X6_250"));
-  }
-}
-
 }  // namespace
 }  // namespace waymark

@@ -65,9 +65,9 @@ void WaymarkEstimator::search_widely(const Observation& observation, Look& look)
   search.odometry_covariance = expected.covariance;
   search.since_last_s = look.since_last_s;
   search.min_score = config_.loops.min_score;
-  search.misfit = [&](const Se2& submap_from_base) {
-    return fit_in_map(map_.map(), observation.beams, scan.map_from_submap * submap_from_base)
-        .misfit();
+  search.contradicts_map = [&](const Se2& submap_from_base) {
+    const Se2 map_from_base = scan.map_from_submap * submap_from_base;
+    return fit_in_map(map_.map(), observation.beams, map_from_base).misfit() > MapFit::kMostMisfit;
   };
   scan.match = searched_widely(
       scan.match, look.points, ndt_of(scan),

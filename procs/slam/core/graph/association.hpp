@@ -43,7 +43,7 @@ class MarkerBook {
   void add_known(const Landmark& landmark);
 
   /// So many markers have been added that more are noise, or an attack: none may be added.
-  bool is_full() const { return entries_.size() - num_known_ >= kMostAdded; }
+  bool is_full() const { return entries_.size() - num_known_ >= LandmarkMap::kMaxLandmarks; }
 
   void note_sighting(std::size_t landmark, Timestamp time);
 
@@ -81,8 +81,6 @@ class MarkerBook {
                   const MarkerMeasurement& measurement) const;
 
  private:
-  static constexpr std::size_t kMostAdded = 4096;
-
   std::size_t num_known_{0};         ///< of a loaded map
   std::vector<Landmark> entries_{};  ///< pose and covariance are not set: the graph has these
   std::vector<bool> is_retired_{};

@@ -33,6 +33,8 @@ struct Landmark {
 /// different instances.
 class LandmarkMap {
  public:
+  static constexpr std::size_t kMaxLandmarks = 4096;  ///< more are noise, or an attack
+
   /// @param same_within_m  sightings of an id nearer than this are of one marker.
   explicit LandmarkMap(double same_within_m) : same_within_m_{same_within_m} {}
 
@@ -54,8 +56,6 @@ class LandmarkMap {
 
     Landmark landmark() const;
   };
-
-  static constexpr std::size_t kMaxLandmarks = 4096;  ///< more are noise, or an attack
 
   double same_within_m_;
   std::vector<Entry> entries_{};

@@ -46,6 +46,8 @@ class NdtMap {
   /// A cell, as one number.
   using Key = std::uint64_t;
 
+  static Key key(int column, int row);
+
   /// The cell whose centre is nearest.
   Key key_at(const Eigen::Vector2d& point) const;
 
@@ -78,7 +80,6 @@ class NdtMap {
     double fitted_with_m2{kStale};  ///< point variance that the distribution was fitted with
   };
 
-  static Key key(int column, int row);
   void refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const;
 
   double spacing_m_;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <unordered_set>
 #include <vector>
@@ -36,9 +35,9 @@ class Submap {
     for (const Eigen::Vector2d& point : points_in_base) {
       const Eigen::Vector2d there = submap_from_base * point;
       ndt_.add(there, keyframe);
-      const std::int64_t column = std::lround(there.x() / kThinned_m);
-      const std::int64_t row = std::lround(there.y() / kThinned_m);
-      if (!occupied_.insert(column * kMostRows + row).second) continue;
+      const auto column = static_cast<int>(std::lround(there.x() / kThinned_m));
+      const auto row = static_cast<int>(std::lround(there.y() / kThinned_m));
+      if (!occupied_.insert(NdtMap::key(column, row)).second) continue;
       points_.push_back(there);
       coarse_.add(there);
     }
@@ -73,7 +72,6 @@ class Submap {
 
  private:
   static constexpr double kThinned_m = 0.05;
-  static constexpr std::int64_t kMostRows = std::int64_t{1} << 32;
 
   std::size_t first_keyframe_;
   NdtMap ndt_;
@@ -81,7 +79,7 @@ class Submap {
   std::vector<Se2> poses_{};
   double reach_m_{0.0};
   double length_m_{0.0};
-  std::unordered_set<std::int64_t> occupied_{};  ///< cells of kThinned_m; never iterated over
+  std::unordered_set<NdtMap::Key> occupied_{};  ///< cells of kThinned_m; never iterated over
   Points points_{};
 };
 

@@ -23,7 +23,6 @@ constexpr double kFarMore = 2.0;
 constexpr double kManyContradict = 0.06;  // of all beams
 constexpr double kLeavesFarMore = 3.0;    // beams unexplained
 constexpr double kContradictedSigmas = 5.0;
-constexpr double kMostMisfit = 0.3;                    // as MapFit::kMostMisfit
 constexpr double kFarFarther = 4.0;                    // from odometry than the plain match
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
 
@@ -67,7 +66,7 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
     if (sigmas_from_odometry(*found, search) >
         std::max(kContradictedSigmas, kFarFarther * plain_sigmas)) {
       const bool shows_few_walls = unexplained(*found, points) > found->inliers;
-      if (shows_few_walls && search.misfit(found->map_from_base) > kMostMisfit) return false;
+      if (shows_few_walls && search.contradicts_map(found->map_from_base)) return false;
       // A view that is new is more usual than odometry that is wrong.
       if (usual.is_contradicted(plain) && contradicting_share(plain) > kManyContradict &&
           found->inliers > kFarMore * plain.inliers) {

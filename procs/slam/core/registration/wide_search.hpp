@@ -16,8 +16,8 @@ struct WideSearch {
   std::vector<Se2> without_odometry{};                               ///< map_from_base
   double since_last_s{0.0};  ///< time since the last scan: it widens the window of turns
   double min_score{0.0};     ///< of a place (SearchMatch)
-  /// Share of the beams that the map contradicts at a pose, its free space included.
-  std::function<double(const Se2& map_from_base)> misfit{};
+  /// Whether the map contradicts the scan at a pose, by its free space, too.
+  std::function<bool(const Se2& map_from_base)> contradicts_map{};
 };
 
 /// Matches the scan from the best place of each window, and compares the match with the most

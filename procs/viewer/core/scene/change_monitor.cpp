@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/core/scene/change_monitor.hpp"
 
+#include "common/geometry/rounded.hpp"
+
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string_view>
 
 namespace waymark::viewer {
 namespace {
 
-/// To the centimetre; zero has no minus.
+/// To the centimetre.
 std::string place(const Eigen::Vector2d& position_m) {
-  const auto to_cm = [](double value_m) {
-    return std::round(value_m * 100.0) / 100.0 + 0.0;  // -0.0 + 0.0 is +0.0
-  };
-  return fmt::format("({:.2f}, {:.2f}) m", to_cm(position_m.x()), to_cm(position_m.y()));
+  return fmt::format("({:.2f}, {:.2f}) m", rounded(position_m.x(), 100.0),
+                     rounded(position_m.y(), 100.0));
 }
 
 std::string name_of(const std::pair<int, int>& id_and_instance) {
