@@ -64,37 +64,27 @@ void SensorQueue::add(const OdometrySample& sample) {
     scans_.clear(skips_);
     frames_.clear(skips_);
   }
-  if (auto scan = std::exchange(ahead_, std::nullopt)) {
-    if (odometry_.is_ahead(scan->time))
-      skips_.add(Skip::kScanAhead);
-    else
-      scans_.add(std::move(*scan), skips_);
-  }
+  scans_.add_held(odometry_.lead_limit(), skips_);
+  frames_.add_held(odometry_.lead_limit(), skips_);
 }
 
 void SensorQueue::add(LidarScan measured) {
   LidarScan scan = at_middle_of_sweep(std::move(measured));
   if (last_observed_ && scan.time <= *last_observed_) return skips_.add(Skip::kScanOutOfOrder);
-  if (odometry_.is_ahead(scan.time)) return hold_ahead(std::move(scan));
+  if (odometry_.is_ahead(scan.time)) return scans_.hold(std::move(scan), skips_);
   scans_.add(std::move(scan), skips_);
 }
 
-/// After a pause of all sensors a scan may come just before the odometry of its time: the next
-/// sample decides.
-void SensorQueue::hold_ahead(LidarScan scan) {
-  if (ahead_) skips_.add(Skip::kScanAhead);
-  ahead_ = std::move(scan);
-}
-
 void SensorQueue::add(MarkerDetections frame) {
-  if (odometry_.is_ahead(frame.time)) return skips_.add(Skip::kFrameAhead);
+  if (odometry_.is_ahead(frame.time)) return frames_.hold(std::move(frame), skips_);
   frames_.add(std::move(frame), skips_);
 }
 
 void SensorQueue::finish() {
   has_finished_ = true;
   odometry_.finish(skips_);
-  if (std::exchange(ahead_, std::nullopt)) skips_.add(Skip::kScanAhead);
+  scans_.drop_held(skips_);
+  frames_.drop_held(skips_);
 }
 
 bool SensorQueue::is_ready(const LidarScan& scan) const {

@@ -56,7 +56,6 @@ class SensorQueue {
   std::vector<Skip> take_skips() { return skips_.take(); }
 
  private:
-  void hold_ahead(LidarScan scan);
   bool is_ready(const LidarScan& scan) const;
   bool scan_is_due() const;
   std::optional<Ready> ready_from(LidarScan scan);
@@ -75,7 +74,6 @@ class SensorQueue {
   Duration scan_wait_;
   OdometryStream odometry_{};
   StampedQueue<LidarScan> scans_;
-  std::optional<LidarScan> ahead_{};  ///< the next odometry decides about it
   StampedQueue<MarkerDetections> frames_;
   std::vector<MarkerDetection> newest_detections_{};
   std::vector<double> newest_ranges_m_{};

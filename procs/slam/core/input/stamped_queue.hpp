@@ -25,6 +25,9 @@ struct QueuePolicy {
 /// is set aside: either its own stamp is too early, or theirs are too late. The next value decides:
 /// if it is newer than all, the value aside is dropped; if it is newer than the value aside only,
 /// the later ones are.
+///
+/// A value that comes long before the odometry of its time, as after a pause of all sensors, is
+/// held ahead of the queue: the next sample of the odometry decides.
 template <class Value>
 class StampedQueue {
  public:
@@ -48,6 +51,22 @@ class StampedQueue {
       skips.add(policy_.out_of_order);
       aside_ = std::move(before);
     }
+  }
+
+  /// Until add_held or drop_held; of several the newest is held.
+  void hold(Value value, Skips& skips) {
+    drop_held(skips);
+    held_ = std::move(value);
+  }
+
+  /// Adds the value that is held, if there is one and it is not after `limit`; else drops it.
+  void add_held(Timestamp limit, Skips& skips) {
+    if (held_ && held_->time > limit) drop_held(skips);
+    if (auto held = std::exchange(held_, std::nullopt)) add(std::move(*held), skips);
+  }
+
+  void drop_held(Skips& skips) {
+    if (std::exchange(held_, std::nullopt)) skips.add(policy_.ahead);
   }
 
   bool is_empty() const { return values_.empty(); }
@@ -80,10 +99,12 @@ class StampedQueue {
     if (newest_ && *newest_ > time) newest_.reset();
   }
 
-  /// Drops everything, after the clock was set.
+  /// Drops everything but the value that is held, after the clock was set.
   void clear(Skips& skips) {
     skips.add(policy_.out_of_order, values_.size() + (aside_ ? 1 : 0));
-    *this = StampedQueue{policy_};
+    values_.clear();
+    newest_.reset();
+    aside_.reset();
   }
 
  private:
@@ -100,6 +121,7 @@ class StampedQueue {
   std::deque<Value> values_{};
   std::optional<Timestamp> newest_{};  ///< of all that were pushed
   std::optional<Value> aside_{};
+  std::optional<Value> held_{};
 };
 
 }  // namespace waymark

@@ -137,7 +137,7 @@ TEST(SensorQueue, AWrongStampCostsItsOwnValueOnly) {
     queue.add(frame_at(wrong_ms, {}));
     queue.add(odometry_at(kHour_ms));
     EXPECT_EQ(queue.take_skips(),
-              (std::vector<Skip>{Skip::kFrameAhead, Skip::kOdometryAhead, Skip::kScanAhead}));
+              (std::vector<Skip>{Skip::kOdometryAhead, Skip::kScanAhead, Skip::kFrameAhead}));
     queue.add(scan_at(800));
     queue.add(frame_at(800, {}));
     queue.add(odometry_at(1000));
@@ -276,11 +276,12 @@ TEST(SensorQueue, AScanStampedAheadBlocksNothingWhileTheLidarIsSilent) {
   EXPECT_EQ(times_ms(all).back(), 2000);
 }
 
-TEST(SensorQueue, ScanAndOdometryAfterAPauseAreUsedWithTheNextSampleOrAtTheEnd) {
+TEST(SensorQueue, WhatComesJustBeforeOdometryAfterAPauseIsUsedWithTheNextSampleOrAtTheEnd) {
   for (const int pause_ms : {5000, 29'000}) {
     for (const bool ends : {false, true}) {
       SensorQueue queue{setup_without_waiting()};
       EXPECT_EQ(all_ready(queue, 1000, {0, 1000}).size(), 2U);
+      queue.add(frame_at(1000 + pause_ms, {}));
       queue.add(scan_at(1000 + pause_ms));
       queue.add(odometry_at(1000 + pause_ms));
       EXPECT_FALSE(queue.next());
@@ -292,6 +293,7 @@ TEST(SensorQueue, ScanAndOdometryAfterAPauseAreUsedWithTheNextSampleOrAtTheEnd) 
       const auto ready = queue.next();
       ASSERT_TRUE(ready && ready->scan) << pause_ms;
       EXPECT_NEAR(ready->observation.motion.distance_m, 1e-4 * pause_ms, 1e-9);
+      EXPECT_TRUE(ready->observation.camera_reported);
       EXPECT_TRUE(queue.take_skips().empty());
     }
   }

@@ -89,6 +89,27 @@ TEST(StampedQueue, ClearingSkipsTheValueAsideAndAcceptsOlderStampsAgain) {
   EXPECT_TRUE(skips.take().empty());
 }
 
+TEST(StampedQueue, AHeldValueIsAddedOnceItIsNotAheadAnyMore) {
+  StampedQueue<Value> queue{kPolicy};
+  Skips skips;
+  queue.hold({at_s(30)}, skips);
+  EXPECT_TRUE(queue.is_empty());
+  queue.add_held(at_s(30), skips);
+  EXPECT_EQ(to_us(queue.front().time), 30'000'000);
+  EXPECT_TRUE(skips.take().empty());
+}
+
+TEST(StampedQueue, OfHeldValuesAllButTheNewestAreDropped) {
+  StampedQueue<Value> queue{kPolicy};
+  Skips skips;
+  queue.hold({at_s(30)}, skips);
+  queue.hold({at_s(31)}, skips);
+  queue.add_held(at_s(10), skips);
+  queue.drop_held(skips);
+  EXPECT_TRUE(queue.is_empty());
+  EXPECT_EQ(skips.take(), (std::vector<Skip>{Skip::kScanAhead, Skip::kScanAhead}));
+}
+
 TEST(StampedQueue, ValuesStampedAfterAGivenTimeAreDropped) {
   StampedQueue<Value> queue{kPolicy};
   Skips skips;
