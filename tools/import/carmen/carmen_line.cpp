@@ -25,22 +25,6 @@ constexpr std::array<std::string_view, 23> kOtherKeywords{
     "MARKER",    "SCANMARK", "NMEAGGA",   "NMEARMC",          "SONAR",         "BUMPER",
     "IMU",       "IMU_CORR", "PANTILT",   "FOLLOWTRAJECTORY", "BASEVELOCITY"};
 
-struct BeamAngles {
-  double first_rad{0.0};
-  double step_rad{0.0};
-};
-
-/// SICK conventions over 180 degrees from -90: 181 and 361 beams reach +90 with the last one, 180
-/// and 360 end one step before (as in the logs of the relations benchmark).
-std::optional<BeamAngles> beam_angles(int num_beams, const CarmenBeams& given) {
-  const bool is_known =
-      num_beams == 180 || num_beams == 181 || num_beams == 360 || num_beams == 361;
-  if (!is_known && (!given.first_angle_rad || !given.angle_step_rad)) return std::nullopt;
-  const double conventional_step_rad = radians(num_beams <= 181 ? 1.0 : 0.5);
-  return BeamAngles{given.first_angle_rad.value_or(radians(-90.0)),
-                    given.angle_step_rad.value_or(conventional_step_rad)};
-}
-
 /// What a user may say of all lines.
 struct Given {
   const CarmenBeams& beams;
@@ -123,14 +107,6 @@ CarmenLine parse_old_laser(FieldCursor& fields, CarmenLidar lidar, const Given& 
   take_ranges(fields, num_beams, scan);
   take_poses(fields, given.units, scan);
   take_times(fields, given.units, scan);
-  const auto angles = beam_angles(num_beams, given.beams);
-  if (!angles) {
-    fields.fail("unknown field of view",
-                fmt::format("{} beams: give --first-angle-deg and --angle-step-deg", num_beams));
-    return finish(fields, scan);
-  }
-  scan.first_angle_rad = angles->first_rad;
-  scan.angle_step_rad = angles->step_rad;
   return finish(fields, scan);
 }
 
@@ -157,7 +133,8 @@ CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const Given
   CarmenScan scan{};
   scan.lidar = lidar;
   fields.number("laser_type");
-  scan.first_angle_rad = fields.number("start_angle");
+  BeamAngles& angles = scan.angles.emplace();
+  angles.first_rad = fields.number("start_angle");
   const double field_of_view_rad = fields.number("field_of_view");
   const double resolution_rad = fields.number("angular_resolution");
   scan.range_max_m = fields.number("maximum_range");
@@ -172,21 +149,21 @@ CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const Given
   for (const std::string_view name : {"tv", "rv", "forward_safety", "side_safety", "turn_axis"})
     fields.number(name);
   take_times(fields, given.units, scan);
-  scan.first_angle_rad = given.beams.first_angle_rad.value_or(scan.first_angle_rad);
+  angles.first_rad = given.beams.first_angle_rad.value_or(angles.first_rad);
   if (given.beams.angle_step_rad) {
-    scan.angle_step_rad = *given.beams.angle_step_rad;
+    angles.step_rad = *given.beams.angle_step_rad;
     if (*scan.range_max_m <= 0.0) scan.range_max_m.reset();
     return finish(fields, scan);
   }
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-  if (std::abs(scan.first_angle_rad) > kTurn_rad || field_of_view_rad <= 0.0 ||
+  if (std::abs(angles.first_rad) > kTurn_rad || field_of_view_rad <= 0.0 ||
       field_of_view_rad > 1.01 * kTurn_rad || *scan.range_max_m <= 0.0) {
     fields.fail("contradictory header",
                 fmt::format("start angle {} rad, field of view {} rad, maximum range {} m: give "
                             "--first-angle-deg and --angle-step-deg",
-                            scan.first_angle_rad, field_of_view_rad, *scan.range_max_m));
+                            angles.first_rad, field_of_view_rad, *scan.range_max_m));
   }
-  scan.angle_step_rad = angle_step(fields, field_of_view_rad, resolution_rad, num_beams);
+  angles.step_rad = angle_step(fields, field_of_view_rad, resolution_rad, num_beams);
   return finish(fields, scan);
 }
 

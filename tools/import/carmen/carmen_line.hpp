@@ -12,6 +12,7 @@
 #pragma once
 
 #include "common/geometry/se2.hpp"
+#include "import/carmen/beam_angles.hpp"
 #include "import/carmen/field_cursor.hpp"
 
 #include <optional>
@@ -23,8 +24,8 @@ namespace waymark {
 
 enum class CarmenLidar { kFront, kRear };
 
-/// What FLASER and RLASER lines do not say; nullopt = the convention for their number of beams, see
-/// beam_angles(). ROBOTLASER lines say it themselves, but what is given here overrides them.
+/// What FLASER and RLASER lines do not say; nullopt = as beam_angles.hpp finds it. ROBOTLASER lines
+/// say it themselves, but what is given here overrides them.
 struct CarmenBeams {
   std::optional<double> first_angle_rad{};
   std::optional<double> angle_step_rad{};
@@ -39,13 +40,12 @@ struct CarmenUnits {
 
 struct CarmenScan {
   CarmenLidar lidar{CarmenLidar::kFront};
-  double time_s{0.0};              ///< ipc_timestamp
-  double logger_time_s{0.0};       ///< may be anything finite
-  std::size_t num_times{0};        ///< fields that the line has for the times: 3, or 2, 1, 0
-  std::vector<double> ranges_m{};  ///< as written; may be +inf; NaN where the line has none
-  int num_no_ranges{0};            ///< of these
-  double first_angle_rad{0.0};
-  double angle_step_rad{0.0};
+  double time_s{0.0};                   ///< ipc_timestamp
+  double logger_time_s{0.0};            ///< may be anything finite
+  std::size_t num_times{0};             ///< fields that the line has for the times: 3, or 2, 1, 0
+  std::vector<double> ranges_m{};       ///< as written; may be +inf; NaN where the line has none
+  int num_no_ranges{0};                 ///< of these
+  std::optional<BeamAngles> angles{};   ///< when the line says them
   std::optional<double> range_max_m{};  ///< when the line says it
   Se2 odom_from_lidar{};
   Se2 odom_from_base{};

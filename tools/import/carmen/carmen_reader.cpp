@@ -36,6 +36,15 @@ CarmenTimes line_times(const Line& line) {
   return {timestamp_from_seconds(line.time_s), timestamp_from_seconds(line.logger_time_s)};
 }
 
+/// Some hundred of the scans, evenly over the log.
+std::vector<std::vector<double>> every_few(std::span<const std::vector<double>> scans) {
+  constexpr std::size_t kEnough = 300;
+  std::vector<std::vector<double>> some;
+  for (std::size_t i = 0; i < scans.size(); i += 1 + scans.size() / kEnough)
+    some.push_back(scans[i]);
+  return some;
+}
+
 class CarmenReader {
  public:
   CarmenReader(const CarmenOptions& options, ImportReport& report)
@@ -61,6 +70,7 @@ class CarmenReader {
 
   void apply_stamps();
   void note_assumptions();
+  void complete_angles();
   std::string what_is_not_read() const;
   void add_scan(const ReadScan& read);
   void apply_mounting();
@@ -108,8 +118,8 @@ void CarmenReader::add_scan(const ReadScan& read) {
   planar_lidar_t message{};
   message.utime = to_us(read.time);
   message.nranges = static_cast<int>(scan.ranges_m.size());
-  message.rad0 = static_cast<float>(scan.first_angle_rad);
-  message.radstep = static_cast<float>(scan.angle_step_rad);
+  message.rad0 = static_cast<float>(scan.angles->first_rad);
+  message.radstep = static_cast<float>(scan.angles->step_rad);
   for (const double range_m : scan.ranges_m)
     message.ranges.push_back(static_cast<float>(std::min(range_m, bounds::kRange_m)));
   log_.scans.push_back(
@@ -167,15 +177,6 @@ void CarmenReader::note_assumptions() {
   }
   if (no_ranges > 0)
     report_.note(fmt::format("{} ranges are negative or NaN: taken as not measured", no_ranges));
-  const CarmenScan& first = scans_.front().line;
-  const bool is_assumed =
-      !first.range_max_m && (!options_.beams.first_angle_rad || !options_.beams.angle_step_rad);
-  if (is_assumed) {
-    report_.note(fmt::format(
-        "the lines do not say the beams' angles: {} beams of {:g} degrees from {:g} are assumed "
-        "(--first-angle-deg, --angle-step-deg)",
-        first.ranges_m.size(), degrees(first.angle_step_rad), degrees(first.first_angle_rad)));
-  }
   if (ranges_m.empty() || options_.range_max_m) return;
   const double usual_m = upper_median(std::move(ranges_m));
   if (usual_m > kFarthest_m) {
@@ -184,6 +185,43 @@ void CarmenReader::note_assumptions() {
         "or --max-range-m if they are metres",
         usual_m)};
   }
+}
+
+/// Fills in the angles of lines that do not say them: as given, else as they are with most of these
+/// lines' number of beams.
+/// @throws SetupError when they are unknown.
+void CarmenReader::complete_angles() {
+  const auto& [given_first_rad, given_step_rad] = options_.beams;
+  std::map<std::size_t, std::vector<std::vector<double>>> scans_by_size;
+  for (const auto& scan : scans_)
+    if (!scan.line.angles) scans_by_size[scan.line.ranges_m.size()].push_back(scan.line.ranges_m);
+  if (scans_by_size.empty()) return;
+  const auto& [num_beams, scans] = *std::ranges::max_element(
+      scans_by_size, {}, [](const auto& some) { return some.second.size(); });
+  BeamAngles angles;
+  if (given_step_rad) {
+    angles = {first_angle_rad(num_beams, *given_step_rad), *given_step_rad};
+  } else {
+    const auto found = straightest_angles(every_few(scans), num_beams);
+    if (!found) {
+      throw SetupError{fmt::format(
+          "the lines do not say the angles of their {} beams, and walls do not show them: give "
+          "--first-angle-deg and --angle-step-deg",
+          num_beams)};
+    }
+    angles = *found;
+  }
+  if (given_first_rad) angles.first_rad = *given_first_rad;
+  for (auto& scan : scans_)
+    if (!scan.line.angles) scan.line.angles = angles;
+  if (given_first_rad && given_step_rad) return;
+  const auto usual = conventional_angles(num_beams);
+  const bool is_usual = usual && usual->step_rad == angles.step_rad;
+  report_.note(fmt::format(
+      "the lines do not say the beams' angles: {} beams of {:g} degrees from {:g} are {} "
+      "(--first-angle-deg, --angle-step-deg)",
+      num_beams, degrees(angles.step_rad), degrees(angles.first_rad),
+      is_usual || given_step_rad ? "assumed" : "taken, with which walls are straight"));
 }
 
 ImportedLog CarmenReader::finish() {
@@ -196,6 +234,7 @@ ImportedLog CarmenReader::finish() {
                      what_is_not_read()};
   }
   note_assumptions();
+  complete_angles();
   complete_times(scans_, options_.scan_period_s, report_);
   keep_one_lidar(scans_, report_);
   if (choose_odometry(scans_, odometry_, options_.odometry, report_) ==

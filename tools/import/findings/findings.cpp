@@ -113,6 +113,14 @@ bool check_distances(const ImportedLog& log, const BodyBeams& body, ImportReport
   return false;
 }
 
+void check_turns(const ImportedLog& log, const BodyBeams& body, ImportReport& report) {
+  if (!turns_against_odometry(log, body)) return;
+  report.note(
+      "scans turn the other way round than odometry: if the LiDAR's beams count clockwise, the map "
+      "will be a mirror image; lidar.mirrored = true in robot.toml puts that right. If odometry's "
+      "headings do, only its calibration will be odd");
+}
+
 void check_yaw(const ImportedLog& log, const BodyBeams& body, ImportReport& report) {
   constexpr double kLeast_rad = radians(3.0);  // real logs are within 2.1 degrees
   constexpr double kSigmas = 5.0;
@@ -160,6 +168,7 @@ void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report) 
   check_that_odometry_moves(log, report);
   const BodyBeams body = check_body(log, report);
   if (!check_distances(log, body, report)) return;  // no motion is right, in no direction
+  check_turns(log, body, report);
   check_yaw(log, body, report);
   check_direction(log, body, reversed, report);
 }

@@ -29,6 +29,7 @@ struct Wanted {
   double least_m{0.0};
   double most_m{0.0};
   double most_rad{0.0};
+  double least_rad{0.0};
 };
 
 std::vector<Pair> pairs_of(const ImportedLog& log, const BodyBeams& body, const Wanted& wanted) {
@@ -38,7 +39,7 @@ std::vector<Pair> pairs_of(const ImportedLog& log, const BodyBeams& body, const 
     const Se2 motion = odometry_between(log, before, now);
     const double distance_m = motion.translation().norm();
     if (distance_m >= wanted.least_m && distance_m <= wanted.most_m &&
-        std::abs(motion.theta()) <= wanted.most_rad)
+        std::abs(motion.theta()) <= wanted.most_rad && std::abs(motion.theta()) >= wanted.least_rad)
       found.emplace_back(before, now);
     before = now;
   }
@@ -82,6 +83,14 @@ double best_turn_rad(std::span<const Pair> pairs, const Se2& base_from_lidar) {
   const double aside = curvature_m > 0.0 ? 0.5 * (below_m - above_m) / curvature_m : 0.0;
   return kStep_rad * (static_cast<double>(least - misfits_m.begin()) - static_cast<double>(kSteps) +
                       static_cast<double>(kAside) * aside);
+}
+
+LidarScan mirrored(LidarScan scan) {
+  for (double& angle_rad : scan.angles_rad)
+    angle_rad = -angle_rad;
+  std::ranges::reverse(scan.angles_rad);
+  std::ranges::reverse(scan.ranges_m);
+  return scan;
 }
 
 }  // namespace
@@ -128,6 +137,20 @@ std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams&
   for (const double yaw_rad : found_rad)
     sum_rad2 += (yaw_rad - mean_rad) * (yaw_rad - mean_rad);
   return YawError{mean_rad, std::sqrt(sum_rad2 / static_cast<double>(kParts * (kParts - 1)))};
+}
+
+bool turns_against_odometry(const ImportedLog& log, const BodyBeams& body) {
+  constexpr Wanted kTurning{0.0, 1.0, 0.8, 0.1};
+  constexpr double kMuchBetter = 0.5;
+  std::vector<Pair> pairs = pairs_of(log, body, kTurning);
+  if (pairs.size() < kFewestPairs) return false;
+  const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
+  const double as_it_is_m = mean_misfit_m(pairs, base_from_lidar, 1.0, 0.0);
+  for (Pair& pair : pairs) {
+    pair.before = mirrored(std::move(pair.before));
+    pair.now = mirrored(std::move(pair.now));
+  }
+  return mean_misfit_m(pairs, base_from_lidar, 1.0, 0.0) < kMuchBetter * as_it_is_m;
 }
 
 }  // namespace waymark

@@ -25,4 +25,8 @@ struct YawError {
 /// heads.
 std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams& body);
 
+/// Whether scans turn the other way round than odometry: mirrored, they fit its turns much better.
+/// False where fewer than 40 pairs of scans are of turns.
+bool turns_against_odometry(const ImportedLog& log, const BodyBeams& body);
+
 }  // namespace waymark

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/findings/range_noise.hpp"
 
+#include "import/findings/wall_fit.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -27,26 +29,6 @@ bool is_one_sweep(std::span<const double> ranges_m, std::span<const double> angl
     if (i > 0 && angle_difference(angles_rad[i], angles_rad[i - 1]) * turn_rad <= 0.0) return false;
   }
   return true;
-}
-
-/// Standard deviation about the best line [m]; nullopt when the beams do not determine one.
-std::optional<double> scatter_m(std::span<const double> ranges_m,
-                                std::span<const double> angles_rad) {
-  // An error e of the range is e / r^2 of its inverse: rows are multiplied by r^2.
-  Eigen::Matrix<double, kBeams, 2> rows;
-  Eigen::Matrix<double, kBeams, 1> values;
-  for (std::size_t i = 0; i < kBeams; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const double square = ranges_m[i] * ranges_m[i];
-    rows(row, 0) = square * std::cos(angles_rad[i]);
-    rows(row, 1) = square * std::sin(angles_rad[i]);
-    values(row) = ranges_m[i];
-  }
-  const Eigen::Matrix2d normal = rows.transpose() * rows;
-  constexpr double kSingular = 1e-9;
-  if (normal.determinant() <= kSingular * normal(0, 0) * normal(1, 1)) return std::nullopt;
-  const Eigen::Vector2d line = normal.inverse() * (rows.transpose() * values);
-  return std::sqrt((values - rows * line).squaredNorm() / (kBeams - 2.0));
 }
 
 /// Middle of the interval of that width which holds most of the values.
@@ -82,7 +64,8 @@ void WallScatter::add(const LidarScan& scan) {
       ++i;
       continue;
     }
-    if (const auto scatter = scatter_m(wall_m, wall_rad)) scatters_m_.push_back(*scatter);
+    if (const auto scatter = scatter_about_wall_m(wall_m, wall_rad))
+      scatters_m_.push_back(*scatter);
     i += kBeams;
   }
 }

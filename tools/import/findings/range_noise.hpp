@@ -10,7 +10,6 @@
 namespace waymark {
 
 /// Collects how much nine neighbouring beams scatter about the straight wall that fits them best.
-/// The inverse range of a straight wall is A cos(angle) + B sin(angle), so that the fit is linear.
 class WallScatter {
  public:
   void add(const LidarScan& scan);

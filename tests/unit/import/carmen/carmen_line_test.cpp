@@ -52,24 +52,9 @@ TEST(CarmenLine, FlaserHasTheLidarsPoseBeforeTheRobots) {
   EXPECT_FALSE(scan.range_max_m);
 }
 
-TEST(CarmenLine, BeamsOfFlaserFollowTheSickConvention) {
-  const std::vector<std::pair<int, double>> last_deg{
-      {180, 89.0}, {181, 90.0}, {360, 89.5}, {361, 90.0}};
-  for (const auto& [num_beams, angle_deg] : last_deg) {
-    const auto scan = parse<CarmenScan>(flaser(num_beams));
-    EXPECT_NEAR(scan.first_angle_rad, radians(-90.0), kExact);
-    EXPECT_NEAR(scan.first_angle_rad + (num_beams - 1) * scan.angle_step_rad, radians(angle_deg),
-                kExact);
-  }
-}
-
-TEST(CarmenLine, AnotherNumberOfBeamsNeedsItsAngles) {
-  EXPECT_THAT(parse<LineProblem>(flaser(4)).detail, HasSubstr("--first-angle-deg"));
-
-  const auto scan = parse<CarmenScan>(flaser(4), {0.5, 0.125});
-  EXPECT_EQ(scan.first_angle_rad, 0.5);
-  EXPECT_EQ(scan.angle_step_rad, 0.125);
-  EXPECT_EQ(parse<CarmenScan>(flaser(4, "RLASER"), {0.5, 0.125}).lidar, CarmenLidar::kRear);
+TEST(CarmenLine, FlaserDoesNotSayItsAngles) {
+  EXPECT_FALSE(parse<CarmenScan>(flaser(4)).angles);
+  EXPECT_EQ(parse<CarmenScan>(flaser(4, "RLASER")).lidar, CarmenLidar::kRear);
 }
 
 TEST(CarmenLine, RobotLaserDefinesItsOwnBeams) {
@@ -78,8 +63,8 @@ TEST(CarmenLine, RobotLaserDefinesItsOwnBeams) {
       "1 2 0.5 3 4 0.25 9 9 9 9 9 100.25 host 0.75");
 
   EXPECT_THAT(scan.ranges_m, ElementsAre(1.0, 2.0, 50.0));
-  EXPECT_EQ(scan.first_angle_rad, -1.570796);
-  EXPECT_EQ(scan.angle_step_rad, 1.570796);
+  EXPECT_EQ(scan.angles->first_rad, -1.570796);
+  EXPECT_EQ(scan.angles->step_rad, 1.570796);
   EXPECT_EQ(scan.range_max_m, 20.0);
   EXPECT_EQ(scan.odom_from_lidar.x(), 1.0);
   EXPECT_EQ(scan.odom_from_base.x(), 3.0);
@@ -90,7 +75,7 @@ TEST(CarmenLine, WithoutResolutionTheFieldOfViewGivesTheStep) {
   const auto scan =
       parse<CarmenScan>("ROBOTLASER1 0 -1 2 0 20 0.01 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 host 0");
 
-  EXPECT_EQ(scan.angle_step_rad, 1.0);
+  EXPECT_EQ(scan.angles->step_rad, 1.0);
 }
 
 TEST(CarmenLine, GivenAnglesOverrideAHeaderThatIsWrong) {
@@ -99,8 +84,8 @@ TEST(CarmenLine, GivenAnglesOverrideAHeaderThatIsWrong) {
 
   const auto scan = parse<CarmenScan>(line, {0.25, 0.5});
 
-  EXPECT_EQ(scan.first_angle_rad, 0.25);
-  EXPECT_EQ(scan.angle_step_rad, 0.5);
+  EXPECT_EQ(scan.angles->first_rad, 0.25);
+  EXPECT_EQ(scan.angles->step_rad, 0.5);
   EXPECT_FALSE(scan.range_max_m) << "0 is none";
 }
 

@@ -62,6 +62,25 @@ TEST(CarmenReader, ReadsTheHandMadeLog) {
   EXPECT_EQ(log.scans[1].longest_range_m, 3.0);
 }
 
+TEST(CarmenReader, AnUnusualNumberOfBeamsNeedsItsAnglesWhereNoWallShowsThem) {
+  try {
+    read_text("FLASER 4 1 1 1 1 0 0 0 0 0 0 1 host 1\n", {});
+    FAIL();
+  } catch (const SetupError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("4 beams"));
+    EXPECT_THAT(error.what(), HasSubstr("--first-angle-deg and --angle-step-deg"));
+  }
+}
+
+TEST(CarmenReader, OfAStepAloneTheMiddleBeamLooksAhead) {
+  CarmenOptions options{};
+  options.beams.angle_step_rad = 0.5;
+
+  const ImportedLog log = read_text("FLASER 5 1 1 1 1 1 0 0 0 0 0 0 1 host 1\n", options);
+
+  EXPECT_NEAR(lidar_message(log.scans[0]).rad0, -1.0, 0.01) << "on whole degrees";
+}
+
 TEST(CarmenReader, OdometryComesFromTheScansLines) {
   ImportReport report{"small.clf", AddressUnit::kLine};
 

@@ -24,6 +24,14 @@ ImportedLog long_drive() {
   return drive(steps, CountedAs::kDriven);
 }
 
+/// Ways of 2 cm and turns by up to 0.06 rad a step.
+std::vector<Se2> to_and_fro_turning() {
+  std::vector<Se2> steps;
+  for (int i = 0; i < 400; ++i)
+    steps.emplace_back(0.02, 0.0, 0.06 * (i / 50 % 2 == 0 ? 1.0 : -1.0));
+  return steps;
+}
+
 std::vector<std::string> what_is_found(ImportedLog log) {
   ImportReport report{"log", AddressUnit::kLine};
   examine(log, ReversedOdometry::kName, report);
@@ -61,6 +69,19 @@ TEST(MotionFit, ALidarThatIsTurnedByFiveDegreesIsNamedWithItsYaw) {
   ASSERT_TRUE(error);
   EXPECT_NEAR(degrees(error->yaw_rad), 5.0, 0.5);
   EXPECT_THAT(what_is_found(log), Contains(HasSubstr("further to the left than described")));
+}
+
+TEST(MotionFit, ALidarWhoseBeamsCountTheOtherWayIsNamed) {
+  ImportedLog log = drive(to_and_fro_turning(), CountedAs::kDriven);
+  EXPECT_THAT(what_is_found(log), Not(Contains(HasSubstr("the other way round"))));
+
+  for (ImportedScan& scan : log.scans) {
+    auto message = decode<planar_lidar_t>(scan.message.payload).message.value();
+    std::ranges::reverse(message.ranges);
+    scan.message = encode(channels::kLidar, message);
+  }
+
+  EXPECT_THAT(what_is_found(log), Contains(HasSubstr("lidar.mirrored = true")));
 }
 
 TEST(MotionFit, ALidarThatLooksAheadHasNoYaw) {
