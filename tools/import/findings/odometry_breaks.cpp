@@ -194,8 +194,9 @@ class BreakMender {
         return misfit_with({aside, 0.0}) < kTold_m;
       });
     };
+    const bool is_reset = is_zero(now) && !is_zero(before);
     if (std::min(standing_m, going_on_m) < kSamePlace_m &&
-        (jumps || (counted_m >= kNowhere_m && is_only_place()))) {
+        (jumps || is_reset || (counted_m >= kNowhere_m && is_only_place()))) {
       name_new_beginning(now, step, goes_on);
       return goes_on ? step_before : Se2{};
     }

@@ -92,6 +92,22 @@ TEST(OdometryBreaks, TheWayInAGapThatABareCorridorDoesNotShowStays) {
   EXPECT_NEAR(way_of_drive_with_gap(Walls::kRoom), 2.95, kExact);  // the scans show that it stood
 }
 
+TEST(OdometryBreaks, ANewBeginningAtZeroAfterAPauseInABareCorridorIsOne) {
+  constexpr std::size_t kNewBeginning = 30;
+  std::vector<Se2> steps(60, Se2{0.05, 0.0, 0.0});
+  steps[kNewBeginning - 1] = Se2{};
+  ImportedLog log = drive(steps, CountedAs::kDriven, Walls::kCorridor);
+  const Se2 old_from_new = log.odometry[kNewBeginning].pose;
+  for (std::size_t i = kNewBeginning; i < log.odometry.size(); ++i)
+    log.odometry[i].pose = old_from_new.inverse() * log.odometry[i].pose;
+  delay(log, kNewBeginning, std::chrono::hours{24});
+
+  const Mended mended = mend(log);
+
+  EXPECT_NEAR(way_m(mended.log), 59 * 0.05, kExact);
+  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("odometry begins anew at")));
+}
+
 TEST(OdometryBreaks, ANewBeginningWhileTheRobotDrivesGoesOnAsItDrove) {
   ImportedLog log = drive_with_stop();
   begin_anew(log, 50);
