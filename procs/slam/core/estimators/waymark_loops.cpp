@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole graph: loops, the trajectory, and the map drawn along it.
+#include "common/geometry/chi2.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
 namespace waymark {
 namespace {
 
-constexpr double kLoopMatters = 3.0;   // chi^2 beyond which a loop contradicts the pose
+// chi^2 (3 degrees of freedom, 99 %) of a loop against the pose as published, which is wrong until
+// the graph has followed.
+constexpr double kLoopContradicts = 11.3;
 constexpr double kLoopSlack_m = 0.05;  // sigma of old poses, whose covariance is not kept
 constexpr double kLoopSlack_rad = 0.01;
 
@@ -38,7 +41,7 @@ void WaymarkEstimator::close_loops(const Points& points) {
       const Submap* submap = submaps_.find(found.loop.submap);
       if (submap == nullptr || graph_.is_removed(found.keyframe)) continue;  // forgotten meanwhile
       add_scan_factor(found.keyframe, *submap, found.loop.match, true);
-      solve_schedule_.note_loop(found.chi2 > kLoopMatters);
+      solve_schedule_.note_loop(chi2(found.off, in_map) > kLoopContradicts);
       note_reason(EstimateReason::kLoop);
     }
   }

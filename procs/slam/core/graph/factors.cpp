@@ -48,6 +48,13 @@ struct Relative {
   Eigen::Matrix3d jacobian_to{Eigen::Matrix3d::Zero()};
 };
 
+Eigen::Vector3d relative_pose(const Se2& map_from_from, const Se2& map_from_to) {
+  Eigen::Vector3d pose;
+  pose << map_from_from.inverse() * map_from_to.translation(),
+      angle_difference(map_from_to.theta(), map_from_from.theta());
+  return pose;
+}
+
 Relative relative(const Se2& map_from_from, const Se2& map_from_to) {
   const Se2 from_from_to = map_from_from.inverse() * map_from_to;
   Relative result;
@@ -108,6 +115,10 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {
 }
 
 MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& noise) {
+  // The other components are wider: what makes up for their penalty is a smaller chi^2 alone.
+  const Eigen::LLT<Eigen::Matrix3d> rolling{noise.rolling};
+  if (residual.dot(rolling.solve(residual)) <= kSpinningPenalty - kRollingPenalty)
+    return MotionKind::kRolling;
   const std::array<MotionKind, 4> kinds{
       MotionKind::kRolling, residual.z() > 0.0 ? MotionKind::kLeftSpins : MotionKind::kRightSpins,
       MotionKind::kJerked, MotionKind::kAnything};
@@ -160,9 +171,21 @@ void OdometryFactor::choose_kind(const State& state, const OdometryNoise& noise,
                                  const OdometryScale& scale) {
   if (is_cut || !noise.may_slip) return;
   const CorrectedMotion measured = moved(state, noise, scale);
-  const Relative found = relative(state.keyframes[from], state.keyframes[to]);
-  kind = likeliest_kind(pose_residual(found.pose - vector_of(measured.start_from_end)),
-                        noise_of(measured, noise));
+  kind = likeliest_kind(residual(state, measured), noise_of(measured, noise));
+}
+
+Eigen::Vector3d OdometryFactor::residual(const State& state,
+                                         const CorrectedMotion& measured) const {
+  const Eigen::Vector3d found = relative_pose(state.keyframes[from], state.keyframes[to]);
+  return pose_residual(found - vector_of(measured.start_from_end));
+}
+
+Eigen::Matrix3d OdometryFactor::root_information(const CorrectedMotion& measured,
+                                                 const OdometryNoise& noise) const {
+  if (is_cut) return Eigen::Matrix3d::Identity() / kCutSigma;
+  const Eigen::LLT<Eigen::Matrix3d> covariance{covariance_of(kind, noise_of(measured, noise)) +
+                                               unmeasured_covariance(unmeasured_m)};
+  return covariance.matrixL().solve(Eigen::Matrix3d::Identity());
 }
 
 MixtureNoise OdometryFactor::noise_of(const CorrectedMotion& measured,
@@ -172,9 +195,10 @@ MixtureNoise OdometryFactor::noise_of(const CorrectedMotion& measured,
 
 double OdometryFactor::cost(const State& state, const OdometryNoise& noise,
                             const OdometryScale& scale) const {
-  const double chi2 = linearise(state, noise, scale).residual.squaredNorm();
+  const CorrectedMotion measured = moved(state, noise, scale);
+  const double chi2 = (root_information(measured, noise) * residual(state, measured)).squaredNorm();
   if (is_cut || kind == MotionKind::kRolling) return chi2;
-  const MixtureNoise mixture = noise_of(moved(state, noise, scale), noise);
+  const MixtureNoise mixture = noise_of(measured, noise);
   const auto cost_of = [&](MotionKind of) {
     return penalty(of) + log_determinant(Eigen::LLT<Eigen::Matrix3d>{
                              covariance_of(of, mixture) + unmeasured_covariance(unmeasured_m)});
@@ -187,14 +211,8 @@ LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& 
   const CorrectedMotion measured = moved(state, noise, scale);
   LinearFactor linear;
   const Relative found = relative(state.keyframes[from], state.keyframes[to]);
-  const Eigen::Vector3d residual = pose_residual(found.pose - vector_of(measured.start_from_end));
-  Eigen::Matrix3d root = Eigen::Matrix3d::Identity() / kCutSigma;
-  if (!is_cut) {
-    const Eigen::LLT<Eigen::Matrix3d> covariance{covariance_of(kind, noise_of(measured, noise)) +
-                                                 unmeasured_covariance(unmeasured_m)};
-    root = covariance.matrixL().solve(Eigen::Matrix3d::Identity());
-  }
-  linear.residual = root * residual;
+  const Eigen::Matrix3d root = root_information(measured, noise);
+  linear.residual = root * pose_residual(found.pose - vector_of(measured.start_from_end));
   LinearFactor::Jacobian jacobian_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
   if (!is_cut)
     jacobian_calibration.leftCols<kOdometryTerms>() = -root * measured.jacobian_calibration;
@@ -214,13 +232,22 @@ bool ScanFactor::normalise_shares() {
   return true;
 }
 
+Eigen::Vector3d ScanFactor::residual(const State& state) const {
+  Eigen::Vector3d residual = Eigen::Vector3d::Zero();
+  for (const Reference& reference : references) {
+    const Se2 expected = state.keyframes[reference.keyframe] * reference.reference_from_keyframe;
+    residual += reference.share * relative_pose(expected, state.keyframes[keyframe]);
+  }
+  return root_information * residual;
+}
+
 void ScanFactor::reweigh(const State& state) {
-  const double chi2 = linearise(state).residual.squaredNorm() / (weight * weight);
+  const double chi2 = residual(state).squaredNorm();
   weight = std::min(1.0, 2.0 * kLoopKernel / (kLoopKernel + chi2));
 }
 
 double ScanFactor::cost(const State& state) const {
-  return linearise(state).residual.squaredNorm() + kLoopKernel * squared(1.0 - weight);
+  return squared(weight) * residual(state).squaredNorm() + kLoopKernel * squared(1.0 - weight);
 }
 
 LinearFactor ScanFactor::linearise(const State& state) const {

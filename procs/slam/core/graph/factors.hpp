@@ -99,6 +99,9 @@ struct OdometryFactor {
   CorrectedMotion moved(const State& state, const OdometryNoise& noise,
                         const OdometryScale& scale) const;
   MixtureNoise noise_of(const CorrectedMotion& measured, const OdometryNoise& noise) const;
+  Eigen::Vector3d residual(const State& state, const CorrectedMotion& measured) const;
+  Eigen::Matrix3d root_information(const CorrectedMotion& measured,
+                                   const OdometryNoise& noise) const;
 };
 
 /// A scan that was matched with walls which other keyframes have seen: the keyframe's pose relative
@@ -128,6 +131,10 @@ struct ScanFactor {
 
   /// chi^2 with its weight, and of a loop what the weight costs.
   double cost(const State& state) const;
+
+ private:
+  /// Whitened, without the weight.
+  Eigen::Vector3d residual(const State& state) const;
 };
 
 /// A marker, measured from a keyframe.

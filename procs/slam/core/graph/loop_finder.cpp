@@ -134,9 +134,9 @@ bool LoopFinder::is_convincing(const ScanMatch& match) const {
 /// neighbour, the error is bounded by that loop's and the drift since: consistent loops support
 /// each other (Mangelson et al. 2018), and one that contradicts them exceeds the gate sooner.
 Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& search) const {
-  const auto is_near = [&old](const Confirmed& confirmed) {
-    return confirmed.submap + old.num_keyframes() >= old.first_keyframe() &&
-           confirmed.submap <= old.first_keyframe() + old.num_keyframes();
+  const auto is_near = [&old](const Found& confirmed) {
+    return confirmed.loop.submap + old.num_keyframes() >= old.first_keyframe() &&
+           confirmed.loop.submap <= old.first_keyframe() + old.num_keyframes();
   };
   const auto last = std::find_if(confirmed_.rbegin(), confirmed_.rend(), is_near);
   const Eigen::Matrix3d covariance = search.covariance_against(old.first_keyframe());
@@ -149,9 +149,8 @@ Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& s
 }
 
 /// A degenerate match does not bound the drift along its weak direction.
-void LoopFinder::note_confirmed(const Found& found, const Eigen::Vector3d& off) {
-  if (!found.loop.match.observed.is_degenerate)
-    confirmed_.push_back({found.loop.submap, found.keyframe, off});
+void LoopFinder::note_confirmed(const Found& found) {
+  if (!found.loop.match.observed.is_degenerate) confirmed_.push_back(found);
 }
 
 std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Points& points,
@@ -168,14 +167,14 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
   if (!loop) return {};
   const Se2 map_from_base = state.keyframes[old->first_keyframe()] * loop->match.map_from_base;
   const Eigen::Vector3d off = pose_difference(map_from_base, search.map_from_base);
-  const Found found{keyframe, *loop, chi2(off, covariance_in(*old, search))};
-  const bool is_surprise = found.chi2 > config_.gate;
+  const Found found{keyframe, *loop, off};
+  const bool is_surprise = chi2(off, covariance_in(*old, search)) > config_.gate;
   if (is_surprise && !is_convincing(loop->match)) return {};
   const bool is_close =
       off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad;
   if (is_surprise || !is_close) return confirmed_pair(found, map_from_base, search);
   candidate_.reset();
-  note_confirmed(found, off);
+  note_confirmed(found);
   return {found};
 }
 
@@ -194,7 +193,7 @@ std::vector<LoopFinder::Found> LoopFinder::confirmed_pair(const Found& found,
   if (candidate_ && agrees(*candidate_)) {
     const Found first = candidate_->found;
     candidate_.reset();
-    note_confirmed(found, pose_difference(map_from_base, search.map_from_base));
+    note_confirmed(found);
     return {first, found};
   }
   candidate_ = {found, map_from_base * search.map_from_base.inverse(), search.map_from_base};

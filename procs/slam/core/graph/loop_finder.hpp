@@ -68,7 +68,7 @@ class LoopFinder {
   struct Found {
     std::size_t keyframe{0};  ///< whose scan was matched
     LoopMatch loop{};
-    double chi2{0.0};  ///< of the match against the estimated pose
+    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus estimated pose, then
   };
 
   /// Loops to close: none, one, or a pair that agrees, whose first one was found at an earlier
@@ -95,16 +95,9 @@ class LoopFinder {
     Se2 map_from_base{};  ///< as estimated
   };
 
-  /// A loop that was closed.
-  struct Confirmed {
-    std::size_t submap{0};                         ///< its first keyframe
-    std::size_t keyframe{0};                       ///< that was matched with it
-    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus estimated pose, then
-  };
-
   std::vector<Found> confirmed_pair(const Found& found, const Se2& map_from_base,
                                     const LoopSearch& search);
-  void note_confirmed(const Found& found, const Eigen::Vector3d& off);
+  void note_confirmed(const Found& found);
   Eigen::Matrix3d covariance_in(const Submap& old, const LoopSearch& search) const;
   const Submap* nearest_submap(const LoopSearch& search, const std::deque<Submap>& submaps,
                                const State& state) const;
@@ -120,8 +113,8 @@ class LoopFinder {
   /// Cache of submaps' search fields, by first keyframe; the most recently used one is last.
   std::deque<std::pair<std::size_t, CorrelativeField>> fields_{};
   std::optional<Candidate> candidate_{};
-  double candidate_age_m_{0.0};        ///< driven since the candidate
-  std::deque<Confirmed> confirmed_{};  ///< at recent keyframes, oldest first
+  double candidate_age_m_{0.0};    ///< driven since the candidate
+  std::deque<Found> confirmed_{};  ///< loops that were closed, at recent keyframes, oldest first
   int num_ambiguous_{0};
 };
 

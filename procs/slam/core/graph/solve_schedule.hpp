@@ -42,8 +42,8 @@ class SolveSchedule {
   static constexpr int kSteps = 12;  ///< of a solution, at most
 
  private:
-  static constexpr std::size_t kEvery = 10;  ///< keyframes
-  static constexpr std::size_t kShare = 40;  ///< a share of all, of loops that contradict the pose
+  static constexpr std::size_t kEvery = 10;   ///< keyframes
+  static constexpr std::size_t kShare = 200;  ///< a share of all, of loops that contradict the pose
   static constexpr std::size_t kRoutineShare = 8;  ///< and of loops that only confirm it
   static constexpr double kConverged = 5e-3;       ///< [m, rad] less is not worth a further step
 

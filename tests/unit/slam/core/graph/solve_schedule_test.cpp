@@ -52,13 +52,13 @@ TEST(SolveSchedule, LoopsThatOnlyConfirmWaitLonger) {
   const auto wait = [](bool contradicts_pose) {
     SolveSchedule schedule;
     schedule.note_loop(true);
-    EXPECT_TRUE(schedule.is_step_due(1000));
+    EXPECT_TRUE(schedule.is_step_due(4000));
     schedule.note_step(0.0);
     schedule.note_loop(contradicts_pose);
-    return keyframes_until_due(schedule, 1000, 1000);
+    return keyframes_until_due(schedule, 4000, 1000);
   };
-  EXPECT_EQ(wait(true), 25);    // a fortieth of all
-  EXPECT_EQ(wait(false), 142);  // an eighth
+  EXPECT_EQ(wait(true), 20);    // 1/200 of all
+  EXPECT_EQ(wait(false), 571);  // an eighth of all, which grow meanwhile
 }
 
 }  // namespace
