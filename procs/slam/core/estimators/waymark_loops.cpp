@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole graph: loops, the trajectory, and the map drawn along it.
-#include "common/geometry/chi2.hpp"
+#include "common/geometry/information.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
 namespace waymark {
@@ -18,6 +18,15 @@ Eigen::Matrix3d covariance_against_old(const Eigen::Matrix3d& in_map,
   Eigen::Matrix3d covariance = kLoopCovarianceMargin * smaller_covariance(drifted, in_map);
   covariance.diagonal() += Eigen::Vector3d{kLoopSlack_m, kLoopSlack_m, kLoopSlack_rad}.cwiseAbs2();
   return covariance;
+}
+
+/// What the match does not observe contradicts nothing.
+/// @param covariance  of the estimated pose, map axes
+bool contradicts(const LoopFinder::Found& found, const Se2& map_from_submap,
+                 const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d information =
+      in_axes(map_from_submap.rotation(), found.loop.match.observed.information);
+  return found.off.dot(with_more_noise(information, covariance) * found.off) > kLoopContradicts;
 }
 
 }  // namespace
@@ -41,7 +50,8 @@ void WaymarkEstimator::close_loops(const Points& points) {
       const Submap* submap = submaps_.find(found.loop.submap);
       if (submap == nullptr || graph_.is_removed(found.keyframe)) continue;  // forgotten meanwhile
       add_scan_factor(found.keyframe, *submap, found.loop.match, true);
-      solve_schedule_.note_loop(chi2(found.off, in_map) > kLoopContradicts);
+      solve_schedule_.note_loop(
+          contradicts(found, graph_.state().keyframes[found.loop.submap], in_map));
       note_reason(EstimateReason::kLoop);
     }
   }

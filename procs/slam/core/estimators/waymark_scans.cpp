@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the graph estimator uses scans.
+#include "common/geometry/information.hpp"
 #include "slam/core/estimators/waymark.hpp"
 #include "slam/core/graph/map_fit.hpp"
 #include "slam/core/registration/wide_search.hpp"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 
 namespace waymark {
-namespace {
-
-/// Information of a measurement whose covariance grows by `noise`; it may be singular.
-Eigen::Matrix3d with_more_noise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& noise) {
-  if (noise.isZero(0.0)) return information;
-  const Eigen::Matrix3d reduced =
-      (Eigen::Matrix3d::Identity() + information * noise).inverse() * information;
-  return 0.5 * (reduced + reduced.transpose());
-}
-
-}  // namespace
 
 WaymarkEstimator::SubmapPrediction WaymarkEstimator::in_submap(const Prediction& prediction,
                                                                const Se2& map_from_submap) {
