@@ -8,7 +8,7 @@ the way that it keeps: 5 MB an hour in slam, 30 MB in the viewer until its paths
 added, no file may appear in the run's folder, and /tmp must be as before at the end. The live page is read at every look.
 No part of tests/run.sh.
 
-usage: tests/simulation/soak.py [--hours H] [--lockstep] [--every-s S] [--out DIR]
+usage: tests/simulation/soak.py [--hours H] [--lockstep] [--camera-hz R] [--every-s S] [--out DIR]
 """
 import argparse
 import collections
@@ -41,6 +41,8 @@ waypoints = [{{ x_m = 9.0 }}, {{ x_m = 1.0 }}]
 laps = {laps}
 [lidar_noise]
 dropout_probability = 0.02
+[robot.camera]
+rate_hz = {camera_hz}
 """
 WAY_MB_PER_HOUR = {"waymark-slam": 5.0, "waymark-viewer": 30.0}
 
@@ -90,13 +92,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--hours", type=float, default=2.0, help="of message time (2.0)")
     parser.add_argument("--lockstep", action="store_true", help="as fast as the machine can")
+    parser.add_argument("--camera-hz", type=float, default=10.0, help="frames a second; fewer make a long run of lockstep short (10)")
     parser.add_argument("--every-s", type=float, default=60.0, help="between two looks at the processes (60)")
     parser.add_argument("--out", type=pathlib.Path, help="of the run, with soak.json (default: a temporary folder)")
     options = parser.parse_args()
     os.environ.pop("LCM_DEFAULT_URL", None)
     folder = options.out or pathlib.Path(tempfile.mkdtemp(prefix="waymark-soak-"))
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "soak.toml").write_text(SCENARIO.format(laps=max(1, round(options.hours * 3600 / LAP_S))))
+    (folder / "soak.toml").write_text(SCENARIO.format(
+        laps=max(1, round(options.hours * 3600 / LAP_S)), camera_hz=options.camera_hz))
     before = set(os.listdir("/tmp"))
     address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
     command = [SOURCE / "deploy/launch.sh", folder / "soak.toml", "--out", folder / "run", "--no-images", "--http", address]
