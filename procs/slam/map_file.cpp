@@ -286,7 +286,7 @@ MapFile read_map_file(const std::filesystem::path& file) {
     throw SetupError{fmt::format("map '{}' {}", file.string(), what)};
   };
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) fail("is not there, or no file");
+  if (!std::filesystem::is_regular_file(file, ignored)) fail("is not there, or is a folder");
   LogReader reader{file};
   MapBuilder builder;
   while (const auto message = reader.next()) {

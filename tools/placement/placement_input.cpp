@@ -135,6 +135,11 @@ void read_map_source(const fs::path& config, PlacementInput& input) {
 PlacementInput read_placement_input(const fs::path& source, const fs::path& config) {
   PlacementInput input;
   std::error_code ignored;
+  if (!fs::exists(source, ignored)) {
+    throw InputError{source.string() +
+                     ": is not there; give the folder of a run or of its row, or "
+                     "a map file"};
+  }
   if (fs::is_directory(source, ignored)) {
     input.source = row_in(source);
     read_row(config, input);

@@ -3,6 +3,8 @@
 
 #include "common/command_line/command_line.hpp"
 
+#include <fmt/format.h>
+
 namespace waymark {
 
 std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options) {
@@ -30,8 +32,10 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
   app.add_option("--print-config", options.print_config,
                  "print the effective value of this key alone, e.g. run.seed, and exit");
   app.add_flag("--check", options.check,
-               "check the configuration, the map to load, and (without --log) that the LCM "
-               "network can be joined, and exit");
+               fmt::format("check the configuration{}, and{} that the LCM network can be joined, "
+                           "and exit",
+                           option_set.maps ? ", the map to load" : "",
+                           option_set.log ? " (without --log)" : ""));
   app.add_option("--lcm-url", options.lcm_url,
                  "LCM network (default: $LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
   app.add_flag(

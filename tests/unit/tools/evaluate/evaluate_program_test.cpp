@@ -32,7 +32,9 @@ TEST(EvaluateProgram, PlacementNamesTheProgramThatWasCalled) {
     EXPECT_NE(std::system(command.c_str()), 0);
     std::string line;
     std::getline(std::ifstream{said}, line);
-    EXPECT_EQ(line, program + std::string{": map '/no/such' is not there, or no file"});
+    EXPECT_EQ(line,
+              program + std::string{": /no/such: is not there; give the folder of a run or of "
+                                    "its row, or a map file"});
   }
 }
 
