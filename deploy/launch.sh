@@ -86,6 +86,8 @@ prepare() {
   need_programs waymark-sim "${others[@]/#/waymark-}"
   checked=$(mktemp -d)  # configurations that programs have accepted
   trap 'rm -rf -- "$checked"' EXIT
+  trap 'exit 130' INT  # a trap waits for the program that runs
+  trap 'exit 143' TERM
   check_scenario
   is_record_only || check_slam
   [[ -n $lcm_url ]] || take_port

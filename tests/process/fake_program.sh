@@ -7,6 +7,7 @@
 #   FAKE_NAME_fails=WORDS NAME ends with code 1, as a replay, too, when its arguments have these words
 #   FAKE_NAME_kills=WORDS the same, and NAME kills whoever called it
 #   FAKE_NAME_refuses=WORDS NAME --check ends with code 2 when its arguments have these words
+#   FAKE_NAME_thinks=S    NAME --check takes so many seconds
 #   FAKE_NAME_replayed=CODE a replay comes to its end with this code
 #   FAKE_viewer_mute=1    a replay leaves no map
 #   FAKE_NAME_stays=1     NAME ignores both the end of the run and SIGINT
@@ -38,6 +39,7 @@ fi
 case " $* " in
   *" --check "*)
     [[ -z $(setting refuses) || " $* " != *"$(setting refuses)"* ]] || { echo "$name refuses" >&2 && exit 2; }
+    [[ -z $(setting thinks) ]] || { echo $$ >>"$FAKE_DIR/pids" && sleep "$(setting thinks)"; }
     exit ;;
   *" --list "*) echo wrong_ids && exit ;;
   *" --variant "*) touch "$(argument --out "$@")"/{run.lcm,robot.toml} && exit ;;

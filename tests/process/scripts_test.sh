@@ -278,6 +278,16 @@ signals_stop_everything() {
   done
 }
 
+a_signal_while_settings_are_checked_leaves_nothing() {
+  local code=0
+  FAKE_slam_thinks=1 "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+  wait_until test -e "$work/pids"
+  kill -TERM $!
+  wait $! || code=$?
+  ((code == 143)) || fail "exit code $code"
+  expect_nothing_left
+}
+
 # A process that stays would take 7 s to be killed.
 a_second_signal_ends_it_at_once() {
   FAKE_viewer_stays=1 FAKE_sim_seconds=30 env --default-signal=INT "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
