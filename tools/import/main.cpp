@@ -98,13 +98,14 @@ Command add_carmen(Command& app, Options& options) {
                     {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}}, "of ranges (default: m)");
   carmen
       .add_option("--first-angle-deg", options.first_angle_deg,
-                  "beam 0 (default: -90 for FLASER and RLASER, else as the line says)")
+                  "beam 0 (default: as the line says; of FLASER and RLASER so that the middle beam "
+                  "looks ahead)")
       .check(angle_deg());
   carmen
       .add_option(
           "--angle-step-deg", options.angle_step_deg,
-          "between beams (default: for FLASER and RLASER 1 with 180 and 181 beams, 0.5 with "
-          "360 and 361, else as the line says)")
+          "between beams (default: as the line says; of FLASER and RLASER that with which walls "
+          "are straight, 180 degrees in all where they do not decide)")
       .check(angle_deg());
   return carmen;
 }
