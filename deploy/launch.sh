@@ -88,6 +88,7 @@ prepare() {
   trap 'rm -rf -- "$checked"' EXIT
   trap 'exit 130' INT  # a trap waits for the program that runs
   trap 'exit 143' TERM
+  trap 'exit 129' HUP
   check_scenario
   is_record_only || check_slam
   [[ -n $lcm_url ]] || take_port

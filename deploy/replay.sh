@@ -95,12 +95,12 @@ clear_old_results() {
 
 # run NAME ARGUMENTS...: one program; its words go to the log file and, being progress, to the terminal; what
 # the replay took and counted to a report. One that has come to the end of a damaged log, and so has written
-# one, has made what can be made of it.
+# one, has made what can be made of it. Should this script be killed, the kernel ends the program.
 run() {
   local name=$1 program=$bin_dir/waymark-$1 log_file=$logs/$row.$1.log report=$folder/$1.report code=0
   shift
   # A pipe, for a process substitution may still be writing when the log is read.
-  { "$program" "$@" --report "$report" 2>&1 >&3 | tee -i "$log_file" >&2; } 3>&1 || code=$?
+  { setpriv --pdeathsig TERM "$program" "$@" --report "$report" 2>&1 >&3 | tee -i "$log_file" >&2; } 3>&1 || code=$?
   ((code == 0)) && return
   ((code == kExitFailed)) && [[ -f $report ]] && incomplete+=("$log_file") && return
   die "$code" "$name ended with code $code; its log is $log_file"

@@ -8,6 +8,7 @@
 #   FAKE_NAME_kills=WORDS the same, and NAME kills whoever called it
 #   FAKE_NAME_refuses=WORDS NAME --check ends with code 2 when its arguments have these words
 #   FAKE_NAME_thinks=S    NAME --check takes so many seconds
+#   FAKE_NAME_replays=S   a replay takes so many seconds
 #   FAKE_NAME_replayed=CODE a replay comes to its end with this code
 #   FAKE_viewer_mute=1    a replay leaves no map
 #   FAKE_NAME_stays=1     NAME ignores both the end of the run and SIGINT
@@ -61,6 +62,7 @@ case " $* " in
     exit ;;
   *" --dump-robot-config "*) echo "[robot]" && exit ;;
   *" --log "*) # replay
+    [[ -z $(setting replays) ]] || { echo $$ >>"$FAKE_DIR/pids" && exec sleep "$(setting replays)"; }
     echo "replayed" >&2
     echo '{"messages": 12, "wall_s": 0.5}' >"$(argument --report "$@")"
     echo "$*" >"$FAKE_DIR/$name.replay"

@@ -279,13 +279,26 @@ signals_stop_everything() {
 }
 
 a_signal_while_settings_are_checked_leaves_nothing() {
-  local code=0
-  FAKE_slam_thinks=1 "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+  local signal code
+  for signal in INT:130 TERM:143 HUP:129; do
+    rm -f "$work/pids"
+    FAKE_slam_thinks=1 env --default-signal=INT "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+    wait_until test -e "$work/pids"
+    kill "-${signal%:*}" $!
+    code=0
+    wait $! || code=$?
+    ((code == ${signal#*:})) || fail "exit code $code after SIG${signal%:*}"
+    expect_nothing_left
+  done
+}
+
+killed_replay_leaves_nothing() {
+  touch "$work/run.lcm" "$work/robot.toml"
+  FAKE_slam_replays=90 "$deploy/replay.sh" "$work/run.lcm" --estimator odometry >"$output" 2>&1 &
   wait_until test -e "$work/pids"
   kill -TERM $!
-  wait $! || code=$?
-  ((code == 143)) || fail "exit code $code"
-  expect_nothing_left
+  wait $! || true
+  wait_until nothing_left
 }
 
 # A process that stays would take 7 s to be killed.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -50,12 +51,13 @@ std::vector<double> possible_steps_rad(std::size_t num_beams) {
   return steps_deg;
 }
 
-std::vector<Window> windows_of(std::span<const std::vector<double>> scans, std::size_t num_beams) {
+std::vector<Window> windows_of(std::span<const std::span<const double>> scans,
+                               std::size_t num_beams) {
   const std::size_t size = std::max(kFewestBeams, num_beams / kWindows);
   std::vector<Window> windows;
-  for (const std::vector<double>& ranges_m : scans) {
+  for (const std::span<const double> ranges_m : scans) {
     for (std::size_t i = 0; i + size <= ranges_m.size(); i += size) {
-      const Window window{ranges_m.data() + i, size};
+      const Window window = ranges_m.subspan(i, size);
       if (may_be_wall(window)) windows.push_back(window);
     }
   }
@@ -85,7 +87,7 @@ double first_angle_rad(std::size_t num_beams, double step_rad) {
   return radians(std::round(degrees(-0.5 * step_rad * static_cast<double>(num_beams - 1))));
 }
 
-std::optional<BeamAngles> straightest_angles(std::span<const std::vector<double>> scans,
+std::optional<BeamAngles> straightest_angles(std::span<const std::span<const double>> scans,
                                              std::size_t num_beams) {
   const std::optional<BeamAngles> conventional = conventional_angles(num_beams);
   const std::vector<Window> windows = windows_of(scans, num_beams);

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace waymark {
 
@@ -25,7 +24,7 @@ double first_angle_rad(std::size_t num_beams, double step_rad);
 /// clearly better than conventional_angles(); these else. nullopt where neither is known: scans
 /// with few walls, or none, of an unusual number of beams.
 /// @param scans  ranges [m] of scans of num_beams; what is not finite and positive is no range
-std::optional<BeamAngles> straightest_angles(std::span<const std::vector<double>> scans,
+std::optional<BeamAngles> straightest_angles(std::span<const std::span<const double>> scans,
                                              std::size_t num_beams);
 
 }  // namespace waymark

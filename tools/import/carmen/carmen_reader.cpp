@@ -36,14 +36,7 @@ CarmenTimes line_times(const Line& line) {
   return {timestamp_from_seconds(line.time_s), timestamp_from_seconds(line.logger_time_s)};
 }
 
-/// Some hundred of the scans, evenly over the log.
-std::vector<std::vector<double>> every_few(std::span<const std::vector<double>> scans) {
-  constexpr std::size_t kEnough = 300;
-  std::vector<std::vector<double>> some;
-  for (std::size_t i = 0; i < scans.size(); i += 1 + scans.size() / kEnough)
-    some.push_back(scans[i]);
-  return some;
-}
+constexpr std::size_t kScansForAngles = 300;  // evenly over the log
 
 class CarmenReader {
  public:
@@ -192,9 +185,10 @@ void CarmenReader::note_assumptions() {
 /// @throws SetupError when they are unknown.
 void CarmenReader::complete_angles() {
   const auto& [given_first_rad, given_step_rad] = options_.beams;
-  std::map<std::size_t, std::vector<std::vector<double>>> scans_by_size;
+  std::map<std::size_t, std::vector<std::span<const double>>> scans_by_size;
   for (const auto& scan : scans_)
-    if (!scan.line.angles) scans_by_size[scan.line.ranges_m.size()].push_back(scan.line.ranges_m);
+    if (!scan.line.angles)
+      scans_by_size[scan.line.ranges_m.size()].emplace_back(scan.line.ranges_m);
   if (scans_by_size.empty()) return;
   const auto& [num_beams, scans] = *std::ranges::max_element(
       scans_by_size, {}, [](const auto& some) { return some.second.size(); });
@@ -202,7 +196,10 @@ void CarmenReader::complete_angles() {
   if (given_step_rad) {
     angles = {first_angle_rad(num_beams, *given_step_rad), *given_step_rad};
   } else {
-    const auto found = straightest_angles(every_few(scans), num_beams);
+    std::vector<std::span<const double>> some;
+    for (std::size_t i = 0; i < scans.size(); i += 1 + scans.size() / kScansForAngles)
+      some.push_back(scans[i]);
+    const auto found = straightest_angles(some, num_beams);
     if (!found) {
       throw SetupError{fmt::format(
           "the lines do not say the angles of their {} beams, and walls do not show them: give "

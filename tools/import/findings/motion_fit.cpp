@@ -85,12 +85,8 @@ double best_turn_rad(std::span<const Pair> pairs, const Se2& base_from_lidar) {
                       static_cast<double>(kAside) * aside);
 }
 
-LidarScan mirrored(LidarScan scan) {
-  for (double& angle_rad : scan.angles_rad)
-    angle_rad = -angle_rad;
-  std::ranges::reverse(scan.angles_rad);
-  std::ranges::reverse(scan.ranges_m);
-  return scan;
+Se2 mirrored(const Se2& pose) {
+  return {pose.x(), -pose.y(), -pose.theta()};
 }
 
 }  // namespace
@@ -146,11 +142,10 @@ bool turns_against_odometry(const ImportedLog& log, const BodyBeams& body) {
   if (pairs.size() < kFewestPairs) return false;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
   const double as_it_is_m = mean_misfit_m(pairs, base_from_lidar, 1.0, 0.0);
-  for (Pair& pair : pairs) {
-    pair.before = mirrored(std::move(pair.before));
-    pair.now = mirrored(std::move(pair.now));
-  }
-  return mean_misfit_m(pairs, base_from_lidar, 1.0, 0.0) < kMuchBetter * as_it_is_m;
+  // Scans that are mirrored fit a motion as they are themselves fit the mirrored one.
+  for (Pair& pair : pairs)
+    pair.motion = mirrored(pair.motion);
+  return mean_misfit_m(pairs, mirrored(base_from_lidar), 1.0, 0.0) < kMuchBetter * as_it_is_m;
 }
 
 }  // namespace waymark

@@ -48,13 +48,6 @@ struct Relative {
   Eigen::Matrix3d jacobian_to{Eigen::Matrix3d::Zero()};
 };
 
-Eigen::Vector3d relative_pose(const Se2& map_from_from, const Se2& map_from_to) {
-  Eigen::Vector3d pose;
-  pose << map_from_from.inverse() * map_from_to.translation(),
-      angle_difference(map_from_to.theta(), map_from_from.theta());
-  return pose;
-}
-
 Relative relative(const Se2& map_from_from, const Se2& map_from_to) {
   const Se2 from_from_to = map_from_from.inverse() * map_from_to;
   Relative result;
@@ -176,7 +169,7 @@ void OdometryFactor::choose_kind(const State& state, const OdometryNoise& noise,
 
 Eigen::Vector3d OdometryFactor::residual(const State& state,
                                          const CorrectedMotion& measured) const {
-  const Eigen::Vector3d found = relative_pose(state.keyframes[from], state.keyframes[to]);
+  const Eigen::Vector3d found = relative(state.keyframes[from], state.keyframes[to]).pose;
   return pose_residual(found - vector_of(measured.start_from_end));
 }
 
@@ -236,7 +229,7 @@ Eigen::Vector3d ScanFactor::residual(const State& state) const {
   Eigen::Vector3d residual = Eigen::Vector3d::Zero();
   for (const Reference& reference : references) {
     const Se2 expected = state.keyframes[reference.keyframe] * reference.reference_from_keyframe;
-    residual += reference.share * relative_pose(expected, state.keyframes[keyframe]);
+    residual += reference.share * relative(expected, state.keyframes[keyframe]).pose;
   }
   return root_information * residual;
 }

@@ -27,6 +27,12 @@ std::vector<std::vector<double>> scans_of(std::size_t num_beams, const BeamAngle
   return scans;
 }
 
+std::optional<BeamAngles> found_in(const std::vector<std::vector<double>>& scans,
+                                   std::size_t num_beams) {
+  return straightest_angles(std::vector<std::span<const double>>{scans.begin(), scans.end()},
+                            num_beams);
+}
+
 struct Layout {
   std::size_t num_beams;
   double first_deg;
@@ -49,7 +55,7 @@ TEST_P(BeamAnglesOf, AreThoseWithWhichWallsAreStraight) {
   for (const Walls walls : {Walls::kRoom, Walls::kCorridor}) {
     const auto scans = scans_of(num_beams, {radians(first_deg), radians(step_deg)}, walls);
 
-    const auto found = straightest_angles(scans, num_beams);
+    const auto found = found_in(scans, num_beams);
 
     ASSERT_TRUE(found);
     EXPECT_NEAR(degrees(found->first_rad), first_deg, 1e-9);
@@ -59,15 +65,15 @@ TEST_P(BeamAnglesOf, AreThoseWithWhichWallsAreStraight) {
 
 TEST(BeamAngles, FollowTheConventionWhereNoWallShowsThem) {
   const std::vector<std::vector<double>> nothing(200, std::vector<double>(181, 81.91));
-  EXPECT_EQ(straightest_angles(nothing, 181)->step_rad, radians(1.0));
-  EXPECT_FALSE(straightest_angles(nothing, 90));
+  EXPECT_EQ(found_in(nothing, 181)->step_rad, radians(1.0));
+  EXPECT_FALSE(found_in(nothing, 90));
 }
 
 TEST(BeamAngles, AreNotFoundFromWhatADriverWritesForNoReturn) {
   auto scans = scans_of(361, {radians(-90.0), radians(0.5)});
   for (std::size_t i = 0; i < scans.size(); ++i)
     std::fill(scans[i].begin() + 40, scans[i].end(), 5.6);
-  EXPECT_EQ(straightest_angles(scans, 361)->step_rad, radians(0.5));
+  EXPECT_EQ(found_in(scans, 361)->step_rad, radians(0.5));
 }
 
 }  // namespace
