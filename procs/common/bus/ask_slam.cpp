@@ -12,9 +12,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kPatience{2000};
+constexpr milliseconds kReplyTimeout{2000};
 constexpr milliseconds kPoll{50};
-constexpr milliseconds kSendAgain{300};  // datagrams get lost; the same id acts once
+constexpr milliseconds kResendPeriod{300};  // datagrams get lost
 
 }  // namespace
 
@@ -27,13 +27,13 @@ const std::map<std::string, std::int8_t>& command_modes() {
 
 std::optional<reply_t> ask_slam(const std::string& lcm_url, const ChannelNames& names,
                                 command_t command) {
-  std::random_device random;  // no two commands have one id
+  std::random_device random;
   command.command_id = static_cast<std::int64_t>((std::uint64_t{random()} << 32U) | random());
   Bus bus{lcm_url, {{std::string{channels::kSlamReply.name}}}, LargeMessages::kRefused, names};
   const auto start = steady_clock::now();
-  auto last_sent = start - kSendAgain;
-  while (steady_clock::now() - start < kPatience) {
-    if (steady_clock::now() - last_sent >= kSendAgain) {
+  auto last_sent = start - kResendPeriod;
+  while (steady_clock::now() - start < kReplyTimeout) {
+    if (steady_clock::now() - last_sent >= kResendPeriod) {
       bus.publish(encode(channels::kSlamCommand, command));
       last_sent = steady_clock::now();
     }

@@ -12,16 +12,15 @@
 
 namespace waymark {
 
-/// Standard deviations of a pose that a person has pointed at in a map.
+/// Standard deviations of a pose that a person has set by pointing at a map.
 inline constexpr double kPointedSigma_m = 0.1;
 inline constexpr double kPointedSigma_rad = 0.1;
 
-/// MODE_* by the name that people use.
+/// command_t::MODE_* by name: "map", "localise", "extend".
 const std::map<std::string, std::int8_t>& command_modes();
 
-/// Gives the command an id of its own and sends it again and again until slam answers; it acts
-/// once.
-/// @return nothing when no answer comes within 2 s.
+/// Gives the command a unique id and re-sends it until slam answers; slam executes it once.
+/// @return nullopt when no answer comes within 2 s.
 /// @throws SetupError as Bus does.
 std::optional<reply_t> ask_slam(const std::string& lcm_url, const ChannelNames& names,
                                 command_t command);

@@ -27,7 +27,7 @@ constexpr std::size_t kMaxQueuedBytesPerChannel = std::size_t{16} << 20;
 constexpr std::size_t kMaxQueuedMessagesPerChannel = 10000;
 constexpr std::size_t kMaxLargePayloadBytes = std::size_t{4} << 20;
 constexpr int kHandleTimeout_ms = 50;
-// LCM's own queue only bridges the moments in which our thread is not scheduled.
+// LCM's own queue only has to cover the time in which the receiver thread is not scheduled.
 constexpr int kLcmQueueCapacity = 200;
 constexpr std::chrono::seconds kBetweenWarnings{10};
 constexpr const char* kMalformed = "datagrams rejected: no whole message of LCM";
@@ -42,7 +42,7 @@ SetupError no_network(const std::string& url) {
                     "\n  or set another --lcm-url (see docs/reference.md, \"No multicast route\")"};
 }
 
-/// Statuses and commands may come from everybody, acknowledgements from all in the lockstep.
+/// Several processes may publish statuses, commands, and, in lockstep, acknowledgements.
 bool has_one_publisher(std::string_view channel) {
   using namespace channels;
   return !channel.ends_with("_STATUS") && channel != kSlamCommand.name &&
@@ -84,7 +84,7 @@ class Bus::Implementation {
     if (group) {
       join(*group, url);
     } else if (!is_connected()) {
-      // A TCP server that is not there shows nowhere else, and waiting for it would abort.
+      // A missing TCP server is reported nowhere else, and waiting on its descriptor would abort.
       throw no_network(url);
     }
     receiver_ = std::thread{[this] {
@@ -124,7 +124,7 @@ class Bus::Implementation {
     }
     const std::string name{names_.on_network(message.channel)};
     if (name.empty()) throw std::logic_error{message.channel + ": has no name on this network"};
-    // The sender never learns of loss: lockstep and counters find it.
+    // UDP does not report loss: lockstep and counters detect it.
     lcm_publish(lcm_.get(), name.c_str(), message.payload.data(),
                 static_cast<unsigned>(message.payload.size()));
   }
@@ -155,23 +155,24 @@ class Bus::Implementation {
 
   static void on_receive(const lcm_recv_buf_t* buffer, const char* name, void* self) {
     if (buffer->data == nullptr) return;
-    // Nothing may be thrown through C.
+    // No exception may pass through C frames.
     try {
-      // liblcm 1.3.1 reports size -1 for a datagram without a channel end: too large.
+      // For a datagram whose channel name has no end liblcm 1.3.1 gives the size -1, which
+      // enqueue() rejects as too large.
       static_cast<Implementation*>(self)->enqueue(
           name, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size}, std::nullopt);
     } catch (...) {
     }
   }
 
-  /// @param sender  as far as it is known.
+  /// @param sender  known on UDP multicast only.
   void enqueue(std::string_view name, std::span<const std::uint8_t> bytes,
                const std::optional<Sender>& sender) {
     const std::lock_guard lock{mutex_};
     const auto now = std::chrono::steady_clock::now();
-    if (sender) owners_.hear(*sender, now);
+    if (sender) owners_.note_activity(*sender, now);
     const auto found = channels_of_.find(name);
-    if (found == channels_of_.end()) return;  // or a name without end, from a broken datagram
+    if (found == channels_of_.end()) return;
     if (bytes.size() > max_payload_bytes_) {
       counts_.add(found->second.front() + " rejected: too large", CountKind::kRejection);
       return;
@@ -192,7 +193,7 @@ class Bus::Implementation {
     switch (owners_.check(channel, sender, now)) {
       case ChannelOwners::Verdict::kAccepted:
         return true;
-      case ChannelOwners::Verdict::kSucceeds:
+      case ChannelOwners::Verdict::kNewOwner:
         counts_.add(channel + " has another publisher than before");
         return true;
       case ChannelOwners::Verdict::kRefused:
@@ -272,7 +273,7 @@ class Bus::Implementation {
 };
 
 void check_network(const std::string& url) {
-  // Without a subscription LCM would not try to listen.
+  // Without a subscription LCM would not join the network.
   const Bus bus{url, {{"CHECK"}}};
 }
 

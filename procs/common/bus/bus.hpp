@@ -22,7 +22,7 @@ enum class LargeMessages {
 
 /// Which publishers are accepted. Statuses and commands are accepted from all.
 enum class Publishers {
-  kAny,            ///< in lockstep: its ticks say which messages are theirs
+  kAny,            ///< in lockstep: a TICK lists the messages that belong to it
   kOnePerChannel,  ///< ChannelOwners; known on udpm and without large messages only
 };
 
@@ -35,15 +35,14 @@ void check_network(const std::string& url);
 
 /// Messages in and out over one LCM instance.
 ///
-/// A thread of its own takes everything from LCM at once (LCM's queues drop the newest message when
-/// full), refuses what cannot be a message (size, time), and keeps a bounded queue per channel.
-/// What comes as multicast is received by ourselves (DatagramReceiver), without liblcm: what is no
-/// whole message in one datagram is refused there. Nothing is decoded here, and nothing is thrown
-/// through LCM's C frames. Messages carry our names
-/// of channels; only the network has those of [channels].
+/// A receiver thread empties LCM's queues (which drop the newest message when full), rejects
+/// messages of impossible size or time, and keeps a bounded queue per channel. UDP multicast is
+/// received without liblcm (DatagramReceiver), which accepts only messages that fit one datagram.
+/// Messages are not decoded here, and no exception passes through LCM's C frames. Message::channel
+/// is Waymark's name; the network uses the names of section [channels].
 class Bus {
  public:
-  /// @throws SetupError when there is no multicast route or the URL is not one, with the cure.
+  /// @throws SetupError when there is no multicast route or the URL is invalid; it says what to do.
   Bus(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
       LargeMessages large_messages = LargeMessages::kRefused, const ChannelNames& names = {},
       Publishers publishers = Publishers::kAny);

@@ -38,7 +38,7 @@ std::string key_of(std::string_view channel) {
   return key;
 }
 
-/// What liblcm takes for a name, without what it would take for a pattern.
+/// Names that liblcm accepts, without the characters of its subscription patterns.
 bool is_name(std::string_view text) {
   constexpr std::size_t kLongest = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
   return !text.empty() && text.size() <= kLongest && std::ranges::all_of(text, [](unsigned char c) {
@@ -82,7 +82,7 @@ void ChannelNames::check(Problems& problems) const {
       return earlier.fingerprint == at->fingerprint && on_network(earlier.channel) == name;
     });
     if (other == at) continue;
-    // Said of the one that has been configured.
+    // Report the channel that was renamed, not the one that has its default name.
     const bool is_usual = name == at->channel;
     const std::string_view said_of = is_usual ? other->channel : at->channel;
     const std::string_view sharing = is_usual ? at->channel : other->channel;

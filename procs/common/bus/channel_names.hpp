@@ -23,14 +23,14 @@ class ChannelNames {
   void describe(Fields& fields);
   void check(Problems& problems) const;
 
-  /// False for a channel that is only used where it has been given a name.
+  /// False for a channel of kNetworkOnceNamed that [channels] gives no name.
   bool uses(std::string_view channel) const { return !on_network(channel).empty(); }
 
-  /// @param channel  one of channels.hpp, or any other, which keeps its name.
+  /// @param channel  a channel of channels.hpp; any other name is returned as it is.
   std::string_view on_network(std::string_view channel) const;
 
-  /// The one of `candidates`, which all have the same name on the network, that a message of that
-  /// type is on; the first one when it is on none of them, to be refused there.
+  /// The channel among `candidates`, which share a name on the network, whose type has that
+  /// fingerprint; the first one if none has, and the message is then rejected there.
   static const std::string& of_type(const std::vector<std::string>& candidates,
                                     std::int64_t fingerprint);
 

@@ -5,9 +5,9 @@
 
 namespace waymark {
 
-void ChannelOwners::hear(const Sender& sender, Time now) {
+void ChannelOwners::note_activity(const Sender& sender, Time now) {
   for (auto& [channel, owner] : owners_)
-    if (owner.sender == sender) owner.heard = now;
+    if (owner.sender == sender) owner.last_active = now;
 }
 
 ChannelOwners::Verdict ChannelOwners::check(std::string_view channel, const Sender& sender,
@@ -15,24 +15,24 @@ ChannelOwners::Verdict ChannelOwners::check(std::string_view channel, const Send
   const auto [found, is_first] = owners_.try_emplace(std::string{channel}, Owner{sender, now});
   Owner& owner = found->second;
   if (owner.sender == sender) {
-    owner.heard = now;
+    owner.last_active = now;
     return Verdict::kAccepted;
   }
-  if (is_heard(owner.sender, now) && !precedes(sender, owner.sender)) {
+  if (is_active(owner.sender, now) && !precedes(sender, owner.sender)) {
     put_behind(sender, owner.sender);
     return Verdict::kRefused;
   }
   owner = {sender, now};
-  return Verdict::kSucceeds;
+  return Verdict::kNewOwner;
 }
 
 const Sender& ChannelOwners::owner_of(std::string_view channel) const {
   return owners_.find(channel)->second.sender;
 }
 
-bool ChannelOwners::is_heard(const Sender& sender, Time now) const {
+bool ChannelOwners::is_active(const Sender& sender, Time now) const {
   return std::ranges::any_of(owners_, [&](const auto& owned) {
-    return owned.second.sender == sender && now - owned.second.heard <= kSilence;
+    return owned.second.sender == sender && now - owned.second.last_active <= kSilence;
   });
 }
 

@@ -13,9 +13,9 @@
 namespace waymark {
 
 /// A channel belongs to the first sender on it while that sender is active on any channel; other
-/// senders are refused. Where two senders share several channels, the owner of the channel on which
-/// they met first gets all of them, so that two drives are never mixed. Which sender is the right
-/// one cannot be known here.
+/// senders are refused. Where two senders publish on the same channels, the one that owned the
+/// first contested channel gets all of them, so that data of two robots are never mixed. It may be
+/// the wrong one of the two: nothing here can tell.
 class ChannelOwners {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -26,22 +26,22 @@ class ChannelOwners {
 
   enum class Verdict {
     kAccepted,
-    kSucceeds,  ///< accepted, in the place of another owner than before
+    kNewOwner,  ///< accepted; the channel belonged to another sender before
     kRefused
   };
 
-  /// To be called for every message: the sender is active.
-  void hear(const Sender& sender, Time now);
+  /// To be called for every message, also those on channels that are not checked.
+  void note_activity(const Sender& sender, Time now);
 
   Verdict check(std::string_view channel, const Sender& sender, Time now);
 
-  /// Needs a channel that was checked.
+  /// @param channel  one for which check() has been called.
   const Sender& owner_of(std::string_view channel) const;
 
  private:
   struct Owner {
     Sender sender{};
-    Time heard{};
+    Time last_active{};
   };
 
   struct Precedence {
@@ -49,7 +49,7 @@ class ChannelOwners {
     Sender junior{};
   };
 
-  bool is_heard(const Sender& sender, Time now) const;
+  bool is_active(const Sender& sender, Time now) const;
   bool precedes(const Sender& sender, const Sender& owner) const;
   void put_behind(const Sender& junior, const Sender& senior);
 

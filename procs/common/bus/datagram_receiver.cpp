@@ -28,8 +28,8 @@ constexpr std::array<std::uint8_t, 4> kMagic{'L', 'C', '0', '2'};
 constexpr std::array<std::uint8_t, 4> kFragmentMagic{'L', 'C', '0', '3'};
 constexpr std::size_t kMaxChannelLength = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
 constexpr std::size_t kMaxDatagram_bytes = 65536;
-// Bridges the moments in which our thread is not scheduled; the kernel gives less where
-// net.core.rmem_max is less.
+// Covers the time in which the receiver thread is not scheduled; the kernel grants less where
+// net.core.rmem_max is smaller.
 constexpr int kReceiveBuffer_bytes = 2 << 20;
 
 void require(int result, const char* what) {
@@ -107,7 +107,8 @@ DatagramReceiver::DatagramReceiver(const MulticastGroup& group)
   }
 }
 
-/// Bound to the group's address: what is sent to another group on the same port stays out.
+/// Binds to the group's address, so that datagrams to other groups on the same port are not
+/// received.
 void DatagramReceiver::join(const MulticastGroup& group) {
   set(socket_, SOL_SOCKET, SO_REUSEADDR, 1, "SO_REUSEADDR");
   set(socket_, SOL_SOCKET, SO_RCVBUF, kReceiveBuffer_bytes, "SO_RCVBUF");

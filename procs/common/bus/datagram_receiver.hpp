@@ -46,11 +46,11 @@ std::optional<WholeMessage> whole_message_in(std::span<const std::uint8_t> datag
 /// Whether it is a part of a message that is larger than a datagram. Source: lcm_udpm.c.
 bool is_fragment(std::span<const std::uint8_t> datagram);
 
-/// Takes whole messages of one datagram from a multicast group.
+/// Receives the messages of a multicast group that fit one datagram.
 ///
-/// liblcm receives, too, but does not say from whom, and 1.3.1 puts large messages together from
-/// fragments without checking their offsets: two forged datagrams make it write outside of its
-/// buffer. None of our messages needs fragments.
+/// Replaces liblcm's receiver, which does not report the sender; that of 1.3.1 also reassembles
+/// fragments without checking their offsets, so that two forged datagrams make it write outside of
+/// its buffer. None of our messages needs fragments.
 class DatagramReceiver {
  public:
   struct Received {
@@ -64,7 +64,7 @@ class DatagramReceiver {
   DatagramReceiver(const DatagramReceiver&) = delete;
   DatagramReceiver& operator=(const DatagramReceiver&) = delete;
 
-  /// Nothing when within kWait no datagram comes, or an invalid one.
+  /// nullopt when the next datagram is invalid, or none comes within kWait.
   std::optional<Received> receive();
 
   /// Datagrams since the last call that were neither a message nor a fragment.

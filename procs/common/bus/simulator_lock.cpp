@@ -20,7 +20,7 @@ namespace waymark {
 SimulatorLock::SimulatorLock(const std::string& lcm_url, const ChannelNames& names) {
   const auto group = multicast_group_of(lcm_url);
   if (!group) return;
-  // A name in the abstract namespace, which is that of the network: no file stays behind.
+  // An abstract socket: visible in this network namespace only, and leaves no file behind.
   const std::string name =
       fmt::format("waymark-sim/{}/{}", group->port, names.on_network(channels::kTick.name));
   sockaddr_un address{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Allows one lockstep simulator per UDP port of this machine: else processes would answer the ticks
-// of another run.
+// Allows one lockstep simulator per UDP port of this machine: with two, processes would answer the
+// ticks of the other's run.
 #pragma once
 
 #include "common/bus/channel_names.hpp"
@@ -9,8 +9,8 @@
 
 namespace waymark {
 
-/// Held during the object's lifetime; the system releases it however the process ends. No lock is
-/// needed, nor taken, on networks other than udpm, and for other names of the channel TICK.
+/// Held during the object's lifetime; the system releases it however the process ends. It covers
+/// one port and one name of the channel TICK; on networks other than udpm nothing is locked.
 class SimulatorLock {
  public:
   /// @throws SetupError when another simulator has the port, or the system refuses the lock.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program's options and subcommands. CLI11 stands behind it, in one file: every file that
-// includes its header spends eight seconds of compiling on it.
+// A program's options and subcommands, by CLI11. Only command_line.cpp includes CLI11, whose header
+// takes eight seconds to compile.
 #pragma once
 
 #include "common/command_line/number_checks.hpp"
@@ -25,7 +25,7 @@ class CommandOption {
   explicit CommandOption(CLI::Option& option) : option_{&option} {}
 
   CommandOption required();
-  /// The variable's present value shows in --help.
+  /// --help shows the variable's present value as the default.
   CommandOption show_default();
   CommandOption check(const NumberCheck& check);
   CommandOption one_of(const std::vector<std::string>& words);
@@ -45,12 +45,12 @@ class Command {
  public:
   explicit Command(CLI::App& app) : app_{&app} {}
 
-  /// @param name  --name, or of an argument by its place: NAME.
-  /// @param value  of a type in command_line.cpp; stays as it is when the option is not given.
+  /// @param name  "--name" for an option, "NAME" for a positional argument.
+  /// @param value  of a type instantiated in command_line.cpp; unchanged when the option is absent.
   template <typename Value>
   CommandOption add_option(const std::string& name, Value& value, const std::string& help);
 
-  /// One of several words, each with what it stands for.
+  /// An option whose value is one of several words, each with the value that it stands for.
   template <typename Value>
   CommandOption add_choice(const std::string& name, Value& value,
                            const std::vector<std::pair<std::string, Value>>& choices,
@@ -96,7 +96,8 @@ class Program : public Command {
   /// wrong usage, which is explained on standard error.
   std::optional<int> parse(int argc, const char* const* argv);
 
-  /// For what no single option can require. @return the exit code.
+  /// Reports a missing argument that only some combinations of options require.
+  /// @return the exit code, 2.
   int refuse_without(const std::string& missing);
 
  private:

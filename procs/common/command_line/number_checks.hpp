@@ -26,7 +26,7 @@ inline NumberCheck finite_number() {
   return {[](double) { return true; }, "a finite number", "NUMBER"};
 }
 
-/// A direction [rad], at most one turn.
+/// A direction [deg], at most one turn.
 inline NumberCheck angle_deg() {
   return {[](double number) { return std::abs(number) <= 360.0; },
           "an angle from -360 to 360 degrees", "DEGREES"};

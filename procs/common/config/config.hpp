@@ -14,8 +14,8 @@
 
 namespace waymark {
 
-/// Everything that is wrong with a configuration; what() has one line `where: key: got X, expected
-/// Y` each.
+/// All problems of a configuration; what() has one line per problem: `where: key: got X, expected
+/// Y`.
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(const std::vector<std::string>& problems);

@@ -62,9 +62,9 @@ class Fields {
     value = (words.begin() + index)->second;
   }
 
-  /// Fields that only some settings use: visited where the struct is read, so that their types are
-  /// checked; left out of a dump, and an error if set, where they are not used.
-  /// @param unused  says why, after the key: "slam.estimator = waymark does not use it".
+  /// Fields that only some settings use. Where they are not used, setting one is an error, and a
+  /// dump leaves them out; their types are checked in any case.
+  /// @param unused  the reason, e.g. "slam.estimator = waymark does not use it".
   template <class Describe>
   void when(bool is_used, std::string_view unused, Describe describe) {
     if (!enter_use(is_used, unused)) return;

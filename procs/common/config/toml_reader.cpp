@@ -3,7 +3,8 @@
 
 #include <fmt/format.h>
 
-// toml++ 3.3 asserts what a file decides ("[" and a control character), and then reports it.
+// toml++ 3.3 asserts on some malformed files ("[" and a control character); without the assertion
+// it reports a parse error.
 #define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
 
@@ -104,7 +105,7 @@ class Reader final : public Fields {
     });
   }
 
-  /// Reports the keys of the outermost table that nobody asked for.
+  /// Reports unknown keys of the outermost table.
   void finish() { report_unknown_keys(); }
 
  protected:

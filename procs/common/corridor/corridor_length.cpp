@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 
 constexpr double kStraightDeviation = 0.1;   ///< in corridor widths
 constexpr double kStraightExcess_px = 0.25;  ///< arc length minus chord
-constexpr double kAnchor = 0.5;              ///< from the ends of the medial line, in widths
+constexpr double kAnchorInset = 0.5;         ///< from the ends of the medial line, in widths
 constexpr double kElongated = 2.0;           ///< length over width below which axes are doubtful
 constexpr double kAlongImage_px = 1.0;       ///< sideways over the whole length
 
@@ -36,7 +36,7 @@ struct Anchors {
 };
 
 Anchors anchors_of(const MedialLine& line) {
-  const auto inset = static_cast<std::size_t>(kAnchor * line.width_px / line.spacing_px);
+  const auto inset = static_cast<std::size_t>(kAnchorInset * line.width_px / line.spacing_px);
   const std::size_t last = line.points_px.size() - 1;
   const std::size_t kept = std::clamp<std::size_t>(inset, 1, (last - 1) / 2);
   return {kept, last - kept};

@@ -10,8 +10,8 @@
 
 namespace waymark::corridor {
 
-/// A line of sight towards one end. Distances are measured from `origin_px` along `outward`; row r
-/// holds the cells whose centres are within half a pixel of r along `across`.
+/// The direction in which one end is looked for. Distances are measured from `origin_px` along
+/// `outward`; row r holds the cells whose centres are within half a pixel of r along `across`.
 struct EndView {
   Eigen::Vector2d origin_px{};
   Eigen::Vector2d outward{};

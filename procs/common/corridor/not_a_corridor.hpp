@@ -5,7 +5,7 @@
 
 namespace waymark::corridor {
 
-/// What the map shows has no length from end to end; says why.
+/// The map shows no corridor whose length could be measured; what() says why.
 class NotACorridor : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

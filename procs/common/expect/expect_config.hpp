@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scenario expects of an estimator: written in the scenario, checked by waymark-evaluate,
-// known to nobody else.
+// What a scenario expects of an estimator. Only waymark-evaluate uses it.
 #pragma once
 
 #include "common/config/fields.hpp"
@@ -9,8 +8,8 @@
 
 namespace waymark {
 
-/// Section [expect] of a scenario. 0 = nothing is expected of that figure. The last two are about
-/// all seeds of a sweep, the others about every run.
+/// Section [expect] of a scenario. 0 = no expectation. The last two hold over all seeds of a sweep,
+/// the others for each run.
 struct ExpectConfig {
   std::string estimator{"waymark"};
   double length_error_percent{0.0};
@@ -38,7 +37,7 @@ struct ExpectConfig {
   void describe(Fields& fields);
 };
 
-/// expect.toml beside a recorded run: stands for the section of its scenario.
+/// expect.toml beside a recorded run, used in place of section [expect] of its scenario.
 struct ExpectFile {
   ExpectConfig expect{};
 

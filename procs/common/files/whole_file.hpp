@@ -13,7 +13,7 @@ namespace waymark {
 /// @throws std::system_error with the file's name; the old file then still stands.
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
 
-/// Its content.
+/// @return the file's content.
 /// @throws std::system_error with the file's name.
 std::string read_whole_file(const std::filesystem::path& file);
 

@@ -7,7 +7,7 @@
 namespace waymark {
 
 /// Creates the folder if it does not exist, and checks by a temporary file that it is writable.
-/// @throws SetupError when they cannot.
+/// @throws SetupError when it cannot be created or written to.
 void make_writable_folder(const std::filesystem::path& folder);
 
 }  // namespace waymark

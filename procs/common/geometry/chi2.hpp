@@ -6,10 +6,10 @@
 
 namespace waymark {
 
-/// Squared distance in standard deviations (Mahalanobis).
-/// @param covariance  of `off`; positive definite.
-inline double chi2(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
-  return off.dot(covariance.ldlt().solve(off));
+/// Squared Mahalanobis distance: residual^T covariance^-1 residual.
+/// @param covariance  positive definite.
+inline double chi2(const Eigen::Vector3d& residual, const Eigen::Matrix3d& covariance) {
+  return residual.dot(covariance.ldlt().solve(residual));
 }
 
 }  // namespace waymark

@@ -6,7 +6,8 @@
 
 namespace waymark {
 
-/// Information of a measurement whose covariance grows by `noise`; it may be singular.
+/// Information matrix of a measurement whose covariance grows by `noise`: (I + information
+/// noise)^-1 information. The information may be singular.
 inline Eigen::Matrix3d with_more_noise(const Eigen::Matrix3d& information,
                                        const Eigen::Matrix3d& noise) {
   if (noise.isZero(0.0)) return information;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Eigenvalues of 2 x 2 matrices. Eigen's solver costs seconds of compile time wherever it is named:
-// here, once.
+// Eigenvalues of 2 x 2 matrices, in a file of their own because Eigen's solver takes seconds to
+// compile.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rounding for texts.
+// Rounding of numbers that are printed.
 #pragma once
 
 #include <cmath>
 
 namespace waymark {
 
-/// To a multiple of 1 / per_unit; zero has no minus.
+/// Nearest multiple of 1 / per_unit; never -0.0.
 inline double rounded(double value, double per_unit) {
-  return std::round(per_unit * value) / per_unit + 0.0;  // -0.0 + 0.0 is +0.0
+  return std::round(per_unit * value) / per_unit + 0.0;  // -0.0 + 0.0 = +0.0
 }
 
 }  // namespace waymark

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid motions of the plane. What Eigen multiplies stands in se2.cpp: its templates would cost
-// every file that includes this 0.8 s of compiling.
+// Rigid motions of the plane. Matrix products are in se2.cpp: Eigen's templates would cost every
+// file that includes this 0.8 s of compile time.
 #pragma once
 
 #include "common/geometry/angle.hpp"
@@ -40,7 +40,7 @@ class Se2 {
   double theta_rad_{0.0};
 };
 
-/// Pose between two poses: `from` at fraction 0, `to` at 1; turns the short way.
+/// Pose between two poses: `from` at fraction 0, `to` at 1; the heading changes the short way.
 Se2 interpolate(const Se2& from, const Se2& to, double fraction);
 
 /// (x, y, theta) of one pose minus those of another; the angle in (-pi, pi].
@@ -49,21 +49,22 @@ Eigen::Vector3d pose_difference(const Se2& to, const Se2& from);
 /// Inverse of pose_difference(): pose_difference(moved_by(pose, d), pose) is d.
 Se2 moved_by(const Se2& pose, const Eigen::Vector3d& difference);
 
-/// Exponential map of SE(2): the motion along an arc with the twist (x, y, theta). When several
-/// poses move so about one common point, their relative poses do not change.
+/// Exponential map of SE(2): the motion along the arc of the twist (x, y, theta) [m, m, rad]. Poses
+/// that all move along arcs about one common centre keep their relative poses.
 Se2 along_arc(const Eigen::Vector3d& step);
 
-/// 3 x 3 matrix that rotates (x, y) of (x, y, theta) by `rotation`.
+/// blockdiag(rotation, 1): rotates (x, y) of (x, y, theta).
 Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation);
 
-/// Covariance or information of (x, y, theta) in axes that are turned by `rotation`: of the child
-/// in the parent's axes with the rotation of parent_from_child.
+/// Covariance or information of (x, y, theta), given in the child's axes, in the parent's axes:
+/// R matrix R^T with R = turning(rotation) and the rotation of parent_from_child.
 Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix);
 
-/// Carries a difference of poses along a lever arm, `step_in_map`: d(x, y)/d(theta) = (-dy, dx).
+/// Jacobian that carries a small pose difference along the lever arm `step_in_map` = (dx, dy) [m]:
+/// identity, but d(x, y)/d(theta) = (-dy, dx).
 Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map);
 
-/// The same for the covariance of such differences.
+/// Covariance of such a difference at the end of the lever arm: J covariance J^T.
 Eigen::Matrix3d carried_along(const Eigen::Matrix3d& covariance,
                               const Eigen::Vector2d& step_in_map);
 

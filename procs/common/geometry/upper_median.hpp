@@ -7,8 +7,8 @@
 
 namespace waymark {
 
-/// The upper one of the two in the middle where their number is even. O(n).
-/// @param values  not empty
+/// Median; of an even number of values the larger of the two middle ones. O(n).
+/// @param values  not empty.
 template <class Value>
 Value upper_median(std::vector<Value> values) {
   const auto middle = values.begin() + std::ssize(values) / 2;

@@ -9,7 +9,7 @@
 
 namespace waymark {
 
-/// A SLAM_COMMAND comes at any time, but must act in the same tick for everybody, and for every
+/// A SLAM_COMMAND arrives at any time, but must act in the same tick in every process and in every
 /// replay: the simulator puts it into the next tick that it opens, stamped with that tick's end.
 class CommandRelay {
  public:
@@ -17,10 +17,10 @@ class CommandRelay {
 
   explicit CommandRelay(Counters& counters) : counters_{counters} {}
 
-  /// Ignores commands that it has published itself in a tick.
+  /// Ignores commands that are already part of a tick.
   void take(const Message& message);
 
-  /// Adds the commands that wait to the messages of a tick.
+  /// Moves the waiting commands into the messages of a tick.
   void move_into(std::vector<Message>& tick, Timestamp tick_end);
 
  private:

@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-// Far above what a window of ticks holds (about 1 MB), far below what hurts.
+// Bounds on memory; a window of ticks holds about 1 MB.
 constexpr std::size_t kMaxWaitingBytes = std::size_t{32} << 20;
 constexpr std::size_t kMaxWaitingMessages = 40000;
 constexpr std::size_t kMaxTakenBytes = std::size_t{16} << 20;

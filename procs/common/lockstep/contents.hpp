@@ -14,16 +14,16 @@
 
 namespace waymark {
 
-/// Ticks in flight at most: so many answers must be at hand to be sent again.
+/// Ticks in flight at most; a participant keeps as many answers for re-sending.
 inline constexpr int kMaxWindowTicks = 100;
 
-/// Lists messages by channel, hashes in the order of comes_before.
+/// Content hashes by channel, in the order of comes_before().
 std::vector<channel_content_t> contents_of(std::vector<Message> messages);
 
 /// Received messages by their content hash. Messages have no sequence numbers: two ticks may name
-/// the same bytes (a marker map that did not change), and the second copy looks like a re-sent one.
-/// So a message is kept after its use, for the next tick that names it. Bounded: the oldest
-/// messages are dropped, and come again when their tick is re-sent.
+/// the same bytes (a marker map that did not change), and the second copy cannot be distinguished
+/// from a re-sent first one. So a message is kept after its use, for the next tick that names it.
+/// Bounded: the oldest messages are dropped, and arrive again when their tick is re-sent.
 class MessagePool {
  public:
   /// False when the same message is here already.
@@ -35,7 +35,7 @@ class MessagePool {
   Message take(std::int64_t hash);
 
  private:
-  /// Messages in the order in which they are dropped.
+  /// Hashes in the order in which their messages are dropped.
   struct Queue {
     std::deque<std::int64_t> hashes{};
     std::size_t bytes{0};

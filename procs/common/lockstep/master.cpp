@@ -69,8 +69,7 @@ std::vector<Message> LockstepMaster::resend() const {
   return messages;
 }
 
-/// The tick's messages, and behind them its TICK, which informs a process that has just been
-/// started again where to begin.
+/// The tick's messages, then its TICK. first_open_tick is where a restarted process begins.
 void LockstepMaster::append(const OpenTick& open, std::vector<Message>& messages) const {
   messages.insert(messages.end(), open.messages.begin(), open.messages.end());
   tick_t tick = open.tick;

@@ -19,32 +19,32 @@ class LockstepMaster {
  public:
   LockstepMaster(std::int64_t run_id, std::vector<std::string> participants, int window_ticks);
 
-  /// "Is everybody there?", to be repeated until all_ready().
+  /// A TICK that asks who takes part, to be repeated until all_ready().
   Message probe() const;
 
   bool all_ready() const { return ready_.size() == participants_.size(); }
 
   std::vector<std::string> not_ready() const;
 
-  /// May another tick be sent?
+  /// True when another tick may be opened.
   bool has_room() const { return std::ssize(open_ticks_) < window_ticks_; }
 
   bool all_acknowledged() const { return open_ticks_.empty(); }
 
-  /// Opens a tick. @return its messages and the TICK behind them.
+  /// Opens a tick. @return its messages, followed by the TICK.
   std::vector<Message> open_tick(Timestamp end, std::vector<Message> messages, bool is_last);
   /// @return true when the message is an acknowledgement that was still missing.
   bool take(const Message& message);
   /// All open ticks again.
   std::vector<Message> resend() const;
-  /// Who has not acknowledged the oldest open tick, in the order of the participants. Each waits
-  /// for those before it: the first is to blame, the others may only be waiting.
+  /// Participants that have not acknowledged the oldest open tick, in their order. Each waits for
+  /// those before it: the first one is the cause, the others may only be waiting for it.
   std::vector<std::string> silent() const;
   std::int64_t oldest_open_tick() const;
-  /// "The run is over", after the last acknowledgement.
+  /// The TICK that ends the run, after the last acknowledgement.
   Message closing() const;
 
-  /// Hash of everything that each participant has sent.
+  /// Hash of all messages that each participant has published.
   const std::map<std::string, std::int64_t>& state_hashes() const { return state_hashes_; }
 
  private:

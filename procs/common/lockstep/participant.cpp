@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-// Wider than any window of ticks in flight; what lies outside is not of this run's present.
+// Wider than any window of ticks in flight: ticks beyond it are invalid.
 constexpr std::int64_t kHorizon_ticks = 2 * kMaxWindowTicks;
 
 }  // namespace

@@ -25,7 +25,7 @@ class LockstepParticipant {
   /// Processes the messages of one tick, in order, and returns what it publishes for it.
   using Process = std::function<std::vector<Message>(const std::vector<Message>&, bool is_last)>;
 
-  /// @param counters  where refused, strange and repeated messages are counted; outlives this.
+  /// @param counters  counts rejected and repeated messages and those of other runs; outlives this.
   LockstepParticipant(std::string name, std::vector<std::string> wanted_channels, bool joins_midway,
                       Process process, Counters& counters);
 
@@ -35,7 +35,7 @@ class LockstepParticipant {
 
   bool has_seen_tick() const { return run_id_.has_value(); }
 
-  /// The last tick has been acknowledged; stay a while for re-sent ticks.
+  /// The last tick has been acknowledged; the simulator may still re-send it until closed().
   bool finished() const { return finished_; }
 
   /// The simulator has everybody's last acknowledgement.
@@ -52,8 +52,8 @@ class LockstepParticipant {
   bool is_of_this_run(std::int64_t run_id);
   void start_at(const tick_t& tick);
   std::vector<Message> advance();
-  /// Hashes of the wanted messages of the tick, one that was sent twice two times; nullopt while an
-  /// acknowledgement is missing.
+  /// Hashes of the wanted messages of the tick, with repetitions; nullopt while an acknowledgement
+  /// of an earlier participant is missing.
   std::optional<std::vector<std::int64_t>> needed_messages(const OpenTick& open) const;
   std::vector<Message> answer(const tick_t& tick, std::vector<Message> published);
   Message acknowledgement(const tick_t& tick, const std::vector<Message>& published) const;

@@ -22,7 +22,7 @@ constexpr std::int64_t kHeaderBytes = 28;
 constexpr std::int64_t kMaxChannelBytes = 999;                  // as liblcm
 constexpr std::int64_t kMaxDataBytes = std::int64_t{64} << 20;  // raw images of other robots fit
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-constexpr std::size_t kReadBufferBytes = std::size_t{32} << 10;  // images are passed over
+constexpr std::size_t kReadBufferBytes = std::size_t{32} << 10;  // small: images are often skipped
 constexpr std::size_t kFirstSearchBytes = 256;
 
 template <class Unsigned>
@@ -45,7 +45,7 @@ std::string last_system_error() {
   return std::generic_category().message(errno);
 }
 
-/// @param path  a file, or the folder whose names are meant.
+/// @param path  a file, or a folder, whose directory entries are flushed.
 void flush_to_disk(const std::filesystem::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const bool is_flushed = descriptor >= 0 && ::fsync(descriptor) == 0;
@@ -115,8 +115,8 @@ bool LogReader::read_header(std::int64_t offset, Header& header) {
          header.channel_bytes + header.data_bytes <= size_bytes_ - offset - kHeaderBytes;
 }
 
-/// Offset of the next whole event at or behind `offset`. O(bytes up to there): a log may have a
-/// byte of garbage behind every event.
+/// Offset of the next complete event at or after `offset`. O(bytes up to there), also in a log with
+/// a byte of garbage after every event: the window starts small.
 std::optional<std::int64_t> LogReader::find_event(std::int64_t offset) {
   const std::array<char, 4> sync{'\xED', '\xA1', '\xDA', '\x01'};
   std::vector<char> window(kFirstSearchBytes);
@@ -169,7 +169,7 @@ std::filesystem::path part_path_of(const std::filesystem::path& path) {
 }
 
 bool would_overwrite(const std::filesystem::path& out, const std::filesystem::path& file) {
-  std::error_code none;  // a file that is not there is no other's equivalent
+  std::error_code none;  // equivalent() is false for files that do not exist
   return std::filesystem::equivalent(out, file, none) ||
          std::filesystem::equivalent(part_path_of(out), file, none);
 }

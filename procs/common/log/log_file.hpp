@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LCM event logs. Our own reader and writer of LCM's format, because liblcm's reader crashes on
-// hostile lengths and throws good events away before garbage; lcm-logplayer and lcm-logger read and
-// write the same. Format: big-endian {u32 0xEDA1DA01, i64 event number, i64 time us, i32 channel
-// length, i32 data length}, channel without terminating zero, data.
+// LCM event logs, as lcm-logger writes and lcm-logplayer reads them. Not by liblcm, whose reader
+// crashes on hostile lengths and discards intact events in front of garbage. Format: big-endian
+// {u32 0xEDA1DA01, i64 event number, i64 time us, i32 channel length, i32 data length}, channel
+// without terminating zero, data.
 #pragma once
 
 #include "common/messages/message.hpp"
@@ -30,8 +30,8 @@ class LogReader {
   std::optional<Message> next(const std::function<bool(std::string_view)>& wanted);
   std::optional<Message> next();
 
-  /// Bytes that belonged to no whole event so far: garbage, or an event cut off by the end of the
-  /// file.
+  /// Bytes so far that are not part of a complete event: garbage, or an event cut off by the end of
+  /// the file.
   std::int64_t skipped_bytes() const { return skipped_bytes_; }
 
   /// Offset of the first skipped byte; meaningful when skipped_bytes() > 0.
@@ -53,7 +53,7 @@ class LogReader {
   std::filesystem::path path_;
   std::vector<char> buffer_;
   std::ifstream file_;
-  std::int64_t position_{0};  ///< of file_, which would ask the system for it
+  std::int64_t position_{0};  ///< of file_; tellg() would cost a system call
   std::int64_t size_bytes_{0};
   std::int64_t offset_{0};
   std::int64_t skipped_bytes_{0};
@@ -66,21 +66,23 @@ std::vector<std::string> channels_in(const std::filesystem::path& path);
 /// Where a LogWriter on `path` writes until it is closed.
 std::filesystem::path part_path_of(const std::filesystem::path& path);
 
-/// True when a LogWriter on `out` would destroy `file`, by whatever name either is given.
+/// True when a LogWriter on `out` would overwrite `file`, also when the paths are spelled
+/// differently.
 bool would_overwrite(const std::filesystem::path& out, const std::filesystem::path& file);
 
-/// @param option  that named `out`, for the message.
-/// @throws SetupError when writing `out` would destroy one of the files that are to be read.
+/// @param option  the command-line option that gave `out`, for the error message.
+/// @throws SetupError when writing `out` would overwrite one of the input files.
 void protect_inputs(std::string_view option, const std::filesystem::path& out,
                     const std::vector<std::filesystem::path>& inputs);
 
-/// Writes events to part_path_of(path) and renames it when closed: a log that is there is whole.
+/// Writes events to part_path_of(path) and renames it when closed, so that a log under its final
+/// name is complete.
 class LogWriter {
  public:
-  /// @throws std::runtime_error when the file cannot be created, or would take the place of
-  /// something that is not a regular file.
+  /// @throws std::runtime_error when the file cannot be created, or `path` exists and is not a
+  /// regular file.
   explicit LogWriter(const std::filesystem::path& path);
-  /// Leaves what was written where it is, and nothing where nothing was.
+  /// Without close(), events stay in part_path_of(path); an empty part is removed.
   ~LogWriter();
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
@@ -89,8 +91,8 @@ class LogWriter {
   void write(const Message& message);
   /// @throws std::runtime_error when not everything reached the file.
   void close();
-  /// The same, and after a power cut, too, the name stands for the old file or the whole new one:
-  /// both are on the disk when this returns, which may take a second.
+  /// Like close(), and safe against power failure: the name refers to the old file or to the
+  /// complete new one. File and folder are flushed to the disk, which may take a second.
   void close_on_disk();
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines for people, on standard error. spdlog stands behind it, in one file: its headers make every
-// file that logs compile most of fmt again.
+// Log lines on standard error, by spdlog. Only logging.cpp includes spdlog, whose headers compile
+// most of fmt again.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace waymark::logging {
 
 enum class Level { kInfo, kWarn, kError };
 
-/// From now on every line has the time and this name before it.
+/// From now on every line begins with the time and this name.
 void begin(const std::string& program);
 
 /// Lines below this level are left out.

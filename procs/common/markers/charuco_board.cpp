@@ -16,18 +16,18 @@
 namespace waymark {
 namespace {
 
-constexpr int kFewestSquares = 3;  // 2 x 2 inner corners: fewer make no homography
-constexpr int kMostSquares = 60;   // along a side: guards the memory
+constexpr int kFewestSquares = 3;  // 2 x 2 inner corners: a homography needs four points
+constexpr int kMostSquares = 60;   // along a side: bounds the memory
 constexpr double kLargestSquare_m = 1.0;
-constexpr int kSmallestWindow_px = 2;  // half of it, for corners
-constexpr int kLargestWindow_px = 7;   // beyond, a lens bends the edges
+constexpr int kSmallestHalfWindow_px = 2;  // of the search for a corner
+constexpr int kLargestHalfWindow_px = 7;   // in larger windows, lens distortion bends the edges
 constexpr int kMostSteps = 50;
 constexpr double kConverged_px = 1e-3;
 // A marker needs white around it to be found, and pixels to be read.
 constexpr double kSmallestShare = 0.3;
 constexpr double kLargestShare = 0.9;
 
-/// 0 where the text is no number of squares.
+/// 0 if the text is not a valid number of squares.
 int number_in(std::string_view text) {
   int number{};
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -67,8 +67,9 @@ cv::Ptr<cv::aruco::CharucoBoard> make_board(const BoardOptions& options) {
 }
 
 BoardCorners find_corners(const cv::Mat& gray, const cv::Ptr<cv::aruco::CharucoBoard>& board) {
-  // A marker's white square is no second marker: OpenCV takes what lies nearer than a share of its
-  // outline for one and keeps the larger. Half of what there is leaves room for perspective.
+  // OpenCV discards the smaller of two quads whose corners are nearer than this share of the
+  // perimeter. The share has to be below the distance of a marker from its white square, which
+  // OpenCV finds, too; half of that distance leaves room for perspective.
   const auto parameters = cv::aruco::DetectorParameters::create();
   const double gap = 0.5 * (board->getSquareLength() / board->getMarkerLength() - 1.0);
   parameters->minMarkerDistanceRate =
@@ -80,13 +81,13 @@ BoardCorners find_corners(const cv::Mat& gray, const cv::Ptr<cv::aruco::CharucoB
   cv::aruco::interpolateCornersCharuco(markers, found.marker_ids, gray, board, found.corners_px,
                                        found.ids);
   if (found.ids.empty()) return found;
-  // OpenCV's own corners are half a pixel too far right and down (opencv issue 25539): refined
-  // here, in a window that ends before the markers begin.
+  // OpenCV's own corners are half a pixel too far right and down (opencv issue 25539): refine them
+  // here, in a window that does not reach the markers.
   double side_px = std::numeric_limits<double>::infinity();
   for (const auto& marker : markers)
     side_px = std::min(side_px, 0.25 * cv::arcLength(marker, true));
   const int half_px =
-      std::clamp(static_cast<int>(gap * side_px), kSmallestWindow_px, kLargestWindow_px);
+      std::clamp(static_cast<int>(gap * side_px), kSmallestHalfWindow_px, kLargestHalfWindow_px);
   cv::cornerSubPix(gray, found.corners_px, {half_px, half_px}, {-1, -1},
                    {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMostSteps, kConverged_px});
   return found;

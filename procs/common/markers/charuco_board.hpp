@@ -17,15 +17,14 @@ struct BoardOptions {
   std::string dictionary{"DICT_5X5_100"};
 };
 
-/// OpenCV's board: its ids begin with 0, its origin is the upper left corner, x to the right, y
-/// down.
-/// @throws SetupError naming the option that makes no board.
+/// OpenCV's board: ids begin with 0, the origin is the upper left corner, x right, y down.
+/// @throws SetupError naming the invalid option.
 cv::Ptr<cv::aruco::CharucoBoard> make_board(const BoardOptions& options);
 
-/// Inner corners of the chessboard in an image.
+/// Inner corners of the chessboard found in an image.
 struct BoardCorners {
   std::vector<int> marker_ids{};          ///< markers that were read
-  std::vector<int> ids{};                 ///< corners between them: of board.chessboardCorners
+  std::vector<int> ids{};                 ///< of the corners: indices into board.chessboardCorners
   std::vector<cv::Point2f> corners_px{};  ///< pixel centres are integers
 };
 

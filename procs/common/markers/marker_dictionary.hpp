@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Marker dictionaries by name, with their error correction set right.
+// Marker dictionaries by name, with the number of bits that each can correct.
 #pragma once
 
 #include "common/robot/robot_config.hpp"
@@ -14,19 +14,19 @@
 namespace waymark {
 
 /// OpenCV's predefined dictionary of that name, e.g. "DICT_6X6_250" or "DICT_APRILTAG_36h11".
-/// OpenCV 4.6 corrects no bit of AprilTag dictionaries; here they get what their code distance
-/// allows.
+/// OpenCV 4.6 corrects no bit of AprilTag dictionaries; here they correct as many as their code
+/// distance allows. nullopt for an unknown name.
 std::optional<cv::aruco::Dictionary> find_dictionary(std::string_view name);
 
 std::vector<std::string> dictionary_names();
 
-/// Whether robot.markers names a dictionary, and only ids that it has.
+/// Adds problems for an unknown robot.markers.dictionary, and for ids that it does not have.
 void check_dictionary(const MarkerConfig& markers, Problems& problems);
 
-/// Number of ids: they are 0 to one less.
+/// Number of ids; they begin with 0.
 int size_of(const cv::aruco::Dictionary& dictionary);
 
-/// Of the black square: its bits, and the border of one module on each side.
+/// Modules along a side of the black square: its bits and a border of one module on each side.
 int modules_per_side(const cv::aruco::Dictionary& dictionary);
 
 }  // namespace waymark

@@ -6,23 +6,23 @@
 
 namespace waymark::bounds {
 
-/// Of positions in any frame; the largest northing of UTM, for frames of GNSS receivers.
+/// Of positions in any frame: up to UTM's northings, for GNSS frames.
 inline constexpr double kPosition_m = 1e7;
-/// Of headings, which some odometries count on without wrapping: 1.6 million turns.
+/// Of headings, which some odometries do not wrap: 1.6 million turns.
 inline constexpr double kAngle_rad = 1e7;
-/// Of a LiDAR's beam that returned; what reaches furthest on robots measures some hundred metres.
+/// Of LiDAR ranges; the longest of robots' LiDARs measure some hundred metres.
 inline constexpr double kRange_m = 1e4;
 /// Of drive commands: faster than any ground robot.
 inline constexpr double kSpeed_mps = 100.0;
 inline constexpr double kTurnRate_radps = 100.0;
-/// Of cells, markers, and spacings.
+/// Of cell sizes, marker sizes and spacings.
 inline constexpr double kLength_m = 1e3;
-/// Of a marker's corners, which may lie outside of the image.
+/// Of a marker's corners, which may lie outside the image.
 inline constexpr double kPixel_px = 1e6;
 
 inline constexpr int kImageSide_px = 16384;
 inline constexpr int kBeams = 16384;
-/// Of a beam's time from its scan's: a sweep lasts well below 10 s.
+/// Of a beam's time relative to its scan's: a sweep takes far less than 10 s.
 inline constexpr std::int64_t kBeamTimeOffset_us = 10'000'000;
 /// Of tiles and cells from the map's origin.
 inline constexpr int kTileIndex = 1 << 20;

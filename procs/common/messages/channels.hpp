@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All channels, each with its type. lcmtypes/README.md is the same table for people.
+// All channels, each with its type. lcmtypes/README.md describes them.
 #pragma once
 
 #include <waymark/ack_t.hpp>
@@ -34,7 +34,7 @@
 
 namespace waymark {
 
-/// Where a channel is found.
+/// Where a channel occurs.
 enum class ChannelUse {
   kNetwork,
   kNetworkOnceNamed,  ///< only where [channels] names it
@@ -94,8 +94,8 @@ inline constexpr Channel<process_status_t> kRecorderStatus{"RECORDER_STATUS"};
 inline constexpr Channel<tick_t> kTick{"TICK"};
 inline constexpr Channel<ack_t> kAck{"ACK"};
 
-/// @return what `visit` makes of all of the above. (As a tuple they would cost every file a quarter
-/// of a second.)
+/// Calls `visit` with all of the above. (As a tuple they would cost every file a quarter of a
+/// second of compile time.)
 template <class Visitor>
 auto visit_all(Visitor visit) {
   return visit(kCamera, kLidar, kMbotLidar, kOdometry, kDriveCommand, kTruePose, kMarkers,

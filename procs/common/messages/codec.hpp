@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes <-> typed messages. decode() is the trust boundary: whatever the bytes are, it returns.
+// Bytes <-> typed messages. decode() accepts arbitrary bytes from the network.
 #pragma once
 
 #include "common/messages/channels.hpp"
@@ -30,13 +30,13 @@ std::int64_t fingerprint_of(std::span<const std::uint8_t> payload);
 /// utime of a payload (all our types start with it); nullopt when too short or out of range.
 std::optional<Timestamp> time_of(std::span<const std::uint8_t> payload);
 
-/// What can be checked without knowing more of a type than its layout: size, fingerprint, length
-/// fields, and that they take all bytes.
+/// Checks of the bytes before decoding: size, fingerprint, length fields, and that the fields take
+/// all bytes.
 RejectReason check_bytes(std::span<const std::uint8_t> payload, std::int64_t fingerprint,
                          StructLayout layout);
 
-/// Size limit -> fingerprint -> walk of the length fields -> decode -> all bytes consumed ->
-/// semantic check. Never throws, never allocates more than the payload's size allows.
+/// check_bytes(), then the generated decoder, then the checks of time and values. Never throws,
+/// never allocates more than the payload's size allows.
 template <class Type>
 Decoded<Type> decode(std::span<const std::uint8_t> payload) {
   const RejectReason bytes_fault = check_bytes(payload, Type::getHash(), LayoutOf<Type>::fields);

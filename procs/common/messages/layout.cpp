@@ -18,7 +18,7 @@ std::int32_t read_int32(std::span<const std::uint8_t> bytes, std::size_t offset)
   return static_cast<std::int32_t>(value);
 }
 
-/// Moves `offset` behind one string: int32 length with the terminating zero, then the bytes.
+/// Moves `offset` past one string: int32 length with the terminating zero, then the bytes.
 RejectReason walk_string(std::span<const std::uint8_t> body, std::size_t& offset) {
   if (body.size() - offset < 4) return RejectReason::kTruncated;
   const std::int32_t length = read_int32(body, offset);
@@ -27,7 +27,7 @@ RejectReason walk_string(std::span<const std::uint8_t> body, std::size_t& offset
   if (body.size() - offset < static_cast<std::size_t>(length)) return RejectReason::kTruncated;
   const auto text = body.subspan(offset, static_cast<std::size_t>(length));
   offset += text.size();
-  // One zero, at the end: LCM's encoder takes strings for C strings.
+  // One zero, at the end: LCM's encoder treats strings as C strings.
   const bool is_c_string = std::ranges::find(text, 0) == text.end() - 1;
   return is_c_string ? RejectReason::kNone : RejectReason::kBadLength;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The wire layout of our message types, to check the length fields of a payload before the
-// generated decoder sees it: those decoders throw, crash or allocate gigabytes on hostile lengths
-// (LCM 1.3.1).
+// The wire layout of our message types, to check the length fields of a payload before it reaches
+// the generated decoder, which throws, crashes or allocates gigabytes on hostile lengths (LCM
+// 1.3.1).
 #pragma once
 
 #include "common/messages/reject_reason.hpp"
@@ -25,12 +25,13 @@ struct FieldLayout {
 
 using StructLayout = std::span<const FieldLayout>;
 
-/// Walks the payload behind its fingerprint. kNone when the fields take exactly all bytes.
+/// Walks the fields of a payload. kNone when they take exactly all bytes.
+/// @param body  the payload without its fingerprint.
 /// O(number of fields and struct elements), no allocation; every count is checked against the bytes
 /// left.
 RejectReason walk(std::span<const std::uint8_t> body, StructLayout layout);
 
-/// Layout of a message type of ours; a type without one does not link.
+/// Layout of a message type; a type without one does not link.
 template <class Type>
 struct LayoutOf {
   static const StructLayout fields;

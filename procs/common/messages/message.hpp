@@ -10,8 +10,7 @@
 
 namespace waymark {
 
-/// Largest payload that surely fits one datagram with stock buffers (research: larger ones get
-/// lost).
+/// Payloads up to this fit one UDP datagram (65 507 bytes) together with LCM's header.
 constexpr std::size_t kMaxPayloadBytes = 65000;
 
 struct Message {

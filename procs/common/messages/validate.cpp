@@ -51,7 +51,7 @@ bool are_ranges_within(const std::vector<float>& ranges_m) {
   });
 }
 
-/// First reason that is not kNone. What is not finite is not within bounds either.
+/// The first failed check. (Numbers that are not finite are not within bounds either.)
 RejectReason first_of(bool consistent, bool is_finite, bool is_within_bounds = true) {
   if (!consistent) return RejectReason::kInconsistent;
   if (!is_finite) return RejectReason::kNotFinite;

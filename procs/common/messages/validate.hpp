@@ -8,11 +8,11 @@
 
 namespace waymark {
 
-/// Holds for decoded messages and, with the sizes of the arrays, for messages about to be encoded.
+/// kNone for a valid message. Used after decoding and before encoding.
 RejectReason validate(const ack_t& message);
 RejectReason validate(const annotated_scan_t& message);
 RejectReason validate(const calibration_t& message);
-/// What is wrong in a command is answered, not rejected.
+/// Always kNone: slam answers an invalid command with the reason.
 RejectReason validate(const command_t& message);
 RejectReason validate(const correction_t& message);
 RejectReason validate(const findings_t& message);

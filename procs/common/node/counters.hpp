@@ -11,9 +11,9 @@ namespace waymark {
 
 /// Values as in lcmtypes/counter_t.lcm.
 enum class CountKind : std::int8_t {
-  kEvent,      ///< what happens in a run in which all is well
-  kLoss,       ///< what was lost because it came late, too fast, or was too much
-  kRejection,  ///< what was refused because it is wrong: a replay that has one fails
+  kEvent,      ///< normal operation
+  kLoss,       ///< valid data dropped: late, too fast, or too much
+  kRejection,  ///< invalid data refused; a replay with one fails
 };
 
 std::string_view to_string(CountKind kind);

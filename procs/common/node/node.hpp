@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a process is, apart from where its messages come from: a node takes messages in order from
-// an Inbox and puts messages into an Outbox. The same node runs live in lockstep, in real time, and
-// on a log.
+// A process without its source of messages: a node takes messages in order from an Inbox and puts
+// messages into an Outbox. The same node runs live in lockstep, in real time, and on a log.
 #pragma once
 
 #include "common/errors/setup_error.hpp"
@@ -17,7 +16,7 @@
 
 namespace waymark {
 
-/// Name of the count of messages that came on a channel and could be read.
+/// Name of the counter of valid messages on a channel.
 std::string received_on(std::string_view channel);
 
 /// What to do in real time when messages come faster than they are processed.
@@ -68,7 +67,7 @@ class Inbox {
   Counters counters_;
 };
 
-/// Collects what a node publishes; whoever runs the node takes it away and sends or writes it.
+/// Collects what a node publishes, for the runner to send or write.
 class Outbox {
  public:
   template <class Type>
@@ -88,19 +87,19 @@ class Outbox {
 ///   using Config = ...;                               a described configuration struct
 ///   static constexpr ProcessTraits kTraits{...};
 ///   Node(const Config&, Inbox&, Outbox&);             registers its handlers; throws SetupError
-/// A handler that throws ends the run: the error is named, finish() is called, and the exit code is
-/// that of a failure.
+/// A handler that throws ends the run: the error is logged, finish() is called, and the exit code
+/// is kExitFailed.
 class Node {
  public:
   virtual ~Node() = default;
   /// The input has ended: publish or write what is left.
   virtual void finish() = 0;
 
-  /// Something that was asked for could not be done (say, a file not written); the process goes on,
-  /// and its exit code says so. The node has logged what it was.
+  /// True when some output could not be produced (e.g. a file not written): logged by the node when
+  /// it happens, and the exit code at the end is kExitFailed.
   virtual bool failed() const { return false; }
 
-  /// Channels without which nothing can be made of a log.
+  /// Channels that a log to replay must have.
   virtual std::vector<std::string_view> needed_channels() const { return {}; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random numbers that depend on a key only, never on who drew before.
+// Random numbers that depend on a key only, not on earlier draws elsewhere.
 #pragma once
 
 #include <cstdint>

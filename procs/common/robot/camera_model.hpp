@@ -22,7 +22,8 @@ class CameraModel {
   Eigen::Matrix<double, 2, 3> projection_jacobian(const Eigen::Vector3d& point_in_camera_m) const;
 
   Eigen::Vector2d raw_from_ideal(const Eigen::Vector2d& ideal_px) const;
-  /// Inverse of raw_from_ideal(), by fixed-point iteration: for lenses that do not fold the image.
+  /// Inverse of raw_from_ideal(), by fixed-point iteration; the distortion must be invertible in
+  /// the image.
   Eigen::Vector2d ideal_from_raw(const Eigen::Vector2d& raw_px) const;
   /// Point with z = 1 of the ray through an ideal pixel.
   Eigen::Vector2d normalized_from_ideal(const Eigen::Vector2d& ideal_px) const;

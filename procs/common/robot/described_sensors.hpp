@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measurements as an upright sensor with odometry's clock would have sent them.
+// Corrects measurements for what robot.toml states of the sensor: delay, mirrored mounting.
 #pragma once
 
 #include "common/robot/robot_config.hpp"
@@ -7,9 +7,8 @@
 
 namespace waymark {
 
-/// @param scan  as it comes from the LiDAR that is described; angles of a mirrored one count
-///              clockwise.
-/// @return angles counter-clockwise, stamped by odometry's clock
+/// @param scan  raw; the angles of a mirrored LiDAR count clockwise.
+/// @return angles counter-clockwise, stamps on odometry's clock.
 inline LidarScan as_described(LidarScan scan, const LidarConfig& lidar) {
   scan.time -= duration_from_seconds(lidar.late_s);
   if (lidar.mirrored) {
@@ -19,7 +18,7 @@ inline LidarScan as_described(LidarScan scan, const LidarConfig& lidar) {
   return scan;
 }
 
-/// Stamped by odometry's clock.
+/// @return stamps on odometry's clock.
 inline MarkerDetections as_described(MarkerDetections frame, const CameraConfig& camera) {
   frame.time -= duration_from_seconds(camera.late_s);
   return frame;

@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-// Of sensors: angles in degrees and places in centimetres or millimetres lie outside.
+// Bounds on sensor poses that catch angles in degrees and positions in centimetres.
 constexpr Range kAngle{-std::numbers::pi, std::numbers::pi};
 constexpr Range kPlace_m{-5.0, 5.0};
 constexpr Range kHeight_m{0.0, 5.0};

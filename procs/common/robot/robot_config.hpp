@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every process may know about the robot: its sensors, their mounting, and what its markers
-// look like. Never where anything is in the world.
+// The robot's description, known to every process: its sensors, their mounting, and what its
+// markers look like, but no positions in the world.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -73,7 +73,7 @@ struct CameraConfig {
   void check(Problems& problems) const;
 };
 
-/// What the markers look like, and how they hang.
+/// What the markers look like, and how precisely they are mounted on the walls.
 struct MarkerConfig {
   std::string dictionary{"DICT_6X6_250"};
   double size_m{0.4};
@@ -97,7 +97,7 @@ struct RobotConfig {
   void check(Problems& problems) const;
 };
 
-/// A configuration of section [robot] alone: a robot.toml.
+/// The content of a robot.toml: section [robot] alone.
 struct RobotOnly {
   RobotConfig robot{};
 

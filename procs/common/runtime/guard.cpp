@@ -30,9 +30,9 @@ int run_guarded(const ProcessTraits& traits, const std::function<int()>& body) {
   }
 }
 
-bool works(const std::function<void()>& on_messages) {
+bool succeeds(const std::function<void()>& process_messages) {
   try {
-    on_messages();
+    process_messages();
     return true;
   } catch (const std::exception& error) {
     logging::error("the run ends here: {}", error.what());

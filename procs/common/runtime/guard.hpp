@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exceptions -> one clear line and an exit code.
+// Exceptions -> log lines and exit codes.
 #pragma once
 
 #include "common/node/node.hpp"
@@ -8,14 +8,15 @@
 
 namespace waymark {
 
-/// Runs `body` with signals and logging set up; says what went wrong on standard error.
+/// Sets up signals and logging, runs `body`, and logs what it throws.
+/// @return the exit code: that of `body`, or kExitUsage or kExitFailed after an exception.
 int run_guarded(const ProcessTraits& traits, const std::function<int()>& body);
 
-/// Lets a node work on messages; what it throws is named.
-/// @return whether it threw nothing.
-bool works(const std::function<void()>& on_messages);
+/// Lets a node process messages, and logs what it throws.
+/// @return false after an exception.
+bool succeeds(const std::function<void()>& process_messages);
 
-/// Prints all counters that are not zero, one line per kind; losses and rejections as warnings.
+/// Logs all counters that are not zero, one line per kind; losses and rejections as warnings.
 void log_counters(const Counters& counters);
 
 }  // namespace waymark

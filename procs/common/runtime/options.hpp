@@ -17,14 +17,14 @@ struct ProcessOptions {
   ConfigSources config_sources{};
   bool dump_config{false};
   bool dump_robot_config{false};
-  std::string print_config{};  ///< key; empty: none
+  std::string print_config{};  ///< the key to print; empty = none
   bool check{false};
   std::string lcm_url{};
   bool real_time{false};
   bool large_messages{false};
   std::vector<std::filesystem::path> logs{};
-  double skip_s{0.0};               ///< of the logs' beginning
-  std::optional<double> until_s{};  ///< from their beginning; nothing: to their end
+  double skip_s{0.0};               ///< from the first message of the logs
+  std::optional<double> until_s{};  ///< from the first message of the logs; nullopt = to their end
   std::filesystem::path out_log{};
   std::filesystem::path out_dir{};
   std::filesystem::path report{};
@@ -35,7 +35,7 @@ struct ProcessOptions {
   std::optional<std::int64_t> seed{};
 };
 
-/// The files that a process reads.
+/// All files that a process reads.
 std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options);
 
 /// Which of the optional options a process has.
@@ -49,11 +49,9 @@ struct OptionSet {
   bool dump_robot_config{false};
 };
 
-/// @return options, or the exit code when there is nothing more to do (--help, --version, bad
-/// usage).
 struct ParsedOptions {
   ProcessOptions options{};
-  std::optional<int> exit_code{};
+  std::optional<int> exit_code{};  ///< set after --help, --version and wrong usage
 };
 
 ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,

@@ -7,15 +7,15 @@
 
 namespace waymark {
 
-/// One line that is redrawn on a terminal (or when $WAYMARK_PROGRESS_BAR is set, for a terminal at
-/// the other end of a pipe); elsewhere a line every ten per cent.
+/// A bar on a terminal (or when $WAYMARK_PROGRESS_BAR is set, for a terminal at the other end of a
+/// pipe); elsewhere a line every ten per cent.
 class Progress {
  public:
   explicit Progress(std::string what);
 
   /// @param fraction  of the work done, 0..1
   void show(double fraction, const std::string& detail);
-  /// Ends the redrawn line.
+  /// Ends the line of the bar.
   void done();
   /// Wall-clock seconds since construction.
   double elapsed_s() const;

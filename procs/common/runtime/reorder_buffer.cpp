@@ -42,7 +42,7 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
   return release_until(newest_ - window_);
 }
 
-/// Its sender knows no time, and wants it now: in a log it stands where it acts.
+/// A command without a stamp acts now: it gets the newest stamp, so that a log has it in its place.
 Message ReorderBuffer::stamped(Message message) const {
   const auto command = decode<command_t>(message.payload);
   if (!has_any_ || !command.message) return message;
@@ -65,7 +65,7 @@ bool ReorderBuffer::leads(const Stream& stream, Timestamp time) const {
   return !stream.newest || time > *stream.newest + 2 * stream.usual_step;
 }
 
-/// @param time  of a message of the same channel that follows.
+/// @param time  stamp of the next message of the same channel.
 void ReorderBuffer::resolve_aside(Stream& stream, Timestamp time, Counters& counters) {
   if (stream.aside.empty() || stream.aside.front().time == time) return;
   if (time > stream.aside.front().time) {

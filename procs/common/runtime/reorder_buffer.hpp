@@ -16,25 +16,27 @@
 namespace waymark {
 
 /// Holds messages until one is `window` newer, then releases them by (time, channel, payload). A
-/// channel may lag behind the others by more than the window, as results computed from them do.
-/// Drops and counts messages that are older than a released one of their channel, and messages
-/// that are absurdly far ahead, which would flush all others; unless the clock was set.
+/// channel may lag behind the others by more than the window, as computed results do. Drops and
+/// counts messages that are older than a released one of their channel, and messages more than
+/// ClockStepDetector::kLongestPause ahead, which would release all others; unless the clock was
+/// set.
 ///
-/// A message far ahead of all channels is set aside: either there was a pause, or its stamp is
-/// wrong. The next message of its channel decides: a newer one confirms it, an older one drops it.
+/// A message moderately far ahead of all channels is set aside: either there was a pause, or its
+/// stamp is wrong. The next message of its channel decides: a newer one confirms it, an older one
+/// drops it.
 ///
-/// A sender whose clock stands still could fill the memory: of one stamp that is far ahead,
-/// kMostAside messages are kept, and when more than kMostWaiting wait the oldest go.
+/// Memory is bounded, also with a sender whose clock stands still: of one stamp that is set aside
+/// kMostAside messages are kept, and when more than kMostWaiting wait, the oldest are released.
 class ReorderBuffer {
  public:
-  /// Bounds of what is held: our senders send few messages of one stamp, and some tens in a window.
+  // Our processes send few messages of one stamp, and some tens within a window.
   static constexpr std::size_t kMostAside = 100;  ///< of each channel
   static constexpr std::size_t kMostWaiting = 2000;
 
   explicit ReorderBuffer(Duration window);
 
   std::vector<Message> add(Message message, Counters& counters);
-  /// Everything that waits, e.g. when nothing has come for a while.
+  /// Releases everything, e.g. when no message has come for a while.
   std::vector<Message> flush();
 
  private:
@@ -42,19 +44,20 @@ class ReorderBuffer {
     bool operator()(const Message& a, const Message& b) const { return comes_before(a, b); }
   };
 
-  /// How a stamp relates to the messages before.
+  /// How a stamp relates to the messages before: older than a released one, or too far ahead.
   enum class Misfit { kNone, kLate, kAhead };
 
-  // Sensors' periods and the jitter between processes; being set aside costs one period of delay.
+  // A message this far ahead of all others is set aside, which delays it by a period of its
+  // channel: above sensors' periods and the jitter between processes.
   static constexpr Duration kLead = std::chrono::milliseconds{100};
   static constexpr Duration kLongestStep = std::chrono::milliseconds{500};
 
   /// What is known of a channel.
   struct Stream {
-    std::optional<Timestamp> newest{};    ///< of what was put into order
-    std::optional<Timestamp> released{};  ///< of what was released
-    Duration usual_step{kLongestStep};    ///< twice as long may be usual, too
-    std::vector<Message> aside{};         ///< of one stamp
+    std::optional<Timestamp> newest{};    ///< stamp of the messages that are or were waiting
+    std::optional<Timestamp> released{};  ///< stamp of the last released message
+    Duration usual_step{kLongestStep};    ///< the last step, growing at most by a factor of 2
+    std::vector<Message> aside{};         ///< set aside; all of one stamp
   };
 
   Misfit misfit(const Message& message) const;

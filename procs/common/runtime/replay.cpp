@@ -98,8 +98,8 @@ bool report_skipped(const std::vector<Source>& sources) {
   return any;
 }
 
-/// Reports of each log that has nothing for this process what it has instead. (One whose channels
-/// are all in later logs, too, has.)
+/// Reports each log that has no channel of this process, and the channels that it has. (A log whose
+/// channels are all replaced by later logs is not reported.)
 bool report_useless(const std::vector<Source>& sources,
                     const std::vector<Inbox::Subscription>& subscriptions) {
   std::vector<std::string> wanted;
@@ -122,7 +122,7 @@ bool report_useless(const std::vector<Source>& sources,
   return any;
 }
 
-/// Reports of each channel that no log has what they have instead.
+/// Reports each needed channel that no log has, and the channels that they have.
 bool report_missing(const std::vector<Source>& sources,
                     const std::vector<std::string_view>& needed) {
   std::set<std::string> held;
@@ -185,7 +185,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
       source->advance();
       continue;
     }
-    is_working = works([&] { inbox.deliver(*source->head); });
+    is_working = succeeds([&] { inbox.deliver(*source->head); });
     write_out();
     ++num_messages;
     if (!is_working) break;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A node on logs instead of the network: in order, nothing lost, as fast as it can.
+// Runs a node on logs instead of the network: in order, without loss, as fast as it can.
 #pragma once
 
 #include "common/node/node.hpp"
@@ -7,8 +7,8 @@
 
 namespace waymark {
 
-/// @return exit code: 1 when a log held bytes that are not events or nothing for this process, or
-/// messages were refused.
+/// @return exit code: 1 when a log has bytes that are not events, or no channel that this process
+/// reads, when messages were rejected, or when the node failed.
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox);
 
 }  // namespace waymark

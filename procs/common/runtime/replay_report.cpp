@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/runtime/replay_report.hpp"
 
+#include "common/geometry/rounded.hpp"
+
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 namespace waymark {
-namespace {
-
-/// Three decimals: clocks and memory know no more.
-double rounded(double value) {
-  return std::round(1000.0 * value) / 1000.0;
-}
-
-}  // namespace
 
 std::string to_json(const ReplayReport& report, const Counters& counters) {
   nlohmann::ordered_json json;
   json["messages"] = report.messages;
-  json["log_s"] = rounded(report.log_s);
-  json["wall_s"] = rounded(report.wall_s);
-  json["real_time_factor"] = rounded(report.real_time_factor());
-  json["peak_memory_mb"] = rounded(report.peak_memory_mb);
+  json["log_s"] = rounded(report.log_s, 1e3);
+  json["wall_s"] = rounded(report.wall_s, 1e3);
+  json["real_time_factor"] = rounded(report.real_time_factor(), 1e3);
+  json["peak_memory_mb"] = rounded(report.peak_memory_mb, 1e3);
   json["counters"] = nlohmann::ordered_json::array();
   for (const auto& [name, count] : counters.all()) {
     if (count.value == 0) continue;

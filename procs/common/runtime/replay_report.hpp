@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a replay took and counted, for scripts.
+// A replay's cost and counters as JSON, for scripts.
 #pragma once
 
 #include "common/node/counters.hpp"
@@ -13,14 +13,14 @@ namespace waymark {
 struct ReplayReport {
   std::int64_t messages{};
   double log_s{};   ///< from the first to the last message
-  double wall_s{};  ///< that the replay took
+  double wall_s{};  ///< wall-clock time of the replay
   double peak_memory_mb{};
 
   double real_time_factor() const { return log_s / std::max(wall_s, 1e-9); }
 };
 
-/// One object: the figures, and "counters", a list of {"name", "kind", "value"} in order of name,
-/// without those that are zero.
+/// One JSON object: the members of the report, and "counters", a list of {"name", "kind", "value"}
+/// in order of name, without those that are zero.
 std::string to_json(const ReplayReport& report, const Counters& counters);
 
 }  // namespace waymark

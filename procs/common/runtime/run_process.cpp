@@ -26,11 +26,11 @@ using std::chrono::seconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kPoll{50};
-// How long a participant stays for re-sent ticks when the simulator's goodbye got lost.
+// How long a participant answers re-sent ticks when the simulator's closing TICK got lost.
 constexpr seconds kLinger{5};
 constexpr seconds kNothingHint{10};
-constexpr seconds kSilence{1};  // nothing more comes that could be older
-// How long messages that have come are still worked on after a signal asked to stop.
+constexpr seconds kSilence{1};  // after this, no older message is expected
+// How long received messages are still processed after a stop signal.
 constexpr seconds kDrain{2};
 // Longer than the jitter between our processes, shorter than a scan period.
 constexpr Duration kReorderWindow = milliseconds{150};
@@ -44,8 +44,7 @@ bool is_command(std::string_view channel) {
   return channel == channels::kMbotSystemReset.name;
 }
 
-/// Statuses and commands belong to no tick, and their time is not that of a sensor: they come when
-/// they come.
+/// Statuses and commands belong to no tick and have no sensor's stamp: they are delivered at once.
 bool is_untimed(std::string_view channel) {
   return channel.ends_with("_STATUS") || is_command(channel);
 }
@@ -68,7 +67,7 @@ struct Network {
 struct NodeFailed {};
 
 void deliver_or_fail(const std::vector<Message>& messages, Inbox& inbox) {
-  const bool is_working = works([&] {
+  const bool is_working = succeeds([&] {
     for (const Message& message : messages)
       inbox.deliver(message);
   });
@@ -128,17 +127,17 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
   return kExitSignal + stop_signal();
 }
 
-/// What arrives in real time, put in order and given to the node.
+/// Receives messages in real time, puts them in order, and delivers them to the node.
 class RealTimeFeed {
  public:
-  // A node with one input has nothing to put in order.
+  // A node with one input needs no reordering.
   RealTimeFeed(Bus& bus, Inbox& inbox, Outbox& outbox)
       : bus_{bus},
         inbox_{inbox},
         outbox_{outbox},
         buffer_{inbox.subscriptions().size() > 1 ? kReorderWindow : Duration{0}} {}
 
-  /// Takes one message if one comes in time.
+  /// Takes one message. @return false when none comes within the timeout.
   bool take(milliseconds timeout) {
     auto message = bus_.receive(timeout);
     if (!message) return false;
@@ -154,7 +153,7 @@ class RealTimeFeed {
 
   void flush() { deliver(buffer_.flush()); }
 
-  /// No message since then; nothing: there has been none at all.
+  /// nullopt when no message has come yet.
   std::optional<steady_clock::time_point> last_arrival() const { return last_arrival_; }
 
   Timestamp newest() const { return newest_; }
@@ -182,24 +181,25 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   StatusReporter reporter{traits.name};
   RealTimeFeed feed{bus, inbox, outbox};
   logging::info("ready, real time on {}", network.url);
-  tell_supervisor(kReady);
+  notify_supervisor(kReady);
   const auto start = steady_clock::now();
   bool hinted = false;
   bool is_working = true;
   while (is_working && stop_signal() == 0) {
     const auto last = feed.last_arrival();
-    is_working = works([&] {
+    is_working = succeeds([&] {
       if (!feed.take(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
     });
     if (!hinted && !last && steady_clock::now() - start > kNothingHint) {
       logging::warn("nothing has come on {} so far; is it the robot's LCM network?", network.url);
       hinted = true;
     }
-    if (reporter.report(bus, inbox.counters(), feed.newest(), "real-time")) tell_supervisor(kAlive);
+    if (reporter.report(bus, inbox.counters(), feed.newest(), "real-time"))
+      notify_supervisor(kAlive);
   }
-  tell_supervisor(kStopping);
+  notify_supervisor(kStopping);
   const auto stop = steady_clock::now();
-  is_working = is_working && works([&] {
+  is_working = is_working && succeeds([&] {
                  while (steady_clock::now() - stop < kDrain && feed.take(milliseconds{0})) {
                  }
                  feed.flush();
@@ -213,7 +213,7 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   return !is_working || !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
 }
 
-/// @throws SetupError for an option that would have no effect, or destroy what is to be read.
+/// @throws SetupError for an option that would have no effect, or would overwrite an input.
 void check(const ProcessOptions& options, const OptionSet& option_set) {
   const bool is_recorder = !option_set.log;
   const bool is_replay = !options.logs.empty();

@@ -14,18 +14,18 @@
 
 namespace waymark {
 
-/// A node type without its template.
+/// A node type with its template parameters erased.
 struct ProcessDescription {
   ProcessTraits traits{};
   OptionSet option_set{};
   std::function<std::string(const ProcessOptions&)> dump_config{};
   std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
-  std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none: the usual ones
-  std::function<void(const ProcessOptions&)> check_node{};  ///< what --check can of a node's own
+  std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none = the defaults
+  std::function<void(const ProcessOptions&)> check_node{};  ///< the node's own part of --check
   std::function<std::unique_ptr<Node>(const ProcessOptions&, Inbox&, Outbox&)> make_node{};
 };
 
-/// A program's own configuration, and what every program has.
+/// A program's own configuration, and section [channels], which every program has.
 template <class Config>
 struct ProcessConfig {
   Config own{};
@@ -44,8 +44,8 @@ struct ProcessConfig {
 
 int run_described_process(int argc, char** argv, const ProcessDescription& description);
 
-/// Configuration from files and command line, with --out, --out-log, --http, --lcm-url and the
-/// names of channels where the struct has members for them.
+/// Configuration from files and command line. Options such as --out or --http, and the names of
+/// channels, are copied into it where the struct has a member for them.
 template <class Config>
 ProcessConfig<Config> process_config_from(const ProcessOptions& options) {
   auto loaded = load_config<ProcessConfig<Config>>(options.config_sources);

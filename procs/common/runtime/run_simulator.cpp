@@ -66,7 +66,7 @@ class Run {
       }
       const auto now = steady_clock::now();
       if (!master.all_acknowledged() && now - last_ack > kSilenceTimeout) {
-        return name_the_silent(master);
+        return report_silent(master);
       }
       if (!may_advance && now - std::max(last_ack, last_sent) > resend_after) {
         publish(master.resend());
@@ -153,7 +153,7 @@ class Run {
     publish(master.open_tick(tick_end_, std::move(messages), source_.finished()));
   }
 
-  /// @return true when an acknowledgement came that was missing.
+  /// @return true when a missing acknowledgement has come.
   bool take_messages(LockstepMaster& master, milliseconds timeout) {
     bool acknowledged = false;
     for (auto message = bus_.receive(timeout); message; message = bus_.receive(milliseconds{0})) {
@@ -172,7 +172,7 @@ class Run {
     if (auto message = bus_.receive(timeout)) inbox_.deliver(*message);
   }
 
-  int name_the_silent(const LockstepMaster& master) const {
+  int report_silent(const LockstepMaster& master) const {
     const std::vector<std::string> silent = master.silent();
     const std::span waiting = std::span{silent}.subspan(1);
     logging::error(
@@ -209,7 +209,7 @@ ChannelNames names_of(const ProcessOptions& options, const SimulatorDescription&
   return description.channel_names ? description.channel_names(options) : ChannelNames{};
 }
 
-/// Nothing in real time: there, who came first is heard.
+/// Null in real time, where each channel belongs to its first publisher (ChannelOwners).
 std::unique_ptr<SimulatorLock> lock_of(const ProcessOptions& options,
                                        const SimulatorDescription& description) {
   if (options.real_time) return nullptr;
@@ -217,7 +217,7 @@ std::unique_ptr<SimulatorLock> lock_of(const ProcessOptions& options,
                                          names_of(options, description));
 }
 
-/// Makes the world, too, but writes nothing.
+/// Builds the world, too, but writes no file.
 int check(ProcessOptions options, const SimulatorDescription& description) {
   options.out_dir.clear();
   Inbox inbox;

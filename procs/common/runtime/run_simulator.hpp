@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// main() of the simulator: it makes the ticks that the others follow.
+// main() of the simulator: it opens the ticks that the other processes acknowledge.
 #pragma once
 
 #include "common/node/node.hpp"
@@ -15,7 +15,7 @@
 
 namespace waymark {
 
-/// What the runner drives. Procs/sim has the only one; tests have small ones.
+/// Source of the simulator's ticks: procs/sim has the real one, tests have small ones.
 class TickSource {
  public:
   virtual ~TickSource() = default;
@@ -29,12 +29,12 @@ class TickSource {
   virtual void begin() = 0;
   /// The last tick has been made.
   virtual bool finished() const = 0;
-  /// Simulates one tick. @return its messages; `tick_end` is the time up to which they reach.
+  /// Simulates one tick. @return its messages, all stamped before `tick_end`, which is set here.
   virtual std::vector<Message> advance(Timestamp& tick_end) = 0;
   virtual double progress_fraction() const = 0;
   /// E.g. "x 12.3 m of 49.0 m".
   virtual std::string progress() const = 0;
-  /// The run has ended, well or not.
+  /// The run has ended, successfully or not.
   virtual void finish() = 0;
 };
 
@@ -43,9 +43,9 @@ struct SimulatorDescription {
   std::function<std::string(const ProcessOptions&)> dump_config{};
   std::function<std::string(const ProcessOptions&)> dump_robot_config{};
   std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
-  std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none: the usual ones
+  std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none = the defaults
   std::function<std::unique_ptr<TickSource>(const ProcessOptions&, Inbox&)> make_source{};
-  std::vector<std::string_view> files{};  ///< that the source writes into --out
+  std::vector<std::string_view> files{};  ///< names of the files that it writes into --out
 };
 
 int run_described_simulator(int argc, char** argv, const SimulatorDescription& description);

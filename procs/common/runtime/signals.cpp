@@ -15,8 +15,9 @@ namespace {
 volatile std::sig_atomic_t g_stop_signal = 0;
 std::atomic<std::int64_t> g_stopped_ms{0};
 
-// timeout(1) and some supervisors signal a process and then its group: it gets one wish twice.
-constexpr std::int64_t kOneWish_ms = 300;
+// timeout(1) and some supervisors signal a process and then its group: signals this close together
+// count as one.
+constexpr std::int64_t kSameRequest_ms = 300;
 
 std::int64_t now_ms() {
   timespec now{};
@@ -24,12 +25,11 @@ std::int64_t now_ms() {
   return 1000 * now.tv_sec + now.tv_nsec / 1'000'000;
 }
 
-/// The second wish to stop is obeyed at once.
 void on_signal(int signal) {
   if (g_stop_signal == 0) {
     g_stopped_ms = now_ms();
     g_stop_signal = signal;
-  } else if (now_ms() - g_stopped_ms > kOneWish_ms) {
+  } else if (now_ms() - g_stopped_ms > kSameRequest_ms) {
     _exit(128 + signal);
   }
 }

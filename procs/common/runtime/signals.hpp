@@ -4,7 +4,7 @@
 
 namespace waymark {
 
-/// From now on the first such signal sets the flag, and the second ends the process at once.
+/// From now on the first of these signals sets the flag, and a second one ends the process at once.
 void install_stop_signals();
 
 /// The signal that asked to stop, or 0.

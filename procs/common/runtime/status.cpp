@@ -37,8 +37,7 @@ bool StatusReporter::report(Bus& bus, Counters& counters, Timestamp newest,
   return true;
 }
 
-/// Warns whenever a count of lost or refused messages has doubled, so that a flood does not flood
-/// the log.
+/// Warns whenever a count of lost or rejected messages has doubled, so that the log stays short.
 void StatusReporter::warn_of_new_losses(const Counters& counters) {
   for (const auto& [name, count] : counters.all()) {
     const std::int64_t warned = warned_.get(name);

@@ -15,7 +15,7 @@ class StatusReporter {
  public:
   explicit StatusReporter(std::string_view process_name);
 
-  /// Does something once a second at most. @return whether it did.
+  /// Reports, once a second at most. @return whether it did.
   bool report(Bus& bus, Counters& counters, Timestamp newest, std::string_view state);
 
  private:

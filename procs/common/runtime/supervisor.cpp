@@ -11,7 +11,7 @@
 
 namespace waymark {
 
-void tell_supervisor(std::string_view state) {
+void notify_supervisor(std::string_view state) {
   const char* variable = std::getenv("NOTIFY_SOCKET");
   if (variable == nullptr) return;
   const std::string name{variable};
@@ -19,7 +19,7 @@ void tell_supervisor(std::string_view state) {
   address.sun_family = AF_UNIX;
   if (name.size() < 2 || name.size() >= sizeof(address.sun_path)) return;
   name.copy(address.sun_path, name.size());
-  if (name[0] == '@') address.sun_path[0] = '\0';  // a name outside of the file system
+  if (name[0] == '@') address.sun_path[0] = '\0';  // an abstract socket
   const int socket_file = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket_file < 0) return;
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size());

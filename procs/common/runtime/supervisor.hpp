@@ -6,12 +6,13 @@
 
 namespace waymark {
 
-/// States of sd_notify(3): a datagram to the socket that $NOTIFY_SOCKET names. Does nothing where
-/// there is no supervisor, or it does not listen.
+/// States of sd_notify(3).
 inline constexpr std::string_view kReady = "READY=1";
 inline constexpr std::string_view kAlive = "WATCHDOG=1";
 inline constexpr std::string_view kStopping = "STOPPING=1";
 
-void tell_supervisor(std::string_view state);
+/// Sends the state as a datagram to the socket in $NOTIFY_SOCKET. Does nothing where there is no
+/// supervisor, or it does not listen.
+void notify_supervisor(std::string_view state);
 
 }  // namespace waymark

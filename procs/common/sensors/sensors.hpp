@@ -14,17 +14,17 @@
 
 namespace waymark {
 
-/// Id of "no marker". Every id >= 0 is a marker; 0 is one, too.
+/// Id of "no marker". Every id >= 0, also 0, is a marker's.
 constexpr int kNoMarker = -1;
 
-/// Pose of the base by wheel odometry, in the frame where odometry started.
+/// Pose of the base by wheel odometry, in the frame that begins at its first sample.
 struct OdometrySample {
   Timestamp time{};
   Se2 odom_from_base{};
 };
 
 /// One sweep of a planar LiDAR. All arrays have one entry per beam; beam_time_offsets is empty when
-/// the sweep counts as taken at one instant.
+/// all beams are taken at the same instant.
 struct LidarScan {
   Timestamp time{};
   std::vector<double> ranges_m{};    ///< +inf = no return within range, NaN = invalid (REP-117)

@@ -4,8 +4,8 @@
 namespace waymark {
 namespace {
 
-constexpr int kConsecutive = 20;                     // stamps that show that the clock was set
-constexpr Duration kNear = std::chrono::seconds{2};  // between stamps that follow each other
+constexpr int kConsecutive = 20;                     // stamps after which the clock counts as set
+constexpr Duration kNear = std::chrono::seconds{2};  // between consistent stamps
 
 }  // namespace
 

@@ -17,11 +17,10 @@ class ClockStepDetector {
   void see_fitting() { misfits_ = 0; }
 
   /// @return true when the clock was set: many inconsistent stamps in a row are consistent with
-  /// each
-  ///         other.
+  /// each other.
   bool see_misfit(Timestamp time);
 
-  /// The first of the present row of inconsistent stamps.
+  /// The first of the present run of inconsistent stamps.
   Timestamp first_misfit() const { return first_misfit_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times of messages as people read them.
+// Message times as text.
 #pragma once
 
 #include "common/time/time.hpp"
@@ -11,8 +11,8 @@
 
 namespace waymark {
 
-/// "2001-09-09 01:53:48.000 UTC (1000000428.000 s)"; a clock that counts from a start, and not from
-/// 1970: "428.000 s".
+/// "2001-09-09 01:53:48.000 UTC (1000000428.000 s)"; of a clock that does not count from 1970:
+/// "428.000 s".
 inline std::string date_text(Timestamp time) {
   constexpr double kEarliestDate_s = 1e8;  // 1973
   constexpr double kLatestDate_s = 4e9;    // 2096

@@ -22,7 +22,7 @@ std::string heard_on(const std::string& name, std::string_view state) {
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size());
   EXPECT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), size), 0);
   setenv("NOTIFY_SOCKET", name.c_str(), 1);
-  tell_supervisor(state);
+  notify_supervisor(state);
   unsetenv("NOTIFY_SOCKET");
   std::string text(100, '\0');
   const auto got = recv(listener, text.data(), text.size(), 0);
@@ -40,11 +40,11 @@ TEST(Supervisor, IsNotifiedOnItsSocket) {
 
 TEST(Supervisor, AMissingSupervisorIsIgnored) {
   unsetenv("NOTIFY_SOCKET");
-  tell_supervisor(kReady);
+  notify_supervisor(kReady);
   for (const std::string& name :
        {std::string{}, std::string{"/"}, std::string{"/tmp/no/socket"}, std::string(200, 'x')}) {
     setenv("NOTIFY_SOCKET", name.c_str(), 1);
-    tell_supervisor(kReady);
+    notify_supervisor(kReady);
   }
   unsetenv("NOTIFY_SOCKET");
 }

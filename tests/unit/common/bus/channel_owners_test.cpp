@@ -30,7 +30,7 @@ TEST(ChannelOwners, ARestartedDriverBecomesTheOwner) {
   ChannelOwners owners;
   owners.check("LIDAR", kDriver, at(0));
   EXPECT_EQ(owners.check("LIDAR", kOther, at(2000)), Verdict::kRefused);
-  EXPECT_EQ(owners.check("LIDAR", kOther, at(2001)), Verdict::kSucceeds);
+  EXPECT_EQ(owners.check("LIDAR", kOther, at(2001)), Verdict::kNewOwner);
   EXPECT_EQ(owners.check("LIDAR", kOther, at(2002)), Verdict::kAccepted);
 }
 
@@ -38,7 +38,7 @@ TEST(ChannelOwners, AnyMessageOfTheOwnerKeepsItActive) {
   ChannelOwners owners;
   owners.check("MARKERS", kDriver, at(0));
   for (int time_ms = 1000; time_ms <= 60000; time_ms += 1000)
-    owners.hear(kDriver, at(time_ms));
+    owners.note_activity(kDriver, at(time_ms));
   EXPECT_EQ(owners.check("MARKERS", kOther, at(61000)), Verdict::kRefused);
 }
 
@@ -56,7 +56,7 @@ TEST(ChannelOwners, TwoDrivesOnTheSameChannelsAreNotMixed) {
   EXPECT_EQ(owners.check("ODOMETRY", kDriver, at(0)), Verdict::kAccepted);
   EXPECT_EQ(owners.check("LIDAR", kOther, at(1)), Verdict::kAccepted);
   EXPECT_EQ(owners.check("ODOMETRY", kOther, at(2)), Verdict::kRefused);
-  EXPECT_EQ(owners.check("LIDAR", kDriver, at(3)), Verdict::kSucceeds);
+  EXPECT_EQ(owners.check("LIDAR", kDriver, at(3)), Verdict::kNewOwner);
   for (int time_ms = 10; time_ms < 5000; time_ms += 10) {
     for (const char* channel : {"LIDAR", "ODOMETRY", "CAMERA"}) {
       EXPECT_EQ(owners.check(channel, kDriver, at(time_ms)), Verdict::kAccepted);
@@ -77,7 +77,7 @@ TEST(ChannelOwners, ManyForgedSendersAreRefusedInBoundedMemory) {
   ChannelOwners owners;
   owners.check("LIDAR", kDriver, at(0));
   for (int i = 0; i < 100000; ++i) {
-    owners.hear(kDriver, at(i));
+    owners.note_activity(kDriver, at(i));
     const Sender forged{0x0a000000U + static_cast<std::uint32_t>(i), 1};
     ASSERT_EQ(owners.check("LIDAR", forged, at(i)), Verdict::kRefused);
   }
