@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulator's configuration: a scenario, and where to write what is true.
+// The simulator's configuration: a scenario, and the folder for the ground truth.
 #pragma once
 
 #include "sim/core/scenario.hpp"

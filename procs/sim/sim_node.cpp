@@ -55,20 +55,20 @@ SimNode::SimNode(const Config& config, Inbox& inbox) : config_{config}, inbox_{i
   }
   if (config_.route.source == DriveSource::kCommand) {
     inbox.on<twist2D_t>(channels::kDriveCommand,
-                        [this](const twist2D_t& command) { obey(command); });
+                        [this](const twist2D_t& command) { handle(command); });
   }
 }
 
 void SimNode::begin() {
   if (config_.out_dir.empty()) return;
   try {
-    write_what_is_known();
+    write_start_files();
   } catch (const std::system_error& error) {
     throw SetupError{error.what()};
   }
 }
 
-void SimNode::write_what_is_known() {
+void SimNode::write_start_files() {
   write_whole_file(config_.out_dir / "scenario.toml", dump_config(config_));
   write_whole_file(config_.out_dir / "robot.toml", dump_robot_config(config_.robot));
   write_whole_file(config_.out_dir / "truth_markers.csv", truth_markers_csv(simulation_->world()));
@@ -77,7 +77,7 @@ void SimNode::write_what_is_known() {
   truth_.emplace(config_.out_dir / "truth.tum");
 }
 
-/// Anew each time: a run that is cut short leaves what has happened.
+/// Rewrites the file at each move, so that it is complete also when the run is cut short.
 void SimNode::write_moves(const std::vector<MovedMarker>& moved) {
   moved_markers_.insert(moved_markers_.end(), moved.begin(), moved.end());
   write_whole_file(config_.out_dir / "truth_marker_moves.csv",
@@ -89,7 +89,7 @@ std::int64_t SimNode::run_id() const {
   return content_hash({"scenario", {}, {text.begin(), text.end()}});
 }
 
-void SimNode::obey(const twist2D_t& command) {
+void SimNode::handle(const twist2D_t& command) {
   const Velocity velocity{double{command.vx}, double{command.wz}};
   const CommandOutcome outcome = simulation_->command(timestamp_from_us(command.utime), velocity);
   inbox_.counters().add(counter_of(outcome),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulator as the runner sees it: messages of one tick after another.
+// The simulator as a source of ticks.
 #pragma once
 
 #include "common/runtime/run_simulator.hpp"
@@ -49,9 +49,9 @@ class SimNode final : public TickSource {
   void finish() override;
 
  private:
-  void write_what_is_known();
+  void write_start_files();
   void write_moves(const std::vector<MovedMarker>& moved);
-  void obey(const twist2D_t& command);
+  void handle(const twist2D_t& command);
 
   Config config_;
   Inbox& inbox_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the simulator knows and leaves for the evaluation: no other process gets it.
+// Ground truth files for the evaluation; no other process reads them.
 #pragma once
 
 #include "sim/core/simulation.hpp"
@@ -14,8 +14,8 @@ namespace waymark {
 /// `id,instance,x_m,y_m,yaw_rad` of every marker, world frame; yaw = direction that it faces.
 std::string truth_markers_csv(const World& world);
 
-/// `t_s,id,instance,x_m,y_m,yaw_rad`: where markers have hung since they were moved, in order of
-/// time; before, and all others, see truth_markers.csv.
+/// `t_s,id,instance,x_m,y_m,yaw_rad`: new places of moved markers, in order of time. Their first
+/// places are in truth_markers.csv.
 std::string truth_marker_moves_csv(const std::vector<MovedMarker>& moves);
 
 /// truth.tum: `t x y z qx qy qz qw` of the base in the world frame, growing during the run.
@@ -24,7 +24,8 @@ class TruthTrajectory {
   /// @throws SetupError when the file cannot be created.
   explicit TruthTrajectory(const std::filesystem::path& path);
   void add(const TruePose& pose);
-  /// Puts the file in place. @throws std::runtime_error naming it when the disk is full.
+  /// Renames the temporary file to its final name.
+  /// @throws std::runtime_error naming it when the disk is full.
   void finish();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One name per source of randomness: the second part of a Random's key, after the seed.
+// One number per source of randomness: the second part of a Random's key, after the seed.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scenario: everything that a simulated run depends on. Scenario and build determine every byte.
+// A scenario: the complete configuration of a simulated run. Scenario and build determine every
+// byte.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -20,7 +21,7 @@
 
 namespace waymark {
 
-/// Time, chance, and who takes part.
+/// Time steps, seed, and participants of the lockstep.
 struct RunConfig {
   std::int64_t seed{1};
   double tick_s{0.1};
@@ -34,9 +35,8 @@ struct RunConfig {
   void describe(Fields& fields);
 };
 
-/// The simulated robot knows that its camera is as described, and that markers hang straight:
-/// what rendering and detection leave, 0.02 px, is all that is wrong. [camera_errors] makes its
-/// camera another one than that; the robot is configured by the scenario then.
+/// Default of [robot]: sigmas of camera and markers as in simulation, where only rendering and
+/// detection leave errors (0.02 px). A scenario with [camera_errors] has to set larger ones.
 RobotConfig simulated_robot();
 
 struct Scenario {
@@ -51,7 +51,7 @@ struct Scenario {
   RunConfig run{};
   std::vector<FaultConfig> faults{};
   std::vector<KidnapConfig> kidnaps{};
-  ExpectConfig expect{};  ///< not for the simulation: for who reads its results
+  ExpectConfig expect{};  ///< not used by the simulation, but by waymark-evaluate
 
   MarkerPrint marker_print() const {
     return {robot.markers.dictionary, robot.markers.size_m, markers.quiet_zone_modules};

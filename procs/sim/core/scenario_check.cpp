@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What must hold across the fields of a scenario.
+// Checks of a scenario that concern several fields.
 #include "sim/core/robot/path.hpp"
 #include "sim/core/scenario.hpp"
 
@@ -14,9 +14,10 @@ namespace {
 
 constexpr double kRoundingSlack_m = 1e-9;
 constexpr double kSameWall_rad = 1e-6;
-// Half of the Waffle Pi's length and width with some air: closest approach of the base to a wall.
-constexpr double kBodyBehind_m = 0.20;
-constexpr double kBodyBeside_m = 0.16;
+// Smallest distance of the base to a wall, from the Waffle Pi's size: where the robot turns on the
+// spot, its body extends furthest behind the base; where it drives, half of its width is enough.
+constexpr double kTurningRoom_m = 0.20;
+constexpr double kDrivingRoom_m = 0.16;
 constexpr double kRobotLength_m = 0.30;
 constexpr double kRouteSample_m = 0.05;
 
@@ -34,8 +35,8 @@ double distance_m(const BoxConfig& box, const Eigen::Vector2d& point_m) {
   return beyond_m.norm();
 }
 
-/// Is there room for the robot: so much to every wall and box, whenever the box is there? Empty if
-/// so.
+/// Empty if the point is at least `needed_m` away from every wall, and from every box at whatever
+/// time it is present; else a sentence.
 std::string what_is_too_close(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
                               const Eigen::Vector2d& point_m, double needed_m) {
   const double to_wall_m = clearance_m(walls, point_m);
@@ -73,7 +74,7 @@ void check_fault(const FaultConfig& fault, const std::string& key, Problems& pro
 void Scenario::check(Problems& problems) const {
   robot.check(problems);
   check_world(problems);
-  if (!problems.lines().empty()) return;  // nothing fits into a world that is too small
+  if (!problems.lines().empty()) return;  // the other checks need a valid world
   check_markers(problems);
   if (problems.lines().empty()) check_places(problems);
   check_route(problems);
@@ -94,9 +95,9 @@ void Scenario::check_world(Problems& problems) const {
   check_length("world.length_m", world.length_m);
   if (world.layout != Layout::kStraight)
     check_length("world.second_length_m", world.second_length_m);
-  if (world.width_m < 2.0 * kBodyBeside_m) {
+  if (world.width_m < 2.0 * kDrivingRoom_m) {
     problems.add("world.width_m", fmt::format("got {}, expected more than the robot's width, {} m",
-                                              world.width_m, 2.0 * kBodyBeside_m));
+                                              world.width_m, 2.0 * kDrivingRoom_m));
   }
   if (!problems.lines().empty()) return;
   if (const std::optional<std::size_t> opening = opening_without_wall(world)) {
@@ -186,7 +187,7 @@ void Scenario::check_added(const World& built, int num_ids, Problems& problems) 
       return std::abs(angle_difference(other.yaw_rad, hung->yaw_rad)) < kSameWall_rad &&
              (other.centre_m - hung->centre_m).head<2>().norm() < plate_m - kRoundingSlack_m;
     };
-    // It is one of them itself.
+    // The count includes the added marker itself.
     if (std::count_if(built.markers.begin(), built.markers.end(), is_in_its_way) > 1)
       problems.add(key, "another marker hangs there");
   }
@@ -217,10 +218,10 @@ void Scenario::check_route(Problems& problems) const {
     if (!problem.empty()) problems.add(key, problem);
     return problem.empty();
   };
-  check_free("route.start", {route.start_x_m, route.start_y_m}, kBodyBehind_m);
+  check_free("route.start", {route.start_x_m, route.start_y_m}, kTurningRoom_m);
   for (std::size_t i = 0; i < kidnaps.size(); ++i) {
     const std::string key = fmt::format("kidnaps[{}]", i);
-    check_free(key, {kidnaps[i].to_x_m, kidnaps[i].to_y_m}, kBodyBehind_m);
+    check_free(key, {kidnaps[i].to_x_m, kidnaps[i].to_y_m}, kTurningRoom_m);
     if (!kidnaps[i].when.is_set()) problems.add(key, "expected an at_s or at_m above 0");
   }
   if (route.source == DriveSource::kCommand) {
@@ -242,7 +243,7 @@ void Scenario::check_route(Problems& problems) const {
     const int num_samples = 1 + static_cast<int>(piece.length_m / kRouteSample_m);
     for (int i = 0; i <= num_samples; ++i) {
       const Se2 world_from_base = piece.world_from(i * piece.length_m / num_samples);
-      if (!check_free(key, world_from_base.translation(), kBodyBeside_m)) return;  // one is enough
+      if (!check_free(key, world_from_base.translation(), kDrivingRoom_m)) return;  // one is enough
     }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What other people do in the robot's world during the run.
+// Changes of the world during a run: boxes, moved markers, kidnaps.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -13,8 +13,9 @@
 
 namespace waymark {
 
-/// Somebody stops the robot, lifts it and puts it down elsewhere; its wheels do not notice. It then
-/// turns to its route and goes on from there, so the place should be beside the same line.
+/// The robot is stopped, lifted and put down elsewhere, without any turn of its wheels. It then
+/// turns towards the line of the route that it was on and follows it, so the place should be near
+/// that line.
 struct KidnapConfig {
   Trigger when{};
   double to_x_m{0.0};
@@ -26,18 +27,18 @@ struct KidnapConfig {
   void describe(Fields& fields);
 };
 
-/// A marker hangs elsewhere from now on.
+/// A marker that has been moved, with its new place.
 struct MovedMarker {
   Timestamp time{};
   MarkerPlate marker{};
 };
 
-/// Boxes that come and go, markers that move.
+/// Boxes that appear and disappear, markers that are moved.
 class SceneDynamics {
  public:
   explicit SceneDynamics(const World& world);
 
-  /// Brings the model up to date. Returns the markers that have just moved, as they hang now.
+  /// Updates the model. @return the markers that were moved since the last call.
   std::vector<MovedMarker> update(Timestamp time, const Moment& moment, Physics& physics);
 
  private:
@@ -48,18 +49,18 @@ class SceneDynamics {
   std::vector<bool> is_shown_;
 };
 
-/// Stops the robot, moves it, lets it go: one kidnap after the other.
+/// Executes the kidnaps, one after the other.
 class Kidnapper {
  public:
   explicit Kidnapper(const std::vector<KidnapConfig>& kidnaps) : kidnaps_{kidnaps} {}
 
   enum class Grip { kNone, kHeld, kReleased };
 
-  /// Call at every step. While held the robot must stand; released comes once, when it may go on.
+  /// Call at every step. While kHeld the robot must stand; kReleased is returned once, at the end.
   Grip update(const Moment& moment, Physics& physics);
 
  private:
-  std::vector<KidnapConfig> kidnaps_;  ///< the first one is the next
+  std::vector<KidnapConfig> kidnaps_;  ///< those to come, the next one first
   double held_since_s_{-1.0};
   bool has_moved_{false};
 };

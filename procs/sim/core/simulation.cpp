@@ -12,9 +12,9 @@ namespace waymark {
 namespace {
 
 constexpr std::int64_t kNotYet = -1;
-// A route takes this much longer than its length over its speed before something is wrong.
-constexpr double kPatienceFactor = 3.0;
-constexpr double kPatience_s = 60.0;
+// Time limit of a route without route.duration_s: a multiple of length over speed, and a reserve.
+constexpr double kTimeLimitFactor = 3.0;
+constexpr double kTimeReserve_s = 60.0;
 constexpr int kPicturesPerExposure = 5;
 
 std::string mjcf_of(const Scenario& scenario, const World& world, const Pinhole& pinhole) {
@@ -58,8 +58,8 @@ Tick Simulation::advance() {
   Tick tick;
   tick.moved_markers = scene_dynamics_.update(now(), moment(), physics_);
   for (int i = 0; i < scenario_.steps_per_tick(); ++i) {
-    sense(tick);
-    physics_.step(wheel_speeds(scenario_.robot.base, decide()));
+    measure(tick);
+    physics_.step(wheel_speeds(scenario_.robot.base, next_velocity()));
     ++step_;
   }
   tick.end = now();
@@ -91,7 +91,7 @@ double Simulation::progress_fraction() const {
 }
 
 Timestamp Simulation::time_of_step(std::int64_t step) const {
-  // From the step number, so that no rounding adds up.
+  // From the step number, so that rounding errors do not add up.
   const std::int64_t rate_hz = scenario_.run.physics_rate_hz;
   return timestamp_from_us((step * 1'000'000 + rate_hz / 2) / rate_hz);
 }
@@ -104,18 +104,18 @@ Moment Simulation::moment() const {
   return {to_seconds(now()), route_.progress_m()};
 }
 
-void Simulation::sense(Tick& tick) {
+void Simulation::measure(Tick& tick) {
   if (is_due(scenario_.robot.base.odometry_rate_hz)) {
     measure_odometry();
     tick.true_poses.push_back({now(), physics_.world_from_base()});
   }
   if (scenario_.run.rolling_scan) {
-    sense_rolling_scan();
+    measure_rolling_scan();
   } else if (is_due(scenario_.robot.lidar.rate_hz)) {
     send_scan(lidar_.scan(now(), physics_));
   }
   if (is_due(scenario_.robot.camera.rate_hz)) {
-    CameraFrame frame = photograph();
+    CameraFrame frame = capture_frame();
     frame.time += duration_from_seconds(scenario_.robot.camera.late_s);
     camera_outlet_.take(std::move(frame), moment());
   }
@@ -125,7 +125,7 @@ void Simulation::measure_odometry() {
   const Faults& faults = odometry_outlet_.faults();
   OdometrySample sample =
       encoders_.measure(now(), spinning_wheels_.counted(physics_.wheel_angles(), faults, moment()));
-  if (faults.acting(FaultKind::kGarbage, moment()) != nullptr) {
+  if (faults.active(FaultKind::kGarbage, moment()) != nullptr) {
     Random random = garbage_random(Sensor::kOdometry);
     make_garbage(sample, random);
   }
@@ -134,9 +134,9 @@ void Simulation::measure_odometry() {
 
 void Simulation::send_scan(LidarScan scan) {
   const Faults& faults = lidar_outlet_.faults();
-  if (const FaultConfig* fault = faults.acting(FaultKind::kWrong, moment()))
+  if (const FaultConfig* fault = faults.active(FaultKind::kWrong, moment()))
     scale_ranges(scan, scenario_.robot.lidar, fault->share);
-  if (faults.acting(FaultKind::kGarbage, moment()) != nullptr) {
+  if (faults.active(FaultKind::kGarbage, moment()) != nullptr) {
     Random random = garbage_random(Sensor::kLidar);
     make_garbage(scan, scenario_.robot.lidar, random);
   }
@@ -149,9 +149,9 @@ Random Simulation::garbage_random(Sensor sensor) const {
                 static_cast<std::uint64_t>(sensor), static_cast<std::uint64_t>(step_)};
 }
 
-/// A few beams in every step; a finished sweep is stamped with the time of its last beams, so that
+/// A few beams in every step. A finished sweep is stamped with the time of its last beams, so that
 /// messages stay in order of time.
-void Simulation::sense_rolling_scan() {
+void Simulation::measure_rolling_scan() {
   const int num_beams = scenario_.robot.lidar.num_beams;
   const int steps_per_sweep = scenario_.steps_per(scenario_.robot.lidar.rate_hz);
   const int phase = static_cast<int>(step_ % steps_per_sweep);
@@ -171,19 +171,19 @@ void Simulation::sense_rolling_scan() {
   send_scan(sweep_);
 }
 
-cv::Mat Simulation::look(double later_s) {
+cv::Mat Simulation::render_at(double later_s) {
   return renderer_.render(physics_.world_from_base_3d_at(later_s) *
                           camera_.config().base_from_camera());
 }
 
-/// The mean of a few pictures around now.
-cv::Mat Simulation::look_for_an_exposure() {
+/// The mean of a few pictures over the exposure time, centred on now.
+cv::Mat Simulation::render_exposure() {
   const double exposure_s = scenario_.camera_noise.exposure_s;
-  if (exposure_s == 0.0) return look(0.0);
+  if (exposure_s == 0.0) return render_at(0.0);
   cv::Mat sum;
   for (int i = 0; i < kPicturesPerExposure; ++i) {
     cv::Mat picture;
-    look(exposure_s * ((i + 0.5) / kPicturesPerExposure - 0.5)).convertTo(picture, CV_16UC3);
+    render_at(exposure_s * ((i + 0.5) / kPicturesPerExposure - 0.5)).convertTo(picture, CV_16UC3);
     sum = i == 0 ? picture : cv::Mat{sum + picture};
   }
   cv::Mat mean;
@@ -191,18 +191,18 @@ cv::Mat Simulation::look_for_an_exposure() {
   return mean;
 }
 
-CameraFrame Simulation::photograph() {
+CameraFrame Simulation::capture_frame() {
   const Faults& faults = camera_outlet_.faults();
-  if (faults.acting(FaultKind::kGarbage, moment()) != nullptr) {
+  if (faults.active(FaultKind::kGarbage, moment()) != nullptr) {
     Random random = garbage_random(Sensor::kCamera);
-    return camera_.compress(camera_.garbage(random), now());
+    return camera_.compress(camera_.random_picture(random), now());
   }
-  const FaultConfig* wrong = faults.acting(FaultKind::kWrong, moment());
+  const FaultConfig* wrong = faults.active(FaultKind::kWrong, moment());
   const double light = wrong != nullptr ? 1.0 + wrong->share : 1.0;
-  return camera_.compress(camera_.expose(look_for_an_exposure(), frames_taken_++, light), now());
+  return camera_.compress(camera_.expose(render_exposure(), frames_taken_++, light), now());
 }
 
-Velocity Simulation::decide() {
+Velocity Simulation::next_velocity() {
   const Kidnapper::Grip grip = kidnapper_.update(moment(), physics_);
   if (grip == Kidnapper::Grip::kHeld) return {};
   if (grip == Kidnapper::Grip::kReleased) route_.begin_anew();
@@ -214,11 +214,11 @@ Velocity Simulation::decide() {
 
 void Simulation::check_progress() const {
   if (scenario_.route.source == DriveSource::kCommand || route_.arrived()) return;
-  const double patience_s =
+  const double time_limit_s =
       scenario_.route.duration_s > 0.0
           ? scenario_.route.duration_s
-          : kPatience_s + kPatienceFactor * route_.route_length_m() / scenario_.route.speed_mps;
-  if (to_seconds(now()) < patience_s) return;
+          : kTimeReserve_s + kTimeLimitFactor * route_.route_length_m() / scenario_.route.speed_mps;
+  if (to_seconds(now()) < time_limit_s) return;
   const Se2 at = physics_.world_from_base();
   throw SimulatorError{
       fmt::format("the robot has not arrived after {:.0f} s; it stands at ({:.2f}, {:.2f})",

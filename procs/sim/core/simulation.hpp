@@ -26,8 +26,8 @@ struct TruePose {
   Se2 world_from_base{};
 };
 
-/// What was measured from the end of the last tick (inclusive) to the end of this one (exclusive),
-/// by its stamps, and which markers were moved.
+/// Measurements stamped from the end of the last tick (inclusive) to the end of this one
+/// (exclusive), and the markers that were moved.
 struct Tick {
   Timestamp end{};
   std::vector<OdometrySample> odometry{};
@@ -37,10 +37,11 @@ struct Tick {
   std::vector<MovedMarker> moved_markers{};
 };
 
-/// Deterministic: the scenario, and the commands with their stamps, determine every value.
+/// Deterministic: scenario and stamped commands determine every value.
 class Simulation {
  public:
-  /// @param scenario  checked. @throws SimulatorError when MuJoCo or OSMesa cannot be used.
+  /// @param scenario  one that Scenario::check() accepts.
+  /// @throws SimulatorError when MuJoCo or OSMesa cannot be used.
   explicit Simulation(const Scenario& scenario);
 
   /// Simulates the next tick. @throws SimulatorError when the robot does not arrive in time.
@@ -49,7 +50,7 @@ class Simulation {
   /// A velocity command (route.source = command only).
   CommandOutcome command(Timestamp stamp, const Velocity& velocity);
 
-  /// The robot has arrived and stood long enough, or the time is over.
+  /// The robot has stood at the end for route.settle_s, or with commands route.duration_s is over.
   bool finished() const;
 
   Timestamp now() const { return time_of_step(step_); }
@@ -58,7 +59,7 @@ class Simulation {
 
   Se2 world_from_base() const { return physics_.world_from_base(); }
 
-  /// 0 at the start, 1 when finished: of the route, or of the time.
+  /// Share of the route, or with commands of the time: 0 at the start, 1 when finished.
   double progress_fraction() const;
 
  private:
@@ -66,14 +67,14 @@ class Simulation {
   bool is_due(double rate_hz) const;
   Moment moment() const;
   Random garbage_random(Sensor sensor) const;
-  void sense(Tick& tick);
-  void sense_rolling_scan();
+  void measure(Tick& tick);
   void measure_odometry();
+  void measure_rolling_scan();
   void send_scan(LidarScan scan);
-  CameraFrame photograph();
-  cv::Mat look(double later_s);
-  cv::Mat look_for_an_exposure();
-  Velocity decide();
+  CameraFrame capture_frame();
+  cv::Mat render_at(double later_s);
+  cv::Mat render_exposure();
+  Velocity next_velocity();
   void check_progress() const;
 
   Scenario scenario_;
@@ -94,7 +95,7 @@ class Simulation {
   std::int64_t step_{0};
   std::int64_t arrival_step_{-1};
   std::uint64_t frames_taken_{0};
-  LidarScan sweep_{};  ///< of a rolling scan, growing
+  LidarScan sweep_{};  ///< the unfinished sweep of a rolling scan
 };
 
 }  // namespace waymark

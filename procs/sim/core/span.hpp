@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When something happens in a run: by time, by distance driven, or both.
+// Intervals and instants of a run, by time, by distance driven, or both.
 #pragma once
 
 #include "common/config/config.hpp"
 
 namespace waymark {
 
-/// How far the run has got.
+/// Progress of the run.
 struct Moment {
   double time_s{0.0};
   double route_m{0.0};  ///< progress along the route; 0 when commands drive
 };
 
-/// Far beyond every run, and a number that TOML and a reader can take.
+/// Later than the end of any run; finite, so that it can be written in TOML.
 constexpr double kNever = 1e9;
 
-/// While both time and distance driven are within bounds; by default always.
+/// Active while both time and distance driven are within bounds; by default always.
 struct Span {
   double from_s{0.0};
   double to_s{kNever};
@@ -36,7 +36,7 @@ struct Span {
   void describe(Fields& fields);
 };
 
-/// Once both are reached.
+/// Happens once, when both time and distance are reached.
 struct Trigger {
   double at_s{0.0};
   double at_m{0.0};
@@ -45,7 +45,7 @@ struct Trigger {
     return moment.time_s >= at_s && moment.route_m >= at_m;
   }
 
-  /// False: from the very beginning, so that nothing happens in the run.
+  /// False when it would already be reached at the start of the run.
   bool is_set() const { return at_s > 0.0 || at_m > 0.0; }
 
   void describe(Fields& fields);

@@ -64,7 +64,7 @@ cv::Mat Camera::expose(const cv::Mat& rendered, std::uint64_t frame, double ligh
   return picture;
 }
 
-cv::Mat Camera::garbage(Random& random) const {
+cv::Mat Camera::random_picture(Random& random) const {
   const bool grey = noise_config_.colour == ImageColour::kGrey;
   cv::Mat picture{camera_.height_px, camera_.width_px, grey ? CV_8UC1 : CV_8UC3};
   constexpr std::uint64_t kGreyLevels = 256;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The camera as the other processes know it: rendered, bent, blurred, noisy, compressed.
+// The simulated camera: from a rendered picture to a distorted, blurred, noisy, compressed frame.
 #pragma once
 
 #include "common/random/random.hpp"
@@ -15,7 +15,7 @@ namespace waymark {
 
 enum class ImageColour { kGrey, kColour };
 
-/// What is wrong with the pictures, and how they are compressed.
+/// Image errors and compression.
 struct CameraNoiseConfig {
   double sigma_grey_levels{3.0};
   double blur_sigma_px{0.0};
@@ -26,8 +26,8 @@ struct CameraNoiseConfig {
   void describe(Fields& fields);
 };
 
-/// How the camera differs from the robot's description of it: by what is set here, and by what
-/// each run's seed draws on top, as calibrations differ.
+/// Errors of the camera's description in robot.toml: fixed ones, and random ones (`..._sigma`) that
+/// are drawn from the run's seed.
 struct CameraErrorConfig {
   double focal_share{0.0};
   double yaw_deg{0.0};
@@ -38,7 +38,7 @@ struct CameraErrorConfig {
   void describe(Fields& fields);
 };
 
-/// The camera that takes the pictures, given the one that the robot is configured with.
+/// The camera that takes the pictures: the configured one with the errors applied.
 CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors,
                          std::int64_t seed);
 
@@ -51,7 +51,7 @@ struct CameraFrame {
   std::vector<std::uint8_t> jpeg{};
 };
 
-/// A frame must fit one datagram: 65 000 bytes with the message around it.
+/// A frame must fit one datagram: kMaxPayloadBytes, less the other fields of image_t.
 constexpr std::size_t kMaxJpegBytes = 64000;
 
 class Camera {
@@ -62,12 +62,14 @@ class Camera {
 
   const CameraConfig& config() const { return camera_; }
 
-  /// Lens, blur and noise on a rendered RGB picture: 8 bit, one channel or three (BGR).
-  /// @param light  factor of the brightness, before the noise.
+  /// Applies lens, blur and noise to a rendered 8-bit RGB picture.
+  /// @param frame  number of the frame, key of its noise.
+  /// @param light  factor on the brightness, before the noise.
+  /// @return 8 bit, one channel (grey) or three (BGR).
   cv::Mat expose(const cv::Mat& rendered, std::uint64_t frame, double light = 1.0) const;
 
-  /// A picture of nothing: every value is random.
-  cv::Mat garbage(Random& random) const;
+  /// A picture of random values.
+  cv::Mat random_picture(Random& random) const;
 
   /// Compresses at the configured quality, or at the best lower one that fits kMaxJpegBytes.
   CameraFrame compress(const cv::Mat& picture, Timestamp time) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An OpenGL context in memory: no display, no GPU.
+// An OpenGL context in memory, without display and GPU.
 #pragma once
 
 #include <GL/osmesa.h>
@@ -9,10 +9,10 @@
 
 namespace waymark {
 
-/// Current in the thread that made it; everything drawn goes to framebuffer objects.
+/// Current in the thread that created it. Pictures are drawn to framebuffer objects.
 class GlContext {
  public:
-  /// @throws SimulatorError when OSMesa gives none.
+  /// @throws SimulatorError when OSMesa cannot create a context.
   GlContext();
 
  private:
@@ -20,7 +20,7 @@ class GlContext {
     void operator()(osmesa_context* context) const { OSMesaDestroyContext(context); }
   };
 
-  std::vector<unsigned char> window_;  // OSMesa wants one, nothing is drawn there
+  std::vector<unsigned char> window_;  // required by OSMesa; nothing is drawn there
   std::unique_ptr<osmesa_context, Destroy> context_;
 };
 

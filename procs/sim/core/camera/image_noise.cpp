@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-// A million samples: 300 000 times more offsets than rows that a frame has in common with the last.
+// A million samples: two rows rarely use overlapping parts of it.
 constexpr std::size_t kSequenceLength = std::size_t{1} << 20;
 
 std::uint8_t saturated_sum(std::uint8_t pixel, std::int8_t noise) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensor noise, cheap enough for every pixel of every frame.
+// Sensor noise of the simulated camera.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -9,8 +9,8 @@
 
 namespace waymark {
 
-/// Adds normal noise that is independent from pixel to pixel and frame to frame: each row of a
-/// frame takes its noise from another place of a long precomputed sequence.
+/// Adds normal noise that is practically independent from pixel to pixel and from frame to frame:
+/// each row of a frame takes its noise from a random place in a long precomputed sequence.
 class ImageNoise {
  public:
   ImageNoise(double sigma_grey_levels, std::int64_t seed);

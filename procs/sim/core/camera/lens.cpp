@@ -17,7 +17,7 @@ bool is_ideal(const CameraConfig& camera) {
                      [](double k) { return k == 0.0; });
 }
 
-/// Where each pixel looks: x/z, y/z of its ray, row by row.
+/// (x/z, y/z) of each pixel's ray, row by row.
 std::vector<cv::Point2d> rays(const CameraConfig& camera) {
   std::vector<cv::Point2d> pixels;
   for (int v = 0; v < camera.height_px; ++v)
@@ -63,9 +63,9 @@ Lens::Lens(const CameraConfig& camera)
 
 cv::Mat Lens::apply(const cv::Mat& pinhole_picture) const {
   if (source_pixels_.empty()) return pinhole_picture;
-  cv::Mat bent;
-  cv::remap(pinhole_picture, bent, source_pixels_, cv::noArray(), cv::INTER_LINEAR);
-  return bent;
+  cv::Mat distorted;
+  cv::remap(pinhole_picture, distorted, source_pixels_, cv::noArray(), cv::INTER_LINEAR);
+  return distorted;
 }
 
 }  // namespace waymark

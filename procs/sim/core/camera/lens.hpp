@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From an ideal pinhole picture to what the configured lens would have given.
+// Converts pinhole pictures to pictures of the configured lens.
 #pragma once
 
 #include "common/robot/robot_config.hpp"
@@ -9,21 +9,21 @@
 
 namespace waymark {
 
-/// OpenCV's five-parameter lens, and pixels that are not square.
+/// OpenCV's five-parameter lens, also with pixels that are not square.
 class Lens {
  public:
   explicit Lens(const CameraConfig& camera);
 
-  /// The pinhole that covers everything that the lens sees, at the lens's central resolution; the
-  /// camera itself when it has no distortion and square pixels.
+  /// The pinhole camera to render with: covers the field of view of the lens at its central
+  /// resolution; the camera itself when it has no distortion and square pixels.
   const Pinhole& pinhole() const { return pinhole_; }
 
-  /// The camera's picture; the same memory when there is nothing to bend.
+  /// The camera's picture; shares the memory of its argument when the lens is ideal.
   cv::Mat apply(const cv::Mat& pinhole_picture) const;
 
  private:
   Pinhole pinhole_;
-  cv::Mat source_pixels_;  ///< for each pixel of the camera the place in the pinhole's picture
+  cv::Mat source_pixels_;  ///< for each pixel of the camera its position in the pinhole's picture
 };
 
 }  // namespace waymark

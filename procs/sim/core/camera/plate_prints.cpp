@@ -13,11 +13,12 @@ namespace {
 
 constexpr int kWhite = 255;
 constexpr int kRaysPerSide = 8;
-// Share of the distance by which a pixel may be nearer or further than the plate that it shows.
+// Relative difference in depth up to which a pixel shows the plate, and not something in front of
+// it.
 constexpr double kDepthTolerance = 0.002;
 
-/// Where the rays of a pixel pass. Rows and columns are sheared, so that edges along a row or
-/// a column of pixels are sampled at 64 places, not at 8.
+/// Offsets [px] of a pixel's rays from its centre. Rows and columns are sheared, so that edges
+/// along a row or a column of pixels are sampled at 64 positions, not at 8.
 using RayPattern = std::array<Eigen::Vector2d, kRaysPerSide * kRaysPerSide>;
 
 RayPattern ray_pattern() {
@@ -33,8 +34,8 @@ RayPattern ray_pattern() {
   return pattern;
 }
 
-/// Maps homogeneous pixels to homogeneous texels (column, row, counted from the outer edge of the
-/// first) whose third coordinate is 1/z of the plate there.
+/// Homography from homogeneous pixels to homogeneous texels (column, row, counted from the outer
+/// edge of the first), whose third coordinate is 1/z of the plate there.
 Eigen::Matrix3d texel_from_pixel(const Pinhole& pinhole, const Eigen::Isometry3d& camera_from_plate,
                                  double texels_per_m, const cv::Size& size) {
   Eigen::Matrix3d camera_from_plane;
@@ -49,7 +50,7 @@ Eigen::Matrix3d texel_from_pixel(const Pinhole& pinhole, const Eigen::Isometry3d
   return texel_from_plane * camera_from_plane.inverse() * ray_from_pixel;
 }
 
-/// Pixels that the plate can touch: all where a part of it lies behind the camera.
+/// Pixels that may show the plate; all pixels when a part of it lies behind the camera.
 cv::Rect region_of(const Pinhole& pinhole, const Eigen::Isometry3d& camera_from_plate,
                    double half_m) {
   constexpr double kNearest_m = 0.01;
@@ -81,7 +82,7 @@ int texel_at(double homogeneous, double scale, int count) {
   return std::clamp(static_cast<int>(std::floor(homogeneous / scale)), 0, count - 1);
 }
 
-/// The print's mean grey level over pixels.
+/// Mean grey level of a print over a pixel's area.
 class Sampler {
  public:
   Sampler(const cv::Mat& texels, const cv::Mat& sums, const Eigen::Matrix3d& texel_from_pixel)
@@ -165,13 +166,13 @@ void PlatePrints::print(int id, const Eigen::Isometry3d& world_from_plate, View&
   for (int v = region.y; v < region.br().y; ++v) {
     for (int u = region.x; u < region.br().x; ++u) {
       const Eigen::Vector3d texel = to_texel * Eigen::Vector3d(u, v, 1.0);
-      const double nearness = texel.z();
-      const bool is_on_plate = nearness > 0.0 && texel.x() >= 0.0 && texel.y() >= 0.0 &&
-                               texel.x() < texels.cols * nearness &&
-                               texel.y() < texels.rows * nearness;
+      const double inverse_depth = texel.z();
+      const bool is_on_plate = inverse_depth > 0.0 && texel.x() >= 0.0 && texel.y() >= 0.0 &&
+                               texel.x() < texels.cols * inverse_depth &&
+                               texel.y() < texels.rows * inverse_depth;
       if (!is_on_plate) continue;
-      const double seen = double{view.nearness_per_m.at<float>(v, u)};
-      if (std::abs(seen - nearness) > kDepthTolerance * nearness) continue;
+      const double rendered = double{view.inverse_depth_per_m.at<float>(v, u)};
+      if (std::abs(rendered - inverse_depth) > kDepthTolerance * inverse_depth) continue;
       darken(view.rgb.at<cv::Vec3b>(v, u), sampler.mean_over_pixel(texel));
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The markers, put into the renderer's pictures of blank plates.
+// Draws the markers onto the blank plates of a rendered picture.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,17 +18,17 @@ struct Pinhole {
   double cy_px{0.0};
 };
 
-/// What a pinhole sees.
+/// A rendered picture with its depth.
 struct View {
   Pinhole pinhole{};
   Eigen::Isometry3d world_from_camera{};  ///< optical frame: x right, y down, z forward
   cv::Mat rgb{};                          ///< 8 bit, three channels
-  cv::Mat nearness_per_m{};               ///< float: 1/z of what each pixel's centre shows
+  cv::Mat inverse_depth_per_m{};          ///< float: 1/z at each pixel's centre
 };
 
-/// The pictures of all ids. Each pixel gets the mean of the print over its own area, as a sensor's
-/// pixel does. OpenGL's texture filters take fewer samples, and edges along a row of pixels then
-/// appear up to 0.04 px off, alike for every marker that hangs at the same height.
+/// The pictures of all ids. Each pixel gets the mean of the print over its own area, like a pixel
+/// of a sensor. OpenGL's texture filters take fewer samples, which displaces edges along a row of
+/// pixels by up to 0.04 px, in the same direction for all markers at the same height.
 class PlatePrints {
  public:
   /// @param pictures       8-bit grey pictures of whole plates, top row first, of at most a million
@@ -36,7 +36,7 @@ class PlatePrints {
   /// @param plate_size_m   side of a plate.
   PlatePrints(const std::map<int, cv::Mat>& pictures, double plate_size_m);
 
-  /// Darkens the pixels that show a blank white plate by what is printed there.
+  /// Darkens the pixels of the view that show this plate, by what is printed there.
   /// @param world_from_plate  of the front face: origin in its middle, x right, y up, z outwards.
   void print(int id, const Eigen::Isometry3d& world_from_plate, View& view) const;
 

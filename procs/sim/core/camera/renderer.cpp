@@ -96,7 +96,8 @@ const cv::Mat& Renderer::render(const Eigen::Isometry3d& world_from_camera) {
   return view_.rgb;
 }
 
-/// Replaces MuJoCo's camera by ours. A picture reaches half a pixel beyond the outer centres.
+/// Sets MuJoCo's camera to the view's. A picture extends half a pixel beyond the outer pixel
+/// centres.
 void Renderer::place_camera() {
   const Pinhole& pinhole = view_.pinhole;
   mjvGLCamera& camera = scene_.camera[0];
@@ -118,11 +119,11 @@ void Renderer::read_view() {
   const mjrRect viewport{0, 0, view_.pinhole.width_px, view_.pinhole.height_px};
   mjr_readPixels(bottom_up_.data, depth_bottom_up_.ptr<float>(), viewport, &context_);
   cv::flip(bottom_up_, view_.rgb, 0);
-  cv::flip(depth_bottom_up_, view_.nearness_per_m, 0);
+  cv::flip(depth_bottom_up_, view_.inverse_depth_per_m, 0);
   const double nearest_per_m = 1.0 / double{scene_.camera[0].frustum_near};
   const double farthest_per_m = 1.0 / double{scene_.camera[0].frustum_far};
-  view_.nearness_per_m.convertTo(view_.nearness_per_m, CV_32F, farthest_per_m - nearest_per_m,
-                                 nearest_per_m);
+  view_.inverse_depth_per_m.convertTo(view_.inverse_depth_per_m, CV_32F,
+                                      farthest_per_m - nearest_per_m, nearest_per_m);
 }
 
 }  // namespace waymark

@@ -19,16 +19,15 @@ namespace waymark {
 /// What is on the plates.
 enum class PlatePrint { kMarkers, kBlank };
 
-/// A plate in MuJoCo's model.
 struct PlateGeom {
-  int geom{0};
-  int id{0};
+  int geom{0};  ///< number in MuJoCo's model
+  int id{0};    ///< of the marker
 };
 
-/// Renders what the robot's camera sees; its own body is never in the picture. One per thread.
+/// Renders the robot's camera; the robot's body is not in the picture. One per thread.
 class Renderer {
  public:
-  /// @param physics  of that world; must outlive the renderer.
+  /// @param physics  of that world; outlives the renderer.
   Renderer(const World& world, const MarkerPrint& print, PlatePrint plate_print,
            const Pinhole& pinhole, Physics& physics);
   ~Renderer();

@@ -34,7 +34,7 @@ void make_garbage(OdometrySample& sample, Random& random) {
 
 WheelPair SpinningWheels::counted(const WheelPair& angles, const Faults& odometry,
                                   const Moment& moment) {
-  if (const FaultConfig* fault = odometry.acting(FaultKind::kWrong, moment)) {
+  if (const FaultConfig* fault = odometry.active(FaultKind::kWrong, moment)) {
     if (fault->wheel != Wheel::kRight)
       spun_.left_rad += fault->share * (angles.left_rad - last_.left_rad);
     if (fault->wheel != Wheel::kLeft)

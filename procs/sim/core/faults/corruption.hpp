@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values of measurements that are garbage or wrong.
+// Fault kinds that change measured values: garbage and wrong.
 #pragma once
 
 #include "common/random/random.hpp"
@@ -10,19 +10,22 @@
 
 namespace waymark {
 
-/// Every range anything that the LiDAR can measure.
+/// Replaces every range by a random one within the LiDAR's limits.
 void make_garbage(LidarScan& scan, const LidarConfig& lidar, Random& random);
 
-/// Every range too long by a share; what is beyond the greatest range has no return.
+/// Scales every range by 1 + share; results above the largest range become +inf, below the smallest
+/// one NaN.
 void scale_ranges(LidarScan& scan, const LidarConfig& lidar, double share);
 
-/// A pose within a metre of the right one, heading anywhere.
+/// Moves the pose by a random offset of up to 1 m along each axis, and makes its heading random.
 void make_garbage(OdometrySample& sample, Random& random);
 
-/// Wheels that turn further than they roll: what the encoders count.
+/// Wheels that slip: while the odometry is faulty ("wrong"), they turn by 1 + share times the angle
+/// that they roll.
 class SpinningWheels {
  public:
-  /// @param angles  of the wheels as they roll; call in order of time.
+  /// The angles that the encoders measure. Call in order of time.
+  /// @param angles  without slip.
   WheelPair counted(const WheelPair& angles, const Faults& odometry, const Moment& moment);
 
  private:

@@ -36,7 +36,7 @@ Faults::Faults(Sensor sensor, const std::vector<FaultConfig>& all) : sensor_{sen
                [sensor](const FaultConfig& fault) { return fault.sensor == sensor; });
 }
 
-const FaultConfig* Faults::acting(FaultKind kind, const Moment& moment) const {
+const FaultConfig* Faults::active(FaultKind kind, const Moment& moment) const {
   const auto found = std::find_if(faults_.begin(), faults_.end(), [&](const FaultConfig& fault) {
     return fault.kind == kind && fault.during.covers(moment);
   });

@@ -11,12 +11,12 @@ namespace waymark {
 
 enum class Sensor { kCamera, kLidar, kOdometry };
 
-/// off: silent. stuck: the last measurement over and over, with new stamps. garbage: random values.
-/// wrong: values that are off by a share. slow: only every so many-th. delayed: stamped and sent
-/// late. intermittent: each lost by chance.
+/// off: no measurements. stuck: repeats the last measurement with new stamps. garbage: random
+/// values. wrong: values scaled by 1 + share. slow: sends every keep_every-th measurement. delayed:
+/// stamped and sent delay_s late. intermittent: each measurement is lost with probability `share`.
 enum class FaultKind { kOff, kStuck, kGarbage, kWrong, kSlow, kDelayed, kIntermittent };
 
-/// Whose counts are wrong.
+/// Which wheel slips (odometry, wrong).
 enum class Wheel { kBoth, kLeft, kRight };
 
 struct FaultConfig {
@@ -36,10 +36,10 @@ class Faults {
  public:
   Faults(Sensor sensor, const std::vector<FaultConfig>& all);
 
-  /// The first one of this kind that acts now, or null.
-  const FaultConfig* acting(FaultKind kind, const Moment& moment) const;
+  /// The first fault of this kind that is active now, or null.
+  const FaultConfig* active(FaultKind kind, const Moment& moment) const;
 
-  /// Is there one of this kind at any time?
+  /// True when a fault of this kind is active at any time of the run.
   bool have(FaultKind kind) const;
 
   Sensor sensor() const { return sensor_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What becomes of measurements between the sensor and the message.
+// Fault kinds that lose, repeat or delay measurements.
 #pragma once
 
 #include "common/random/random.hpp"
@@ -14,7 +14,7 @@
 
 namespace waymark {
 
-/// Loses, repeats or delays measurements as the sensor's faults say. A measurement has a `time`.
+/// Applies the faults of a sensor to its stream of measurements, which have a member `time`.
 template <class Measurement>
 class FaultyOutlet {
  public:
@@ -23,12 +23,12 @@ class FaultyOutlet {
 
   const Faults& faults() const { return faults_; }
 
-  /// Takes what the sensor has just measured; what is stamped before the clock's start is lost.
+  /// Takes a new measurement; one with a stamp before 0 is lost.
   void take(Measurement measured, const Moment& moment) {
     const std::uint64_t number = count_++;
     if (measured.time < Timestamp{} || is_lost(number, moment)) return;
     if (faults_.have(FaultKind::kStuck)) repeat_if_stuck(measured, moment);
-    if (const FaultConfig* fault = faults_.acting(FaultKind::kDelayed, moment))
+    if (const FaultConfig* fault = faults_.active(FaultKind::kDelayed, moment))
       measured.time += duration_from_seconds(fault->delay_s);
     const auto later = std::upper_bound(
         waiting_.begin(), waiting_.end(), measured.time,
@@ -49,12 +49,12 @@ class FaultyOutlet {
 
  private:
   bool is_lost(std::uint64_t number, const Moment& moment) const {
-    if (faults_.acting(FaultKind::kOff, moment) != nullptr) return true;
-    if (const FaultConfig* fault = faults_.acting(FaultKind::kSlow, moment);
+    if (faults_.active(FaultKind::kOff, moment) != nullptr) return true;
+    if (const FaultConfig* fault = faults_.active(FaultKind::kSlow, moment);
         fault != nullptr && number % static_cast<std::uint64_t>(fault->keep_every) != 0) {
       return true;
     }
-    const FaultConfig* fault = faults_.acting(FaultKind::kIntermittent, moment);
+    const FaultConfig* fault = faults_.active(FaultKind::kIntermittent, moment);
     if (fault == nullptr) return false;
     Random random{seed_, random_streams::kLostMeasurements,
                   static_cast<std::uint64_t>(faults_.sensor()), number};
@@ -62,7 +62,7 @@ class FaultyOutlet {
   }
 
   void repeat_if_stuck(Measurement& measured, const Moment& moment) {
-    if (faults_.acting(FaultKind::kStuck, moment) == nullptr || !last_good_) {
+    if (faults_.active(FaultKind::kStuck, moment) == nullptr || !last_good_) {
       last_good_ = measured;
       return;
     }

@@ -8,16 +8,16 @@
 namespace waymark {
 namespace {
 
-// A line is kept by steering: turn rate = -kOffsetGain * v * offset - kHeadingGain * heading error,
-// critically damped over about a metre of path: kHeadingGain = 2 sqrt(kOffsetGain) v.
+// Steering onto a line at speed v: turn rate = -v (kOffsetGain offset + kHeadingGain heading
+// error), critically damped (kHeadingGain = 2 sqrt(kOffsetGain)) within about a metre of path.
 constexpr double kOffsetGain_per_m2 = 4.0;
 constexpr double kHeadingGain_per_m = 4.0;
-constexpr double kAligned_rad = 0.002;           // a turn on the spot ends here
-constexpr double kTurnAcceleration_per_m = 5.0;  // of the forward one: alike at the wheels
+constexpr double kAligned_rad = 0.002;           // heading error at which a turn on the spot ends
+constexpr double kTurnAcceleration_per_m = 5.0;  // over forward acceleration: similar at the wheels
 constexpr double kArrived_m = 0.001;
-constexpr double kSlowestShare = 0.1;     // of the speed; creep to the point, do not creep for ever
+constexpr double kSlowestShare = 0.1;     // of the speed, while braking, so that the robot arrives
 constexpr double kSteeringReserve = 0.8;  // share of the turn speed that an arc may take
-constexpr std::size_t kMaxPendingCommands = 10'000;  // minutes of them at any sensible rate
+constexpr std::size_t kMaxPendingCommands = 10'000;
 
 }  // namespace
 
@@ -93,7 +93,7 @@ Velocity RouteFollower::next(const Se2& world_from_base) {
 }
 
 Velocity RouteFollower::turn(double heading_error_rad) {
-  // The fastest turn that can still stop in time, at the acceleration that the wheels are allowed.
+  // The fastest turn that can still stop in time at this acceleration.
   const double acceleration_radps2 = kTurnAcceleration_per_m * config_.acceleration_mps2;
   const double wanted_radps = std::min(
       config_.turn_speed_radps, std::sqrt(acceleration_radps2 * std::abs(heading_error_rad)));

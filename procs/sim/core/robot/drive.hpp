@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Drive commands: from the route follower, which stands for the operator.
+// The robot's velocity: from a route that is followed, or from DRIVE_COMMAND messages.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -19,7 +19,7 @@ struct Velocity {
   double turn_radps{0.0};
 };
 
-/// Speeds of the wheels that move the base like that when nothing slips [rad/s].
+/// Wheel speeds [rad/s] for a velocity of the base, without slip.
 WheelPair wheel_speeds(const BaseConfig& base, const Velocity& velocity);
 
 enum class DriveSource { kRoute, kCommand };
@@ -31,7 +31,7 @@ struct Waypoint {
   void describe(Fields& fields);
 };
 
-/// Start and path in the world frame.
+/// Start and path of the robot, world frame.
 struct RouteConfig {
   DriveSource source{DriveSource::kRoute};
   double start_x_m{1.0};
@@ -57,20 +57,20 @@ struct RouteConfig {
   void describe(Fields& fields);
 };
 
-/// Follows the route: turns on the spot where it begins and at sharp corners, drives through
-/// rounded ones, keeps to the path, slows down before an end. Has a state; call once per control
-/// period.
+/// Follows the route: turns on the spot at its start and at sharp corners, drives through rounded
+/// corners, keeps to the path, and brakes before a stop.
 class RouteFollower {
  public:
   RouteFollower(const RouteConfig& config, double period_s);
 
-  /// What to do now, given where the robot truly is.
+  /// The velocity for the next control period. Call once per period.
+  /// @param world_from_base  the true pose.
   Velocity next(const Se2& world_from_base);
 
-  /// The robot has been stopped or moved by others: speed up from standing, turn to the path first.
+  /// Starts again from standstill: turns towards the path first. For use after a kidnap.
   void begin_anew();
 
-  /// At the last point, standing.
+  /// The robot stands at the last point.
   bool arrived() const { return target_ >= path_.size(); }
 
   double route_length_m() const { return route_length_m_; }
@@ -97,22 +97,22 @@ class RouteFollower {
   double progress_m_{0.0};
 };
 
-/// What becomes of a velocity command.
+/// What happens to a velocity command.
 enum class CommandOutcome {
   kInTime,
-  kLate,      ///< its time to act is over: it acts at once
+  kLate,      ///< it arrives after the time at which it should act, and acts at once
   kOutdated,  ///< a newer one has acted already: ignored
   kTooMany,   ///< too many wait for their time to act: ignored
 };
 
-/// Obeys velocity commands, each a fixed time after its stamp, within the robot's acceleration.
+/// Executes velocity commands, each a fixed delay after its stamp, within the robot's acceleration.
 class CommandFollower {
  public:
   CommandFollower(const RouteConfig& config, Duration delay, double period_s);
 
   CommandOutcome receive(Timestamp stamp, const Velocity& velocity);
 
-  /// What to do now. Call in order of time.
+  /// The velocity at `now`. Call in order of time.
   Velocity next(Timestamp now);
 
  private:
@@ -121,7 +121,7 @@ class CommandFollower {
   double period_s_;
   Timestamp now_{};
   std::map<Timestamp, Velocity> pending_;  ///< by the time at which they act
-  Timestamp wanted_since_{};               ///< time at which `wanted_` was to act
+  Timestamp wanted_since_{};               ///< time at which `wanted_` acts
   Velocity wanted_{};
   Velocity current_{};
 };

@@ -7,15 +7,15 @@
 namespace waymark {
 namespace {
 
-constexpr double kStraightOn_rad = 1e-6;  // goes on in the same direction
-constexpr double kTurnsBack_rad = 2.8;    // no arc leads around that corner
+constexpr double kStraightOn_rad = 1e-6;  // smaller turns are no corner
+constexpr double kTurnsBack_rad = 2.8;    // larger turns stay sharp
 
 PathPiece line(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
   const Eigen::Vector2d line_m = to_m - from_m;
   return {{from_m, std::atan2(line_m.y(), line_m.x())}, line_m.norm(), 0.0, false};
 }
 
-/// The arc between two lines that meet; has no length when there is nothing to round.
+/// The arc between two lines that meet; of length 0 where the corner is not rounded.
 PathPiece arc_between(const PathPiece& before, const PathPiece& after, double radius_m) {
   const double turn_rad =
       angle_difference(after.world_from_start.theta(), before.world_from_start.theta());
@@ -46,7 +46,7 @@ PathPlace locate(const PathPiece& piece, const Se2& world_from_base) {
   const Se2 start_from_base = piece.world_from_start.inverse() * world_from_base;
   if (piece.curvature_per_m == 0.0)
     return {start_from_base.x(), start_from_base.y(), start_from_base.theta()};
-  // A right turn is a left turn in a mirror.
+  // A right turn is mirrored to a left turn.
   const double left = std::copysign(1.0, piece.curvature_per_m);
   const double radius_m = std::abs(1.0 / piece.curvature_per_m);
   const double x = start_from_base.x();

@@ -10,18 +10,18 @@
 
 namespace waymark {
 
-/// A straight line, or with a curvature an arc (positive: to the left).
+/// A straight line, or, with a curvature, an arc (positive: to the left).
 struct PathPiece {
   Se2 world_from_start{};
   double length_m{0.0};
   double curvature_per_m{0.0};
   bool is_smooth_end{false};  ///< the next piece goes on in the same direction
 
-  /// The pose on the path so far along it, heading along it.
+  /// The pose on the piece at a distance from its start, heading along it.
   Se2 world_from(double along_m) const;
 };
 
-/// Where a robot is as seen from a piece of path.
+/// A robot's pose relative to a piece of path.
 struct PathPlace {
   double along_m{0.0};
   double offset_m{0.0};  ///< to the left of the path
@@ -30,8 +30,8 @@ struct PathPlace {
 
 PathPlace locate(const PathPiece& piece, const Se2& world_from_base);
 
-/// Lines from point to point; with a radius above 0 the corners are rounded as far as the adjoining
-/// lines have room. Points where the path turns back stay corners.
+/// Lines from point to point. With a radius above 0, corners become arcs of that radius, or of a
+/// smaller one where the adjoining lines are too short; where the path turns back they stay sharp.
 std::vector<PathPiece> path_through(const std::vector<Eigen::Vector2d>& points_m,
                                     double corner_radius_m);
 

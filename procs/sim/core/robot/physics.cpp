@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSettlingTime_s = 0.5;
 
-/// MuJoCo reads models from files; this is a file in memory.
+/// MuJoCo reads models from files; this one is in memory.
 mjModel* compile(const std::string& mjcf) {
   constexpr const char* kName = "world.xml";
   const auto files = std::make_unique<mjVFS>();
@@ -56,7 +56,7 @@ Physics::Wheel Physics::find_wheel(const char* name) const {
   return {model_->jnt_qposadr[joint], mj_name2id(model_.get(), mjOBJ_ACTUATOR, name), 0.0};
 }
 
-/// Contacts are soft: the robot sinks in by micrometres first. That is over before the run begins.
+/// Contacts are soft: the robot sinks in by micrometres before it is at rest.
 void Physics::come_to_rest() {
   for (int i = 0; i * model_->opt.timestep < kSettlingTime_s; ++i)
     step({});
@@ -71,7 +71,7 @@ void Physics::step(const WheelPair& target_speed_per_s) {
 }
 
 void Physics::put_down(const Se2& world_from_there) {
-  // Height and tilt stay as they were: the robot has sunk in and stands.
+  // Height and tilt stay, so that the robot is at rest on its contacts at once.
   const double turn_rad = angle_difference(world_from_there.theta(), world_from_base().theta());
   double* position = data_->qpos + base_position_address_;
   const Eigen::Quaterniond before{position[3], position[4], position[5], position[6]};
@@ -91,7 +91,7 @@ void Physics::displace(const std::string& body, const Eigen::Vector3d& by_m) {
   const int mocap = number < 0 ? -1 : model_->body_mocapid[number];
   if (mocap < 0) throw SimulatorError{"no body that can be displaced: " + body};
   Eigen::Map<Eigen::Vector3d>{data_->mocap_pos + 3 * mocap} = by_m;
-  mj_kinematics(model_.get(), data_.get());  // rays and pictures see it at once
+  mj_kinematics(model_.get(), data_.get());  // updates the poses for rays and pictures
 }
 
 Eigen::Isometry3d Physics::world_from_base_3d_at(double later_s) const {

@@ -13,45 +13,45 @@
 
 namespace waymark {
 
-/// MuJoCo refuses a model, or the physics or the renderer fails: with what it says.
+/// An error of MuJoCo or OpenGL, with their message, or a run that does not come to its end.
 class SimulatorError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Turning speeds of the driven wheels, or the angles they have turned by.
+/// Angles [rad] of the driven wheels, or their speeds [rad/s].
 struct WheelPair {
   double left_rad{0.0};
   double right_rad{0.0};
 };
 
-/// Owns one MuJoCo model with its state. At construction the robot has come to rest on its wheels.
+/// Owns one MuJoCo model with its state. After construction the robot stands still on its wheels.
 class Physics {
  public:
   /// @throws SimulatorError when the model cannot be compiled.
   explicit Physics(const std::string& mjcf);
 
-  /// One time step; the wheels follow the target speeds [rad/s] as their motors can.
+  /// One time step; the wheels follow the target speeds [rad/s] within the torque of their motors.
   void step(const WheelPair& target_speed_per_s);
 
-  /// Lifts the robot and puts it down elsewhere, standing; the wheels do not turn.
+  /// Puts the robot down elsewhere, at rest; the wheels do not turn.
   void put_down(const Se2& world_from_there);
 
-  /// Moves a body of its own (see mjcf.hpp) to so far from where the model has it.
+  /// Places a movable body (see body_of() in mjcf.hpp) at an offset from its original position.
   void displace(const std::string& body, const Eigen::Vector3d& by_m);
 
   /// Planar pose of the base: position between the wheels, heading.
   Se2 world_from_base() const;
   /// The same with height and tilt.
   Eigen::Isometry3d world_from_base_3d() const;
-  /// The same a moment later or earlier, if the velocity stays as it is.
+  /// The pose `later_s` from now (negative: before now), at the present velocity.
   Eigen::Isometry3d world_from_base_3d_at(double later_s) const;
   /// Joint angles since construction; they grow beyond a turn.
   WheelPair wheel_angles() const;
 
   const mjModel& model() const { return *model_; }
 
-  /// For rays and pictures; the poses of what does not move in it are always current.
+  /// For ray casting and rendering. mj_step() leaves the robot's derived poses one step behind.
   mjData& data() { return *data_; }
 
   const mjData& data() const { return *data_; }
@@ -82,7 +82,7 @@ class Physics {
   Wheel right_{};
 };
 
-/// Makes MuJoCo report errors and warnings as SimulatorError; by default it waits for a key and
+/// Makes MuJoCo throw SimulatorError on errors and warnings; by default it waits for a key and
 /// writes files into the working directory.
 void report_mujoco_errors_as_exceptions();
 

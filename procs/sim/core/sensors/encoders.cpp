@@ -49,7 +49,7 @@ double Encoders::counted_angle_rad(double angle_rad) const {
   return std::floor(angle_rad / tick_rad + 0.5) * tick_rad;
 }
 
-/// Slips come at random like raindrops and have exponential lengths.
+/// Slips are a Poisson process over the distance, with exponentially distributed lengths.
 double Encoders::slip_m(double distance_m, Random& random) const {
   const double chance = random.uniform();
   const double length_m = -std::log(1.0 - random.uniform()) * errors_.slip_m;
@@ -73,7 +73,7 @@ OdometrySample Encoders::measure(Timestamp time, const WheelPair& angles) {
       (right_m - left_m) / base_.wheel_separation_m * (1.0 + errors_.heading_scale) +
       radians(errors_.heading_diffusion_deg_per_sqrt_m) * sqrt_path * random.normal();
 
-  // Second order: the arc's chord points along the middle heading.
+  // Second order: the chord of the arc points along the mean heading.
   const Se2 half_turn{0.0, 0.0, 0.5 * turn_rad};
   odom_from_base_ = odom_from_base_ * half_turn * Se2{forward_m, 0.0, 0.0} * half_turn;
   return {time, odom_from_base_};

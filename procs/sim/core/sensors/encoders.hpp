@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Wheel odometry: what the encoders make of the turning wheels, with its errors. Never sees the
-// true pose.
+// Wheel odometry with its errors, integrated from wheel angles; the true pose is not used.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -13,7 +12,7 @@
 
 namespace waymark {
 
-/// What is wrong with the odometry.
+/// Errors of the odometry.
 struct OdometryErrorConfig {
   bool draw_from_seed{true};
   double scale{0.0};
@@ -36,7 +35,8 @@ class Encoders {
  public:
   Encoders(const BaseConfig& base, const OdometryErrorConfig& errors, std::int64_t seed);
 
-  /// @param angles  of the wheels since the start; call at the odometry rate, in order.
+  /// Call at the odometry rate, in order of time.
+  /// @param angles  of the wheels since the start.
   OdometrySample measure(Timestamp time, const WheelPair& angles);
 
  private:

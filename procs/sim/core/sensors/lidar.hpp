@@ -11,7 +11,7 @@
 
 namespace waymark {
 
-/// Errors of the ranges beyond the noise that the robot's description states.
+/// True noise of the ranges; what the robot assumes is robot.lidar.range_sigma_m.
 struct LidarNoiseConfig {
   double range_sigma_m{0.01};
   double dropout_probability{0.005};
@@ -24,12 +24,12 @@ class Lidar {
  public:
   Lidar(const LidarConfig& config, const LidarNoiseConfig& noise, std::int64_t seed);
 
-  /// A whole sweep from one place, at one time.
+  /// A whole sweep at one instant.
   LidarScan scan(Timestamp time, const Physics& physics);
 
-  /// The next beams of a sweep, from where the robot is now. Angles count from the x axis,
-  /// counter-clockwise (of a mirrored LiDAR in truth clockwise, which the scan does not say); the
-  /// sweep is complete when it has config().num_beams.
+  /// Appends the next beams of a sweep, measured from the robot's present pose. Angles count from
+  /// the x axis, counter-clockwise; a mirrored LiDAR labels its clockwise beams in the same way.
+  /// The sweep is complete with config().num_beams beams.
   void add_beams(LidarScan& scan, int count, const Physics& physics);
 
   const LidarConfig& config() const { return config_; }
@@ -40,10 +40,10 @@ class Lidar {
   LidarConfig config_;
   LidarNoiseConfig noise_;
   std::uint64_t seed_;
-  std::uint64_t beam_{0};  ///< of the whole run: key of the noise
+  std::uint64_t beam_{0};  ///< number of the beam in the run, key of its noise
 };
 
-/// Distance to the first wall along a direction in the world; infinite when there is none.
+/// Distance to the first wall or box along a direction in the world frame; +inf when there is none.
 double wall_distance_m(const Physics& physics, const Eigen::Vector3d& from_m,
                        const Eigen::Vector3d& direction);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is printed on a marker's plate.
+// The picture printed on a marker's plate.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -9,7 +9,7 @@
 
 namespace waymark {
 
-/// A predefined ArUco dictionary, and the white border that its markers are printed with.
+/// Dictionary, size and white border of the printed markers.
 struct MarkerPrint {
   std::string dictionary{"DICT_6X6_250"};
   double size_m{0.4};  ///< side of the black square

@@ -24,16 +24,16 @@ constexpr double kCasterX_m = -0.177;
 constexpr double kCasterY_m = 0.064;
 constexpr double kCasterRadius_m = 0.010;
 
-// Wheel servo: torque = gain * (target speed - speed). The wheel follows in about 20 ms.
+// Wheel servo: torque = gain * (target speed - speed); the wheel reaches its speed in about 20 ms.
 constexpr double kServoGain_Nms = 0.05;
 constexpr double kMotorTorque_Nm = 1.4;      // XM430-W210, stall at 12 V is 3
 constexpr double kRotorInertia_kgm2 = 1e-4;  // seen through the gear; keeps a lifted wheel stable
 
-// Contacts are about as stiff as the time step allows (two steps): MuJoCo's default lets the
-// wheels sink in by 0.4 mm, and the robot rolls 0.6 % short.
+// Contacts about as stiff as the time step allows (time constant: two steps). With MuJoCo's default
+// the wheels sink in by 0.4 mm, and the robot drives 0.6 % less than the wheels turn.
 constexpr const char* kStiffContact = R"(solref="0.004 1" solimp="0.98 0.999 0.0001")";
 
-/// Constants of the whole model. Near and far plane are multiples of extent, hence extent = 1.
+/// Options of the whole model. extent = 1, because near and far plane are given in multiples of it.
 std::string header(const MjcfOptions& options) {
   return fmt::format(R"(<mujoco model="waymark">
   <compiler angle="radian"/>
@@ -50,7 +50,7 @@ std::string header(const MjcfOptions& options) {
                      options.time_step_s, options.picture_width_px, options.picture_height_px);
 }
 
-/// Plates are white; the renderer prints on them.
+/// Plates are white; PlatePrints draws the markers on them.
 std::string assets() {
   return R"(  <asset>
     <material name="plate" rgba="1 1 1 1" specular="0" shininess="0" emission="0.2"/>
@@ -91,7 +91,7 @@ std::string wall_geom(const Wall& wall) {
       along.y(), -along.y(), along.x());
 }
 
-/// A thin box whose +z face is printed on: x to the right as seen from the front.
+/// A thin box; the marker is on its +z face, with x to the right as seen from the front.
 std::string marker_geom(const MarkerPlate& marker, std::size_t index, double plate_size_m) {
   const Eigen::Vector3d facing{std::cos(marker.yaw_rad), std::sin(marker.yaw_rad), 0.0};
   const Eigen::Vector3d right{-facing.y(), facing.x(), 0.0};
@@ -118,8 +118,8 @@ std::string on_its_own_body(const std::string& name, const std::string& geom) {
   return fmt::format("    <body name=\"{}\" mocap=\"true\">\n{}    </body>\n", body_of(name), geom);
 }
 
-/// Floor and ceiling under and over all walls, as far as they are seen; contacts do not end there.
-/// Drawn as one piece each: infinite planes are drawn in thousands, which costs 10 ms per frame.
+/// Floor and ceiling, drawn as far as the walls extend (contacts do not end there), as one piece
+/// each: MuJoCo draws infinite planes in thousands of pieces, which costs 10 ms per frame.
 std::string floor_and_ceiling(const World& world) {
   Eigen::AlignedBox2d extent;
   for (const Wall& wall : world.walls)
@@ -159,7 +159,8 @@ std::string world_geoms(const World& world, const MjcfOptions& options) {
   return text;
 }
 
-/// A tyre with a crowned tread touches in one point, so the wheel separation is exact.
+/// A tyre with a crowned tread (an ellipsoid) has one contact point, so the wheel separation is
+/// exact.
 std::string wheel(const char* name, double y_m, double radius_m) {
   return fmt::format(
       R"(      <body name="{0}" pos="0 {1:.17g} {2:.17g}">
@@ -171,8 +172,8 @@ std::string wheel(const char* name, double y_m, double radius_m) {
       0.5 * kWheelWidth_m, kWheelMass_kg, kStiffContact);
 }
 
-/// Casters have no friction: contact friction is the greater of the two geoms' unless one of them
-/// has priority, and dragging casters make the wheels slip.
+/// Casters have no friction, because dragging casters make the wheels slip. They need the priority:
+/// without it a contact has the greater friction of its two geoms.
 std::string caster(double y_m) {
   return fmt::format(
       "      <geom type=\"sphere\" group=\"{}\" material=\"robot\" pos=\"{} {} {}\" size=\"{}\" "

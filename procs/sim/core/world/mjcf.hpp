@@ -10,7 +10,7 @@
 
 namespace waymark {
 
-/// Geom groups, so that each sensor sees what it should.
+/// Geom groups, by which sensors and contacts include or ignore geoms.
 enum class GeomGroup : int {
   kWalls = 0,    ///< seen by LiDAR and camera, collide
   kRobot = 1,    ///< seen by nobody on board, collides
@@ -18,7 +18,7 @@ enum class GeomGroup : int {
   kFloor = 3,    ///< seen by the camera, carries the wheels
 };
 
-/// Names of what the simulation looks up in the model.
+/// Names that the simulation looks up in the model.
 namespace mjcf_names {
 inline constexpr const char* kBase = "base";
 inline constexpr const char* kLeftWheel = "left_wheel";
@@ -32,12 +32,11 @@ struct MjcfOptions {
   double plate_size_m{0.6};  ///< marker with quiet zone
   int picture_width_px{640};
   int picture_height_px{480};
-  Se2 world_from_start{};  ///< where the base begins
+  Se2 world_from_start{};  ///< initial pose of the base
 };
 
-/// Name of the body that carries a marker or box, given the name of its geom. Only what moves or
-/// comes and goes has a body of its own (a mocap body at the origin); the rest belongs to the
-/// world.
+/// Name of the body of a marker or box, given the name of its geom. Only those that move, appear or
+/// disappear have a body (a mocap body at the origin); the others belong to the world body.
 std::string body_of(const std::string& geom);
 
 /// The model of a TurtleBot3 Waffle Pi (masses and sizes: turtlebot3_description) in the world.

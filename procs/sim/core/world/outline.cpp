@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kQuarterTurn_rad = 0.5 * std::numbers::pi;
 
-/// A wall begins here and runs to the next corner of its closed line.
+/// Start of a wall that runs to the next corner of its closed line.
 struct Corner {
   Eigen::Vector2d at_m{0.0, 0.0};
   WallKind kind{WallKind::kSide};
@@ -55,8 +55,8 @@ std::vector<ClosedLine> plain_lines(const WorldConfig& world) {
   return {};
 }
 
-/// The corners of an opening in a wall's frame (x along the wall, y into the free space), from its
-/// near edge on; the wall's own kind follows.
+/// The corners of an opening in the frame of its wall (x along the wall, y into the free space), in
+/// the order of the closed line; the last one continues the wall.
 std::vector<Corner> opening_corners(const OpeningConfig& opening, double centre_m,
                                     double partition_m, WallKind wall_kind) {
   const double from = centre_m - 0.5 * opening.width_m;
@@ -85,7 +85,7 @@ Eigen::Vector2d centre_on_wall(const OpeningConfig& opening, const WorldConfig& 
          Eigen::Vector2d{opening.centre_m, side * 0.5 * world.width_m};
 }
 
-/// Is there wall around the point, half a width to either side?
+/// True when the wall from -> to reaches more than half a width beyond the point on either side.
 bool has_wall(const Eigen::Vector2d& point_m, double width_m, const Corner& from,
               const Corner& to) {
   constexpr double kSlack_m = 1e-9;
@@ -96,8 +96,8 @@ bool has_wall(const Eigen::Vector2d& point_m, double width_m, const Corner& from
          at_m < (to.at_m - from.at_m).norm() - 0.5 * width_m;
 }
 
-/// Replaces the stretch of wall where the opening is by the walls of the opening. False when there
-/// is none.
+/// Replaces the part of the wall where the opening is by the walls of the opening. False when the
+/// closed line has no such wall.
 bool cut(ClosedLine& line, const OpeningConfig& opening, const WorldConfig& world) {
   const Eigen::Vector2d centre_m = centre_on_wall(opening, world);
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -107,7 +107,7 @@ bool cut(ClosedLine& line, const OpeningConfig& opening, const WorldConfig& worl
     const Eigen::Vector2d along_m = to.at_m - from.at_m;
     const Se2 world_from_wall{from.at_m, std::atan2(along_m.y(), along_m.x())};
     const double at_m = (centre_m - from.at_m).norm();
-    // Room for the bodies of both faces, that of the corridor and that of the room.
+    // Thick enough for the bodies of both walls, the corridor's and the room's.
     const double partition_m = 2.0 * world.wall_thickness_m;
     std::vector<Corner> corners = opening_corners(opening, at_m, partition_m, from.kind);
     for (Corner& corner : corners)
@@ -122,7 +122,7 @@ void append_walls(const ClosedLine& line, const WorldConfig& world, std::vector<
   const auto at = [&line](std::size_t i) {
     return line[i % line.size()].at_m;
   };
-  // Only where the free space turns left is there room behind the corner for a longer wall.
+  // Only at left turns of the line is there room behind the corner for a longer wall.
   const auto beyond_m = [&](std::size_t i) {
     const Eigen::Vector2d before = at(i) - at(i + line.size() - 1);
     return cross(before, at(i + 1) - at(i)) > 0.0 ? world.wall_thickness_m : 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The world as plain geometry: walls, boxes and markers. Frame "world": x along the first corridor
-// from the inner face of its start wall, y to the left from its middle, z up from the floor.
+// The world as geometry: walls, boxes and markers. World frame: origin on the floor, in the middle
+// of the inner face of the first corridor's start wall; x along that corridor, y left, z up.
 #pragma once
 
 #include "sim/core/world/outline.hpp"
@@ -15,22 +15,22 @@
 
 namespace waymark {
 
-/// Centre of the black square, on the visible surface; yaw = the direction that the marker faces.
+/// A marker on a wall, world frame.
 struct MarkerPlate {
   int id{0};
-  int instance{0};  ///< counts the markers with the same id
-  Eigen::Vector3d centre_m{0.0, 0.0, 0.0};
-  double yaw_rad{0.0};
+  int instance{0};                          ///< counts the markers with the same id
+  Eigen::Vector3d centre_m{0.0, 0.0, 0.0};  ///< of the black square, on the printed surface
+  double yaw_rad{0.0};                      ///< direction that the marker faces
 };
 
-/// A marker that is hung elsewhere during the run.
+/// A marker that is moved during the run.
 struct MarkerMove {
   std::size_t marker{0};  ///< index into World::markers
   Trigger when{};
   Eigen::Vector2d by_m{0.0, 0.0};
 };
 
-/// A closed world.
+/// Walls form closed lines.
 struct World {
   std::vector<Wall> walls{};
   std::vector<BoxConfig> boxes{};
@@ -42,24 +42,24 @@ struct World {
 /// How far a marker's printed surface stands out from the wall (a sheet on a thin board).
 constexpr double kPlateThickness_m = 0.002;
 
-/// Builds the walls and hangs the markers, those that the seed has spared.
+/// Builds walls and markers, without the markers that are missing by configuration or by the seed.
 World build_world(const WorldConfig& world, const MarkerLayoutConfig& markers, double plate_size_m,
                   std::int64_t seed);
 
-/// Number of places where the layout has a marker, missing ones included. Where there is no wall
-/// behind the whole plate (a doorway, a junction), there is no place.
+/// Number of the layout's places for markers, also of missing ones. Where there is no wall behind
+/// the whole plate (a doorway, a junction), there is no place.
 std::size_t place_count(const WorldConfig& world, const MarkerLayoutConfig& markers,
                         double plate_size_m);
 
-/// Id of each of so many places: the explicit list, the one for all, or counted up from first_id.
+/// Ids by place: the configured list, its single id for all, or numbers from first_id on.
 std::vector<int> marker_ids(const MarkerLayoutConfig& markers, std::size_t num_places);
 
-/// Nearest centre of a plate on a wall, and the direction that it faces.
+/// The plate on a wall that is nearest to a point; sets centre x, y and yaw.
 /// @return nullopt where no wall with room for it is within half a metre.
 std::optional<MarkerPlate> plate_near(const std::vector<Wall>& walls,
                                       const Eigen::Vector2d& point_m, double plate_size_m);
 
-/// Is there wall behind a whole plate?
+/// True when there is a wall behind the whole plate.
 bool hangs_on_a_wall(const std::vector<Wall>& walls, const Eigen::Vector2d& centre_m,
                      double plate_size_m);
 

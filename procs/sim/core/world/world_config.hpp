@@ -28,7 +28,7 @@ struct OpeningConfig {
   void describe(Fields& fields);
 };
 
-/// Furniture, people: solid, seen by LiDAR and camera, there for a while or always.
+/// Furniture or a person: a solid box, visible to LiDAR and camera, for a time or always.
 struct BoxConfig {
   double x_m{10.0};
   double y_m{0.0};
@@ -41,7 +41,7 @@ struct BoxConfig {
   void describe(Fields& fields);
 };
 
-/// Corridors; lengths between inner faces. Corridor 0 begins at x = 0 and runs along +x.
+/// Corridors; lengths are between inner faces. Corridor 0 begins at x = 0 and runs along +x.
 struct WorldConfig {
   Layout layout{Layout::kStraight};
   double length_m{50.0};
@@ -57,7 +57,7 @@ struct WorldConfig {
 
 enum class MarkerLayout { kOpposite, kStaggered, kNone };
 
-/// A marker that somebody hangs elsewhere on its wall during the run.
+/// A marker that is moved along its wall during the run.
 struct MarkerMoveConfig {
   int place{0};
   Trigger when{};
@@ -67,7 +67,7 @@ struct MarkerMoveConfig {
   void describe(Fields& fields);
 };
 
-/// One more marker, on any wall: a corridor's, its end, a room's.
+/// A marker in addition to the layout, on any wall.
 struct MarkerAddConfig {
   int id{0};
   double x_m{0.0};
@@ -76,16 +76,15 @@ struct MarkerAddConfig {
   void describe(Fields& fields);
 };
 
-/// Where the markers hang. What they look like is RobotConfig's: the robot has to know that.
-/// Places are numbered by corridor, station, left wall before right wall; a marker that is missing
-/// leaves its number and id unused.
+/// Where the markers hang; what they look like is in RobotConfig. Places are numbered by corridor,
+/// station, left wall before right wall; a missing marker leaves its number and id unused.
 struct MarkerLayoutConfig {
   MarkerLayout layout{MarkerLayout::kOpposite};
   double first_m{4.0};
   double spacing_m{4.0};
   double last_m{48.0};
   double centre_height_m{0.3};
-  double quiet_zone_modules{2.0};  ///< one module confuses OpenCV 4.6 (it keeps the ring's edge)
+  double quiet_zone_modules{2.0};  ///< at 1, OpenCV 4.6 may detect the plate's outline instead
   bool blank{false};
   int first_id{0};
   std::vector<int> ids{};
