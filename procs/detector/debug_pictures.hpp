@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Camera frames with what was found drawn on them, as PNG files for people.
+// Camera frames with the detections drawn on them, as PNG files.
 #pragma once
 
 #include "common/sensors/sensors.hpp"
@@ -19,7 +19,7 @@ class DebugPictures {
   /// @throws SetupError when the folder cannot be made.
   DebugPictures(std::filesystem::path folder, int every);
 
-  /// Writes every so many'th frame as frame_<utime>.png. False when that failed.
+  /// Writes every `every`-th frame as frame_<utime>.png. @return false when writing failed.
   bool offer(const cv::Mat& gray, const MarkerDetections& detections);
 
  private:

@@ -27,7 +27,7 @@ DetectorNode::DetectorNode(const DetectorConfig& config, Inbox& inbox, Outbox& o
   if (!config.detector.debug_dir.empty()) {
     debug_pictures_.emplace(config.detector.debug_dir, config.detector.debug_every);
   }
-  // Two cores are shared by all processes; OpenCV's own threads gain nothing on images this small.
+  // OpenCV's own threads gain nothing on images this small.
   cv::setNumThreads(1);
   inbox.on<image_t>(
       channels::kCamera, [this](const image_t& image) { handle(image); }, Backlog::kNewestOnly);
@@ -40,7 +40,7 @@ void DetectorNode::handle(const image_t& image) {
   const DecodedFrame frame = decode_image(image, image_size_);
   if (frame.problem == FrameProblem::kNone) {
     detections.detections = detector_.detect(frame.gray);
-    leave_out_what_does_not_fit(detections.detections);
+    keep_largest(detections.detections);
     if (debug_pictures_ && !debug_pictures_->offer(frame.gray, detections)) {
       inbox_.counters().add("debug pictures not written", CountKind::kLoss);
     }
@@ -51,8 +51,7 @@ void DetectorNode::handle(const image_t& image) {
   outbox_.publish(channels::kMarkers, to_detections_message(detections));
 }
 
-/// The largest markers tell most.
-void DetectorNode::leave_out_what_does_not_fit(std::vector<MarkerDetection>& markers) {
+void DetectorNode::keep_largest(std::vector<MarkerDetection>& markers) {
   if (markers.size() <= kMarkersPerMessage) return;
   inbox_.counters().add("markers dropped: more than a message holds", CountKind::kLoss,
                         std::ssize(markers) - std::int64_t{kMarkersPerMessage});

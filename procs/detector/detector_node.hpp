@@ -27,9 +27,10 @@ class DetectorNode final : public Node {
  private:
   /// Answers every frame, an unreadable one with an empty list, so that slam does not wait for it.
   void handle(const image_t& image);
-  void leave_out_what_does_not_fit(std::vector<MarkerDetection>& markers);
+  /// Keeps as many markers as a message can hold, the largest ones, which are the most accurate.
+  void keep_largest(std::vector<MarkerDetection>& markers);
   void count(const MarkerDetections& detections);
-  /// Counts; says of the first image of another size which one it has.
+  /// Counts the problem; logs the size of the first image of a wrong size.
   void reject(const DecodedFrame& frame);
 
   cv::Size image_size_;

@@ -7,7 +7,7 @@
 
 namespace waymark {
 
-/// decode_frame() of a message; the frame may refer to its bytes.
+/// decode_frame() of a message; the frame may share its bytes.
 DecodedFrame decode_image(const image_t& image, cv::Size expected_size);
 
 }  // namespace waymark

@@ -2,7 +2,7 @@
 #include "detector/core/corner_refinement.hpp"
 
 #include "common/geometry/upper_median.hpp"
-#include "detector/core/seen_square.hpp"
+#include "detector/core/sampled_square.hpp"
 
 #include <Eigen/LU>
 
@@ -14,20 +14,20 @@
 namespace waymark {
 namespace {
 
-// The first pass starts half a pixel off, the second one on the edge; blurred, it starts further
-// off.
+// The first pass starts half a pixel off the edge, the second one on it; blurred sides need more.
 constexpr int kMinPasses = 2;
 constexpr int kMaxPasses = 6;
-constexpr double kConvergedPx = 0.1;  // a pass that moves corners by less was the last
-// Neighbouring profiles share pixels, so N of them count as N / 2.2 independent ones (measured:
-// makes the squared errors of rendered markers agree with their covariance).
+constexpr double kConvergedPx = 0.1;  // iteration ends when the corners move by less
+// Neighbouring profiles share pixels, so that N of them count as N / 2.2 independent ones
+// (measured: the factor at which the squared errors of rendered markers agree with their
+// covariance).
 constexpr double kSharedNoise = 2.2;
 constexpr double kOutlierSigmas = 2.5;
-// Rounding of grey values: residuals say nothing below this.
+// Below this, residuals are rounding of grey values.
 constexpr double kSmallestResidualPx = 0.01;
-// What the model of blur may miss: share of the bias, and of the blur itself.
-constexpr double kBiasUnknown = 0.5;
-constexpr double kBlurUnknown = 0.02;
+// Standard deviations of the correction for blur: as a share of the bias, and of the blur itself.
+constexpr double kBiasSigmaShare = 0.5;
+constexpr double kBlurSigmaShare = 0.02;
 
 using Sides = std::array<Side, 4>;
 
@@ -50,21 +50,23 @@ Sides sides_of(const Corners& corners) {
           Side{corners[3], corners[0]}};
 }
 
-/// @param corner_px  left out at both ends: there the neighbouring sides' blur bends the edge.
-std::vector<EdgePoint> edge_points(const SeenSide& seen, double black, double corner_px,
+/// @param corner_px  length left out at both ends, where the neighbouring sides' blur bends the
+/// edge.
+std::vector<EdgePoint> edge_points(const SampledSide& sampled, double black, double corner_px,
                                    double min_contrast) {
-  const double half_window_px = seen.half_window_px();
+  const double half_window_px = sampled.half_window_px();
   std::vector<EdgePoint> points;
-  for (const EdgeProfile& profile : seen.profiles) {
+  for (const EdgeProfile& profile : sampled.profiles) {
     if (profile.white - black < min_contrast) continue;
-    if (std::min(profile.along_px, seen.side.length_px() - profile.along_px) < corner_px) continue;
+    if (std::min(profile.along_px, sampled.side.length_px() - profile.along_px) < corner_px)
+      continue;
     const auto offset_px = profile.edge_px(black, half_window_px);
     if (offset_px) points.push_back({profile.along_px, *offset_px});
   }
   return points;
 }
 
-/// Ordinary least squares: the side's frame makes the slope tiny.
+/// Ordinary least squares of the offsets: in the frame of the side, slopes are tiny.
 EdgeLine fit_once(const std::vector<EdgePoint>& points, double length_px) {
   const double n = static_cast<double>(points.size());
   double mean_along = 0.0;
@@ -96,7 +98,7 @@ EdgeLine fit_once(const std::vector<EdgePoint>& points, double length_px) {
   return line;
 }
 
-/// Fit without the points that lie far off the fit before.
+/// Repeats the fit without outliers.
 std::optional<EdgeLine> fit_line(std::vector<EdgePoint> points, double length_px, int min_points) {
   constexpr int kRounds = 3;
   if (std::ssize(points) < min_points) return std::nullopt;
@@ -123,8 +125,8 @@ std::optional<EdgeLine> fit_line(std::vector<EdgePoint> points, double length_px
   return line;
 }
 
-/// Where two neighbouring sides meet when they shift outwards: corner shift = solve * (shift of the
-/// side that ends here, shift of the side that starts here).
+/// Maps outward shifts of two neighbouring sides (the one that ends here, the one that starts here)
+/// to the shift of the corner between them.
 Eigen::Matrix2d corner_from_side_shifts(const Side& ends_here, const Side& starts_here) {
   Eigen::Matrix2d normals;
   normals << ends_here.outward().transpose(), starts_here.outward().transpose();
@@ -165,7 +167,8 @@ FittedQuad intersect(const Sides& sides, const std::array<EdgeLine, 4>& lines) {
   return quad;
 }
 
-/// Standard deviation of what blur, sampling and neighbouring bits do to all of a side alike.
+/// Standard deviation of a side's offset: errors by sampling and neighbouring bits that all of its
+/// points have in common.
 double common_sigma_px(double border_px, const RefinementConfig& config) {
   constexpr double kThinnestBorderPx = 1.0;
   const double thickness = std::max(kThinnestBorderPx, border_px);
@@ -175,26 +178,26 @@ double common_sigma_px(double border_px, const RefinementConfig& config) {
 std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camera,
                                    const Corners& corners, int modules_per_side,
                                    const RefinementConfig& config) {
-  const SeenSquare seen =
-      look_at_square(gray, camera, sides_of(corners), modules_per_side, config.reach_px);
+  const SampledSquare square =
+      sample_square(gray, camera, sides_of(corners), modules_per_side, config.reach_px);
   std::array<EdgeLine, 4> lines;
   for (std::size_t k = 0; k < 4; ++k) {
-    const SeenSide& side = seen.sides[k];
+    const SampledSide& side = square.sides[k];
     const auto line =
-        fit_line(edge_points(side, seen.black, seen.corner_px(k), config.min_contrast),
+        fit_line(edge_points(side, square.black, square.corner_px(k), config.min_contrast),
                  side.side.length_px(), config.min_points);
     if (!line || line->residual_px > config.max_residual_px) return std::nullopt;
     lines[k] = *line;
     double sigma_px = common_sigma_px(side.border_px, config);
     if (side.is_blurred()) {
-      const double bias_px = blur_bias_px(gray, camera, seen, k);
+      const double bias_px = blur_bias_px(gray, camera, square, k);
       lines[k].at_start_px -= bias_px;
-      sigma_px = std::hypot(sigma_px, kBiasUnknown * bias_px, kBlurUnknown * side.blur_px);
+      sigma_px = std::hypot(sigma_px, kBiasSigmaShare * bias_px, kBlurSigmaShare * side.blur_px);
     }
     lines[k].covariance_at_corners.array() += sigma_px * sigma_px;
   }
   FittedQuad quad = intersect(sides_of(corners), lines);
-  quad.is_blurred = seen.is_blurred();
+  quad.is_blurred = square.is_blurred();
   return quad;
 }
 

@@ -25,7 +25,7 @@ struct RefinementConfig {
   void describe(Fields& fields);
 };
 
-/// Corners with what is known about their errors.
+/// Corners with their covariance.
 struct MeasuredCorners {
   Corners ideal_px{};  ///< without lens distortion
   /// [px^2] order u0 v0 u1 v1 u2 v2 u3 v3.
@@ -33,10 +33,10 @@ struct MeasuredCorners {
   bool refined{false};
 };
 
-/// Walks along the four sides of a marker, finds where the brightness crosses from black to white
-/// to a fraction of a pixel, fits a line to each side and intersects them. The walk is in ideal
-/// pixels, so a lens that bends lines does not matter. A side that shows too few good points, or
-/// corners that would move far, leave the corners as they were with a large covariance.
+/// Finds points on the black-white edge along the four sides of a marker, fits a line to each side,
+/// and intersects neighbouring lines. Works in ideal pixels, where lens distortion does not bend
+/// lines. If a side has too few good points, or a corner would move too far, the corners stay as
+/// they are, with a large covariance.
 ///
 /// @param gray                8-bit, one channel.
 /// @param raw_corners_px      to within about two pixels, from the first stage.

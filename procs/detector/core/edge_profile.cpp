@@ -12,11 +12,11 @@ constexpr int kMaxProfilesPerSide = 80;
 // Near a corner the blur of the neighbouring side bends the edge.
 constexpr double kCornerMarginPx = 2.0;
 constexpr double kMaxCornerMarginRate = 0.2;
-// Parts of the reach in which levels are read, past the blur of the edge.
+// Where levels are read, as shares of the reach: beyond the blur of the edge.
 constexpr double kWhiteFrom = 0.6;
 constexpr double kBlackAt = 0.5 * kThickBorder;
 constexpr double kBlackHalfWidth = 0.15;
-constexpr double kDark = 0.12;  // of the contrast: a bit that is no brighter is black
+constexpr double kDark = 0.12;  // share of the contrast up to which a bit is black
 
 /// Bilinear; nullopt outside the image.
 std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& raw_px) {
@@ -52,8 +52,8 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
 
 }  // namespace
 
-/// In front of white bits the black of a thin border is read at its middle, farthest from both
-/// edges.
+/// In front of a white bit, the black level of a thin border is read in its middle, farthest from
+/// both edges.
 void read_levels(EdgeProfile& profile, double border_px) {
   profile.white = mean_between(profile, kWhiteFrom, 1.0);
   const double middle = 0.5 * border_px / profile.reach_px;
@@ -99,11 +99,11 @@ std::optional<double> EdgeProfile::edge_px(double black_level, double half_windo
 }
 
 std::optional<double> EdgeProfile::blur_px(double black_level) const {
-  constexpr double kQuarters = 1.349;  // of a normal distribution, in standard deviations
+  constexpr double kQuartileDistance = 1.349;  // of a normal distribution, in standard deviations
   const auto low = crossing_px(black_level + 0.25 * (white - black_level));
   const auto high = crossing_px(black_level + 0.75 * (white - black_level));
   if (!low || !high || *high < *low) return std::nullopt;
-  return (*high - *low) / kQuarters;
+  return (*high - *low) / kQuartileDistance;
 }
 
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,

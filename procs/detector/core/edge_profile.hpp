@@ -15,8 +15,8 @@ namespace waymark {
 /// Modules from a side to the middle of the bits behind the border.
 inline constexpr double kInnerBits = 1.5;
 
-/// Thickness of a border, in reaches of its profiles, from which on the bits behind it do not touch
-/// the level of its black.
+/// Thickness of a border, in units of its profiles' reach, from which on blur of the bits behind it
+/// does not change its black level.
 inline constexpr double kThickBorder = 1.5;
 
 /// One side of a marker in ideal pixels, from corner to corner, clockwise around the marker.
@@ -31,8 +31,8 @@ struct Side {
   Eigen::Vector2d outward() const { return {direction().y(), -direction().x()}; }
 };
 
-/// Brightness along the normal of a side at one place of it, at even steps from -reach (inside, the
-/// black border) to +reach (outside, the white zone).
+/// Brightness along a normal of a side, in equal steps from -reach (inside, the black border) to
+/// +reach (outside, the white zone).
 struct EdgeProfile {
   double along_px{0.0};  ///< distance from the side's start
   double reach_px{0.0};
@@ -42,28 +42,30 @@ struct EdgeProfile {
   double black{0.0};            ///< mean level inside; blur makes a thin border's too bright
 
   double step_px() const;
-  /// Linear between the samples, constant beyond them.
+  /// Brightness at an offset; linear between the samples, constant beyond them.
   double at(double offset_px) const;
-  /// Offset [px, outwards] of the dark-to-bright crossing of a level that is nearest to the side.
+  /// Offset [px, outwards] of the dark-to-bright crossing of a level; the one nearest to the side.
   std::optional<double> crossing_px(double level) const;
-  /// Offset of the sharp edge that has as much black and white in a window about the crossing as
-  /// the profile. Unlike the crossing itself, which is up to 0.09 px off in sharp images, it does
-  /// not depend on where the pixels lie. nullopt where nothing crosses.
+  /// Offset [px, outwards] of the ideal step edge with the same mean brightness as the profile in a
+  /// window about the crossing. Unlike the crossing itself, which in sharp images is up to 0.09 px
+  /// off, it does not depend on the edge's position within a pixel. nullopt without a crossing.
   std::optional<double> edge_px(double black_level, double half_window_px) const;
-  /// Standard deviation of the point spread across the edge, from how far apart a quarter and three
-  /// quarters of its height are crossed; what lies behind the border hardly matters there.
+  /// Standard deviation of the point spread [px], from the distance between the crossings of a
+  /// quarter and of three quarters of the edge's height, where bits behind the border hardly
+  /// matter.
   std::optional<double> blur_px(double black_level) const;
 };
 
-/// Brightness levels of a profile across a border of that thickness.
+/// Sets the profile's white and black levels.
+/// @param border_px  thickness of the border.
 void read_levels(EdgeProfile& profile, double border_px);
 
-/// About one profile per pixel along the side, 2 to 80, away from its corners. Places from which
-/// the profile would leave the image are left out.
+/// About one profile per pixel along the side, 2 to 80, away from its corners. Profiles that would
+/// leave the image are left out.
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
                                          const Side& side, double reach_px, double border_px);
 
-/// Mean brightness along a line that far inside of a side; nullopt where it leaves the image.
+/// Mean brightness along the parallel at a distance inside a side; nullopt if it leaves the image.
 std::optional<double> mean_brightness_inside(const cv::Mat& gray, const CameraModel& camera,
                                              const Side& side, double inside_px);
 

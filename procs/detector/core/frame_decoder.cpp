@@ -29,7 +29,7 @@ DecodedFrame decode_jpeg(std::span<const std::uint8_t> bytes, cv::Size expected_
                      cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     if (gray.size() == expected_size) return {gray, FrameProblem::kNone};
   } catch (const cv::Exception&) {
-    // what OpenCV says about it would go to nobody
+    // kBrokenJpeg below
   }
   return {{}, FrameProblem::kBrokenJpeg};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Image bytes from outside -> grey image of the expected size, or the reason why not.
+// Received image bytes -> grey image of the expected size, or the reason why not.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -25,7 +25,7 @@ enum class FrameProblem {
 
 std::string_view to_string(FrameProblem problem);
 
-/// An image as it came.
+/// An image as received.
 struct EncodedFrame {
   PixelFormat format{PixelFormat::kOther};
   int width_px{0};
@@ -35,9 +35,10 @@ struct EncodedFrame {
 };
 
 struct DecodedFrame {
-  cv::Mat gray{};  ///< 8-bit, one channel; empty when there is a problem; may refer to the bytes
+  cv::Mat
+      gray{};  ///< 8-bit, one channel; empty when there is a problem; may share the input's bytes
   FrameProblem problem{FrameProblem::kNone};
-  cv::Size wrong_size{};  ///< what kWrongSize was found to be
+  cv::Size wrong_size{};  ///< of kWrongSize
 };
 
 /// Sizes are checked before anything is allocated for them. Never throws for bad bytes.

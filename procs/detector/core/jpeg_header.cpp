@@ -11,7 +11,7 @@ constexpr std::uint8_t kStartOfImage = 0xD8;
 constexpr std::uint8_t kEndOfImage = 0xD9;
 constexpr std::uint8_t kStartOfScan = 0xDA;
 
-/// SOF0 to SOF15; C4, C8 and CC in their midst are something else.
+/// SOF0 to SOF15, without the other markers in that range (C4, C8, CC).
 bool is_frame_header(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }

@@ -14,7 +14,7 @@ struct JpegHeader {
   bool complete{false};  ///< the end-of-image marker is there
 };
 
-/// Walks the segments of a JPEG stream (ITU-T T.81, annex B). nullopt when it is none or ends
+/// Walks the segments of a JPEG stream (ITU-T T.81, annex B). nullopt when it is not one, or ends
 /// before its frame header. Never reads outside the span; allocates nothing.
 std::optional<JpegHeader> read_jpeg_header(std::span<const std::uint8_t> bytes);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// First stage: which markers are in the image, and roughly where.
+// First stage: ids and approximate corners of the markers in an image.
 #pragma once
 
 #include "common/config/fields.hpp"
@@ -15,13 +15,13 @@ namespace waymark {
 
 using Corners = std::array<Eigen::Vector2d, 4>;  ///< [px] clockwise from the marker's top left
 
-/// Parameters of cv::aruco, where ours differ or users may need to turn one.
+/// Those parameters of cv::aruco that differ from OpenCV's defaults or that users may need to
+/// change.
 struct CandidateConfig {
   int threshold_window_min_px{3};
   int threshold_window_max_px{23};
   int threshold_window_step_px{10};
-  /// A little above OpenCV's 7, which takes image noise for edges; from 10 on, photographs of pale
-  /// markers lose some.
+  /// OpenCV's 7 finds edges in image noise; from 10 on, pale markers in photographs are missed.
   double threshold_constant{8.0};
   double error_correction_rate{0.6};
   double min_perimeter_rate{0.03};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The detector's method: one grey image in, markers with poses and covariances out.
+// The three stages of detection: one grey image in, markers with poses and covariances out.
 #pragma once
 
 #include "common/robot/camera_model.hpp"
@@ -17,9 +17,9 @@
 
 namespace waymark {
 
-/// Standard deviations of the camera's calibration, which add to the covariance of every pose.
-/// Zero: intrinsics and mounting are exact, as in simulation. A carefully calibrated real camera:
-/// 0.005, 0.005 rad (0.3 degrees), 0.017 rad (1 degree).
+/// Standard deviations of the camera's calibration, added to the covariance of every pose. Zero:
+/// intrinsics and mounting are exact, as in simulation. A carefully calibrated real camera: 0.005,
+/// 0.005 rad (0.3 degrees), 0.017 rad (1 degree).
 struct CalibrationErrorConfig {
   double range_rate{0.0};
   double bearing_rad{0.0};

@@ -25,8 +25,8 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return (Eigen::Matrix3d{} << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
 }
 
-/// Seen minus predicted corners, and the derivative of the prediction by a small motion of the
-/// marker: (translation, rotation) in the optical frame.
+/// Observed minus predicted corners, and the derivative of the prediction with respect to a small
+/// motion of the marker: (translation, rotation) in the optical frame.
 struct Linearization {
   Vector8 residual_px{};
   Matrix86 jacobian{};
@@ -59,7 +59,7 @@ Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_marker, const Vecto
   return result;
 }
 
-/// Corners whitened by their covariance, and the steps of Levenberg and Marquardt on them.
+/// Levenberg-Marquardt on the corners, whitened by their covariance.
 class Refiner {
  public:
   Refiner(const MeasuredCorners& corners, const CameraModel& camera, double size_m)
@@ -173,8 +173,8 @@ std::optional<SquarePoses> solve_square(const MeasuredCorners& corners, const Ca
   if (starts.size() != 2 || !refiner.usable()) return std::nullopt;
 
   std::array refined{refiner.refine(starts[0]), refiner.refine(starts[1])};
-  // A shallow second minimum can vanish in the first one; the flipped start still shows where it
-  // was.
+  // Both refinements may end in the same minimum; the closed-form solution then stands for the
+  // other.
   if (are_the_same(refined[0], refined[1])) refined[1] = starts[1];
 
   std::array<SquarePose, 2> poses;

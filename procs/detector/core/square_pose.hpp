@@ -13,7 +13,7 @@
 
 namespace waymark {
 
-/// In the order of Corners; marker frame.
+/// Corners of the black square in the marker frame [m], in the order of Corners.
 inline std::array<Eigen::Vector3d, 4> corners_in_marker(double size_m) {
   const double h = 0.5 * size_m;
   return {Eigen::Vector3d{-h, h, 0}, Eigen::Vector3d{h, h, 0}, Eigen::Vector3d{h, -h, 0},
@@ -25,7 +25,7 @@ struct SquarePose {
   double reprojection_error_px{0.0};  ///< root mean square over the four corners
 };
 
-/// A square seen from far has two poses that explain its corners almost equally well.
+/// A small or distant square has two poses that explain its corners almost equally well.
 struct SquarePoses {
   SquarePose best{};
   SquarePose other{};

@@ -6,7 +6,7 @@
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
 #include "detector/core/marker_detector.hpp"
-#include "detector/core/seen_square.hpp"
+#include "detector/core/sampled_square.hpp"
 #include "detector/image_message.hpp"
 #include "slam/core/scan/marker_sighting.hpp"
 
@@ -108,8 +108,8 @@ double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
     sides[k] = {model.ideal_from_raw(corners_px[k]), model.ideal_from_raw(corners_px[(k + 1) % 4])};
   }
   std::vector<double> blurs_px;
-  for (const SeenSide& side :
-       look_at_square(gray, model, sides, modules_per_side, kReach_px).sides) {
+  for (const SampledSide& side :
+       sample_square(gray, model, sides, modules_per_side, kReach_px).sides) {
     if (side.blur_px > 0.0) blurs_px.push_back(side.blur_px);
   }
   if (blurs_px.empty()) return -1.0;

@@ -13,43 +13,44 @@
 
 namespace waymark {
 
-struct SeenSide {
+struct SampledSide {
   Side side{};
   double border_px{0.0};  ///< thickness of the black border
   double reach_px{0.0};   ///< of the profiles
   std::vector<EdgeProfile> profiles{};
   double blur_px{0.0};  ///< standard deviation of the point spread across it
 
-  /// More than the pixels' own area. Unknown behind a thin border, where the bits make the edge
-  /// look wider than it is.
+  /// True when blur displaces the edge. False also where the border is too thin to measure blur:
+  /// bits behind it make the edge look wider.
   bool is_blurred() const;
 
-  /// For EdgeProfile::edge_px(): wide enough to hold the blur of the edge, narrow enough to stay
-  /// off the blur of the inner bits.
+  /// Half window for EdgeProfile::edge_px(): wide enough for the blur of the edge, narrow enough to
+  /// exclude the blur of the inner bits.
   double half_window_px() const;
 };
 
-struct SeenSquare {
-  std::array<SeenSide, 4> sides{};
+struct SampledSquare {
+  std::array<SampledSide, 4> sides{};
   double black{0.0};  ///< level of the border
 
   bool is_blurred() const;
 
-  /// Length at a side's ends that the blur of the neighbouring sides distorts.
+  /// Length [px] at both ends of a side where the blur of the neighbouring sides bends the edge.
   double corner_px(std::size_t side) const;
 
-  /// The first of the two opposite sides with the thicker borders.
+  /// Index, 0 or 1, of the first of the two opposite sides with the thicker borders.
   std::size_t thick_side() const;
 };
 
 /// @param modules_per_side  bits of the dictionary plus the two of the border.
 /// @param reach_px          how far from a side to look; at most the border's thickness.
-SeenSquare look_at_square(const cv::Mat& gray, const CameraModel& camera,
-                          const std::array<Side, 4>& sides, int modules_per_side, double reach_px);
+SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
+                            const std::array<Side, 4>& sides, int modules_per_side,
+                            double reach_px);
 
-/// How far off, outwards, edges of a blurred side are found: blur mixes the bits behind a thin
-/// border into it (BlurredSide).
-double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const SeenSquare& square,
+/// Outward bias [px] of a blurred side's edge, from the model BlurredSide: white bits behind the
+/// border brighten it.
+double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const SampledSquare& square,
                     std::size_t side);
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "detector/core/seen_square.hpp"
+#include "detector/core/sampled_square.hpp"
 
 #include "common/geometry/upper_median.hpp"
 #include "detector/core/blurred_side.hpp"
@@ -10,13 +10,13 @@
 namespace waymark {
 namespace {
 
-// Standard deviation of a point spread that leaves edges in place. Sharp pictures have 0.5 to 0.75:
-// the pixels' own area, and the interpolation between them.
+// Largest standard deviation of the point spread that does not displace edges. Sharp images have
+// 0.5 to 0.75 px, by the area of the pixels and the interpolation between them.
 constexpr double kSharpPx = 0.95;
 constexpr double kMinBorderPx = 2.0;
-constexpr double kCornerBlurs = 3.0;  // a corner reaches that far, in standard deviations of it
-constexpr double kHalfWhite = 0.5;    // of the bits, where it hardly matters
-constexpr std::size_t kFewLevels = 4;
+constexpr double kCornerBlurs = 3.0;  // reach of a corner, in standard deviations of the blur
+constexpr double kHalfWhite = 0.5;    // share of white bits where it hardly matters
+constexpr std::size_t kMinLevels = 4;
 
 double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   const Eigen::Vector2d ab = b - a;
@@ -24,8 +24,8 @@ double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const E
   return 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
 }
 
-/// How thick the black border looks along each side. A module of the far side of an oblique marker
-/// looks thinner than one of the near side.
+/// Thickness of the black border in the image at the middle of each side; by perspective the far
+/// side of an oblique marker has a thinner one than the near side.
 std::array<double, 4> border_thickness_px(const std::array<Side, 4>& sides, int modules_per_side) {
   const std::array<Eigen::Vector2d, 4> corners{sides[0].start_px, sides[1].start_px,
                                                sides[2].start_px, sides[3].start_px};
@@ -50,22 +50,23 @@ std::array<double, 4> border_thickness_px(const std::array<Side, 4>& sides, int 
   return thickness_px;
 }
 
-/// Where the border looks thin, blur mixes white in, from the bits behind it, too. (The darkest
-/// side would be the one whose noise is darkest.)
-double black_level(const SeenSquare& square) {
+/// Median black level of the two opposite sides with the thicker borders. If these are thin, white
+/// bits behind them brighten the level by blur: then only profiles in front of black bits count.
+double black_level(const SampledSquare& square) {
   const std::size_t first = square.thick_side();
   std::vector<double> levels;
-  std::vector<double> before_black;
+  std::vector<double> before_black_bits;
   for (const std::size_t side : {first, first + 2}) {
     for (const EdgeProfile& profile : square.sides[side].profiles) {
       levels.push_back(profile.black);
-      if (!profile.is_white_behind) before_black.push_back(profile.black);
+      if (!profile.is_white_behind) before_black_bits.push_back(profile.black);
     }
   }
   if (levels.empty()) return 0.0;
   const bool is_thin = square.sides[first].border_px < kThickBorder * square.sides[first].reach_px;
-  return upper_median(is_thin && before_black.size() >= kFewLevels ? std::move(before_black)
-                                                                   : std::move(levels));
+  return upper_median(is_thin && before_black_bits.size() >= kMinLevels
+                          ? std::move(before_black_bits)
+                          : std::move(levels));
 }
 
 double blur_of(const std::vector<EdgeProfile>& profiles, double black) {
@@ -84,62 +85,64 @@ double mean_white(const std::vector<EdgeProfile>& profiles) {
 
 }  // namespace
 
-bool SeenSide::is_blurred() const {
+bool SampledSide::is_blurred() const {
   return blur_px > kSharpPx && border_px > kMinBorderPx;
 }
 
-double SeenSide::half_window_px() const {
+double SampledSide::half_window_px() const {
   constexpr double kInnerBlurPx = 1.1;
   return std::clamp(border_px - kInnerBlurPx, 0.4, 2.0);
 }
 
-bool SeenSquare::is_blurred() const {
-  return std::ranges::any_of(sides, [](const SeenSide& side) { return side.is_blurred(); });
+bool SampledSquare::is_blurred() const {
+  return std::ranges::any_of(sides, [](const SampledSide& side) { return side.is_blurred(); });
 }
 
-double SeenSquare::corner_px(std::size_t side) const {
-  const auto blur_beside = [](const SeenSide& seen) {
-    return seen.is_blurred() ? seen.blur_px : 0.0;
+double SampledSquare::corner_px(std::size_t side) const {
+  const auto blur_beside = [](const SampledSide& neighbour) {
+    return neighbour.is_blurred() ? neighbour.blur_px : 0.0;
   };
   return kCornerBlurs *
          std::max(blur_beside(sides[(side + 1) % 4]), blur_beside(sides[(side + 3) % 4]));
 }
 
-std::size_t SeenSquare::thick_side() const {
+std::size_t SampledSquare::thick_side() const {
   return sides[0].border_px + sides[2].border_px >= sides[1].border_px + sides[3].border_px ? 0 : 1;
 }
 
-SeenSquare look_at_square(const cv::Mat& gray, const CameraModel& camera,
-                          const std::array<Side, 4>& sides, int modules_per_side, double reach_px) {
+SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
+                            const std::array<Side, 4>& sides, int modules_per_side,
+                            double reach_px) {
   constexpr double kShortestReachPx = 1.5;
   const std::array<double, 4> border_px = border_thickness_px(sides, modules_per_side);
-  SeenSquare square;
+  SampledSquare square;
   for (std::size_t k = 0; k < 4; ++k) {
     const double side_reach_px = std::min(reach_px, std::max(kShortestReachPx, border_px[k]));
     square.sides[k] = {sides[k], border_px[k], side_reach_px,
                        sample_profiles(gray, camera, sides[k], side_reach_px, border_px[k])};
   }
   square.black = black_level(square);
-  for (SeenSide& side : square.sides)
+  for (SampledSide& side : square.sides)
     side.blur_px = blur_of(side.profiles, square.black);
   return square;
 }
 
-double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const SeenSquare& square,
+double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const SampledSquare& square,
                     std::size_t side) {
-  const SeenSide& seen = square.sides[side];
-  if (seen.profiles.empty()) return 0.0;
-  const auto inner = mean_brightness_inside(gray, camera, seen.side, kInnerBits * seen.border_px);
+  const SampledSide& sampled = square.sides[side];
+  if (sampled.profiles.empty()) return 0.0;
+  const auto inner =
+      mean_brightness_inside(gray, camera, sampled.side, kInnerBits * sampled.border_px);
   if (!inner) return 0.0;
   const double inner_white =
-      std::clamp((*inner - square.black) / (mean_white(seen.profiles) - square.black), 0.0, 1.0);
-  const SeenSide& thick = square.sides[square.thick_side()];
+      std::clamp((*inner - square.black) / (mean_white(sampled.profiles) - square.black), 0.0, 1.0);
+  const SampledSide& thick = square.sides[square.thick_side()];
   const double blurred_black =
       BlurredSide{std::max(kSharpPx, thick.blur_px), thick.border_px, kHalfWhite}
           .profile(thick.reach_px)
           .black;
-  return BlurredSide{seen.blur_px, seen.border_px, inner_white}.bias_px(
-      seen.reach_px, blurred_black, seen.half_window_px());
+  return BlurredSide{sampled.blur_px, sampled.border_px, inner_white}.bias_px(
+      sampled.reach_px, blurred_black, sampled.half_window_px());
 }
 
 }  // namespace waymark
