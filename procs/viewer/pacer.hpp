@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps repeated work to a share of the time, however much one turn of it costs.
+// Limits repeated work to a share of the wall-clock time.
 #pragma once
 
 #include <chrono>
 
 namespace waymark::viewer {
 
-/// Each turn buys its pause: after a turn that took c, the next may start c / share after its
-/// start. Wall-clock time, so that nothing which must be repeatable may depend on it.
+/// After work that took c, the next may start c / share after its start. Wall-clock time: results
+/// must not depend on it.
 class Pacer {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// @param max_share  of the time that the work may take, in (0, 1]; 1 = no pause.
+  /// @param max_share  largest share of the time for the work, in (0, 1]; 1 = no pause.
   explicit Pacer(double max_share) : max_share_{max_share} {}
 
   bool may_start(Clock::time_point now) const { return now >= next_start_; }

@@ -64,7 +64,7 @@ std::string_view problem_of(TiledMap::Outcome outcome) {
   return "";
 }
 
-/// The first one stays: paths are aligned on it.
+/// The first pose stays: paths are aligned on it.
 template <class Pose>
 void keep_every_second(std::vector<Pose>& path) {
   std::size_t kept = 0;
@@ -174,7 +174,7 @@ void SceneUpdater::add(const annotated_scan_t& message) {
                      .ranges_m = {message.ranges.begin(), message.ranges.end()},
                      .angles_rad = {message.angles.begin(), message.angles.end()},
                      .marker_ids = {message.marker_ids.begin(), message.marker_ids.end()}};
-  // The last scan that shows a marker is worth more than a later one without any.
+  // scan.png shows the last scan with a marker, if there is one.
   if (scene_.scan && scene_.scan->has_marker() && !scan.has_marker()) return;
   scene_.scan = std::move(scan);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages -> scene. What does not fit is counted and left out.
+// Messages -> scene. Inconsistent messages are counted and left out.
 #pragma once
 
 #include "common/messages/channels.hpp"
@@ -15,13 +15,13 @@ namespace waymark::viewer {
 
 class SceneUpdater {
  public:
-  /// Of a path: 2 h at 30 Hz, 14 h at 5 Hz. Then every second pose up to now is left out, so that
-  /// memory is bounded and the path is whole.
+  /// 2 h at 30 Hz, 14 h at 5 Hz. A longer path is thinned to every second pose, so that memory is
+  /// bounded.
   static constexpr std::size_t kMaxPathPoses = 250'000;
 
   SceneUpdater(Scene& scene, Counters& counters) : scene_{scene}, counters_{counters} {}
 
-  /// Slam draws another map: what was in the one before is forgotten.
+  /// Slam has begun another map: clears everything but odometry and true poses.
   void begin_map();
   void add(const map_tiles_t& message);
   /// Replaces the landmarks as soon as all parts of one time are there.
@@ -45,7 +45,7 @@ class SceneUpdater {
   std::int64_t marker_parts_utime_{-1};
   std::int32_t num_marker_parts_{0};
   std::map<std::int32_t, std::vector<Landmark>> marker_parts_{};
-  std::int32_t num_trajectory_parts_{0};  ///< received of the trajectory under way
+  std::int32_t num_trajectory_parts_{0};  ///< received so far
   std::vector<TimedPose> trajectory_parts_{};
 };
 

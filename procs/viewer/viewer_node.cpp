@@ -36,7 +36,7 @@ std::string folder_name(const std::filesystem::path& folder) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-/// True when a period has passed. The first call starts it, and so does a jump back in time.
+/// True when a period has passed since `last`. The first call and a jump back in time restart it.
 bool is_due(std::optional<Timestamp>& last, Timestamp now, double period_s) {
   if (!last || now < *last) last = now;
   if (now - *last < duration_from_seconds(period_s)) return false;
@@ -44,8 +44,8 @@ bool is_due(std::optional<Timestamp>& last, Timestamp now, double period_s) {
   return true;
 }
 
-/// False when files would only replace those of an earlier run by empty ones.
-bool has_heard_of_slam(const viewer::Scene& scene) {
+/// False when all files would be empty, and would only replace those of an earlier run.
+bool has_slam_data(const viewer::Scene& scene) {
   return !scene.estimates.empty() || !scene.map.empty() || !scene.landmarks.empty() ||
          !scene.final_trajectory.empty();
 }
@@ -87,7 +87,7 @@ void ViewerNode::start_page() {
     logging::warn("everybody who reaches {} can look at the live page", address.host);
 }
 
-/// Nothing without a token: the page is read-only.
+/// Without a token nullopt: the page is read-only.
 std::optional<viewer::PageCommands> ViewerNode::page_commands() const {
   if (config_.http_token.empty()) return std::nullopt;
   return viewer::PageCommands{.token = viewer::parse_http_token(config_.http_token),
@@ -166,13 +166,12 @@ void ViewerNode::subscribe(Inbox& inbox) {
   });
 }
 
-/// Slam was restarted, or reset by a command.
 bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
   if (map_id == map_id_) return true;
   if (map_id_ && time < map_began_) return false;
   if (map_id_) {
     logging::info("slam has begun map {:016x}", static_cast<std::uint64_t>(map_id));
-    set_old_map_aside();
+    archive_old_map();
     updater_.begin_map();
     change_monitor_ = {};
     if (live_feed_) live_feed_->begin_map();
@@ -182,11 +181,10 @@ bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
   return true;
 }
 
-/// Its files, as they are now, go into a folder of their own.
-void ViewerNode::set_old_map_aside() {
-  constexpr int kMostKept = 20;  // a slam that begins anew all the time does not fill the disk
-  if (!has_heard_of_slam(scene_) || num_set_aside_ == kMostKept) return;
-  ++num_set_aside_;
+void ViewerNode::archive_old_map() {
+  constexpr int kMostArchived = 20;  // bounds the disk space if slam keeps restarting
+  if (!has_slam_data(scene_) || num_archived_ == kMostArchived) return;
+  ++num_archived_;
   const auto path =
       folder_.path() / fmt::format("map-{:016x}", static_cast<std::uint64_t>(*map_id_));
   try {
@@ -216,7 +214,7 @@ void ViewerNode::write_data() {
   folder_.write("map.pgm", viewer::pgm_text(map, config_.viewer.map_page.thresholds));
   folder_.write("map.yaml",
                 viewer::map_yaml_text(map, config_.viewer.map_page.thresholds, "map.pgm"));
-  if (!scene_.estimates.empty()) {  // a map file has none
+  if (!scene_.estimates.empty()) {  // empty for a map file
     folder_.write("trajectory.tum", viewer::tum_text(scene_.estimates));
     folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
     folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
@@ -235,7 +233,7 @@ void ViewerNode::write_final_trajectory() {
   }
 }
 
-/// Only a whole one.
+/// Only when all parts have come.
 void ViewerNode::write_graph() {
   constexpr auto kName = "graph.g2o";
   if (graph_parts_.empty() || std::ssize(graph_parts_) != graph_parts_.front().num_parts)
@@ -274,7 +272,7 @@ void ViewerNode::finish() {
 }
 
 void ViewerNode::write_files() {
-  if (!has_heard_of_slam(scene_)) {
+  if (!has_slam_data(scene_)) {
     logging::warn("slam has given neither a pose nor a map: no map is written to {}",
                   folder_.path().string());
     return;

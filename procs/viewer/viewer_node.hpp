@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The headless viewer: listens to everything that slam publishes, and writes it as files.
+// The headless viewer: writes everything that slam publishes into files.
 #pragma once
 
 #include "common/node/node.hpp"
@@ -30,7 +30,7 @@ class ViewerNode final : public Node {
   /// @throws SetupError when there is no folder to write to.
   ViewerNode(const Config& config, Inbox& inbox, Outbox& outbox);
 
-  /// @throws SetupError for an address or a token of the live page that cannot be one.
+  /// @throws SetupError for an invalid address or token of the live page.
   static void check(const Config& config);
 
   /// Writes everything once more, if anything has come from slam.
@@ -41,19 +41,21 @@ class ViewerNode final : public Node {
 
  private:
   void subscribe(Inbox& inbox);
-  /// What slam says goes into the scene, and to the page if there is one.
+  /// Messages that go into the scene, and to the page if there is one.
   template <class Type>
   void subscribe_both(Inbox& inbox, Channel<Type> channel, Backlog backlog = Backlog::kKeepAll);
-  /// What only the page shows.
+  /// Messages that only the page shows.
   void subscribe_page(Inbox& inbox);
   void start_page();
   std::optional<viewer::PageCommands> page_commands() const;
-  /// @return false for what is left of the map before.
+  /// Switches to that map when it is new, after a restart or a reset of slam.
+  /// @return false for a late message of an earlier map.
   bool follow(std::int64_t map_id, Timestamp time);
-  void set_old_map_aside();
+  /// Writes the files of the old map to a folder of its own.
+  void archive_old_map();
   void write_files();
-  /// Writes the data files when a period has passed, and with them one of the pictures: all at
-  /// once would hold up a lockstep run. Large maps, which cost more, are written less often.
+  /// Writes the data files when a period has passed, and one of the pictures: all at once would
+  /// delay a lockstep run. Large maps, which take longer, are written less often (Pacer).
   void write_when_due(Timestamp time);
   void write_data();
   void write_final_trajectory();
@@ -70,7 +72,7 @@ class ViewerNode final : public Node {
   viewer::Pacer pacer_;
   std::optional<std::int64_t> map_id_{};  ///< of the map in the scene
   Timestamp map_began_{};
-  int num_set_aside_{0};
+  int num_archived_{0};
   std::optional<Timestamp> last_write_time_{};
   std::size_t next_picture_{0};
   std::vector<pose_graph_t> graph_parts_{};

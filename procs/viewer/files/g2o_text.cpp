@@ -8,7 +8,7 @@
 namespace waymark::viewer {
 namespace {
 
-/// The message has it in the axes of `from`.
+/// The edge's information in the axes of `to`; the message has it in those of `from`.
 Eigen::Matrix3d information_in_to(const graph_edge_t& edge) {
   const auto& upper = edge.information;
   Eigen::Matrix3d in_from;

@@ -13,7 +13,7 @@ namespace waymark::viewer {
 /// An empty map becomes one unknown pixel.
 std::string pgm_text(const GridMap& map, const MapThresholds& thresholds);
 
-/// Says where the image lies (lower left corner of its lower left pixel) and how to read it.
+/// map.yaml: origin (lower left corner of the lower left pixel, map frame), resolution, thresholds.
 std::string map_yaml_text(const GridMap& map, const MapThresholds& thresholds,
                           std::string_view image_name);
 

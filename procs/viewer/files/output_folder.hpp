@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the files go. A file that is there is whole; a file that cannot be written is recorded.
+// The viewer's output folder. Files are written atomically; failures are recorded.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ class OutputFolder {
   /// @throws SetupError when files cannot be written there.
   explicit OutputFolder(std::filesystem::path folder);
 
-  /// Writes one file. A failure is logged and recorded, and does not stop anybody.
+  /// Writes one file. A failure is logged and recorded, not thrown.
   void write(const std::string& name, std::string_view bytes);
 
   /// Removes a file of an earlier run, if there is one.
@@ -23,7 +23,7 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return folder_; }
 
-  /// Names of the files that at least once could not be written.
+  /// Names of the files that could not be written at least once.
   const std::set<std::string>& failed_files() const { return failed_files_; }
 
  private:

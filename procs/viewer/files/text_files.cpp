@@ -11,7 +11,7 @@
 namespace waymark::viewer {
 namespace {
 
-/// Seconds from whole microseconds, without a detour over floating point.
+/// Seconds and microseconds, exact, without floating point.
 struct Seconds {
   std::int64_t whole;
   std::int64_t micro;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories and markers as text, for people's scripts and for the evaluation.
+// Trajectories, markers, changes and findings as text files.
 #pragma once
 
 #include "viewer/core/scene/scene.hpp"
@@ -15,9 +15,8 @@ namespace waymark::viewer {
 std::string tum_text(std::span<const TimedPose> path);
 std::string tum_text(std::span<const EstimatedPose> path);
 
-/// `t,cxx,cxy,cxt,cyy,cyt,ctt,health`: covariance of (x, y, theta) in the map for each line of the
-/// trajectory [m^2, m rad, rad^2]; health as the number
-/// in lcmtypes/slam_estimate_t.lcm, so that all columns are numbers.
+/// `t,cxx,cxy,cxt,cyy,cyt,ctt,health`: covariance of (x, y, theta) in the map frame for each line
+/// of the trajectory [m^2, m rad, rad^2]; health as the number in lcmtypes/slam_estimate_t.lcm.
 std::string covariance_csv_text(std::span<const EstimatedPose> path);
 
 /// `id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state`, by id and
@@ -25,7 +24,7 @@ std::string covariance_csv_text(std::span<const EstimatedPose> path);
 std::string markers_csv_text(std::vector<Landmark> landmarks);
 
 /// `change,id,instance,x_m,y_m,yaw_rad,was_x_m,was_y_m,size_m,sigmas,support`: one line for each
-/// thing that is not as the loaded map or the survey has it; of walls, id is -1.
+/// difference from the loaded map or the survey; id is -1 for walls.
 std::string changes_csv_text(std::span<const MapChange> changes);
 
 /// `{NAME: {"value": number, "share": number or null, "text": "..."}, ...}`.

@@ -7,7 +7,7 @@ namespace waymark::viewer {
 namespace {
 
 constexpr Duration kFirstSpacing = std::chrono::milliseconds{200};
-/// Longer than a client waits for a view before it asks again.
+/// Longer than the period in which clients ask for a view.
 constexpr std::int64_t kWatched_ms = 5000;
 
 std::int64_t wall_clock_ms() {
@@ -38,7 +38,7 @@ bool Board::try_post(const ViewPtr& view, std::span<const PathPoint> path_growth
 void Board::store(const ViewPtr& view, std::span<const PathPoint> path_growth) {
   newest_ = view;
   path_.insert(path_.end(), path_growth.begin(), path_growth.end());
-  // Message time that jumps back begins another history.
+  // When message time jumps back, the history begins again.
   if (!history_.empty() && view->time < history_.back()->time) history_.clear();
   if (history_.empty()) history_spacing_ = kFirstSpacing;
   if (!history_.empty() && view->time - history_.back()->time < history_spacing_) return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the node posts what the page shows, and the server's threads read it.
+// Exchange of views between the node, which posts them, and the web server's threads, which read
+// them.
 #pragma once
 
 #include "viewer/http/live_view.hpp"
@@ -23,20 +24,21 @@ class Board {
   /// Posts a view and the points by which the path has grown.
   void post(ViewPtr view, std::span<const PathPoint> path_growth);
 
-  /// The same, unless a reader is at the board right now: then nothing happens.
-  /// @return whether it is posted.
+  /// Like post(), but does nothing when a reader holds the lock.
+  /// @return true when the view was posted.
   bool try_post(const ViewPtr& view, std::span<const PathPoint> path_growth);
 
-  /// The newest view; nothing before the first.
+  /// The newest view; null before the first.
   ViewPtr newest() const;
 
-  /// The last view up to that time, or the first one. Of the past at most kMaxHistory views are
-  /// kept, evenly in message time.
+  /// The last view up to that time, or the first one; null before the first. At most kMaxHistory
+  /// views are kept, evenly spaced in message time.
   ViewPtr at(Timestamp time) const;
 
-  /// Waits for a view newer than that number. @return nothing after `timeout` and when closed.
+  /// Waits for a view with a higher number. @return null after `timeout` and when closed.
   ViewPtr wait_for_newer(std::uint64_t number, std::chrono::milliseconds timeout) const;
 
+  /// Points [first, last) of the path.
   std::vector<PathPoint> path(std::size_t first, std::size_t last) const;
 
   struct Span {
@@ -46,7 +48,7 @@ class Board {
 
   Span history() const;
 
-  /// Somebody has looked within the last seconds of wall-clock time, or waits to.
+  /// True when a client has read a view within the last five seconds of wall-clock time.
   bool is_watched() const;
 
   /// Ends all waiting.

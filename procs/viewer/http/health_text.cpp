@@ -9,9 +9,9 @@
 namespace waymark::viewer {
 namespace {
 
-// The slowest camera in use sends one frame a second.
+// Twice the period of a camera with one frame a second.
 constexpr double kCameraSilent_s = 2.0;
-// A marker every 4 m at walking pace.
+// Longer than from marker to marker at 4 m spacing and walking pace.
 constexpr double kMarkerOverdue_s = 5.0;
 
 bool is_turn(const WeakAxis& axis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The state of the localisation in words: what it is, and what it rests on.
+// The state of the localisation in sentences, with its reason.
 #pragma once
 
 #include "viewer/http/live_view.hpp"
@@ -12,15 +12,15 @@ namespace waymark::viewer {
 /// "tracking", "degenerate", ...: the names of HEALTH_* in lcmtypes/slam_estimate_t.lcm.
 std::string_view health_name(Health health);
 
-/// The same, or "waiting" where slam has not said anything yet.
+/// The same for a view; "waiting" before the first message of slam.
 std::string_view health_name(const LiveView& view);
 
 std::string_view source_name(WeakAxisSource source);
 
-/// One to three sentences for people.
+/// One to three sentences that explain the health.
 std::string health_reason(const LiveView& view);
 
-/// [s] of message time since then, not below zero.
+/// Message time since `then` [s], not below 0; nullopt without `then`.
 std::optional<double> seconds_since(const std::optional<Timestamp>& then, Timestamp now);
 
 }  // namespace waymark::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// HOST:PORT, as --http takes it.
+// HOST:PORT of option --http.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ struct HttpAddress {
   std::string host{};  ///< a name or an address; IPv6 without its brackets
   int port{0};         ///< 1..65535
 
-  /// Only programs on this machine can connect.
+  /// True when only programs on this machine can connect.
   bool is_loopback() const;
   std::string url() const;
 };
@@ -20,8 +20,8 @@ struct HttpAddress {
 /// @throws SetupError for anything else.
 HttpAddress parse_http_address(std::string_view text);
 
-/// Whether a Host header ("name" or "name:port") names this machine. A page of another site that
-/// reaches us by a name of its own (DNS rebinding) does not.
+/// True when a Host header ("name" or "name:port") names this machine. Rejecting others prevents
+/// DNS rebinding: another site's page that reaches this server by its own domain name.
 bool names_loopback(std::string_view host_header);
 
 }  // namespace waymark::viewer

@@ -13,7 +13,7 @@ constexpr std::chrono::milliseconds kUnwatchedPeriod{1000};  // for the slider's
 constexpr float kPathStep_m = 0.03F;
 /// 30 km of path.
 constexpr std::size_t kMaxPathPoints = 1'000'000;
-/// More than this project has programs; bounds what a flood of names can take.
+/// More than there are programs; bounds memory.
 constexpr std::size_t kMaxProcesses = 16;
 /// A square of 200 m in cells of 0.05 m and tiles of 64 cells.
 constexpr std::size_t kMaxTiles = 4000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages -> views on the board, at the pace of people's eyes.
+// Messages -> views on the board, five a second.
 #pragma once
 
 #include "common/messages/channels.hpp"
@@ -12,15 +12,16 @@
 
 namespace waymark::viewer {
 
-/// Lives on the node's thread. Live, five views a second of wall-clock time are posted, one while
-/// nobody looks, and none when a reader is in the way; of a log, five a second of message time.
+/// For the node's thread. In a live run posts five views per second of wall-clock time, one without
+/// clients, and skips a view when a reader holds the board; on a log, five per second of message
+/// time.
 class LiveFeed {
  public:
   enum class Pace { kWallClock, kMessageTime };
 
   LiveFeed(Board& board, std::string title, Pace pace);
 
-  /// Slam draws another map: what was in the one before is forgotten.
+  /// Slam has begun another map: clears everything of the old one.
   void begin_map();
   void add(const map_tiles_t& message);
   void add(const annotated_scan_t& message);
@@ -30,16 +31,16 @@ class LiveFeed {
   void add(const process_status_t& message);
   void add(const slam_estimate_t& message, const EstimatedPose& estimate);
 
-  /// An estimate without a pose.
+  /// An estimate without a pose: slam has not found the robot in its map.
   void add_unplaced(Timestamp time);
 
   /// @param landmarks  all markers in the map.
   void add_markers(Timestamp time, const std::vector<Landmark>& landmarks);
 
-  /// @param findings  all that slam has found of its sensors.
+  /// @param findings  all findings so far.
   void add_findings(Timestamp time, const std::vector<Finding>& findings);
 
-  /// Posts what there is, whoever is in the way.
+  /// Posts the present view, also if it has to wait for readers.
   void post_last();
 
  private:
@@ -55,7 +56,7 @@ class LiveFeed {
   bool map_changed_{false};
   std::map<std::pair<int, int>, std::size_t> tile_index_{};  ///< into map_.tiles
   std::map<std::string, ProcessState> processes_{};
-  std::vector<PathPoint> path_growth_{};  ///< not posted yet
+  std::vector<PathPoint> path_growth_{};  ///< points that are not posted yet
   PathPoint last_path_point_{};
   std::chrono::steady_clock::time_point last_post_wall_{};
   Timestamp last_post_{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the page shows of one moment. A view never changes once it is on the board, so that it can
-// be read by any thread.
+// The content of the live page at one time. A view on the board is immutable, so that any thread
+// can read it.
 #pragma once
 
 #include "viewer/core/scene/scene.hpp"
@@ -15,7 +15,7 @@
 
 namespace waymark::viewer {
 
-/// One block of the map, with the number of the change that made it.
+/// A tile of the map, with the number of its last change.
 struct LiveTile {
   int x{0};
   int y{0};
@@ -24,10 +24,10 @@ struct LiveTile {
   std::vector<std::int8_t> occupancy_percent{};
 };
 
-/// Tiles are shared between views: only those that have changed are new.
+/// Unchanged tiles are shared between views.
 struct LiveMap {
   TileLayout layout{};
-  std::uint32_t generation{0};  ///< another one = another map: forget the tiles so far
+  std::uint32_t generation{0};  ///< number of the map; its change invalidates all tiles
   std::uint32_t version{0};     ///< of the newest tile
   std::vector<std::shared_ptr<const LiveTile>> tiles{};
 };
@@ -53,7 +53,8 @@ struct SeenMarkers {
 struct ProcessState {
   std::string name{};
   std::string state{};
-  std::vector<std::pair<std::string, std::int64_t>> losses{};  ///< what was dropped or refused
+  std::vector<std::pair<std::string, std::int64_t>>
+      losses{};  ///< counts of lost or rejected messages
 };
 
 using PathPoint = std::array<float, 2>;  ///< (x, y) [m], map frame
@@ -63,7 +64,7 @@ struct LiveView {
   Timestamp time{};         ///< newest message
   std::string title{};
   std::optional<EstimatedPose> estimate{};
-  bool is_unplaced{false};  ///< slam runs, and looks for the robot's place in its map
+  bool is_unplaced{false};  ///< slam runs, but has not found the robot in its map
   std::shared_ptr<const LiveMap> map{std::make_shared<LiveMap>()};
   std::vector<Landmark> markers{};
   std::vector<Finding> findings{};  ///< of the sensors, by slam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the page may ask of slam, and who may.
+// Commands of the page to slam, and their authorisation.
 #pragma once
 
 #include "common/messages/channels.hpp"
@@ -12,16 +12,16 @@
 namespace waymark::viewer {
 
 struct PageCommands {
-  std::string token{};                                            ///< whoever knows it may command
-  std::function<std::optional<reply_t>(const command_t&)> ask{};  ///< nothing: no answer came
+  std::string token{};  ///< the secret that authorises them
+  std::function<std::optional<reply_t>(const command_t&)> ask{};  ///< nullopt: no answer came
 };
 
 /// The value of --http-token: the token itself, or @FILE, whose first line it is.
 /// @throws SetupError when it is not 16 to 200 printable characters without spaces.
 std::string parse_http_token(const std::string& text);
 
-/// Whether an Authorization header is "Bearer " and the token; takes as long for every wrong one of
-/// the same length.
+/// True when an Authorization header is "Bearer " and the token. Constant time for tokens of equal
+/// length.
 bool carries_token(std::string_view authorization_header, std::string_view token);
 
 /// A command as the page sends it, JSON: {"command": "save", "name": NAME}, {"command": "reset"},

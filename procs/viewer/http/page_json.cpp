@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/http/page_json.hpp"
 
+#include "common/geometry/rounded.hpp"
 #include "viewer/http/health_text.hpp"
 
 #include <nlohmann/json.hpp>
@@ -16,17 +17,18 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little);
 
-/// Millimetres and 0.1 mrad are finer than a page can show.
-double rounded(double value) {
-  return std::round(value * 1e4) / 1e4;
+/// To 0.1 mm and 0.1 mrad, finer than the page can show.
+double fine(double value) {
+  return rounded(value, 1e4);
 }
 
+/// To millimetres.
 double metres(float value) {
-  return std::round(static_cast<double>(value) * 1e3) / 1e3;
+  return rounded(static_cast<double>(value), 1e3);
 }
 
 Json pose_json(const Se2& pose) {
-  return {rounded(pose.x()), rounded(pose.y()), rounded(pose.theta())};
+  return {fine(pose.x()), fine(pose.y()), fine(pose.theta())};
 }
 
 Json points_json(std::span<const PathPoint> points) {
@@ -39,7 +41,7 @@ Json points_json(std::span<const PathPoint> points) {
 }
 
 Json seconds_json(const std::optional<double>& seconds) {
-  return seconds ? Json(rounded(*seconds)) : Json(nullptr);
+  return seconds ? Json(fine(*seconds)) : Json(nullptr);
 }
 
 double sigma(const Eigen::Matrix3d& covariance, int axis) {
@@ -55,7 +57,7 @@ Json estimate_json(const EstimatedPose& estimate) {
   if (estimate.weak_axis) {
     const Eigen::Vector3d& direction = estimate.weak_axis->direction;
     json["weak_axis"] = {
-        {"direction", {rounded(direction.x()), rounded(direction.y()), rounded(direction.z())}},
+        {"direction", {fine(direction.x()), fine(direction.y()), fine(direction.z())}},
         {"source", source_name(estimate.weak_axis->source)}};
   }
   return json;
@@ -77,12 +79,12 @@ Json markers_json(const LiveView& view) {
 }
 
 Json particles_json(const std::vector<Se2>& particles) {
-  constexpr std::size_t kMost = 300;  // more would only be a blot
+  constexpr std::size_t kMost = 300;  // more cannot be distinguished on the page
   Json flat = Json::array();
   const std::size_t step = particles.size() / kMost + 1;
   for (std::size_t i = 0; i < particles.size(); i += step) {
-    flat.push_back(rounded(particles[i].x()));
-    flat.push_back(rounded(particles[i].y()));
+    flat.push_back(fine(particles[i].x()));
+    flat.push_back(fine(particles[i].y()));
   }
   return flat;
 }
@@ -128,7 +130,7 @@ Json to_json(const LiveView& view, const Board::Span& history) {
           {"path_length", view.path_length}};
 }
 
-/// Strings come from messages: what is no UTF-8 is replaced.
+/// Invalid UTF-8 in strings from messages is replaced.
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views -> what travels to the page.
+// Views -> JSON and tiles for the page.
 #pragma once
 
 #include "viewer/http/board.hpp"
@@ -12,8 +12,8 @@ namespace waymark::viewer {
 /// One JSON object, without the path and the map's cells. Numbers that are not finite become null.
 std::string view_json(const LiveView& view, const Board::Span& history);
 
-/// A view's JSON with the points by which the path has grown since a client has got `first` of
-/// them.
+/// Adds the path's new points to a view's JSON.
+/// @param first  number of points that the client already has.
 std::string with_path(std::string view_json, std::size_t first,
                       std::span<const PathPoint> path_growth);
 

@@ -32,8 +32,8 @@ constexpr milliseconds kEventPeriod{200};
 constexpr milliseconds kSlowestClient{2000};
 constexpr milliseconds kKeepAlive{2000};
 constexpr int kMaxStreams = 8;
-constexpr std::size_t kThreads = 2 * kMaxStreams;  // so that streams leave room for the rest
-constexpr int kSendBufferBytes = 256 * 1024;       // what may wait for a client that does not read
+constexpr std::size_t kThreads = 2 * kMaxStreams;  // streams occupy at most half of them
+constexpr int kSendBufferBytes = 256 * 1024;       // per client
 constexpr int kNiceness = 10;
 
 struct Download {
@@ -47,15 +47,15 @@ constexpr std::array kDownloads{
     Download{"markers.csv", "text/csv"},
 };
 
-/// Without SO_REUSEPORT, httplib's default, under which two viewers could share a port.
+/// Without SO_REUSEPORT, which httplib sets by default: two viewers could share a port.
 void set_socket_options(int socket) {
   const int on = 1;
   ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &kSendBufferBytes, sizeof kSendBufferBytes);
 }
 
-/// A number of the query; nothing when there is none.
-/// @throws std::invalid_argument when it is no number.
+/// A number in the query; nullopt when the key is absent.
+/// @throws std::invalid_argument when the value is not a number.
 template <class Number>
 std::optional<Number> number_of(const httplib::Request& request, const char* key) {
   if (!request.has_param(key)) return std::nullopt;
@@ -71,7 +71,7 @@ void answer(httplib::Response& response, int status, const std::string& sentence
   response.set_content(sentence + "\n", "text/plain");
 }
 
-/// The newest view as JSON, made once for all clients.
+/// The newest view as JSON, created once for all clients.
 class NewestText {
  public:
   std::shared_ptr<const std::string> of(const LiveView& view, const Board& board) {
@@ -99,27 +99,28 @@ class EventStream {
 
   ~EventStream() { --num_streams_; }
 
-  /// Waits for something to send, and sends it. @return false to end the connection.
+  /// Waits for a new view and sends it. @return false to end the connection.
   bool send_next(httplib::DataSink& sink) {
     wait_for_period();
     const ViewPtr view = board_.wait_for_newer(number_, kKeepAlive);
     if (board_.closed()) return false;
     const auto start = steady_clock::now();
-    const std::string text = view ? event(*view) : ":\n\n";  // a comment: is anybody there?
+    const std::string text =
+        view ? event(*view) : ":\n\n";  // a comment, to detect closed connections
     const bool sent = sink.write(text.data(), text.size());
     last_ = steady_clock::now();
     return sent && last_ - start < kSlowestClient;
   }
 
  private:
-  /// In pieces, so that the end of the program need not wait.
+  /// In short sleeps, so that closing the board does not wait for a period.
   void wait_for_period() const {
     while (steady_clock::now() - last_ < kEventPeriod && !board_.closed())
       std::this_thread::sleep_for(milliseconds{20});
   }
 
   std::string event(const LiveView& view) {
-    // A path that is shorter than what was sent belongs to another run.
+    // A path shorter than what was sent belongs to another run.
     if (view.path_length < path_sent_) path_sent_ = 0;
     const auto growth = board_.path(path_sent_, view.path_length);
     const std::string json = with_path(*newest_text_.of(view, board_), path_sent_, growth);
@@ -160,7 +161,7 @@ class PageServer::Implementation {
     add_routes();
     bind_to(server_, address);
     thread_ = std::thread{[this] {
-      // Of this thread and those that it starts: the run comes first.
+      // Applies to this thread and those that it starts.
       ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
       server_.listen_after_bind();
       has_ended_ = true;
@@ -172,7 +173,7 @@ class PageServer::Implementation {
 
   ~Implementation() {
     board_.close();
-    // stop() does nothing to a server whose thread has not got as far as listening.
+    // stop() has no effect before the thread listens.
     while (!server_.is_running() && !has_ended_)
       std::this_thread::sleep_for(milliseconds{1});
     server_.stop();
@@ -256,12 +257,12 @@ class PageServer::Implementation {
       });
   }
 
-  /// The newest view, or that of `time_s`. Before the first there is none: 404.
+  /// The newest view, or that at `time_s`. Before the first view: null, and the answer is 404.
   ViewPtr view_for(const httplib::Request& request, httplib::Response& response) const {
     const auto time_s = number_of<double>(request, "time_s");
-    constexpr double kLatest_s = 1e12;  // far outside of all message times, far inside of int64 us
+    constexpr double kLatest_s = 1e12;  // beyond all message times, within int64 microseconds
     if (time_s && !(std::abs(*time_s) < kLatest_s)) throw std::invalid_argument{"time_s"};
-    // Half a microsecond of rounding must not lead to the view before.
+    // Rounding of time_s must not select the view before.
     const ViewPtr view =
         time_s ? board_.at(Timestamp{duration_from_seconds(*time_s + 1e-6)}) : board_.newest();
     if (!view) answer(response, 404, "nothing has come so far");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The web server of the live page: reads the board and the output folder; commands go to slam.
+// The web server of the live page: serves the board and the output folder, forwards commands to
+// slam.
 #pragma once
 
 #include "viewer/http/board.hpp"
@@ -12,20 +13,20 @@
 
 namespace waymark::viewer {
 
-/// Serves from threads of its own, which run at a lower priority than the node.
-///
-/// `/` the page; `/events` server-sent events, a view each, five a second at most; `/view`,
-/// `/tiles` and `/camera.jpg` with `time_s=T` for a moment of the past; the files of the output
-/// folder as they were last written. A client that takes longer than two seconds for a view is cut.
-/// With commands: POST `/command` (see parse_page_command) with the header "Authorization: Bearer
-/// TOKEN"; 200 done, 401 wrong token, 409 refused by slam and why, 429 one is on its way already,
-/// 504 no answer. Without: 405.
 /// @throws SetupError when the address cannot be listened on.
 void check_http_address(const HttpAddress& address);
 
+/// Serves from its own threads, at a lower priority than the node.
+///
+/// `/` the page; `/events` server-sent events, a view each, five a second at most; `/view`,
+/// `/tiles` and `/camera.jpg`, with `time_s=T` for a time in the past; the files of the output
+/// folder as last written. A client that takes longer than two seconds to receive a view is
+/// disconnected. With commands: POST `/command` (see parse_page_command) with the header
+/// "Authorization: Bearer TOKEN": 200 done, 401 wrong token, 409 refused by slam with its reason,
+/// 429 another command is under way, 504 no answer. Without commands: 405.
 class PageServer {
  public:
-  /// @param board  closed when this ends; outlives this.
+  /// @param board  outlives this; is closed by the destructor.
   /// @throws SetupError when the address cannot be listened on.
   PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder,
              std::optional<PageCommands> commands = {});

@@ -47,7 +47,7 @@ double duration_s(const std::vector<EstimatedPose>& path) {
   return path.empty() ? 0.0 : to_seconds(path.back().time - path.front().time);
 }
 
-/// A path that was computed, and not driven, has none, and no health.
+/// False for a path that was not driven, as of a map file: it has neither times nor health.
 bool has_times(const std::vector<EstimatedPose>& path) {
   return duration_s(path) >= 1.0;
 }
@@ -58,8 +58,7 @@ std::string summary(const PageContent& content, const Se2& view_from_map,
   text += fmt::format("   |   {} markers", content.landmarks.size());
   if (content.estimates.empty()) return text;
   text += fmt::format("   |   path {:.2f} m", path_length_m(content.estimates));
-  const double seconds = to_seconds(content.estimates.back().time - content.estimates.front().time);
-  if (seconds >= 1.0) text += " in " + duration_text(seconds);  // less: a path without times
+  if (has_times(content.estimates)) text += " in " + duration_text(duration_s(content.estimates));
   return text;
 }
 
@@ -109,7 +108,7 @@ std::string health_summary(const std::vector<EstimatedPose>& estimates) {
   return text + " of the updates";
 }
 
-/// A line that becomes smaller rather than leave the area.
+/// A line of text, in a smaller font if it would leave the area.
 void draw_fitting(cv::Mat& page, const std::string& text, const cv::Rect& area_px, double y_px) {
   Font font{.height_px = 18.0, .colour = palette::kFaintInk};
   const double width_px = text_width_px(text, font);

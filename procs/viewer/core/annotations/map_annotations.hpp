@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What stands around the map on map.png: heading, scale bar, rulers.
+// Annotations around the map on map.png: heading, scale bar, rulers.
 #pragma once
 
 #include "viewer/core/page/map_page.hpp"
@@ -8,8 +8,8 @@
 
 namespace waymark::viewer {
 
-/// Title; what the map measures; in which health the path was, and what observed the motion along
-/// its weak axes.
+/// Title; size of the map and length of the path; shares of the health states, and of what observed
+/// the motion along weak axes.
 void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& title,
                   const PageContent& content, const Se2& view_from_map,
                   const MapThresholds& thresholds);
@@ -20,7 +20,8 @@ void draw_ruler(cv::Mat& page, const Panel& panel);
 /// Frames of the strips in the overview, with their letters.
 void draw_strip_marks(cv::Mat& page, const MapPage& layout);
 
-/// A round length as a bar that ends at the right.
+/// A bar of a round length.
+/// @param right_end_px  its right end on the page.
 void draw_scale_bar(cv::Mat& page, cv::Point2d right_end_px, double px_per_m);
 
 }  // namespace waymark::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The legend of map.png: only what is on the map.
+// The legend of map.png, with entries for what is on the map.
 #pragma once
 
 #include "viewer/core/layers/path_marks.hpp"

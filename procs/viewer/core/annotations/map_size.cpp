@@ -10,8 +10,8 @@
 namespace waymark::viewer {
 namespace {
 
-/// Counts free cells per bin of one cell along one axis; the extent is that of the well-filled
-/// bins.
+/// Counts free cells per bin of one cell along one axis; the extent is that of bins with at least
+/// kStray cells.
 class ExtentCounter {
  public:
   void add(double position_m, double resolution_m) {
@@ -70,7 +70,7 @@ std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_m
 std::optional<corridor::CorridorLength> corridor_length(const GridMap& map,
                                                         const MapThresholds& thresholds) {
   constexpr double kElongated = 4.0;  // length over width
-  constexpr double kMostOfIt = 0.8;   // share of the free cells that lie in the corridor
+  constexpr double kMinShare = 0.8;   // of the free cells that lie in the corridor
   constexpr double kMostCells = 1e6;  // a kilometre of corridor in cells of 5 cm; bounds the time
   const corridor::MapImage image = image_of(map, thresholds);
   const auto free_cells = static_cast<double>(
@@ -79,7 +79,7 @@ std::optional<corridor::CorridorLength> corridor_length(const GridMap& map,
   try {
     const corridor::CorridorLength length = corridor::measure_corridor(image);
     const bool is_corridor = length.length_px >= kElongated * length.width_px &&
-                             length.length_px * length.width_px >= kMostOfIt * free_cells;
+                             length.length_px * length.width_px >= kMinShare * free_cells;
     return is_corridor ? std::optional{length} : std::nullopt;
   } catch (const corridor::NotACorridor&) {
     return std::nullopt;

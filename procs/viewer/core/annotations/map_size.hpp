@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How large the mapped space is, in the words of map.png's heading.
+// Size of the mapped space, for the heading of map.png.
 #pragma once
 
 #include "common/corridor/corridor_length.hpp"
@@ -17,7 +17,7 @@ struct FreeExtent {
   double width_m{0.0};
 };
 
-/// A few stray cells do not count; nullopt without any free cell.
+/// Ignores rows and columns with fewer than three free cells; nullopt if there are no others.
 std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_map,
                                       const MapThresholds& thresholds);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Anti-aliased strokes and text at sub-pixel positions. All positions in pixels, y down; whatever
-// lies outside the image is clipped.
+// Anti-aliased strokes and text at sub-pixel positions. Positions in pixels, y down; drawing is
+// clipped to the image.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -19,17 +19,17 @@ struct Pen {
 
 void draw_line(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px, const Pen& pen);
 void draw_polyline(cv::Mat& image, std::span<const cv::Point2d> points_px, const Pen& pen);
-/// Solid where a single step is far longer than any dash: points off the page cost nothing.
+/// Steps longer than 5000 px, which lead far off the page, are drawn solid: dashes would be costly.
 void draw_dashed_polyline(cv::Mat& image, std::span<const cv::Point2d> points_px, const Pen& pen,
                           double dash_px, double gap_px);
 void draw_circle(cv::Mat& image, cv::Point2d centre_px, double radius_px, const Pen& pen);
 void fill_circle(cv::Mat& image, cv::Point2d centre_px, double radius_px, const cv::Scalar& colour);
-/// As if through coloured glass; the areas' union, so that overlaps are not darker.
+/// Blends the union of the polygons with a colour, so that overlaps are not darker.
 void tint_polygons(cv::Mat& image, const std::vector<std::vector<cv::Point2d>>& polygons_px,
                    const cv::Scalar& colour, double opacity);
 void fill_polygon(cv::Mat& image, std::span<const cv::Point2d> corners_px,
                   const cv::Scalar& colour);
-/// Corners rounded.
+/// A box with rounded corners.
 void fill_box(cv::Mat& image, const cv::Rect2d& box_px, double corner_radius_px,
               const cv::Scalar& colour);
 
@@ -41,7 +41,7 @@ struct Font {
 
 enum class Anchor { kLeft, kCentre, kRight };
 
-/// Width of a line of text. Only ASCII characters have a shape.
+/// Width of a line of text, which must be ASCII.
 double text_width_px(std::string_view text, const Font& font);
 /// Writes a line of text whose capitals are centred vertically on the anchor.
 void draw_text(cv::Mat& image, std::string_view text, cv::Point2d anchor_px, Anchor anchor,

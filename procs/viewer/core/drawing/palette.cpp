@@ -26,7 +26,7 @@ cv::Scalar palette::text_on(const cv::Scalar& background) {
 }
 
 cv::Scalar colour_of_id(int id) {
-  constexpr double kGoldenRatio = 0.6180339887498949;  // steps that never come close to each other
+  constexpr double kGoldenRatio = 0.6180339887498949;  // multiples modulo 1 are spread evenly
   constexpr std::array<double, 3> kLightness{0.42, 0.56, 0.32};
   const int index = std::max(id, 0);
   const double hue_turns = std::fmod(index * kGoldenRatio, 1.0);

@@ -8,7 +8,7 @@ namespace waymark::viewer {
 
 using Colour = cv::Vec3b;  ///< blue, green, red
 
-/// From red, green, blue as designers write it.
+/// From red, green, blue; OpenCV's order is blue, green, red.
 inline cv::Scalar rgb(int red, int green, int blue) {
   return {static_cast<double>(blue), static_cast<double>(green), static_cast<double>(red), 0.0};
 }
@@ -42,15 +42,15 @@ inline const cv::Scalar kDegenerate = rgb(240, 228, 66);  // yellow
 inline const cv::Scalar kLost = rgb(204, 121, 167);       // reddish purple
 inline const cv::Scalar kNoHealth = rgb(214, 214, 214);
 
-/// White or black, whichever reads better on that background.
+/// White or black, whichever has the better contrast on that background.
 cv::Scalar text_on(const cv::Scalar& background);
 
 }  // namespace palette
 
-/// A strong colour for a marker id; neighbouring ids are far apart in hue.
+/// A saturated colour for a marker id; consecutive ids have distant hues.
 cv::Scalar colour_of_id(int id);
 
-/// Between two colours: `from` at fraction 0, `to` at 1.
+/// Mixture of two colours: `from` at fraction 0, `to` at 1.
 cv::Scalar blend(const cv::Scalar& from, const cv::Scalar& to, double fraction);
 
 }  // namespace waymark::viewer

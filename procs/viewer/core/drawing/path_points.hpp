@@ -20,7 +20,8 @@ inline const Se2& pose_of(const TimedPose& pose) {
   return pose.frame_from_base;
 }
 
-/// Thinned to steps that can be seen; poses that are not finite are left out.
+/// Positions on the page, thinned to steps of at least 3 px; poses that are not finite are left
+/// out.
 template <class Pose>
 std::vector<cv::Point2d> points_on_page(const View& view, std::span<const Pose> path) {
   constexpr double kStep_px = 3.0;

@@ -49,8 +49,7 @@ struct View {
   cv::Matx23d page_from_cells(const GridMap& map) const;
 };
 
-/// Size of marks and strokes: 1 where a corridor is large on the page, less where a building is
-/// small on it.
+/// Factor on the size of marks and strokes: 1 from 80 px/m on, smaller below.
 inline double mark_scale(double px_per_m) {
   constexpr double kFullFrom_px_per_m = 80.0;
   constexpr double kSmallest = 0.3;

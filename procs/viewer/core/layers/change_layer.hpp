@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is not as the loaded map or the survey has it, on map.png.
+// Differences from the loaded map or the survey, on map.png.
 #pragma once
 
 #include "viewer/core/drawing/view.hpp"
@@ -11,8 +11,8 @@
 
 namespace waymark::viewer {
 
-/// Markers: a cross where one is missing, a line from where one was to where it is, a ring around a
-/// new one. Walls: a box, dashed where the wall is gone.
+/// Markers: a cross where one is missing, a line from the old to the new place of a moved one, a
+/// ring around a new one. Walls: a box, dashed where the wall is gone.
 void draw_changes(cv::Mat& panel, const View& view, std::span<const MapChange> changes);
 
 }  // namespace waymark::viewer

@@ -100,7 +100,6 @@ void draw_plates(cv::Mat& panel, const View& view, const std::vector<Landmark>& 
     const double half_px = std::max(0.5 * marker_size_m * view.px_per_m, 3.0);
     const cv::Scalar colour = colour_of(landmark.state);
     draw_line(panel, centre - half_px * along, centre + half_px * along, {colour, width_px});
-    // A short peg on the side that the marker faces.
     draw_line(panel, centre, centre + 1.8 * width_px * facing, {colour, std::max(1, width_px / 2)});
   }
 }

@@ -8,7 +8,7 @@
 
 namespace waymark::viewer {
 
-/// Widths of the strokes where a corridor is large on the page.
+/// Widths of strokes; the defaults are for 80 px/m and more (mark_scale()).
 struct StrokeWidths {
   int health_px{30};
   int true_px{8};
@@ -17,7 +17,7 @@ struct StrokeWidths {
   int plate_px{7};
 };
 
-/// Finer where a building is small on the page, so that the map stays the main thing.
+/// Finer strokes at smaller scales, so that they do not cover the map.
 StrokeWidths strokes_at(double px_per_m);
 
 constexpr double kDash_px = 14.0;
@@ -28,17 +28,17 @@ cv::Mat colour_cells(const GridMap& map);
 
 void draw_cells(cv::Mat& panel, const View& view, const GridMap& map, const cv::Mat& cell_colours);
 
-/// All paths, so that coinciding ones all stay visible: the broadest at the bottom, and what is
-/// known at the end in dashes on top.
+/// All paths, from the broadest stroke at the bottom to the finest, so that coinciding ones stay
+/// visible; the final trajectory is dashed, on top.
 void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,
                 const StrokeWidths& widths, Odometry odometry);
 
 void draw_particles(cv::Mat& panel, const View& view, const std::vector<Se2>& particles);
 
-/// Where the base was first (ring) and last (arrow head in the direction of travel).
+/// First pose of the base (ring) and last one (arrow head along the heading).
 void draw_ends(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates);
 
-/// A bar where each marker hangs, on its wall.
+/// A bar for each marker, along its wall, and a short line towards the side that it faces.
 void draw_plates(cv::Mat& panel, const View& view, const std::vector<Landmark>& landmarks,
                  double marker_size_m, int width_px);
 

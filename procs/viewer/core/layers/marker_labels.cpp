@@ -14,10 +14,10 @@ namespace waymark::viewer {
 namespace {
 
 constexpr double kClearance_px = 4.0;  // between labels
-/// Cells below are open space, where paths and people's eyes go.
+/// Cells below are open space.
 constexpr int kOpenBelow_percent = 50;
 
-/// Answers how much of a box on the page lies on open space.
+/// Share of a box on the page that lies on open space.
 class OpenSpace {
  public:
   OpenSpace(const GridMap& map, const View& view) {
@@ -70,7 +70,8 @@ struct Placer {
   const std::vector<cv::Rect2d>& taken;
   cv::Rect2d panel;
 
-  /// Lower is better. What must not be costs more than what is only not nice.
+  /// Lower is better: outside the panel >> on another label >> on open space >> distance moved
+  /// [px].
   double cost(const cv::Rect2d& box, double moved_px) const {
     constexpr double kOutside = 1e6, kOnLabel = 1e5, kOnOpenSpace = 1e3;
     double cost = moved_px;
@@ -160,12 +161,12 @@ void draw_labels(cv::Mat& panel, const std::vector<MarkerLabel>& labels, double 
                              label.box_px.y + label.box_px.height / 2};
     draw_line(panel, label.marker_px, middle, {label.colour, 2});
     const double radius_px = 0.4 * text_height_px;
-    const bool is_firm = label.state != LandmarkState::kTentative;
+    const bool is_filled = label.state != LandmarkState::kTentative;
     fill_box(panel, label.box_px, radius_px, label.colour);
-    if (!is_firm) fill_box(panel, grown(label.box_px, -2.5), radius_px - 1.0, palette::kPage);
+    if (!is_filled) fill_box(panel, grown(label.box_px, -2.5), radius_px - 1.0, palette::kPage);
     draw_text(panel, label.text, middle, Anchor::kCentre,
               {.height_px = text_height_px,
-               .colour = is_firm ? palette::text_on(label.colour) : label.colour,
+               .colour = is_filled ? palette::text_on(label.colour) : label.colour,
                .bold = true});
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the markers' ids are written: behind their wall, not on free space, not on each other.
+// Labels with the markers' ids: behind their wall, not on free space, not overlapping.
 #pragma once
 
 #include "viewer/core/drawing/palette.hpp"
@@ -19,11 +19,11 @@ struct MarkerLabel {
   cv::Scalar colour{palette::kMarker};
 };
 
-/// "7", or "7.1" for the second marker with that id; "7 moved" for one that was elsewhere before.
+/// "7", or "7.1" for the second marker with that id; "7 moved" for a moved one.
 std::string label_text(const Landmark& landmark);
 
-/// Places the labels of the markers that lie in the view, one after the other, each where it
-/// disturbs least. Deterministic.
+/// Places the labels of the markers in the view, one after the other, each at the position of least
+/// cost. Deterministic.
 std::vector<MarkerLabel> place_labels(const std::vector<Landmark>& landmarks, const GridMap& map,
                                       const View& view, double text_height_px);
 

@@ -19,7 +19,7 @@ namespace {
 constexpr double kLongestBar_px = 34.0;   // half length
 constexpr double kShortestBar_px = 11.0;  // half length
 constexpr int kBarWidth_px = 6;
-/// More of one kind hide the map.
+/// Of one kind; more would hide the map.
 constexpr std::size_t kMostMarks = 60;
 
 bool is_finite(const EstimatedPose& pose) {
@@ -90,7 +90,7 @@ std::vector<EstimatedPose> weak_axis_candidates(const std::vector<EstimatedPose>
   return chosen;
 }
 
-/// Those that have room, in the order given.
+/// Candidates that keep the clearance from those already chosen, in the order given.
 std::vector<EstimatedPose> with_clearance(const std::vector<EstimatedPose>& candidates,
                                           double clearance_m) {
   std::vector<EstimatedPose> kept;
@@ -103,8 +103,7 @@ std::vector<EstimatedPose> with_clearance(const std::vector<EstimatedPose>& cand
   return kept;
 }
 
-/// Keeps, from the highest rank down, the marks that have room, kMostMarks at most; in order of
-/// time.
+/// Keeps marks with clearance, from the highest rank down, at most kMostMarks; in order of time.
 std::vector<EstimatedPose> thinned_out(std::vector<EstimatedPose> candidates, double clearance_m,
                                        const std::function<double(const EstimatedPose&)>& rank) {
   std::stable_sort(
@@ -135,7 +134,7 @@ double rank_of(WeakAxisSource source) {
   return 0.0;
 }
 
-/// Large enough that the middle one can be seen, but not so large that the largest cover the page.
+/// The factor that makes the median ellipse visible without making the largest ones cover the page.
 int magnification_of(const std::vector<EstimatedPose>& ellipses, double px_per_m) {
   const double visible_px = 26.0 * mark_scale(px_per_m);
   const double too_large_px = 100.0 * mark_scale(px_per_m);
@@ -195,7 +194,7 @@ std::optional<Ellipse> two_sigma_ellipse(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
   if (!position.allFinite()) return std::nullopt;
   const PrincipalAxes axes = principal_axes(position);
-  // Rounding may leave a variance of nothing a little below it.
+  // Rounding may make a variance of zero slightly negative.
   constexpr double kRounding = 1e-9;
   const double largest = std::max(axes.values(1), 0.0);
   if (!axes.values.allFinite() || axes.values(0) < -kRounding * largest || axes.values(1) < 0.0) {
@@ -226,7 +225,7 @@ void draw_ellipses(cv::Mat& panel, const View& view, const PathMarks& marks) {
     const auto ellipse = two_sigma_ellipse(pose.covariance);
     if (!ellipse || !is_finite(pose)) continue;
     outlines.push_back(outline_of(*ellipse, pose, view, marks.magnification));
-    // What is larger than the panel would tint all of it.
+    // An ellipse larger than the panel would tint all of it.
     const double radius_px = marks.magnification * view.px_per_m * ellipse->major_m;
     if (radius_px < std::max(panel.cols, panel.rows)) to_fill.push_back(outlines.back());
   }
@@ -246,7 +245,7 @@ void draw_weak_axis_bar(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px,
   const cv::Point2d cap = cap_px / length_px * cv::Point2d{-span.y, span.x};
   const std::array<std::pair<cv::Point2d, cv::Point2d>, 3> strokes{
       {{from_px, to_px}, {from_px - cap, from_px + cap}, {to_px - cap, to_px + cap}}};
-  // A white rim keeps the bar apart from the path, which it often lies on.
+  // A white rim separates the bar from the path below it.
   for (const auto& [from, to] : strokes)
     draw_line(image, from, to, {palette::kPage, rim_px});
   for (const auto& [from, to] : strokes)

@@ -18,22 +18,23 @@ struct Ellipse {
   double major_m{0.0}, minor_m{0.0}, angle_rad{0.0};
 };
 
-/// Of the position; nullopt for what is no covariance: not finite, or a negative variance.
+/// 2-sigma ellipse of the position; nullopt for an invalid covariance (not finite, not positive
+/// semidefinite).
 std::optional<Ellipse> two_sigma_ellipse(const Eigen::Matrix3d& covariance);
 
 /// The poses that get a mark, and how large the marks are drawn.
 struct PathMarks {
-  int magnification{1};   ///< of the ellipses and weak axes, so that they can be seen
-  double px_per_m{1.0};   ///< of the page that the marks were chosen for
-  double spacing_m{1.0};  ///< along the path
+  int magnification{1};                    ///< of ellipses and weak axes, so that they are visible
+  double px_per_m{1.0};                    ///< of the page that the marks were chosen for
+  double spacing_m{1.0};                   ///< along the path
   std::vector<EstimatedPose> ellipses{};   ///< in order of time; each has an ellipse
   std::vector<EstimatedPose> weak_axes{};  ///< in order of time; each has a weak axis
 };
 
-/// Ellipses every round number of metres and at the end; weak axes likewise and wherever another
-/// source begins to observe them. Of marks that would overlap, the less certain one is kept (of
-/// weak axes: the one whose source is worse); the clearance grows until few enough for a page are
-/// left. O(n + c log c + c m): n poses, c candidates, m marks kept in the first pass.
+/// Ellipses every round number of metres and at the end; weak axes at the same spacing, and
+/// wherever another source begins to observe them. Of overlapping marks the least certain one is
+/// kept (of weak axes: the one with the worst source); the clearance grows until at most 60 of a
+/// kind are left. O(n + c log c + c m): n poses, c candidates, m marks kept in the first pass.
 PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
                        double spacing_px);
 
@@ -41,12 +42,12 @@ PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_pe
 void draw_ellipses(cv::Mat& panel, const View& view, const PathMarks& marks);
 
 /// A bar along each weak axis in the colour of what observed the motion along it; its half length
-/// is two sigma of one scan along it, magnified and kept between two visible lengths. A ring where
-/// the heading is what is weak.
+/// is two sigma of one scan along it, magnified, within limits. A ring where the weak axis is
+/// mainly the heading.
 void draw_weak_axes(cv::Mat& panel, const View& view, const PathMarks& marks);
 
-/// One bar from left to right (or along any line), as draw_weak_axes() draws them.
-/// @param scale  1 = full size; of width and caps.
+/// One bar as draw_weak_axes() draws it.
+/// @param scale  of its width and caps; 1 = full size.
 void draw_weak_axis_bar(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px,
                         WeakAxisSource source, double scale);
 

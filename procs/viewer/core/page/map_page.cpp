@@ -16,24 +16,26 @@ constexpr int kHeadingHeight_px = 158;
 constexpr int kLegendHeight_px = 320;
 constexpr int kGap_px = 30;
 constexpr double kOverviewHeight_px = 600.0;
-/// Of the map without odometry's path; below, the path is left out of the strips.
-constexpr double kLeastScale = 0.85;
+/// Odometry's path is left out of the strips if it would reduce their scale to less than this
+/// share.
+constexpr double kMinScaleShare = 0.85;
 constexpr int kMinPageWidth_px = 1700;  // for the legend
 /// Room around the map for the markers' labels.
 constexpr double kLabelRoom_px = 74.0;
-/// Neighbouring strips share this much, so that nothing is cut in both.
+/// Overlap of neighbouring strips, so that objects at a cut are whole in one of them.
 constexpr double kStripOverlap_m = 0.5;
 
 class BoxBuilder {
  public:
   void add(const Eigen::Vector2d& point) { box_.extend(point); }
 
-  /// Only when the point is not further than this from what has been added so far with add().
+  /// Adds the point if it lies within `reach`.
   void add_within(const Eigen::AlignedBox2d& reach, const Eigen::Vector2d& point) {
     if (reach.contains(point)) box_.extend(point);
   }
 
-  /// What has been added so far with `share` of its size, but at least `least_m`, on each side.
+  /// The box so far, extended on each side by `share` of its larger side, but at least by
+  /// `least_m`.
   Eigen::AlignedBox2d reach(double share, double least_m) const {
     if (box_.isEmpty())
       return {Eigen::Vector2d::Constant(-least_m), Eigen::Vector2d::Constant(least_m)};
@@ -50,7 +52,7 @@ class BoxBuilder {
   Eigen::AlignedBox2d box_{};
 };
 
-/// The outermost known cells of each row, which hold the bounds of all of them.
+/// Adds the outermost known cells of each row, which bound all known cells.
 void add_known_cells(const GridMap& map, const Se2& view_from_map, BoxBuilder& bounds) {
   for (int row = 0; row < map.occupancy_percent.rows; ++row) {
     const schar* cells = map.occupancy_percent[row];
@@ -92,7 +94,7 @@ Folding best_folding(const Box& box, const MapPageStyle& style) {
     const double height_px = style.page_height_px - (n - 1) * (kGap_px + kRulerHeight_px);
     folding.px_per_m = std::min({width_px / folding.strip_width_m(box),
                                  height_px / (n * box.height_m()), style.max_scale_px_per_m});
-    // A fold must pay: it breaks the picture.
+    // More strips break the picture: only for a clearly larger scale.
     if (folding.px_per_m > 1.25 * best.px_per_m) best = folding;
   }
   return best;
@@ -140,7 +142,7 @@ Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odomet
 
 Se2 view_from_map(const GridMap& map) {
   constexpr double kLong = 5.0;  // length / width from which on a map is long
-  const double kNearlyLying_rad = radians(20);
+  const double kNearlyHorizontal_rad = radians(20);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   Eigen::Matrix2d sum_of_squares = Eigen::Matrix2d::Zero();
   double count = 0.0;
@@ -160,16 +162,16 @@ Se2 view_from_map(const GridMap& map) {
   Eigen::Vector2d axis = axes.directions.col(1);
   if (axis.x() < 0.0) axis = -axis;
   const double angle_rad = std::atan2(axis.y(), axis.x());
-  return std::abs(angle_rad) < kNearlyLying_rad ? Se2{} : Se2{0.0, 0.0, -angle_rad};
+  return std::abs(angle_rad) < kNearlyHorizontal_rad ? Se2{} : Se2{0.0, 0.0, -angle_rad};
 }
 
 MapPage lay_out(const PageContent& content, const MapPageStyle& style) {
   const Se2 view_from_map = viewer::view_from_map(content.map);
-  // The map is the main thing: odometry that would shrink it is in the overview only.
+  // Odometry that would shrink the map is drawn in the overview only.
   const Box whole_box = with_label_room(bounds(content, view_from_map, Odometry::kIncluded), style);
   Box box = with_label_room(bounds(content, view_from_map, Odometry::kLeftOut), style);
   const bool odometry_fits =
-      best_folding(whole_box, style).px_per_m >= kLeastScale * best_folding(box, style).px_per_m;
+      best_folding(whole_box, style).px_per_m >= kMinScaleShare * best_folding(box, style).px_per_m;
   if (odometry_fits) box = whole_box;
   const Folding folding = best_folding(box, style);
 

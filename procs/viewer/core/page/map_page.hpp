@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where things go on map.png: a long map is folded into strips below an overview of the whole.
+// Layout of map.png: a long map is folded into strips below an overview of the whole.
 #pragma once
 
 #include "viewer/core/drawing/view.hpp"
@@ -17,7 +17,7 @@ struct Panel {
   cv::Rect page_px{};
 };
 
-/// Whether a path that may drift far away from the map is drawn.
+/// Whether odometry's path, which may drift far away from the map, is drawn.
 enum class Odometry { kIncluded, kLeftOut };
 
 struct MapPage {
@@ -25,14 +25,14 @@ struct MapPage {
   cv::Rect heading_px{};
   std::optional<Panel> overview{};
   std::vector<Panel> strips{};
-  Odometry odometry_in_strips{Odometry::kIncluded};  ///< left out where it would leave them
-  cv::Rect legend_px{};  ///< as high as the longest legend; what it leaves free can be cut off
+  Odometry odometry_in_strips{Odometry::kIncluded};  ///< left out where it would shrink the map
+  cv::Rect legend_px{};  ///< as high as the longest possible legend; the unused part is cut off
 };
 
 /// Height of the ruler below each strip.
 constexpr int kRulerHeight_px = 58;
 
-/// What the page is about: the map in cells, and the paths in the map.
+/// Content of the page: the map as cells, paths and markers in the map frame.
 struct PageContent {
   GridMap map{};
   std::vector<Landmark> landmarks{};
@@ -46,11 +46,12 @@ struct PageContent {
 
 PageContent content_of(const Scene& scene);
 
-/// The smallest upright box around the map and all paths after a rotation; markers and poses that
-/// are absurdly far away from the map are left aside. Never empty.
+/// Bounding box of the map, the markers and all paths in the view frame; markers and poses far away
+/// from the map are ignored. Never empty.
 Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry);
 
-/// Turns long maps so that they lie; leaves the others, and those that nearly lie, as they are.
+/// Rotation that makes a long map horizontal; identity for other maps, and for those within 20
+/// degrees of it.
 Se2 view_from_map(const GridMap& map);
 
 MapPage lay_out(const PageContent& content, const MapPageStyle& style);

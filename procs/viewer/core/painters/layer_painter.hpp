@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// marker_layer.png: which marker id each cell carries.
+// marker_layer.png: the marker id of each cell.
 #pragma once
 
 #include "viewer/core/page/style.hpp"
@@ -11,12 +11,11 @@
 
 namespace waymark::viewer {
 
-/// Neighbouring cells of one id as a landmark: in their middle, facing the open space nearby. Lone
-/// cells, which the rim of a marker leaves, are left out. Sorted by id.
+/// A landmark for each group of neighbouring cells of one id: in their middle, facing the open
+/// space nearby. Single cells, as at the rim of a marker, are ignored. Sorted by id.
 std::vector<Landmark> landmarks_of_cells(const GridMap& map);
 
-/// Cells in a colour per id, each group of cells with its id beside it, over a faint map; folded
-/// like map.png.
+/// Cells in the colour of their id over a faint map, each group labelled; folded like map.png.
 /// @return BGR.
 cv::Mat paint_marker_layer(const GridMap& map, const std::string& title, const MapPageStyle& style);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// map.png: the map for people.
+// map.png: the map with paths, markers, health and legend.
 #pragma once
 
 #include "viewer/core/page/style.hpp"

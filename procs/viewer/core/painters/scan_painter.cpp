@@ -50,7 +50,7 @@ void label_range_rings(cv::Mat& image, cv::Point2d centre, double reach_m, doubl
   }
 }
 
-/// Writes each id once, outside of the middle of its beams' ends.
+/// Writes each id once, beyond the ends of its beams.
 void draw_ids(cv::Mat& image, const std::vector<Beam>& beams, cv::Point2d centre, double px_per_m) {
   std::map<int, std::vector<Beam>> by_id;
   for (const Beam& beam : beams) {

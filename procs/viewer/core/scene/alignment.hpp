@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Brings paths of other frames into the map by their pose at the first estimate.
+// Transforms paths of other frames into the map frame, by their pose at the first estimate.
 #pragma once
 
 #include "viewer/core/scene/scene.hpp"
@@ -13,10 +13,9 @@ namespace waymark::viewer {
 /// Pose at a time, interpolated; nullopt outside the path's times.
 std::optional<Se2> pose_at(std::span<const TimedPose> path, Timestamp time);
 
-/// The path in the map, so that it passes through the first estimated pose that it covers:
-/// map_from_frame = map_from_base * inverse(frame_from_base), both at that estimate's time.
-/// Empty when no estimate falls into the path's times. Good for pictures and for simulations; not
-/// a best fit.
+/// The path in the map frame, through the first estimated pose whose time it covers:
+/// map_from_frame = map_from_base * inverse(frame_from_base), both at that estimate's time. Empty
+/// when it covers no estimate. For pictures: it is not the best fit.
 std::vector<TimedPose> aligned_on_first(std::span<const EstimatedPose> estimates,
                                         std::span<const TimedPose> path);
 

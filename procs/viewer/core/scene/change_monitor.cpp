@@ -10,7 +10,6 @@
 namespace waymark::viewer {
 namespace {
 
-/// To the centimetre.
 std::string place(const Eigen::Vector2d& position_m) {
   return fmt::format("({:.2f}, {:.2f}) m", rounded(position_m.x(), 100.0),
                      rounded(position_m.y(), 100.0));

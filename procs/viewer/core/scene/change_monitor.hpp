@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Changes that are reported once, when they happen: lost, found again, a marker that has moved.
+// Reports each change of state once: lost, localised again, a marker that has moved.
 #pragma once
 
 #include "viewer/core/scene/scene.hpp"
@@ -21,11 +21,11 @@ struct Change {
   bool operator==(const Change&) const = default;
 };
 
-/// Takes every estimate and marker map, and reports what differs from the one before.
+/// Compares each estimate and each marker map with the one before.
 class ChangeMonitor {
  public:
-  /// Initialising, localised or lost. An axis that comes and goes in a corridor is not reported:
-  /// the map shows where.
+  /// Reports changes between initialising, localised and lost. `tracking` and `degenerate` both
+  /// count as localised: in a corridor they alternate.
   std::optional<Change> update(const EstimatedPose& estimate);
 
   /// Markers that are new, gone, or in another state than before; by id and instance.

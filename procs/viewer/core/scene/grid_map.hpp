@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rectangle of map cells, as the painters and the map files want it.
+// The map as a rectangle of cells, input of painters and map files.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,8 @@ namespace waymark::viewer {
 
 constexpr int kUnknownOccupancy = -1;
 
-/// Occupancies from which on, and up to which, a cell counts as occupied and free. Defaults: those
-/// of ROS's map_saver.
+/// A cell is occupied from the first occupancy on, and free up to the second. Defaults: those of
+/// ROS's map_saver.
 struct MapThresholds {
   double occupied{0.65};
   double free{0.196};
@@ -34,7 +34,7 @@ struct GridMap {
 
   bool empty() const { return occupancy_percent.empty(); }
 
-  /// @return position in the map of the middle of the cell in that row and column.
+  /// Centre of a cell, map frame.
   Eigen::Vector2d cell_centre_m(int row, int column) const {
     return origin_m + resolution_m * Eigen::Vector2d{column + 0.5, row + 0.5};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything the pictures and files are made of: what the messages have said so far.
+// The content of all messages so far, input of pictures and files.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -21,10 +21,10 @@ namespace waymark::viewer {
 /// process far below 300 MB whatever the tiles claim.
 constexpr std::int64_t kMaxMapCells = 16'000'000;
 
-/// How well an estimate is known; values as in lcmtypes/slam_estimate_t.lcm.
+/// State of the localisation; values as in lcmtypes/slam_estimate_t.lcm.
 enum class Health { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
 
-/// What the map thinks of a marker; values as in lcmtypes/marker_landmark_t.lcm.
+/// State of a marker in the map; values as in lcmtypes/marker_landmark_t.lcm.
 enum class LandmarkState { kUnknown, kConfirmed, kTentative, kMoved };
 
 /// "confirmed", ...
@@ -65,7 +65,7 @@ struct Landmark {
   LandmarkState state{LandmarkState::kUnknown};
 };
 
-/// What is not as the loaded map or the survey has it; values as in lcmtypes/map_change_t.lcm.
+/// A difference from the loaded map or the survey; values as in lcmtypes/map_change_t.lcm.
 struct MapChange {
   enum class Kind { kNone, kMoved, kMissing, kNew, kWallNew, kWallGone, kSurveyOff };
 
@@ -79,11 +79,11 @@ struct MapChange {
   int support{0};
 };
 
-/// What is not as described about the sensors, or was not used.
+/// A deviation of a sensor from its description, or data that slam did not use.
 struct Finding {
   std::string name{};
   std::string text{};
-  double value{0.0};  ///< in the unit that the name says; a count where there is a share
+  double value{0.0};              ///< unit as in the name; a count where there is a share
   std::optional<double> share{};  ///< of the observations or scans that it concerns
 };
 
@@ -103,8 +103,8 @@ struct Scene {
   std::string title{};  ///< what made the map, e.g. the estimator's name
   TiledMap map{kMaxMapCells};
   std::vector<Landmark> landmarks{};
-  std::optional<std::vector<MapChange>> changes{};  ///< none: nobody compares
-  std::optional<std::vector<Finding>> findings{};   ///< none: nobody looks
+  std::optional<std::vector<MapChange>> changes{};  ///< nullopt: slam does not compare
+  std::optional<std::vector<Finding>> findings{};   ///< nullopt: slam has not reported any
   std::vector<EstimatedPose> estimates{};
   std::vector<TimedPose> final_trajectory{};  ///< as the estimator knows it at the end
   std::vector<TimedPose> odometry{};          ///< odom_from_base

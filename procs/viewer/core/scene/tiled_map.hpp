@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puts the map together from tiles that come in any order, repeatedly, and not all at once.
+// Assembles the map from tiles that arrive in any order, and repeatedly.
 #pragma once
 
 #include "common/time/time.hpp"
@@ -40,11 +40,11 @@ class TiledMap {
   ///                   stray tile can ask for.
   explicit TiledMap(std::int64_t max_cells) : max_cells_{max_cells} {}
 
-  /// The newest content of a tile wins. A layout that differs from the one so far belongs to
-  /// another map: the old tiles go.
+  /// Stores a tile unless a newer one is known. Another layout belongs to another map, so that all
+  /// old tiles are removed.
   Outcome put(const TileLayout& layout, Timestamp time, const TileUpdate& update);
 
-  /// No tile has come.
+  /// True when no tile has come.
   bool empty() const { return tiles_.empty(); }
 
   /// The smallest rectangle that holds all known cells; empty when there are none.
