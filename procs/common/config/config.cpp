@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/config/config.hpp"
 
+#include "common/config/nearest_key.hpp"
 #include "common/config/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -284,7 +285,7 @@ std::string config_detail::value(const Describe& describe, const std::string& ke
         {fmt::format("{}: {}{}", key, entry.unused, hint(used_instead(key, entries)))}};
   }
   throw ConfigError{
-      {fmt::format("{}: unknown key{}", key, hint(nearest(key, used_keys(entries))))}};
+      {fmt::format("{}: unknown key{}", key, hint(nearest_key(key, used_keys(entries))))}};
 }
 
 }  // namespace waymark

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/config/toml_reader.hpp"
 
+#include "common/config/nearest_key.hpp"
+
 #include <fmt/format.h>
 
 // toml++ 3.3 asserts on some malformed files ("[" and a control character); without the assertion
@@ -10,29 +12,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
 
 namespace waymark::config_detail {
 namespace {
-
-/// Levenshtein distance, to find the key that was meant.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitution = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
-    }
-  }
-  return row.back();
-}
 
 std::string shown(const toml::node& node) {
   std::ostringstream text;
@@ -270,7 +255,7 @@ class Reader final : public Fields {
     for (const auto& [key, node] : *level.table) {
       if (level.known_keys.contains(key.str())) continue;
       const std::string meant =
-          nearest(std::string{key.str()}, {level.known_keys.begin(), level.known_keys.end()});
+          nearest_key(std::string{key.str()}, {level.known_keys.begin(), level.known_keys.end()});
       const std::string hint =
           meant.empty() ? "" : fmt::format("; did you mean {}{}?", level.prefix, meant);
       log_.problems.push_back(
@@ -341,19 +326,6 @@ void read_toml_override(const std::string& text, const std::function<void(Fields
   } catch (const toml::parse_error& error) {
     log.problems.push_back(fmt::format("{}: {}", source, described(error)));
   }
-}
-
-std::string nearest(const std::string& key, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t best_distance = key.size() / 2 + 2;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(key, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 }  // namespace waymark::config_detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One TOML source -> one described struct. The only code that includes toml++.
+// Reads one TOML source into a described struct (see Fields). The only code that includes toml++.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -14,7 +14,7 @@ namespace waymark::config_detail {
 
 enum class UnknownKeys {
   kProblem,
-  kIgnored  ///< the file holds more than the struct describes
+  kIgnored  ///< the file may have keys that the struct does not describe
 };
 
 /// Result of reading several sources.
@@ -23,15 +23,12 @@ struct ReadLog {
   Locations set_by{};                   ///< key -> the last source that set it, with line
 };
 
-/// Overlays the described struct with a file.
+/// Sets the fields of the described struct that the file has.
 void read_toml_file(const std::filesystem::path& file, const std::function<void(Fields&)>& describe,
                     ReadLog& log, UnknownKeys unknown_keys = UnknownKeys::kProblem);
 
 /// The same for one `key.subkey=value` of the command line.
 void read_toml_override(const std::string& text, const std::function<void(Fields&)>& describe,
                         ReadLog& log);
-
-/// The candidate nearest to a misspelt `key`; empty if none is near.
-std::string nearest(const std::string& key, const std::vector<std::string>& candidates);
 
 }  // namespace waymark::config_detail
