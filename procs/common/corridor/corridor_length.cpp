@@ -3,6 +3,7 @@
 
 #include "common/corridor/end_wall.hpp"
 #include "common/corridor/medial_line.hpp"
+#include "common/geometry/median.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 #include "common/corridor/end_wall.hpp"
 
 #include "common/geometry/angle.hpp"
+#include "common/geometry/median.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -107,12 +108,6 @@ std::optional<WallLine> innermost_wall(const Band& band, double from_px, double 
 }
 
 }  // namespace
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 CorridorEnd find_corridor_end(const MapImage& map, const EndView& view, double width_px) {
   const Band band = central_band(map, view, width_px);

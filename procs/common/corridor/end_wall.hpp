@@ -32,7 +32,4 @@ struct CorridorEnd {
 /// middle two thirds): false cells inside the corridor and holes in the wall do not matter.
 CorridorEnd find_corridor_end(const MapImage& map, const EndView& view, double width_px);
 
-/// @param values not empty; the mean of the two middle ones if even.
-double median(std::vector<double> values);
-
 }  // namespace waymark::corridor

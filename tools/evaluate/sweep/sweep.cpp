@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/sweep/sweep.hpp"
 
+#include "common/geometry/median.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +67,7 @@ void add_figures(SweptRun& run, const std::optional<double>& odometry_ate_m) {
     run.metrics["ate_over_odometry"] = *run.figure("ate_origin_m") / *odometry_ate_m;
 }
 
-bool is_more_better(std::string_view key) {
+bool is_higher_better(std::string_view key) {
   constexpr std::array<std::string_view, 4> kKeys{"marker_map_share", "moved_named_share",
                                                   "sigma_growth", "share_tracking"};
   return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
@@ -129,11 +131,8 @@ Figures SweepRow::figures(const std::string& key) const {
     if (const auto value = run.figure(key)) values.push_back(*value);
   }
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  const double median =
-      values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-  return {median, is_more_better(key) ? values.front() : values.back()};
+  const auto [smallest, largest] = std::ranges::minmax(values);
+  return {median(values), is_higher_better(key) ? smallest : largest};
 }
 
 double SweepRow::limit(const std::string& key) const {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sweep's folder: which runs were planned, what became of each, and what that says of each
-// scenario and estimator.
+// A sweep's folder: planned runs, their results, and statistics per scenario and estimator.
 #pragma once
 
 #include "evaluate/files/text_file.hpp"
@@ -17,11 +16,11 @@ namespace waymark::evaluate {
 
 /// One line of plan/runs.tsv, which deploy/sweep.sh writes: an estimator on a recorded log.
 struct PlannedRun {
-  std::string scenario{};  ///< with "+VARIANT" where faults were put into the log
+  std::string scenario{};  ///< with "+VARIANT" for a log with faults
   std::string seed{};
-  std::string folder{};  ///< of the run, within the sweep's
-  std::string row{};     ///< folder of the estimator within that
-  std::string again{};   ///< command that does it again alone
+  std::string folder{};  ///< of the run, relative to the sweep's
+  std::string row{};     ///< folder of the estimator, relative to `folder`
+  std::string again{};   ///< command that repeats this run alone
 };
 
 /// @throws InputError if the plan cannot be read or a line is not five words between tabs.
@@ -29,26 +28,26 @@ std::vector<PlannedRun> read_plan(const std::filesystem::path& sweep_dir);
 
 struct SweptRun {
   PlannedRun plan{};
-  nlohmann::ordered_json metrics{};  ///< of metrics.json; null if the run failed
-  std::string failure{};             ///< why there are none, with the log's name; empty = fine
+  nlohmann::ordered_json metrics{};  ///< content of metrics.json; null if the run failed
+  std::string failure{};             ///< why there are no metrics; empty = success
   std::vector<Station> stations{};
 
   bool has_failed() const { return !failure.empty(); }
 
-  /// True if a figure that the scenario expects was not reached.
+  /// True if an expectation of the scenario was not met.
   bool misses() const;
 
-  /// A limit that the scenario sets for all seeds together; 0 = none.
+  /// A limit in [expect] that holds over all seeds; 0 = none.
   double limit_of_seeds(const std::string& key) const;
 
-  /// A number of metrics.json; absent if it has none.
+  /// A number in metrics.json; nullopt if there is none.
   std::optional<double> figure(const std::string& key) const;
 };
 
-/// A run without metrics.json has failed; the file `failed` in its row or its folder says how.
+/// A run without metrics.json has failed; the file `failed` in its row or its folder says why.
 std::vector<SweptRun> read_runs(const std::filesystem::path& sweep_dir);
 
-/// Over the seeds that have the figure; worst = largest, smallest where more is better.
+/// Over the seeds that have the figure; worst = largest, or smallest if higher is better.
 struct Figures {
   std::optional<double> median{};
   std::optional<double> worst{};
@@ -67,15 +66,15 @@ struct SweepRow {
 
   bool expects_anything() const;
 
-  /// True if as many seeds reach their figures, and as many stations have a mean NEES in its band,
-  /// as the scenario wants; failures are no hits.
+  /// True if the required shares of seeds (without failures) and of stations (with mean NEES in its
+  /// band) meet the expectations.
   bool is_hit() const;
 
-  /// The seed to look at: one that failed to reach its expectations before others, then the one
-  /// with the largest ATE; null if every seed failed.
+  /// The seed with the largest ATE, among those that missed expectations if there are any; null if
+  /// every seed failed.
   const SweptRun* worst_run() const;
 
-  /// A limit for all seeds together, of any run that has it; 0 = none.
+  /// The largest limit_of_seeds() of the runs; 0 = none.
   double limit(const std::string& key) const;
 };
 

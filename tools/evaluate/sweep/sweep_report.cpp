@@ -23,7 +23,7 @@ constexpr std::array kColumns{Column{"length error [%]", "length_error_percent",
                               Column{"markers [m]", "marker_error_mean_m", 3},
                               Column{"x odometry", "ate_over_odometry", 2}};
 
-/// Further figures that only results.csv has.
+/// Further columns of results.csv and runs.csv.
 constexpr std::array kMoreKeys{
     "length_px",     "marker_map_share", "moved_named_share", "max_jump_m",       "wall_cells",
     "found_again_s", "says_lost_s",      "confident_wrong_s", "share_degenerate", "share_lost",
@@ -46,14 +46,14 @@ std::string with(std::string text, std::string_view key, double limit) {
                       : fmt::format("{}{}{} {:g}", text, text.empty() ? "" : ", ", key, limit);
 }
 
-/// Those of all seeds together.
+/// Adds the limits that hold over all seeds.
 std::string expected_of_seeds(const SweepRow& row, std::string text) {
   for (const char* key : {"nees_in_band_share", "seeds_share"})
     text = with(std::move(text), key, row.limit(key));
   return text;
 }
 
-/// The limits are those of the first run that has any.
+/// The expectations of the first run that has any.
 std::string expected_of(const SweepRow& row) {
   if (!row.expects_anything()) return "-";
   for (const SweptRun& run : row.runs) {
