@@ -18,16 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names what was skipped on stderr; the exit code that it deserves.
+/// Prints skipped lines on standard error. @return the exit code.
 int report_skipped(const Skipped& skipped, const Output& output) {
   constexpr std::size_t kShown = 10;
   for (std::size_t i = 0; i < std::min(skipped.size(), kShown); ++i)
     fmt::print(stderr, "skipped: {}\n", skipped[i]);
   if (skipped.size() > kShown) fmt::print(stderr, "skipped: {} more\n", skipped.size() - kShown);
-  return skipped.empty() || output.tolerant ? kFine : kFailed;
+  return skipped.empty() || output.tolerant ? kExitOk : kExitFailed;
 }
 
-/// JSON as it is, or one `key: value` per line; unknown values are left out.
+/// Prints JSON, or one `key: value` per line without null values.
 void print(const Json& json, const Output& output) {
   if (output.json) {
     fmt::print("{}\n", json.dump(2));
@@ -48,7 +48,7 @@ std::string file_text(const Json& json) {
 int run_command(std::string_view program, const std::function<int()>& command) {
   const auto fail = [&](const std::exception& error) {
     fmt::print(stderr, "{}: {}\n", program, error.what());
-    return kUsage;
+    return int{kExitUsage};
   };
   try {
     return command();
@@ -71,7 +71,7 @@ int run_length(const fs::path& map_yaml, std::optional<double> true_length_m,
   } catch (const corridor::NotACorridor& error) {
     throw InputError{fmt::format("{}: {}", map_yaml.string(), error.what())};
   }
-  return kFine;
+  return kExitOk;
 }
 
 int run_trajectory(const fs::path& estimate_file, const fs::path& reference_file,
@@ -102,7 +102,7 @@ int run_relations(const fs::path& trajectory_file, const fs::path& relations_fil
   const int skipped_code = report_skipped(skipped, output);
   if (error.all.count > 0) return skipped_code;
   fmt::print(stderr, "{}: no relation lies within the trajectory\n", relations_file.string());
-  return kFailed;
+  return kExitFailed;
 }
 
 int run_run(const fs::path& run_dir, const std::vector<std::string>& wanted,
@@ -144,7 +144,7 @@ int run_run(const fs::path& run_dir, const std::vector<std::string>& wanted,
   write_whole_file(run_dir / "results.md", markdown);
   fmt::print("{}", output.json ? file_text(json) : markdown);
   const int skipped_code = report_skipped(skipped, output);
-  return complete ? skipped_code : kFailed;
+  return complete ? skipped_code : kExitFailed;
 }
 
 }  // namespace waymark::evaluate

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sub-commands: read, compute, print. Each returns the program's exit code and throws
-// InputError for what makes it impossible.
+// The sub-commands: read, compute, print. Each returns the program's exit code, and throws
+// InputError for unusable input.
 #pragma once
 
+#include "common/errors/exit_codes.hpp"
 #include "evaluate/run/run_evaluation.hpp"
 
 #include <filesystem>
@@ -14,17 +15,13 @@
 
 namespace waymark::evaluate {
 
-inline constexpr int kFine = 0;
-inline constexpr int kFailed = 1;
-inline constexpr int kUsage = 2;
-
 struct Output {
   bool json{};      ///< print JSON instead of text
   bool tolerant{};  ///< skipped lines do not fail the program
 };
 
-/// What the program returns of a sub-command; where input is unusable kUsage, and one sentence on
-/// standard error.
+/// Runs a sub-command; prints what it throws on standard error.
+/// @return its exit code, or kExitUsage after an exception.
 int run_command(std::string_view program, const std::function<int()>& command);
 
 int run_length(const std::filesystem::path& map_yaml, std::optional<double> true_length_m,
@@ -42,7 +39,7 @@ int run_run(const std::filesystem::path& run_dir, const std::vector<std::string>
             const EvaluationOptions& options, const Output& output);
 
 /// Writes results.md, results.csv, runs.csv, index.html and plots/ into a sweep's folder.
-/// @return kFine also where runs failed or missed: the table says so.
+/// @return kExitOk also when runs failed or missed their expectations; the table shows them.
 int run_sweep(const std::filesystem::path& sweep_dir, const Output& output);
 
 /// Mean NEES per station over estimator folders with a stations.csv.

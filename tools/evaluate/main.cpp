@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// waymark-evaluate: how good a map and a trajectory are.
+// waymark-evaluate: measures the errors of maps and trajectories.
 #include "common/command_line/command_line.hpp"
 #include "evaluate/commands.hpp"
 
@@ -42,7 +42,7 @@ void add_output(Command& command, Arguments& arguments, const std::string& json_
 
 void add_tolerant(Command& command, Arguments& arguments) {
   command.add_flag("--tolerant", arguments.output.tolerant,
-                   "exit with 0 although lines were skipped (they are named all the same)");
+                   "exit with 0 although lines were skipped (they are named in any case)");
 }
 
 void add_true_length(Command& command, Arguments& arguments) {
@@ -153,7 +153,7 @@ void add_consistency(Command& program, Arguments& arguments, Action& chosen) {
   });
 }
 
-/// The program beside this one that gives the advice, with the rest of the command line.
+/// Replaces this process by waymark-placement, which is in the same folder.
 int run_placement_program(const std::vector<std::string>& arguments) {
   const std::string program =
       std::filesystem::read_symlink("/proc/self/exe").replace_filename("waymark-placement");
@@ -168,7 +168,7 @@ int run_placement_program(const std::vector<std::string>& arguments) {
 
 void add_placement(Command& program, Action& chosen) {
   Command command = program.add_subcommand(
-      "placement", "where the estimate is too uncertain, and the fewest new markers that cure it");
+      "placement", "where the estimate is too uncertain, and where to hang new markers");
   command.pass_on_the_rest();
   command.when_given([command, &chosen] {
     chosen = [command] {
@@ -183,9 +183,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   Action chosen;
   waymark::Program program{
-      "Measures how good a map and a trajectory are.\n"
-      "Exit code: 0 fine; 1 a figure could not be had, or lines were skipped; 2 wrong usage or "
-      "files.",
+      "Measures the errors of maps and trajectories.\n"
+      "Exit code: 0 success; 1 a figure is missing, or lines were skipped; 2 wrong usage or files.",
       "waymark-evaluate"};
   program.require_subcommand();
   add_length(program, arguments, chosen);

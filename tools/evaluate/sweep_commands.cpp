@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sub-commands about many runs.
+// Sub-commands for many runs.
 #include "common/files/whole_file.hpp"
 #include "evaluate/commands.hpp"
 #include "evaluate/sweep/sweep_report.hpp"
@@ -41,7 +41,7 @@ int run_sweep(const fs::path& sweep_dir, const Output& output) {
   write_whole_file(sweep_dir / "results.md", markdown);
   if (!output.json) {
     fmt::print("{}", markdown);
-    return kFine;
+    return kExitOk;
   }
   auto json = nlohmann::ordered_json::array();
   for (const SweepRow& row : rows)
@@ -51,7 +51,7 @@ int run_sweep(const fs::path& sweep_dir, const Output& output) {
                     {"misses", row.misses()},
                     {"stations", json_of(row.stations)}});
   fmt::print("{}\n", json.dump(2));
-  return kFine;
+  return kExitOk;
 }
 
 int run_consistency(const std::vector<fs::path>& row_dirs, const Output& output) {
@@ -77,7 +77,7 @@ int run_consistency(const std::vector<fs::path>& row_dirs, const Output& output)
   }
   for (const std::string& line : skipped)
     fmt::print(stderr, "skipped: {}\n", line);
-  return stations.empty() || !skipped.empty() ? kFailed : kFine;
+  return stations.empty() || !skipped.empty() ? kExitFailed : kExitOk;
 }
 
 }  // namespace waymark::evaluate

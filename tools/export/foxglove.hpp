@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 /// JSON schema of one of Foxglove's types: "Grid", "LaserScan", "PoseInFrame", "FrameTransforms",
 /// "SceneUpdate", "CompressedImage".
-/// @throws std::logic_error for another one.
+/// @throws std::logic_error for any other.
 std::string foxglove_schema(std::string_view type);
 
 std::string base64(std::span<const std::uint8_t> bytes);
@@ -38,7 +38,7 @@ struct Colour {
 
 Json colour_json(const Colour& colour);
 
-/// An entity of a scene without any shape in it yet, to be replaced by the next one of that name.
+/// A scene entity without shapes, frame "map"; an entity with the same id replaces it.
 Json entity_json(Timestamp time, const std::string& id);
 
 /// A closed line around the 2-sigma ellipse of a position.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// waymark-export: runs in the formats of other programs.
+// waymark-export: converts runs to formats of other programs.
 #include "common/command_line/command_line.hpp"
 #include "common/log/log_file.hpp"
 #include "common/runtime/guard.hpp"

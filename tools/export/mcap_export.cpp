@@ -17,7 +17,7 @@ using std::chrono::seconds;
 constexpr Duration kMapPeriod = seconds{2};
 constexpr Duration kLongestGap = seconds{1};  // between poses that are interpolated
 constexpr std::size_t kMostPoses = 2000;
-constexpr double kMarkerHeight_m = 0.3;  // only drawn: how high a marker hangs is not in the map
+constexpr double kMarkerHeight_m = 0.3;  // for display; the map has no heights
 constexpr double kMarkerSide_m = 0.4;
 constexpr double kMarkerThickness_m = 0.02;
 constexpr Colour kMarkerColour{0.1, 0.4, 0.9, 0.9};
@@ -64,11 +64,8 @@ std::optional<Se2> RecentPoses::at(Timestamp time) const {
   if (after == poses_.begin()) return std::nullopt;
   const viewer::TimedPose& before = *(after - 1);
   if (after->time - before.time > kLongestGap) return std::nullopt;
-  const double share = to_seconds(time - before.time) / to_seconds(after->time - before.time);
-  const Se2& a = before.frame_from_base;
-  const Se2& b = after->frame_from_base;
-  return Se2{a.translation() + share * (b.translation() - a.translation()),
-             a.theta() + share * angle_difference(b.theta(), a.theta())};
+  const double fraction = to_seconds(time - before.time) / to_seconds(after->time - before.time);
+  return interpolate(before.frame_from_base, after->frame_from_base, fraction);
 }
 
 McapExport::McapExport(const std::filesystem::path& out, Inbox& inbox)
@@ -123,7 +120,7 @@ void McapExport::add(const annotated_scan_t& message) {
   const Timestamp time = timestamp_from_us(message.utime);
   if (message.angles.empty()) return;
   Json ranges = Json::array();
-  // JSON has no infinity: 0 is what says "no return" here.
+  // JSON has no infinity: 0 stands for "no return".
   for (const float range : message.ranges)
     ranges.push_back(std::isfinite(range) ? range : 0.0F);
   const Se2 map_from_lidar{message.x_m, message.y_m, message.theta_rad};

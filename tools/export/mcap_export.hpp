@@ -15,11 +15,11 @@
 
 namespace waymark::exporting {
 
-/// Poses of the last seconds, to be asked for at any time in between.
+/// The latest poses, for interpolation.
 class RecentPoses {
  public:
   void add(Timestamp time, const Se2& pose);
-  /// Interpolated; nothing outside of what is there, or where there is a gap.
+  /// Interpolated pose; nullopt outside the stored times, and in gaps of more than a second.
   std::optional<Se2> at(Timestamp time) const;
 
  private:

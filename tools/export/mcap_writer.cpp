@@ -41,7 +41,7 @@ class Fields {
     return *this;
   }
 
-  /// With its length before it: 32 bit for texts and arrays, 64 bit for the records of a chunk.
+  /// A text after its length: 32 bit for texts and arrays, 64 bit for the records of a chunk.
   template <class Length = std::uint32_t>
   Fields& text(std::string_view value) {
     number(static_cast<Length>(value.size()));
@@ -108,7 +108,7 @@ McapWriter::ChannelId McapWriter::add_channel(const std::string& topic,
                                               const std::string& schema_name,
                                               const std::string& schema_json) {
   std::uint16_t& schema_id = schema_ids_[schema_name];
-  if (schema_id == 0) {  // which means "no schema", so that ids begin at 1
+  if (schema_id == 0) {  // new; ids begin at 1, because 0 means "no schema" in MCAP
     schema_id = static_cast<std::uint16_t>(schemas_.size() + 1);
     schemas_.push_back(Fields{}
                            .number(schema_id)

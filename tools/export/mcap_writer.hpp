@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MCAP files (https://mcap.dev/spec), of JSON messages: chunks with an index each, a summary, and
-// all checksums.
+// Writer of MCAP files (https://mcap.dev/spec) with JSON messages: indexed chunks, summary,
+// checksums.
 #pragma once
 
 #include "common/time/time.hpp"
@@ -16,14 +16,15 @@
 
 namespace waymark::exporting {
 
-/// Writes to part_path_of(path) and renames it when closed: a file that is there is whole.
+/// Writes to part_path_of(path) and renames it when closed, so that a file under its final name is
+/// complete.
 class McapWriter {
  public:
   using ChannelId = std::uint16_t;
 
   /// @throws std::runtime_error when the file cannot be created.
   explicit McapWriter(const std::filesystem::path& path);
-  /// Removes what was not closed.
+  /// Without close(), the partial file is removed.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
@@ -41,7 +42,8 @@ class McapWriter {
   std::uint64_t num_messages() const { return num_messages_; }
 
  private:
-  struct Entry {  ///< a message in a chunk
+  /// Index entry of a message in a chunk.
+  struct Entry {
     std::uint64_t time_ns;
     std::uint64_t offset;
   };
@@ -59,7 +61,7 @@ class McapWriter {
   void put(std::string_view bytes);
   void flush_chunk();
   std::string statistics() const;
-  /// Summary and footer behind the data section.
+  /// Summary section and footer.
   std::string summary() const;
 
   std::filesystem::path path_;

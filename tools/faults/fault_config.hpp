@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which faults are put into the messages of a recorded log.
+// Faults to inject into the messages of a recorded log.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -10,8 +10,8 @@
 
 namespace waymark::faults {
 
-/// Shares are probabilities, drawn for each sighting (frame) on its own. Times count from the first
-/// message; pairs of numbers stand one behind the other.
+/// Shares are probabilities, drawn independently for each sighting or frame. Times count from the
+/// first message; pairs of numbers are flattened into one list.
 struct FaultConfig {
   double wrong_id_share{0.0};
   double ghost_share{0.0};
@@ -31,11 +31,11 @@ struct FaultConfig {
 
   bool changes_ids() const { return every_id >= 0 || !renamed_ids.empty(); }
 
-  /// The id that a marker of this world has with the faults that concern all of its sightings.
+  /// The marker's id after every_id and renamed_ids.
   int id_of(int id) const;
 };
 
-/// A row of the sweep's table: faults, and what is expected in spite of them.
+/// A row of the sweep's table: faults, and what is expected with them.
 struct Variant {
   std::string name{};
   FaultConfig faults{};
@@ -50,7 +50,7 @@ struct VariantsFile {
   void describe(Fields& fields);
   void check(Problems& problems) const;
 
-  /// @throws ConfigError naming those that there are.
+  /// @throws ConfigError listing all names if there is none with this name.
   const Variant& named(const std::string& name) const;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is read of a scenario.
+/// The part of a scenario that is read.
 struct SeedPart {
   struct Run {
     std::int64_t seed{1};
@@ -31,7 +31,7 @@ struct SeedPart {
 void check_folders(const fs::path& run_dir, const fs::path& out_dir) {
   if (!fs::is_regular_file(run_dir / "run.lcm"))
     throw SetupError{run_dir.string() + ": no run.lcm in it; give the folder of a recorded run"};
-  std::error_code none;  // a folder that is yet to be made is not the run's
+  std::error_code none;  // equivalent() is false if out_dir does not exist yet
   if (fs::equivalent(run_dir, out_dir, none))
     throw SetupError{out_dir.string() +
                      ": is the recorded run itself; give another folder for the faulty one"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder of a recorded run -> another, of the same drive with faults in its messages.
+// Copies the folder of a recorded run, with faults in its messages.
 #pragma once
 
 #include "faults/fault_config.hpp"
@@ -13,8 +13,7 @@
 
 namespace waymark::faults {
 
-/// Marks a run as faulty (recorded runs have none): the variant that was applied, as a file of
-/// variants.
+/// File with the applied variant; marks a run as faulty.
 inline constexpr std::string_view kMark = "variant_applied.toml";
 
 /// All files that may be written.
@@ -28,19 +27,18 @@ inline constexpr std::array<std::string_view, 8> kFiles{kMark,
                                                         "run.lcm"};
 
 /// Writes the mark; copies scenario.toml, robot.toml, truth.tum, truth_marker_moves.csv and
-/// truth_markers.csv (with the ids that the markers now have), as far as they are there; writes
-/// expect.toml and, last, run.lcm, without what slam published. Random numbers: the scenario's
-/// run.seed, else 1.
-/// @return how often each fault was put in.
+/// truth_markers.csv (with the new ids), as far as they exist; writes expect.toml and, last,
+/// run.lcm, without the messages of slam. Seed of the faults: the scenario's run.seed, else 1.
+/// @return how often each fault was injected.
 /// @throws SetupError when run_dir holds no run or one that has faults already, when it is out_dir,
 /// or when another recorded run is there.
-/// @throws std::runtime_error naming the file that cannot be read or written, or when ids are
-/// changed in a run that moves markers.
+/// @throws std::runtime_error naming a file that cannot be read or written, or when ids are changed
+/// in a run with moved markers.
 std::map<std::string, std::int64_t> write_faulty_run(const std::filesystem::path& run_dir,
                                                      const Variant& variant,
                                                      const std::filesystem::path& out_dir);
 
-/// The lines of truth_markers.csv with new ids; instances count equal ids.
+/// truth_markers.csv with the new ids; instances count equal ids.
 std::string renamed_markers(const std::string& csv, const FaultConfig& faults);
 
 }  // namespace waymark::faults

@@ -11,7 +11,7 @@
 namespace waymark::faults {
 namespace {
 
-/// Streams of random numbers of their own, so that one fault does not change another's draws.
+/// Separate streams of random numbers, so that one fault does not change another's draws.
 enum Stream : std::uint64_t { kSightings = 0xfa01, kGhosts = 0xfa02 };
 
 void flip(marker_detection_t& detection) {
@@ -84,7 +84,7 @@ Message Injector::with_faulty_markers(const Message& message) {
 }
 
 bool Injector::corrupt(marker_detection_t& detection, std::uint64_t index) {
-  // Always the same draws in the same order, whatever is switched on.
+  // Always the same draws in the same order, so that one fault does not change another's.
   Random random{seed_, kSightings, frame_, index};
   const bool is_dropped = random.uniform() < config_.dropped_share;
   const bool is_flipped = random.uniform() < config_.flipped_share;

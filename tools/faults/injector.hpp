@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages of a log -> the same with faults.
+// Injects faults into the messages of a log.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -16,7 +16,7 @@
 
 namespace waymark::faults {
 
-/// What faults are made of: ids and sightings that occur in the log.
+/// Ids and sightings that occur in the log, for wrong ids and ghosts.
 struct LogContent {
   std::vector<int> ids{};  ///< in order, each once
   std::vector<marker_detection_t> sightings{};
@@ -30,10 +30,10 @@ class Injector {
   Injector(const FaultConfig& config, std::uint64_t seed, const LogContent& content)
       : config_{config}, seed_{seed}, content_{content} {}
 
-  /// Messages in the order of the log. @return nothing where the message is lost.
+  /// Call for all messages in the order of the log. @return nullopt when the message is dropped.
   std::optional<Message> apply(const Message& message);
 
-  /// How often each fault was put in, by name.
+  /// How often each fault was injected, by name.
   const std::map<std::string, std::int64_t>& counts() const { return counts_; }
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// waymark-faults: a recorded run with faults put into its messages.
+// waymark-faults: copies a recorded run with faults in its messages.
 #include "common/command_line/command_line.hpp"
+#include "common/errors/exit_codes.hpp"
 #include "common/errors/setup_error.hpp"
 #include "common/log/log_file.hpp"
 #include "faults/faulty_run.hpp"
@@ -10,9 +11,6 @@
 #include <cstdio>
 
 namespace {
-
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
 
 struct Arguments {
   std::filesystem::path run_dir{};
@@ -28,20 +26,20 @@ int run(const Arguments& arguments) {
   using namespace waymark::faults;
   if (arguments.explain) {
     fmt::print("{}", dump_config(VariantsFile{{Variant{.name = "example"}}}));
-    return 0;
+    return kExitOk;
   }
   const auto file = load_config<VariantsFile>({{arguments.variants}, {}});
   if (arguments.list) {
     for (const Variant& variant : file.variant)
       fmt::print("{}\n", variant.name);
-    return 0;
+    return kExitOk;
   }
   const Variant& variant = file.named(arguments.variant);
   for (const std::string_view name : kFiles)
     protect_inputs("--out", arguments.out / name, {arguments.variants});
   for (const auto& [name, count] : write_faulty_run(arguments.run_dir, variant, arguments.out))
     fmt::print("{}: {}\n", name, count);
-  return 0;
+  return kExitOk;
 }
 
 }  // namespace
@@ -50,10 +48,9 @@ int main(int argc, char** argv) {
   using namespace waymark;
   Arguments arguments;
   Program program{
-      "Writes a recorded run once more, with faults in its messages: wrong ids, ghosts, flipped "
-      "poses, lost messages, wrong odometry. The same run and variant give the same bytes. What "
-      "was "
-      "put in stands in variant_applied.toml beside the log.",
+      "Copies a recorded run with faults in its messages: wrong ids, ghosts, flipped poses, lost "
+      "messages, wrong odometry. The same run and variant give the same bytes. The applied faults "
+      "are in variant_applied.toml beside the log.",
       "waymark-faults"};
   program.add_option("RUN_DIR", arguments.run_dir,
                      "folder with run.lcm, robot.toml, scenario.toml and the truth");
@@ -76,14 +73,14 @@ int main(int argc, char** argv) {
         "RUN_DIR, --variants, --variant and --out (or --list, --explain)");
   try {
     return run(arguments);
-  } catch (const waymark::ConfigError& error) {
+  } catch (const ConfigError& error) {
     fmt::print(stderr, "{}\n", error.what());
-    return kUsage;
-  } catch (const waymark::SetupError& error) {
+    return kExitUsage;
+  } catch (const SetupError& error) {
     fmt::print(stderr, "waymark-faults: {}\n", error.what());
-    return kUsage;
+    return kExitUsage;
   } catch (const std::exception& error) {
     fmt::print(stderr, "waymark-faults: {}\n", error.what());
-    return kFailed;
+    return kExitFailed;
   }
 }

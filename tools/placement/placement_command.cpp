@@ -29,7 +29,7 @@ int run_placement(const PlacementOptions& options) {
   const fs::path picture = picture_file(options, input);
   write_whole_file(picture, placement_picture(input, placement));
   fmt::print("picture: {}\n", picture.string());
-  return placement.is_met() && !placement.is_model_refuted() ? evaluate::kFine : evaluate::kFailed;
+  return placement.is_met() && !placement.is_model_refuted() ? kExitOk : kExitFailed;
 }
 
 }  // namespace waymark::placement

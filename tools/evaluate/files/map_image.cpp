@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Larger than any map of a building at 1 cm; guards the memory against a wrong header.
+/// Larger than any building at 1 cm; bounds the memory for a wrong header.
 constexpr long kMaxSide_px = 100'000;
 constexpr long kMaxCells = 400'000'000;
 
@@ -58,7 +58,7 @@ class MapYaml {
     return values_.contains(key) ? text(key) : fallback;
   }
 
-  /// Lower left corner of the image; (0, 0) where there is none. Its yaw is left aside.
+  /// Lower left corner of the image [m]; (0, 0) without the key. The yaw is ignored.
   Eigen::Vector2d origin() const {
     if (!values_.contains("origin")) return Eigen::Vector2d::Zero();
     std::string list = text("origin");
@@ -106,7 +106,7 @@ Picture read_pgm(const fs::path& file) {
   const long max_value = header_number(bytes, at);
   if (width <= 0 || height <= 0 || width * height > kMaxCells || max_value <= 0 || max_value > 255)
     throw InputError{file.string() + ": not a binary 8-bit PGM (header 'P5 width height 255')"};
-  const std::size_t begin = at + 1;  // exactly one white space ends the header
+  const std::size_t begin = at + 1;  // one white-space character ends the header
   const auto size = static_cast<std::size_t>(width * height);
   if (bytes.size() < begin + size)
     throw InputError{fmt::format("{}: truncated: {} of {} pixels", file.string(),

@@ -24,7 +24,7 @@ struct MapWithOrigin {
   Eigen::Vector2d origin_m{Eigen::Vector2d::Zero()};  ///< lower left corner of the image, map frame
 };
 
-/// The same with the first two numbers of `origin` [m]; (0, 0) where the file has no `origin`.
+/// Like read_map(), with the first two numbers of `origin` [m], or (0, 0) without that key.
 /// @throws InputError as above.
 MapWithOrigin read_map_with_origin(const std::filesystem::path& yaml_file);
 

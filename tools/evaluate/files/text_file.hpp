@@ -13,13 +13,13 @@
 
 namespace waymark::evaluate {
 
-/// An input that makes the whole evaluation impossible; says what, where and what to do.
+/// Unusable input; what() says what, where and what to do.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What was left out and why, one "file:line: reason" each.
+/// Lines that were left out, as "file:line: reason".
 using Skipped = std::vector<std::string>;
 
 /// @throws InputError if the file cannot be read.
@@ -28,15 +28,15 @@ std::string read_text(const std::filesystem::path& file);
 /// Lines without their ends ("\n" or "\r\n"). @throws InputError if the file cannot be read.
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 
-/// Finite numbers separated by white space or commas; nothing if anything else is in the line.
+/// Finite numbers separated by white space or commas; nullopt if the line has anything else.
 std::optional<std::vector<double>> parse_numbers(std::string_view line);
 
 /// "file:line: reason"
 std::string at_line(const std::filesystem::path& file, std::size_t line_number,
                     std::string_view reason);
 
-/// Comma-separated numbers under a line of names. Columns are found by name, so their order is
-/// free and more may be there.
+/// Comma-separated numbers below a line of names. Columns are found by name, so that their order is
+/// free and further ones are allowed.
 struct CsvTable {
   std::map<std::string, std::size_t, std::less<>> column_of{};
   std::vector<std::vector<double>> rows{};
@@ -47,7 +47,7 @@ struct CsvTable {
 };
 
 /// Reads the named columns; others may hold any words. Lines whose named columns are not finite
-/// numbers, or with another number of words than the first line, are left out and named.
+/// numbers, or that have another number of words than the first line, are added to `skipped`.
 /// @throws InputError if the file cannot be read or a column is missing.
 CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns,
                   Skipped& skipped);

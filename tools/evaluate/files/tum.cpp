@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTimeRounding_s = 1.5e-6;
 
-/// Heading of the x axis; nothing for a quaternion that is not nearly of unit length.
+/// Heading of the x axis [rad]; nullopt if the quaternion's length is not nearly 1.
 std::optional<double> yaw_of(double qx, double qy, double qz, double qw) {
   constexpr double kLengthTolerance = 1e-2;
   const double norm = std::sqrt(qx * qx + qy * qy + qz * qz + qw * qw);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Planar trajectories in TUM files, and poses between their poses.
+// Planar trajectories in TUM files, and interpolation.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -19,14 +19,13 @@ struct StampedPose {
 /// At least one pose; times strictly increase.
 using Trajectory = std::vector<StampedPose>;
 
-/// Lines `t x y z qx qy qz qw`; z is left aside and the yaw is taken from the quaternion. '#'
-/// starts a comment. Lines of another form and lines whose time does not advance are left out and
-/// named.
+/// Lines `t x y z qx qy qz qw`; z is ignored, the yaw is taken from the quaternion. '#' starts a
+/// comment. Lines of another form and lines whose time does not advance are added to `skipped`.
 /// @throws InputError if the file cannot be read or has no pose.
 Trajectory read_tum(const std::filesystem::path& file, Skipped& skipped);
 
-/// Pose at a time, between its neighbours; nothing outside the trajectory's span.
-/// Times are stored with six decimals, so one microsecond outside is still inside.
+/// Interpolated pose at a time; nullopt outside the trajectory's span. Times are stored with six
+/// decimals, so that one microsecond outside counts as inside.
 std::optional<Se2> pose_at(const Trajectory& trajectory, double t_s);
 
 }  // namespace waymark::evaluate

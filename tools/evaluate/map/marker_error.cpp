@@ -37,7 +37,7 @@ Marker marker_of(const CsvTable& table, const std::vector<double>& row) {
       .instance = static_cast<int>(std::lround(table.at(row, "instance")))};
 }
 
-/// Absent if no marker was moved and none is said to be.
+/// nullopt if no marker was moved and none is reported as moved.
 std::optional<double> moved_named_share(const std::vector<Marker>& in_map,
                                         const std::vector<Marker>& in_world) {
   std::map<int, int> moved;  // by id

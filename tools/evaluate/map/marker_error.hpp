@@ -10,30 +10,31 @@
 
 namespace waymark::evaluate {
 
-/// Centre of a marker and the direction that it faces, in the map or in the world.
+/// A marker, true (world frame) or estimated (map frame); its heading is the direction that it
+/// faces.
 struct Marker {
   int id{};
   Se2 parent_from_marker{};
   int instance{0};           ///< distinguishes markers of equal id
-  bool has_moved{false};     ///< true: it was moved; estimated: it is said to have been
-  bool is_tentative{false};  ///< estimated: the map does not vouch for it
+  bool has_moved{false};     ///< true marker: was moved; estimated one: has state "moved"
+  bool is_tentative{false};  ///< estimated marker with state "tentative"
 };
 
-/// A marker that is mapped further from its true place is not right: half its size.
+/// Largest error of a marker that counts as right: half of its size.
 inline constexpr double kRightMarker_m = 0.2;
 
 struct MarkerError {
   std::size_t matched{};
   std::size_t missing{};    ///< true markers without an estimate
   std::size_t spurious{};   ///< estimates without a true marker
-  std::size_t tentative{};  ///< estimates that the map does not vouch for: left out of all the rest
-  double right_share{};     ///< of all, true and estimated, those matched within kRightMarker_m
+  std::size_t tentative{};  ///< tentative estimates, which are excluded from all other members
+  double right_share{};     ///< pairs within kRightMarker_m over matched + missing + spurious
   std::optional<double> mean_position_m{};
   std::optional<double> max_position_m{};
   std::optional<double> mean_yaw_deg{};
   std::optional<double> max_yaw_deg{};
-  /// Of the markers that were moved or are said to be: those that are both. Absent if there are
-  /// none.
+  /// Markers that were moved and are reported so, over those that were moved or are reported so.
+  /// nullopt if there are none.
   std::optional<double> moved_named_share{};
 };
 
@@ -41,13 +42,13 @@ struct MarkerError {
 /// columns may follow.
 std::vector<Marker> read_markers(const std::filesystem::path& file, Skipped& skipped);
 
-/// The same markers where they are in the end. `file`: `t_s,id,instance,x_m,y_m,yaw_rad`, in order
-/// of time.
+/// The markers at their final places.
+/// @param file  `t_s,id,instance,x_m,y_m,yaw_rad`, in order of time.
 std::vector<Marker> with_moves(std::vector<Marker> markers, const std::filesystem::path& file,
                                Skipped& skipped);
 
-/// Pairs markers of the same id, nearest pairs first, each marker once, none further than `gate_m`
-/// apart: so duplicates of an id find their own places.
+/// Pairs estimated and true markers of the same id greedily, nearest pairs first, none further than
+/// `gate_m` apart; each marker is used once.
 MarkerError marker_error(const std::vector<Marker>& estimated, const std::vector<Marker>& in_world,
                          const Se2& world_from_map, double gate_m);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kGap_cells = 3;
 constexpr double kThickestShare = 0.005;
-constexpr int kThickest_cells = 20;  ///< a metre at 5 cm; nothing thicker is distinguished
+constexpr int kThickest_cells = 20;  ///< thicker walls count as this; a metre at 5 cm
 
 class Mask {
  public:
@@ -30,7 +30,8 @@ class Mask {
   std::vector<int> cells_;
 };
 
-/// Fills short gaps of one line of cells; `cell(i)` is a reference to its i-th cell.
+/// Fills short gaps in one line of cells.
+/// @param cell  returns a reference to the i-th cell.
 template <class CellAt>
 void fill_gaps(int length, CellAt cell) {
   int last_wall = -1;
@@ -38,7 +39,7 @@ void fill_gaps(int length, CellAt cell) {
     if (cell(i) != 1) continue;
     if (last_wall >= 0 && i - last_wall - 1 <= kGap_cells) {
       for (int gap = last_wall + 1; gap < i; ++gap)
-        cell(gap) = 2;  // not to be taken for a wall by the lines across
+        cell(gap) = 2;  // filled, but not a wall for lines in the other direction
     }
     last_wall = i;
   }
@@ -57,7 +58,7 @@ Mask walls_of(const MapImage& map) {
   return walls;
 }
 
-/// Side of the largest full square whose upper right cell each cell is.
+/// For each cell the side of the largest full square of which it is the upper right cell.
 Mask square_sides(const Mask& walls) {
   Mask side{walls.width(), walls.height()};
   for (int y = 0; y < walls.height(); ++y) {

@@ -50,7 +50,7 @@ Figure found_again_s(const EstimatorResult& result) {
                                                     : std::nullopt;
 }
 
-/// Who has found the pose again need not say that it is lost.
+/// The earlier of both: an estimator that has found the pose again need not report `lost`.
 Figure says_lost_s(const EstimatorResult& result) {
   if (!result.timeline || !result.timeline->kidnap) return std::nullopt;
   const Kidnap& kidnap = *result.timeline->kidnap;
@@ -85,7 +85,7 @@ Figure growth(const EstimatorResult& result) {
   return result.sigma_growth;
 }
 
-/// 998 pixels instead of 1000 are 0.2 %, whatever binary fractions make of it.
+/// Tolerance for binary fractions, e.g. of 0.2 % for 998 pixels instead of 1000.
 constexpr double kRounding = 1e-9;
 
 struct Rule {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scenario expects, against what came out.
+// A scenario's expectations, compared with the results.
 #pragma once
 
 #include "common/expect/expect_config.hpp"
@@ -19,14 +19,14 @@ struct ExpectedFigure {
   std::string key{};  ///< as in the scenario
   double limit{};
   Limit kind{};
-  std::optional<double> got{};  ///< absent = could not be had, or never happened
+  std::optional<double> got{};  ///< nullopt = not available, or never happened
   bool is_hit{};
 };
 
-/// True if the expectations are about this row and there are any.
+/// True if there are expectations of this row.
 bool is_expected_of(const ExpectConfig& expect, const std::string& row);
 
-/// One entry for each figure that is expected, in the order of the section; empty for other rows.
+/// One entry for each expected figure, in the order of the section; empty for other rows.
 std::vector<ExpectedFigure> check_expectations(const ExpectConfig& expect,
                                                const EstimatorResult& result);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as JSON for scripts and as tables for people.
+// Results as JSON and as tables.
 #pragma once
 
 #include "evaluate/run/run_evaluation.hpp"
@@ -12,14 +12,14 @@
 
 namespace waymark::evaluate {
 
-/// Keys stay in the order in which they are written. What is unknown is null.
+/// Keys keep the order in which they are written. Unknown values are null.
 using Json = nlohmann::ordered_json;
 
 Json json_of(const corridor::CorridorLength& length, std::optional<double> true_length_m);
 Json json_of(const TrajectoryError& error);
 Json json_of(const RelationsError& error);
 
-/// Content of metrics.json: one flat object, every key always there.
+/// Content of metrics.json: one object, always with all keys.
 Json metrics_json(const EstimatorResult& result);
 
 /// Content of results.json: the truth, and each estimator's metrics with its configuration.
@@ -28,14 +28,13 @@ Json results_json(const RunTruth& truth, const std::vector<EstimatorResult>& res
 /// Table I of the paper, as Markdown.
 std::string length_table(const std::vector<EstimatorResult>& results);
 
-/// Errors of trajectory and markers, NEES, flags; a trajectory as known at the end has a row of its
-/// own.
+/// Errors of trajectory and markers, NEES, flags; the final trajectory has a row of its own.
 std::string error_table(const std::vector<EstimatorResult>& results);
 
 /// One row per figure that the scenario expects; empty if it expects none.
 std::string expectation_table(const std::vector<EstimatorResult>& results);
 
-/// Content of results.md: the three tables and what is to be said about them.
+/// Content of results.md: the three tables with explanations and problems.
 std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorResult>& results);
 
 }  // namespace waymark::evaluate

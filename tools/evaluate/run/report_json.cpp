@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/geometry/rounded.hpp"
 #include "evaluate/run/report.hpp"
 
 #include <cmath>
@@ -6,12 +7,9 @@
 namespace waymark::evaluate {
 namespace {
 
-/// Micrometres and microdegrees are enough; JSON has no NaN.
+/// To six decimals; null for NaN and infinity, which JSON does not have.
 Json number(double value) {
-  constexpr double kDecimals = 1e6;
-  if (!std::isfinite(value)) return nullptr;
-  const double rounded = std::round(value * kDecimals) / kDecimals;
-  return rounded == 0.0 ? 0.0 : rounded;  // no -0.0
+  return std::isfinite(value) ? Json(rounded(value, 1e6)) : Json{};
 }
 
 Json number(const std::optional<double>& value) {
@@ -22,7 +20,7 @@ Json max_of(const std::optional<Spread>& spread) {
   return spread ? number(spread->max) : Json{};
 }
 
-/// @param text  checked to be JSON.
+/// @param text  valid JSON.
 Json parsed(const std::optional<std::string>& text) {
   return text ? Json::parse(*text) : Json{};
 }
@@ -80,14 +78,14 @@ Json json_of(const std::vector<ExpectedFigure>& figures) {
   return json;
 }
 
-/// The keys of an object, all null.
+/// The object with all values null.
 Json nulls_like(Json json) {
   for (auto& value : json)
     value = nullptr;
   return json;
 }
 
-/// The same values under keys with "final_" before them.
+/// The object with "final_" before each key.
 Json as_final(const Json& json) {
   Json renamed;
   for (const auto& [key, value] : json.items())
@@ -118,7 +116,7 @@ Json json_of(const TrajectoryError& error) {
   json["ate_origin_m"] = number(error.ate_origin_m);
   json["ate_se2_m"] = number(error.ate_se2_m);
   if (error.ate_frame_m) json["ate_frame_m"] = number(*error.ate_frame_m);
-  json["alignment"] = name_of(error.alignment);  // of the keys that follow, but for RPE
+  json["alignment"] = name_of(error.alignment);  // applies to the keys below, except RPE
   json["along_rmse_m"] = number(rms_of(error.along_m));
   json["along_max_m"] = max_of(error.along_m);
   json["across_rmse_m"] = number(rms_of(error.across_m));

@@ -11,7 +11,8 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// Markdown with columns of even width; empty without rows. @param names as many as in each row.
+/// A Markdown table with aligned columns; empty without rows.
+/// @param names  one per column.
 std::string table_of(const Row& names, const std::vector<Row>& rows) {
   if (rows.empty()) return "";
   std::vector<std::size_t> widths;
@@ -41,18 +42,18 @@ std::string cell(const std::optional<double>& value, int decimals, std::string_v
   return fmt::format("{:.{}f}{}", *value, decimals, unit);
 }
 
-/// Two decimals; from 1000 on, where only the size matters, a power of ten.
+/// Two decimals; from 1000 on only the order of magnitude.
 std::string nees_cell(double nees) {
   return nees < 1000.0 || !std::isfinite(nees) ? cell(nees, 2) : fmt::format("{:.0e}", nees);
 }
 
-/// Whole numbers bare, as the paper writes them.
+/// Whole numbers without decimals, as in the paper.
 std::string pixel_count(double pixels) {
   const bool whole = std::abs(pixels - std::round(pixels)) < 0.05;
   return fmt::format("{:.{}f} pixel", pixels, whole ? 0 : 1);
 }
 
-/// Whether slam has counted any message of a kind ("loss", "rejection") in timings.json.
+/// True if slam's counters in timings.json have one of a kind ("loss", "rejection").
 bool has_counted(const EstimatorResult& result, std::string_view kind) {
   if (!result.timings_json) return false;
   const Json timings = Json::parse(*result.timings_json);
@@ -73,7 +74,7 @@ std::string flags_of(const EstimatorResult& result) {
   return flags.empty() ? "-" : fmt::format("{}", fmt::join(flags, " "));
 }
 
-/// A row of the table of corridor lengths, as Table I of the marker-matching paper (README.md).
+/// A row of the table of corridor lengths, like Table I of the marker-matching paper (README.md).
 Row length_row(const EstimatorResult& result) {
   Row row{result.name, "-", cell(result.true_length_m, 1, " m"), "-", "-", "-"};
   if (!result.length) return row;
@@ -91,7 +92,7 @@ const Row kErrorColumns{"Row",         "along [m]",     "x odometry",
                         "ate_se2 [m]", "markers [m]",   "missing/spurious",
                         "NEES",        "flags"};
 
-/// A row of trajectory errors, with dashes for what is not of the trajectory.
+/// A row with the errors of a trajectory, and dashes in the other columns.
 Row error_row(const std::string& name, const TrajectoryError& error,
               std::optional<double> odometry_along_m) {
   const std::optional<double> along_m = rms_of(error.along_m);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More than the last scan or two outside the truth means that the files are not of one run.
+/// If a larger share of the poses is outside the truth's times, the files are not of the same run.
 constexpr double kOutsideShare = 0.05;
 
 std::optional<std::string> text_if_there(const fs::path& file) {
@@ -27,11 +27,11 @@ std::optional<std::string> text_if_there(const fs::path& file) {
 
 constexpr const char* kOneCorridor = "straight";
 
-/// What the evaluation reads of a scenario.
+/// The part of a scenario that the evaluation reads.
 struct ScenarioPart {
   struct World {
     std::string layout{kOneCorridor};
-    double length_m{50.0};  ///< the default world's
+    double length_m{50.0};  ///< as in WorldConfig
 
     void describe(Fields& fields) {
       fields.field("layout", layout, "only a straight corridor has a length");
@@ -56,7 +56,7 @@ ScenarioPart read_scenario(const fs::path& file) {
   }
 }
 
-/// The whole file is expectations: a key that is not known is one that nobody would check.
+/// Unlike in a scenario, unknown keys are errors.
 ExpectConfig read_expectations(const fs::path& file) {
   try {
     return load_config<ExpectFile>({{file}, {}}).expect;
@@ -65,7 +65,7 @@ ExpectConfig read_expectations(const fs::path& file) {
   }
 }
 
-/// What the evaluation reads of slam's configuration.
+/// The part of slam's configuration that the evaluation reads.
 struct SlamPart {
   struct Robot {
     struct Markers {
@@ -86,7 +86,7 @@ struct SlamPart {
   void describe(Fields& fields) { fields.section("robot", robot); }
 };
 
-/// The poses are in a survey's coordinates, which are the world's.
+/// True if slam used a survey: the map frame is then the world frame.
 bool is_surveyed(const fs::path& config_file) {
   if (!fs::exists(config_file)) return false;
   try {
@@ -96,14 +96,14 @@ bool is_surveyed(const fs::path& config_file) {
   }
 }
 
-/// @throws InputError if the file is there and is not JSON.
+/// @throws InputError if the file exists and is not JSON.
 std::optional<std::string> json_if_there(const fs::path& file) {
   std::optional<std::string> text = text_if_there(file);
   if (text && !nlohmann::json::accept(*text)) throw InputError{file.string() + ": not JSON"};
   return text;
 }
 
-/// Lines behind the header.
+/// Lines after the header.
 std::vector<std::string> changes_in(const fs::path& file) {
   std::vector<std::string> lines;
   std::istringstream text{text_if_there(file).value_or("")};
@@ -113,7 +113,7 @@ std::vector<std::string> changes_in(const fs::path& file) {
   return lines;
 }
 
-/// Runs one part of the evaluation; what goes wrong becomes a problem.
+/// Runs one part of the evaluation; an InputError is added to the problems.
 void attempt(std::vector<std::string>& problems, const std::function<void()>& part) {
   try {
     part();
@@ -122,7 +122,7 @@ void attempt(std::vector<std::string>& problems, const std::function<void()>& pa
   }
 }
 
-/// @throws InputError when no pose has a true one.
+/// @throws InputError when no pose lies within the truth's times.
 std::vector<PosePair> pairs_of(const fs::path& file, const Trajectory& estimate,
                                const Trajectory& truth) {
   std::vector<PosePair> pairs = associate(estimate, truth);
@@ -173,7 +173,7 @@ std::optional<double> peak_memory_mb(const std::optional<std::string>& timings_j
   return timings.at(pointer).get<double>();
 }
 
-/// What the figures need that are about the scenario.
+/// Adds figures that depend on the scenario's expectations, and checks them.
 void add_figures_of_scenario(const ExpectConfig& expect, EstimatorResult& result) {
   const auto memory_mb = peak_memory_mb(result.timings_json);
   if (memory_mb && result.driven_m.value_or(0.0) > 0.0)

@@ -13,12 +13,11 @@ namespace {
 // Quantiles 0.025 and 0.975 of the chi-square distribution with 3 degrees of freedom.
 constexpr double kBandLow = 0.2158;
 constexpr double kBandHigh = 9.3484;
-/// Below this a standard deviation is rounding, not knowledge: 1 um, 1 urad.
+/// Smaller variances are rounding errors: 1 um, 1 urad.
 constexpr double kSmallestVariance = 1e-12;
 /// Times are written with six decimals.
 constexpr double kSameTime_s = 1e-5;
 
-/// What the number in the column `health` stands for.
 Health health_of(double number) {
   const bool is_known = number >= 0.0 && number <= static_cast<double>(Health::kLost);
   return is_known ? static_cast<Health>(std::lround(number)) : Health::kUnknown;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the reported covariances are consistent with the errors.
+// Consistency of reported covariances with the errors (NEES).
 #pragma once
 
 #include "evaluate/trajectory/trajectory_error.hpp"
@@ -11,7 +11,7 @@
 
 namespace waymark::evaluate {
 
-/// How well an estimate says that it is known; values as in lcmtypes/slam_estimate_t.lcm.
+/// Reported state of the localisation; values as in lcmtypes/slam_estimate_t.lcm.
 enum class Health { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
 
 /// Covariance of a pose in the map frame, order x y theta [m^2, m rad, rad^2].
@@ -22,29 +22,27 @@ struct StampedCovariance {
 };
 
 /// Normalised estimation error squared, e^T P^-1 e with 3 degrees of freedom: 3 on average if the
-/// covariances are right.
+/// covariances are consistent.
 struct Nees {
   std::size_t poses{};
-  std::size_t
-      singular{};  ///< covariances left out because they cannot be inverted (the first pose)
-  double mean{};   ///< NaN if there is no pose
-  double share_in_band{};  ///< share between the 2.5 % and 97.5 % quantiles; 0.95 if right
+  std::size_t singular{};  ///< poses left out as their covariance is singular (e.g. the first)
+  double mean{};           ///< NaN if there is no pose
+  double share_in_band{};  ///< between the 2.5 % and 97.5 % quantiles; 0.95 if consistent
 };
 
-/// Reads `t,cxx,cxy,cxt,cyy,cyt,ctt,health` of covariance.csv, in order of time; older files have
-/// no health.
+/// Reads `t,cxx,cxy,cxt,cyy,cyt,ctt` and, if present, `health` of covariance.csv; in order of time.
 std::vector<StampedCovariance> read_covariances(const std::filesystem::path& file,
                                                 Skipped& skipped);
 
-/// That of a pose's time, or null.
+/// The covariance with that stamp, or null.
 const StampedCovariance* covariance_at(const std::vector<StampedCovariance>& covariances,
                                        double t_s);
 
-/// e^T P^-1 e of one pose; nothing if the covariance cannot be inverted.
+/// e^T P^-1 e of one pose; nullopt if the covariance is singular.
 std::optional<double> nees_of(const PosePair& pair, const Eigen::Matrix3d& covariance,
                               const Se2& world_from_map);
 
-/// @param world_from_map aligned on the first pose.
+/// @param world_from_map  the map's frame, known or aligned on the first pose.
 Nees nees(const std::vector<PosePair>& pairs, const std::vector<StampedCovariance>& covariances,
           const Se2& world_from_map);
 

@@ -27,8 +27,8 @@ struct RelationsSummary {
   MeanAndSigma rotation_deg{};
 };
 
-/// Relations between poses less than kNear_s apart say how good the scan matching is; between poses
-/// that are more than kFar_s apart, whether loops were closed.
+/// Relations between poses less than kNear_s apart measure the scan matching; between poses more
+/// than kFar_s apart, loop closing.
 inline constexpr double kNear_s = 5.0;
 inline constexpr double kFar_s = 60.0;
 
@@ -39,12 +39,12 @@ struct RelationsError {
 };
 
 /// Lines `t1 t2 x y z roll pitch yaw`; '#' starts a comment. Lines of another form or out of the
-/// plane are left out and named. @throws InputError if the file cannot be read or has no relation.
+/// plane are added to `skipped`. @throws InputError if the file cannot be read or has no relation.
 std::vector<Relation> read_relations(const std::filesystem::path& file, Skipped& skipped);
 
-/// Mean absolute error of the relative poses; relations that name a time outside the trajectory are
-/// left out and named. Source: Kümmerle et al., "On measuring the accuracy of SLAM algorithms"
-/// (2009), equation 3, with the translation and the rotation kept apart.
+/// Mean absolute error of the relative poses; relations outside the trajectory's times are added to
+/// `skipped`. Source: Kümmerle et al., "On measuring the accuracy of SLAM algorithms" (2009),
+/// equation 3, separately for translation and rotation.
 RelationsError relations_error(const Trajectory& trajectory, const std::vector<Relation>& relations,
                                const std::filesystem::path& relations_file, Skipped& skipped);
 

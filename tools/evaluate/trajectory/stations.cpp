@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kSpacing_m = 1.0;
 constexpr double kFastest_mps = 1.0;  ///< twice the fastest scenario's robot
-/// Stands for "none" in the file, where every column is a finite number; no such value is negative.
+/// Written for nullopt, because every column has to be a finite number; valid values are not
+/// negative.
 constexpr double kNone = -1.0;
 
 std::optional<double> some(double number) {
@@ -42,7 +43,7 @@ Station station_at(double travel_m, const PosePair& pair, const StampedCovarianc
   return station;
 }
 
-/// Of the true robot from one pose to the next; 0 if it was lifted in between.
+/// Travel of the true robot from one pose to the next [m]; 0 if it was lifted in between.
 double step_m(const PosePair& before, const PosePair& after) {
   const double distance_m =
       (after.world_from_truth.translation() - before.world_from_truth.translation()).norm();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The error along the trajectory: one station every metre of travel, so that runs can be compared
-// there.
+// Errors sampled every metre of travel, at stations, so that runs can be compared.
 #pragma once
 
 #include "evaluate/trajectory/nees.hpp"
@@ -26,24 +25,24 @@ struct Station {
   Health health{Health::kUnknown};
 };
 
-/// Truth moves further than this between two poses of a trajectory only when the robot is lifted.
+/// A larger step between two true poses means that the robot was lifted.
 inline constexpr double kLifted_m = 0.3;
 
-/// Length of the true trajectory [m], without being lifted.
+/// Length of the true trajectory [m], without steps in which the robot was lifted.
 double driven_m(const std::vector<PosePair>& pairs);
 
-/// The first pose at or behind each metre; metres without a pose are left out. Where the robot is
-/// lifted it does not travel.
+/// The first pose at or after each metre; metres without a pose are left out. Being lifted is no
+/// travel.
 std::vector<Station> stations(const std::vector<PosePair>& pairs,
                               const std::vector<StampedCovariance>& covariances,
                               const Se2& world_from_map);
 
-/// Standard deviation along at one station over that at another; absent if either has none.
+/// Ratio of sigma_along_m at `to_m` to that at `from_m`; nullopt if either is missing.
 std::optional<double> sigma_growth(const std::vector<Station>& stations, double from_m,
                                    double to_m);
 
 /// `travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,sigma_heading_rad,health`;
-/// -1 where there is none.
+/// -1 = none.
 std::string stations_csv(const std::vector<Station>& stations);
 
 /// @throws InputError if the file cannot be read.

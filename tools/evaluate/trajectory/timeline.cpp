@@ -10,13 +10,13 @@
 namespace waymark::evaluate {
 namespace {
 
-/// A pose is right within these: less than half the distance between hypotheses that matter (a
-/// marker's spacing), more than the error of a good relocalisation.
+/// Largest errors of a pose that counts as right: more than those of a good relocalisation, less
+/// than half of the distance between hypotheses (the markers' spacing).
 constexpr double kRight_m = 0.3;
 constexpr double kRight_rad = 0.17;  // 10 degrees
 constexpr double kStaysRight_s = 1.0;
-/// Beyond the 99.9 % quantile of chi-square with 3 degrees of freedom a covariance is refuted.
-constexpr double kRefuted = 16.266;
+/// 99.9 % quantile of chi-square with 3 degrees of freedom.
+constexpr double kLargestNees = 16.266;
 
 bool is_right(const PosePair& pair, const Se2& world_from_map) {
   const Se2 difference =
@@ -24,7 +24,7 @@ bool is_right(const PosePair& pair, const Se2& world_from_map) {
   return difference.translation().norm() <= kRight_m && std::abs(difference.theta()) <= kRight_rad;
 }
 
-/// Time of the first right pose from `from_s` on that only right ones follow for a while.
+/// Time of the first right pose from `from_s` on that is followed by right ones for kStaysRight_s.
 std::optional<double> found_t_s(const std::vector<PosePair>& pairs, const Se2& world_from_map,
                                 double from_s) {
   std::optional<double> since_s;
@@ -56,7 +56,7 @@ double confident_wrong_s(const std::vector<PosePair>& pairs,
         is_right(pairs[i], world_from_map))
       continue;
     const auto nees = nees_of(pairs[i], stamped->covariance, world_from_map);
-    if (!nees || *nees > kRefuted) sum_s += pairs[i].t_s - pairs[i - 1].t_s;
+    if (!nees || *nees > kLargestNees) sum_s += pairs[i].t_s - pairs[i - 1].t_s;
   }
   return sum_s;
 }
@@ -124,7 +124,7 @@ Timeline timeline(const std::vector<PosePair>& pairs,
   if (lifted_t_s)
     timeline.kidnap = kidnap_at(*lifted_t_s, pairs, covariances, world_from_map, sightings_s);
   for (std::size_t i = 1; i < pairs.size(); ++i) {
-    if (lifted_t_s && pairs[i].t_s >= *lifted_t_s) break;  // then on it is to jump
+    if (lifted_t_s && pairs[i].t_s >= *lifted_t_s) break;  // relocalisation has to jump
     timeline.max_jump_m = std::max(timeline.max_jump_m, jump_m(pairs[i - 1], pairs[i]));
   }
   return timeline;

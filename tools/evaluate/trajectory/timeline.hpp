@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the estimator said of itself, and when: health, jumps, and what happened after a kidnap.
+// Health and jumps of the estimate over time, and its behaviour after a kidnap.
 #pragma once
 
 #include "evaluate/trajectory/nees.hpp"
@@ -10,21 +10,21 @@
 
 namespace waymark::evaluate {
 
-/// After the first time that the robot was lifted and put down elsewhere. Times are seconds after
-/// `sighting_t_s`; absent = it never happened.
+/// Behaviour after the robot was lifted for the first time. Times are seconds after `sighting_t_s`;
+/// nullopt = it never happened.
 struct Kidnap {
   double lifted_t_s{};
-  double sighting_t_s{};  ///< first frame with a marker since; without a log, when it was lifted
-  std::optional<double> says_lost_s{};    ///< 0 if it said so before
-  std::optional<double> found_again_s{};  ///< pose right, and right for a second from then on
-  double confident_wrong_s{};             ///< pose wrong and far outside the covariance, not `lost`
+  double sighting_t_s{};  ///< first frame with a marker since then; without a log: lifted_t_s
+  std::optional<double> says_lost_s{};    ///< health `lost`; 0 if before the sighting
+  std::optional<double> found_again_s{};  ///< first pose that is right for at least a second
+  double confident_wrong_s{};             ///< total time with a wrong pose, NEES > 16.3, not `lost`
 };
 
 struct Timeline {
-  double share_tracking{};  ///< of the estimates with a health
+  double share_tracking{};  ///< of the estimates with a known health
   double share_degenerate{};
   double share_lost{};
-  double max_jump_m{};  ///< correction from one estimate to the next, but for relocalisations
+  double max_jump_m{};  ///< largest correction from one estimate to the next, before a kidnap
   std::optional<Kidnap> kidnap{};
 };
 
@@ -32,7 +32,7 @@ struct Timeline {
 /// @throws InputError if the log cannot be read.
 std::vector<double> sighting_times(const std::filesystem::path& log);
 
-/// When the truth says that the robot was lifted.
+/// Time at which the robot was first lifted [s]; nullopt if it never was.
 std::optional<double> lifted_t_s(const Trajectory& truth);
 
 /// @param pairs       not empty, in order of time.

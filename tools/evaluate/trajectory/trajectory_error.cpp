@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kRpeTravel_m = 1.0;
-constexpr double kShortestAxis_m = 1.0;  ///< a shorter drive has no direction to speak of
+constexpr double kShortestAxis_m = 1.0;  ///< between first and last pose; shorter: no axis
 
 class SpreadOf {
  public:
@@ -39,7 +39,7 @@ double ate_m(const std::vector<PosePair>& pairs, const Se2& world_from_map) {
   return distances.get().rms;
 }
 
-/// world_from_map.
+/// world_from_map by the best rigid fit.
 Se2 best_fit(const std::vector<PosePair>& pairs) {
   std::vector<PointPair> points;
   for (const PosePair& pair : pairs)
@@ -47,7 +47,7 @@ Se2 best_fit(const std::vector<PosePair>& pairs) {
   return rigid_fit(points);
 }
 
-/// Relative pose errors over a metre of true travel, from every pose that has so much ahead of it.
+/// Relative pose errors over kRpeTravel_m of true travel, from every pose.
 void add_rpe(const std::vector<PosePair>& pairs, TrajectoryError& error) {
   std::vector<double> travelled_m{0.0};
   for (std::size_t i = 1; i < pairs.size(); ++i)

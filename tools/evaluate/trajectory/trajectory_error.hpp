@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far an estimated trajectory is from a reference.
+// Errors of an estimated trajectory relative to a reference.
 #pragma once
 
 #include "evaluate/files/tum.hpp"
@@ -10,20 +10,20 @@
 
 namespace waymark::evaluate {
 
-/// An estimated pose and the reference at its time, in the frames they were written in.
+/// An estimated pose and the reference at its time, each in its own frame.
 struct PosePair {
   double t_s{};
   Se2 map_from_estimate{};
   Se2 world_from_truth{};
 };
 
-/// Estimates inside the reference's time span, each with the reference interpolated.
+/// Pairs each estimate within the reference's time span with the interpolated reference.
 std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth);
 
 enum class Alignment {
-  kOrigin,  ///< the first poses coincide: simulation, where the map starts at the first pose
-  kSe2,     ///< best rigid fit of the positions: real logs
-  kFrame    ///< none: where the map lies in the world is known
+  kOrigin,  ///< on the first poses, where the map begins; for simulations
+  kSe2,     ///< best rigid fit of the positions; for real logs
+  kFrame    ///< none: the map's frame in the world is known
 };
 
 std::string_view name_of(Alignment alignment);
@@ -49,7 +49,7 @@ struct TrajectoryError {
   double ate_origin_m{};                ///< RMS distance after alignment on the first pose
   double ate_se2_m{};                   ///< RMS distance after the best rigid fit
   std::optional<double> ate_frame_m{};  ///< RMS distance in a known frame, without alignment
-  /// The rest is after `alignment`.
+  // Below: after `alignment`.
   Spread distance_m{};
   std::optional<Spread> along_m{};   ///< along the line from the first to the last true pose
   std::optional<Spread> across_m{};  ///< absent if that line is shorter than a metre
@@ -62,7 +62,7 @@ struct TrajectoryError {
 };
 
 /// @param pairs           not empty.
-/// @param world_from_map  if the map's frame is known: then nothing is aligned.
+/// @param world_from_map  the map's frame if it is known; then nothing is aligned.
 TrajectoryError trajectory_error(const std::vector<PosePair>& pairs, Alignment alignment,
                                  const std::optional<Se2>& world_from_map = std::nullopt);
 

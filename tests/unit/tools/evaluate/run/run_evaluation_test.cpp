@@ -71,7 +71,7 @@ TEST(Run, WritesMetricsAndTheTable) {
   run.file("waymark/covariance.csv",
            "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n0.2,0.01,0,0,0.01,0,0.01,2\n");
 
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
 
   const Json waymark = json_in(run.path() / "waymark/metrics.json");
   EXPECT_EQ(waymark["length_px"], 200.0);
@@ -109,7 +109,7 @@ TEST(Run, NoLineOfTheTablesIsTooLongForATerminal) {
   run.file("scenario.toml",
            "[world]\nlength_m = 10\n[expect]\nate_origin_m = 0.01\nmarker_map_share = 0.9\n");
   add_estimator(run, "marker_matching_rotation_only", 200, 1.0);
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
   for (const std::string& line : read_lines(run.path() / "results.md")) {
     if (line.starts_with("|")) {
       EXPECT_LE(line.size(), 180U) << line;
@@ -149,12 +149,12 @@ TEST(Run, ARunWithInjectedFaultsIsMarked) {
   const TemporaryFolder run;
   add_truth(run);
   add_estimator(run, "waymark", 200, 1.0);
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
   EXPECT_THAT(read_text(run.path() / "results.md"), Not(HasSubstr("Faults")));
   EXPECT_TRUE(json_in(run.path() / "results.json")["faults_toml"].is_null());
 
   run.file("variant_applied.toml", "[[variant]]\nname = \"ghosts\"\n");
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
   EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("Faults were put into"));
   EXPECT_EQ(json_in(run.path() / "results.json")["faults_toml"],
             "[[variant]]\nname = \"ghosts\"\n");
@@ -176,7 +176,7 @@ TEST(Run, AFinalTrajectoryHasItsOwnFiguresAndRow) {
   add_estimator(run, "gmapping", 200, 1.01);
   add_estimator(run, "odometry", 202, 1.02);
   run.file("gmapping/trajectory_final.tum", tum(0.0, 1.0));
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
   const Json gmapping = json_in(run.path() / "gmapping/metrics.json");
   EXPECT_GT(gmapping["ate_origin_m"], 0.01);
   EXPECT_EQ(gmapping["final_ate_origin_m"], 0.0);
@@ -195,7 +195,7 @@ TEST(Run, PosesInASurveysCoordinatesAreNotAligned) {
   run.file("waymark/config.toml", "[robot.markers]\nsize_m = 0.4\nsurvey_file = \"s.csv\"\n");
   add_estimator(run, "odometry", 200, 1.0);
   run.file("odometry/config.toml", "[robot.markers]\nsurvey_file = \"\"\n");
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
   const Json waymark = json_in(run.path() / "waymark/metrics.json");
   EXPECT_NEAR(waymark["ate_frame_m"].get<double>(), 1.0, 1e-9);  // the truth begins at x = 1 m
   EXPECT_NEAR(waymark["ate_origin_m"].get<double>(), 0.0, 1e-9);
@@ -207,7 +207,7 @@ TEST(Run, MapChangesAreInTheResults) {
   add_truth(run);
   add_estimator(run, "waymark", 200, 1.0);
   run.file("waymark/changes.csv", "change,id\nmarker_missing,7\nwall_gone,-1\n");
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
   EXPECT_EQ(json_in(run.path() / "waymark/metrics.json")["changes"],
             (Json{"marker_missing,7", "wall_gone,-1"}));
   EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("waymark: 2 things are not as"));
@@ -227,7 +227,7 @@ TEST(Run, RowsStandInTheTablesOrder) {
 TEST(Run, WithoutTruthThereAreLengthsOnly) {
   const TemporaryFolder run;
   add_estimator(run, "odometry", 200, 1.0);
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
   const Json metrics = json_in(run.path() / "odometry/metrics.json");
   EXPECT_EQ(metrics["length_m"], 10.0);
   EXPECT_TRUE(metrics["accuracy_percent"].is_null());
@@ -240,12 +240,12 @@ TEST(Run, AnEstimatorWithoutAMapIsAFailureOfThatRowOnly) {
   add_truth(run);
   add_estimator(run, "odometry", 200, 1.0);
   run.file("waymark/trajectory.tum", tum(0.0, 1.0));
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitFailed);
   const Json waymark = json_in(run.path() / "waymark/metrics.json");
   EXPECT_TRUE(waymark["length_px"].is_null());
   EXPECT_EQ(waymark["ate_origin_m"], 0.0);
   EXPECT_THAT(waymark["problems"][0].get<std::string>(), HasSubstr("map.yaml: cannot be read"));
-  EXPECT_EQ(run_run(run.path(), {"odometry"}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {"odometry"}, {}, kQuietly), kExitOk);
 }
 
 TEST(Run, MemoryIsCountedByMetreOfARobotThatHasDriven) {
@@ -269,8 +269,8 @@ TEST(Run, SkippedLinesFailUnlessTolerated) {
   add_truth(run);
   add_estimator(run, "odometry", 200, 1.0);
   run.file("odometry/trajectory.tum", tum(0.0, 1.0) + "garbage\n");
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
-  EXPECT_EQ(run_run(run.path(), {}, {}, Output{false, true}), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitFailed);
+  EXPECT_EQ(run_run(run.path(), {}, {}, Output{false, true}), kExitOk);
   EXPECT_EQ(json_in(run.path() / "odometry/metrics.json")["skipped"].size(), 1u);
 }
 
@@ -278,7 +278,7 @@ TEST(Run, TruthOfAnotherRunIsAProblem) {
   const TemporaryFolder run;
   add_estimator(run, "odometry", 200, 1.0);
   run.file("truth.tum", "1000 0 0 0 0 0 0 1\n1001 0 0 0 0 0 0 1\n");
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFailed);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitFailed);
   EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("within the truth's time span"));
   EXPECT_THAT(read_text(run.path() / "results.json"), Not(HasSubstr("nan")));
 }
@@ -288,7 +288,7 @@ TEST(Run, AWorldWithCornersHasNoLength) {
   add_truth(run);
   run.file("scenario.toml", "[world]\nlayout = \"L\"\nlength_m = 10\n");
   add_estimator(run, "waymark", 200, 1.0);
-  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
   const Json metrics = json_in(run.path() / "waymark/metrics.json");
   EXPECT_TRUE(metrics["length_m"].is_null());
   EXPECT_TRUE(metrics["accuracy_percent"].is_null());
@@ -297,7 +297,7 @@ TEST(Run, AWorldWithCornersHasNoLength) {
 
   EvaluationOptions options{};
   options.true_length_m = 10.0;  // whoever says so wants it
-  EXPECT_EQ(run_run(run.path(), {}, options, kQuietly), kFine);
+  EXPECT_EQ(run_run(run.path(), {}, options, kQuietly), kExitOk);
   EXPECT_EQ(json_in(run.path() / "waymark/metrics.json")["accuracy_percent"], 100.0);
 }
 

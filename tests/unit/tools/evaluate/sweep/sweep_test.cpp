@@ -133,7 +133,7 @@ TEST(Sweep, TheWorstIsTheSmallestWhereMoreIsBetter) {
 
 TEST(Sweep, AllFilesAreWritten) {
   const SweptFolder sweep;
-  EXPECT_EQ(run_sweep(sweep.folder.path(), {}), kFine);
+  EXPECT_EQ(run_sweep(sweep.folder.path(), {}), kExitOk);
   const std::string csv = read_text(sweep.folder.path() / "results.csv");
   EXPECT_THAT(csv, HasSubstr("\nplain,waymark,3,0,1,0.5,"));
   EXPECT_THAT(read_text(sweep.folder.path() / "runs.csv"),
