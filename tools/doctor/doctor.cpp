@@ -10,28 +10,28 @@
 namespace waymark {
 namespace {
 
-// What camera and markers are held against has to be better than they are; a robot whose distances
-// nobody has measured is taken to be as good as its wheels.
+// A measured odometry scale is used to check the camera if it is better than the first sigma; else
+// the scale is 1 with the second one, that of ordinary wheels.
 constexpr double kGoodScaleSigma = 0.005;
 constexpr double kUnmeasuredScaleSigma = 0.01;
 
-/// The LiDAR where it is, not where it is said to be, and the right way round.
+/// The log with the LiDAR's measured mounting, and with mirrored scans corrected.
 ImportedLog with_lidar(ImportedLog log, const LidarConfig& lidar, bool is_mirrored) {
   log.robot.lidar.x_m = lidar.x_m;
   log.robot.lidar.y_m = lidar.y_m;
   log.robot.lidar.yaw_rad = lidar.yaw_rad;
   for (ImportedScan& scan : log.scans)
-    put_right(scan, is_mirrored, Duration{0});
+    correct(scan, is_mirrored, Duration{0});
   return log;
 }
 
-/// A scale that is measured well, else 1.
+/// The measured scale if it is accurate, else 1.
 Measured best_scale(const Measured& measured) {
   if (measured.sigma < kGoodScaleSigma) return {std::abs(measured.value), measured.sigma};
   return {1.0, kUnmeasuredScaleSigma};
 }
 
-/// @param log  with the LiDAR where it is
+/// @param log  with the LiDAR's true mounting.
 std::optional<CameraCalibration> calibrate(const DoctorInput& input, ImportedLog log,
                                            const std::optional<TurnComparison>& turns,
                                            const std::optional<HandEye>& hand_eye,

@@ -142,8 +142,8 @@ DoctorInput read_input(const std::filesystem::path& file,
     lidar.y_m = input.described->lidar.y_m;
     lidar.yaw_rad = input.described->lidar.yaw_rad;
     for (ImportedScan& scan : input.log.scans)
-      put_right(scan, input.described->lidar.mirrored,
-                duration_from_seconds(input.described->lidar.late_s));
+      correct(scan, input.described->lidar.mirrored,
+              duration_from_seconds(input.described->lidar.late_s));
     if (input.channels.contains(std::string{channels::kCamera.name})) {
       input.camera = read_camera(file, *input.described, progress);
     } else if (input.channels.contains(std::string{channels::kMarkers.name})) {

@@ -35,28 +35,28 @@ struct Options {
   RosbagOptions rosbag{};
 };
 
-/// What all kinds of logs have.
+/// Options of all log formats.
 void add_common_options(Command& app, Options& options, LidarMounting& mounting) {
   app.add_option("FILE", options.file, "the log to read").required();
   app.add_option("--out", options.out,
                  "LCM log to write; robot.toml (and reference.tum) go beside it")
       .required();
-  app.add_flag("--tolerant", options.tolerant, "exit with 0 although lines or events were skipped");
-  app.add_flag(
-      "--fix-reversed-odometry", options.fix_reversed_odometry,
-      "where scans show that odometry counts backing up as driving forward, turn it round");
+  app.add_flag("--tolerant", options.tolerant, "exit with 0 even if lines or events were skipped");
+  app.add_flag("--fix-reversed-odometry", options.fix_reversed_odometry,
+               "reverse odometry where scans show that it counts driving backwards as forwards");
   app.add_option("--odometry-scale", options.odometry_scale,
-                 "odometry's distances are multiplied by it (0.0254 where they are inches)")
+                 "factor for odometry distances (0.0254 if they are in inches)")
       .check(positive_number());
-  app.add_option("--lidar-x-m", mounting.x_m, "where the LiDAR sits in the base frame")
+  app.add_option("--lidar-x-m", mounting.x_m, "x of the LiDAR in the base frame")
       .check(finite_number());
-  app.add_option("--lidar-y-m", mounting.y_m, "where the LiDAR sits in the base frame")
+  app.add_option("--lidar-y-m", mounting.y_m, "y of the LiDAR in the base frame")
       .check(finite_number());
-  app.add_option("--lidar-yaw-deg", options.lidar_yaw_deg, "direction of the LiDAR's x axis")
+  app.add_option("--lidar-yaw-deg", options.lidar_yaw_deg,
+                 "direction of the LiDAR's x axis in the base frame")
       .check(angle_deg());
 }
 
-/// Of logs whose scans do not say it.
+/// For formats whose scans do not contain the minimum range.
 void add_range_min(Command& app, double& range_min_m) {
   app.add_option("--min-range-m", range_min_m, "shortest range measured")
       .check(nonnegative_number())
@@ -87,25 +87,25 @@ Command add_carmen(Command& app, Options& options) {
                     {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}, "of both timestamps (default: s)");
   carmen
       .add_option("--scan-period-s", options.carmen.scan_period_s,
-                  "time between scans, of lines that have none")
+                  "time between scans, for lines without timestamps")
       .check(positive_number());
   carmen
       .add_option("--max-range-m", options.carmen.range_max_m,
-                  "ranges from here on are no returns (default: where a pile-up shows, else as the "
-                  "line says, else 81.83)")
+                  "ranges from here on mean no return (default: found from a peak of equal ranges, "
+                  "else as the line says, else 81.83)")
       .check(positive_number());
   carmen.add_choice("--range-unit", options.carmen.range_unit_m,
                     {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}}, "of ranges (default: m)");
   carmen
       .add_option("--first-angle-deg", options.first_angle_deg,
-                  "beam 0 (default: as the line says; of FLASER and RLASER so that the middle beam "
-                  "looks ahead)")
+                  "angle of beam 0 (default: as the line says; for FLASER and RLASER such that the "
+                  "middle beam points ahead)")
       .check(angle_deg());
   carmen
       .add_option(
           "--angle-step-deg", options.angle_step_deg,
-          "between beams (default: as the line says; of FLASER and RLASER that with which walls "
-          "are straight, 180 degrees in all where they do not decide)")
+          "angle between beams (default: as the line says; for FLASER and RLASER the one that "
+          "makes walls straight, or 180 degrees in total if walls do not decide)")
       .check(angle_deg());
   return carmen;
 }
@@ -121,19 +121,19 @@ Command add_mbot(Command& app, Options& options) {
   mbot.add_option("--odometry-channel", chosen.odometry_channel,
                   "pose2D_t, pose_xyt_t, odometry_t or bot_core.pose_t");
   mbot.add_option("--encoder-channel", chosen.encoder_channel,
-                  "left and right ticks of a MAEBot (default, without --odometry-channel: the only "
-                  "channel that has some)");
+                  "left and right encoder ticks of a MAEBot (default, without --odometry-channel: "
+                  "the only channel with ticks)");
   mbot.add_option("--reference-channel", chosen.reference_channel,
                   "poses to write as reference.tum, types as for --odometry-channel");
   mbot.add_option("--meters-per-tick", chosen.meters_per_tick,
-                  "way of a wheel per tick (default: the MAEBot's whose messages they are)")
+                  "distance per encoder tick (default: that of the MAEBot with such messages)")
       .check(positive_number());
   mbot.add_option("--wheel-base-m", chosen.wheel_base_m,
                   "distance between the wheels (default: the MAEBot's)")
       .check(positive_number());
   mbot.add_option("--max-range-m", chosen.range_max_m,
-                  "ranges from here on are no returns (default: where a pile-up shows, else 6 for "
-                  "lidar_t or the longest range)")
+                  "ranges from here on mean no return (default: found from a peak of equal ranges, "
+                  "else 6 for lidar_t, else the longest range)")
       .check(positive_number());
   return mbot;
 }
@@ -154,12 +154,12 @@ Command add_rosbag(Command& app, Options& options) {
                     "sensor_msgs/CameraInfo (default: the only one)");
   rosbag
       .add_option("--max-range-m", chosen.range_max_m,
-                  "ranges from here on are no returns (default: where a pile-up shows, else as "
-                  "the scans say)")
+                  "ranges from here on mean no return (default: found from a peak of equal ranges, "
+                  "else as the scans say)")
       .check(positive_number());
   rosbag.add_flag("--no-images", chosen.without_images, "leave the camera out");
   rosbag.add_option("--base-frame", chosen.base_frame,
-                    "frame of the base in tf_static (default: the child frame of odometry)");
+                    "base frame in tf_static (default: the child frame of odometry)");
   return rosbag;
 }
 
@@ -176,7 +176,7 @@ void convert_units(Options& options) {
   }
 }
 
-void tell(const ImportReport& report) {
+void log_report(const ImportReport& report) {
   for (const std::string& message : report.messages())
     logging::warn("{}", message);
   for (const std::string& note : report.notes())
@@ -198,13 +198,14 @@ int import(const Options& options, Kind kind) {
   try {
     ImportedLog log = read(options, kind, report);
     if (kind != Kind::kCarmen) scale_distances(log.odometry, options.odometry_scale);
-    examine(log, options.fix_reversed_odometry ? ReversedOdometry::kMend : ReversedOdometry::kName,
+    examine(log,
+            options.fix_reversed_odometry ? ReversedOdometry::kCorrect : ReversedOdometry::kReport,
             report);
     write_imported_log(log, report, options.out);
-    tell(report);
+    log_report(report);
     fmt::print("{}", summary(log, report));
   } catch (...) {
-    tell(report);
+    log_report(report);
     throw;
   }
   if (report.num_skipped() == 0 || options.tolerant) return kExitOk;

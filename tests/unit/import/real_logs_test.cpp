@@ -52,7 +52,7 @@ void expect_no_false_finding(const ImportReport& report) {
 Found import_carmen(const std::filesystem::path& file, const CarmenOptions& options = {}) {
   Found found{{}, {file, AddressUnit::kLine}};
   found.log = read_carmen_log(file, options, found.report);
-  examine(found.log, ReversedOdometry::kName, found.report);
+  examine(found.log, ReversedOdometry::kReport, found.report);
   expect_no_false_finding(found.report);
   return found;
 }
@@ -154,7 +154,7 @@ TEST(RealLogs, MbotConvex) {
   options.reference_channel = "SLAM_POSE";
 
   ImportedLog log = read_mbot_log(*file, options, report);
-  examine(log, ReversedOdometry::kName, report);
+  examine(log, ReversedOdometry::kReport, report);
 
   EXPECT_EQ(report.num_skipped(), 0);
   EXPECT_EQ(log.scans.size(), 459U);

@@ -15,18 +15,18 @@ namespace {
 constexpr std::array kFields_deg{180.0, 270.0, 360.0, 240.0, 190.0, 100.0};  // the usual ones first
 constexpr double kUrgStep_deg = 360.0 / 1024.0;
 constexpr double kSameStep = 0.004;      // of the step: 682 beams of an URG make 240 degrees nearly
-constexpr std::size_t kWindows = 8;      // that a scan is cut into
+constexpr std::size_t kWindows = 8;      // per scan
 constexpr std::size_t kFewestBeams = 9;  // in a window
 constexpr std::size_t kFewestWindows = 100;
 constexpr double kFarthestWall_m = 30.0;
-constexpr double kFloor_m = 0.003;  // scatter of walls: less says no more
-constexpr double kClearly = 0.02;   // of the mean logarithm; a wrong field of view costs 0.1
+constexpr double kFloor_m = 0.003;  // smallest scatter that is distinguished
+constexpr double kClearly = 0.02;   // of the mean logarithm; a wrong field of view gives 0.1
 
-constexpr double kRound = 0.004;  // a window's ranges are no wall if they differ by less
+constexpr double kRound = 0.004;  // smallest relative spread of a wall's ranges in a window
 
 using Window = std::span<const double>;
 
-/// All are ranges, and not one and the same: that is what a driver writes where nothing returns.
+/// True if all are ranges and they differ: equal ones are a driver's code for "no return".
 bool may_be_wall(const Window& window) {
   const auto [least, most] = std::ranges::minmax(window);
   return std::ranges::all_of(window, [](double r) { return r > 0.0 && r < kFarthestWall_m; }) &&
@@ -39,7 +39,7 @@ bool is_usual_step(double step_deg) {
          std::abs(step_deg - kUrgStep_deg) < kSameStep * kUrgStep_deg;
 }
 
-/// Steps of all fields of view, those that LiDARs have first.
+/// Steps of all fields of view, the usual ones first.
 std::vector<double> possible_steps_rad(std::size_t num_beams) {
   std::vector<double> steps_deg;
   for (const double field_deg : kFields_deg)
@@ -64,7 +64,7 @@ std::vector<Window> windows_of(std::span<const std::span<const double>> scans,
   return windows;
 }
 
-/// Mean logarithm of the windows' scatter about straight walls.
+/// Mean logarithm of the windows' scatter [m] about straight walls.
 double curvature_of_walls(std::span<const Window> windows, double step_rad) {
   std::vector<double> angles_rad(windows.front().size());
   for (std::size_t i = 0; i < angles_rad.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Angles of beams that a log does not say.
+// Beam angles for logs that do not contain them.
 #pragma once
 
 #include <optional>
@@ -17,13 +17,13 @@ struct BeamAngles {
 /// numbers.
 std::optional<BeamAngles> conventional_angles(std::size_t num_beams);
 
-/// First beam of a scan that looks ahead with its middle, on whole degrees.
+/// Angle of the first beam of a scan that is centred ahead, rounded to whole degrees.
 double first_angle_rad(std::size_t num_beams, double step_rad);
 
-/// Of the fields of view that LiDARs have, that with which walls are straightest, where it is
-/// clearly better than conventional_angles(); these else. nullopt where neither is known: scans
-/// with few walls, or none, of an unusual number of beams.
-/// @param scans  ranges [m] of scans of num_beams; what is not finite and positive is no range
+/// The field of view, among those of common LiDARs, with which walls are straightest, if it is
+/// clearly better than conventional_angles(); else these. nullopt if neither is known: an unusual
+/// number of beams, and few walls.
+/// @param scans  ranges [m] of scans of num_beams; only finite positive ones are used.
 std::optional<BeamAngles> straightest_angles(std::span<const std::span<const double>> scans,
                                              std::size_t num_beams);
 

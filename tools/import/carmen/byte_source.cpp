@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kBzip2Magic = "BZh";
 
-/// What people download logs in, and we do not read.
+/// Archive formats that are recognised but not read.
 struct Archive {
   std::string_view magic;
   std::string_view kind;
@@ -38,7 +38,7 @@ struct CloseFile {
 
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
-/// zlib reads what is not compressed as it is.
+/// zlib also reads files that are not compressed.
 class GzipSource final : public ByteSource {
  public:
   explicit GzipSource(const std::filesystem::path& path) : file_{gzopen(path.c_str(), "rb")} {
@@ -64,7 +64,7 @@ class GzipSource final : public ByteSource {
   std::unique_ptr<gzFile_s, Close> file_;
 };
 
-/// One or several streams behind each other, as parallel compressors write them.
+/// One or several concatenated streams, as parallel compressors write them.
 class Bzip2Source final : public ByteSource {
  public:
   explicit Bzip2Source(File file) : file_{std::move(file)} { open({}); }
@@ -96,7 +96,7 @@ class Bzip2Source final : public ByteSource {
     if (code != BZ_OK) stream_.reset();
   }
 
-  /// Bytes behind a stream's end belong to the next one.
+  /// Bytes after a stream's end belong to the next one.
   void next_stream() {
     int code = BZ_OK;
     void* bytes = nullptr;

@@ -13,14 +13,14 @@ class ByteSource {
  public:
   virtual ~ByteSource() = default;
 
-  /// Number of bytes put into the buffer; 0 at the end of what can be read.
+  /// @return number of bytes read into the buffer; 0 at the end of the readable part.
   virtual std::size_t read(std::span<char> buffer) = 0;
 
-  /// Why the file ended before its end (cut off or damaged compressed data); empty when it did not.
+  /// Why reading stopped early (truncated or damaged compressed data); empty if it did not.
   virtual std::string fault() const = 0;
 };
 
-/// By the file's first bytes, whatever its name.
+/// Recognises the format by the file's first bytes, not by its name.
 /// @throws SetupError when the file cannot be read or is empty.
 std::unique_ptr<ByteSource> open_bytes(const std::filesystem::path& path);
 

@@ -15,17 +15,17 @@ namespace {
 
 constexpr int kMaxBeams = 4000;            // as robot.lidar.num_beams
 constexpr double kLatestTime_s = 4e9;      // the year 2096
-constexpr double kLargestPose = 1e6;       // [m, rad] no robot drives or turns that far
-constexpr double kLargestMounting = 10.0;  // [m, rad] no robot is that large
+constexpr double kLargestPose = 1e6;       // [m, rad]
+constexpr double kLargestMounting = 10.0;  // [m, rad]
 
-// Keywords of CARMEN's loggers that carry neither a LiDAR scan nor odometry that we use.
+// Keywords of CARMEN's loggers without LiDAR scans and odometry that are used here.
 constexpr std::array<std::string_view, 23> kOtherKeywords{
     "SYNC",      "TRUEPOS",  "RAWLASER1", "RAWLASER2",        "RAWLASER3",     "RAWLASER4",
     "RAWLASER5", "LASER3",   "LASER4",    "LASER5",           "ROBOTVELOCITY", "POSITION",
     "MARKER",    "SCANMARK", "NMEAGGA",   "NMEARMC",          "SONAR",         "BUMPER",
     "IMU",       "IMU_CORR", "PANTILT",   "FOLLOWTRAJECTORY", "BASEVELOCITY"};
 
-/// What a user may say of all lines.
+/// User's options that apply to all lines.
 struct Given {
   const CarmenBeams& beams;
   const CarmenUnits& units;
@@ -44,7 +44,7 @@ Se2 take_pose(FieldCursor& fields, std::string_view name, const CarmenUnits& uni
   return {x_m, y_m, theta_rad};
 }
 
-/// A range that is negative or NaN is none.
+/// Negative ranges become NaN and are counted, like NaN.
 void take_ranges(FieldCursor& fields, int num_beams, CarmenScan& scan) {
   scan.ranges_m.reserve(static_cast<std::size_t>(num_beams));
   for (int i = 0; i < num_beams && !fields.failed(); ++i) {
@@ -57,8 +57,8 @@ void take_ranges(FieldCursor& fields, int num_beams, CarmenScan& scan) {
 
 constexpr std::size_t kAllTimes = 3;
 
-/// The three fields that end every line, or those that an older logger writes; checks that nothing
-/// follows.
+/// Reads the three fields that end every line, or the fewer ones of older loggers; checks that
+/// nothing follows.
 template <class Line>
 void take_times(FieldCursor& fields, const CarmenUnits& units, Line& line) {
   line.num_times = std::min(fields.num_left(), kAllTimes);
@@ -77,7 +77,7 @@ void take_times(FieldCursor& fields, const CarmenUnits& units, Line& line) {
                                               "--time-unit ms or us"
                                             : ""));
   }
-  // Nobody needs a logger's time unless ipc_timestamp is of no use.
+  // A wrong logger's time is no error: it is only used if ipc_timestamp is unusable.
   line.logger_time_s = std::clamp(line.logger_time_s, 0.0, kLatestTime_s);
 }
 
@@ -110,12 +110,12 @@ CarmenLine parse_old_laser(FieldCursor& fields, CarmenLidar lidar, const Given& 
   return finish(fields, scan);
 }
 
-/// Step from the header: its resolution, or field of view over beams where that is 0.
+/// Angular step: the header's resolution, or field of view over beams if that is 0.
 double angle_step(FieldCursor& fields, double field_of_view_rad, double resolution_rad,
                   int num_beams) {
   const double gaps = std::max(1, num_beams - 1);
   if (resolution_rad == 0.0) return field_of_view_rad / gaps;
-  // Beams that reach the end of the field of view, or end one step before.
+  // The last beam is at the end of the field of view, or one step before.
   constexpr double kRounding = 0.02;  // start angle and resolution are written with six digits
   const bool agrees = resolution_rad > 0.0 &&
                       resolution_rad * gaps <= field_of_view_rad * (1.0 + kRounding) &&
@@ -167,7 +167,7 @@ CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const Given
   return finish(fields, scan);
 }
 
-/// Parameters are free text but for those that matter here.
+/// Parses the parameters of the LiDARs' mounting; all others are CarmenOther.
 CarmenLine parse_parameter(FieldCursor& fields) {
   using What = CarmenMounting::What;
   constexpr std::array<std::pair<std::string_view, What>, 3> kMountings{

@@ -7,7 +7,7 @@
 //     laser_theta odom_x odom_y odom_theta laser_tv laser_rv forward_safety side_safety turn_axis
 //     | the same three
 //     Of the three that end a line, older loggers write no host, or ipc_timestamp alone, or none.
-//   PARAM name value | the same three: of them, where the LiDARs are mounted
+//   PARAM name value | the same three (only the LiDARs' mounting is used)
 // FLASER and ROBOTLASER1 are the front LiDAR, RLASER and ROBOTLASER2 the rear one.
 #pragma once
 
@@ -24,14 +24,14 @@ namespace waymark {
 
 enum class CarmenLidar { kFront, kRear };
 
-/// What FLASER and RLASER lines do not say; nullopt = as beam_angles.hpp finds it. ROBOTLASER lines
-/// say it themselves, but what is given here overrides them.
+/// Beam angles given by the user, which override those of ROBOTLASER lines. FLASER and RLASER lines
+/// have none; nullopt = as found by straightest_angles().
 struct CarmenBeams {
   std::optional<double> first_angle_rad{};
   std::optional<double> angle_step_rad{};
 };
 
-/// What the numbers of a line count, where it is not seconds, metres and radians.
+/// Units of the numbers in a line, in seconds, metres and radians.
 struct CarmenUnits {
   double time_s{1.0};
   double odometry_m{1.0};    ///< of the poses
@@ -41,12 +41,12 @@ struct CarmenUnits {
 struct CarmenScan {
   CarmenLidar lidar{CarmenLidar::kFront};
   double time_s{0.0};                   ///< ipc_timestamp
-  double logger_time_s{0.0};            ///< may be anything finite
-  std::size_t num_times{0};             ///< fields that the line has for the times: 3, or 2, 1, 0
-  std::vector<double> ranges_m{};       ///< as written; may be +inf; NaN where the line has none
-  int num_no_ranges{0};                 ///< of these
-  std::optional<BeamAngles> angles{};   ///< when the line says them
-  std::optional<double> range_max_m{};  ///< when the line says it
+  double logger_time_s{0.0};            ///< finite, not validated
+  std::size_t num_times{0};             ///< number of time fields in the line: 0 to 3
+  std::vector<double> ranges_m{};       ///< as written; may be +inf; NaN for negative ones
+  int num_no_ranges{0};                 ///< number of NaN in ranges_m
+  std::optional<BeamAngles> angles{};   ///< nullopt if the line has none
+  std::optional<double> range_max_m{};  ///< nullopt if the line has none
   Se2 odom_from_lidar{};
   Se2 odom_from_base{};
   double heading_rad{0.0};  ///< of odom_from_base, as written
@@ -59,7 +59,7 @@ struct CarmenOdometry {
   Se2 odom_from_base{};
 };
 
-/// A parameter that says where a LiDAR is mounted.
+/// A parameter of a LiDAR's mounting.
 struct CarmenMounting {
   enum class What { kForward, kSideward, kAngle };
 
@@ -68,15 +68,15 @@ struct CarmenMounting {
   double value{0.0};  ///< [m, m, rad] base frame
 };
 
-/// A line that says nothing about LiDAR or odometry: comment, other parameter, another sensor.
+/// Any other line: comment, other parameter, another sensor.
 struct CarmenOther {
-  std::string_view keyword{"other lines"};  ///< of a sensor; static
+  std::string_view keyword{"other lines"};  ///< of a known sensor; static storage
 };
 
 using CarmenLine =
     std::variant<CarmenScan, CarmenOdometry, CarmenMounting, CarmenOther, LineProblem>;
 
-/// Never throws on account of the line. O(length).
+/// Errors in the line give a LineProblem, never an exception. O(length).
 CarmenLine parse_carmen_line(std::string_view line, const CarmenBeams& beams,
                              const CarmenUnits& units = {});
 

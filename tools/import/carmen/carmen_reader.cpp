@@ -25,7 +25,7 @@ namespace {
 // A SICK LMS 200 measures up to 80 m; from 8183 on, in centimetres, its values are error codes
 // (SICK, Telegrams for configuring and operating the LMS 2xx).
 constexpr double kSickRangeMax_m = 81.83;
-constexpr double kFarthest_m = 150.0;  // median of ranges: no 2D LiDAR sees that far
+constexpr double kFarthest_m = 150.0;  // largest plausible median of the ranges
 
 Timestamp timestamp_from_seconds(double seconds) {
   return Timestamp{duration_from_seconds(seconds)};
@@ -128,7 +128,7 @@ void CarmenReader::apply_mounting() {
   if (options_.lidar == CarmenLidar::kRear && std::abs(base_from_lidar.theta()) < radians(90.0)) {
     base_from_lidar = base_from_lidar * Se2{0.0, 0.0, radians(180.0)};
   }
-  // The lines have six decimals.
+  // Poses in the lines have six decimals.
   const auto rounded = [](double value) {
     return std::round(value * 1e6) / 1e6;
   };
@@ -138,7 +138,7 @@ void CarmenReader::apply_mounting() {
   lidar.yaw_rad = options_.mounting.yaw_rad.value_or(base_from_lidar.theta());
 }
 
-/// What most lines say, else a SICK's.
+/// Median maximum range of the lines; a SICK's for lines without one.
 double CarmenReader::usual_range_max_m() {
   std::vector<double> limits_m;
   for (const auto& scan : scans_)
@@ -158,7 +158,7 @@ std::string CarmenReader::what_is_not_read() const {
   return "";
 }
 
-/// What lines leave open, and what in them cannot be.
+/// Reports ranges that are not measured.
 /// @throws SetupError for ranges that are not metres.
 void CarmenReader::note_assumptions() {
   std::int64_t no_ranges = 0;
@@ -180,8 +180,8 @@ void CarmenReader::note_assumptions() {
   }
 }
 
-/// Fills in the angles of lines that do not say them: as given, else as they are with most of these
-/// lines' number of beams.
+/// Sets the angles of lines without them: as given, else those found for the most frequent number
+/// of beams.
 /// @throws SetupError when they are unknown.
 void CarmenReader::complete_angles() {
   const auto& [given_first_rad, given_step_rad] = options_.beams;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A CARMEN log (.clf, .log; gzip, bzip2 or not) -> scans and odometry.
+// Reader of CARMEN logs (.clf, .log; plain, gzip or bzip2).
 #pragma once
 
 #include "import/carmen/carmen_line.hpp"
@@ -14,12 +14,12 @@ namespace waymark {
 
 struct CarmenOptions {
   CarmenLidar lidar{CarmenLidar::kFront};
-  std::optional<CarmenOdometrySource> odometry{};  ///< nullopt = the scans' lines, if they move
+  std::optional<CarmenOdometrySource> odometry{};  ///< nullopt = see choose_odometry()
   CarmenBeams beams{};
   CarmenUnits units{};
-  std::optional<double> scan_period_s{};  ///< of lines without times
-  std::optional<CarmenStamps> stamps{};   ///< nullopt = ipc_timestamp if it advances
-  std::optional<double> range_max_m{};    ///< nullopt = see mark_no_returns(); usual: SICK LMS
+  std::optional<double> scan_period_s{};  ///< for lines without times
+  std::optional<CarmenStamps> stamps{};   ///< nullopt = see choose_stamps()
+  std::optional<double> range_max_m{};    ///< nullopt = see mark_no_returns(); default: SICK LMS
   double range_min_m{0.0};
   double range_unit_m{1.0};  ///< of the lines' ranges
   LidarMounting mounting{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a line, taken one after the other; the first error is kept.
+// Reads the fields of a line one after the other, and keeps the first error.
 #pragma once
 
 #include "import/log/import_report.hpp"
@@ -15,18 +15,18 @@ class FieldCursor {
   /// @param line  must outlive the cursor
   explicit FieldCursor(std::string_view line) : rest_{line} {}
 
-  /// Empty behind the last field, and once something was wrong.
+  /// Next field. Empty after the last field (an error), and after an error.
   std::string_view word(std::string_view name);
-  /// Any finite number; 0 once something was wrong.
+  /// A finite number; 0 after an error.
   double number(std::string_view name);
   /// A number or infinity.
   double any_number(std::string_view name);
   int integer(std::string_view name, int low, int high);
-  /// Fields that nobody took yet.
+  /// Number of fields that have not been read.
   std::size_t num_left() const;
-  /// Whether the line's last field is a number.
+  /// True if the line's last field is a number.
   bool ends_with_number() const;
-  /// Complains about fields that nobody took.
+  /// An error if there are further fields.
   void expect_end();
 
   void fail(std::string_view kind, std::string detail);
@@ -42,7 +42,7 @@ class FieldCursor {
   std::optional<LineProblem> problem_{};
 };
 
-/// For messages: printable, and not longer than a few words.
+/// Text in quotes for messages: printable ASCII, at most 24 characters.
 std::string quoted(std::string_view text);
 
 }  // namespace waymark

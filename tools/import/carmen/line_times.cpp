@@ -15,8 +15,8 @@
 namespace waymark {
 namespace {
 
-constexpr double kFewOutOfOrder = 0.1;  // of all lines: more, and they are sorted
-constexpr Duration kLongPeriod = std::chrono::seconds{30};  // no logger is as slow
+constexpr double kFewOutOfOrder = 0.1;  // share of lines from which on they are sorted
+constexpr Duration kLongPeriod = std::chrono::seconds{30};  // longer than any real scan period
 
 Timestamp after_start(double seconds) {
   return Timestamp{duration_from_seconds(seconds)};
@@ -44,10 +44,10 @@ void count_by_period(std::vector<ReadScan>& scans, std::optional<double> period_
       "the lines have no times: scans are taken to be {:g} s apart, as asked for", *period_s));
 }
 
-/// A sample belongs behind the seam when it is read there, and its stamp is of the new clock.
+/// A sample gets the correction of the neighbouring scan in the file whose stamp is nearer.
 void shift_odometry(std::vector<ReadOdometry>& odometry, const std::vector<ReadScan>& scans,
                     const std::vector<Timestamp>& stamps, const std::vector<Duration>& late) {
-  std::size_t behind = 0;  // the scan that follows in the file
+  std::size_t behind = 0;  // the next scan in the file
   for (ReadOdometry& sample : odometry) {
     while (behind < scans.size() && scans[behind].at < sample.at)
       ++behind;

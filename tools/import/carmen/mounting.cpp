@@ -17,7 +17,7 @@ constexpr double kSame_m = 0.02;
 constexpr double kSame_rad = 0.02;
 constexpr double kEqual_m = 1e-3;
 constexpr double kEqual_rad = 1e-3;
-constexpr double kNearlyAll = 0.95;  // single garbled numbers do not count
+constexpr double kNearlyAll = 0.95;  // share of the lines that have to agree
 constexpr std::string_view kRemedy = "--lidar-x-m, --lidar-y-m, --lidar-yaw-deg say otherwise";
 
 bool is_same(const Se2& a, const Se2& b, double within_m, double within_rad) {
@@ -25,19 +25,19 @@ bool is_same(const Se2& a, const Se2& b, double within_m, double within_rad) {
          std::abs(angle_difference(a.theta(), b.theta())) < within_rad;
 }
 
-double median(std::span<const Se2> poses, const std::function<double(const Se2&)>& value_of) {
+double median_of(std::span<const Se2> poses, const std::function<double(const Se2&)>& value_of) {
   std::vector<double> values;
   for (const Se2& pose : poses)
     values.push_back(value_of(pose));
   return upper_median(std::move(values));
 }
 
-/// nullopt for a log whose LiDAR poses were corrected: another difference in each line.
-std::optional<Se2> constant_one(std::span<const Se2> poses) {
+/// The pose that nearly all have; nullopt if they differ, as in a log with corrected LiDAR poses.
+std::optional<Se2> common_pose(std::span<const Se2> poses) {
   const double some_rad = poses[poses.size() / 2].theta();
-  const Se2 middle{median(poses, [](const Se2& pose) { return pose.x(); }),
-                   median(poses, [](const Se2& pose) { return pose.y(); }),
-                   some_rad + median(poses, [&](const Se2& pose) {
+  const Se2 middle{median_of(poses, [](const Se2& pose) { return pose.x(); }),
+                   median_of(poses, [](const Se2& pose) { return pose.y(); }),
+                   some_rad + median_of(poses, [&](const Se2& pose) {
                      return angle_difference(pose.theta(), some_rad);
                    })};
   const auto num_same = std::ranges::count_if(
@@ -68,7 +68,7 @@ std::string text_of(const Se2& pose) {
 Se2 find_mounting(std::span<const Se2> base_from_lidar,
                   const std::vector<CarmenMounting>& parameters, CarmenLidar lidar,
                   ImportReport& report) {
-  const auto from_poses = constant_one(base_from_lidar);
+  const auto from_poses = common_pose(base_from_lidar);
   const auto from_parameters = of_parameters(parameters, lidar);
   const bool poses_are_equal = from_poses && is_same(*from_poses, Se2{}, kEqual_m, kEqual_rad);
   if (from_poses && !poses_are_equal) {

@@ -14,12 +14,12 @@ namespace {
 constexpr double kOnePlace_m = 0.01;
 constexpr double kOnePlace_rad = 0.02;
 constexpr std::ptrdiff_t kFewest = 10;  // scans
-constexpr double kOften = 0.2;          // of all scans: a LiDAR, and not garbled lines
-constexpr double kMostScans = 0.95;     // of all scans
-constexpr double kDecides_m = 0.02;     // of a step that shows the direction of the drive
+constexpr double kOften = 0.2;          // smallest share of the scans of the second LiDAR
+constexpr double kMostScans = 0.95;     // share of the scans of both LiDARs
+constexpr double kDecides_m = 0.02;     // shortest step that shows the direction of the drive
 constexpr double kLeastDriven_m = 5.0;
-constexpr double kAlong = 0.3;   // mean |sin| between heading and drive, where they agree
-constexpr double kAcross = 0.5;  // where they do not; by chance it is 0.64
+constexpr double kAlong = 0.3;   // largest mean |sin| between heading and drive if they agree
+constexpr double kAcross = 0.5;  // smallest if they do not; 0.64 for random headings
 
 bool is_one_place(const Se2& a, const Se2& b) {
   return (a.translation() - b.translation()).norm() < kOnePlace_m &&
@@ -35,7 +35,7 @@ std::string place_text(const Se2& pose) {
                      degrees(pose.theta()));
 }
 
-/// Places of two LiDARs that alternate.
+/// Two LiDARs whose mounting poses alternate.
 void keep_the_more_frequent(std::vector<ReadScan>& scans, ImportReport& report) {
   const std::vector<Se2> poses = lidar_poses(scans);
   const Se2& first = poses.front();
@@ -70,7 +70,8 @@ bool differ(const std::vector<double>& a, const std::vector<double>& b) {
   });
 }
 
-/// Stamps of whole seconds are equal because they are rounded.
+/// Reports pairs of different scans with equal stamps. Stamps of whole seconds are ignored: they
+/// are equal by rounding.
 void name_pairs(const std::vector<ReadScan>& scans, ImportReport& report) {
   std::ptrdiff_t pairs = 0;
   for (std::size_t i = 1; i < scans.size(); i += 2) {

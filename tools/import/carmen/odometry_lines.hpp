@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which lines of a CARMEN log are taken where it has several: of two LiDARs, of two odometries.
+// Chooses between the lines of two LiDARs, and between two kinds of odometry lines.
 #pragma once
 
 #include "import/carmen/line_times.hpp"
@@ -9,29 +9,29 @@
 
 namespace waymark {
 
-/// Which lines the odometry comes from. Never from both: they are stamped by different processes,
-/// and where they disagree by milliseconds the robot would seem to jump to and fro.
+/// Which lines the odometry comes from. Never both: they are stamped by different processes, and
+/// differences of milliseconds would make the robot seem to jump back and forth.
 enum class CarmenOdometrySource {
   kLaserLines,  ///< the odometry pose in each scan's line: exact at the scan; what GMapping reads
   kOdomLines,   ///< ODOM
 };
 
-/// base_from_lidar, as each scan's line says.
+/// base_from_lidar of each scan's line.
 std::vector<Se2> lidar_poses(const std::vector<ReadScan>& scans);
 
-/// Two LiDARs whose lines have one keyword, as their places on the robot show: the one with more
-/// scans stays (of equals, the first). Every time twice, with other ranges, is only named.
+/// If the lines of one keyword are of two LiDARs, as two mounting poses show, keeps the one with
+/// more scans (of equals, the first). Pairs of different scans with equal times are only reported.
 void keep_one_lidar(std::vector<ReadScan>& scans, ImportReport& report);
 
-/// As wanted, else the scans' lines; where these never move and the ODOM lines do, these, which is
-/// said.
+/// The wanted source; else the scans' lines, or, if these never move and the ODOM lines do, the
+/// ODOM lines, which is reported.
 CarmenOdometrySource choose_odometry(const std::vector<ReadScan>& scans,
                                      const std::vector<ReadOdometry>& odometry,
                                      std::optional<CarmenOdometrySource> wanted,
                                      ImportReport& report);
 
-/// @throws SetupError when the headings of the scans' lines are degrees: the robot drives where
-/// they point as degrees, and not as radians.
+/// @throws SetupError when the headings of the scans' lines are degrees: read as degrees they agree
+/// with the direction of driving, read as radians they do not.
 void check_headings(const std::vector<ReadScan>& scans);
 
 }  // namespace waymark

@@ -11,10 +11,9 @@
 namespace waymark {
 namespace {
 
-constexpr double kGood =
-    0.9;  // of all scans: fewer, and it is not single scans that are disordered
+constexpr double kGood = 0.9;  // share of usable scans; with less, not only single ones are wrong
 
-/// Scans that have a time of their own, once slight disorder is settled.
+/// Number of scans with distinct ascending times, after slight disorder has been sorted.
 std::size_t num_usable(const std::vector<CarmenTimes>& scans, CarmenStamps stamps) {
   std::vector<Timestamp> times;
   for (const CarmenTimes& scan : scans)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of the two times of a CARMEN line is the time of its scan.
+// Chooses between the two times of a CARMEN line.
 #pragma once
 
 #include "common/time/time.hpp"
@@ -22,9 +22,9 @@ struct CarmenTimes {
   Timestamp by(CarmenStamps stamps) const { return stamps == CarmenStamps::kIpc ? ipc : logger; }
 };
 
-/// As wanted, else by ipc_timestamp, unless these stand still or jump about and logger_timestamp
-/// gives more scans a time of their own, which is said.
-/// @throws SetupError when neither advances
+/// The wanted stamps; else ipc_timestamp, or, if it stands still or jumps and logger_timestamp
+/// gives more scans distinct times, logger_timestamp, which is reported.
+/// @throws SetupError when neither advances.
 CarmenStamps choose_stamps(const std::vector<CarmenTimes>& scans,
                            std::optional<CarmenStamps> wanted, ImportReport& report);
 

@@ -30,7 +30,7 @@ std::optional<std::string_view> TextLines::next() {
   return line_;
 }
 
-/// False at the end of what can be read.
+/// False at the end of the readable part.
 bool TextLines::fill() {
   unread_ = {buffer_.data(), bytes_->read(buffer_)};
   return !unread_.empty();

@@ -19,14 +19,14 @@ class TextLines {
   /// @throws SetupError when the file cannot be read or is empty.
   explicit TextLines(const std::filesystem::path& path);
 
-  /// Next line without its end; valid until the next call. Of lines longer than any log's (1 MiB)
-  /// only the beginning is kept. nullopt at the end.
+  /// Next line without its end; valid until the next call. Lines are cut to 1 MiB. nullopt at the
+  /// end.
   std::optional<std::string_view> next();
 
-  /// Of the line that next() gave last, from 1.
+  /// Number of the last line that next() returned, from 1.
   std::int64_t line_number() const { return line_number_; }
 
-  /// Why the file ended before its end (cut off or damaged compressed data); empty when it did not.
+  /// Why reading stopped early (truncated or damaged compressed data); empty if it did not.
   std::string fault() const { return bytes_->fault(); }
 
  private:

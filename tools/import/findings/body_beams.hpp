@@ -9,20 +9,19 @@
 namespace waymark {
 
 struct BodyBeams {
-  std::vector<bool> is_body{};  ///< by index of the beam; empty: none
+  std::vector<bool> is_body{};  ///< by index of the beam; empty if there are none
   int count{0};
   double longest_m{0.0};
 };
 
-/// Beams below 1 m whose range stays as it is while the robot drives and turns: a wall comes
-/// nearer and goes away. Nothing of a robot that has driven less than 20 m or turned less than a
-/// full turn.
+/// Beams below 1 m whose range stays the same while the robot drives and turns. None for a robot
+/// that has driven less than 20 m or turned less than one revolution.
 BodyBeams find_body_beams(const ImportedLog& log);
 
-/// The scan as it is seen past the robot.
+/// The scan with the ranges of these beams set to NaN.
 LidarScan without_body(LidarScan scan, const BodyBeams& body);
 
-/// The same in_order_of_angles, as misfit_m() takes it.
+/// in_order_of_angles(without_body()), the input of misfit_m().
 LidarScan usable(const ImportedScan& scan, const BodyBeams& body);
 
 }  // namespace waymark

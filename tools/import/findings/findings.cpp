@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kScansForNoise = 1000;  // evenly over the log
 constexpr double kLargestSigma_m = 1.0;
-constexpr double kNearlyAll = 0.7;          // of the way
-constexpr std::size_t kFewestReversed = 5;  // steps: fewer are found by chance
+constexpr double kNearlyAll = 0.7;          // share of the path length
+constexpr std::size_t kFewestReversed = 5;  // steps; fewer may be chance
 
 void estimate_range_noise(ImportedLog& log, ImportReport& report) {
   WallScatter noise;
@@ -54,7 +54,7 @@ void check_that_odometry_moves(const ImportedLog& log, ImportReport& report) {
       log.odometry.size(), *change_m));
 }
 
-/// No LiDAR measures as near: what is written there is a code.
+/// Ranges below kShortestRange_m are codes, not measurements.
 void check_short_ranges(ImportedLog& log, ImportReport& report) {
   constexpr double kFew = 1e-3;
   std::int64_t all = 0;
@@ -103,7 +103,7 @@ std::string unit_text(double factor) {
   return fmt::format("--odometry-scale {:.2g} puts that right", factor);
 }
 
-/// @return whether odometry's distances are those of the scans.
+/// @return true if odometry's distances agree with the scans.
 bool check_distances(const ImportedLog& log, const BodyBeams& body, ImportReport& report) {
   const auto factor = odometry_factor(log, body);
   if (!factor) return true;
@@ -146,12 +146,12 @@ void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry w
       "{}",
       steps.size(), distance_m, date_text(steps.front().after));
   const bool is_nearly_all = distance_m > kNearlyAll * path_length_m(log.odometry);
-  if (is_nearly_all && wanted == ReversedOdometry::kName) {
+  if (is_nearly_all && wanted == ReversedOdometry::kReport) {
     report.note(fmt::format(
         "scans move against odometry nearly everywhere ({:.1f} m): does the LiDAR look backwards "
         "(--lidar-yaw-deg 180)?",
         distance_m));
-  } else if (wanted == ReversedOdometry::kMend) {
+  } else if (wanted == ReversedOdometry::kCorrect) {
     log.odometry = with_steps_mended(log.odometry, steps);
     report.note(found + ": turned round, as asked for");
   } else {
@@ -167,7 +167,7 @@ void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report) 
   estimate_range_noise(log, report);
   check_that_odometry_moves(log, report);
   const BodyBeams body = check_body(log, report);
-  if (!check_distances(log, body, report)) return;  // no motion is right, in no direction
+  if (!check_distances(log, body, report)) return;  // the checks below need correct distances
   check_turns(log, body, report);
   check_yaw(log, body, report);
   check_direction(log, body, reversed, report);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a log's own scans say about its LiDAR and its odometry.
+// Examines a log's LiDAR and odometry by its scans.
 #pragma once
 
 #include "import/log/imported_log.hpp"
 
 namespace waymark {
 
-enum class ReversedOdometry { kName, kMend };
+/// What to do with odometry that counts backing up as forward driving.
+enum class ReversedOdometry { kReport, kCorrect };
 
-/// Estimates the noise of the ranges; looks for odometry that stands still while the scans change,
-/// and for odometry that counts backing up as forward driving, which is mended only on request.
-/// Everything found is a note of the report.
-/// @param log  complete
+/// All checks of a log by its scans (README.md, "Findings"): estimates the noise of the ranges,
+/// repairs breaks of the odometry, and reports everything found as notes.
+/// @param log  complete.
 void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report);
 
 }  // namespace waymark

@@ -24,22 +24,23 @@ struct Pair {
   Se2 motion{};
 };
 
-/// What odometry says of pairs that decide.
-struct Wanted {
+/// Limits on odometry's motion between the scans of a pair.
+struct MotionLimits {
   double least_m{0.0};
   double most_m{0.0};
   double most_rad{0.0};
   double least_rad{0.0};
 };
 
-std::vector<Pair> pairs_of(const ImportedLog& log, const BodyBeams& body, const Wanted& wanted) {
+std::vector<Pair> pairs_of(const ImportedLog& log, const BodyBeams& body,
+                           const MotionLimits& limits) {
   std::vector<std::pair<std::size_t, std::size_t>> found;
   for (std::size_t before = 0, now = 1; now < log.scans.size(); ++now) {
     if (log.scans[now].time - log.scans[before].time < kApart) continue;
     const Se2 motion = odometry_between(log, before, now);
     const double distance_m = motion.translation().norm();
-    if (distance_m >= wanted.least_m && distance_m <= wanted.most_m &&
-        std::abs(motion.theta()) <= wanted.most_rad && std::abs(motion.theta()) >= wanted.least_rad)
+    if (distance_m >= limits.least_m && distance_m <= limits.most_m &&
+        std::abs(motion.theta()) <= limits.most_rad && std::abs(motion.theta()) >= limits.least_rad)
       found.emplace_back(before, now);
     before = now;
   }
@@ -53,7 +54,7 @@ std::vector<Pair> pairs_of(const ImportedLog& log, const BodyBeams& body, const 
   return pairs;
 }
 
-/// Mean misfit of the pairs [m] with odometry's translations scaled, and turned about the base.
+/// Mean misfit [m] of the pairs, with odometry's translations scaled and rotated.
 double mean_misfit_m(std::span<const Pair> pairs, const Se2& base_from_lidar, double factor,
                      double turn_rad) {
   const Eigen::Rotation2Dd turn{turn_rad};
@@ -66,7 +67,8 @@ double mean_misfit_m(std::span<const Pair> pairs, const Se2& base_from_lidar, do
   return sum_m / static_cast<double>(pairs.size());
 }
 
-/// The turn of least misfit; the vertex of a parabola through it and its neighbours 4 degrees off.
+/// The rotation of least misfit: vertex of a parabola through the minimum and its neighbours 4
+/// degrees away.
 double best_turn_rad(std::span<const Pair> pairs, const Se2& base_from_lidar) {
   constexpr double kStep_rad = radians(1.0);
   constexpr std::size_t kSteps = 34;  // on both sides
@@ -92,12 +94,12 @@ Se2 mirrored(const Se2& pose) {
 }  // namespace
 
 std::optional<double> odometry_factor(const ImportedLog& log, const BodyBeams& body) {
-  constexpr Wanted kAnyDistance{1e-3, 1e9, 0.2};
+  constexpr MotionLimits kAnyDistance{1e-3, 1e9, 0.2};
   constexpr double kLeast = 5e-4;  // inches are 0.0254, millimetres 0.001
   constexpr double kMost = 50.0;
   constexpr double kStep = 1.1;
-  constexpr double kFarFrom1 = 1.25;   // less is for the estimators to find
-  constexpr double kMuchBetter = 0.7;  // a LiDAR that looks elsewhere: 0.85 at best
+  constexpr double kFarFrom1 = 1.25;   // estimators calibrate smaller errors
+  constexpr double kMuchBetter = 0.7;  // a LiDAR with a wrong yaw reaches 0.85
   const std::vector<Pair> pairs = pairs_of(log, body, kAnyDistance);
   if (pairs.size() < kFewestPairs) return std::nullopt;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
@@ -115,8 +117,8 @@ std::optional<double> odometry_factor(const ImportedLog& log, const BodyBeams& b
 }
 
 std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams& body) {
-  constexpr Wanted kStraightOn{0.2, 1.5, 0.06};
-  constexpr std::size_t kParts = 8;  // of the log, that have to agree
+  constexpr MotionLimits kStraightOn{0.2, 1.5, 0.06};
+  constexpr std::size_t kParts = 8;  // of the log, for the standard deviation
   const std::vector<Pair> pairs = pairs_of(log, body, kStraightOn);
   if (pairs.size() < kFewestPairs) return std::nullopt;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
@@ -124,7 +126,7 @@ std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams&
   for (std::size_t part = 0; part < kParts; ++part) {
     const std::size_t begin = part * pairs.size() / kParts;
     const std::size_t end = (part + 1) * pairs.size() / kParts;
-    // A LiDAR that is turned to the left sees the walls pass by as if the robot drove to the right.
+    // To a LiDAR turned to the left, the robot seems to drive to the right.
     found_rad[part] = -best_turn_rad(std::span{pairs}.subspan(begin, end - begin), base_from_lidar);
   }
   const double mean_rad =
@@ -136,13 +138,13 @@ std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams&
 }
 
 bool turns_against_odometry(const ImportedLog& log, const BodyBeams& body) {
-  constexpr Wanted kTurning{0.0, 1.0, 0.8, 0.1};
+  constexpr MotionLimits kTurning{0.0, 1.0, 0.8, 0.1};
   constexpr double kMuchBetter = 0.5;
   std::vector<Pair> pairs = pairs_of(log, body, kTurning);
   if (pairs.size() < kFewestPairs) return false;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
   const double as_it_is_m = mean_misfit_m(pairs, base_from_lidar, 1.0, 0.0);
-  // Scans that are mirrored fit a motion as they are themselves fit the mirrored one.
+  // Mirroring the motion is equivalent to mirroring the scans.
   for (Pair& pair : pairs)
     pair.motion = mirrored(pair.motion);
   return mean_misfit_m(pairs, mirrored(base_from_lidar), 1.0, 0.0) < kMuchBetter * as_it_is_m;

@@ -18,15 +18,15 @@ namespace {
 constexpr std::size_t kMostScans = 3000;  // evenly over the log: enough for codes of 1 in 10,000
 constexpr double kOtherPlace_m = 0.1;
 constexpr std::size_t kFewestPlaces = 20;
-constexpr double kFinest_m = 0.01;      // of a bin: finer than any LiDAR's noise over its walls
-constexpr double kStepQuantile = 0.05;  // of neighbouring ranges' differences: the step they have
-constexpr double kBandShare = 0.2;      // of the range: what a pile is compared with
-constexpr double kNearShare = 0.05;     // of the range: neighbours on the same wall
+constexpr double kFinest_m = 0.01;      // smallest width of a bin
+constexpr double kStepQuantile = 0.05;  // of neighbouring ranges' differences: their step
+constexpr double kBandShare = 0.2;   // of the range: width of the band that a pile is compared with
+constexpr double kNearShare = 0.05;  // of the range: neighbours on the same wall
 constexpr double kTimesBand = 10.0;
 constexpr std::int64_t kFewest = 20;
-constexpr std::int64_t kFewestBeams = 10;  // different ones: a far wall is seen by fewer
+constexpr std::int64_t kFewestBeams = 10;  // different ones; a far wall is hit by fewer
 constexpr double kMostBeyond = 0.1;        // longer ranges over those of the code
-constexpr double kMostNear = 0.2;          // neighbours that are a bit shorter, of all neighbours
+constexpr double kMostNear = 0.2;          // share of neighbours that are slightly shorter
 constexpr double kLongestLimit_m = 500.0;  // as robot.lidar.range_max_m
 constexpr double kLongest_m = 1e4;         // more is garbage
 constexpr double kRounding_m = 1e-4;       // of a float
@@ -35,7 +35,7 @@ constexpr float kNotMeasured = std::numeric_limits<float>::quiet_NaN();
 
 struct Bin {
   std::int64_t count{0};
-  std::int64_t near{0};         ///< neighbours that are a bit shorter
+  std::int64_t near{0};         ///< neighbours that are slightly shorter
   std::vector<bool> is_beam{};  ///< by index: has had this range
   double smallest_m{kLongest_m};
 };
@@ -44,7 +44,7 @@ bool is_range(double range_m) {
   return range_m > 0.0 && range_m < kLongest_m;
 }
 
-/// Ranges that are written in steps leave all bins between empty: bins as wide as the steps.
+/// The step in which ranges are written: narrower bins would be empty between the steps.
 double bin_width_m(std::span<const LidarScan> scans) {
   std::vector<double> differences_m;
   for (const LidarScan& scan : scans) {
@@ -123,7 +123,7 @@ class RangeHistogram {
   std::map<std::int64_t, Bin> bins_{};
 };
 
-/// All scans when the robot hardly moves.
+/// Scans at least kOtherPlace_m apart; evenly spread ones if the robot hardly moves.
 std::vector<LidarScan> scans_of_distinct_places(const ImportedLog& log) {
   std::vector<std::size_t> indices;
   Se2 last{};
@@ -182,7 +182,7 @@ double percent(std::int64_t part, std::int64_t whole) {
   return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(1, whole));
 }
 
-/// Down to a tenth of a millimetre, so that a float of the same number is not below.
+/// Rounded down to 0.1 mm, so that the same number as float is not below it.
 double rounded_down(double range_m) {
   return std::floor(range_m * 1e4) / 1e4;
 }

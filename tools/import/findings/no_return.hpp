@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The range that a LiDAR's driver writes when nothing returns.
+// The range that a LiDAR's driver writes for "no return".
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -11,30 +11,28 @@
 
 namespace waymark {
 
-/// Ranges that say "no return", as found among the ranges of a log.
+/// Ranges that stand for "no return", as found in a log.
 struct NoReturnCode {
   std::vector<double> codes_m{};  ///< ascending; a SICK has several
-  std::int64_t count{0};          ///< ranges of the smallest code or more, of these scans
+  std::int64_t count{0};          ///< ranges of the smallest code or more in these scans
 };
 
-/// A range is such a code when it piles up (ten times as often as what is up to a fifth shorter,
-/// and twenty times at least), when nearly nothing is longer, and when the beams beside it are not
-/// a bit shorter: a wall, also before a standing robot, goes on in its neighbours, a code ends at
-/// an edge.
-/// @param scans  of distinct places, so that what a standing robot sees does not pile up
+/// A range is such a code when it piles up (ten times as frequent as ranges up to a fifth shorter,
+/// and at least twenty times), when nearly no range is longer, and when neighbouring beams are not
+/// slightly shorter: on a wall, neighbours have similar ranges; beside a code, they differ.
+/// @param scans  of distinct places: the scans of a standing robot would pile up, too.
 std::optional<NoReturnCode> find_no_return_code(std::span<const LidarScan> scans);
 
-/// Longest range that counts as one.
+/// Largest valid range.
 struct RangeLimit {
-  std::optional<double> given_m{};  ///< by the user: nothing is looked for
-  std::optional<double> usual_m{};  ///< of this kind of LiDAR; nullopt = the longest that is seen
+  std::optional<double> given_m{};  ///< by the user; then no code is searched
+  std::optional<double> usual_m{};  ///< of this kind of LiDAR; nullopt = the longest range
 };
 
-/// Finds the code, makes no return (+inf, in lidar_t 0) of it and of all longer ranges, and 0 of
-/// planar_lidar_t, which is no distance, NaN; writes the robot's range_max_m, and says what was
-/// found.
-/// @param log  complete
-/// @throws SetupError when there is no limit, and no beam has a range
+/// Finds the code, replaces it and all longer ranges by "no return" (+inf, in lidar_t 0), and a
+/// range 0 of planar_lidar_t by NaN; sets the robot's range_max_m, and reports what was found.
+/// @param log  complete.
+/// @throws SetupError when there is no limit, and no beam has a range.
 void mark_no_returns(ImportedLog& log, const RangeLimit& limit, ImportReport& report);
 
 }  // namespace waymark

@@ -16,24 +16,24 @@
 namespace waymark {
 namespace {
 
-// A step of odometry that no robot makes.
+// Limits beyond which a step of odometry is a jump: speed times time, plus a constant.
 constexpr double kFastest_m_s = 5.0;
 constexpr double kFastest_rad_s = 6.0;
-constexpr double kJump_m = 0.5;  // beside that, in one step
+constexpr double kJump_m = 0.5;
 constexpr double kJump_rad = 0.5;
 
 constexpr double kGapInPeriods = 10.0;
 constexpr Duration kShortestGap = std::chrono::seconds{2};
 constexpr double kSamePlace_m = 0.06;  // misfit of two scans of one place
-constexpr double kNowhere_m = 0.15;    // misfit of two scans of which none shows the other's walls
-constexpr double kOften = 0.05;        // of all steps
-// Along a bare corridor a scan fits at every place: that it fits where the robot was before a gap
-// says nothing, unless it fits nowhere around.
-constexpr double kTold_m = 0.1;  // misfit of two scans of places that can be told apart
+constexpr double kNowhere_m = 0.15;    // misfit of two scans of different places
+constexpr double kOften = 0.05;        // share of the steps
+// In a bare corridor a scan fits anywhere along it. That it fits where the robot was before a gap
+// is evidence only if it does not fit 1 m away from there.
+constexpr double kDistinct_m = 0.1;  // misfit of two scans of places that can be distinguished
 const std::array<Eigen::Vector2d, 4> kSteppedAside{
     {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}};
 
-// A gap in which odometry stands, and the scans do not.
+// A gap in which odometry stands still, but the scans change.
 constexpr Duration kLongGap = std::chrono::seconds{5};
 constexpr double kStood_m = 0.1;
 constexpr double kStood_rad = 0.1;
@@ -59,13 +59,13 @@ bool is_zero(const ImportedPose& sample) {
   return sample.pose.translation() == Eigen::Vector2d::Zero() && sample.pose.theta() == 0.0;
 }
 
-/// The last scan up to a time and the first one from another on; in order of angles.
+/// The last scan up to a time, and the first one from a later time on; in order of angles.
 struct ScansAround {
   LidarScan before{};
   LidarScan behind{};
 };
 
-/// People who walk by change fewer beams.
+/// True if at least kOtherShare of the beams differ; people who walk by change fewer.
 bool are_of_other_places(const ScansAround& scans) {
   std::size_t others = 0;
   std::size_t shared = 0;
@@ -147,7 +147,7 @@ Duration usual_period(const Poses& odometry) {
   return odometry.size() < 2 ? kShortestGap : upper_median(periods_of(odometry));
 }
 
-/// Adds up what odometry has to be moved by so that it goes on.
+/// Removes breaks of the odometry by accumulating the transform from raw to continuous poses.
 class BreakMender {
  public:
   BreakMender(ImportedLog& log, ImportReport& report)
@@ -170,7 +170,7 @@ class BreakMender {
   }
 
  private:
-  /// The step that the robot made instead, where odometry's is none.
+  /// The robot's true step across a break of the odometry; nullopt if odometry's step is valid.
   std::optional<Se2> step_instead(const ImportedPose& before, const ImportedPose& now,
                                   const Se2& step_before) {
     const bool jumps = is_jump(before, now);
@@ -191,7 +191,7 @@ class BreakMender {
     const bool goes_on = going_on_m < standing_m;
     const auto is_only_place = [&] {
       return std::ranges::none_of(kSteppedAside, [&](const Eigen::Vector2d& aside) {
-        return misfit_with({aside, 0.0}) < kTold_m;
+        return misfit_with({aside, 0.0}) < kDistinct_m;
       });
     };
     const bool is_reset = is_zero(now) && !is_zero(before);
@@ -227,7 +227,7 @@ class BreakMender {
   Duration longest_;
 };
 
-/// Odometry of another unit, or none: nothing that single steps could be mended by.
+/// True for odometry of another unit, or garbage, which cannot be repaired step by step.
 bool jumps_often(const Poses& odometry) {
   std::size_t jumps = 0;
   for (std::size_t i = 1; i < odometry.size(); ++i)

@@ -10,17 +10,17 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kBeams = 9;    // of a wall: two are for the line, seven for its scatter
+constexpr std::size_t kBeams = 9;    // of a wall: seven degrees of freedom about a line
 constexpr double kWidest_rad = 0.4;  // from the first to the last of them
 constexpr std::size_t kFewestWalls = 100;
-constexpr double kModeWidth = 0.3;       // of the logarithm: spread of seven beams' scatter
-constexpr double kStraight = 2.0;        // scatter over the mode: chance exceeds it in 2 of 10,000
-constexpr double kSigmaOfStep = 0.2887;  // of the error of rounding, in steps: 1 / sqrt(12)
-constexpr double kFloatRounding_m = 1e-4;  // less is the rounding of a float
-constexpr double kSmallStepQuantile =
-    0.05;  // of the differences: single garbled ranges do not count
+constexpr double kModeWidth =
+    0.3;  // of the logarithm: spread of a scatter with 7 degrees of freedom
+constexpr double kStraight = 2.0;  // times the mode; walls exceed it by chance in 2 of 10,000 cases
+constexpr double kSigmaOfStep = 0.2887;      // of rounding errors, in steps: 1 / sqrt(12)
+constexpr double kFloatRounding_m = 1e-4;    // rounding of a float
+constexpr double kSmallStepQuantile = 0.05;  // of the differences; ignores single garbled ranges
 
-/// All are returns, and the angles go on in one direction without a gap.
+/// True if all are returns, with monotonic angles within kWidest_rad.
 bool is_one_sweep(std::span<const double> ranges_m, std::span<const double> angles_rad) {
   const double turn_rad = angle_difference(angles_rad.back(), angles_rad.front());
   if (std::abs(turn_rad) > kWidest_rad) return false;
@@ -31,7 +31,7 @@ bool is_one_sweep(std::span<const double> ranges_m, std::span<const double> angl
   return true;
 }
 
-/// Middle of the interval of that width which holds most of the values.
+/// Median of the values in the interval of that width with most values.
 double mode(std::vector<double> values, double width) {
   std::ranges::sort(values);
   std::size_t low = 0;

@@ -9,16 +9,15 @@
 
 namespace waymark {
 
-/// Collects how much nine neighbouring beams scatter about the straight wall that fits them best.
+/// Collects the scatter of nine neighbouring beams about the best straight wall.
 class WallScatter {
  public:
   void add(const LidarScan& scan);
 
-  /// Standard deviation of a range [m]. Beams on corners and clutter scatter more than those on
-  /// straight walls, by anything: the most frequent scatter (mode of its logarithm) is that of
-  /// straight walls, and all scatters up to twice that are averaged. Never below the error of the
-  /// step in which ranges are written. nullopt for fewer than 100 walls. What all beams of a scan
-  /// have in common is not seen.
+  /// Standard deviation of a range [m]. Beams on corners and clutter have a larger scatter: the
+  /// most frequent scatter (mode of its logarithm) is that of straight walls, and all scatters up
+  /// to twice that are averaged. Not below the rounding error of the ranges. nullopt for fewer than
+  /// 100 walls. Errors that all beams of a scan have in common are not included.
   std::optional<double> sigma_m() const;
 
  private:

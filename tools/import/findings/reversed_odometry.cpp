@@ -11,13 +11,13 @@
 namespace waymark {
 namespace {
 
-constexpr double kShortestApart_m = 0.01;  // of a step that decides anything: less is noise
-constexpr double kLongestApart_m = 1.0;    // more, and too little of the two scans overlaps
-constexpr double kLargestMisfit_m = 0.15;  // of the better of both: above, neither is right
+constexpr double kShortestApart_m = 0.01;  // a shorter step is noise
+constexpr double kLongestApart_m = 1.0;    // scans further apart overlap too little
+constexpr double kLargestMisfit_m = 0.15;  // of the better direction; above, neither is right
 constexpr double kFloor_m = 1e-4;       // of a misfit, so that the ratio of two perfect fits is 1
-constexpr double kSmallestScore = 0.2;  // of a step that decides: less is chance, as along a wall
+constexpr double kSmallestScore = 0.2;  // smaller scores are noise, as along a wall
 constexpr double kLargestScore = 2.0;   // of one step: a factor of 7
-// A stretch begins and ends: together it has to fit twice as well.
+// Half of ln 2 each for the begin and the end of a sequence: together it has to fit twice as well.
 constexpr double kChange = 0.5 * std::numbers::ln2;
 constexpr double kUsualBraking_m_s2 = 2.0;  // of an indoor robot
 
@@ -58,7 +58,7 @@ std::vector<Step> steps_of(const ImportedLog& log, const BodyBeams& body) {
   return steps;
 }
 
-/// What it costs to assume that the robot turned back between two steps: it had to brake for it.
+/// Cost of a change of direction between two steps, with the deceleration that it requires.
 double cost_of_change(const ReversedStep& before, const ReversedStep& now) {
   const double seconds = 0.5 * to_seconds(now.until - before.after);
   const double braking_m_s2 = (before.distance_m + now.distance_m) / (seconds * seconds);
@@ -66,7 +66,7 @@ double cost_of_change(const ReversedStep& before, const ReversedStep& now) {
   return kChange * (1.0 + relative * relative);
 }
 
-/// For each step whether it is reversed in the sequence of least cost; O(n).
+/// For each step whether it is reversed in the sequence of least cost (Viterbi); O(n).
 std::vector<bool> most_likely(const std::vector<Step>& steps) {
   std::vector<std::array<bool, 2>> changed(steps.size());
   std::array<double, 2> cost{0.0, kChange};  // as counted, reversed
@@ -89,17 +89,17 @@ std::vector<bool> most_likely(const std::vector<Step>& steps) {
   return reversed;
 }
 
-/// How much better ways of 0.4 m along a stretch of steps [begin, end) fit reversed. Steps whose
-/// scans differ because somebody walks by do not add up to a way back.
-double score_of_ways(const ImportedLog& log, const BodyBeams& body, std::size_t begin,
-                     std::size_t end) {
-  constexpr double kWay_m = 0.4;
+/// Score of drives of 0.4 m along the steps [begin, end), positive if they fit better reversed.
+/// Unlike single steps, they are not decided by somebody who walks by.
+double score_of_drives(const ImportedLog& log, const BodyBeams& body, std::size_t begin,
+                       std::size_t end) {
+  constexpr double kDrive_m = 0.4;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
   double sum = 0.0;
   for (std::size_t first = begin; first < end;) {
     Se2 motion{};
     std::size_t last = first;
-    while (last < end && motion.translation().norm() < kWay_m) {
+    while (last < end && motion.translation().norm() < kDrive_m) {
       ++last;
       motion = odometry_between(log, first, last);
     }
@@ -110,14 +110,15 @@ double score_of_ways(const ImportedLog& log, const BodyBeams& body, std::size_t 
   return sum;
 }
 
-/// Whether the ways of all stretches together fit twice as well reversed.
-bool ways_agree(const ImportedLog& log, const BodyBeams& body, const std::vector<bool>& reversed) {
+/// True if the drives of all reversed sequences together fit twice as well reversed.
+bool drives_agree(const ImportedLog& log, const BodyBeams& body,
+                  const std::vector<bool>& reversed) {
   double sum = 0.0;
   for (std::size_t begin = 0; begin < reversed.size();) {
     std::size_t end = begin;
     while (end < reversed.size() && reversed[end])
       ++end;
-    if (end > begin) sum += score_of_ways(log, body, begin, end);
+    if (end > begin) sum += score_of_drives(log, body, begin, end);
     begin = end + 1;
   }
   return sum >= std::numbers::ln2;
@@ -128,7 +129,7 @@ bool ways_agree(const ImportedLog& log, const BodyBeams& body, const std::vector
 std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log, const BodyBeams& body) {
   const std::vector<Step> steps = steps_of(log, body);
   const std::vector<bool> is_reversed = most_likely(steps);
-  if (!ways_agree(log, body, is_reversed)) return {};
+  if (!drives_agree(log, body, is_reversed)) return {};
   std::vector<ReversedStep> reversed;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (is_reversed[i] && steps[i].step.distance_m >= kShortestApart_m)

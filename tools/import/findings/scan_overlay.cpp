@@ -8,12 +8,12 @@
 namespace waymark {
 namespace {
 
-constexpr double kLargestError_m = 0.3;  // of a beam: more is something else than the same wall
+constexpr double kLargestError_m = 0.3;  // of a beam; larger ones are not of the same wall
 constexpr double kSameWall_m = 0.3;      // between ranges that are interpolated
 constexpr double kWidestGap_rad = 0.1;   // between beams that are interpolated
 constexpr std::size_t kFewestSharedBeams = 30;
 
-/// The scan's range in a direction [rad], interpolated; nothing at edges, gaps and outside.
+/// The scan's interpolated range in a direction; nullopt at edges, in gaps, and outside the scan.
 std::optional<double> range_towards(const LidarScan& scan, double angle_rad) {
   const auto after = std::ranges::upper_bound(scan.angles_rad, angle_rad);
   if (after == scan.angles_rad.begin() || after == scan.angles_rad.end()) return std::nullopt;

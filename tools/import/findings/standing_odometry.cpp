@@ -10,7 +10,7 @@ namespace waymark {
 namespace {
 
 constexpr std::size_t kScans = 100;  // evenly over the log
-constexpr double kSameSigmas = 5.0;  // people who walk by change fewer than half of the beams
+constexpr double kSameSigmas = 5.0;
 
 bool stands(const std::vector<ImportedPose>& poses) {
   return std::ranges::all_of(poses, [&](const ImportedPose& sample) {
@@ -19,7 +19,8 @@ bool stands(const std::vector<ImportedPose>& poses) {
   });
 }
 
-/// Median of the absolute differences of the beams that both have [m]; 0 without any.
+/// Median absolute difference [m] of beams with a range in both; 0 without any. Not affected by
+/// people who walk by.
 double difference_m(const LidarScan& a, const LidarScan& b) {
   std::vector<double> differences_m;
   for (std::size_t i = 0; i < std::min(a.ranges_m.size(), b.ranges_m.size()); ++i) {

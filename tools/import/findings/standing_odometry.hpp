@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Odometry that says nothing: the same pose all the time.
+// Odometry that never moves.
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -8,10 +8,10 @@
 
 namespace waymark {
 
-/// When all poses of odometry are equal although the scans show that the robot moved: how much a
-/// typical range differs from the first scan's (median over beams, of the scan that differs most).
-/// nullopt when odometry moves, or the scans stay within five sigmas, too.
-/// @param log  complete, with its range noise
+/// If all poses of odometry are equal although the scans change: the change [m] of a typical range
+/// from the first scan (median over beams, of the scan that differs most). nullopt when odometry
+/// moves, or the scans stay within five sigmas.
+/// @param log  complete, with its range noise.
 std::optional<double> change_of_scans_while_standing_m(const ImportedLog& log);
 
 }  // namespace waymark

@@ -10,7 +10,7 @@ namespace waymark {
 
 std::optional<double> scatter_about_wall_m(std::span<const double> ranges_m,
                                            std::span<const double> angles_rad) {
-  // An error e of the range is e / r^2 of its inverse: rows are multiplied by r^2.
+  // An error e of the range is an error e / r^2 of its inverse: weigh the rows by r^2.
   const auto size = static_cast<Eigen::Index>(ranges_m.size());
   Eigen::MatrixX2d rows{size, 2};
   Eigen::VectorXd values{size};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How straight the walls of a scan are.
+// Straightness of walls in a scan.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace waymark {
 
-/// Standard deviation [m] of ranges about the straight wall that fits them best; nullopt when the
-/// beams do not determine one. The inverse range of a straight wall is A cos(angle) + B sin(angle),
-/// so that the fit is linear. O(n).
-/// @param ranges_m  at least three, positive and finite
+/// Standard deviation [m] of ranges about the best straight wall; nullopt when the beams do not
+/// determine one. The inverse range of a straight wall is A cos(angle) + B sin(angle), so that the
+/// fit is linear. O(n).
+/// @param ranges_m  at least three, positive and finite.
 std::optional<double> scatter_about_wall_m(std::span<const double> ranges_m,
                                            std::span<const double> angles_rad);
 

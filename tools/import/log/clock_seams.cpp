@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kAgreeing = 10;
+constexpr std::size_t kAgreeing = 10;  // consistent stamps before and after a seam
 constexpr Duration kBesideEachOther = std::chrono::seconds{10};
 
 using Stamps = std::span<const Timestamp>;
@@ -21,7 +21,7 @@ bool ascend(Stamps stamps) {
          }) == stamps.end();
 }
 
-/// Of the pieces between the seams: [begin, end).
+/// Stamps between two seams: [begin, end).
 struct Piece {
   std::size_t begin{0};
   std::size_t end{0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an import left out and why, and what it took for granted: nothing is dropped silently.
+// What an import skipped and why, and what it assumed: nothing is dropped silently.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace waymark {
 
-/// What a position in the imported file counts.
+/// Unit of a position in the imported file.
 enum class AddressUnit { kLine, kByte, kRow };
 
 /// What is wrong with a line or a message.
 struct LineProblem {
-  std::string_view kind{};  ///< what to count it as
+  std::string_view kind{};  ///< problems are counted by kind
   std::string detail{};
 };
 
@@ -27,11 +27,11 @@ class ImportReport {
 
   void count_in(AddressUnit unit) { unit_ = unit; }
 
-  /// A line or event that is left out. The first ones of a kind are named, all are counted.
+  /// A line or event that is skipped. All are counted; the first of each kind get a message.
   /// @param at  line number (from 1), byte offset (from 0) or row of a table
   void skip(std::string_view kind, std::int64_t at, std::string_view detail);
 
-  /// A decision that the user should know of.
+  /// A decision of the import that the user should know of.
   void note(std::string text) { notes_.push_back(std::move(text)); }
 
   std::int64_t num_skipped() const;
@@ -40,7 +40,7 @@ class ImportReport {
     return skipped_by_kind_;
   }
 
-  /// One line per skipped record that is named: "fr079.clf:17: skipped: ...".
+  /// One line each for the first skipped records of a kind: "fr079.clf:17: skipped: ...".
   const std::vector<std::string>& messages() const { return messages_; }
 
   const std::vector<std::string>& notes() const { return notes_; }

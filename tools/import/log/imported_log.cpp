@@ -18,8 +18,8 @@ namespace waymark {
 namespace {
 
 constexpr Duration kLongestHold = std::chrono::seconds{1};
-constexpr double kHabitShare = 0.05;         // of all scans: a number of beams that a driver means
-constexpr std::int64_t kFewestOfAHabit = 2;  // scans
+constexpr double kCommonShare = 0.05;   // of all scans: such a number of beams is intended
+constexpr std::int64_t kMinCommon = 2;  // scans
 
 /// Records per second, within what the configuration allows.
 template <class Record>
@@ -29,7 +29,7 @@ double rate_hz(const std::vector<Record>& records, double low_hz, double high_hz
   return std::clamp(static_cast<double>(records.size() - 1) / seconds, low_hz, high_hz);
 }
 
-/// Repeated odometry says nothing new and is no fault.
+/// Repeated odometry is redundant, but no error: removed without a report.
 void remove_repeats(std::vector<ImportedPose>& poses) {
   const auto repeats = std::ranges::unique(poses, [](const auto& a, const auto& b) {
     return a.time == b.time && a.pose.translation() == b.pose.translation() &&
@@ -38,13 +38,13 @@ void remove_repeats(std::vector<ImportedPose>& poses) {
   poses.erase(repeats.begin(), repeats.end());
 }
 
-/// The first pose, or where a robot that drives there already was before it; by symmetry the last.
-/// Odometry of fewer than two samples a second says nothing of its speed.
-Se2 carried_to(const std::vector<ImportedPose>& poses, Timestamp time) {
-  constexpr Duration kBeside = kLongestHold;
+/// Pose at a time shortly before the first or after the last one: the motion of the adjacent second
+/// extrapolated. Held if that second has too few samples for a speed.
+Se2 extrapolated(const std::vector<ImportedPose>& poses, Timestamp time) {
+  constexpr Duration kSpan = kLongestHold;
   const bool is_before = time < poses.front().time;
   const ImportedPose& end = is_before ? poses.front() : poses.back();
-  const Timestamp beside = is_before ? end.time + kBeside : end.time - kBeside;
+  const Timestamp beside = is_before ? end.time + kSpan : end.time - kSpan;
   const auto [first, last] = std::minmax(end.time, beside);
   const auto shown = std::ranges::count_if(poses, [&, low = first, high = last](const auto& pose) {
     return pose.time >= low && pose.time <= high;
@@ -55,7 +55,7 @@ Se2 carried_to(const std::vector<ImportedPose>& poses, Timestamp time) {
   return end.pose * Se2{share * step.translation(), share * step.theta()};
 }
 
-std::string held_or_carried(const Se2& held, const Se2& pose, std::string_view which) {
+std::string held_or_extrapolated(const Se2& held, const Se2& pose, std::string_view which) {
   const bool is_held = held.translation() == pose.translation() && held.theta() == pose.theta();
   return fmt::format("{} {}", which, is_held ? "pose held" : "motion goes on");
 }
@@ -70,7 +70,7 @@ LidarScan scan_of(const ImportedScan& scan) {
   return as_described(to_scan(decode<planar_lidar_t>(scan.message.payload).message.value()), lidar);
 }
 
-void put_right(ImportedScan& scan, bool is_mirrored, Duration late) {
+void correct(ImportedScan& scan, bool is_mirrored, Duration late) {
   scan.is_mirrored = scan.is_mirrored != is_mirrored;
   scan.late += late;
   scan.time -= late;
@@ -101,8 +101,8 @@ void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& repor
   const auto is_habit = [&](int num_beams) {
     const std::int64_t count = scans_by_count.at(num_beams);
     const double share = static_cast<double>(count) / static_cast<double>(scans.size());
-    return count >= kFewestOfAHabit &&
-           (share >= kHabitShare || std::abs(num_beams - usual->first) == 1);
+    return count >= kMinCommon &&
+           (share >= kCommonShare || std::abs(num_beams - usual->first) == 1);
   };
   std::string kept;
   std::set<int> rare;
@@ -148,18 +148,18 @@ void cover_scans(ImportedLog& log, ImportReport& report) {
   const Timestamp first_scan = log.scans.front().time;
   const Timestamp last_scan = log.scans.back().last_beam_time;
   if (first_scan < first) {
-    const Se2 pose = carried_to(log.odometry, first_scan);
+    const Se2 pose = extrapolated(log.odometry, first_scan);
     log.odometry.insert(log.odometry.begin(), {first_scan, log.odometry.front().at, pose});
     report.note(fmt::format("odometry starts {:.3f} s after the first scan: {}",
                             to_seconds(first - first_scan),
-                            held_or_carried(log.odometry[1].pose, pose, "first")));
+                            held_or_extrapolated(log.odometry[1].pose, pose, "first")));
   }
   if (last_scan > last) {
-    const Se2 pose = carried_to(log.odometry, last_scan);
+    const Se2 pose = extrapolated(log.odometry, last_scan);
     log.odometry.push_back({last_scan, log.odometry.back().at, pose});
-    report.note(
-        fmt::format("odometry ends {:.3f} s before the last scan: {}", to_seconds(last_scan - last),
-                    held_or_carried(log.odometry[log.odometry.size() - 2].pose, pose, "last")));
+    report.note(fmt::format(
+        "odometry ends {:.3f} s before the last scan: {}", to_seconds(last_scan - last),
+        held_or_extrapolated(log.odometry[log.odometry.size() - 2].pose, pose, "last")));
   }
 }
 

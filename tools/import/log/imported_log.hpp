@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is read from a foreign log, before it is written in our form.
+// The contents of another robot's log, before they are written as an LCM log.
 #pragma once
 
 #include "common/messages/message.hpp"
@@ -17,13 +17,13 @@ namespace waymark {
 struct ImportedScan {
   Timestamp time{};
   Timestamp last_beam_time{};
-  std::int64_t at{0};  ///< where it stands in the file, see ImportReport
+  std::int64_t at{0};  ///< position in the file, see ImportReport
   int num_beams{0};
-  double longest_range_m{0.0};          ///< of the ranges that are returns
+  double longest_range_m{0.0};          ///< no-returns excluded
   Message message{};                    ///< for the channel LIDAR
-  std::optional<Se2> odom_from_base{};  ///< when the scan itself carries odometry
+  std::optional<Se2> odom_from_base{};  ///< if the scan's record has an odometry pose
   bool is_mirrored{false};              ///< the message's angles count clockwise
-  Duration late{0};                     ///< of the message's stamp; `time` has none
+  Duration late{0};                     ///< delay of the message's stamp; `time` is without it
 };
 
 struct ImportedPose {
@@ -41,50 +41,51 @@ struct ImportedImage {
 struct ImportedLog {
   std::vector<ImportedScan> scans{};     ///< ascending times
   std::vector<ImportedPose> odometry{};  ///< odom_from_base, ascending times
-  std::vector<ImportedPose>
-      reference{};  ///< poses of the base that the log itself gives, ascending
+  /// Reference poses of the base that the log itself has, ascending times.
+  std::vector<ImportedPose> reference{};
   std::vector<ImportedImage> images{};
   RobotConfig robot{};
-  std::vector<double> no_return_codes_m{};  ///< ranges that were found to say so, ascending
-  std::string contents{};                   ///< what the file held, for the summary
+  std::vector<double> no_return_codes_m{};  ///< ranges found to mean "no return", ascending
+  std::string contents{};                   ///< channels or topics with counts, for the summary
 };
 
-/// Where the user says how the LiDAR is mounted; nullopt = as the log says, else at the origin.
+/// Pose of the LiDAR in the base frame as given by the user; nullopt = from the log, else 0.
 struct LidarMounting {
   std::optional<double> x_m{};
   std::optional<double> y_m{};
   std::optional<double> yaw_rad{};
 };
 
-/// The scan of the message, as slam will see it.
+/// The message decoded as slam decodes it.
 LidarScan scan_of(const ImportedScan& scan);
 
-/// Mirrors the scan back and takes `late` off its times, on top of what was done before.
-void put_right(ImportedScan& scan, bool is_mirrored, Duration late);
+/// Mirrors the scan if `is_mirrored`, and subtracts `late` from its times; corrections add up.
+void correct(ImportedScan& scan, bool is_mirrored, Duration late);
 
-/// The pose at a time, interpolated; before the first and after the last one these.
+/// The pose at a time, interpolated; held before the first and after the last one.
 /// @param poses  not empty, ascending times
 Se2 pose_at(const std::vector<ImportedPose>& poses, Timestamp time);
 
-/// Odometry's motion from one scan to another, by index.
+/// Motion between two scans (indices) by odometry: first_from_last.
 Se2 odometry_between(const ImportedLog& log, std::size_t first, std::size_t last);
 
-/// Removes scans whose number of beams is rare: garbled lines. Counts of at least two scans that
-/// differ by one beam from the usual one (of equals: the smallest number), or that a twentieth of
-/// all scans have, are a driver's habit (180 and 181) and are kept, which is said.
+/// Removes scans with a rare number of beams (garbled lines). Kept, with a note, are numbers of at
+/// least two scans that differ by one from the most frequent number (of equally frequent ones: the
+/// smallest), or that 5 % of all scans have: some drivers alternate between 180 and 181 beams.
 void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& report);
 
-/// A scan is processed when odometry has reached it. Where odometry starts after the first scan or
-/// ends before the last one by at most a second, its first or last pose is held, or the motion of
-/// the second beside it carried on; scans and images further out are removed.
+/// Extends odometry to cover the scans, for slam processes no scan without odometry. Where odometry
+/// starts after the first scan or ends before the last one by at most a second, its first or last
+/// pose is held, or the motion of the adjacent second extrapolated. Scans and images beyond that
+/// are removed.
 void cover_scans(ImportedLog& log, ImportReport& report);
 
-/// Puts everything in order, takes the odometry from the scans where there is no other, and fills
-/// in the robot's rates and beams.
+/// Sorts all records by time, uses the scans' odometry if there is no other, and sets the rates and
+/// the number of beams in `log.robot`.
 /// @throws SetupError when no scan or no odometry is left.
 void complete(ImportedLog& log, ImportReport& report);
 
-/// Multiplies the distances of odometry.
+/// Multiplies x and y of all poses by `factor`.
 void scale_distances(std::vector<ImportedPose>& odometry, double factor);
 
 /// Length of a path [m].

@@ -17,8 +17,8 @@
 namespace waymark {
 namespace {
 
-/// @throws SetupError when the file is there with another content: it may be of another log, or
-/// have been completed by hand.
+/// @throws SetupError when the file exists with other contents: it may belong to another log, or
+/// have been edited by hand.
 void check_not_replaced(const std::filesystem::path& path, const std::string& text) {
   if (!std::filesystem::exists(path) || read_whole_file(path) == text) return;
   throw SetupError{path.string() +
@@ -78,7 +78,8 @@ std::string beam_counts(const ImportedLog& log) {
              : fmt::format("{}..{}", fewest.num_beams, most.num_beams);
 }
 
-/// What was found out, as comments: whoever edits the file later knows what is estimated.
+/// The notes of the import as comments, so that readers of the file know which values are
+/// estimates.
 std::string findings_of(const ImportReport& report) {
   std::string text;
   for (const std::string& note : report.notes())

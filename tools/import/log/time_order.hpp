@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times that go backwards: one bad time must not cost everything behind it.
+// Handles stamps that go backwards, such that one bad stamp does not discard all records after it.
 #pragma once
 
 #include "common/geometry/upper_median.hpp"
@@ -16,18 +16,18 @@
 
 namespace waymark {
 
-/// For each time whether it belongs to the longest strictly ascending subsequence: what has to go
-/// is as little as possible, whether single times are too early or too late. O(n log n).
+/// For each time, whether it belongs to the longest strictly ascending subsequence, so that as few
+/// records as possible are removed, whether single times are too early or too late. O(n log n).
 std::vector<bool> longest_ascending(std::span<const Timestamp> times);
 
-/// Messages of several processes overtake each other by as much.
+/// Messages of several processes are logged out of order by up to this.
 inline constexpr Duration kSmallDisorder = std::chrono::milliseconds{200};
 
-/// A step by more is of a clock that was set.
+/// A larger step between stamps means that the clock was set.
 inline constexpr Duration kLongestLog = std::chrono::hours{24 * 30};
 
-/// The order in which records have to be read so that none goes back by at most kSmallDisorder
-/// behind the one before. Larger steps back stay where they are. O(n k), k records within it.
+/// Indices of the records sorted by time, where only records at most kSmallDisorder earlier than
+/// their predecessor are moved; larger steps back stay. O(n k), k = records within kSmallDisorder.
 std::vector<std::size_t> order_within_tolerance(std::span<const Timestamp> times);
 
 template <class Record>
@@ -47,7 +47,7 @@ std::vector<Duration> periods_of(const std::vector<Record>& records) {
   return periods;
 }
 
-/// Puts records (with a member `time`) that are slightly out of order into order, and says so.
+/// Sorts records (with a member `time`) that are slightly out of order, with a note.
 template <class Record>
 void restore_order(std::vector<Record>& records, std::string_view what, ImportReport& report) {
   const std::vector<Timestamp> times = times_of(records);
@@ -65,13 +65,14 @@ void restore_order(std::vector<Record>& records, std::string_view what, ImportRe
   }
 }
 
-/// Times for records that have equal stamps (a step back of a millisecond at most is one, too):
-/// stamps that were cut off spread over the time until the next one, records that were stamped when
-/// a stalled logger went on over the time before. Order is kept; at least a microsecond apart.
+/// Distinct times for records with equal stamps (or a step back of at most a millisecond). Stamps
+/// truncated to a coarse unit are spread over the time until the next stamp; stamps of a logger
+/// that stalled and then wrote all at once, over the time before. Order is kept; results are at
+/// least a microsecond apart.
 /// @param stamps  as read, equal ones beside each other.
 std::vector<Timestamp> spread_over_gaps(std::span<const Timestamp> stamps);
 
-/// Spreads records (with a member `time`) that have equal stamps, and says so.
+/// Applies spread_over_gaps() to records (with a member `time`), with a note.
 template <class Record>
 void spread_equal_stamps(std::vector<Record>& records, std::string_view what,
                          ImportReport& report) {
@@ -87,8 +88,8 @@ void spread_equal_stamps(std::vector<Record>& records, std::string_view what,
   }
 }
 
-/// Removes records (with members `time` and `at`) whose time is months from the others': a clock
-/// that was not set. Otherwise they would make the log that long.
+/// Removes records (with members `time` and `at`) more than kLongestLog from the median: their
+/// clock was not set. Otherwise the log would span that time.
 template <class Record>
 void remove_absurd_times(std::vector<Record>& records, std::string_view what,
                          ImportReport& report) {
@@ -103,8 +104,8 @@ void remove_absurd_times(std::vector<Record>& records, std::string_view what,
   });
 }
 
-/// Removes records (with members `time` and `at`) out of order, naming them; more than a twentieth
-/// is said with what to do.
+/// Removes and reports records (with members `time` and `at`) out of order; a note gives advice if
+/// more than 5 % are removed.
 template <class Record>
 void keep_ascending(std::vector<Record>& records, std::string_view what, ImportReport& report) {
   const std::vector<Timestamp> times = times_of(records);

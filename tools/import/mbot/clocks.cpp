@@ -11,8 +11,8 @@ namespace waymark {
 namespace {
 
 constexpr Duration kSameClock = std::chrono::seconds{1};
-constexpr std::int64_t kLatest_us = 4'000'000'000'000'000;  // the year 2096: more is garbage
-constexpr double kComparable = 0.5;  // span of one clock over that of the other
+constexpr std::int64_t kLatest_us = 4'000'000'000'000'000;  // year 2096: later stamps are garbage
+constexpr double kComparable = 0.5;  // least ratio of the spans by the two clocks
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::str
   if (lidar.empty() || other.empty() || !lidar.is_comparable() || !other.is_comparable()) return;
   const Duration shift = other.logger_ahead() - lidar.logger_ahead();
   if (shift > -kSameClock && shift < kSameClock) return;
-  // A stamp that a shift would take below zero is garbage: it stays, and is out of order.
+  // A stamp that would become negative is garbage: left as it is, to be removed as out of order.
   for (ImportedPose& pose : poses) {
     if (to_us(pose.time + shift) >= 0) pose.time += shift;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages of one log whose stamps are of different clocks.
+// Brings messages of one log whose stamps are from different clocks onto one clock.
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -9,17 +9,17 @@
 
 namespace waymark {
 
-/// How the stamps of a channel's messages run beside the logger's times.
+/// Compares the stamps of a channel's messages with the times at which the logger received them.
 class ChannelClock {
  public:
   void add(Timestamp stamp, Timestamp logged);
 
   bool empty() const { return logger_minus_stamp_us_.empty(); }
 
-  /// Median: how far the logger's clock is ahead. @pre !empty()
+  /// Median of logger time minus stamp. @pre !empty()
   Duration logger_ahead() const;
 
-  /// The logger's times advance as the stamps do, so that the two can be compared.
+  /// Whether both clocks advance by about the same, so that their difference means something.
   bool is_comparable() const;
 
  private:
@@ -27,9 +27,9 @@ class ChannelClock {
   Timestamp first_stamp_{}, last_stamp_{}, first_logged_{}, last_logged_{};
 };
 
-/// Shifts poses onto the LiDAR's clock when the logger's times say that the clocks are more than a
-/// second apart (no driver is that late), and says so. The shift is as good as the difference of
-/// the two drivers' delays.
+/// Shifts poses onto the LiDAR's clock, with a note, if by the logger's times the clocks differ by
+/// more than a second (no driver's delay is that long). Error of the shift: the difference of the
+/// two drivers' delays.
 void put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::string_view name,
                   std::vector<ImportedPose>& poses, ImportReport& report);
 

@@ -14,7 +14,7 @@ namespace waymark {
 namespace {
 
 constexpr std::uint64_t kMaebotEncoders = 0x7d090bfb221d74f9ULL;
-// MAEBots of 2014: {int64 utime, int32 left, int32 right, ...}: motor commands and currents behind
+// MAEBots of 2014: {int64 utime, int32 left, int32 right, motor commands, currents}
 constexpr std::uint64_t kMaebotMotorFeedback = 0x8dc5a028fca42ff9ULL;
 // {int64 utime, double pos[3], vel[3], orientation[4], rotation_rate[3], accel[3]}
 constexpr std::uint64_t kBotCorePose = 0x2e16efb052b0105eULL;
@@ -70,7 +70,7 @@ PoseResult read_planar_pose(std::span<const std::uint8_t> payload) {
   return ForeignPose{timestamp_from_us(decoded.message->utime), to_se2(*decoded.message)};
 }
 
-/// Larger coordinates are garbage, and would not fit the floats of our messages.
+/// Larger coordinates are garbage, and too imprecise as the floats of pose2D_t.
 bool is_plausible(const Se2& pose) {
   constexpr double kLargest_m = 1e6;
   return std::abs(pose.x()) <= kLargest_m && std::abs(pose.y()) <= kLargest_m &&

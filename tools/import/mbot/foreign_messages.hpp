@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LCM messages of other robots that are not types of ours, read field by field. LCM's fingerprint
-// ignores the names of packages and structs, so pose_xyt_t and odometry_t of MBot robots are our
-// pose2D_t.
+// LCM messages of other robots whose types are not in lcmtypes/, decoded field by field. LCM's
+// fingerprint ignores package and struct names, so pose_xyt_t and odometry_t of MBot robots decode
+// as pose2D_t.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -15,13 +15,13 @@
 
 namespace waymark {
 
-/// Which robot's wheels the ticks are of.
+/// Message type, hence robot, of the encoder ticks.
 enum class Encoders {
   kMaebot,      ///< MAEBOT_ENCODERS
   kMaebot2014,  ///< MAEBOT_MOTOR_FEEDBACK, whose further fields are not read
 };
 
-/// MAEBot: int64 utime, int32 left, int32 right: ticks since power-on, which may wrap around.
+/// Encoder ticks since power-on; the counters may wrap around.
 struct EncoderTicks {
   Timestamp time{};
   std::int64_t at{0};
@@ -40,13 +40,13 @@ using PoseResult = std::variant<ForeignPose, LineProblem>;
 
 enum class ForeignKind { kOther, kTicks, kPose };
 
-/// By its fingerprint; the rest may be damaged.
+/// Kind of message by its fingerprint only; the rest may be damaged.
 ForeignKind kind_of(std::span<const std::uint8_t> payload);
 
-/// For any bytes. `at` is left 0.
+/// Accepts any bytes. Leaves `at` 0.
 EncoderResult read_encoders(std::span<const std::uint8_t> payload);
 
-/// pose2D_t, or bot_core.pose_t (position and the yaw of its w x y z quaternion).
+/// Accepts pose2D_t, and bot_core.pose_t (x, y, and the yaw of its quaternion w x y z).
 PoseResult read_pose(std::span<const std::uint8_t> payload);
 
 /// "unknown type" with the fingerprint in hexadecimal.

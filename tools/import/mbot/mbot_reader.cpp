@@ -170,7 +170,7 @@ void MbotReader::apply_ticks() {
   log_.robot.base.wheel_separation_m = wheels.wheel_base_m;
 }
 
-/// A LiDAR's usual limit says nothing about one that measures further.
+/// Range limit of the usual LiDAR (RPLIDAR A1); nullopt if some range is longer.
 std::optional<double> MbotReader::usual_range_max_m() const {
   if (has_planar_scans_) return std::nullopt;
   double longest_m = 0.0;
@@ -187,7 +187,7 @@ ImportedLog MbotReader::finish() {
   apply_ticks();
   put_on_clock(lidar_clock_, odometry_clock_, "odometry", log_.odometry, report_);
   put_on_clock(lidar_clock_, reference_clock_, "reference", log_.reference, report_);
-  // A rotating LiDAR has a few beams more or less in each turn; evenly spaced ones have not.
+  // Turns of a rotating LiDAR (lidar_t) differ by a few beams; planar_lidar_t scans do not.
   if (has_planar_scans_) keep_usual_beam_count(log_.scans, report_);
   LidarConfig& lidar = log_.robot.lidar;
   lidar.range_min_m = options_.range_min_m;
@@ -211,7 +211,7 @@ LogReader open_log(const std::filesystem::path& file) {
   }
 }
 
-/// Channels that a log's odometry may be on, when none was named.
+/// Channels that may hold the odometry, if the user names none.
 struct Candidates {
   std::map<std::string, std::int64_t> channels{};
   std::set<std::string> ticks{};
@@ -229,7 +229,8 @@ Candidates find_candidates(LogReader log) {
   return found;
 }
 
-/// The only channel with ticks; poses may be anybody's, and are only named.
+/// The only channel with ticks. Pose channels are not chosen, only listed in the error: they may be
+/// another program's estimates.
 std::string choose_encoder_channel(const std::filesystem::path& file, ImportReport& report) {
   const Candidates found = find_candidates(open_log(file));
   if (found.channels.empty()) throw SetupError{"the file holds no LCM event"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An LCM log of an MBot robot, or of one with bot_core's types -> scans, odometry and reference.
+// Reads an LCM log of an MBot robot, or of one with bot_core types.
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -15,19 +15,18 @@ struct MbotOptions {
   std::string odometry_channel{};           ///< pose2D_t, pose_xyt_t, odometry_t or bot_core.pose_t
   std::string encoder_channel{};            ///< MAEBot's encoders; at most one of the two is given
   std::string reference_channel{};          ///< types as for odometry; empty = none
-  std::optional<double> meters_per_tick{};  ///< nullopt = of the robot that has such messages
-  std::optional<double> wheel_base_m{};     ///< the same
+  std::optional<double> meters_per_tick{};  ///< nullopt = geometry_of() the messages
+  std::optional<double> wheel_base_m{};     ///< nullopt = geometry_of() the messages
   std::optional<double> range_max_m{};      ///< nullopt = see mark_no_returns(); usual: RPLIDAR A1
   double range_min_m{0.0};
   LidarMounting mounting{};
 };
 
-/// lidar_t messages are kept as they are (their beams' times undo the motion within a scan).
-/// Without a channel for odometry, the only one with a MAEBot's ticks is taken. Odometry and
-/// reference whose stamps are of another clock than the LiDAR's are put on its clock by the
-/// logger's times. What was taken is said.
-/// @throws SetupError when the file is unreadable, empty, lacks a channel, or gives no scan or no
-/// odometry.
+/// lidar_t messages are kept unchanged, with the times of their beams. If no odometry channel is
+/// given, the only channel with MAEBot ticks is used, with a note. Odometry and reference with
+/// stamps of another clock than the LiDAR's are shifted to its clock, see put_on_clock().
+/// @throws SetupError when the file is unreadable, empty, lacks a given channel, or has no scan or
+/// no odometry.
 ImportedLog read_mbot_log(const std::filesystem::path& file, const MbotOptions& options,
                           ImportReport& report);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Encoder ticks of a differential drive -> poses.
+// Dead reckoning from the encoder ticks of a differential drive.
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -15,13 +15,13 @@ struct WheelGeometry {
   double wheel_base_m{0.0};
 };
 
-/// Both robots are of ROB 550: 1200 ticks per turn of 0.100528 m; in 2014 480 per turn of a wheel
-/// of 0.032 m diameter.
+/// Robots of the course ROB 550 (University of Michigan): 1200 ticks per wheel turn of 0.100528 m;
+/// those of 2014: 480 ticks per turn of a wheel of 0.032 m diameter.
 WheelGeometry geometry_of(Encoders encoders);
 
-/// Dead reckoning from the origin: one pose per reading, each step an arc approximated by its chord
-/// at half the turn. A step faster than any such robot (10 m/s: a counter that was reset or
-/// garbled) is named, and the robot counts as not having moved in it.
+/// One pose (odom_from_base) per reading, starting at the origin; each step is a straight line at
+/// half the turn. A step faster than 10 m/s (a reset or garbled counter) is reported and counts as
+/// no motion.
 /// @param ticks  ascending times
 std::vector<ImportedPose> wheel_odometry(std::span<const EncoderTicks> ticks,
                                          const WheelGeometry& geometry, ImportReport& report);

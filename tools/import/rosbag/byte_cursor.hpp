@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads numbers and texts out of bytes that may be anything.
+// Reads numbers and strings from bytes, with bounds checks.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace waymark {
 
 using ByteView = std::span<const std::uint8_t>;
 
-/// Little-endian, not aligned. What does not fit in reads as 0 or empty, and good() is false from
-/// then on.
+/// Little-endian, unaligned. Reading past the end gives 0 or empty, and good() is false from then
+/// on.
 class ByteCursor {
  public:
   explicit ByteCursor(ByteView bytes) : bytes_{bytes} {}
@@ -43,7 +43,7 @@ class ByteCursor {
     return taken;
   }
 
-  /// Bytes with their length before them.
+  /// Bytes preceded by their length.
   template <class Length = std::uint32_t>
   ByteView block() {
     return take(number<Length>());

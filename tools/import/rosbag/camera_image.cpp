@@ -21,7 +21,7 @@ constexpr std::int64_t kMaxPixels = 64'000'000;
 struct PixelKind {
   std::string_view name;
   int type;
-  int to_grey;  ///< of cv::cvtColor; -1 = is grey
+  int to_grey;  ///< code for cv::cvtColor; -1: already grey
 };
 
 constexpr std::array kPixelKinds{

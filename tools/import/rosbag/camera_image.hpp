@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Images of ROS -> the JPEGs of CAMERA.
+// Converts ROS images to the JPEG messages of CAMERA.
 #pragma once
 
 #include "common/messages/channels.hpp"
@@ -9,9 +9,9 @@
 
 namespace waymark {
 
-/// A JPEG that fits one datagram stays as it is; everything else is decoded and becomes a grey one,
-/// with as much quality as fits.
-/// @return nothing when the image is damaged, or its pixels are of a kind that is not known here.
+/// A JPEG that fits into one datagram is kept unchanged; any other image is encoded as a grey JPEG
+/// with the highest quality that fits.
+/// @return nothing if the image is damaged or its pixel encoding is not supported.
 std::optional<image_t> to_camera_message(const RosImage& image, Timestamp time);
 
 }  // namespace waymark

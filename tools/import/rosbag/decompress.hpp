@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What bags are compressed with.
+// Decompresses chunks and messages of bags.
 #pragma once
 
 #include "import/rosbag/byte_cursor.hpp"
@@ -11,19 +11,20 @@
 
 namespace waymark {
 
-/// Larger chunks and messages are taken for damage; rosbag's usual chunk has 0.75 MB.
+/// Larger sizes are treated as damage; rosbag's default chunk is 0.75 MB.
 inline constexpr std::uint64_t kMaxUnpackedBytes = std::uint64_t{256} << 20;
 
 /// @param method  "bz2", "lz4" (frames) or "zstd".
-/// @param size    of the result, as the bag says.
-/// @return nothing when the bytes are damaged, or of another size, or the method is not known.
+/// @param size    uncompressed size as stored in the bag [bytes].
+/// @return nothing if the bytes are damaged, have another size, or the method is unknown.
 std::optional<std::vector<std::uint8_t>> decompress(std::string_view method, ByteView packed,
                                                     std::uint64_t size);
 
 bool is_known_compression(std::string_view method);
 
-/// A message that rosbag2 has compressed by itself, which says its own size; nothing when it is
-/// none.
+/// Decompresses a message that rosbag2 compressed on its own (mode "message"); the frame contains
+/// its uncompressed size.
+/// @return nothing if it is no zstd frame or damaged.
 std::optional<std::vector<std::uint8_t>> decompress_zstd_frame(ByteView packed);
 bool is_zstd_frame(ByteView bytes);
 

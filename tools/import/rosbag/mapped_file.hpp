@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file as bytes in memory, which the kernel reads when they are looked at.
+// A file mapped into memory (mmap), read-only.
 #pragma once
 
 #include "import/rosbag/byte_cursor.hpp"

@@ -64,7 +64,7 @@ class McapReader {
       case kChunk:
         return take_chunk(content, at);
       default:
-        return;  // indices, attachments, metadata
+        return;  // index, attachment, metadata
     }
   }
 
@@ -100,7 +100,7 @@ class McapReader {
       return report_.skip("message of no channel", at, "");
     }
     const McapChannel& of = channel->second;
-    if (!of.is_ros) return;  // of another program
+    if (!of.is_ros) return;
     const auto recorded = time_from_ns(static_cast<std::int64_t>(log_ns));
     if (!recorded) return report_.skip("bad time", at, of.topic);
     take_({of.topic, of.type, of.encoding, *recorded, at, cursor.take(cursor.left())});

@@ -96,7 +96,7 @@ void describe_camera(CameraConfig& camera, const StaticFrames& transforms,
   camera.y_m = base_from_optical->translation().y();
   camera.z_m = std::max(0.0, base_from_optical->translation().z());
   camera.roll_rad = camera.pitch_rad = camera.yaw_rad = 0.0;
-  const Eigen::Matrix3d level = camera.base_from_camera().linear();  // optical axes of one that is
+  const Eigen::Matrix3d level = camera.base_from_camera().linear();  // of a camera that is level
   const Eigen::Matrix3d turn = base_from_optical->linear() * level.transpose();
   camera.yaw_rad = std::atan2(turn(1, 0), turn(0, 0));
   camera.pitch_rad = std::atan2(-turn(2, 0), std::hypot(turn(2, 1), turn(2, 2)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What transforms and CameraInfo say about the robot's sensors.
+// Mounting of the sensors and lens of the camera, from transforms and CameraInfo.
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -10,21 +10,21 @@
 
 namespace waymark {
 
-/// Names of frames; the base's is what the others are looked for in.
+/// Names of frames; LiDAR and camera are looked up relative to `base`.
 struct SensorFrames {
   std::string base{};
   std::string lidar{};
   std::string camera{};
 };
 
-/// Position and yaw of the LiDAR; where nothing leads to it, the origin, which is noted. What the
-/// user gives overrules the transforms.
+/// Sets position and yaw of the LiDAR; the origin, with a note, if no fixed transforms lead to its
+/// frame. Values given by the user override the transforms.
 ScanPlane describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
                          const SensorFrames& frames, const LidarMounting& given,
                          ImportReport& report);
 
-/// Lens and mounting of the camera; what the bag does not say is a guess, which is noted.
-/// @param image  one of the bag's, whose size the lens has to be of
+/// Sets lens and mounting of the camera; values that the bag lacks are guessed, with a note.
+/// @param image  an image of the bag, for its size in pixels
 void describe_camera(CameraConfig& camera, const StaticFrames& transforms,
                      const SensorFrames& frames, const std::optional<RosCameraInfo>& info,
                      const ImportedImage& image, ImportReport& report);

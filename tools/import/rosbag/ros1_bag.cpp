@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ROS 1's bags, version 2.0 (http://wiki.ros.org/Bags/Format/2.0): records of a header with fields
-// NAME=VALUE and data. Messages and what they are of stand in chunks.
+// ROS 1 bags, version 2.0 (http://wiki.ros.org/Bags/Format/2.0): records of a header with fields
+// NAME=VALUE and data. Messages and connections are in chunks.
 #include "import/rosbag/bag.hpp"
 #include "import/rosbag/decompress.hpp"
 #include "import/rosbag/mapped_file.hpp"
@@ -46,7 +46,7 @@ std::optional<RecordFields> read_fields(ByteView header) {
   return fields;
 }
 
-/// Nothing, and the cursor anywhere, where no record starts.
+/// Nothing if no record starts at the cursor, whose position is then undefined.
 std::optional<Record> read_record(ByteCursor& cursor) {
   const ByteView header = cursor.block();
   const ByteView data = cursor.block();
@@ -73,8 +73,8 @@ std::string text_in(const RecordFields& fields, std::string_view name) {
   return ros_name({reinterpret_cast<const char*>(found->second.data()), found->second.size()});
 }
 
-/// Where the next chunk starts; the end when there is none. A chunk's header begins with the field
-/// `compression`, behind the two lengths.
+/// Offset of the next chunk; the end if there is none. A chunk's header begins with the field
+/// `compression`, after the two lengths.
 std::size_t next_chunk(ByteView bag, std::size_t from) {
   constexpr std::string_view kField = "compression=";
   const auto matches = [](std::uint8_t byte, char c) {

@@ -12,8 +12,8 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kMaxSide_px = 16384;
 
-/// Fields of a message one after the other. ROS 1 packs them; CDR aligns each number to its size
-/// and ends texts with a zero.
+/// Reads the fields of a message in order. ROS 1 packs them; CDR aligns each number to its size
+/// and terminates strings with a zero.
 class RosCursor {
  public:
   explicit RosCursor(const RosRecord& record) : cursor_{record.data}, encoding_{record.encoding} {
@@ -88,7 +88,7 @@ bool are_finite(std::initializer_list<double> numbers) {
 std::optional<Eigen::Quaterniond> rotation(const std::array<double, 4>& xyzw) {
   const Eigen::Quaterniond q{xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
   const double norm = q.norm();
-  constexpr double kTolerance = 0.1;  // drivers write few digits
+  constexpr double kTolerance = 0.1;  // some drivers round coarsely
   if (!(std::abs(norm - 1.0) < kTolerance)) return std::nullopt;
   return q.normalized();
 }
@@ -100,10 +100,10 @@ std::optional<RosScan> read_scan(const RosRecord& record) {
   RosScan scan;
   scan.header = cursor.header();
   scan.angle_min_rad = cursor.number<float>();
-  cursor.number<float>();  // the last angle: follows from the others
+  cursor.number<float>();  // angle_max: follows from the others
   scan.angle_increment_rad = cursor.number<float>();
   scan.time_increment_s = cursor.number<float>();
-  cursor.number<float>();  // time from scan to scan
+  cursor.number<float>();  // scan_time
   scan.range_min_m = cursor.number<float>();
   scan.range_max_m = cursor.number<float>();
   scan.ranges_m = cursor.list<float>();
@@ -144,7 +144,7 @@ std::optional<RosImage> read_image(const RosRecord& record) {
   const auto height = cursor.number<std::uint32_t>();
   const auto width = cursor.number<std::uint32_t>();
   image.format = cursor.text();
-  cursor.number<std::uint8_t>();  // order of bytes: of pixels with more than one only
+  cursor.number<std::uint8_t>();  // is_bigendian: matters for multi-byte pixels only
   const auto step = cursor.number<std::uint32_t>();
   image.data = cursor.block();
   const bool is_sane = width > 0 && height > 0 && width <= kMaxSide_px && height <= kMaxSide_px &&

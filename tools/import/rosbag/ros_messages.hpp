@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The messages of ROS that an import reads, from either of its encodings.
+// Decodes the ROS messages that an import reads, from ROS 1 or CDR encoding.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -41,11 +41,11 @@ struct RosOdometry {
 /// sensor_msgs/CompressedImage or Image.
 struct RosImage {
   RosHeader header{};
-  std::string format{};  ///< of a compressed one; else the pixels' encoding
-  int width_px{0};       ///< 0: compressed
+  std::string format{};  ///< `format` of CompressedImage, `encoding` of Image
+  int width_px{0};       ///< 0: compressed image
   int height_px{0};
   int row_bytes{0};
-  ByteView data{};  ///< as long as the record lives
+  ByteView data{};  ///< valid as long as the record
 };
 
 /// sensor_msgs/CameraInfo.
@@ -65,7 +65,7 @@ struct RosTransform {
   Eigen::Isometry3d parent_from_child{Eigen::Isometry3d::Identity()};
 };
 
-/// Of a record of that type; nothing when its bytes are damaged or its numbers are none.
+/// The decoded message; nothing if its bytes are damaged or its numbers are not finite.
 std::optional<RosScan> read_scan(const RosRecord& record);
 std::optional<RosOdometry> read_odometry(const RosRecord& record);
 std::optional<RosImage> read_compressed_image(const RosRecord& record);

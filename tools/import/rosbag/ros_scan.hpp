@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LaserScan -> the messages of LIDAR.
+// Converts LaserScan messages to messages of LIDAR.
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -9,13 +9,13 @@
 
 namespace waymark {
 
-/// Angles of a LiDAR that hangs upside down run the other way round in the base frame.
+/// Angles of an upside-down LiDAR count clockwise in the base frame.
 enum class ScanPlane { kUpright, kUpsideDown };
 
-/// A scan with a time increment keeps the time of each beam (lidar_t). Ranges as they are meant
-/// (REP-117): +inf = no return, NaN = no measurement; below the shortest range, 0 included, there
-/// is none.
-/// @return nothing when the numbers are none that a LiDAR measures.
+/// A scan with a time increment keeps the time of each beam (lidar_t); otherwise it becomes a
+/// planar_lidar_t. Ranges follow REP-117: +inf = no return (also from range_max on), NaN = no
+/// measurement (also below range_min, and 0).
+/// @return nothing if the number of beams, angles or duration are impossible for a LiDAR.
 std::optional<ImportedScan> to_imported_scan(const RosScan& scan, Timestamp time, std::int64_t at,
                                              ScanPlane plane);
 

@@ -40,7 +40,7 @@ using Topics = std::map<std::string, TopicContent>;
 
 Topics topics_in(const std::filesystem::path& file) {
   Topics topics;
-  ImportReport unread{file, AddressUnit::kByte};  // what is damaged is said when it is read
+  ImportReport unread{file, AddressUnit::kByte};  // damage is reported in the second pass
   read_bag(
       file,
       [&topics](const RosRecord& record) {
@@ -129,7 +129,7 @@ class RosbagReader {
     report_.skip(kind, record.at, record.topic);
   }
 
-  /// The stamp; where the driver sets none, the time of recording.
+  /// The header's stamp; the time of recording if the driver sets none.
   Timestamp time_of(const RosHeader& header, const RosRecord& record) {
     if (header.stamp != Timestamp{}) return header.stamp;
     ++unstamped_[record.topic];
@@ -153,7 +153,7 @@ class RosbagReader {
   std::string image_{};
   std::string camera_info_{};
   ImportedLog log_{};
-  std::vector<HeldScan> scans_{};  // until it is known which way up the LiDAR is
+  std::vector<HeldScan> scans_{};  // until transforms tell whether the LiDAR is upside down
   StaticFrames transforms_{};
   SensorFrames frames_{};
   std::optional<RosCameraInfo> info_{};
@@ -226,7 +226,7 @@ void RosbagReader::note_zeros() {
                            100.0 * static_cast<double>(zeros) / static_cast<double>(ranges)));
 }
 
-/// What most scans say.
+/// Median of the scans' range_max; nullopt if that is 0 or infinite.
 std::optional<double> RosbagReader::usual_range_max_m() const {
   std::vector<double> limits_m;
   for (const HeldScan& held : scans_)

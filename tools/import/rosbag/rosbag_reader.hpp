@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bag of ROS -> scans, odometry, camera images, and what the robot is like.
+// Reads scans, odometry, camera images and sensor mounting from a ROS bag.
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -11,7 +11,7 @@ namespace waymark {
 
 struct RosbagOptions {
   std::string scan_topic{};      ///< empty = the only one with sensor_msgs/LaserScan
-  std::string odometry_topic{};  ///< the same with nav_msgs/Odometry
+  std::string odometry_topic{};  ///< empty = the only one with nav_msgs/Odometry
   std::string image_topic{};  ///< CompressedImage or Image; empty = the only one, if there is one
   std::string camera_info_topic{};  ///< empty = the only one
   std::string base_frame{};         ///< empty = odometry's child frame
@@ -20,9 +20,9 @@ struct RosbagOptions {
   LidarMounting mounting{};
 };
 
-/// A scan with a time increment keeps the time of each beam (lidar_t). Mountings are taken from the
-/// static transforms, the camera's numbers from CameraInfo.
-/// @throws SetupError when the file is no bag, has no scan or no odometry, or several topics fit.
+/// A scan with a time increment keeps the time of each beam (lidar_t). Mountings come from static
+/// transforms, intrinsics from CameraInfo.
+/// @throws SetupError if the file is no bag, has no scan or no odometry, or several topics match.
 ImportedLog read_rosbag(const std::filesystem::path& file, const RosbagOptions& options,
                         ImportReport& report);
 

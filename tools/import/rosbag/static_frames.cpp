@@ -4,7 +4,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kSame = 1e-6;  // [m, and of the rotation matrix]: rounding of repeated transforms
+constexpr double kSame = 1e-6;  // [m, and rotation matrix elements]: rounding of repeated messages
 
 /// "/base_link" of ROS 1 is "base_link".
 std::string frame_name(const std::string& name) {
@@ -29,7 +29,7 @@ void StaticFrames::add(const RosTransform& transform, TransformSource source) {
 
 StaticFrames::Link StaticFrames::root_of(const std::string& frame) const {
   Link root{frame_name(frame), Eigen::Isometry3d::Identity()};
-  // As many steps as there are frames: damaged transforms may go round.
+  // At most as many steps as frames: damaged transforms may form a cycle.
   for (std::size_t i = 0; i < parents_.size(); ++i) {
     const auto link = parents_.find(root.parent);
     if (link == parents_.end() || link->second.moves) break;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How sensors are mounted: the tree of transforms that do not change.
+// The tree of fixed transforms, for the mounting of sensors.
 #pragma once
 
 #include "import/rosbag/ros_messages.hpp"
@@ -10,17 +10,16 @@
 
 namespace waymark {
 
-/// tf_static, or the tree that is sent again and again (`tf`), in which old robots have both what
-/// moves and what does not.
+/// Topic of a transform: tf_static, or tf, on which old robots repeat fixed transforms as well.
 enum class TransformSource { kStatic, kRepeated };
 
-/// Frames, each fixed in its parent. A repeated transform counts as fixed for as long as it stays
-/// the same; tf_static overrules it.
+/// Fixed transforms by child frame. A transform of tf counts as fixed as long as all its messages
+/// agree; tf_static overrides it.
 class StaticFrames {
  public:
   void add(const RosTransform& transform, TransformSource source);
 
-  /// Nothing when no fixed transforms lead from one to the other.
+  /// parent_from_child; nothing if no chain of fixed transforms connects the two.
   std::optional<Eigen::Isometry3d> find(const std::string& parent, const std::string& child) const;
 
  private:
@@ -31,7 +30,7 @@ class StaticFrames {
     bool moves{false};
   };
 
-  /// The topmost frame above one, and its pose in there.
+  /// Root of the tree that `frame` is in, and the frame's pose in it.
   Link root_of(const std::string& frame) const;
 
   std::map<std::string, Link> parents_{};

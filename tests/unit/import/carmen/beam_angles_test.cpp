@@ -69,7 +69,7 @@ TEST(BeamAngles, FollowTheConventionWhereNoWallShowsThem) {
   EXPECT_FALSE(found_in(nothing, 90));
 }
 
-TEST(BeamAngles, AreNotFoundFromWhatADriverWritesForNoReturn) {
+TEST(BeamAngles, AreNotEstimatedFromNoReturnRanges) {
   auto scans = scans_of(361, {radians(-90.0), radians(0.5)});
   for (std::size_t i = 0; i < scans.size(); ++i)
     std::fill(scans[i].begin() + 40, scans[i].end(), 5.6);

@@ -52,7 +52,7 @@ TEST(CarmenLine, FlaserHasTheLidarsPoseBeforeTheRobots) {
   EXPECT_FALSE(scan.range_max_m);
 }
 
-TEST(CarmenLine, FlaserDoesNotSayItsAngles) {
+TEST(CarmenLine, FlaserHasNoAngles) {
   EXPECT_FALSE(parse<CarmenScan>(flaser(4)).angles);
   EXPECT_EQ(parse<CarmenScan>(flaser(4, "RLASER")).lidar, CarmenLidar::kRear);
 }

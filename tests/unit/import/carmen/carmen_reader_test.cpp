@@ -72,7 +72,7 @@ TEST(CarmenReader, AnUnusualNumberOfBeamsNeedsItsAnglesWhereNoWallShowsThem) {
   }
 }
 
-TEST(CarmenReader, OfAStepAloneTheMiddleBeamLooksAhead) {
+TEST(CarmenReader, WithAnAngleStepOnlyTheMiddleBeamPointsAhead) {
   CarmenOptions options{};
   options.beams.angle_step_rad = 0.5;
 

@@ -121,7 +121,7 @@ TEST(OddLines, LinesInAnotherOrderAreSorted) {
   EXPECT_THAT(read.report.notes(), Contains(HasSubstr("all were sorted by time")));
 }
 
-TEST(OddLines, HeadingsInDegreesAreRefusedUntilTheyAreSaidToBe) {
+TEST(OddLines, HeadingsInDegreesAreRefusedUnlessTheirUnitIsGiven) {
   std::string text;
   double x_m = 0.0;
   double y_m = 0.0;

@@ -34,11 +34,11 @@ std::vector<Se2> to_and_fro_turning() {
 
 std::vector<std::string> what_is_found(ImportedLog log) {
   ImportReport report{"log", AddressUnit::kLine};
-  examine(log, ReversedOdometry::kName, report);
+  examine(log, ReversedOdometry::kReport, report);
   return report.notes();
 }
 
-TEST(MotionFit, OdometryInInchesIsNamedAndNothingElseOfItsMotion) {
+TEST(MotionFit, OdometryInInchesIsTheOnlyFindingOfItsMotion) {
   ImportedLog log = long_drive();
   scale_distances(log.odometry, 1.0 / 0.0254);
 
@@ -47,7 +47,7 @@ TEST(MotionFit, OdometryInInchesIsNamedAndNothingElseOfItsMotion) {
   EXPECT_THAT(what_is_found(log), Not(Contains(HasSubstr("--fix-reversed-odometry"))));
 }
 
-TEST(MotionFit, OdometryInMetresIsNot) {
+TEST(MotionFit, OdometryInMetresIsNotReported) {
   EXPECT_FALSE(odometry_factor(long_drive(), {}));
   EXPECT_THAT(what_is_found(long_drive()), Not(Contains(HasSubstr("distances"))));
 }

@@ -65,7 +65,7 @@ TEST(NoReturn, ACodeForNoReturnIsFoundWhateverNoiseAndResolution) {
   }
 }
 
-TEST(NoReturn, SeveralCodesOfASickAreFound) {
+TEST(NoReturn, SeveralCodesOfASickLidarAreFound) {
   const auto scans = hall(60.0, 0.01, 0.01, [](std::mt19937& random) {
     const auto kind = random() % 20;
     return kind < 2 ? 81.83 : kind < 5 ? 81.87 : 81.91;

@@ -57,14 +57,14 @@ double way_m(const ImportedLog& log) {
   return path_length_m(log.odometry);
 }
 
-TEST(OdometryBreaks, OdometryWithoutOnesStays) {
+TEST(OdometryBreaks, OdometryWithoutBreaksIsUnchanged) {
   const ImportedLog log = drive_with_stop();
   const Mended mended = mend(log);
   EXPECT_THAT(mended.report.notes(), IsEmpty());
   EXPECT_EQ(way_m(mended.log), way_m(log));
 }
 
-TEST(OdometryBreaks, ANewBeginningAfterAPauseGoesOnWhereItWasAndIsNoSetClock) {
+TEST(OdometryBreaks, AResetAfterAPauseIsJoinedAndIsNoClockSeam) {
   ImportedLog log = drive_with_stop();
   begin_anew(log, 30);
   delay(log, 30, std::chrono::minutes{12});
@@ -79,7 +79,7 @@ TEST(OdometryBreaks, ANewBeginningAfterAPauseGoesOnWhereItWasAndIsNoSetClock) {
               std::chrono::minutes{5});
 }
 
-TEST(OdometryBreaks, TheWayInAGapThatABareCorridorDoesNotShowStays) {
+TEST(OdometryBreaks, MotionDuringAGapInABareCorridorIsKept) {
   const auto way_of_drive_with_gap = [](Walls walls) {
     const std::vector<Se2> steps(60, Se2{0.05, 0.0, 0.0});
     ImportedLog log = drive(steps, CountedAs::kDriven, walls);
@@ -92,7 +92,7 @@ TEST(OdometryBreaks, TheWayInAGapThatABareCorridorDoesNotShowStays) {
   EXPECT_NEAR(way_of_drive_with_gap(Walls::kRoom), 2.95, kExact);  // the scans show that it stood
 }
 
-TEST(OdometryBreaks, ANewBeginningAtZeroAfterAPauseInABareCorridorIsOne) {
+TEST(OdometryBreaks, AResetToZeroAfterAPauseInABareCorridorIsFound) {
   constexpr std::size_t kNewBeginning = 30;
   std::vector<Se2> steps(60, Se2{0.05, 0.0, 0.0});
   steps[kNewBeginning - 1] = Se2{};
@@ -108,7 +108,7 @@ TEST(OdometryBreaks, ANewBeginningAtZeroAfterAPauseInABareCorridorIsOne) {
   EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("odometry begins anew at")));
 }
 
-TEST(OdometryBreaks, ANewBeginningWhileTheRobotDrivesGoesOnAsItDrove) {
+TEST(OdometryBreaks, AResetWhileDrivingIsJoinedAtTheLastVelocity) {
   ImportedLog log = drive_with_stop();
   begin_anew(log, 50);
 
@@ -140,7 +140,7 @@ TEST(OdometryBreaks, OdometryThatIs0UntilItStartsIsJoinedWhereTheRobotStands) {
   EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("odometry is 0 for the first 4.0 s")));
 }
 
-TEST(OdometryBreaks, ScansOfAWayThatOdometryDidNotSeeAtFirstAreLeftOut) {
+TEST(OdometryBreaks, ScansOfMotionBeforeOdometryStartsAreLeftOut) {
   ImportedLog log = drive_with_stop();
   for (std::size_t i = 0; i < log.odometry.size(); ++i)
     log.odometry[i].pose = i < 15 ? Se2{} : Se2{5.0, 5.0, 1.0} * log.odometry[i].pose;
@@ -152,7 +152,7 @@ TEST(OdometryBreaks, ScansOfAWayThatOdometryDidNotSeeAtFirstAreLeftOut) {
   EXPECT_EQ(mended.log.odometry.front().time, mended.log.scans.front().time);
 }
 
-TEST(OdometryBreaks, AGapInWhichTheRobotIsMovedIsNamed) {
+TEST(OdometryBreaks, AGapInWhichTheRobotIsMovedIsReported) {
   ImportedLog log = drive(std::vector<Se2>(60, Se2{0.05, 0.0, 0.0}), CountedAs::kDriven);
   const Se2 held = log.odometry[20].pose;
   const Se2 moved = log.odometry[50].pose;

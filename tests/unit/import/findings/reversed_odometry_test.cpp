@@ -69,12 +69,12 @@ TEST(ReversedOdometry, IsCorrectedOnRequestAndAlwaysReported) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kForward);
   const Se2 wrong_end = log.odometry.back().pose;
   ImportReport named{"log", AddressUnit::kLine};
-  examine(log, ReversedOdometry::kName, named);
+  examine(log, ReversedOdometry::kReport, named);
   EXPECT_EQ(log.odometry.back().pose.x(), wrong_end.x());
   EXPECT_THAT(named.notes(), Contains(HasSubstr("--fix-reversed-odometry turns it round")));
 
   ImportReport mended{"log", AddressUnit::kLine};
-  examine(log, ReversedOdometry::kMend, mended);
+  examine(log, ReversedOdometry::kCorrect, mended);
   EXPECT_THAT(mended.notes(), Contains(HasSubstr("20 steps between scans, 0.9 m")));
   const Se2 end = drive(to_and_fro(), CountedAs::kDriven).odometry.back().pose;
   EXPECT_NEAR(log.odometry.back().pose.x(), end.x(), 1e-6);
@@ -82,7 +82,7 @@ TEST(ReversedOdometry, IsCorrectedOnRequestAndAlwaysReported) {
   EXPECT_NEAR(log.odometry.back().pose.theta(), end.theta(), 1e-6);
 
   ImportReport again{"log", AddressUnit::kLine};
-  examine(log, ReversedOdometry::kName, again);
+  examine(log, ReversedOdometry::kReport, again);
   EXPECT_THAT(again.notes(), Not(Contains(HasSubstr("backing up"))));
 }
 

@@ -22,7 +22,7 @@ ImportedLog with_one_pose(ImportedLog log) {
 
 std::vector<std::string> notes_of(ImportedLog log) {
   ImportReport report{"log", AddressUnit::kLine};
-  examine(log, ReversedOdometry::kName, report);
+  examine(log, ReversedOdometry::kReport, report);
   return report.notes();
 }
 

@@ -36,7 +36,7 @@ std::vector<Timestamp> corrected(const std::vector<Timestamp>& stamps) {
   return times;
 }
 
-TEST(ClockSeams, AClockSetBackGoesOnAtTheUsualPeriod) {
+TEST(ClockSeams, AfterAClockSetBackStampsContinueAtTheUsualPeriod) {
   const auto stamps = joined(from(5'000 * kSecond_us, 60), from(1'400 * kSecond_us, 40));
 
   const auto seams = find_clock_seams(stamps);
@@ -53,7 +53,7 @@ TEST(ClockSeams, TheLongestPieceKeepsItsStampsUnlessSomeWouldBeBefore0) {
   EXPECT_EQ(corrected(set_back), from(1'000 * kSecond_us, 100));
 }
 
-TEST(ClockSeams, SingleWrongStampsAndStampsWithoutOrderAreNone) {
+TEST(ClockSeams, SingleWrongStampsAndUnorderedStampsAreNoSeams) {
   auto stamps = from(100 * kSecond_us, 60);
   stamps[30] += std::chrono::hours{1};
   stamps[40] -= std::chrono::seconds{50};
@@ -63,7 +63,7 @@ TEST(ClockSeams, SingleWrongStampsAndStampsWithoutOrderAreNone) {
   EXPECT_THAT(find_clock_seams({}), IsEmpty());
 }
 
-TEST(ClockSeams, PiecesOfOneRecordingTheWrongWayRoundAreSeen) {
+TEST(ClockSeams, PiecesOfOneRecordingInTheWrongOrderAreFound) {
   const auto swapped = joined(from(30 * kSecond_us, 100), from(10 * kSecond_us, 100));
   EXPECT_TRUE(are_pieces_in_disorder(swapped, find_clock_seams(swapped)));
   const auto overlapping = joined(from(30 * kSecond_us, 100), from(11 * kSecond_us, 100));

@@ -25,11 +25,11 @@ TEST(LongestAscending, KeepsAscendingTimes) {
   EXPECT_THAT(longest_ascending({}), IsEmpty());
 }
 
-TEST(LongestAscending, OneTimeTooLateCostsOnlyItself) {
+TEST(LongestAscending, OneTimeTooLateRemovesOnlyItself) {
   EXPECT_THAT(longest_ascending(times({1, 900, 2, 3})), ElementsAre(true, false, true, true));
 }
 
-TEST(LongestAscending, OneTimeTooEarlyCostsOnlyItself) {
+TEST(LongestAscending, OneTimeTooEarlyRemovesOnlyItself) {
   EXPECT_THAT(longest_ascending(times({5, 6, 1, 7})), ElementsAre(true, true, false, true));
 }
 
@@ -43,7 +43,7 @@ struct Record {
   std::int64_t at{0};
 };
 
-TEST(KeepAscending, ALossOfManyRecordsIsSaidWithWhatToDo) {
+TEST(KeepAscending, ALossOfManyRecordsIsNotedWithAdvice) {
   for (const std::int64_t late : {1, 10}) {
     std::vector<Record> records;
     for (std::int64_t i = 0; i < 100; ++i)
