@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::size_t kFewestCorners = 8;  // 16 equations, 6 of them for the pose
 constexpr std::size_t kFewestViews = 10;
-constexpr std::size_t kMostViews = 40;      // more cost seconds and gain little
-constexpr double kSameView = 0.02;          // widths of the image that the outline has moved
-constexpr double kTilt_deg = 15.0;          // shallower views confuse focal length and distance
+constexpr std::size_t kMostViews = 40;      // more take seconds and improve little
+constexpr double kSameView = 0.02;          // smallest move of the outline, in image widths
+constexpr double kTilt_deg = 15.0;          // at less, focal length and distance are ambiguous
 constexpr std::ptrdiff_t kTiltedViews = 3;  // about each axis
 
 bool lie_in_a_line(const std::vector<cv::Point3f>& points_m) {
@@ -30,8 +30,8 @@ bool lie_in_a_line(const std::vector<cv::Point3f>& points_m) {
   return std::ranges::all_of(points_m, same_x) || std::ranges::all_of(points_m, same_y);
 }
 
-/// Where the board is, with a lens that is guessed: right enough for tilts and outlines.
-void place(BoardView& view, const cv::aruco::CharucoBoard& board, cv::Size image) {
+/// Sets normal and outline, by the board's pose for a guessed lens.
+void set_geometry(BoardView& view, const cv::aruco::CharucoBoard& board, cv::Size image) {
   const double focal_px = std::max(image.width, image.height);
   const cv::Matx33d guess{focal_px, 0.0,      0.5 * (image.width - 1),  //
                           0.0,      focal_px, 0.5 * (image.height - 1), 0.0, 0.0, 1.0};
@@ -54,11 +54,12 @@ void place(BoardView& view, const cv::aruco::CharucoBoard& board, cv::Size image
     view.outline[k] = cv::Point2d{outline_px[k]} / image.width;
 }
 
+/// RMS distance of the outlines' corners, in image widths.
 double difference(const BoardView& a, const BoardView& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < 4; ++k) {
-    const cv::Point2d way = a.outline[k] - b.outline[k];
-    sum += way.dot(way);
+    const cv::Point2d step = a.outline[k] - b.outline[k];
+    sum += step.dot(step);
   }
   return std::sqrt(sum / 4.0);
 }
@@ -103,7 +104,7 @@ std::optional<BoardView> find_board(const std::string& name, const cv::Mat& gray
   for (const int id : found.ids)
     view.corners_in_board_m.push_back(board->chessboardCorners.at(static_cast<std::size_t>(id)));
   if (lie_in_a_line(view.corners_in_board_m)) return std::nullopt;
-  place(view, *board, gray.size());
+  set_geometry(view, *board, gray.size());
   return view;
 }
 

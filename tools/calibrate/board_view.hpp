@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The board in one frame, and what views of it can say about a lens.
+// Views of the board, and the choice of those to calibrate from.
 #pragma once
 
 #include "common/markers/charuco_board.hpp"
@@ -16,20 +16,20 @@ namespace waymark::calibrate {
 struct BoardView {
   std::string name{};                             ///< of the frame
   std::vector<cv::Point2f> corners_px{};          ///< inner corners of the chessboard
-  std::vector<cv::Point3f> corners_in_board_m{};  ///< the same on the board
-  std::array<cv::Point2d, 4> outline{};           ///< of the board, in widths of the image
-  cv::Vec3d normal{};  ///< of the board, optical frame; with a lens that is only a guess
+  std::vector<cv::Point3f> corners_in_board_m{};  ///< the same corners, board frame
+  std::array<cv::Point2d, 4> outline{};           ///< corners of the board, in image widths
+  cv::Vec3d normal{};  ///< of the board, optical frame; for a guessed lens, like the outline
 };
 
-/// nullopt where fewer than 8 corners are seen, or all in one line.
+/// nullopt when fewer than 8 corners are found, or all on one line.
 std::optional<BoardView> find_board(const std::string& name, const cv::Mat& gray,
                                     const cv::Ptr<cv::aruco::CharucoBoard>& board);
 
-/// Up to 40 views that differ most, the one with most corners first: a view that repeats another
-/// one says nothing new.
+/// Up to 40 views that differ most from each other, the one with most corners first.
 std::vector<BoardView> different_views(const std::vector<BoardView>& views);
 
-/// What is missing, each as a sentence's part with what to do; empty: nothing.
+/// What is missing for a calibration, each as a phrase; empty when the views are sufficient.
+/// @param image  size of the frames [px].
 std::vector<std::string> missing_in(const std::vector<BoardView>& views, cv::Size image);
 
 }  // namespace waymark::calibrate

@@ -9,7 +9,7 @@ namespace waymark::calibrate {
 namespace {
 
 constexpr double kFocalSigma = 0.005;   // relative; waymark-doctor warns of errors from 1 % on
-constexpr double kLargestRms_px = 2.0;  // a board that is bent, or not as described
+constexpr double kLargestRms_px = 2.0;  // above: the board is bent, or not as described
 
 void add_missing(const LensFit& fit, std::vector<std::string>& missing) {
   if (!(fit.rms_px <= kLargestRms_px))
@@ -38,7 +38,7 @@ void fit_views(CameraCalibration& calibration, const std::vector<BoardView>& fou
     calibration.missing.emplace_back(error.what());
     return;
   }
-  // Without those that do not fit: what is left has to be enough, too.
+  // Without the outliers, the views still have to be sufficient.
   calibration.missing = missing_in(calibration.fit->views, image);
   add_missing(*calibration.fit, calibration.missing);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From frames to a lens, or to what is missing.
+// Frames -> lens, or what is missing for one.
 #pragma once
 
 #include "calibrate/camera_frames.hpp"
@@ -11,18 +11,18 @@ namespace waymark::calibrate {
 
 struct CameraCalibration {
   FrameCounts frames{};
-  std::vector<std::string> without_board{};  ///< frames in which it was not found
+  std::vector<std::string> without_board{};  ///< names of frames in which no board was found
   std::size_t num_with_board{0};
-  std::vector<BoardView> views{};      ///< the different ones
-  std::optional<LensFit> fit{};        ///< none where views are missing
-  std::vector<std::string> missing{};  ///< why there is no lens, or why it is not good enough
+  std::vector<BoardView> views{};      ///< different_views() of all
+  std::optional<LensFit> fit{};        ///< nullopt when views are missing
+  std::vector<std::string> missing{};  ///< why there is no lens, or why it is not accurate enough
 };
 
-/// @throws SetupError where there are no frames.
+/// @throws SetupError when there are no frames.
 CameraCalibration calibrate_camera(const std::filesystem::path& input,
                                    const cv::Ptr<cv::aruco::CharucoBoard>& board);
 
-/// The same from views that were found.
+/// The second half of calibrate_camera(): from views to the lens.
 void fit_views(CameraCalibration& calibration, const std::vector<BoardView>& found);
 
 }  // namespace waymark::calibrate

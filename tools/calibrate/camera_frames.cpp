@@ -64,7 +64,7 @@ cv::Mat read_picture(const std::filesystem::path& file) {
   try {
     return cv::imread(file.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {
-    return {};  // as where nothing can be read: the caller names the file
+    return {};  // like an unreadable file
   }
 }
 

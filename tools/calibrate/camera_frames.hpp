@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Camera frames, of a folder of pictures or of a log.
+// Camera frames from a folder of pictures or from a log.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,8 +14,8 @@
 namespace waymark::calibrate {
 
 struct FrameCounts {
-  std::int64_t num_frames{0};                                  ///< that were looked at
-  cv::Size size{};                                             ///< of the first one that is read
+  std::int64_t num_frames{0};                                  ///< read, or refused with a reason
+  cv::Size size{};                                             ///< of the first readable one
   std::map<std::string, std::vector<std::string>> problems{};  ///< names, by reason
 };
 
@@ -23,7 +23,7 @@ using UseFrame = std::function<void(const std::string& name, const cv::Mat& gray
 
 /// Calls `use` for every frame that can be read and has the size of the first one: the pictures of
 /// a folder by name, or up to 400 frames of CAMERA, evenly spread.
-/// @throws SetupError where there are none.
+/// @throws SetupError when there are none.
 FrameCounts read_frames(const std::filesystem::path& input, const UseFrame& use);
 
 }  // namespace waymark::calibrate

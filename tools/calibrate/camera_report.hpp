@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A calibration for people and for robot.toml.
+// A calibration as text, TOML and picture.
 #pragma once
 
 #include "calibrate/camera_calibration.hpp"
@@ -14,11 +14,12 @@ std::string to_text(const CameraCalibration& calibration);
 /// One sentence: what is missing.
 std::string refusal(const CameraCalibration& calibration, const std::string& input);
 
-/// The keys of [robot.camera] that were measured; those of the mounting are not among them.
-/// @param calibration  with a fit.
+/// The measured keys of [robot.camera], without those of the mounting.
+/// @param calibration  one with a fit.
 std::string to_camera_toml(const CameraCalibration& calibration, const std::string& input);
 
-/// The image with the corners that were used, in ninths; residuals are lines, 100 times as long.
+/// The image area in ninths with the used corners, and their residuals as lines, magnified 100
+/// times.
 cv::Mat coverage_picture(const CameraCalibration& calibration);
 
 }  // namespace waymark::calibrate

@@ -24,9 +24,8 @@ constexpr int kMostSteps = 100;
 constexpr double kConverged = 1e-10;  // relative change of the parameters
 
 /// Covariance of the lens with the views' poses marginalised (Schur complement of the Gauss-Newton
-/// Hessian). What the corners of a view get wrong, they get wrong together: the views are what is
-/// independent, and how far each of them pulls the lens says how well it is known (the sandwich
-/// estimator with clusters of Liang and Zeger, Biometrika 1986).
+/// Hessian). The errors of a view's corners are correlated, so only views count as independent: the
+/// clustered sandwich estimator of Liang and Zeger, Biometrika 1986, with a cluster per view.
 class LensInformation {
  public:
   /// @param jacobian  of projectPoints(): turn, place, focal lengths, principal point, distortion.
@@ -45,24 +44,25 @@ class LensInformation {
     const Eigen::MatrixXd reduced =
         lens - pose * (pose.transpose() * pose).ldlt().solve(pose.transpose() * lens);
     information_ += reduced.transpose() * reduced;
-    const Eigen::Matrix<double, kNumLens, 1> pull = reduced.transpose() * errors;
-    pulls_ += pull * pull.transpose();
+    const Eigen::Matrix<double, kNumLens, 1> score = reduced.transpose() * errors;
+    scores_ += score * score.transpose();
     ++num_views_;
   }
 
   LensMatrix covariance() const {
     const LensMatrix inverse = information_.inverse();
-    return num_views_ / (num_views_ - kNumLens) * inverse * pulls_ * inverse;
+    return num_views_ / (num_views_ - kNumLens) * inverse * scores_ * inverse;
   }
 
  private:
   LensMatrix information_{LensMatrix::Zero()};
-  LensMatrix pulls_{LensMatrix::Zero()};
+  LensMatrix scores_{LensMatrix::Zero()};  ///< sum of outer products
   double num_views_{0.0};
 };
 
-/// Root mean square of the mean residuals in the cells of a grid: what frames that look the same
-/// way get wrong alike. Noise is still in it, so that it is never below what was shown.
+/// Root mean square of the mean residuals in the cells of a grid over the image: the error of the
+/// lens model that all frames have in common. The remaining noise of the means makes it an upper
+/// bound.
 double common_error_px(const LensFit& fit, cv::Size image) {
   constexpr int kColumns = 8;
   constexpr int kRows = 6;
@@ -132,7 +132,7 @@ LensFit fit_once(const std::vector<BoardView>& views, cv::Size image, std::vecto
   return fit;
 }
 
-/// Removes corners with more than five times the median residual; returns how many.
+/// Removes corners with more than kCornerOutlier times the median residual; returns how many.
 std::size_t drop_corners(std::vector<BoardView>& views,
                          const std::vector<std::vector<cv::Point2f>>& residuals_px) {
   std::vector<double> lengths_px;
@@ -153,7 +153,8 @@ std::size_t drop_corners(std::vector<BoardView>& views,
   return num_dropped;
 }
 
-/// Views first, the worst one first: it distorts the others' errors.
+/// Removes one view at a time, the worst one, because it distorts the errors of the others; then
+/// corners.
 LensFit fit_without_outliers(std::vector<BoardView> views, cv::Size image) {
   std::vector<std::string> dropped;
   std::size_t num_dropped_corners = 0;

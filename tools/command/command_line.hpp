@@ -12,8 +12,8 @@ namespace waymark {
 struct CommandLine {
   command_t command{};
   std::string lcm_url{};
-  std::string channels_file{};     ///< empty: Waymark's names
-  std::optional<int> exit_code{};  ///< there is nothing to send: --help, or wrong usage
+  std::string channels_file{};     ///< empty = Waymark's names
+  std::optional<int> exit_code{};  ///< set when there is nothing to send: --help, wrong usage
 };
 
 CommandLine parse_command_line(int argc, const char* const* argv);

@@ -17,8 +17,8 @@ constexpr Limits kFocal{0.01, 0.05};
 constexpr Limits kSize{0.01, 0.03};
 constexpr Limits kYaw_rad{0.0087, 0.035};  // 0.5 and 2 degrees
 constexpr Limits kLate_s{0.01, 0.05};
-// Edges are refined within three pixels on either side (RefinementConfig::reach_px): with half of
-// that as their sigma they fill it, with all of it they leave it.
+// Corners are refined within three pixels of the edge (RefinementConfig::reach_px): a blur of half
+// of that as sigma fills this range, one of all of it exceeds it.
 constexpr Limits kBlur_px{1.5, 3.0};
 constexpr Limits kUnreadable{0.01, 0.1};  // share of the frames
 constexpr std::size_t kFewestMarkers = 20;
@@ -51,10 +51,10 @@ Check frames_check(const CameraRecord& camera, const RobotConfig& robot) {
     bad += count;
     reasons += fmt::format(", {} {}", count, reason);
   }
-  const double share = static_cast<double>(bad) /
-                       static_cast<double>(std::max<std::int64_t>(1, camera.num_looked_at));
+  const double share =
+      static_cast<double>(bad) / static_cast<double>(std::max<std::int64_t>(1, camera.num_decoded));
   return {"camera_frames", verdict_of(share, 0.0, kUnreadable),
-          fmt::format("{} of {} frames cannot be used{}", bad, camera.num_looked_at, reasons),
+          fmt::format("{} of {} frames cannot be used{}", bad, camera.num_decoded, reasons),
           fmt::format("send images of {}x{} (robot.camera.width_px, height_px), whole and as JPEG "
                       "or grey",
                       robot.camera.width_px, robot.camera.height_px),
@@ -71,7 +71,7 @@ Check dictionary_check(const CameraRecord& camera, RobotConfig& robot) {
     most = count;
     best = other;
   }
-  // Counts of what is read by chance scatter as their roots do.
+  // Poisson: the standard deviation of a difference of counts is the root of their sum.
   const double surplus = static_cast<double>(most - described);
   const bool is_other =
       most > 2 * described && surplus > kSigmas * std::sqrt(static_cast<double>(most + described));

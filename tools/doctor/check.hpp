@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the doctor says about one thing.
+// The result of one check.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace waymark {
 
-/// kUnchecked: this log does not say; it is no PASS.
+/// kUnchecked: the log does not allow this check. That is not a PASS.
 enum class Verdict { kPass, kWarn, kFail, kUnchecked };
 
 struct Check {
   std::string name{};
   Verdict verdict{Verdict::kUnchecked};
-  std::string finding{};          ///< one sentence, with its number
-  std::string remedy{};           ///< what to do; empty when there is nothing to do
-  std::optional<double> value{};  ///< the number, in the unit of its name
+  std::string finding{};          ///< one sentence with the measured value
+  std::string remedy{};           ///< what to do; may be empty
+  std::optional<double> value{};  ///< the measured value; unit: table in README.md
 };
 
 /// A check that this log does not allow.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The checks, one by one. Those with `robot` write what they found there.
+// The checks. Those with a parameter `robot` correct the description.
 #pragma once
 
 #include "doctor/camera/camera_calibration.hpp"
@@ -34,13 +34,13 @@ Check check_backing_up(const ImportedLog& log);
 std::vector<Check> check_mounting(const DoctorInput& input,
                                   const std::optional<HandEye>& calibration, RobotConfig& robot);
 
-/// All of camera and markers; a single one that is unchecked where the log has no camera.
+/// All checks of camera and markers; a single unchecked one when the log has neither.
 std::vector<Check> check_camera(const DoctorInput& input,
                                 const std::optional<CameraCalibration>& calibration,
                                 RobotConfig& robot);
 Check check_camera_drops(const CameraRecord& camera);
 
-/// The offset when it is known well enough to be used, else 0.
+/// The LiDAR's time offset if it is known well enough, else 0 [s].
 double usable_lateness_s(const TurnComparison& turns);
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a log says about the set-up of its robot.
+// All checks of a robot's set-up.
 #pragma once
 
 #include "doctor/check.hpp"
@@ -10,11 +10,11 @@ namespace waymark {
 
 struct Diagnosis {
   std::vector<Check> checks{};
-  RobotConfig robot{};  ///< the description, with what was found in its place
+  RobotConfig robot{};  ///< the description with corrections
 };
 
-/// Every check, in the same order for every log.
-/// @param progress  is called with the share of the scans that are registered
+/// All checks, in the same order for every log.
+/// @param progress  called with the share of registered scans.
 Diagnosis diagnose(const DoctorInput& input, const ShowProgress& progress = {});
 
 }  // namespace waymark

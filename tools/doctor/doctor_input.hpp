@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A log with what is known of its robot.
+// A log and the description of its robot.
 #pragma once
 
 #include "doctor/camera/camera_record.hpp"
@@ -19,30 +19,30 @@ struct ChannelTraffic {
   std::int64_t largest_bytes{0};
 };
 
-/// Where log.robot.lidar's place comes from.
+/// Origin of the LiDAR's mounting in log.robot.lidar.
 enum class Mounting { kUnknown, kInLog, kDescribed };
 
 struct DoctorInput {
   ImportedLog log{};
   ImportReport report;
-  bool noise_is_estimated{false};  ///< log.robot.lidar.range_sigma_m is of this log
+  bool noise_is_estimated{false};  ///< log.robot.lidar.range_sigma_m was estimated from this log
   Mounting mounting{Mounting::kUnknown};
   std::optional<RobotConfig> described{};            ///< robot.toml
   std::map<std::string, ChannelTraffic> channels{};  ///< of an LCM log
-  std::optional<CameraRecord> camera{};  ///< of an LCM log with CAMERA and a description
+  std::optional<CameraRecord> camera{};  ///< of an LCM log with CAMERA or MARKERS, if described
 };
 
-/// Which channels of an LCM log to read; empty = the only one of its kind.
+/// Names of the channels to read from an LCM log; empty = the only one of its kind.
 struct InputChannels {
   std::string lidar{};
   std::string odometry{};
   std::string encoders{};
 };
 
-/// An LCM log, a bag of ROS, or a CARMEN log (text, gzip, bzip2), whatever its name.
-/// What a description says of mirrored scans and late stamps is put right.
-/// @param robot  robot.toml, later files win; empty = the one beside the log, if there is one
-/// @throws SetupError when the log cannot be used
+/// Reads an LCM log, a ROS bag, or a CARMEN log (text, gzip, bzip2); the format is recognised by
+/// its content. Corrects mirrored scans and late stamps as described in robot.toml.
+/// @param robot  robot.toml, later files win; empty = the one beside the log, if there is one.
+/// @throws SetupError when the log cannot be used.
 DoctorInput read_input(const std::filesystem::path& file,
                        const std::vector<std::filesystem::path>& robot,
                        const InputChannels& channels, const ShowProgress& progress = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a running robot says, as a log.
+// Records a running robot into a temporary log.
 #pragma once
 
 #include "common/node/counters.hpp"
@@ -11,12 +11,12 @@
 
 namespace waymark {
 
-/// In a temporary folder, which goes with it.
+/// A log in a temporary folder, which the destructor removes.
 class LiveLog {
  public:
-  /// Records CAMERA, MARKERS, LIDAR and ODOMETRY, or the channels that are wanted instead, for that
-  /// long or until a signal comes.
-  /// @throws SetupError when there is no network, or nothing came.
+  /// Records CAMERA, MARKERS, LIDAR and ODOMETRY, or the `wanted` channels in place of the last
+  /// two, for that duration or until a stop signal.
+  /// @throws SetupError when there is no network, or no message came.
   LiveLog(const std::string& lcm_url, const InputChannels& wanted, std::chrono::seconds duration,
           const ShowProgress& progress = {});
   ~LiveLog();
@@ -25,7 +25,7 @@ class LiveLog {
 
   std::filesystem::path file() const { return folder_ / "live.lcm"; }
 
-  /// What was lost or refused.
+  /// Lost and rejected messages.
   const Counters& counters() const { return counters_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks of odometry, mounting and times against the LiDAR's own motion.
+// Checks of odometry, mounting and time offset against the LiDAR's motion.
 #include "doctor/checks.hpp"
 #include "doctor/verdict.hpp"
 #include "import/findings/reversed_odometry.hpp"
@@ -163,7 +163,7 @@ std::vector<Check> check_mounting(const DoctorInput& input,
     const bool is_known_before = input.mounting != Mounting::kUnknown;
     const Verdict difference = verdict_of(deviation, measured.sigma, limits);
     const std::string_view axis = key.substr(0, key.find('_'));  // without unit: yaw is in deg here
-    // Nothing said where it sits: nothing is contradicted, but whoever starts at 0 is wrong.
+    // Without a described mounting nothing is contradicted, but the default of 0 would be wrong.
     const Verdict verdict =
         is_known_before || difference == Verdict::kPass ? difference : Verdict::kWarn;
     if (verdict != Verdict::kPass || is_worth_writing(deviation, measured.sigma, limits))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks of the log's records: what is damaged, missing, or too large.
+// Checks for damaged, missing or too large records of the log.
 #include "doctor/checks.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFewMissing = 0.01;
 constexpr double kManyMissing = 0.1;
-constexpr double kGap = 1.75;  // intervals: more, and a message is missing, not late
+constexpr double kGap = 1.75;  // median intervals; in a longer gap, messages are missing
 constexpr std::int64_t kDatagram_bytes = 65'000;  // README: a message is one datagram
 constexpr std::size_t kFewestRecords = 10;
 

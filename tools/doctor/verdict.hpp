@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a number with its uncertainty to a verdict.
+// Measured value with uncertainty -> verdict.
 #pragma once
 
 #include "doctor/check.hpp"
@@ -9,7 +9,7 @@
 
 namespace waymark {
 
-/// Up to the first one nothing suffers; beyond the second one maps do.
+/// Deviations up to `good` have no effect; beyond `bad` they damage maps.
 struct Limits {
   double good{0.0};
   double bad{0.0};
@@ -17,7 +17,7 @@ struct Limits {
 
 inline constexpr double kSigmas = 3.0;
 
-/// Deviations within the limit, or within what chance explains, pass.
+/// Judges the deviation minus three standard deviations.
 inline Verdict verdict_of(double deviation, double sigma, Limits limits) {
   const double certain = std::abs(deviation) - kSigmas * sigma;
   return certain <= limits.good  ? Verdict::kPass
@@ -25,13 +25,13 @@ inline Verdict verdict_of(double deviation, double sigma, Limits limits) {
                                  : Verdict::kFail;
 }
 
-/// Well enough to tell good from bad.
+/// True when three standard deviations are within the limit `bad`.
 inline bool is_known(const Measured& measured, Limits limits) {
   return kSigmas * measured.sigma <= limits.bad;
 }
 
-/// What a description is replaced by: what contradicts it, and what is known much better than a
-/// description has to be.
+/// True when a measured value should replace the described one: it contradicts it, or it is much
+/// more accurate than a description has to be.
 inline bool is_worth_writing(double deviation, double sigma, Limits limits) {
   constexpr double kMuchBetter = 2.0;
   return std::abs(deviation) > kSigmas * sigma || kMuchBetter * kSigmas * sigma < limits.good;

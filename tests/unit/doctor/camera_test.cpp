@@ -57,7 +57,7 @@ TEST(DoctorsCamera, AnotherDictionaryIsNamed) {
 TEST(DoctorsCamera, BlurAndUnreadableFramesAreNamed) {
   DoctorInput input = drive_in_room({.duration_s = 20.0});
   std::ranges::fill(input.camera->blurs_px, 4.0);
-  input.camera->problems["another size"] = input.camera->num_looked_at / 2;
+  input.camera->problems["another size"] = input.camera->num_decoded / 2;
   EXPECT_EQ(check_of(input, "blur").verdict, Verdict::kFail);
   const Check frames = check_of(input, "camera_frames");
   EXPECT_EQ(frames.verdict, Verdict::kFail);

@@ -41,7 +41,7 @@ TEST(Doctor, BackingUpThatIsCountedAsForwardIsNamed) {
       << to_text(diagnosis.checks);
 }
 
-TEST(Doctor, WhatTheLogDoesNotShowIsUnknownAndNotPassed) {
+TEST(Doctor, WhatTheLogDoesNotObserveIsUnknownAndNotPassed) {
   const Diagnosis standing =
       diagnosis_of({.distance_scale = 0.0, .duration_s = 2.0, .turning = 0.0});
   for (const char* name : {"lidar_mirrored", "odometry_turn_scale", "time_offset", "lidar_x",
@@ -51,13 +51,13 @@ TEST(Doctor, WhatTheLogDoesNotShowIsUnknownAndNotPassed) {
   }
 }
 
-TEST(Doctor, WithoutTurnsTheLidarsPlaceIsUnknown) {
+TEST(Doctor, WithoutTurnsTheLidarsPositionIsUnknown) {
   const Diagnosis straight = diagnosis_of({.turning = 0.0, .odometry_noise_rad = 0.002});
   for (const char* name : {"lidar_x", "lidar_y"})
     EXPECT_EQ(find(straight, name).verdict, Verdict::kUnchecked) << find(straight, name).finding;
 }
 
-TEST(Doctor, SaysTheLidarsYawInDegreesAndWritesItInRadians) {
+TEST(Doctor, ReportsTheLidarsYawInDegreesAndWritesItInRadians) {
   const Check yaw =
       find(diagnosis_of({.base_from_lidar = Se2{0.1, -0.05, radians(12.0)}}), "lidar_yaw");
   EXPECT_THAT(yaw.finding, HasSubstr("the LiDAR's yaw is 12.0"));

@@ -15,31 +15,31 @@
 namespace waymark {
 namespace {
 
-/// The last two are nuisance terms: what is left of odometry's errors of scale.
+/// The last two are nuisance parameters: remaining scale errors of odometry.
 enum Term : Eigen::Index { kFocal, kSize, kYaw, kLate, kDistance, kTurn, kTerms };
 
 using Errors = Eigen::Matrix<double, kTerms, 1>;
 using Information = Eigen::Matrix<double, kTerms, kTerms>;
 
-/// Far wider than any set-up is wrong: only terms that are not observable stay at the prior.
+/// Far wider than errors in practice: only unobservable terms keep the prior.
 const Eigen::Vector4d kPriorSigmas{0.3, 0.3, 0.3, 1.0};           // relative, relative, rad, s
 constexpr std::array kSteps{1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4};  // of numerical derivatives
-constexpr double kSlowStep_s = 0.25;  // robots start and stop turning within that
+constexpr double kSlowStep_s = 0.25;  // about the time in which a robot starts or stops turning
 constexpr int kIterations = 8;
-constexpr double kCutoff = 3.0;  // sigmas: what is further counts less
+constexpr double kCutoff = 3.0;  // kernel width of the robust weights, in sigmas
 constexpr int kFewestTracks = 4;
 constexpr double kLongestPause_s = 2.0;  // in a track
 constexpr double kFarEnough_m = 0.3;     // between two sightings of a pair
 constexpr double kTurnedEnough_rad = 0.15;
 constexpr double kNearestScan_s = 0.15;
 constexpr double kWallReach_m = 1.5;
-// Odometry's random walk, as the TurtleBot3's: weights only.
+// Odometry's random walk, of a TurtleBot3; it only weighs the residuals.
 constexpr double kWalk_m2_per_m = 9e-6;
 constexpr double kWalk_rad2_per_m = 7.6e-5;
 constexpr double kWalk_rad2_per_rad = 1e-4;
 
-/// What one track adds to the normal equations.
-struct Share {
+/// Contribution of one track to the normal equations.
+struct TrackEquations {
   Information information{Information::Zero()};
   Errors slope{Errors::Zero()};
 };
@@ -96,7 +96,7 @@ class Problem {
   std::vector<AnnotatedBeam> beams_at(const ImportedScan& scan, const Se2& base_from_odom) const;
   void collect(const Errors& errors);
 
-  /// What a residual says about the stamps, by how it changes within that time to either side.
+  /// Information [1/s^2] of a residual about the time offset, by central differences.
   double late_information(const Residual& residual, double step_s) const {
     Errors step = Errors::Zero();
     step[kLate] = step_s;
@@ -105,8 +105,9 @@ class Problem {
     return slope.dot(residual.information * slope);
   }
 
-  /// Odometry's noise from sample to sample looks like motion, and is found again in the residuals
-  /// half a sample early or late: what of the motion is gone when looked at slowly counts as noise.
+  /// Half of the interval between odometry samples. Odometry's noise from sample to sample can
+  /// shift the time offset by this much; the share of noise in the observed motion is that which
+  /// vanishes with the long step kSlowStep_s.
   double half_interval_s() const {
     return 0.5 * to_seconds(log_.odometry.back().time - log_.odometry.front().time) /
            static_cast<double>(log_.odometry.size());
@@ -175,7 +176,7 @@ void Problem::add_wall(const CameraSighting& sighting, std::size_t track) {
   if (scan == log_.scans.end()) return;
   if (scan != log_.scans.begin() && time - std::prev(scan)->time < scan->time - time) --scan;
   if (std::abs(to_seconds(scan->time - time)) > kNearestScan_s) return;
-  // All in the base frame at the frame's time.
+  // All positions are in the base frame at the camera frame's time.
   const Se2 base_from_odom = odom_at(sighting, errors_).inverse();
   const double facing_rad = sighting.facing_rad + errors_[kYaw];
   const auto wall = fit_wall(beams_at(*scan, base_from_odom), place_in_base(sighting, errors_),
@@ -184,7 +185,7 @@ void Problem::add_wall(const CameraSighting& sighting, std::size_t track) {
   const double across_m2 = wall->normal.dot(covariance_of(sighting) * wall->normal) +
                            squared(wall->sigma_m) + squared(markers_.standoff_sigma_m) +
                            squared(markers_.bulge_sigma_m);
-  // The wall stays where the scan has put it; a later frame is another place of the base.
+  // The wall is fixed in the odometry frame; a time offset changes the pose of the base.
   const Se2 odom_from_base = base_from_odom.inverse();
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   information(0, 0) = 1.0 / across_m2;
@@ -216,7 +217,7 @@ void Problem::add_track(const std::vector<const CameraSighting*>& track) {
   }
 }
 
-/// Walls and pairs as they are with these errors.
+/// Linearisation point: selects walls and pairs with these errors.
 void Problem::collect(const Errors& errors) {
   errors_ = errors;
   residuals_.clear();
@@ -239,7 +240,7 @@ std::optional<CameraCalibration> Problem::solve() {
   prior_sigmas << kPriorSigmas, scales_.distance_sigma, scales_.turn_sigma;
   const Information prior = prior_sigmas.cwiseAbs2().cwiseInverse().asDiagonal();
   Information information = Information::Zero();
-  std::map<std::size_t, Share> shares;
+  std::map<std::size_t, TrackEquations> equations_by_track;
   double squares = 0.0;
   double weights = 0.0;
   double fast = 0.0;
@@ -249,7 +250,7 @@ std::optional<CameraCalibration> Problem::solve() {
     if (counts_.num_tracks < kFewestTracks) return std::nullopt;
     information = prior;
     Errors gradient = prior * errors_;
-    shares.clear();
+    equations_by_track.clear();
     squares = weights = fast = slow = 0.0;
     for (const Residual& residual : residuals_) {
       const Eigen::Vector2d value = residual.value(errors_);
@@ -269,9 +270,9 @@ std::optional<CameraCalibration> Problem::solve() {
       gradient += slope;
       fast += weight * late_information(residual, kSteps[kLate]);
       slow += weight * late_information(residual, kSlowStep_s);
-      Share& share = shares[residual.track];
-      share.information += added;
-      share.slope += slope;
+      TrackEquations& equations = equations_by_track[residual.track];
+      equations.information += added;
+      equations.slope += slope;
       squares += weight * distance2;
       weights += weight * (residual.information(1, 1) > 0.0 ? 2.0 : 1.0);
     }
@@ -281,8 +282,8 @@ std::optional<CameraCalibration> Problem::solve() {
   }
   const Information inverse = information.inverse();
   Information clustered = Information::Zero();
-  for (const auto& [track, share] : shares) {
-    const Errors without = (information - share.information).ldlt().solve(share.slope);
+  for (const auto& [track, equations] : equations_by_track) {
+    const Errors without = (information - equations.information).ldlt().solve(equations.slope);
     clustered += without * without.transpose();
   }
   const double scale = std::max(1.0, squares / std::max(1.0, weights));
@@ -315,7 +316,7 @@ std::vector<ImportedPose> rescaled(const std::vector<ImportedPose>& odometry, do
   std::vector<ImportedPose> scaled = odometry;
   for (std::size_t i = 1; i < odometry.size(); ++i) {
     const Se2 step = odometry[i - 1].pose.inverse() * odometry[i].pose;
-    // Along an arc, half of the turn comes before the way: its direction is scaled, too.
+    // The chord of an arc points along half of the turn, which is scaled, too.
     const double half_rad = 0.5 * step.theta();
     const Eigen::Vector2d along = Se2{0.0, 0.0, half_rad / turn_scale - half_rad} *
                                   Eigen::Vector2d{step.translation() / distance_scale};

@@ -21,27 +21,27 @@ namespace {
 constexpr std::int64_t kMostFrames = 400;
 constexpr std::size_t kMostMessages = 1200;
 constexpr std::int64_t kDictionaryFrames = 30;
-constexpr double kReach_px = 8.0;  // of edge profiles: holds blurs of up to half of it
+constexpr double kReach_px = 8.0;  // of edge profiles; for blurs of up to half of it
 
-/// The largest of every family: the smaller ones are its beginning.
+/// The largest dictionary of every family: the smaller ones are its first ids.
 constexpr std::array<std::string_view, 9> kFamilies{
     "DICT_4X4_1000",      "DICT_5X5_1000",       "DICT_6X6_1000",
     "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5",
     "DICT_APRILTAG_25h9", "DICT_APRILTAG_36h10", "DICT_APRILTAG_36h11"};
 
-std::optional<CameraSighting> seen_by(const RobotConfig& robot, Timestamp time,
-                                      const MarkerDetection& marker) {
+std::optional<CameraSighting> sighting_of(const RobotConfig& robot, Timestamp time,
+                                          const MarkerDetection& marker) {
   const auto sighting = sight_marker(marker, time, {}, robot.markers.size_m);
   if (!sighting) return std::nullopt;
   const Eigen::Isometry3d base_from_camera = robot.camera.base_from_camera();
   const Eigen::Matrix3d turn = base_from_camera.linear();
-  CameraSighting seen{.id = marker.id, .time = time};
-  seen.place_in_camera =
+  CameraSighting in_camera{.id = marker.id, .time = time};
+  in_camera.place_in_camera =
       base_from_camera.inverse() * Eigen::Vector3d{marker.base_from_marker.translation()};
-  seen.covariance_in_camera =
+  in_camera.covariance_in_camera =
       turn.transpose() * marker.covariance_in_base.topLeftCorner<3, 3>() * turn;
-  seen.facing_rad = sighting->base_from_marker.theta();
-  return seen;
+  in_camera.facing_rad = sighting->base_from_marker.theta();
+  return in_camera;
 }
 
 class CameraReader {
@@ -55,8 +55,8 @@ class CameraReader {
       finders_.emplace_back(family, CandidateFinder{*find_dictionary(family), {}});
   }
 
-  void look_at(const image_t& image, bool try_dictionaries) {
-    ++record_.num_looked_at;
+  void take(const image_t& image, bool try_dictionaries) {
+    ++record_.num_decoded;
     const DecodedFrame frame =
         decode_image(image, {robot_.camera.width_px, robot_.camera.height_px});
     if (frame.problem != FrameProblem::kNone) {
@@ -80,9 +80,9 @@ class CameraReader {
 
  private:
   void add(const cv::Mat& gray, Timestamp time, const MarkerDetection& marker) {
-    const auto seen = seen_by(robot_, time, marker);
-    if (!seen) return;
-    record_.sightings.push_back(*seen);
+    const auto sighting = sighting_of(robot_, time, marker);
+    if (!sighting) return;
+    record_.sightings.push_back(*sighting);
     const double blur_px =
         blur_of_marker_px(gray, robot_.camera, marker.corners_px, modules_per_side_);
     if (blur_px < 0.0) return;
@@ -113,7 +113,7 @@ double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
     if (side.blur_px > 0.0) blurs_px.push_back(side.blur_px);
   }
   if (blurs_px.empty()) return -1.0;
-  // A motion blurs two of the sides.
+  // Motion blurs two opposite sides.
   return std::ranges::max(blurs_px);
 }
 
@@ -134,12 +134,12 @@ CameraRecord read_markers(const std::filesystem::path& lcm_log, const RobotConfi
     frames.push_back(to_detections(*message.message));
     record.times.push_back(frames.back().time);
   }
-  record.num_looked_at = std::ssize(frames);
+  record.num_decoded = std::ssize(frames);
   const std::size_t every = 1 + frames.size() / kMostMessages;
   for (std::size_t i = 0; i < frames.size(); i += every) {
     for (const MarkerDetection& marker : frames[i].detections) {
-      if (const auto seen = seen_by(robot, frames[i].time, marker))
-        record.sightings.push_back(*seen);
+      if (const auto sighting = sighting_of(robot, frames[i].time, marker))
+        record.sightings.push_back(*sighting);
     }
   }
   return record;
@@ -167,9 +167,9 @@ CameraRecord read_camera(const std::filesystem::path& lcm_log, const RobotConfig
     if (progress) progress(static_cast<double>(current) / static_cast<double>(num_frames));
     const auto image = decode<image_t>(event->payload);
     if (image.message) {
-      camera.look_at(*image.message, current % every_for_dictionaries == 0);
+      camera.take(*image.message, current % every_for_dictionaries == 0);
     } else {
-      ++camera.record().num_looked_at;
+      ++camera.record().num_decoded;
       ++camera.record().problems["damaged message"];
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the camera frames of a log show.
+// Markers, blur and dictionaries in the camera frames of a log.
 #pragma once
 
 #include "common/robot/robot_config.hpp"
@@ -26,29 +26,30 @@ struct CameraSighting {
 };
 
 struct CameraRecord {
-  bool has_images{true};                           ///< false: sightings only, of MARKERS
+  bool has_images{true};                           ///< false: only sightings, from MARKERS
   std::vector<Timestamp> times{};                  ///< of all frames
-  std::int64_t num_looked_at{0};                   ///< frames that were decoded: evenly spread ones
-  std::map<std::string, std::int64_t> problems{};  ///< of these, by reason
+  std::int64_t num_decoded{0};                     ///< frames that were decoded, evenly spread
+  std::map<std::string, std::int64_t> problems{};  ///< their number by reason
   std::vector<CameraSighting> sightings{};
   std::vector<double> blurs_px{};    ///< one per sighting: standard deviation across its sides
   std::vector<double> modules_px{};  ///< one per sighting: side of a module
-  /// Markers of the described dictionary, and of the largest one of every family, in some frames.
+  /// Numbers of markers in some of the frames: with the described dictionary, and with the largest
+  /// one of every family.
   std::int64_t markers_of_described{0};
   std::map<std::string, std::int64_t> markers_by_dictionary{};
   std::map<std::string, int> largest_id{};  ///< by dictionary
 };
 
-/// The same from MARKERS, of a log without images: as the detector has seen them, with the robot's
-/// description. Up to 1200 messages, evenly spread.
+/// Sightings from MARKERS, for a log without images: up to 1200 messages, evenly spread.
+/// @param robot  the description with which the detector ran.
 CameraRecord read_markers(const std::filesystem::path& lcm_log, const RobotConfig& robot);
 
-/// Looks at up to 400 frames of CAMERA, evenly spread.
+/// Decodes up to 400 frames of CAMERA, evenly spread.
 CameraRecord read_camera(const std::filesystem::path& lcm_log, const RobotConfig& robot,
                          const ShowProgress& progress = {});
 
-/// Median standard deviation of the point spread across the sides of a marker [px]; negative when
-/// its sides are not seen.
+/// Standard deviation of the point spread across the sides of a marker [px]: the largest of its
+/// four sides' medians; negative when no side can be measured.
 double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
                          const std::array<Eigen::Vector2d, 4>& corners_px, int modules_per_side);
 

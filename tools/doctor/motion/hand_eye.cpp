@@ -16,23 +16,23 @@ namespace {
 constexpr std::size_t kFewest = 30;
 constexpr double kFewestTurns_rad = 2.0 * std::numbers::pi;
 constexpr double kLargestOffset_s = 0.5;
-constexpr double kRateOver_s = 0.2;  // that turn rates are taken over: turns last longer
-constexpr double kLeastSlope =
-    0.05;  // of what remains of an offset over the offset: 1 without noise
-constexpr double kShortestInterval_s = 0.005;  // of odometry: shorter ones are taken together
+constexpr double kRateOver_s = 0.2;  // window of turn rates; turns last longer
+// d(remaining offset) / d(offset): 1 without noise; below this the offset is not observable.
+constexpr double kLeastSlope = 0.05;
+constexpr double kShortestInterval_s = 0.005;  // step of the search for fast odometry
 constexpr double kSigmaOfMad = 1.4826;         // of a normal distribution
-constexpr double kCutoff = 3.0;                // of the sigmas: what is further counts less
+constexpr double kCutoff = 3.0;                // kernel width of the robust weights, in sigmas
 constexpr double kLeastResidual_rad = 0.0017;  // a tenth of a degree
 constexpr double kLeastResidual_m = 1e-4;
 constexpr double kSmallest = 1e-9;
 constexpr double kUnknownPlace_m = 1.0;  // a robot's size
-constexpr std::size_t kBlocks = 12;      // stretches whose residuals count as one each
+constexpr std::size_t kBlocks = 12;      // parts of the log that count as independent
 
 bool covers(const std::vector<ImportedPose>& odometry, Timestamp from, Timestamp to) {
   return from >= odometry.front().time && to <= odometry.back().time;
 }
 
-/// Turns of both, one entry per pair of scans.
+/// Turns of LiDAR and odometry, one entry per pair of scans.
 struct Turns {
   std::vector<Timestamp> from{};  ///< of odometry
   std::vector<Timestamp> to{};
@@ -56,7 +56,7 @@ Turns turns_with(const std::vector<LidarTurn>& turns, const std::vector<Imported
   return both;
 }
 
-/// odometry = ratio * lidar, robust.
+/// Robust fit of odometry = ratio * lidar.
 struct Line {
   double ratio{0.0};
   double ratio_sigma{0.0};
@@ -71,7 +71,7 @@ double weight_of(double residual, double cutoff) {
 std::optional<Line> fit_line(const Turns& turns, double cutoff_rad) {
   if (turns.lidar_rad.size() < kFewest) return std::nullopt;
   Line line;
-  // Both signs are tried first: a robust fit from the wrong one may stay there.
+  // From both signs: a robust fit may not leave the wrong one.
   double best = 0.0;
   for (const double start : {1.0, -1.0}) {
     double ratio = start;
@@ -108,7 +108,7 @@ std::optional<Line> fit_line(const Turns& turns, double cutoff_rad) {
   return line;
 }
 
-/// Speed of turning, over a time that is long beside the samples' noise.
+/// Turn rate over a window that is long enough to average out noise.
 double turn_rate_rad_s(const std::vector<ImportedPose>& odometry, Timestamp time) {
   const Duration half = duration_from_seconds(0.5 * kRateOver_s);
   const Se2 before = pose_at(odometry, std::max(odometry.front().time, time - half));
@@ -129,10 +129,10 @@ struct Solution {
   Eigen::Matrix<double, kUnknowns, kUnknowns> covariance{};
 };
 
-/// Robust least squares (Cauchy's weights, cutoff from the median residual); covariance from the
-/// residuals of twelve stretches, nowhere below that of independent ones: what wheels and walls get
-/// wrong lasts, so that equations of a stretch err together.
-/// @param least_residual  lower bound of the median residual
+/// Robust least squares (Cauchy's weights, cutoff from the median residual). Errors of wheels and
+/// walls are correlated in time: the covariance is a sandwich estimate with kBlocks parts of the
+/// log as clusters, but not below that of independent equations.
+/// @param least_residual  lower bound of the median residual.
 template <int kRows, int kUnknowns>
 std::optional<Solution<kUnknowns>> solve_robustly(const Equations<kRows, kUnknowns>& equations,
                                                   double least_residual) {
@@ -151,7 +151,7 @@ std::optional<Solution<kUnknowns>> solve_robustly(const Equations<kRows, kUnknow
     double weights = 0.0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double residual = (values[i] - rows[i] * found).norm();
-      const double weight = step == 0 ? 1.0 : weight_of(residual, cutoff);  // first all alike
+      const double weight = step == 0 ? 1.0 : weight_of(residual, cutoff);
       information += weight * rows[i].transpose() * rows[i];
       product += weight * rows[i].transpose() * values[i];
       squares += weight * residual * residual;
@@ -181,8 +181,8 @@ std::optional<Solution<kUnknowns>> solve_robustly(const Equations<kRows, kUnknow
   return Solution<kUnknowns>{found, (sigma2 * inverse).cwiseMax(inverse * spread * inverse).eval()};
 }
 
-/// What remains of the offset beside `late_s`: it changes a turn of the odometry by the offset
-/// times the turn rates' difference between its ends.
+/// The remaining time offset after `late_s`: an offset changes a turn of the odometry by the offset
+/// times the difference of the turn rates at its ends.
 std::optional<Measured> remaining_offset_s(const std::vector<LidarTurn>& turns,
                                            const std::vector<ImportedPose>& odometry,
                                            double late_s) {
@@ -206,7 +206,7 @@ double median_interval_s(const std::vector<ImportedPose>& odometry) {
   return std::max(kShortestInterval_s, upper_median(std::move(intervals_s)));
 }
 
-/// Of odometry that is too seldom to look for one.
+/// For odometry too infrequent to search for an offset.
 std::optional<TurnComparison> comparison_without_offset(TurnComparison comparison, const Turns& now,
                                                         double cutoff_rad) {
   const auto line = fit_line(now, cutoff_rad);
@@ -227,7 +227,7 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
     sizes_rad.push_back(std::abs(turn.turn_rad));
   }
   if (turns.size() < kFewest || comparison.turned_rad < kFewestTurns_rad) return std::nullopt;
-  // A cutoff from the residuals of the best line without an offset; at least a tenth of a degree.
+  // Cutoff from the residuals of the best line without an offset.
   const Turns now = turns_with(turns, odometry, 0.0);
   double cutoff_rad = 0.1;
   for (int i = 0; i < 3; ++i) {
@@ -257,19 +257,19 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
   comparison.lidar_late_s = {late_s, kLargestOffset_s};
   const auto beside =
       static_cast<std::size_t>(std::max(1.0, std::round(0.5 * kRateOver_s / interval_s)));
-  if (best < beside || best + beside >= lines.size()) return comparison;  // nothing is known there
+  if (best < beside || best + beside >= lines.size()) return comparison;
   const double half_width_s = static_cast<double>(beside) * interval_s;
   const auto before = remaining_offset_s(turns, odometry, late_s - half_width_s);
   const auto here = remaining_offset_s(turns, odometry, late_s);
   const auto after = remaining_offset_s(turns, odometry, late_s + half_width_s);
   if (!before || !here || !after) return comparison;
-  // Noise of the turn rates makes what remains look smaller, at every offset alike: the truth is
-  // where nothing remains.
+  // Noise of the turn rates scales down the remaining offset, by the same factor at every offset:
+  // the true offset is the zero of the line through `before` and `after`.
   const double slope = (before->value - after->value) / (2.0 * half_width_s);
   if (slope < kLeastSlope) return comparison;
   const double found_s = late_s - half_width_s + before->value / slope;
-  // The nearest sample says the same, or the turns are too quick for samples so seldom: then the
-  // truth is about between the two.
+  // A second estimate, from the nearest sample. The two differ where turns are too fast for the
+  // odometry's rate; half of the difference is then added to the standard deviation.
   const double by_nearest_s = late_s + here->value / slope;
   comparison.lidar_late_s = {found_s,
                              std::hypot(here->sigma / slope, 0.5 * (by_nearest_s - found_s))};
@@ -307,7 +307,7 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
   const auto sigma = [&covariance = covariance](int i) {
     return std::sqrt(covariance(i, i));
   };
-  // Without turns only odometry's noise distinguishes a lever from none.
+  // Without turns, the lever arm is not observable.
   const double least_sigma_m = turned_rad < kFewestTurns_rad ? kUnknownPlace_m : 0.0;
   const double sigma_direction = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
   return HandEye{{found[2] / scale, std::max(least_sigma_m, sigma(2) / scale)},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the LiDAR sits and how odometry is scaled, from motions that both have seen.
+// Mounting of the LiDAR and scales of odometry, from motions that both have measured.
 #pragma once
 
 #include "doctor/motion/lidar_motion.hpp"
@@ -8,27 +8,27 @@
 
 namespace waymark {
 
-/// A number and its standard deviation.
+/// A measured value with its standard deviation.
 struct Measured {
   double value{0.0};
   double sigma{0.0};
 };
 
-/// Turns of odometry over turns of the LiDAR, and how late the LiDAR's stamps are.
+/// Ratio of odometry's turns to the LiDAR's, and delay of the LiDAR's stamps.
 struct TurnComparison {
   Measured ratio{};         ///< negative: one of the two is mirrored
-  Measured lidar_late_s{};  ///< scans show what odometry shows at the scan's time minus this
-  double turned_rad{0.0};   ///< by the LiDAR, all turns without their signs
+  Measured lidar_late_s{};  ///< delay of the scans' stamps, relative to odometry's clock
+  double turned_rad{0.0};   ///< sum of the LiDAR's absolute turns
 };
 
-/// Robust least squares over the turns between consecutive scans. The time offset within half a
-/// second: first that of whole odometry samples which makes them fit best, then the one at which
-/// turns of the odometry do not depend on how its speed of turning changes. nullopt for less than
-/// 30 turns, or for a robot that hardly turns (less than a whole turn in all).
+/// Robust least squares over the turns between consecutive scans. The time offset is searched
+/// within half a second: first the best one in whole odometry samples, then the one at which the
+/// residuals do not depend on changes of the turn rate. nullopt for fewer than 30 turns, or for
+/// less than one revolution in all.
 std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
                                             const std::vector<ImportedPose>& odometry);
 
-/// Pose of the LiDAR in the base frame, and odometry's distances over the LiDAR's.
+/// Pose of the LiDAR in the base frame, and ratio of odometry's distances to the LiDAR's.
 struct HandEye {
   Measured x_m{};
   Measured y_m{};
@@ -37,15 +37,15 @@ struct HandEye {
   int num_motions{0};
 };
 
-/// Of A X = X B with A = motion of the base (odometry), B = motion of the LiDAR: translations
-/// t_A = s R t_B - (R_A - 1) t are linear in the four numbers s cos(yaw), s sin(yaw), x, y; robust
-/// least squares (Cauchy's weights), standard deviations from the residuals of twelve stretches, in
-/// which they err together, nowhere below those of independent ones. Source: Censi,
-/// Franchi, Marchionni, Oriolo, "Simultaneous calibration of odometry and sensor parameters for
-/// mobile robots" (2013), there with the wheels' parameters.
-/// @param is_mirrored  the LiDAR's motions are those of a mirror image
-/// @param lidar_late   subtracted from the scans' times
-/// @return nullopt for less than 30 complete motions
+/// Solves A X = X B with A = motion of the base (odometry), B = motion of the LiDAR: translations
+/// t_A = s R t_B - (R_A - 1) t are linear in the four numbers s cos(yaw), s sin(yaw), x, y. Robust
+/// least squares (Cauchy's weights); standard deviations from twelve parts of the log as clusters,
+/// but not below those of independent residuals. Source: Censi, Franchi, Marchionni, Oriolo,
+/// "Simultaneous calibration of odometry and sensor parameters for mobile robots" (2013), there
+/// with the wheels' parameters.
+/// @param is_mirrored  the LiDAR's motions are mirrored.
+/// @param lidar_late   subtracted from the scans' times.
+/// @return nullopt for fewer than 30 complete motions.
 std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
                                 const std::vector<ImportedPose>& odometry, bool is_mirrored,
                                 Duration lidar_late);

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kMostPoints = 360;
 constexpr std::size_t kScansPerProgress = 50;
-constexpr double kFarthest_m = 0.3;  // from the scan that others are laid over
+constexpr double kFarthest_m = 0.3;  // from the reference scan
 constexpr double kMostTurned_rad = 0.35;
-constexpr double kGuessSigma_m = 0.1;  // of a motion that goes on as between the scans before
+constexpr double kGuessSigma_m = 0.1;  // of the prediction that the last step repeats
 constexpr double kGuessSigma_rad = 0.1;
 constexpr double kFewestMapped = 0.4;  // share of the beams that end where the first scan has walls
 constexpr double kFewestInliers = 0.5;  // share of these that lie on them
@@ -30,7 +30,7 @@ Points points_of(const LidarScan& scan, double range_max_m) {
   return points;
 }
 
-/// The scan that others are laid over.
+/// The scan that later ones are registered with.
 struct Anchor {
   Timestamp time{};
   NdtMap map;
@@ -60,7 +60,6 @@ LidarMotions lidar_motions(const ImportedLog& log, const ShowProgress& progress)
     if (progress && done % kScansPerProgress == 0)
       progress(static_cast<double>(done) / static_cast<double>(log.scans.size()));
     ++done;
-    // The scan as a whole is where the robot was in the middle of its sweep.
     const LidarScan scan = at_middle_of_sweep(scan_of(imported));
     const Points points = thinned(points_of(scan, log.robot.lidar.range_max_m), kMostPoints);
     if (!anchor) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the LiDAR moved, by its scans alone: what odometry and mounting are held against.
+// Motion of the LiDAR from its scans alone, the reference for odometry and mounting.
 #pragma once
 
 #include "import/log/imported_log.hpp"
@@ -14,7 +14,7 @@ struct LidarMotion {
   Timestamp from{};
   Timestamp to{};
   Se2 first_from_second{};  ///< LiDAR frame of the first scan
-  bool is_complete{false};  ///< false: walls do not show one direction, only the turn is good
+  bool is_complete{false};  ///< false: the walls do not observe one direction; the turn is valid
 };
 
 /// Turn between consecutive scans.
@@ -27,13 +27,13 @@ struct LidarTurn {
 struct LidarMotions {
   std::vector<LidarMotion> motions{};
   std::vector<LidarTurn> turns{};
-  std::size_t num_lost{0};  ///< scans that did not fit the one they were laid over
+  std::size_t num_lost{0};  ///< scans that could not be registered
 };
 
 using ShowProgress = std::function<void(double)>;
 
-/// Each scan is registered with an earlier one, which is replaced by it every 0.3 m or 20 degrees.
-/// Odometry is not used; a mirrored or turned LiDAR gives mirrored or turned motions.
+/// Registers each scan with a reference scan, which is replaced every 0.3 m or 20 degrees. Odometry
+/// is not used; a mirrored or rotated LiDAR gives mirrored or rotated motions.
 LidarMotions lidar_motions(const ImportedLog& log, const ShowProgress& progress = {});
 
 }  // namespace waymark
