@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// waymark-map: looks into map files, and makes new ones of them.
+// waymark-map: shows, checks, exports, transforms and merges map files.
 #include "common/command_line/command_line.hpp"
 #include "common/logging/logging.hpp"
 #include "map/map_commands.hpp"
@@ -23,9 +23,9 @@ int main(int argc, char** argv) {
   std::function<std::string()> command;
 
   Program program{
-      "Looks into map files (NAME.map.lcm, written by waymark-slam --save-map) and makes new "
-      "ones.\n"
-      "Exit code: 0 fine; 1 a file could not be written; 2 wrong usage, or no map.",
+      "Shows, checks, exports, transforms and merges map files (NAME.map.lcm, written by "
+      "waymark-slam --save-map).\n"
+      "Exit code: 0 success; 1 a file could not be written; 2 wrong usage, or no map file.",
       "waymark-map"};
   program.require_subcommand();
   const auto add = [&](const char* name, const char* what) {
@@ -33,43 +33,44 @@ int main(int argc, char** argv) {
     added.add_option("map", file, "map file").required();
     return added;
   };
-  Command info = add("info", "what a map is: id, area, markers, graph");
+  Command info = add("info", "print id, area, markers, pose graph and calibration of a map");
   info.add_flag("--json", as_json, "as one JSON object");
   info.when_given([&] {
     command = [&] {
       return map_info(file, as_json);
     };
   });
-  Command check = add("check", "whether a map file is whole");
+  Command check = add("check", "check that a map file is complete and undamaged");
   check.when_given([&] {
     command = [&] {
       read_map_file(file);
       return fmt::format("'{}' is whole\n", file.string());
     };
   });
-  Command exported = add("export", "map.pgm, map.yaml, map.png, markers.csv and graph.g2o");
-  exported.add_option("--out", out, "folder without a map; made if need be").required();
+  Command exported = add("export", "write map.pgm, map.yaml, map.png, markers.csv and graph.g2o");
+  exported.add_option("--out", out, "folder without a map; created if missing").required();
   exported.when_given([&] {
     command = [&] {
       export_map(file, out);
       return fmt::format("map is in '{}'\n", out.string());
     };
   });
-  Command transform = add("transform", "the same map in another frame");
-  transform.add_option("--x-m", x_m, "of the old origin in the new frame").check(finite_number());
-  transform.add_option("--y-m", y_m, "of the old origin in the new frame").check(finite_number());
+  Command transform = add("transform", "write the map in another frame");
+  transform.add_option("--x-m", x_m, "x of the old origin in the new frame").check(finite_number());
+  transform.add_option("--y-m", y_m, "y of the old origin in the new frame").check(finite_number());
   transform.add_option("--yaw-rad", yaw_rad, "direction of the old x axis in the new frame")
       .check(finite_number());
   transform.add_option("--frame", frame, "name of the new frame");
-  transform.add_option("--out", out, "the new map file; must not be there yet").required();
+  transform.add_option("--out", out, "the new map file; must not exist yet").required();
   transform.when_given([&] {
     command = [&] {
       return transform_map(file, {x_m, y_m, yaw_rad}, frame, out) + "\n";
     };
   });
-  Command merge = add("merge", "two maps as one, by the markers in both, else by their walls");
-  merge.add_option("other", other, "map file; comes out in the frame of the first").required();
-  merge.add_option("--out", out, "the new map file; must not be there yet").required();
+  Command merge =
+      add("merge", "merge two maps, aligned by the markers in both, else by their walls");
+  merge.add_option("other", other, "map file that is put into the frame of the first").required();
+  merge.add_option("--out", out, "the new map file; must not exist yet").required();
   merge.when_given([&] {
     command = [&] {
       return merge_maps(file, other, out) + "\n";

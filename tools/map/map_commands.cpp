@@ -43,14 +43,15 @@ Extent extent_of(const GridMap& grid) {
   return extent;
 }
 
-/// A map took a drive: none is replaced.
-/// @throws SetupError
+/// Existing maps are never replaced: each took a drive.
+/// @throws SetupError if the file exists.
 void check_is_new(const std::filesystem::path& out) {
   if (!std::filesystem::exists(out)) return;
   throw SetupError{out.string() + ": is there already; give --out another name, or move it away"};
 }
 
-void need_mergeable(const MapFile& a, const MapFile& b) {
+/// @throws SetupError if the maps differ in marker type, cell size or scan-matching cell spacing.
+void check_are_mergeable(const MapFile& a, const MapFile& b) {
   if (a.info.marker_dictionary != b.info.marker_dictionary ||
       a.info.marker_size_m != b.info.marker_size_m) {
     throw SetupError{fmt::format("the maps have other markers: {} of {} m and {} of {} m",
@@ -84,7 +85,7 @@ nlohmann::json json_of(const LearntCalibration& calibration) {
   return json;
 }
 
-/// How the robot differs from its description.
+/// The learnt calibration: deviations of the robot from its description.
 std::string text_of(const LearntCalibration& calibration) {
   std::string text;
   for (std::size_t i = 0; i < kCalibrationTerms.size(); ++i) {
@@ -174,7 +175,7 @@ std::string merge_maps(const std::filesystem::path& a, const std::filesystem::pa
   check_is_new(out);
   const MapFile first = read_map_file(a);
   const MapFile second = read_map_file(b);
-  need_mergeable(first, second);
+  check_are_mergeable(first, second);
   auto alignment = align_by_markers(first.map, second.map);
   const bool is_by_markers = alignment.has_value();
   if (!is_by_markers) alignment = align_by_walls(first.map, second.map);

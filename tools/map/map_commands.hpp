@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What waymark-map does with map files. All throw SetupError for files that are no maps, and for
-// maps that do not fit together.
+// The sub-commands of waymark-map. All throw SetupError for files that are no maps, for output that
+// exists, and for maps that cannot be merged.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -10,16 +10,19 @@
 
 namespace waymark {
 
-/// What a map is, for people, or as one JSON object.
+/// Human-readable summary of a map, or one JSON object.
 std::string map_info(const std::filesystem::path& file, bool as_json);
 
-/// Writes map.pgm, map.yaml, map.png, markers.csv (by the viewer) and graph.g2o into a folder.
+/// Writes map.pgm, map.yaml, map.png, markers.csv and graph.g2o into a folder, with the viewer.
 void export_map(const std::filesystem::path& file, const std::filesystem::path& folder);
 
+/// Writes the map in another frame.
+/// @param frame  name of the new frame; empty = keep the name.
 /// @return a sentence about the result.
 std::string transform_map(const std::filesystem::path& file, const Se2& new_from_old,
                           const std::string& frame, const std::filesystem::path& out);
 
+/// Writes both maps as one, in the frame of `a`.
 /// @return a sentence about the result.
 std::string merge_maps(const std::filesystem::path& a, const std::filesystem::path& b,
                        const std::filesystem::path& out);

@@ -13,12 +13,12 @@
 namespace waymark {
 namespace {
 
-constexpr double kInlier_m = 0.3;      // between the two maps' places of one marker
-constexpr double kLeastApart_m = 1.0;  // between two markers that determine the rotation
-constexpr int kSamplesAlong = 6;       // of points in a cell of walls
-constexpr double kSameMarker_m = 0.5;  // between two landmarks of one id
+constexpr double kInlier_m = 0.3;      // largest distance of a marker's positions in both maps
+constexpr double kLeastApart_m = 1.0;  // of two markers that determine the rotation
+constexpr int kSamplesAlong = 6;       // sample points along an NDT cell's major axis
+constexpr double kSameMarker_m = 0.5;  // landmarks of one id closer than this are one marker
 
-/// Each cell takes the content of the old one at its centre.
+/// Each new cell takes the contents of the old cell at its centre.
 GridMap transformed(const GridMap& grid, const Se2& new_from_old) {
   GridMap result;
   result.frame = grid.frame;
@@ -42,8 +42,8 @@ GridMap transformed(const GridMap& grid, const Se2& new_from_old) {
   return result;
 }
 
-/// The cells overlap: every second one of every second row holds each point once. The points of
-/// such a cell are replaced by twelve with the same mean and covariance.
+/// NDT cells overlap; those of even row and column hold each point exactly once. Their points are
+/// replaced by 2 * kSamplesAlong samples with the same mean and covariance.
 void add_transformed(const NdtMap& walls, const Se2& new_from_old, NdtMap& result) {
   for (const NdtCellSums& cell : walls.sums()) {
     if (cell.column % 2 != 0 || cell.row % 2 != 0) continue;
@@ -71,7 +71,7 @@ void add_transformed(const NdtMap& walls, const Se2& new_from_old, NdtMap& resul
   }
 }
 
-/// The only confirmed marker of its id.
+/// The only confirmed marker of that id; nullptr if there is none or more than one.
 const Landmark* only_one(const MapSnapshot& map, int id) {
   const Landmark* only = nullptr;
   for (const Landmark& landmark : map.landmarks) {
@@ -95,7 +95,7 @@ Pairs inliers_of(const Pairs& pairs, const Se2& a_from_b) {
   return agree;
 }
 
-/// Mean, weighted by information.
+/// Mean of two estimates, weighted by information.
 Landmark mean_of(const Landmark& a, const Landmark& b) {
   Landmark mean = a;
   const Eigen::Matrix3d gain = a.covariance * (a.covariance + b.covariance).inverse();

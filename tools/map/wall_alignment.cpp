@@ -14,24 +14,24 @@
 namespace waymark {
 namespace {
 
-constexpr double kStretch_m = 4.0;  // radius of a stretch of walls
+constexpr double kStretch_m = 4.0;  // radius of the walls around a place that are matched at once
 constexpr double kStretchesEvery_m = 3.0;
 constexpr std::size_t kMostStretches = 24;
 constexpr std::size_t kPoints = 250;
 constexpr std::size_t kLeastPoints = 80;
-constexpr double kLeastScore = 0.6;  // of a stretch, part of which may be new or gone
+constexpr double kLeastScore = 0.6;  // part of the walls may have changed
 constexpr UniquePlaceLimits kUnique{.min_score = kLeastScore,
                                     .runner_up_share = 0.85,
                                     .min_runner_up = kLeastScore,
                                     .apart_m = 0.5,
                                     .apart_rad = 0.3};
-constexpr double kAgree_m = 0.3;  // between two stretches' alignments
+constexpr double kAgree_m = 0.3;  // of the alignments by two stretches
 constexpr double kAgree_rad = 0.1;
 constexpr std::size_t kLeastConsistent = 2;  // stretches
-constexpr double kRangeSigma_m = 0.02;       // of points at centres of cells
+constexpr double kRangeSigma_m = 0.02;       // of points rounded to cell centres
 const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
 
-/// Places along the trajectory of a map, some metres apart.
+/// Poses along the trajectory of a map, some metres apart.
 std::vector<Se2> places_of(const PoseGraph& graph) {
   std::vector<Se2> places;
   for (const Se2& pose : graph.poses) {
@@ -54,7 +54,7 @@ Points stretch_at(const Se2& place, const Points& walls) {
   return points;
 }
 
-/// a_from_place, where the stretch fits at one place only.
+/// a_from_place; nothing unless the stretch of walls fits at exactly one place.
 std::optional<Se2> found_in(const MapSnapshot& a, const CorrelativeField& field,
                             const SearchWindow& window, const Se2& middle, const Points& stretch) {
   const Points some = thinned(stretch, kPoints);
@@ -97,7 +97,7 @@ std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapsh
     Se2 a_from_place{};
     Se2 b_from_place{};
 
-    /// The alignment by this stretch predicts the other one's place.
+    /// Whether a_from_b by this stretch predicts the pose of the other one.
     bool agrees_with(const Found& other) const {
       const Se2 a_from_b = a_from_place * b_from_place.inverse();
       const Eigen::Vector3d off =
@@ -118,7 +118,7 @@ std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapsh
     if (consistent.size() > best.size()) best = consistent;
   }
   if (best.size() < kLeastConsistent) return std::nullopt;
-  // The mean is taken at the centre of the stretches, where the alignment is most certain.
+  // Averaged at the centre of the stretches, where rotation errors move poses least.
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   for (const Found& one : best)
     centre += one.b_from_place.translation() / static_cast<double>(best.size());

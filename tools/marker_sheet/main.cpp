@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// waymark-marker-sheet: printable markers and ChArUco boards at their true size.
+// waymark-marker-sheet: markers and ChArUco boards to print at true size.
 #include "common/command_line/command_line.hpp"
 #include "common/files/whole_file.hpp"
 #include "marker_sheet/pdf_pages.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 struct Options {
   SheetOptions sheet{};
-  bool is_board{false};  ///< instead of markers
+  bool is_board{false};  ///< a ChArUco board instead of markers
   BoardOptions board{};
   PageOptions page{};
   std::string ids{"0-23"};
@@ -58,13 +58,12 @@ int main(int argc, char** argv) {
   Options options;
   std::string dictionary;
   Program program{
-      "Writes ArUco markers, or a ChArUco board to calibrate a camera with, at their true size "
-      "when "
-      "printed without scaling: PNGs, or the pages of a PDF.\n"
-      "Exit code: 0 fine; 2 wrong usage, or nothing can be written there.",
+      "Writes ArUco markers, or a ChArUco board for camera calibration, as PNGs or as one PDF. "
+      "Printed without scaling they have their true size.\n"
+      "Exit code: 0 success; 2 wrong usage, or the output cannot be written.",
       "waymark-marker-sheet"};
   program.add_option("--dictionary", dictionary,
-                     fmt::format("OpenCV's name [{}; of a board {}]", options.sheet.dictionary,
+                     fmt::format("OpenCV's name [{}; for a board {}]", options.sheet.dictionary,
                                  options.board.dictionary));
   CommandOption ids =
       program.add_option("--ids", options.ids, "ids and ranges of ids, as in 0-5,9").show_default();
@@ -81,26 +80,28 @@ int main(int argc, char** argv) {
           .excludes(ids)
           .excludes(size_m)
           .excludes(quiet_zone);
-  program.add_option("--squares", options.board.squares, "of the board: columns x rows")
+  program.add_option("--squares", options.board.squares, "squares of the board: columns x rows")
       .show_default()
       .needs(charuco);
-  program.add_option("--square-m", options.board.square_m, "side of its squares [m]")
+  program.add_option("--square-m", options.board.square_m, "side of the board's squares [m]")
       .show_default()
       .needs(charuco);
-  program.add_option("--marker-m", options.board.marker_m, "side of its markers [m]")
+  program.add_option("--marker-m", options.board.marker_m, "side of the board's markers [m]")
       .show_default()
       .needs(charuco);
-  program.add_option("--dpi", options.sheet.dpi, "of PNGs: pixels per inch").show_default();
+  program.add_option("--dpi", options.sheet.dpi, "resolution of PNGs: pixels per inch")
+      .show_default();
   CommandOption out =
-      program.add_option("--out", options.folder, "folder for PNGs; made if need be");
+      program.add_option("--out", options.folder, "folder for PNGs; created if missing");
   CommandOption to_pdf =
-      program.add_option("--pdf", options.pdf_file, "instead: one PDF with all of them");
+      program.add_option("--pdf", options.pdf_file, "instead of PNGs: one PDF with all pages");
   to_pdf.excludes(out);
-  program.add_option("--page", options.page.page, "of the PDF: A4, A3 or Letter")
+  program.add_option("--page", options.page.page, "page size of the PDF: A4, A3 or Letter")
       .show_default()
       .needs(to_pdf);
   program
-      .add_flag("--tile", options.page.tiles, "spread what does not fit over pages with cut marks")
+      .add_flag("--tile", options.page.tiles,
+                "spread a marker or board that is too large over several pages with cut marks")
       .needs(to_pdf);
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   if (!out.is_given() && !to_pdf.is_given()) return program.refuse_without("--out or --pdf");

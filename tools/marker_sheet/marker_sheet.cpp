@@ -41,7 +41,7 @@ int parse_id(std::string_view text, const std::string& whole) {
   return id;
 }
 
-/// Not rounded.
+/// Side of a module at the wanted resolution [px], not rounded.
 double module_px(const SheetOptions& options, int modules_per_side) {
   return options.size_m / modules_per_side * options.dpi / kInch_m;
 }
@@ -62,7 +62,7 @@ std::uint32_t crc32(std::string_view bytes) {
   return ~crc;
 }
 
-/// The pHYs chunk, which OpenCV cannot write: how large a pixel is on paper.
+/// The pHYs chunk (resolution), which OpenCV cannot write.
 std::string size_chunk(double pixels_per_m) {
   std::string content = "pHYs";
   const auto rounded = static_cast<std::uint32_t>(std::lround(pixels_per_m));

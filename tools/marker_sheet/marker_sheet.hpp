@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture of a marker to print and put on a wall.
+// Draws markers as PNGs that print at true size.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -17,33 +17,34 @@ struct SheetOptions {
   double dpi{300.0};
 };
 
-/// "0-3,7" -> 0 1 2 3 7. @throws std::runtime_error naming the part that is not an id or a range.
+/// Parses ids and ranges: "0-3,7" -> 0 1 2 3 7.
+/// @throws std::runtime_error naming the part that is neither an id nor a range.
 std::vector<int> parse_ids(const std::string& text);
 
-/// One pixel per module, the black border included: 0 is black.
-/// @throws std::runtime_error if the options or the id make no marker.
+/// The marker with its black border, one pixel per module: 0 = black, 255 = white.
+/// @throws std::runtime_error if the options or the id are invalid.
 cv::Mat marker_modules(const SheetOptions& options, int id);
 
-/// The marker, its quiet zone, and below that the id and the size in words. Modules are squares of
-/// whole pixels, so the black square may differ from size_m by half a pixel per module; the dots
-/// per metre that make up for it are in `pixels_per_m`.
+/// The marker with its quiet zone, below it a caption with id and size. Modules have whole pixels,
+/// so the black square may differ from size_m by half a pixel per module at the wanted resolution;
+/// `pixels_per_m` is the resolution at which it has size_m exactly.
 struct Sheet {
   cv::Mat picture{};
   double pixels_per_m{};
 };
 
-/// @throws std::runtime_error if the options or the id make no marker.
+/// @throws std::runtime_error if the options or the id are invalid.
 void check_sheet(const SheetOptions& options, int id);
 
-/// @throws std::runtime_error if the options or the id make no marker.
+/// @throws std::runtime_error if the options or the id are invalid.
 Sheet draw_sheet(const SheetOptions& options, int id);
 
-/// With its resolution, so that it prints at its true size; makes the folder.
+/// Writes a PNG with its resolution, so that it prints at true size; creates the folder.
 /// @throws std::runtime_error if it cannot be written.
 void write_png(const Sheet& sheet, const std::filesystem::path& file);
 
-/// Writes marker_<dictionary>_<id>.png for each id with its resolution, so that it prints at its
-/// true size; nothing where one of them cannot be drawn.
+/// Writes marker_<dictionary>_<id>.png for each id; none if one of them cannot be drawn.
+/// @return the files written.
 /// @throws std::runtime_error if a sheet cannot be drawn or written.
 std::vector<std::filesystem::path> write_sheets(const SheetOptions& options,
                                                 const std::vector<int>& ids,

@@ -12,8 +12,8 @@ namespace waymark::marker_sheet {
 namespace {
 
 constexpr double kGap_mm = 3.0;        // between border, caption and ruler
-constexpr int kMostPages = 100;        // of one pattern
-constexpr double kRounding_mm = 1e-6;  // sheets that fill a page fit it
+constexpr int kMostPages = 100;        // for one pattern
+constexpr double kRounding_mm = 1e-6;  // a sheet exactly as large as a page fits
 
 struct NamedPage {
   std::string_view name;

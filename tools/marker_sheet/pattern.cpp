@@ -6,7 +6,7 @@
 namespace waymark::marker_sheet {
 namespace {
 
-/// Adds the black modules of a marker, row by row, neighbours as one.
+/// Adds the black modules of a marker, row by row; adjacent ones become one rectangle.
 void add_marker(Pattern& pattern, const cv::Mat& modules, double x_mm, double y_mm,
                 double side_mm) {
   const double module_mm = side_mm / modules.cols;
@@ -44,7 +44,7 @@ Pattern board_pattern(const BoardOptions& options) {
   Pattern pattern;
   pattern.width_mm = squares.width * square_mm;
   pattern.height_mm = squares.height * square_mm;
-  pattern.quiet_mm = 0.5 * (square_mm - marker_mm);  // as around its markers
+  pattern.quiet_mm = 0.5 * (square_mm - marker_mm);  // as around the board's markers
   pattern.name = "board " + options.squares;
   pattern.caption = fmt::format("ChArUco {}  {}  squares {:.4g} mm  markers {:.4g} mm",
                                 options.squares, options.dictionary, square_mm, marker_mm);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is printed in black: of a marker, or of a ChArUco board. Millimetres, from the top left.
+// The black areas of a marker or of a ChArUco board. Millimetres, from the top left corner.
 #pragma once
 
 #include "common/markers/charuco_board.hpp"
@@ -20,16 +20,16 @@ struct Rectangle {
 struct Pattern {
   double width_mm{};
   double height_mm{};
-  double quiet_mm{};  ///< width of the white border around it
+  double quiet_mm{};  ///< width of the white border around the pattern
   std::vector<Rectangle> black{};
-  std::string name{};     ///< short: on tiles
-  std::string caption{};  ///< what it is and how large
+  std::string name{};     ///< short name, printed on tiles
+  std::string caption{};  ///< dictionary, ids and size
 };
 
-/// @throws std::runtime_error if the options or the id make no marker.
+/// @throws std::runtime_error if the options or the id are invalid.
 Pattern marker_pattern(const SheetOptions& options, int id);
 
-/// @throws SetupError if the options make no board.
+/// @throws SetupError if the options are invalid.
 Pattern board_pattern(const BoardOptions& options);
 
 }  // namespace waymark::marker_sheet

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kPoint_per_mm = 72.0 / 25.4;
 constexpr double kInch_mm = 25.4;
-constexpr double kFewestPixels_per_mm = 2.0;  // modules have some millimetres
+constexpr double kFewestPixels_per_mm = 2.0;  // modules are some millimetres wide
 constexpr double kMostPixels = 20'000.0;      // 1.7 m at 300 dpi; guards the memory
 constexpr double kHairline_mm = 0.1;
 constexpr double kCutMark_mm = 5.0;
@@ -41,10 +41,10 @@ void draw_line(cairo_t* to, double x1_mm, double y1_mm, double x2_mm, double y2_
   cairo_stroke(to);
 }
 
-/// As a picture: letters do not depend on which fonts a computer has.
+/// Draws text as an image, so that the result does not depend on installed fonts.
 void draw_text(cairo_t* to, const std::string& text, double x_mm, double y_mm, double height_mm,
                double most_width_mm) {
-  constexpr double kScale = 4.0;  // of Hershey's letters, which are then made as large as wanted
+  constexpr double kScale = 4.0;  // OpenCV font scale; the image is then scaled to height_mm
   constexpr int kThick = 6;
   int below_px = 0;
   const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kScale, kThick, &below_px);
@@ -69,11 +69,11 @@ void draw_text(cairo_t* to, const std::string& text, double x_mm, double y_mm, d
   cairo_scale(to, mm_per_px / resize, mm_per_px / resize);
   cairo_mask_surface(to, image.get(), 0.0, 0.0);
   cairo_restore(to);
-  // The PDF is written when a page is shown: it must not look at our bytes then.
+  // cairo reads the image when the page is shown; finishing it here makes cairo copy it now.
   cairo_surface_finish(image.get());
 }
 
-/// As one path: filled at once, no seams show between rectangles.
+/// Fills all rectangles as one path, so that no gaps show between them.
 void draw_black(cairo_t* to, const Pattern& pattern, const SheetLayout& sheet) {
   for (const Rectangle& black : pattern.black)
     cairo_rectangle(to, sheet.pattern_x_mm + black.x_mm, sheet.pattern_y_mm + black.y_mm,
@@ -91,7 +91,7 @@ void draw_ruler(cairo_t* to, double left_mm, double y_mm, double tick_mm) {
   }
 }
 
-/// In the lower margin, which is cut off: each tile is checked by itself.
+/// Draws a ruler in the lower margin, which is cut off, to check the scale of each tile.
 void draw_ruler_of_tile(cairo_t* to, const Tiling& tiling) {
   constexpr double kText_mm = 3.0;
   const double left_mm = kMargin_mm + kCutMark_mm;
@@ -168,7 +168,7 @@ Pdf draw_pdf(const std::vector<Pattern>& patterns, const PageOptions& options) {
       &cairo_surface_destroy};
   check(cairo_surface_status(surface.get()));
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, "Markers");
-  // Not the clock's: the same input gives the same bytes.
+  // A fixed date, so that the same input gives the same bytes.
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE,
                                  "2000-01-01T00:00:00Z");
   const Context context{cairo_create(surface.get()), &cairo_destroy};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Markers and boards on paper, at their true size: pages of a PDF, or a picture.
+// Draws markers and boards at true size: as pages of a PDF, or as an image.
 #pragma once
 
 #include "marker_sheet/page_layout.hpp"
@@ -11,7 +11,7 @@ namespace waymark::marker_sheet {
 
 struct PageOptions {
   std::string page{"A4"};
-  bool tiles{false};  ///< patterns may be spread over several pages
+  bool tiles{false};  ///< a pattern may be spread over several pages
 };
 
 struct Pdf {
@@ -20,10 +20,11 @@ struct Pdf {
 };
 
 /// One page per pattern, or one per tile, row by row. The same input gives the same bytes.
-/// @throws std::runtime_error if a pattern does not fit the page.
+/// @throws std::runtime_error as tiling_of().
 Pdf draw_pdf(const std::vector<Pattern>& patterns, const PageOptions& options);
 
-/// With caption and ruler. Edges between pixels are grey, so that they are where they belong.
+/// An image with caption and ruler. Edges within a pixel are grey (anti-aliased), so that their
+/// position is exact.
 /// @throws std::runtime_error if the resolution is too coarse, or there would be too many pixels.
 Sheet draw_picture(const Pattern& pattern, double dpi);
 

@@ -8,11 +8,11 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kEverywhere_m = 2.0;  // between markers of a wall that is full of them
-constexpr double kAboveFloor = 1.02;   // of what every place together would reach
+constexpr double kEverywhere_m = 2.0;  // spacing of markers that are hung everywhere
+constexpr double kAboveFloor = 1.02;   // factor on the sigmas with markers everywhere
 constexpr double kNothing = 1e-12;     // [m^3] of excess
 
-/// Evaluates sets of places.
+/// Evaluates sets of places by their excess: variance above the aim, integrated along the path.
 class Search {
  public:
   Search(const CovarianceModel& model, std::span<const Step> steps, std::span<const Sightings> hung,
@@ -71,7 +71,7 @@ std::optional<std::size_t> best_place(const Search& search, std::vector<Gain>& g
   return std::nullopt;
 }
 
-/// From the one chosen last but one: the last one was needed.
+/// Removes places that are not needed, later ones first.
 void drop_needless(const Search& search, std::vector<std::size_t>& chosen) {
   for (std::size_t i = chosen.size(); i-- > 0 && chosen.size() > 1;) {
     std::vector<std::size_t> fewer = chosen;

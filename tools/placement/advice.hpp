@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fewest new markers that bring the pose's standard deviation under a target.
+// Chooses few new markers that bring the standard deviation of the position below a target (greedy:
+// not always the fewest possible).
 #pragma once
 
 #include "placement/covariance_model.hpp"
@@ -10,7 +11,7 @@
 
 namespace waymark::placement {
 
-/// Consecutive steps whose sigma is above the target.
+/// Consecutive steps whose sigma is above the target; indices of steps, both inclusive.
 struct Stretch {
   std::size_t first{0};
   std::size_t last{0};
@@ -19,31 +20,34 @@ struct Stretch {
 
 std::vector<Stretch> stretches_above(std::span<const double> sigmas_m, double target_m);
 
-/// Places of a wall that is full of markers: some metres apart, of each wall.
+/// Places about every 2 m along every wall, as indices of `places`: the best that markers can do.
 std::vector<std::size_t> everywhere(std::span<const WallPlace> places);
 
 struct Advice {
-  std::vector<std::size_t> chosen{};    ///< of the places, in the order to hang them
-  std::vector<double> worst_after_m{};  ///< with the places up to each
-  std::vector<double> now_m{};          ///< sigma by step, with the markers that hang
-  std::vector<double> then_m{};         ///< the same with the chosen ones
-  /// Where even a marker at every place leaves more than the target, by step; else the target.
+  std::vector<std::size_t> chosen{};    ///< indices of the places, in the order to add them
+  std::vector<double> worst_after_m{};  ///< largest sigma with the first i + 1 chosen places
+  std::vector<double> now_m{};          ///< sigma by step, with the existing markers
+  std::vector<double> then_m{};         ///< sigma by step, with the chosen places as well
+  /// By step: the target, or where even markers everywhere cannot meet it, what they reach.
   std::vector<double> reachable_m{};
 };
 
-/// Largest; 0 of none.
+/// The largest sigma; 0 if there are none.
 double worst(std::span<const double> sigmas_m);
 
-/// Those that hang, and those at chosen places.
+/// Sightings of the existing markers and of those at the chosen places.
 std::vector<const Sightings*> hung_and(std::span<const Sightings> hung,
                                        std::span<const Sightings> at_places,
                                        std::span<const std::size_t> chosen);
 
-/// Greedy on the excess of variance over the target, integrated along the way; lazily, for a place
-/// seldom gains by others (Minoux 1978). Then those go that are not needed.
-/// @param hung    sightings of the markers that hang.
-/// @param places  with the sightings of a marker at each; plates of chosen ones do not overlap.
-/// @param most    markers at the most: free ids.
+/// Greedy: adds the place that most reduces the variance above the target, integrated along the
+/// path; finally removes places that are not needed. Evaluations are lazy (Minoux 1978), as another
+/// place seldom increases the gain of a place.
+/// @param hung       sightings of the existing markers.
+/// @param at_places  sightings of a marker at each of `places`.
+/// @param plate_m    side of a marker with its quiet zone; chosen plates do not overlap.
+/// @param target_m   standard deviation wanted at every step.
+/// @param most       largest number of new markers.
 Advice advise(const CovarianceModel& model, std::span<const Step> steps,
               std::span<const Sightings> hung, std::span<const WallPlace> places,
               std::span<const Sightings> at_places, double plate_m, double target_m,

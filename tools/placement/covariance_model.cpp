@@ -16,7 +16,7 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kInFront_m = 0.15;  // a marker's own wall is no obstacle
+constexpr double kInFront_m = 0.15;  // a view ends this far before the marker's own wall
 
 Variable pose_of_step(std::size_t step) {
   return {VariableKind::kKeyframe, step};
@@ -26,7 +26,7 @@ Variable landmark(std::size_t marker) {
   return {VariableKind::kLandmark, marker};
 }
 
-/// What has a scale is variance per metre along the way.
+/// Variance per metre of the odometry's distance that depends on the learnt noise scale.
 double along_m2_per_m(const OdometryNoise& noise, const OdometryScale& scale, bool shows_way) {
   const double rolling = scale.along * noise.along_per_sqrt_m;
   return rolling * rolling + (shows_way ? 0.0 : scale.slip_m2_per_m);
@@ -49,7 +49,7 @@ void drive_step(const Se2& before, const Step& step, const OdometryNoise& descri
              jacobian_calibration, in_axes(before.rotation(), moved.covariance));
 }
 
-/// @param steps_of  variables of the factor's keyframes by their number there.
+/// @param keyframes  variable of each keyframe index that the factor uses.
 std::vector<PoseCovariance::Block> blocks_of(const LinearFactor& linear,
                                              const std::vector<Variable>& keyframes,
                                              const Variable& marker, double root_weight) {
@@ -84,7 +84,8 @@ void match_scan_of(std::span<const Step> steps, std::size_t now, const Reference
   known.measure(blocks_of(factor.linearise(state), variables, {}, std::sqrt(keyframes)));
 }
 
-/// What views say about the camera apart from poses: their walls, and their perspective.
+/// Measures the camera's calibration by a view: by the LiDAR's wall, and by perspective (focal
+/// length).
 void learn_calibration(const MarkerMeasurement& measured, double keyframes, PoseCovariance& known) {
   const double root_weight = std::sqrt(keyframes);
   if (measured.wall) {
@@ -127,7 +128,7 @@ void see_marker(const Step& step, const StepSighting& sighting, PoseCovariance& 
   known.add(marker, blocks, solve * solve.transpose());
 }
 
-/// The step after which a pose behind is not needed any more, by step; itself: never needed.
+/// For each step, the last step that refers to its pose; its own index if none does.
 std::vector<std::size_t> last_uses(const std::vector<StepPlan>& plan) {
   std::vector<std::size_t> last(plan.size());
   for (std::size_t i = 0; i < plan.size(); ++i) {
@@ -181,7 +182,7 @@ std::vector<Eigen::Matrix3d> CovarianceModel::predict(
   const std::vector<std::size_t> last_use = last_uses(plan);
   std::vector<std::size_t> kept;
   std::vector<Eigen::Matrix3d> covariances;
-  double unfixed_m2 = 0.0;  // what the odometry's noise as known now adds to that as known later
+  double unfixed_m2 = 0.0;  // additional variance by the noise scale known now against later
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Step& step = steps_[i];
     const StepPlan& now = plan[i];

@@ -17,13 +17,13 @@ namespace {
 
 constexpr double kStep_m = 0.25;
 constexpr double kStep_rad = 0.3;
-// Mean of the squared cosine of incidence over the beams that meet a spot of a wall from a drive
-// along it: the spot is as thick as they make it, whoever looks at it now. (Even in the bearing b
-// from the wall's normal, -90 to 90 degrees: the mean of cos^2 b.)
+// Mean of cos^2 of the angle of incidence over the beams that hit one spot of a wall during a drive
+// past it (uniform in -90 to 90 degrees). These beams determine the spread of the map's points
+// there, whatever the incidence of the current beam.
 constexpr double kMeanFacing2 = 0.5;
 
-/// The direction in which the walls say nothing; where they show all, the last one: what is
-/// uncertain there was carried along from where they did not.
+/// Sets each step's weak axis: the direction that the walls do not observe. Where they observe all,
+/// the last weak axis stays, as the uncertainty along it persists.
 void carry_weak_axes(std::vector<Step>& steps) {
   Eigen::Vector2d last = Eigen::Vector2d::Zero();
   for (Step& step : steps) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A drive as steps of a quarter of a metre, with what the scans there would show of the pose.
+// Divides a drive into steps of 0.25 m, with the information that scans give there.
 #pragma once
 
 #include "placement/occupied_walls.hpp"
@@ -21,20 +21,21 @@ struct ScanPlace {
 };
 
 struct Step {
-  std::size_t scan{0};  ///< at its end, in the poses that the drive was made of
-  Se2 map_from_base{};  ///< at its end
-  double travel_m{0.0};
-  Motion motion{};                                     ///< since the step before
-  double scans{0.0};                                   ///< in it; 0: not known
-  double speed_mps{0.0};                               ///< 0: not known
-  ObservedAxes observed{};                             ///< by one scan; base axes
-  Eigen::Vector2d weak_axis{Eigen::Vector2d::Zero()};  ///< see with_weak_axes(); zero: none yet
-  std::vector<Eigen::Vector2d> hits{};                 ///< ends of beams, base frame
+  std::size_t scan{0};      ///< index into drive_along()'s `places`, at the end of the step
+  Se2 map_from_base{};      ///< at the end of the step
+  double travel_m{0.0};     ///< length of the path up to the end of the step
+  Motion motion{};          ///< during the step
+  double scans{0.0};        ///< number of scans in the step; 0: unknown
+  double speed_mps{0.0};    ///< mean; 0: unknown
+  ObservedAxes observed{};  ///< information of one scan at the end; base axes
+  /// Unit direction (map) that the walls do not observe, or last did not; zero: none so far.
+  Eigen::Vector2d weak_axis{Eigen::Vector2d::Zero()};
+  std::vector<Eigen::Vector2d> hits{};  ///< ends of beams, base frame
 };
 
-/// Information of one scan about the pose, base axes: its beams against the lines of the walls.
-/// Source: the estimator's point-to-line cost (slam/core/registration), without errors.
-/// @param hits  where it puts the ends of the beams, base frame.
+/// Information of one scan about the pose, base axes, by the estimator's point-to-line cost
+/// (slam/core/registration) at measurements without errors.
+/// @param hits  output: ends of the beams, base frame.
 ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
                           const SlamConfig& config, std::vector<Eigen::Vector2d>& hits);
 

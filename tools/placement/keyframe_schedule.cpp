@@ -11,9 +11,9 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kSeen = 0.5;  // share of the scans, from which a marker counts as in view
+constexpr double kSeen = 0.5;  // least share of the scans with a marker for it to be in view
 
-/// Distance between keyframes that are due after `least_m`, at scans `apart_m` apart.
+/// Distance between keyframes that are due every `least_m`, rounded up to whole scan intervals.
 double spacing(double least_m, double apart_m) {
   constexpr double kRounding = 1e-9;
   if (!(apart_m > 0.0)) return least_m;
@@ -25,7 +25,8 @@ double keyframes_of(const Step& step, double spacing_m, double turn_rad) {
   return step.scans > 0.0 ? std::min(due, step.scans) : due;
 }
 
-/// How many keyframes see what, given how often frames show each marker.
+/// Sets the number of keyframes of each step, and how many of them see each marker, from the share
+/// of frames in which the marker is read.
 void count_keyframes(std::span<const Step> steps, const SlamConfig& config,
                      std::vector<StepPlan>& plan) {
   const WaymarkConfig& waymark = config.slam.waymark;
@@ -55,7 +56,7 @@ void count_keyframes(std::span<const Step> steps, const SlamConfig& config,
   }
 }
 
-/// The step in which that keyframe was made.
+/// The step in which the keyframe with that (fractional) index is made.
 std::size_t step_of(double keyframe, const std::vector<StepPlan>& plan) {
   const auto after = std::upper_bound(
       plan.begin(), plan.end(), keyframe,
@@ -63,7 +64,7 @@ std::size_t step_of(double keyframe, const std::vector<StepPlan>& plan) {
   return after == plan.begin() ? 0 : static_cast<std::size_t>(after - plan.begin()) - 1;
 }
 
-/// Two submaps are filled at a time, and the older one is matched; see
+/// Scans are inserted into two submaps at a time and matched with the older one; see
 /// WaymarkEstimator::insert_scan() and add_scan_factor().
 void choose_submaps(const WaymarkConfig& config, std::vector<StepPlan>& plan) {
   constexpr double kGroup{kGroupedKeyframes};
@@ -87,7 +88,7 @@ void choose_submaps(const WaymarkConfig& config, std::vector<StepPlan>& plan) {
   }
 }
 
-/// Old places that walls show in every direction are found again.
+/// Sets the loop closures: with old steps nearby whose walls observe every direction.
 void choose_loops(std::span<const Step> steps, const WaymarkConfig& config,
                   std::vector<StepPlan>& plan) {
   if (!config.loops.enabled) return;
@@ -99,7 +100,7 @@ void choose_loops(std::span<const Step> steps, const WaymarkConfig& config,
     searched_m = steps[i].travel_m;
     double least_m = config.loops.reach_m;
     for (std::size_t k = 0; k < i; ++k) {
-      // Not old: in the submaps that are being filled.
+      // The rest is too recent: in the submaps being filled.
       if (plan[i].keyframes_before - plan[k].keyframes_before < 2.0 * config.submap_keyframes)
         break;
       const double away_m =
@@ -111,13 +112,13 @@ void choose_loops(std::span<const Step> steps, const WaymarkConfig& config,
   }
 }
 
-/// Innovations as large as they are on average.
+/// An innovation of average size (one standard deviation).
 OdometryInnovation usual(double odometry_variance, double other_variance, double distance_m) {
   return {std::sqrt(odometry_variance + other_variance), odometry_variance, other_variance,
           distance_m};
 }
 
-/// What the estimator's learner says on the way.
+/// Sets the noise scale at each step by running the estimator's learner on average innovations.
 void follow_noise(std::span<const Step> steps, const WaymarkConfig& config,
                   std::vector<StepPlan>& plan) {
   OdometryNoiseLearner learner;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which keyframes the estimator would make on a drive, what it would match their scans with, and
-// how noisy it would take the odometry for.
+// Predicts the keyframes that the estimator would make on a drive, the submaps and loops that it
+// would match their scans with, and the odometry noise that it would learn.
 #pragma once
 
 #include "placement/covariance_model.hpp"
@@ -13,23 +13,23 @@
 
 namespace waymark::placement {
 
-/// A marker in a step.
+/// A marker seen during a step.
 struct StepSighting {
   std::size_t marker{0};
   const MarkerView* view{nullptr};
-  double keyframes{0.0};  ///< that measure it
+  double keyframes{0.0};  ///< expected number of keyframes that measure it
 };
 
 struct StepPlan {
-  double keyframes{0.0};  ///< made in it
-  double keyframes_before{0.0};
-  bool shows_way{false};  ///< walls or markers show the motion along
+  double keyframes{0.0};         ///< expected number of keyframes in the step
+  double keyframes_before{0.0};  ///< in all steps before
+  bool shows_way{false};         ///< walls or markers observe the motion along the path
   std::vector<StepSighting> sightings{};
-  /// Steps whose poses stand for the submap that its scans are matched with, and their shares.
+  /// Steps whose poses represent the submap that the scans are matched with, and their shares.
   std::vector<std::pair<std::size_t, double>> submap{};
-  std::optional<std::size_t> loop{};  ///< an old step whose walls it finds again
-  OdometryScale noise{};              ///< as known at that step
-  std::size_t leaves_window{0};       ///< the step at which its factors are fixed
+  std::optional<std::size_t> loop{};  ///< an old step with which a loop is closed
+  OdometryScale noise{};              ///< learnt up to this step
+  std::size_t leaves_window{0};       ///< the step at which its factors are marginalised
 };
 
 std::vector<StepPlan> plan_keyframes(std::span<const Step> steps,

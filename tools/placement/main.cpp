@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// waymark-placement, which is `waymark-evaluate placement`: where more markers would make a map
-// better.
+// waymark-placement, also run as `waymark-evaluate placement`: where additional markers would
+// reduce the uncertainty of the position.
 #include "common/command_line/command_line.hpp"
 #include "evaluate/commands.hpp"
 #include "placement/placement_command.hpp"
@@ -19,14 +19,15 @@ void add_options(waymark::Command& program, PlacementOptions& options) {
       .required();
   program
       .add_option("--target-sigma-m", options.target_m,
-                  "standard deviation of the position along the axis that the walls do not show "
-                  "that is wanted everywhere on the way [m]")
+                  "standard deviation of the position, along the axis that the walls do not "
+                  "observe, that is wanted everywhere on the path [m]")
       .check(waymark::positive_number())
       .show_default();
   program.add_option("--config", options.config,
-                     "robot.toml or slam configuration, for a map file, or instead of the run's");
-  program.add_option("--json", options.json, "write the advice there for programs");
-  program.add_option("--csv", options.csv, "write the new markers there, as in markers.csv");
+                     "robot.toml or slam configuration; needed for a map file, else the run's");
+  program.add_option("--json", options.json, "write the result to this JSON file");
+  program.add_option("--csv", options.csv,
+                     "write the new markers to this file, with the columns of markers.csv");
   program.add_option("--picture", options.picture,
                      "PNG file of the map with the places (default: placement.png in the row, "
                      "NAME.placement.png beside a map file)");
@@ -39,8 +40,10 @@ int main(int argc, char** argv) {
   const std::string name = std::filesystem::path{argv[0]}.filename();
   PlacementOptions options;
   waymark::Program program{
-      "Says where the estimate is too uncertain, and the fewest new markers that cure it.\n"
-      "Exit code: 0 the target is met, or will be; 1 it cannot be; 2 wrong usage or files.",
+      "Finds where the position is more uncertain than a target, and few new markers with which "
+      "the target is met.\n"
+      "Exit code: 0 the target is met, now or with the new markers; 1 it cannot be met; 2 wrong "
+      "usage or files.",
       name};
   add_options(program, options);
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;

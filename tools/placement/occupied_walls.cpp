@@ -9,10 +9,10 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kPatchRadius_m = 0.35;  // of the cells that one line is fitted to
-constexpr double kLineRatio = 0.1;       // of a line's variances, across to along
+constexpr double kPatchRadius_m = 0.35;  // a line is fitted to the cells within
+constexpr double kLineRatio = 0.1;       // largest variance across a line over that along it
 constexpr int kLeastCells = 5;
-constexpr double kStep = 0.5;  // of a cell, along a ray
+constexpr double kStep = 0.5;  // along a ray [cells]
 
 }  // namespace
 

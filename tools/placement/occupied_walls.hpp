@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The walls of an occupancy map: where a beam ends, and which way the wall lies there.
+// The walls of an occupancy map: ray casting, and the line of the wall at a cell.
 #pragma once
 
 #include "common/corridor/map_image.hpp"
@@ -13,16 +13,16 @@ namespace waymark::placement {
 
 using corridor::Cell;
 
-/// Cells along the map's axes.
+/// An occupancy image with its position in the map frame.
 struct PlacedMapImage : corridor::MapImage {
   Eigen::Vector2d origin_m{Eigen::Vector2d::Zero()};  ///< lower left corner of cell (0, 0), map
 };
 
 /// The line that the occupied cells around a place lie on.
 struct WallPatch {
-  Eigen::Vector2d point{Eigen::Vector2d::Zero()};    ///< mean of the cells, map
-  Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< unit, any sign
-  bool is_line{false};                               ///< else a corner, a leg, clutter
+  Eigen::Vector2d point{Eigen::Vector2d::Zero()};    ///< mean of the cells, map frame
+  Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< unit vector of either sign, map frame
+  bool is_line{false};                               ///< false: a corner, a leg, clutter
 };
 
 class OccupiedWalls {
@@ -31,8 +31,8 @@ class OccupiedWalls {
 
   const PlacedMapImage& image() const { return image_; }
 
-  /// Index of the first occupied cell on a ray; nothing where it leaves the known map, or goes
-  /// further than `range_m`. O(range / resolution).
+  /// Index of the first occupied cell on a ray; nothing if the ray leaves the image or exceeds
+  /// `range_m`. O(range / resolution).
   std::optional<std::size_t> first_hit(const Eigen::Vector2d& from_m,
                                        const Eigen::Vector2d& direction, double range_m) const;
 
@@ -40,7 +40,7 @@ class OccupiedWalls {
 
   Cell state_at(const Eigen::Vector2d& point_m) const;
 
-  /// Of an occupied cell; fitted at the first call.
+  /// Line at an occupied cell; fitted at the first call.
   const WallPatch& patch(std::size_t cell) const;
 
  private:

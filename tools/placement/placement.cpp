@@ -13,13 +13,13 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kMargin = 0.85;         // planned for: the model is good to that
-constexpr double kQuietModules = 2.0;    // on each side, as the marker sheets have it
-constexpr double kSpacing_m = 0.5;       // between places of one wall that are tried
-constexpr double kSignificant_m = 1e-3;  // sigmas below say nothing about the model
-constexpr double kMatters = 0.9;  // a cause without which the worst sigma is below this share
+constexpr double kMargin = 0.85;         // on the target, for errors of the model
+constexpr double kQuietModules = 2.0;    // on each side, as on printed marker sheets
+constexpr double kSpacing_m = 0.5;       // between candidate places along a wall
+constexpr double kSignificant_m = 1e-3;  // smaller sigmas are not compared with the run's
+constexpr double kMatters = 0.9;  // a limit is reported if without it sigma falls below this share
 
-/// Smallest first.
+/// Ids of the dictionary (or of robot.markers.ids) that no marker of the map has, ascending.
 std::vector<int> free_ids(const MarkerConfig& markers, int dictionary_size,
                           std::span<const MappedMarker> hung) {
   std::vector<int> ids = markers.ids;
@@ -52,7 +52,7 @@ void compare_with_run(const PlacementInput& input, Placement& placement) {
   placement.model_over_run = upper_median(std::move(ratios));
 }
 
-/// The worst sigma with a marker at every place, by a robot of which more is known.
+/// The worst sigma with markers everywhere, for another configuration.
 double with_all(const SlamConfig& config, const Placement& placement,
                 std::span<const Sightings> hung, std::span<const WallPlace> places,
                 std::span<const Sightings> at_places) {
@@ -107,7 +107,7 @@ Placement place_markers(const PlacementInput& input, double target_m) {
   const auto advise_for = [&](double sigma_m) {
     return advise(model, placement.steps, hung, places, at_places, plate_m, sigma_m, ids.size());
   };
-  // Where there is nothing to do, or too much, the target itself is what counts.
+  // Plan with a margin, unless the target is met already or cannot be met with the margin.
   placement.now = model.predict(hung_and(hung, {}, {}));
   const bool is_met_now = worst(model.sigmas_m(placement.now)) <= target_m;
   placement.advice = advise_for(is_met_now ? target_m : kMargin * target_m);

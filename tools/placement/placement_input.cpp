@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using evaluate::InputError;
 
-constexpr double kLongestStep_m = 1.0;  // between two poses; more is no drive
+constexpr double kLongestStep_m = 1.0;  // between poses; a longer step is a gap, not driving
 
 PlacedMapImage image_in(const fs::path& yaml_file) {
   evaluate::MapWithOrigin map = evaluate::read_map_with_origin(yaml_file);
@@ -58,7 +58,7 @@ PlacedMapImage image_of(const GridMap& grid) {
   return image;
 }
 
-/// The row of a run that has an estimate by waymark.
+/// The folder in a run with the estimate by waymark.
 fs::path row_in(const fs::path& run) {
   if (fs::exists(run / "trajectory.tum")) return run;
   if (fs::exists(run / "waymark" / "trajectory.tum")) return run / "waymark";

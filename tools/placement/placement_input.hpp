@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a placement is made from: a run's row, or a map file.
+// Reads the input of a placement from a run's row, or from a map file.
 #pragma once
 
 #include "evaluate/trajectory/nees.hpp"
@@ -22,16 +22,16 @@ struct MappedMarker {
 struct PlacementInput {
   std::filesystem::path source{};  ///< the row, or the map file
   SlamConfig config{};
-  std::vector<ScanPlace> places{};  ///< the way, as known at the end
+  std::vector<ScanPlace> places{};  ///< the path, by the final estimate
   std::vector<MappedMarker> markers{};
   PlacedMapImage image{};
-  std::vector<evaluate::StampedCovariance> covariances{};  ///< as shown on line; none of a map
-  std::vector<std::string> notes{};  ///< what was assumed or left out, a sentence each
+  std::vector<evaluate::StampedCovariance> covariances{};  ///< reported during the run, if any
+  std::vector<std::string> notes{};  ///< assumptions and omissions, one sentence each
 };
 
-/// @param source  folder of a run (then its row of the estimator waymark), of a row, or a map file.
+/// @param source  folder of a run (its row of the estimator waymark is read) or row, or a map file.
 /// @param config  robot.toml or a slam configuration, instead of the row's own; empty: none.
-/// @throws evaluate::InputError, ConfigError, SetupError in one sentence each.
+/// @throws evaluate::InputError, ConfigError, SetupError for unusable input.
 PlacementInput read_placement_input(const std::filesystem::path& source,
                                     const std::filesystem::path& config);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A placement for people and for programs.
+// Formats a placement as text, JSON, CSV and picture.
 #pragma once
 
 #include "placement/placement.hpp"
@@ -8,16 +8,16 @@
 
 namespace waymark::placement {
 
-/// What the run shows, the stretches above the target, the places, and what cannot be cured.
+/// Sigmas now, stretches above the target, new markers, and what limits the result.
 std::string placement_text(const PlacementInput& input, const Placement& placement);
 
 /// The same as one JSON object; lengths in metres, angles in radians, map frame.
 std::string placement_json(const PlacementInput& input, const Placement& placement);
 
-/// The new markers in the columns of markers.csv; their sigmas are 0, they have no sightings.
+/// The new markers with the columns of markers.csv; sigmas and sightings are 0.
 std::string placement_csv(const Placement& placement);
 
-/// The map as the viewer draws it, with the new places ringed. Bytes of a PNG file.
+/// The map as the viewer draws it, with circles around the new markers. Bytes of a PNG file.
 std::string placement_picture(const PlacementInput& input, const Placement& placement);
 
 }  // namespace waymark::placement

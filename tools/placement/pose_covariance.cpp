@@ -27,7 +27,7 @@ void PoseCovariance::move(const Eigen::Matrix3d& jacobian_pose,
   p_.block<3, 3>(kPoseAt, kPoseAt) = 0.5 * (own + own.transpose());
 }
 
-/// Covariance of every variable with that linear function of some.
+/// Covariance of all variables with the sum of jacobian * variable over `blocks`.
 Eigen::MatrixXd PoseCovariance::columns_of(const std::vector<Block>& blocks) const {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(p_.rows(), blocks.front().jacobian.rows());
   for (const Block& block : blocks) {
@@ -51,7 +51,7 @@ void PoseCovariance::add(const Variable& variable, const std::vector<Block>& of,
   offsets_[variable] = at;
 }
 
-/// The last variable moves into its place.
+/// The last variable is moved to the free rows and columns.
 void PoseCovariance::drop(const Variable& variable) {
   const Eigen::Index at = offsets_.at(variable);
   const Eigen::Index last = p_.rows() - 3;

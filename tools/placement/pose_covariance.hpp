@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The joint covariance of a drive's unknowns: calibration, the pose, some of the poses before, and
-// landmarks. Linear, as the graph is about its solution; exact, for nothing is forgotten.
+// Joint covariance of calibration, current pose, some past poses and landmarks during a drive: a
+// linear Kalman filter over the graph's linearised factors. Exact, as all correlations are kept.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -16,8 +16,8 @@ namespace waymark::placement {
 /// Errors are additive (x, y, theta) in the map frame, as in the graph's State.
 class PoseCovariance {
  public:
-  /// @param calibration_sigmas  of the robot's description.
-  /// @param pose_sigma          of the first pose [m, rad].
+  /// @param calibration_sigmas  prior sigmas of the calibration, units as in Calibration.
+  /// @param pose_sigma          of the first pose, x, y [m] and theta [rad].
   PoseCovariance(const Calibration& calibration_sigmas, double pose_sigma);
 
   struct Block {
@@ -25,7 +25,7 @@ class PoseCovariance {
     Eigen::MatrixXd jacobian{};
   };
 
-  /// The pose now; its index is not used.
+  /// The current pose; its index is not used.
   static constexpr Variable kPose{VariableKind::kKeyframe, static_cast<std::size_t>(-1)};
   static constexpr Variable kCalibration{VariableKind::kCalibration, 0};
 
@@ -33,17 +33,17 @@ class PoseCovariance {
 
   Eigen::Matrix3d of_pose() const { return p_.block<3, 3>(kPoseAt, kPoseAt); }
 
-  /// pose = jacobian_pose * pose + jacobian_calibration * calibration + noise.
+  /// Prediction: pose = jacobian_pose * pose + jacobian_calibration * calibration + noise.
   void move(const Eigen::Matrix3d& jacobian_pose,
             const Eigen::Matrix<double, 3, kCalibrationSize>& jacobian_calibration,
             const Eigen::Matrix3d& noise);
 
-  /// A new variable = sum of jacobian * variable + noise.
+  /// Adds a new variable = sum of jacobian * variable + noise.
   void add(const Variable& variable, const std::vector<Block>& of, const Eigen::Matrix3d& noise);
 
   void drop(const Variable& variable);
 
-  /// A measurement whitened to unit covariance: sum of jacobian * variable.
+  /// Update with a measurement of the sum of jacobian * variable, whitened to unit covariance.
   void measure(const std::vector<Block>& blocks);
 
  private:

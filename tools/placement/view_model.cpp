@@ -22,17 +22,17 @@ struct ReadShare {
   double share;
 };
 
-// Of the detector: modules of the markers in view, and the share of frames in which MARKERS has
-// them, on the log of the default corridor (7338 views, deploy/scenarios/corridor.toml, seed 1).
+// Share of frames in which the detector reads a marker, by the size of its modules; measured on the
+// log of the default corridor (7338 views, deploy/scenarios/corridor.toml, seed 1).
 constexpr std::array kReadShares{ReadShare{0.75, 0.0}, ReadShare{0.95, 0.45}, ReadShare{1.3, 0.65},
                                  ReadShare{1.8, 0.86}, ReadShare{2.5, 0.92},  ReadShare{3.5, 1.0}};
 
-constexpr double kScatter_px = 0.02;  // of edge points about their side, as in those frames
-constexpr double kSharedNoise = 2.2;  // neighbouring edge points count as fewer: the detector's
+constexpr double kScatter_px = 0.02;  // sigma of edge points about their side in those frames
+constexpr double kSharedNoise = 2.2;  // correlation of neighbouring edge points, as in the detector
 constexpr double kThinnestBorder_px = 1.0;
 constexpr double kImageMargin_px = 3.0;  // CandidateConfig::border_distance_px
 constexpr double kNearest_m = 0.05;      // in front of the camera
-constexpr double kOnItsWall_m = 0.15;    // beams that end this near to the marker's plane
+constexpr double kOnItsWall_m = 0.15;  // beams ending this close to the marker's plane hit its wall
 
 Eigen::Isometry3d upright(const Se2& base_from_marker, double height_m) {
   const double yaw_rad = base_from_marker.theta();
@@ -58,8 +58,8 @@ double mean_side_px(const SeenCorners& seen, std::size_t side) {
   return 0.5 * (side_px(seen, side) + side_px(seen, side + 2 - (side > 1 ? 4 : 0)));
 }
 
-/// Of the offsets of a side's two ends: the line through its edge points, and what blur does to
-/// all of them alike, as RefinementConfig has it.
+/// Covariance of the perpendicular offsets of a side's two ends [px^2]: of the line through its
+/// edge points, plus the common error by blur, with RefinementConfig's values.
 Eigen::Matrix2d end_covariance(double length_px, double border_px) {
   const RefinementConfig refinement;
   const double points = std::max<double>(refinement.min_points, length_px - 2.0 * border_px);
@@ -93,7 +93,7 @@ Matrix8 corner_covariance(const SeenCorners& seen, int modules_per_side) {
   return by_sides * of_sides * by_sides.transpose();
 }
 
-/// The wall that the marker hangs on, as the LiDAR sees it: exactly in its plane.
+/// The marker's wall as the LiDAR measures it: exactly in the marker's plane.
 std::vector<AnnotatedBeam> beams_on_its_wall(const Se2& base_from_marker,
                                              std::span<const Eigen::Vector2d> hits_in_base,
                                              const Eigen::Vector2d& lidar_in_base, double reach_m) {

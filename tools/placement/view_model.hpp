@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a view of a marker would say: how often it is read, and how well it is measured then.
+// Predicts a view of a marker: how often it is read, and the covariance of its measurement.
 #pragma once
 
 #include "common/robot/camera_model.hpp"
@@ -15,26 +15,25 @@
 namespace waymark::placement {
 
 struct MarkerView {
-  double read_share{0.0};  ///< of the frames
+  double read_share{0.0};  ///< share of the frames in which the detector reads it
   MarkerMeasurement measurement{};
 };
 
-/// Share of the frames in which the detector reads a marker whose modules are that large.
+/// Share of the frames in which the detector reads a marker with modules of that size [px].
 double read_share_of(double module_px);
 
-/// Corner noise as the detector describes it, through its pose of the square, then held to the wall
-/// as the estimator does it: its own functions, on measurements without errors. Markers hang as
-/// high as the camera.
+/// Propagates the detector's corner noise through pose estimation and the estimator's alignment to
+/// the wall, with the same functions as they use, at measurements without errors. Assumes markers
+/// at the height of the camera.
 class ViewModel {
  public:
-  /// @param modules_per_side  bits along a side of the dictionary's markers, plus two of the
-  /// border.
+  /// @param modules_per_side  bits along a side of a marker plus two modules of border.
   ViewModel(const SlamConfig& config, int modules_per_side);
 
-  /// @param hits_in_base  ends of the LiDAR's beams.
-  /// @param speed_mps     of the robot, between frame and scan.
-  /// @return nothing where the marker is not wholly in the image, faces away, is too small, or too
-  ///         uncertain to be used.
+  /// @param hits_in_base  ends of the LiDAR's beams, base frame.
+  /// @param speed_mps     speed of the robot between frame and scan.
+  /// @return nothing if the marker is not completely in the image, faces away, is too small, or is
+  ///         too uncertain to be used.
   std::optional<MarkerView> view(const Se2& base_from_marker,
                                  std::span<const Eigen::Vector2d> hits_in_base,
                                  double speed_mps) const;
@@ -51,7 +50,7 @@ class ViewModel {
   int modules_per_side_;
   double corner_sigma_;
   double max_sigma_m_;
-  double reach_m_;  ///< beyond, a marker square on is too small to be read
+  double reach_m_;  ///< beyond it, even a marker seen frontally is too small to be read
 };
 
 }  // namespace waymark::placement

@@ -11,10 +11,11 @@ namespace waymark::placement {
 namespace {
 
 constexpr int kBeams = 180;
-const double kSameWall = std::cos(radians(10.0));  // of normals
-constexpr double kFreeBefore_m = 0.15;             // of the wall's line
+const double kSameWall = std::cos(radians(10.0));  // least cosine between normals of one wall
+constexpr double kFreeBefore_m = 0.15;             // free space needed before the wall's line
 
-/// Occupied within a cell of the line, and free before it, as far as a plate is wide.
+/// Whether over the width of a plate there are occupied cells within one cell of the line, and free
+/// ones before it.
 bool is_bare_and_straight(const OccupiedWalls& walls, const Eigen::Vector2d& place,
                           const Eigen::Vector2d& normal, double plate_m) {
   const double cell_m = walls.image().resolution_m;

@@ -19,7 +19,7 @@ constexpr std::array kDataChannels{
     channels::kSlamChanges.name,  channels::kSlamCommand.name,    channels::kSlamReply.name,
     channels::kSlamFindings.name, channels::kMapGraph.name};
 
-/// @throws SetupError when there is a recording of that name, or what is left of one.
+/// @throws SetupError if the log, or its partial file of a recording that crashed or runs, exists.
 void protect_recordings(const std::filesystem::path& log) {
   if (std::filesystem::is_regular_file(log)) {
     throw SetupError{log.string() +

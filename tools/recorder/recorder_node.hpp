@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes all data channels to an LCM log, in the order in which the others process them. It
-// acknowledges ticks like the others, so a lockstep run is recorded without loss and with the same
-// bytes every time.
+// Writes all data channels to an LCM log, in the order in which the other programs process the
+// messages. It acknowledges ticks like them, so a lockstep run is recorded without loss and with
+// the same bytes every time.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -39,7 +39,7 @@ class RecorderNode final : public Node {
                                          "acknowledgements are not data.",
                                          false};
 
-  /// @throws SetupError when the log, or a part of it, is there already or cannot be created.
+  /// @throws SetupError if the log or its `.part` file exists, or cannot be created.
   RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox& outbox);
 
   void finish() override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// main() of waymark-recorder, compiled with the node: main.cpp needs none of its headers.
+// main() of waymark-recorder; its own file, so that main.cpp needs none of the node's headers.
 #pragma once
 
 namespace waymark {
