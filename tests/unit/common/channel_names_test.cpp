@@ -36,7 +36,7 @@ std::string error_of(const ConfigSources& sources) {
   return "no error";
 }
 
-TEST(ChannelNames, AreOursUnlessConfigured) {
+TEST(ChannelNames, AreTheDefaultsUnlessConfigured) {
   const ChannelNames names = load({}).channels;
   EXPECT_EQ(names.on_network("ODOMETRY"), "ODOMETRY");
   EXPECT_EQ(names.on_network("NO_CHANNEL_OF_OURS"), "NO_CHANNEL_OF_OURS");

@@ -54,7 +54,7 @@ std::filesystem::path file_with(const std::string& text) {
   return path;
 }
 
-TEST(Config, DefaultsStandWhenThereIsNoSource) {
+TEST(Config, DefaultsAreUsedWithoutASource) {
   EXPECT_EQ(load_config<RobotOnly>({}).robot.lidar.num_beams, 360);
 }
 

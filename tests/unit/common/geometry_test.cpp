@@ -89,7 +89,7 @@ TEST(Random, HasTheRightMoments) {
   EXPECT_NEAR(uniform_sum / kDraws, 0.5, three_sigma * std::sqrt(1.0 / 12.0));
 }
 
-TEST(Se2, PosesOnArcsAboutOnePointKeepWhatLiesBetweenThem) {
+TEST(Se2, PosesOnArcsAboutOnePointKeepTheirRelativePose) {
   const double turn_rad = 0.7;
   const Se2 turn{0.0, 0.0, turn_rad};
   for (const Se2& pose : {Se2{3.0, -1.0, 0.4}, Se2{-2.0, 5.0, 2.9}}) {

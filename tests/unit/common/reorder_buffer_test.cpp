@@ -85,7 +85,7 @@ TEST(ReorderBuffer, AClockJumpOfOneSenderDoesNotBlockTheOthers) {
   EXPECT_EQ(buffer.add(at(2000), counters).size(), 1U);
 }
 
-TEST(ReorderBuffer, AStampThatIsAheadCostsItsOwnMessageOnly) {
+TEST(ReorderBuffer, AStampInTheFutureAffectsItsOwnMessageOnly) {
   for (const std::int64_t ahead_us : {kSecond_us, 3 * kSecond_us, 100 * kSecond_us}) {
     const Streamed streamed{{{50, ahead_us}, {90, ahead_us}, {91, ahead_us / 2}, {150, ahead_us}}};
     EXPECT_EQ(streamed.released.at("A"), 196) << ahead_us;

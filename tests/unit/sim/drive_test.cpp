@@ -140,14 +140,14 @@ TEST(CommandFollower, ACommandActsAFixedTimeAfterItsStamp) {
   EXPECT_GT(follower.next(timestamp_from_us(600'000)).forward_mps, 0.0);
 }
 
-TEST(CommandFollower, LateCommandsAreReportedAndObeyed) {
+TEST(CommandFollower, LateCommandsAreReportedAndFollowed) {
   CommandFollower follower{{}, Duration{500'000}, kPeriod_s};
   follower.next(timestamp_from_us(2'000'000));
   EXPECT_EQ(follower.receive(timestamp_from_us(1'000'000), {0.2, 0.0}), CommandOutcome::kLate);
   EXPECT_GT(follower.next(timestamp_from_us(2'010'000)).forward_mps, 0.0);
 }
 
-TEST(CommandFollower, ACommandFromBeforeTheOneObeyedIsIgnored) {
+TEST(CommandFollower, ACommandOlderThanTheActiveOneIsIgnored) {
   CommandFollower follower{{}, Duration{500'000}, kPeriod_s};
   follower.receive(timestamp_from_us(1'000'000), {0.0, 0.0});
   follower.next(timestamp_from_us(1'500'000));
@@ -156,7 +156,7 @@ TEST(CommandFollower, ACommandFromBeforeTheOneObeyedIsIgnored) {
   EXPECT_EQ(follower.next(timestamp_from_us(1'510'000)).forward_mps, 0.0);
 }
 
-TEST(CommandFollower, AFloodOfCommandsForLaterStaysBounded) {
+TEST(CommandFollower, TheQueueOfCommandsIsBounded) {
   CommandFollower follower{{}, Duration{500'000}, kPeriod_s};
   int num_refused = 0;
   for (int i = 0; i < 100'000; ++i) {

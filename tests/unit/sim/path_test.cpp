@@ -34,14 +34,14 @@ TEST(Path, TurningBackStaysACorner) {
   EXPECT_FALSE(path[0].is_smooth_end);
 }
 
-TEST(Path, ArcsShrinkToTheRoomThereIs) {
+TEST(Path, ArcsShrinkToTheAvailableSpace) {
   const auto path = path_through({{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}, 5.0);
   for (const PathPiece& piece : path)
     EXPECT_GE(piece.length_m, -1e-12);
   EXPECT_NEAR(path.back().world_from(path.back().length_m).x(), 0.0, 1e-12);
 }
 
-TEST(Path, LocateUndoesWorldFrom) {
+TEST(Path, LocateIsTheInverseOfWorldFrom) {
   Random random{1};
   for (int i = 0; i < 200; ++i) {
     const double curvature = i % 3 == 0 ? 0.0 : random.uniform(-1.0, 1.0);

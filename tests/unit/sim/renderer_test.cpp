@@ -110,7 +110,7 @@ TEST(Renderer, BlankPlatesHaveNoIds) {
   EXPECT_TRUE(detect(scene.renderer.render(looking_at(scene.world.markers[0], 1.0))).ids.empty());
 }
 
-TEST(Renderer, PixelsLieWhereThePinholePutsThem) {
+TEST(Renderer, PixelsFollowThePinholeModel) {
   // An off-centre principal point, and markers away from the middle. Corners found one by one are
   // biased towards the marker's centre, their mean is not.
   const Pinhole pinhole{640, 480, 500.0, 300.0, 260.0};
@@ -227,7 +227,7 @@ TEST(Renderer, FloorWallsAndEndLookDifferent) {
   }
 }
 
-TEST(Renderer, TheRobotIsNotInItsOwnPicture) {
+TEST(Renderer, TheRobotIsNotInItsOwnImages) {
   Scene scene{{}, {}, PlatePrint::kMarkers};  // the robot stands at x = 1 m
   CameraConfig camera{};
   camera.x_m = 0.3;

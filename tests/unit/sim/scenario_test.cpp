@@ -99,7 +99,7 @@ TEST(Scenario, TheRouteMustKeepClearOfTheWalls) {
   EXPECT_THAT(error_of({"route.end_x_m=51"}), HasSubstr("route.end_x_m"));
 }
 
-TEST(Scenario, TheWholeWayMustBeFree) {
+TEST(Scenario, TheWholeRouteMustBeFree) {
   EXPECT_THAT(error_of({"world.boxes=[{x_m=20.0, y_m=0.3}]"}), HasSubstr("from a wall or box"));
   EXPECT_THAT(error_of({"world.layout=L", "kidnaps=[{at_m=3.0, to_x_m=20.0, to_y_m=10.0}]"}),
               HasSubstr("outside of the walls"));

@@ -71,7 +71,7 @@ TEST(SimNode, RollingScansAreMbotMessages) {
   EXPECT_EQ(scans, 1);
 }
 
-TEST(SimNode, WritesTheTruthAndARobotFileWithoutIt) {
+TEST(SimNode, WritesTruthFilesAndARobotFileWithoutTruth) {
   SimConfig config = short_run();
   config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_test";
   std::filesystem::remove_all(config.out_dir);
@@ -112,7 +112,7 @@ TEST(SimNode, AFailedStartLeavesExistingFiles) {
   std::filesystem::remove_all(config.out_dir);
 }
 
-TEST(SimNode, MovedMarkersAreWrittenDown) {
+TEST(SimNode, MovesOfMarkersAreWritten) {
   SimConfig config = short_run();
   config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_moves_test";
   std::filesystem::remove_all(config.out_dir);
@@ -159,7 +159,7 @@ TEST(SimNode, RunIdsDifferBetweenScenarios) {
   EXPECT_NE(run_id, (SimNode{other, inbox}.run_id()));
 }
 
-TEST(SimNode, ObeysDriveCommandsWhenTheScenarioSaysSo) {
+TEST(SimNode, FollowsDriveCommandsIfTheScenarioSaysSo) {
   SimConfig config = short_run();
   config.route.source = DriveSource::kCommand;
   config.route.duration_s = 2.0;

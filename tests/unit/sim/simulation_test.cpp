@@ -104,7 +104,7 @@ TEST(Simulation, ARollingScanTakesItsBeamsOneAfterTheOther) {
   EXPECT_LT(scan.time, second.end);
 }
 
-TEST(Simulation, ObeysCommandsAFixedTimeLater) {
+TEST(Simulation, CommandsActAFixedTimeLater) {
   Scenario scenario = small_scenario();
   scenario.route.source = DriveSource::kCommand;
   scenario.route.duration_s = 2.0;

@@ -13,7 +13,7 @@ TEST(Pacer, StartsAtOnce) {
   EXPECT_TRUE(Pacer{0.05}.may_start(kStart));
 }
 
-TEST(Pacer, ATurnBuysAPauseInProportionToItsCost) {
+TEST(Pacer, ThePauseIsProportionalToTheTimeWorked) {
   Pacer pacer{0.25};
   pacer.has_worked(kStart, kStart + 2s);
   EXPECT_FALSE(pacer.may_start(kStart + 7999ms));
@@ -39,7 +39,7 @@ TEST(Pacer, TakesNoMoreThanItsShareHoweverOftenItIsAsked) {
   EXPECT_GE(worked, 0.03 * (now - kStart));
 }
 
-TEST(Pacer, AWholeShareMeansNoPause) {
+TEST(Pacer, AShareOfOneMeansNoPause) {
   Pacer pacer{1.0};
   pacer.has_worked(kStart, kStart + 2s);
   EXPECT_TRUE(pacer.may_start(kStart + 2s));

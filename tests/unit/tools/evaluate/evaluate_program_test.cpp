@@ -17,7 +17,7 @@ int exit_code(const std::string& arguments) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-TEST(EvaluateProgram, HelpAndVersionAreFine) {
+TEST(EvaluateProgram, HelpAndVersionGive0) {
   EXPECT_EQ(exit_code("--help"), 0);
   EXPECT_EQ(exit_code("run --help"), 0);
   EXPECT_EQ(exit_code("--version"), 0);
@@ -38,7 +38,7 @@ TEST(EvaluateProgram, PlacementNamesTheProgramThatWasCalled) {
   }
 }
 
-TEST(EvaluateProgram, WrongUsageAndMissingFilesEndWithCodeTwo) {
+TEST(EvaluateProgram, WrongUsageAndMissingFilesGive2) {
   EXPECT_EQ(exit_code(""), 2);
   EXPECT_EQ(exit_code("measure"), 2);
   EXPECT_EQ(exit_code("length"), 2);

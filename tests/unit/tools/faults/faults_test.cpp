@@ -150,7 +150,7 @@ TEST(Faults, IdsCanBeMadeEqual) {
       "id,instance,x_m\n2,0,1.5\n2,1,3.5\n1,0,4.5\n");
 }
 
-TEST(Faults, DarknessGivesEmptyFramesAndADeadCameraNone) {
+TEST(Faults, DarknessGivesFramesWithoutMarkersAndADeadCameraNoFrames) {
   const Faulty dark = with({.markers_off_s = {1.0, 2.0}});
   EXPECT_EQ(dark.log.size(), drive().size());
   EXPECT_EQ(dark.frame(9).num_detections, 2);

@@ -130,7 +130,7 @@ TEST(PdfPages, EveryPageSizeReadsBackAtTrueSize) {
   }
 }
 
-TEST(PdfPages, TheRulerHasAHundredMillimetres) {
+TEST(PdfPages, TheRulerIs100MillimetresLong) {
   if (!has_poppler())
     GTEST_SKIP() << "no pdftoppm here; deploy/install-deps.sh --tests installs it";
   constexpr double kPxPerMm = 10.0;

@@ -217,7 +217,7 @@ TEST(Placement, AnUnobservedScaleIsNamedAsTheLimit) {
   EXPECT_THAT(placement_text(input, placement), testing::HasSubstr("cannot be met by markers"));
 }
 
-TEST(Placement, IdsThatAreInUseAreNotGivenAway) {
+TEST(Placement, IdsInUseAreNotReused) {
   PlacementInput input = drive(16.0);
   input.config.robot.markers.ids = {7, 3, 5};
   input.markers = {on_left_wall(3, 4.0)};

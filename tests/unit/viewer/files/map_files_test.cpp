@@ -41,12 +41,12 @@ TEST(Pgm, ShowsTheMapAsDrawn) {
   EXPECT_EQ(picture_of(pgm_text(drawn_map(picture), {})), picture);
 }
 
-TEST(Pgm, IsExactlyThis) {
+TEST(Pgm, EqualsAReferenceByteForByte) {
   const std::string pixels{'\0', '\xFE', '\xCD'};
   EXPECT_EQ(pgm_text(drawn_map({"#. "}), {}), "P5\n3 1\n255\n" + pixels);
 }
 
-TEST(Pgm, ThresholdsDecide) {
+TEST(Pgm, CellsAreClassifiedByTheThresholds) {
   GridMap map = drawn_map({"....."});
   const std::array<schar, 5> percents{64, 65, 19, 20, -1};
   for (int i = 0; i < 5; ++i)

@@ -24,7 +24,7 @@ TEST(TumText, HasOneLinePerPoseWithExactMicroseconds) {
             "1700000000.000001 1.250000000 -0.500000000 0 0 0 0.707106781187 0.707106781187\n");
 }
 
-TEST(TumText, TimedPosesLookTheSame) {
+TEST(TumText, TimedPosesHaveTheSameFormat) {
   const std::vector<TimedPose> path{{timestamp_from_us(1'500'000), {0, 0, 0}}};
   EXPECT_EQ(tum_text(path),
             "1.500000 0.000000000 0.000000000 0 0 0 0.000000000000 1.000000000000\n");

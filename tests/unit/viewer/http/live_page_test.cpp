@@ -68,7 +68,7 @@ TEST_F(HealthText, NamesWhatObservesTheWeakAxis) {
   EXPECT_THAT(health_reason(view_), HasSubstr("how the robot is turned"));
 }
 
-TEST_F(HealthText, SaysSinceWhenTheCameraIsSilentOrNoMarkerHasCome) {
+TEST_F(HealthText, ShowsHowLongTheCameraOrMarkersHaveBeenMissing) {
   view_.last_marker = at_s(88.0);
   EXPECT_THAT(health_reason(view_), EndsWith(" No marker for 12 s."));
   view_.last_camera = at_s(91.0);
@@ -77,7 +77,7 @@ TEST_F(HealthText, SaysSinceWhenTheCameraIsSilentOrNoMarkerHasCome) {
   EXPECT_THAT(health_reason(view_), EndsWith(" No marker so far."));
 }
 
-TEST_F(HealthText, LostIsSaidPlainly) {
+TEST_F(HealthText, LostIsShown) {
   view_.estimate->health = Health::kLost;
   EXPECT_THAT(health_reason(view_), HasSubstr("does not fit the map"));
   view_.estimate.reset();

@@ -42,7 +42,7 @@ TEST(Expectation, NothingIsExpectedByDefault) {
   EXPECT_TRUE(check_expectations({}, result_of("waymark")).empty());
 }
 
-TEST(Expectation, EachFigureHasItsSideOfTheLimit) {
+TEST(Expectation, EachMetricHasAnUpperOrALowerLimit) {
   const EstimatorResult result = result_of("waymark");
   EXPECT_TRUE(hits({.length_error_percent = 0.41}, result));
   EXPECT_FALSE(hits({.length_error_percent = 0.39}, result));

@@ -114,7 +114,7 @@ TEST(Nees, IsTheSquaredErrorInStandardDeviations) {
   EXPECT_EQ(result.share_in_band, 0.0);
 }
 
-TEST(Nees, IsThreeForRightCovariances) {
+TEST(Nees, IsThreeOnAverageForConsistentCovariances) {
   Random random{4};
   Eigen::Matrix3d covariance;
   covariance << 0.04, 0.01, 0.002, 0.01, 0.09, -0.003, 0.002, -0.003, 0.001;
