@@ -135,7 +135,7 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
 
 /// Adds the newest keyframe at its predicted pose, with odometry and scan factor.
 WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
-    const Observation& observation, Look& look) {
+    const Observation& observation, std::span<const MarkerMeasurement> measurements, Look& look) {
   if (look.scan) search_widely(observation, look);
   const auto& scan = look.scan;
   KeyframeScan used;
@@ -147,7 +147,10 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   const bool is_moved = used.is_used && unmeasured_motion_.is_standing();
   const std::size_t keyframe = graph_.add_keyframe(
       is_moved ? scan->map_from_submap * scan->match.map_from_base : look.expected.map_from_base);
-  add_odometry_factor(keyframe, used.shows_all_axes || sees_known_markers(observation));
+  // A scan that observes all axes shows slips, however large its sigma along the path: odometry
+  // that loses weight beside such scans makes long paths worse.
+  hidden_slips_ = used.shows_all_axes ? 0.0 : hidden_slips(measurements);
+  add_odometry_factor(keyframe);
   if (scan && scan->match.num_mapped >= config_.scan.min_inliers)
     inlier_share_ = scan->match.inlier_share;
   if (scan) note_fit(scan->match);
@@ -196,14 +199,14 @@ void WaymarkEstimator::slide_window() {
 void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) {
   inlier_share_ = 1.0;
   KeyframeScan scan;
+  const std::vector<MarkerMeasurement> measurements = measured(observation);
   if (graph_.state().keyframes.empty())
     add_first_keyframe();
   else if (given_pose_)
     put_elsewhere(*std::exchange(given_pose_, std::nullopt));
   else
-    scan = add_predicted_keyframe(observation, look);
+    scan = add_predicted_keyframe(observation, measurements, look);
   graph_.optimise();
-  const std::vector<MarkerMeasurement> measurements = measured(observation);
   check_pose(measurements);
   const bool is_suspicious = verdict_ == RelocalisationMonitor::Verdict::kSuspicious;
   markers_known_ = false;

@@ -175,7 +175,8 @@ class WaymarkEstimator final : public Estimator {
   std::optional<Observation> with_right_scale(const Observation& observation, Look& look);
   void note_fit(const ScanMatch& match);
   void follow_odometry(const Observation& observation);
-  void add_odometry_factor(std::size_t keyframe, bool is_observed);
+  double hidden_slips(std::span<const MarkerMeasurement> measurements) const;
+  void add_odometry_factor(std::size_t keyframe);
   void compare_with_odometry();
   void spread_late_motion(const Observation& observation);
   void weigh_past_anew();
@@ -189,7 +190,8 @@ class WaymarkEstimator final : public Estimator {
   void search_widely(const Observation& observation, Look& look) const;
   Look look_from_expected(const Observation& observation) const;
   void add_keyframe(const Observation& observation, Look& look);
-  KeyframeScan add_predicted_keyframe(const Observation& observation, Look& look);
+  KeyframeScan add_predicted_keyframe(const Observation& observation,
+                                      std::span<const MarkerMeasurement> measurements, Look& look);
   void check_pose(std::span<const MarkerMeasurement> measurements);
   void add_drift(bool has_scan_factor);
   void slide_window();
@@ -248,7 +250,7 @@ class WaymarkEstimator final : public Estimator {
   OdometryCheck odometry_check_{};
   Se2 newest_from_last_scan_{};  ///< pose of the last scan in the newest keyframe's frame
   UnmeasuredMotion unmeasured_motion_{};
-  bool is_observed_{true};  ///< markers or walls observed the motion to the newest keyframe
+  double hidden_slips_{0.0};  ///< of the motion to the newest keyframe
   double since_insertion_m_{0.0};
   double unobserved_m_{0.0};  ///< driven since markers or walls observed the motion
   DrawnMap map_;

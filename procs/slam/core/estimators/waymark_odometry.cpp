@@ -86,19 +86,31 @@ bool WaymarkEstimator::has_moved_silently(const Se2& map_from_base) const {
 }
 
 WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
-  CorrectedMotion moved =
-      corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise());
-  if (!is_observed_) moved = with_slips(moved, motion_.distance_m, graph_.noise().scale);
+  const CorrectedMotion moved = with_slips(
+      corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise()),
+      motion_.distance_m, hidden_slips_, graph_.noise().scale);
   const Eigen::Matrix3d covariance =
       moved.covariance + unmeasured_covariance(unmeasured_motion_.unmeasured_m());
   const Se2& from = graph_.state().keyframes[moved_from_];
   return {from * moved.start_from_end, in_axes(from.rotation(), covariance)};
 }
 
-void WaymarkEstimator::add_odometry_factor(std::size_t keyframe, bool is_observed) {
-  is_observed_ = is_observed;
+/// Share of the slips since the last keyframe that known markers do not show.
+double WaymarkEstimator::hidden_slips(std::span<const MarkerMeasurement> measurements) const {
+  const Se2& step = motion_.start_from_end;
+  if (step.translation().norm() == 0.0) return 0.0;
+  const Eigen::Vector2d along = step.rotation().transpose() * step.translation().normalized();
+  double information = 0.0;  // [1/m^2]
+  for (const MarkerMeasurement& measured : measurements) {
+    if (!book_.knows(measured.id)) continue;
+    information += 1.0 / along.dot(measured.covariance.topLeftCorner<2, 2>() * along);
+  }
+  return hidden_share(information, graph_.noise().scale);
+}
+
+void WaymarkEstimator::add_odometry_factor(std::size_t keyframe) {
   OdometryFactor odometry;
-  odometry.is_unobserved = !is_observed;
+  odometry.hidden_slips = hidden_slips_;
   odometry.from = moved_from_;
   odometry.to = keyframe;
   odometry.motion = motion_;

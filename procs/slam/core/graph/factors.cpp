@@ -142,22 +142,27 @@ Eigen::Matrix3d unmeasured_covariance(double sigma_m) {
   return (sigma_m * Eigen::Vector3d{1.0, kSideways, kTurn_rad_per_m}).cwiseAbs2().asDiagonal();
 }
 
-CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const OdometryScale& scale) {
+double hidden_share(double information, const OdometryScale& scale) {
+  return 1.0 / (1.0 + scale.slip_m2 * information);
+}
+
+CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, double share,
+                           const OdometryScale& scale) {
   const Eigen::Vector2d step = moved.start_from_end.translation();
   if (step.norm() == 0.0) return moved;
   const Eigen::Vector2d along = step.normalized();
-  moved.start_from_end = {Eigen::Vector2d{step + scale.slip_per_m * distance_m * along},
+  moved.start_from_end = {Eigen::Vector2d{step + share * scale.slip_per_m * distance_m * along},
                           moved.start_from_end.theta()};
   moved.covariance.topLeftCorner<2, 2>() +=
-      scale.slip_m2_per_m * distance_m * along * along.transpose();
+      share * scale.slip_m2_per_m * distance_m * along * along.transpose();
   return moved;
 }
 
 CorrectedMotion OdometryFactor::moved(const State& state, const OdometryNoise& noise,
                                       const OdometryScale& scale) const {
-  const CorrectedMotion moved =
-      corrected_motion(motion, odometry_part(state.calibration), scaled(noise, scale));
-  return is_unobserved ? with_slips(moved, motion.distance_m, scale) : moved;
+  return with_slips(
+      corrected_motion(motion, odometry_part(state.calibration), scaled(noise, scale)),
+      motion.distance_m, hidden_slips, scale);
 }
 
 void OdometryFactor::choose_kind(const State& state, const OdometryNoise& noise,

@@ -30,19 +30,27 @@ struct LinearFactor {
 };
 
 /// Noise of the odometry as learnt: factors on the configured standard deviations, and what slips
-/// add where neither markers nor walls observe the motion along the path.
+/// add along the path where neither markers nor walls show them.
 struct OdometryScale {
   double along{1.0};
   double turn{1.0};
   double slip_per_m{0.0};     ///< mean; negative where wheels spin
   double slip_m2_per_m{0.0};  ///< variance along the path
+  double slip_m2{0.0};        ///< mean square of one slip
 };
 
 /// The noise with its standard deviations multiplied by the scale.
 OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
 
-/// Adds mean and variance of slips to a motion that only the wheels have measured.
-CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, const OdometryScale& scale);
+/// Share of the slips that stay hidden where markers observe the motion along the path with
+/// `information` [1/m^2]: all without markers, hardly any where their standard deviation is small
+/// beside a slip. Slips that show are explained by MotionKind.
+double hidden_share(double information, const OdometryScale& scale);
+
+/// Adds mean and variance of slips to a measured motion.
+/// @param share  of the slips that are hidden, 0..1.
+CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, double share,
+                           const OdometryScale& scale);
 
 /// Components of the odometry's noise, a mixture of normal distributions of which each factor uses
 /// the likeliest one (Olson and Agarwal 2013, "Inference on networks of mixtures").
@@ -77,10 +85,9 @@ struct OdometryFactor {
   std::size_t from{0};
   std::size_t to{0};
   Motion motion{};
-  bool is_cut{false};         ///< the robot was carried: the factor has no information
-  bool is_unobserved{false};  ///< neither markers nor walls observed the motion: wheels may have
-                              ///< slipped
-  double unmeasured_m{0.0};   ///< distance that odometry may have missed (one sigma)
+  bool is_cut{false};        ///< the robot was carried: the factor has no information
+  double hidden_slips{0.0};  ///< hidden_share()
+  double unmeasured_m{0.0};  ///< distance that odometry may have missed (one sigma)
   MotionKind kind{MotionKind::kRolling};
 
   /// @param noise  as configured.

@@ -63,6 +63,7 @@ void OdometryNoiseLearner::observe_slip(const OdometryInnovation& innovation) {
   const double keeps = std::exp(-innovation.distance_m / kForgotten_m);
   slips_m_ *= keeps;
   slips_m2_ *= keeps;
+  slips_ *= keeps;
   observed_m_ *= keeps;
   if (innovation.other_variance < squared(kSlipShows_m)) observed_m_ += innovation.distance_m;
   const double size_m = std::abs(innovation.value);
@@ -71,7 +72,10 @@ void OdometryNoiseLearner::observe_slip(const OdometryInnovation& innovation) {
     return;
   }
   // It takes some observations until the pose has followed a slip: they count once, by the largest.
-  if (slip_m_ == 0.0) ++num_slips_;
+  if (slip_m_ == 0.0) {
+    ++num_slips_;
+    slips_ += 1.0;
+  }
   if (size_m <= std::abs(slip_m_)) return;
   slips_m_ += innovation.value - slip_m_;
   slips_m2_ += squared(size_m) - squared(slip_m_);
@@ -112,6 +116,7 @@ OdometryScale OdometryNoiseLearner::scale() const {
   }
   OdometryScale scale{std::sqrt(along2 / sum), std::sqrt(turn2 / sum)};
   scale.slip_m2_per_m = slip_m2_per_m();
+  scale.slip_m2 = (slips_m2_ + kPriorSlips_m2) / (slips_ + 1.0);
   scale.slip_per_m = slips_m_ / (observed_m_ + kPriorDistance_m);
   return scale;
 }

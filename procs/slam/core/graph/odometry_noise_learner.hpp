@@ -74,6 +74,7 @@ class OdometryNoiseLearner {
   Axis along_{false};
   Axis turn_{true};
   // Sums that fade with the distance:
+  double slips_{0.0};
   double slips_m_{0.0};
   double slips_m2_{0.0};    ///< of squares
   double observed_m_{0.0};  ///< driven where a slip would have been observed

@@ -62,10 +62,33 @@ TEST(OdometryNoiseLearner, SlipsAddTheirSecondMomentPerMetre) {
   EXPECT_GT(learner.scale().slip_m2_per_m, 0.7 * 0.01);
   EXPECT_LT(learner.scale().slip_m2_per_m, 2.0 * 0.7 * 0.01);
   EXPECT_LT(learner.scale().slip_per_m, -0.7 * 0.05);
+  EXPECT_NEAR(learner.scale().slip_m2, 0.01, 0.002);
 }
 
 TEST(OdometryNoiseLearner, WithoutSlipsTheirVarianceIsSmall) {
   EXPECT_LT(learner_after(0.0).scale().slip_m2_per_m, 2e-5);
+}
+
+/// Variance along the path of a factor over 1 m, if all else observes it to `sigma_m`.
+double variance_along(double sigma_m) {
+  OdometryScale scale = learner_after(0.7).scale();
+  scale.along = 1.0;
+  OdometryFactor factor{0, 1, Motion::between({}, {1.0, 0.0, 0.0})};
+  factor.hidden_slips = hidden_share(1.0 / squared(sigma_m), scale);
+  State state;
+  state.keyframes = {{}, {1.0, 0.0, 0.0}};
+  const LinearFactor linear = factor.linearise(state, {}, scale);
+  const Eigen::Matrix3d& root = linear.blocks[1].jacobian;
+  return (root.transpose() * root).inverse()(0, 0);
+}
+
+TEST(OdometryNoiseLearner, SlipsCountAsFarAsOtherMeasurementsDoNotShowThem) {
+  const double rolling_m2 = variance_along(1e-4);
+  const double hidden_m2 = variance_along(100.0) - rolling_m2;
+  EXPECT_NEAR(rolling_m2, 9e-6, 4e-6);
+  EXPECT_GT(hidden_m2, 0.7 * 0.01);
+  EXPECT_NEAR(variance_along(0.1) - rolling_m2, 0.5 * hidden_m2,
+              0.05 * hidden_m2);  // slips of 0.1 m
 }
 
 }  // namespace
