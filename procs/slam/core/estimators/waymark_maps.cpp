@@ -75,10 +75,12 @@ void WaymarkEstimator::add_map_factor(std::size_t keyframe, const ScanMatch& mat
   graph_.add(PosePrior{keyframe, match.map_from_base, root_of(match.observed.information)});
 }
 
-/// A surveyed marker with enough sightings becomes a prior, and the whole graph is solved.
+/// A surveyed marker with enough sightings becomes a prior. The newest poses follow at once, the
+/// others with the next solution of the whole graph.
 void WaymarkEstimator::use_survey() {
   if (survey_.is_empty() || !survey_.match(graph_, book_)) return;
-  if (const auto survey_from_map = survey_.new_frame(graph_)) {
+  const auto survey_from_map = survey_.new_frame(graph_);
+  if (survey_from_map) {
     graph_.move_to_frame(*survey_from_map);
     drift_.move_to_frame(*survey_from_map);
     unmatched_drift_.move_to_frame(*survey_from_map);
@@ -88,8 +90,9 @@ void WaymarkEstimator::use_survey() {
     forget_recent_motion();
   }
   if (!survey_.has_frame()) return;
-  survey_.apply(graph_, kSurveySteps);
+  if (survey_.apply(graph_) || survey_from_map) graph_.optimise_all(kSurveySteps);
   graph_.optimise();
+  solve_schedule_.begin(graph_.state().keyframes.size());
   map_.begin_to_follow();
   note_reason(EstimateReason::kSurvey);
 }

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace waymark {
@@ -18,6 +19,14 @@ struct GraphNoise {
   OdometryNoise odometry{};
   OdometryScale scale{};
   double marker_gate{16.3};  ///< chi^2, 3 degrees of freedom
+};
+
+/// Normal equations of some landmarks, from which everything else has been eliminated: with a step
+/// in the landmarks' own frames, the cost is c + 2 g'step + step'H step.
+struct LandmarkMarginal {
+  std::vector<Se2> map_from_marker{};  ///< at which it is linearised
+  Eigen::MatrixXd h{};
+  Eigen::VectorXd g{};
 };
 
 /// A keyframe that was taken out of the graph: it moves rigidly with another one, its carrier.
@@ -95,6 +104,10 @@ class Graph {
 
   /// step_all() until it has converged or has no solution, at most so many times.
   void optimise_all(int steps);
+
+  /// What all measurements together know of these landmarks, none of which is fixed, without the
+  /// priors on them. None: the equations have no solution. Costs about as much as step_all().
+  std::optional<LandmarkMarginal> marginal_of(const std::vector<std::size_t>& landmarks) const;
 
   /// Marginalises the window's oldest keyframe, and landmarks that no keyframe of the window has
   /// measured and that are more than `far_m` from the newest one.

@@ -18,15 +18,19 @@ class SolveSchedule {
     loops_matter_ |= contradicts_pose;
   }
 
+  /// A solution is due at once: the graph has got information that moves all of it.
+  void begin(std::size_t num_keyframes) {
+    steps_left_ = kSteps;
+    solved_keyframes_ = num_keyframes;
+    has_new_loops_ = false;
+    loops_matter_ = false;
+  }
+
   /// At a new keyframe. @return whether a step is due.
   bool is_step_due(std::size_t num_keyframes) {
     const std::size_t share = num_keyframes / (loops_matter_ ? kShare : kRoutineShare);
-    if (has_new_loops_ && num_since_solution(num_keyframes) >= std::max(kEvery, share)) {
-      steps_left_ = kSteps;
-      solved_keyframes_ = num_keyframes;
-      has_new_loops_ = false;
-      loops_matter_ = false;
-    }
+    if (has_new_loops_ && num_since_solution(num_keyframes) >= std::max(kEvery, share))
+      begin(num_keyframes);
     return steps_left_ > 0;
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/survey.hpp"
 
+#include "slam/core/graph/survey_model.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,10 +14,11 @@ constexpr double kWrong = 5.0;           // sigmas
 constexpr double kLeastApart_m = 1.0;    // between two markers that define a frame's rotation
 constexpr double kClearlyBetter = 25.0;  // chi^2 that switching the wrong prior off has to save
 constexpr int kConfirmed = 3;            // sightings of a landmark
-constexpr double kContradiction = 50.0;  // chi^2 that correct priors add at most
-constexpr double kGauge = 1e3;           // 1 / sigma [m, rad] of the prior that fixes the gauge
-constexpr int kMostLeftOut = 5;          // priors to switch off
-constexpr std::size_t kMostTried = 8;    // entries, the most suspicious ones
+// chi^2 that correct priors add at most, beyond its mean: at least, and in standard deviations.
+constexpr double kContradiction = 50.0;
+constexpr double kContradictionSigmas = 5.0;
+constexpr int kMostLeftOut = 5;        // priors to switch off
+constexpr std::size_t kMostTried = 8;  // entries, the most suspicious ones
 
 LandmarkPrior prior_of(const SurveyedMarker& marker, std::size_t landmark) {
   LandmarkPrior prior;
@@ -25,6 +28,69 @@ LandmarkPrior prior_of(const SurveyedMarker& marker, std::size_t landmark) {
   if (!marker.has_yaw) information_root.z() = 0.0;
   prior.root_information = information_root.asDiagonal();
   return prior;
+}
+
+/// Whether the other priors determine the frame's position and rotation.
+bool hold_frame(const std::vector<LandmarkPrior>& priors, std::size_t without) {
+  int num_places = 0;
+  for (std::size_t i = 0; i < priors.size(); ++i) {
+    if (i == without || priors[i].is_off) continue;
+    if (priors[i].root_information(2, 2) > 0.0) return true;
+    ++num_places;
+  }
+  return num_places >= 2;
+}
+
+/// chi^2 beyond its mean, the number of its degrees of freedom, where it is more than correct
+/// priors add; else 0.
+double contradiction_of(double chi2, const std::vector<LandmarkPrior>& priors) {
+  int freedom = -3;  // of the frame
+  for (const LandmarkPrior& prior : priors)
+    if (!prior.is_off) freedom += prior.root_information(2, 2) > 0.0 ? 3 : 2;
+  const double excess = chi2 - freedom;
+  const double usual = std::max(kContradiction, kContradictionSigmas * std::sqrt(2.0 * freedom));
+  return excess > usual ? excess : 0.0;
+}
+
+/// Priors that may be switched off, those first that save most.
+std::vector<std::size_t> most_suspicious(const std::vector<LandmarkPrior>& priors,
+                                         const SurveyModel::Solution& solution) {
+  std::vector<std::pair<double, std::size_t>> savings;
+  for (std::size_t i = 0; i < priors.size(); ++i)
+    if (!priors[i].is_off && hold_frame(priors, i))  // of the last two, either may be wrong
+      savings.emplace_back(saving_without(priors[i], solution), i);
+  std::stable_sort(savings.begin(), savings.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (savings.size() > kMostTried) savings.resize(kMostTried);
+  std::vector<std::size_t> indices;
+  for (const auto& [saving, index] : savings)
+    indices.push_back(index);
+  return indices;
+}
+
+/// Switches contradicted priors off.
+/// @return the contradiction that is left.
+double switch_wrong_off(std::vector<LandmarkPrior>& priors, const SurveyModel& model) {
+  const double free = model.cost_without_priors();
+  SurveyModel::Solution solution = model.solve(priors);
+  for (int i = 0; i < kMostLeftOut && contradiction_of(solution.cost - free, priors) > 0.0; ++i) {
+    // The wrong prior is the one without which the contradiction is smallest by far.
+    std::optional<std::size_t> wrong;
+    SurveyModel::Solution best;
+    best.cost = solution.cost - kClearlyBetter;
+    for (const std::size_t candidate : most_suspicious(priors, solution)) {
+      priors[candidate].is_off = true;
+      SurveyModel::Solution without = model.solve(priors);
+      priors[candidate].is_off = false;
+      if (without.cost >= best.cost) continue;
+      best = std::move(without);
+      wrong = candidate;
+    }
+    if (!wrong) break;
+    priors[*wrong].is_off = true;
+    solution = std::move(best);
+  }
+  return contradiction_of(solution.cost - free, priors);
 }
 
 }  // namespace
@@ -87,69 +153,33 @@ std::optional<Se2> Survey::new_frame(const Graph& graph) {
   return std::nullopt;
 }
 
-void Survey::apply(Graph& graph, int solve_steps) {
+void Survey::add_priors(Graph& graph) {
   for (Entry& entry : entries_) {
     if (!entry.landmark || entry.has_prior) continue;
     graph.add(prior_of(entry.marker, *entry.landmark));
     entry.has_prior = true;
   }
-  Graph free = graph;
-  switch_all(free, false);
-  // Without priors the gauge would be free.
-  free.add(PosePrior{0, free.state().keyframes[0], kGauge * Eigen::Matrix3d::Identity()});
-  free.optimise_all(solve_steps);
-  switch_all(graph, true);  // tested again, with the new measurements
-  graph.optimise_all(solve_steps);
-  for (int i = 0; i < kMostLeftOut && graph.cost() - free.cost() > kContradiction; ++i) {
-    // The wrong prior is the one without which the contradiction is smallest by far.
-    std::optional<Graph> best;
-    double least = graph.cost() - kClearlyBetter;
-    for (const Entry* entry : most_suspicious(graph)) {
-      if (!holds_frame(graph, *entry)) continue;  // of the last two, either may be wrong
-      Graph without = graph;
-      without.switch_prior(*entry->landmark, false);
-      without.optimise_all(solve_steps);
-      if (without.cost() >= least) continue;
-      least = without.cost();
-      best = std::move(without);
-    }
-    if (!best) break;
-    graph = std::move(*best);
-  }
-  const double contradiction = graph.cost() - free.cost();
-  unresolved_sigmas_ = contradiction > kContradiction ? std::sqrt(contradiction) : 0.0;
 }
 
-bool Survey::holds_frame(const Graph& graph, const Entry& without) const {
-  int num_places = 0;
+bool Survey::apply(Graph& graph) {
+  add_priors(graph);
+  std::vector<std::size_t> landmarks;
+  std::vector<LandmarkPrior> priors;  // all on: tested again, with the new measurements
   for (const Entry& entry : entries_) {
-    if (&entry == &without || !entry.has_prior || !graph.is_prior_on(*entry.landmark)) continue;
-    if (entry.marker.has_yaw) return true;
-    ++num_places;
+    if (!entry.has_prior) continue;
+    priors.push_back(prior_of(entry.marker, landmarks.size()));
+    landmarks.push_back(*entry.landmark);
   }
-  return num_places >= 2;
-}
-
-void Survey::switch_all(Graph& graph, bool is_on) const {
-  for (const Entry& entry : entries_)
-    if (entry.has_prior) graph.switch_prior(*entry.landmark, is_on);
-}
-
-/// Entries by their own chi^2 plus that of their landmark's measurements, the largest first.
-std::vector<const Survey::Entry*> Survey::most_suspicious(const Graph& graph) const {
-  std::vector<std::pair<double, const Entry*>> costs;
-  for (const Entry& entry : entries_) {
-    if (!entry.has_prior || !graph.is_prior_on(*entry.landmark)) continue;
-    const double sigmas = sigmas_off(entry, graph);
-    costs.emplace_back(sigmas * sigmas + graph.cost_of_landmark(*entry.landmark), &entry);
+  auto marginal = graph.marginal_of(landmarks);
+  if (!marginal) return false;
+  unresolved_sigmas_ = std::sqrt(switch_wrong_off(priors, SurveyModel{std::move(*marginal)}));
+  bool has_switched = false;
+  for (std::size_t i = 0; i < priors.size(); ++i) {
+    const bool is_on = !priors[i].is_off;
+    has_switched |= graph.is_prior_on(landmarks[i]) != is_on;
+    graph.switch_prior(landmarks[i], is_on);
   }
-  std::stable_sort(costs.begin(), costs.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  if (costs.size() > kMostTried) costs.resize(kMostTried);
-  std::vector<const Entry*> entries;
-  for (const auto& [cost, entry] : costs)
-    entries.push_back(entry);
-  return entries;
+  return has_switched;
 }
 
 double Survey::sigmas_off(const Entry& entry, const Graph& graph) const {

@@ -30,8 +30,9 @@ class Survey {
   /// survey_from_map, once, when the survey first defines the frame.
   std::optional<Se2> new_frame(const Graph& graph);
 
-  /// Adds the priors of new associations, solves, and switches contradicted priors off.
-  void apply(Graph& graph, int solve_steps);
+  /// Adds the priors of new associations, and switches those off that are contradicted.
+  /// @return whether a prior was switched: then the whole graph has to be solved.
+  bool apply(Graph& graph);
 
   /// Surveyed markers whose landmarks are more than kWrong sigmas from their surveyed places, and
   /// all that contradict each other while it is undecidable which one is wrong.
@@ -44,10 +45,7 @@ class Survey {
     bool has_prior{false};  ///< in the graph
   };
 
-  /// Whether the other entries determine the frame's position and rotation.
-  bool holds_frame(const Graph& graph, const Entry& without) const;
-  void switch_all(Graph& graph, bool is_on) const;
-  std::vector<const Entry*> most_suspicious(const Graph& graph) const;
+  void add_priors(Graph& graph);
   double sigmas_off(const Entry& entry, const Graph& graph) const;
 
   std::vector<Entry> entries_{};

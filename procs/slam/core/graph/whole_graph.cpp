@@ -1,79 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Graph::step_all(): sparse Gauss-Newton over every variable.
+// Sparse Gauss-Newton over every variable, and what all of them know of some landmarks.
+#include "slam/core/graph/elimination.hpp"
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/step_share.hpp"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCholesky>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 namespace waymark {
 namespace {
 
-using SparseMatrix = Eigen::SparseMatrix<double>;
-using Triplet = Eigen::Triplet<double>;
-using Solver = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::NaturalOrdering<int>>;
-
 constexpr double kConverged = 1e-3;  // [m, rad]
 constexpr double kNoWorse = 1.0;     // by which a step may raise the cost: not significant
 constexpr double kLeastShare = 0.1;  // of a step that lowers the cost; else none is taken
-
-/// Places of the unknowns: those behind the window in an order that keeps the factorisation sparse,
-/// after them the window's as they are.
-class EliminationOrder {
- public:
-  explicit EliminationOrder(const std::vector<Variable>& variables) {
-    for (const Variable& variable : variables) {
-      std::vector<Eigen::Index>& numbers = numbers_[static_cast<std::size_t>(variable.kind)];
-      if (numbers.size() <= variable.index) numbers.resize(variable.index + 1, -1);
-      numbers[variable.index] = std::ssize(place_);
-      place_.push_back(std::ssize(place_));
-    }
-  }
-
-  Eigen::Index size() const { return 3 * std::ssize(place_); }
-
-  /// Less than 0: in the window.
-  Eigen::Index number_of(const Variable& variable) const {
-    const std::vector<Eigen::Index>& numbers = numbers_[static_cast<std::size_t>(variable.kind)];
-    return variable.index < numbers.size() ? numbers[variable.index] : -1;
-  }
-
-  Eigen::Index place_of_number(Eigen::Index number) const {
-    return 3 * place_[static_cast<std::size_t>(number)];
-  }
-
-  /// Approximate minimum degree over blocks of three.
-  void order(const std::vector<LinearFactor>& factors) {
-    std::vector<Triplet> neighbours;
-    for (const LinearFactor& factor : factors) {
-      for (const LinearFactor::Block& row : factor.blocks) {
-        const Eigen::Index i = number_of(row.variable);
-        for (const LinearFactor::Block& column : factor.blocks) {
-          const Eigen::Index k = number_of(column.variable);
-          if (k >= 0 && i > k) neighbours.emplace_back(i, k, 1.0);
-        }
-      }
-    }
-    const Eigen::Index count = std::ssize(place_);
-    for (Eigen::Index i = 0; i < count; ++i)
-      neighbours.emplace_back(i, i, 1.0);
-    SparseMatrix pattern{count, count};
-    pattern.setFromTriplets(neighbours.begin(), neighbours.end());
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> pivots;
-    Eigen::AMDOrdering<int>{}(pattern.selfadjointView<Eigen::Lower>(), pivots);
-    for (Eigen::Index i = 0; i < count; ++i)
-      place_[static_cast<std::size_t>(pivots.indices()[i])] = i;
-  }
-
- private:
-  std::array<std::vector<Eigen::Index>, 3> numbers_{};  ///< by VariableKind and index; -1: none
-  std::vector<Eigen::Index> place_{};  ///< in the elimination, by number; in blocks of three
-};
 
 }  // namespace
 
@@ -106,10 +46,8 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   for (std::size_t i = 0; i < state_.landmarks.size(); ++i)
     if (const Variable landmark{VariableKind::kLandmark, i}; !is_fixed_[i] && !is_active(landmark))
       variables.push_back(landmark);
-  EliminationOrder order{variables};
-  const Eigen::Index num_behind = order.size();
   const Eigen::Index num_window = prior_.g.size();
-  if (num_behind == 0) {
+  if (variables.empty()) {
     const double moved = solve_window().cwiseAbs().maxCoeff();
     reconsider_factors();
     return moved;
@@ -123,61 +61,26 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   behind.reserve(factors_.size());
   for (std::size_t index = 0; index < factors_.size(); ++index)
     if (!is_active_factor[index]) behind.push_back(linearised(factors_[index]));
-  order.order(behind);
-  const auto place_of = [&](const Variable& variable) {
-    const Eigen::Index number = order.number_of(variable);
-    return number >= 0 ? order.place_of_number(number) : num_behind + offsets_.at(variable);
-  };
-
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(num_behind + num_window);
-  std::vector<Triplet> triplets;  // upper triangle
-  triplets.reserve(64 * behind.size());
-  // One on the window's diagonal keeps pivots from zero, and is subtracted again.
-  for (Eigen::Index i = 0; i < num_window; ++i)
-    triplets.emplace_back(num_behind + i, num_behind + i, 1.0);
-  for (const LinearFactor& factor : behind) {
-    for (const LinearFactor::Block& column : factor.blocks) {
-      const Eigen::Index at = place_of(column.variable);
-      g.segment(at, column.variable.size()).noalias() +=
-          column.jacobian.transpose() * factor.residual;
-      for (const LinearFactor::Block& row : factor.blocks) {
-        const Eigen::Index above = place_of(row.variable);
-        if (above > at) continue;
-        const LinearFactor::Product product = row.jacobian.transpose() * column.jacobian;
-        for (Eigen::Index k = 0; k < product.cols(); ++k)
-          for (Eigen::Index i = 0; i < product.rows() && above + i <= at + k; ++i)
-            triplets.emplace_back(above + i, at + k, product(i, k));
-      }
-    }
-  }
-  SparseMatrix h{num_behind + num_window, num_behind + num_window};
-  h.setFromTriplets(triplets.begin(), triplets.end());
-  const Solver solver{h};
-  if (solver.info() != Eigen::Success || !solver.vectorD().allFinite()) {
+  const Elimination elimination{variables, behind, num_window, [this](const Variable& variable) {
+                                  return offsets_.at(variable);
+                                }};
+  if (!elimination.has_solution()) {
     for (const Variable& variable : inserted)
       remove_from_layout(variable);  // the window has no measurement of it
     return std::numeric_limits<double>::infinity();
   }
 
-  // H = L D L': the lower right corner is the Schur complement's.
-  const auto& l = solver.matrixL().nestedExpression();
-  Eigen::MatrixXd corner = Eigen::MatrixXd::Identity(num_window, num_window);
-  for (Eigen::Index k = 0; k < num_window; ++k)
-    for (SparseMatrix::InnerIterator entry{l, num_behind + k}; entry; ++entry)
-      if (entry.row() > entry.col()) corner(entry.row() - num_behind, k) = entry.value();
-  Eigen::VectorXd x = g;
-  solver.matrixL().solveInPlace(x);
-  prior_.h.noalias() = corner * solver.vectorD().tail(num_window).asDiagonal() * corner.transpose();
-  prior_.h.diagonal().array() -= 1.0;
-  prior_.g.noalias() = corner * x.tail(num_window);
+  prior_.h = elimination.corner_h();
+  prior_.g = elimination.corner_g();
 
   const State before = state_;
   const Eigen::VectorXd window_g = prior_.g;
   const Eigen::VectorXd window_step = solve_window();
-  x.head(num_behind) = -x.head(num_behind).cwiseQuotient(solver.vectorD().head(num_behind));
-  x.tail(num_window).noalias() = corner.transpose() * window_step;
-  solver.matrixU().solveInPlace(x);
-  x.head(num_behind) *= step_share(x, variables, place_of);
+  Eigen::VectorXd x = elimination.step(window_step).head(3 * std::ssize(variables));
+  const auto place_of = [&](const Variable& variable) {
+    return elimination.place_of(variable);
+  };
+  x *= step_share(x, variables, place_of);
   const auto retract_behind = [&](double share) {
     for (const Variable& variable : variables)
       state_.retract(variable, share * x.segment(place_of(variable), 3));
@@ -194,7 +97,43 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   }
   carry_removed();
   reconsider_factors();
-  return x.head(num_behind).cwiseAbs().maxCoeff();
+  return x.cwiseAbs().maxCoeff();
+}
+
+std::optional<LandmarkMarginal> Graph::marginal_of(
+    const std::vector<std::size_t>& landmarks) const {
+  std::vector<Eigen::Index> place(state_.landmarks.size(), -1);  // behind the calibration
+  for (std::size_t i = 0; i < landmarks.size(); ++i)
+    place[landmarks[i]] = kCalibrationSize + 3 * static_cast<Eigen::Index>(i);
+  std::vector<Variable> eliminated;
+  for (std::size_t i = 0; i < state_.keyframes.size(); ++i)
+    if (!is_removed(i)) eliminated.push_back({VariableKind::kKeyframe, i});
+  for (std::size_t i = 0; i < state_.landmarks.size(); ++i)
+    if (place[i] < 0 && !is_fixed_[i]) eliminated.push_back({VariableKind::kLandmark, i});
+  std::vector<LinearFactor> linear;
+  linear.reserve(factors_.size());
+  for (const Factor& factor : factors_)
+    if (!std::holds_alternative<LandmarkPrior>(factor)) linear.push_back(linearised(factor));
+  const Eigen::Index num_kept = 3 * std::ssize(landmarks);
+  const Elimination elimination{
+      eliminated, linear, kCalibrationSize + num_kept, [&](const Variable& variable) {
+        return variable.kind == VariableKind::kCalibration ? 0 : place[variable.index];
+      }};
+  if (!elimination.has_solution()) return std::nullopt;
+
+  Eigen::MatrixXd h = elimination.corner_h();
+  Eigen::VectorXd g = elimination.corner_g();
+  calibration_.add_to(state_.calibration, h.topLeftCorner<kCalibrationSize, kCalibrationSize>(),
+                      g.head<kCalibrationSize>());
+  const auto root = h.topLeftCorner<kCalibrationSize, kCalibrationSize>().llt();
+  const Eigen::MatrixXd column = h.bottomLeftCorner(num_kept, kCalibrationSize);
+  const Eigen::MatrixXd gain = root.solve(column.transpose()).transpose();
+  LandmarkMarginal marginal;
+  for (const std::size_t landmark : landmarks)
+    marginal.map_from_marker.push_back(state_.landmarks[landmark]);
+  marginal.h = h.bottomRightCorner(num_kept, num_kept) - gain * column.transpose();
+  marginal.g = g.tail(num_kept) - gain * g.head<kCalibrationSize>();
+  return marginal;
 }
 
 }  // namespace waymark
