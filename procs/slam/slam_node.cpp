@@ -164,7 +164,9 @@ void SlamNode::publish_findings(Timestamp time) {
 bool SlamNode::save_map() {
   const auto map = estimator_->snapshot();
   if (!map) {
-    logging::error("no map to save: no scan could be placed");
+    logging::error("no map to save: {}",
+                   loaded_map_ ? "neither markers nor walls confirmed a place in the loaded map"
+                               : "no scan could be placed");
     return false;
   }
   try {

@@ -259,6 +259,21 @@ TEST_F(DailyLife, AMapOfAnotherBuildingIsNamed) {
   }
 }
 
+// Nothing is in common but where the robot is said to start.
+TEST_F(DailyLife, AMapIsNotExtendedInAnotherBuilding) {
+  test::SyntheticCorridor other = corridor_of(2);
+  other.width_m = 3.0;
+  other.markers = test::opposite_markers(other, 3.5, 3.0);
+  for (test::SyntheticMarker& marker : other.markers)
+    marker.id += 100;
+  SlamConfig config = config_for(MapMode::kExtend, *file_, StartKind::kOrigin);
+  config.save_map = folder_ / "mixture.map.lcm";
+  const test::Drive drive = test::drive_through(config, messages_of(test::drive(other)));
+  EXPECT_TRUE(drive.failed);
+  EXPECT_FALSE(fs::exists(config.save_map));
+  EXPECT_EQ(drive.estimates.back().health, slam_estimate_t::HEALTH_LOST);
+}
+
 class SurveyedMap : public DailyLife {
  protected:
   fs::path survey(const std::string& text) {

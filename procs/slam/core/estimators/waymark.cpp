@@ -221,6 +221,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   compare_with_odometry();
   if (markers_known_ || scan.shows_all_axes) unmeasured_motion_.note_observed();
   compare_with_loaded_map(observation);
+  was_confirmed_ |= is_confirmed_;
   // A scan whose pose is uncertain is not mapped.
   const bool is_mapped = !is_suspicious && !scan.is_refuted && is_confirmed_;
   if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
@@ -311,7 +312,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                                                       : WeakAxisSource::kOdometry;
   estimate.ranges_wrong = is_rescaled_;
   const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kSuspicious ||
-                       inlier_share_ < config_.lost_inlier_share;
+                       inlier_share_ < config_.lost_inlier_share || is_loaded_map_refuted();
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
                               !estimate.observability.is_degenerate ||
                                   estimate.weak_axis_source == WeakAxisSource::kMarkers);

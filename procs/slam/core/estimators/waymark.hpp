@@ -170,6 +170,7 @@ class WaymarkEstimator final : public Estimator {
   const NdtMap& ndt_of(const MatchedScan& scan) const;
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
+  bool is_loaded_map_refuted() const;
   void confirm_place(const MatchedScan& scan);
   void compare_with_loaded_map(const Observation& observation);
   std::optional<Observation> with_right_scale(const Observation& observation, Look& look);
@@ -263,7 +264,8 @@ class WaymarkEstimator final : public Estimator {
   Points loaded_points_{};                     ///< of the loaded map's walls
   CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
                                              : config_.scan.cell_spacing_m};  ///< the same
-  bool is_confirmed_{true};  ///< the pose in the loaded map, by markers or walls
+  bool is_confirmed_{true};   ///< the pose in the loaded map, by markers or walls
+  bool was_confirmed_{true};  ///< at least once
   std::optional<WallChangeDetector> wall_changes_{};  ///< against the loaded map
   Survey survey_;
   std::optional<StartPose> given_pose_{};  ///< by a command: pose of the next keyframe

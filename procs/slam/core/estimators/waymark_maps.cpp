@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kSurveySteps = 12;
 constexpr double kLeastMapped = 0.6;  // share of the beams on walls of the loaded map, to be in it
+constexpr std::int64_t kScansToDecide = 10;  // at keyframes, before the loaded map is refused
 
 }  // namespace
 
@@ -33,6 +34,7 @@ void WaymarkEstimator::load(const MapSnapshot& map) {
     loaded_coarse_.add(point);
   wall_changes_.emplace(setup_.loaded_map);
   is_confirmed_ = false;
+  was_confirmed_ = false;
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);
 }
 
@@ -70,13 +72,19 @@ void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
   if (fit.is_contradicted()) ++findings_.scans_contradict_loaded_map;
 }
 
+/// Nothing has confirmed the given pose in the loaded map, and most scans contradict it.
+bool WaymarkEstimator::is_loaded_map_refuted() const {
+  return !is_confirmed_ && findings_.scans_in_loaded_map >= kScansToDecide &&
+         2 * findings_.scans_contradict_loaded_map > findings_.scans_in_loaded_map;
+}
+
 /// The loaded map does not move: a match with it is a prior on the pose.
 void WaymarkEstimator::add_map_factor(std::size_t keyframe, const ScanMatch& match) {
   graph_.add(PosePrior{keyframe, match.map_from_base, root_of(match.observed.information)});
 }
 
-/// A surveyed marker with enough sightings becomes a prior. The newest poses follow at once, the
-/// others with the next solution of the whole graph.
+/// A surveyed marker with enough sightings becomes a prior, which is tested again with more. The
+/// newest poses follow at once, the others with the next solution of the whole graph.
 void WaymarkEstimator::use_survey() {
   if (survey_.is_empty() || !survey_.match(graph_, book_)) return;
   const auto survey_from_map = survey_.new_frame(graph_);
@@ -113,8 +121,9 @@ std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
   return pose_graph_of(solved());
 }
 
+/// There is none before the place in the loaded map was confirmed: it would mix two buildings.
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
-  if (is_frozen() || graph_.state().keyframes.empty()) return std::nullopt;
+  if (is_frozen() || graph_.state().keyframes.empty() || !was_confirmed_) return std::nullopt;
   const Graph& graph = solved();
   MapSnapshot snapshot;
   if (setup_.loaded_map) snapshot.parent_map_id = setup_.loaded_map->map_id;
