@@ -14,6 +14,7 @@ constexpr double kWrong = 5.0;           // sigmas
 constexpr double kLeastApart_m = 1.0;    // between two markers that define a frame's rotation
 constexpr double kClearlyBetter = 25.0;  // chi^2 that switching the wrong prior off has to save
 constexpr int kConfirmed = 3;            // sightings of a landmark
+constexpr int kTestedAgain = 4;          // times as many sightings as at the last test
 // chi^2 that correct priors add at most, beyond its mean: at least, and in standard deviations.
 constexpr double kContradiction = 50.0;
 constexpr double kContradictionSigmas = 5.0;
@@ -100,29 +101,36 @@ Survey::Survey(std::vector<SurveyedMarker> markers) {
     entries_.push_back({marker, std::nullopt});
 }
 
-bool Survey::match(const Graph& graph, const MarkerBook& book) {
-  bool is_new = false;
-  for (Entry& entry : entries_) {
-    if (entry.landmark) continue;
-    double least_m = 0.0;
-    int candidates = 0;
-    for (std::size_t i = 0; i < book.entries().size(); ++i) {
-      const Landmark& landmark = book.entries()[i];
-      if (landmark.id != entry.marker.id || book.is_retired(i) || landmark.sightings < kConfirmed) {
-        continue;
-      }
-      const double away_m =
-          (graph.state().landmarks[i].translation() - entry.marker.survey_from_marker.translation())
-              .norm();
-      if (candidates++ > 0 && away_m >= least_m) continue;
-      least_m = away_m;
-      entry.landmark = i;
-    }
-    // Without a frame, markers of the same id cannot be distinguished.
-    if (!has_frame_ && candidates > 1) entry.landmark.reset();
-    is_new |= entry.landmark.has_value();
+std::optional<std::size_t> Survey::landmark_of(const SurveyedMarker& marker, const Graph& graph,
+                                               const MarkerBook& book) const {
+  std::optional<std::size_t> nearest;
+  double least_m = 0.0;
+  int candidates = 0;
+  for (std::size_t i = 0; i < book.entries().size(); ++i) {
+    const Landmark& landmark = book.entries()[i];
+    if (landmark.id != marker.id || book.is_retired(i) || landmark.sightings < kConfirmed) continue;
+    const double away_m =
+        (graph.state().landmarks[i].translation() - marker.survey_from_marker.translation()).norm();
+    if (candidates++ > 0 && away_m >= least_m) continue;
+    least_m = away_m;
+    nearest = i;
   }
-  return is_new;
+  // Without a frame, markers of the same id cannot be distinguished.
+  if (!has_frame_ && candidates > 1) return std::nullopt;
+  return nearest;
+}
+
+bool Survey::match(const Graph& graph, const MarkerBook& book) {
+  bool is_due = false;
+  for (Entry& entry : entries_) {
+    if (!entry.landmark) entry.landmark = landmark_of(entry.marker, graph, book);
+    if (!entry.landmark) continue;
+    const int sightings = book.entries()[*entry.landmark].sightings;
+    if (sightings < kTestedAgain * entry.tested_sightings) continue;
+    entry.tested_sightings = sightings;
+    is_due = true;
+  }
+  return is_due;
 }
 
 std::optional<Se2> Survey::new_frame(const Graph& graph) {

@@ -24,7 +24,8 @@ class Survey {
   bool has_frame() const { return has_frame_; }
 
   /// Associates surveyed markers with landmarks that have enough sightings.
-  /// @return whether there are new ones.
+  /// @return whether there are new ones, or some have been sighted so much more often since their
+  ///         priors were tested that these have to be tested again.
   bool match(const Graph& graph, const MarkerBook& book);
 
   /// survey_from_map, once, when the survey first defines the frame.
@@ -42,9 +43,12 @@ class Survey {
   struct Entry {
     SurveyedMarker marker{};
     std::optional<std::size_t> landmark{};
-    bool has_prior{false};  ///< in the graph
+    int tested_sightings{0};  ///< of the landmark, when its prior was tested
+    bool has_prior{false};    ///< in the graph
   };
 
+  std::optional<std::size_t> landmark_of(const SurveyedMarker& marker, const Graph& graph,
+                                         const MarkerBook& book) const;
   void add_priors(Graph& graph);
   double sigmas_off(const Entry& entry, const Graph& graph) const;
 

@@ -206,5 +206,24 @@ TEST(Survey, OfManyEntriesTheWrongOneIsReported) {
     EXPECT_EQ(named_of_all(1, wrong), std::vector{static_cast<int>(wrong)});
 }
 
+TEST(Survey, APriorIsTestedAgainWhenItsMarkerHasBeenSightedMuchMoreOften) {
+  SurveyedDrive drive{1, 1};
+  MarkerBook book;
+  book.add(0, {});
+  const auto sight = [&book](int times) {
+    for (int i = 0; i < times; ++i)
+      book.note_sighting(0, {});
+  };
+  Survey survey{{drive.surveyed(0, 0.005), drive.surveyed(1, 0.005)}};
+  EXPECT_FALSE(survey.match(drive.graph(), book));  // once: it may be misread
+  sight(2);
+  EXPECT_TRUE(survey.match(drive.graph(), book));
+  EXPECT_FALSE(survey.match(drive.graph(), book));
+  sight(8);
+  EXPECT_FALSE(survey.match(drive.graph(), book));
+  sight(1);
+  EXPECT_TRUE(survey.match(drive.graph(), book));
+}
+
 }  // namespace
 }  // namespace waymark
