@@ -353,6 +353,7 @@ TEST_F(SurveyedMap, OfTwoContradictoryEntriesBothAreReportedAndTheMapStaysConsis
   const test::Drive drive = test::drive_through(config, messages_of(*drive_));
   ASSERT_EQ(drive.changes.size(), 2U);
   EXPECT_GT(drive.changes[0].sigmas, 5.0);
+  EXPECT_EQ(drive.estimates.back().health, slam_estimate_t::HEALTH_LOST);
   for (const marker_landmark_t& landmark : drive.markers) {
     const auto& marker = markers[static_cast<std::size_t>(landmark.id)];
     EXPECT_NEAR(landmark.x_m, marker.position_m.x(), 1.1) << landmark.id;

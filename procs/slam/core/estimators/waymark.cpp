@@ -312,7 +312,8 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                                                       : WeakAxisSource::kOdometry;
   estimate.ranges_wrong = is_rescaled_;
   const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kSuspicious ||
-                       inlier_share_ < config_.lost_inlier_share || is_loaded_map_refuted();
+                       inlier_share_ < config_.lost_inlier_share || is_loaded_map_refuted() ||
+                       survey_.is_undecided();
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
                               !estimate.observability.is_degenerate ||
                                   estimate.weak_axis_source == WeakAxisSource::kMarkers);

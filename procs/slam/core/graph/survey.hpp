@@ -35,6 +35,9 @@ class Survey {
   /// @return whether a prior was switched: then the whole graph has to be solved.
   bool apply(Graph& graph);
 
+  /// Entries contradict each other, of which none is clearly wrong: the frame is not known.
+  bool is_undecided() const { return unresolved_sigmas_ > 0.0; }
+
   /// Surveyed markers whose landmarks are more than kWrong sigmas from their surveyed places, and
   /// all that contradict each other while it is undecidable which one is wrong.
   std::vector<MapChange> changes(const Graph& graph) const;
