@@ -32,7 +32,7 @@ std::string toml_string(const std::string& value) {
   std::string text = "\"";
   for (const char c : value) {
     if (c == '"' || c == '\\') text += '\\';
-    if (static_cast<unsigned char>(c) < 0x20) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
       text += fmt::format("\\u{:04X}", static_cast<int>(c));
     } else {
       text += c;
@@ -215,6 +215,7 @@ std::string hint(const std::string& meant) {
 }
 
 void add_unused_keys(const config_detail::Describe& describe, config_detail::ReadLog& log) {
+  if (log.set_by.empty()) return;
   const std::vector<Entry> entries = entries_of(describe);
   for (const Entry& entry : entries) {
     const auto set_by = log.set_by.find(entry.key);

@@ -12,8 +12,10 @@ namespace {
 
 constexpr std::string_view kLoopback = "127.0.0.1";
 
+/// Not every name that begins like an address is one: 127.0.0.1.example.org is another machine.
 bool is_loopback_name(std::string_view host) {
-  return host == "localhost" || host == "::1" || host.starts_with("127.");
+  const bool is_number = host.find_first_not_of("0123456789.") == std::string_view::npos;
+  return host == "localhost" || host == "::1" || (is_number && host.starts_with("127."));
 }
 
 bool is_host(std::string_view host, bool in_brackets) {

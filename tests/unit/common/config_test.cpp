@@ -110,6 +110,8 @@ TEST(Config, NumbersAreShownAsTheyWereWritten) {
 TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
   EXPECT_THAT(error_of({{file_with("[robot\n")}, {}}), HasSubstr("config_test.toml:1: not TOML"));
   EXPECT_THAT(error_of({{file_with("[\x01")}, {}}), HasSubstr("config_test.toml:1: not TOML"));
+  EXPECT_THAT(error_of({{file_with("\u00e9 = 1\n")}, {}}),
+              HasSubstr("config_test.toml:1: not TOML"));
   EXPECT_THAT(error_of({{"/no/such.toml"}, {}}),
               HasSubstr("/no/such.toml: cannot be read: there is no such file"));
   EXPECT_THAT(error_of({{::testing::TempDir()}, {}}), HasSubstr("cannot be read: it is a folder"));
@@ -207,7 +209,7 @@ TEST(Config, ADumpReadsBackAsTheSame) {
   RobotOnly config{};
   config.robot.lidar.num_beams = 17;
   config.robot.camera.fx_px = 0.1 + 530.2;
-  config.robot.markers.dictionary = "a \"quoted\" \\ name";
+  config.robot.markers.dictionary = "a \"quoted\" \\ name, \u00e9, \x01\x7f";
   config.robot.markers.ids = {0, 3};
 
   const auto again = load_config<RobotOnly>({{file_with(dump_config(config))}, {}});

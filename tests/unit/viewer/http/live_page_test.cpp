@@ -31,6 +31,7 @@ TEST(HttpAddress, IsHostAndPort) {
   EXPECT_TRUE(parse_http_address("[::1]:8080").is_loopback());
   EXPECT_TRUE(parse_http_address("localhost:8080").is_loopback());
   EXPECT_FALSE(parse_http_address("0.0.0.0:8080").is_loopback());
+  EXPECT_FALSE(parse_http_address("127.example.org:8080").is_loopback());
 }
 
 TEST(HttpAddress, RefusesAnythingElse) {
@@ -42,7 +43,8 @@ TEST(HttpAddress, RefusesAnythingElse) {
 TEST(HttpAddress, ANameOfAnotherSiteIsNotThisMachine) {
   for (const auto* host : {"localhost", "localhost:8080", "127.0.0.1:1", "[::1]:8080"})
     EXPECT_TRUE(names_loopback(host)) << host;
-  for (const auto* host : {"", "robot", "localhost.evil.example:8080", "[", "[::2]:1", ":80"})
+  for (const auto* host : {"", "robot", "localhost.evil.example:8080", "127.evil.example:8080",
+                           "127.0.0.1.evil.example", "[127.evil.example]", "[", "[::2]:1", ":80"})
     EXPECT_FALSE(names_loopback(host)) << host;
 }
 
