@@ -4,20 +4,22 @@
 # UndefinedBehaviorSanitizer. Goes on from its corpus, which begins with the messages, the map and the files of a short run.
 #
 # usage: tests/fuzz/run.sh [options] [TARGET...]
-#   TARGET       messages datagram log map config survey carmen mbot rosbag jpeg slam (default: all, one after the other)
+#   TARGET       messages datagram log map config survey carmen mbot rosbag jpeg slam command_line page_text request
+#                (default: all, one after the other)
 #   --runs N     executions of each (default: 100000)
 #   --seconds N  instead so many seconds for each
 #   --corpus DIR (default: build/fuzz/corpus)
 #
-# An input that crashes, takes more than 2 s under the sanitizers (slam: 20 s, for 200 messages), or allocates more than
-# 16 MB at once (map, slam: 64 MB, for the table of tiles of a large building; rosbag: 300 MB, for a chunk) is kept in
-# CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE" repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
+# An input that crashes, takes more than 2 s under the sanitizers (slam: 20 s, for 200 messages; request: 20 s, for the
+# server's threads run at a lower priority), or allocates more than 16 MB at once (map, slam: 64 MB, for the table of tiles of
+# a large building; rosbag: 300 MB, for a chunk) is kept in CORPUS/findings; "build/fuzz/tests/fuzz/fuzz_TARGET FILE"
+# repeats it. Exit codes: 0 none, 1 findings, 2 bad usage.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../../deploy/common.sh"
 
-readonly kTargets=(messages datagram log map config survey carmen mbot rosbag jpeg slam)
+readonly kTargets=(messages datagram log map config survey carmen mbot rosbag jpeg slam command_line page_text request)
 readonly kMaxInput_bytes=65536
-declare -rA max_MB=([map]=64 [slam]=64 [rosbag]=300) longest_s=([slam]=20)
+declare -rA max_MB=([map]=64 [slam]=64 [rosbag]=300) longest_s=([slam]=20 [request]=20)
 amount=-runs=100000 targets=() corpus=$source_dir/build/fuzz/corpus
 while (($# > 0)); do
   case $1 in
@@ -47,9 +49,11 @@ make_seeds() {
 }
 
 build fuzz fuzz_seeds "${targets[@]/#/fuzz_}"
-[[ -d $corpus/messages ]] || { build release waymark-{sim,detector,slam,viewer,recorder} && make_seeds; }
+[[ -d $corpus/messages && -d $corpus/request ]] || { build release waymark-{sim,detector,slam,viewer,recorder} && make_seeds; }
 [[ -d $corpus/rosbag ]] || /usr/bin/python3 -B "$source_dir/tests/python/bag_drive.py" "$corpus/rosbag"
 mkdir -p "$corpus/findings"
+# Two frames of where memory was allocated, not thirty: a finding that is repeated shows all.
+export ASAN_OPTIONS=malloc_context_size=2${ASAN_OPTIONS:+:$ASAN_OPTIONS}
 
 failed=()
 for target in "${targets[@]}"; do

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A drive: what an estimator makes of messages that are valid, however absurd. Nothing may be
-// thrown, and what slam publishes is valid, too: encode() checks it.
+// A drive: what an estimator makes of messages and commands that are valid, however absurd. Nothing
+// may be thrown but where commands have made the map larger than the largest grid, and what slam
+// publishes is valid, too: encode() checks it.
 #include "common/messages/bounds.hpp"
 #include "common/messages/convert.hpp"
 #include "slam/slam_node.hpp"
@@ -25,6 +26,7 @@ constexpr std::array kRanges_m{kNan, kInfinity, -1.0, 0.0,  1e-6,
                                0.05, 0.5,       3.4,  30.0, bounds::kRange_m};
 constexpr std::array kBeams{0, 1, 2, 3, 8, 15, 45, 180, 181, 360, 1081};
 constexpr std::array kSizes{1e-9, 1e-3, 0.02, 0.1, 1.0, 30.0, 3e3, bounds::kPosition_m};
+constexpr std::array kSigmas{1e-300, 1e-9, 0.01, 0.1, 1.0, 1e3, 1e9, 1e200};
 constexpr std::array<std::int64_t, 9> kWaits_us{0,         1,          20'000,   100'000,   500'000,
                                                 3'000'000, 60'000'000, -100'000, -3'000'000};
 
@@ -34,6 +36,7 @@ class Drive {
     config_.slam.estimator =
         bytes_.PickValueInArray({EstimatorName::kWaymark, EstimatorName::kGmapping,
                                  EstimatorName::kMarkerMatching, EstimatorName::kOdometry});
+    config_.slam.commands = true;
     config_.slam.gmapping.particles = 2;
     config_.slam.marker_matching.particles = 3;
     half_m_ = {size_m(), size_m()};
@@ -43,9 +46,13 @@ class Drive {
     Inbox inbox;
     Outbox outbox;
     SlamNode node{config_, inbox, outbox};
-    for (int i = 0; i < kMostMessages && bytes_.remaining_bytes() > 0; ++i) {
-      if (const auto message = next_valid()) inbox.deliver(*message);
-      outbox.take();
+    try {
+      for (int i = 0; i < kMostMessages && bytes_.remaining_bytes() > 0; ++i) {
+        if (const auto message = next_valid()) inbox.deliver(*message);
+        outbox.take();
+      }
+    } catch (const std::length_error&) {
+      if (num_commands_ == 0) throw;
     }
     node.finish();
   }
@@ -71,10 +78,17 @@ class Drive {
 
   Message next() {
     time_us_ += bytes_.ConsumeBool() ? 50'000 : bytes_.PickValueInArray(kWaits_us);
-    switch (bytes_.ConsumeIntegralInRange(0, 3)) {
+    switch (bytes_.ConsumeIntegralInRange(0, 15)) {
       case 0:
-        return lidar();
+        return command();
       case 1:
+      case 2:
+      case 3:
+      case 4:
+        return lidar();
+      case 5:
+      case 6:
+      case 7:
         return markers();
       default:
         return odometry();
@@ -147,6 +161,23 @@ class Drive {
     return encode(channels::kMarkers, to_detections_message(frame));
   }
 
+  /// None that saves: there is no folder.
+  Message command() {
+    command_t command{};
+    command.utime = to_us(time());
+    command.command_id = ++num_commands_;
+    command.in_tick = bytes_.ConsumeBool() ? 1 : 0;
+    command.kind = bytes_.PickValueInArray(
+        {command_t::KIND_RESET, command_t::KIND_SET_POSE, command_t::KIND_SET_MODE});
+    for (double& coordinate : command.pose)
+      coordinate = signed_size();
+    for (double& sigma : command.sigmas)
+      sigma = bytes_.PickValueInArray(kSigmas);
+    command.mode = bytes_.PickValueInArray(
+        {command_t::MODE_MAP, command_t::MODE_LOCALISE, command_t::MODE_EXTEND});
+    return encode(channels::kSlamCommand, command);
+  }
+
   Timestamp time() const {
     return timestamp_from_us(std::clamp<std::int64_t>(time_us_, 0, bounds::kTime_us));
   }
@@ -156,6 +187,7 @@ class Drive {
   std::array<double, 2> half_m_{};
   Se2 here_{};
   std::int64_t time_us_{1'000'000'000};
+  std::int64_t num_commands_{0};
 };
 
 }  // namespace

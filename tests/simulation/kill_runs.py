@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Live runs of a short corridor that are killed or stopped at random times.
+"""Live runs of a short corridor, and replays of one, that are killed or stopped at random times.
 
-Each run does one thing: SIGKILL to one of its five processes, or SIGTERM or SIGINT to deploy/launch.sh, once or twice
-within 0.3 s. Afterwards no process of it lives (nor holds its port, which is locked by a file that processes inherit),
-the exit code is one that docs/reference.md names for it, every file is whole, and the map that --save-map was to replace
-is the old one or a whole new one. A run takes 3 to 10 s: no part of tests/run.sh.
+Each live run does one thing: SIGKILL to one of its five processes, or SIGTERM, SIGINT or SIGHUP to deploy/launch.sh, once
+or twice within 0.3 s. Each replay, one run in four: SIGKILL to slam or viewer, SIGTERM to deploy/replay.sh, or SIGINT or
+SIGHUP to all of it, as a terminal does. Afterwards no process of it lives (nor holds its port, which is locked by a file
+that processes inherit), the exit code is one that docs/reference.md names for it, every file is whole, and the map that
+--save-map was to replace is the old one or a whole new one. A run takes 3 to 10 s: no part of tests/run.sh.
 
 usage: tests/simulation/kill_runs.py [--runs N] [--seed N] [--deploy DIR] [--out DIR] [--keep]
 """
@@ -25,6 +26,9 @@ import time
 
 SCENARIO = pathlib.Path(__file__).resolve().parents[1] / "data/scenarios/smallest.toml"
 PROGRAMS = ("sim", "recorder", "viewer", "slam", "detector")
+STOPS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+SHARE_OF_REPLAYS = 0.25
+LONGEST_LEFT_S = {"launch": 0.2, "replay": 5.0}  # until what has been killed, or has lost its script, is gone
 LONGEST_END_S = 40  # from the signal: launch.sh gives its processes 15 s, then 7 s, then kills them
 EVENT_MAGIC = 0xEDA1DA01
 TAG = "WAYMARK_KILL_RUNS"  # in the environment of every process of a run
@@ -112,63 +116,70 @@ class Runs:
             self.map_tool = self.deploy.parents[2] / "bin/waymark-map"
         self.old_map = folder / "old.map.lcm"
 
-    def start(self, name, saved_map):
+    def start(self, script, name, saved_map):
         output = (self.folder / f"{name}.output").open("w")
-        command = [self.deploy / "launch.sh", self.scenario, "--no-images", "--out", self.folder / name,
-                   "--save-map", saved_map]
+        what = {"launch": [self.scenario, "--no-images"],
+                "replay": [self.folder / "undisturbed/run.lcm", "--estimator", "waymark"]}[script]
+        command = [self.deploy / f"{script}.sh", *what, "--out", self.folder / name, "--save-map", saved_map]
         return subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
                                 env=os.environ | {TAG: name}, restore_signals=True, start_new_session=True)
 
-    def time_one(self):
-        begin = time.monotonic()
-        if self.start("undisturbed", self.old_map).wait() != 0:
-            sys.exit(f"the undisturbed run fails: see {self.folder}/undisturbed.output")
-        self.duration_s = time.monotonic() - begin
+    def time_both(self):
+        self.duration_s = {}
+        for script, name in (("launch", "undisturbed"), ("replay", "undisturbed_replay")):
+            begin = time.monotonic()
+            if self.start(script, name, self.old_map).wait() != 0:
+                sys.exit(f"{script}.sh fails undisturbed: see {self.folder}/{name}.output")
+            self.duration_s[script] = time.monotonic() - begin
 
-    def strike(self, name, run):
+    def strike(self, script, name, run):
         """One random thing at a random time. Returns its name and the exit codes that may come of it."""
-        at_s = self.random.uniform(0.0, 1.1 * self.duration_s)
-        number = self.random.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-        victim = self.random.choice(PROGRAMS)
+        at_s = self.random.uniform(0.0, 1.1 * self.duration_s[script])
+        number = self.random.choice((signal.SIGKILL,) * len(STOPS) + STOPS)
+        victim = self.random.choice(PROGRAMS if script == "launch" else ("slam", "viewer"))
         twice_s = self.random.choice([None, self.random.uniform(0.0, 0.3)])
         try:
             run.wait(at_s)
         except subprocess.TimeoutExpired:
             pass
         if number != signal.SIGKILL:
-            if run.poll() is None:
-                run.send_signal(number)
-                if twice_s is not None:
-                    time.sleep(twice_s)
-                    run.send_signal(number)
+            to_all = script == "replay" and number != signal.SIGTERM
+            for pause_s in [0.0] if twice_s is None else [0.0, twice_s]:
+                time.sleep(pause_s)
+                if run.poll() is None:
+                    os.killpg(run.pid, number) if to_all else run.send_signal(number)
             times = "once" if twice_s is None else "twice"
-            return f"{number.name} {times}", {0, 128 + number}
+            return f"{script} {number.name} {times}", {0, 128 + number}
+        runs = {"launch": "--lcm-url", "replay": "--report"}[script]
         pids = [pid for pid, words in processes_of(name).items()
-                if words[0].endswith(f"/waymark-{victim}") and "--lcm-url" in words and "--check" not in words]
+                if words[0].endswith(f"/waymark-{victim}") and runs in words and "--check" not in words]
         for pid in pids:
             os.kill(pid, number)
-        restarted = victim in ("viewer", "detector")
-        return f"SIGKILL {victim}", {0} if not pids else {0, 1} if restarted else {1, 3}
+        codes = {128 + number} if script == "replay" else {0, 1} if victim in ("viewer", "detector") else {1, 3}
+        return f"{script} SIGKILL {victim}", codes if pids else {0}
 
-    def faults_of(self, name, saved_map, code, codes):
+    def faults_of(self, script, name, saved_map, code, codes):
         faults = [] if code in codes else [f"exit code {code}, not one of {sorted(codes)}"]
-        if left := processes_of(name):
+        end = time.monotonic() + LONGEST_LEFT_S[script]
+        while (left := processes_of(name)) and time.monotonic() < end:
+            time.sleep(0.05)
+        if left:
             faults.append(f"left over: {left}")
         return faults + half_files(self.folder / name) + map_faults(self.map_tool, saved_map, self.old_map.read_bytes())
 
     def one(self, name):
         saved_map = self.folder / f"{name}.map.lcm"
         shutil.copy(self.old_map, saved_map)
-        run = self.start(name, saved_map)
-        what, codes = self.strike(name, run)
+        script = "replay" if self.random.random() < SHARE_OF_REPLAYS else "launch"
+        run = self.start(script, name, saved_map)
+        what, codes = self.strike(script, name, run)
         try:
             code = run.wait(LONGEST_END_S)
         except subprocess.TimeoutExpired:
             os.killpg(run.pid, signal.SIGKILL)
             return what, "none", [f"goes on after {LONGEST_END_S} s"]
         code = 128 - code if code < 0 else code
-        time.sleep(0.2)  # what has just been killed is gone
-        return what, code, self.faults_of(name, saved_map, code, codes)
+        return what, code, self.faults_of(script, name, saved_map, code, codes)
 
 
 def main():
@@ -183,11 +194,12 @@ def main():
     options.deploy = options.deploy.resolve()
     os.environ.pop("LCM_DEFAULT_URL", None)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background of a shell it is ignored, and so by children
+    signal.signal(signal.SIGHUP, lambda *_: None)  # not of nohup, for the same reason
     folder = options.out or pathlib.Path(tempfile.mkdtemp(prefix="waymark-kill-"))
     folder.mkdir(parents=True, exist_ok=True)
     runs = Runs(options, folder.resolve())
-    runs.time_one()
-    print(f"an undisturbed run takes {runs.duration_s:.1f} s", flush=True)
+    runs.time_both()
+    print("undisturbed: " + ", ".join(f"{name} {s:.1f} s" for name, s in runs.duration_s.items()), flush=True)
     outcomes = collections.Counter()
     failed = 0
     for index in range(options.runs):

@@ -46,6 +46,7 @@ struct Entry {
   enum class Kind { kTable, kElement, kValue, kEmptyList };
 
   Kind kind{Kind::kValue};
+  std::string table{};    ///< "slam.", "path.waypoints[0]."; its own, or the one that it is in
   std::string key{};      ///< "slam.estimator", "path.waypoints[0].x_m"
   std::string heading{};  ///< of a table or element, e.g. "path.waypoints"
   std::string value{};    ///< as TOML
@@ -113,13 +114,15 @@ class Lister final : public Fields {
 
   bool enter(std::string_view key) override {
     tables_.push_back({std::string{key}, std::string{key}});
-    entries_.push_back({.kind = Entry::Kind::kTable, .heading = heading(), .unused = unused()});
+    entries_.push_back(
+        {.kind = Entry::Kind::kTable, .table = path(), .heading = heading(), .unused = unused()});
     return true;
   }
 
   bool enter_element(std::string_view key, std::size_t index) override {
     tables_.push_back({std::string{key}, fmt::format("{}[{}]", key, index)});
-    entries_.push_back({.kind = Entry::Kind::kElement, .heading = heading(), .unused = unused()});
+    entries_.push_back(
+        {.kind = Entry::Kind::kElement, .table = path(), .heading = heading(), .unused = unused()});
     return true;
   }
 
@@ -150,14 +153,19 @@ class Lister final : public Fields {
   };
 
   void add(std::string_view key, const std::string& value, std::string_view meaning) {
-    std::string path;
-    for (const Table& table : tables_)
-      path += table.element + ".";
-    entries_.push_back({.key = path + std::string{key},
+    entries_.push_back({.table = path(),
+                        .key = path() + std::string{key},
                         .value = value,
                         .text = value,
                         .meaning = std::string{meaning},
                         .unused = unused()});
+  }
+
+  std::string path() const {
+    std::string text;
+    for (const Table& table : tables_)
+      text += table.element + ".";
+    return text;
   }
 
   std::string heading() const {
@@ -255,25 +263,35 @@ std::vector<std::string> config_detail::read_part(const std::filesystem::path& f
   return log.problems;
 }
 
+// A value belongs to the last heading before it, so those of a table come before its own tables.
 std::string config_detail::dump(const Describe& describe) {
-  std::string text;
+  struct Table {
+    std::string path{};
+    std::string text{};
+  };
+
+  std::vector<Table> tables(1);
   for (const Entry& entry : entries_of(describe)) {
     if (!entry.unused.empty()) continue;
     switch (entry.kind) {
       case Entry::Kind::kTable:
-        text += fmt::format("\n[{}]\n", entry.heading);
+        tables.push_back({entry.table, fmt::format("\n[{}]\n", entry.heading)});
         break;
       case Entry::Kind::kElement:
-        text += fmt::format("\n[[{}]]\n", entry.heading);
+        tables.push_back({entry.table, fmt::format("\n[[{}]]\n", entry.heading)});
         break;
       case Entry::Kind::kEmptyList:
-        text += fmt::format("# [[{}]]: none. {}\n", entry.heading, entry.meaning);
+        tables.back().text += fmt::format("# [[{}]]: none. {}\n", entry.heading, entry.meaning);
         break;
       case Entry::Kind::kValue:
-        text += fmt::format("{} = {}  # {}\n", last_word(entry.key), entry.value, entry.meaning);
+        std::ranges::find(tables, entry.table, &Table::path)->text +=
+            fmt::format("{} = {}  # {}\n", last_word(entry.key), entry.value, entry.meaning);
         break;
     }
   }
+  std::string text;
+  for (const Table& table : tables)
+    text += table.text;
   return text.substr(std::min(text.find_first_not_of('\n'), text.size()));
 }
 

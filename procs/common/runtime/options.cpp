@@ -2,8 +2,11 @@
 #include "common/runtime/options.hpp"
 
 #include "common/command_line/command_line.hpp"
+#include "common/errors/setup_error.hpp"
+#include "common/log/log_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace waymark {
 
@@ -98,6 +101,40 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
   if (!mode.empty()) overrides.push_back("slam.mode=" + mode);
   if (!start.empty()) overrides.push_back("slam.start=" + start);
   return parsed;
+}
+
+void check_options(const ProcessOptions& options, const OptionSet& option_set) {
+  const bool is_recorder = !option_set.log;
+  const bool is_replay = !options.logs.empty();
+  if (!is_replay && (options.skip_s > 0.0 || options.until_s))
+    throw SetupError{"--skip-s and --until-s need --log"};
+  if (!is_recorder && !is_replay && !options.out_log.empty()) {
+    throw SetupError{"--out-log needs --log; live runs are recorded by waymark-recorder"};
+  }
+  if (is_replay && (options.real_time || !options.lcm_url.empty())) {
+    throw SetupError{
+        "--log reads a file and no network, as fast as it can: leave out --real-time and "
+        "--lcm-url"};
+  }
+  if (!is_replay && !options.report.empty()) {
+    throw SetupError{"--report needs --log: it is about a replay"};
+  }
+  if (!options.http_token.empty() && (is_replay || options.http.empty()))
+    throw SetupError{"--http-token needs --http, and a run that is live: a log takes no commands"};
+  if (!options.report.empty()) protect_inputs("--report", options.report, inputs_of(options));
+  if (!options.out_log.empty()) protect_inputs("--out-log", options.out_log, inputs_of(options));
+  if (options.save_map.empty()) return;
+  std::vector<std::filesystem::path> inputs = inputs_of(options);
+  std::erase(inputs, options.load_map);  // a map may be extended in its place
+  protect_inputs("--save-map", options.save_map, inputs);
+  const std::filesystem::path folder =
+      options.save_map.has_parent_path() ? options.save_map.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder))
+    throw SetupError{"--save-map: there is no folder '" + folder.string() + "'"};
+  if (std::filesystem::is_directory(options.save_map))
+    throw SetupError{"--save-map: '" + options.save_map.string() + "' is a folder"};
+  if (::access(folder.c_str(), W_OK) != 0)
+    throw SetupError{"--save-map: cannot write to the folder '" + folder.string() + "'"};
 }
 
 }  // namespace waymark

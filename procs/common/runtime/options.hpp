@@ -57,4 +57,7 @@ struct ParsedOptions {
 ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
                             const OptionSet& option_set);
 
+/// @throws SetupError for an option that would have no effect, or would overwrite an input.
+void check_options(const ProcessOptions& options, const OptionSet& option_set);
+
 }  // namespace waymark

@@ -14,7 +14,6 @@
 #include "common/runtime/supervisor.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <optional>
 
@@ -213,41 +212,6 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   return !is_working || !feed.last_arrival() || node.failed() ? kExitFailed : kExitOk;
 }
 
-/// @throws SetupError for an option that would have no effect, or would overwrite an input.
-void check(const ProcessOptions& options, const OptionSet& option_set) {
-  const bool is_recorder = !option_set.log;
-  const bool is_replay = !options.logs.empty();
-  if (!is_replay && (options.skip_s > 0.0 || options.until_s))
-    throw SetupError{"--skip-s and --until-s need --log"};
-  if (!is_recorder && !is_replay && !options.out_log.empty()) {
-    throw SetupError{"--out-log needs --log; live runs are recorded by waymark-recorder"};
-  }
-  if (is_replay && (options.real_time || !options.lcm_url.empty())) {
-    throw SetupError{
-        "--log reads a file and no network, as fast as it can: leave out --real-time and "
-        "--lcm-url"};
-  }
-  if (!is_replay && !options.report.empty()) {
-    throw SetupError{"--report needs --log: it is about a replay"};
-  }
-  if (!options.http_token.empty() && (is_replay || options.http.empty()))
-    throw SetupError{"--http-token needs --http, and a run that is live: a log takes no commands"};
-  if (!options.report.empty()) protect_inputs("--report", options.report, inputs_of(options));
-  if (!options.out_log.empty()) protect_inputs("--out-log", options.out_log, inputs_of(options));
-  if (options.save_map.empty()) return;
-  std::vector<std::filesystem::path> inputs = inputs_of(options);
-  std::erase(inputs, options.load_map);  // a map may be extended in its place
-  protect_inputs("--save-map", options.save_map, inputs);
-  const std::filesystem::path folder =
-      options.save_map.has_parent_path() ? options.save_map.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder))
-    throw SetupError{"--save-map: there is no folder '" + folder.string() + "'"};
-  if (std::filesystem::is_directory(options.save_map))
-    throw SetupError{"--save-map: '" + options.save_map.string() + "' is a folder"};
-  if (::access(folder.c_str(), W_OK) != 0)
-    throw SetupError{"--save-map: cannot write to the folder '" + folder.string() + "'"};
-}
-
 }  // namespace
 
 int run_described_process(int argc, char** argv, const ProcessDescription& description) {
@@ -258,7 +222,7 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
   return run_guarded(description.traits, [&] {
     if (options.check) {
       description.dump_config(options);
-      check(options, description.option_set);
+      check_options(options, description.option_set);
       description.check_node(options);
       if (options.logs.empty()) check_network(lcm_url_or_default(options.lcm_url));
       return int{kExitOk};
@@ -271,7 +235,7 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
       fmt::print("{}", description.dump_config(options));
       return int{kExitOk};
     }
-    check(options, description.option_set);
+    check_options(options, description.option_set);
     Inbox inbox;
     Outbox outbox;
     const auto node = description.make_node(options, inbox, outbox);

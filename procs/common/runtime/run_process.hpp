@@ -63,7 +63,7 @@ ProcessConfig<Config> process_config_from(const ProcessOptions& options) {
 }
 
 template <class NodeType>
-int run_process(int argc, char** argv) {
+ProcessDescription describe_process() {
   using Config = typename NodeType::Config;
   constexpr bool kWritesFolder = requires(Config c) {
     c.out_dir;
@@ -100,7 +100,12 @@ int run_process(int argc, char** argv) {
   description.make_node = [](const ProcessOptions& options, Inbox& inbox, Outbox& outbox) {
     return std::make_unique<NodeType>(process_config_from<Config>(options).own, inbox, outbox);
   };
-  return run_described_process(argc, argv, description);
+  return description;
+}
+
+template <class NodeType>
+int run_process(int argc, char** argv) {
+  return run_described_process(argc, argv, describe_process<NodeType>());
 }
 
 }  // namespace waymark

@@ -230,8 +230,7 @@ int check(ProcessOptions options, const SimulatorDescription& description) {
 }  // namespace
 
 int run_described_simulator(int argc, char** argv, const SimulatorDescription& description) {
-  const ParsedOptions parsed = parse_options(
-      argc, argv, description.traits, {.out_dir = true, .seed = true, .dump_robot_config = true});
+  const ParsedOptions parsed = parse_options(argc, argv, description.traits, kSimulatorOptions);
   if (parsed.exit_code) return *parsed.exit_code;
   const ProcessOptions& options = parsed.options;
   return run_guarded(description.traits, [&] {

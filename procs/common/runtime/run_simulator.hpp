@@ -48,6 +48,10 @@ struct SimulatorDescription {
   std::vector<std::string_view> files{};  ///< names of the files that it writes into --out
 };
 
+/// The optional options of a simulator.
+inline constexpr OptionSet kSimulatorOptions{
+    .out_dir = true, .seed = true, .dump_robot_config = true};
+
 int run_described_simulator(int argc, char** argv, const SimulatorDescription& description);
 
 template <class Config>
@@ -60,7 +64,7 @@ ProcessConfig<Config> simulator_config_from(const ProcessOptions& options) {
 }
 
 template <class SourceType>
-int run_simulator(int argc, char** argv) {
+SimulatorDescription describe_simulator() {
   using Config = typename SourceType::Config;
 
   SimulatorDescription description;
@@ -81,7 +85,12 @@ int run_simulator(int argc, char** argv) {
   description.make_source = [](const ProcessOptions& options, Inbox& inbox) {
     return std::make_unique<SourceType>(simulator_config_from<Config>(options).own, inbox);
   };
-  return run_described_simulator(argc, argv, description);
+  return description;
+}
+
+template <class SourceType>
+int run_simulator(int argc, char** argv) {
+  return run_described_simulator(argc, argv, describe_simulator<SourceType>());
 }
 
 }  // namespace waymark

@@ -205,6 +205,33 @@ TEST(Config, ProblemsAcrossFieldsHaveTheirLines) {
               HasSubstr("--set robot.lidar.range_min_m=5: robot.lidar.range_min_m: must be below"));
 }
 
+struct Hut {
+  Shelf shelf{};
+  int doors{1};
+
+  void describe(Fields& fields) {
+    fields.section("shelf", shelf);
+    fields.field("doors", doors, kNotNegative, "how many");
+  }
+};
+
+struct Village {
+  std::vector<Hut> huts{};
+  int wells{1};
+
+  void describe(Fields& fields) {
+    fields.list("huts", huts, "of all people");
+    fields.field("wells", wells, kNotNegative, "how many");
+  }
+};
+
+TEST(Config, ADumpReadsBackWhereValuesAreDescribedAfterTables) {
+  const Village village{.huts = {{.doors = 2}, {.shelf = {.books = 7}}}, .wells = 3};
+  const std::string text = dump_config(village);
+  EXPECT_EQ(dump_config(load_config<Village>({{file_with(text)}, {}})), text);
+  EXPECT_THAT(text, HasSubstr("wells = 3"));
+}
+
 TEST(Config, ADumpReadsBackAsTheSame) {
   RobotOnly config{};
   config.robot.lidar.num_beams = 17;
