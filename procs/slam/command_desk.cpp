@@ -30,8 +30,11 @@ StartPose checked_pose(const command_t& message) {
       throw Refusal{"the pose or its sigmas have a value that is no number"};
   if (std::abs(x_m) > kMaxCoordinate_m || std::abs(y_m) > kMaxCoordinate_m)
     throw Refusal{fmt::format("the pose is more than {} m away", kMaxCoordinate_m)};
-  if (!(sigma_m > 0.0) || !(sigma_rad > 0.0))
-    throw Refusal{fmt::format("sigmas must be above 0, not {} m and {} rad", sigma_m, sigma_rad)};
+  const auto [smallest, largest] = std::minmax(sigma_m, sigma_rad);
+  if (smallest < StartPose::kSmallestSigma || largest > StartPose::kLargestSigma)
+    throw Refusal{fmt::format("sigmas must be from {} to {}, not {} m and {} rad",
+                              StartPose::kSmallestSigma, StartPose::kLargestSigma, sigma_m,
+                              sigma_rad)};
   return {StartKind::kPose, x_m, y_m, yaw_rad, sigma_m, sigma_rad};
 }
 

@@ -20,6 +20,10 @@
 namespace waymark {
 namespace {
 
+/// [m, rad]: variances and their inverses are numbers that can be reckoned with.
+constexpr double kSmallestSurveySigma = 1e-6;
+constexpr double kLargestSurveySigma = 1e6;
+
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> fields;
   std::string field;
@@ -90,7 +94,9 @@ class SurveyReader {
 
   double needed_sigma(const std::vector<std::string>& fields, const std::string& column) const {
     const double value = needed(fields, column);
-    if (!(value > 0.0)) fail(fmt::format("{} is {}, but must be above 0", column, value));
+    if (value < kSmallestSurveySigma || value > kLargestSurveySigma)
+      fail(fmt::format("{} is {}, but must be from {} to {}", column, value, kSmallestSurveySigma,
+                       kLargestSurveySigma));
     return value;
   }
 

@@ -15,8 +15,8 @@ namespace waymark {
 /// sigma_yaw_rad; others are left alone. Lines that are empty or begin with # are comments.
 /// @param dictionary  of the markers, by its name.
 /// @throws SetupError  in one sentence with file and line: not there, a column missing, no number,
-/// an id twice or outside of the dictionary, a sigma that is not above 0, fewer markers than define
-/// a frame (two, or one with yaw).
+/// an id twice or outside of the dictionary, a sigma below 1e-6 or above 1e6, fewer markers than
+/// define a frame (two, or one with yaw).
 std::vector<SurveyedMarker> read_survey(const std::filesystem::path& file,
                                         const std::string& dictionary);
 

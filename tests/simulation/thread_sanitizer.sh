@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The stack under ThreadSanitizer: detector, slam, viewer and recorder, instrumented, with the simulator as released. A run
-# in lockstep, its replays with three estimators, and a run in real time while clients load the live page. Any report fails.
-# Libraries without instrumentation (cpp-httplib, OpenCV, TBB) are not looked into; with TBB's threads ThreadSanitizer sees
+# The stack under ThreadSanitizer: simulator, detector, slam, viewer and recorder, instrumented. A run in lockstep, its
+# replays with three estimators, and a run in real time while clients load the live page. Any report fails. Libraries without
+# instrumentation (MuJoCo, OSMesa, cpp-httplib, OpenCV, TBB) are not looked into; with TBB's threads ThreadSanitizer sees
 # races that are none, so slam has one. Builds for ten minutes: no part of tests/run.sh.
 #
 # usage: tests/simulation/thread_sanitizer.sh
@@ -12,12 +12,12 @@ case ${1:-} in
   --help | -h) sed -nE '3,/^set/{/^set/q; s/^# ?//p}' "$0" && exit 0 ;;
   ?*) echo "thread_sanitizer: takes no arguments (see --help)" >&2 && exit 2 ;;
 esac
-build_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/build/release
+build_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/build/tsan
 # shellcheck source=tests/process/installed.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../process/installed.sh"
 cd "$source_dir"
 readonly scenario=tests/data/scenarios/smallest.toml page=127.0.0.1:$((20000 + $$ % 10000))
-readonly under_test=(slam viewer recorder detector)
+readonly under_test=(sim slam viewer recorder detector)
 readonly deploy=$work/share/waymark/deploy
 
 # expect_clean CODE WHAT: fails unless it ended well and nothing was reported.
@@ -30,13 +30,8 @@ expect_clean() {
 
 run() { "$@" >"$work/output" 2>&1; }
 
-cmake --preset release >/dev/null
-cmake --build --preset release --target waymark-sim
 cmake --preset tsan >/dev/null
 cmake --build --preset tsan --target "${under_test[@]/#/waymark-}"
-rm "$work/bin" && mkdir "$work/bin"
-cp "$build_dir/waymark-sim" "$work/bin/"
-for name in "${under_test[@]}"; do cp "build/tsan/waymark-$name" "$work/bin/"; done
 
 echo "deadlock:libgdal" >"$work/suppressions"  # takes its locks in two orders while OpenCV loads it
 export TSAN_OPTIONS="exitcode=66 log_path=$work/race suppressions=$work/suppressions ignore_noninstrumented_modules=1"

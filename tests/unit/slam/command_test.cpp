@@ -64,8 +64,10 @@ TEST(Command, InvalidPosesAreRefused) {
   EXPECT_NE(why_refused(pose_command(0.0, std::numeric_limits<double>::infinity())), "");
   EXPECT_NE(why_refused(pose_command(1e7, 0.0)), "");
   command_t exact = pose_command(1.0, 0.0);
-  exact.sigmas[0] = 0.0;
-  EXPECT_NE(why_refused(exact).find("above 0"), std::string::npos);
+  for (const double sigma : {0.0, -0.1, 1e-300, 1e200}) {
+    exact.sigmas[0] = sigma;
+    EXPECT_NE(why_refused(exact).find("sigmas must be from 1e-06"), std::string::npos) << sigma;
+  }
 }
 
 TEST(Command, UnknownKindsAndModesAreRefused) {
@@ -272,6 +274,17 @@ TEST_F(CommandedSlam, ACommandedPoseIsTheRobotsPose) {
         test::map_from_world(*drive_) * test::true_pose(*drive_, estimate.utime - shift_us);
     EXPECT_LT(std::hypot(estimate.x_m - truth.x(), estimate.y_m - truth.y()), 0.25)
         << 1e-6 * static_cast<double>(estimate.utime);
+  }
+}
+
+TEST_F(CommandedSlam, APoseOfAnySigmasLeavesValidEstimates) {
+  for (const double sigma : {1e-300, 1e-6, 1.0, 1e3, 1e6, 1e200}) {
+    command_t command = pose_command(1.0, 0.5);
+    command.sigmas[0] = command.sigmas[1] = sigma;
+    const test::Drive drive =
+        drive_with(mapping(), messages_of(*drive_, 0.0, 6.0), {{3.0, command}});
+    EXPECT_EQ(replies_of(drive).size(), 1U) << sigma;
+    EXPECT_GT(drive.estimates.back().utime, 5'000'000) << sigma;
   }
 }
 
