@@ -5,6 +5,7 @@
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/waymark.hpp"
 #include "slam/core/input/preprocessing.hpp"
+#include "slam/sigma_range.hpp"
 
 namespace waymark {
 

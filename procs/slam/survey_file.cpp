@@ -4,6 +4,7 @@
 #include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
 #include "common/markers/marker_dictionary.hpp"
+#include "slam/sigma_range.hpp"
 
 #include <fmt/format.h>
 
@@ -19,10 +20,6 @@
 
 namespace waymark {
 namespace {
-
-/// [m, rad]: variances and their inverses are numbers that can be reckoned with.
-constexpr double kSmallestSurveySigma = 1e-6;
-constexpr double kLargestSurveySigma = 1e6;
 
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> fields;
@@ -94,9 +91,9 @@ class SurveyReader {
 
   double needed_sigma(const std::vector<std::string>& fields, const std::string& column) const {
     const double value = needed(fields, column);
-    if (value < kSmallestSurveySigma || value > kLargestSurveySigma)
-      fail(fmt::format("{} is {}, but must be from {} to {}", column, value, kSmallestSurveySigma,
-                       kLargestSurveySigma));
+    if (value < kSmallestSigma || value > kLargestSigma)
+      fail(fmt::format("{} is {}, but must be from {} to {}", column, value, kSmallestSigma,
+                       kLargestSigma));
     return value;
   }
 

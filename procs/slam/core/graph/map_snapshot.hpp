@@ -58,10 +58,6 @@ enum class StartKind {
 };
 
 struct StartPose {
-  /// Of both sigmas [m, rad]: variances and their inverses are numbers that can be reckoned with.
-  static constexpr double kSmallestSigma = 1e-6;
-  static constexpr double kLargestSigma = 1e6;
-
   StartKind kind{StartKind::kOrigin};
   double x_m{0.0};
   double y_m{0.0};
