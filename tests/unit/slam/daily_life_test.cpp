@@ -307,7 +307,8 @@ TEST_F(SurveyedMap, ErrorsInTheFileAreReportedWithTheirLine) {
     EXPECT_NE(why_refused(text).find(what), std::string::npos) << why_refused(text);
   };
   expect(good + "1,3,0,0,0.01,0.01,0.01\n", "line 3: id 1 comes twice");
-  expect(good + "2,3,0,0,0,0.01,0.01\n", "line 3: sigma_x_m is 0, but must be from 1e-06 to 1e+06");
+  expect(good + "2,3,0,0,0,0.01,0.01\n",
+         "line 3: sigma_x_m is 0, but must be from 1e-06 to 1000000");
   expect(good + "2,3,0,0,1e-300,0.01,0.01\n", "line 3: sigma_x_m is 1e-300, but must be");
   expect(good + "2,3,0,0,-1,0.01,0.01\n", "line 3: sigma_x_m is -1");
   expect(good + "250,3,0,0,0.1,0.01,0.01\n", "line 3: id is 250, but the dictionary has 0 to 249");
