@@ -27,20 +27,18 @@ Variable landmark(std::size_t marker) {
 }
 
 /// Variance per metre of the odometry's distance that depends on the learnt noise scale.
-double along_m2_per_m(const OdometryNoise& noise, const OdometryScale& scale, bool shows_way) {
+double along_m2_per_m(const OdometryNoise& noise, const OdometryScale& scale, double hidden_slips) {
   const double rolling = scale.along * noise.along_per_sqrt_m;
-  return rolling * rolling + (shows_way ? 0.0 : scale.slip_m2_per_m);
+  return rolling * rolling + hidden_slips * scale.slip_m2_per_m;
 }
 
 void drive_step(const Se2& before, const Step& step, const OdometryNoise& described,
-                const OdometryScale& scale, bool shows_way, PoseCovariance& known) {
-  CorrectedMotion moved =
-      corrected_motion(step.motion, OdometryErrors::Zero(), scaled(described, scale));
-  if (!shows_way) {
-    OdometryScale slips = scale;
-    slips.slip_per_m = 0.0;
-    moved = with_slips(moved, step.motion.distance_m, slips);
-  }
+                const OdometryScale& scale, double hidden_slips, PoseCovariance& known) {
+  OdometryScale slips = scale;
+  slips.slip_per_m = 0.0;
+  const CorrectedMotion moved =
+      with_slips(corrected_motion(step.motion, OdometryErrors::Zero(), scaled(described, scale)),
+                 step.motion.distance_m, hidden_slips, slips);
   Eigen::Matrix<double, 3, kCalibrationSize> jacobian_calibration =
       Eigen::Matrix<double, 3, kCalibrationSize>::Zero();
   jacobian_calibration.leftCols<kOdometryTerms>() =
@@ -188,11 +186,11 @@ std::vector<Eigen::Matrix3d> CovarianceModel::predict(
     const StepPlan& now = plan[i];
     if (i > 0) {
       const OdometryScale& later = plan[now.leaves_window].noise;
-      drive_step(steps_[i - 1].map_from_base, step, odometry, later, now.shows_way, known);
+      drive_step(steps_[i - 1].map_from_base, step, odometry, later, now.hidden_slips, known);
       match_scan_of(steps_, i, now.submap, now.keyframes, known);
       if (now.loop) match_scan_of(steps_, i, {{*now.loop, 1.0}}, 1.0, known);
-      const double more = along_m2_per_m(odometry, now.noise, now.shows_way) -
-                          along_m2_per_m(odometry, later, now.shows_way);
+      const double more = along_m2_per_m(odometry, now.noise, now.hidden_slips) -
+                          along_m2_per_m(odometry, later, now.hidden_slips);
       unfixed_m2 = now.shows_way ? 0.0 : unfixed_m2 + std::max(0.0, more) * step.motion.distance_m;
     }
     for (const StepSighting& sighting : now.sightings)

@@ -118,7 +118,23 @@ OdometryInnovation usual(double odometry_variance, double other_variance, double
           distance_m};
 }
 
-/// Sets the noise scale at each step by running the estimator's learner on average innovations.
+/// Share of the slips that walls and markers do not show, as WaymarkEstimator::hidden_slips().
+double hidden_slips(const Step& step, const StepPlan& plan) {
+  if (!step.observed.is_degenerate) return 0.0;
+  if (!plan.shows_way) return 1.0;
+  const Eigen::Vector2d& moved = step.motion.start_from_end.translation();
+  const Eigen::Vector2d along =
+      moved.norm() > 0.0 ? Eigen::Vector2d{moved.normalized()} : Eigen::Vector2d::UnitX();
+  double information = 0.0;  // [1/m^2]
+  for (const StepSighting& sighting : plan.sightings) {
+    const Eigen::Matrix3d& covariance = sighting.view->measurement.covariance;
+    information += 1.0 / along.dot(covariance.topLeftCorner<2, 2>() * along);
+  }
+  return hidden_share(information, plan.noise);
+}
+
+/// Sets the noise scale and the hidden slips at each step by running the estimator's learner on
+/// average innovations.
 void follow_noise(std::span<const Step> steps, const WaymarkConfig& config,
                   std::vector<StepPlan>& plan) {
   OdometryNoiseLearner learner;
@@ -157,6 +173,8 @@ void follow_noise(std::span<const Step> steps, const WaymarkConfig& config,
     plan[i].noise = learner.scale();
   }
   if (plan.size() > 1) plan[0].noise = plan[1].noise;
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    plan[i].hidden_slips = hidden_slips(steps[i], plan[i]);
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ struct StepPlan {
   double keyframes{0.0};         ///< expected number of keyframes in the step
   double keyframes_before{0.0};  ///< in all steps before
   bool shows_way{false};         ///< walls or markers observe the motion along the path
+  double hidden_slips{0.0};      ///< share of the slips that they do not show
   std::vector<StepSighting> sightings{};
   /// Steps whose poses represent the submap that the scans are matched with, and their shares.
   std::vector<std::pair<std::size_t, double>> submap{};
