@@ -18,7 +18,7 @@ struct ViewerSection {
   viewer::MapPageStyle map_page{};
   int scan_size_px{1000};
 
-  /// What they are, in words: viewer_config.cpp.
+  /// Names, units and explanations of the keys: viewer_config.cpp.
   void describe(Fields& fields);
 };
 

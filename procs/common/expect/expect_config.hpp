@@ -33,7 +33,7 @@ struct ExpectConfig {
   double nees_in_band_share{0.0};
   double seeds_share{0.0};
 
-  /// What they are, in words: expect_config.cpp.
+  /// Names, units and explanations of the keys: expect_config.cpp.
   void describe(Fields& fields);
 };
 

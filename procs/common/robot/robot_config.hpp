@@ -38,7 +38,7 @@ struct LidarConfig {
 
   Se2 base_from_lidar() const { return {x_m, y_m, yaw_rad}; }
 
-  /// What they are, in words: robot_config.cpp.
+  /// Names, units and explanations of the keys: robot_config.cpp.
   void describe(Fields& fields);
 };
 
@@ -68,7 +68,7 @@ struct CameraConfig {
 
   /// Pose of the optical frame (x right, y down, z forward) in the base frame.
   Eigen::Isometry3d base_from_camera() const;
-  /// What they are, in words: robot_config.cpp.
+  /// Names, units and explanations of the keys: robot_config.cpp.
   void describe(Fields& fields);
   void check(Problems& problems) const;
 };
@@ -83,7 +83,7 @@ struct MarkerConfig {
   double skew_sigma_rad{0.01};
   std::string survey_file{};
 
-  /// What they are, in words: robot_config.cpp.
+  /// Names, units and explanations of the keys: robot_config.cpp.
   void describe(Fields& fields);
 };
 

@@ -34,7 +34,7 @@ struct GmappingConfig {
   ScanGate gate{};
   MatcherConfig matcher{};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

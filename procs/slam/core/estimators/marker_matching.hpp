@@ -17,7 +17,7 @@ struct MarkerMatchingConfig {
   double sighting_sigma_m{kSightingSigma_m};
   double lost_agreement{0.25};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

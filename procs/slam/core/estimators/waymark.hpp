@@ -51,7 +51,7 @@ struct WaymarkConfig {
   MarkerMeasurementConfig markers{};
   LoopConfig loops{};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -17,7 +17,7 @@ struct StepNoise {
   double str{0.1};
   double stt{0.2};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -20,7 +20,7 @@ struct ScanGate {
            (temporal_update_s >= 0.0 && to_seconds(elapsed) > temporal_update_s);
   }
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

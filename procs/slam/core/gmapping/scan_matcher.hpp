@@ -34,7 +34,7 @@ struct MatcherConfig {
   int skip_beams{0};
   FreeCells free_cells{FreeCells::kAsReleased};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

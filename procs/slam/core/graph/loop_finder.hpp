@@ -28,7 +28,7 @@ struct LoopConfig {
   double gate{16.3};
   double surprise_share{0.85};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -66,7 +66,7 @@ struct StartPose {
   double sigma_rad{0.05};
   bool is_certain{false};  ///< need not be confirmed by markers or walls
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

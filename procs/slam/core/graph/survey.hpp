@@ -38,7 +38,7 @@ class Survey {
   /// Entries contradict each other, of which none is clearly wrong: the frame is not known.
   bool is_undecided() const { return unresolved_sigmas_ > 0.0; }
 
-  /// Surveyed markers whose landmarks are more than kWrong sigmas from their surveyed places, and
+  /// Surveyed markers whose landmarks are more than 5 sigmas from their surveyed places, and
   /// all that contradict each other while it is undecidable which one is wrong.
   std::vector<MapChange> changes(const Graph& graph) const;
 

@@ -24,7 +24,7 @@ class UnmeasuredMotion {
   /// They observed that the robot moved so far in that time, while the odometry stood still.
   void note_moved(double distance_m, double elapsed_s);
 
-  /// It is back: the odometry stands still because the robot does.
+  /// The robot has returned to where the odometry came to a standstill: both stand still.
   void note_returned() {
     is_stuck_ = false;
     note_observed();

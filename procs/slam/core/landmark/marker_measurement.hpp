@@ -22,7 +22,7 @@ struct MarkerMeasurementConfig {
   double covariance_factor{1.0};
   double gate{16.3};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

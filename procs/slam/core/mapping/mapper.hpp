@@ -16,7 +16,7 @@ struct MapperConfig {
   double face_margin_m{0.1};
   double same_marker_within_m{1.0};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -17,7 +17,7 @@ struct MotionNoise {
   double turn_per_sqrt_rad{0.02};
   bool rotation_only{false};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

@@ -96,7 +96,7 @@ class OdometryBuffer {
   static constexpr double kMaxDrive_m_s = 2.0;        ///< on average, while it was stuck
   static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
   static constexpr int kConsistentSamples = 4;        ///< samples that end a jump
-  static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz, if nobody forgets
+  static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz; the oldest go first
 
   std::deque<Sample> samples_{};
   Se2 smooth_from_raw_{};

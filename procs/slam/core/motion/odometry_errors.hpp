@@ -24,7 +24,7 @@ struct OdometryNoise {
   double half_track_m{0.14};  ///< half of the distance between the wheels; from the robot's file
   bool may_slip{true};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

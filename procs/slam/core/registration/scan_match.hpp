@@ -24,7 +24,7 @@ struct ScanMatchConfig {
   double weak_share{0.01};
   int min_inliers{8};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 

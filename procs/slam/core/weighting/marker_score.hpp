@@ -21,7 +21,7 @@ struct MatchingRewards {
   /// kink of half a degree when a particle with good ids and a bad heading draws it.
   double weak_reward{0.2};
 
-  /// What they are, in words: core_fields.cpp.
+  /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);
 };
 
