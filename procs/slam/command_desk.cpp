@@ -33,9 +33,9 @@ StartPose checked_pose(const command_t& message) {
   if (std::abs(x_m) > kMaxCoordinate_m || std::abs(y_m) > kMaxCoordinate_m)
     throw Refusal{fmt::format("the pose is more than {} m away", kMaxCoordinate_m)};
   const auto [smallest, largest] = std::minmax(sigma_m, sigma_rad);
-  if (smallest < kSmallestSigma || largest > kLargestSigma)
-    throw Refusal{fmt::format("sigmas must be from {} to {}, not {} m and {} rad", kSmallestSigma,
-                              kLargestSigma, sigma_m, sigma_rad)};
+  if (smallest < kSigmaRange.low || largest > kSigmaRange.high)
+    throw Refusal{fmt::format("sigmas must be from {} to {}, not {} m and {} rad", kSigmaRange.low,
+                              kSigmaRange.high, sigma_m, sigma_rad)};
   return {StartKind::kPose, x_m, y_m, yaw_rad, sigma_m, sigma_rad};
 }
 

@@ -21,12 +21,11 @@ void MotionNoise::describe(Fields& fields) {
 }
 
 void StartPose::describe(Fields& fields) {
-  constexpr Range kSigma{kSmallestSigma, kLargestSigma};
   fields.field("x_m", x_m, kAnyNumber, "of the robot in the map");
   fields.field("y_m", y_m, kAnyNumber, "of the robot in the map");
   fields.field("yaw_rad", yaw_rad, kAnyNumber, "direction of the robot in the map");
-  fields.field("sigma_m", sigma_m, kSigma, "how far it may be off, in x and in y");
-  fields.field("sigma_rad", sigma_rad, kSigma, "and in the heading");
+  fields.field("sigma_m", sigma_m, kSigmaRange, "how far it may be off, in x and in y");
+  fields.field("sigma_rad", sigma_rad, kSigmaRange, "and in the heading");
 }
 
 void UpdateGate::describe(Fields& fields) {

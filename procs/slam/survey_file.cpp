@@ -91,9 +91,9 @@ class SurveyReader {
 
   double needed_sigma(const std::vector<std::string>& fields, const std::string& column) const {
     const double value = needed(fields, column);
-    if (value < kSmallestSigma || value > kLargestSigma)
-      fail(fmt::format("{} is {}, but must be from {} to {}", column, value, kSmallestSigma,
-                       kLargestSigma));
+    if (value < kSigmaRange.low || value > kSigmaRange.high)
+      fail(fmt::format("{} is {}, but must be from {} to {}", column, value, kSigmaRange.low,
+                       kSigmaRange.high));
     return value;
   }
 

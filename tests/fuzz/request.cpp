@@ -3,9 +3,9 @@
 // with a status that is no server's error, or closes, and commands nothing without the token.
 // (cpp-httplib itself is compiled without instrumentation.)
 #include "common/messages/codec.hpp"
+#include "support/loopback.hpp"
 #include "viewer/http/page_server.hpp"
 
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -22,24 +22,6 @@ namespace {
 constexpr std::string_view kToken = "0123456789abcdef";
 constexpr int kPatience_ms = 50;
 constexpr std::array kStatuses{200, 206, 400, 401, 403, 404, 405, 413, 414, 415, 416, 503};
-
-sockaddr_in loopback(int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
-
-int free_port() {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address = loopback(0);
-  socklen_t size = sizeof address;
-  ::bind(socket, reinterpret_cast<sockaddr*>(&address), size);
-  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
-  ::close(socket);
-  return ntohs(address.sin_port);
-}
 
 /// The page of a run with a map of one tile and a camera image.
 class Page {
@@ -59,7 +41,7 @@ class Page {
   /// The beginning of what comes back; nothing when the request has no end.
   std::string answer_to(std::span<const std::uint8_t> request) const {
     const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    const sockaddr_in address = loopback(port_);
+    const sockaddr_in address = test::loopback(port_);
     if (::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
       std::abort();
     std::string bytes{request.begin(), request.end()};
@@ -91,7 +73,7 @@ class Page {
 
   std::atomic<int> num_commands_{0};
   viewer::Board board_{};
-  const int port_ = free_port();
+  const int port_ = test::free_port();
   viewer::PageServer server_{
       {.host = "127.0.0.1", .port = port_},
       board_,

@@ -78,6 +78,13 @@ def times_with_markers_s(log):
     return [1e-6 * frame.utime for frame in seen if frame.num_detections > 0]
 
 
+def num_wrong(off, row):
+    """How many of the errors [m] by time [us] are large while the health is good."""
+    with open(row / "covariance.csv", newline="") as file:
+        health = {round(1e6 * float(line["t"])): line["health"] for line in csv.DictReader(file)}
+    return sum(error > WRONG_M and health.get(t) in HEALTHY for t, error in off.items())
+
+
 def num_markers(markers_csv):
     with open(markers_csv, newline="") as file:
         return sum(1 for _ in csv.DictReader(file))
@@ -127,13 +134,11 @@ def localise(seed, other, starts, ids):
         if not off:
             lines.append({"from": skip_s, "ate": math.nan, "fix": math.inf, "wrong": 0})
             continue
-        with open(row / "covariance.csv", newline="") as file:
-            health = {round(1e6 * float(line["t"])): line["health"] for line in csv.DictReader(file)}
         first = min(off)
         lines.append({
             "from": skip_s, "ate": rms(error for t, error in off.items() if t >= first + 1e6 * SETTLED_S),
             "fix": 1e-6 * first - next((t for t in with_markers_s if t >= skip_s), math.inf),
-            "wrong": sum(error > WRONG_M and health.get(t) in HEALTHY for t, error in off.items())})
+            "wrong": num_wrong(off, row)})
     return lines
 
 

@@ -23,15 +23,13 @@ import os
 import pathlib
 import random
 import statistics
-import subprocess
 import sys
 
+from map_reuse import num_wrong, position_errors, replay, rms
 from poses import trajectory
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PARTS = ("right", "wrong")
 WRONG_BY_M = 0.5
-HEALTHY = ("2", "3")  # tracking, degenerate
 GOAL_M = {"right": 0.015, "wrong": 0.03}  # of the final path
 
 
@@ -60,13 +58,12 @@ def write_survey(path, rows):
         writer.writerows(rows)
 
 
-def rms(poses, truth):
+def rms_xy(poses, truth):
     """Along x and y."""
-    return [math.sqrt(statistics.fmean((pose[axis] - truth[t][axis]) ** 2 for t, pose in poses.items() if t in truth))
-            for axis in (0, 1)]
+    return [rms(pose[axis] - truth[t][axis] for t, pose in poses.items() if t in truth) for axis in (0, 1)]
 
 
-def replay(job):
+def replay_with_survey(job):
     folder, number, part, options = job
     rows, wrong, off = survey_of(folder, options, number)
     if part == "wrong":
@@ -76,20 +73,13 @@ def replay(job):
     out.mkdir(parents=True, exist_ok=True)
     survey = out / f"{part}.csv"
     write_survey(survey, rows)
-    done = subprocess.run([SOURCE / "deploy/replay.sh", folder / "run.lcm", "--estimator", "waymark", "--row", part, "--set",
-                           f'robot.markers.survey_file="{survey}"', "--out", out], check=False, capture_output=True, text=True)
-    if done.returncode != 0:
-        raise RuntimeError(f"seed {number}, {part}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
-    truth = trajectory(folder / "truth.tum")
-    with open(out / part / "changes.csv", newline="") as file:
+    replay(folder / "run.lcm", out, "--row", part, "--set", f'robot.markers.survey_file="{survey}"')
+    row, truth = out / part, trajectory(folder / "truth.tum")
+    with open(row / "changes.csv", newline="") as file:
         named = {int(change["id"]) for change in csv.DictReader(file) if change["change"] == "survey_off"}
-    poses = trajectory(out / part / "trajectory.tum")
-    on_line = rms(poses, truth)
-    with open(out / part / "covariance.csv", newline="") as file:
-        health = {round(1e6 * float(line["t"])): line["health"] for line in csv.DictReader(file)}
-    pretend = sum(math.dist(pose[:2], truth[t][:2]) > WRONG_BY_M and health.get(t) in HEALTHY for t, pose in poses.items()
-                  if t in truth)
-    return {"seed": number, "part": part, "final": math.hypot(*rms(trajectory(out / part / "trajectory_final.tum"), truth)),
+    on_line = rms_xy(trajectory(row / "trajectory.tum"), truth)
+    pretend = num_wrong(position_errors(row, truth, (0.0, 0.0, 0.0)), row)
+    return {"seed": number, "part": part, "final": math.hypot(*rms_xy(trajectory(row / "trajectory_final.tum"), truth)),
             "on_line": math.hypot(*on_line), "x": on_line[0], "y": on_line[1], "pretend": pretend, "named": sorted(named),
             "to_be_named": [rows[wrong]["id"]] if part == "wrong" else []}
 
@@ -124,7 +114,7 @@ def main():
     jobs = [(folder, number, part, options) for number, folder in sorted(seeds.items()) for part in parts]
     results = []
     with multiprocessing.Pool(os.cpu_count()) as pool:
-        for line in pool.imap(replay, jobs):
+        for line in pool.imap(replay_with_survey, jobs):
             print(f"seed {line['seed']:2} {line['part']}: final {line['final']:.4f}, on line {line['on_line']:.4f} m (x "
                   f"{line['x']:.4f}, y {line['y']:.4f}), named {line['named']} of {line['to_be_named']}, {line['pretend']} "
                   "poses pretend", flush=True)

@@ -122,15 +122,10 @@ OdometryInnovation usual(double odometry_variance, double other_variance, double
 double hidden_slips(const Step& step, const StepPlan& plan) {
   if (!step.observed.is_degenerate) return 0.0;
   if (!plan.shows_way) return 1.0;
-  const Eigen::Vector2d& moved = step.motion.start_from_end.translation();
-  const Eigen::Vector2d along =
-      moved.norm() > 0.0 ? Eigen::Vector2d{moved.normalized()} : Eigen::Vector2d::UnitX();
-  double information = 0.0;  // [1/m^2]
-  for (const StepSighting& sighting : plan.sightings) {
-    const Eigen::Matrix3d& covariance = sighting.view->measurement.covariance;
-    information += 1.0 / along.dot(covariance.topLeftCorner<2, 2>() * along);
-  }
-  return hidden_share(information, plan.noise);
+  std::vector<Eigen::Matrix2d> places;
+  for (const StepSighting& sighting : plan.sightings)
+    places.emplace_back(sighting.view->measurement.covariance.topLeftCorner<2, 2>());
+  return hidden_share(step.motion, places, plan.noise);
 }
 
 /// Sets the noise scale and the hidden slips at each step by running the estimator's learner on

@@ -97,15 +97,10 @@ WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
 
 /// Share of the slips since the last keyframe that known markers do not show.
 double WaymarkEstimator::hidden_slips(std::span<const MarkerMeasurement> measurements) const {
-  const Se2& step = motion_.start_from_end;
-  if (step.translation().norm() == 0.0) return 0.0;
-  const Eigen::Vector2d along = step.rotation().transpose() * step.translation().normalized();
-  double information = 0.0;  // [1/m^2]
-  for (const MarkerMeasurement& measured : measurements) {
-    if (!book_.knows(measured.id)) continue;
-    information += 1.0 / along.dot(measured.covariance.topLeftCorner<2, 2>() * along);
-  }
-  return hidden_share(information, graph_.noise().scale);
+  std::vector<Eigen::Matrix2d> places;
+  for (const MarkerMeasurement& measured : measurements)
+    if (book_.knows(measured.id)) places.emplace_back(measured.covariance.topLeftCorner<2, 2>());
+  return hidden_share(motion_, places, graph_.noise().scale);
 }
 
 void WaymarkEstimator::add_odometry_factor(std::size_t keyframe) {

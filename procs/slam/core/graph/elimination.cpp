@@ -109,7 +109,7 @@ Eigen::VectorXd Elimination::step(const Eigen::VectorXd& corner_step) const {
       -x.head(num_eliminated).cwiseQuotient(solver_.vectorD().head(num_eliminated));
   x.tail(num_kept_).noalias() = corner_root_.transpose() * corner_step;
   solver_.matrixU().solveInPlace(x);
-  return x;
+  return x.head(num_eliminated);
 }
 
 }  // namespace waymark

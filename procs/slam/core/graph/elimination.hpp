@@ -34,7 +34,7 @@ class Elimination {
   Eigen::VectorXd corner_g() const;
 
   /// @param corner_step  of the unknowns that are kept.
-  /// @return the step of all, the eliminated ones first.
+  /// @return the step of the eliminated ones.
   Eigen::VectorXd step(const Eigen::VectorXd& corner_step) const;
 
  private:

@@ -142,7 +142,14 @@ Eigen::Matrix3d unmeasured_covariance(double sigma_m) {
   return (sigma_m * Eigen::Vector3d{1.0, kSideways, kTurn_rad_per_m}).cwiseAbs2().asDiagonal();
 }
 
-double hidden_share(double information, const OdometryScale& scale) {
+double hidden_share(const Motion& motion, std::span<const Eigen::Matrix2d> places,
+                    const OdometryScale& scale) {
+  const Se2& step = motion.start_from_end;
+  if (step.translation().norm() == 0.0) return 0.0;
+  const Eigen::Vector2d along = step.rotation().transpose() * step.translation().normalized();
+  double information = 0.0;  // [1/m^2]
+  for (const Eigen::Matrix2d& covariance : places)
+    information += 1.0 / along.dot(covariance * along);
   return 1.0 / (1.0 + scale.slip_m2 * information);
 }
 

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -42,10 +43,12 @@ struct OdometryScale {
 /// The noise with its standard deviations multiplied by the scale.
 OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
 
-/// Share of the slips that stay hidden where markers observe the motion along the path with
-/// `information` [1/m^2]: all without markers, hardly any where their standard deviation is small
-/// beside a slip. Slips that show are explained by MotionKind.
-double hidden_share(double information, const OdometryScale& scale);
+/// Share of a motion's slips that stay hidden where known markers are sighted after it: all without
+/// markers, hardly any where their standard deviation along the path is small beside a slip. Slips
+/// that show are explained by MotionKind.
+/// @param places  covariances of the markers' measured positions, axes of the base at the end.
+double hidden_share(const Motion& motion, std::span<const Eigen::Matrix2d> places,
+                    const OdometryScale& scale);
 
 /// Adds mean and variance of slips to a measured motion.
 /// @param share  of the slips that are hidden, 0..1.

@@ -2,6 +2,7 @@
 #include "slam/core/graph/survey_model.hpp"
 
 #include "slam/core/graph/damped_root.hpp"
+#include "slam/core/graph/step_share.hpp"
 
 #include <Eigen/LU>
 
@@ -13,8 +14,7 @@ namespace {
 
 constexpr int kMostSteps = 20;
 constexpr double kConverged = 1e-5;  // [m, rad]
-constexpr double kMostTurn_rad = 0.5;
-constexpr double kGauge = 1e3;  // 1 / sigma [m, rad] of the prior that fixes the gauge
+constexpr double kGauge = 1e3;       // 1 / sigma [m, rad] of the prior that fixes the gauge
 
 void retract_all(State& state, const Eigen::VectorXd& step) {
   for (std::size_t i = 0; i < state.landmarks.size(); ++i)
@@ -32,12 +32,12 @@ Eigen::MatrixXd rigid_steps(const State& state) {
   return steps;
 }
 
-/// Of the step to take: farther, a prior's linearisation does not hold.
+/// step_share() by the largest turn of a landmark.
 double share_of(const Eigen::VectorXd& step) {
   double turn_rad = 0.0;
   for (Eigen::Index i = 2; i < step.size(); i += 3)
     turn_rad = std::max(turn_rad, std::abs(step[i]));
-  return turn_rad > kMostTurn_rad ? kMostTurn_rad / turn_rad : 1.0;
+  return step_share(turn_rad);
 }
 
 struct Equations {

@@ -76,7 +76,7 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   const State before = state_;
   const Eigen::VectorXd window_g = prior_.g;
   const Eigen::VectorXd window_step = solve_window();
-  Eigen::VectorXd x = elimination.step(window_step).head(3 * std::ssize(variables));
+  Eigen::VectorXd x = elimination.step(window_step);
   const auto place_of = [&](const Variable& variable) {
     return elimination.place_of(variable);
   };

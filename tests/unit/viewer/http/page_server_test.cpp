@@ -3,12 +3,12 @@
 #include "viewer/http/page_server.hpp"
 
 #include "common/errors/setup_error.hpp"
+#include "support/loopback.hpp"
 #include "viewer/http/page_html.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <httplib.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -21,24 +21,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-sockaddr_in loopback(int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
-
-int free_port() {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address = loopback(0);
-  socklen_t size = sizeof address;
-  ::bind(socket, reinterpret_cast<sockaddr*>(&address), size);
-  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
-  ::close(socket);
-  return ntohs(address.sin_port);
-}
 
 class PageServerTest : public ::testing::Test {
  protected:
@@ -59,7 +41,7 @@ class PageServerTest : public ::testing::Test {
   /// A connection of our own, for what no client library would send.
   int connect() const {
     const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-    const sockaddr_in address = loopback(port_);
+    const sockaddr_in address = test::loopback(port_);
     const timeval patience{.tv_sec = 10, .tv_usec = 0};
     ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     EXPECT_EQ(::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
@@ -77,7 +59,7 @@ class PageServerTest : public ::testing::Test {
   }
 
   static constexpr std::size_t kTitleBytes = 100'000;  // so that few views fill a socket's buffers
-  const int port_ = free_port();
+  const int port_ = test::free_port();
   Board board_{};
   PageServer server_{{.host = "127.0.0.1", .port = port_}, board_, ::testing::TempDir()};
   httplib::Client client_{"127.0.0.1", port_};
@@ -131,7 +113,7 @@ class PageCommandsTest : public PageServerTest {
                            "application/json");
   }
 
-  const int command_port_ = free_port();
+  const int command_port_ = test::free_port();
   std::vector<command_t> asked_{};
   std::optional<reply_t> reply_{
       reply_t{.utime = 0, .command_id = 0, .state = reply_t::STATE_DONE, .text = "saved"}};

@@ -74,7 +74,8 @@ double variance_along(double sigma_m) {
   OdometryScale scale = learner_after(0.7).scale();
   scale.along = 1.0;
   OdometryFactor factor{0, 1, Motion::between({}, {1.0, 0.0, 0.0})};
-  factor.hidden_slips = hidden_share(1.0 / squared(sigma_m), scale);
+  const Eigen::Matrix2d place = squared(sigma_m) * Eigen::Matrix2d::Identity();
+  factor.hidden_slips = hidden_share(factor.motion, {{place}}, scale);
   State state;
   state.keyframes = {{}, {1.0, 0.0, 0.0}};
   const LinearFactor linear = factor.linearise(state, {}, scale);
