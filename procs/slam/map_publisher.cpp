@@ -17,14 +17,18 @@ constexpr std::size_t kTilesPerMessage = 20;  // 20 * (12 + 3 * 1024) bytes: fit
 
 /// Tiles with anything in them, row by row.
 std::vector<TileIndex> tiles_of(const GridMap& map) {
-  std::set<TileIndex> tiles;
-  map.occupancy.for_each_tile([&](TileIndex index, const auto&) { tiles.insert(index); });
-  map.markers.for_each_tile([&](TileIndex index, const auto&) { tiles.insert(index); });
-  return {tiles.begin(), tiles.end()};
+  std::vector<TileIndex> occupancy;
+  std::vector<TileIndex> markers;
+  map.occupancy.for_each_tile([&](TileIndex index, const auto&) { occupancy.push_back(index); });
+  map.markers.for_each_tile([&](TileIndex index, const auto&) { markers.push_back(index); });
+  std::vector<TileIndex> tiles;
+  std::ranges::set_union(occupancy, markers, std::back_inserter(tiles));
+  return tiles;
 }
 
 std::int8_t percent(const OccupancyCell& cell) {
   if (!cell.is_mapped()) return -1;
+  if (cell.hits == 0) return 0;  // most cells; rounding takes long
   return static_cast<std::int8_t>(std::lround(100.0 * cell.occupancy()));
 }
 
@@ -33,12 +37,15 @@ map_tile_t to_message(const GridMap& map, TileIndex index) {
   tile.tile_x = index.x;
   tile.tile_y = index.y;
   tile.num_cells = kTileCells;
-  tile.occupancy.reserve(kTileCells);
-  tile.marker_ids.reserve(kTileCells);
-  for (std::size_t offset = 0; offset < kTileCells; ++offset) {
-    const CellIndex cell = cell_at(index, offset);
-    tile.occupancy.push_back(percent(map.occupancy[cell]));
-    tile.marker_ids.push_back(static_cast<std::int16_t>(map.markers[cell].most_supported()));
+  tile.occupancy.assign(kTileCells, percent({}));
+  tile.marker_ids.assign(kTileCells, static_cast<std::int16_t>(MarkerCell{}.most_supported()));
+  if (const auto* occupancy = map.occupancy.tile(index)) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset)
+      tile.occupancy[offset] = percent((*occupancy)[offset]);
+  }
+  if (const auto* markers = map.markers.tile(index)) {
+    for (std::size_t offset = 0; offset < kTileCells; ++offset)
+      tile.marker_ids[offset] = static_cast<std::int16_t>((*markers)[offset].most_supported());
   }
   return tile;
 }

@@ -20,15 +20,12 @@ void visit_line(CellIndex from, CellIndex to, Visit&& visit) {
   CellIndex cell = from;
   visit(cell);
   while (cell != to) {
-    const int doubled = 2 * error;
-    if (doubled > -dy) {
-      error -= dy;
-      cell.x += step_x;
-    }
-    if (doubled < dx) {
-      error += dx;
-      cell.y += step_y;
-    }
+    // Without branches: which of the two steps comes next cannot be predicted.
+    const int along_x = 2 * error > -dy ? -1 : 0;
+    const int along_y = 2 * error < dx ? -1 : 0;
+    error += (along_y & dx) - (along_x & dy);
+    cell.x += along_x & step_x;
+    cell.y += along_y & step_y;
     visit(cell);
   }
 }

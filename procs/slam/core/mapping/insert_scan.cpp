@@ -12,41 +12,6 @@ namespace waymark {
 
 namespace {
 
-/// A set of cells, as a bit each over a rectangle.
-class CellSet {
- public:
-  /// @param others  cells that the rectangle holds as well.
-  CellSet(std::span<const CellIndex> cells, std::span<const CellIndex> others) {
-    if (cells.empty()) return;
-    low_ = cells.front();
-    CellIndex high = low_;
-    for (const auto& some : {cells, others}) {
-      for (const CellIndex& cell : some) {
-        low_ = {std::min(low_.x, cell.x), std::min(low_.y, cell.y)};
-        high = {std::max(high.x, cell.x), std::max(high.y, cell.y)};
-      }
-    }
-    width_ = std::int64_t{high.x} - low_.x + 1;
-    const std::int64_t height = std::int64_t{high.y} - low_.y + 1;
-    is_in_.resize(static_cast<std::size_t>(width_ * height));
-    for (const CellIndex& cell : cells)
-      is_in_[place_of(cell)] = true;
-  }
-
-  /// @param cell  in the rectangle.
-  bool contains(CellIndex cell) const { return is_in_[place_of(cell)]; }
-
- private:
-  std::size_t place_of(CellIndex cell) const {
-    return static_cast<std::size_t>((std::int64_t{cell.y} - low_.y) * width_ +
-                                    (std::int64_t{cell.x} - low_.x));
-  }
-
-  CellIndex low_{};
-  std::int64_t width_{0};
-  std::vector<bool> is_in_{};
-};
-
 /// @param count  1 to insert the beams, -1 (modulo 2^32) to erase them.
 void count_beams(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
                  std::uint32_t count, GridMap& map) {
@@ -54,24 +19,25 @@ void count_beams(std::span<const AnnotatedBeam> beams, const Se2& map_from_base,
   const auto cell_of = [&](const Eigen::Vector2d& in_base) {
     return map.frame.cell_of(rotation * in_base + map_from_base.translation());
   };
-  std::vector<CellIndex> start;
   std::vector<CellIndex> hit;
-  start.reserve(beams.size());
   hit.reserve(beams.size());
   for (const AnnotatedBeam& annotated : beams) {
-    start.push_back(cell_of(annotated.beam.start_in_base));
     hit.push_back(cell_of(annotated.beam.end_in_base));
     OccupancyCell& cell = map.occupancy.edit(hit.back());
     cell.hits += count;
     cell.visits += count;
   }
-  const CellSet hits{hit, start};
+  // Where a beam of the scan ends, the others do not pass: such cells keep their visits.
+  std::vector<std::uint32_t> visits;
+  visits.reserve(beams.size());
+  for (const CellIndex& cell : hit)
+    visits.push_back(map.occupancy[cell].visits);
   TileEditor editor{map.occupancy};
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    visit_line(start[i], hit[i], [&](CellIndex cell) {
-      if (!hits.contains(cell)) editor.edit(cell).visits += count;
-    });
-  }
+  for (std::size_t i = 0; i < beams.size(); ++i)
+    visit_line(cell_of(beams[i].beam.start_in_base), hit[i],
+               [&](CellIndex cell) { editor.edit(cell).visits += count; });
+  for (std::size_t i = 0; i < beams.size(); ++i)
+    map.occupancy.edit(hit[i]).visits = visits[i];
 }
 
 }  // namespace
