@@ -11,11 +11,11 @@ namespace waymark {
 namespace {
 
 constexpr int kLeastNewSightings = 3;  // of the marker at its new place, to retire the old one
-constexpr double kSamePlace = 0.25;    // of a marker's side, since boards have markers side by side
+constexpr double kSamePlace = 0.25;    // of a marker's side length: boards carry adjacent markers
 constexpr double kSameFacing_rad = radians(45.0);  // a wall has two sides
 
-/// Converts the Jacobians from steps in the poses' own frames to differences in the map's axes, in
-/// which the graph's covariances are.
+/// Converts the Jacobians from steps in the poses' own frames to differences in the map's axes, as
+/// in Graph::covariance().
 LinearFactor in_map_axes(LinearFactor linear, const State& state) {
   for (LinearFactor::Block& block : linear.blocks)
     if (block.variable.kind != VariableKind::kCalibration)
@@ -75,7 +75,7 @@ void MarkerBook::add(int id, Timestamp time) {
   moved_from_.emplace_back();
 }
 
-/// Times of another run mean nothing in this one.
+/// Resets the times: those of another run cannot be compared with this run's.
 void MarkerBook::add_known(const Landmark& landmark) {
   entries_.push_back(landmark);
   ++num_known_;
