@@ -93,10 +93,10 @@ void MarkerBook::note_sighting(std::size_t landmark, Timestamp time) {
 }
 
 void MarkerBook::note_misses(const State& state, std::size_t keyframe,
-                             const std::function<bool(const Se2&)>& is_in_view, Timestamp now) {
+                             const std::function<bool(const Se2&)>& is_in_view, Timestamp since) {
   const Se2 base_from_map = state.keyframes[keyframe].inverse();
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (is_retired_[i] || entries_[i].last_seen >= now ||
+    if (is_retired_[i] || entries_[i].last_seen >= since ||
         !is_in_view(base_from_map * state.landmarks[i])) {
       continue;
     }

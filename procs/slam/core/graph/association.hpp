@@ -48,12 +48,12 @@ class MarkerBook {
 
   void note_sighting(std::size_t landmark, Timestamp time);
 
-  /// Counts a missed detection for every marker that should be in view and was not sighted at
-  /// `now`. If another marker of the same id has appeared since the missing one was last seen, the
-  /// marker was moved: its old landmark is retired.
+  /// Counts a missed detection for every marker that should be in view and has not been sighted
+  /// since `since`. If another marker of the same id has appeared after the missing one was last
+  /// seen, the marker was moved: its old landmark is retired.
   void note_misses(const State& state, std::size_t keyframe,
                    const std::function<bool(const Se2& base_from_marker)>& is_in_view,
-                   Timestamp now);
+                   Timestamp since);
 
   /// The retired landmark of the same marker, before it was moved.
   std::optional<std::size_t> moved_from(std::size_t landmark) const {

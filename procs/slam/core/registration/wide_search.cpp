@@ -32,7 +32,7 @@ double sigmas_from_odometry(const ScanMatch& match, const WideSearch& search) {
   return std::sqrt(chi2(off, search.odometry_covariance));
 }
 
-/// Of all beams: those that end where the map has something else.
+/// Share of all beams that end in mapped cells but are outliers.
 double contradicting_share(const ScanMatch& match) {
   return match.mapped_share * (1.0 - match.inlier_share);
 }
@@ -67,7 +67,7 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
         std::max(kContradictedSigmas, kFarFarther * plain_sigmas)) {
       const bool shows_few_walls = unexplained(*found, points) > found->inliers;
       if (shows_few_walls && search.contradicts_map(found->map_from_base)) return false;
-      // A view that is new is more usual than odometry that is wrong.
+      // A view of a new place is more likely than wrong odometry.
       if (usual.is_contradicted(plain) && contradicting_share(plain) > kManyContradict &&
           found->inliers > kFarMore * plain.inliers) {
         return true;
