@@ -17,13 +17,13 @@ class PublishedMap {
  public:
   PublishedMap(const GridFrame& frame, double usable_range_m, double occupied_threshold);
 
-  /// All particles descend from `trunk`'s newest node: draws the trunk for good, and frees its
-  /// scans and all of its nodes but the newest.
+  /// Once all particles descend from `trunk`'s newest node: draws the trunk permanently, and frees
+  /// its scans and all of its nodes but the newest.
   void finalise(const Trajectory& trunk);
 
-  /// The map along a trajectory as slam_gmapping publishes it: a mapped cell counts one visit, and
-  /// a hit when more than the threshold of its beams ended there. When the trajectory continues the
-  /// one before, only its new scans are drawn. Tiles without a change keep their address.
+  /// The map along a trajectory as slam_gmapping publishes it: a mapped cell has one visit, and a
+  /// hit if the share of beams that ended in it exceeds the threshold. If the trajectory continues
+  /// the previous one, only its new scans are drawn. Unchanged tiles keep their address.
   const GridMap& along(const Trajectory& trajectory);
 
  private:

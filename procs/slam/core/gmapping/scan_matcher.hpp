@@ -81,10 +81,10 @@ class ScanMatcher {
     double before_y;
   };
 
-  /// So many rays are turned into the map together, with vector instructions.
+  /// Number of rays that are transformed together, with vector instructions.
   static constexpr std::size_t kAtOnce = 8;
 
-  /// Of the rays that were turned together: squared, in cells^2.
+  /// Squared distances of these rays [cells^2].
   struct Distances {
     std::array<float, kAtOnce> squared;
     std::size_t count;

@@ -12,10 +12,10 @@ namespace waymark {
 
 namespace {
 
-/// A set of cells, as a bit each over a rectangle.
+/// A set of cells: one bit per cell of a rectangle.
 class CellSet {
  public:
-  /// @param others  cells that the rectangle holds as well.
+  /// @param others  cells that the rectangle has to include, too.
   CellSet(std::span<const CellIndex> cells, std::span<const CellIndex> others) {
     if (cells.empty()) return;
     low_ = cells.front();

@@ -213,9 +213,9 @@ class CorrelativeField::Search {
     const Heading* heading{nullptr};
     CellIndex offset{};  ///< the lowest of its offsets
     int bound{0};
-    std::int64_t cost{0};  ///< least squared cells and steps from the guess
+    std::int64_t cost{0};  ///< least squared distance from the guess, in cells and heading steps
 
-    /// Best bound first; equal ones by nearness to the guess, then by place.
+    /// Best bound first; equal ones by distance from the guess, then by heading and offset.
     static bool is_before(const Node& a, const Node& b) {
       if (a.bound != b.bound) return a.bound > b.bound;
       if (a.cost != b.cost) return a.cost < b.cost;

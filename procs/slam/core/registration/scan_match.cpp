@@ -25,13 +25,13 @@ constexpr double kMaxBlur_m = 0.25;   // no more than half of a cell
 constexpr double kReachOfCell = 0.5;  // of a level's spacing; from less, the next finer converges
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
-// Beams in one cell whose errors count as independent: the cell's mean has an error, too, and a
-// person displaces all beams that end on him.
+// Number of beams in one cell that count as independent: the error of the cell's mean is common to
+// all of them, and so is the displacement if they end on a person.
 constexpr double kIndependentBeams = 4.0;
-// A cell that was seen from n keyframes counts as lasting with the weight n / (n + this).
+// A cell observed from n keyframes counts as static (lasting) with the weight n / (n + this).
 constexpr double kBrief = 3.0;
 
-constexpr double kGuessFades = 10.0;  // on its standard deviations, for the optimum without it,
+constexpr double kGuessFades = 10.0;               // factor on the guess's sigmas in the last step,
 const Eigen::Vector3d kLeastFaded{0.2, 0.2, 0.1};  // and what is added to them [m, m, rad]
 
 // Noise of ranges.
