@@ -74,10 +74,10 @@ TEST(Command, UnknownKindsAndModesAreRefused) {
   command_t command{};
   for (const int kind : {-128, -1, 0, 5, 127}) {
     command.kind = static_cast<std::int8_t>(kind);
-    EXPECT_NE(why_refused(command).find("not known"), std::string::npos) << kind;
+    EXPECT_NE(why_refused(command).find("unknown"), std::string::npos) << kind;
   }
   command.kind = command_t::KIND_SET_MODE;
-  EXPECT_NE(why_refused(command).find("not known"), std::string::npos);
+  EXPECT_NE(why_refused(command).find("unknown"), std::string::npos);
 }
 
 TEST(CommandDesk, ARepeatedCommandActsOnceAndIsAnsweredAgain) {

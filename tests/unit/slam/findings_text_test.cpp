@@ -31,7 +31,7 @@ TEST(FindingsText, DeviationsAreReportedWithNumbers) {
   findings.odometry_stuck = 20;
   const auto found = worth_saying(findings, 40);
   const std::string sentence = sentence_of(found);
-  EXPECT_THAT(sentence, HasSubstr("5.7 times as noisy along the way"));
+  EXPECT_THAT(sentence, HasSubstr("5.7 times as noisy along the path"));
   EXPECT_THAT(sentence, HasSubstr("scatter by 0.041 m"));
   EXPECT_THAT(sentence, HasSubstr("stood still while the robot moved for 2.0 %"));
   EXPECT_THAT(sentence, HasSubstr("3.8 % of the scans repeat"));
