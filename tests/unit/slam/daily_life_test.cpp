@@ -241,7 +241,7 @@ TEST_F(DailyLife, ACorrectMapHasNoChanges) {
   EXPECT_FALSE(sent_on(channels::kSlamChanges, today).empty());
 }
 
-TEST_F(DailyLife, AMapOfAnotherBuildingIsNamed) {
+TEST_F(DailyLife, AMapOfAnotherBuildingIsReported) {
   const auto names_it = [](const test::SyntheticCorridor& corridor, MapMode mode) {
     const auto sent = sent_on(channels::kSlamFindings,
                               test::drive_through(config_for(mode, *file_, StartKind::kOrigin),

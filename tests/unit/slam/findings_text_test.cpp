@@ -41,7 +41,7 @@ TEST(FindingsText, DeviationsAreReportedWithNumbers) {
   EXPECT_EQ(found[1].share, 0.02);
 }
 
-TEST(FindingsText, AMountingThatIsNotAsDescribedIsNamedWithItsError) {
+TEST(FindingsText, AMountingThatIsNotAsDescribedIsReportedWithItsError) {
   Findings findings = as_described();
   findings.miscalibrated = {{OdometryTerm::kLidarYaw, 0.0873, 0.001},
                             {OdometryTerm::kScale, -0.12, 0.004}};
