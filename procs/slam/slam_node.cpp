@@ -130,7 +130,7 @@ void SlamNode::publish_end(Timestamp time) {
   logging::info("{}", timer_.summary());
 }
 
-/// One part of the end: what it throws does not cost the others.
+/// Runs one part of finish(); an exception in it is logged and does not prevent the others.
 void SlamNode::attempt(std::string_view part, const std::function<void()>& work) {
   try {
     work();
@@ -146,7 +146,7 @@ std::optional<std::vector<Finding>> SlamNode::findings() const {
   return worth_saying(*found, counters_.get(to_string(Skip::kScanRepeated)));
 }
 
-/// What data were not used is in the status, too.
+/// Publishes the findings; shares of unused data are also counters, which the status has.
 void SlamNode::publish_findings(Timestamp time) {
   const auto found = findings();
   if (!found) return;

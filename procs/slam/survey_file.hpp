@@ -15,8 +15,7 @@ namespace waymark {
 /// sigma_yaw_rad; others are ignored. Empty lines and lines that begin with # are skipped.
 /// @param dictionary  name of the markers' dictionary.
 /// @throws SetupError  in one sentence with file and line: no file, a missing column, not a number,
-/// a
-///                     repeated id or one outside of the dictionary, a sigma outside of
+///                     an id that is repeated or outside of the dictionary, a sigma outside of
 ///                     kSigmaRange, fewer markers than define a frame (two, or one with yaw).
 std::vector<SurveyedMarker> read_survey(const std::filesystem::path& file,
                                         const std::string& dictionary);

@@ -78,8 +78,7 @@ class Estimator {
   /// The map redrawn along trajectory(). O(scans).
   virtual GridMap redrawn_map() const { return map(); }
 
-  /// Keyframes of redrawn_map() and the constraints between them; only of methods that have a
-  /// graph.
+  /// Keyframes of redrawn_map() and the constraints between them; only of graph methods.
   virtual std::optional<PoseGraph> pose_graph() const { return std::nullopt; }
 
   /// Differences from the loaded map and the survey; only of methods that detect them.

@@ -10,8 +10,7 @@ namespace {
 
 constexpr double kSamePlace_m = 0.5;    // between two markers at the same place
 constexpr double kContradicts_m = 0.5;  // of a sighting from all markers of its id
-// The same while odometry stands still: the larger of a distance and so many sigmas of the
-// sighting.
+// The same while odometry stands still: the larger of a distance and so many sigmas.
 constexpr double kStandsStill_m = 0.03;
 constexpr double kStandsStillSigmas = 4.0;
 // A marker counts as missed if no frame of the last second has shown it.

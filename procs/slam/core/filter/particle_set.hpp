@@ -35,7 +35,7 @@ class ParticleSet {
     log_weights_[particle] += log_weight;
   }
 
-  /// Shifts the log weights to a maximum of 0 and computes the weights; equal ones if all are 0.
+  /// Shifts the log weights to a maximum of 0 and computes the weights; equal if all are 0.
   void normalise() {
     const double highest = *std::max_element(log_weights_.begin(), log_weights_.end());
     double sum = 0.0;

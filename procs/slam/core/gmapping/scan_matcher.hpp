@@ -22,8 +22,7 @@ enum class FreeCells {
   kIntended,    ///< the cell sqrt(2) cells before the end of the beam must not be a wall
 };
 
-/// GMapping's own names: core_fields.cpp. Both sigmas are in m^2: the released code does not square
-/// them.
+/// GMapping's own names: core_fields.cpp. The sigmas are in m^2: the released code does not square.
 struct MatcherConfig {
   double sigma_m2{0.05};
   double likelihood_sigma_m2{0.075};

@@ -29,8 +29,7 @@ class Drift {
 
  private:
   Eigen::Vector2d newest_{Eigen::Vector2d::Zero()};
-  std::vector<Eigen::Matrix3d>
-      sums_{};  ///< up to each keyframe, with lever arms to the map's origin
+  std::vector<Eigen::Matrix3d> sums_{};  ///< up to each keyframe, referred to the map's origin
 };
 
 }  // namespace waymark

@@ -46,8 +46,7 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
 /// Share (0..1) of a motion's slips that remain unobserved although known markers are sighted at
 /// its end: 1 without markers, near 0 where their standard deviation along the path is small
 /// compared with a slip, 0 without translation. Observed slips are modelled by MotionKind.
-/// @param places  covariances of the markers' measured positions [m^2], axes of the base at the
-/// end.
+/// @param places  covariances [m^2] of the markers' measured positions, base axes at the end.
 double hidden_share(const Motion& motion, std::span<const Eigen::Matrix2d> places,
                     const OdometryScale& scale);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The factor graph: a window of the newest keyframes is solved at every update, the whole graph
-// when a loop closes.
+// The factor graph: a window of the newest keyframes is optimised at every update, the whole graph
+// after loops and other information about old poses.
 #pragma once
 
 #include "slam/core/graph/calibration_knowledge.hpp"

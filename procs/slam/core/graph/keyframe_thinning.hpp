@@ -35,8 +35,7 @@ class KeyframeThinning {
   struct Assessment {
     bool is_needed{true};
     std::size_t carrier{0};  ///< of a keyframe that is not needed
-    std::size_t tied_to{
-        0};  ///< oldest keyframe that it has a constraint of full rank to, or itself
+    std::size_t tied_to{0};  ///< oldest keyframe that a full-rank constraint ties it to, or itself
   };
 
   /// Constraints of one keyframe.

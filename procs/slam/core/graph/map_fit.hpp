@@ -18,7 +18,7 @@ struct MapFit {
   int fitting{0};        ///< end on a mapped wall
   int contradicting{0};  ///< cross a mapped wall, or end where the map is free
 
-  static constexpr int kLeastBeams = 20;      ///< fewer decide nothing
+  static constexpr int kLeastBeams = 20;      ///< fewer are not decisive
   static constexpr double kMostMisfit = 0.3;  ///< of a correct map at the correct pose
 
   bool is_decisive() const { return fitting + contradicting >= kLeastBeams; }

@@ -51,8 +51,7 @@ class PlaceFinder {
     Se2 map_from_base{};
     double passed_score{0.0};  ///< of episodes that are over
     std::map<std::pair<Clue, int>, Episode> clues{};
-    std::set<int>
-        seen_in_place{};  ///< landmarks sighted in place until their score was at its bound
+    std::set<int> seen_in_place{};  ///< landmarks whose score has reached its upper bound
     double wall_score{0.0};
     bool fits_walls{true};
 

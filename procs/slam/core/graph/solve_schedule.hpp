@@ -46,10 +46,9 @@ class SolveSchedule {
   static constexpr int kSteps = 12;  ///< of a solution, at most
 
  private:
-  static constexpr std::size_t kEvery = 10;  ///< keyframes
-  static constexpr std::size_t kShare =
-      200;  ///< 1/200 of all, after loops that contradict the pose
-  static constexpr std::size_t kRoutineShare = 8;  ///< 1/8, after loops that only confirm it
+  static constexpr std::size_t kEvery = 10;        ///< keyframes
+  static constexpr std::size_t kShare = 200;       ///< 1/200 of all, after loops that contradict it
+  static constexpr std::size_t kRoutineShare = 8;  ///< 1/8, after loops that only confirm the pose
   static constexpr double kConverged = 5e-3;       ///< [m, rad]; less is not worth a further step
 
   std::size_t solved_keyframes_{0};  ///< of the graph, when the last solution began

@@ -76,7 +76,6 @@ class SparseTile {
 
   std::array<std::uint32_t, kTileSize> touched_{};  ///< bit x of row y
   std::array<std::uint16_t, kTileSize> first_{};    ///< index in cells_ of each row's first cell
-  first_{};  ///< index in cells_ of the row's first touched cell
   std::vector<Cell> cells_{};
 };
 

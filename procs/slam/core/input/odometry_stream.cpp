@@ -84,8 +84,7 @@ OdometryStream::News OdometryStream::take(const OdometrySample& sample, Skips& s
   return news;
 }
 
-/// Shifts the stamps of old samples so that odometry continues without a gap, and no motion is
-/// lost.
+/// Shifts the stamps of old samples so that odometry continues without a gap: no motion is lost.
 /// @return the shift.
 Duration OdometryStream::set_clock(Skips& skips) {
   skips.add(Skip::kClockSet);

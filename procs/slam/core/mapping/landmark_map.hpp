@@ -29,7 +29,7 @@ struct Landmark {
   bool is_missed() const { return misses >= 5; }
 };
 
-/// Averages sightings. Ids are not unique: sightings of one id that lie apart are different
+/// Averages sightings. Ids are not unique: sightings of one id that lie apart are of different
 /// instances.
 class LandmarkMap {
  public:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Motion model of the particle filter: samples of an odometry increment with noise (the paper,
-// IV-B).
+// Motion model of particle filters: samples of an odometry increment with noise (the paper, IV-B).
 #pragma once
 
 #include "common/random/random.hpp"

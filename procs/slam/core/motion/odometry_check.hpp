@@ -14,8 +14,7 @@ class OdometryCheck {
   /// The step itself; if it exceeds the robot's speed limits, the last estimated step, shortened to
   /// `step_s` where that is less than it took, and marked as a guess (Motion::guessed_s).
   ///
-  /// @param has_caught_up  the step includes late motion, took longer than `step_s`, and is
-  /// accepted.
+  /// @param has_caught_up  the step includes late motion, which took longer: it is accepted.
   Motion plausible(const Motion& step, double step_s, bool has_caught_up);
 
   /// Whether the last step was rejected.

@@ -42,8 +42,7 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
 /// Systematic errors of odometry and of the LiDAR's mounting. True distance = (1 + scale) measured
 /// distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance. The LiDAR sits
 /// `ahead` [m] of its configured place on the base and is turned left by `yaw` [rad]: it is
-/// displaced when the robot turns on the spot, and seems to move sideways when the robot drives
-/// straight.
+/// displaced when the robot turns on the spot, and seems to drift sideways when it drives straight.
 struct OdometryTerm {
   enum Index : Eigen::Index { kScale, kDrift, kTurnScale, kLidarAhead, kLidarYaw, kCount };
 };

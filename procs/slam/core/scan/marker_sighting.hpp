@@ -50,9 +50,8 @@ Eigen::Matrix3d planar_covariance(const Eigen::Matrix<double, 6, 6>& covariance)
 
 /// Projects a detection onto the plane and transforms it to the base frame at the scan's time.
 /// @param scan_base_from_frame_base  motion by odometry between the times of camera frame and scan.
-/// @return none for a marker that is not upright (tilted by more than 30 degrees, so not on a wall
-/// of
-///         a planar map), farther than 100 m, or whose covariance is not valid.
+/// @return none for a marker that is not upright (tilted by more than 30 degrees: not on a wall of
+///         a planar map), is farther than 100 m, or has an invalid covariance.
 std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Timestamp time,
                                            const Se2& scan_base_from_frame_base, double size_m);
 

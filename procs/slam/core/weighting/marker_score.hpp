@@ -32,8 +32,7 @@ struct MatchingRewards {
 double marker_score(const GridMap& map, const Eigen::Vector2d& point_in_map, int marker_id,
                     const MatchingRewards& rewards);
 
-/// A point that the camera has observed: the end of a beam, or a point on or beside a marker's
-/// face.
+/// A point that the camera has observed: the end of a beam, or a point on or beside a marker.
 struct ObservedSpot {
   Eigen::Vector2d in_base{Eigen::Vector2d::Zero()};
   int marker_id{kNoMarker};
