@@ -22,7 +22,7 @@ constexpr double kHopeless = 12.0;  // score below the best one at which a hypot
 
 // Markers.
 constexpr double kSighting = 1.0;       // score of a marker that is sighted where the map has it,
-constexpr double kUnexpected = -1.0;    // of one sighted where the map has none of its id,
+constexpr double kUnexpected = -1.0;    // of one whose id, or whose place, the map has otherwise,
 constexpr double kMissed = -0.5;        // and of one that should be in view but is not sighted
 constexpr double kMostOfOne = 3.0;      // bound on the absolute score of one marker
 constexpr double kFollowed = 0.5;       // gain with which a sighting corrects a hypothesis
