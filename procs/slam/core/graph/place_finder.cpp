@@ -21,12 +21,12 @@ constexpr std::size_t kMaxHypotheses = 500;
 constexpr double kHopeless = 12.0;  // score below the best one at which a hypothesis is dropped
 
 // Markers.
-constexpr double kSighting = 1.0;       // score of a marker that is sighted where the map has it,
-constexpr double kUnexpected = -1.0;    // of one whose id, or whose place, the map has otherwise,
-constexpr double kMissed = -0.5;        // and of one that should be in view but is not sighted
-constexpr double kMostOfOne = 3.0;      // bound on the absolute score of one marker
-constexpr double kFollowed = 0.5;       // gain with which a sighting corrects a hypothesis
-constexpr double kAtMarker_m = 0.5;     // a sighting nearer than this is of that marker,
+constexpr double kSighting = 1.0;     // score of a marker that is sighted where the map has it,
+constexpr double kUnexpected = -1.0;  // of one whose id is mapped elsewhere, or at another marker,
+constexpr double kMissed = -0.5;      // and of one that should be in view but is not sighted
+constexpr double kMostOfOne = 3.0;    // bound on the absolute score of one marker
+constexpr double kFollowed = 0.5;     // gain with which a sighting corrects a hypothesis
+constexpr double kAtMarker_m = 0.5;   // a sighting nearer than this is of that marker,
 constexpr double kInItsPlace_m = 0.25;  // and nearer than this there is no other marker
 constexpr double kPassed_m = 1.0;       // driven until a marker may contribute again
 
