@@ -29,7 +29,7 @@ StartPose checked_pose(const command_t& message) {
   const auto& [sigma_m, sigma_rad] = message.sigmas;
   for (const double value : {x_m, y_m, yaw_rad, sigma_m, sigma_rad})
     if (!std::isfinite(value))
-      throw Refusal{"the pose or its sigmas have a value that is no number"};
+      throw Refusal{"the pose or its sigmas have a value that is not finite"};
   if (std::abs(x_m) > kMaxCoordinate_m || std::abs(y_m) > kMaxCoordinate_m)
     throw Refusal{fmt::format("the pose is more than {} m away", kMaxCoordinate_m)};
   const auto [smallest, largest] = std::minmax(sigma_m, sigma_rad);
@@ -48,7 +48,7 @@ MapMode checked_mode(std::int8_t mode) {
     case command_t::MODE_EXTEND:
       return MapMode::kExtend;
     default:
-      throw Refusal{fmt::format("mode {} is not known: 1 map, 2 localise, 3 extend", mode)};
+      throw Refusal{fmt::format("mode {} is unknown: 1 map, 2 localise, 3 extend", mode)};
   }
 }
 
@@ -83,7 +83,7 @@ Command checked(const command_t& message) {
       command.mode = checked_mode(message.mode);
       return command;
     default:
-      throw Refusal{fmt::format("commands of kind {} are not known", message.kind)};
+      throw Refusal{fmt::format("command kind {} is unknown", message.kind)};
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Commands from outside: what they may ask for, and what is answered.
+// Commands received from other programs: checks, and replies.
 #pragma once
 
 #include "common/messages/channels.hpp"
@@ -15,7 +15,7 @@
 
 namespace waymark {
 
-/// A command whose values are possible.
+/// A command with valid values.
 struct Command {
   enum class Kind { kSaveMap, kReset, kSetPose, kSetMode };
 
@@ -25,22 +25,23 @@ struct Command {
   MapMode mode{MapMode::kMap};
 };
 
-/// Why a command is not carried out, in one sentence.
+/// Reason, in one sentence, why a command is not carried out.
 class Refusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
+/// Converts a message and checks its values.
 /// @throws Refusal
 Command checked(const command_t& message);
 
-/// [A-Za-z0-9_-]{1,64}: no path, and no name that a shell or a file system takes for something
-/// else.
+/// [A-Za-z0-9_-]{1,64}: not a path, and without characters that are special to shells or file
+/// systems.
 bool is_map_name(std::string_view name);
 
-/// Each command acts once: one that comes again gets the same answer again. More than some in a
-/// second of message time are refused, the first of them with an answer, so that a flood neither
-/// holds up the scans nor fills the network.
+/// Each command acts once: a repeated one gets the same answer again. Beyond kMostPerSecond of
+/// message time, commands are refused, only the first of them with an answer, so that a flood
+/// neither delays the scans nor fills the network.
 class CommandDesk {
  public:
   static constexpr int kMostPerSecond = 5;
@@ -48,18 +49,18 @@ class CommandDesk {
   /// Carries a command out. @return what was done; throws Refusal.
   using Act = std::function<std::string(const Command&)>;
 
-  /// @param now  newest observation.
+  /// @param now  time of the newest observation.
   /// @return the answer; nothing: the command was dropped.
   std::optional<reply_t> take(const command_t& message, Timestamp now, const Act& act);
 
  private:
-  static constexpr std::size_t kKeptAnswers = 32;  ///< answers
+  static constexpr std::size_t kKeptAnswers = 32;
 
   std::optional<reply_t> refused_as_flood(const command_t& message, Timestamp now);
 
   std::deque<reply_t> answers_{};
   std::optional<Timestamp> second_begin_{};
-  int taken_{0};  ///< since then
+  int taken_{0};  ///< commands since then
 };
 
 }  // namespace waymark

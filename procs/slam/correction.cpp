@@ -42,7 +42,8 @@ correction_t CorrectionMaker::make(const Estimate& estimate, const Se2& odom_fro
   message.x_m = map_from_odom.x();
   message.y_m = map_from_odom.y();
   message.theta_rad = map_from_odom.theta();
-  // Odometry's number is exact: what is uncertain is the pose, seen from the odometry's origin.
+  // The odometry pose is exact here: the covariance is the estimate's, for the lever arm to the
+  // odometry's origin.
   Eigen::Map<RowMajor3>{message.covariance} = carried_along(
       estimate.covariance, map_from_odom.translation() - estimate.map_from_base.translation());
   message.health = health_number(estimate.health);

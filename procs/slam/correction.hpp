@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The estimate for followers that have an odometry of their own.
+// The estimate for programs that track the robot by odometry.
 #pragma once
 
 #include "common/messages/channels.hpp"
@@ -9,14 +9,14 @@
 
 namespace waymark {
 
-/// Makes SLAM_CORRECTION of estimates with a pose, and keeps the one before.
+/// Makes SLAM_CORRECTION from estimates with a pose; keeps the previous one to compute jumps.
 class CorrectionMaker {
  public:
   /// @param odom_from_base  odometry as it was sent, at the time of the estimate.
-  /// @return map_from_odometry: composed with that odometry it is the estimated pose.
+  /// @return map_from_odometry: composed with that odometry, it gives the estimated pose.
   correction_t make(const Estimate& estimate, const Se2& odom_from_base, std::int64_t map_id);
 
-  /// Another map: what comes next is no jump.
+  /// To be called for a new map: the next correction is no jump.
   void forget() { before_.reset(); }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The methods by name.
+// Creates the estimator that the configuration names.
 #pragma once
 
 #include "slam/slam_config.hpp"

@@ -10,10 +10,11 @@
 namespace waymark {
 namespace {
 
+// Less than these is not reported.
 constexpr double kWorse = 1.9;        // factor on a standard deviation; learnt in steps of sqrt(2)
-constexpr double kNoisier = 1.3;      // the same of ranges
-constexpr double kManyBeams = 0.05;   // moving; a few are noise at the walls' edges
-constexpr double kManyScans = 0.05;   // against a loaded map; fewer are people and doors
+constexpr double kNoisier = 1.3;      // the same for ranges
+constexpr double kManyBeams = 0.05;   // moving; a few are noise at edges of walls
+constexpr double kManyScans = 0.05;   // contradict a loaded map; fewer are people and doors
 constexpr double kBriefly = 0.001;    // of observations; fewer are a push, or a wrong match
 constexpr double kWorthShare = 0.01;  // of scans or observations; fewer may be a door that opened
 
@@ -45,7 +46,7 @@ class List {
 void add_odometry(const Findings& f, List& list) {
   if (f.odometry_along >= kWorse) {
     list.add("odometry_along_noise_scale",
-             fmt::format("odometry is {:.1f} times as noisy along the way as described",
+             fmt::format("odometry is {:.1f} times as noisy along the path as described",
                          f.odometry_along),
              f.odometry_along);
   }
@@ -68,7 +69,7 @@ void add_odometry(const Findings& f, List& list) {
                  f.odometry_jumping, f.observations, 0.0);
   if (f.odometry_caught_up > 0) {
     list.add("odometry_caught_up",
-             fmt::format("odometry said late what had been driven, {} times", f.odometry_caught_up),
+             fmt::format("odometry reported motion late, {} times", f.odometry_caught_up),
              static_cast<double>(f.odometry_caught_up));
   }
 }
@@ -94,13 +95,13 @@ void add_ranges(const Findings& f, std::int64_t repeated_scans, List& list) {
                  "has changed",
                  f.scans_contradict_loaded_map, f.scans_in_loaded_map, kManyScans);
   list.add_share("scans_unusable",
-                 "{:.1f} % of the scans show too few mapped surfaces and were left out",
+                 "{:.1f} % of the scans show too few mapped walls and were left out",
                  f.scans_unusable, f.scans);
   list.add_share("beams_moving",
                  "{:.1f} % of the LiDAR's beams end where the map is free, on people or doors, and "
                  "were left out of the matching",
                  f.beams_moving, f.beams, kManyBeams);
-  list.add_share("scans_repeated", "{:.1f} % of the scans repeat one from elsewhere",
+  list.add_share("scans_repeated", "{:.1f} % of the scans repeat one from another place",
                  repeated_scans, f.scans + repeated_scans, 0.0);
 }
 
@@ -125,7 +126,7 @@ std::vector<Finding> worth_saying(const Findings& findings, std::int64_t repeate
   }
   if (findings.relocalisations > 0) {
     list.add("relocalisations",
-             fmt::format("the robot was found elsewhere {} times", findings.relocalisations),
+             fmt::format("the robot was relocalised {} times", findings.relocalisations),
              static_cast<double>(findings.relocalisations));
   }
   return list.take();

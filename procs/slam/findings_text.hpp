@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What slam says about its sensors, in words and numbers.
+// Findings about the sensors as texts and numbers.
 #pragma once
 
 #include "slam/core/filter/findings.hpp"
@@ -12,16 +12,16 @@
 
 namespace waymark {
 
-/// One thing that is not as it is described, or was not used.
+/// One property that differs from its description, or one kind of data that was not used.
 struct Finding {
   std::string name{};             ///< for programs: a key in findings.json, a counter
-  std::string text{};             ///< half a sentence for people
-  double value{0.0};              ///< what was found, in the unit that the name says
+  std::string text{};             ///< a clause for people
+  double value{0.0};              ///< in the unit of the name's suffix; else a count or ratio
   std::optional<double> share{};  ///< of the observations or scans that it concerns
 };
 
-/// What is worth saying; empty when all is as described.
-/// @param repeated_scans  that the sensor queue has left out.
+/// The findings that are worth reporting; empty if all is as described.
+/// @param repeated_scans  number of scans that the sensor queue has left out.
 std::vector<Finding> worth_saying(const Findings& findings, std::int64_t repeated_scans);
 
 /// The texts, separated by semicolons; "nothing" without any.

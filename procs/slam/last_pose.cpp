@@ -13,14 +13,14 @@ namespace waymark {
 namespace {
 
 constexpr Duration kLongPause = std::chrono::minutes{10};
-constexpr Duration kRestart = std::chrono::seconds{30};  // nobody carries the robot away meanwhile
+constexpr Duration kRestart = std::chrono::seconds{30};  // the robot is not carried in less
 constexpr double kStands_m = 0.1;
 constexpr double kStands_rad = 0.1;
-constexpr double kFastest_m_s = 2.0;  // of our robots, on average
+constexpr double kFastest_m_s = 2.0;  // mean speed of our robots, at most
 constexpr double kFastest_rad_s = 2.0;
-constexpr double kNotSaid_m = 0.02;  // moved between the file and the stop
+constexpr double kNotSaid_m = 0.02;  // motion between the last write and the stop
 constexpr double kNotSaid_rad = 0.02;
-constexpr double kOdometryError = 0.05;  // share of the way
+constexpr double kOdometryError = 0.05;  // share of the distance
 constexpr double kOdometryError_rad_per_m = 0.05;
 
 struct LastPoseFields {
@@ -38,7 +38,7 @@ struct LastPoseFields {
 
   void describe(Fields& fields) {
     fields.field("map_id", map_id,
-                 "of the map file in whose frame the pose is, as waymark-map says");
+                 "of the map file in whose frame the pose is, as waymark-map prints it");
     fields.field("utime", utime, {0.0, 9e15}, "message time [us]");
     fields.field("x_m", x_m, kAnyNumber, "base in the map");
     fields.field("y_m", y_m, kAnyNumber, "base in the map");
@@ -92,22 +92,24 @@ std::optional<LastPose> read_last_pose(const std::filesystem::path& state_folder
 Resumption resume(const LastPose& last, std::int64_t map_id, Timestamp now,
                   const Se2& odom_from_base) {
   if (last.map_id != map_id) return {std::nullopt, "it is in another map"};
-  if (now < last.time) return {std::nullopt, "it is newer than the sensors' time"};
+  if (now < last.time) return {std::nullopt, "it is newer than the sensors' messages"};
   const Se2 driven = last.odom_from_base.inverse() * odom_from_base;
-  const double way_m = driven.translation().norm();
+  const double distance_m = driven.translation().norm();
   const double turn_rad = std::abs(driven.theta());
   const double pause_s = to_seconds(now - last.time);
-  const bool has_stood = way_m <= kStands_m && turn_rad <= kStands_rad;
+  const bool has_stood = distance_m <= kStands_m && turn_rad <= kStands_rad;
   if (!has_stood && now - last.time > kLongPause)
     return {std::nullopt, "odometry has changed in a pause of more than ten minutes"};
-  if (!has_stood && (way_m > kFastest_m_s * pause_s + kNotSaid_m ||
+  if (!has_stood && (distance_m > kFastest_m_s * pause_s + kNotSaid_m ||
                      turn_rad > kFastest_rad_s * pause_s + kNotSaid_rad)) {
-    return {std::nullopt, "odometry has not counted on from there"};
+    return {std::nullopt, "odometry does not continue from there"};
   }
   const Se2 map_from_base = last.map_from_base * driven;
   StartPose start{StartKind::kLast, map_from_base.x(), map_from_base.y(), map_from_base.theta()};
-  start.sigma_m = std::hypot(last.sigmas.head<2>().maxCoeff(), kNotSaid_m + kOdometryError * way_m);
-  start.sigma_rad = std::hypot(last.sigmas.z(), kNotSaid_rad + kOdometryError_rad_per_m * way_m);
+  start.sigma_m =
+      std::hypot(last.sigmas.head<2>().maxCoeff(), kNotSaid_m + kOdometryError * distance_m);
+  start.sigma_rad =
+      std::hypot(last.sigmas.z(), kNotSaid_rad + kOdometryError_rad_per_m * distance_m);
   start.is_certain = now - last.time <= kRestart;
   return {start, ""};
 }

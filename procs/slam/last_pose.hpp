@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the robot was when slam last knew it, kept in the state folder over a restart.
+// The robot's last known pose, kept in the state folder across restarts.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -24,23 +24,23 @@ struct LastPose {
 
 std::filesystem::path last_pose_file(const std::filesystem::path& state_folder);
 
-/// Whole or not at all.
+/// Atomic: a reader finds the old file or the new one.
 /// @throws std::system_error naming the file.
 void write_last_pose(const std::filesystem::path& state_folder, const LastPose& pose);
 
-/// @return nothing when there is none.
+/// @return none if there is no file.
 /// @throws ConfigError naming file and line.
 std::optional<LastPose> read_last_pose(const std::filesystem::path& state_folder);
 
-/// What a later moment makes of a last pose.
+/// A start from the last pose, or the reason for none.
 struct Resumption {
   std::optional<StartPose> start{};
-  const char* why_not{""};  ///< without a start: what does not fit
+  const char* why_not{""};  ///< without a start: what does not match
 };
 
-/// The last pose, carried on by odometry, where map and odometry still fit: the same map, and an
-/// odometry that has counted on, by no more than the robot can have driven since. After a long
-/// pause it must stand where it stood.
+/// The last pose, propagated by odometry, if map and odometry still match: the map is the same, and
+/// odometry has continued, by no more than the robot can have driven since. After a long pause
+/// odometry must not have changed.
 Resumption resume(const LastPose& last, std::int64_t map_id, Timestamp now,
                   const Se2& odom_from_base);
 

@@ -22,8 +22,8 @@ using RowMajorCalibration =
     Eigen::Matrix<double, kCalibrationSize, kCalibrationSize, Eigen::RowMajor>;
 
 constexpr std::size_t kCellsPerMessage = 1000;  // 56 bytes each
-// What a cell of a loaded map counts as: a whole per cent, and no more than some passes of beams,
-// so that what has changed since can be seen.
+// Counts of a cell of a loaded map: visits so that percents are whole numbers, and few enough
+// counts for later observations to outweigh them.
 constexpr std::uint32_t kLoadedVisits = 100;
 constexpr float kLoadedVotes = 5.0F;
 
@@ -64,7 +64,7 @@ calibration_t to_message(const LearntCalibration& calibration, Timestamp time) {
   return message;
 }
 
-/// All messages with that map_id; the header is the first.
+/// All messages of a map, with this map_id; the header is the first.
 std::vector<Message> messages_with_id(const MapSnapshot& map, const MapFileInfo& info,
                                       std::int64_t map_id) {
   std::vector<Message> messages(1);
@@ -95,7 +95,7 @@ std::vector<Message> messages_with_id(const MapSnapshot& map, const MapFileInfo&
   return messages;
 }
 
-/// Of messages whose map_id is 0.
+/// Id of a map: hash of its messages, whose map_id must be 0.
 std::int64_t id_of(const std::vector<Message>& messages) {
   Message all;
   for (const Message& message : messages) {
@@ -120,13 +120,13 @@ Landmark to_landmark(const marker_landmark_t& message) {
   return landmark;
 }
 
-/// Puts a map together, message by message.
+/// Builds a map message by message.
 class MapBuilder {
  public:
-  /// @return what is wrong; empty: nothing.
+  /// @return what is wrong with the message; empty: nothing.
   std::string add(const Message& message) {
     if (message.channel == channels::kMapHeader.name) return take(message, &MapBuilder::on_header);
-    if (!header_) return "does not begin with MAP_HEADER, so it is no map file";
+    if (!header_) return "does not begin with MAP_HEADER, so it is not a map file";
     ++num_messages_;
     if (message.channel == channels::kSlamMap.name) return take(message, &MapBuilder::on_tiles);
     if (message.channel == channels::kSlamMarkers.name)
@@ -140,13 +140,13 @@ class MapBuilder {
 
   /// @return what is wrong with the whole; empty: nothing.
   std::string finish() {
-    if (!header_) return "holds no MAP_HEADER, so it is no map file";
+    if (!header_) return "holds no MAP_HEADER, so it is not a map file";
     if (num_messages_ != header_->num_messages) {
       return fmt::format("is cut off: {} of {} messages are there", num_messages_,
                          header_->num_messages);
     }
     if (id_of(hashed_) != header_->map_id)
-      return "is damaged: its content is not what its map_id says";
+      return "is damaged: its content does not match its map_id";
     const auto num_poses = file_.map.graph.poses.size();
     for (const GraphEdge& edge : file_.map.graph.edges)
       if (edge.from >= num_poses || edge.to >= num_poses) return "has edges without vertices";
@@ -252,7 +252,7 @@ class MapBuilder {
   }
 
   std::optional<map_header_t> header_{};
-  int num_messages_{0};  ///< behind the header
+  int num_messages_{0};  ///< after the header
   std::vector<Message> hashed_{};
   MapFile file_{};
 };

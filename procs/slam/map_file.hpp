@@ -13,7 +13,7 @@
 
 namespace waymark {
 
-/// What a map was made with.
+/// Markers and frame of a map.
 struct MapFileInfo {
   std::string marker_dictionary{};
   double marker_size_m{0.0};  ///< side of the black square
@@ -25,19 +25,20 @@ struct MapFile {
   MapFileInfo info{};
 };
 
-/// A map as messages, the header first. Their map_id is the hash of their content.
+/// A map as messages, the header first. Their map_id is a hash of their content.
 std::vector<Message> to_map_messages(const MapSnapshot& map, const MapFileInfo& info);
 
-/// The map that these messages are: as if it had been saved and loaded.
+/// The map in these messages, as if it had been saved and loaded.
+/// @throws std::logic_error  if they are no map.
 MapFile map_of(const std::vector<Message>& messages);
 
-/// Writes to a temporary name and renames: a map file that is there is whole.
+/// Atomic, by a temporary name and renaming: a map file that exists is complete.
 /// @return the map's id.
 /// @throws std::runtime_error naming the file.
 std::int64_t write_map_file(const std::filesystem::path& file, const MapSnapshot& map,
                             const MapFileInfo& info);
 
-/// @throws SetupError  in one sentence: not there, not a map, of another format, damaged, cut off.
+/// @throws SetupError  in one sentence: missing, not a map, of another format, damaged, truncated.
 MapFile read_map_file(const std::filesystem::path& file);
 
 }  // namespace waymark

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kTilesPerMessage = 20;  // 20 * (12 + 3 * 1024) bytes: fits one datagram
 
-/// Tiles with anything in them, row by row.
+/// Tiles that exist in either layer, row by row.
 std::vector<TileIndex> tiles_of(const GridMap& map) {
   std::vector<TileIndex> occupancy;
   std::vector<TileIndex> markers;
@@ -70,7 +70,7 @@ std::vector<map_tiles_t> to_messages(const GridMap& map, const std::vector<TileI
   return messages;
 }
 
-/// Log odds of the cell's occupancy in the units of MBot grids, which count them in whole numbers.
+/// Log odds of the cell's occupancy in the units of MBot grids, which are integers.
 std::int8_t log_odds(const OccupancyCell& cell) {
   if (!cell.is_mapped()) return 0;
   constexpr double kPerUnit = 20.0;  // probability 0.5 -> 0, 0.998 -> 127
@@ -79,7 +79,7 @@ std::int8_t log_odds(const OccupancyCell& cell) {
   return static_cast<std::int8_t>(std::clamp(std::lround(odds), -127L, 127L));
 }
 
-/// The smallest rectangle of cells around everything that is mapped.
+/// Bounding box of all mapped cells.
 struct CellBox {
   int left{std::numeric_limits<int>::max()};
   int right{std::numeric_limits<int>::min()};
@@ -107,7 +107,7 @@ std::optional<CellBox> known_cells(const GridMap& map) {
   return box;
 }
 
-/// Log odds of the most occupied one of a square of cells; 0 when none is mapped.
+/// Log odds of the most occupied cell of a square; 0 if none is mapped.
 std::int8_t most_occupied(const GridMap& map, CellIndex first, int side) {
   std::optional<std::int8_t> most;
   for (int y = first.y; y < first.y + side; ++y) {
@@ -154,7 +154,7 @@ std::optional<occupancy_grid_t> to_occupancy_grid(const GridMap& map, Timestamp 
   const auto cells_at = [&known](int merged) {
     return std::int64_t{(known->width() - 1) / merged + 1} * ((known->height() - 1) / merged + 1);
   };
-  int merged = 1;  // cells of the map along the side of one that is sent
+  int merged = 1;  // map cells per side of a cell that is sent
   while (cells_at(merged) + kHeaderBytes > std::int64_t{kMaxPayloadBytes})
     ++merged;
 

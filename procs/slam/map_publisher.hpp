@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map as messages that each fit one datagram.
+// The map as messages, each of which fits one datagram.
 #pragma once
 
 #include "common/messages/channels.hpp"
@@ -12,16 +12,16 @@
 
 namespace waymark {
 
-/// Sends the tiles that changed since the last time, found by comparing addresses with a kept copy
-/// of the map, and a few of the others in turn, so that a listener that came late becomes complete.
+/// Publishes the tiles that have changed since the last time, found by comparing addresses with a
+/// copy of the map, and a few of the others in turn, so that late subscribers get all tiles.
 class MapPublisher {
  public:
   std::vector<map_tiles_t> changes(const GridMap& map, Timestamp time);
-  /// The whole map, and empty tiles where another one was sent before.
+  /// The whole map, and empty tiles where the previously published map had others.
   std::vector<map_tiles_t> complete(const GridMap& map, Timestamp time);
 
  private:
-  static constexpr std::size_t kRefreshedTiles = 4;  ///< old tiles per update
+  static constexpr std::size_t kRefreshedTiles = 4;  ///< unchanged tiles per update
 
   bool has_changed(const GridMap& map, TileIndex index) const;
 
@@ -29,8 +29,8 @@ class MapPublisher {
   std::size_t next_refreshed_{0};
 };
 
-/// The whole map, cropped to what is known; nothing of an empty one. A map that does not fit one
-/// message gets larger cells, each with the most occupied of its parts.
+/// The whole map, cropped to the mapped cells; none for an empty one. A map that does not fit one
+/// message gets larger cells, each with the highest occupancy of the map's cells in it.
 std::optional<occupancy_grid_t> to_occupancy_grid(const GridMap& map, Timestamp time);
 
 }  // namespace waymark

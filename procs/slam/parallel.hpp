@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads for the core's loops.
+// Threads for the core's parallel loops.
 #pragma once
 
 #include "slam/core/filter/parallel_for.hpp"
 
 namespace waymark {
 
-/// Loops over particles with a number of threads of its own; 1 = in the caller's thread.
+/// A parallel loop with `threads` threads of its own; 1: in the caller's thread.
 ParallelFor parallel_for_with(int threads);
 
 }  // namespace waymark

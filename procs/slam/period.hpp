@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is done once per period of message time.
+// Schedules work once per period of message time.
 #pragma once
 
 #include "common/time/time.hpp"
@@ -14,8 +14,8 @@ class Period {
 
   Period(double period_s, First first) : period_{duration_from_seconds(period_s)}, first_{first} {}
 
-  /// Whether it is due. If so, the next period begins. A clock that was set back by more than a
-  /// period begins anew.
+  /// Whether the work is due. If so, the next period begins. Restarts when the clock was set back
+  /// by more than a period.
   bool is_due(Timestamp time) {
     const bool is_new = !next_ || time < *next_ - period_;
     if (!is_new && time < *next_) return false;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a standard deviation that people give may be.
+// Valid range of standard deviations in configurations and commands.
 #pragma once
 
 #include "common/config/fields.hpp"
 
 namespace waymark {
 
-/// [m] or [rad]: its variance, and the inverse of that, are numbers that can be reckoned with.
+/// [m] or [rad]: variance and information remain numerically tractable.
 inline constexpr Range kSigmaRange{1e-6, 1e6};
 
 }  // namespace waymark

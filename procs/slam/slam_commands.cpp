@@ -29,7 +29,7 @@ StartPose unknown_start() {
   return start;
 }
 
-/// Where an estimate has the robot, for an estimator that goes on from there.
+/// Start of another estimator at an estimate.
 StartPose start_at(const Estimate& estimate) {
   constexpr double kLeast_m = 0.02;  // the map is known to about a cell
   constexpr double kLeast_rad = 0.01;
@@ -66,7 +66,7 @@ std::string SlamNode::obey(const Command& command) {
     case Command::Kind::kSetMode:
       return set_mode(command.mode);
   }
-  throw Refusal{"commands of this kind are not known"};
+  throw Refusal{"the kind of command is unknown"};
 }
 
 std::string SlamNode::save_named(const std::string& name) {
@@ -75,7 +75,7 @@ std::string SlamNode::save_named(const std::string& name) {
   if (config_.slam.mode == MapMode::kLocalise)
     throw Refusal{"mode localise leaves the map as it is, so there is nothing to save"};
   const auto map = estimator_->snapshot();
-  if (!map) throw Refusal{"there is no map yet, or none that this estimator can save"};
+  if (!map) throw Refusal{"there is no map yet, or the estimator cannot save maps"};
   const auto file = std::filesystem::path{config_.slam.state_folder} / (name + ".map.lcm");
   try {
     const std::int64_t map_id = save_map_to(file, *map);
@@ -85,7 +85,9 @@ std::string SlamNode::save_named(const std::string& name) {
   }
 }
 
-/// @param start  where in the map; of a new map: nowhere.
+/// Starts another estimator.
+/// @param map    the loaded map; null: a new map.
+/// @param start  of the robot in `map`; not used for a new map.
 void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> map,
                                const StartPose& start) {
   const bool keeps_frame = map != nullptr;
@@ -96,12 +98,12 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
   placed_.reset();
   map_period_.reset();
   if (last_estimate_) {
-    // Nobody shall draw the new map over the old one.
+    // Clears the old map's tiles at subscribers.
     publish_tiles(map_publisher_.complete(estimator_->map(), *last_estimate_));
     publish_markers(*last_estimate_);
   }
   if (mode == MapMode::kLocalise) return;
-  // A map of its own begins, of the loaded one's frame or of a new one.
+  // A map with an id of its own begins, in the loaded map's frame or in a new one.
   map_id_ = 0;
   map_publisher_ = {};
   correction_.forget();
@@ -113,14 +115,14 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
 std::string SlamNode::reset() {
   const bool has_map = loaded_map_ != nullptr;
   begin_estimator(config_.slam.mode, loaded_map_, has_map ? unknown_start() : StartPose{});
-  return has_map ? "the robot is looked for in the loaded map" : "a new map is begun";
+  return has_map ? "localises anew in the loaded map" : "a new map is begun";
 }
 
 std::string SlamNode::set_pose(const StartPose& pose) {
   if (!estimator_->set_pose(pose)) {
     throw Refusal{
-        fmt::format("there is no map yet that the pose could be in, it is more than {} m away, or "
-                    "the estimator takes none",
+        fmt::format("there is no map yet, the pose is more than {} m away, or the estimator does "
+                    "not support it",
                     farthest_pose_m(config_.slam.grid.resolution_m))};
   }
   return fmt::format("the robot is at ({:.3f}, {:.3f}) m, {:.4f} rad", pose.x_m, pose.y_m,
@@ -140,7 +142,7 @@ std::string SlamNode::set_mode(MapMode mode) {
   }
   std::shared_ptr<const MapSnapshot> map = loaded_map_;
   if (config_.slam.mode != MapMode::kLocalise) {
-    if (mode == MapMode::kExtend) throw Refusal{"mode map adds to its map already"};
+    if (mode == MapMode::kExtend) throw Refusal{"mode map extends its map already"};
     const auto drawn = estimator_->snapshot();
     if (!drawn) throw Refusal{"there is no map yet to localise in"};
     MapFile file = map_of(to_map_messages(*drawn, map_info(config_, frame_)));
@@ -149,10 +151,10 @@ std::string SlamNode::set_mode(MapMode mode) {
   }
   begin_estimator(mode, std::move(map), placed_ ? start_at(*placed_) : unknown_start());
   if (mode == MapMode::kLocalise) return "the map stays as it is";
-  return "the map is added to";
+  return "the map is extended";
 }
 
-/// On the first observation, for it takes odometry to know whether the last pose still fits.
+/// At the first observation, since odometry decides whether the last pose is still valid.
 void SlamNode::resume_last_pose(const Observation& first) {
   was_resumed_ = true;
   if (config_.slam.start.kind != StartKind::kLast) return;
@@ -168,8 +170,7 @@ void SlamNode::resume_last_pose(const Observation& first) {
     logging::info("resumes at ({:.2f}, {:.2f}) m", resumption.start->x_m, resumption.start->y_m);
     return;
   }
-  logging::info("the last pose is not used: {}; the robot is looked for anywhere in the map",
-                resumption.why_not);
+  logging::info("the last pose is not used: {}; localises anywhere in the map", resumption.why_not);
 }
 
 void SlamNode::keep_last_pose() {

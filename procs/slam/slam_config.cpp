@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kCornerSigma_px = 0.02;  // of refined corners
 
-/// The horizontal wedge in which a whole marker fits into the image.
+/// The horizontal wedge in which a marker is wholly in the image and large enough to be detected.
 CameraView camera_view(const CameraConfig& camera, const MarkerConfig& markers,
                        const Preprocessing& preprocessing) {
   const Eigen::Isometry3d base_from_camera = camera.base_from_camera();
@@ -64,7 +64,7 @@ void SlamSection::describe(Fields& fields) {
   fields.choice("estimator", estimator,
                 {named(EstimatorName::kOdometry), named(EstimatorName::kGmapping),
                  named(EstimatorName::kMarkerMatching), named(EstimatorName::kWaymark)},
-                "method; each has options of its own, which --dump-config shows");
+                "method; each has options of its own, see --dump-config");
   const std::string unused = fmt::format("slam.estimator = {} does not use it", name_of(estimator));
   const auto of = [&](std::initializer_list<EstimatorName> users, auto visit) {
     fields.when(std::ranges::find(users, estimator) != users.end(), unused, visit);
@@ -74,7 +74,8 @@ void SlamSection::describe(Fields& fields) {
     fields.field("threads", threads, {1.0, 256.0},
                  "for the particles; any number gives the same result");
   });
-  fields.field("blank_ids", blank_ids, "control: treat every frame as if it showed no marker");
+  fields.field("blank_ids", blank_ids,
+               "control experiment: treat every camera frame as if it showed no marker");
   fields.field("map_period_s", map_period_s, {0.001, 86400.0},
                "message time between two SLAM_MAP and SLAM_MARKERS updates");
   of({EstimatorName::kWaymark}, [&] {
@@ -93,8 +94,8 @@ void SlamSection::describe(Fields& fields) {
                 [&] { fields.section("start_pose", start); });
     fields.field(
         "save_map_every_s", save_map_every_s, {0.0, 86400.0},
-        "message time between two saves to --save-map while the map is drawn, so that a "
-        "slam that is started again with start = last goes on with it; 0: only at the end");
+        "message time between two saves to --save-map while mapping, so that slam can be restarted "
+        "with start = last and continue this map; 0: only at the end");
   });
   fields.field("state_folder", state_folder,
                "folder for last_pose.toml and for maps that are saved on command; empty: none");
@@ -121,7 +122,7 @@ void SlamConfig::check(Problems& problems) const {
   const bool is_within_a_map =
       slam.start.kind == StartKind::kPose || slam.start.kind == StartKind::kAnywhere;
   if (slam.mode == MapMode::kMap && is_within_a_map)
-    problems.add("slam.start", "only a loaded map has such a start: set slam.mode");
+    problems.add("slam.start", "needs a loaded map: set slam.mode");
   if (slam.start.kind == StartKind::kLast && slam.state_folder.empty())
     problems.add("slam.start", "\"last\" needs slam.state_folder, where the last pose is kept");
   if (slam.grid.face_spacing_m > slam.grid.resolution_m) {

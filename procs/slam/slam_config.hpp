@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Configuration of the slam process: the robot, and [slam]. Nothing about the world.
+// Configuration of the slam process: [robot] and [slam].
 #pragma once
 
 #include "common/bus/channel_names.hpp"
@@ -44,7 +44,7 @@ struct SlamSection {
 struct SlamConfig {
   RobotConfig robot{};
   SlamSection slam{};
-  ChannelNames channels{};           ///< [channels], which every program has
+  ChannelNames channels{};           ///< [channels], as in every program
   std::filesystem::path load_map{};  ///< from the command line; empty: none
   std::filesystem::path save_map{};
 

@@ -22,16 +22,16 @@ void check_map_options(const SlamConfig& config) {
     throw SetupError{"only the estimator 'waymark' loads and saves maps: set slam.estimator"};
   if (is_loaded && config.slam.mode == MapMode::kMap) {
     throw SetupError{
-        "--load-map needs to know what for: --mode localise (the map stays as it is) or --mode "
-        "extend (what is new is added)"};
+        "--load-map needs a mode: --mode localise (the map stays as it is) or --mode extend (new "
+        "places are added)"};
   }
   if (!is_loaded && config.slam.mode != MapMode::kMap)
     throw SetupError{"--mode localise and extend need a map: --load-map FILE"};
   if (config.slam.mode == MapMode::kMap && config.slam.start.kind == StartKind::kLast &&
       config.save_map.empty()) {
     throw SetupError{
-        "slam.start = last goes on in a map: give it with --load-map, or with --save-map the file "
-        "that it is saved to"};
+        "slam.start = last needs a map: --load-map FILE, or --save-map FILE for one that is saved "
+        "by an earlier run"};
   }
   if (config.slam.save_map_every_s > 0.0 && config.save_map.empty())
     throw SetupError{"slam.save_map_every_s needs the file: --save-map FILE"};
@@ -40,7 +40,7 @@ void check_map_options(const SlamConfig& config) {
         "slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
 }
 
-/// What --save-map has of the map in which the robot was when slam stopped.
+/// The file of --save-map, if the last pose is in its map: mapping was interrupted.
 std::optional<MapFile> left_unfinished(const SlamConfig& config) {
   if (config.slam.start.kind != StartKind::kLast || config.save_map.empty() ||
       !std::filesystem::exists(config.save_map)) {
@@ -64,12 +64,12 @@ std::shared_ptr<const MapSnapshot> load_map(SlamConfig& config, std::string& fra
   check_map_options(config);
   std::optional<MapFile> found = left_unfinished(config);
   if (found) {
-    logging::info("goes on with the map in '{}'", config.save_map.string());
+    logging::info("continues the map in '{}'", config.save_map.string());
     config.load_map = config.save_map;
     config.slam.mode = MapMode::kExtend;
   }
   if (config.load_map.empty()) {
-    config.slam.start = {};  // nothing to go on with: a new map
+    config.slam.start = {};  // a new map
     return nullptr;
   }
   MapFile file = found ? std::move(*found) : read_map_file(config.load_map);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What slam reads before it starts: a map, and surveyed markers.
+// Files that slam reads before it starts: a map, and surveyed markers.
 #pragma once
 
 #include "slam/core/graph/map_snapshot.hpp"
@@ -12,16 +12,16 @@
 
 namespace waymark {
 
-/// The map of --load-map; with slam.start = last the one that a slam before this one was drawing
-/// when it stopped, if it had saved it: it is extended then.
-/// @param config  as the options have it; afterwards with what is loaded, the mode and the start.
-/// @param frame  is given the name of the frame that the map is in, or will be.
-/// @return nullptr where no map is to be loaded.
-/// @throws SetupError  where the map cannot be read, does not suit this robot, or the options for
+/// The map of --load-map; or, with slam.start = last, that of --save-map if an earlier run was
+/// interrupted while mapping it: then it is extended.
+/// @param config  in: as configured; out: load_map, mode and start as they are used.
+/// @param frame   out: name of the frame that the map is in, or will be.
+/// @return nullptr: no map is to be loaded.
+/// @throws SetupError  if the map cannot be read or does not suit this robot, or the options for
 ///                     loading and saving contradict each other.
 std::shared_ptr<const MapSnapshot> load_map(SlamConfig& config, std::string& frame);
 
-/// Markers whose places have been measured; those of a loaded map's frame are checked only.
+/// The surveyed markers. With a loaded map, whose frame is already defined, they are only checked.
 /// @throws SetupError
 std::vector<SurveyedMarker> load_survey(const SlamConfig& config);
 

@@ -15,27 +15,27 @@ std::int8_t health_number(Health health);
 
 slam_estimate_t to_message(const Estimate& estimate);
 
-/// Identifies a map that is being drawn. Never 0.
+/// Id of a map that is being made. Never 0.
 std::int64_t new_map_id(Timestamp first_observation, std::int64_t parent_map_id);
 
 annotated_scan_t to_message(const LidarScan& scan, const Observation& observation,
                             const Se2& map_from_lidar);
 
-/// At most as many particles, evenly picked, as fit one datagram.
+/// Particles, thinned evenly to as many as fit one datagram.
 particles_t to_message(std::span<const PublishedParticle> particles, Timestamp time);
 
-/// In parts that each fit one datagram; at least one.
+/// In parts, each of which fits one datagram; at least one.
 std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Timestamp time);
 
 findings_t to_message(std::span<const Finding> findings, Timestamp time, std::int64_t map_id);
 
-/// As many as fit one datagram.
+/// As many changes as fit one datagram; the others are dropped.
 map_changes_t to_message(std::span<const MapChange> changes, Timestamp time, std::int64_t map_id);
 
-/// In parts that each fit one datagram; none for an empty trajectory.
+/// In parts, each of which fits one datagram; none for an empty trajectory.
 std::vector<trajectory_t> to_messages(std::span<const TimedPose> trajectory);
 
-/// In parts that each fit one datagram; at least one.
+/// In parts, each of which fits one datagram; at least one.
 std::vector<pose_graph_t> to_messages(const PoseGraph& graph, Timestamp time);
 
 }  // namespace waymark

@@ -16,7 +16,7 @@ namespace waymark {
 namespace {
 
 constexpr std::string_view kScansProcessed = "scans processed";
-constexpr std::string_view kUnplaced = "estimates before the place in the map was known";
+constexpr std::string_view kUnplaced = "estimates before the pose in the map was known";
 
 std::int32_t mbot_mode(MapMode mode) {
   if (mode == MapMode::kLocalise) return slam_status_t::MODE_LOCALISATION_ONLY;
@@ -130,7 +130,7 @@ void SlamNode::publish_end(Timestamp time) {
   logging::info("{}", timer_.summary());
 }
 
-/// One part of the end: what it throws does not cost the others.
+/// Runs one part of finish(); an exception in it is logged and does not prevent the others.
 void SlamNode::attempt(std::string_view part, const std::function<void()>& work) {
   try {
     work();
@@ -146,7 +146,7 @@ std::optional<std::vector<Finding>> SlamNode::findings() const {
   return worth_saying(*found, counters_.get(to_string(Skip::kScanRepeated)));
 }
 
-/// What data were not used is in the status, too.
+/// Publishes the findings; shares of unused data are also counters, which the status has.
 void SlamNode::publish_findings(Timestamp time) {
   const auto found = findings();
   if (!found) return;
@@ -160,13 +160,13 @@ void SlamNode::publish_findings(Timestamp time) {
   }
 }
 
-/// @return whether it was saved; if not, it has been said why.
+/// @return whether it was saved; if not, the reason is logged.
 bool SlamNode::save_map() {
   const auto map = estimator_->snapshot();
   if (!map) {
     logging::error("no map to save: {}",
-                   loaded_map_ ? "neither markers nor walls confirmed a place in the loaded map"
-                               : "no scan could be placed");
+                   loaded_map_ ? "neither markers nor walls confirmed the pose in the loaded map"
+                               : "no scan was processed");
     return false;
   }
   try {
@@ -178,7 +178,7 @@ bool SlamNode::save_map() {
   return true;
 }
 
-/// An input that nothing can be made of shall not look like success.
+/// Reports inputs from which no pose or map could be computed as a failure.
 void SlamNode::check_input() {
   const std::int64_t scans = counters_.get(received_on(channels::kLidar.name));
   const std::int64_t odometry = counters_.get(received_on(channels::kOdometry.name));
@@ -187,13 +187,13 @@ void SlamNode::check_input() {
     failed_ = true;
     logging::error(
         "no pose: in {} estimates the survey's frame was never known; that takes two surveyed "
-        "markers, or one with yaw, three times sighted",
+        "markers, or one with yaw, each sighted three times",
         unplaced);
   } else if (!last_estimate_ && unplaced > 0) {
     failed_ = true;
     logging::error(
-        "no pose: in {} estimates the robot's place in '{}' was never certain; more than one "
-        "place, or none, agrees with what was seen",
+        "no pose: in {} estimates the robot's pose in '{}' was never certain; more than one place, "
+        "or none, fits the observations",
         unplaced, config_.load_map.string());
   } else if (!last_estimate_ && scans + odometry > 0) {
     failed_ = true;
@@ -246,7 +246,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   if (!estimate.has_pose) {
     counters_.add(kUnplaced);
     outbox_.publish(channels::kSlamEstimate, message);
-    if (loaded_map_) publish_map_when_due(time);  // where to look at, or to give a pose in
+    if (loaded_map_) publish_map_when_due(time);  // so that a user can command a pose in it
     return;
   }
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
@@ -275,7 +275,7 @@ void SlamNode::publish_map_when_due(Timestamp time) {
   keep_last_pose();
 }
 
-/// What cannot be saved now may be later: only the last one counts as failure.
+/// A failure to save is only counted here: a later save may succeed. The one at the end fails.
 void SlamNode::save_map_when_due(Timestamp time) {
   if (config_.slam.save_map_every_s <= 0.0 || !save_period_.is_due(time)) return;
   if (!save_map()) counters_.add("map not saved", CountKind::kLoss);
@@ -322,9 +322,9 @@ void SlamNode::obey(const mbot_slam_reset_t& reset) {
   if (reset.slam_mode != mode || reset.retain_pose != 0) {
     counters_.add("MBOT_SYSTEM_RESET refused");
     logging::warn(
-        "MBOT_SYSTEM_RESET refused: it asks for mode {}{}, but this slam was started for mode {} "
-        "and begins at slam.start",
-        reset.slam_mode, reset.retain_pose != 0 ? " at the present pose" : "", mode);
+        "MBOT_SYSTEM_RESET refused: it asks for mode {}{}, but slam runs in mode {} and begins at "
+        "slam.start",
+        reset.slam_mode, reset.retain_pose != 0 ? " at the current pose" : "", mode);
     return;
   }
   counters_.add("MBOT_SYSTEM_RESET obeyed");

@@ -24,9 +24,9 @@
 
 namespace waymark {
 
-/// Hears LIDAR, ODOMETRY and MARKERS, never the truth. Answers every scan with SLAM_SCAN,
-/// SLAM_POSE, SLAM_ESTIMATE, SLAM_CORRECTION and SLAM_PARTICLES, and once per map period with
-/// SLAM_MAP and SLAM_MARKERS; every SLAM_COMMAND with SLAM_REPLY.
+/// Subscribes to LIDAR, ODOMETRY and MARKERS, never to ground truth. Publishes SLAM_SCAN,
+/// SLAM_POSE, SLAM_ESTIMATE, SLAM_CORRECTION and SLAM_PARTICLES for every scan, SLAM_MAP and
+/// SLAM_MARKERS once per map period, and SLAM_REPLY for every SLAM_COMMAND.
 class SlamNode final : public Node {
  public:
   using Config = SlamConfig;
@@ -38,15 +38,14 @@ class SlamNode final : public Node {
 
   SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox);
 
-  /// Reads the map and the survey that are given, and writes nothing. @throws SetupError
+  /// Reads map and survey as the process would, and writes nothing. @throws SetupError
   static void check(const Config& config);
 
-  /// Uses the scans that still wait for camera frames; sends the whole map, and on SLAM_TRAJECTORY
-  /// the way there as it is known at the end. After an estimator has thrown, too: of each of these
-  /// what is known.
+  /// Processes the scans that still wait for camera frames; publishes the whole map and the final
+  /// trajectory. Also after the estimator has thrown: then each of these as far as possible.
   void finish() override;
 
-  /// True when sensors were heard, but no pose or no map could be made of them.
+  /// True if messages arrived but no pose or no map could be computed from them.
   bool failed() const override { return failed_; }
 
   std::vector<std::string_view> needed_channels() const override {
@@ -79,7 +78,7 @@ class SlamNode final : public Node {
   void publish_findings(Timestamp time);
   void publish_grid(Timestamp time);
   void publish_mbot_status(Timestamp time);
-  /// An MBot's web app wants a new map, or to be found anew in the loaded one.
+  /// Request of an MBot's web app for a new map, or to localise anew in the loaded one.
   void obey(const mbot_slam_reset_t& reset);
 
   SlamConfig config_;
@@ -89,7 +88,7 @@ class SlamNode final : public Node {
   std::string frame_{};  ///< name of the map's frame
   std::shared_ptr<const MapSnapshot> loaded_map_;
   std::vector<SurveyedMarker> survey_;
-  std::int64_t map_id_;        ///< of what is published; 0: not begun
+  std::int64_t map_id_;        ///< of the published map; 0: not begun
   std::int64_t frame_map_id_;  ///< of the map file whose frame it has; 0: none
   std::unique_ptr<Estimator> estimator_;
   MapPublisher map_publisher_{};
@@ -100,7 +99,7 @@ class SlamNode final : public Node {
   Se2 odom_from_base_{};              ///< of the newest observation
   Timestamp newest_{};                ///< observation
   std::set<int> named_survey_ids_{};
-  bool was_resumed_{false};  ///< or could not be
+  bool was_resumed_{false};  ///< resume_last_pose() was called, successfully or not
   bool is_broken_{false};    ///< the estimator threw: it is given no more scans
   Period map_period_;
   Period save_period_;

@@ -69,7 +69,7 @@ class SurveyReader {
       fail("yaw_rad and sigma_yaw_rad go together");
   }
 
-  /// Nothing where there is no such column, or nothing in it.
+  /// None if there is no such column, or its field is empty.
   std::optional<double> number(const std::vector<std::string>& fields,
                                const std::string& column) const {
     const auto at = columns_.find(column);
@@ -79,7 +79,7 @@ class SurveyReader {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-      fail(fmt::format("{} is '{}', which is no number", column, text));
+      fail(fmt::format("{} is '{}', which is not a number", column, text));
     return value;
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Processor time of the estimator, for the closing line; no result depends on it.
+// Processor time of the estimator, for the log at the end; no result depends on it.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace waymark {
 
-/// Time of all threads of the process between start() and stop(), once per observation.
+/// Processor time of all threads of the process between start() and stop(), once per observation.
 class UpdateTimer {
  public:
   void start() { started_ = std::clock(); }
 
-  /// @param updated  the observation was weighed and mapped, not only followed by odometry
+  /// @param updated  as Estimate::updated.
   void stop(bool updated);
 
-  /// "estimator: N observations, M updates, S s of processor time, worst W ms, process P s": S is
-  /// all observations', W the longest one's, P the whole process's so far.
+  /// "estimator: N observations, M updates, S s of processor time, worst W ms, process P s": S for
+  /// all observations, W for the slowest one, P for the whole process so far.
   std::string summary() const;
 
  private:

@@ -103,7 +103,7 @@ TEST(BadRobots, ARobotAsDescribedHasNoFindings) {
   EXPECT_LT(100 * drives.findings.beams_moving, drives.findings.beams);
 }
 
-TEST(BadRobots, NoisyOdometryIsDetectedAndTheCovarianceHonest) {
+TEST(BadRobots, NoisyOdometryIsDetectedAndTheCovarianceConsistent) {
   const Drives drives = drive_all(
       [](SyntheticCorridor& corridor) {
         corridor.along_noise_per_sqrt_m = 0.02;
@@ -116,7 +116,7 @@ TEST(BadRobots, NoisyOdometryIsDetectedAndTheCovarianceHonest) {
 }
 
 /// From the second pair of markers on: nothing can show slips before the first one.
-TEST(BadRobots, WheelSlipIsDetectedAndTheCovarianceHonest) {
+TEST(BadRobots, WheelSlipIsDetectedAndTheCovarianceConsistent) {
   constexpr double kSecondMarkers_m = 8.0;
   const Drives drives = drive_all(
       as_described,
@@ -168,7 +168,7 @@ TEST(BadRobots, LateMotionAfterALongStandstillIsUsed) {
   EXPECT_LT(drives.end_m, 0.06);
 }
 
-TEST(BadRobots, OdometryThatNeverMovesIsReportedAndTheCovarianceHonest) {
+TEST(BadRobots, OdometryThatNeverMovesIsReportedAndTheCovarianceConsistent) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
     for (OdometrySample& sample : log.odometry)
       sample.odom_from_base = {};
@@ -203,7 +203,7 @@ TEST(BadRobots, OdometryThatLosesMotionIsDetected) {
   EXPECT_GT(drives.findings.odometry_stuck, 10);
 }
 
-TEST(BadRobots, PeopleWalkingAlongAreExcludedAndReported) {
+TEST(BadRobots, PeopleWalkingBesideTheRobotAreExcludedAndReported) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random& random) {
     for (std::size_t i = 0; i < log.scans.size(); ++i) {
       const double time_s = 0.2 * static_cast<double>(i);

@@ -39,7 +39,7 @@ int num_unshared_tiles(const HitMap& map, const HitMap& other) {
   return count;
 }
 
-TEST(SparseTile, IsAnArrayOfCells) {
+TEST(SparseTile, ReadsLikeAPlainArrayOfCells) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random{seed};
     SparseTile<int> tile;

@@ -58,7 +58,7 @@ TEST(WaymarkEstimator, VarianceAlongABareCorridorNeverShrinks) {
   }
 }
 
-TEST(WaymarkEstimator, MarkersBoundTheErrorAndItsCovarianceIsHonest) {
+TEST(WaymarkEstimator, MarkersBoundTheErrorAndItsCovarianceIsConsistent) {
   double nees = 0.0;
   int count = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {

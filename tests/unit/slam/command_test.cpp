@@ -74,10 +74,10 @@ TEST(Command, UnknownKindsAndModesAreRefused) {
   command_t command{};
   for (const int kind : {-128, -1, 0, 5, 127}) {
     command.kind = static_cast<std::int8_t>(kind);
-    EXPECT_NE(why_refused(command).find("not known"), std::string::npos) << kind;
+    EXPECT_NE(why_refused(command).find("unknown"), std::string::npos) << kind;
   }
   command.kind = command_t::KIND_SET_MODE;
-  EXPECT_NE(why_refused(command).find("not known"), std::string::npos);
+  EXPECT_NE(why_refused(command).find("unknown"), std::string::npos);
 }
 
 TEST(CommandDesk, ARepeatedCommandActsOnceAndIsAnsweredAgain) {
@@ -277,7 +277,7 @@ TEST_F(CommandedSlam, ACommandedPoseIsTheRobotsPose) {
   }
 }
 
-TEST_F(CommandedSlam, APoseOfAnySigmasLeavesValidEstimates) {
+TEST_F(CommandedSlam, ACommandedPoseWithAnySigmasGivesValidEstimates) {
   for (const double sigma : {1e-300, 1e-6, 1.0, 1e3, 1e6, 1e200}) {
     command_t command = pose_command(1.0, 0.5);
     command.sigmas[0] = command.sigmas[1] = sigma;
@@ -307,7 +307,7 @@ TEST_F(CommandedSlam, APoseBeyondTheLargestGridIsRefused) {
 }
 
 // Carried further and further away, until the grid would be larger than the largest.
-TEST_F(CommandedSlam, WhatIsKnownBeforeTheEstimatorThrowsIsWritten) {
+TEST_F(CommandedSlam, ResultsBeforeTheEstimatorThrowsAreWritten) {
   SlamConfig config = mapping();
   config.slam.grid.resolution_m = 0.005;
   config.slam.state_folder = folder_;

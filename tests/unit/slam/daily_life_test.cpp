@@ -241,7 +241,7 @@ TEST_F(DailyLife, ACorrectMapHasNoChanges) {
   EXPECT_FALSE(sent_on(channels::kSlamChanges, today).empty());
 }
 
-TEST_F(DailyLife, AMapOfAnotherBuildingIsNamed) {
+TEST_F(DailyLife, AMapOfAnotherBuildingIsReported) {
   const auto names_it = [](const test::SyntheticCorridor& corridor, MapMode mode) {
     const auto sent = sent_on(channels::kSlamFindings,
                               test::drive_through(config_for(mode, *file_, StartKind::kOrigin),
@@ -313,7 +313,7 @@ TEST_F(SurveyedMap, ErrorsInTheFileAreReportedWithTheirLine) {
   expect(good + "2,3,0,0,-1,0.01,0.01\n", "line 3: sigma_x_m is -1");
   expect(good + "250,3,0,0,0.1,0.01,0.01\n", "line 3: id is 250, but the dictionary has 0 to 249");
   expect(good + "-1,3,0,0,0.1,0.01,0.01\n", "line 3: id is -1");
-  expect(good + "2,nan,0,0,0.1,0.01,0.01\n", "line 3: x_m is 'nan', which is no number");
+  expect(good + "2,nan,0,0,0.1,0.01,0.01\n", "line 3: x_m is 'nan', which is not a number");
   expect(good + "2,3\n", "line 3: there is no y_m");
   expect("id,x_m\n1,2\n", "line 1: there is no column y_m");
   expect(header, "defines no frame");

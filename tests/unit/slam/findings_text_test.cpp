@@ -31,7 +31,7 @@ TEST(FindingsText, DeviationsAreReportedWithNumbers) {
   findings.odometry_stuck = 20;
   const auto found = worth_saying(findings, 40);
   const std::string sentence = sentence_of(found);
-  EXPECT_THAT(sentence, HasSubstr("5.7 times as noisy along the way"));
+  EXPECT_THAT(sentence, HasSubstr("5.7 times as noisy along the path"));
   EXPECT_THAT(sentence, HasSubstr("scatter by 0.041 m"));
   EXPECT_THAT(sentence, HasSubstr("stood still while the robot moved for 2.0 %"));
   EXPECT_THAT(sentence, HasSubstr("3.8 % of the scans repeat"));
@@ -41,7 +41,7 @@ TEST(FindingsText, DeviationsAreReportedWithNumbers) {
   EXPECT_EQ(found[1].share, 0.02);
 }
 
-TEST(FindingsText, AMountingThatIsNotAsDescribedIsNamedWithItsError) {
+TEST(FindingsText, AMountingThatIsNotAsDescribedIsReportedWithItsError) {
   Findings findings = as_described();
   findings.miscalibrated = {{OdometryTerm::kLidarYaw, 0.0873, 0.001},
                             {OdometryTerm::kScale, -0.12, 0.004}};

@@ -14,7 +14,7 @@
 namespace waymark {
 namespace {
 
-TEST(SlamNode, AnswersEveryScan) {
+TEST(SlamNode, PublishesAnEstimateForEveryScan) {
   Slam slam;
   const auto input = messages_of_drive();
   const auto output = slam.feed(input);
@@ -60,7 +60,7 @@ TEST(SlamNode, TheResultDoesNotDependOnHowMessagesAreGrouped) {
   }
 }
 
-TEST(SlamNode, TheMapIsCompleteAtTheEndAndForALateListener) {
+TEST(SlamNode, TheMapIsCompleteAtTheEndAndForALateSubscriber) {
   Slam slam;
   const auto output = slam.feed(messages_of_drive());
   std::map<std::pair<int, int>, map_tile_t> from_changes;

@@ -23,12 +23,12 @@ std::string why_refused(const std::string& setting) {
   return "no error";
 }
 
-TEST(SlamConfig, AnUnknownDictionaryIsNamedWithTheKnownOnes) {
+TEST(SlamConfig, AnUnknownDictionaryIsReportedWithTheKnownOnes) {
   EXPECT_THAT(why_refused("robot.markers.dictionary=DICT_9X9_50"),
               HasSubstr("got 'DICT_9X9_50', expected one of DICT_4X4"));
 }
 
-TEST(SlamConfig, AnIdOutsideTheDictionaryIsNamed) {
+TEST(SlamConfig, AnIdOutsideTheDictionaryIsReported) {
   EXPECT_THAT(why_refused("robot.markers.ids=[0, 249, 250]"),
               HasSubstr("robot.markers.ids: got 250, but DICT_6X6_250"));
 }

@@ -24,14 +24,14 @@
 
 namespace waymark {
 
-/// A commanded pose may be at most so far from the pose before, or from the map: nearly half of the
-/// side of the largest grid (TileMap::kMaxTableTiles).
+/// Largest distance [m] of a commanded pose from the previous pose or, before the first one, from
+/// the map: nearly half of the side of the largest grid (TileMap::kMaxTableTiles).
 inline double farthest_pose_m(double resolution_m) {
   constexpr double kFarthest_cells = 30'000.0;
   return kFarthest_cells * resolution_m;
 }
 
-/// What all methods are given.
+/// Inputs of all methods.
 struct EstimatorSetup {
   MapperConfig grid{};
   MotionNoise motion{};
@@ -49,14 +49,15 @@ struct EstimatorSetup {
   std::vector<SurveyedMarker> survey{};  ///< none: the first pose is the map's origin
 };
 
-/// A hypothesis, for pictures.
+/// A particle, for visualisation.
 struct PublishedParticle {
   Se2 map_from_base{};
-  Se2 previous_map_from_base{};  ///< its parent, one update ago
+  Se2 previous_map_from_base{};  ///< pose of its parent at the previous update
   double weight{0.0};            ///< normalised
 };
 
-/// A SLAM method. The map frame is the base's pose at the first observation.
+/// A SLAM method. The map frame is the base's pose at the first observation, unless a loaded map or
+/// a survey defines it.
 class Estimator {
  public:
   virtual ~Estimator() = default;
@@ -74,14 +75,13 @@ class Estimator {
   /// filter that never corrects past poses. O(scans).
   virtual std::vector<TimedPose> trajectory() const { return {}; }
 
-  /// The map drawn along trajectory(). O(scans).
+  /// The map redrawn along trajectory(). O(scans).
   virtual GridMap redrawn_map() const { return map(); }
 
-  /// The poses that redrawn_map() is drawn along, and the constraints between them; only of methods
-  /// that have a graph.
+  /// Keyframes of redrawn_map() and the constraints between them; only of graph methods.
   virtual std::optional<PoseGraph> pose_graph() const { return std::nullopt; }
 
-  /// What contradicts the loaded map or the survey; only of methods that look for it.
+  /// Differences from the loaded map and the survey; only of methods that detect them.
   virtual std::vector<MapChange> changes() const { return {}; }
 
   /// Sets the robot's pose for the next update.
@@ -89,10 +89,11 @@ class Estimator {
   ///         farthest_pose_m() away.
   virtual bool set_pose(const StartPose& /*pose*/) { return false; }
 
-  /// What was learnt about the sensors; only of methods that learn it.
+  /// Learnt properties of the sensors; only of methods that learn them.
   virtual std::optional<Findings> findings() const { return std::nullopt; }
 
-  /// All that another run needs to continue in this map; only of methods that support it. O(scans).
+  /// Everything that another run needs to continue in this map; only of methods that support it.
+  /// O(scans).
   virtual std::optional<MapSnapshot> snapshot() const { return std::nullopt; }
 };
 

@@ -9,7 +9,7 @@ namespace {
 
 enum RandomStream : std::uint64_t { kMotionStream = 1, kResamplingStream = 2 };
 
-/// How far below the LiDAR's limit slam_gmapping puts maxRange by default.
+/// slam_gmapping's default of maxRange is the LiDAR's limit minus this.
 constexpr double kBelowLidarRange_m = 0.01;
 
 GmappingConfig with_ranges(GmappingConfig config, double lidar_range_max_m) {
@@ -143,7 +143,7 @@ const GridMap& GmappingEstimator::map() const {
 }
 
 Estimate GmappingEstimator::estimate(const Observation& observation) const {
-  // Between updates the pose follows odometry, not the noise of a particle.
+  // Between updates the pose follows odometry without the particles' noise.
   const Se2 map_from_base = map_from_best_ * since_update_.start_from_end;
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = covariance_about(map_from_base, particles_);

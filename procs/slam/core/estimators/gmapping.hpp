@@ -17,8 +17,8 @@
 
 namespace waymark {
 
-/// Defaults: slam_gmapping's, whose own names stand beside the members. Cells and seed are those of
-/// EstimatorSetup.
+/// Defaults: slam_gmapping's, whose own names begin the explanations in core_fields.cpp. Cell size
+/// and seed are those of EstimatorSetup.
 struct GmappingConfig {
   int particles{30};
   double max_range_m{0.0};
@@ -27,8 +27,8 @@ struct GmappingConfig {
   double resample_threshold{0.5};
   double likelihood_gain{3.0};
   double occupied_threshold{0.25};
-  /// Where the scans contradict odometry's turn, the particles turn by what the scans measure. The
-  /// released code has nothing like it.
+  /// Where the scans contradict odometry's turn, the particles turn by the scans' estimate. An
+  /// addition to the released code.
   bool watch_turns{false};
   StepNoise motion{};
   ScanGate gate{};
@@ -38,21 +38,22 @@ struct GmappingConfig {
   void describe(Fields& fields);
 };
 
-/// Each particle carries a map of the hits it has seen. Results do not depend on the ParallelFor.
+/// Each particle carries a map of its beams' hits. Results do not depend on the ParallelFor.
 class GmappingEstimator final : public Estimator {
  public:
   GmappingEstimator(const EstimatorSetup& setup, const GmappingConfig& config);
 
   Estimate update(const Observation& observation) override;
 
-  /// Drawn when asked for: a map along the best trajectory costs what changed since the last call.
+  /// The map along the best trajectory, drawn on demand; the cost depends on what has changed since
+  /// the last call.
   const GridMap& map() const override;
 
   std::vector<Landmark> landmarks() const override { return {}; }
 
   std::vector<PublishedParticle> particles() const override;
 
-  /// Of the particle that is the best one now.
+  /// Trajectory of the currently best particle.
   std::vector<TimedPose> trajectory() const override;
 
  private:
@@ -62,7 +63,7 @@ class GmappingEstimator final : public Estimator {
     HitMap hits{};
     Trajectory trajectory{};
     double log_likelihood{0.0};  ///< of the whole trajectory
-    bool is_matched{true};       ///< the last scan scored enough
+    bool is_matched{true};       ///< the last match scored more than minimum_score
   };
 
   void propagate(const Motion& motion);
@@ -79,16 +80,16 @@ class GmappingEstimator final : public Estimator {
   std::uint64_t observations_{0};
   TurnMonitor turn_monitor_{};
   ScanTrajectory scan_trajectory_{};
-  std::vector<Se2> common_poses_{};  ///< at the updates that all particles have in common
+  std::vector<Se2> common_poses_{};  ///< at the updates that all particles share
 
   // Of the last update:
   std::uint64_t updates_{0};
   Timestamp updated_at_{};
   Motion since_update_{};
   std::size_t best_{0};  ///< the particle with the most likely trajectory
-  Se2 map_from_best_{};  ///< its pose then
+  Se2 map_from_best_{};  ///< its pose at that update
   double effective_particles_{1.0};
-  mutable PublishedMap published_map_;  ///< a cache: the trajectories decide what it shows
+  mutable PublishedMap published_map_;  ///< a cache, determined by the trajectories
 };
 
 }  // namespace waymark

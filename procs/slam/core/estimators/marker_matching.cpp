@@ -56,15 +56,15 @@ void MarkerMatchingEstimator::weigh(const Observation& observation) {
   const std::vector<ObservedSpot> spots = observed_spots(
       observation, setup_.grid.face_spacing_m, setup_.grid.face_margin_m, config_.sighting_sigma_m);
   const Se2 predicted = mean_pose(particles_);
-  const Observability walls_tell =
+  const Observability observability =
       observability_of(observation.beams, predicted, setup_.range_sigma_m);
   std::vector<WallScore> walls(particles_.size());
   std::vector<double> markers(particles_.size());
   WallScore all;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const Se2& pose = particles_.state(i).map_from_base;
-    walls[i] =
-        wall_score(mapper_.map(), observation.beams, walls_tell.without_weak_part(pose, predicted));
+    walls[i] = wall_score(mapper_.map(), observation.beams,
+                          observability.without_weak_part(pose, predicted));
     markers[i] = marker_score(mapper_.map(), spots, pose, config_.rewards);
     all.agreement += particles_.weights()[i] * walls[i].agreement;
     all.mapped += particles_.weights()[i] * walls[i].mapped;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's method: particles weighed by marker ids on beams and cells; the best draws the map.
+// The paper's method: particles weighted by marker ids on beams and cells; the best draws the map.
 #pragma once
 
 #include "slam/core/estimators/estimator.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Dead reckoning: the control. Draws the map where the encoders say the robot is.
+// Dead reckoning, the control in comparisons: draws the map along the odometry.
 #pragma once
 
 #include "slam/core/estimators/estimator.hpp"

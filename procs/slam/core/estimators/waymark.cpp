@@ -13,7 +13,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kFixed = 1e-6;  // of the sigmas of a calibration that is not learnt
+constexpr double kFixed = 1e-6;  // factor on the prior sigmas of a calibration that is not learnt
 
 // A scan that contradicts odometry becomes a keyframe, so that the graph chooses the component of
 // the odometry's noise.
@@ -32,7 +32,7 @@ GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config)
   return noise;
 }
 
-/// The map on which scans are drawn.
+/// The map before the first scan of this run.
 GridMap ground_of(const EstimatorSetup& setup) {
   if (setup.loaded_map) return setup.loaded_map->grid;
   return {GridFrame::centred_on_map_origin(setup.grid.resolution_m), {}, {}};
@@ -115,7 +115,7 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
-/// At the beginning and after a commanded pose there is no prediction, and no match.
+/// Without prediction and match at the first scan and after a commanded pose.
 WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& observation) const {
   Look look{points_of(observation)};
   if (graph_.state().keyframes.empty() || given_pose_) return look;
@@ -128,7 +128,7 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
       without_moving(look.points, map_.map(), searched.map_from_base, searched.covariance);
   look.beams_moving = all - look.points.size();
   look.scan = matched(look.points, searched);
-  // A scan that contradicts the map may be elsewhere; only if not, its range scale is tested.
+  // A scan that contradicts the map may fit at another pose; its range scale is tested only if not.
   if (look.scan && usual_fit_.is_contradicted(look.scan->match)) search_widely(observation, look);
   return look;
 }
@@ -142,13 +142,13 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   used.is_refuted = scan && usual_fit_.is_refuted(scan->match);
   used.is_used = scan && !used.is_refuted && scan->match.is_usable(config_.scan);
   used.shows_all_axes = used.is_used && !scan->match.observed.is_degenerate;
-  // The noise of standing odometry is so small that the solver would not leave its pose: the
-  // keyframe begins at the match.
+  // The noise of standing odometry is so small that the solver would keep the predicted pose: the
+  // keyframe is initialised at the match instead.
   const bool is_moved = used.is_used && unmeasured_motion_.is_standing();
   const std::size_t keyframe = graph_.add_keyframe(
       is_moved ? scan->map_from_submap * scan->match.map_from_base : look.expected.map_from_base);
-  // A scan that observes all axes shows slips, however large its sigma along the path: odometry
-  // that loses weight beside such scans makes long paths worse.
+  // Scans that observe all axes reveal slips, even with a large sigma along the path: reducing the
+  // weight of odometry beside them makes long trajectories worse.
   hidden_slips_ = used.shows_all_axes ? 0.0 : hidden_slips(measurements);
   add_odometry_factor(keyframe);
   if (scan && scan->match.num_mapped >= config_.scan.min_inliers)
@@ -168,7 +168,7 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   return used;
 }
 
-/// Relocates the newest keyframe if the markers say that the robot was carried.
+/// Relocates the newest keyframe if markers show that the robot was carried.
 void WaymarkEstimator::check_pose(std::span<const MarkerMeasurement> measurements) {
   verdict_ = relocalisation_.update(graph_.state().keyframes.back(), hints(measurements), motion_);
   if (verdict_ == RelocalisationMonitor::Verdict::kRelocated ||
@@ -245,8 +245,8 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
                   graph_.covariance_of({VariableKind::kKeyframe, newest()}));
 }
 
-/// Scans between keyframes average the noise of the submaps. One that fits worse than usual may
-/// have a wrong pose, and the next scans would be matched with it.
+/// Scans between keyframes reduce the noise of the submaps. One that fits worse than usual is left
+/// out: its pose may be wrong, and the next scans would be matched with it.
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
   if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||

@@ -55,8 +55,8 @@ struct WaymarkConfig {
   void describe(Fields& fields);
 };
 
-inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]: the map's frame is the first pose
-/// Keyframes in a group, which one of them stands for in scan factors.
+inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]; the first pose defines the map frame
+/// Keyframes in a group, which one of them represents in scan factors.
 inline constexpr std::size_t kGroupedKeyframes = 15;
 
 /// Prior standard deviations of the calibration.
@@ -83,7 +83,7 @@ class WaymarkEstimator final : public Estimator {
  private:
   static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
   static constexpr int kMaxStanding = 20;  ///< keyframes in a row while odometry stands still
-  /// Keyframes of the window while the map is frozen: each has a prior by the map.
+  /// Keyframes of the window in a frozen map; few are enough, as the map gives each a prior.
   static constexpr std::size_t kFrozenWindow = 16;
 
   struct Prediction {
@@ -105,7 +105,7 @@ class WaymarkEstimator final : public Estimator {
 
   /// Neighbouring keyframes that saw the walls of a match.
   struct KeyframeGroup {
-    std::size_t reference{0};  ///< keyframe that stands for the group in the graph
+    std::size_t reference{0};  ///< keyframe that represents the group in the graph
     double share{0.0};         ///< of the inliers
     std::size_t middle{0};     ///< mean keyframe, weighted by inliers
   };
@@ -116,18 +116,18 @@ class WaymarkEstimator final : public Estimator {
     Prediction expected{};
     std::optional<MatchedScan> scan{};
     double since_last_s{0.0};     ///< time since the last scan
-    bool is_searched{false};      ///< in wide windows, too
-    std::size_t beams_moving{0};  ///< excluded from the points
+    bool is_searched{false};      ///< the wide windows have been searched, too
+    std::size_t beams_moving{0};  ///< number of beams excluded from the points
   };
 
   /// How the scan of a keyframe was used.
   struct KeyframeScan {
     bool is_refuted{false};      ///< it contradicts the map
     bool is_used{false};         ///< it has a factor
-    bool shows_all_axes{false};  ///< and observes every direction
+    bool shows_all_axes{false};  ///< it has a factor and observes every direction
   };
 
-  /// Pose of a scan, relative to the keyframe before it.
+  /// Pose of a scan relative to the newest keyframe at that time.
   struct ScanPose {
     Timestamp time{};
     std::size_t keyframe{0};
@@ -143,15 +143,15 @@ class WaymarkEstimator final : public Estimator {
     bool shows_all_axes{false};
   };
 
-  /// A time in which odometry stands still; it may be stuck.
+  /// An interval in which odometry stands still; it may be stuck.
   struct Standstill {
     std::size_t keyframe{0};
     Motion motion{};       ///< since that keyframe
     Se2 map_from_start{};  ///< pose when it began
     Se2 map_from_base{};   ///< pose of the last keyframe at which the robot was observed to move
     Timestamp since{};
-    double moved_at_s{0.0};                             ///< time of that keyframe, as clock_s_
-    Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< absolute, from map_from_start
+    double moved_at_s{0.0};                             ///< time of that keyframe, by clock_s_
+    Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| since start
   };
 
   bool place(const Observation& observation);
@@ -236,7 +236,7 @@ class WaymarkEstimator final : public Estimator {
   RangeNoise range_noise_;
   OdometryNoiseLearner noise_learner_{};
   Drift drift_{};
-  Drift unmatched_drift_{};  ///< the part of drift_ by keyframes without a scan factor
+  Drift unmatched_drift_{};  ///< the part of drift_ from keyframes without a scan factor
   LoopFinder loop_finder_;
   KeyframeThinning thinning_;
   double since_loop_search_m_{0.0};
@@ -251,9 +251,9 @@ class WaymarkEstimator final : public Estimator {
   OdometryCheck odometry_check_{};
   Se2 newest_from_last_scan_{};  ///< pose of the last scan in the newest keyframe's frame
   UnmeasuredMotion unmeasured_motion_{};
-  double hidden_slips_{0.0};  ///< of the motion to the newest keyframe
+  double hidden_slips_{0.0};  ///< hidden_share() of the motion to the newest keyframe
   double since_insertion_m_{0.0};
-  double unobserved_m_{0.0};  ///< driven since markers or walls observed the motion
+  double unobserved_m_{0.0};  ///< driven since markers or walls last observed the motion
   DrawnMap map_;
   std::vector<ScanPose> scan_poses_{};
   OdometryNoise weighed_with_;  ///< noise with which the graph behind the window was solved
@@ -263,14 +263,14 @@ class WaymarkEstimator final : public Estimator {
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
   Points loaded_points_{};                     ///< of the loaded map's walls
   CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
-                                             : config_.scan.cell_spacing_m};  ///< the same
-  bool is_confirmed_{true};   ///< the pose in the loaded map, by markers or walls
+                                             : config_.scan.cell_spacing_m};  ///< of the same
+  bool is_confirmed_{true};   ///< markers or walls confirm the pose in the loaded map
   bool was_confirmed_{true};  ///< at least once
-  std::optional<WallChangeDetector> wall_changes_{};  ///< against the loaded map
+  std::optional<WallChangeDetector> wall_changes_{};  ///< relative to the loaded map
   Survey survey_;
-  std::optional<StartPose> given_pose_{};  ///< by a command: pose of the next keyframe
+  std::optional<StartPose> given_pose_{};  ///< commanded pose of the next keyframe
   Timestamp newest_time_{};
-  double clock_s_{0.0};           ///< since the first observation, without steps of the clock
+  double clock_s_{0.0};           ///< time since the first observation, without steps of the clock
   bool is_put_elsewhere_{false};  ///< the newest observation changed the pose without a motion
 
   // Of the newest keyframe:

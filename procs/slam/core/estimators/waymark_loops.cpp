@@ -6,13 +6,14 @@
 namespace waymark {
 namespace {
 
-// chi^2 (3 degrees of freedom, 99 %) of a loop against the pose as published, which is wrong until
-// the graph has followed.
+// chi^2 (3 degrees of freedom, 99 %) beyond which a loop contradicts the published pose, which is
+// wrong until the graph has been solved.
 constexpr double kLoopContradicts = 11.3;
 constexpr double kLoopSlack_m = 0.05;  // sigma of old poses, whose covariance is not kept
 constexpr double kLoopSlack_rad = 0.01;
 
-/// Of a pose relative to an old one: as in the map, or by the drift since, if that is smaller.
+/// Covariance of a pose relative to an old one: that in the map or the drift since, whichever is
+/// smaller.
 Eigen::Matrix3d covariance_against_old(const Eigen::Matrix3d& in_map,
                                        const Eigen::Matrix3d& drifted) {
   Eigen::Matrix3d covariance = kLoopCovarianceMargin * smaller_covariance(drifted, in_map);
@@ -20,8 +21,8 @@ Eigen::Matrix3d covariance_against_old(const Eigen::Matrix3d& in_map,
   return covariance;
 }
 
-/// What the match does not observe contradicts nothing.
-/// @param covariance  of the estimated pose, map axes
+/// Whether a loop contradicts the pose in the directions that its match observes.
+/// @param covariance  of the estimated pose, map axes.
 bool contradicts(const LoopFinder::Found& found, const Se2& map_from_submap,
                  const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix3d information =
@@ -58,7 +59,7 @@ void WaymarkEstimator::close_loops(const Points& points) {
   if (solve_schedule_.is_step_due(graph_.state().keyframes.size())) step_everything({});
 }
 
-/// Steps the whole graph; the published map follows it.
+/// Takes one step of the whole graph; the published map follows it.
 void WaymarkEstimator::step_everything(const std::vector<std::size_t>& returning_landmarks) {
   std::vector<std::size_t> activated = returning_landmarks;
   for (std::size_t i = 0; i < book_.entries().size(); ++i) {
@@ -85,7 +86,7 @@ void WaymarkEstimator::forget_surplus() {
   submaps_.forget([this](std::size_t keyframe) { return graph_.is_removed(keyframe); });
 }
 
-/// The whole graph, at its optimum; until the next update.
+/// The whole graph at its optimum; valid until the next update.
 const Graph& WaymarkEstimator::solved() const {
   if (!solved_) {
     solved_.emplace(graph_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the graph estimator uses a loaded map or a survey, and makes a map to be saved.
+// How the graph estimator uses a loaded map or a survey, and creates a map to be saved.
 #include "slam/core/estimators/waymark.hpp"
 #include "slam/core/graph/map_fit.hpp"
 #include "slam/core/graph/marker_changes.hpp"
@@ -19,8 +19,8 @@ namespace waymark {
 namespace {
 
 constexpr int kSurveySteps = 12;
-constexpr double kLeastMapped = 0.6;  // share of the beams on walls of the loaded map, to be in it
-constexpr std::int64_t kScansToDecide = 10;  // at keyframes, before the loaded map is refused
+constexpr double kLeastMapped = 0.6;  // least share of beams on mapped walls, to be in the map
+constexpr std::int64_t kScansToDecide = 10;  // at keyframes, before the loaded map is refuted
 
 }  // namespace
 
@@ -62,7 +62,7 @@ void WaymarkEstimator::confirm_place(const MatchedScan& scan) {
     is_confirmed_ = true;
 }
 
-/// At the newest keyframe, wherever it is believed to be.
+/// Compares the scan of the newest keyframe, at its estimated pose.
 void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
   if (!setup_.loaded_map) return;
   const MapFit fit =
@@ -72,19 +72,20 @@ void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
   if (fit.is_contradicted()) ++findings_.scans_contradict_loaded_map;
 }
 
-/// Nothing has confirmed the given pose in the loaded map, and most scans contradict it.
+/// Whether nothing has confirmed the pose in the loaded map, and most scans contradict it.
 bool WaymarkEstimator::is_loaded_map_refuted() const {
   return !is_confirmed_ && findings_.scans_in_loaded_map >= kScansToDecide &&
          2 * findings_.scans_contradict_loaded_map > findings_.scans_in_loaded_map;
 }
 
-/// The loaded map does not move: a match with it is a prior on the pose.
+/// The loaded map is fixed: a match with it is a prior on the pose.
 void WaymarkEstimator::add_map_factor(std::size_t keyframe, const ScanMatch& match) {
   graph_.add(PosePrior{keyframe, match.map_from_base, root_of(match.observed.information)});
 }
 
-/// A surveyed marker with enough sightings becomes a prior, which is tested again with more. The
-/// newest poses follow at once, the others with the next solution of the whole graph.
+/// A surveyed marker with enough sightings becomes a prior, which is tested again with more. After
+/// a new frame or a switched prior the whole graph is solved at once; otherwise the window is, and
+/// the other poses follow with the next solution of the whole graph.
 void WaymarkEstimator::use_survey() {
   if (survey_.is_empty() || !survey_.match(graph_, book_)) return;
   const auto survey_from_map = survey_.new_frame(graph_);
@@ -121,7 +122,7 @@ std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
   return pose_graph_of(solved());
 }
 
-/// There is none before the place in the loaded map was confirmed: it would mix two buildings.
+/// None before the pose in the loaded map was confirmed: the map might mix two buildings.
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   if (is_frozen() || graph_.state().keyframes.empty() || !was_confirmed_) return std::nullopt;
   const Graph& graph = solved();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the graph estimator uses odometry, and learns how wrong it is.
+// How the graph estimator uses odometry, and learns its noise.
 #include "slam/core/estimators/waymark.hpp"
 
 #include <Eigen/LU>
@@ -10,11 +10,11 @@
 namespace waymark {
 namespace {
 
-// Motion of the estimate while odometry stands still, by which it is stuck.
+// Odometry that stands still is stuck if the estimate moves by more than this.
 constexpr double kMoved_m = 0.03;
 constexpr double kMoved_rad = 0.05;
-// A robot that was never farther from where odometry came to a standstill, and is nearer again by
-// that share, stands: a scan was matched wrongly.
+// A scan was mismatched, and odometry is not stuck, if the estimate was never farther than this
+// from where odometry came to a standstill, and has come back to kReturned of the largest distance.
 constexpr double kNearStandstill_m = 0.3;
 constexpr double kNearStandstill_rad = 0.2;
 constexpr double kReturned = 0.7;
@@ -31,8 +31,8 @@ bool is_other(double a, double b) {
 
 }  // namespace
 
-/// Late motion of odometry that was stuck begins at the keyframe where it got stuck. Keyframes
-/// since then, which markers or walls have caused, lose their odometry factors.
+/// Late motion of odometry that was stuck begins at the keyframe where it got stuck. Later
+/// keyframes, which markers or walls have triggered, lose their odometry factors.
 void WaymarkEstimator::follow_odometry(const Observation& observation) {
   unmeasured_motion_.follow(observation);
   if (observation.odometry_caught_up) ++findings_.odometry_caught_up;
@@ -77,7 +77,7 @@ bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
          std::abs(motion_.start_from_end.theta()) >= config_.keyframe_turn_rad;
 }
 
-/// The estimate has moved as far as from keyframe to keyframe while odometry is silent.
+/// Whether the estimate has moved by the distance or turn of a keyframe while odometry is silent.
 bool WaymarkEstimator::has_moved_silently(const Se2& map_from_base) const {
   if (!unmeasured_motion_.is_silent()) return false;
   const Eigen::Vector3d moved = pose_difference(map_from_base, graph_.state().keyframes.back());
@@ -95,7 +95,7 @@ WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
   return {from * moved.start_from_end, in_axes(from.rotation(), covariance)};
 }
 
-/// Share of the slips since the last keyframe that known markers do not show.
+/// Share of the slips since the last keyframe that known markers do not observe.
 double WaymarkEstimator::hidden_slips(std::span<const MarkerMeasurement> measurements) const {
   std::vector<Eigen::Matrix2d> places;
   for (const MarkerMeasurement& measured : measurements)
@@ -111,11 +111,11 @@ void WaymarkEstimator::add_odometry_factor(std::size_t keyframe) {
   odometry.motion = motion_;
   odometry.unmeasured_m = unmeasured_motion_.take_unmeasured_m();
   graph_.add(odometry);
-  // The keyframe at which odometry got stuck has left the window.
+  // If the keyframe at which odometry got stuck has left the window.
   if (!graph_.is_active({VariableKind::kKeyframe, moved_from_})) step_everything({});
 }
 
-/// Detects that odometry is stuck, and limits the number of keyframes of a standing robot.
+/// Detects that odometry is stuck, and counts keyframes while the robot seems to stand.
 void WaymarkEstimator::compare_with_odometry() {
   if (!standstill_) return;
   ++keyframes_standing_;
@@ -151,7 +151,7 @@ void WaymarkEstimator::spread_late_motion(const Observation& observation) {
   }
 }
 
-/// Learns from the innovation of a scan: the motion since the keyframe before, minus odometry's.
+/// Learns from the innovation of a scan: matched minus predicted pose, in the base frame.
 void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
   if (!config_.learn_noise || motion_.guessed_s > 0.0 || unmeasured_motion_.is_standing() ||
       unmeasured_motion_.is_silent()) {
@@ -165,7 +165,7 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
   off.head<2>() = (to_base * off.head<2>()).eval();
   const Eigen::Matrix3d information =
       in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
-  // The noise of two scans: this one and the one before.
+  // Variances of two scans: this one and the previous one.
   noise_learner_.observe_turn({off.z(),
                                turn_variance(described, motion_.distance_m, motion_.turn_rad),
                                2.0 / information(2, 2), motion_.distance_m});
@@ -173,13 +173,13 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
     const Eigen::Matrix3d covariance = information.inverse();
     noise_learner_.observe_along({off.x(), along_m2_per_m(described) * motion_.distance_m,
                                   2.0 * covariance(0, 0), motion_.distance_m});
-    unobserved_m_ = -motion_.distance_m;
+    unobserved_m_ = -motion_.distance_m;  // 0 after add_predicted_keyframe() has added this motion
   }
   graph_.set_odometry_scale(noise_learner_.scale());
 }
 
-/// Learns from the innovation of a known marker, if nothing else has observed the motion since the
-/// last one.
+/// Learns from the innovation of a known marker, if nothing has observed the motion along the path
+/// since the last one.
 void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
                                    const MarkerMeasurement& measurement) {
   if (!config_.learn_noise || unobserved_m_ <= 0.0 || unmeasured_motion_.is_silent()) return;
@@ -197,7 +197,7 @@ void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
   graph_.set_odometry_scale(noise_learner_.scale());
 }
 
-/// Solves the whole graph again when the learnt noise has changed, so that the past has it, too.
+/// Takes a step of the whole graph when the learnt noise has changed, to reweight old factors.
 void WaymarkEstimator::weigh_past_anew() {
   const OdometryNoise noise = graph_.odometry_noise();
   const bool is_other_noise =

@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kFound_m = 0.1;  // sigmas of a pose by global localisation
+constexpr double kFound_m = 0.1;  // sigmas of a pose from global localisation
 constexpr double kFound_rad = 0.05;
 constexpr double kReturned_m = 0.3;  // sigmas of the pose after a relocalisation was reverted
 constexpr double kReturned_rad = 0.1;
@@ -45,7 +45,7 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
   return true;
 }
 
-/// Adds a keyframe at a commanded pose, without odometry from the keyframe before.
+/// Adds a keyframe at a commanded pose, without odometry from the previous keyframe.
 void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   const Se2 map_from_base{pose.x_m, pose.y_m, pose.yaw_rad};
   const std::size_t keyframe = graph_.add_keyframe(map_from_base);
@@ -58,8 +58,8 @@ void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   begin_submaps_anew();
 }
 
-/// The pose changed without a motion: by a command, or by a new map frame. (A relocalisation does
-/// not call it, since odometry may have been stuck: it keeps the standstill.)
+/// After the pose has changed without a motion, by a command or a new map frame. (A relocalisation
+/// does not call it but keeps the standstill, since odometry may have been stuck.)
 void WaymarkEstimator::forget_recent_motion() {
   is_put_elsewhere_ = true;
   standstill_.reset();
@@ -67,7 +67,8 @@ void WaymarkEstimator::forget_recent_motion() {
   unmeasured_motion_.note_observed();
 }
 
-/// @return whether the robot's place in the loaded map is known by now.
+/// Global localisation.
+/// @return whether the robot's pose in the loaded map is known now.
 bool WaymarkEstimator::place(const Observation& observation) {
   const auto found = place_finder_->update(observation.motion, observation, measured(observation),
                                            setup_.camera, range_noise_);

@@ -8,9 +8,9 @@
 namespace waymark {
 namespace {
 
-constexpr double kLeastShare = 0.01;  // of the ranges; less is within what LiDARs are good for
+constexpr double kLeastShare = 0.01;  // of the ranges; less is within the accuracy of LiDARs
 constexpr double kLeastSigmas = 5.0;
-constexpr double kClearlyBetter = 1.15;           // inliers with the ranges scaled
+constexpr double kClearlyBetter = 1.15;           // ratio of inliers with and without the scale
 const Eigen::Vector3d kAround{0.05, 0.05, 0.02};  // sigmas of the pose about the prediction
 
 Observation scaled_ranges(Observation observation, double share) {

@@ -36,9 +36,9 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   return scan;
 }
 
-/// Where a scan fits worse than the scans before, odometry may be off by more than plain matching
-/// converges from: then wide windows are searched, about the predicted pose and about poses that do
-/// not use odometry, which are off by a scan's motion at most. Needs a scan that was matched.
+/// If a scan fits worse than usual, odometry may be off by more than the matcher's basin of
+/// convergence: then wide windows are searched about the predicted pose and about poses that do not
+/// use odometry, which are off by the motion since the last scan at most. Needs a matched scan.
 void WaymarkEstimator::search_widely(const Observation& observation, Look& look) const {
   MatchedScan& scan = *look.scan;
   if (look.is_searched || !usual_fit_.is_worse_than_usual(scan.match)) return;
@@ -63,9 +63,9 @@ void WaymarkEstimator::search_widely(const Observation& observation, Look& look)
       usual_fit_, range_noise_, config_.scan);
 }
 
-/// Inliers of a match by the keyframes that saw their walls: neighbouring keyframes are grouped,
-/// and one keyframe stands for its group. It is the same one for every scan, so that the graph
-/// stays sparse.
+/// Inliers of a match by the keyframes that observed their walls: neighbouring keyframes form a
+/// group, which one of them represents. It is the same one for every scan, so that the graph stays
+/// sparse.
 std::vector<WaymarkEstimator::KeyframeGroup> WaymarkEstimator::keyframe_groups(
     const ScanMatch& match, bool is_loop) const {
   std::vector<KeyframeGroup> groups;
@@ -95,8 +95,8 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
   ScanFactor factor;
   factor.is_loop = is_loop;
   factor.keyframe = keyframe;
-  // Where no scan constrains a group, its reference may have drifted from the keyframes that saw
-  // the walls.
+  // If no scan constrains a group, its reference may have drifted relative to the keyframes that
+  // observed the walls.
   Eigen::Matrix3d drift = Eigen::Matrix3d::Zero();
   for (const KeyframeGroup& group : keyframe_groups(match, is_loop)) {
     factor.references.push_back(

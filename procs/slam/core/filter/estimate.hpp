@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an estimator says after a scan.
+// Output of an estimator after a scan.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -16,15 +16,15 @@ namespace waymark {
 
 enum class Health { kInitialising, kTracking, kDegenerate, kLost };
 
-/// What observes the motion along the weakest direction of the walls.
+/// What observes the motion in the direction that the walls observe least.
 enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
 
-/// What observed the estimate beside odometry: the last of these that applies.
+/// What determined the estimate, in ascending precedence: the last of these that applies.
 enum class EstimateReason { kOdometry, kScan, kMarker, kLoop, kRelocalised, kSurvey, kCommand };
 
 struct Estimate {
   Timestamp time{};
-  bool has_pose{true};  ///< false: where the robot is in the loaded map is not known yet
+  bool has_pose{true};  ///< false: the pose in the loaded map or survey frame is not known yet
   Se2 map_from_base{};
   /// [m^2, m rad, rad^2] order x y theta, map frame.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
@@ -36,20 +36,21 @@ struct Estimate {
   Observability observability{};
   WeakAxisSource weak_axis_source{WeakAxisSource::kUnknown};
   EstimateReason reason{EstimateReason::kScan};
-  bool updated{false};  ///< the scan was weighed and mapped, not only followed by odometry
+  bool updated{false};  ///< the scan updated the filter, or became a keyframe
   /// The odometry's newest step was rejected: scans contradict it (gmapping), or it exceeds the
   /// robot's speed limits (waymark).
   bool odometry_refused{false};
-  bool ranges_wrong{false};  ///< the scan shows known walls, but at another scale: it was scaled
-  /// Camera or markers are further from their description than their standard deviations allow.
+  bool ranges_wrong{false};  ///< the scan fits known walls only at another scale: it was scaled
+  /// A calibration term is further from its description than its standard deviation allows
+  /// (CalibrationKnowledge::doubted_terms).
   bool calibration_widened{false};
 };
 
-/// What a method can say about itself after `updates` updates.
+/// Health after `updates` updates; two are needed for more than kInitialising.
 /// @param observes_all_axes  walls or markers observe the motion in every direction.
 Health health_of(std::uint64_t updates, bool is_lost, bool observes_all_axes);
 
-/// The part of an estimate that the observation alone decides.
+/// An estimate with the fields that follow from the observation and the pose alone.
 Estimate describe_observation(const Observation& observation, const Se2& map_from_base,
                               double range_sigma_m);
 
@@ -67,8 +68,8 @@ Se2 mean_pose(const ParticleSet<State>& particles) {
   return {translation, std::atan2(heading.y(), heading.x())};
 }
 
-/// Mean square of the particles' deviations from a pose, map frame. About a pose that is not their
-/// mean it contains the square of the difference: the honest error of that pose.
+/// Mean square of the particles' deviations from a pose, map frame. If the pose is not their mean,
+/// it includes the square of the difference, as an error of that pose.
 /// @tparam State  has a member map_from_base.
 template <class State>
 Eigen::Matrix3d covariance_about(const Se2& map_from_base, const ParticleSet<State>& particles) {

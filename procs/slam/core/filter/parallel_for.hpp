@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a core uses threads without knowing them: whoever calls it brings the loop.
+// Parallel loop that a core gets from its caller, so that it does not depend on threads.
 #pragma once
 
 #include <cstddef>
@@ -7,12 +7,12 @@
 
 namespace waymark {
 
-/// Calls body(0) ... body(count - 1), in any order and perhaps at once, and returns when all are
-/// done. Bodies write to places of their own only, so the result does not depend on the threads.
+/// Calls body(0) ... body(count - 1), in any order and possibly concurrently, and returns when all
+/// are done. Each call writes to memory of its own only, so the result does not depend on threads.
 using ParallelFor =
     std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 
-/// One after the other.
+/// Calls the bodies one after the other.
 inline void serial_for(std::size_t count, const std::function<void(std::size_t)>& body) {
   for (std::size_t i = 0; i < count; ++i)
     body(i);

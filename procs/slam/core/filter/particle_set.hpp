@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The skeleton of every particle filter here: states with log weights.
+// Particles of a filter: states with log weights.
 #pragma once
 
 #include "common/random/random.hpp"
@@ -30,13 +30,12 @@ class ParticleSet {
 
   const State& state(std::size_t particle) const { return states_[particle]; }
 
-  /// Multiplies a particle's weight; call normalise() when all are done. -inf is fine unless all
-  /// have it.
+  /// Multiplies a particle's weight; call normalise() when all are done. -inf: weight 0.
   void add_log_weight(std::size_t particle, double log_weight) {
     log_weights_[particle] += log_weight;
   }
 
-  /// Shifts the log weights to a maximum of 0 and computes the weights.
+  /// Shifts the log weights to a maximum of 0 and computes the weights; equal if all are 0.
   void normalise() {
     const double highest = *std::max_element(log_weights_.begin(), log_weights_.end());
     double sum = 0.0;
@@ -60,8 +59,8 @@ class ParticleSet {
                                     log_weights_.begin());
   }
 
-  /// Draws the next generation when fewer than `threshold` (share of all) are effective; then all
-  /// weigh the same. Returns the parent of each particle, empty when nothing was drawn.
+  /// Resamples if fewer than `threshold` (share of all) are effective, after which all weights are
+  /// equal. Returns the parent of each particle, empty without resampling.
   std::vector<std::size_t> resample_if_needed(double threshold, Random& random) {
     if (effective_number() >= threshold * static_cast<double>(size())) return {};
     std::vector<std::size_t> parents = resample_systematically(weights_, random.uniform());

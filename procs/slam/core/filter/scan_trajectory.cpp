@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-/// A radian of turning counts like so much driving where a difference is distributed.
+/// Weight of turning relative to driving when a difference is distributed.
 constexpr double kMetresPerRadian = 1.0;
 
 double effort(const Motion& motion) {

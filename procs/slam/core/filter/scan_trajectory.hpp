@@ -10,17 +10,17 @@
 
 namespace waymark {
 
-/// Where the base was at some moment.
+/// Pose of the base at a time.
 struct TimedPose {
   Timestamp time{};
   Se2 map_from_base{};
 };
 
-/// Keeps the odometry of every scan of a run: 64 bytes each.
+/// Keeps the odometry of every scan of a run: about 100 bytes each.
 class ScanTrajectory {
  public:
-  /// @param motion     since the scan before.
-  /// @param is_update  the estimator gives this scan a pose of its own; the first scan must be one.
+  /// @param motion     since the previous scan.
+  /// @param is_update  along() is given a pose of this scan; must be true of the first scan.
   void add(Timestamp time, const Motion& motion, bool is_update);
 
   /// One pose per scan. Between two updates the poses follow odometry, and the difference that
@@ -32,7 +32,7 @@ class ScanTrajectory {
  private:
   struct Scan {
     Timestamp time{};
-    Motion since_update{};  ///< since the update before; whole at an update
+    Motion since_update{};  ///< since the previous update
     bool is_update{false};
   };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which scans are worth an update.
+// Selects the scans that update a filter.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -8,8 +8,8 @@ namespace waymark {
 
 class Fields;
 
-/// Scans from the same place repeat the same errors: weighing them as if they were independent
-/// makes a filter overconfident. So a scan counts only after some motion.
+/// The errors of scans from the same place are correlated: using all of them as independent makes a
+/// filter overconfident. So a scan is used only after some motion.
 struct UpdateGate {
   double distance_m{0.05};
   double turn_rad{0.05};

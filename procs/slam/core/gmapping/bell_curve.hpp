@@ -9,12 +9,12 @@
 
 namespace waymark {
 
-/// Linear between 1024 equal steps of d^2. Its error is below (limit / width)^2 / 8e6: 2e-8 for
-/// GMapping's defaults. tests/benchmark/gmapping_speed.cpp
+/// Linear interpolation in 1024 equal steps of d^2. Its error is below (limit / width)^2 / 8e6:
+/// 2e-8 for GMapping's defaults. Benchmark: tests/benchmark/gmapping_speed.cpp.
 class BellCurve {
  public:
-  /// @param width_squared  and
-  /// @param limit          in the same unit: from here on the curve is 0.
+  /// @param width_squared  `width` above, e.g. [cells^2].
+  /// @param limit          of d^2, same unit; from here on the curve is 0.
   BellCurve(double width_squared, double limit)
       : steps_per_unit_{static_cast<float>(kSteps / limit)} {
     const double step = limit / kSteps / width_squared;
@@ -25,7 +25,7 @@ class BellCurve {
     }
   }
 
-  /// @param squared  not negative; infinite is fine.
+  /// @param squared  d^2, not negative; may be infinite.
   float operator()(float squared) const {
     const float position = std::min(squared * steps_per_unit_, static_cast<float>(kSteps));
     const int index = static_cast<int>(position);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map of one particle: where beams ended, to better than a cell. It knows no free space.
+// The map of one particle: where beams ended, with sub-cell resolution, and no free space.
 #pragma once
 
 #include "slam/core/grid/grid_frame.hpp"
@@ -12,8 +12,9 @@
 
 namespace waymark {
 
-/// Mean of the points that were hit in a cell, in cells from the cell's centre. (As a mean and not
-/// as a sum of map coordinates, floats stay exact enough however long and however far away.)
+/// Mean of the points that were hit in a cell, in cells from the cell's centre. (A mean relative to
+/// the centre, instead of a sum of map coordinates, is precise enough in floats for any run length
+/// and distance.)
 struct HitCell {
   float mean_x{0.0F};
   float mean_y{0.0F};

@@ -10,7 +10,7 @@ namespace waymark {
 class Fields;
 
 /// Standard deviations per unit of motion, under GMapping's own names. They apply to every scan's
-/// step, so the spread after a given path depends on how many scans it is cut into.
+/// step, so the spread after a given path depends on the number of scans along it.
 struct StepNoise {
   double srr{0.1};
   double srt{0.2};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map for others: all scans drawn again, with free space, along the best particle's trajectory.
+// The published map: all scans redrawn, with free space, along the best particle's trajectory.
 #pragma once
 
 #include "slam/core/gmapping/trajectory.hpp"
@@ -7,23 +7,23 @@
 
 namespace waymark {
 
-/// Draws a scan: cells up to a beam's end are crossed, the last one is hit. A beam longer than
-/// `usable_range_m` clears the cells up to there and hits nothing.
+/// Draws a scan: a beam visits the cells up to its end, and hits the last one. A beam of
+/// `usable_range_m` or more visits the cells before that range and hits none.
 void draw_scan(const StoredScan& scan, const Se2& map_from_base, double usable_range_m,
                GridMap& map);
 
-/// Always the same as drawing the whole trajectory into an empty map, at the cost of what is new.
+/// The result equals drawing the whole trajectory into an empty map; only new scans are drawn.
 class PublishedMap {
  public:
   PublishedMap(const GridFrame& frame, double usable_range_m, double occupied_threshold);
 
-  /// All particles descend from `trunk`'s newest node: draws the trunk for good, and frees its
-  /// scans and all of its nodes but the newest.
+  /// Once all particles descend from `trunk`'s newest node: draws the trunk permanently, and frees
+  /// its scans and all of its nodes but the newest.
   void finalise(const Trajectory& trunk);
 
-  /// The map along a trajectory as slam_gmapping publishes it: a mapped cell counts one visit, and
-  /// a hit when more than the threshold of its beams ended there. When the trajectory continues the
-  /// one before, only its new scans are drawn. Tiles without a change keep their address.
+  /// The map along a trajectory as slam_gmapping publishes it: a mapped cell has one visit, and a
+  /// hit if the share of beams that ended in it exceeds the threshold. If the trajectory continues
+  /// the previous one, only its new scans are drawn. Unchanged tiles keep their address.
   const GridMap& along(const Trajectory& trajectory);
 
  private:
@@ -32,9 +32,9 @@ class PublishedMap {
 
   GridMap final_;             ///< along the trunk, which all trajectories share
   GridMap drawn_;             ///< along the last trajectory asked for
-  GridMap decided_of_;        ///< what decided_ was made from
+  GridMap decided_of_;        ///< the drawn_ that decided_ was computed from
   GridMap decided_;           ///< drawn_ after the threshold
-  Trajectory drawn_until_{};  ///< its newest node
+  Trajectory drawn_until_{};  ///< newest node in drawn_
   double usable_range_m_;
   double occupied_threshold_;
 };

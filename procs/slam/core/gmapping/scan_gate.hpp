@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which scans GMapping processes; the others only move the particles.
+// Selects the scans that GMapping processes; the others only move the particles.
 #pragma once
 
 #include "common/time/time.hpp"

@@ -10,16 +10,16 @@ namespace waymark {
 namespace {
 
 /// Fixed in the released code: the free cell lies this far before the end of a beam, and a beam
-/// with no hit around counts as if it were sqrt(0.5) m off.
+/// without a hit nearby counts as if it were sqrt(0.5) m off.
 constexpr double kFreeCellDistance_cells = std::numbers::sqrt2;
 constexpr double kNoHit_m2 = 0.5;
 
-/// Added to coordinates in cells so that truncating them rounds down: without SSE4.1 std::floor is
-/// a function call, which the matcher cannot afford. A power of two beyond every GridFrame; it
-/// leaves coordinates exact to 1e-8 cells. tests/benchmark/gmapping_speed.cpp
+/// Added to coordinates in cells so that truncation rounds down: without SSE4.1 std::floor is a
+/// function call, which is too slow here. A power of two beyond every GridFrame; coordinates remain
+/// exact to 3e-8 cells. Benchmark: tests/benchmark/gmapping_speed.cpp.
 constexpr int kBias_cells = 1 << 27;
 
-/// A pose of a climb: whole numbers of its present steps from the start.
+/// A pose of a climb, in whole numbers of the current step from the start.
 struct LatticePoint {
   double x{0.0};
   double y{0.0};
@@ -35,7 +35,8 @@ struct LatticePoint {
 constexpr std::array<LatticePoint, 6> kMoves{
     {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
-/// Beyond what a hit in the kernel can be from the end of a beam, which is corner to corner.
+/// Just above the largest squared distance of a hit in the kernel from the end of a beam, the
+/// diagonal.
 double furthest_squared_cells2(int kernel_size) {
   return 2.01 * (kernel_size + 1) * (kernel_size + 1);
 }
@@ -83,8 +84,8 @@ ScanMatcher::ScanMatcher(const MatcherSetting& setting, const HitMap& map,
   rays_.resize((num_rays_ + kAtOnce - 1) / kAtOnce * kAtOnce);
 }
 
-// Vectors of eight, and a score that is looked at once per eight:
-// tests/benchmark/gmapping_speed.cpp
+// Eight rays at once, so that the compiler vectorises. Benchmark:
+// tests/benchmark/gmapping_speed.cpp.
 ScanMatcher::Distances ScanMatcher::nearest(std::size_t first, const Transform& map_from_ray) {
   std::array<BeamCells, kAtOnce> cells{};
   std::array<float, kAtOnce> from_centre_x{};
@@ -166,8 +167,7 @@ ScanMatcher::Match ScanMatcher::climb(const Se2& start) {
   double turn_rad = setting_.config.angular_step_rad;
   LatticePoint best_point{};
   std::vector<LatticePoint> seen{best_point};
-  // A pose that was looked at before scored no more than the best one, by whatever way it is
-  // reached.
+  // A pose that was evaluated before, on whatever path, scored no more than the best one.
   const auto is_new = [&](const LatticePoint& point) {
     if (std::find(seen.begin(), seen.end(), point) != seen.end()) return false;
     seen.push_back(point);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GMapping's matcher: how well a scan fits a particle's map, and a hill climb to where it fits
-// best.
+// GMapping's matcher: score of a scan in a particle's map, and hill climbing to its maximum.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -17,13 +16,13 @@ namespace waymark {
 
 class Fields;
 
-/// What is done with "the cell before a hit has to be free" (research in this folder's README).
+/// The condition that the cell before a hit is free ("free_cells" in this folder's README).
 enum class FreeCells {
-  kAsReleased,  ///< the released code looks half a map away, so nothing is ever refused
+  kAsReleased,  ///< the released code reads a cell half a map away, so no hit is ever rejected
   kIntended,    ///< the cell sqrt(2) cells before the end of the beam must not be a wall
 };
 
-/// Under GMapping's names. The widths are in m^2: the released code does not square them.
+/// GMapping's own names: core_fields.cpp. The sigmas are in m^2: the released code does not square.
 struct MatcherConfig {
   double sigma_m2{0.05};
   double likelihood_sigma_m2{0.075};
@@ -38,7 +37,7 @@ struct MatcherConfig {
   void describe(Fields& fields);
 };
 
-/// What all matchers of a filter share: the configuration, made ready.
+/// The configuration that all matchers of a filter share, with its lookup table.
 struct MatcherSetting {
   MatcherSetting(const MatcherConfig& matcher_config, const GridFrame& grid_frame);
 
@@ -47,19 +46,20 @@ struct MatcherSetting {
   BellCurve score_of;  ///< of a squared distance in cells^2
 };
 
-/// Compares one scan with one map. d of a beam = distance from its end to the nearest mean of hit
-/// points in the cells around it. Make one per scan and map; the map must not change meanwhile.
+/// Compares one scan with one map. d of a beam is the distance from its end to the nearest mean of
+/// hit points in the cells around it. One matcher per scan and map; the map must not change
+/// meanwhile.
 class ScanMatcher {
  public:
   ScanMatcher(const MatcherSetting& setting, const HitMap& map, std::span<const Beam> beams);
 
-  /// Sum over the beams of exp(-d^2 / sigma); 0 for a beam with no hit around. From 0 to the number
-  /// of beams.
-  /// @param to_beat  a score that is not above it need not be exact, only not above it either: the
-  /// beams that cannot help any more are not looked at.
+  /// Sum over the beams of exp(-d^2 / sigma); 0 for a beam without a hit nearby. From 0 to the
+  /// number of beams.
+  /// @param to_beat  once the score cannot exceed it, an upper bound that does not exceed it either
+  ///                 is returned, without evaluating the remaining beams.
   double score(const Se2& map_from_base, double to_beat = -1.0);
 
-  /// Sum over the beams of -d^2 / lsigma; -0.5 / lsigma for a beam with no hit around.
+  /// Sum over the beams of -d^2 / lsigma; -0.5 / lsigma for a beam without a hit nearby.
   double log_likelihood(const Se2& map_from_base);
 
   struct Match {
@@ -67,8 +67,8 @@ class ScanMatcher {
     double score{0.0};
   };
 
-  /// Climbs the score from `start`: the best of six moves (along the map's x and y and turning,
-  /// both ways) as long as one helps, else half the step.
+  /// Hill climbing from `start`: takes the best of six moves (along the map's x and y, and turns,
+  /// in both directions) as long as one raises the score, and halves the step when none does.
   Match climb(const Se2& start);
 
  private:
@@ -76,14 +76,14 @@ class ScanMatcher {
   struct Ray {
     double end_x;
     double end_y;
-    double before_x;  ///< where the free cell is looked for
+    double before_x;  ///< a point in the cell that has to be free
     double before_y;
   };
 
-  /// So many rays are turned into the map together, with vector instructions.
+  /// Number of rays that are transformed together, with vector instructions.
   static constexpr std::size_t kAtOnce = 8;
 
-  /// Of the rays that were turned together: squared, in cells^2.
+  /// Squared distances of these rays [cells^2].
   struct Distances {
     std::array<float, kAtOnce> squared;
     std::size_t count;
@@ -95,16 +95,17 @@ class ScanMatcher {
 
   struct Transform;
 
-  /// From the ends of the rays from `first` on to the nearest hits around.
+  /// Distances from the ends of the rays from `first` on to the nearest hits.
   Distances nearest(std::size_t first, const Transform& map_from_ray);
 
-  /// Puts the rays first that lose most at this pose: a score that cannot win is abandoned sooner.
+  /// Sorts the rays so that those that fit worst at this pose come first: then a score that cannot
+  /// win is abandoned sooner.
   void worst_first(const Se2& map_from_base);
 
   const MatcherSetting& setting_;
   Surroundings surroundings_;
   std::size_t num_rays_{0};
-  std::vector<Ray> rays_{};  ///< filled up to a multiple of kAtOnce
+  std::vector<Ray> rays_{};  ///< padded to a multiple of kAtOnce
 };
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lies around the cells in which beams end, read from the map once and not for every pose.
+// Hits around the cells in which beams end, cached so that the map is not read for every pose.
 #pragma once
 
 #include "slam/core/gmapping/hit_map.hpp"
@@ -15,7 +15,7 @@
 
 namespace waymark {
 
-/// Where a beam ends, and where it has to be free before that.
+/// The cell in which a beam ends, and the cell before it that has to be free.
 struct BeamCells {
   CellIndex end{};
   CellIndex before{};
@@ -24,20 +24,20 @@ struct BeamCells {
 };
 
 /// The hits within `reach` cells of a beam's end, cached per cell: the hundred poses of a climb
-/// ask for the same few thousand cells. The map must not change meanwhile.
-/// Eight hits without a branch, in one cache line: tests/benchmark/gmapping_speed.cpp
+/// read the same few thousand cells. The map must not change meanwhile. Eight hits are compared
+/// without a branch, in one cache line. Benchmark: tests/benchmark/gmapping_speed.cpp.
 class Surroundings {
  public:
-  /// @param needs_free_cell  leave out hits of which the cell at the same offset from `before` is
-  /// hit.
+  /// @param needs_free_cell  leave out a hit if the cell before it is hit, too: at the offset from
+  ///                         `end` to `before`.
   Surroundings(const HitMap& map, int reach, bool needs_free_cell);
 
   static constexpr float kNothingAround = std::numeric_limits<float>::infinity();
 
   /// Squared distance [cells^2] from the beam's end to the nearest mean of a hit cell;
   /// kNothingAround when there is none.
-  /// @param from_centre_x  and
-  /// @param from_centre_y  of the end, in cells from the centre of its cell.
+  /// @param from_centre_x  x of the end from the centre of its cell [cells],
+  /// @param from_centre_y  and y.
   float nearest_squared(const BeamCells& beam, float from_centre_x, float from_centre_y) {
     const std::size_t slot = slot_of(beam.end);
     const Key& key = keys_[slot];
@@ -50,7 +50,7 @@ class Surroundings {
   }
 
  private:
-  /// Means of hit cells, in cells from the centre of the beam's end cell; empty places are
+  /// Means of hit cells [cells], relative to the centre of the beam's end cell; unused ones are
   /// infinite.
   struct alignas(64) EightHits {
     std::array<Eigen::Array4f, 2> x;
@@ -65,14 +65,14 @@ class Surroundings {
 
   struct Key {
     BeamCells beam{kNoCell, kNoCell};
-    std::uint32_t more{0};  ///< of eight hits in more_
+    std::uint32_t more{0};  ///< number of groups of eight hits in more_
   };
 
   static constexpr CellIndex kNoCell{std::numeric_limits<int>::min(), 0};
   static constexpr int kSlotBits = 13;
   static constexpr std::size_t kSlots = std::size_t{1} << kSlotBits;
 
-  /// Multiplicative hash (Knuth): cells along a wall, also an oblique one, get slots of their own.
+  /// Multiplicative hash (Knuth): cells along a wall, also an oblique one, get different slots.
   static std::size_t slot_of(CellIndex cell) {
     const std::uint32_t mixed = static_cast<std::uint32_t>(cell.x) * 0x9e3779b1U +
                                 static_cast<std::uint32_t>(cell.y) * 0x85ebca77U;
@@ -84,9 +84,9 @@ class Surroundings {
   const HitMap& map_;
   int reach_;
   bool needs_free_cell_;
-  std::size_t max_more_;  ///< groups of a slot in more_
+  std::size_t max_more_;  ///< largest number of groups of a slot in more_
   std::vector<Key> keys_;
-  // Not initialised: keys_ say what is there.
+  // Not initialised: valid where keys_ has an entry.
   std::unique_ptr<EightHits[]> nearest_;
   std::unique_ptr<EightHits[]> more_;
 };

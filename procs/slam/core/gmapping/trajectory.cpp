@@ -6,7 +6,7 @@
 namespace waymark {
 
 TrajectoryNode::~TrajectoryNode() {
-  // One by one: recursion over a chain as long as the run would overflow the stack.
+  // Iteratively: recursion over a chain as long as the run would overflow the stack.
   Trajectory next = std::move(parent);
   while (next && next.use_count() == 1)
     next = std::move(next->parent);

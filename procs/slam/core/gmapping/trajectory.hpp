@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories of the particles as a tree: common parts are stored once, dead branches are freed.
+// Trajectories of the particles as a tree: shared parts are stored once, dead branches are freed.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -30,8 +30,8 @@ struct TrajectoryNode {
 
 using Trajectory = std::shared_ptr<TrajectoryNode>;  ///< its newest node
 
-/// The newest node that all of them passed through; null when there is none. They must be equally
-/// long. O(particles x nodes that they do not share).
+/// The newest node that all trajectories share; null if there is none. They must have equal
+/// lengths. O(particles x nodes that they do not share).
 Trajectory common_ancestor(std::vector<Trajectory> trajectories);
 
 /// map_from_base of the nodes that still have their scan, oldest first.

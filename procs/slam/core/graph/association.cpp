@@ -11,11 +11,11 @@ namespace waymark {
 namespace {
 
 constexpr int kLeastNewSightings = 3;  // of the marker at its new place, to retire the old one
-constexpr double kSamePlace = 0.25;    // of a marker's side, since boards have markers side by side
+constexpr double kSamePlace = 0.25;    // of a marker's side length: boards carry adjacent markers
 constexpr double kSameFacing_rad = radians(45.0);  // a wall has two sides
 
-/// Converts the Jacobians from steps in the poses' own frames to differences in the map's axes, in
-/// which the graph's covariances are.
+/// Converts the Jacobians from steps in the poses' own frames to differences in the map's axes, as
+/// in Graph::covariance().
 LinearFactor in_map_axes(LinearFactor linear, const State& state) {
   for (LinearFactor::Block& block : linear.blocks)
     if (block.variable.kind != VariableKind::kCalibration)
@@ -75,7 +75,7 @@ void MarkerBook::add(int id, Timestamp time) {
   moved_from_.emplace_back();
 }
 
-/// Times of another run mean nothing in this one.
+/// Resets the times: those of another run cannot be compared with this run's.
 void MarkerBook::add_known(const Landmark& landmark) {
   entries_.push_back(landmark);
   ++num_known_;
@@ -93,10 +93,10 @@ void MarkerBook::note_sighting(std::size_t landmark, Timestamp time) {
 }
 
 void MarkerBook::note_misses(const State& state, std::size_t keyframe,
-                             const std::function<bool(const Se2&)>& is_in_view, Timestamp now) {
+                             const std::function<bool(const Se2&)>& is_in_view, Timestamp since) {
   const Se2 base_from_map = state.keyframes[keyframe].inverse();
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (is_retired_[i] || entries_[i].last_seen >= now ||
+    if (is_retired_[i] || entries_[i].last_seen >= since ||
         !is_in_view(base_from_map * state.landmarks[i])) {
       continue;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Data association of markers. An id is a class, not a key: several markers may carry it.
+// Data association of markers. Ids are not unique: several markers may carry the same one.
 #pragma once
 
 #include "slam/core/graph/graph.hpp"
@@ -22,39 +22,40 @@ struct MarkerInnovation {
   double distance_m() const { return residual.head<2>().norm(); }
 };
 
-/// Innovation by the joint covariance of pose, landmark and camera. A landmark behind the window is
-/// taken as independent of the pose.
+/// Innovation with the joint covariance of pose, landmark and camera calibration. A landmark behind
+/// the window is assumed to be independent of the pose.
 MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t landmark,
                          const MarkerMeasurement& measurement);
 
-/// map_from_marker by the measurement, the keyframe's pose and the calibration.
+/// map_from_marker computed from the measurement, the keyframe's pose and the calibration.
 Se2 map_from_measured(const State& state, std::size_t keyframe,
                       const MarkerMeasurement& measurement);
 
-/// Sightings and misses of the graph's landmarks, by the index of a landmark.
+/// Sightings and missed detections of the graph's landmarks, by landmark index.
 class MarkerBook {
  public:
   const std::vector<Landmark>& entries() const { return entries_; }
 
-  /// A marker at its first sighting.
+  /// Adds a marker at its first sighting.
   void add(int id, Timestamp time);
 
-  /// A marker of a loaded map.
+  /// Adds a marker of a loaded map.
   void add_known(const Landmark& landmark);
 
-  /// So many markers have been added that more are noise, or an attack: none may be added.
+  /// Whether the limit of added markers is reached (LandmarkMap::kMaxLandmarks): more would be
+  /// noise or an attack, and must not be added.
   bool is_full() const { return entries_.size() - num_known_ >= LandmarkMap::kMaxLandmarks; }
 
   void note_sighting(std::size_t landmark, Timestamp time);
 
   /// Counts a missed detection for every marker that should be in view and has not been sighted
-  /// since `now`. A missing marker of whose id another one has appeared since was moved: its old
-  /// landmark is retired.
+  /// since `since`. If another marker of the same id has appeared after the missing one was last
+  /// seen, the marker was moved: its old landmark is retired.
   void note_misses(const State& state, std::size_t keyframe,
                    const std::function<bool(const Se2& base_from_marker)>& is_in_view,
-                   Timestamp now);
+                   Timestamp since);
 
-  /// The retired landmark of the same marker, from before it was moved.
+  /// The retired landmark of the same marker, before it was moved.
   std::optional<std::size_t> moved_from(std::size_t landmark) const {
     return moved_from_[landmark];
   }
@@ -63,26 +64,26 @@ class MarkerBook {
 
   bool knows(int id) const;
 
-  /// Whether a marker hangs within `near_m` of a place.
+  /// Whether a marker is mapped within `near_m` of a place in the map.
   /// @param id  of the marker; kNoMarker: any.
   bool has_one_near(const State& state, const Eigen::Vector2d& place, double near_m,
                     int id = kNoMarker) const;
 
-  /// The landmark of that id that fits best.
+  /// The landmark of the measurement's id with the smallest chi^2.
   std::optional<MarkerInnovation> nearest(const Graph& graph, std::size_t keyframe,
                                           const MarkerMeasurement& measurement) const;
 
   /// The landmark of that id, if there is exactly one and it is confirmed.
   std::optional<std::size_t> unique(int id) const;
 
-  /// Whether a new id was misread: a marker of another id hangs there and is still being seen, and
-  /// two markers cannot hang in one place.
+  /// Whether a new id was misread: a confirmed marker of another id, not missed since, is mapped at
+  /// that place, and two markers cannot share one place.
   bool is_misread(const State& state, std::size_t keyframe,
                   const MarkerMeasurement& measurement) const;
 
  private:
   std::size_t num_known_{0};         ///< of a loaded map
-  std::vector<Landmark> entries_{};  ///< pose and covariance are not set: the graph has these
+  std::vector<Landmark> entries_{};  ///< pose and covariance are not maintained: see Graph
   std::vector<bool> is_retired_{};
   std::vector<std::optional<std::size_t>> moved_from_{};
 };

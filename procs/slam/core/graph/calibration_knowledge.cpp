@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kWidest = 256.0;     // width of the mixture's widest component
 constexpr double kTail = 2.0;         // a component k times as wide has 1 / k^2 of the probability
-constexpr double kLeastShare = 1e-9;  // of the prior's information, that counts as a measurement
-constexpr double kDoubtSigmas = 5.0;  // error from which the description counts as wrong
+constexpr double kLeastShare = 1e-9;  // less information, relative to the prior's, is rounding
+constexpr double kDoubtSigmas = 5.0;  // error beyond which the description counts as wrong
 constexpr double kExactSigma = 1e-9;  // stands for 0, which has no inverse
 
 }  // namespace
@@ -52,9 +52,9 @@ void CalibrationKnowledge::weigh(const Calibration& value, const Calibration& va
   }
 }
 
-/// The measurements alone: since the prior's mean is 0, their mean and information follow from the
-/// estimate by removing the prior. Exact terms are left as they are. A term without a finite mean
-/// and variance (the window's equations were singular) says nothing about its prior.
+/// Removes the prior, whose mean is 0, from the estimate: what remains are the mean and information
+/// of the measurements alone. Exact terms are left as they are. A term without a finite mean and
+/// variance (the window's equations were singular) does not influence the choice.
 void CalibrationKnowledge::weigh(std::initializer_list<Eigen::Index> terms,
                                  const Calibration& value, const Calibration& variances) {
   const Calibration prior = prior_information();

@@ -20,7 +20,7 @@ namespace waymark {
 /// mixtures of normal distributions").
 class CalibrationKnowledge {
  public:
-  /// @param sigmas  standard deviations of the description; 0: exact.
+  /// @param sigmas  standard deviations of the description, units as in Calibration; 0: exact.
   explicit CalibrationKnowledge(const Calibration& sigmas);
 
   void observe(const WallInnovation& wall);
@@ -29,27 +29,28 @@ class CalibrationKnowledge {
   /// Multiplies the information of all observations by `share`.
   void fade(double share);
 
-  /// Variances that the calibration's random walk adds over `driven_m`: a payload, a tyre or a
-  /// knock changes it. After kMemory_m the walk's variance equals the prior's.
+  /// Variances that the calibration's random walk adds over `driven_m`: payload, tyre pressure and
+  /// knocks change it. After kMemory_m the walk's variance equals the prior's.
   Calibration wander(double driven_m) const {
     return driven_m / kMemory_m * prior_information().cwiseInverse();
   }
 
   static constexpr double kMemory_m = 1000.0;
 
-  /// Adds to the normal equations H step = -g, linearised at `value`.
+  /// Adds prior and observations to the normal equations H step = -g, linearised at `value`.
   void add_to(const Calibration& value, Eigen::Ref<Eigen::MatrixXd> h,
               Eigen::Ref<Eigen::VectorXd> g) const;
 
   /// Chooses the likeliest components of the mixtures: one for each term of the odometry, and a
-  /// common one for the camera's terms. Where that common component is wide, the camera was
-  /// described carelessly, and none of its terms gets a prior narrower than the usual one
+  /// common one for the camera's terms. If that common component is wide, the camera's description
+  /// is unreliable, and none of its terms gets a prior narrower than the usual one
   /// (SightingSigmas::learnt).
-  /// @param value      estimate with the components chosen before.
+  /// @param value      estimate with the components chosen previously.
   /// @param variances  of `value`.
   void weigh(const Calibration& value, const Calibration& variances);
 
-  /// Those whose estimate differs significantly from the description, by index, ascending.
+  /// Indices, ascending, of the terms whose estimate is more than 5 configured standard deviations
+  /// from the description.
   std::vector<std::size_t> doubted_terms(const Calibration& value) const;
 
  private:

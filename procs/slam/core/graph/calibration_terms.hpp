@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the terms of the calibration are called, for people and for files.
+// Names and units of the calibration's terms, for logs and files.
 #pragma once
 
 #include "slam/core/graph/state.hpp"
@@ -13,7 +13,7 @@ struct CalibrationTerm {
   std::string_view key;
   std::string_view name;
   std::string_view unit;
-  double per_unit;  ///< units in one of Calibration's
+  double per_unit;  ///< factor from Calibration's value to `unit`
 };
 
 /// In the order of Calibration.

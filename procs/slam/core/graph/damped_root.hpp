@@ -6,11 +6,11 @@
 
 namespace waymark {
 
-/// L of h = L L'. Where some unknowns are certain to micrometres and others to kilometres, rounding
-/// may make h indefinite: then h is damped, as little as necessary (Levenberg 1944).
+/// L of h = L L'. Where standard deviations range from micrometres to kilometres, rounding may make
+/// h indefinite: then h is damped, as little as necessary (Levenberg 1944).
 class DampedRoot : public Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> {
  public:
-  /// @param h  symmetric, of which the lower half is read; its diagonal is positive.
+  /// @param h  symmetric, diagonal positive; only the lower triangle is read.
   void compute(const Eigen::MatrixXd& h) {
     LLT::compute(h);
     for (double damping = kLeast; info() != Eigen::Success && damping < kMost; damping *= 10.0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Covariance of the newest pose relative to an old keyframe.
+// Covariance of the newest pose relative to earlier keyframes.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -11,12 +11,12 @@
 
 namespace waymark {
 
-/// Sums the covariances of the steps from keyframe to keyframe as if they were independent. That is
-/// an upper bound: scans matched with the same submap, and loops, correlate the steps.
+/// Sums the covariances of the steps from keyframe to keyframe as if they were independent, which
+/// overestimates: scans matched with the same submap, and loops, correlate the steps.
 class Drift {
  public:
-  /// @param covariance  of the keyframe's pose relative to the one before, map's axes; zero for the
-  ///                    first keyframe.
+  /// @param covariance  of the keyframe's pose relative to the previous one, map's axes; zero for
+  ///                    the first keyframe.
   void add_keyframe(const Se2& map_from_base, const Eigen::Matrix3d& covariance);
 
   void move_to_frame(const Se2& new_from_old);
@@ -24,7 +24,7 @@ class Drift {
   /// Covariance of the newest keyframe's pose relative to that of an earlier one, map's axes.
   Eigen::Matrix3d since(std::size_t keyframe) const;
 
-  /// Covariance of two keyframes' relative pose, for the lever arm to the newest keyframe.
+  /// Covariance that the steps between two keyframes add to the newest keyframe's pose, map's axes.
   Eigen::Matrix3d between(std::size_t one, std::size_t other) const;
 
  private:

@@ -53,7 +53,7 @@ Elimination::Elimination(const std::vector<Variable>& eliminated,
   Eigen::VectorXd g = Eigen::VectorXd::Zero(num_eliminated + num_kept);
   std::vector<Eigen::Triplet<double>> triplets;  // upper triangle
   triplets.reserve(64 * factors.size());
-  // One on the corner's diagonal keeps pivots from zero, and is subtracted again.
+  // Ones on the corner's diagonal keep pivots from zero; corner_h() subtracts them again.
   for (Eigen::Index i = 0; i < num_kept; ++i)
     triplets.emplace_back(num_eliminated + i, num_eliminated + i, 1.0);
   for (const LinearFactor& factor : factors) {
@@ -76,7 +76,7 @@ Elimination::Elimination(const std::vector<Variable>& eliminated,
   solver_.compute(h);
   if (!has_solution()) return;
 
-  // H = L D L': the lower right corner is the Schur complement's.
+  // H = L D L': the lower right corners of L and D are those of the Schur complement.
   const auto& l = solver_.matrixL().nestedExpression();
   corner_root_ = Eigen::MatrixXd::Identity(num_kept, num_kept);
   for (Eigen::Index k = 0; k < num_kept; ++k)

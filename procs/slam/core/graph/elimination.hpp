@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sparse elimination of most unknowns: what is left are dense normal equations of a few.
+// Sparse elimination of most unknowns, which leaves dense normal equations of a few.
 #pragma once
 
 #include "slam/core/graph/factors.hpp"
@@ -13,26 +13,28 @@
 
 namespace waymark {
 
-/// Normal equations H x = -g of linear factors. Keyframes and landmarks are eliminated; the
-/// unknowns that are kept, the corner, come last. Cost: about linear in the number of factors.
+/// Normal equations H x = -g of linear factors. Keyframes and landmarks are eliminated. The
+/// unknowns that are kept come last: the lower right corner of H. Cost: about linear in the number
+/// of factors.
 class Elimination {
  public:
   /// @param eliminated     keyframes and landmarks.
   /// @param num_kept       unknowns in the corner.
-  /// @param place_in_corner  of a variable that is not eliminated.
+  /// @param place_in_corner  index in the corner of a variable that is not eliminated.
   Elimination(const std::vector<Variable>& eliminated, const std::vector<LinearFactor>& factors,
               Eigen::Index num_kept,
               const std::function<Eigen::Index(const Variable&)>& place_in_corner);
 
   bool has_solution() const;
 
-  /// Place of an eliminated variable in the unknowns.
+  /// Index of an eliminated variable in step().
   Eigen::Index place_of(const Variable& variable) const { return order_.place_of(variable); }
 
   /// Information of the corner, the Schur complement. O(num_kept^3).
   Eigen::MatrixXd corner_h() const;
   Eigen::VectorXd corner_g() const;
 
+  /// Back-substitution.
   /// @param corner_step  of the unknowns that are kept.
   /// @return the step of the eliminated ones.
   Eigen::VectorXd step(const Eigen::VectorXd& corner_step) const;
@@ -55,7 +57,7 @@ class Elimination {
     }
 
    private:
-    /// Less than 0: it is kept.
+    /// Position among the eliminated variables; negative: it is kept.
     Eigen::Index number_of(const Variable& variable) const;
 
     std::array<std::vector<Eigen::Index>, 3> numbers_{};  ///< by VariableKind and index; -1: none

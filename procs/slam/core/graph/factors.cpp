@@ -15,33 +15,33 @@
 namespace waymark {
 namespace {
 
-// The mixture of the odometry's noise; all of these were chosen, not fitted.
+// The mixture of the odometry's noise; all constants were chosen, not fitted.
 // Penalties: -2 log of the prior probabilities of the components, rounded.
 constexpr double kRollingPenalty = 0.1;    // 0.95
 constexpr double kSpinningPenalty = 7.0;   // 0.03
 constexpr double kJerkedPenalty = 8.4;     // 0.015
 constexpr double kAnythingPenalty = 10.6;  // 0.005
 // Widths, in standard deviations of the configured noise.
-constexpr double kSpinningTurn = 25.0;  // turn by a wheel that spins, and the distance with it
-constexpr double kSpinningRest = 3.0;   // all else meanwhile
+constexpr double kSpinningTurn = 25.0;  // turn caused by a spinning wheel, and distance with it
+constexpr double kSpinningRest = 3.0;   // all other errors meanwhile
 constexpr double kJerked = 25.0;
 constexpr double kAnything = 125.0;
-// A push while the odometry stands still, whose configured noise is zero.
+// A push while the odometry stands still, when its configured noise is zero.
 constexpr double kPushed_m = 0.1;
 constexpr double kPushed_rad = 0.1;
 
-// Of a motion that was not measured, per metre ahead: sideways, and the turn.
+// Standard deviations of an unmeasured motion, per metre of standard deviation ahead.
 constexpr double kSideways = 0.1;
 constexpr double kTurn_rad_per_m = 0.2;
 
-// chi^2 at which a loop begins to lose weight: loops are accurate to centimetres, but submaps bend
-// by as much. 25 is 5 sigmas of one axis.
+// chi^2 beyond which a loop loses weight: loops are accurate to centimetres, but submaps bend by
+// as much. 25 is 5 sigmas of one axis.
 constexpr double kLoopKernel = 25.0;
 
-// Sigma of the motion over a cut [m, rad]: no information, but the normal equations stay regular.
+// Sigma of the motion over a cut [m, rad]: practically no information, but regular equations.
 constexpr double kCutSigma = 1000.0;
 
-/// Pose of one frame in another, with the Jacobians by steps of both (State::retract).
+/// Pose of one frame in another, with its Jacobians with respect to steps of both (State::retract).
 struct Relative {
   Eigen::Vector3d pose{Eigen::Vector3d::Zero()};
   Eigen::Matrix3d jacobian_from{Eigen::Matrix3d::Zero()};
@@ -108,7 +108,7 @@ OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {
 }
 
 MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& noise) {
-  // The other components are wider: what makes up for their penalty is a smaller chi^2 alone.
+  // The other components are wider: only a smaller chi^2 can compensate for their penalty.
   const Eigen::LLT<Eigen::Matrix3d> rolling{noise.rolling};
   if (residual.dot(rolling.solve(residual)) <= kSpinningPenalty - kRollingPenalty)
     return MotionKind::kRolling;
@@ -131,7 +131,8 @@ Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise) {
         Eigen::Vector3d{kPushed_m, kPushed_m, kPushed_rad}.cwiseAbs2().asDiagonal();
     return noise.rolling + squared(kAnything) * noise.described + pushed;
   }
-  // The encoder of a spinning wheel counts too much: d(x, y)/d(theta) = (-+half track, 0).
+  // The encoder of a spinning wheel overcounts: d(x, y)/d(theta) = (-half_track, 0) of the left
+  // wheel, (half_track, 0) of the right one.
   const bool is_left = kind == MotionKind::kLeftSpins;
   const Eigen::Vector3d spin{is_left ? -noise.half_track_m : noise.half_track_m, 0.0, 1.0};
   return noise.rolling + squared(kSpinningRest) * noise.described +

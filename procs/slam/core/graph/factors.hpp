@@ -30,12 +30,12 @@ struct LinearFactor {
   std::vector<Block> blocks{};
 };
 
-/// Noise of the odometry as learnt: factors on the configured standard deviations, and what slips
-/// add along the path where neither markers nor walls show them.
+/// Noise of the odometry as learnt: factors on the configured standard deviations, and moments of
+/// slips along the path, to be added where neither markers nor walls observe them.
 struct OdometryScale {
   double along{1.0};
   double turn{1.0};
-  double slip_per_m{0.0};     ///< mean; negative where wheels spin
+  double slip_per_m{0.0};     ///< mean, observed minus measured distance; negative: wheels spin
   double slip_m2_per_m{0.0};  ///< variance along the path
   double slip_m2{0.0};        ///< mean square of one slip
 };
@@ -43,10 +43,10 @@ struct OdometryScale {
 /// The noise with its standard deviations multiplied by the scale.
 OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
 
-/// Share of a motion's slips that stay hidden where known markers are sighted after it: all without
-/// markers, hardly any where their standard deviation along the path is small beside a slip. Slips
-/// that show are explained by MotionKind.
-/// @param places  covariances of the markers' measured positions, axes of the base at the end.
+/// Share (0..1) of a motion's slips that remain unobserved although known markers are sighted at
+/// its end: 1 without markers, near 0 where their standard deviation along the path is small
+/// compared with a slip, 0 without translation. Observed slips are modelled by MotionKind.
+/// @param places  covariances [m^2] of the markers' measured positions, base axes at the end.
 double hidden_share(const Motion& motion, std::span<const Eigen::Matrix2d> places,
                     const OdometryScale& scale);
 
@@ -59,17 +59,17 @@ CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, double shar
 /// the likeliest one (Olson and Agarwal 2013, "Inference on networks of mixtures").
 enum class MotionKind : std::uint8_t {
   kRolling,
-  kLeftSpins,  ///< the left wheel: its slip changes distance and turn together
+  kLeftSpins,  ///< the left wheel slips, which changes distance and turn together
   kRightSpins,
-  kJerked,    ///< a slip or a push within a normal drive
+  kJerked,    ///< a short slip or push during a normal drive
   kAnything,  ///< a gross error: the robot was pushed, or odometry jumped
 };
 
 /// Covariances of (x, y, theta) of a motion, in the frame at its start, while the wheels roll.
 struct MixtureNoise {
   Eigen::Matrix3d rolling{Eigen::Matrix3d::Zero()};    ///< as learnt
-  Eigen::Matrix3d described{Eigen::Matrix3d::Zero()};  ///< as configured: the unit for slips, which
-                                                       ///< are not larger where odometry is worse
+  Eigen::Matrix3d described{Eigen::Matrix3d::Zero()};  ///< as configured: the size of slips scales
+                                                       ///< with it, not with the learnt noise
   double half_track_m{0.0};                            ///< half of the distance between the wheels
 };
 
@@ -79,16 +79,16 @@ MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& n
 /// Covariance of one component, in the frame at the start.
 Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise);
 
-/// Covariance of a motion that was not measured, mostly straight ahead; axes of the base.
+/// Covariance of a motion that was not measured and was mostly straight ahead; axes of the base.
 /// @param sigma_m  standard deviation of the distance.
 Eigen::Matrix3d unmeasured_covariance(double sigma_m);
 
-/// Motion from one keyframe to the next, by the wheels.
+/// Motion from one keyframe to the next, measured by odometry.
 struct OdometryFactor {
   std::size_t from{0};
   std::size_t to{0};
   Motion motion{};
-  bool is_cut{false};        ///< the robot was carried: the factor has no information
+  bool is_cut{false};        ///< the motion is unknown: the factor has no information
   double hidden_slips{0.0};  ///< hidden_share()
   double unmeasured_m{0.0};  ///< distance that odometry may have missed (one sigma)
   MotionKind kind{MotionKind::kRolling};
@@ -98,11 +98,12 @@ struct OdometryFactor {
   LinearFactor linearise(const State& state, const OdometryNoise& noise,
                          const OdometryScale& scale = {}) const;
 
-  /// Chooses the component of the mixture. The poses of `state` have to be optimised for its
-  /// calibration: else a change of the calibration looks like a slip.
+  /// Chooses the component of the mixture. The poses of `state` must be optimised for its
+  /// calibration: otherwise a change of the calibration looks like a slip.
   void choose_kind(const State& state, const OdometryNoise& noise, const OdometryScale& scale);
 
-  /// -2 log likelihood, but for a constant: chi^2, and what the component costs more than rolling.
+  /// -2 log-likelihood up to a constant: chi^2 plus the component's penalty and log-determinant
+  /// relative to kRolling's.
   double cost(const State& state, const OdometryNoise& noise, const OdometryScale& scale) const;
 
  private:
@@ -114,8 +115,8 @@ struct OdometryFactor {
                                    const OdometryNoise& noise) const;
 };
 
-/// A scan that was matched with walls which other keyframes have seen: the keyframe's pose relative
-/// to the weighted mean of these keyframes' poses.
+/// A scan matched with walls that other keyframes have observed: measures the keyframe's pose
+/// relative to the weighted mean of theirs.
 struct ScanFactor {
   struct Reference {
     std::size_t keyframe{0};
@@ -132,14 +133,14 @@ struct ScanFactor {
   LinearFactor linearise(const State& state) const;
 
   /// Scales the shares so that they sum to 1.
-  /// @return false: they are all zero.
+  /// @return false if they are all zero.
   bool normalise_shares();
 
   /// Dynamic covariance scaling (Agarwal et al. 2013): a loop that other factors contradict loses
   /// weight. A new loop has its full weight at first, so that the graph can move to it.
   void reweigh(const State& state);
 
-  /// chi^2 with its weight, and of a loop what the weight costs.
+  /// Weighted chi^2 plus the penalty of a reduced weight (Agarwal et al. 2013).
   double cost(const State& state) const;
 
  private:
@@ -158,7 +159,7 @@ struct MarkerFactor {
   LinearFactor linearise(const State& state, double gate) const;
 };
 
-/// Prior on a keyframe's pose: the first one, or one in a loaded map.
+/// Prior on a keyframe's pose: of the first keyframe, or of one that was localised in a loaded map.
 struct PosePrior {
   std::size_t keyframe{0};
   Se2 map_from_base{};
@@ -167,7 +168,7 @@ struct PosePrior {
   LinearFactor linearise(const State& state) const;
 };
 
-/// Prior on a landmark's pose, by a survey.
+/// Prior on a landmark's pose, from a survey.
 struct LandmarkPrior {
   std::size_t landmark{0};
   Se2 map_from_marker{};
@@ -179,7 +180,7 @@ struct LandmarkPrior {
 
 using Factor = std::variant<OdometryFactor, ScanFactor, MarkerFactor, PosePrior, LandmarkPrior>;
 
-/// Upper triangular R with R' R = information; information may be singular.
+/// A square root R, R' R = information; rows along the eigenvectors. Information may be singular.
 Eigen::Matrix3d root_of(const Eigen::Matrix3d& information);
 
 }  // namespace waymark

@@ -11,7 +11,7 @@ namespace waymark {
 namespace {
 
 constexpr int kMaxIterations = 5;
-constexpr double kConverged = 1e-4;         // [m, rad]; the error that remains is about its square
+constexpr double kConverged = 1e-4;         // [m, rad]; the remaining error is about its square
 constexpr std::size_t kWithCovariance = 2;  // keyframes, the newest ones
 
 }  // namespace
@@ -21,7 +21,7 @@ Graph::Graph(const GraphNoise& noise, const Calibration& calibration_sigmas)
   insert_variable({VariableKind::kCalibration, 0});
 }
 
-/// Keyframes before the calibration, landmarks behind it.
+/// The layout has keyframes before the calibration and landmarks after it.
 void Graph::insert_variable(const Variable& variable) {
   const auto place =
       variable.kind == VariableKind::kKeyframe
@@ -183,7 +183,7 @@ void Graph::relocate_newest(const Se2& map_from_base) {
     std::erase(active_factors_, factors_.size() - 1);
     factors_.pop_back();
   }
-  // By step_all() the prior may have factors on it and on what lies behind the window.
+  // After step_all() the prior may contain factors between it and variables behind the window.
   const Variable variable{VariableKind::kKeyframe, newest};
   eliminate(variable);
   insert_variable(variable);
@@ -270,8 +270,8 @@ void Graph::retract_window(const Eigen::VectorXd& step) {
   prior_.g += prior_.h.selfadjointView<Eigen::Lower>() * step;
 }
 
-/// Of all variables but the older keyframes, which come first in the layout: the lower right corner
-/// of (L L')^-1 needs only that corner of L.
+/// Computed for all variables but the older keyframes, which come first in the layout: the lower
+/// right corner of (L L')^-1 needs only that corner of L.
 void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root) {
   const std::size_t count = state_.keyframes.size();
   const Eigen::Index first =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The factor graph: a window of the newest keyframes is solved at every update, the whole graph
-// when a loop closes.
+// The factor graph: a window of the newest keyframes is optimised at every update, the whole graph
+// after loops and other information about old poses.
 #pragma once
 
 #include "slam/core/graph/calibration_knowledge.hpp"
@@ -21,10 +21,10 @@ struct GraphNoise {
   double marker_gate{16.3};  ///< chi^2, 3 degrees of freedom
 };
 
-/// Normal equations of some landmarks, from which everything else has been eliminated: with a step
-/// in the landmarks' own frames, the cost is c + 2 g'step + step'H step.
+/// Normal equations of some landmarks, from which all other variables have been eliminated: with a
+/// step in the landmarks' own frames, the cost is c + 2 g'step + step'H step.
 struct LandmarkMarginal {
-  std::vector<Se2> map_from_marker{};  ///< at which it is linearised
+  std::vector<Se2> map_from_marker{};  ///< linearisation point
   Eigen::MatrixXd h{};
   Eigen::VectorXd g{};
 };
@@ -58,7 +58,7 @@ class Graph {
   std::size_t add_keyframe(const Se2& map_from_base);
   std::size_t add_landmark(const Se2& map_from_marker);
 
-  /// A landmark of a loaded map: a constant.
+  /// A landmark of a loaded map, which stays constant.
   std::size_t add_fixed_landmark(const Se2& map_from_marker, const Eigen::Matrix3d& covariance);
 
   bool is_fixed(std::size_t landmark) const { return is_fixed_[landmark]; }
@@ -70,20 +70,21 @@ class Graph {
   /// the old frame, is dropped: priors of landmarks must define the new one.
   void move_to_frame(const Se2& new_from_old);
 
-  /// Switches the LandmarkPrior of a landmark on or off. Takes effect in step_all().
+  /// Switches the LandmarkPrior of a landmark on or off. Takes effect in step_all() at the latest.
   void switch_prior(std::size_t landmark, bool is_on);
   bool is_prior_on(std::size_t landmark) const;
 
-  /// Sum of the costs of all factors: chi^2 with their robust losses.
+  /// Sum of the robust costs (chi^2) of all factors.
   double cost() const;
 
-  /// The same for the measurements of one landmark.
+  /// The same for the marker measurements of one landmark.
   double cost_of_landmark(std::size_t landmark) const;
 
-  /// Gives the newest keyframe another pose, and drops all factors on it.
+  /// Gives the newest keyframe another pose. Drops its factors: an odometry factor without
+  /// information replaces them.
   void relocate_newest(const Se2& map_from_base);
 
-  /// Drops the odometry from that keyframe on: it has turned out to be wrong.
+  /// Removes the information of the window's odometry from that keyframe on, which was wrong.
   void cut_odometry_since(std::size_t keyframe);
 
   bool is_active(const Variable& variable) const { return offsets_.contains(variable); }
@@ -95,22 +96,22 @@ class Graph {
   /// Gauss-Newton over the window.
   void optimise() { solve_window(); }
 
-  /// One step of Gauss-Newton over the whole graph: eliminates what lies behind the window, which
-  /// rebuilds the window's prior; solves the window; substitutes back.
+  /// One step of Gauss-Newton over the whole graph: eliminates all variables behind the window,
+  /// which rebuilds the window's prior; solves the window; substitutes back.
   /// @param activated  landmarks that are put back into the window.
-  /// @return largest step of any variable behind the window, or of all where none is [m, rad];
-  ///         infinite where the equations have no solution: then nothing has changed.
+  /// @return largest step of any variable behind the window, or of any in it if none is behind it
+  ///         [m, rad]; infinite if the equations have no solution: then nothing has changed.
   double step_all(const std::vector<std::size_t>& activated = {});
 
-  /// step_all() until it has converged or has no solution, at most so many times.
+  /// step_all() until it converges or has no solution, at most `steps` times.
   void optimise_all(int steps);
 
-  /// What all measurements together know of these landmarks, none of which is fixed, without the
-  /// priors on them. None: the equations have no solution. Costs about as much as step_all().
+  /// Marginal of these landmarks, none of which is fixed, given all factors but the priors on
+  /// landmarks. None: the equations have no solution. Costs about as much as step_all().
   std::optional<LandmarkMarginal> marginal_of(const std::vector<std::size_t>& landmarks) const;
 
   /// Marginalises the window's oldest keyframe, and landmarks that no keyframe of the window has
-  /// measured and that are more than `far_m` from the newest one.
+  /// measured and that are more than `far_m` from the newest keyframe.
   void marginalise_oldest(double far_m);
 
   /// Keeps only the window and its prior: drops keyframes and factors behind it, and makes
@@ -136,13 +137,13 @@ class Graph {
   Eigen::Matrix3d covariance_of(const Variable& a) const { return covariance(a, a); }
 
   /// Covariance of the newest keyframe's pose relative to an earlier one of the window, map's axes.
-  /// Factorises the window.
+  /// Factorises the window's equations.
   Eigen::Matrix3d covariance_since(std::size_t keyframe) const;
 
-  /// The same relative to the keyframe before, as of optimise(); zero for the first keyframe.
+  /// The same relative to the previous keyframe, as of optimise(); zero for the first keyframe.
   Eigen::Matrix3d covariance_of_newest_step() const;
 
-  /// As of optimise(), or of a landmark behind the window from when it left the window.
+  /// Map's axes, as of optimise(); of a landmark behind the window as of when it left it.
   Eigen::Matrix3d landmark_covariance(std::size_t landmark) const;
 
  private:
@@ -161,7 +162,7 @@ class Graph {
 
   /// See OdometryFactor.
   void choose_kind(Factor& factor) const;
-  /// Chooses the kinds of motion and the weights of loops at the present state.
+  /// Chooses the kinds of motion and the weights of loops at the current state.
   void reconsider_factors();
   LinearFactor linearised(const Factor& factor) const;
   double cost_of(const MarkerFactor& factor) const;
@@ -186,7 +187,7 @@ class Graph {
 
   std::vector<Variable> layout_{};
   std::map<Variable, Eigen::Index> offsets_{};
-  NormalEquations prior_{};       ///< of the window; its gradient is that at the present state
+  NormalEquations prior_{};       ///< of the window; g is the gradient at the current state
   Eigen::MatrixXd covariance_{};  ///< of the variables in covariance_offsets_
   std::map<Variable, Eigen::Index> covariance_offsets_{};
   std::vector<Eigen::Matrix3d> landmark_covariances_{};

@@ -9,10 +9,10 @@ namespace waymark {
 namespace {
 
 constexpr double kPlace_m = 1.0;
-constexpr std::size_t kLookEvery = 100;      // keyframes, since it goes through all factors
-constexpr std::size_t kLeastTies = 10;       // of an end, since some may be wrong
+constexpr std::size_t kLookEvery = 100;      // keyframes, since each look goes through all factors
+constexpr std::size_t kLeastTies = 10;       // constraints of an end, since some may be wrong
 constexpr std::size_t kLeastSightings = 20;  // of a marker by needed keyframes, to be well mapped
-constexpr double kLeastInformation = 10.0;   // its root, of a loop: 0.1 m and 0.1 rad
+constexpr double kLeastInformation = 10.0;   // of a loop, as 1 / sigma: 0.1 m and 0.1 rad
 
 bool shows_all_axes(const ScanFactor& loop) {
   return loop.root_information.rowwise().norm().minCoeff() > kLeastInformation;
@@ -45,7 +45,7 @@ std::vector<RemovedKeyframe> KeyframeThinning::surplus(const Graph& graph) {
   return surplus;
 }
 
-/// Of the keyframes that have left the window since the last look.
+/// Constraints of the keyframes that have left the window since the last look.
 std::vector<KeyframeThinning::Ties> KeyframeThinning::ties_of_new(const Graph& graph) const {
   const std::size_t first = assessments_.size();
   std::vector<Ties> ties(graph.first_active_keyframe() - first);
@@ -95,7 +95,7 @@ KeyframeThinning::Assessment KeyframeThinning::assess(std::size_t keyframe, cons
   return assessment;
 }
 
-/// Behind the last keyframe of a run's beginning that stays; `end` if all of it has to.
+/// One past the last keyframe of a run's head, which stays; `end` if the whole run has to stay.
 std::size_t KeyframeThinning::end_of_head(std::size_t begin, std::size_t end) const {
   std::size_t ties = 0;
   for (std::size_t k = begin; k < end; ++k) {
@@ -105,7 +105,7 @@ std::size_t KeyframeThinning::end_of_head(std::size_t begin, std::size_t end) co
   return end;
 }
 
-/// The first one of its end that stays; `begin` if all of it has to.
+/// First keyframe of a run's tail, which stays; `begin` if the whole run has to stay.
 std::size_t KeyframeThinning::begin_of_tail(std::size_t begin, std::size_t end,
                                             const Graph& graph) const {
   std::size_t ties = 0;

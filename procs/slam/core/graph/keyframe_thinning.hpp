@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which keyframes are redundant, so that the graph grows with the mapped area and not with time.
+// Selects redundant keyframes, so that the graph grows with the mapped area and not with time.
 #pragma once
 
 #include "slam/core/graph/graph.hpp"
@@ -11,20 +11,20 @@
 
 namespace waymark {
 
-/// Needed are the first keyframes of each place, and keyframes that see a marker which few have
-/// seen. Consecutive keyframes that are not needed form a run; it is surplus but for its two ends.
-/// Each end is long enough to have constraints to keyframes older than the run, by markers and
-/// loops.
+/// The first keyframes of each place are needed, and so are keyframes that see a marker which few
+/// needed ones have seen. Consecutive keyframes that are not needed form a run, which is redundant
+/// except for its two ends. Each end is long enough to have constraints (ties) to keyframes older
+/// than the run, by markers and loops.
 class KeyframeThinning {
  public:
-  /// @param per_place  keyframes that a square metre and a quarter of a turn need.
-  /// @param least_end  keyframes of an end, however many ties it has: scans of the newest ones and
-  ///                   submaps refer to those before them.
+  /// @param per_place  needed keyframes per square metre and quarter of a turn.
+  /// @param least_end  least number of keyframes in an end, however many ties it has: newer scans
+  ///                   and submaps refer to them.
   KeyframeThinning(int per_place, int least_end)
       : per_place_{static_cast<std::size_t>(per_place)},
         least_end_{static_cast<std::size_t>(least_end)} {}
 
-  /// To be called after each keyframe; goes through the graph at every hundredth.
+  /// To be called after each keyframe; goes through the graph at every hundredth one.
   /// @return keyframes behind the window that may be removed. The carrier of each is the nearest
   ///         needed one.
   std::vector<RemovedKeyframe> surplus(const Graph& graph);
@@ -35,13 +35,13 @@ class KeyframeThinning {
   struct Assessment {
     bool is_needed{true};
     std::size_t carrier{0};  ///< of a keyframe that is not needed
-    std::size_t tied_to{0};  ///< oldest keyframe with a constraint of full rank to it, or itself
+    std::size_t tied_to{0};  ///< oldest keyframe that a full-rank constraint ties it to, or itself
   };
 
   /// Constraints of one keyframe.
   struct Ties {
     std::vector<std::size_t> landmarks{};  ///< that it has measured
-    std::size_t oldest{0};                 ///< keyframe, by a loop or a prior; itself: none
+    std::size_t oldest{0};  ///< keyframe of its loops, 0 with a prior, itself with neither
   };
 
   static Place place_of(const Se2& map_from_base);

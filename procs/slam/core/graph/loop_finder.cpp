@@ -14,11 +14,11 @@ namespace waymark {
 namespace {
 
 constexpr double kSigmas = 3.0;         // half of a search window, in sigmas of the pose
-constexpr double kDirectReach_m = 0.3;  // plain matching converges from this far away
+constexpr double kDirectReach_m = 0.3;  // scan matching converges from this far away
 constexpr double kDirectReach_rad = 0.15;
 constexpr std::size_t kSearchBeams = 120;
 constexpr std::size_t kFields = 8;                     // kept in the cache
-const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a match in a submap
+const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a match in a submap [m, m, rad]
 constexpr double kApart_m = 0.3;                       // of a runner-up from the best place
 constexpr double kApart_rad = 0.35;
 constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
@@ -26,7 +26,7 @@ constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak directio
 const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
 constexpr double kAgree_m = 0.3;  // between two candidates' corrections
 constexpr double kAgree_rad = 0.05;
-constexpr double kAgreeWithin_m = 5.0;  // driven between them, and between their places
+constexpr double kAgreeWithin_m = 5.0;  // largest distance between them, driven and straight
 
 double reach_m(const Eigen::Matrix3d& covariance) {
   return kSigmas * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
@@ -80,7 +80,7 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& poin
   Se2 guess = submap_from_map * search.map_from_base;
   const Eigen::Matrix3d covariance =
       in_axes(submap_from_map.rotation(), search.covariance_against(old.first_keyframe()));
-  // Plain matching first: the place nearest to the estimated pose is the likeliest.
+  // Scan matching first: the place nearest to the estimated pose is the likeliest.
   LoopMatch loop{old.first_keyframe(),
                  match_scan(points, old.ndt(), guess, covariance, noise, scan_, old.coarse_ndt())};
   const double wide_m = std::min(config_.max_search_m, reach_m(covariance));
@@ -123,8 +123,8 @@ bool LoopFinder::is_good(const ScanMatch& match) const {
          match.mapped_share >= config_.min_mapped_share;
 }
 
-/// Enough evidence against the covariance of the pose: one wall, which leaves a direction
-/// unobserved, looks like any other one.
+/// Whether a match is good enough to override the covariance of the pose. A single wall, which
+/// leaves a direction unobserved, is not: it looks like any other.
 bool LoopFinder::is_convincing(const ScanMatch& match) const {
   return !match.observed.is_degenerate && match.inlier_share >= config_.surprise_share &&
          match.mapped_share >= config_.surprise_share;
@@ -141,7 +141,7 @@ Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& s
   const auto last = std::find_if(confirmed_.rbegin(), confirmed_.rend(), is_near);
   const Eigen::Matrix3d covariance = search.covariance_against(old.first_keyframe());
   if (last == confirmed_.rend()) return covariance;
-  // Valid whether the graph has already followed that loop or not.
+  // Holds whether or not the graph has already followed that loop.
   Eigen::Matrix3d since = last->off * last->off.transpose() +
                           kLoopCovarianceMargin * search.covariance_since(last->keyframe);
   since.diagonal() += kFoundSigmas.cwiseAbs2();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Loop closure: finds the newest scan in old submaps.
+// Loop closure: registers the newest scan in old submaps.
 #pragma once
 
 #include "slam/core/graph/factors.hpp"
@@ -43,23 +43,23 @@ struct LoopSearch {
   Se2 map_from_base{};
   /// Of map_from_base relative to the pose of an old keyframe.
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_against{};
-  std::size_t first_recent_keyframe{0};  ///< submaps with this one or later ones are not old
+  std::size_t first_recent_keyframe{0};  ///< submaps that contain it or later ones are not old
   /// Of map_from_base relative to the pose of a recent keyframe (first_recent_keyframe or later).
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_since{};
 };
 
-/// On the covariances by which loops are searched and gated, which come from a linearised graph and
-/// a model of the odometry: twice their standard deviations. Chosen, not measured.
+/// Factor on the covariances by which loops are searched and gated, since they come from a
+/// linearised graph and a model of the odometry: doubles the sigmas. Chosen, not measured.
 inline constexpr double kLoopCovarianceMargin = 4.0;
 
-/// The smaller one of two bounds, by determinant.
+/// The smaller of two covariances, by determinant.
 inline const Eigen::Matrix3d& smaller_covariance(const Eigen::Matrix3d& a,
                                                  const Eigen::Matrix3d& b) {
   return a.determinant() < b.determinant() ? a : b;
 }
 
-/// A match closes a loop if the pose's covariance explains it, or if two scans from different
-/// places agree about the correction.
+/// A match closes a loop at once if it lies within the pose's covariance and close to the estimated
+/// pose. Otherwise a second match, from another place, must agree on the correction.
 class LoopFinder {
  public:
   LoopFinder(const LoopConfig& config, const ScanMatchConfig& scan)
@@ -68,10 +68,10 @@ class LoopFinder {
   struct Found {
     std::size_t keyframe{0};  ///< whose scan was matched
     LoopMatch loop{};
-    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus estimated pose, then
+    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus estimated pose at that time
   };
 
-  /// Loops to close: none, one, or a pair that agrees, whose first one was found at an earlier
+  /// Loops to close: none, one, or two that agree, the first of which was found at an earlier
   /// keyframe.
   /// @param keyframe  the newest.
   /// @param points    its scan, base frame.
@@ -79,9 +79,10 @@ class LoopFinder {
                           const std::deque<Submap>& submaps, const State& state,
                           const RangeNoise& noise);
 
+  /// Matches that were rejected because another place fits nearly as well.
   int num_ambiguous() const { return num_ambiguous_; }
 
-  /// Drops the history of matches: the map frame has changed, or the robot was carried away.
+  /// Drops the history of matches, after the map frame has changed or the robot was carried.
   void reset() {
     candidate_.reset();
     confirmed_.clear();
@@ -113,7 +114,7 @@ class LoopFinder {
   /// Cache of submaps' search fields, by first keyframe; the most recently used one is last.
   std::deque<std::pair<std::size_t, CorrelativeField>> fields_{};
   std::optional<Candidate> candidate_{};
-  double candidate_age_m_{0.0};    ///< driven since the candidate
+  double candidate_age_m_{0.0};    ///< distance driven since the candidate
   std::deque<Found> confirmed_{};  ///< loops that were closed, at recent keyframes, oldest first
   int num_ambiguous_{0};
 };

@@ -9,7 +9,7 @@ namespace waymark {
 namespace {
 
 constexpr std::size_t kLookedAt = 120;  // beams
-constexpr double kBeforeEnd_m = 0.3;    // of a beam, where it may graze its own wall
+constexpr double kBeforeEnd_m = 0.3;    // last part of a beam, where it may graze its own wall
 constexpr double kOccupied = 0.4;       // least occupancy of a wall, and
 constexpr double kFree = 0.1;           // largest one of free space
 

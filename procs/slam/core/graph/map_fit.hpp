@@ -11,14 +11,15 @@
 
 namespace waymark {
 
-/// What the map says of a scan's beams. Those that end where nothing is mapped say nothing.
+/// A scan's beams compared with a map. Beams that end in unmapped or uncertain cells count as
+/// neither fitting nor contradicting.
 struct MapFit {
-  int beams{0};          ///< looked at
+  int beams{0};          ///< compared
   int fitting{0};        ///< end on a mapped wall
   int contradicting{0};  ///< cross a mapped wall, or end where the map is free
 
-  static constexpr int kLeastBeams = 20;      ///< fewer decide nothing
-  static constexpr double kMostMisfit = 0.3;  ///< of the right map at the right pose
+  static constexpr int kLeastBeams = 20;      ///< fewer are not decisive
+  static constexpr double kMostMisfit = 0.3;  ///< of a correct map at the correct pose
 
   bool is_decisive() const { return fitting + contradicting >= kLeastBeams; }
 
@@ -30,7 +31,7 @@ struct MapFit {
   bool is_contradicted() const { return is_decisive() && misfit() >= kMostMisfit; }
 };
 
-/// Looks at some 120 beams of the scan, evenly spread.
+/// Compares at most 120 beams, evenly spread over the scan.
 MapFit fit_in_map(const GridMap& map, std::span<const AnnotatedBeam> beams,
                   const Se2& map_from_base);
 

@@ -8,7 +8,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kMostPoints = 400.0;  // kept in a cell, so that newer ones outweigh them in time
+constexpr double kMostPoints = 400.0;  // per cell, so that newer ones eventually outweigh them
 
 }  // namespace
 
@@ -17,7 +17,7 @@ NdtMap walls_to_save(const NdtMap& walls, const GridMap& grid, double point_vari
   for (NdtCellSums cell : walls.sums()) {
     const Eigen::Vector2d centre = kept.spacing_m() * Eigen::Vector2d{cell.column, cell.row};
     const NdtCell* shape = walls.at(centre, point_variance_m2);
-    // The mean of a corner's two walls lies in free space.
+    // The mean of two walls that meet at a corner lies in free space.
     const bool has_free_middle = shape != nullptr && !shape->is_line;
     if (has_free_middle ? is_seen_through(grid, centre, kept.spacing_m())
                         : is_seen_through(grid, centre + cell.sum_m / cell.count)) {

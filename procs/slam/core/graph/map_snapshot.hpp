@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map that outlives its run: all that another run needs to localise in it.
+// A map to be saved: everything that another run needs to localise in it.
 #pragma once
 
 #include "slam/core/graph/pose_graph.hpp"
@@ -35,25 +35,25 @@ struct MapSnapshot {
   LearntCalibration calibration{};
 };
 
-/// The walls to save: without cells that the grid shows to be free by now, and with so few points
-/// in each cell that later observations can outweigh them.
+/// The walls to save: without cells that are free in the grid by now, and with so few points per
+/// cell that later observations can outweigh them.
 NdtMap walls_to_save(const NdtMap& walls, const GridMap& grid, double point_variance_m2);
 
-/// Covariance of a map at a place: that of its nearest marker; zero without markers.
+/// Covariance of a map at a place: that of the nearest marker, map's axes; zero without markers.
 Eigen::Matrix3d covariance_at(const MapSnapshot& map, const Eigen::Vector2d& place);
 
-/// What a run does with a loaded map.
+/// How a run uses a loaded map.
 enum class MapMode {
-  kMap,       ///< none is loaded: a new map is drawn
+  kMap,       ///< none is loaded: a new map is made
   kLocalise,  ///< the map does not change; memory is constant
-  kExtend,    ///< the map stays where it is, and new places are added in its frame
+  kExtend,    ///< the map's markers stay fixed, and new places are added in its frame
 };
 
 /// Where in a loaded map the robot starts.
 enum class StartKind {
   kOrigin,    ///< at the map's origin, where mapping began
   kPose,      ///< at a given pose
-  kLast,      ///< where slam stopped, if map and odometry still fit; else unknown
+  kLast,      ///< where slam stopped, if map and odometry still match; else unknown
   kAnywhere,  ///< unknown
 };
 
@@ -64,7 +64,7 @@ struct StartPose {
   double yaw_rad{0.0};
   double sigma_m{0.1};
   double sigma_rad{0.05};
-  bool is_certain{false};  ///< need not be confirmed by markers or walls
+  bool is_certain{false};  ///< no confirmation by markers or walls is needed
 
   /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);

@@ -12,7 +12,7 @@
 
 namespace waymark {
 
-/// Schur complement of the prior and of all factors on the variable.
+/// Schur complement: the prior absorbs all factors on the variable, without the variable.
 void Graph::eliminate(const Variable& variable) {
   std::vector<std::size_t> kept;
   for (const std::size_t index : active_factors_) {
@@ -57,8 +57,8 @@ void Graph::remove_from_layout(const Variable& variable) {
     if (offset > at) offset -= size;
 }
 
-/// Replaces the prior's calibration c by c' = c + w, with w of covariance Q: with N = (I + H Q)^-1,
-/// where H is the information about c, that about c' is N H. The other blocks follow from
+/// Replaces the prior's calibration c by c' = c + w, w ~ N(0, Q): where H is the information about
+/// c and N = (I + H Q)^-1, the information about c' is N H. The other blocks follow from
 /// marginalising c.
 void Graph::let_calibration_wander(double driven_m) {
   calibration_.fade(std::exp(-driven_m / CalibrationKnowledge::kMemory_m));

@@ -4,7 +4,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kBeforeMarker_m = 0.3;  // where the map has to be mapped for a marker to be new
+constexpr double kBeforeMarker_m = 0.3;  // in front of a new marker, where the map must be mapped
 
 }  // namespace
 

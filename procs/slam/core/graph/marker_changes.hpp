@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Markers that do not hang where a loaded map has them.
+// Markers that differ from a loaded map: moved, new or missing.
 #pragma once
 
 #include "slam/core/graph/association.hpp"
@@ -10,7 +10,7 @@
 
 namespace waymark {
 
-/// @param book   its first entries are the map's.
+/// @param book   its first entries are the map's landmarks, in the map's order.
 /// @param state  poses of the book's landmarks.
 std::vector<MapChange> marker_changes(const MapSnapshot& map, const MarkerBook& book,
                                       const State& state);

@@ -12,21 +12,21 @@ namespace waymark {
 namespace {
 
 // The bank of models. All constants were chosen, not fitted.
-constexpr double kMemory = 0.99;       // weight of an innovation when the next one comes
+constexpr double kMemory = 0.99;       // forgetting factor of log-likelihoods per innovation
 constexpr double kPriorLogOdds = 3.0;  // of the configured scale against each larger one
 constexpr double kCoupling = 0.7;      // prior standard deviation of log(along / turn)
-constexpr double kSlipFactor = 5.0;    // sigma of the odometry in a slip, in that of its noise
-constexpr double kGoesOnSigmas = 5.0;  // a slip beyond may continue at the next innovation
+constexpr double kSlipFactor = 5.0;    // sigma of the odometry in a slip, relative to its noise
+constexpr double kGoesOnSigmas = 5.0;  // a larger slip may continue at the next innovation
 const double kLogSlipShare = std::log(0.03);  // probability of a slip, as kSpinningPenalty
 
 // Moments of slips along the path.
-constexpr double kSlipSigmas = 4.0;       // an innovation beyond is a slip
+constexpr double kSlipSigmas = 4.0;       // a larger innovation is a slip
 constexpr double kSlipShows_m = 0.03;     // sigma of all else below which a slip is observable
 constexpr double kLongestSlip_m = 0.5;    // a larger innovation is no slip
-constexpr double kForgotten_m = 50.0;     // distance over which old slips fade by a factor e
+constexpr double kForgotten_m = 50.0;     // distance over which the sums fade by a factor e
 constexpr double kPriorSlips_m2 = 4e-4;   // pseudo-observation: one slip of 2 cm
 constexpr double kPriorDistance_m = 5.0;  // within this distance
-constexpr double kMeanIsUncertain = 1.5;  // on the variance, since the mean is estimated, too
+constexpr double kMeanIsUncertain = 1.5;  // factor on the variance: the mean is estimated, too
 
 double log_normal(double value, double variance) {
   return -0.5 * (std::log(variance) + squared(value) / variance);
@@ -71,7 +71,7 @@ void OdometryNoiseLearner::observe_slip(const OdometryInnovation& innovation) {
     slip_m_ = 0.0;
     return;
   }
-  // It takes some observations until the pose has followed a slip: they count once, by the largest.
+  // A slip shows in several innovations until the pose has followed it: only the largest counts.
   if (slip_m_ == 0.0) {
     ++num_slips_;
     slips_ += 1.0;

@@ -12,33 +12,32 @@ namespace waymark {
 /// One axis of an innovation: observed minus predicted, and the parts of its variance.
 struct OdometryInnovation {
   double value{0.0};
-  double odometry_variance{0.0};  ///< by the odometry's noise as configured
-  double other_variance{0.0};     ///< by all else
+  double odometry_variance{0.0};  ///< from the odometry's noise as configured
+  double other_variance{0.0};     ///< from all other sources
   double distance_m{0.0};         ///< driven since the prediction began
 };
 
 /// A bank of models (Magill 1965), one for each noise scale of a grid; their log-likelihoods of the
-/// innovations (Mehra 1972) fade exponentially. scale() is the mean over the bank.
+/// innovations (Mehra 1972) fade exponentially. scale() is the posterior mean over the bank.
 ///
 /// Slips must not count as noise: in each model an innovation may also come from a wide component,
-/// as in likeliest_kind() of factors.hpp. A slip in the turn may continue: a wheel that spins over
-/// a wet floor exaggerates every step by the same share, while noise differs from step to step.
-/// Along the path successive innovations are correlated anyway, for it takes some of them until the
-/// pose has followed a marker. The scales of both axes are coupled by a prior: noise in the turn,
-/// which walls observe everywhere, is probably as large along the path, which a bare corridor does
-/// not observe.
+/// as in likeliest_kind() of factors.hpp. A slip in the turn may continue: a wheel that spins on a
+/// wet floor overcounts every step by the same share, while noise differs from step to step. Along
+/// the path, successive innovations are correlated anyway, until the pose has followed a marker.
+/// The scales of both axes are coupled by a prior: noise in the turn, which walls observe
+/// everywhere, is probably as large along the path, which is unobservable in a bare corridor.
 ///
-/// Where neither markers nor walls observe them, slips add mean and variance to the motion along
-/// the path: the first two moments per metre of those that markers showed (a compound Poisson
-/// process, with pseudo-observations as its prior).
+/// Where neither markers nor walls observe slips, these add mean and variance to the motion along
+/// the path: the first two moments per metre of the slips that markers have observed (a compound
+/// Poisson process, with pseudo-observations as its prior).
 class OdometryNoiseLearner {
  public:
   void observe_along(const OdometryInnovation& innovation) { along_.add(innovation); }
 
   void observe_turn(const OdometryInnovation& innovation) { turn_.add(innovation); }
 
-  /// Along the path, by a marker. Scans are not used: along a corridor they are pulled back to
-  /// where the scans before were matched, which looks like a slip.
+  /// Innovation along the path, from a marker. Scans are not used: in a corridor they are pulled
+  /// back to where the previous scans were matched, which looks like a slip.
   void observe_slip(const OdometryInnovation& innovation);
 
   OdometryScale scale() const;
@@ -60,7 +59,7 @@ class OdometryNoiseLearner {
    private:
     struct Model {
       double log_likelihood{0.0};
-      bool slips{false};  ///< by this model the newest innovation was a slip
+      bool slips{false};  ///< the newest innovation was a slip, according to this model
     };
 
     std::array<Model, kScales> models_{};
@@ -74,9 +73,9 @@ class OdometryNoiseLearner {
   Axis along_{false};
   Axis turn_{true};
   // Sums that fade with the distance:
-  double slips_{0.0};
-  double slips_m_{0.0};
-  double slips_m2_{0.0};    ///< of squares
+  double slips_{0.0};       ///< number of slips
+  double slips_m_{0.0};     ///< sizes, signed
+  double slips_m2_{0.0};    ///< squared sizes
   double observed_m_{0.0};  ///< driven where a slip would have been observed
   int num_slips_{0};
   double slip_m_{0.0};  ///< the newest slip, while innovations still show it; 0: none

@@ -10,9 +10,9 @@
 namespace waymark {
 namespace {
 
-// All scores are natural logarithms of likelihood ratios, chosen so that a marker has to be sighted
-// in three frames to decide, since a single frame may be wrong.
-constexpr double kDecided = 2.5;  // lead over the next best hypothesis, and over none
+// All scores are natural logarithms of likelihood ratios, chosen so that a decision takes sightings
+// of a marker in three frames, since a single frame may be wrong.
+constexpr double kDecided = 2.5;  // lead over the second best hypothesis and the null hypothesis
 
 // Hypotheses.
 constexpr double kSame_m = 0.5;  // two hypotheses nearer than this are one
@@ -21,25 +21,25 @@ constexpr std::size_t kMaxHypotheses = 500;
 constexpr double kHopeless = 12.0;  // score below the best one at which a hypothesis is dropped
 
 // Markers.
-constexpr double kSighting = 1.0;       // score of a marker that is sighted where the map has it,
-constexpr double kUnexpected = -1.0;    // of one where the map has none of its id,
-constexpr double kMissed = -0.5;        // and of one that should be in view and is not sighted
-constexpr double kMostOfOne = 3.0;      // bound of one marker's score, either way
-constexpr double kFollowed = 0.5;       // gain with which a sighting corrects a hypothesis
-constexpr double kAtMarker_m = 0.5;     // a sighting nearer than this is of that marker
-constexpr double kInItsPlace_m = 0.25;  // and here another marker cannot hang
-constexpr double kPassed_m = 1.0;       // driven until a marker may contribute once more
+constexpr double kSighting = 1.0;     // score of a marker that is sighted where the map has it,
+constexpr double kUnexpected = -1.0;  // of one whose id is mapped elsewhere, or at another marker,
+constexpr double kMissed = -0.5;      // and of one that should be in view but is not sighted
+constexpr double kMostOfOne = 3.0;    // bound on the absolute score of one marker
+constexpr double kFollowed = 0.5;     // gain with which a sighting corrects a hypothesis
+constexpr double kAtMarker_m = 0.5;   // a sighting nearer than this is of that marker,
+constexpr double kInItsPlace_m = 0.25;  // and nearer than this there is no other marker
+constexpr double kPassed_m = 1.0;       // driven until a marker may contribute again
 
 // Walls.
 constexpr double kWallsEvery_m = 0.1;
-constexpr double kUsualMisfit = 0.15;  // share of beams that noise and changes misplace
-constexpr double kMisfit = 3.0;        // score of all beams beyond that
+constexpr double kUsualMisfit = 0.15;  // share of beams that noise and changes make contradict
+constexpr double kMisfit = 3.0;        // lost score per share of beams beyond that
 constexpr double kLeastMapped = 0.3;   // share of beams on mapped walls at the right place
-const Eigen::Vector3d kMatchSigmas{0.15, 0.15, 0.06};  // of a pose by one marker [m, m, rad]
+const Eigen::Vector3d kMatchSigmas{0.15, 0.15, 0.06};  // of a pose from one marker [m, m, rad]
 
 // Markers in view.
 constexpr double kMinFacing = 0.3;      // cosine between a marker's normal and the camera
-constexpr double kWallInSight_m = 0.2;  // of a beam's end from a marker that nothing occludes
+constexpr double kWallInSight_m = 0.2;  // from a marker that is not occluded to a beam's end
 
 }  // namespace
 
@@ -107,7 +107,7 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
   const Hypothesis& best = hypotheses_.front();
   const bool beats_others =
       hypotheses_.size() == 1 || best.score() - hypotheses_[1].score() >= kDecided;
-  // Two markers at their mapped relative pose are no chance, whatever other markers are missing.
+  // Two markers at their mapped relative pose are no coincidence, even if others are missing.
   const bool beats_none = best.score() >= kDecided || best.seen_in_place.size() >= 2;
   if (beats_others && beats_none && best.fits_walls) return best.map_from_base;
   const double least = best.score() - kHopeless;

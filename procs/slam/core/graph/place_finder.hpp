@@ -19,22 +19,22 @@
 namespace waymark {
 
 /// Tracks a hypothesis for every pose at which a sighted marker would be one of the map's, until
-/// one of them is left.
+/// one of them wins.
 ///
 /// Each hypothesis has a score, a log-likelihood ratio against the null hypothesis that the robot
-/// is nowhere in the map. What one marker or one stretch of wall can contribute is bounded, for
-/// markers are taken down and doors are opened. The best hypothesis wins once it is clearly better
-/// than both the next best and the null hypothesis. So one marker whose id is unique is enough if
-/// nothing contradicts it; among markers of one id, their surroundings have to decide. While no
-/// marker has been seen, walls alone may decide (WallPlaceFinder).
+/// is nowhere in the map. The contribution of one marker is bounded, since markers are taken down
+/// and moved. The best hypothesis wins once it is clearly better than both the second best and the
+/// null hypothesis. So one marker whose id is unique is enough if nothing contradicts it; among
+/// several markers of one id, other markers and walls decide. While no marker has been seen, walls
+/// alone may decide (WallPlaceFinder).
 class PlaceFinder {
  public:
   PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
 
   /// @param motion        since the last call.
   /// @param measurements  of the markers in the newest frame.
-  /// @param view          of the camera: a marker that it should show and does not is a miss.
-  /// @return map_from_base, once it is decided.
+  /// @param view          of the camera: a marker that it should see but does not is a miss.
+  /// @return map_from_base, once decided.
   std::optional<Se2> update(const Motion& motion, const Observation& observation,
                             std::span<const MarkerMeasurement> measurements, const CameraView& view,
                             const RangeNoise& noise);
@@ -51,8 +51,7 @@ class PlaceFinder {
     Se2 map_from_base{};
     double passed_score{0.0};  ///< of episodes that are over
     std::map<std::pair<Clue, int>, Episode> clues{};
-    std::set<int>
-        seen_in_place{};  ///< landmarks that have been sighted where the map has them, surely
+    std::set<int> seen_in_place{};  ///< landmarks whose score has reached its upper bound
     double wall_score{0.0};
     bool fits_walls{true};
 
@@ -79,7 +78,8 @@ class PlaceFinder {
   WallPlaceFinder by_walls_;
 };
 
-/// The markers that should be in a camera's view: they face it, and the LiDAR sees their wall.
+/// Whether the camera should see a marker: it faces the camera, is within its field of view and
+/// range, and a beam ends beside it, so that nothing occludes it.
 bool is_expected_in_view(const Se2& base_from_marker, const CameraView& view,
                          std::span<const AnnotatedBeam> beams);
 

@@ -60,7 +60,7 @@ void add_unvisited(const PoseGraph& earlier, PoseGraph& graph) {
     return std::pair{std::lround(pose.x() / kThereAlready_m),
                      std::lround(pose.y() / kThereAlready_m)};
   };
-  std::set<std::pair<long, long>> today;  // and the places around it
+  std::set<std::pair<long, long>> today;  // places of this run and their neighbours
   for (const Se2& pose : graph.poses) {
     const auto [x, y] = place_of(pose);
     for (long i = x - 1; i <= x + 1; ++i)

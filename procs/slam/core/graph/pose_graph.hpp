@@ -13,7 +13,7 @@ namespace waymark {
 
 class Graph;
 
-/// One pose, measured from another one.
+/// One pose measured relative to another.
 struct GraphEdge {
   std::size_t from{0};
   std::size_t to{0};
@@ -21,7 +21,7 @@ struct GraphEdge {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};  ///< order x y theta, frame of `from`
 };
 
-/// The poses that a map was drawn along, and the constraints between them.
+/// Keyframes of a map, and the constraints between them.
 struct PoseGraph {
   std::vector<Se2> poses{};  ///< map_from_base
   std::vector<GraphEdge> edges{};
@@ -30,8 +30,8 @@ struct PoseGraph {
 /// Keyframes with their odometry and scan factors, without markers.
 PoseGraph pose_graph_of(const Graph& graph);
 
-/// Adds the part of an earlier map's graph that lies where the robot has not been since, so that
-/// graphs of extended maps grow with the area.
+/// Adds those poses and edges of an earlier map's graph where the robot has not been since, so that
+/// graphs of extended maps grow with the area and not with the number of runs.
 void add_unvisited(const PoseGraph& earlier, PoseGraph& graph);
 
 }  // namespace waymark

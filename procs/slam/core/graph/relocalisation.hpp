@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Detects by markers that the estimated pose is wrong, and finds the right one.
+// Detects from markers that the estimated pose is wrong, and finds the correct one.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -12,12 +12,12 @@
 
 namespace waymark {
 
-/// What one sighted marker says about the estimated pose.
+/// One sighted marker compared with the map at the estimated pose.
 struct PoseHint {
   enum class Kind {
-    kAgrees,     ///< it is seen where the map has it
+    kAgrees,     ///< it is sighted where the map has it
     kNew,        ///< its id is not in the map
-    kElsewhere,  ///< confirmed and the only one of its id, but seen far from its place in the map
+    kElsewhere,  ///< confirmed and unique, but sighted far from its place in the map
     kAmbiguous,  ///< far from its place in the map, but may be another marker of the same id
   };
 
@@ -27,11 +27,11 @@ struct PoseHint {
   bool is_in_known_place{false};  ///< of kNew: the map has another marker at that place
 };
 
-/// Decides between two hypotheses: the estimated pose is right, and a marker that is seen elsewhere
-/// was moved, is misread or has a twin; or the robot was carried, and the mapped places of those
-/// markers give its pose. The robot is relocated when two markers agree on the other pose while
-/// none supports the present one. After a relocalisation to a place that only looks alike, new ids
-/// appear where the map has other markers: two of them revert it.
+/// Decides between two hypotheses. Either the estimated pose is right, and a marker that is sighted
+/// elsewhere was moved, is misread or has a duplicate; or the robot was carried, and the mapped
+/// places of such markers give its pose. The robot is relocated when two markers agree on the other
+/// pose while none is sighted in its place or new. After a relocalisation to a place that only
+/// looks alike, new ids appear where the map has other markers: two of them revert it.
 class RelocalisationMonitor {
  public:
   enum class Verdict { kConsistent, kSuspicious, kRelocated, kReverted };
@@ -55,7 +55,7 @@ class RelocalisationMonitor {
 
   Se2 relocated_{};
   std::optional<Se2> alternative_{};
-  std::map<int, int> sightings_{};  ///< that support the alternative, by id
+  std::map<int, int> sightings_{};  ///< number that support the alternative, by id
   double unsupported_m_{0.0};       ///< driven since the last of them
 
   std::optional<Se2> abandoned_{};  ///< pose before the relocalisation, propagated by odometry

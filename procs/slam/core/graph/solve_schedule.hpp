@@ -7,9 +7,9 @@
 
 namespace waymark {
 
-/// After loop closures the whole graph is solved, one step of Gauss-Newton at each keyframe. A
-/// solution begins once the graph has grown by a share of itself since the last one, so that the
-/// cost per keyframe is bounded.
+/// After loop closures the whole graph is solved, one Gauss-Newton step at each keyframe. A
+/// solution begins once the graph has grown by a certain share since the last one, so that the cost
+/// per keyframe is bounded.
 class SolveSchedule {
  public:
   /// @param contradicts_pose  the loop does more than confirm the estimated pose.
@@ -18,7 +18,7 @@ class SolveSchedule {
     loops_matter_ |= contradicts_pose;
   }
 
-  /// A solution is due at once: the graph has got information that moves all of it.
+  /// Begins a solution at once, for information that moves the whole graph.
   void begin(std::size_t num_keyframes) {
     steps_left_ = kSteps;
     solved_keyframes_ = num_keyframes;
@@ -46,14 +46,14 @@ class SolveSchedule {
   static constexpr int kSteps = 12;  ///< of a solution, at most
 
  private:
-  static constexpr std::size_t kEvery = 10;   ///< keyframes
-  static constexpr std::size_t kShare = 200;  ///< a share of all, of loops that contradict the pose
-  static constexpr std::size_t kRoutineShare = 8;  ///< and of loops that only confirm it
-  static constexpr double kConverged = 5e-3;       ///< [m, rad] less is not worth a further step
+  static constexpr std::size_t kEvery = 10;        ///< keyframes
+  static constexpr std::size_t kShare = 200;       ///< 1/200 of all, after loops that contradict it
+  static constexpr std::size_t kRoutineShare = 8;  ///< 1/8, after loops that only confirm the pose
+  static constexpr double kConverged = 5e-3;       ///< [m, rad]; less is not worth a further step
 
   std::size_t solved_keyframes_{0};  ///< of the graph, when the last solution began
   int steps_left_{0};
-  bool has_new_loops_{false};  ///< since then
+  bool has_new_loops_{false};  ///< since the last solution began
   bool loops_matter_{false};   ///< one of them contradicts the pose
 };
 

@@ -12,8 +12,8 @@
 
 namespace waymark {
 
-/// Share of a step to take: all of it, unless it turns a pose so far that the linearisation of its
-/// factors does not hold.
+/// Share of a step to take: all of it, unless it turns a pose so far that the linearisation does
+/// not hold.
 /// @param turn_rad  the largest turn in the step.
 inline double step_share(double turn_rad) {
   constexpr double kMost_rad = 0.5;

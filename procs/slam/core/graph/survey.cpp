@@ -10,12 +10,13 @@
 namespace waymark {
 namespace {
 
-constexpr double kWrong = 5.0;           // sigmas
+constexpr double kWrong = 5.0;           // sigmas beyond which an entry is reported
 constexpr double kLeastApart_m = 1.0;    // between two markers that define a frame's rotation
 constexpr double kClearlyBetter = 25.0;  // chi^2 that switching the wrong prior off has to save
 constexpr int kConfirmed = 3;            // sightings of a landmark
 constexpr int kTestedAgain = 4;          // times as many sightings as at the last test
-// chi^2 that correct priors add at most, beyond its mean: at least, and in standard deviations.
+// Largest excess of chi^2 over its mean with correct priors: the larger of a constant and so many
+// standard deviations.
 constexpr double kContradiction = 50.0;
 constexpr double kContradictionSigmas = 5.0;
 constexpr int kMostLeftOut = 5;        // priors to switch off
@@ -42,8 +43,8 @@ bool hold_frame(const std::vector<LandmarkPrior>& priors, std::size_t without) {
   return num_places >= 2;
 }
 
-/// chi^2 beyond its mean, the number of its degrees of freedom, where it is more than correct
-/// priors add; else 0.
+/// Excess of chi^2 over its mean, the number of degrees of freedom, if correct priors do not
+/// explain it; else 0.
 double contradiction_of(double chi2, const std::vector<LandmarkPrior>& priors) {
   int freedom = -3;  // of the frame
   for (const LandmarkPrior& prior : priors)
@@ -53,7 +54,7 @@ double contradiction_of(double chi2, const std::vector<LandmarkPrior>& priors) {
   return excess > usual ? excess : 0.0;
 }
 
-/// Priors that may be switched off, those first that save most.
+/// Priors that may be switched off, those first that would reduce the cost most.
 std::vector<std::size_t> most_suspicious(const std::vector<LandmarkPrior>& priors,
                                          const SurveyModel::Solution& solution) {
   std::vector<std::pair<double, std::size_t>> savings;
@@ -75,7 +76,7 @@ double switch_wrong_off(std::vector<LandmarkPrior>& priors, const SurveyModel& m
   const double free = model.cost_without_priors();
   SurveyModel::Solution solution = model.solve(priors);
   for (int i = 0; i < kMostLeftOut && contradiction_of(solution.cost - free, priors) > 0.0; ++i) {
-    // The wrong prior is the one without which the contradiction is smallest by far.
+    // The wrong prior is the one whose removal reduces the cost most, and by enough.
     std::optional<std::size_t> wrong;
     SurveyModel::Solution best;
     best.cost = solution.cost - kClearlyBetter;

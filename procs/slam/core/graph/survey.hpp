@@ -13,8 +13,8 @@
 namespace waymark {
 
 /// Two surveyed markers, or one with yaw, define the map frame. From then on each surveyed marker
-/// that is sighted becomes a prior of its landmark. Where measurements and other priors contradict
-/// a prior, and switching it off alone removes the contradiction, it is switched off.
+/// that is sighted becomes a prior of its landmark. Priors that contradict measurements and other
+/// priors are switched off, one by one: each time the one whose removal reduces the cost most.
 class Survey {
  public:
   explicit Survey(std::vector<SurveyedMarker> markers);
@@ -35,11 +35,11 @@ class Survey {
   /// @return whether a prior was switched: then the whole graph has to be solved.
   bool apply(Graph& graph);
 
-  /// Entries contradict each other, of which none is clearly wrong: the frame is not known.
+  /// Whether entries contradict each other and none is clearly wrong: the frame is uncertain.
   bool is_undecided() const { return unresolved_sigmas_ > 0.0; }
 
-  /// Surveyed markers whose landmarks are more than 5 sigmas from their surveyed places, and
-  /// all that contradict each other while it is undecidable which one is wrong.
+  /// Surveyed markers whose landmarks are more than 5 sigmas from their surveyed places, and while
+  /// is_undecided() all whose priors are on.
   std::vector<MapChange> changes(const Graph& graph) const;
 
  private:
@@ -57,7 +57,7 @@ class Survey {
 
   std::vector<Entry> entries_{};
   bool has_frame_{false};
-  double unresolved_sigmas_{0.0};  ///< contradiction between entries of which none is clearly wrong
+  double unresolved_sigmas_{0.0};  ///< contradiction that remains while none is clearly wrong
 };
 
 }  // namespace waymark

@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kMostSteps = 20;
 constexpr double kConverged = 1e-5;  // [m, rad]
-constexpr double kGauge = 1e3;       // 1 / sigma [m, rad] of the prior that fixes the gauge
+constexpr double kGauge = 1e3;       // 1 / sigma [1/m, 1/rad] of the prior that fixes the gauge
 
 void retract_all(State& state, const Eigen::VectorXd& step) {
   for (std::size_t i = 0; i < state.landmarks.size(); ++i)
     state.retract({VariableKind::kLandmark, i}, step.segment(3 * static_cast<Eigen::Index>(i), 3));
 }
 
-/// Steps by which the landmarks move with the whole map: 3 columns, the map's (x, y, theta).
+/// Steps of all landmarks when the map moves rigidly: one column each for x, y and theta.
 Eigen::MatrixXd rigid_steps(const State& state) {
   Eigen::MatrixXd steps{3 * std::ssize(state.landmarks), 3};
   for (std::size_t i = 0; i < state.landmarks.size(); ++i) {
@@ -58,7 +58,7 @@ Equations equations_of(const std::vector<LandmarkPrior>& priors, const State& st
   return equations;
 }
 
-/// Takes steps of `next_step` until they are small.
+/// Applies steps of `next_step` until they are small, at most kMostSteps.
 template <class NextStep>
 void iterate(State& state, const NextStep& next_step) {
   for (int i = 0; i < kMostSteps; ++i) {
@@ -74,8 +74,8 @@ SurveyModel::Solution SurveyModel::solve(const std::vector<LandmarkPrior>& prior
   Solution solution;
   State& state = solution.state;
   state.landmarks = marginal_.map_from_marker;
-  // All landmarks together move into the survey's frame, which changes no measurement's residual;
-  // a large step that bends the map would.
+  // First all landmarks move rigidly into the survey's frame, which changes no measurement's
+  // residual, unlike a large step that bends the map.
   iterate(state, [&]() -> Eigen::VectorXd {
     const Equations equations = equations_of(priors, state);
     const Eigen::MatrixXd rigid = rigid_steps(state);

@@ -11,7 +11,7 @@ namespace {
 constexpr double kStill_m_s = 0.002;
 constexpr double kStill_rad_s = 0.005;
 constexpr double kSpeedMemory_s = 1.0;
-constexpr double kStuckShare = 0.05;  // probability that odometry which stops is stuck; chosen
+constexpr double kStuckShare = 0.05;        // probability that odometry that stops is stuck; chosen
 constexpr double kLongestSuspect_s = 20.0;  // a robot that stands for longer is parked
 
 }  // namespace

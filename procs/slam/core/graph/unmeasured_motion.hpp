@@ -7,12 +7,12 @@
 
 namespace waymark {
 
-/// When odometry stands still, the robot nearly always stands. When markers or walls observe that
-/// it moves, the odometry is stuck until it moves again; when nothing is observed, it may be stuck.
-/// Meanwhile the robot may have gone on at its last speed.
+/// When the odometry stands still, the robot nearly always does, too. If markers or walls observe
+/// that it moves, the odometry is stuck until it moves again; if nothing is observed, it may be
+/// stuck. Meanwhile the robot may have continued at its last speed.
 class UnmeasuredMotion {
  public:
-  /// The next observation.
+  /// To be called with each observation.
   void follow(const Observation& observation);
 
   /// Markers or walls have just observed the motion.
@@ -21,10 +21,11 @@ class UnmeasuredMotion {
     standing_s_ = 0.0;
   }
 
-  /// They observed that the robot moved so far in that time, while the odometry stood still.
+  /// They have observed that the robot moved by `distance_m` in `elapsed_s`. If the odometry stands
+  /// still, it is stuck.
   void note_moved(double distance_m, double elapsed_s);
 
-  /// The robot has returned to where the odometry came to a standstill: both stand still.
+  /// The robot is back where the odometry came to a standstill: the odometry is not stuck.
   void note_returned() {
     is_stuck_ = false;
     note_observed();
@@ -32,21 +33,21 @@ class UnmeasuredMotion {
 
   bool is_standing() const { return is_standing_; }
 
-  /// The present odometry is known to be wrong.
+  /// The odometry is known to be wrong at present.
   bool is_silent() const { return is_stuck_ || is_jumping_; }
 
-  /// Distance that may have been driven while odometry was silent, one sigma.
+  /// Distance that may have been driven while the odometry was silent, one sigma.
   double unmeasured_m() const { return speed_m_s_ * silent_s_; }
 
-  /// The same, and sets it to zero: from now on a factor of the graph holds it.
+  /// Returns the same and resets it to zero: from now on a factor of the graph accounts for it.
   double take_unmeasured_m();
 
-  /// Distance that may have been driven since odometry came to a standstill, which is probably
-  /// right; one sigma. Added to published covariances only, never to the graph.
+  /// Distance that may have been driven since the odometry came to a standstill, one sigma. Since
+  /// the robot probably stands, it is added to published covariances only, not to the graph.
   double suspected_m() const;
 
  private:
-  double speed_m_s_{0.0};   ///< by odometry, or, while that is stuck, by the estimate
+  double speed_m_s_{0.0};   ///< from odometry or, while that is stuck, from the estimate
   double silent_s_{0.0};    ///< since the motion was last observed
   double standing_s_{0.0};  ///< standing and not silent
   bool is_standing_{false};

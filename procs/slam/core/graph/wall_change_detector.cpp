@@ -10,13 +10,13 @@
 namespace waymark {
 namespace {
 
-constexpr std::uint32_t kLeastVisits = 8;   // beams; a person who passes leaves fewer
+constexpr std::uint32_t kLeastVisits = 8;   // beams; a person walking past leaves fewer
 constexpr double kWall = 0.5;               // least occupancy of a wall, and
 constexpr double kFree = 0.1;               // largest one of free space
 constexpr int kAgedEvery = 100;             // scans
-constexpr std::uint32_t kMostVisits = 200;  // beyond, the counts of a cell are halved
+constexpr std::uint32_t kMostVisits = 200;  // the counts of a cell beyond it are halved
 constexpr std::size_t kLeastCells = 6;      // 0.3 m of wall in cells of 0.05 m
-constexpr int kGap = 2;                     // largest distance of cells in a cluster
+constexpr int kGap = 2;                     // between neighbours in a cluster, at most [cells]
 
 template <class Condition>
 bool all_around(CellIndex centre, Condition&& holds) {

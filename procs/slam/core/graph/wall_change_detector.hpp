@@ -13,16 +13,17 @@
 namespace waymark {
 
 /// Counts the beams of this run in a grid of its own, and compares it with the map's, cell by cell.
-/// A wall cell has appeared where the map is free in it and in all of its neighbours, and the other
-/// way round, so that a pose error of a cell makes no change. Memory is bounded by the map's area
-/// and the LiDAR's reach.
+/// A wall cell has appeared if the map is free in it and in all of its neighbours; one of the map
+/// has disappeared if this run's grid is free there. So a pose error of one cell makes no change.
+/// Memory is bounded by the map's area and the LiDAR's range.
 class WallChangeDetector {
  public:
   explicit WallChangeDetector(std::shared_ptr<const MapSnapshot> map);
 
   void add(const Observation& observation, const Se2& map_from_base);
 
-  /// Clusters of changed cells, row by row. O(cells seen).
+  /// Clusters of changed cells: new walls, then walls that are gone, each row by row.
+  /// O(cells observed).
   std::vector<MapChange> changes() const;
 
  private:

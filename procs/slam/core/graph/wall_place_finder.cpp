@@ -13,12 +13,12 @@ namespace waymark {
 namespace {
 
 constexpr double kSearchEvery_m = 0.4;
-constexpr int kConsistentScans = 3;  // scans
+constexpr int kConsistentScans = 3;  // in a row, to decide
 constexpr std::size_t kBeams = 150;
 constexpr std::size_t kLeastBeams = 60;
 constexpr UniquePlaceLimits kUnique{
     .min_score = 0.7, .runner_up_share = 0.8, .apart_m = 0.5, .apart_rad = 0.3};
-constexpr double kAgree_m = 0.2;  // of a pose from the candidate
+constexpr double kAgree_m = 0.2;  // between a match and the candidate
 constexpr double kAgree_rad = 0.1;
 constexpr double kLeastInliers = 0.8;                // share of the mapped beams
 constexpr double kLeastMapped = 0.8;                 // share of all beams

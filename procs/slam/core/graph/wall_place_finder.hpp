@@ -13,17 +13,17 @@
 
 namespace waymark {
 
-/// Searches the whole map for a scan, every some decimetres. A scan counts if it fits at one place
-/// only and observes every direction, which it never does in a bare corridor. The pose is decided
-/// when several such scans in a row are consistent with the odometry between them.
+/// Searches the whole map for a scan every 0.4 m of driving. A scan counts if it fits at one place
+/// only and observes every direction, unlike in a bare corridor. The pose is decided when three
+/// such scans in a row are consistent with the odometry between them.
 class WallPlaceFinder {
  public:
   WallPlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
 
-  /// Every motion must be given, also where no scan is searched for.
+  /// To be called with every motion, also those without search().
   void follow(const Motion& motion);
 
-  /// @return map_from_base, once it is decided.
+  /// @return map_from_base, once decided.
   std::optional<Se2> search(const Observation& observation, const RangeNoise& noise);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sparse Gauss-Newton over every variable, and what all of them know of some landmarks.
+// Sparse Gauss-Newton over all variables, and the marginal of some landmarks.
 #include "slam/core/graph/elimination.hpp"
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/step_share.hpp"
@@ -12,8 +12,8 @@ namespace waymark {
 namespace {
 
 constexpr double kConverged = 1e-3;  // [m, rad]
-constexpr double kNoWorse = 1.0;     // by which a step may raise the cost: not significant
-constexpr double kLeastShare = 0.1;  // of a step that lowers the cost; else none is taken
+constexpr double kNoWorse = 1.0;     // rise of the cost that is not significant
+constexpr double kLeastShare = 0.1;  // a step is halved down to about this share, then dropped
 
 }  // namespace
 
@@ -66,7 +66,7 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
                                 }};
   if (!elimination.has_solution()) {
     for (const Variable& variable : inserted)
-      remove_from_layout(variable);  // the window has no measurement of it
+      remove_from_layout(variable);  // no factor of the window refers to it
     return std::numeric_limits<double>::infinity();
   }
 
@@ -102,7 +102,7 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
 
 std::optional<LandmarkMarginal> Graph::marginal_of(
     const std::vector<std::size_t>& landmarks) const {
-  std::vector<Eigen::Index> place(state_.landmarks.size(), -1);  // behind the calibration
+  std::vector<Eigen::Index> place(state_.landmarks.size(), -1);  // after the calibration
   for (std::size_t i = 0; i < landmarks.size(); ++i)
     place[landmarks[i]] = kCalibrationSize + 3 * static_cast<Eigen::Index>(i);
   std::vector<Variable> eliminated;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a grid between cell centres.
+// Bilinear interpolation between cell centres.
 #pragma once
 
 #include "slam/core/grid/grid_frame.hpp"
 
 namespace waymark {
 
-/// Calls visit(CellIndex, weight) for the four cells around a point; the weights are the bilinear
-/// ones and add up to 1. Cells of 0.05 m then tell displacements of millimetres.
+/// Calls visit(CellIndex, weight) for the four cells around a point; the weights are bilinear and
+/// sum to 1. Cells of 0.05 m then resolve displacements of millimetres.
 template <class Visit>
 void visit_bilinear(const GridFrame& frame, const Eigen::Vector2d& point_in_map, Visit&& visit) {
   const Eigen::Vector2d cells =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Integer positions in an unbounded grid: cells, and the square tiles that store them.
+// Indices in an unbounded grid: cells, and the square tiles that store them.
 #pragma once
 
 #include <compare>
@@ -7,7 +7,7 @@
 
 namespace waymark {
 
-/// Column and row of a cell; negative ones are as good as others.
+/// Column and row of a cell; may be negative.
 struct CellIndex {
   int x{0};
   int y{0};
@@ -36,7 +36,7 @@ constexpr TileIndex tile_of(CellIndex cell) {
   return {cell.x >> kTileBits, cell.y >> kTileBits};
 }
 
-/// Place of a cell in its tile: row by row from the lower left.
+/// Index of a cell in its tile: row by row from the lower left.
 constexpr std::size_t offset_in_tile(CellIndex cell) {
   return static_cast<std::size_t>((cell.y & (kTileSize - 1)) * kTileSize +
                                   (cell.x & (kTileSize - 1)));

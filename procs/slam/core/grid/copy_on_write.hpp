@@ -8,9 +8,9 @@
 namespace waymark {
 
 /// Empty, or a handle to a value that other handles may share. Copying costs a counter increment;
-/// edit() gives this handle a value of its own first. Different handles may be used by different
-/// threads, also when they share. (std::shared_ptr::use_count does not order memory, so it cannot
-/// decide this.)
+/// edit() first gives this handle a value of its own. Different handles may be used by different
+/// threads, even when they share a value. (std::shared_ptr::use_count does not order memory, so it
+/// cannot be used to decide whether a value is shared.)
 template <class Value>
 class CopyOnWrite {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the cells of a grid lie in the map frame.
+// Position of a grid's cells in the map frame.
 #pragma once
 
 #include "slam/core/grid/cell_index.hpp"

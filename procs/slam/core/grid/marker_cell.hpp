@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the camera says about a cell of a wall: which marker it carries, or that it carries none.
+// The camera's observations of a cell: votes for marker ids, and for no marker.
 #pragma once
 
 #include "common/sensors/sensors.hpp"
@@ -9,9 +9,9 @@
 
 namespace waymark {
 
-/// Votes for the ids seen on a cell, so that a wrong id does not overwrite a right one. Keeps the
-/// best few ids; an id that finds no place wears down the weakest one (Misra and Gries, 1982), so a
-/// frequent id always gets in. Votes may be fractions.
+/// Votes for the ids seen on a cell, so that a wrong id does not overwrite a correct one. Keeps the
+/// best few ids; a vote for another one reduces the weakest and finally replaces it (after Misra
+/// and Gries, 1982), so that a frequent id is always kept. Votes may be fractions.
 struct MarkerCell {
   static constexpr int kMaxIds = 3;
 
@@ -22,7 +22,7 @@ struct MarkerCell {
     bool operator==(const Votes&) const = default;
   };
 
-  std::array<Votes, kMaxIds> ids{};  ///< unused places have kNoMarker and no votes
+  std::array<Votes, kMaxIds> ids{};  ///< unused entries have kNoMarker and no votes
   float none{0.0F};                  ///< votes for "the camera saw this spot and no marker on it"
 
   void vote(int id, float votes) {
@@ -58,10 +58,10 @@ struct MarkerCell {
     return sum;
   }
 
-  /// Votes that the camera has cast here at all; 0 = nothing is known.
+  /// All votes, "none" included; 0: unknown.
   float votes() const { return none + votes_for_markers(); }
 
-  /// The id with most votes if it has more than "none", else kNoMarker; the first of equals.
+  /// The id with the most votes if it has more than "none", else kNoMarker; the first of equals.
   int most_supported() const {
     Votes best{kNoMarker, none};
     for (const Votes& known : ids) {

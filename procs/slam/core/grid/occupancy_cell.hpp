@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the LiDAR says about a cell.
+// The LiDAR's observations of a cell.
 #pragma once
 
 #include <cstdint>

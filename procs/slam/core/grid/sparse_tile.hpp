@@ -14,8 +14,8 @@
 namespace waymark {
 
 /// Use as TileMap<Cell, SparseTile<Cell>> for layers in which few cells of a tile are ever written,
-/// such as walls. One bit per cell says whether it was touched; the touched ones lie packed, row by
-/// row. Reading is O(1), touching a new cell moves the ones behind it.
+/// such as walls. A bit per cell marks the touched ones, which are stored packed, row by row.
+/// Reading is O(1); touching a new cell moves those after it.
 template <class Cell>
 class SparseTile {
  public:
@@ -75,7 +75,7 @@ class SparseTile {
   }
 
   std::array<std::uint32_t, kTileSize> touched_{};  ///< bit x of row y
-  std::array<std::uint16_t, kTileSize> first_{};    ///< place of the first touched cell of the row
+  std::array<std::uint16_t, kTileSize> first_{};    ///< index in cells_ of each row's first cell
   std::vector<Cell> cells_{};
 };
 

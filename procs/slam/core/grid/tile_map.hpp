@@ -34,7 +34,7 @@ class TileMap {
   /// @throws std::length_error when the map would span more than kMaxTableTiles tiles.
   Cell& edit(CellIndex cell) { return edit_tile(tile_of(cell))[offset_in_tile(cell)]; }
 
-  /// The same of a whole tile; stays where it is until the map is copied.
+  /// The same for a whole tile; the reference is valid until the map is copied.
   Tile& edit_tile(TileIndex index) {
     if (!covers(index)) grow_to(index);
     return table_[place_of(index)].edit();
@@ -77,8 +77,8 @@ class TileMap {
            static_cast<std::size_t>(index.x - first_.x);
   }
 
-  /// One side of the table: includes `index`, and a quarter more on the side that had to grow, so
-  /// that a robot that drives on does not move the table at every tile.
+  /// One dimension of the table: extended to include `index`, and by a quarter more on that side,
+  /// so that a robot that continues in this direction does not reallocate the table at every tile.
   struct Extent {
     int first;
     int count;
@@ -118,7 +118,7 @@ class TileMap {
   std::vector<CopyOnWrite<Tile>> table_{};
 };
 
-/// Edits cells that lie beside each other: looks the tile up once. The map must not be copied
+/// Edits cells that are near each other: looks their tile up only once. The map must not be copied
 /// meanwhile.
 template <class Map>
 class TileEditor {

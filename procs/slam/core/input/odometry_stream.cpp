@@ -44,7 +44,7 @@ void OdometryStream::finish(Skips& skips) {
   if (const auto leading = std::exchange(leading_, std::nullopt)) take(*leading, skips);
 }
 
-/// Accepts or drops the sample that is held back, given the next one.
+/// Accepts or drops the sample that is held back, depending on the next one.
 void OdometryStream::weigh_leading(const OdometrySample& sample, Skips& skips) {
   if (sample.time > leading_->time) {
     const OdometrySample leading = *std::exchange(leading_, std::nullopt);
@@ -61,7 +61,7 @@ bool OdometryStream::leads(const OdometrySample& sample) const {
   return step > 2 * usual_step_ && step <= ClockStepDetector::kLongestPause;
 }
 
-/// Whether the first sample of all, which could not be checked, was stamped ahead.
+/// Whether the very first sample, which could not be checked, was stamped ahead.
 bool OdometryStream::shows_first_was_ahead(const OdometrySample& sample) const {
   return buffer_.has_one() && !has_been_read_ && sample.time < buffer_.newest() &&
          sample.time >= buffer_.newest() - kLongestLead;
@@ -84,8 +84,8 @@ OdometryStream::News OdometryStream::take(const OdometrySample& sample, Skips& s
   return news;
 }
 
-/// Moves the stamps of old samples so that odometry continues without a gap, and no motion is lost.
-/// @return added to the stamps.
+/// Shifts the stamps of old samples so that odometry continues without a gap: no motion is lost.
+/// @return the shift.
 Duration OdometryStream::set_clock(Skips& skips) {
   skips.add(Skip::kClockSet);
   const Duration later = clock_steps_.first_misfit() - buffer_.newest();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Odometry as it arrives: the clock of all other sensors.
+// Odometry as it arrives, against which the stamps of all other sensors are checked.
 #pragma once
 
 #include "common/sensors/sensors.hpp"
@@ -24,16 +24,16 @@ class OdometryStream {
 
   News add(const OdometrySample& sample, Skips& skips);
 
-  /// No more samples will come: uses the one that is held back.
+  /// To be called after the last sample: uses the one that is held back.
   void finish(Skips& skips);
 
   bool has_passed(Timestamp time) const { return !buffer_.is_empty() && buffer_.newest() >= time; }
 
-  /// Including the sample that is held back; needs a sample.
+  /// Stamp of the newest sample, one that is held back included; needs a sample.
   Timestamp newest() const { return leading_ ? leading_->time : buffer_.newest(); }
 
-  /// A stamp of another sensor later than this is wrong; below, it may be ahead of odometry that
-  /// comes in bursts. Needs a sample.
+  /// A stamp of another sensor later than this is wrong. An earlier one may be ahead of odometry
+  /// that arrives in bursts. Needs a sample.
   Timestamp lead_limit() const { return newest() + kLongestLead; }
 
   bool is_ahead(Timestamp time) const { return !buffer_.is_empty() && time > lead_limit(); }
@@ -58,7 +58,7 @@ class OdometryStream {
 
   OdometryBuffer buffer_{};
   ClockStepDetector clock_steps_{};
-  Duration usual_step_{kLongestStep};  ///< twice as long may be usual, too
+  Duration usual_step_{kLongestStep};  ///< of samples; at most doubles from step to step
   std::optional<OdometrySample> leading_{};
   bool has_been_read_{false};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How sensor values are put together, and which of them count.
+// Parameters of combining sensor values into observations.
 #pragma once
 
 namespace waymark {

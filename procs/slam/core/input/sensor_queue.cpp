@@ -24,7 +24,7 @@ constexpr QueuePolicy kFramePolicy{.capacity = kCapacity,
                                    .ahead = Skip::kFrameAhead,
                                    .overflow = Skip::kFrameOverflow};
 
-/// Two different images never give the same corners to the last bit.
+/// Two different images never yield bitwise identical corners.
 bool are_repeated(std::span<const MarkerDetection> before, std::span<const MarkerDetection> now) {
   return !now.empty() &&
          std::equal(before.begin(), before.end(), now.begin(), now.end(),
@@ -34,10 +34,10 @@ bool are_repeated(std::span<const MarkerDetection> before, std::span<const Marke
                     });
 }
 
-/// Motion after which an identical scan cannot be a new one.
+/// Motion after which an identical scan cannot be new.
 constexpr double kElsewhere_m = 0.05;
 constexpr double kElsewhere_rad = 0.05;
-constexpr std::size_t kTooMany = 20;  // returns that cannot be identical by chance
+constexpr std::size_t kTooMany = 20;  // so many returns are not identical by chance
 
 bool are_same(const std::vector<double>& before, const std::vector<double>& now) {
   return std::equal(before.begin(), before.end(), now.begin(), now.end(),
@@ -140,7 +140,7 @@ bool SensorQueue::repeats_the_one_before(const MarkerDetections& frame) {
   return is_repeated;
 }
 
-/// A scan further ahead may have a wrong stamp, and must not block.
+/// A scan further ahead may have a wrong stamp, and must not block observations without a scan.
 bool SensorQueue::scan_is_due() const {
   return !scans_.is_empty() && scans_.front().time <= odometry_.newest() + scan_wait_;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Turns three streams of sensor values into observations, whatever order they arrive in.
+// Combines three streams of sensor values into observations, in whatever order they arrive.
 #pragma once
 
 #include "slam/core/input/odometry_stream.hpp"
@@ -15,7 +15,7 @@
 
 namespace waymark {
 
-/// Sensors as the queue needs to know them.
+/// Description of the sensors.
 struct SensorSetup {
   LidarSetup lidar{};
   CameraView camera{};
@@ -24,16 +24,16 @@ struct SensorSetup {
   /// Ray of a pixel: its point at distance 1 in front of a camera without lens errors.
   std::function<Eigen::Vector2d(const Eigen::Vector2d&)> ray_of_pixel{};
   double corner_sigma{1e-4};  ///< of a marker's corner, same unit as ray_of_pixel
-  bool blank_ids{false};      ///< control: forget all markers
+  bool blank_ids{false};      ///< control experiment: ignore all markers
 };
 
 /// A scan becomes an observation when odometry covers it and the camera frames up to its time have
-/// come, or when marker_wait_s of odometry has passed without them. When scan_wait_s of odometry
-/// has passed without a scan, the LiDAR is silent, and odometry and camera make observations of
-/// their own. So the result depends on the values only, and not on how they are interleaved.
+/// arrived, or when marker_wait_s of odometry has passed without them. When scan_wait_s of odometry
+/// has passed without a scan, the LiDAR is silent, and odometry and camera alone make observations.
+/// So the result depends on the values only, and not on how they are interleaved.
 ///
-/// A wrong stamp costs its own value only: the next values of the same sensor decide whether a
-/// value that is ahead or late is wrong. When the clock was set, all earlier stamps are dropped.
+/// A wrong stamp affects its own value only: the next values of the same sensor decide whether a
+/// value that is ahead or late is wrong. When the clock was set, all earlier values are dropped.
 class SensorQueue {
  public:
   explicit SensorQueue(const SensorSetup& setup);
@@ -41,18 +41,18 @@ class SensorQueue {
   void add(const OdometrySample& sample);
   void add(LidarScan scan);
   void add(MarkerDetections frame);
-  /// No more values will come: stops waiting for them.
+  /// To be called after the last value: next() stops waiting.
   void finish();
 
   struct Ready {
     Observation observation{};
-    std::optional<LidarScan> scan{};  ///< nothing while the LiDAR is silent
+    std::optional<LidarScan> scan{};  ///< none while the LiDAR is silent
   };
 
   /// The next observation that is ready; call until there is none.
   std::optional<Ready> next();
 
-  /// What was skipped since the last call, in order.
+  /// Reasons of the values that were skipped since the last call, in order.
   std::vector<Skip> take_skips() { return skips_.take(); }
 
  private:

@@ -22,7 +22,7 @@ std::string_view to_string(Skip skip) {
     case Skip::kScanWithoutReturns:
       return "scans without returns";
     case Skip::kScanRepeated:
-      return "scans that repeat one from elsewhere";
+      return "scans that repeat one from another place";
     case Skip::kScanBeforeOdometry:
       return "scans before the first odometry";
     case Skip::kScanWithoutOdometry:
@@ -38,7 +38,7 @@ std::string_view to_string(Skip skip) {
     case Skip::kFrameOverflow:
       return "camera frames dropped waiting for a scan";
     case Skip::kFrameRepeated:
-      return "camera frames that repeat the one before";
+      return "camera frames that repeat the previous one";
     case Skip::kMarkerImplausible:
       return "markers not upright";
     case Skip::kMarkerUncertain:

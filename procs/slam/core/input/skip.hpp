@@ -12,33 +12,33 @@ namespace waymark {
 enum class Skip {
   kOdometryOutOfOrder,
   kOdometryAhead,   ///< later than any pause explains, or than the samples after it
-  kClockSet,        ///< what waits is dropped, motion goes on
-  kOdometryJumped,  ///< used as a new beginning, its jump is not
-  kOdometryStuck,   ///< stood still or jumped about, then reported the way in one step
+  kClockSet,        ///< values that wait are dropped; the motion continues
+  kOdometryJumped,  ///< the jump is not used as motion
+  kOdometryStuck,   ///< stood still or jumped about, then reported the motion in one step
   kScanOutOfOrder,
   kScanAhead,           ///< of odometry by far, or of the scans that followed it
-  kScanWithoutReturns,  ///< odometry and camera are
-  kScanRepeated,        ///< range for range one from elsewhere: the LiDAR is stuck
+  kScanWithoutReturns,  ///< its odometry and camera frames are used
+  kScanRepeated,        ///< identical to a scan from another place: the LiDAR is stuck
   kScanBeforeOdometry,
-  kScanWithoutOdometry,  ///< the input ended before the odometry for it came
-  kScanOverflow,         ///< odometry stays away
+  kScanWithoutOdometry,  ///< the input ended before odometry covered it
+  kScanOverflow,         ///< waited too long for odometry
   kFrameOutOfOrder,
   kFrameAhead,            ///< of odometry by far, or of the frames that followed it
-  kFrameWithoutOdometry,  ///< it has been forgotten, or begins later
+  kFrameWithoutOdometry,  ///< odometry of that time was dropped already, or begins later
   kFrameOverflow,
-  kFrameRepeated,  ///< pixel for pixel the one before: the camera is stuck, or nothing moves
+  kFrameRepeated,  ///< detections identical to the previous frame's: the camera is stuck
   kMarkerImplausible,
   kMarkerUncertain,
 };
 
 std::string_view to_string(Skip skip);
 
-/// In order of time.
+/// Reasons in order of time.
 class Skips {
  public:
   void add(Skip reason, std::size_t times = 1) { all_.insert(all_.end(), times, reason); }
 
-  /// What was added since the last call.
+  /// The reasons added since the last call.
   std::vector<Skip> take() { return std::exchange(all_, {}); }
 
  private:

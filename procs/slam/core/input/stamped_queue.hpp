@@ -12,7 +12,7 @@
 
 namespace waymark {
 
-/// Bounds of a queue, and by which reasons its dropped values are counted.
+/// Bounds of a queue, and the reasons under which dropped values are counted.
 struct QueuePolicy {
   std::size_t capacity{0};  ///< beyond, the oldest value is dropped
   Duration longest{};       ///< so are values that are older than the newest by more
@@ -21,13 +21,13 @@ struct QueuePolicy {
   Skip overflow{};
 };
 
-/// Values (with a member `time`) in order of time. A value that is not newer than those before it
-/// is set aside: either its own stamp is too early, or theirs are too late. The next value decides:
-/// if it is newer than all, the value aside is dropped; if it is newer than the value aside only,
-/// the later ones are.
+/// Values (with a member `time`) in order of time. A value older than the newest one is set aside:
+/// either its own stamp is too early, or others are too late. The next value decides: if it is
+/// newer than all, the value aside is dropped; if it is newer than the value aside only, those not
+/// older than that one are. A second value with the newest stamp is dropped.
 ///
-/// A value that comes long before the odometry of its time, as after a pause of all sensors, is
-/// held ahead of the queue: the next sample of the odometry decides.
+/// A value that arrives long before the odometry of its time, as after a pause of all sensors, is
+/// held outside the queue until the next sample of the odometry decides.
 template <class Value>
 class StampedQueue {
  public:
@@ -53,13 +53,13 @@ class StampedQueue {
     }
   }
 
-  /// Until add_held or drop_held; of several the newest is held.
+  /// Holds a value until add_held() or drop_held(); of several the last one is held.
   void hold(Value value, Skips& skips) {
     drop_held(skips);
     held_ = std::move(value);
   }
 
-  /// Adds the value that is held, if there is one and it is not after `limit`; else drops it.
+  /// Adds the value that is held, if there is one; drops it if it is later than `limit`.
   void add_held(Timestamp limit, Skips& skips) {
     if (held_ && held_->time > limit) drop_held(skips);
     if (auto held = std::exchange(held_, std::nullopt)) add(std::move(*held), skips);
@@ -80,7 +80,7 @@ class StampedQueue {
     return value;
   }
 
-  /// Whether a value of that time or a later one has come; it may have been popped.
+  /// Whether a value of that time or later has been added; it may have been popped since.
   bool has_reached(Timestamp time) const { return newest_ && *newest_ >= time; }
 
   /// Whether values with that stamp may still be dropped because of the value aside.
@@ -99,7 +99,7 @@ class StampedQueue {
     if (newest_ && *newest_ > time) newest_.reset();
   }
 
-  /// Drops everything but the value that is held, after the clock was set.
+  /// Drops all values but the one that is held, after the clock was set.
   void clear(Skips& skips) {
     skips.add(policy_.out_of_order, values_.size() + (aside_ ? 1 : 0));
     values_.clear();

@@ -12,22 +12,22 @@
 namespace waymark {
 namespace {
 
-constexpr double kFirstBand_m = 0.15;  // distance of inliers from the expected line,
-constexpr double kBand_m = 0.04;       // and from a line that was fitted
+constexpr double kFirstBand_m = 0.15;  // largest distance of inliers from the expected line,
+constexpr double kBand_m = 0.04;       // and from a fitted line
 constexpr double kFirstReach_m = 1.0;
 constexpr double kCovered_m = 0.5;
 constexpr int kFits = 4;
 constexpr int kMinBeams = 8;
-constexpr double kMinExtent_m = 0.1;            // [m] root mean square length of the fitted stretch
+constexpr double kMinExtent_m = 0.1;            // standard deviation of the points along the line
 constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
 constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
 
 // All beams on one wall are measured at about the same time, on average a quarter of the sweep from
-// its middle; the mean over all beams (MeanSweep) has the noise of a twelfth of the sweep.
+// its middle, so with the odometry noise of a quarter; MeanSweep has that of a twelfth.
 constexpr double kWallOverMeanSweep = 3.0;
 
-/// Least standard deviations of the calibration (as SightingSigmas::learnt) in the gate for flipped
-/// views: else views by a camera that was described too confidently would all be rejected.
+/// Least standard deviations of the calibration (order of SightingSigmas::learnt) in the gate for
+/// flipped poses: with a too confident description all views would be rejected.
 const Eigen::Vector3d kLeastCalibrationSigmas{0.01, 0.005, 0.005};
 
 struct Line {
@@ -35,7 +35,7 @@ struct Line {
   Eigen::Vector2d normal;
 };
 
-/// Weighted least squares across the line, the weights from the range noise across it.
+/// Sums of a weighted least-squares line fit, weighted by the range noise across the line.
 struct LineFit {
   double weight{0.0};
   int beams{0};
@@ -76,15 +76,14 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const MarkerSenso
       squared(sensors.sigmas.bearing_rad) * across * across.transpose();
   covariance.topLeftCorner<2, 2>().diagonal().array() += squared(sensors.sigmas.position_m);
   covariance(2, 2) += squared(sensors.sigmas.bearing_rad);
-  // Odometry's noise since the camera frame: an error of its heading turns the sighting about the
-  // robot.
+  // Odometry noise since the camera frame: a heading error turns the sighting about the robot.
   return covariance + carried_along(random_walk(sighting.carried_m, sighting.carried_rad, odometry),
                                     sighting.base_from_marker.translation());
 }
 
-/// d(marker's pose) / d(yaw of the mounting, relative focal length): a camera that is mounted
-/// further left than described sees everything turned to the right; with a longer focal length
-/// everything seems nearer.
+/// d(measured pose) / d(yaw of the mounting, relative focal length): a camera that is turned
+/// further left than described sees everything turned to the right; with a longer focal length than
+/// described everything seems nearer.
 Eigen::Matrix<double, 3, 2> camera_jacobian(const Eigen::Vector2d& place_in_base,
                                             const Se2& base_from_camera) {
   const Eigen::Vector2d ray = place_in_base - base_from_camera.translation();
@@ -95,8 +94,8 @@ Eigen::Matrix<double, 3, 2> camera_jacobian(const Eigen::Vector2d& place_in_base
   return jacobian_camera;
 }
 
-/// Kalman update of the camera's view with the constraint that the marker lies in the wall and has
-/// its normal.
+/// Kalman update of the camera's view with the constraint that the marker lies in the wall and
+/// faces along its normal. None: the gate rejects it.
 /// @param sweep_covariance  of the motion between the scan's time and that of the wall's beams.
 std::optional<MarkerMeasurement> constrain_to_wall(MarkerMeasurement measurement,
                                                    const WallLine& wall,
@@ -139,8 +138,7 @@ std::optional<MarkerMeasurement> constrain_to_wall(MarkerMeasurement measurement
   return measurement;
 }
 
-/// The LiDAR covers the surroundings of a marker: if no wall fits there, the marker's pose is
-/// wrong.
+/// Whether beams end around a marker: if no wall fits there, the marker's pose is wrong.
 bool is_covered(std::span<const AnnotatedBeam> beams, const MarkerSighting& sighting) {
   const auto is_near = [&](const AnnotatedBeam& beam) {
     return (beam.beam.end_in_base - sighting.base_from_marker.translation()).norm() < kCovered_m;

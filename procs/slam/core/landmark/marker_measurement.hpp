@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pose of a marker in the base frame, by the camera and by the wall that the LiDAR sees behind it.
+// Pose of a marker in the base frame, from the camera and from the wall that the LiDAR sees there.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -33,21 +33,21 @@ struct MarkerSensors {
   SightingSigmas sigmas{};
 };
 
-/// A piece of straight wall, base frame.
+/// A straight piece of wall, base frame.
 struct WallLine {
   Eigen::Vector2d point{Eigen::Vector2d::Zero()};    ///< of the wall, nearest to the marker
   Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< unit, towards the robot
-  double sigma_m{0.0};                               ///< of the distance at `point`
-  double sigma_rad{0.0};                             ///< of the direction
+  double sigma_m{0.0};                               ///< across the wall, at `point`
+  double sigma_rad{0.0};                             ///< of the normal's direction
 };
 
-/// Fits a line to the beams' ends around a place, given its expected normal; nothing where too few
-/// beams lie on a line. The place may lie beyond the beams: sigma_m grows with the distance.
+/// Fits a line to the beams' ends around a place, given its expected normal; none if too few beams
+/// lie on a line. The place may lie beyond the beams: sigma_m grows with the distance from them.
 std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
                                  const Eigen::Vector2d& place_in_base, double normal_rad,
                                  double range_sigma_m, double reach_m);
 
-/// Innovation of a marker's view by its wall.
+/// Innovation of the wall, given the camera's view of a marker.
 struct WallInnovation {
   /// Wall minus view: distance [m] and direction [rad] of the wall's normal.
   Eigen::Vector2d residual{Eigen::Vector2d::Zero()};
@@ -67,31 +67,31 @@ struct MarkerMeasurement {
   double size_m{0.0};  ///< side of the black square
   Se2 base_from_marker{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
-  /// By the camera's errors: yaw of the mounting [rad], focal length (relative).
+  /// d(x, y, yaw) / d(yaw of the camera's mounting [rad], focal length (relative)).
   Eigen::Matrix<double, 3, 2> jacobian_camera{Eigen::Matrix<double, 3, 2>::Zero()};
   Eigen::Vector3d jacobian_standoff{
-      Eigen::Vector3d::Zero()};  ///< by the marker's standoff from its wall [m]
+      Eigen::Vector3d::Zero()};  ///< d(x, y, yaw) / d(standoff from the wall [m])
   Se2 base_from_camera{};
-  Eigen::Matrix3d jacobian_view{Eigen::Matrix3d::Zero()};  ///< by the camera's view: I - K H of the
-                                                           ///< update with the wall
-  std::optional<FocalSighting> focal{};                    ///< by the marker's perspective
+  Eigen::Matrix3d jacobian_view{Eigen::Matrix3d::Zero()};  ///< d(pose) / d(camera's view): I - K H
+                                                           ///< of the update with the wall
+  std::optional<FocalSighting> focal{};                    ///< from the marker's perspective
   std::optional<WallInnovation> wall{};  ///< uncorrelated with the error of base_from_marker
 
-  /// By (camera yaw [rad], focal length (relative), standoff [m]).
+  /// d(x, y, yaw) / d(camera yaw [rad], focal length (relative), standoff [m]).
   Eigen::Matrix3d jacobian_calibration() const {
     return (Eigen::Matrix3d{} << jacobian_camera, jacobian_standoff).finished();
   }
 
-  /// The same, linearised at another place of the marker, base frame: the estimated one. A Jacobian
-  /// that contains the measurement's own noise is correlated with the residual, and biases the
+  /// The same, linearised at another place of the marker in the base frame, the estimated one: a
+  /// Jacobian that contains the measurement's noise is correlated with the residual, and biases the
   /// calibration.
   Eigen::Matrix3d jacobian_calibration_at(const Eigen::Vector2d& place_in_base) const;
 };
 
-/// The sightings of an observation's newest frame as measurements. The camera measures the bearing
-/// best and the range worst; the wall complements the range. A view that the wall contradicts (a
-/// flipped pose) gives no measurement.
-/// @param odometry  noise between the time of a sighting's frame and that of the scan.
+/// Measurements from the sightings of an observation's newest frame. The camera measures the
+/// bearing best and the range worst; the wall complements the range. A view that the wall
+/// contradicts (a flipped pose), or without a wall although beams end there, gives no measurement.
+/// @param odometry  noise of the motion between the camera frame and the scan.
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
                                                const MarkerSensors& sensors,
                                                const OdometryNoise& odometry,

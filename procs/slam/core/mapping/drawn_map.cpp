@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-// Scans that one follow() redraws: a share of all, within bounds, so that 40 calls redraw the map.
+// Scans that one follow() redraws: 1 / kDrawnShare of all, within bounds.
 constexpr std::size_t kLeastDrawn = 8;
 constexpr std::size_t kMostDrawn = 64;
 constexpr std::size_t kDrawnShare = 40;
@@ -31,8 +31,8 @@ void DrawnMap::draw_markers(const std::vector<MarkerSighting>& sightings, const 
 }
 
 void DrawnMap::add(const Observation& observation, const Se2& map_from_base) {
-  // Drawn as the archive keeps it, which is in single precision, so that erasing it is exact; and
-  // archived last: a scan that lies outside of the largest grid throws, and the others stay.
+  // Drawn as the archive keeps it, in single precision, so that it can be erased exactly; and
+  // archived last, since a scan outside the largest grid throws.
   if (const auto old = scans_.emptied_by(observation, map_from_base))
     erase_beams(scans_.at(*old).beams, drawn_at_[*old], map_);
   insert_beams(ScanArchive::as_kept(observation).beams, map_from_base, map_);

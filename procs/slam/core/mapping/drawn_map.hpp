@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map that follows the poses of its scans.
+// A map that is updated when the poses of its scans change.
 #pragma once
 
 #include "slam/core/mapping/mapper.hpp"
@@ -12,21 +12,21 @@
 namespace waymark {
 
 /// Keeps the scans that it is drawn from. When their poses change, scans are erased at their old
-/// poses and drawn at the new ones, a few at a time. Erasing is exact, since cells count beams. A
-/// scan that the archive has emptied is not in the map.
+/// poses and drawn at the new ones, a few at a time. Erasing is exact, since cells count beams.
+/// Scans that the archive has emptied are removed from the map.
 class DrawnMap {
  public:
-  /// @param ground  map on which it is drawn: a loaded one, or an empty one.
+  /// @param ground  map to which the scans are added: a loaded one, or an empty one.
   DrawnMap(const MapperConfig& config, const GridMap& ground);
 
-  /// The next scan, with its markers.
+  /// Adds the next scan, with its markers.
   /// @throws std::length_error as TileMap does; the scan is not kept then.
   void add(const Observation& observation, const Se2& map_from_base);
 
-  /// The poses have changed: makes follow() check all scans.
+  /// After the poses have changed: makes follow() check all scans.
   void begin_to_follow() { unchecked_ = scans_.size(); }
 
-  /// Redraws scans that have moved by a cell, some at each call.
+  /// Redraws scans that have moved by a cell, a few at each call; markers once all are redrawn.
   /// @param pose_of  map_from_base of a scan, by its number.
   void follow(const std::function<Se2(std::size_t)>& pose_of);
 
@@ -51,7 +51,7 @@ class DrawnMap {
   std::vector<Se2> drawn_at_{};
   std::size_t next_{0};       ///< the scan before this one is checked next; before 0: the newest
   std::size_t unchecked_{0};  ///< scans that may have moved
-  bool has_moved_{false};     ///< a scan was redrawn, and the markers were not yet
+  bool has_moved_{false};     ///< scans were redrawn, the markers not yet
 };
 
 }  // namespace waymark

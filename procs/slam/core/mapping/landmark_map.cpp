@@ -11,7 +11,7 @@
 namespace waymark {
 namespace {
 
-/// Detectors are never surer than this [m, rad]; also keeps zero covariances invertible.
+/// Least standard deviation of a detection [m, rad]; also keeps zero covariances invertible.
 constexpr double kSigmaFloor = 1e-3;
 
 Eigen::Matrix3d in_map(const Eigen::Matrix3d& covariance_in_base, const Se2& map_from_base) {

@@ -20,7 +20,7 @@ struct Landmark {
   Timestamp first_seen{};
   Timestamp last_seen{};
   int misses{0};          ///< missed detections since the last sighting
-  bool was_moved{false};  ///< it was mapped at another place before
+  bool was_moved{false};  ///< it was mapped at another place earlier
 
   /// Fewer sightings may be of a misread marker.
   bool is_confirmed() const { return sightings >= 3; }
@@ -29,8 +29,8 @@ struct Landmark {
   bool is_missed() const { return misses >= 5; }
 };
 
-/// Collects sightings. An id is a class, not a key: sightings of one id that lie apart are
-/// different instances.
+/// Averages sightings. Ids are not unique: sightings of one id that lie apart are of different
+/// instances.
 class LandmarkMap {
  public:
   static constexpr std::size_t kMaxLandmarks = 4096;  ///< more are noise, or an attack
@@ -47,7 +47,7 @@ class LandmarkMap {
 
  private:
   /// Sightings are averaged by their information. The error of the robot's pose is common to
-  /// neighbouring sightings, so averaging does not reduce it: its mean is added at the end.
+  /// successive sightings, so that averaging does not reduce it: its mean covariance is added.
   struct Entry {
     Landmark first{};  ///< as first sighted; deviations are averaged about it
     Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};

@@ -16,16 +16,16 @@ struct MapChange {
     kMarkerNew,
     kWallNew,
     kWallGone,
-    kSurveyOff,  ///< a surveyed marker hangs elsewhere than the survey says
+    kSurveyOff,  ///< a surveyed marker is mapped away from its surveyed place
   };
 
   Kind kind{Kind::kMarkerNew};
   int id{kNoMarker};  ///< of the marker
   int instance{0};
-  Se2 place{};                                      ///< now; of what is gone: where it was
-  Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};  ///< [m] in the map, or by the survey
-  double size_m{0.0};                               ///< of a wall: longer side of the box about it
-  double sigmas{0.0};                               ///< of kSurveyOff: how many standard deviations
+  Se2 place{};                                      ///< now; if it is gone, where it was; map frame
+  Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};  ///< [m] in the loaded map, or the survey
+  double size_m{0.0};                               ///< of a wall: longer side of its bounding box
+  double sigmas{0.0};                               ///< of kSurveyOff: in standard deviations
   int support{0};  ///< sightings, missed detections, or cells of a wall
 };
 

@@ -9,7 +9,7 @@ namespace waymark {
 namespace {
 
 constexpr double kSigmas = 3.0;
-constexpr double kMostOff_m = 0.3;  // uncertainty of a beam's end beyond which it is kept
+constexpr double kMostOff_m = 0.3;  // a beam whose end is more uncertain is kept
 
 }  // namespace
 

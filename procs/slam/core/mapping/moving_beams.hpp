@@ -11,9 +11,9 @@
 
 namespace waymark {
 
-/// The points without those that lie in free space of the map for every pose within the covariance:
-/// people who walk along would bias the match. If most points of a scan do, the pose is wrong, and
-/// all are kept.
+/// Removes points that lie in free space of the map for every pose within the covariance: people
+/// who walk beside the robot would bias the match. If these are most of the points, the pose is
+/// wrong, and all are kept.
 ///
 /// @param covariance  of map_from_base: (x, y, theta), map's axes.
 std::vector<Eigen::Vector2d> without_moving(const std::vector<Eigen::Vector2d>& points_in_base,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scans of a run, packed, to redraw the map from.
+// The scans of a run, packed, from which the map is redrawn.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -14,23 +14,22 @@
 
 namespace waymark {
 
-/// 16 bytes per beam: single precision is 0.1 mm at 1 km. Only the newest scans of each place and
-/// direction are kept and older ones are emptied, so that memory grows with the mapped area and not
-/// with time.
+/// 16 bytes per beam, in single precision. Only the newest scans of each place and direction are
+/// kept and older ones are emptied, so that memory grows with the mapped area and not with time.
 class ScanArchive {
  public:
-  /// Scans that are kept within a quarter of a metre and an eighth of a turn. Driving through once
-  /// makes two or three, a turn on the spot nine.
+  /// Scans that are kept per square of 0.25 m side and eighth of a turn. Driving through once makes
+  /// two or three.
   static constexpr std::size_t kScansPerPlace = 10;
 
   void add(const Observation& observation, const Se2& map_from_base);
 
-  /// What at() gives of a scan once it is added.
+  /// What at() will return of a scan.
   static Observation as_kept(const Observation& observation) {
     return unpacked(packed(observation));
   }
 
-  /// The old scan that adding this one will empty.
+  /// Index of the old scan that adding this one will empty.
   std::optional<std::size_t> emptied_by(const Observation& observation,
                                         const Se2& map_from_base) const;
 
@@ -42,10 +41,10 @@ class ScanArchive {
     return scans_[index].sightings;
   }
 
-  /// Emptied scans included.
+  /// Number of scans, emptied ones included.
   std::size_t size() const { return scans_.size(); }
 
-  /// Its beams and markers; the other members are not kept.
+  /// Beams and sightings of a scan; the other members are not kept.
   Observation at(std::size_t index) const { return unpacked(scans_[index]); }
 
  private:

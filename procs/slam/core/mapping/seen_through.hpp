@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Places that are certainly free.
+// Free space of a map.
 #pragma once
 
 #include "slam/core/grid/grid_map.hpp"

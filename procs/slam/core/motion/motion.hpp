@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the robot moved between two moments, by its encoders.
+// Motion of the robot between two times, measured by odometry.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -8,13 +8,13 @@
 
 namespace waymark {
 
-/// Motions add up: noise grows with the path that was driven, not with the number of steps or with
-/// the distance between the ends.
+/// Distances and turns are summed over the steps: noise depends on the path that was driven, not on
+/// the number of steps or the distance between the ends.
 struct Motion {
   Se2 start_from_end{};    ///< pose at the end in the base frame at the start
   double distance_m{0.0};  ///< length of the path
-  double turn_rad{0.0};    ///< sum of the turns, without sign
-  double guessed_s{0.0};   ///< time in which odometry was rejected and the motion is a guess
+  double turn_rad{0.0};    ///< sum of absolute turns
+  double guessed_s{0.0};   ///< time in which odometry was rejected and the motion extrapolated
   double advance_m{0.0};   ///< like `distance_m`, but driving backwards counts negative
 
   /// The motion of one step.

@@ -9,8 +9,9 @@ Se2 sample_motion(const Motion& motion, const MotionNoise& noise, Random& random
                              ? 0.0
                              : random.normal(0.0, noise.along_per_sqrt_m * std::sqrt(distance_m));
 
-  // A heading that walks randomly over a path of length L moves its end sideways by L/2 times the
-  // final error and an independent part of variance q L^3 / 12 (integrated Brownian motion).
+  // A random walk of the heading with variance q L over a path of length L displaces its end
+  // sideways by L/2 times the final error, plus an independent part of variance q L^3 / 12
+  // (integrated Brownian motion).
   const double by_distance_rad = random.normal(0.0, noise.turn_per_sqrt_m * std::sqrt(distance_m));
   const double sideways_m =
       0.5 * distance_m * by_distance_rad +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Samples where the robot may be after a motion: encoder increment plus noise (the paper, IV-B).
+// Motion model of particle filters: samples of an odometry increment with noise (the paper, IV-B).
 #pragma once
 
 #include "common/random/random.hpp"
@@ -10,7 +10,7 @@ namespace waymark {
 class Fields;
 
 /// All noise is a random walk along the path: its variance grows with distance and turn, so it does
-/// not depend on how many steps the path is cut into.
+/// not depend on how many steps the path is divided into.
 struct MotionNoise {
   double along_per_sqrt_m{0.01};
   double turn_per_sqrt_m{0.0087};

@@ -74,7 +74,7 @@ OdometryBuffer::Outcome OdometryBuffer::resolve_jump(const OdometrySample& sampl
   return Outcome::kAdded;
 }
 
-/// A pose at the origin is a reset, however near it is.
+/// A jump to the odometry's origin is a reset, however short it is.
 bool OdometryBuffer::is_catching_up(const Se2& step, const OdometrySample& sample) const {
   const double stuck_s = to_seconds(newest() - changed_);
   return is_other(sample.odom_from_base, Se2{}) &&

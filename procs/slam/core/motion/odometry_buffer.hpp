@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The odometry of the last seconds, readable at any time in between.
+// Recent odometry, interpolated at any time.
 #pragma once
 
 #include "common/sensors/sensors.hpp"
@@ -13,15 +13,15 @@ namespace waymark {
 
 class OdometryBuffer {
  public:
-  /// How a sample was taken.
+  /// What add() made of a sample.
   enum class Outcome { kAdded, kOutOfOrder, kTooFarAhead, kJumped, kCaughtUp };
 
   /// Refuses a sample that is not newer than the last one, or newer by more than any pause
-  /// (ClockStepDetector::kLongestPause). Odometry that stood still and then jumps as far as the
-  /// robot can have driven meanwhile was stuck: the jump is late motion. After a jump that no robot
-  /// can drive, the pose is held until some samples in a row are consistent: if the robot can have
-  /// driven there since the jump, the samples in between were garbage, and the motion since before
-  /// them is late motion; else the odometry was reset, which is no motion.
+  /// (ClockStepDetector::kLongestPause). Odometry that stood still and then jumps no farther than
+  /// the robot can have driven meanwhile was stuck: the jump is late motion. After a jump that no
+  /// robot can drive, the pose is held until some samples in a row are consistent. If the robot can
+  /// have driven to them since before the jump, the samples in between were garbage, and the motion
+  /// is late motion; otherwise the odometry was reset, which is no motion.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }
@@ -32,14 +32,13 @@ class OdometryBuffer {
     return !samples_.empty() && samples_.front().time <= time && time <= samples_.back().time;
   }
 
-  /// Interpolated, with jumps taken out; needs covers(time).
+  /// Interpolated, with jumps removed; needs covers(time).
   Se2 pose_at(Timestamp time) const;
 
-  /// Interpolated as it was sent, jumps included.
+  /// Interpolated in the frame in which it was sent, jumps included; needs covers(time).
   Se2 sent_pose_at(Timestamp time) const;
 
-  /// Along the path of the samples, without late_motion(). Needs both times covered,
-  /// from <= to.
+  /// Along the path of the samples, without late_motion(). Needs both times covered, from <= to.
   Motion motion_between(Timestamp from, Timestamp to) const;
 
   /// Motion that a sample in (from, to] reported at once, after odometry was stuck or had jumped.
@@ -58,7 +57,7 @@ class OdometryBuffer {
   /// Adds to the time of every sample.
   void shift(Duration later);
 
-  /// Forgets what is not needed to read at `time` or later.
+  /// Drops samples that are not needed to read at `time` or later.
   void forget_before(Timestamp time);
 
  private:
@@ -93,7 +92,7 @@ class OdometryBuffer {
 
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
   static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
-  static constexpr double kMaxDrive_m_s = 2.0;        ///< on average, while it was stuck
+  static constexpr double kMaxDrive_m_s = 2.0;        ///< mean speed of late motion
   static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
   static constexpr int kConsistentSamples = 4;        ///< samples that end a jump
   static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz; the oldest go first
@@ -101,10 +100,10 @@ class OdometryBuffer {
   std::deque<Sample> samples_{};
   Se2 smooth_from_raw_{};
   Se2 last_raw_{};
-  Timestamp changed_{};  ///< when its pose last changed
+  Timestamp changed_{};  ///< when the pose last changed
   std::optional<CatchUp> catch_up_{};
   std::optional<Jump> jump_{};
-  std::optional<Interval> jump_interval_{};  ///< the last one, perhaps still going on
+  std::optional<Interval> jump_interval_{};  ///< the last one, possibly not over yet
 };
 
 }  // namespace waymark

@@ -11,10 +11,10 @@ namespace waymark {
 
 class OdometryCheck {
  public:
-  /// The step itself; where it exceeds the robot's speed limits, the estimated step before once
-  /// more, marked as a guess (Motion::guessed_s).
+  /// The step itself; if it exceeds the robot's speed limits, the last estimated step, shortened to
+  /// `step_s` where that is less than it took, and marked as a guess (Motion::guessed_s).
   ///
-  /// @param has_caught_up  odometry was stuck: the step took longer than `step_s`, and is accepted.
+  /// @param has_caught_up  the step includes late motion, which took longer: it is accepted.
   Motion plausible(const Motion& step, double step_s, bool has_caught_up);
 
   /// Whether the last step was rejected.
@@ -23,8 +23,8 @@ class OdometryCheck {
   /// The last step as the estimator corrected it.
   void note_estimated(const Se2& start_from_end, double step_s);
 
-  /// Hypotheses of the motion since the last scan that do not use odometry's latest step: none, the
-  /// estimated step before once more, and a step that was rejected.
+  /// Hypotheses of the motion since the last scan that do not rely on odometry's newest step: no
+  /// motion, the last estimated step again, and the newest step if it was rejected.
   std::vector<Se2> steps_without_odometry() const;
 
  private:

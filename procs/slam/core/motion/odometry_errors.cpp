@@ -9,13 +9,13 @@
 namespace waymark {
 namespace {
 
-// A turn below so many standard deviations of its noise does not observe the scale of turns.
+// A turn of fewer standard deviations of its noise does not observe the scale of turns.
 constexpr double kSignificantSigmas = 3.0;
-constexpr double kGuessed_m_s = 0.25;    // sigma of a guessed speed; [rad/s] of a turn
+constexpr double kGuessed_m_s = 0.25;    // sigma of a guessed speed; in rad/s that of turning
 constexpr double kVarianceFloor = 1e-9;  // [m^2, rad^2] of a step: 0.03 mm, 0.002 degrees
 
 /// A measured turn that is mostly noise would bias the estimated scale below one (regression
-/// dilution): only the part of the turn that exceeds the noise is multiplied by the scale.
+/// dilution): only the share of the turn that exceeds the noise is multiplied by the scale.
 double significant_turn(double turn_rad, double noise_rad2) {
   const double share = 1.0 - squared(kSignificantSigmas) * noise_rad2 / squared(turn_rad);
   return turn_rad != 0.0 ? std::max(0.0, share) * turn_rad : 0.0;
@@ -35,7 +35,7 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   const Eigen::Vector2d left{-along.y(), along.x()};
   const double turn_rad2 =
       turn_variance(noise, motion.distance_m, motion.turn_rad) + kVarianceFloor;
-  // The wheels also roll when the robot turns on the spot.
+  // The wheels also roll while the robot turns on the spot.
   const double rolled_m = std::max(motion.distance_m, noise.half_track_m * motion.turn_rad);
   const double along_m2 = squared(noise.along_per_sqrt_m) * rolled_m + kVarianceFloor;
   // Integrated random walk of the heading over a length L: the lateral variance is L^2 / 3 of the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors of the odometry: a random walk, and systematic ones.
+// Errors of the odometry: a random walk, and systematic errors.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -10,7 +10,7 @@ namespace waymark {
 
 class Fields;
 
-/// Random walk of the odometry along the path, and how wrong its calibration may be (one sigma).
+/// Random walk of the odometry along the path, and standard deviations of its calibration.
 struct OdometryNoise {
   double along_per_sqrt_m{0.003};
   double across_per_sqrt_m{0.001};
@@ -33,16 +33,16 @@ struct OdometryNoise {
 double turn_variance(const OdometryNoise& noise, double distance_m, double turn_rad);
 
 /// Covariance of (x, y, theta) that the random walk adds while the robot drives straight ahead, in
-/// the frame at the start; zero where nothing was driven.
+/// the frame at the start; zero without motion.
 Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNoise& noise);
 
-/// The same of any motion.
+/// The same for any motion; never below a floor.
 Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
 
 /// Systematic errors of odometry and of the LiDAR's mounting. True distance = (1 + scale) measured
 /// distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance. The LiDAR sits
-/// `ahead` [m] of its configured place on the base and is turned left by `yaw` [rad]: it moves
-/// sideways where the robot turns on the spot, and where it drives straight ahead with a yaw.
+/// `ahead` [m] of its configured place on the base and is turned left by `yaw` [rad]: it is
+/// displaced when the robot turns on the spot, and seems to drift sideways when it drives straight.
 struct OdometryTerm {
   enum Index : Eigen::Index { kScale, kDrift, kTurnScale, kLidarAhead, kLidarYaw, kCount };
 };
@@ -58,7 +58,7 @@ struct CorrectedMotion {
   Se2 start_from_end{};
   /// Of the pose at the end, in the frame at the start.
   OdometryJacobian jacobian_calibration{OdometryJacobian::Zero()};
-  /// By the random walk, of (x, y, theta) in the same frame.
+  /// Of (x, y, theta) in the same frame, from the random walk and guessed steps.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
 };
 

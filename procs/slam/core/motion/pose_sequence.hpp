@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Poses of keyframes, numbered from the first of a run.
+// Poses of keyframes, numbered from the first one of a run.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -10,7 +10,7 @@
 
 namespace waymark {
 
-/// Poses by their number. The oldest ones may be dropped; the others keep their numbers.
+/// Poses by number. The oldest ones may be dropped; the others keep their numbers.
 class PoseSequence {
  public:
   PoseSequence() = default;

@@ -8,17 +8,17 @@
 namespace waymark {
 namespace {
 
-constexpr double kSlowest = 0.01;  // [m/s, rad/s] less is standing
+constexpr double kSlowest = 0.01;  // [m/s, rad/s]; less is standing
 constexpr double kBinRatio = 1.1;  // of speeds, from bin to bin: up to 20 m/s
 constexpr double kUsualShare = 0.95;
-constexpr double kFaster = 2.0;  // than usual; and beyond that
+constexpr double kFaster = 2.0;  // factor on the usual speed; to which these margins are added
 constexpr double kSlack_m_s = 0.5;
 constexpr double kSlack_rad_s = 1.0;
-constexpr double kMost_m_s2 = 1.0;  // floor robots accelerate by less (TurtleBot3: 0.26 m/s in all)
+constexpr double kMost_m_s2 = 1.0;  // floor robots accelerate less (TurtleBot3: top speed 0.26 m/s)
 constexpr double kMost_rad_s2 = 2.0;
-constexpr double kNewStep = 0.05;  // weight of the newest in the mean duration of steps
-constexpr int kLeastSteps = 20;    // before anything is refused
-constexpr int kMostRefused = 20;   // in a row; then what was usual is forgotten
+constexpr double kNewStep = 0.05;  // weight of the newest step in the mean duration
+constexpr int kLeastSteps = 20;    // before any step is rejected
+constexpr int kMostRefused = 20;   // in a row; then the histograms are reset
 
 }  // namespace
 
@@ -41,9 +41,9 @@ double SpeedLimits::Usual::high() const {
 
 bool SpeedLimits::allow(const Motion& step, double step_s) {
   if (step_s <= 0.0) return true;
-  // Messages may be stamped in bursts: the speed over a very short step means nothing.
+  // Messages may be stamped in bursts: the speed over a very short step is meaningless.
   mean_step_s_ = mean_step_s_ == 0.0 ? step_s : mean_step_s_ + kNewStep * (step_s - mean_step_s_);
-  // After a step that took longer than usual, this one may include a part of its motion.
+  // After a step that took longer than usual, this one may include part of its motion.
   const double left_over_s = std::max(0.0, std::exchange(last_step_s_, step_s) - mean_step_s_);
   const double lasted_s = std::max(step_s, mean_step_s_) + left_over_s;
   const double drive_m_s = step.distance_m / lasted_s;

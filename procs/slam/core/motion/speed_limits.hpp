@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast this robot can have driven, learnt from its steps so far.
+// Speed limits of this robot, learnt from its steps so far.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -9,13 +9,13 @@
 
 namespace waymark {
 
-/// A robot hardly ever drives much faster than it usually does, unless it accelerates as wheels
-/// can. A single step of the odometry that is faster is wrong, even along a bare corridor, where no
-/// other sensor contradicts it.
+/// A robot hardly ever drives much faster than usual, unless it accelerates no more than wheels
+/// can. A single faster step of the odometry is wrong. This is detected even in a bare corridor,
+/// where no other sensor observes the motion.
 class SpeedLimits {
  public:
-  /// @param@param step  one step of the odometry, which took `step_s` seconds.
-  /// @return whether it is plausible, given all steps before.
+  /// @param step  one step of the odometry, which took `step_s` seconds.
+  /// @return whether it is plausible, given all previous steps.
   bool allow(const Motion& step, double step_s);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NDT maps with larger cells, to begin a match whose guess is far off.
+// NDT maps with larger cells, for matches with a poor initial guess.
 #pragma once
 
 #include "slam/core/registration/ndt_map.hpp"
@@ -11,8 +11,8 @@
 
 namespace waymark {
 
-/// Each level's cells are twice as large as those of the level before (multi-layered NDT; Ulas and
-/// Temeltas 2013). Large cells also collect enough points where points are sparse, on distant
+/// Each level's cells are twice as large as those of the previous level (multi-layered NDT; Ulas
+/// and Temeltas 2013). Large cells also collect enough points where these are sparse, on distant
 /// walls.
 class CoarseNdt {
  public:

@@ -14,7 +14,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kFull = 255;           // the byte that stands for a field value of 1
+constexpr int kFull = 255;           // the byte that represents a field value of 1
 constexpr int kTopLevel = 6;         // of 64 cells: 3.2 m at 5 cm
 constexpr int kMaxHalfSide = 1024;   // [cells] from the median: 51 m at 5 cm, beyond indoor LiDARs
 constexpr double kSigmas = 3.0;      // where the Gaussian is cut: 0.011, three steps of a byte
@@ -22,7 +22,7 @@ constexpr int kMaxWindow = 1 << 20;  // [cells] on each side of the guess
 constexpr double kFar_cells = 1e8;   // farther cells are clamped: int must not overflow
 constexpr double kMinAngularStep_rad = 5e-4;  // one cell of 5 cm at 100 m; bounds the headings
 
-/// Of at least one point, in x and in y.
+/// Component-wise; needs a point.
 Eigen::Vector2d median(std::span<const Eigen::Vector2d> points) {
   std::vector<double> xs;
   std::vector<double> ys;
@@ -86,10 +86,10 @@ void CorrelativeField::draw(std::span<const Eigen::Vector2d> points, double sigm
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }
-  // On the low side the maxima of the top level reach 2^top - 1 cells out of the field.
+  // On the low side the maxima of the top level extend 2^top - 1 cells beyond the field.
   const int reach = static_cast<int>(std::ceil(kSigmas * sigma_m / resolution_m));
   const int margin = reach + (1 << kTopLevel) - 1;
-  // Cell centres at multiples of the resolution: walls there do not lie on borders of cells.
+  // Cell centres at multiples of the resolution: walls there do not lie on cell borders.
   const Eigen::Vector2d low_cell = (low / resolution_m).array().round();
   frame_.origin_m = resolution_m * (low_cell.array() - 0.5 - margin).matrix();
   const CellIndex last = frame_.cell_of(high);
@@ -122,7 +122,7 @@ void CorrelativeField::build_pyramid() {
   for (int level = 1; level <= kTopLevel; ++level) {
     const int step = 1 << (level - 1);
     std::vector<std::uint8_t> maxima = levels_.back();
-    // In place, in ascending order: what is read, ahead, is not yet written.
+    // In place, in ascending order: the cells ahead that are read are not yet written.
     for (int y = 0; y < height_; ++y) {
       std::uint8_t* const row = maxima.data() + y * width_;
       for (int x = 0; x < width_ - step; ++x)
@@ -151,11 +151,11 @@ int CorrelativeField::sum(std::span<const CellIndex> cells, CellIndex offset, in
   return total;
 }
 
-/// One search. A node is a square of 2^level offsets a side, at one heading; its bound is at least
-/// the score of any of them.
+/// One branch-and-bound search. A node is a square of 2^level by 2^level offsets at one heading;
+/// its bound is at least the score of any of them.
 class CorrelativeField::Search {
  public:
-  /// Matches that do not count: those nearer than both.
+  /// Excludes matches nearer to a pose than both limits.
   struct Excluded {
     Se2 pose{};
     double apart_m{0.0};
@@ -196,14 +196,14 @@ class CorrelativeField::Search {
   }
 
  private:
-  /// Of min_score * points * 255, so that a match reaches the very score that it reports.
+  /// Of min_score * points * 255, so that a search with the score of a match finds that match.
   static constexpr double kRounding = 1e-6;
 
-  /// The scan, turned.
+  /// The scan, rotated.
   struct Heading {
     int step{0};
     double theta_rad{0.0};
-    bool is_excluded{false};  ///< where the translation is excluded, too
+    bool is_excluded{false};  ///< at those offsets whose translation is excluded, too
     std::vector<CellIndex> cells{};
     CellIndex low{};  ///< first and last offset in the window at which a point can be in the field
     CellIndex high{};
@@ -213,9 +213,9 @@ class CorrelativeField::Search {
     const Heading* heading{nullptr};
     CellIndex offset{};  ///< the lowest of its offsets
     int bound{0};
-    std::int64_t cost{0};  ///< least squared cells and steps from the guess
+    std::int64_t cost{0};  ///< least squared distance from the guess, in cells and heading steps
 
-    /// Best bound first; equal ones by nearness to the guess, then by place.
+    /// Best bound first; equal ones by distance from the guess, then by heading and offset.
     static bool is_before(const Node& a, const Node& b) {
       if (a.bound != b.bound) return a.bound > b.bound;
       if (a.cost != b.cost) return a.cost < b.cost;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scan registration with a wide basin: the global best in a window, without derivatives.
+// Correlative scan matching: the global optimum in a window, without an initial guess near it.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -15,13 +15,13 @@
 
 namespace waymark {
 
-/// Where a search looks, about its guess: a square along the submap's axes, and headings.
+/// Window of a search about its guess: a square along the submap's axes, and headings.
 struct SearchWindow {
   double half_width_m{1.0};
   double half_turn_rad{0.5};  ///< pi or more: the full circle
 };
 
-/// A place where a scan fits.
+/// A pose at which a scan fits.
 struct SearchMatch {
   Se2 submap_from_base{};
   double score{0.0};  ///< mean field value over the scan's points, 0..1
@@ -35,7 +35,7 @@ struct SearchMatch {
 /// Immutable after construction, so that threads may share it.
 class CorrelativeField {
  public:
-  static constexpr double kResolution_m = 0.05;  ///< unless said otherwise: cells of a map
+  static constexpr double kResolution_m = 0.05;  ///< default side of a cell
 
   /// @param points_in_submap  any number. Points that are not finite, or more than 1024 cells in x
   ///                          or y from the median, are ignored: that bounds memory (7 levels of
@@ -44,7 +44,7 @@ class CorrelativeField {
   explicit CorrelativeField(std::span<const Eigen::Vector2d> points_in_submap,
                             double resolution_m = kResolution_m, double sigma_m = kResolution_m);
 
-  /// Of a whole map: coarser where it has to be, so that no point is ignored.
+  /// Field of a whole map, with cells as coarse as needed to ignore no point.
   static CorrelativeField of_map(std::span<const Eigen::Vector2d> points);
 
   /// Mean field value at the points, 0..1; outside the field, and for points that are not finite,
@@ -62,7 +62,8 @@ class CorrelativeField {
                                   const SearchWindow& window, double min_score) const;
 
   /// The runner-up: the best match at least `apart_m` or at least `apart_rad` away from `other`.
-  /// Take them wider than the peak is (3 sigma), or it is the rim of the same peak.
+  /// Choose these larger than the width of the peak (3 sigma): otherwise the result lies on the
+  /// flank of the same peak.
   std::optional<SearchMatch> best_apart_from(const Se2& other, double apart_m, double apart_rad,
                                              std::span<const Eigen::Vector2d> points_in_base,
                                              const Se2& guess, const SearchWindow& window,

@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kMinPoints = 4;         // of a cell that has a distribution
+constexpr int kMinPoints = 4;         // of a cell, to have a distribution
 constexpr double kPriorPoints = 6.0;  // weight of the prior on a cell's variance, in points
 constexpr double kLineRatio = 0.1;    // of a line's variances, across to along
 
@@ -77,7 +77,7 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   fitted.across_m2 =
       (cell.count * across_m2 + kPriorPoints * point_variance_m2) / (cell.count + kPriorPoints);
   fitted.along_m2 = half_trace + radius;
-  // Without the range noise, so that a wall stays a line for a noisy LiDAR.
+  // Without the range noise, so that a noisy LiDAR still sees a wall as a line.
   fitted.is_line =
       fitted.across_m2 - point_variance_m2 < kLineRatio * (fitted.along_m2 - point_variance_m2);
   fitted.count = static_cast<int>(cell.count);

@@ -16,14 +16,14 @@ struct NdtCell {
   Eigen::Vector2d normal{
       Eigen::Vector2d::UnitX()};  ///< direction of least variance; unit, any sign
   double across_m2{0.0};          ///< variance along `normal`
-  double along_m2{0.0};           ///< and at right angles to it
+  double along_m2{0.0};           ///< variance at right angles to it
   int count{0};                   ///< points
   int first_keyframe{0};          ///< the points came from keyframes in [first, last]
   int last_keyframe{0};
-  bool is_line{false};  ///< a piece of wall; else a corner, a leg or clutter, without a direction
+  bool is_line{false};  ///< a piece of wall; else a corner, a table leg or clutter
 };
 
-/// The points of one cell, summed up about its centre.
+/// Sums of the points of one cell, relative to its centre.
 struct NdtCellSums {
   int column{0};
   int row{0};
@@ -32,18 +32,18 @@ struct NdtCellSums {
   Eigen::Vector3d squares_m2{Eigen::Vector3d::Zero()};  ///< xx, xy, yy
 };
 
-/// Square cells of side `2 spacing` whose centres are `spacing` apart, so that each point lies in
-/// four of them and is compared with the one that it is most central to: steps of the cost, where
-/// that changes, are small.
+/// Square cells of side `2 spacing` whose centres are `spacing` apart: each point is added to four
+/// overlapping cells, but compared with the one with the nearest centre only. So the steps of the
+/// cost where that cell changes are small.
 class NdtMap {
  public:
   explicit NdtMap(double spacing_m) : spacing_m_{spacing_m} {}
 
-  /// @param keyframe  that saw it.
-  /// @param weight    points that it counts as.
+  /// @param keyframe  from which the point was observed.
+  /// @param weight    number of points that it counts as.
   void add(const Eigen::Vector2d& point, int keyframe, double weight = 1.0);
 
-  /// A cell, as one number.
+  /// Column and row of a cell, packed.
   using Key = std::uint64_t;
 
   static Key key(int column, int row);
@@ -52,7 +52,7 @@ class NdtMap {
   Key key_at(const Eigen::Vector2d& point) const;
 
   /// The distribution of a cell; nullptr if it has too few points.
-  /// @param point_variance_m2  of points across a wall: a prior for cells with few points.
+  /// @param point_variance_m2  of points across a wall, the prior for cells with few points.
   const NdtCell* at(Key key, double point_variance_m2) const;
 
   const NdtCell* at(const Eigen::Vector2d& point, double point_variance_m2) const {
@@ -68,7 +68,7 @@ class NdtMap {
   void add(const NdtCellSums& sums);
 
  private:
-  static constexpr double kStale = -1.0;  ///< no variance: points have come since
+  static constexpr double kStale = -1.0;  ///< points were added since the fit
 
   struct Cell {
     double count{0.0};
@@ -83,7 +83,7 @@ class NdtMap {
   void refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const;
 
   double spacing_m_;
-  mutable std::unordered_map<Key, Cell> cells_{};  ///< never iterated over in an order
+  mutable std::unordered_map<Key, Cell> cells_{};  ///< no result depends on its order
 };
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ends of a scan's beams.
+// End points of a scan's beams.
 #pragma once
 
 #include "slam/core/scan/observation.hpp"
@@ -13,10 +13,10 @@ namespace waymark {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Ends of all beams, frame: base.
+/// End points of all beams, base frame.
 Points points_of(const Observation& observation);
 
-/// At most so many of them, evenly spread.
+/// At most `most` of the points, evenly spread.
 Points thinned(const Points& points, std::size_t most);
 
 }  // namespace waymark

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Learns the noise of ranges.
+// Learns the noise of the LiDAR's ranges.
 #pragma once
 
 #include <algorithm>
 
 namespace waymark {
 
-/// Variance of LiDAR points across walls: that of the description, updated by residuals of walls.
+/// Variance of LiDAR points across walls: that of the description, updated with residuals.
 class RangeNoise {
  public:
   explicit RangeNoise(double described_sigma_m)

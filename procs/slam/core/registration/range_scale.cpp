@@ -22,7 +22,7 @@ struct ScaleEquations {
   Vector4 gradient{Vector4::Zero()};
 };
 
-/// Of (x, y, theta, share of the ranges), about a pose and a share.
+/// Normal equations for (x, y, theta, share of the ranges), linearised at a pose and a share.
 ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
                                const Eigen::Vector2d& origin, const NdtMap& map, const Se2& pose,
                                double share, double point_variance_m2) {

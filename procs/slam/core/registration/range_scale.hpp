@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scale of a LiDAR's ranges, relative to the map's.
+// Scale of a LiDAR's ranges relative to a map.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -12,13 +12,12 @@
 
 namespace waymark {
 
-/// By which share ranges are longer than the map says.
 struct RangeScale {
-  double share{0.0};
-  double sigma{0.0};
+  double share{0.0};  ///< by which the ranges are longer than in the map, relative
+  double sigma{0.0};  ///< its standard deviation
 };
 
-/// Fits the scale of ranges together with the pose; walls on opposite sides observe it.
+/// Fits the scale of ranges together with the pose; it is observable by walls on opposite sides.
 /// @param origin_in_base    of the beams.
 /// @param guess             map_from_base.
 /// @param guess_covariance  of (x, y, theta), map's axes.

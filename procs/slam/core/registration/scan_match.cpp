@@ -16,55 +16,54 @@
 namespace waymark {
 namespace {
 
-constexpr double kBlurStep = 1.0 / 3.0;  // from one stage to the next finer one
-constexpr double kFinestBlur_m = 0.01;   // below: none
+constexpr double kBlurStep = 1.0 / 3.0;  // factor from one stage to the next finer one
+constexpr double kFinestBlur_m = 0.01;   // less is none
 constexpr int kStepsPerStage = 3;
 constexpr int kFinalSteps = 6;
 constexpr double kConverged = 2e-5;   // metres or radians
 constexpr double kMaxBlur_m = 0.25;   // no more than half of a cell
-constexpr double kReachOfCell = 0.5;  // of a level's spacing: the next finer level converges below
+constexpr double kReachOfCell = 0.5;  // of a level's spacing; from less, the next finer converges
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
-// Beams in one cell whose errors count as independent: the cell's mean has an error, too, and a
-// person displaces all beams that end on him.
+// Number of beams in one cell that count as independent: the error of the cell's mean is common to
+// all of them, and so is the displacement if they end on a person.
 constexpr double kIndependentBeams = 4.0;
-// A cell that was seen from n keyframes counts as lasting with the weight n / (n + this).
+// A cell observed from n keyframes counts as static (lasting) with the weight n / (n + this).
 constexpr double kBrief = 3.0;
 
-constexpr double kGuessFades = 10.0;  // on its standard deviations, for the optimum without it,
+constexpr double kGuessFades = 10.0;               // factor on the guess's sigmas in the last step,
 const Eigen::Vector3d kLeastFaded{0.2, 0.2, 0.1};  // and what is added to them [m, m, rad]
 
 // Noise of ranges.
-constexpr int kWellSeen = 20;               // points of a cell
-constexpr double kSquareOn = 0.5;           // cosine of a beam's incidence
-constexpr double kSigmaOverMedian = 1.483;  // of the absolute values of a normal distribution
+constexpr int kWellSeen = 20;               // least number of points of a cell
+constexpr double kSquareOn = 0.5;           // least cosine of a beam's angle of incidence
+constexpr double kSigmaOverMedian = 1.483;  // sigma over median absolute value, normal distribution
 
 /// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
 struct Quadratic {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
-  Eigen::Matrix2d lasting{Eigen::Matrix2d::Zero()};  ///< part of it, by cells that last
+  Eigen::Matrix2d lasting{Eigen::Matrix2d::Zero()};  ///< part of it from static cells, (x, y)
   Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
 };
 
-/// What one beam that ended on a surface says: its distance across, and along if the surface is no
-/// line.
+/// Residuals of one beam that ends in an NDT cell: across its wall, and along if it is no line.
 struct BeamTerm {
   Eigen::Vector2d normal{Eigen::Vector2d::Zero()};
   double across_m{0.0};
   double along_m{0.0};
-  double across_weight{0.0};  ///< inverse variances, times the Geman-McClure weight
+  double across_weight{0.0};  ///< inverse variances, times the robust weight
   double along_weight{0.0};
-  double robust{0.0};  ///< that weight
+  double robust{0.0};  ///< Geman-McClure weight, 0..1
 };
 
-/// @param ray  from the robot to the point, which is as good as from the LiDAR.
+/// @param ray  from the robot to the point, map's axes; approximates that from the LiDAR.
 BeamTerm compare(const NdtCell& cell, const Eigen::Vector2d& point, const Eigen::Vector2d& ray,
                  double point_variance_m2, double blur_m2, const ScanMatchConfig& config) {
   BeamTerm term;
   const Eigen::Vector2d distance = point - cell.mean;
   term.normal = cell.normal;
   term.across_m = term.normal.dot(distance);
-  // A cell may look thin by chance: the variance is at least the range noise, projected onto it.
+  // A cell may be thin by chance: the variance is at least the range noise along its normal.
   const double by_range_m2 = point_variance_m2 * squared(term.normal.dot(ray)) / ray.squaredNorm();
   term.across_weight =
       1.0 / (std::max(cell.across_m2, by_range_m2) + squared(config.roughness_m) + blur_m2);
@@ -81,9 +80,9 @@ BeamTerm compare(const NdtCell& cell, const Eigen::Vector2d& point, const Eigen:
   return term;
 }
 
-/// Walls are seen from many keyframes, people in one place from one or two.
+/// Walls are observed from many keyframes, a person at one place from one or two.
 double lasting_share(const NdtCell& cell) {
-  if (cell.last_keyframe == 0) return 1.0;  // of a map without keyframes, or the first scan
+  if (cell.last_keyframe == 0) return 1.0;  // a map without keyframes, or the first scan
   const int seen_from = cell.last_keyframe - cell.first_keyframe + 1;
   return seen_from / (seen_from + kBrief);
 }
@@ -122,7 +121,7 @@ class PointsInMap {
   struct Place {
     NdtMap::Key key{0};
     const NdtCell* cell{nullptr};
-    int* beams{nullptr};  ///< of the scan, on that surface
+    int* beams{nullptr};  ///< number of the scan's beams in that cell
     bool is_known{false};
   };
 
@@ -137,7 +136,7 @@ class PointsInMap {
     ++*place.beams;
   }
 
-  /// A distance along `direction`, which follows the pose by (direction, direction x lever).
+  /// Adds a residual along `direction`, with d(residual)/d(x, y, theta) = (direction, by_turn).
   static void add(const Eigen::Vector2d& direction, const Eigen::Vector2d& lever, double distance_m,
                   double weight, double lasting, Quadratic& sum) {
     const double by_turn = lever.x() * direction.y() - lever.y() * direction.x();
@@ -204,14 +203,14 @@ Eigen::Vector3d along_observed(Eigen::Vector3d gradient, const ObservedAxes& obs
   return gradient;
 }
 
-/// Gauss-Newton on the cost of the walls and of the guess; walls have no effect along unobserved
-/// directions.
+/// Gauss-Newton on the cost of the walls and of the guess as a prior; walls have no effect along
+/// unobserved directions.
 class Descent {
  public:
   Descent(const Se2& guess, const Eigen::Matrix3d& guess_covariance, const ScanMatchConfig& config)
       : guess_{guess}, guess_information_{guess_covariance.inverse()}, config_{config} {}
 
-  /// @return the pose after at most so many steps.
+  /// @return the pose after at most `steps` steps.
   Se2 from(Se2 pose, PointsInMap& points, double blur_m, int steps, double converged) const {
     for (int i = 0; i < steps; ++i) {
       const Quadratic model = points.quadratic_about(pose, squared(blur_m), config_);
@@ -234,16 +233,16 @@ class Descent {
   const ScanMatchConfig& config_;
 };
 
-/// Information that keeps a pose where the scan observes nothing, and hardly pulls where it does:
-/// the guess's with ten times its standard deviations. Not more: steps have to stay small enough
-/// for the quadratic model.
+/// Information that keeps the pose in unobserved directions and has little effect in the others:
+/// that of the guess with ten times its standard deviations. Not more, so that the step stays small
+/// enough for the quadratic model.
 Eigen::Matrix3d nearly_none(const Eigen::Matrix3d& guess_covariance) {
   Eigen::Matrix3d covariance = squared(kGuessFades) * guess_covariance;
   covariance.diagonal() += kLeastFaded.cwiseAbs2();
   return covariance.inverse();
 }
 
-/// Standard deviation of the beams' ends, by that of the pose.
+/// Standard deviation [m] of the beams' ends due to the covariance of the pose.
 double ends_open_m(std::span<const Eigen::Vector2d> points_in_base,
                    const Eigen::Matrix3d& covariance) {
   double lever2_m2 = 0.0;
@@ -295,7 +294,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
     match.map_from_base =
         descent.from(match.map_from_base, points, blur_m, kStepsPerStage, kConverged);
   match.map_from_base = descent.from(match.map_from_base, points, 0.0, kFinalSteps, kConverged);
-  // The optimum almost without the guess, in observed directions.
+  // One step towards the optimum almost without the guess, in observed directions.
   const Quadratic model = points.quadratic_about(match.map_from_base, 0.0, config);
   match.observed = observed_axes(model.information, model.lasting, config.weak_share);
   const Eigen::Vector3d gradient = along_observed(model.gradient, match.observed);

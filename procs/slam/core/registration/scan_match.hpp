@@ -35,28 +35,28 @@ struct ObservedAxes {
   bool is_degenerate{false};
 };
 
-/// Factor on the information of each beam where so many beams of the scan end in one cell: 1 for a
-/// few, less for many, since their errors are correlated.
+/// Factor on the information of each beam, given the number of the scan's beams that end in the
+/// same cell: 1 for a few, less for many, since their errors are correlated.
 double independent_share(int beams);
 
 /// Removes the information that noise of the walls' normals leaks into an unobserved direction
 /// (Zhang, Kaess, Singh 2016). Frame: that of the information, origin at the robot.
-/// @param lasting     part of the information about (x, y) by cells that were seen from several
-///                    keyframes: moving objects must not observe a direction.
-/// @param weak_share  of the strongest direction's information, below which a direction is
+/// @param lasting     part of the information about (x, y) from cells that were observed from
+///                    several keyframes: moving objects must not make a direction observable.
+/// @param weak_share  share of the strongest direction's information below which a direction is
 ///                    unobserved.
 ObservedAxes observed_axes(const Eigen::Matrix3d& information, const Eigen::Matrix2d& lasting,
                            double weak_share);
 
 struct ScanMatch {
-  /// Optimum of the scan alone; along unobserved axes, the guess.
+  /// Nearly the optimum of the scan alone; along unobserved axes, the guess.
   Se2 map_from_base{};
   ObservedAxes observed{};      ///< information about (x, y, theta), map's axes
   double inlier_share{0.0};     ///< inliers / num_mapped
   double mapped_share{0.0};     ///< num_mapped / all beams
   int num_mapped{0};            ///< beams that ended in a cell with a distribution
-  int inliers{0};               ///< of these
-  double range_scatter_m{0.0};  ///< of ranges about the walls that they end on (one sigma)
+  int inliers{0};               ///< of these, robust weight at least a quarter
+  double range_scatter_m{0.0};  ///< standard deviation of ranges about the walls they end on
   int num_scattered{0};         ///< beams that range_scatter_m was computed from
   /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the cells of the
   /// inliers; sums to 1.
@@ -71,10 +71,11 @@ struct ScanMatch {
 /// Gauss-Newton on robust point-to-distribution distances, from coarse to fine.
 /// @param points_in_base   ends of beams.
 /// @param guess            map_from_base.
-/// @param guess_covariance of (x, y, theta), map's axes. It decides at which scale the descent
-///                         begins; the result depends on it in unobserved directions only.
+/// @param guess_covariance of (x, y, theta), map's axes. It determines the scale at which the
+///                         descent begins; its effect on the result is small in observed
+///                         directions.
 /// @param coarse           the same walls in larger cells, the smallest first: the descent begins
-///                         in them if the guess may be off by more than a cell of `map`.
+///                         in them if the guess may be off by more than half of their spacing.
 ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtMap& map,
                      const Se2& guess, const Eigen::Matrix3d& guess_covariance,
                      const RangeNoise& noise, const ScanMatchConfig& config,

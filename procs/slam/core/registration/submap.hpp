@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A few metres of scans, anchored to a keyframe.
+// A few metres of scans in the frame of a keyframe.
 #pragma once
 
 #include "slam/core/registration/coarse_ndt.hpp"
@@ -16,11 +16,11 @@ namespace waymark {
 
 class Submap {
  public:
-  /// Its frame is the first keyframe's base.
+  /// The submap's frame is the base frame of the first keyframe.
   Submap(double cell_spacing_m, std::size_t first_keyframe)
       : first_keyframe_{first_keyframe}, ndt_{cell_spacing_m}, coarse_{cell_spacing_m} {}
 
-  /// Keyframes come one after the other, without a gap.
+  /// Inserts the next keyframe; there must be no gap.
   void insert(const Points& points_in_base, const Se2& submap_from_base) {
     if (!poses_.empty())
       length_m_ += (submap_from_base.translation() - poses_.back().translation()).norm();
@@ -29,7 +29,7 @@ class Submap {
     add(points_in_base, submap_from_base);
   }
 
-  /// A scan between keyframes; it counts for the newest keyframe.
+  /// Inserts a scan between keyframes, attributed to the newest keyframe.
   void add(const Points& points_in_base, const Se2& submap_from_base) {
     const auto keyframe = static_cast<int>(last_keyframe());
     for (const Eigen::Vector2d& point : points_in_base) {
@@ -53,19 +53,19 @@ class Submap {
 
   std::span<const NdtMap> coarse_ndt() const { return coarse_.levels(); }
 
-  /// One for each occupied cell of 5 cm.
+  /// One point for each occupied cell of 5 cm, submap frame.
   const Points& points() const { return points_; }
 
-  /// Nothing is added any more.
+  /// To be called after the last insertion: frees memory.
   void finish() { occupied_.clear(); }
 
   /// Largest distance of a keyframe from the first one.
   double reach_m() const { return reach_m_; }
 
-  /// Driven from the first keyframe to the last.
+  /// Length of the path from the first keyframe to the last.
   double length_m() const { return length_m_; }
 
-  /// The pose at which it was inserted.
+  /// The pose at which a keyframe was inserted.
   const Se2& submap_from_keyframe(std::size_t keyframe) const {
     return poses_[keyframe - first_keyframe_];
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The submaps of a drive.
+// The submaps of a run.
 #pragma once
 
 #include "slam/core/motion/pose_sequence.hpp"
@@ -12,29 +12,29 @@
 
 namespace waymark {
 
-/// Two submaps are filled at a time, one half a length behind the other: the older one is matched,
-/// and holds half a length of scans at least. When it is full it is finished.
+/// Two submaps are filled at a time, one half a submap's length behind the other. Scans are matched
+/// with the older one, which is at least half full except at the start, and is finished when full.
 class Submaps {
  public:
-  /// @param keyframes_each  of a submap, at most.
-  /// @param length_m        driven along a submap, at most: drift bends longer ones.
+  /// @param keyframes_each  largest number of keyframes in a submap.
+  /// @param length_m        largest length of the path through a submap: drift bends longer ones.
   Submaps(double cell_spacing_m, int keyframes_each, double length_m)
       : cell_spacing_m_{cell_spacing_m},
         half_{static_cast<std::size_t>(std::max(1, keyframes_each / 2))},
         half_m_{0.5 * length_m} {}
 
-  /// The one to match scans with; null: none has begun.
+  /// The submap to match scans with; null: none has begun.
   const Submap* matched() const { return growing_.empty() ? nullptr : &growing_.front(); }
 
   const std::deque<Submap>& finished() const { return finished_; }
 
-  /// A finished one, by its first keyframe; null: it was dropped.
+  /// The finished submap with this first keyframe; null: it was dropped.
   const Submap* find(std::size_t first_keyframe) const;
 
-  /// The newest keyframe's scan.
+  /// Adds the scan of the newest keyframe.
   void add_keyframe(const Points& points_in_base, const PoseSequence& keyframes);
 
-  /// A scan between keyframes; it counts for the newest keyframe.
+  /// Adds a scan between keyframes, attributed to the newest keyframe.
   void add_between(const Points& points_in_base, const Se2& map_from_base,
                    const PoseSequence& keyframes);
 
@@ -46,8 +46,8 @@ class Submaps {
 
  private:
   double cell_spacing_m_;
-  std::size_t half_;  ///< of the keyframes of one
-  double half_m_;     ///< of its length
+  std::size_t half_;  ///< of the keyframes of a submap
+  double half_m_;     ///< of the length of a submap
   std::deque<Submap> finished_{};
   std::deque<Submap> growing_{};  ///< one or two
 };

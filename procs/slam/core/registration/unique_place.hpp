@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Global registration that refuses ambiguous places.
+// Global registration that rejects ambiguous places.
 #pragma once
 
 #include "slam/core/registration/correlative_search.hpp"
@@ -12,16 +12,16 @@
 
 namespace waymark {
 
-/// When the best place of a search counts as the only one.
+/// Conditions under which the best place of a search counts as unique.
 struct UniquePlaceLimits {
   double min_score{0.0};        ///< of the best place
-  double runner_up_share{1.0};  ///< of the best score: a runner-up of so much is as good
+  double runner_up_share{1.0};  ///< of the best score, from which a runner-up makes it ambiguous
   double min_runner_up{0.0};    ///< score below which a runner-up never counts
-  double apart_m{0.5};          ///< a place nearer to the best one, and
-  double apart_rad{0.3};        ///< with a smaller turn, is the same place
+  double apart_m{0.5};          ///< a place nearer to the best one than this,
+  double apart_rad{0.3};        ///< and turned by less than this, is the same place
 };
 
-/// The best place in the window, unless there is none or another one fits as well.
+/// The best place in the window, unless there is none or another one fits nearly as well.
 inline std::optional<SearchMatch> unique_place(const CorrelativeField& field,
                                                std::span<const Eigen::Vector2d> points_in_base,
                                                const Se2& guess, const SearchWindow& window,

@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kMemory = 0.05;       // weight of the newest scan in what is usual
+constexpr double kMemory = 0.05;       // weight of the newest scan in the running means
 constexpr double kContradicted = 0.8;  // of the usual share of inliers among the mapped beams
 constexpr double kWorse = 0.93;        // of the usual share of inliers among all beams
 constexpr double kNearly = 0.8;

@@ -13,7 +13,7 @@ class UsualFit {
   UsualFit(int min_inliers, double min_inlier_share)
       : min_inliers_{min_inliers}, min_inlier_share_{min_inlier_share} {}
 
-  /// Most mapped beams are outliers: sensor or pose are wrong. (In a new place beams are unmapped.)
+  /// Most mapped beams are outliers: sensor or pose is wrong. (In a new place beams are unmapped.)
   bool is_refuted(const ScanMatch& match) const;
 
   /// Many more mapped beams are outliers than usual: pose or ranges may be wrong.
@@ -25,10 +25,10 @@ class UsualFit {
   /// Nearly as many of all beams are inliers as usual.
   bool is_nearly_usual(const ScanMatch& match) const;
 
-  /// A scan that is not contradicted.
+  /// Updates the means with a scan that is not contradicted.
   void note_scan(const ScanMatch& match);
 
-  /// The scan of a keyframe that was added to the graph.
+  /// Updates the means with the scan of a keyframe that was added to the graph.
   void note_keyframe(const ScanMatch& match);
 
  private:

@@ -17,22 +17,22 @@ namespace {
 constexpr double kReach_m = 0.5;
 constexpr double kReach_rad = 0.6;
 constexpr std::size_t kBeams = 120;
-constexpr double kUnseen_rad_s = 0.5;  // that the robot may have turned meanwhile
-constexpr double kClearlyMore = 1.05;  // inliers than the plain match
-constexpr double kFarMore = 2.0;
-constexpr double kManyContradict = 0.06;  // of all beams
-constexpr double kLeavesFarMore = 3.0;    // beams unexplained
+constexpr double kUnseen_rad_s = 0.5;     // rate at which the window of turns grows between scans
+constexpr double kClearlyMore = 1.05;     // ratio of inliers, found to plain match
+constexpr double kFarMore = 2.0;          // the same
+constexpr double kManyContradict = 0.06;  // share of all beams
+constexpr double kLeavesFarMore = 3.0;    // ratio of unexplained beams, plain to found match
 constexpr double kContradictedSigmas = 5.0;
-constexpr double kFarFarther = 4.0;                    // from odometry than the plain match
-const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a step of its turns
+constexpr double kFarFarther = 4.0;  // ratio of distances from odometry, found to plain match
+const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a heading step
 
-/// How far odometry has the robot from there, in sigmas.
+/// Mahalanobis distance of a match from the pose predicted by odometry.
 double sigmas_from_odometry(const ScanMatch& match, const WideSearch& search) {
   const Eigen::Vector3d off = pose_difference(match.map_from_base, search.by_odometry);
   return std::sqrt(chi2(off, search.odometry_covariance));
 }
 
-/// Of all beams: those that end where the map has something else.
+/// Share of all beams that end in mapped cells but are outliers.
 double contradicting_share(const ScanMatch& match) {
   return match.mapped_share * (1.0 - match.inlier_share);
 }
@@ -67,7 +67,7 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
         std::max(kContradictedSigmas, kFarFarther * plain_sigmas)) {
       const bool shows_few_walls = unexplained(*found, points) > found->inliers;
       if (shows_few_walls && search.contradicts_map(found->map_from_base)) return false;
-      // A view that is new is more usual than odometry that is wrong.
+      // A view of a new place is more likely than wrong odometry.
       if (usual.is_contradicted(plain) && contradicting_share(plain) > kManyContradict &&
           found->inliers > kFarMore * plain.inliers) {
         return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Registration of a scan whose guess may be off by more than plain matching converges from.
+// Registration of a scan whose guess may be outside the matcher's basin of convergence.
 #pragma once
 
 #include "slam/core/registration/scan_match.hpp"
@@ -11,12 +11,12 @@
 namespace waymark {
 
 struct WideSearch {
-  Se2 by_odometry{};  ///< map_from_base; windows about it and the others are searched
+  Se2 by_odometry{};  ///< map_from_base; windows about it and `without_odometry` are searched
   Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of it, map's axes
   std::vector<Se2> without_odometry{};                               ///< map_from_base
-  double since_last_s{0.0};  ///< time since the last scan: it widens the window of turns
-  double min_score{0.0};     ///< of a place (SearchMatch)
-  /// Whether the map contradicts the scan at a pose, by its free space, too.
+  double since_last_s{0.0};  ///< time since the last scan, which widens the window of turns
+  double min_score{0.0};     ///< least SearchMatch::score
+  /// Whether the map, including its free space, contradicts the scan at a pose.
   std::function<bool(const Se2& map_from_base)> contradicts_map{};
 };
 
@@ -26,19 +26,19 @@ struct WideSearch {
 ///   - the scan fits there as well as usual, or
 ///   - it fits nearly as well, and either has twice the inliers or odometry contradicts the plain
 ///     match.
-/// A match that odometry contradicts much more than the plain one has to fit better still, and
-/// where it explains less than half of the scan, the map's free space must not contradict the rest.
-/// The conditions keep the plain match for a view of a new place, which has few inliers where it is
-/// right.
+/// A match that odometry contradicts much more than the plain one must fit better still, and if it
+/// explains less than half of the scan, the map's free space must not contradict the rest. These
+/// conditions keep the plain match for a view of a new place, where a correct match has few
+/// inliers.
 ///
 /// @param points     ends of beams, base frame.
-/// @param ndt        what the scan is matched with,
-/// @param occupied   and its points around the guesses.
+/// @param ndt        map that the scan is matched with.
+/// @param occupied   points of that map around the guesses, see wide_search_reach_m().
 ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& ndt,
                           const Points& occupied, const WideSearch& search, const UsualFit& usual,
                           const RangeNoise& noise, const ScanMatchConfig& config);
 
-/// Radius around the guesses that `occupied` has to cover for a scan of these points.
+/// Radius around the guesses that `occupied` must cover for a scan with these points.
 double wide_search_reach_m(const Points& points);
 
 }  // namespace waymark

@@ -15,7 +15,7 @@ std::vector<std::size_t> resample_systematically(std::span<const double> weights
       survivors.push_back(i);
     }
   }
-  // Rounding may leave the sum a little short of one.
+  // Rounding may leave the sum slightly below one.
   while (survivors.size() < weights.size()) {
     survivors.push_back(weights.size() - 1);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which particles survive.
+// Resampling of particles.
 #pragma once
 
 #include <cstddef>

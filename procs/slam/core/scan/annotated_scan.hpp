@@ -11,11 +11,11 @@
 
 namespace waymark {
 
-/// What the camera says about the spot where a beam ended.
+/// The camera's observation of the point where a beam ended.
 enum class Sight {
   kUnknown,  ///< outside of the camera's view
   kNone,     ///< no marker there
-  kMarker,   ///< a marker: its id is given
+  kMarker,   ///< a marker, see marker_id
 };
 
 struct AnnotatedBeam {
@@ -24,8 +24,8 @@ struct AnnotatedBeam {
   int marker_id{kNoMarker};
 };
 
-/// Gives each beam the id of the nearest sighted marker whose segment it ends within `tolerance_m`
-/// of; the others have seen no marker if `view` (null = no camera frame) shows that spot.
+/// Labels each beam that ends within `tolerance_m` of a sighted marker's segment with the id of the
+/// nearest one; the others with kNone if their end is in `view` (null: no camera frame).
 std::vector<AnnotatedBeam> annotate(std::span<const Beam> beams,
                                     std::span<const MarkerSighting> sightings,
                                     const CameraView* view, double tolerance_m);

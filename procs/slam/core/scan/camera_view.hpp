@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of the floor plan in which the camera is sure to find a marker if there is one.
+// The area of the floor plan in which the detector finds every marker.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -10,7 +10,7 @@
 
 namespace waymark {
 
-/// A horizontal wedge in front of the camera. "No marker seen" is evidence only inside it.
+/// A horizontal wedge in front of the camera. A missing detection is evidence only inside it.
 struct CameraView {
   Se2 base_from_camera{};   ///< x = viewing direction
   double left_rad{0.45};    ///< edges of the wedge, counter-clockwise from the viewing direction

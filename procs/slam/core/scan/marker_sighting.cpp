@@ -9,11 +9,11 @@ namespace waymark {
 namespace {
 
 constexpr double kMaxTilt_rad = radians(30.0);
-constexpr double kMaxRange_m = 100.0;  // no camera reads a marker from there
-constexpr double kMaxVariance = 1e6;   // nothing is left of a sighting with that
+constexpr double kMaxRange_m = 100.0;  // no camera decodes a marker from there
+constexpr double kMaxVariance = 1e6;   // trace of the covariance; more is no measurement
 constexpr double kRounding = 1e-9;     // of a covariance, share of its trace
 
-/// Symmetric, and no direction has a negative variance, but for rounding.
+/// Symmetric and positive semidefinite, up to rounding.
 bool is_covariance(const Eigen::Matrix3d& matrix) {
   const double trace = matrix.trace();
   if (!(trace >= 0.0 && trace < kMaxVariance)) return false;

@@ -44,15 +44,14 @@ struct MarkerSighting {
   }
 };
 
-/// Of (x, y, yaw).
-/// @param covariance  of x y z rx ry rz, same frame.
+/// Covariance of (x, y, yaw).
+/// @param covariance  of (x, y, z, rx, ry, rz), same frame.
 Eigen::Matrix3d planar_covariance(const Eigen::Matrix<double, 6, 6>& covariance);
 
-/// Projects a detection onto the plane and carries it from the camera frame's time to the scan's.
-/// @param scan_base_from_frame_base  odometry between the two moments.
-/// @return nothing for a marker that does not stand upright (tilted by more than 30 degrees): it
-/// has no place
-///         on a wall of a planar map.
+/// Projects a detection onto the plane and transforms it to the base frame at the scan's time.
+/// @param scan_base_from_frame_base  motion by odometry between the times of camera frame and scan.
+/// @return none for a marker that is not upright (tilted by more than 30 degrees: not on a wall of
+///         a planar map), is farther than 100 m, or has an invalid covariance.
 std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Timestamp time,
                                            const Se2& scan_base_from_frame_base, double size_m);
 

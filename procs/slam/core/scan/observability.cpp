@@ -9,12 +9,12 @@
 namespace waymark {
 namespace {
 
-constexpr int kNeighbours = 5;               // beams on each side that the surface is fitted to
+constexpr int kNeighbours = 5;               // beams on each side to which the surface is fitted
 constexpr double kSurfaceReach_m = 0.5;      // neighbours further away belong to other surfaces
-constexpr double kMaxThicknessRatio = 0.15;  // of a line's two standard deviations
+constexpr double kMaxThicknessRatio = 0.15;  // of the standard deviations across and along a line
 constexpr int kMinPoints = 5;
-// Noise turns fitted normals by some degrees, which leaks sin^2 of them into the weak direction:
-// below this share of the strong direction it means nothing.
+// Noise turns fitted normals by some degrees, which leaks their sin^2 of the information into the
+// weak direction: below this share of the strong direction's it is not significant.
 constexpr double kDegenerateShare = 0.03;
 
 }  // namespace

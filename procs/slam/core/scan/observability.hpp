@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which directions of motion the walls in a scan observe.
+// Directions of motion that the walls in a scan observe.
 #pragma once
 
 #include "slam/core/scan/annotated_scan.hpp"
@@ -11,7 +11,7 @@
 
 namespace waymark {
 
-/// Information that a scan's walls hold about the pose, if the map has them all.
+/// Information about the pose in a scan's walls, if all of them are mapped.
 struct Observability {
   /// [1/m^2, 1/(m rad), 1/rad^2] order x y theta, map frame.
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
@@ -19,8 +19,8 @@ struct Observability {
   double weak_information{0.0};                             ///< [1/m^2] along weak_direction
   bool is_degenerate{true};  ///< the walls do not observe weak_direction
 
-  /// `pose`, moved to `reference` along the weak direction, if there is one: scores of the result
-  /// cannot pull a particle along a bare corridor.
+  /// `pose` with its deviation from `reference` along the weak direction removed, if there is one:
+  /// scores at the result cannot pull a particle along a bare corridor.
   Se2 without_weak_part(const Se2& pose, const Se2& reference) const {
     if (!is_degenerate) return pose;
     const Eigen::Vector2d deviation = pose.translation() - reference.translation();
@@ -29,8 +29,8 @@ struct Observability {
   }
 };
 
-/// Unit normal of the surface around a beam's end, base frame, either way; nothing at edges and on
-/// small things.
+/// Unit normal of the surface around a beam's end, base frame, any sign; none at edges and on small
+/// objects.
 std::optional<Eigen::Vector2d> surface_normal(std::span<const AnnotatedBeam> beams, int beam);
 
 /// Each beam that lies on a smooth surface measures its distance along the surface's normal

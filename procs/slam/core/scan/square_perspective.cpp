@@ -6,9 +6,10 @@
 namespace waymark {
 namespace {
 
-constexpr double kMinDepth = 0.7;  // of the square's side; less is too much from the front
+constexpr double kMinDepth = 0.7;  // of the square's side; less is too frontal a view
 
-/// A vertical edge in sides of the square: to the right, and ahead in focal lengths.
+/// A vertical edge of the square, in units of its side: right of the camera, and ahead of it in
+/// focal lengths.
 struct Edge {
   double right;
   double ahead;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What can be learnt about a camera from the perspective of one square.
+// Focal length of a camera from the perspective of one square.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +15,11 @@ struct FocalSighting {
   double sigma{0.0};
 };
 
-/// An upright square seen at an angle: its vertical edges show how far they are from the camera in
-/// units of the focal length, and the square is as deep as it is high.
+/// From an upright square seen at an angle: the lengths of its vertical edges give their distances
+/// from the camera relative to the focal length, and its width equals its height.
 /// @param corners  clockwise from the top left, as seen by a level camera with focal length 1.
 /// @param corner_sigma  of a corner coordinate, same unit.
-/// @return nothing for a view from the front, which has no perspective.
+/// @return none for a frontal view, which has too little perspective.
 std::optional<FocalSighting> focal_error_of(const std::array<Eigen::Vector2d, 4>& corners,
                                             double corner_sigma);
 

@@ -11,11 +11,11 @@ namespace waymark {
 namespace {
 
 constexpr int kBins = 360;
-constexpr int kMaxTurn = 50;             // [bin] beyond odometry
-constexpr int kSameTurn = 3;             // [bin] this near to odometry's turn is no contradiction
-constexpr float kFar_m = 0.3F;           // differences are not counted beyond: other objects
+constexpr int kMaxTurn = 50;             // [bin] largest deviation from odometry
+constexpr int kSameTurn = 3;             // [bin] a smaller deviation is no contradiction
+constexpr float kFar_m = 0.3F;           // differences are clamped to this: other objects
 constexpr double kMinCommon = 0.6;       // share of the later scan's bins
-constexpr double kMinMismatch_m = 0.05;  // less is noise, clutter and the robot's way
+constexpr double kMinMismatch_m = 0.05;  // less is due to noise, clutter and the translation
 constexpr double kClearly = 0.6;         // of the odometry's mismatch
 
 /// Range by direction, in bins of a degree around the LiDAR; 0 = nothing was hit.
@@ -26,7 +26,7 @@ int bin_of(const Eigen::Vector2d& direction) {
   return (static_cast<int>(std::floor(turns * kBins)) + kBins) % kBins;
 }
 
-/// As seen from a place and orientation in the beams' base frame.
+/// Profile as seen from a pose in the beams' base frame.
 RangeProfile profile_of(std::span<const AnnotatedBeam> beams, const Se2& base_from_viewer) {
   const Se2 viewer_from_base = base_from_viewer.inverse();
   RangeProfile profile(kBins, 0.0F);
@@ -64,7 +64,7 @@ std::optional<TurnByScans> turn_between(std::span<const AnnotatedBeam> earlier,
                                         std::span<const AnnotatedBeam> later,
                                         const Motion& motion) {
   if (earlier.empty() || later.empty()) return std::nullopt;
-  // Both from the LiDAR's later place by odometry; what is left to find is the turn.
+  // Both profiles from the LiDAR's later position by odometry, so that only the turn is unknown.
   const Se2 base_from_lidar{later.front().beam.start_in_base, 0.0};
   const RangeProfile now = profile_of(later, base_from_lidar);
   const RangeProfile then = profile_of(earlier, motion.start_from_end * base_from_lidar);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far the robot turned between two scans, by the scans alone.
+// Turn of the robot between two scans, from range profiles.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -10,21 +10,21 @@
 
 namespace waymark {
 
-/// A turn that is measured by range profiles.
+/// A turn measured by comparing range profiles.
 struct TurnByScans {
   double turn_rad{0.0};
   double mismatch_m{0.0};           ///< mean difference of the ranges after that turn
   double odometry_mismatch_m{0.0};  ///< the same after odometry's turn
-  /// Odometry's turn does not fit the scans at all, and another one does: the wheels slipped or the
-  /// robot was turned by hand.
+  /// Another turn fits the scans much better than odometry's: the wheels slipped, or the robot was
+  /// turned by hand.
   bool contradicts_odometry{false};
 };
 
-/// Compares the range profile of a scan with that of an earlier one, for turns near the odometry's,
-/// and if these do not fit, for all within 50 degrees. Coarser than matching with the map, but it
-/// needs no initial guess; so it serves only to detect that odometry is wrong.
+/// Compares the range profile of a scan with that of an earlier one, for turns near odometry's and,
+/// if these do not fit, for all within 50 degrees of it. Coarser than matching with the map, but
+/// without an initial guess; so it serves only to detect that odometry is wrong.
 /// @param motion  since the earlier scan, by odometry; its translation is assumed to be correct.
-/// @return nothing when the scans have too little in common.
+/// @return none if the scans have too little in common.
 std::optional<TurnByScans> turn_between(std::span<const AnnotatedBeam> earlier,
                                         std::span<const AnnotatedBeam> later, const Motion& motion);
 

@@ -7,10 +7,10 @@
 namespace waymark {
 namespace {
 
-// How far back the compared scan is. Further away other things come into sight; nearer, a turn is
-// too small to be distinguished from noise.
-constexpr double kWay_m = 0.2;
-constexpr double kTurn_rad = 0.35;
+// Motion after which the reference scan is replaced. After more, other objects come into sight;
+// after less, a turn cannot be distinguished from noise.
+constexpr double kReplaced_m = 0.2;
+constexpr double kReplaced_rad = 0.35;
 
 }  // namespace
 
@@ -22,8 +22,8 @@ std::optional<double> TurnMonitor::missing_turn(std::span<const AnnotatedBeam> b
   const auto by_scans = turn_between(reference_, beams, since_reference_);
   if (by_scans && by_scans->contradicts_odometry)
     missing_rad = angle_difference(by_scans->turn_rad, since_reference_.start_from_end.theta());
-  if (reference_.empty() || missing_rad || since_reference_.distance_m >= kWay_m ||
-      since_reference_.turn_rad >= kTurn_rad) {
+  if (reference_.empty() || missing_rad || since_reference_.distance_m >= kReplaced_m ||
+      since_reference_.turn_rad >= kReplaced_rad) {
     reference_.assign(beams.begin(), beams.end());
     since_reference_ = {};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Detects turns of the robot that its wheels did not measure.
+// Detects turns of the robot that odometry did not measure.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -11,14 +11,13 @@
 
 namespace waymark {
 
-/// Finds turns that odometry misses, scan by scan: each is compared with one from a short way
-/// before (turn_between).
+/// Compares each scan with a reference scan from a short distance back (turn_between).
 class TurnMonitor {
  public:
-  /// The next observation.
+  /// To be called with each observation.
   /// @param beams  of its scan; none: nothing is compared.
-  /// @param motion  since the observation before, by odometry.
-  /// @return [rad] turn beyond odometry's, once; nothing where odometry is plausible.
+  /// @param motion  since the previous observation, by odometry.
+  /// @return true minus odometry's turn [rad], reported once; none while odometry is plausible.
   std::optional<double> missing_turn(std::span<const AnnotatedBeam> beams, const Motion& motion);
 
  private:

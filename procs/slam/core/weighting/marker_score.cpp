@@ -19,7 +19,7 @@ double marker_score(const GridMap& map, const Eigen::Vector2d& point_in_map, int
     if (marker_id != kNoMarker) votes_for_id += weight * cell.votes_for(marker_id);
   });
   if (votes <= 0.0) return 0.0;
-  const double weight = votes / (votes + 1.0);  // of the cell: one vote is worth a half
+  const double weight = votes / (votes + 1.0);  // of the cell; one half with a single vote
   if (marker_id == kNoMarker) return -weight * rewards.penalty * votes_for_markers / votes;
   const double match = votes_for_id / votes;
   return weight * (rewards.strong_reward * match - rewards.penalty * (1.0 - match));

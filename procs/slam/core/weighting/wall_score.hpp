@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Do the beams end where the map has walls? Holds heading and lateral position.
+// Agreement of beam ends with mapped walls, which constrains heading and lateral position.
 #pragma once
 
 #include "slam/core/grid/grid_map.hpp"
@@ -11,10 +11,10 @@ namespace waymark {
 
 struct WallScore {
   double agreement{0.0};  ///< sum over beams of the occupancy where they end
-  double mapped{0.0};     ///< number of beams (in parts) that end where the map knows something
+  double mapped{0.0};     ///< number of beams (fractional) that end in mapped cells
 
-  /// Agreement beyond what is expected of `mapped` beams at the right pose. Beams that end in
-  /// unmapped cells count as average ones: they add nothing.
+  /// Agreement beyond what is expected of `mapped` beams at the correct pose. Beams that end in
+  /// unmapped cells contribute nothing.
   double beyond(double expected_per_beam) const { return agreement - expected_per_beam * mapped; }
 };
 

@@ -62,7 +62,7 @@ TEST(GmappingInABareCorridor, AScanScoresMoreFurtherBackAlthoughOdometryIsPerfec
   EXPECT_THAT(scores, ::testing::WhenSorted(::testing::ElementsAreArray(scores)));
 }
 
-TEST(GmappingInABareCorridor, PlausibleTurnsAreLeftAlone) {
+TEST(GmappingInABareCorridor, PlausibleTurnsAreNotChanged) {
   SyntheticCorridor corridor;
   corridor.drive_m = 10.0;
   corridor.turn_noise_per_sqrt_m = 0.0175;

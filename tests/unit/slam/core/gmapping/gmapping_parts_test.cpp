@@ -87,7 +87,7 @@ TEST(Trajectory, UnrelatedTrajectoriesHaveNoCommonAncestor) {
   EXPECT_EQ(common_ancestor({appended(nullptr), appended(nullptr)}), nullptr);
 }
 
-TEST(Trajectory, ALongOneIsFreedWithoutRecursion) {
+TEST(Trajectory, ALongTrajectoryIsFreedWithoutRecursion) {
   Trajectory trajectory;
   for (int i = 0; i < 1'000'000; ++i)
     trajectory = appended(trajectory);

@@ -95,7 +95,7 @@ TEST(GraphFrames, AfterARelocalisationEachMeasurementCountsOnce) {
 
 /// Odometry stood still since a keyframe behind the window, so that only a step of the whole graph
 /// could use it.
-TEST(GraphFrames, AfterARelocalisationNothingIsKnownFromBefore) {
+TEST(GraphFrames, ARelocatedPoseDoesNotDependOnEarlierPoses) {
   constexpr double kSigma_m = 0.3;
   Graph graph = drive({}, 1e-4, 1e-4, 1.0);
   const std::size_t newest = graph.add_keyframe(graph.state().keyframes[1]);

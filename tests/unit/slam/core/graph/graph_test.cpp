@@ -94,7 +94,7 @@ TEST(Factors, JacobianOfAMarkerByPosesIsTheDerivativeOfItsResidual) {
   expect_jacobians_hold(state, [&](const State& at) { return factor.linearise(at, 1e12); });
 }
 
-TEST(Factors, AMarkerFarBeyondTheGateHardlyPulls) {
+TEST(Factors, AMarkerFarBeyondTheGateHasLittleInfluence) {
   MarkerFactor factor;
   factor.keyframe = 1;
   factor.measurement = some_measurement();
@@ -132,7 +132,7 @@ TEST(OdometryMixture, ASlippingWheelCorrectsDistanceAndTurnTogether) {
   EXPECT_EQ(likeliest_covariance({0.0005, 0.0, 0.002}, rolling), rolling);
 }
 
-TEST(OdometryMixture, ASlipIsNoLargerWhereOdometryIsWorse) {
+TEST(OdometryMixture, SlipsDoNotScaleWithTheLearntNoise) {
   const Eigen::Matrix3d described = Eigen::Vector3d{1e-6, 1e-6, 1e-5}.asDiagonal();
   const Eigen::Matrix3d learnt = 400.0 * described;
   for (const MotionKind kind :
@@ -143,7 +143,7 @@ TEST(OdometryMixture, ASlipIsNoLargerWhereOdometryIsWorse) {
   }
 }
 
-TEST(OdometryMixture, OdometryThatStandsStillDoesNotHoldARobotThatMoves) {
+TEST(OdometryMixture, StandingOdometryDoesNotKeepAMovingRobotInPlace) {
   const Eigen::Matrix3d standing = 1e-9 * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d estimated = likeliest_covariance({0.2, 0.0, 0.0}, standing);
   EXPECT_GT(std::sqrt(estimated(0, 0)), 0.05);
@@ -264,7 +264,7 @@ TEST(Graph, RelativeToAKnownKeyframeTheCovarianceIsThatOfThePose) {
   EXPECT_LT((drive.graph().covariance_since(0) - covariance).norm(), 0.01 * covariance.norm());
 }
 
-TEST(Graph, TheCovarianceOfTheNewestStepIsThatSinceTheKeyframeBefore) {
+TEST(Graph, TheCovarianceOfTheNewestStepIsThatSinceThePreviousKeyframe) {
   Drive drive{6};
   const Eigen::Matrix3d since = drive.graph().covariance_since(drive.newest().index - 1);
   EXPECT_LT((drive.graph().covariance_of_newest_step() - since).norm(), 1e-6 * since.norm());

@@ -153,7 +153,7 @@ TEST(LoopFinder, AMatchThatContradictsARecentLoopNeedsABetterFit) {
 }
 
 /// All walls look alike: one of them does not refute the covariance of the pose.
-TEST(LoopFinder, ASurpriseThatLeavesADirectionUnobservedIsRefused) {
+TEST(LoopFinder, ADegenerateMatchBeyondTheGateIsRejected) {
   const Se2 drift{0.0, 1.1, 0.0};
   const auto found_in = [&](auto has_pillar) {
     Corridor corridor{has_pillar};

@@ -32,7 +32,7 @@ GridMap map_of_a_round_room(double radius_m) {
   return map;
 }
 
-TEST(MapFit, ABeamFitsContradictsOrEndsWhereNothingIsMapped) {
+TEST(MapFit, ABeamFitsContradictsOrEndsInUnmappedSpace) {
   const GridMap map = map_of_a_round_room(2.0);
   const MapFit same = fit_in_map(map, in_a_round_room(2.0), {});
   EXPECT_TRUE(same.is_decisive());
@@ -46,7 +46,7 @@ TEST(MapFit, ABeamFitsContradictsOrEndsWhereNothingIsMapped) {
   EXPECT_FALSE(elsewhere.is_contradicted());
 }
 
-TEST(MapFit, AFewBeamsDecideNothing) {
+TEST(MapFit, AFewBeamsAreNotDecisive) {
   const std::vector<AnnotatedBeam> all = in_a_round_room(1.5);
   const MapFit fit = fit_in_map(map_of_a_round_room(2.0), std::span{all}.first(10), {});
   EXPECT_EQ(fit.contradicting, 10);

@@ -83,7 +83,7 @@ double variance_along(double sigma_m) {
   return (root.transpose() * root).inverse()(0, 0);
 }
 
-TEST(OdometryNoiseLearner, SlipsCountAsFarAsOtherMeasurementsDoNotShowThem) {
+TEST(OdometryNoiseLearner, SlipsAddVarianceAsFarAsMarkersDoNotObserveThem) {
   const double rolling_m2 = variance_along(1e-4);
   const double hidden_m2 = variance_along(100.0) - rolling_m2;
   EXPECT_NEAR(rolling_m2, 9e-6, 4e-6);

@@ -79,7 +79,7 @@ TEST(UnmeasuredMotion, GrowsWhileOdometryIsStuck) {
   EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
 }
 
-TEST(UnmeasuredMotion, ARobotThatIsBackWasNotStuck) {
+TEST(UnmeasuredMotion, OdometryOfARobotThatIsBackWasNotStuck) {
   Robot robot;
   robot.drive();
   robot.stand(1);

@@ -49,7 +49,7 @@ GraphNoise rolling_only() {
   return noise;
 }
 
-TEST(WholeGraph, AWrongLoopAmongRightOnesLosesItsWeight) {
+TEST(WholeGraph, AWrongLoopAmongCorrectOnesLosesItsWeight) {
   Line line{40, rolling_only()};
   for (const std::size_t k : {30U, 32U, 34U, 36U, 38U, 40U})
     line.close(2, k, {kSpacing_m * static_cast<double>(k - 2), 0.0, 0.0});

@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-TEST(CellIndex, NegativeCellsHaveTilesAndPlacesOfTheirOwn) {
+TEST(CellIndex, NegativeCellsHaveDistinctTilesAndOffsets) {
   EXPECT_EQ(tile_of({-1, 0}), (TileIndex{-1, 0}));
   EXPECT_EQ(tile_of({-32, 31}), (TileIndex{-1, 0}));
   EXPECT_EQ(tile_of({-33, 32}), (TileIndex{-2, 1}));
@@ -59,7 +59,7 @@ TEST(TileMap, TilesAreVisitedRowByRow) {
               ElementsAre(TileIndex{0, -2}, TileIndex{0, 0}, TileIndex{-2, 1}, TileIndex{1, 1}));
 }
 
-TEST(TileMap, RefusesToSpanTheWorld) {
+TEST(TileMap, RefusesToGrowBeyondItsLimit) {
   TileMap<int> map;
   map.edit({0, 0}) = 1;
   EXPECT_THROW(map.edit({1 << 28, 1 << 28}), std::length_error);
@@ -126,7 +126,7 @@ TEST(MarkerCell, IdZeroIsAMarkerAndNoneIsNot) {
   EXPECT_EQ(cell.votes(), 5.0F);
 }
 
-TEST(MarkerCell, AWrongIdDoesNotOverwriteARightOne) {
+TEST(MarkerCell, AWrongIdDoesNotOverwriteACorrectOne) {
   MarkerCell cell;
   for (int i = 0; i < 10; ++i)
     cell.vote(7, 1.0F);

@@ -32,13 +32,13 @@ std::vector<Skip> skips_of(const std::vector<MarkerDetections>& frames) {
   return skips;
 }
 
-TEST(SensorQueue, AFrameThatRepeatsTheOneBeforeIsSkipped) {
+TEST(SensorQueue, AFrameThatRepeatsThePreviousOneIsSkipped) {
   EXPECT_EQ(skips_of({frame_at(0, {10.0, 20.0}), frame_at(100, {10.0, 20.0}),
                       frame_at(200, {10.0, 20.0})}),
             (std::vector<Skip>{Skip::kFrameRepeated, Skip::kFrameRepeated}));
 }
 
-TEST(SensorQueue, AFrameThatDiffersAtAllIsUsed) {
+TEST(SensorQueue, AFrameThatDiffersSlightlyIsUsed) {
   EXPECT_TRUE(skips_of({frame_at(0, {10.0}), frame_at(100, {10.0 + 1e-9}),
                         frame_at(200, {10.0, 20.0}), frame_at(300, {10.0})})
                   .empty());
@@ -68,7 +68,7 @@ std::size_t num_blind(const std::function<double(int)>& range_m) {
   return blind;
 }
 
-TEST(SensorQueue, AScanThatRepeatsOneFromElsewhereHasNoBeams) {
+TEST(SensorQueue, AScanThatRepeatsOneFromAnotherPlaceHasNoBeams) {
   EXPECT_EQ(num_blind([](int now_ms) { return 2.0 + 1e-6 * now_ms; }), 0U);
   EXPECT_GT(num_blind([](int) { return 2.0; }), 10U);
   // 3 cm apart a robot may see the same.

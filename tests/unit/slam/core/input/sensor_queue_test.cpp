@@ -45,7 +45,7 @@ SensorSetup setup_without_waiting() {
   return setup;
 }
 
-TEST(SensorQueue, WhileTheLidarIsSilentOdometryAndCameraGoOn) {
+TEST(SensorQueue, WhileTheLidarIsSilentOdometryAndCameraContinue) {
   SensorQueue queue{setup_without_waiting()};
   const auto all = all_ready(queue, 2200, {0, 200, 2100}, {1000});
   EXPECT_EQ(times_ms(all), (std::vector<int>{0, 200, 400, 600, 800, 1000, 2100}))
@@ -128,7 +128,7 @@ TEST(SensorQueue, AClockStepLosesNoMotion) {
   }
 }
 
-TEST(SensorQueue, AWrongStampCostsItsOwnValueOnly) {
+TEST(SensorQueue, OnlyValuesWithAWrongStampAreDropped) {
   for (const int wrong_ms : {60'000, kHour_ms}) {
     SensorQueue queue{setup_without_waiting()};
     for (int now_ms = 0; now_ms < 1000; now_ms += 100)
@@ -197,7 +197,7 @@ std::vector<int> without(std::vector<int> times_ms, int time_ms) {
 constexpr int kAheadOrPast_ms[] = {-9950, -3000, -450, -250, 250, 300, 450, 3000, 9950};
 constexpr int kSoon_ms = 300;
 
-TEST(SensorQueue, AScanThatIsStampedWrongCostsItselfOnly) {
+TEST(SensorQueue, AScanWithAWrongStampIsDroppedAlone) {
   const Drive clean = drive_with({});
   EXPECT_TRUE(clean.skips.empty());
   for (const int by_ms : kAheadOrPast_ms) {
@@ -210,7 +210,7 @@ TEST(SensorQueue, AScanThatIsStampedWrongCostsItselfOnly) {
   }
 }
 
-TEST(SensorQueue, AFrameThatIsStampedWrongCostsItselfOnly) {
+TEST(SensorQueue, AFrameWithAWrongStampIsDroppedAlone) {
   const Drive clean = drive_with({});
   for (const int by_ms : kAheadOrPast_ms) {
     const Drive drive = drive_with({.by_ms = by_ms, .frame = true});
@@ -223,7 +223,7 @@ TEST(SensorQueue, AFrameThatIsStampedWrongCostsItselfOnly) {
   }
 }
 
-TEST(SensorQueue, OdometryThatIsStampedWrongCostsItselfOnly) {
+TEST(SensorQueue, OdometryWithAWrongStampIsDroppedAlone) {
   const Drive clean = drive_with({});
   for (const int by_ms : kAheadOrPast_ms) {
     const Drive drive = drive_with({.by_ms = by_ms, .odometry = true});
@@ -236,7 +236,7 @@ TEST(SensorQueue, OdometryThatIsStampedWrongCostsItselfOnly) {
   }
 }
 
-TEST(SensorQueue, AMomentInWhichAllStampsAreWrongCostsThatMomentOnly) {
+TEST(SensorQueue, WhenAllStampsOfAMomentAreWrongOnlyTheseValuesAreDropped) {
   const Drive clean = drive_with({});
   for (const int by_ms : kAheadOrPast_ms) {
     const Drive drive = drive_with({.by_ms = by_ms, .odometry = true, .scan = true, .frame = true});
@@ -276,7 +276,7 @@ TEST(SensorQueue, AScanStampedAheadBlocksNothingWhileTheLidarIsSilent) {
   EXPECT_EQ(times_ms(all).back(), 2000);
 }
 
-TEST(SensorQueue, WhatComesJustBeforeOdometryAfterAPauseIsUsedWithTheNextSampleOrAtTheEnd) {
+TEST(SensorQueue, ValuesJustBeforeOdometryAfterAPauseAreUsedWithTheNextSampleOrAtTheEnd) {
   for (const int pause_ms : {5000, 29'000}) {
     for (const bool ends : {false, true}) {
       SensorQueue queue{setup_without_waiting()};

@@ -60,7 +60,7 @@ TEST(StampedQueue, TheSameStampTwiceIsSkipped) {
   EXPECT_EQ(result_of({1, 2, 2, 3}), (Result{{1, 2, 3}, {Skip::kScanOutOfOrder}}));
 }
 
-TEST(StampedQueue, OfTooManyTheOldestIsDropped) {
+TEST(StampedQueue, BeyondTheCapacityTheOldestValueIsDropped) {
   EXPECT_EQ(result_of({1, 2, 3, 4, 5, 6}),
             (Result{{3, 4, 5, 6}, {Skip::kScanOverflow, Skip::kScanOverflow}}));
 }
@@ -89,7 +89,7 @@ TEST(StampedQueue, ClearingSkipsTheValueAsideAndAcceptsOlderStampsAgain) {
   EXPECT_TRUE(skips.take().empty());
 }
 
-TEST(StampedQueue, AHeldValueIsAddedOnceItIsNotAheadAnyMore) {
+TEST(StampedQueue, AHeldValueIsAddedOnceItIsNoLongerAhead) {
   StampedQueue<Value> queue{kPolicy};
   Skips skips;
   queue.hold({at_s(30)}, skips);

@@ -35,14 +35,14 @@ TEST(LandmarkMap, EqualIdsThatLieApartAreInstances) {
   EXPECT_NEAR(landmarks[2].map_from_marker.x(), 10.0, 1e-9);
 }
 
-TEST(LandmarkMap, SureSightingsCountMore) {
+TEST(LandmarkMap, PreciseSightingsHaveMoreWeight) {
   LandmarkMap map{1.0};
   map.add(sighting(1, 2.0, 0.1), Se2{}, Eigen::Matrix3d::Zero());
   map.add(sighting(1, 2.2, 0.01), Se2{}, Eigen::Matrix3d::Zero());
   EXPECT_NEAR(map.landmarks()[0].map_from_marker.x(), 2.2, 0.005);
 }
 
-TEST(LandmarkMap, TheRobotsOwnErrorDoesNotAverageOut) {
+TEST(LandmarkMap, TheErrorOfTheRobotsPoseDoesNotAverageOut) {
   LandmarkMap map{1.0};
   const Eigen::Matrix3d pose_covariance = Eigen::Vector3d{0.04, 0.01, 0.0}.asDiagonal();
   for (int i = 0; i < 100; ++i)

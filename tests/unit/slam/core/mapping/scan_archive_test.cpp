@@ -11,7 +11,7 @@
 namespace waymark {
 namespace {
 
-TEST(ScanArchive, GivesBackWhereBeamsWent) {
+TEST(ScanArchive, RestoresTheEndPointsOfBeams) {
   const test::SyntheticCorridor corridor = test::bare_corridor();
   const Observation scan = test::observations_of(test::drive(corridor), corridor).front();
   ScanArchive archive;

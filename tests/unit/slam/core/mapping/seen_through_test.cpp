@@ -30,19 +30,19 @@ TEST(SeenThrough, FreeSpaceIsSeenThroughAndWallsAreNot) {
   EXPECT_FALSE(is_seen_through(map, {0.5, 0.5}));
 }
 
-TEST(SeenThrough, NotNextToAWall) {
+TEST(SeenThrough, CellsNextToAWallAreNot) {
   const GridMap map = room_with_a_wall();
   EXPECT_FALSE(is_seen_through(map, {0.45, 0.5}));
   EXPECT_TRUE(is_seen_through(map, {0.4, 0.5}));
 }
 
-TEST(SeenThrough, NotWhereAWallIsWithinReach) {
+TEST(SeenThrough, PlacesWithAWallWithinReachAreNot) {
   const GridMap map = room_with_a_wall();
   EXPECT_TRUE(is_seen_through(map, {0.3, 0.5}, 0.12));
   EXPECT_FALSE(is_seen_through(map, {0.3, 0.5}, 0.17));
 }
 
-TEST(SeenThrough, NotInUnmappedCells) {
+TEST(SeenThrough, UnmappedCellsAreNot) {
   const GridMap map = room_with_a_wall();
   EXPECT_FALSE(is_seen_through(map, {3.0, 0.5}));
   EXPECT_FALSE(is_seen_through(map, {0.0, 0.5}));  // at the edge of what was seen

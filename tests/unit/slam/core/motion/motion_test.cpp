@@ -23,7 +23,7 @@ TEST(Motion, DrivingBackwardsCountsNegativeInTheAdvance) {
 }
 
 /// A wheel that is larger than the other turns the robot the other way when it backs up.
-TEST(OdometryErrors, DriftTurnsTheOtherWayInReverse) {
+TEST(OdometryErrors, DriftTurnsInTheOppositeDirectionInReverse) {
   OdometryErrors errors = OdometryErrors::Zero();
   errors[OdometryTerm::kDrift] = 0.01;  // rad/m
   const auto turn_rad = [&](double drive_m) {
@@ -245,7 +245,7 @@ TEST(MotionModel, NoiseDoesNotDependOnTheStepRate) {
   }
 }
 
-TEST(MotionModel, RotationOnlyLeavesTheDistanceAlone) {
+TEST(MotionModel, RotationOnlyAddsNoNoiseToTheDistance) {
   const MotionNoise noise{.along_per_sqrt_m = 0.5, .rotation_only = true};
   for (std::uint64_t i = 0; i < 100; ++i) {
     Random random{i};
@@ -253,7 +253,7 @@ TEST(MotionModel, RotationOnlyLeavesTheDistanceAlone) {
   }
 }
 
-TEST(MotionModel, StandingStillAddsNothing) {
+TEST(MotionModel, NoMotionMeansNoNoise) {
   Random random{1};
   const Se2 pose = sample_motion({}, {}, random);
   EXPECT_EQ(pose.x(), 0.0);

@@ -91,7 +91,7 @@ TEST(ScanMatch, FindsThePoseInARoom) {
   EXPECT_GT(match.inlier_share, 0.9);
 }
 
-TEST(ScanMatch, LargerCellsFindThePoseFromAGuessThatTheSmallestDoNotReach) {
+TEST(ScanMatch, CoarseCellsConvergeFromAGuessOutsideTheBasinOfTheFinestOnes) {
   const Submap room = submap_of(room_from);
   const Se2 truth{1.2, 0.3, 0.2};
   const Se2 guess{0.5, 0.8, -0.05};
@@ -160,7 +160,7 @@ Points companion_from(const Se2& map_from_base, std::uint64_t seed) {
   return points;
 }
 
-TEST(ScanMatch, APersonWalkingAheadDoesNotObserveTheAxis) {
+TEST(ScanMatch, APersonWalkingAheadDoesNotMakeTheAxisObservable) {
   const Submap corridor = submap_of(companion_from, 0.3);
   const Se2 truth{5.8, 0.0, 0.0};
   const ScanMatch match = match_scan(companion_from(truth, 99), corridor.ndt(), truth,
@@ -212,7 +212,7 @@ TEST(ScanMatch, ManyBeamsInOneCellHaveTheInformationOfAFew) {
 }
 
 /// Its turn about the pole is not observed, nor is the way across that belongs to it.
-TEST(ScanMatch, ALonePoleFarAwayLeavesTheTurnAsGuessed) {
+TEST(ScanMatch, ASinglePoleFarAwayLeavesTheHeadingAsGuessed) {
   const auto pole_from = [](const Se2& map_from_base, std::uint64_t seed) {
     Random random{{seed}};
     Points points;

@@ -37,7 +37,7 @@ TEST(Submaps, TheMatchedSubmapHoldsAtLeastHalfOfItsLength) {
   }
 }
 
-TEST(Submaps, FinishedOnesFollowEachOtherByHalfALength) {
+TEST(Submaps, FinishedSubmapsOverlapByHalfALength) {
   Drive drive;
   drive.go(41);
   ASSERT_EQ(drive.submaps.finished().size(), 7U);

@@ -61,7 +61,7 @@ TEST(UsualFit, AScanWhereNothingIsMappedContradictsNothingAndIsNotUsual) {
   EXPECT_TRUE(usual.is_contradicted(fit(0.7, 1.0)));
 }
 
-TEST(UsualFit, AtFirstNothingIsUsual) {
+TEST(UsualFit, BeforeTheFirstScanNoFitIsWorseThanUsual) {
   const UsualFit usual{kMinInliers, 0.5};
   EXPECT_FALSE(usual.is_worse_than_usual(fit(0.6, 0.3)));
   EXPECT_FALSE(usual.is_contradicted(fit(0.6, 0.3)));

@@ -42,7 +42,7 @@ TEST(Beams, KeepOnlyReturnsWithinRange) {
   EXPECT_NEAR(beams[0].start_in_base.x(), 0.1, 1e-12);
 }
 
-TEST(Beams, MotionWithinASweepIsUndone) {
+TEST(Beams, MotionDuringASweepIsCompensated) {
   // The robot turns at 1 rad/s; every beam looks at the same point, 1 m ahead of its first pose.
   OdometryBuffer odometry;
   odometry.add({timestamp_from_us(0), Se2{}});
@@ -57,7 +57,7 @@ TEST(Beams, MotionWithinASweepIsUndone) {
     EXPECT_TRUE(beam.end_in_base.isApprox(Eigen::Vector2d{1.0, 0.0}, 1e-9)) << beam.index;
 }
 
-TEST(Beams, AScanIsForTheMiddleOfItsSweep) {
+TEST(Beams, AScanIsStampedAtTheMiddleOfItsSweep) {
   LidarScan scan{timestamp_from_us(900'000), {1.0, 2.0, 3.0}, {0.1, 0.2, 0.3}, {}};
   EXPECT_EQ(at_middle_of_sweep(scan).time, scan.time) << "all beams at once";
   scan.beam_time_offsets = {Duration{-200'000}, Duration{-150'000}, Duration{0}};
@@ -97,7 +97,7 @@ TEST(Beams, TheMeanSweepHasTheNoiseOfItsBeams) {
   }
 }
 
-TEST(Beams, OfOneMomentHaveNoSweep) {
+TEST(Beams, WithoutTimesPerBeamTheMeanSweepIsZero) {
   const MeanSweep none =
       mean_sweep(test::scan_from(kCorridor, {5.0, 0.0, 0.0}, {}), OdometryBuffer{});
   EXPECT_EQ(none.distance_m, 0.0);
@@ -111,7 +111,7 @@ TEST(MarkerSighting, IsTheSegmentBetweenTheVerticalEdges) {
   EXPECT_TRUE(sighting.point_at(0.2).isApprox(Eigen::Vector2d{2.7, 1.0}, 1e-9));
 }
 
-TEST(MarkerSighting, IsCarriedToTheTimeOfTheScan) {
+TEST(MarkerSighting, IsTransformedToTheTimeOfTheScan) {
   const test::SyntheticMarker marker{1, {7.5, 1.0}, -0.5 * std::numbers::pi};
   const Se2 at_frame{5.0, 0.1, 0.02};
   const Se2 at_scan{5.05, 0.11, -0.01};

@@ -61,7 +61,7 @@ TEST(MarkerScore, RewardsMatchesPunishesDifferencesIgnoresTheRest) {
   EXPECT_EQ(marker_score(map, {9.0, 1.0}, kNoMarker, kRewards), 0.0);
 }
 
-TEST(MarkerScore, IsSharperThanACell) {
+TEST(MarkerScore, ResolvesDisplacementsSmallerThanACell) {
   // Wherever the marker's edges fall in their cells, the best match is within a quarter of a cell.
   for (double phase_m = 0.0; phase_m < 0.05; phase_m += 0.01) {
     const GridMap map = map_with_marker(7, 3.0 + phase_m);
@@ -124,7 +124,7 @@ Mapped mapped_until(double x_m) {
   return mapped;
 }
 
-TEST(WallScore, HoldsHeadingAndLateralPosition) {
+TEST(WallScore, ConstrainsHeadingAndLateralPosition) {
   const Mapped mapped = mapped_until(12.0);
   const auto agreement = [&](const Se2& pose) {
     const WallScore score = wall_score(mapped.map, mapped.next, pose);
