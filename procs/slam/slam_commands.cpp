@@ -75,7 +75,7 @@ std::string SlamNode::save_named(const std::string& name) {
   if (config_.slam.mode == MapMode::kLocalise)
     throw Refusal{"mode localise leaves the map as it is, so there is nothing to save"};
   const auto map = estimator_->snapshot();
-  if (!map) throw Refusal{"there is no map yet, or the estimator cannot save maps"};
+  if (!map) throw Refusal{fmt::format("there is no map to save: {}", why_no_map())};
   const auto file = std::filesystem::path{config_.slam.state_folder} / (name + ".map.lcm");
   try {
     const std::int64_t map_id = save_map_to(file, *map);
@@ -144,7 +144,7 @@ std::string SlamNode::set_mode(MapMode mode) {
   if (config_.slam.mode != MapMode::kLocalise) {
     if (mode == MapMode::kExtend) throw Refusal{"mode map extends its map already"};
     const auto drawn = estimator_->snapshot();
-    if (!drawn) throw Refusal{"there is no map yet to localise in"};
+    if (!drawn) throw Refusal{fmt::format("there is no map to localise in: {}", why_no_map())};
     MapFile file = map_of(to_map_messages(*drawn, map_info(config_, frame_)));
     file.map.map_id = map_id_;
     map = std::make_shared<const MapSnapshot>(std::move(file.map));

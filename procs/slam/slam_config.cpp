@@ -29,6 +29,8 @@ CameraView camera_view(const CameraConfig& camera, const MarkerConfig& markers,
   view.left_rad = std::atan(camera.cx_px / camera.fx_px) - preprocessing.view_margin_rad;
   view.right_rad = -std::atan((camera.width_px - 1 - camera.cx_px) / camera.fx_px) +
                    preprocessing.view_margin_rad;
+  view.range_min_m = std::max(
+      view.range_min_m, markers.size_m * camera.fy_px / static_cast<double>(camera.height_px));
   view.range_max_m = markers.size_m * camera.fx_px / preprocessing.detectable_px;
   return view;
 }

@@ -160,13 +160,17 @@ void SlamNode::publish_findings(Timestamp time) {
   }
 }
 
+std::string_view SlamNode::why_no_map() const {
+  if (loaded_map_) return "neither markers nor walls confirmed the pose in the loaded map";
+  if (!survey_.empty() && !placed_) return "the survey's frame is not known yet";
+  return "no scan was processed yet, or the estimator cannot save maps";
+}
+
 /// @return whether it was saved; if not, the reason is logged.
 bool SlamNode::save_map() {
   const auto map = estimator_->snapshot();
   if (!map) {
-    logging::error("no map to save: {}",
-                   loaded_map_ ? "neither markers nor walls confirmed the pose in the loaded map"
-                               : "no scan was processed");
+    logging::error("no map to save: {}", why_no_map());
     return false;
   }
   try {

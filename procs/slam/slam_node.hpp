@@ -54,6 +54,7 @@ class SlamNode final : public Node {
 
  private:
   std::int64_t save_map_to(const std::filesystem::path& file, const MapSnapshot& map);
+  std::string_view why_no_map() const;
   bool save_map();
   void publish_end(Timestamp time);
   void attempt(std::string_view part, const std::function<void()>& work);

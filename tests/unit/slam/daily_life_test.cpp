@@ -343,6 +343,14 @@ TEST_F(SurveyedMap, PosesAreInTheSurveysFrame) {
   EXPECT_EQ(drive.markers.size(), markers.size());
 }
 
+TEST_F(SurveyedMap, WithoutItsFrameIsNotSaved) {
+  SlamConfig config;
+  config.robot.markers.survey_file = survey(kHeader + std::string{"249,1,2,0,0.01,0.01,0.01\n"});
+  config.save_map = folder_ / "unplaced.map.lcm";
+  EXPECT_TRUE(test::drive_through(config, messages_of(*drive_)).failed);
+  EXPECT_FALSE(fs::exists(config.save_map));
+}
+
 TEST_F(SurveyedMap, OfTwoContradictoryEntriesBothAreReportedAndTheMapStaysConsistent) {
   const auto markers = corridor_of(1).markers;
   const test::SyntheticMarker& first = markers.front();

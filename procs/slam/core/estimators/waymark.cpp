@@ -107,8 +107,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
     scan_poses_.push_back({observation.time, newest(),
                            graph_.state().keyframes.back().inverse() * now.map_from_base});
   }
-  const bool has_frame = survey_.is_empty() || survey_.has_frame();
-  return has_frame ? now : unplaced(observation);
+  return has_frame() ? now : unplaced(observation);
 }
 
 void WaymarkEstimator::note_reason(EstimateReason reason) {

@@ -160,6 +160,8 @@ class WaymarkEstimator final : public Estimator {
   std::vector<Landmark> landmarks_of(const Graph& graph) const;
   const Graph& solved() const;
 
+  bool has_frame() const { return survey_.is_empty() || survey_.has_frame(); }
+
   bool is_frozen() const { return setup_.map_mode == MapMode::kLocalise; }
 
   std::size_t num_window_keyframes() const {

@@ -3,6 +3,8 @@
 #include "common/geometry/information.hpp"
 #include "slam/core/estimators/waymark.hpp"
 
+#include <utility>
+
 namespace waymark {
 namespace {
 
@@ -35,8 +37,8 @@ bool contradicts(const LoopFinder::Found& found, const Se2& map_from_submap,
 void WaymarkEstimator::close_loops(const Points& points) {
   since_loop_search_m_ += motion_.distance_m;
   if (since_loop_search_m_ >= config_.loops.every_m) {
-    since_loop_search_m_ = 0.0;
     LoopSearch search;
+    search.driven_m = std::exchange(since_loop_search_m_, 0.0);
     search.map_from_base = graph_.state().keyframes.back();
     const Eigen::Matrix3d in_map = graph_.covariance_of({VariableKind::kKeyframe, newest()});
     search.covariance_against = [this, in_map](std::size_t keyframe) {

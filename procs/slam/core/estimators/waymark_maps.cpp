@@ -122,9 +122,11 @@ std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
   return pose_graph_of(solved());
 }
 
-/// None before the pose in the loaded map was confirmed: the map might mix two buildings.
+/// None before the pose in the loaded map was confirmed: the map might mix two buildings. None
+/// before the survey's frame is known: the map would be in another one.
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
-  if (is_frozen() || graph_.state().keyframes.empty() || !was_confirmed_) return std::nullopt;
+  if (is_frozen() || graph_.state().keyframes.empty() || !was_confirmed_ || !has_frame())
+    return std::nullopt;
   const Graph& graph = solved();
   MapSnapshot snapshot;
   if (setup_.loaded_map) snapshot.parent_map_id = setup_.loaded_map->map_id;

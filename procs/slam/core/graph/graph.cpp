@@ -162,16 +162,6 @@ double Graph::cost() const {
   return sum;
 }
 
-double Graph::cost_of_landmark(std::size_t landmark) const {
-  double sum = 0.0;
-  for (const Factor& factor : factors_)
-    if (const auto* marker = std::get_if<MarkerFactor>(&factor);
-        marker != nullptr && marker->landmark == landmark) {
-      sum += cost_of(*marker);
-    }
-  return sum;
-}
-
 void Graph::relocate_newest(const Se2& map_from_base) {
   const std::size_t newest = state_.keyframes.size() - 1;
   const auto is_about_it = [&](const Factor& factor) {

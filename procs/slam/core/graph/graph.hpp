@@ -77,9 +77,6 @@ class Graph {
   /// Sum of the robust costs (chi^2) of all factors.
   double cost() const;
 
-  /// The same for the marker measurements of one landmark.
-  double cost_of_landmark(std::size_t landmark) const;
-
   /// Gives the newest keyframe another pose. Drops its factors: an odometry factor without
   /// information replaces them.
   void relocate_newest(const Se2& map_from_base);

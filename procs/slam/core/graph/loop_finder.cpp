@@ -159,7 +159,7 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
                                                 const State& state, const RangeNoise& noise) {
   while (!confirmed_.empty() && confirmed_.front().keyframe < search.first_recent_keyframe)
     confirmed_.pop_front();
-  candidate_age_m_ += config_.every_m;
+  candidate_age_m_ += search.driven_m;
   if (candidate_age_m_ > kAgreeWithin_m) candidate_.reset();
   const Submap* old = nearest_submap(search, submaps, state);
   if (old == nullptr) return {};

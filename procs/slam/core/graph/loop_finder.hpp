@@ -41,6 +41,7 @@ struct LoopMatch {
 /// The pose of the newest keyframe, and how uncertain it is; covariances in the map's axes.
 struct LoopSearch {
   Se2 map_from_base{};
+  double driven_m{0.0};  ///< since the last search
   /// Of map_from_base relative to the pose of an old keyframe.
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_against{};
   std::size_t first_recent_keyframe{0};  ///< submaps that contain it or later ones are not old

@@ -97,7 +97,7 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   }
   carry_removed();
   reconsider_factors();
-  return x.cwiseAbs().maxCoeff();
+  return share * x.cwiseAbs().maxCoeff();
 }
 
 std::optional<LandmarkMarginal> Graph::marginal_of(

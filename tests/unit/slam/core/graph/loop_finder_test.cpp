@@ -64,6 +64,7 @@ class Corridor {
   std::vector<LoopFinder::Found> look_around(const Se2& truth, const Se2& estimated) {
     LoopSearch search;
     search.map_from_base = estimated;
+    search.driven_m = LoopConfig{}.every_m;
     search.covariance_against = [this](std::size_t) {
       return covariance_against_;
     };
