@@ -52,15 +52,16 @@ void WaymarkEstimator::search_widely(const Observation& observation, Look& look)
   search.by_odometry = expected.submap_from_base;
   search.odometry_covariance = expected.covariance;
   search.since_last_s = look.since_last_s;
+  search.driven_m = (submap_from_last.translation() - search.by_odometry.translation()).norm();
   search.min_score = config_.loops.min_score;
   search.contradicts_map = [&](const Se2& submap_from_base) {
     const Se2 map_from_base = scan.map_from_submap * submap_from_base;
     return fit_in_map(map_.map(), observation.beams, map_from_base).misfit() > MapFit::kMostMisfit;
   };
-  scan.match = searched_widely(
-      scan.match, look.points, ndt_of(scan),
-      points_near(scan, expected.submap_from_base, wide_search_reach_m(look.points)), search,
-      usual_fit_, range_noise_, config_.scan);
+  scan.match = searched_widely(scan.match, look.points, ndt_of(scan),
+                               points_near(scan, expected.submap_from_base,
+                                           wide_search_reach_m(look.points, search.driven_m)),
+                               search, usual_fit_, range_noise_, config_.scan);
 }
 
 /// Inliers of a match by the keyframes that observed their walls: neighbouring keyframes form a

@@ -14,7 +14,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kReach_m = 0.5;
+constexpr double kLeastReach_m = 0.5;
 constexpr double kReach_rad = 0.6;
 constexpr std::size_t kBeams = 120;
 constexpr double kUnseen_rad_s = 0.5;     // rate at which the window of turns grows between scans
@@ -25,6 +25,11 @@ constexpr double kLeavesFarMore = 3.0;    // ratio of unexplained beams, plain t
 constexpr double kContradictedSigmas = 5.0;
 constexpr double kFarFarther = 4.0;  // ratio of distances from odometry, found to plain match
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a heading step
+
+/// Half the side of the windows.
+double reach_m(double driven_m) {
+  return std::max(kLeastReach_m, driven_m);
+}
 
 /// Mahalanobis distance of a match from the pose predicted by odometry.
 double sigmas_from_odometry(const ScanMatch& match, const WideSearch& search) {
@@ -50,7 +55,8 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   const Points beams = thinned(points, kBeams);
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
   const SearchWindow window{
-      kReach_m, std::min(std::numbers::pi, kReach_rad + kUnseen_rad_s * search.since_last_s)};
+      reach_m(search.driven_m),
+      std::min(std::numbers::pi, kReach_rad + kUnseen_rad_s * search.since_last_s)};
   std::optional<ScanMatch> found;
   std::vector<Se2> guesses = search.without_odometry;
   guesses.push_back(search.by_odometry);
@@ -83,11 +89,11 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   return found && fits_better() ? *found : plain;
 }
 
-double wide_search_reach_m(const Points& points) {
+double wide_search_reach_m(const Points& points, double driven_m) {
   double farthest_m = 0.0;
   for (const Eigen::Vector2d& point : points)
     farthest_m = std::max(farthest_m, point.norm());
-  return farthest_m + kReach_m;
+  return farthest_m + reach_m(driven_m);
 }
 
 }  // namespace waymark

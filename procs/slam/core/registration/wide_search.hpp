@@ -15,6 +15,7 @@ struct WideSearch {
   Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of it, map's axes
   std::vector<Se2> without_odometry{};                               ///< map_from_base
   double since_last_s{0.0};  ///< time since the last scan, which widens the window of turns
+  double driven_m{0.0};      ///< by odometry since then: the way may have led in any direction
   double min_score{0.0};     ///< least SearchMatch::score
   /// Whether the map, including its free space, contradicts the scan at a pose.
   std::function<bool(const Se2& map_from_base)> contradicts_map{};
@@ -39,6 +40,7 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
                           const RangeNoise& noise, const ScanMatchConfig& config);
 
 /// Radius around the guesses that `occupied` must cover for a scan with these points.
-double wide_search_reach_m(const Points& points);
+/// @param driven_m  as in WideSearch.
+double wide_search_reach_m(const Points& points, double driven_m);
 
 }  // namespace waymark

@@ -160,6 +160,21 @@ TEST(WideSearch, TheWindowOfTurnsGrowsWithTheTimeSinceTheLastScan) {
   EXPECT_LT(off(3.0), 0.02);
 }
 
+/// Odometry that turned wrongly before a way of 1.5 m is off by as much.
+TEST(WideSearch, TheWindowOfPositionsGrowsWithTheDistanceDriven) {
+  const Se2 truth{3.0, 0.3, 0.0};
+  const Points scan = seen_from(truth, whole_room());
+  const Se2 guess{2.0, -0.6, 0.5};
+  const auto off = [&](double driven_m) {
+    WideSearch search = around(guess);
+    search.driven_m = driven_m;
+    const Searched found = look_for(mapped_room(), scan, guess, search);
+    return pose_difference(found.best.map_from_base, truth).norm();
+  };
+  EXPECT_GT(off(0.2), 0.5);
+  EXPECT_LT(off(1.5), 0.02);
+}
+
 /// The room looks almost the same to a robot that has turned round.
 TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenWhateverTheirOrder) {
   Submap submap = mapped_room();
