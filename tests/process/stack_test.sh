@@ -210,7 +210,7 @@ commands_while_it_runs() {
   until_under_way run
   ask 1 "letters, digits" save ../map
   ask 1 "in that mode already" set-mode map
-  ask 1 "no number" set-pose nan 0 0
+  ask 1 "not finite" set-pose nan 0 0
   post_command 401 "not the token" '{"command": "reset"}' "${token}X"
   post_command 409 "in that mode already" '{"command": "set-mode", "mode": "map"}' "$token"
   post_command 200 "" '{"command": "save", "name": "from_page"}' "$token"
