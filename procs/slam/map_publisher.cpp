@@ -7,8 +7,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <set>
-#include <utility>
 
 namespace waymark {
 namespace {
@@ -139,12 +137,10 @@ std::vector<map_tiles_t> MapPublisher::changes(const GridMap& map, Timestamp tim
 }
 
 std::vector<map_tiles_t> MapPublisher::complete(const GridMap& map, Timestamp time) {
-  std::set<TileIndex> tiles;
-  for (const GridMap* shown : {&map, &std::as_const(published_)})
-    for (const TileIndex tile : tiles_of(*shown))
-      tiles.insert(tile);
+  std::vector<TileIndex> tiles;
+  std::ranges::set_union(tiles_of(map), tiles_of(published_), std::back_inserter(tiles));
   published_ = map;
-  return to_messages(map, {tiles.begin(), tiles.end()}, time);
+  return to_messages(map, tiles, time);
 }
 
 std::optional<occupancy_grid_t> to_occupancy_grid(const GridMap& map, Timestamp time) {

@@ -3,8 +3,8 @@
 // not guided by coverage. An input that ends the program, takes too long or allocates too much at
 // once is kept as PREFIXcrash.
 //
-// usage: fuzz_TARGET -runs=N [-seed=N] [-timeout=S] [-malloc_limit_mb=N] [-artifact_prefix=PREFIX]
-// CORPUS
+// usage: fuzz_TARGET -runs=N [-seed=N] [-max_len=N] [-timeout=S] [-malloc_limit_mb=N]
+//                   [-artifact_prefix=PREFIX] CORPUS
 //        fuzz_TARGET FILE    repeats one input
 #include "common/files/whole_file.hpp"
 
@@ -44,22 +44,20 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMaxInput_bytes = 65536;
 constexpr int kMostChanges = 6;
 constexpr std::size_t kLongestPiece_bytes = 64;
 
 std::string input;
 std::string artifact_prefix;
-std::size_t largest_allocation_bytes = 0;
+std::size_t allocation_limit_bytes = 0;
 
 void keep_input() {
   write_whole_file(artifact_prefix + "crash", input);
 }
 
 void watch_allocation(const volatile void*, std::size_t bytes) {
-  if (bytes <= largest_allocation_bytes) return;
-  largest_allocation_bytes =
-      std::numeric_limits<std::size_t>::max();  // keep_input() allocates, too
+  if (bytes <= allocation_limit_bytes) return;
+  allocation_limit_bytes = std::numeric_limits<std::size_t>::max();  // keep_input() allocates, too
   fmt::print(stderr, "{} bytes at once\n", bytes);
   std::abort();
 }
@@ -72,14 +70,14 @@ void take_input() {
 
 class Mutator {
  public:
-  Mutator(std::vector<std::string> corpus, std::uint64_t seed)
-      : corpus_{std::move(corpus)}, random_{seed} {}
+  Mutator(std::vector<std::string> corpus, std::size_t max_bytes, std::uint64_t seed)
+      : corpus_{std::move(corpus)}, max_bytes_{max_bytes}, random_{seed} {}
 
   std::string next() {
     std::string bytes = any_input();
     for (std::size_t changes = 1 + below(kMostChanges); changes > 0; --changes)
       change(bytes);
-    bytes.resize(std::min(bytes.size(), kMaxInput_bytes));
+    bytes.resize(std::min(bytes.size(), max_bytes_));
     return bytes;
   }
 
@@ -132,6 +130,7 @@ class Mutator {
   }
 
   std::vector<std::string> corpus_;
+  std::size_t max_bytes_;
   std::mt19937_64 random_;
 };
 
@@ -150,6 +149,7 @@ std::vector<std::string> read_corpus(const fs::path& folder) {
 struct Options {
   std::uint64_t runs = 0;
   std::uint64_t seed = 1;
+  std::size_t max_len = std::numeric_limits<std::size_t>::max();
   std::chrono::seconds timeout{2};
   std::size_t malloc_limit_mb = 1024;
   fs::path path;
@@ -164,6 +164,7 @@ Options parse(std::span<char*> words) {
     const std::string value{word.substr(equals == word.npos ? word.size() : equals + 1)};
     if (name == "-runs") options.runs = std::stoull(value);
     if (name == "-seed") options.seed = std::stoull(value);
+    if (name == "-max_len") options.max_len = std::stoull(value);
     if (name == "-timeout") options.timeout = std::chrono::seconds{std::stoi(value)};
     if (name == "-malloc_limit_mb") options.malloc_limit_mb = std::stoull(value);
     if (name == "-artifact_prefix") artifact_prefix = value;
@@ -173,9 +174,9 @@ Options parse(std::span<char*> words) {
 }
 
 int run(const Options& options) {
-  Mutator mutator{read_corpus(options.path), options.seed};
+  Mutator mutator{read_corpus(options.path), options.max_len, options.seed};
   __sanitizer_set_death_callback(keep_input);
-  largest_allocation_bytes = options.malloc_limit_mb << 20;
+  allocation_limit_bytes = options.malloc_limit_mb << 20;
   __sanitizer_install_malloc_and_free_hooks(watch_allocation, watch_free);
   Clock::duration longest{};
   for (std::uint64_t i = 0; i < options.runs; ++i) {

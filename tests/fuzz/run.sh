@@ -49,8 +49,8 @@ programs=$source_dir/build/$preset/tests/fuzz
 make_seeds() {
   local work
   work=$(mktemp -d)
-  "$source_dir/deploy/launch.sh" "$source_dir/tests/data/scenarios/smallest.toml" --out "$work/run" \
-    --save-map "$work/short.map.lcm" >"$work/output" 2>&1 ||
+  "$source_dir/tests/with_network.sh" "$source_dir/deploy/launch.sh" "$source_dir/tests/data/scenarios/smallest.toml" \
+    --out "$work/run" --save-map "$work/short.map.lcm" >"$work/output" 2>&1 ||
     die $kExitFailed "the run for the first inputs failed: see $work/output"
   "$programs/fuzz_seeds" "$work/run" "$work/short.map.lcm" "$corpus"
   rm -rf -- "$work"

@@ -15,7 +15,7 @@ struct WideSearch {
   Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of it, map's axes
   std::vector<Se2> without_odometry{};                               ///< map_from_base
   double since_last_s{0.0};  ///< time since the last scan, which widens the window of turns
-  double driven_m{0.0};      ///< by odometry since then: the way may have led in any direction
+  double driven_m{0.0};      ///< by odometry since then, which widens the windows of positions
   double min_score{0.0};     ///< least SearchMatch::score
   /// Whether the map, including its free space, contradicts the scan at a pose.
   std::function<bool(const Se2& map_from_base)> contradicts_map{};
