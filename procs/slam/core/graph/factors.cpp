@@ -18,12 +18,13 @@ namespace {
 // The mixture of the odometry's noise; all constants were chosen, not fitted.
 // Penalties: -2 log of the prior probabilities of the components, rounded.
 constexpr double kRollingPenalty = 0.1;    // 0.95
-constexpr double kSpinningPenalty = 7.0;   // 0.03
+constexpr double kSpinningPenalty = 7.0;   // 0.03; both wheels: the same
 constexpr double kJerkedPenalty = 8.4;     // 0.015
 constexpr double kAnythingPenalty = 10.6;  // 0.005
 // Widths, in standard deviations of the configured noise.
 constexpr double kSpinningTurn = 25.0;  // turn caused by a spinning wheel, and distance with it
 constexpr double kSpinningRest = 3.0;   // all other errors meanwhile
+constexpr double kSlipping = 25.0;      // distance alone
 constexpr double kJerked = 25.0;
 constexpr double kAnything = 125.0;
 // A push while the odometry stands still, when its configured noise is zero.
@@ -77,6 +78,12 @@ double log_determinant(const Eigen::LLT<Eigen::Matrix3d>& root) {
   return 2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
 }
 
+/// -2 log-likelihood up to a constant.
+double mixture_cost(MotionKind kind, const Eigen::Vector3d& residual, const MixtureNoise& noise) {
+  const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind, noise)};
+  return residual.dot(root.solve(residual)) + penalty(kind) + log_determinant(root);
+}
+
 Variable keyframe_variable(std::size_t index) {
   return {VariableKind::kKeyframe, index};
 }
@@ -115,16 +122,18 @@ MotionKind likeliest_kind(const Eigen::Vector3d& residual, const MixtureNoise& n
   const std::array<MotionKind, 4> kinds{
       MotionKind::kRolling, residual.z() > 0.0 ? MotionKind::kLeftSpins : MotionKind::kRightSpins,
       MotionKind::kJerked, MotionKind::kAnything};
-  const auto cost = [&](MotionKind kind) {
-    const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind, noise)};
-    return residual.dot(root.solve(residual)) + penalty(kind) + log_determinant(root);
-  };
-  return *std::min_element(kinds.begin(), kinds.end(),
-                           [&](MotionKind a, MotionKind b) { return cost(a) < cost(b); });
+  return *std::min_element(kinds.begin(), kinds.end(), [&](MotionKind a, MotionKind b) {
+    return mixture_cost(a, residual, noise) < mixture_cost(b, residual, noise);
+  });
 }
 
 Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise) {
   if (kind == MotionKind::kRolling) return noise.rolling;
+  if (kind == MotionKind::kSlipping) {
+    const Eigen::Vector3d ahead{noise.ahead.x(), noise.ahead.y(), 0.0};
+    const double along_m2 = ahead.dot(noise.described * ahead);
+    return noise.rolling + squared(kSlipping) * along_m2 * ahead * ahead.transpose();
+  }
   if (kind == MotionKind::kJerked) return noise.rolling + squared(kJerked) * noise.described;
   if (kind == MotionKind::kAnything) {
     const Eigen::Matrix3d pushed =
@@ -177,7 +186,12 @@ void OdometryFactor::choose_kind(const State& state, const OdometryNoise& noise,
                                  const OdometryScale& scale) {
   if (is_cut || !noise.may_slip) return;
   const CorrectedMotion measured = moved(state, noise, scale);
-  kind = likeliest_kind(residual(state, measured), noise_of(measured, noise));
+  const Eigen::Vector3d off = residual(state, measured);
+  const MixtureNoise mixture = noise_of(measured, noise);
+  const MotionKind likeliest = likeliest_kind(off, mixture);
+  const bool slips = kind == MotionKind::kSlipping &&
+                     mixture_cost(kind, off, mixture) <= mixture_cost(likeliest, off, mixture);
+  if (!slips) kind = likeliest;
 }
 
 Eigen::Vector3d OdometryFactor::residual(const State& state,
@@ -196,7 +210,36 @@ Eigen::Matrix3d OdometryFactor::root_information(const CorrectedMotion& measured
 
 MixtureNoise OdometryFactor::noise_of(const CorrectedMotion& measured,
                                       const OdometryNoise& noise) const {
-  return {measured.covariance, random_walk(motion, noise), noise.half_track_m};
+  MixtureNoise mixture{measured.covariance, random_walk(motion, noise), noise.half_track_m};
+  const Eigen::Vector2d step = measured.start_from_end.translation();
+  if (step.norm() > 0.0) mixture.ahead = step.normalized();
+  return mixture;
+}
+
+/// If the covariance of the motion were larger by D (whitened), the cost of the optimum would be
+/// smaller by w' D (I + (I - H) D)^-1 w: w is the whitened residual, H its covariance.
+OdometryFactor::Change OdometryFactor::best_change(const LinearFactor& linear,
+                                                   const Eigen::Matrix3d& covariance,
+                                                   const State& state, const OdometryNoise& noise,
+                                                   const OdometryScale& scale) const {
+  Change best;
+  if (is_cut || !noise.may_slip || kind != MotionKind::kRolling) return best;
+  const MixtureNoise mixture = noise_of(moved(state, noise, scale), noise);
+  const Eigen::Matrix3d rolling = mixture.rolling + unmeasured_covariance(unmeasured_m);
+  const Eigen::Matrix3d whiten =
+      Eigen::LLT<Eigen::Matrix3d>{rolling}.matrixL().solve(Eigen::Matrix3d::Identity());
+  for (const MotionKind other : {MotionKind::kLeftSpins, MotionKind::kRightSpins,
+                                 MotionKind::kSlipping, MotionKind::kJerked}) {
+    const Eigen::Matrix3d wider =
+        whiten * (covariance_of(other, mixture) - mixture.rolling) * whiten.transpose();
+    const Eigen::Matrix3d observed =
+        Eigen::Matrix3d::Identity() + (Eigen::Matrix3d::Identity() - covariance) * wider;
+    const double less = linear.residual.dot(wider * observed.inverse() * linear.residual);
+    const double more = penalty(other) - penalty(kind) +
+                        std::log((Eigen::Matrix3d::Identity() + wider).determinant());
+    if (less - more > best.gain) best = {other, less - more};
+  }
+  return best;
 }
 
 double OdometryFactor::cost(const State& state, const OdometryNoise& noise,

@@ -61,6 +61,7 @@ enum class MotionKind : std::uint8_t {
   kRolling,
   kLeftSpins,  ///< the left wheel slips, which changes distance and turn together
   kRightSpins,
+  kSlipping,  ///< both wheels slip, which changes the distance alone; proposed by best_change()
   kJerked,    ///< a short slip or push during a normal drive
   kAnything,  ///< a gross error: the robot was pushed, or odometry jumped
 };
@@ -71,6 +72,7 @@ struct MixtureNoise {
   Eigen::Matrix3d described{Eigen::Matrix3d::Zero()};  ///< as configured: the size of slips scales
                                                        ///< with it, not with the learnt noise
   double half_track_m{0.0};                            ///< half of the distance between the wheels
+  Eigen::Vector2d ahead{Eigen::Vector2d::UnitX()};     ///< direction of the motion
 };
 
 /// @param residual  observed minus measured (x, y, theta), in the frame at the start.
@@ -101,6 +103,18 @@ struct OdometryFactor {
   /// Chooses the component of the mixture. The poses of `state` must be optimised for its
   /// calibration: otherwise a change of the calibration looks like a slip.
   void choose_kind(const State& state, const OdometryNoise& noise, const OdometryScale& scale);
+
+  struct Change {
+    MotionKind kind{MotionKind::kRolling};
+    double gain{0.0};  ///< by which the cost of the graph falls, once it is optimised
+  };
+
+  /// The component that would reduce the cost of the whole graph most; kRolling: none.
+  /// @param linear      linearise() at the optimum with kRolling.
+  /// @param covariance  of linear.residual, given all factors.
+  Change best_change(const LinearFactor& linear, const Eigen::Matrix3d& covariance,
+                     const State& state, const OdometryNoise& noise,
+                     const OdometryScale& scale) const;
 
   /// -2 log-likelihood up to a constant: chi^2 plus the component's penalty and log-determinant
   /// relative to kRolling's.

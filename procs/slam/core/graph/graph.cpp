@@ -262,19 +262,19 @@ void Graph::retract_window(const Eigen::VectorXd& step) {
 
 /// Computed for all variables but the older keyframes, which come first in the layout: the lower
 /// right corner of (L L')^-1 needs only that corner of L.
-void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root) {
+void Graph::update_covariance() {
   const std::size_t count = state_.keyframes.size();
   const Eigen::Index first =
       count == 0
           ? 0
           : offsets_.at({VariableKind::kKeyframe,
                          std::max(first_keyframe_, count - std::min(count, kWithCovariance))});
-  const Eigen::Index size = root.rows() - first;
+  const Eigen::Index size = root_.rows() - first;
   covariance_offsets_.clear();
   for (const auto& [variable, offset] : offsets_)
     if (offset >= first) covariance_offsets_[variable] = offset - first;
   Eigen::MatrixXd half = Eigen::MatrixXd::Identity(size, size);
-  root.matrixLLT().bottomRightCorner(size, size).triangularView<Eigen::Lower>().solveInPlace(half);
+  root_.matrixLLT().bottomRightCorner(size, size).triangularView<Eigen::Lower>().solveInPlace(half);
   covariance_.noalias() = half.transpose() * half;
   for (const auto& [variable, offset] : covariance_offsets_) {
     if (variable.kind == VariableKind::kCalibration) continue;
@@ -287,24 +287,29 @@ void Graph::update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& r
   }
 }
 
+/// One step of Gauss-Newton with the kinds of motion as they are.
+Eigen::VectorXd Graph::step_window() {
+  const NormalEquations equations = window_equations();
+  root_.compute(equations.h);
+  Eigen::VectorXd step = root_.solve(-equations.g);
+  step *=
+      step_share(step, layout_, [this](const Variable& variable) { return offsets_.at(variable); });
+  retract_window(step);
+  return step;
+}
+
 /// @return sum of the steps.
 Eigen::VectorXd Graph::solve_window() {
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(prior_.g.size());
-  DampedRoot root;
   double step_size = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMaxIterations && step_size >= kConverged; ++i) {
     for (const std::size_t index : active_factors_)
       choose_kind(factors_[index]);
-    const NormalEquations equations = window_equations();
-    root.compute(equations.h);
-    Eigen::VectorXd step = root.solve(-equations.g);
-    step *= step_share(step, layout_,
-                       [this](const Variable& variable) { return offsets_.at(variable); });
-    retract_window(step);
+    const Eigen::VectorXd step = step_window();
     moved += step;
     step_size = step.cwiseAbs().maxCoeff();
   }
-  update_covariance(root);
+  update_covariance();
   const Variable calibration{};
   calibration_.weigh(state_.calibration, covariance(calibration, calibration).diagonal());
   return moved;

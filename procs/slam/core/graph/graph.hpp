@@ -4,6 +4,7 @@
 #pragma once
 
 #include "slam/core/graph/calibration_knowledge.hpp"
+#include "slam/core/graph/damped_root.hpp"
 #include "slam/core/graph/factors.hpp"
 
 #include <Eigen/Cholesky>
@@ -90,8 +91,11 @@ class Graph {
 
   std::size_t num_active_keyframes() const { return state_.keyframes.size() - first_keyframe_; }
 
-  /// Gauss-Newton over the window.
-  void optimise() { solve_window(); }
+  /// Gauss-Newton over the window. Where it has markers, also looks for slips that this local
+  /// search does not find: while every motion counts as rolling, a slip spreads over its neighbours
+  /// and the calibration. Scans alone do not show them reliably: a scan that was mismatched looks
+  /// like a slip.
+  void optimise();
 
   /// One step of Gauss-Newton over the whole graph: eliminates all variables behind the window,
   /// which rebuilds the window's prior; solves the window; substitutes back.
@@ -169,10 +173,13 @@ class Graph {
   void add_to(NormalEquations& equations, const LinearFactor& linear) const;
   NormalEquations window_equations() const;
   void retract_window(const Eigen::VectorXd& step);
+  Eigen::VectorXd step_window();
+  bool has_markers() const;
+  bool assume_slip();
   Eigen::VectorXd solve_window();
   void eliminate(const Variable& variable);
   void remove_from_layout(const Variable& variable);
-  void update_covariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& root);
+  void update_covariance();
   std::vector<Variable> variables_of(const Factor& factor) const;
 
   GraphNoise noise_;
@@ -185,6 +192,7 @@ class Graph {
   std::vector<Variable> layout_{};
   std::map<Variable, Eigen::Index> offsets_{};
   NormalEquations prior_{};       ///< of the window; g is the gradient at the current state
+  DampedRoot root_{};             ///< of the window's equations as of step_window()
   Eigen::MatrixXd covariance_{};  ///< of the variables in covariance_offsets_
   std::map<Variable, Eigen::Index> covariance_offsets_{};
   std::vector<Eigen::Matrix3d> landmark_covariances_{};
