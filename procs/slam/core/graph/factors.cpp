@@ -224,10 +224,9 @@ OdometryFactor::Change OdometryFactor::best_change(const LinearFactor& linear,
                                                    const OdometryScale& scale) const {
   Change best;
   if (is_cut || !noise.may_slip || kind != MotionKind::kRolling) return best;
-  const MixtureNoise mixture = noise_of(moved(state, noise, scale), noise);
-  const Eigen::Matrix3d rolling = mixture.rolling + unmeasured_covariance(unmeasured_m);
-  const Eigen::Matrix3d whiten =
-      Eigen::LLT<Eigen::Matrix3d>{rolling}.matrixL().solve(Eigen::Matrix3d::Identity());
+  const CorrectedMotion measured = moved(state, noise, scale);
+  const MixtureNoise mixture = noise_of(measured, noise);
+  const Eigen::Matrix3d whiten = root_information(measured, noise);
   for (const MotionKind other : {MotionKind::kLeftSpins, MotionKind::kRightSpins,
                                  MotionKind::kSlipping, MotionKind::kJerked}) {
     const Eigen::Matrix3d wider =
