@@ -46,7 +46,7 @@ correction_t CorrectionMaker::make(const Estimate& estimate, const Se2& odom_fro
   // odometry's origin.
   Eigen::Map<RowMajor3>{message.covariance} = carried_along(
       estimate.covariance, map_from_odom.translation() - estimate.map_from_base.translation());
-  message.health = health_number(estimate.health);
+  message.health = static_cast<std::int8_t>(estimate.health);
   Eigen::Map<Eigen::Vector3d>{message.jump} =
       pose_difference(estimate.map_from_base, by_the_one_before);
   message.reason = to_message(estimate.reason);

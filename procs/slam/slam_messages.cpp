@@ -11,26 +11,20 @@ namespace {
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
+static_assert(static_cast<int>(Health::kInitialising) == slam_estimate_t::HEALTH_INITIALISING &&
+              static_cast<int>(Health::kTracking) == slam_estimate_t::HEALTH_TRACKING &&
+              static_cast<int>(Health::kDegenerate) == slam_estimate_t::HEALTH_DEGENERATE &&
+              static_cast<int>(Health::kLost) == slam_estimate_t::HEALTH_LOST);
+static_assert(static_cast<int>(WeakAxisSource::kOdometry) == slam_estimate_t::SOURCE_ODOMETRY &&
+              static_cast<int>(WeakAxisSource::kMarkers) == slam_estimate_t::SOURCE_MARKERS &&
+              static_cast<int>(WeakAxisSource::kNothing) == slam_estimate_t::SOURCE_NOTHING);
+
 constexpr std::size_t kBeamsPerMessage = 5400;      // 12 bytes each
 constexpr std::size_t kParticlesPerMessage = 1300;  // 48 bytes each
 constexpr std::size_t kLandmarksPerMessage = 500;   // 125 bytes each
 constexpr std::size_t kPosesPerMessage = 3000;      // 20 bytes each
 constexpr std::size_t kVerticesPerMessage = 500;    // 24 bytes each, and as many edges of 80 bytes
 constexpr std::size_t kChangesPerMessage = 900;     // 69 bytes each
-
-std::int8_t to_message(WeakAxisSource source) {
-  switch (source) {
-    case WeakAxisSource::kUnknown:
-      return slam_estimate_t::SOURCE_UNKNOWN;
-    case WeakAxisSource::kOdometry:
-      return slam_estimate_t::SOURCE_ODOMETRY;
-    case WeakAxisSource::kMarkers:
-      return slam_estimate_t::SOURCE_MARKERS;
-    case WeakAxisSource::kNothing:
-      return slam_estimate_t::SOURCE_NOTHING;
-  }
-  return slam_estimate_t::SOURCE_UNKNOWN;
-}
 
 std::int8_t to_message(MapChange::Kind kind) {
   switch (kind) {
@@ -83,20 +77,6 @@ graph_edge_t to_message(const GraphEdge& edge) {
 
 }  // namespace
 
-std::int8_t health_number(Health health) {
-  switch (health) {
-    case Health::kInitialising:
-      return slam_estimate_t::HEALTH_INITIALISING;
-    case Health::kTracking:
-      return slam_estimate_t::HEALTH_TRACKING;
-    case Health::kDegenerate:
-      return slam_estimate_t::HEALTH_DEGENERATE;
-    case Health::kLost:
-      return slam_estimate_t::HEALTH_LOST;
-  }
-  return slam_estimate_t::HEALTH_UNKNOWN;
-}
-
 slam_estimate_t to_message(const Estimate& estimate) {
   slam_estimate_t message{};
   message.utime = to_us(estimate.time);
@@ -105,7 +85,7 @@ slam_estimate_t to_message(const Estimate& estimate) {
   message.y_m = estimate.map_from_base.y();
   message.theta_rad = estimate.map_from_base.theta();
   Eigen::Map<RowMajor3>{message.covariance} = estimate.covariance;
-  message.health = health_number(estimate.health);
+  message.health = static_cast<std::int8_t>(estimate.health);
   message.num_particles = static_cast<std::int32_t>(estimate.num_particles);
   message.effective_particles = estimate.effective_particles;
   message.beams_on_markers = estimate.beams_on_markers;
@@ -116,7 +96,7 @@ slam_estimate_t to_message(const Estimate& estimate) {
   if (walls.is_degenerate) {
     message.weak_axis[0] = walls.weak_direction.x();
     message.weak_axis[1] = walls.weak_direction.y();
-    message.weak_axis_source = to_message(estimate.weak_axis_source);
+    message.weak_axis_source = static_cast<std::int8_t>(estimate.weak_axis_source);
   }
   return message;
 }

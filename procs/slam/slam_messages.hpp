@@ -11,8 +11,6 @@
 
 namespace waymark {
 
-std::int8_t health_number(Health health);
-
 slam_estimate_t to_message(const Estimate& estimate);
 
 /// Id of a map that is being made. Never 0.

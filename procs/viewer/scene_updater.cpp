@@ -15,11 +15,6 @@ Eigen::Matrix3d to_matrix(const double (&row_major)[9]) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{row_major};
 }
 
-Health to_health(std::int8_t value) {
-  if (value < 0 || value > static_cast<int>(Health::kLost)) return Health::kUnknown;
-  return static_cast<Health>(value);
-}
-
 LandmarkState to_state(std::int8_t value) {
   if (value < 0 || value > static_cast<int>(LandmarkState::kMoved)) return LandmarkState::kUnknown;
   return static_cast<LandmarkState>(value);
@@ -28,12 +23,9 @@ LandmarkState to_state(std::int8_t value) {
 std::optional<WeakAxis> to_weak_axis(const slam_estimate_t& message) {
   const Eigen::Vector3d direction{message.weak_axis[0], message.weak_axis[1], message.weak_axis[2]};
   if (direction.isZero()) return std::nullopt;
-  const bool is_known = message.weak_axis_source >= 0 &&
-                        message.weak_axis_source <= static_cast<int>(WeakAxisSource::kNothing);
   return WeakAxis{.direction = direction,
                   .information = message.weak_information,
-                  .source = is_known ? static_cast<WeakAxisSource>(message.weak_axis_source)
-                                     : WeakAxisSource::kUnknown};
+                  .source = to_weak_axis_source(message.weak_axis_source)};
 }
 
 TimedPose to_timed_pose(const pose2D_t& message) {

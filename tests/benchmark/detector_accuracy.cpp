@@ -6,6 +6,7 @@
 // square is wholly in view, with the quiet zone's width to spare, count.
 #include "common/config/config.hpp"
 #include "common/geometry/angle.hpp"
+#include "common/geometry/median.hpp"
 #include "common/random/random.hpp"
 #include "detector/core/frame_decoder.hpp"
 #include "detector/core/marker_detector.hpp"
@@ -74,12 +75,6 @@ struct Tally {
     milliseconds.insert(milliseconds.end(), other.milliseconds.begin(), other.milliseconds.end());
   }
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::ranges::nth_element(values, values.begin() + std::ssize(values) / 2);
-  return values[values.size() / 2];
-}
 
 /// Processor time: other processes on the machine do not count.
 double cpu_ms() {
@@ -247,7 +242,7 @@ void print_row(const std::string& name, const Tally& tally) {
       tally.markers, 100.0 * tally.detected / std::max(1, tally.markers), tally.unrefined,
       tally.false_ids, 100.0 * tally.range_sum_m / n, 100.0 * std::sqrt(tally.range_squares / n),
       degrees(std::sqrt(tally.bearing_squares / n)), degrees(std::sqrt(tally.yaw_squares / n)),
-      tally.nees_sum / n, median(tally.milliseconds));
+      tally.nees_sum / n, tally.milliseconds.empty() ? 0.0 : median(tally.milliseconds));
 }
 
 /// Mean errors, which all markers of a corridor have in common.

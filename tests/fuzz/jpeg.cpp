@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a JPEG says about itself.
-#include "detector/core/jpeg_header.hpp"
+#include "common/jpeg/jpeg_header.hpp"
 
 #include <cstdlib>
 

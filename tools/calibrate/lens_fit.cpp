@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "calibrate/lens_fit.hpp"
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 
 #include <Eigen/Dense>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks of camera and markers.
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 #include "common/markers/marker_dictionary.hpp"
 #include "doctor/checks.hpp"
 #include "doctor/verdict.hpp"
@@ -23,7 +23,6 @@ constexpr Limits kBlur_px{1.5, 3.0};
 constexpr Limits kUnreadable{0.01, 0.1};  // share of the frames
 constexpr std::size_t kFewestMarkers = 20;
 constexpr double kSigmaOfMedian = 1.2533;  // times sigma / sqrt(n), of a normal distribution
-constexpr double kSigmaOfMad = 1.4826;
 
 Measured median_of(const std::vector<double>& values) {
   const double value = upper_median(values);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placement/placement.hpp"
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 #include "common/markers/marker_dictionary.hpp"
 
 #include <fmt/format.h>

@@ -75,7 +75,7 @@ std::string placement_picture(const PlacementInput& input, const Placement& plac
     pose.time = timestamp_from_us(static_cast<std::int64_t>(i));
     pose.map_from_base = placement.steps[i].map_from_base;
     pose.covariance = placement.now[i];
-    pose.health = viewer::Health::kTracking;
+    pose.health = Health::kTracking;
     scene.estimates.push_back(pose);
   }
   viewer::MapPageStyle style;

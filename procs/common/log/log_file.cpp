@@ -2,6 +2,7 @@
 #include "common/log/log_file.hpp"
 
 #include "common/errors/setup_error.hpp"
+#include "common/log/big_endian.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -24,15 +25,6 @@ constexpr std::int64_t kMaxDataBytes = std::int64_t{64} << 20;  // raw images of
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 constexpr std::size_t kReadBufferBytes = std::size_t{32} << 10;  // small: images are often skipped
 constexpr std::size_t kFirstSearchBytes = 256;
-
-template <class Unsigned>
-Unsigned read_big_endian(const char* bytes) {
-  Unsigned value = 0;
-  for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
-    value = static_cast<Unsigned>((value << 8) | static_cast<std::uint8_t>(bytes[i]));
-  }
-  return value;
-}
 
 template <class Unsigned>
 void append_big_endian(std::string& bytes, Unsigned value) {

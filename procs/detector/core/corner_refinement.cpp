@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/corner_refinement.hpp"
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 #include "detector/core/sampled_square.hpp"
 
 #include <Eigen/LU>
@@ -111,10 +111,9 @@ std::optional<EdgeLine> fit_line(std::vector<EdgePoint> points, double length_px
     };
     for (const EdgePoint& p : points)
       distances.push_back(distance_px(p));
-    constexpr double kSigmaFromMedian = 1.4826;  // of a normal distribution's absolute deviations
     const double limit_px =
         kOutlierSigmas *
-        std::max(kSmallestResidualPx, kSigmaFromMedian * upper_median(std::move(distances)));
+        std::max(kSmallestResidualPx, kSigmaOfMad * upper_median(std::move(distances)));
     const auto is_far = [&](const EdgePoint& p) {
       return distance_px(p) > limit_px;
     };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/frame_decoder.hpp"
 
-#include "detector/core/jpeg_header.hpp"
+#include "common/jpeg/jpeg_header.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/sampled_square.hpp"
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 #include "detector/core/blurred_side.hpp"
 
 #include <algorithm>

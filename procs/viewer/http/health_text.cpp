@@ -68,24 +68,8 @@ std::string findings_sentence(const std::vector<Finding>& findings) {
 }  // namespace
 
 std::string_view health_name(const LiveView& view) {
-  if (view.estimate) return health_name(view.estimate->health);
-  return view.is_unplaced ? health_name(Health::kInitialising) : "waiting";
-}
-
-std::string_view health_name(Health health) {
-  switch (health) {
-    case Health::kInitialising:
-      return "initialising";
-    case Health::kTracking:
-      return "tracking";
-    case Health::kDegenerate:
-      return "degenerate";
-    case Health::kLost:
-      return "lost";
-    case Health::kUnknown:
-      break;
-  }
-  return "unknown";
+  if (view.estimate) return name_of(view.estimate->health);
+  return view.is_unplaced ? name_of(Health::kInitialising) : "waiting";
 }
 
 std::string_view source_name(WeakAxisSource source) {

@@ -9,10 +9,7 @@
 
 namespace waymark::viewer {
 
-/// "tracking", "degenerate", ...: the names of HEALTH_* in lcmtypes/slam_estimate_t.lcm.
-std::string_view health_name(Health health);
-
-/// The same for a view; "waiting" before the first message of slam.
+/// "tracking", "degenerate", ...; "waiting" before the first message of slam.
 std::string_view health_name(const LiveView& view);
 
 std::string_view source_name(WeakAxisSource source);

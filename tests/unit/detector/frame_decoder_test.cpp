@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/frame_decoder.hpp"
 
+#include "common/jpeg/jpeg_header.hpp"
 #include "common/random/random.hpp"
-#include "detector/core/jpeg_header.hpp"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>

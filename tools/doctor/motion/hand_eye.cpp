@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "doctor/motion/hand_eye.hpp"
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 
 #include <Eigen/Dense>
 
@@ -20,7 +20,6 @@ constexpr double kRateOver_s = 0.2;  // window of turn rates; turns last longer
 // d(remaining offset) / d(offset): 1 without noise; below this the offset is not observable.
 constexpr double kLeastSlope = 0.05;
 constexpr double kShortestInterval_s = 0.005;  // step of the search for fast odometry
-constexpr double kSigmaOfMad = 1.4826;         // of a normal distribution
 constexpr double kCutoff = 3.0;                // kernel width of the robust weights, in sigmas
 constexpr double kLeastResidual_rad = 0.0017;  // a tenth of a degree
 constexpr double kLeastResidual_m = 1e-4;

@@ -18,11 +18,6 @@ constexpr double kSmallestVariance = 1e-12;
 /// Times are written with six decimals.
 constexpr double kSameTime_s = 1e-5;
 
-Health health_of(double number) {
-  const bool is_known = number >= 0.0 && number <= static_cast<double>(Health::kLost);
-  return is_known ? static_cast<Health>(std::lround(number)) : Health::kUnknown;
-}
-
 bool has_health(const std::filesystem::path& file) {
   const std::vector<std::string> lines = read_lines(file);
   return !lines.empty() && lines.front().ends_with(",health");
@@ -46,7 +41,8 @@ std::vector<StampedCovariance> read_covariances(const std::filesystem::path& fil
     const double tt = table.at(row, "ctt");
     Eigen::Matrix3d covariance;
     covariance << xx, xy, xt, xy, yy, yt, xt, yt, tt;
-    const Health health = with_health ? health_of(table.at(row, "health")) : Health::kUnknown;
+    const Health health =
+        with_health ? to_health(std::lround(table.at(row, "health"))) : Health::kUnknown;
     covariances.push_back({table.at(row, "t"), covariance, health});
   }
   std::stable_sort(

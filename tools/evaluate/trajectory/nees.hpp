@@ -2,6 +2,7 @@
 // Consistency of reported covariances with the errors (NEES).
 #pragma once
 
+#include "common/health/health.hpp"
 #include "evaluate/trajectory/trajectory_error.hpp"
 
 #include <Eigen/Core>
@@ -10,9 +11,6 @@
 #include <vector>
 
 namespace waymark::evaluate {
-
-/// Reported state of the localisation; values as in lcmtypes/slam_estimate_t.lcm.
-enum class Health { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
 
 /// Covariance of a pose in the map frame, order x y theta [m^2, m rad, rad^2].
 struct StampedCovariance {

@@ -2,7 +2,7 @@
 #include "import/carmen/line_times.hpp"
 
 #include "common/errors/setup_error.hpp"
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 #include "common/time/date_text.hpp"
 #include "import/log/clock_seams.hpp"
 #include "import/log/time_order.hpp"

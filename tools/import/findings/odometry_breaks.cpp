@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/findings/odometry_breaks.hpp"
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 #include "common/time/clock_step_detector.hpp"
 #include "common/time/date_text.hpp"
 #include "import/findings/scan_overlay.hpp"

@@ -2,7 +2,7 @@
 // Handles stamps that go backwards, such that one bad stamp does not discard all records after it.
 #pragma once
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 #include "common/time/time.hpp"
 #include "import/log/import_report.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/mbot/clocks.hpp"
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 
 #include <fmt/format.h>
 

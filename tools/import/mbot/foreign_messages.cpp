@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/mbot/foreign_messages.hpp"
 
+#include "common/log/big_endian.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
 
@@ -22,18 +23,8 @@ constexpr std::size_t kEncodersBytes = 8 + 8 + 2 * 4;
 constexpr std::size_t kBotCorePoseBytes = 8 + 8 + 16 * 8;
 constexpr std::size_t kBodyOffset = 16;  // behind fingerprint and utime
 
-/// `offset + sizeof(Unsigned)` must lie within the payload.
-template <class Unsigned>
-Unsigned read_big_endian(std::span<const std::uint8_t> payload, std::size_t offset) {
-  Unsigned value = 0;
-  for (const std::uint8_t byte : payload.subspan(offset, sizeof(Unsigned))) {
-    value = static_cast<Unsigned>((value << 8) | byte);
-  }
-  return value;
-}
-
 double read_double(std::span<const std::uint8_t> payload, std::size_t index) {
-  return std::bit_cast<double>(read_big_endian<std::uint64_t>(payload, kBodyOffset + 8 * index));
+  return std::bit_cast<double>(read_big_endian<std::uint64_t>(&payload[kBodyOffset + 8 * index]));
 }
 
 bool has_type(std::span<const std::uint8_t> payload, std::uint64_t fingerprint) {
@@ -102,8 +93,8 @@ EncoderResult read_encoders(std::span<const std::uint8_t> payload) {
   const auto time = time_of(payload);
   if (!time) return LineProblem{"bad time", "utime is negative or far in the future"};
   return EncoderTicks{
-      *time, 0, static_cast<std::int32_t>(read_big_endian<std::uint32_t>(payload, kBodyOffset)),
-      static_cast<std::int32_t>(read_big_endian<std::uint32_t>(payload, kBodyOffset + 4)),
+      *time, 0, static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&payload[kBodyOffset])),
+      static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&payload[kBodyOffset + 4])),
       is_feedback ? Encoders::kMaebot2014 : Encoders::kMaebot};
 }
 

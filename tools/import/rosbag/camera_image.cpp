@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/rosbag/camera_image.hpp"
 
+#include "common/jpeg/jpeg_header.hpp"
 #include "common/messages/message.hpp"
 
 #include <opencv2/imgcodecs.hpp>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 #include <vector>
 
 namespace waymark {
@@ -48,24 +48,6 @@ std::optional<cv::Mat> grey_of_pixels(const RosImage& image) {
   return grey;
 }
 
-/// Size of a JPEG by its frame header, without decoding it.
-std::optional<std::pair<int, int>> jpeg_size(ByteView data) {
-  if (data.size() < 4 || data[0] != 0xFF || data[1] != 0xD8) return std::nullopt;
-  std::size_t at = 2;
-  while (at + 9 < data.size() && data[at] == 0xFF) {
-    const std::uint8_t marker = data[at + 1];
-    const std::size_t length = static_cast<std::size_t>(data[at + 2]) << 8U | data[at + 3];
-    const bool is_frame =
-        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-    if (is_frame) {
-      return std::pair{data[at + 7] << 8 | data[at + 8], data[at + 5] << 8 | data[at + 6]};
-    }
-    if (length < 2) return std::nullopt;
-    at += 2 + length;
-  }
-  return std::nullopt;
-}
-
 image_t message_of(Timestamp time, int width_px, int height_px, std::vector<std::uint8_t> jpeg) {
   image_t message{};
   message.utime = to_us(time);
@@ -79,8 +61,9 @@ image_t message_of(Timestamp time, int width_px, int height_px, std::vector<std:
 
 std::optional<cv::Mat> decoded(const RosImage& image) {
   if (image.width_px > 0) return grey_of_pixels(image);
-  const auto size = jpeg_size(image.data);
-  if (size && std::int64_t{size->first} * size->second > kMaxPixels) return std::nullopt;
+  const auto header = read_jpeg_header(image.data);
+  if (header && std::int64_t{header->width_px} * header->height_px > kMaxPixels)
+    return std::nullopt;
   const cv::Mat bytes{1, static_cast<int>(image.data.size()), CV_8UC1,
                       const_cast<std::uint8_t*>(image.data.data())};
   try {
@@ -94,9 +77,11 @@ std::optional<cv::Mat> decoded(const RosImage& image) {
 }  // namespace
 
 std::optional<image_t> to_camera_message(const RosImage& image, Timestamp time) {
-  const auto size = image.width_px == 0 ? jpeg_size(image.data) : std::nullopt;
-  if (size && size->first > 0 && size->second > 0 && image.data.size() <= kMaxImageBytes)
-    return message_of(time, size->first, size->second, {image.data.begin(), image.data.end()});
+  const auto jpeg_sent = image.width_px == 0 ? read_jpeg_header(image.data) : std::nullopt;
+  if (jpeg_sent && jpeg_sent->width_px > 0 && jpeg_sent->height_px > 0 &&
+      image.data.size() <= kMaxImageBytes)
+    return message_of(time, jpeg_sent->width_px, jpeg_sent->height_px,
+                      {image.data.begin(), image.data.end()});
   const auto grey = decoded(image);
   if (!grey) return std::nullopt;
   std::vector<std::uint8_t> jpeg;

@@ -2,7 +2,7 @@
 #include "import/rosbag/rosbag_reader.hpp"
 
 #include "common/errors/setup_error.hpp"
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 #include "common/messages/bounds.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/validate.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/geometry/se2.hpp"
+#include "common/health/health.hpp"
 #include "common/time/time.hpp"
 #include "slam/core/filter/particle_set.hpp"
 #include "slam/core/scan/observability.hpp"
@@ -13,11 +14,6 @@
 #include <cstdint>
 
 namespace waymark {
-
-enum class Health { kInitialising, kTracking, kDegenerate, kLost };
-
-/// What observes the motion in the direction that the walls observe least.
-enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
 
 /// What determined the estimate, in ascending precedence: the last of these that applies.
 enum class EstimateReason { kOdometry, kScan, kMarker, kLoop, kRelocalised, kSurvey, kCommand };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/correlative_search.hpp"
 
-#include "common/geometry/upper_median.hpp"
+#include "common/geometry/median.hpp"
 
 #include <algorithm>
 #include <array>

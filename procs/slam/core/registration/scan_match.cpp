@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/scan_match.hpp"
 
+#include "common/geometry/median.hpp"
 #include "common/geometry/principal_axes.hpp"
 #include "common/geometry/squared.hpp"
-#include "common/geometry/upper_median.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -35,9 +35,8 @@ constexpr double kGuessFades = 10.0;               // factor on the guess's sigm
 const Eigen::Vector3d kLeastFaded{0.2, 0.2, 0.1};  // and what is added to them [m, m, rad]
 
 // Noise of ranges.
-constexpr int kWellSeen = 20;               // least number of points of a cell
-constexpr double kSquareOn = 0.5;           // least cosine of a beam's angle of incidence
-constexpr double kSigmaOverMedian = 1.483;  // sigma over median absolute value, normal distribution
+constexpr int kWellSeen = 20;      // least number of points of a cell
+constexpr double kSquareOn = 0.5;  // least cosine of a beam's angle of incidence
 
 /// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
 struct Quadratic {
@@ -184,7 +183,7 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
   match.num_mapped = mapped;
   match.num_scattered = static_cast<int>(off_range_m.size());
   if (!off_range_m.empty())
-    match.range_scatter_m = kSigmaOverMedian * upper_median(std::move(off_range_m));
+    match.range_scatter_m = kSigmaOfMad * upper_median(std::move(off_range_m));
   match.mapped_share = points.empty() ? 0.0 : mapped / static_cast<double>(points.size());
   match.inlier_share = mapped == 0 ? 0.0 : match.inliers / static_cast<double>(mapped);
   if (shares.empty()) return;

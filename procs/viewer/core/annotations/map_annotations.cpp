@@ -81,14 +81,15 @@ std::string shares_text(const std::array<std::pair<Kind, std::string_view>, N>& 
   return text;
 }
 
+constexpr std::pair<Health, std::string_view> named(Health health) {
+  return {health, name_of(health)};
+}
+
 /// Shares of the updates; empty without any.
 std::string health_summary(const std::vector<EstimatedPose>& estimates) {
-  constexpr std::array<std::pair<Health, std::string_view>, 5> kHealths{
-      {{Health::kInitialising, "initialising"},
-       {Health::kTracking, "tracking"},
-       {Health::kDegenerate, "degenerate"},
-       {Health::kLost, "lost"},
-       {Health::kUnknown, "unknown"}}};
+  constexpr std::array kHealths{named(Health::kInitialising), named(Health::kTracking),
+                                named(Health::kDegenerate), named(Health::kLost),
+                                named(Health::kUnknown)};
   constexpr std::array<std::pair<WeakAxisSource, std::string_view>, 4> kSources{
       {{WeakAxisSource::kOdometry, "odometry"},
        {WeakAxisSource::kMarkers, "markers"},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/geometry/se2.hpp"
+#include "common/health/health.hpp"
 #include "common/sensors/sensors.hpp"
 #include "common/time/time.hpp"
 #include "viewer/core/scene/tiled_map.hpp"
@@ -21,17 +22,11 @@ namespace waymark::viewer {
 /// process far below 300 MB whatever the tiles claim.
 constexpr std::int64_t kMaxMapCells = 16'000'000;
 
-/// State of the localisation; values as in lcmtypes/slam_estimate_t.lcm.
-enum class Health { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
-
 /// State of a marker in the map; values as in lcmtypes/marker_landmark_t.lcm.
 enum class LandmarkState { kUnknown, kConfirmed, kTentative, kMoved };
 
 /// "confirmed", ...
 std::string_view name_of(LandmarkState state);
-
-/// What observes the motion along the weakest axis; values as in lcmtypes/slam_estimate_t.lcm.
-enum class WeakAxisSource { kUnknown, kOdometry, kMarkers, kNothing };
 
 /// A direction that the scan alone hardly observes.
 struct WeakAxis {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "detector/core/jpeg_header.hpp"
+#include "common/jpeg/jpeg_header.hpp"
 
 #include <cstddef>
 
