@@ -109,7 +109,7 @@ DatagramReceiver::DatagramReceiver(const MulticastGroup& group)
 
 /// Binds to the group's address, so that datagrams to other groups on the same port are not
 /// received.
-void DatagramReceiver::join(const MulticastGroup& group) {
+void DatagramReceiver::join(const MulticastGroup& group) const {
   set(socket_, SOL_SOCKET, SO_REUSEADDR, 1, "SO_REUSEADDR");
   set(socket_, SOL_SOCKET, SO_RCVBUF, kReceiveBuffer_bytes, "SO_RCVBUF");
   const timeval wait{0, std::chrono::microseconds{kWait}.count()};

@@ -79,7 +79,7 @@ class DatagramReceiver {
  private:
   static constexpr std::chrono::milliseconds kWait{50};
 
-  void join(const MulticastGroup& group);
+  void join(const MulticastGroup& group) const;
 
   int socket_{-1};
   std::vector<std::uint8_t> bytes_{};

@@ -2,7 +2,7 @@
 #include "common/log/log_file.hpp"
 
 #include "common/errors/setup_error.hpp"
-#include "common/log/big_endian.hpp"
+#include "common/messages/big_endian.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -99,9 +99,9 @@ bool LogReader::read_header(std::int64_t offset, Header& header) {
   seek(offset);
   read(bytes.data(), kHeaderBytes);
   if (read_big_endian<std::uint32_t>(bytes.data()) != kSyncWord) return false;
-  header.time_us = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(&bytes[12]));
-  header.channel_bytes = static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&bytes[20]));
-  header.data_bytes = static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&bytes[24]));
+  header.time_us = read_big_endian<std::int64_t>(&bytes[12]);
+  header.channel_bytes = read_big_endian<std::int32_t>(&bytes[20]);
+  header.data_bytes = read_big_endian<std::int32_t>(&bytes[24]);
   return header.channel_bytes >= 1 && header.channel_bytes <= kMaxChannelBytes &&
          header.data_bytes >= 0 && header.data_bytes <= kMaxDataBytes &&
          header.channel_bytes + header.data_bytes <= size_bytes_ - offset - kHeaderBytes;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/messages/codec.hpp"
 
+#include "common/messages/big_endian.hpp"
 #include "common/messages/bounds.hpp"
 
 #include <cstring>
@@ -11,13 +12,6 @@ namespace {
 constexpr std::size_t kFingerprintBytes = 8;
 constexpr std::size_t kMaxDecodedBytes = std::size_t{16}
                                          << 20;  // logs of other robots hold raw images
-
-std::int64_t read_int64(std::span<const std::uint8_t> bytes, std::size_t offset) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < 8; ++i)
-    value = (value << 8) | bytes[offset + i];
-  return static_cast<std::int64_t>(value);
-}
 
 /// One step of a 64-bit multiplicative hash.
 std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
@@ -73,12 +67,12 @@ std::int64_t content_hash(const Message& message) {
 }
 
 std::int64_t fingerprint_of(std::span<const std::uint8_t> payload) {
-  return payload.size() < kFingerprintBytes ? 0 : read_int64(payload, 0);
+  return payload.size() < kFingerprintBytes ? 0 : read_big_endian<std::int64_t>(payload.data());
 }
 
 std::optional<Timestamp> time_of(std::span<const std::uint8_t> payload) {
   if (payload.size() < 2 * kFingerprintBytes) return std::nullopt;
-  const std::int64_t utime_us = read_int64(payload, kFingerprintBytes);
+  const std::int64_t utime_us = read_big_endian<std::int64_t>(&payload[kFingerprintBytes]);
   if (!is_sane_time(utime_us)) return std::nullopt;
   return timestamp_from_us(utime_us);
 }

@@ -39,7 +39,8 @@ RejectReason check_bytes(std::span<const std::uint8_t> payload, std::int64_t fin
 /// never allocates more than the payload's size allows.
 template <class Type>
 Decoded<Type> decode(std::span<const std::uint8_t> payload) {
-  const RejectReason bytes_fault = check_bytes(payload, Type::getHash(), LayoutOf<Type>::fields);
+  static const StructLayout layout = layout_of(Type::getHash());
+  const RejectReason bytes_fault = check_bytes(payload, Type::getHash(), layout);
   if (bytes_fault != RejectReason::kNone) return {{}, bytes_fault};
   Type message{};
   const int size = static_cast<int>(payload.size());

@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/messages/layout.hpp"
 
+#include "common/messages/big_endian.hpp"
 #include "common/messages/channels.hpp"
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace waymark {
 namespace {
 
 constexpr int kMaxFields = 16;
 
-std::int32_t read_int32(std::span<const std::uint8_t> bytes, std::size_t offset) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    value = (value << 8) | bytes[offset + i];
-  return static_cast<std::int32_t>(value);
-}
-
 /// Moves `offset` past one string: int32 length with the terminating zero, then the bytes.
 RejectReason walk_string(std::span<const std::uint8_t> body, std::size_t& offset) {
   if (body.size() - offset < 4) return RejectReason::kTruncated;
-  const std::int32_t length = read_int32(body, offset);
+  const std::int32_t length = read_big_endian<std::int32_t>(&body[offset]);
   offset += 4;
   if (length < 1) return RejectReason::kBadLength;
   if (body.size() - offset < static_cast<std::size_t>(length)) return RejectReason::kTruncated;
@@ -66,7 +61,7 @@ RejectReason walk_struct(std::span<const std::uint8_t> body, StructLayout layout
     const RejectReason reason = walk_field(body, field, count, offset);
     if (reason != RejectReason::kNone) return reason;
     if (field.kind == FieldLayout::Kind::kFixed && field.element_bytes == 4 && count == 1) {
-      int32_values[i] = read_int32(body, start);
+      int32_values[i] = read_big_endian<std::int32_t>(&body[start]);
     }
   }
   return RejectReason::kNone;
@@ -191,59 +186,37 @@ RejectReason walk(std::span<const std::uint8_t> body, StructLayout layout) {
   return offset == body.size() ? RejectReason::kNone : RejectReason::kTrailingBytes;
 }
 
-template <>
-constinit const StructLayout LayoutOf<ack_t>::fields{kAck};
-template <>
-constinit const StructLayout LayoutOf<annotated_scan_t>::fields{kAnnotatedScan};
-template <>
-constinit const StructLayout LayoutOf<calibration_t>::fields{kCalibration};
-template <>
-constinit const StructLayout LayoutOf<command_t>::fields{kCommand};
-template <>
-constinit const StructLayout LayoutOf<correction_t>::fields{kCorrection};
-template <>
-constinit const StructLayout LayoutOf<findings_t>::fields{kFindings};
-template <>
-constinit const StructLayout LayoutOf<image_t>::fields{kImage};
-template <>
-constinit const StructLayout LayoutOf<lidar_t>::fields{kLidar};
-template <>
-constinit const StructLayout LayoutOf<map_changes_t>::fields{kMapChanges};
-template <>
-constinit const StructLayout LayoutOf<map_header_t>::fields{kMapHeader};
-template <>
-constinit const StructLayout LayoutOf<map_tiles_t>::fields{kMapTiles};
-template <>
-constinit const StructLayout LayoutOf<map_walls_t>::fields{kMapWalls};
-template <>
-constinit const StructLayout LayoutOf<marker_detections_t>::fields{kMarkerDetections};
-template <>
-constinit const StructLayout LayoutOf<marker_map_t>::fields{kMarkerMap};
-template <>
-constinit const StructLayout LayoutOf<mbot_slam_reset_t>::fields{kMbotSlamReset};
-template <>
-constinit const StructLayout LayoutOf<occupancy_grid_t>::fields{kOccupancyGrid};
-template <>
-constinit const StructLayout LayoutOf<particles_t>::fields{kParticles};
-template <>
-constinit const StructLayout LayoutOf<planar_lidar_t>::fields{kPlanarLidar};
-template <>
-constinit const StructLayout LayoutOf<pose2D_t>::fields{kPose2D};
-template <>
-constinit const StructLayout LayoutOf<pose_graph_t>::fields{kPoseGraph};
-template <>
-constinit const StructLayout LayoutOf<process_status_t>::fields{kProcessStatus};
-template <>
-constinit const StructLayout LayoutOf<reply_t>::fields{kReply};
-template <>
-constinit const StructLayout LayoutOf<slam_estimate_t>::fields{kSlamEstimate};
-template <>
-constinit const StructLayout LayoutOf<slam_status_t>::fields{kSlamStatus};
-template <>
-constinit const StructLayout LayoutOf<tick_t>::fields{kTick};
-template <>
-constinit const StructLayout LayoutOf<trajectory_t>::fields{kTrajectory};
-template <>
-constinit const StructLayout LayoutOf<twist2D_t>::fields{kTwist2D};
+StructLayout layout_of(std::int64_t fingerprint) {
+  static const std::map<std::int64_t, StructLayout> layouts{
+      {ack_t::getHash(), kAck},
+      {annotated_scan_t::getHash(), kAnnotatedScan},
+      {calibration_t::getHash(), kCalibration},
+      {command_t::getHash(), kCommand},
+      {correction_t::getHash(), kCorrection},
+      {findings_t::getHash(), kFindings},
+      {image_t::getHash(), kImage},
+      {lidar_t::getHash(), kLidar},
+      {map_changes_t::getHash(), kMapChanges},
+      {map_header_t::getHash(), kMapHeader},
+      {map_tiles_t::getHash(), kMapTiles},
+      {map_walls_t::getHash(), kMapWalls},
+      {marker_detections_t::getHash(), kMarkerDetections},
+      {marker_map_t::getHash(), kMarkerMap},
+      {mbot_slam_reset_t::getHash(), kMbotSlamReset},
+      {occupancy_grid_t::getHash(), kOccupancyGrid},
+      {particles_t::getHash(), kParticles},
+      {planar_lidar_t::getHash(), kPlanarLidar},
+      {pose2D_t::getHash(), kPose2D},
+      {pose_graph_t::getHash(), kPoseGraph},
+      {process_status_t::getHash(), kProcessStatus},
+      {reply_t::getHash(), kReply},
+      {slam_estimate_t::getHash(), kSlamEstimate},
+      {slam_status_t::getHash(), kSlamStatus},
+      {tick_t::getHash(), kTick},
+      {trajectory_t::getHash(), kTrajectory},
+      {twist2D_t::getHash(), kTwist2D},
+  };
+  return layouts.at(fingerprint);
+}
 
 }  // namespace waymark

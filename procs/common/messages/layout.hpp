@@ -31,10 +31,8 @@ using StructLayout = std::span<const FieldLayout>;
 /// left.
 RejectReason walk(std::span<const std::uint8_t> body, StructLayout layout);
 
-/// Layout of a message type; a type without one does not link.
-template <class Type>
-struct LayoutOf {
-  static const StructLayout fields;
-};
+/// @param fingerprint  Type::getHash() of one of our message types.
+/// @throws std::out_of_range for another one.
+StructLayout layout_of(std::int64_t fingerprint);
 
 }  // namespace waymark

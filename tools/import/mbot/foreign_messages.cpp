@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/mbot/foreign_messages.hpp"
 
-#include "common/log/big_endian.hpp"
+#include "common/messages/big_endian.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
 
@@ -92,10 +92,9 @@ EncoderResult read_encoders(std::span<const std::uint8_t> payload) {
   if (!is_whole) return wrong_size(payload, kEncodersBytes);
   const auto time = time_of(payload);
   if (!time) return LineProblem{"bad time", "utime is negative or far in the future"};
-  return EncoderTicks{
-      *time, 0, static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&payload[kBodyOffset])),
-      static_cast<std::int32_t>(read_big_endian<std::uint32_t>(&payload[kBodyOffset + 4])),
-      is_feedback ? Encoders::kMaebot2014 : Encoders::kMaebot};
+  return EncoderTicks{*time, 0, read_big_endian<std::int32_t>(&payload[kBodyOffset]),
+                      read_big_endian<std::int32_t>(&payload[kBodyOffset + 4]),
+                      is_feedback ? Encoders::kMaebot2014 : Encoders::kMaebot};
 }
 
 PoseResult read_pose(std::span<const std::uint8_t> payload) {

@@ -35,7 +35,7 @@ constexpr std::array kPixelKinds{
 };
 
 std::optional<cv::Mat> grey_of_pixels(const RosImage& image) {
-  const auto kind = std::ranges::find(kPixelKinds, image.format, &PixelKind::name);
+  const auto* const kind = std::ranges::find(kPixelKinds, image.format, &PixelKind::name);
   if (kind == kPixelKinds.end()) return std::nullopt;
   const std::int64_t needed = std::int64_t{image.width_px} * CV_ELEM_SIZE(kind->type);
   if (needed > image.row_bytes) return std::nullopt;
