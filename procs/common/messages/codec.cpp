@@ -72,7 +72,7 @@ std::int64_t fingerprint_of(std::span<const std::uint8_t> payload) {
 
 std::optional<Timestamp> time_of(std::span<const std::uint8_t> payload) {
   if (payload.size() < 2 * kFingerprintBytes) return std::nullopt;
-  const std::int64_t utime_us = read_big_endian<std::int64_t>(&payload[kFingerprintBytes]);
+  const auto utime_us = read_big_endian<std::int64_t>(&payload[kFingerprintBytes]);
   if (!is_sane_time(utime_us)) return std::nullopt;
   return timestamp_from_us(utime_us);
 }

@@ -16,7 +16,7 @@ constexpr int kMaxFields = 16;
 /// Moves `offset` past one string: int32 length with the terminating zero, then the bytes.
 RejectReason walk_string(std::span<const std::uint8_t> body, std::size_t& offset) {
   if (body.size() - offset < 4) return RejectReason::kTruncated;
-  const std::int32_t length = read_big_endian<std::int32_t>(&body[offset]);
+  const auto length = read_big_endian<std::int32_t>(&body[offset]);
   offset += 4;
   if (length < 1) return RejectReason::kBadLength;
   if (body.size() - offset < static_cast<std::size_t>(length)) return RejectReason::kTruncated;

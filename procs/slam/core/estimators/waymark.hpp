@@ -66,7 +66,7 @@ class WaymarkEstimator final : public Estimator {
  public:
   WaymarkEstimator(const EstimatorSetup& setup, const WaymarkConfig& config);
 
-  Estimate update(const Observation& observation) override;
+  Estimate update(const Observation& measured) override;
 
   const GridMap& map() const override { return map_.map(); }
 

@@ -135,7 +135,7 @@ void Graph::switch_prior(std::size_t landmark, bool is_on) {
 bool Graph::is_prior_on(std::size_t landmark) const {
   return std::any_of(factors_.begin(), factors_.end(), [landmark](const Factor& factor) {
     const auto* prior = std::get_if<LandmarkPrior>(&factor);
-    return prior && prior->landmark == landmark && !prior->is_off;
+    return prior != nullptr && prior->landmark == landmark && !prior->is_off;
   });
 }
 

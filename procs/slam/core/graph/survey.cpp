@@ -97,8 +97,8 @@ double switch_wrong_off(std::vector<LandmarkPrior>& priors, const SurveyModel& m
 
 }  // namespace
 
-Survey::Survey(std::vector<SurveyedMarker> markers) {
-  for (SurveyedMarker& marker : markers)
+Survey::Survey(const std::vector<SurveyedMarker>& markers) {
+  for (const SurveyedMarker& marker : markers)
     entries_.push_back({marker, std::nullopt});
 }
 

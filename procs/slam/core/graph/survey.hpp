@@ -17,7 +17,7 @@ namespace waymark {
 /// priors are switched off, one by one: each time the one whose removal reduces the cost most.
 class Survey {
  public:
-  explicit Survey(std::vector<SurveyedMarker> markers);
+  explicit Survey(const std::vector<SurveyedMarker>& markers);
 
   bool is_empty() const { return entries_.empty(); }
 
