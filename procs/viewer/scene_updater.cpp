@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/scene_updater.hpp"
 
+#include "common/enums/enum_of.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,17 +17,12 @@ Eigen::Matrix3d to_matrix(const double (&row_major)[9]) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{row_major};
 }
 
-LandmarkState to_state(std::int8_t value) {
-  if (value < 0 || value > static_cast<int>(LandmarkState::kMoved)) return LandmarkState::kUnknown;
-  return static_cast<LandmarkState>(value);
-}
-
 std::optional<WeakAxis> to_weak_axis(const slam_estimate_t& message) {
   const Eigen::Vector3d direction{message.weak_axis[0], message.weak_axis[1], message.weak_axis[2]};
   if (direction.isZero()) return std::nullopt;
   return WeakAxis{.direction = direction,
                   .information = message.weak_information,
-                  .source = to_weak_axis_source(message.weak_axis_source)};
+                  .source = enum_of(message.weak_axis_source, WeakAxisSource::kNothing)};
 }
 
 TimedPose to_timed_pose(const pose2D_t& message) {
@@ -39,7 +36,7 @@ Landmark to_landmark(const marker_landmark_t& message) {
           .covariance = to_matrix(message.covariance),
           .sightings = message.sightings,
           .last_seen = timestamp_from_us(message.last_seen_utime),
-          .state = to_state(message.state)};
+          .state = enum_of(message.state, LandmarkState::kMoved)};
 }
 
 std::string_view problem_of(TiledMap::Outcome outcome) {
@@ -155,7 +152,7 @@ void SceneUpdater::add(const slam_estimate_t& message) {
          EstimatedPose{.time = timestamp_from_us(message.utime),
                        .map_from_base = {message.x_m, message.y_m, message.theta_rad},
                        .covariance = to_matrix(message.covariance),
-                       .health = to_health(message.health),
+                       .health = enum_of(message.health, Health::kLost),
                        .weak_axis = to_weak_axis(message)},
          "SLAM_ESTIMATE");
 }

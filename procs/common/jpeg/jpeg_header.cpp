@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/jpeg/jpeg_header.hpp"
 
+#include "common/bytes/big_endian.hpp"
+
 #include <cstddef>
 
 namespace waymark {
@@ -31,10 +33,6 @@ std::size_t end_of_scan(std::span<const std::uint8_t> bytes, std::size_t at) {
   return bytes.size();
 }
 
-int big_endian_16(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return bytes[at] * 256 + bytes[at + 1];
-}
-
 }  // namespace
 
 std::optional<JpegHeader> read_jpeg_header(std::span<const std::uint8_t> bytes) {
@@ -55,12 +53,13 @@ std::optional<JpegHeader> read_jpeg_header(std::span<const std::uint8_t> bytes) 
       break;
     }
     if (at + 4 > bytes.size()) break;
-    const int length = big_endian_16(bytes, at + 2);
+    const int length = read_big_endian<std::uint16_t>(&bytes[at + 2]);
     if (length < 2) break;
     if (is_frame_header(marker)) {
       // A second frame header would let the image differ from what was checked.
       if (header || at + kFrameHeaderBytes > bytes.size()) return std::nullopt;
-      header = JpegHeader{big_endian_16(bytes, at + 7), big_endian_16(bytes, at + 5), false};
+      header = JpegHeader{read_big_endian<std::uint16_t>(&bytes[at + 7]),
+                          read_big_endian<std::uint16_t>(&bytes[at + 5]), false};
     }
     at += 2 + static_cast<std::size_t>(length);
     if (marker == kStartOfScan) at = end_of_scan(bytes, at);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/log/log_file.hpp"
 
+#include "common/bytes/big_endian.hpp"
 #include "common/errors/setup_error.hpp"
-#include "common/messages/big_endian.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

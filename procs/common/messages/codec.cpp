@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/messages/codec.hpp"
 
-#include "common/messages/big_endian.hpp"
+#include "common/bytes/big_endian.hpp"
 #include "common/messages/bounds.hpp"
 
 #include <cstring>

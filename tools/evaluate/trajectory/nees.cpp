@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/trajectory/nees.hpp"
 
+#include "common/enums/enum_of.hpp"
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -41,8 +43,8 @@ std::vector<StampedCovariance> read_covariances(const std::filesystem::path& fil
     const double tt = table.at(row, "ctt");
     Eigen::Matrix3d covariance;
     covariance << xx, xy, xt, xy, yy, yt, xt, yt, tt;
-    const Health health =
-        with_health ? to_health(std::lround(table.at(row, "health"))) : Health::kUnknown;
+    const Health health = with_health ? enum_of(std::lround(table.at(row, "health")), Health::kLost)
+                                      : Health::kUnknown;
     covariances.push_back({table.at(row, "t"), covariance, health});
   }
   std::stable_sort(

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace waymark {
+
+/// The value with that number; the first one, kUnknown, for a number beyond 0 ... last.
+template <class Enum>
+constexpr Enum enum_of(std::int64_t number, Enum last) {
+  const bool is_known = number >= 0 && number <= static_cast<std::int64_t>(last);
+  return is_known ? static_cast<Enum>(number) : Enum{};
+}
+
+}  // namespace waymark
