@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 namespace waymark {
@@ -85,7 +86,8 @@ void add_ranges(const Findings& f, std::int64_t repeated_scans, List& list) {
                  f.scans_rescaled, f.scans, 0.0);
   if (f.scans_rescaled > 0) {
     list.add("range_share",
-             fmt::format("in the last of them {:+.1f} % too long", 100.0 * f.range_share),
+             fmt::format("in the last of them {:.1f} % too {}", 100.0 * std::abs(f.range_share),
+                         f.range_share > 0.0 ? "long" : "short"),
              f.range_share);
   }
   list.add_share("scans_refuted", "{:.1f} % of the scans contradict the map and were left out",

@@ -57,6 +57,7 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       thinning_{config.keyframes_per_place, 2 * config.submap_keyframes},
       submaps_{config.scan.cell_spacing_m, config.submap_keyframes, config.submap_length_m},
       usual_fit_{config.scan.min_inliers, config.min_inlier_share},
+      range_scale_{config.scan.cell_spacing_m},
       map_{setup.grid, ground_of(setup)},
       weighed_with_{graph_.odometry_noise()},
       start_{setup.start},

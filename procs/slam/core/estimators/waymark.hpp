@@ -18,6 +18,7 @@
 #include "slam/core/landmark/marker_measurement.hpp"
 #include "slam/core/mapping/drawn_map.hpp"
 #include "slam/core/motion/odometry_check.hpp"
+#include "slam/core/registration/range_scale.hpp"
 #include "slam/core/registration/submaps.hpp"
 #include "slam/core/registration/usual_fit.hpp"
 
@@ -120,6 +121,13 @@ class WaymarkEstimator final : public Estimator {
     std::size_t beams_moving{0};  ///< number of beams excluded from the points
   };
 
+  struct RescaledScan {
+    double share{0.0};  ///< by which the ranges were too long, relative
+    Observation observation{};
+    Points points{};
+    MatchedScan scan{};
+  };
+
   /// How the scan of a keyframe was used.
   struct KeyframeScan {
     bool is_refuted{false};      ///< it contradicts the map
@@ -175,6 +183,7 @@ class WaymarkEstimator final : public Estimator {
   bool is_loaded_map_refuted() const;
   void confirm_place(const MatchedScan& scan);
   void compare_with_loaded_map(const Observation& observation);
+  std::optional<RescaledScan> rescaled(const Observation& observation, const Look& look) const;
   std::optional<Observation> with_right_scale(const Observation& observation, Look& look);
   void note_fit(const ScanMatch& match);
   void follow_odometry(const Observation& observation);
@@ -246,6 +255,7 @@ class WaymarkEstimator final : public Estimator {
   mutable std::optional<Graph> solved_{};  ///< see solved()
   Submaps submaps_;
   UsualFit usual_fit_;
+  RangeScaleMonitor range_scale_;
   Motion motion_{};            ///< since the keyframe `moved_from_`
   std::size_t moved_from_{0};  ///< the newest one, unless odometry was stuck
   std::optional<Standstill> standstill_{};

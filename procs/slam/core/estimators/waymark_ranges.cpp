@@ -4,6 +4,7 @@
 #include "slam/core/registration/range_scale.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -22,36 +23,59 @@ Observation scaled_ranges(Observation observation, double share) {
   return observation;
 }
 
+Eigen::Matrix3d nearby(Eigen::Matrix3d covariance) {
+  covariance.diagonal() += kAround.cwiseAbs2();
+  return covariance;
+}
+
 }  // namespace
 
 /// If walls on opposite sides are all too far away, or all too near, no pose explains the scan: the
 /// ranges are scaled.
-std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,
-                                                              Look& look) {
-  is_rescaled_ = false;
-  if (!look.scan || !usual_fit_.is_contradicted(look.scan->match)) return std::nullopt;
-  const Prediction& expected = look.expected;
-  const auto& plain = look.scan;
-  SubmapPrediction guess = in_submap(expected, plain->map_from_submap);
-  guess.covariance.diagonal() += kAround.cwiseAbs2();
+std::optional<WaymarkEstimator::RescaledScan> WaymarkEstimator::rescaled(
+    const Observation& observation, const Look& look) const {
+  const MatchedScan& plain = *look.scan;
+  const SubmapPrediction guess = in_submap(
+      {look.expected.map_from_base, nearby(look.expected.covariance)}, plain.map_from_submap);
   const RangeScale scale =
-      fit_range_scale(look.points, observation.beams.front().beam.start_in_base, ndt_of(*plain),
+      fit_range_scale(look.points, observation.beams.front().beam.start_in_base, ndt_of(plain),
                       guess.submap_from_base, guess.covariance, range_noise_);
   if (std::abs(scale.share) < std::max(kLeastShare, kLeastSigmas * scale.sigma))
     return std::nullopt;
-  Observation corrected = scaled_ranges(observation, scale.share);
-  const Points points = points_of(corrected);
-  const auto fitted = matched(points, expected);
-  if (!fitted || fitted->match.inliers < kClearlyBetter * plain->match.inliers ||
+  RescaledScan scaled{scale.share, scaled_ranges(observation, scale.share)};
+  scaled.points = points_of(scaled.observation);
+  const auto fitted = matched(scaled.points, look.expected);
+  if (!fitted || fitted->match.inliers < kClearlyBetter * plain.match.inliers ||
       usual_fit_.is_contradicted(fitted->match)) {
     return std::nullopt;
   }
-  look.points = points;
-  look.scan = fitted;
+  scaled.scan = *fitted;
+  return scaled;
+}
+
+/// Replaces a scan that fits at another scale, if that is believed.
+/// @return the corrected observation; none: it is used as it is.
+std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,
+                                                              Look& look) {
+  is_rescaled_ = false;
+  if (!look.scan) return std::nullopt;
+  if (!usual_fit_.is_contradicted(look.scan->match)) {
+    range_scale_.note_unscaled(look.points,
+                               look.scan->map_from_submap * look.scan->match.map_from_base);
+    return std::nullopt;
+  }
+  std::optional<RescaledScan> scaled = rescaled(observation, look);
+  if (!scaled || !range_scale_.is_believed(
+                     scaled->share, look.points, observation.beams.front().beam.start_in_base,
+                     look.expected.map_from_base, nearby(look.expected.covariance), range_noise_)) {
+    return std::nullopt;
+  }
+  look.points = std::move(scaled->points);
+  look.scan = scaled->scan;
   is_rescaled_ = true;
   ++findings_.scans_rescaled;
-  findings_.range_share = scale.share;
-  return corrected;
+  findings_.range_share = scaled->share;
+  return std::move(scaled->observation);
 }
 
 void WaymarkEstimator::note_fit(const ScanMatch& match) {

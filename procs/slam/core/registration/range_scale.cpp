@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/registration/range_scale.hpp"
 
+#include "common/geometry/information.hpp"
 #include "common/geometry/squared.hpp"
 
 #include <Eigen/LU>
@@ -14,6 +15,8 @@ namespace {
 constexpr int kScaleSteps = 8;
 constexpr double kScaleKernel_m = 0.1;
 constexpr double kScalePrior = 0.2;
+
+constexpr double kAgreeing = 0.01;  // largest difference of shares
 
 using Vector4 = Eigen::Vector4d;
 
@@ -71,6 +74,32 @@ RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
     scale.sigma = std::sqrt(covariance(3, 3));
   }
   return scale;
+}
+
+void RangeScaleMonitor::note_unscaled(const Points& points_in_base, const Se2& map_from_base) {
+  unscaled_in_base_ = points_in_base;
+  map_from_unscaled_ = map_from_base;
+  share_.reset();
+}
+
+bool RangeScaleMonitor::is_believed(double share, const Points& points_in_base,
+                                    const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
+                                    const Eigen::Matrix3d& covariance, const RangeNoise& noise) {
+  const auto agrees = [share](double other) {
+    return std::abs(share - other) < kAgreeing;
+  };
+  if (!share_ || !agrees(*share_)) {
+    NdtMap last{cell_spacing_m_};
+    for (const Eigen::Vector2d& point : unscaled_in_base_)
+      last.add(point, 0);
+    const Se2 last_from_map = map_from_unscaled_.inverse();
+    const RangeScale since_last =
+        fit_range_scale(points_in_base, origin_in_base, last, last_from_map * map_from_base,
+                        in_axes(last_from_map.rotation(), covariance), noise);
+    if (!agrees(since_last.share)) return false;
+  }
+  share_ = share;
+  return true;
 }
 
 }  // namespace waymark

@@ -4,10 +4,12 @@
 
 #include "common/geometry/se2.hpp"
 #include "slam/core/registration/ndt_map.hpp"
+#include "slam/core/registration/points.hpp"
 #include "slam/core/registration/range_noise.hpp"
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <span>
 
 namespace waymark {
@@ -25,5 +27,29 @@ RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
                            const Eigen::Vector2d& origin_in_base, const NdtMap& map,
                            const Se2& guess, const Eigen::Matrix3d& guess_covariance,
                            const RangeNoise& noise);
+
+/// Tells ranges whose scale has changed from scans that were matched at a wrong place, where they
+/// fit at another scale by chance: the scale of a LiDAR changes from one scan to the next, wherever
+/// the robot is. So a scale is believed if it is the one between this scan and the last one that
+/// fitted the map as it was, or if that of the scan before was.
+class RangeScaleMonitor {
+ public:
+  explicit RangeScaleMonitor(double cell_spacing_m) : cell_spacing_m_{cell_spacing_m} {}
+
+  /// Notes a scan that fits the map as it is.
+  void note_unscaled(const Points& points_in_base, const Se2& map_from_base);
+
+  /// Whether to believe the scale at which the newest scan fits the map.
+  /// @param covariance  of (x, y, theta) of map_from_base, map's axes.
+  bool is_believed(double share, const Points& points_in_base,
+                   const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
+                   const Eigen::Matrix3d& covariance, const RangeNoise& noise);
+
+ private:
+  double cell_spacing_m_;
+  Points unscaled_in_base_{};  ///< the last scan that fitted as it was
+  Se2 map_from_unscaled_{};
+  std::optional<double> share_{};  ///< of the last scan, if believed
+};
 
 }  // namespace waymark
