@@ -176,8 +176,6 @@ void ScanMatchConfig::describe(Fields& fields) {
                "distance between centres of NDT cells");
   fields.field("kernel_sigmas", kernel_sigmas, kPositive,
                "robust kernel: a beam this far from its wall has a quarter of the weight");
-  fields.field("information_share", information_share, kFraction,
-               "factor on the information of a match: errors of beams on one wall are correlated");
   fields.field("roughness_m", roughness_m, kNotNegative,
                "of walls, in addition to the range noise");
   fields.field(

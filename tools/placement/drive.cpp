@@ -83,9 +83,7 @@ ObservedAxes predict_scan(const OccupiedWalls& walls, const Se2& map_from_base,
     information += independent_share(beams_on[beam.cell]) / beam.across_m2 * beam.jacobian_pose *
                    beam.jacobian_pose.transpose();
   }
-  ObservedAxes observed =
-      observed_axes(information, information.topLeftCorner<2, 2>(), scan.weak_share);
-  observed.information *= scan.information_share;
+  ObservedAxes observed = observed_axes(information, scan.weak_share);
   if (static_cast<int>(hits.size()) < scan.min_inliers) {
     observed.information.setZero();
     observed.is_degenerate = true;

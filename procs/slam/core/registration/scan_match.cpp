@@ -28,8 +28,10 @@ constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
 // Number of beams in one cell that count as independent: the error of the cell's mean is common to
 // all of them, and so is the displacement if they end on a person.
 constexpr double kIndependentBeams = 4.0;
-// A cell observed from n keyframes counts as static (lasting) with the weight n / (n + this).
-constexpr double kBrief = 3.0;
+// The information of a beam has the factor n / (n + this) if its cell was observed from n
+// keyframes: the error of the cell's mean falls with their number, and a person stays at one place
+// for a few.
+constexpr double kFewKeyframes = 3.0;
 
 constexpr double kGuessFades = 10.0;               // factor on the guess's sigmas in the last step,
 const Eigen::Vector3d kLeastFaded{0.2, 0.2, 0.1};  // and what is added to them [m, m, rad]
@@ -41,7 +43,6 @@ constexpr double kSquareOn = 0.5;  // least cosine of a beam's angle of incidenc
 /// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
 struct Quadratic {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
-  Eigen::Matrix2d lasting{Eigen::Matrix2d::Zero()};  ///< part of it from static cells, (x, y)
   Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
 };
 
@@ -79,11 +80,10 @@ BeamTerm compare(const NdtCell& cell, const Eigen::Vector2d& point, const Eigen:
   return term;
 }
 
-/// Walls are observed from many keyframes, a person at one place from one or two.
-double lasting_share(const NdtCell& cell) {
+double known_share(const NdtCell& cell) {
   if (cell.last_keyframe == 0) return 1.0;  // a map without keyframes, or the first scan
   const int seen_from = cell.last_keyframe - cell.first_keyframe + 1;
-  return seen_from / (seen_from + kBrief);
+  return seen_from / (seen_from + kFewKeyframes);
 }
 
 /// A scan in a map, with the cells of its points cached: most stay the same from step to step.
@@ -103,12 +103,11 @@ class PointsInMap {
       const Eigen::Vector2d lever = rotation * points_[i];
       const Eigen::Vector2d there = lever + pose.translation();
       const BeamTerm term = compare(*cell, there, lever, point_variance_m2_, blur_m2, config);
-      const double share = independent_share(*places_[i].beams);
-      const double lasting = lasting_share(*cell);
-      add(term.normal, lever, term.across_m, share * term.across_weight, lasting, sum);
+      const double share = independent_share(*places_[i].beams) * known_share(*cell);
+      add(term.normal, lever, term.across_m, share * term.across_weight, sum);
       if (term.along_weight > 0.0) {
         const Eigen::Vector2d along{-term.normal.y(), term.normal.x()};
-        add(along, lever, term.along_m, share * term.along_weight, lasting, sum);
+        add(along, lever, term.along_m, share * term.along_weight, sum);
       }
     }
     sum.information.bottomLeftCorner<1, 2>() = sum.information.topRightCorner<2, 1>().transpose();
@@ -137,11 +136,10 @@ class PointsInMap {
 
   /// Adds a residual along `direction`, with d(residual)/d(x, y, theta) = (direction, by_turn).
   static void add(const Eigen::Vector2d& direction, const Eigen::Vector2d& lever, double distance_m,
-                  double weight, double lasting, Quadratic& sum) {
+                  double weight, Quadratic& sum) {
     const double by_turn = lever.x() * direction.y() - lever.y() * direction.x();
     const double wx = weight * direction.x();
     const double wy = weight * direction.y();
-    sum.lasting += lasting * weight * direction * direction.transpose();
     sum.information(0, 0) += wx * direction.x();
     sum.information(0, 1) += wx * direction.y();
     sum.information(1, 1) += wy * direction.y();
@@ -213,8 +211,7 @@ class Descent {
   Se2 from(Se2 pose, PointsInMap& points, double blur_m, int steps, double converged) const {
     for (int i = 0; i < steps; ++i) {
       const Quadratic model = points.quadratic_about(pose, squared(blur_m), config_);
-      const ObservedAxes observed =
-          observed_axes(model.information, model.lasting, config_.weak_share);
+      const ObservedAxes observed = observed_axes(model.information, config_.weak_share);
       const Eigen::Vector3d off = pose_difference(pose, guess_);
       const Eigen::Vector3d step =
           -(observed.information + guess_information_)
@@ -257,14 +254,12 @@ double independent_share(int beams) {
   return std::min(1.0, kIndependentBeams / beams);
 }
 
-ObservedAxes observed_axes(const Eigen::Matrix3d& information, const Eigen::Matrix2d& lasting,
-                           double weak_share) {
+ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share) {
   ObservedAxes observed;
   observed.information = information;
   const PrincipalAxes axes = principal_axes(information.topLeftCorner<2, 2>());
   observed.weak_direction = axes.directions.col(0);
-  const double along_weak = observed.weak_direction.dot(lasting * observed.weak_direction);
-  observed.is_degenerate = along_weak <= weak_share * axes.values[1];
+  observed.is_degenerate = axes.values[0] <= weak_share * axes.values[1];
   if (!observed.is_degenerate) return observed;
   Eigen::Matrix3d keep = Eigen::Matrix3d::Identity();
   keep.topLeftCorner<2, 2>() -= observed.weak_direction * observed.weak_direction.transpose();
@@ -295,12 +290,11 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
   match.map_from_base = descent.from(match.map_from_base, points, 0.0, kFinalSteps, kConverged);
   // One step towards the optimum almost without the guess, in observed directions.
   const Quadratic model = points.quadratic_about(match.map_from_base, 0.0, config);
-  match.observed = observed_axes(model.information, model.lasting, config.weak_share);
+  match.observed = observed_axes(model.information, config.weak_share);
   const Eigen::Vector3d gradient = along_observed(model.gradient, match.observed);
   match.map_from_base = moved_by(
       match.map_from_base,
       -(match.observed.information + nearly_none(guess_covariance)).ldlt().solve(gradient));
-  match.observed.information *= config.information_share;
   summarise(points_in_base, map, point_variance_m2, config, match);
   return match;
 }

@@ -19,7 +19,6 @@ class Fields;
 struct ScanMatchConfig {
   double cell_spacing_m{0.25};
   double kernel_sigmas{3.0};
-  double information_share{0.5};
   double roughness_m{0.003};
   double weak_share{0.01};
   int min_inliers{8};
@@ -41,12 +40,9 @@ double independent_share(int beams);
 
 /// Removes the information that noise of the walls' normals leaks into an unobserved direction
 /// (Zhang, Kaess, Singh 2016). Frame: that of the information, origin at the robot.
-/// @param lasting     part of the information about (x, y) from cells that were observed from
-///                    several keyframes: moving objects must not make a direction observable.
 /// @param weak_share  share of the strongest direction's information below which a direction is
 ///                    unobserved.
-ObservedAxes observed_axes(const Eigen::Matrix3d& information, const Eigen::Matrix2d& lasting,
-                           double weak_share);
+ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share);
 
 struct ScanMatch {
   /// Nearly the optimum of the scan alone; along unobserved axes, the guess.

@@ -170,18 +170,29 @@ TEST(ScanMatch, APersonWalkingAheadDoesNotMakeTheAxisObservable) {
 
 constexpr double kManyScatter_m = 0.05;
 
+constexpr int kKeyframes = 20;
+
 /// Of a scan whose points lie exactly on what was mapped, with a LiDAR that scatters.
-ScanMatch match_without_a_deviation(const Points& points) {
-  Submap wall{0.25, 0};
-  for (int i = 0; i < 20; ++i)
+ScanMatch match_without_a_deviation(const Points& points, int keyframes = kKeyframes) {
+  Submap wall{0.25, 1};
+  for (int i = 0; i < keyframes; ++i)
     wall.insert(points, {});
   return match_scan(points, wall.ndt(), {}, sigmas(0.02, 0.01), RangeNoise{kManyScatter_m}, {});
 }
 
 /// Of so many beams that meet a wall squarely, if they were independent.
 double information_of(std::size_t beams) {
-  return ScanMatchConfig{}.information_share * static_cast<double>(beams) /
-         (kManyScatter_m * kManyScatter_m);
+  return static_cast<double>(beams) / (kManyScatter_m * kManyScatter_m);
+}
+
+TEST(ScanMatch, WallsObservedFromFewKeyframesAddLessInformation) {
+  Points points;
+  for (double y = -0.5; y <= 0.5; y += 0.02)
+    points.emplace_back(3.0, y);
+  const double few = match_without_a_deviation(points, 1).observed.information(0, 0);
+  const double many = match_without_a_deviation(points).observed.information(0, 0);
+  EXPECT_LT(few, 0.5 * many);
+  EXPECT_GT(few, 0.1 * many);
 }
 
 TEST(ScanMatch, CellsThatLookThinByChanceAddNoInformationBeyondTheRangeNoise) {
@@ -260,16 +271,14 @@ TEST(ScanMatch, FewInliersOrNoHeadingAreNotUsable) {
   EXPECT_FALSE(match.is_usable({}));
 }
 
-TEST(ObservedAxes, ADirectionIsObservedIfLastingCellsConstrainIt) {
-  Eigen::Matrix3d information = Eigen::Vector3d{100.0, 80.0, 300.0}.asDiagonal();
-  const auto is_degenerate = [&](double lasting_share) {
-    return observed_axes(information, lasting_share * information.topLeftCorner<2, 2>(), 0.03)
-        .is_degenerate;
-  };
-  EXPECT_FALSE(is_degenerate(1.0));
-  EXPECT_TRUE(is_degenerate(0.02));
-  information(1, 1) = 1.0;
-  EXPECT_TRUE(is_degenerate(1.0));
+TEST(ObservedAxes, ADirectionWithTooSmallAShareOfTheInformationIsNotObserved) {
+  Eigen::Matrix3d information = Eigen::Vector3d{100.0, 4.0, 300.0}.asDiagonal();
+  EXPECT_FALSE(observed_axes(information, 0.03).is_degenerate);
+  information(1, 1) = 2.0;
+  const ObservedAxes observed = observed_axes(information, 0.03);
+  EXPECT_TRUE(observed.is_degenerate);
+  EXPECT_EQ(observed.information(1, 1), 0.0);
+  EXPECT_EQ(observed.information(0, 0), 100.0);
 }
 
 }  // namespace
