@@ -65,7 +65,7 @@ std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation&
     return std::nullopt;
   }
   std::optional<RescaledScan> scaled = rescaled(observation, look);
-  if (!scaled || !range_scale_.is_believed(
+  if (!scaled || !range_scale_.believes(
                      scaled->share, look.points, observation.beams.front().beam.start_in_base,
                      look.expected.map_from_base, nearby(look.expected.covariance), range_noise_)) {
     return std::nullopt;

@@ -82,9 +82,9 @@ void RangeScaleMonitor::note_unscaled(const Points& points_in_base, const Se2& m
   share_.reset();
 }
 
-bool RangeScaleMonitor::is_believed(double share, const Points& points_in_base,
-                                    const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
-                                    const Eigen::Matrix3d& covariance, const RangeNoise& noise) {
+bool RangeScaleMonitor::believes(double share, const Points& points_in_base,
+                                 const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
+                                 const Eigen::Matrix3d& covariance, const RangeNoise& noise) {
   const auto agrees = [share](double other) {
     return std::abs(share - other) < kAgreeing;
   };

@@ -39,11 +39,11 @@ class RangeScaleMonitor {
   /// Notes a scan that fits the map as it is.
   void note_unscaled(const Points& points_in_base, const Se2& map_from_base);
 
-  /// Whether to believe the scale at which the newest scan fits the map.
+  /// Whether to believe the scale at which the newest scan fits the map; remembers it if so.
   /// @param covariance  of (x, y, theta) of map_from_base, map's axes.
-  bool is_believed(double share, const Points& points_in_base,
-                   const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
-                   const Eigen::Matrix3d& covariance, const RangeNoise& noise);
+  bool believes(double share, const Points& points_in_base, const Eigen::Vector2d& origin_in_base,
+                const Se2& map_from_base, const Eigen::Matrix3d& covariance,
+                const RangeNoise& noise);
 
  private:
   double cell_spacing_m_;

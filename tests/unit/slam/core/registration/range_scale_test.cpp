@@ -40,8 +40,8 @@ Points scaled(Points points, double factor) {
 }
 
 bool is_believed(RangeScaleMonitor& monitor, const Points& points, const Se2& map_from_base) {
-  return monitor.is_believed(kTooLong, points, Eigen::Vector2d::Zero(), map_from_base, kNearby,
-                             RangeNoise{kRangeSigma_m});
+  return monitor.believes(kTooLong, points, Eigen::Vector2d::Zero(), map_from_base, kNearby,
+                          RangeNoise{kRangeSigma_m});
 }
 
 TEST(FitRangeScale, FindsTheScaleTogetherWithThePose) {
