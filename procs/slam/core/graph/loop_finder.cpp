@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -21,7 +22,6 @@ constexpr std::size_t kFields = 8;                     // kept in the cache
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a match in a submap [m, m, rad]
 constexpr double kApart_m = 0.3;                       // of a runner-up from the best place
 constexpr double kApart_rad = 0.35;
-constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
 /// Covariance of the best place of a correlative search: 0.1 m, 0.03 rad.
 const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
 constexpr double kAgree_m = 0.3;  // between two candidates' corrections
@@ -38,16 +38,14 @@ double reach_rad(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-const Submap* LoopFinder::nearest_submap(const LoopSearch& search,
-                                         const std::deque<Submap>& submaps,
-                                         const State& state) const {
+const Submap* LoopFinder::nearest_submap(const Guess& guess, const Scan& scan) const {
   const Submap* nearest = nullptr;
   double least_m = std::numeric_limits<double>::infinity();
-  for (const Submap& submap : submaps) {
-    if (submap.last_keyframe() >= search.first_recent_keyframe) break;
+  for (const Submap& submap : scan.submaps) {
+    if (submap.last_keyframe() >= scan.search.first_recent_keyframe) break;
     const Eigen::Vector2d place =
-        state.keyframes[submap.first_keyframe()].inverse() * search.map_from_base.translation();
-    const double off_m = reach_m(search.covariance_against(submap.first_keyframe()));
+        scan.state.keyframes[submap.first_keyframe()].inverse() * guess.map_from_base.translation();
+    const double off_m = reach_m(guess.covariance_against(submap.first_keyframe()));
     double near_m = std::min(least_m, config_.reach_m + std::min(config_.max_search_m, off_m));
     if (place.norm() - submap.reach_m() >= near_m) continue;
     for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k) {
@@ -73,35 +71,38 @@ const CorrelativeField& LoopFinder::field_of(const Submap& old) {
   return fields_.back().second;
 }
 
-std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& points,
-                                           const LoopSearch& search, const State& state,
-                                           const RangeNoise& noise) {
-  const Se2 submap_from_map = state.keyframes[old.first_keyframe()].inverse();
-  Se2 guess = submap_from_map * search.map_from_base;
+std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Guess& guess,
+                                           const Scan& scan) {
+  const Se2 submap_from_map = scan.state.keyframes[old.first_keyframe()].inverse();
+  const Se2 expected = submap_from_map * guess.map_from_base;
   const Eigen::Matrix3d covariance =
-      in_axes(submap_from_map.rotation(), search.covariance_against(old.first_keyframe()));
-  // Scan matching first: the place nearest to the estimated pose is the likeliest.
-  LoopMatch loop{old.first_keyframe(),
-                 match_scan(points, old.ndt(), guess, covariance, noise, scan_, old.coarse_ndt())};
+      in_axes(submap_from_map.rotation(), guess.covariance_against(old.first_keyframe()));
+  // Scan matching first: the place nearest to the expected pose is the likeliest.
+  LoopMatch loop{old.first_keyframe(), match_scan(scan.points, old.ndt(), expected, covariance,
+                                                  scan.noise, scan_, old.coarse_ndt())};
   const double wide_m = std::min(config_.max_search_m, reach_m(covariance));
   const double wide_rad = std::min(std::numbers::pi, reach_rad(covariance));
   const bool is_near = wide_m < kDirectReach_m && wide_rad < kDirectReach_rad;
-  if (is_near) return is_good(loop.match) ? std::optional{loop} : std::nullopt;
-  const Points beams = thinned(points, kSearchBeams);
+  if (is_near && !is_good(loop.match)) return std::nullopt;
+  if (is_near && guess.is_estimate) return loop;
+  const Points beams = thinned(scan.points, kSearchBeams);
   const CorrelativeField& field = field_of(old);
-  const SearchWindow window{wide_m, wide_rad};
   if (!is_good(loop.match)) {
-    const auto best = field.best(beams, guess, window, config_.min_score);
+    const auto best = field.best(beams, expected, {wide_m, wide_rad}, config_.min_score);
     if (!best) return std::nullopt;
-    loop.match = match_scan(points, old.ndt(), best->submap_from_base, kFound, noise, scan_);
+    loop.match =
+        match_scan(scan.points, old.ndt(), best->submap_from_base, kFound, scan.noise, scan_);
     if (!is_good(loop.match)) return std::nullopt;
   }
-  // A runner-up is searched around the match itself, so that the window contains it.
+  // A runner-up is searched around the match itself, so that the window contains it, and as far as
+  // the estimated pose.
   const Se2& found = loop.match.map_from_base;
-  const double moved_m = (found.translation() - guess.translation()).norm();
-  const auto other =
-      field.best_apart_from(found, kApart_m, kApart_rad, beams, found, {wide_m + moved_m, wide_rad},
-                            config_.runner_up_share * field.score(beams, found));
+  const Se2 estimated = submap_from_map * scan.search.map_from_base;
+  const double moved_m = (found.translation() - estimated.translation()).norm();
+  const double turned_rad = std::abs(angle_difference(expected.theta(), estimated.theta()));
+  const auto other = field.best_apart_from(found, kApart_m, kApart_rad, beams, found,
+                                           {wide_m + moved_m, wide_rad + turned_rad},
+                                           config_.runner_up_share * field.score(beams, found));
   if (other && is_other_place(*other, loop.match)) {
     ++num_ambiguous_;
     return std::nullopt;
@@ -114,8 +115,7 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Points& poin
 bool LoopFinder::is_other_place(const SearchMatch& other, const ScanMatch& match) {
   const Eigen::Vector2d apart =
       other.submap_from_base.translation() - match.map_from_base.translation();
-  if (!match.observed.is_degenerate || apart.norm() < kApart_m) return true;
-  return std::abs(match.observed.weak_direction.dot(apart.normalized())) < kAlongWeak;
+  return apart.norm() < kApart_m || !match.observed.is_along_weak(apart);
 }
 
 bool LoopFinder::is_good(const ScanMatch& match) const {
@@ -161,44 +161,68 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
     confirmed_.pop_front();
   candidate_age_m_ += search.driven_m;
   if (candidate_age_m_ > kAgreeWithin_m) candidate_.reset();
-  const Submap* old = nearest_submap(search, submaps, state);
-  if (old == nullptr) return {};
-  const auto loop = match(*old, points, search, state, noise);
-  if (!loop) return {};
-  const Se2 map_from_base = state.keyframes[old->first_keyframe()] * loop->match.map_from_base;
-  const Eigen::Vector3d off = pose_difference(map_from_base, search.map_from_base);
-  const Found found{keyframe, *loop, off};
-  const bool is_surprise = chi2(off, covariance_in(*old, search)) > config_.gate;
-  if (is_surprise && !is_convincing(loop->match)) return {};
-  const bool is_close =
-      off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad;
-  if (is_surprise || !is_close) return confirmed_pair(found, map_from_base, search);
-  candidate_.reset();
-  note_confirmed(found);
-  return {found};
+  const Scan scan{keyframe, points, search, submaps, state, noise};
+  const auto place = place_near({search.map_from_base, search.covariance_against}, scan);
+  if (place && place->is_expected) {
+    candidate_.reset();
+    note_confirmed(place->found);
+    return {place->found};
+  }
+  if (candidate_) {
+    const bool is_recent = candidate_->found.keyframe >= search.first_recent_keyframe;
+    std::optional<Place> second = place;
+    if ((!second || !agrees_with_candidate(*second, search)) && is_recent)
+      second = place_near(corrected_by_candidate(search), scan);
+    if (second && agrees_with_candidate(*second, search)) {
+      const Found first = std::exchange(candidate_, std::nullopt)->found;
+      note_confirmed(second->found);
+      return {first, second->found};
+    }
+  }
+  if (place) {
+    candidate_ = {place->found, place->map_from_base * search.map_from_base.inverse(),
+                  search.map_from_base};
+    candidate_age_m_ = 0.0;
+  }
+  return {};
 }
 
-/// The candidate and this match, if they agree; else this match is the next candidate.
-std::vector<LoopFinder::Found> LoopFinder::confirmed_pair(const Found& found,
-                                                          const Se2& map_from_base,
-                                                          const LoopSearch& search) {
-  const auto agrees = [&](const Candidate& earlier) {
-    // Both corrections are compared at the present pose.
-    const Eigen::Vector3d apart =
-        pose_difference(earlier.correction * search.map_from_base, map_from_base);
-    return (earlier.map_from_base.translation() - search.map_from_base.translation()).norm() <
-               kAgreeWithin_m &&
-           apart.head<2>().norm() < kAgree_m && std::abs(apart.z()) < kAgree_rad;
-  };
-  if (candidate_ && agrees(*candidate_)) {
-    const Found first = candidate_->found;
-    candidate_.reset();
-    note_confirmed(found);
-    return {first, found};
-  }
-  candidate_ = {found, map_from_base * search.map_from_base.inverse(), search.map_from_base};
-  candidate_age_m_ = 0.0;
-  return {};
+/// @return none if there is no good match, or one that contradicts the estimated pose without being
+///         convincing.
+std::optional<LoopFinder::Place> LoopFinder::place_near(const Guess& guess, const Scan& scan) {
+  const Submap* old = nearest_submap(guess, scan);
+  if (old == nullptr) return std::nullopt;
+  const auto loop = match(*old, guess, scan);
+  if (!loop) return std::nullopt;
+  Place place;
+  place.map_from_base = scan.state.keyframes[old->first_keyframe()] * loop->match.map_from_base;
+  const Eigen::Vector3d off = pose_difference(place.map_from_base, scan.search.map_from_base);
+  place.found = {scan.keyframe, *loop, off};
+  const bool is_surprise =
+      !guess.is_estimate || chi2(off, covariance_in(*old, scan.search)) > config_.gate;
+  if (is_surprise && !is_convincing(loop->match)) return std::nullopt;
+  const bool is_close =
+      off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad;
+  place.is_expected = is_close && !is_surprise;
+  return place;
+}
+
+/// The present pose as the candidate's correction has it.
+LoopFinder::Guess LoopFinder::corrected_by_candidate(const LoopSearch& search) const {
+  Eigen::Matrix3d since =
+      kLoopCovarianceMargin * search.covariance_since(candidate_->found.keyframe);
+  since.diagonal() += kFoundSigmas.cwiseAbs2();
+  return {candidate_->correction * search.map_from_base, [since](std::size_t) { return since; },
+          false};
+}
+
+bool LoopFinder::agrees_with_candidate(const Place& place, const LoopSearch& search) const {
+  // Both corrections are compared at the present pose.
+  const Eigen::Vector3d apart =
+      pose_difference(candidate_->correction * search.map_from_base, place.map_from_base);
+  return (candidate_->map_from_base.translation() - search.map_from_base.translation()).norm() <
+             kAgreeWithin_m &&
+         apart.head<2>().norm() < kAgree_m && std::abs(apart.z()) < kAgree_rad;
 }
 
 }  // namespace waymark

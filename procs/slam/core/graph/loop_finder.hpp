@@ -60,7 +60,9 @@ inline const Eigen::Matrix3d& smaller_covariance(const Eigen::Matrix3d& a,
 }
 
 /// A match closes a loop at once if it lies within the pose's covariance and close to the estimated
-/// pose. Otherwise a second match, from another place, must agree on the correction.
+/// pose. Otherwise a second match, from another place, must agree on the correction; it is searched
+/// for where that correction has the robot, too, since the search about the estimated pose may not
+/// reach so far.
 class LoopFinder {
  public:
   LoopFinder(const LoopConfig& config, const ScanMatchConfig& scan)
@@ -97,14 +99,36 @@ class LoopFinder {
     Se2 map_from_base{};  ///< as estimated
   };
 
-  std::vector<Found> confirmed_pair(const Found& found, const Se2& map_from_base,
-                                    const LoopSearch& search);
+  /// The newest scan, and what it is compared with.
+  struct Scan {
+    std::size_t keyframe{0};
+    const Points& points;
+    const LoopSearch& search;
+    const std::deque<Submap>& submaps;
+    const State& state;
+    const RangeNoise& noise;
+  };
+
+  /// Where the scan is searched for: about the estimated pose or a candidate's.
+  struct Guess {
+    Se2 map_from_base{};
+    std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_against{};
+    bool is_estimate{true};
+  };
+
+  struct Place {
+    Found found{};
+    Se2 map_from_base{};      ///< of the match
+    bool is_expected{false};  ///< closes a loop at once
+  };
+
+  std::optional<Place> place_near(const Guess& guess, const Scan& scan);
+  Guess corrected_by_candidate(const LoopSearch& search) const;
+  bool agrees_with_candidate(const Place& place, const LoopSearch& search) const;
   void note_confirmed(const Found& found);
   Eigen::Matrix3d covariance_in(const Submap& old, const LoopSearch& search) const;
-  const Submap* nearest_submap(const LoopSearch& search, const std::deque<Submap>& submaps,
-                               const State& state) const;
-  std::optional<LoopMatch> match(const Submap& old, const Points& points, const LoopSearch& search,
-                                 const State& state, const RangeNoise& noise);
+  const Submap* nearest_submap(const Guess& guess, const Scan& scan) const;
+  std::optional<LoopMatch> match(const Submap& old, const Guess& guess, const Scan& scan);
   bool is_good(const ScanMatch& match) const;
   bool is_convincing(const ScanMatch& match) const;
   static bool is_other_place(const SearchMatch& other, const ScanMatch& match);

@@ -32,6 +32,7 @@ constexpr double kIndependentBeams = 4.0;
 // keyframes: the error of the cell's mean falls with their number, and a person stays at one place
 // for a few.
 constexpr double kFewKeyframes = 3.0;
+constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
 
 constexpr double kGuessFades = 10.0;               // factor on the guess's sigmas in the last step,
 const Eigen::Vector3d kLeastFaded{0.2, 0.2, 0.1};  // and what is added to them [m, m, rad]
@@ -252,6 +253,19 @@ double ends_open_m(std::span<const Eigen::Vector2d> points_in_base,
 
 double independent_share(int beams) {
   return std::min(1.0, kIndependentBeams / beams);
+}
+
+bool ObservedAxes::is_along_weak(const Eigen::Vector2d& shift) const {
+  return is_degenerate && std::abs(weak_direction.dot(shift)) >= kAlongWeak * shift.norm();
+}
+
+/// The other axes are marginal: the Schur complement of the direction.
+void ObservedAxes::forget(const Eigen::Vector2d& direction) {
+  const Eigen::Vector3d axis{direction.x(), direction.y(), 0.0};
+  const Eigen::Vector3d column = information * axis;
+  information -= (column * column.transpose() / axis.dot(column)).eval();
+  weak_direction = direction;
+  is_degenerate = true;
 }
 
 ObservedAxes observed_axes(const Eigen::Matrix3d& information, double weak_share) {

@@ -32,6 +32,12 @@ struct ObservedAxes {
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};     ///< nothing along weak_direction
   Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit
   bool is_degenerate{false};
+
+  /// Whether a shift (not zero) is one along the unobserved direction.
+  bool is_along_weak(const Eigen::Vector2d& shift) const;
+
+  /// Makes `direction` (unit) the weak one. Precondition: not degenerate, and information > 0.
+  void forget(const Eigen::Vector2d& direction);
 };
 
 /// Factor on the information of each beam, given the number of the scan's beams that end in the

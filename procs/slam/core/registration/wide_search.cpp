@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace waymark {
@@ -23,7 +24,11 @@ constexpr double kFarMore = 2.0;          // the same
 constexpr double kManyContradict = 0.06;  // share of all beams
 constexpr double kLeavesFarMore = 3.0;    // ratio of unexplained beams, plain to found match
 constexpr double kContradictedSigmas = 5.0;
-constexpr double kFarFarther = 4.0;  // ratio of distances from odometry, found to plain match
+constexpr double kFarFarther = 4.0;    // ratio of distances from odometry, found to plain match
+constexpr double kNearlyAsWell = 0.8;  // ratio of scores and of inliers, other to found place
+constexpr double kApart_m = 0.3;       // of another place from the found one
+constexpr double kApart_rad = 0.35;
+constexpr double kSameHeading_rad = 0.1;
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a heading step
 
 /// Half the side of the windows.
@@ -46,47 +51,107 @@ double unexplained(const ScanMatch& match, const Points& points) {
   return static_cast<double>(points.size()) - match.inliers;
 }
 
+SearchWindow window_of(const WideSearch& search) {
+  return {reach_m(search.driven_m),
+          std::min(std::numbers::pi, kReach_rad + kUnseen_rad_s * search.since_last_s)};
+}
+
+/// Matches of one scan at the places that correlative searches find.
+class PlaceSearch {
+ public:
+  /// Keeps references to `points` and `ndt`.
+  PlaceSearch(const Points& points, const NdtMap& ndt, const Points& occupied,
+              const SearchWindow& window, const RangeNoise& noise, const ScanMatchConfig& config)
+      : points_{points},
+        ndt_{ndt},
+        field_{occupied},
+        beams_{thinned(points, kBeams)},
+        window_{window},
+        noise_{noise},
+        config_{config} {}
+
+  /// The match with the most inliers, of those from the best place of each guess's window.
+  std::optional<ScanMatch> best(std::span<const Se2> guesses, double min_score) const {
+    std::optional<ScanMatch> best;
+    for (const Se2& guess : guesses) {
+      const auto place = field_.best(beams_, guess, window_, min_score);
+      if (!place) continue;
+      const ScanMatch match = match_at(*place);
+      if (!best || match.inliers > best->inliers) best = match;
+    }
+    return best;
+  }
+
+  /// Whether the scan fits nearly as well at another heading. Another position with the same
+  /// heading takes from `found` the information along the line between the two.
+  bool is_ambiguous(ScanMatch& found) const {
+    const Se2& pose = found.map_from_base;
+    const SearchWindow around{2.0 * window_.half_width_m,
+                              std::min(std::numbers::pi, 2.0 * window_.half_turn_rad)};
+    const auto other = field_.best_apart_from(pose, kApart_m, kApart_rad, beams_, pose, around,
+                                              kNearlyAsWell * field_.score(beams_, pose));
+    if (!other) return false;
+    const ScanMatch there = match_at(*other);
+    if (there.inliers < kNearlyAsWell * found.inliers) return false;
+    const Eigen::Vector3d apart = pose_difference(there.map_from_base, pose);
+    if (std::abs(apart.z()) > kSameHeading_rad) return true;
+    const Eigen::Vector2d shift = apart.head<2>();
+    if (shift.norm() < kApart_m || found.observed.is_along_weak(shift)) return false;
+    if (found.observed.is_degenerate) return true;
+    found.observed.forget(shift.normalized());
+    return false;
+  }
+
+ private:
+  ScanMatch match_at(const SearchMatch& place) const {
+    return match_scan(points_, ndt_, place.submap_from_base, kFoundSigmas.cwiseAbs2().asDiagonal(),
+                      noise_, config_);
+  }
+
+  const Points& points_;
+  const NdtMap& ndt_;
+  CorrelativeField field_;
+  Points beams_;
+  SearchWindow window_;
+  RangeNoise noise_;
+  ScanMatchConfig config_;
+};
+
+/// Whether a match that odometry contradicts much more explains so much more of the scan that
+/// odometry must be wrong; otherwise a view of a new place is more likely.
+bool refutes_odometry(const ScanMatch& found, const ScanMatch& plain, const Points& points,
+                      const WideSearch& search, const UsualFit& usual) {
+  const bool shows_few_walls = unexplained(found, points) > found.inliers;
+  if (shows_few_walls && search.contradicts_map(found.map_from_base)) return false;
+  if (usual.is_contradicted(plain) && contradicting_share(plain) > kManyContradict &&
+      found.inliers > kFarMore * plain.inliers) {
+    return true;
+  }
+  return !usual.is_worse_than_usual(found) &&
+         (usual.is_contradicted(plain) ||
+          unexplained(plain, points) > kLeavesFarMore * unexplained(found, points));
+}
+
 }  // namespace
 
 ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const NdtMap& ndt,
                           const Points& occupied, const WideSearch& search, const UsualFit& usual,
                           const RangeNoise& noise, const ScanMatchConfig& config) {
-  const CorrelativeField field{occupied};
-  const Points beams = thinned(points, kBeams);
-  const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
-  const SearchWindow window{
-      reach_m(search.driven_m),
-      std::min(std::numbers::pi, kReach_rad + kUnseen_rad_s * search.since_last_s)};
-  std::optional<ScanMatch> found;
+  const PlaceSearch places{points, ndt, occupied, window_of(search), noise, config};
   std::vector<Se2> guesses = search.without_odometry;
   guesses.push_back(search.by_odometry);
-  for (const Se2& guess : guesses) {
-    const auto place = field.best(beams, guess, window, search.min_score);
-    if (!place) continue;
-    const ScanMatch match = match_scan(points, ndt, place->submap_from_base, near, noise, config);
-    if (!found || match.inliers > found->inliers) found = match;
-  }
-  const auto fits_better = [&] {
-    if (found->inliers <= kClearlyMore * plain.inliers) return false;
-    const double plain_sigmas = sigmas_from_odometry(plain, search);
-    if (sigmas_from_odometry(*found, search) >
-        std::max(kContradictedSigmas, kFarFarther * plain_sigmas)) {
-      const bool shows_few_walls = unexplained(*found, points) > found->inliers;
-      if (shows_few_walls && search.contradicts_map(found->map_from_base)) return false;
-      // A view of a new place is more likely than wrong odometry.
-      if (usual.is_contradicted(plain) && contradicting_share(plain) > kManyContradict &&
-          found->inliers > kFarMore * plain.inliers) {
-        return true;
-      }
-      return !usual.is_worse_than_usual(*found) &&
-             (usual.is_contradicted(plain) ||
-              unexplained(plain, points) > kLeavesFarMore * unexplained(*found, points));
-    }
-    return usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
-           (usual.is_nearly_usual(*found) &&
-            (found->inliers > kFarMore * plain.inliers || plain_sigmas > kContradictedSigmas));
-  };
-  return found && fits_better() ? *found : plain;
+  std::optional<ScanMatch> found = places.best(guesses, search.min_score);
+  if (!found || found->inliers <= kClearlyMore * plain.inliers) return plain;
+  const double plain_sigmas = sigmas_from_odometry(plain, search);
+  const bool is_far = sigmas_from_odometry(*found, search) >
+                      std::max(kContradictedSigmas, kFarFarther * plain_sigmas);
+  const bool fits_better =
+      is_far
+          ? refutes_odometry(*found, plain, points, search, usual) && !places.is_ambiguous(*found)
+          : usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
+                (usual.is_nearly_usual(*found) &&
+                 (found->inliers > kFarMore * plain.inliers || plain_sigmas > kContradictedSigmas));
+  return fits_better ? *found : plain;
 }
 
 double wide_search_reach_m(const Points& points, double driven_m) {

@@ -27,7 +27,8 @@ struct WideSearch {
 ///   - the scan fits there as well as usual, or
 ///   - it fits nearly as well, and either has twice the inliers or odometry contradicts the plain
 ///     match.
-/// A match that odometry contradicts much more than the plain one must fit better still, and if it
+/// A match that odometry contradicts much more than the plain one must fit better still, and not
+/// nearly as well at another heading in or around the windows, since rooms look alike; if it
 /// explains less than half of the scan, the map's free space must not contradict the rest. These
 /// conditions keep the plain match for a view of a new place, where a correct match has few
 /// inliers.

@@ -86,6 +86,11 @@ class Corridor {
     covariance_since_ = sigma * sigma * Eigen::Matrix3d::Identity();
   }
 
+  /// Since the submap.
+  void set_drift(double sigma) {
+    covariance_against_ = sigma * sigma * Eigen::Matrix3d::Identity();
+  }
+
   /// Along the corridor, since the submap.
   void set_drift_along(double sigma_m) { covariance_against_(0, 0) = sigma_m * sigma_m; }
 
@@ -110,6 +115,38 @@ TEST(LoopFinder, TwoScansThatAgreeCloseALoop) {
   const auto found = corridor.look_around(second, drift * second);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NEAR((Se2{3.0, 0.0, 0.0} * found[1].loop.match.map_from_base).x(), second.x(), 0.05);
+}
+
+/// The drift since the submap is underestimated: by good luck, or because fewer walls fit by
+/// chance, the first search reached the right place all the same.
+TEST(LoopFinder, TheSecondScanIsSearchedForWhereTheFirstOneHasTheRobot) {
+  const Se2 drift{1.2, 0.1, 0.1};
+  const Se2 first{6.0, 0.0, 0.0};
+  for (const bool has_candidate : {false, true}) {
+    for (const double moved_by_m : {0.5, 1.0}) {
+      Corridor corridor{irregularly};
+      corridor.set_drift_since_found(0.01);
+      if (has_candidate) {
+        EXPECT_TRUE(corridor.look_around(first, drift * first).empty());
+      }
+      corridor.set_drift(0.02);
+      const Se2 second{6.0 + moved_by_m, 0.0, 0.0};
+      const auto found = corridor.look_around(second, drift * second);
+      EXPECT_EQ(found.size(), has_candidate ? 2U : 0U) << moved_by_m;
+    }
+  }
+}
+
+/// Where it would have to be, the scan does not fit.
+TEST(LoopFinder, AWrongCandidateIsNotConfirmed) {
+  Corridor corridor{irregularly};
+  corridor.set_drift_since_found(0.01);
+  const Se2 drift{1.2, 0.1, 0.1};
+  const Se2 first{6.0, 0.0, 0.0};
+  EXPECT_TRUE(corridor.look_around(first, drift * first).empty());
+  corridor.set_drift(0.02);
+  const Se2 second{7.5, 0.0, 0.0};
+  EXPECT_TRUE(corridor.look_around(second, drift * Se2{6.5, 0.0, 0.0}).empty());
 }
 
 /// Its keyframe may be forgotten meanwhile.

@@ -275,6 +275,22 @@ TEST(ScanMatch, FewInliersOrNoHeadingAreNotUsable) {
   EXPECT_FALSE(match.is_usable({}));
 }
 
+/// What is known of a sum says nothing of its parts once one of them is unknown.
+TEST(ObservedAxes, AForgottenDirectionTakesWhatIsKnownThroughItAlone) {
+  const Eigen::Vector3d sum{1.0, 0.0, 1.0};  // of x and the heading
+  ObservedAxes observed;
+  observed.information = 100.0 * sum * sum.transpose();
+  observed.information.diagonal() += Eigen::Vector3d{1.0, 4.0, 9.0};
+  const Eigen::Matrix3d covariance = observed.information.inverse();
+  observed.forget(Eigen::Vector2d::UnitX());
+  EXPECT_LT(observed.information.col(0).norm(), 1e-9);
+  EXPECT_NEAR(observed.information(1, 1), 1.0 / covariance(1, 1), 1e-9);
+  EXPECT_NEAR(observed.information(2, 2), 1.0 / covariance(2, 2), 1e-9);
+  EXPECT_TRUE(observed.is_along_weak({-0.7, 0.01}));
+  EXPECT_FALSE(observed.is_along_weak({0.5, 0.5}));
+  EXPECT_FALSE(ObservedAxes{}.is_along_weak({1.0, 0.0}));
+}
+
 TEST(ObservedAxes, ADirectionWithTooSmallAShareOfTheInformationIsNotObserved) {
   Eigen::Matrix3d information = Eigen::Vector3d{100.0, 4.0, 300.0}.asDiagonal();
   EXPECT_FALSE(observed_axes(information, 0.03).is_degenerate);

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -196,7 +197,7 @@ TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenWhateverTheirOrder) {
 /// matching ended.
 ScanMatch searched_from_plain(double share_of_plain, double odometry_sigma_m,
                               const Se2& by_odometry = {2.5, 0.0, 0.3},
-                              std::size_t nowhere_one_in = 6) {
+                              std::size_t nowhere_one_in = 6, double since_last_s = 0.0) {
   const Submap submap = mapped_room();
   Points room = whole_room();
   const std::size_t all = room.size();
@@ -207,7 +208,7 @@ ScanMatch searched_from_plain(double share_of_plain, double odometry_sigma_m,
   plain.inliers = static_cast<int>(share_of_plain * static_cast<double>(all));
   plain.inlier_share = 1.0;
   plain.mapped_share = share_of_plain;
-  WideSearch search = around(by_odometry);
+  WideSearch search = around(by_odometry, since_last_s);
   search.without_odometry = {kTruth};
   search.odometry_covariance = squared(odometry_sigma_m) * Eigen::Matrix3d::Identity();
   return searched_widely(plain, seen_from(kTruth, room), submap.ndt(), submap.points(), search,
@@ -232,6 +233,46 @@ TEST(WideSearch, APlaceThatOdometryContradictsHasToExplainMostOutliers) {
     const ScanMatch best = searched_from_plain(share_of_plain, 0.05, kPlain, 10);
     const Se2& expected = share_of_plain < 0.8 ? kTruth : kPlain;
     EXPECT_LT(pose_difference(best.map_from_base, expected).norm(), 0.02) << share_of_plain;
+  }
+}
+
+/// The room looks the same to a robot that has turned round, for which the windows are wide enough
+/// some time after the last scan.
+TEST(WideSearch, APlaceThatOdometryContradictsHasToBeTheOnlyOne) {
+  for (const double since_last_s : {0.0, 5.0}) {
+    const ScanMatch best = searched_from_plain(0.7, 0.05, kPlain, 10, since_last_s);
+    const Se2& expected = since_last_s < 1.0 ? kTruth : kPlain;
+    EXPECT_LT(pose_difference(best.map_from_base, expected).norm(), 0.02) << since_last_s;
+  }
+}
+
+/// Two of a corridor's partitions are in view. With a third one the scan fits further on, too.
+TEST(WideSearch, AnotherPlaceWithTheSameHeadingTakesTheInformationAlongTheLineBetweenThem) {
+  for (const bool has_third : {false, true}) {
+    const auto corridor = [&](double from_x, double to_x) {
+      Points points = walls(from_x, to_x);
+      for (const double x : {5.0, 7.0, 9.0})
+        if (x < 8.0 || has_third) points = together(points, end_wall(x, -1.5));
+      return points;
+    };
+    Submap submap{0.25, 0};
+    for (int i = 0; i < 5; ++i)
+      submap.insert(corridor(0.0, 14.0), {});
+    const Se2 truth{6.0, 0.3, 0.0};
+    Points seen;
+    for (const Eigen::Vector2d& point : seen_from(truth, corridor(0.0, 14.0)))
+      if (std::abs(point.x()) < 2.0) seen.push_back(point);
+    const Se2 guess{6.0, 0.3, 0.5};
+    WideSearch search = around(guess);
+    search.driven_m = 1.5;
+    search.odometry_covariance = squared(0.02) * Eigen::Matrix3d::Identity();
+    const ScanMatch best = look_for(submap, seen, guess, search).best;
+    EXPECT_LT(pose_difference(best.map_from_base, truth).norm(), 0.02) << has_third;
+    EXPECT_EQ(best.observed.is_degenerate, has_third);
+    if (!has_third) continue;
+    EXPECT_GT(std::abs(best.observed.weak_direction.x()), 0.99);
+    EXPECT_LT(best.observed.information(0, 0), 1.0);
+    EXPECT_GT(best.observed.information(1, 1), 1e4);
   }
 }
 
