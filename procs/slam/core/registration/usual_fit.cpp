@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMemory = 0.05;       // weight of the newest scan in the running means
 constexpr double kContradicted = 0.8;  // of the usual share of inliers among the mapped beams
-constexpr double kWorse = 0.93;        // of the usual share of inliers among all beams
+constexpr double kWorse = 0.93;        // of the usual share of inliers
 constexpr double kNearly = 0.8;
 
 }  // namespace
@@ -20,6 +20,10 @@ bool UsualFit::is_refuted(const ScanMatch& match) const {
 bool UsualFit::is_contradicted(const ScanMatch& match) const {
   return match.num_mapped >= min_inliers_ &&
          match.inlier_share < std::max(min_inlier_share_, kContradicted * inlier_share_);
+}
+
+bool UsualFit::is_as_usual_where_mapped(const ScanMatch& match) const {
+  return match.inlier_share >= kWorse * inlier_share_;
 }
 
 bool UsualFit::is_worse_than_usual(const ScanMatch& match) const {

@@ -19,6 +19,9 @@ class UsualFit {
   /// Many more mapped beams are outliers than usual: pose or ranges may be wrong.
   bool is_contradicted(const ScanMatch& match) const;
 
+  /// Nearly as many mapped beams are inliers as usual.
+  bool is_as_usual_where_mapped(const ScanMatch& match) const;
+
   /// Fewer of all beams are inliers than usual: the scan contradicts the map, or shows a new place.
   bool is_worse_than_usual(const ScanMatch& match) const;
 

@@ -18,11 +18,11 @@ namespace {
 constexpr double kLeastReach_m = 0.5;
 constexpr double kReach_rad = 0.6;
 constexpr std::size_t kBeams = 120;
-constexpr double kUnseen_rad_s = 0.5;     // rate at which the window of turns grows between scans
-constexpr double kClearlyMore = 1.05;     // ratio of inliers, found to plain match
-constexpr double kFarMore = 2.0;          // the same
-constexpr double kManyContradict = 0.06;  // share of all beams
-constexpr double kLeavesFarMore = 3.0;    // ratio of unexplained beams, plain to found match
+constexpr double kUnseen_rad_s = 0.5;   // rate at which the window of turns grows between scans
+constexpr double kClearlyMore = 1.05;   // ratio of inliers, found to plain match
+constexpr double kMuchMore = 1.5;       // the same, if odometry contradicts the found match
+constexpr double kFarMore = 2.0;        // the same, if it does not
+constexpr double kLeavesFarMore = 3.0;  // ratio of unexplained beams, plain to found match
 constexpr double kContradictedSigmas = 5.0;
 constexpr double kFarFarther = 4.0;    // ratio of distances from odometry, found to plain match
 constexpr double kNearlyAsWell = 0.8;  // ratio of scores and of inliers, other to found place
@@ -42,13 +42,12 @@ double sigmas_from_odometry(const ScanMatch& match, const WideSearch& search) {
   return std::sqrt(chi2(off, search.odometry_covariance));
 }
 
-/// Share of all beams that end in mapped cells but are outliers.
-double contradicting_share(const ScanMatch& match) {
-  return match.mapped_share * (1.0 - match.inlier_share);
-}
-
 double unexplained(const ScanMatch& match, const Points& points) {
   return static_cast<double>(points.size()) - match.inliers;
+}
+
+bool is_same_place(const Eigen::Vector3d& apart) {
+  return apart.head<2>().norm() < kApart_m && std::abs(apart.z()) < kApart_rad;
 }
 
 SearchWindow window_of(const WideSearch& search) {
@@ -82,9 +81,10 @@ class PlaceSearch {
     return best;
   }
 
-  /// Whether the scan fits nearly as well at another heading. Another position with the same
-  /// heading takes from `found` the information along the line between the two.
-  bool is_ambiguous(ScanMatch& found) const {
+  /// Whether the scan fits nearly as well at a heading other than those of `found` and `plain`.
+  /// Another position with the same heading takes from `found` the information along the line
+  /// between the two.
+  bool is_ambiguous(ScanMatch& found, const ScanMatch& plain) const {
     const Se2& pose = found.map_from_base;
     const SearchWindow around{2.0 * window_.half_width_m,
                               std::min(std::numbers::pi, 2.0 * window_.half_turn_rad)};
@@ -93,6 +93,7 @@ class PlaceSearch {
     if (!other) return false;
     const ScanMatch there = match_at(*other);
     if (there.inliers < kNearlyAsWell * found.inliers) return false;
+    if (is_same_place(pose_difference(there.map_from_base, plain.map_from_base))) return false;
     const Eigen::Vector3d apart = pose_difference(there.map_from_base, pose);
     if (std::abs(apart.z()) > kSameHeading_rad) return true;
     const Eigen::Vector2d shift = apart.head<2>();
@@ -123,13 +124,11 @@ bool refutes_odometry(const ScanMatch& found, const ScanMatch& plain, const Poin
                       const WideSearch& search, const UsualFit& usual) {
   const bool shows_few_walls = unexplained(found, points) > found.inliers;
   if (shows_few_walls && search.contradicts_map(found.map_from_base)) return false;
-  if (usual.is_contradicted(plain) && contradicting_share(plain) > kManyContradict &&
-      found.inliers > kFarMore * plain.inliers) {
-    return true;
+  if (usual.is_contradicted(plain)) {
+    return found.inliers > kMuchMore * plain.inliers && usual.is_as_usual_where_mapped(found);
   }
   return !usual.is_worse_than_usual(found) &&
-         (usual.is_contradicted(plain) ||
-          unexplained(plain, points) > kLeavesFarMore * unexplained(found, points));
+         unexplained(plain, points) > kLeavesFarMore * unexplained(found, points);
 }
 
 }  // namespace
@@ -146,11 +145,11 @@ ScanMatch searched_widely(const ScanMatch& plain, const Points& points, const Nd
   const bool is_far = sigmas_from_odometry(*found, search) >
                       std::max(kContradictedSigmas, kFarFarther * plain_sigmas);
   const bool fits_better =
-      is_far
-          ? refutes_odometry(*found, plain, points, search, usual) && !places.is_ambiguous(*found)
-          : usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
-                (usual.is_nearly_usual(*found) &&
-                 (found->inliers > kFarMore * plain.inliers || plain_sigmas > kContradictedSigmas));
+      is_far ? refutes_odometry(*found, plain, points, search, usual) &&
+                   !places.is_ambiguous(*found, plain)
+             : usual.is_contradicted(plain) || !usual.is_worse_than_usual(*found) ||
+                   (usual.is_nearly_usual(*found) && (found->inliers > kFarMore * plain.inliers ||
+                                                      plain_sigmas > kContradictedSigmas));
   return fits_better ? *found : plain;
 }
 

@@ -39,6 +39,7 @@ TEST(UsualFit, AViewOfANewPlaceIsWorseThanUsualButNotContradicted) {
   const UsualFit usual = after_good_scans();
   const ScanMatch new_place = fit(0.95, 0.5);
   EXPECT_TRUE(usual.is_worse_than_usual(new_place));
+  EXPECT_TRUE(usual.is_as_usual_where_mapped(new_place));
   EXPECT_FALSE(usual.is_contradicted(new_place));
   EXPECT_FALSE(usual.is_refuted(new_place));
 }
@@ -47,6 +48,7 @@ TEST(UsualFit, WallsInOtherPlacesContradict) {
   const UsualFit usual = after_good_scans();
   EXPECT_TRUE(usual.is_contradicted(fit(0.7, 1.0)));
   EXPECT_FALSE(usual.is_refuted(fit(0.7, 1.0)));
+  EXPECT_FALSE(usual.is_as_usual_where_mapped(fit(0.85, 1.0)));
   EXPECT_TRUE(usual.is_refuted(fit(0.4, 1.0)));
 }
 
@@ -243,6 +245,30 @@ TEST(WideSearch, APlaceThatOdometryContradictsHasToBeTheOnlyOne) {
     const ScanMatch best = searched_from_plain(0.7, 0.05, kPlain, 10, since_last_s);
     const Se2& expected = since_last_s < 1.0 ? kTruth : kPlain;
     EXPECT_LT(pose_difference(best.map_from_base, expected).norm(), 0.02) << since_last_s;
+  }
+}
+
+/// Half of the scan fits at the plain match. Whether all of it fits at another heading decides only
+/// if the plain match is not there.
+TEST(WideSearch, ThePlaceOfThePlainMatchIsNoOtherPlace) {
+  const Submap submap = mapped_room();
+  const Points seen = seen_from(kTruth, whole_room());
+  const Se2 turned_round{3.0, -0.3, std::numbers::pi};
+  ScanMatch plain;
+  plain.inliers = static_cast<int>(seen.size()) / 2;
+  plain.num_mapped = static_cast<int>(seen.size());
+  plain.inlier_share = 0.5;
+  plain.mapped_share = 1.0;
+  for (const Se2& pose : {kPlain, turned_round}) {
+    plain.map_from_base = pose;
+    WideSearch search = around(kTruth, 5.0);
+    search.by_odometry = pose;
+    search.without_odometry = {kTruth};
+    search.odometry_covariance = squared(0.02) * Eigen::Matrix3d::Identity();
+    const ScanMatch best = searched_widely(plain, seen, submap.ndt(), submap.points(), search,
+                                           after_good_scans(), RangeNoise{0.01}, ScanMatchConfig{});
+    const Se2& expected = pose.x() < kTruth.x() ? kPlain : kTruth;
+    EXPECT_LT(pose_difference(best.map_from_base, expected).norm(), 0.02) << pose.x();
   }
 }
 
