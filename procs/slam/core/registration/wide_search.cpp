@@ -124,11 +124,13 @@ bool refutes_odometry(const ScanMatch& found, const ScanMatch& plain, const Poin
                       const WideSearch& search, const UsualFit& usual) {
   const bool shows_few_walls = unexplained(found, points) > found.inliers;
   if (shows_few_walls && search.contradicts_map(found.map_from_base)) return false;
-  if (usual.is_contradicted(plain)) {
-    return found.inliers > kMuchMore * plain.inliers && usual.is_as_usual_where_mapped(found);
+  if (usual.is_contradicted(plain) && found.inliers > kMuchMore * plain.inliers &&
+      usual.is_as_usual_where_mapped(found)) {
+    return true;
   }
   return !usual.is_worse_than_usual(found) &&
-         unexplained(plain, points) > kLeavesFarMore * unexplained(found, points);
+         (usual.is_contradicted(plain) ||
+          unexplained(plain, points) > kLeavesFarMore * unexplained(found, points));
 }
 
 }  // namespace

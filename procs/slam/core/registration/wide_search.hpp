@@ -27,13 +27,13 @@ struct WideSearch {
 ///   - the scan fits there as well as usual, or
 ///   - it fits nearly as well, and either has twice the inliers or odometry contradicts the plain
 ///     match.
-/// A match that odometry contradicts much more than the plain one must, if the map contradicts the
-/// plain match, have 1.5 times its inliers and fit as well as usual where there are mapped walls;
-/// else fit as well as usual and leave a third of the plain match's beams unexplained at most. It
-/// must not fit nearly as well at another heading in or around the windows, since rooms look alike;
-/// and if it explains less than half of the scan, the map's free space must not contradict the
-/// rest. These conditions keep the plain match for a view of a new place, where a correct match has
-/// few inliers.
+/// A match that odometry contradicts much more than the plain one must fit as well as usual, and if
+/// the map does not contradict the plain match, leave a third of its unexplained beams at most; or
+/// have 1.5 times the inliers of a contradicted plain match, and fit as well as usual where there
+/// are mapped walls. It must not fit nearly as well at another heading in or around the windows,
+/// since rooms look alike; and if it explains less than half of the scan, the map's free space must
+/// not contradict the rest. These conditions keep the plain match for a view of a new place, where
+/// a correct match has few inliers.
 ///
 /// @param points     ends of beams, base frame.
 /// @param ndt        map that the scan is matched with.
