@@ -2,6 +2,7 @@
 #include "slam/core/graph/loop_finder.hpp"
 
 #include "common/geometry/chi2.hpp"
+#include "slam/core/registration/unique_place.hpp"
 
 #include <Eigen/LU>
 
@@ -20,8 +21,6 @@ constexpr double kDirectReach_rad = 0.15;
 constexpr std::size_t kSearchBeams = 120;
 constexpr std::size_t kFields = 8;                     // kept in the cache
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a match in a submap [m, m, rad]
-constexpr double kApart_m = 0.3;                       // of a runner-up from the best place
-constexpr double kApart_rad = 0.35;
 /// Covariance of the best place of a correlative search: 0.1 m, 0.03 rad.
 const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
 constexpr double kAgree_m = 0.3;  // between two candidates' corrections
@@ -34,6 +33,13 @@ double reach_m(const Eigen::Matrix3d& covariance) {
 
 double reach_rad(const Eigen::Matrix3d& covariance) {
   return kSigmas * std::sqrt(covariance(2, 2));
+}
+
+/// Covariance of the estimated pose relative to a match at a recent keyframe.
+Eigen::Matrix3d since_match(std::size_t keyframe, const LoopSearch& search) {
+  Eigen::Matrix3d covariance = kLoopCovarianceMargin * search.covariance_since(keyframe);
+  covariance.diagonal() += kFoundSigmas.cwiseAbs2();
+  return covariance;
 }
 
 }  // namespace
@@ -100,7 +106,7 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Guess& guess
   const Se2 estimated = submap_from_map * scan.search.map_from_base;
   const double moved_m = (found.translation() - estimated.translation()).norm();
   const double turned_rad = std::abs(angle_difference(expected.theta(), estimated.theta()));
-  const auto other = field.best_apart_from(found, kApart_m, kApart_rad, beams, found,
+  const auto other = field.best_apart_from(found, kOtherPlace_m, kOtherPlace_rad, beams, found,
                                            {wide_m + moved_m, wide_rad + turned_rad},
                                            config_.runner_up_share * field.score(beams, found));
   if (other && is_other_place(*other, loop.match)) {
@@ -115,7 +121,7 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Guess& guess
 bool LoopFinder::is_other_place(const SearchMatch& other, const ScanMatch& match) {
   const Eigen::Vector2d apart =
       other.submap_from_base.translation() - match.map_from_base.translation();
-  return apart.norm() < kApart_m || !match.observed.is_along_weak(apart);
+  return apart.norm() < kOtherPlace_m || !match.observed.is_along_weak(apart);
 }
 
 bool LoopFinder::is_good(const ScanMatch& match) const {
@@ -142,9 +148,8 @@ Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& s
   const Eigen::Matrix3d covariance = search.covariance_against(old.first_keyframe());
   if (last == confirmed_.rend()) return covariance;
   // Holds whether or not the graph has already followed that loop.
-  Eigen::Matrix3d since = last->off * last->off.transpose() +
-                          kLoopCovarianceMargin * search.covariance_since(last->keyframe);
-  since.diagonal() += kFoundSigmas.cwiseAbs2();
+  const Eigen::Matrix3d since =
+      last->off * last->off.transpose() + since_match(last->keyframe, search);
   return smaller_covariance(since, covariance);
 }
 
@@ -209,9 +214,7 @@ std::optional<LoopFinder::Place> LoopFinder::place_near(const Guess& guess, cons
 
 /// The present pose as the candidate's correction has it.
 LoopFinder::Guess LoopFinder::corrected_by_candidate(const LoopSearch& search) const {
-  Eigen::Matrix3d since =
-      kLoopCovarianceMargin * search.covariance_since(candidate_->found.keyframe);
-  since.diagonal() += kFoundSigmas.cwiseAbs2();
+  const Eigen::Matrix3d since = since_match(candidate_->found.keyframe, search);
   return {candidate_->correction * search.map_from_base, [since](std::size_t) { return since; },
           false};
 }

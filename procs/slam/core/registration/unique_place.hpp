@@ -12,6 +12,10 @@
 
 namespace waymark {
 
+/// Another place than a match is apart from it by one of these, the width of the match's peak.
+inline constexpr double kOtherPlace_m = 0.3;
+inline constexpr double kOtherPlace_rad = 0.35;
+
 /// Conditions under which the best place of a search counts as unique.
 struct UniquePlaceLimits {
   double min_score{0.0};        ///< of the best place

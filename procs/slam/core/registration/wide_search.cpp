@@ -4,6 +4,7 @@
 #include "common/geometry/chi2.hpp"
 #include "common/geometry/squared.hpp"
 #include "slam/core/registration/correlative_search.hpp"
+#include "slam/core/registration/unique_place.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,11 +25,11 @@ constexpr double kMuchMore = 1.5;       // the same, if odometry contradicts the
 constexpr double kFarMore = 2.0;        // the same, if it does not
 constexpr double kLeavesFarMore = 3.0;  // ratio of unexplained beams, plain to found match
 constexpr double kContradictedSigmas = 5.0;
-constexpr double kFarFarther = 4.0;    // ratio of distances from odometry, found to plain match
-constexpr double kNearlyAsWell = 0.8;  // ratio of scores and of inliers, other to found place
-constexpr double kApart_m = 0.3;       // of another place from the found one
-constexpr double kApart_rad = 0.35;
-constexpr double kSameHeading_rad = 0.1;
+constexpr double kFarFarther = 4.0;  // ratio of distances from odometry, found to plain match
+// Ratio of scores and of inliers, other to found place: on thinned logs of fr079 and aces those of
+// wrong places were above it, those of most right ones below.
+constexpr double kNearlyAsWell = 0.8;
+constexpr double kSameHeading_rad = 0.1;               // 3 sigmas of a search
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a heading step
 
 /// Half the side of the windows.
@@ -47,7 +48,7 @@ double unexplained(const ScanMatch& match, const Points& points) {
 }
 
 bool is_same_place(const Eigen::Vector3d& apart) {
-  return apart.head<2>().norm() < kApart_m && std::abs(apart.z()) < kApart_rad;
+  return apart.head<2>().norm() < kOtherPlace_m && std::abs(apart.z()) < kOtherPlace_rad;
 }
 
 SearchWindow window_of(const WideSearch& search) {
@@ -81,15 +82,15 @@ class PlaceSearch {
     return best;
   }
 
-  /// Whether the scan fits nearly as well at a heading other than those of `found` and `plain`.
-  /// Another position with the same heading takes from `found` the information along the line
-  /// between the two.
+  /// Whether the scan fits nearly as well at another heading, unless `plain` is there. Another
+  /// position with the same heading takes from `found` the information along the line between the
+  /// two.
   bool is_ambiguous(ScanMatch& found, const ScanMatch& plain) const {
     const Se2& pose = found.map_from_base;
     const SearchWindow around{2.0 * window_.half_width_m,
                               std::min(std::numbers::pi, 2.0 * window_.half_turn_rad)};
-    const auto other = field_.best_apart_from(pose, kApart_m, kApart_rad, beams_, pose, around,
-                                              kNearlyAsWell * field_.score(beams_, pose));
+    const auto other = field_.best_apart_from(pose, kOtherPlace_m, kOtherPlace_rad, beams_, pose,
+                                              around, kNearlyAsWell * field_.score(beams_, pose));
     if (!other) return false;
     const ScanMatch there = match_at(*other);
     if (there.inliers < kNearlyAsWell * found.inliers) return false;
@@ -97,7 +98,7 @@ class PlaceSearch {
     const Eigen::Vector3d apart = pose_difference(there.map_from_base, pose);
     if (std::abs(apart.z()) > kSameHeading_rad) return true;
     const Eigen::Vector2d shift = apart.head<2>();
-    if (shift.norm() < kApart_m || found.observed.is_along_weak(shift)) return false;
+    if (is_same_place(apart) || found.observed.is_along_weak(shift)) return false;
     if (found.observed.is_degenerate) return true;
     found.observed.forget(shift.normalized());
     return false;
