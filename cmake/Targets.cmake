@@ -18,16 +18,19 @@ function(waymark_unity name)
   endforeach()
 endfunction()
 
-# waymark_library(NAME [PICTURES] SOURCES ... [ALONE ...] LIBRARIES ...): a static library of ours; headers are included
-# from procs/. PICTURES: most of its files include OpenCV. ALONE: as for waymark_unity.
+# waymark_library(NAME [NUMERIC|PICTURES] SOURCES ... [ALONE ...] LIBRARIES ...): a static library of ours; headers are
+# included from procs/. NUMERIC, PICTURES: as in Precompiled.cmake. ALONE: as for waymark_unity.
 function(waymark_library name)
-  cmake_parse_arguments(ARG "PICTURES" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "NUMERIC;PICTURES" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES} ${ARG_ALONE})
   target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}/procs")
   target_link_libraries(${name} PUBLIC ${ARG_LIBRARIES} PRIVATE waymark_warnings)
   if(ARG_PICTURES)
     target_precompile_headers(${name} REUSE_FROM precompiled_pictures)
+  elseif(ARG_NUMERIC)
+    target_precompile_headers(${name} REUSE_FROM precompiled_numeric)
   else()
+    target_compile_options(${name} PRIVATE ${waymark_plain_options})
     target_precompile_headers(${name} REUSE_FROM precompiled_plain)
   endif()
   waymark_unity(${name} ${ARG_ALONE})
@@ -40,6 +43,7 @@ function(waymark_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} waymark_warnings)
+  target_compile_options(${name} PRIVATE ${waymark_plain_options})
   target_precompile_headers(${name} REUSE_FROM precompiled_plain)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}")
   add_dependencies(programs ${name})
@@ -51,16 +55,13 @@ foreach(label unit property drives process simulation)
 endforeach()
 
 # waymark_test(NAME LABEL unit|property|drives|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one GoogleTest program,
-# which is one test of CTest; the target LABEL_tests builds all of a label. What is tested is optimised as it is used; the
-# tests' own code runs once, and its optimisation would take a third of its compile time.
-# (GCC warns wrongly of std::optional at -O1.)
-set(waymark_test_options "$<$<CONFIG:Release>:-O1;-Wno-maybe-uninitialized>")
+# which is one test of CTest; the target LABEL_tests builds all of a label.
 function(waymark_test name)
   cmake_parse_arguments(ARG "" "LABEL" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} test_own_folder GTest::gmock_main waymark_warnings)
-  target_compile_options(${name} PRIVATE ${waymark_test_options})
+  target_compile_options(${name} PRIVATE ${waymark_plain_options})
   target_precompile_headers(${name} REUSE_FROM precompiled_tests)
   target_compile_definitions(${name} PRIVATE
     WAYMARK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WAYMARK_BUILD_DIR="${PROJECT_BINARY_DIR}")

@@ -4,7 +4,7 @@
 #include "common/corridor/not_a_corridor.hpp"
 #include "common/geometry/principal_axes.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -65,16 +65,15 @@ Vector2d local_fit(const std::vector<Station>& stations, double at_px, double ha
     if (distance < 1.0) near.emplace_back(std::pow(1.0 - std::pow(distance, 3), 3), &station);
   }
   if (near.size() < kFewestSlices) return local_fit(stations, at_px, 2.0 * half_window_px);
-  Eigen::MatrixX3d terms(near.size(), 3);
-  Eigen::MatrixX2d middles(near.size(), 2);
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    const auto& [weight, station] = near[i];
-    const double root = std::sqrt(weight);
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 2, 3> moments = Eigen::Matrix<double, 2, 3>::Zero();
+  for (const auto& [weight, station] : near) {
     const double u = (station->at_px - at_px) / half_window_px;
-    terms.row(static_cast<Eigen::Index>(i)) << root, root * u, root * u * u;
-    middles.row(static_cast<Eigen::Index>(i)) = root * station->middle_px.transpose();
+    const Eigen::Vector3d terms{1.0, u, u * u};
+    normal += weight * terms * terms.transpose();
+    moments += weight * station->middle_px * terms.transpose();
   }
-  return terms.colPivHouseholderQr().solve(middles).row(0).transpose();
+  return moments * normal.inverse().col(0);
 }
 
 std::vector<Vector2d> smoothed(const std::vector<Station>& stations, double width_px) {

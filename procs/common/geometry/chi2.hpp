@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 namespace waymark {
 
 /// Squared Mahalanobis distance: residual^T covariance^-1 residual.
 /// @param covariance  positive definite.
-inline double chi2(const Eigen::Vector3d& residual, const Eigen::Matrix3d& covariance) {
-  return residual.dot(covariance.ldlt().solve(residual));
-}
+double chi2(const Eigen::Vector3d& residual, const Eigen::Matrix3d& covariance);
 
 }  // namespace waymark

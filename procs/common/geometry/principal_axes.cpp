@@ -6,7 +6,8 @@
 namespace waymark {
 
 PrincipalAxes principal_axes(const Eigen::Matrix2d& symmetric) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver{symmetric};
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(symmetric);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Eigenvalues of 2 x 2 matrices, in a file of their own because Eigen's solver takes seconds to
-// compile.
+// Eigenvalues and eigenvectors of 2 x 2 matrices.
 #pragma once
 
 #include <Eigen/Core>
