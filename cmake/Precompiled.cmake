@@ -2,17 +2,24 @@
 # without these as well (-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON). One per kind of code:
 #   numeric   loops over beams, cells and equations: fully optimised
 #   pictures  loops over pixels: the same, with OpenCV
-#   plain     everything else, which runs a few times per message: optimised less, a third of its compile time saved
+#   plain     everything else, which runs a few times per message or file: optimised less, which saves a third of the time
 #   tests     plain, with GoogleTest
 
 # GCC takes a precompiled header only where the definitions are the same as where it was made.
 add_compile_definitions(FMT_SHARED)
 
+if(WAYMARK_SANITIZE MATCHES address AND NOT WAYMARK_FUZZ)  # instrumented, it takes twice as long to compile
+  set(waymark_plain_options -Og)
+else()  # GCC warns wrongly of std::optional at -O1.
+  set(waymark_plain_options "$<$<CONFIG:Release>:-O1;-Wno-maybe-uninitialized>")
+endif()
+
 function(waymark_precompiled name)
-  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES;OPTIONS" ${ARGN})
   file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp" CONTENT "")
   add_library(${name} OBJECT "${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} waymark_warnings)
+  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
   target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
 endfunction()
 
@@ -24,11 +31,7 @@ waymark_precompiled(precompiled_numeric HEADERS ${headers} LIBRARIES Eigen3::Eig
 waymark_precompiled(precompiled_pictures
   HEADERS ${headers} <opencv2/core.hpp> <opencv2/imgproc.hpp>
   LIBRARIES Eigen3::Eigen fmt::fmt opencv_core opencv_imgproc)
-
-if(WAYMARK_SANITIZE MATCHES address AND NOT WAYMARK_FUZZ)  # instrumented, it takes twice as long to compile
-  set(waymark_plain_options -Og)
-else()  # GCC warns wrongly of std::optional at -O1.
-  set(waymark_plain_options "$<$<CONFIG:Release>:-O1;-Wno-maybe-uninitialized>")
-endif()
-waymark_precompiled(precompiled_plain HEADERS ${headers} LIBRARIES Eigen3::Eigen fmt::fmt)
-target_compile_options(precompiled_plain PRIVATE ${waymark_plain_options})
+waymark_precompiled(precompiled_plain
+  HEADERS ${headers}
+  LIBRARIES Eigen3::Eigen fmt::fmt
+  OPTIONS ${waymark_plain_options})
