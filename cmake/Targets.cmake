@@ -50,12 +50,13 @@ function(waymark_program name)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
-foreach(label unit property drives process simulation)
+foreach(label unit property statistics process simulation)
   add_custom_target(${label}_tests)
 endforeach()
 
-# waymark_test(NAME LABEL unit|property|drives|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one GoogleTest program,
-# which is one test of CTest; the target LABEL_tests builds all of a label.
+# waymark_test(NAME LABEL unit|property|statistics|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one GoogleTest
+# program, which is one test of CTest; the target LABEL_tests builds all of a label. statistics: accuracy over many drives, views
+# or samples; minutes under sanitizers, so .ci/run leaves these without them (tests/nightly.sh does not).
 function(waymark_test name)
   cmake_parse_arguments(ARG "" "LABEL" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})

@@ -61,8 +61,9 @@ step() {
 # fingerprint: of the files that live run and replay must have in common, byte for byte.
 fingerprint() { (cd "$out/$live_estimator" && sha256sum map.pgm trajectory.tum); }
 
+# replay_row ROW: its output is printed only if it fails.
 replay_row() {
-  local name estimator settings setting options=()
+  local name estimator settings setting options=() output start=$SECONDS
   read -r name estimator settings <<<"$1"
   for setting in $settings; do
     case $setting in
@@ -70,7 +71,20 @@ replay_row() {
       *) options+=(--set "$setting") ;;
     esac
   done
-  "$deploy_dir/replay.sh" "$out/run.lcm" --estimator "$estimator" --row "$name" "${options[@]}"
+  if output=$("$deploy_dir/replay.sh" "$out/run.lcm" --estimator "$estimator" --row "$name" "${options[@]}" 2>&1); then
+    say "replayed $name, $((SECONDS - start)) s"
+  else
+    printf '%s\n' "$output" >&2
+    die $kExitFailed "the replay of $name failed"
+  fi
+}
+
+# replay_rows: as many at a time as there are cores.
+replay_rows() {
+  export deploy_dir out script_name kExitFailed
+  export -f replay_row say die
+  # shellcheck disable=SC2016  # for the inner shell
+  printf '%s\0' "${rows[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'replay_row "$1"' replay_row || return $kExitFailed
 }
 
 report_times() {
@@ -84,7 +98,7 @@ step "install packages" "$deploy_dir/install-deps.sh"
 step "build" build release waymark-{sim,detector,slam,viewer,recorder,evaluate}
 step "drive" "$deploy_dir/launch.sh" "$scenario" --out "$out" --estimator $live_estimator "${seed[@]}" "${live_page[@]}"
 live=$(fingerprint)
-for row in "${rows[@]}"; do step "replay ${row%% *}" replay_row "$row"; done
+step "replay" replay_rows
 [[ $live == "$(fingerprint)" ]] ||
   die $kExitFailed "live run and replay of its log differ in $live_estimator/map.pgm or trajectory.tum"
 step "evaluate" "$bin_dir/waymark-evaluate" run "$out"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "slam/core/estimators/estimator.hpp"
+#include "slam/core/estimators/waymark.hpp"
 #include "slam/core/input/sensor_queue.hpp"
 #include "support/observations.hpp"
 #include "support/synthetic_corridor.hpp"
@@ -53,6 +54,11 @@ inline std::vector<Step> run(Estimator& estimator, const SensorLog& log, const S
   return steps;
 }
 
+inline std::vector<Step> run_waymark(const SensorLog& log, const SyntheticCorridor& corridor) {
+  WaymarkEstimator estimator{estimator_setup_of(corridor, 1), {}};
+  return run(estimator, log, setup_of(corridor));
+}
+
 inline double along_rmse_m(const std::vector<Step>& steps) {
   double sum = 0.0;
   for (const Step& step : steps)
@@ -68,6 +74,12 @@ inline SyntheticCorridor short_corridor(std::uint64_t seed) {
   corridor.speed_m_s = 0.2;
   corridor.scale_error = seed % 2 == 0 ? -0.02 : 0.02;
   corridor.markers = opposite_markers(corridor);
+  return corridor;
+}
+
+inline SyntheticCorridor corridor_with_markers(std::uint64_t seed) {
+  SyntheticCorridor corridor = short_corridor(seed);
+  corridor.markers = opposite_markers(corridor, 2.0, 2.0);
   return corridor;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Laws of the estimators over simulated drives and seeds.
+// Simulated drives of marker matching over seeds, beside dead reckoning.
 #include "estimator_run.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
 #include "slam/core/estimators/odometry.hpp"
