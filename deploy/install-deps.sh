@@ -16,6 +16,7 @@ packages=(
   libmujoco-dev libosmesa6-dev             # sim: physics, rendering without a display
   libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libcpp-httplib-dev pkg-config            # viewer: the live page
+  libturbojpeg0-dev libpng-dev             # camera frames, pictures of the map
   zlib1g-dev libbz2-dev                    # import of compressed logs, export
   libsqlite3-dev libzstd-dev liblz4-dev    # import of ROS bags
   libcairo2-dev                            # marker sheets as PDF

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/debug_pictures.hpp"
 
+#include "common/files/whole_file.hpp"
 #include "common/node/node.hpp"
+#include "common/pictures/png.hpp"
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <cmath>
@@ -62,10 +63,11 @@ bool DebugPictures::offer(const cv::Mat& gray, const MarkerDetections& detection
   if (frames_++ % every_ != 0) return true;
   const auto file = folder_ / fmt::format("frame_{:012d}.png", to_us(detections.time));
   try {
-    return cv::imwrite(file.string(), annotated(gray, detections));
-  } catch (const cv::Exception&) {
+    write_whole_file(file, png_bytes(annotated(gray, detections)));
+  } catch (const std::system_error&) {
     return false;
   }
+  return true;
 }
 
 }  // namespace waymark

@@ -4,6 +4,7 @@
 #include "common/bus/ask_slam.hpp"
 #include "common/bus/bus.hpp"
 #include "common/logging/logging.hpp"
+#include "common/pictures/png.hpp"
 #include "common/runtime/signals.hpp"
 #include "viewer/core/painters/layer_painter.hpp"
 #include "viewer/core/painters/map_painter.hpp"
@@ -11,7 +12,6 @@
 #include "viewer/core/painters/scan_painter.hpp"
 #include "viewer/files/g2o_text.hpp"
 #include "viewer/files/map_files.hpp"
-#include "viewer/files/png.hpp"
 #include "viewer/files/text_files.hpp"
 
 #include <fmt/format.h>
@@ -244,21 +244,21 @@ void ViewerNode::write_graph() {
 
 void ViewerNode::write_map_picture() {
   const cv::Mat picture = viewer::paint_map(scene_, config_.viewer.map_page);
-  folder_.write("map.png", viewer::png_bytes(picture));
+  folder_.write("map.png", png_bytes(picture));
 }
 
 void ViewerNode::write_marker_layer() {
   const cv::Mat picture = viewer::paint_marker_layer(
       scene_.map.grid(), scene_.title + ": marker id per cell", config_.viewer.map_page);
-  folder_.write("marker_layer.png", viewer::png_bytes(picture));
+  folder_.write("marker_layer.png", png_bytes(picture));
 }
 
 void ViewerNode::write_scan_and_plain_map() {
   const cv::Mat plain = viewer::paint_plain(scene_.map.grid(), config_.viewer.map_page.thresholds);
-  folder_.write("plain.png", viewer::png_bytes(plain));
+  folder_.write("plain.png", png_bytes(plain));
   if (!scene_.scan) return;
   const cv::Mat scan = viewer::paint_scan(*scene_.scan, config_.viewer.scan_size_px);
-  folder_.write("scan.png", viewer::png_bytes(scan));
+  folder_.write("scan.png", png_bytes(scan));
 }
 
 void ViewerNode::finish() {

@@ -223,7 +223,7 @@ critical_process_dies() {
   local name
   for name in sim slam recorder; do
     rm -f "$work"/pids* "$work/closed"
-    FAKE_sim_seconds=30 "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
+    FAKE_sim_seconds=30 env --default-signal=INT "$deploy/launch.sh" "$scenario" --out "$out" >"$output" 2>&1 &
     wait_until all_started
     kill -KILL "$(cat "$work/pids.$name")"
     local code=0

@@ -5,11 +5,11 @@
 #include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
 #include "common/logging/logging.hpp"
+#include "common/pictures/png.hpp"
 #include "common/runtime/guard.hpp"
 
 #include <fmt/format.h>
 #include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 namespace waymark::calibrate {
 namespace {
@@ -26,9 +26,7 @@ struct Options {
 
 void write_coverage(const CameraCalibration& calibration, const std::filesystem::path& file) {
   if (file.empty() || calibration.frames.size.empty()) return;
-  std::vector<unsigned char> png;
-  cv::imencode(".png", coverage_picture(calibration), png);
-  write_whole_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
+  write_whole_file(file, png_bytes(coverage_picture(calibration)));
 }
 
 int run(const Options& options) {

@@ -3,10 +3,10 @@
 
 #include "common/files/whole_file.hpp"
 #include "common/markers/marker_dictionary.hpp"
+#include "common/pictures/png.hpp"
 
 #include <fmt/format.h>
 #include <opencv2/aruco.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -147,9 +147,7 @@ Sheet draw_sheet(const SheetOptions& options, int id) {
 }
 
 void write_png(const Sheet& sheet, const std::filesystem::path& file) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", sheet.picture, png);
-  std::string bytes{png.begin(), png.end()};
+  std::string bytes = png_bytes(sheet.picture);
   constexpr std::size_t kAfterHeader = 8 + 25;  // signature and IHDR chunk
   bytes.insert(kAfterHeader, size_chunk(sheet.pixels_per_m));
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());

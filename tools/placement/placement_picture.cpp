@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/pictures/png.hpp"
 #include "placement/placement_report.hpp"
 #include "viewer/core/painters/map_painter.hpp"
-#include "viewer/files/png.hpp"
 
 #include <fmt/format.h>
 
@@ -80,7 +80,7 @@ std::string placement_picture(const PlacementInput& input, const Placement& plac
   }
   viewer::MapPageStyle style;
   style.marker_size_m = input.config.robot.markers.size_m;
-  return viewer::png_bytes(viewer::paint_map(scene, style));
+  return png_bytes(viewer::paint_map(scene, style));
 }
 
 }  // namespace waymark::placement

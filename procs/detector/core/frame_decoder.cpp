@@ -2,8 +2,8 @@
 #include "detector/core/frame_decoder.hpp"
 
 #include "common/jpeg/jpeg_header.hpp"
+#include "common/pictures/jpeg.hpp"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -23,15 +23,8 @@ DecodedFrame decode_jpeg(std::span<const std::uint8_t> bytes, cv::Size expected_
   const cv::Size size{header->width_px, header->height_px};
   if (size != expected_size) return {{}, FrameProblem::kWrongSize, size};
   if (!header->complete) return {{}, FrameProblem::kTruncatedJpeg};
-  try {
-    const cv::Mat gray =
-        cv::imdecode(view_of(bytes, 1, static_cast<int>(bytes.size()), CV_8UC1, bytes.size()),
-                     cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-    if (gray.size() == expected_size) return {gray, FrameProblem::kNone};
-  } catch (const cv::Exception&) {
-    // kBrokenJpeg below
-  }
-  return {{}, FrameProblem::kBrokenJpeg};
+  const cv::Mat gray = grey_of_jpeg(bytes, size);
+  return {gray, gray.empty() ? FrameProblem::kBrokenJpeg : FrameProblem::kNone};
 }
 
 DecodedFrame decode_raw(const EncodedFrame& frame) {

@@ -3,8 +3,9 @@
 
 #include "common/jpeg/jpeg_header.hpp"
 #include "common/messages/message.hpp"
+#include "common/pictures/jpeg.hpp"
+#include "common/pictures/png.hpp"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -39,6 +40,7 @@ std::optional<cv::Mat> grey_of_pixels(const RosImage& image) {
   if (kind == kPixelKinds.end()) return std::nullopt;
   const std::int64_t needed = std::int64_t{image.width_px} * CV_ELEM_SIZE(kind->type);
   if (needed > image.row_bytes) return std::nullopt;
+  if (std::max(image.width_px, image.height_px) > kMaxJpegSide_px) return std::nullopt;
   const cv::Mat pixels{image.height_px, image.width_px, kind->type,
                        const_cast<std::uint8_t*>(image.data.data()),
                        static_cast<std::size_t>(image.row_bytes)};
@@ -61,17 +63,12 @@ image_t message_of(Timestamp time, int width_px, int height_px, std::vector<std:
 
 std::optional<cv::Mat> decoded(const RosImage& image) {
   if (image.width_px > 0) return grey_of_pixels(image);
-  const auto header = read_jpeg_header(image.data);
-  if (header && std::int64_t{header->width_px} * header->height_px > kMaxPixels)
-    return std::nullopt;
-  const cv::Mat bytes{1, static_cast<int>(image.data.size()), CV_8UC1,
-                      const_cast<std::uint8_t*>(image.data.data())};
-  try {
-    cv::Mat grey = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
-    return grey.empty() ? std::nullopt : std::optional{grey};
-  } catch (const cv::Exception&) {
-    return std::nullopt;
-  }
+  cv::Mat grey;
+  if (const auto header = read_jpeg_header(image.data); !header)
+    grey = grey_of_png(image.data, kMaxPixels);
+  else if (std::int64_t{header->width_px} * header->height_px <= kMaxPixels)
+    grey = grey_of_jpeg(image.data, {header->width_px, header->height_px});
+  return grey.empty() ? std::nullopt : std::optional{grey};
 }
 
 }  // namespace
@@ -84,11 +81,10 @@ std::optional<image_t> to_camera_message(const RosImage& image, Timestamp time) 
                       {image.data.begin(), image.data.end()});
   const auto grey = decoded(image);
   if (!grey) return std::nullopt;
-  std::vector<std::uint8_t> jpeg;
   for (const int quality : kQualities) {
-    if (!cv::imencode(".jpg", *grey, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality}))
-      return std::nullopt;
-    if (jpeg.size() <= kMaxImageBytes) return message_of(time, grey->cols, grey->rows, jpeg);
+    std::vector<std::uint8_t> jpeg = jpeg_bytes(*grey, quality);
+    if (jpeg.size() <= kMaxImageBytes)
+      return message_of(time, grey->cols, grey->rows, std::move(jpeg));
   }
   return std::nullopt;
 }

@@ -2,9 +2,9 @@
 #include "sim/core/camera/camera.hpp"
 
 #include "common/geometry/angle.hpp"
+#include "common/pictures/jpeg.hpp"
 #include "sim/core/random_streams.hpp"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ cv::Mat Camera::random_picture(Random& random) const {
 CameraFrame Camera::compress(const cv::Mat& picture, Timestamp time) const {
   CameraFrame frame{time, picture.cols, picture.rows, noise_config_.jpeg_quality, {}};
   while (true) {
-    cv::imencode(".jpg", picture, frame.jpeg, {cv::IMWRITE_JPEG_QUALITY, frame.jpeg_quality});
+    frame.jpeg = jpeg_bytes(picture, frame.jpeg_quality);
     if (frame.jpeg.size() <= kMaxJpegBytes || frame.jpeg_quality <= kQualityStep) return frame;
     frame.jpeg_quality -= kQualityStep;
   }
