@@ -2,7 +2,7 @@
 // What a JPEG says about itself, and its pixels.
 #include "common/pictures/jpeg.hpp"
 
-#include "common/jpeg/jpeg_header.hpp"
+#include "common/pictures/jpeg_header.hpp"
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/frame_decoder.hpp"
 
-#include "common/jpeg/jpeg_header.hpp"
 #include "common/pictures/jpeg.hpp"
+#include "common/pictures/jpeg_header.hpp"
 
 #include <opencv2/imgproc.hpp>
 

@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <vector>
 
 namespace waymark {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "detector/core/frame_decoder.hpp"
 
-#include "common/jpeg/jpeg_header.hpp"
+#include "common/pictures/jpeg_header.hpp"
 #include "common/random/random.hpp"
 
 #include <gtest/gtest.h>

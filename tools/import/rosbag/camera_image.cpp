@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/rosbag/camera_image.hpp"
 
-#include "common/jpeg/jpeg_header.hpp"
 #include "common/messages/message.hpp"
 #include "common/pictures/jpeg.hpp"
+#include "common/pictures/jpeg_header.hpp"
 #include "common/pictures/png.hpp"
 
 #include <opencv2/imgproc.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/jpeg/jpeg_header.hpp"
+#include "common/pictures/jpeg_header.hpp"
 
 #include "common/bytes/big_endian.hpp"
 
