@@ -8,11 +8,8 @@
 # GCC takes a precompiled header only where the definitions are the same as where it was made.
 add_compile_definitions(FMT_SHARED)
 
-if(WAYMARK_SANITIZE MATCHES address AND NOT WAYMARK_FUZZ)  # instrumented, it takes twice as long to compile
-  set(waymark_plain_options -Og)
-else()  # GCC warns wrongly of std::optional at -O1.
-  set(waymark_plain_options "$<$<CONFIG:Release>:-O1;-Wno-maybe-uninitialized>")
-endif()
+# GCC warns wrongly of std::optional at -O1.
+set(waymark_plain_options "$<$<CONFIG:Release>:-O1;-Wno-maybe-uninitialized>")
 
 function(waymark_precompiled name)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES;OPTIONS" ${ARGN})

@@ -23,7 +23,8 @@ SUITES = {  # folder, build targets, which are test programs
     "common": ("procs/common", ["tests/unit/common/common_unit_test", "tests/process/transport_test"]),
     "slam": (
         "procs/slam/core",
-        ["tests/unit/slam/slam_unit_test", "tests/property/slam/slam_property_test", "tests/property/slam/slam_drives_test"],
+        ["tests/unit/slam/slam_unit_test", "tests/property/slam/slam_property_test", "tests/unit/slam/daily_life_test",
+         "tests/property/slam/slam_drives_test"],
     ),
     "evaluate": ("tools/evaluate", ["tests/unit/tools/tools_unit_test"]),
 }

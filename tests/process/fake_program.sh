@@ -3,6 +3,7 @@
 # Stands in for waymark-sim, -slam, ... in scripts_test.sh: does what the environment says.
 #   FAKE_DIR              shared folder: pids of all that ran; the file `closed` says that the run is over
 #   FAKE_sim_seconds      length of the run (default 0.5)
+#   FAKE_sim_waits_for=N  it ends only when so many programs, itself included, are there
 #   FAKE_NAME_exit=CODE   NAME ends at once with this code; `crash` kills itself
 #   FAKE_NAME_fails=WORDS NAME ends with code 1, as a replay, too, when its arguments have these words
 #   FAKE_NAME_kills=WORDS the same, and NAME kills whoever called it
@@ -91,7 +92,8 @@ case $(setting exit) in
 esac
 end=$((${EPOCHREALTIME/./} + $(awk "BEGIN { print int(1e6 * ${FAKE_sim_seconds:-0.5}) }")))
 while [[ -n $real_time$(setting stays) || ! -e $FAKE_DIR/closed ]]; do
-  if [[ $name == sim ]] && ((${EPOCHREALTIME/./} > end)); then
+  if [[ $name == sim ]] && ((${EPOCHREALTIME/./} > end)) &&
+    (($(wc -l <"$FAKE_DIR/pids") >= ${FAKE_sim_waits_for:-0})); then
     touch "$FAKE_DIR/closed"
     break
   fi

@@ -212,7 +212,7 @@ given_url_is_used() {
 }
 
 real_time_processes_are_interrupted() {
-  expect 0 launch.sh "$scenario" --out "$out" --real-time
+  FAKE_sim_waits_for=5 expect 0 launch.sh "$scenario" --out "$out" --real-time  # no signal before its trap is set
   [[ $(wc -l <"$work/interrupted") == 4 ]] || fail "not all four were interrupted"
   grep -q -- "--real-time" "$work/detector.arguments" || fail "--real-time is not passed on"
 }
