@@ -27,13 +27,12 @@ void Graph::eliminate(const Variable& variable) {
   const Eigen::Index at = offsets_.at(variable);
   const Eigen::Index size = variable.size();
   prior_.h = Eigen::MatrixXd{prior_.h.selfadjointView<Eigen::Lower>()};
-  const Eigen::MatrixXd own = prior_.h.block(at, at, size, size);
+  const Eigen::LLT<Eigen::MatrixXd> own{prior_.h.block(at, at, size, size)};
   const Eigen::MatrixXd column = prior_.h.middleCols(at, size);
   // A variable without any measurement has no information to pass on.
-  const Eigen::MatrixXd gain =
-      own.llt().info() == Eigen::Success
-          ? Eigen::MatrixXd{own.llt().solve(column.transpose()).transpose()}
-          : Eigen::MatrixXd::Zero(column.rows(), size);
+  const Eigen::MatrixXd gain = own.info() == Eigen::Success
+                                   ? Eigen::MatrixXd{own.solve(column.transpose()).transpose()}
+                                   : Eigen::MatrixXd::Zero(column.rows(), size);
   prior_.g -= gain * prior_.g.segment(at, size).eval();
   prior_.h.noalias() -= gain * column.transpose();
   remove_from_layout(variable);

@@ -2,7 +2,7 @@
 // Learns how much larger the odometry's noise is than configured, from innovations.
 #pragma once
 
-#include "slam/core/graph/factors.hpp"
+#include "slam/core/motion/odometry_mixture.hpp"
 
 #include <array>
 #include <cstddef>

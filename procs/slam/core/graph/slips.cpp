@@ -6,18 +6,10 @@
 namespace waymark {
 namespace {
 
-constexpr int kMaxSlips = 3;  // found by one optimise()
 // Keyframes: older motions were examined when they were among these.
 constexpr std::size_t kExamined = 20;
 
 }  // namespace
-
-void Graph::optimise() {
-  solve_window();
-  if (!has_markers()) return;
-  for (int i = 0; i < kMaxSlips && assume_slip(); ++i)
-    solve_window();
-}
 
 bool Graph::has_markers() const {
   return std::any_of(active_factors_.begin(), active_factors_.end(), [this](std::size_t index) {
