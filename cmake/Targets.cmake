@@ -56,8 +56,7 @@ endforeach()
 
 # waymark_test(NAME LABEL unit|property|statistics|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one GoogleTest
 # program, which is one test of CTest; the target LABEL_tests builds all of a label. statistics: accuracy over many drives, views
-# or samples; minutes under sanitizers, so .ci/run leaves these without them (tests/nightly.sh does not). ctest is run with
-# twice as many jobs as there are cores: a test that computes takes two of them (PROCESSORS), one that mostly waits takes one.
+# or samples; minutes under sanitizers, so .ci/run leaves these without them (tests/nightly.sh does not).
 function(waymark_test name)
   cmake_parse_arguments(ARG "" "LABEL" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})
@@ -70,5 +69,5 @@ function(waymark_test name)
   waymark_unity(${name} ${ARG_ALONE})
   add_dependencies(${ARG_LABEL}_tests ${name})
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 1500 PROCESSORS 2)
+  set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 1500)
 endfunction()

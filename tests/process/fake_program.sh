@@ -80,18 +80,21 @@ on_signal() {
   [[ -n $real_time ]] || exit 130
   exit 0
 }
-if [[ -n $(setting stays) ]]; then trap '' INT TERM; else trap on_signal INT TERM; fi
+# Read before the traps: bash may lose a signal that comes while it reads a $(...).
+stays=$(setting stays)
+fate=$(setting exit)
+end=$((${EPOCHREALTIME/./} + $(awk "BEGIN { print int(1e6 * ${FAKE_sim_seconds:-0.5}) }")))
+if [[ -n $stays ]]; then trap '' INT TERM; else trap on_signal INT TERM; fi
 echo "$*" >"$FAKE_DIR/$name.arguments"
 echo "$name says something" >&2
 echo $$ >>"$FAKE_DIR/pids.$name"
 echo $$ >>"$FAKE_DIR/pids"  # last: whoever waits for it finds the rest
-case $(setting exit) in
+case $fate in
   '') ;;
   crash) kill -SEGV $$ ;;
-  *) exit "$(setting exit)" ;;
+  *) exit "$fate" ;;
 esac
-end=$((${EPOCHREALTIME/./} + $(awk "BEGIN { print int(1e6 * ${FAKE_sim_seconds:-0.5}) }")))
-while [[ -n $real_time$(setting stays) || ! -e $FAKE_DIR/closed ]]; do
+while [[ -n $real_time$stays || ! -e $FAKE_DIR/closed ]]; do
   if [[ $name == sim ]] && ((${EPOCHREALTIME/./} > end)) &&
     (($(wc -l <"$FAKE_DIR/pids") >= ${FAKE_sim_waits_for:-0})); then
     touch "$FAKE_DIR/closed"
