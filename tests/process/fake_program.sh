@@ -95,8 +95,8 @@ case $fate in
   *) exit "$fate" ;;
 esac
 while [[ -n $real_time$stays || ! -e $FAKE_DIR/closed ]]; do
-  if [[ $name == sim ]] && ((${EPOCHREALTIME/./} > end)) &&
-    (($(wc -l <"$FAKE_DIR/pids") >= ${FAKE_sim_waits_for:-0})); then
+  mapfile -t programs <"$FAKE_DIR/pids"
+  if [[ $name == sim ]] && ((${EPOCHREALTIME/./} > end && ${#programs[@]} >= ${FAKE_sim_waits_for:-0})); then
     touch "$FAKE_DIR/closed"
     break
   fi

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "placement/covariance_model.hpp"
-#include "slam/core/graph/factors.hpp"
+#include "slam/core/motion/odometry_mixture.hpp"
 
 #include <optional>
 #include <span>

@@ -8,9 +8,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 namespace waymark {
 namespace {
