@@ -141,8 +141,8 @@ double OdometryFactor::cost(const State& state, const OdometryNoise& noise,
   if (is_cut || kind == MotionKind::kRolling) return chi2;
   const MixtureNoise mixture = noise_of(measured, noise);
   const auto cost_of = [&](MotionKind of) {
-    return penalty(of) + log_determinant(Eigen::LLT<Eigen::Matrix3d>{
-                             covariance_of(of, mixture) + unmeasured_covariance(unmeasured_m)});
+    return cost_at_zero(of, Eigen::LLT<Eigen::Matrix3d>{covariance_of(of, mixture) +
+                                                        unmeasured_covariance(unmeasured_m)});
   };
   return chi2 + cost_of(kind) - cost_of(MotionKind::kRolling);
 }

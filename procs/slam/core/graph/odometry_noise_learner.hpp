@@ -21,10 +21,10 @@ struct OdometryInnovation {
 /// innovations (Mehra 1972) fade exponentially. scale() is the posterior mean over the bank.
 ///
 /// Slips must not count as noise: in each model an innovation may also come from a wide component,
-/// as in likeliest_kind() of factors.hpp. A slip in the turn may continue: a wheel that spins on a
-/// wet floor overcounts every step by the same share, while noise differs from step to step. Along
-/// the path, successive innovations are correlated anyway, until the pose has followed a marker.
-/// The scales of both axes are coupled by a prior: noise in the turn, which walls observe
+/// as in likeliest_kind() of odometry_mixture.hpp. A slip in the turn may continue: a wheel that
+/// spins on a wet floor overcounts every step by the same share, while noise differs from step to
+/// step. Along the path, successive innovations are correlated anyway, until the pose has followed
+/// a marker. The scales of both axes are coupled by a prior: noise in the turn, which walls observe
 /// everywhere, is probably as large along the path, which is unobservable in a bare corridor.
 ///
 /// Where neither markers nor walls observe slips, these add mean and variance to the motion along

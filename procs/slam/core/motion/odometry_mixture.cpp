@@ -39,13 +39,15 @@ double penalty(MotionKind kind) {
   return kind == MotionKind::kAnything ? kAnythingPenalty : kSpinningPenalty;
 }
 
-double log_determinant(const Eigen::LLT<Eigen::Matrix3d>& root) {
-  return 2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
+double cost_at_zero(MotionKind kind, const Eigen::LLT<Eigen::Matrix3d>& root) {
+  const double log_determinant =
+      2.0 * Eigen::Matrix3d{root.matrixL()}.diagonal().array().log().sum();
+  return penalty(kind) + log_determinant;
 }
 
 double mixture_cost(MotionKind kind, const Eigen::Vector3d& residual, const MixtureNoise& noise) {
   const Eigen::LLT<Eigen::Matrix3d> root{covariance_of(kind, noise)};
-  return residual.dot(root.solve(residual)) + penalty(kind) + log_determinant(root);
+  return residual.dot(root.solve(residual)) + cost_at_zero(kind, root);
 }
 
 OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale) {

@@ -61,8 +61,9 @@ struct MixtureNoise {
 /// -2 log of a component's prior probability.
 double penalty(MotionKind kind);
 
-/// Logarithm of the determinant of a covariance, from its Cholesky factor.
-double log_determinant(const Eigen::LLT<Eigen::Matrix3d>& root);
+/// -2 log-likelihood of a zero residual under one component, up to a constant.
+/// @param root  Cholesky factor of the covariance.
+double cost_at_zero(MotionKind kind, const Eigen::LLT<Eigen::Matrix3d>& root);
 
 /// -2 log-likelihood of a residual under one component, up to a constant.
 /// @param residual  observed minus measured (x, y, theta), in the frame at the start.
