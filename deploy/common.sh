@@ -111,7 +111,8 @@ count_down_ninja() {
   [[ ! -t 2 ]] || printf '\r\e[K' >&2
 }
 
-# build PRESET [TARGET...]: configures and builds with all cores; quiet unless it fails.
+# build PRESET [TARGET...]: configures and builds; shows the progress only, and the errors if it
+# fails. Nothing to do for installed programs.
 build() {
   [[ -n $source_dir ]] || return 0  # installed programs
   local preset=$1 folder=$source_dir/build/$1

@@ -54,7 +54,7 @@ parse_arguments() {
   [[ -n $estimator ]] || usage_error "--estimator is missing"
 }
 
-# prepare: everything that can be wrong is found here, before an earlier replay's results go.
+# prepare: checks all inputs and settings, and only then deletes an earlier replay's results.
 prepare() {
   need_file "$log"
   need_programs waymark-{slam,viewer}

@@ -98,7 +98,8 @@ write_plan() {
   write_runs
 }
 
-# find_old_plan: the sweep's folder has a plan of ours or none.
+# find_old_plan: restores a plan whose replacement was interrupted; refuses a folder whose plan is
+# not one of a sweep.
 find_old_plan() {
   # Killed while its plans were changed.
   [[ -e $out/plan || ! -e $out/plan.old ]] || mv -T -- "$out/plan.old" "$out/plan"

@@ -35,8 +35,8 @@ CameraView camera_view(const CameraConfig& camera, const MarkerConfig& markers,
   return view;
 }
 
-SightingSigmas sighting_sigmas(const CameraConfig& camera, const MarkerConfig& markers) {
-  return {.learnt = {camera.yaw_sigma_rad, camera.focal_sigma, markers.standoff_sigma_m},
+SightingNoise sighting_noise(const CameraConfig& camera, const MarkerConfig& markers) {
+  return {.calibration = {camera.yaw_sigma_rad, camera.focal_sigma, markers.standoff_sigma_m},
           .bearing_rad = camera.bearing_sigma_rad,
           .position_m = camera.position_sigma_m,
           .bulge_m = markers.bulge_sigma_m,
@@ -156,7 +156,7 @@ EstimatorSetup estimator_setup(const SlamConfig& config) {
   setup.range_sigma_m = config.robot.lidar.range_sigma_m;
   setup.half_track_m = 0.5 * config.robot.base.wheel_separation_m;
   setup.camera = sensor_setup(config).camera;
-  setup.sighting_sigmas = sighting_sigmas(config.robot.camera, config.robot.markers);
+  setup.sighting_noise = sighting_noise(config.robot.camera, config.robot.markers);
   setup.range_max_m = config.robot.lidar.range_max_m;
   setup.parallel_for = parallel_for_with(config.slam.threads);
   setup.seed = static_cast<std::uint64_t>(config.slam.seed);

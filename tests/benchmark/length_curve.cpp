@@ -50,10 +50,10 @@ test::SyntheticCorridor corridor_of(double length_m, const Options& options, std
   corridor.seed = seed;
   corridor.scale_error = seed % 2 == 0 ? -0.01 : 0.01;
   Random random{seed};
-  const Eigen::Vector3d estimated = SightingSigmas{}.learnt;
+  const Eigen::Vector3d estimated = SightingNoise{}.calibration;
   if (!options.has_exact_camera) {
-    corridor.camera_focal_error = random.normal(0.0, estimated[SightingSigmas::kFocal]);
-    corridor.camera_yaw_error_rad = random.normal(0.0, estimated[SightingSigmas::kYaw]);
+    corridor.camera_focal_error = random.normal(0.0, estimated[SightingNoise::kFocal]);
+    corridor.camera_yaw_error_rad = random.normal(0.0, estimated[SightingNoise::kYaw]);
   }
   corridor.markers = test::opposite_markers(corridor);
   return corridor;
@@ -82,7 +82,7 @@ std::vector<SurveyedMarker> survey_of(const test::SyntheticCorridor& corridor, d
 Errors errors_of(double length_m, const Options& options, std::uint64_t seed) {
   const test::SyntheticCorridor corridor = corridor_of(length_m, options, seed);
   EstimatorSetup setup = test::estimator_setup_of(corridor, seed);
-  if (options.has_exact_camera) setup.sighting_sigmas = test::exact_camera();
+  if (options.has_exact_camera) setup.sighting_noise = test::exact_camera();
   setup.survey = survey_of(corridor, options.survey_every_m, seed);
   WaymarkEstimator estimator{setup, {}};
   const test::SensorLog log = test::drive(corridor);

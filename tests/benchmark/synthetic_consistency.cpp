@@ -56,8 +56,10 @@ test::SyntheticCorridor corridor_of(const Drives& drives, std::uint64_t seed) {
   corridor.seed = seed;
   corridor.scale_error = random.normal(0.0, 0.01);
   corridor.turn_scale_error = random.normal(0.0, 0.005);
-  corridor.camera_focal_error = random.normal(0.0, SightingSigmas{}.learnt[SightingSigmas::kFocal]);
-  corridor.camera_yaw_error_rad = random.normal(0.0, SightingSigmas{}.learnt[SightingSigmas::kYaw]);
+  corridor.camera_focal_error =
+      random.normal(0.0, SightingNoise{}.calibration[SightingNoise::kFocal]);
+  corridor.camera_yaw_error_rad =
+      random.normal(0.0, SightingNoise{}.calibration[SightingNoise::kYaw]);
   if (drives.spacing_m > 0.0)
     corridor.markers = test::opposite_markers(corridor, 4.0, drives.spacing_m);
   return corridor;

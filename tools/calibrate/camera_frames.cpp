@@ -18,7 +18,7 @@ namespace waymark::calibrate {
 namespace {
 
 constexpr std::int64_t kMostFrames = 400;  // of a log
-constexpr int kSmallest_px = 16;           // as robot.camera.width_px
+constexpr int kSmallest_px = 16;           // limits of robot.camera.width_px
 constexpr int kLargest_px = 8192;
 constexpr std::array<std::string_view, 8> kPictures{".png", ".jpg", ".jpeg", ".pgm",
                                                     ".ppm", ".bmp", ".tif",  ".tiff"};

@@ -18,8 +18,8 @@ constexpr int kNumLens = 9;
 constexpr int kNumPose = 6;
 using LensMatrix = Eigen::Matrix<double, kNumLens, kNumLens>;
 
-constexpr double kOutlier = 3.0;        // times the median error of views
-constexpr double kCornerOutlier = 5.0;  // times the median of residuals: 6 sigma
+constexpr double kOutlier = 3.0;        // a view is left out beyond so many median errors of views
+constexpr double kCornerOutlier = 5.0;  // a corner, median residuals: 6 sigma
 constexpr int kMostSteps = 100;
 constexpr double kConverged = 1e-10;  // relative change of the parameters
 

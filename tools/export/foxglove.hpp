@@ -27,7 +27,7 @@ std::string base64(std::span<const std::uint8_t> bytes);
 
 Json time_json(Timestamp time);
 Json vector_json(double x, double y, double z);
-/// A pose in the plane.
+/// A planar pose as a 3D one at height `z_m`.
 Json pose_json(const Se2& pose, double z_m = 0.0);
 Json transform_json(Timestamp time, std::string_view parent, std::string_view child,
                     const Se2& parent_from_child);

@@ -95,7 +95,7 @@ void learn_calibration(const MarkerMeasurement& measured, double keyframes, Pose
   }
   if (measured.focal) {
     Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, kCalibrationSize);
-    row(0, kOdometryTerms + SightingSigmas::kFocal) = root_weight / measured.focal->sigma;
+    row(0, kOdometryTerms + SightingNoise::kFocal) = root_weight / measured.focal->sigma;
     known.measure({{PoseCovariance::kCalibration, row}});
   }
 }

@@ -138,7 +138,7 @@ ViewModel::ViewModel(const SlamConfig& config, int modules_per_side)
       reach_m_{config.robot.camera.fx_px * config.robot.markers.size_m /
                (kReadShares.front().module_px * modules_per_side)} {
   const EstimatorSetup setup = estimator_setup(config);
-  sensors_ = {setup.range_sigma_m, setup.camera.base_from_camera, setup.sighting_sigmas};
+  sensors_ = {setup.range_sigma_m, setup.camera.base_from_camera, setup.sighting_noise};
 }
 
 std::optional<MarkerView> ViewModel::view(const Se2& base_from_marker,

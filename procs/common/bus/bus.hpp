@@ -29,7 +29,7 @@ enum class Publishers {
 /// `--lcm-url`, else $LCM_DEFAULT_URL, else the loopback default.
 std::string lcm_url_or_default(const std::string& given_url);
 
-/// Joins the network for a moment.
+/// Checks that the network can be used, by joining and leaving it.
 /// @throws SetupError as Bus does.
 void check_network(const std::string& url);
 

@@ -49,7 +49,7 @@ class MessagePool {
   void forget_oldest(Queue& queue);
 
   std::map<std::int64_t, Entry> messages_{};
-  Queue waiting_{};  ///< also holds hashes that have been taken since
+  Queue waiting_{};  ///< may list taken messages, too: forget_oldest() skips them
   Queue taken_{};
 };
 

@@ -7,8 +7,11 @@
 
 namespace waymark {
 
-/// @return exit code: 1 when a log has bytes that are not events, or no channel that this process
-/// reads, when messages were rejected, or when the node failed.
+/// Replays the logs of the options through the node.
+/// @return exit code. 1: a log has bytes that are not events, or none of the channels that this
+/// process reads; a channel that it needs is in no log; nothing is left between --skip-s and
+/// --until-s; messages were rejected; or the node failed. 128 + n: ended by signal n.
+/// @throws SetupError when a log cannot be opened.
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox);
 
 }  // namespace waymark

@@ -19,8 +19,8 @@ struct ReplayReport {
   double real_time_factor() const { return log_s / std::max(wall_s, 1e-9); }
 };
 
-/// One JSON object: the members of the report, and "counters", a list of {"name", "kind", "value"}
-/// in order of name, without those that are zero.
+/// One JSON object: the members of the report, real_time_factor, and "counters", a list of {"name",
+/// "kind", "value"} in order of name, without those that are zero.
 std::string to_json(const ReplayReport& report, const Counters& counters);
 
 }  // namespace waymark

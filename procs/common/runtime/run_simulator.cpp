@@ -92,7 +92,8 @@ class Run {
       std::vector<Message> messages = source_.advance(tick_end_);
       std::ranges::sort(messages, comes_before);
       for (const Message& message : messages) {
-        // One tick of latency covers the time that it takes to simulate a tick.
+        // The latency leaves time to simulate the first tick. Every later tick is simulated between
+        // two messages, and delays those that are due meanwhile.
         const auto due = start + message.time.time_since_epoch() + kRealTimeLatency;
         while (stop_signal() == 0 && steady_clock::now() < due) {
           take_commands(std::min<milliseconds>(

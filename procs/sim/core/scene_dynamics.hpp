@@ -43,7 +43,7 @@ class SceneDynamics {
 
  private:
   std::vector<MarkerPlate> markers_;
-  std::vector<Eigen::Vector2d> moved_by_m_;  ///< each marker so far
+  std::vector<Eigen::Vector2d> moved_by_m_;  ///< displacement of each marker so far
   std::vector<MarkerMove> moves_;            ///< still to come
   std::vector<BoxConfig> boxes_;
   std::vector<bool> is_shown_;

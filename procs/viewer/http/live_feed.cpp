@@ -15,8 +15,8 @@ constexpr float kPathStep_m = 0.03F;
 constexpr std::size_t kMaxPathPoints = 1'000'000;
 /// More than there are programs; bounds memory.
 constexpr std::size_t kMaxProcesses = 16;
-/// A square of 200 m in cells of 0.05 m and tiles of 64 cells.
-constexpr std::size_t kMaxTiles = 4000;
+/// A square of 200 m in tiles of 32 cells of 0.05 m; further tiles are not shown.
+constexpr std::size_t kMaxTiles = 16'000;
 
 }  // namespace
 

@@ -73,7 +73,7 @@ struct LiveView {
   std::shared_ptr<const CameraFrame> camera{};
   std::optional<SeenMarkers> seen_markers{};
   std::optional<Timestamp> last_camera{};  ///< last frame or detections, with markers or without
-  std::optional<Timestamp> last_marker{};  ///< last estimate that used one
+  std::optional<Timestamp> last_marker{};  ///< last estimate with a marker sighting
   std::vector<ProcessState> processes{};
   std::size_t path_begin{0};   ///< the map's first point
   std::size_t path_length{0};  ///< points of the board's path up to here

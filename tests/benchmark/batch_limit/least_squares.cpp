@@ -140,11 +140,11 @@ class Batch {
           odometry.lidar_ahead_sigma_m, odometry.lidar_yaw_sigma_rad}},
         nullptr, solution_.odometry_errors.data());
     add<PriorResidual<2>, 2, 2>(
-        {{std::max(model.sightings.learnt[SightingSigmas::kYaw], kExact),
-          std::max(model.sightings.learnt[SightingSigmas::kFocal], kExact)}},
+        {{std::max(model.sightings.calibration[SightingNoise::kYaw], kExact),
+          std::max(model.sightings.calibration[SightingNoise::kFocal], kExact)}},
         nullptr, solution_.camera_errors.data());
     add<PriorResidual<1>, 1, 1>(
-        {{std::max(model.sightings.learnt[SightingSigmas::kStandoff], kExact)}}, nullptr,
+        {{std::max(model.sightings.calibration[SightingNoise::kStandoff], kExact)}}, nullptr,
         &solution_.standoff_m);
   }
 

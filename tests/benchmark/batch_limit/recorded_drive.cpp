@@ -19,7 +19,7 @@ constexpr double kNoWall = 1e3;  // [m, rad]: nothing is held to a wall that vag
 std::vector<MarkerMeasurement> camera_measurements(const Observation& observation,
                                                    const EstimatorSetup& setup,
                                                    const MarkerMeasurementConfig& config) {
-  MarkerSensors sensors{setup.range_sigma_m, setup.camera.base_from_camera, setup.sighting_sigmas};
+  MarkerSensors sensors{setup.range_sigma_m, setup.camera.base_from_camera, setup.sighting_noise};
   const auto estimated = measure_markers(observation, sensors, {}, config);
   sensors.sigmas.bulge_m = kNoWall;
   sensors.sigmas.skew_rad = kNoWall;

@@ -111,7 +111,7 @@ TEST_P(Contract, BlankIdsLeaveNoMarkersInTheMap) {
   EXPECT_EQ(steps.back().estimate.markers_in_view, 0);
 }
 
-TEST_P(Contract, AnEmptyScanMovesNothing) {
+TEST_P(Contract, AnObservationWithoutBeamsNeitherMovesThePoseNorMaps) {
   const auto method = estimator();
   const Se2 before =
       run(*method, drive(corridor()), setup_of(corridor())).back().estimate.map_from_base;

@@ -32,8 +32,8 @@ inline EstimatorSetup estimator_setup_of(const SyntheticCorridor& corridor, std:
 }
 
 /// Sigmas of a camera as accurate as the simulated one; markers hang as usual.
-inline SightingSigmas exact_camera() {
-  return {.learnt = {0.0005, 0.0001, 0.003}, .bearing_rad = 0.00003, .position_m = 0.0001};
+inline SightingNoise exact_camera() {
+  return {.calibration = {0.0005, 0.0001, 0.003}, .bearing_rad = 0.00003, .position_m = 0.0001};
 }
 
 struct Step {

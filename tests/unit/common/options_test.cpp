@@ -21,7 +21,7 @@ ProcessOptions parsed(std::vector<std::string> words) {
   return result.options;
 }
 
-TEST(Options, ModeAndStartAreSettingsThatWinOverSet) {
+TEST(Options, ModeAndStartOverrideSet) {
   EXPECT_THAT(parsed({}).config_sources.overrides, IsEmpty());
   EXPECT_THAT(parsed({"--mode", "localise", "--set", "slam.mode=map", "--start", "anywhere"})
                   .config_sources.overrides,

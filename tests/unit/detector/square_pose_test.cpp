@@ -92,7 +92,7 @@ TEST(SquarePose, InAFrontalViewTheErrorRatioShowsTheAmbiguity) {
 }
 
 /// Squared errors weighted by the stated covariance must average the number of dimensions, 6.
-TEST(SquarePose, CovarianceIsHonest) {
+TEST(SquarePose, NeesEqualsTheDegreesOfFreedom) {
   constexpr int kTrials = 1000;
   Random random{4};
   const Eigen::Isometry3d truth = turned_marker(radians(62));

@@ -42,7 +42,7 @@ std::string cell(const std::optional<double>& value, int decimals, std::string_v
   return fmt::format("{:.{}f}{}", *value, decimals, unit);
 }
 
-/// Two decimals; from 1000 on only the order of magnitude.
+/// Two decimals; from 1000 on one significant digit ("3e+03"); "-" if it is not finite.
 std::string nees_cell(double nees) {
   return nees < 1000.0 || !std::isfinite(nees) ? cell(nees, 2) : fmt::format("{:.0e}", nees);
 }

@@ -23,7 +23,7 @@ constexpr std::array kColumns{Column{"length error [%]", "length_error_percent",
                               Column{"markers [m]", "marker_error_mean_m", 3},
                               Column{"x odometry", "ate_over_odometry", 2}};
 
-/// Further columns of results.csv and runs.csv.
+/// Figures of metrics.json that are columns of results.csv and runs.csv, but not of results.md.
 constexpr std::array kMoreKeys{
     "length_px",     "marker_map_share", "moved_named_share", "max_jump_m",       "wall_cells",
     "found_again_s", "says_lost_s",      "confident_wrong_s", "share_degenerate", "share_lost",

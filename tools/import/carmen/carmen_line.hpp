@@ -59,7 +59,7 @@ struct CarmenOdometry {
   Se2 odom_from_base{};
 };
 
-/// A parameter of a LiDAR's mounting.
+/// A line with one parameter of a LiDAR's mounting: an offset [m] or an angle [rad].
 struct CarmenMounting {
   enum class What { kForward, kSideward, kAngle };
 

@@ -9,7 +9,7 @@
 #include "slam/core/filter/update_gate.hpp"
 #include "slam/core/graph/map_snapshot.hpp"
 #include "slam/core/grid/grid_map.hpp"
-#include "slam/core/landmark/sighting_sigmas.hpp"
+#include "slam/core/landmark/sighting_noise.hpp"
 #include "slam/core/landmark/surveyed_marker.hpp"
 #include "slam/core/mapping/landmark_map.hpp"
 #include "slam/core/mapping/map_change.hpp"
@@ -39,7 +39,7 @@ struct EstimatorSetup {
   double range_sigma_m{0.01};  ///< of the LiDAR
   double half_track_m{0.14};   ///< half of the distance between the wheels
   CameraView camera{};
-  SightingSigmas sighting_sigmas{};
+  SightingNoise sighting_noise{};
   double range_max_m{3.5};  ///< of the LiDAR
   std::uint64_t seed{1};
   ParallelFor parallel_for{serial_for};

@@ -44,7 +44,7 @@ Calibration calibration_sigmas(const EstimatorSetup& setup, const WaymarkConfig&
   const OdometryNoise& odometry = config.odometry;
   Calibration sigmas;
   sigmas << odometry.scale_sigma, odometry.drift_sigma_rad_per_m, odometry.turn_scale_sigma,
-      odometry.lidar_ahead_sigma_m, odometry.lidar_yaw_sigma_rad, setup.sighting_sigmas.learnt;
+      odometry.lidar_ahead_sigma_m, odometry.lidar_yaw_sigma_rad, setup.sighting_noise.calibration;
   return config.calibrate ? sigmas : Calibration{kFixed * sigmas};
 }
 

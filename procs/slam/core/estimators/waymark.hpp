@@ -283,7 +283,7 @@ class WaymarkEstimator final : public Estimator {
   std::optional<StartPose> given_pose_{};  ///< commanded pose of the next keyframe
   Timestamp newest_time_{};
   double clock_s_{0.0};           ///< time since the first observation, without steps of the clock
-  bool is_put_elsewhere_{false};  ///< the newest observation changed the pose without a motion
+  bool is_put_elsewhere_{false};  ///< a command or a new map frame has just changed the pose
 
   // Of the newest keyframe:
   RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kConsistent};

@@ -43,7 +43,7 @@ bool WaymarkEstimator::sees_known_markers(const Observation& observation) const 
 std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& observation) const {
   return measure_markers(observation,
                          {std::sqrt(range_noise_.variance_m2()), setup_.camera.base_from_camera,
-                          setup_.sighting_sigmas},
+                          setup_.sighting_noise},
                          graph_.odometry_noise(), config_.markers);
 }
 

@@ -32,8 +32,8 @@ void CalibrationKnowledge::observe(const WallInnovation& wall) {
 
 void CalibrationKnowledge::observe(const FocalSighting& focal) {
   const double information = 1.0 / (focal.sigma * focal.sigma);
-  camera_information_(SightingSigmas::kFocal, SightingSigmas::kFocal) += information;
-  camera_vector_[SightingSigmas::kFocal] += information * focal.error;
+  camera_information_(SightingNoise::kFocal, SightingNoise::kFocal) += information;
+  camera_vector_[SightingNoise::kFocal] += information * focal.error;
 }
 
 void CalibrationKnowledge::fade(double share) {
@@ -45,7 +45,7 @@ void CalibrationKnowledge::weigh(const Calibration& value, const Calibration& va
   for (Eigen::Index term = 0; term < kOdometryTerms; ++term)
     weigh({term}, value, variances);
   weigh({kOdometryTerms, kOdometryTerms + 1, kOdometryTerms + 2}, value, variances);
-  const Eigen::Vector3d usual = SightingSigmas{}.learnt;
+  const Eigen::Vector3d usual = SightingNoise{}.calibration;
   for (Eigen::Index i = 0; i < kCameraTerms; ++i) {
     double& widened = widened_[kOdometryTerms + i];
     if (widened > kDoubtSigmas) widened = std::max(widened, usual[i] / sigmas_[kOdometryTerms + i]);

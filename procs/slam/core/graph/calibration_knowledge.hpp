@@ -44,7 +44,7 @@ class CalibrationKnowledge {
   /// Chooses the likeliest components of the mixtures: one for each term of the odometry, and a
   /// common one for the camera's terms. If that common component is wide, the camera's description
   /// is unreliable, and none of its terms gets a prior narrower than the usual one
-  /// (SightingSigmas::learnt).
+  /// (SightingNoise::calibration).
   /// @param value      estimate with the components chosen previously.
   /// @param variances  of `value`.
   void weigh(const Calibration& value, const Calibration& variances);

@@ -17,7 +17,7 @@ namespace {
 // as much. 25 is 5 sigmas of one axis.
 constexpr double kLoopKernel = 25.0;
 
-// Sigma of the motion over a cut [m, rad]: practically no information, but regular equations.
+// Sigma [m, rad] of odometry that is_cut: almost no information, yet equations with a solution.
 constexpr double kCutSigma = 1000.0;
 
 /// Pose of one frame in another, with its Jacobians with respect to steps of both (State::retract).

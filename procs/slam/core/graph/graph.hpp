@@ -98,7 +98,8 @@ class Graph {
   void optimise();
 
   /// One step of Gauss-Newton over the whole graph: eliminates all variables behind the window,
-  /// which rebuilds the window's prior; solves the window; substitutes back.
+  /// which rebuilds the window's prior; solves the window; substitutes back. A step that increases
+  /// the cost is halved, a few times, and in the end dropped.
   /// @param activated  landmarks that are put back into the window.
   /// @return largest step of any variable behind the window, or of any in it if none is behind it
   ///         [m, rad]; infinite if the equations have no solution: then nothing has changed.

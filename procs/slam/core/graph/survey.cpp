@@ -13,7 +13,7 @@ namespace {
 constexpr double kWrong = 5.0;           // sigmas beyond which an entry is reported
 constexpr double kLeastApart_m = 1.0;    // between two markers that define a frame's rotation
 constexpr double kClearlyBetter = 25.0;  // chi^2 that switching the wrong prior off has to save
-constexpr int kConfirmed = 3;            // sightings of a landmark
+constexpr int kConfirmed = 3;            // sightings of a landmark before its entry is tested
 constexpr int kTestedAgain = 4;          // times as many sightings as at the last test
 // Largest excess of chi^2 over its mean with correct priors: the larger of a constant and so many
 // standard deviations.
@@ -59,7 +59,8 @@ std::vector<std::size_t> most_suspicious(const std::vector<LandmarkPrior>& prior
                                          const SurveyModel::Solution& solution) {
   std::vector<std::pair<double, std::size_t>> savings;
   for (std::size_t i = 0; i < priors.size(); ++i)
-    if (!priors[i].is_off && hold_frame(priors, i))  // of the last two, either may be wrong
+    // Only if the others determine the frame: of the last two, either could be the wrong one.
+    if (!priors[i].is_off && hold_frame(priors, i))
       savings.emplace_back(saving_without(priors[i], solution), i);
   std::stable_sort(savings.begin(), savings.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

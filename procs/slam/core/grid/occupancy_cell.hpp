@@ -13,7 +13,7 @@ struct OccupancyCell {
 
   bool is_mapped() const { return visits > 0; }
 
-  /// Share of the beams that ended here; 0 when unmapped.
+  /// Share of the beams reaching this cell that ended in it; 0 when unmapped.
   double occupancy() const {
     return visits > 0 ? static_cast<double>(hits) / static_cast<double>(visits) : 0.0;
   }

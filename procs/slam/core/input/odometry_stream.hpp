@@ -18,8 +18,9 @@ class OdometryStream {
  public:
   /// Consequences of a sample for the other sensors' queues.
   struct News {
-    bool is_first{false};                 ///< of all samples: stamps can be checked from now on
-    std::optional<Duration> clock_set{};  ///< step of the clock: earlier stamps are invalid
+    bool is_first{false};  ///< of all samples: stamps can be checked from now on
+    std::optional<Duration>
+        clock_set{};  ///< the clock was set, by so much: older stamps are invalid
   };
 
   News add(const OdometrySample& sample, Skips& skips);

@@ -26,8 +26,8 @@ constexpr double kRoughness_m = 0.003;          // of walls, added to the range 
 // its middle, so with the odometry noise of a quarter; MeanSweep has that of a twelfth.
 constexpr double kWallOverMeanSweep = 3.0;
 
-/// Least standard deviations of the calibration (order of SightingSigmas::learnt) in the gate for
-/// flipped poses: with a too confident description all views would be rejected.
+/// Least standard deviations of the calibration (order of SightingNoise::calibration) in the gate
+/// for flipped poses: with a too confident description all views would be rejected.
 const Eigen::Vector3d kLeastCalibrationSigmas{0.01, 0.005, 0.005};
 
 struct Line {
@@ -100,7 +100,7 @@ Eigen::Matrix<double, 3, 2> camera_jacobian(const Eigen::Vector2d& place_in_base
 std::optional<MarkerMeasurement> constrain_to_wall(MarkerMeasurement measurement,
                                                    const WallLine& wall,
                                                    const Eigen::Matrix3d& sweep_covariance,
-                                                   const SightingSigmas& sigmas, double gate) {
+                                                   const SightingNoise& sigmas, double gate) {
   Eigen::Matrix<double, 2, 3> rows = Eigen::Matrix<double, 2, 3>::Zero();
   rows.topLeftCorner<1, 2>() = wall.normal.transpose();
   rows(1, 2) = 1.0;
@@ -118,7 +118,7 @@ std::optional<MarkerMeasurement> constrain_to_wall(MarkerMeasurement measurement
   innovation.covariance(1, 1) += squared(wall.sigma_rad) + squared(sigmas.skew_rad);
 
   const Eigen::Vector3d error_variance =
-      sigmas.learnt.cwiseMax(kLeastCalibrationSigmas).cwiseAbs2();
+      sigmas.calibration.cwiseMax(kLeastCalibrationSigmas).cwiseAbs2();
   const Eigen::Matrix2d spread =
       innovation.covariance + innovation.jacobian_calibration() * error_variance.asDiagonal() *
                                   innovation.jacobian_calibration().transpose();

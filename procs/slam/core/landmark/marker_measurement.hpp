@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/geometry/se2.hpp"
-#include "slam/core/landmark/sighting_sigmas.hpp"
+#include "slam/core/landmark/sighting_noise.hpp"
 #include "slam/core/motion/odometry_errors.hpp"
 #include "slam/core/scan/observation.hpp"
 
@@ -30,7 +30,7 @@ struct MarkerMeasurementConfig {
 struct MarkerSensors {
   double range_sigma_m{0.01};  ///< of the LiDAR
   Se2 base_from_camera{};
-  SightingSigmas sigmas{};
+  SightingNoise sigmas{};
 };
 
 /// A straight piece of wall, base frame.

@@ -67,7 +67,7 @@ class OdometryBuffer {
     Se2 smooth_from_raw{};
   };
 
-  /// Late motion.
+  /// Motion that was reported in one step after the odometry had stood still or jumped.
   struct CatchUp {
     Timestamp time{};  ///< of the sample that reported it
     Motion motion{};

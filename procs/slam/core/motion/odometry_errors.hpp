@@ -39,10 +39,12 @@ Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNo
 /// The same for any motion; never below a floor.
 Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
 
-/// Systematic errors of odometry and of the LiDAR's mounting. True distance = (1 + scale) measured
-/// distance; true turn = (1 + turn scale) measured turn + drift [rad/m] * advance. The LiDAR sits
-/// `ahead` [m] of its configured place on the base and is turned left by `yaw` [rad]: it is
-/// displaced when the robot turns on the spot, and seems to drift sideways when it drives straight.
+/// Systematic errors of odometry and of the LiDAR's mounting.
+/// kScale: true distance = (1 + scale) measured distance.
+/// kDrift [rad/m], kTurnScale: true turn = measured turn + drift * advance + turn scale * t, where
+/// t is the part of the measured turn that exceeds its noise. kLidarAhead [m], kLidarYaw [rad,
+/// left]: errors of the mounting. The first displaces the LiDAR in turns on the spot, the second
+/// makes straight drives seem to drift sideways.
 struct OdometryTerm {
   enum Index : Eigen::Index { kScale, kDrift, kTurnScale, kLidarAhead, kLidarYaw, kCount };
 };

@@ -14,7 +14,7 @@ namespace {
 // The mixture of the odometry's noise; all constants were chosen, not fitted.
 // Penalties: -2 log of the prior probabilities of the components, rounded.
 constexpr double kRollingPenalty = 0.1;    // 0.95
-constexpr double kSpinningPenalty = 7.0;   // 0.03; both wheels: the same
+constexpr double kSpinningPenalty = 7.0;   // 0.03, each of left, right and both wheels
 constexpr double kJerkedPenalty = 8.4;     // 0.015
 constexpr double kAnythingPenalty = 10.6;  // 0.005
 // Widths, in standard deviations of the configured noise.

@@ -18,7 +18,7 @@ namespace waymark {
 struct OdometryScale {
   double along{1.0};
   double turn{1.0};
-  double slip_per_m{0.0};     ///< mean, observed minus measured distance; negative: wheels spin
+  double slip_per_m{0.0};     ///< mean of (true - measured distance); negative: wheels spin
   double slip_m2_per_m{0.0};  ///< variance along the path
   double slip_m2{0.0};        ///< mean square of one slip
 };

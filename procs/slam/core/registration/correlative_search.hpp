@@ -44,7 +44,7 @@ class CorrelativeField {
   explicit CorrelativeField(std::span<const Eigen::Vector2d> points_in_submap,
                             double resolution_m = kResolution_m, double sigma_m = kResolution_m);
 
-  /// Field of a whole map, with cells as coarse as needed to ignore no point.
+  /// Field of a whole map: cells and sigma are as large as needed to include every point.
   static CorrelativeField of_map(std::span<const Eigen::Vector2d> points);
 
   /// Mean field value at the points, 0..1; outside the field, and for points that are not finite,

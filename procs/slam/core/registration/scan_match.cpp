@@ -28,9 +28,9 @@ constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
 // Number of beams in one cell that count as independent: the error of the cell's mean is common to
 // all of them, and so is the displacement if they end on a person.
 constexpr double kIndependentBeams = 4.0;
-// The information of a beam has the factor n / (n + this) if its cell was observed from n
-// keyframes: the error of the cell's mean falls with their number, and a person stays at one place
-// for a few.
+// The information of a beam has the factor n / (n + this), where n keyframes lie between the first
+// and the last that observed its cell, both counted: the error of the cell's mean falls with their
+// number, and a person stays at one place for a few.
 constexpr double kFewKeyframes = 3.0;
 constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
 

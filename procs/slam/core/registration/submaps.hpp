@@ -20,7 +20,7 @@ class Submaps {
   /// @param length_m        largest length of the path through a submap: drift bends longer ones.
   Submaps(double cell_spacing_m, int keyframes_each, double length_m)
       : cell_spacing_m_{cell_spacing_m},
-        half_{static_cast<std::size_t>(std::max(1, keyframes_each / 2))},
+        half_keyframes_{static_cast<std::size_t>(std::max(1, keyframes_each / 2))},
         half_m_{0.5 * length_m} {}
 
   /// The submap to match scans with; null: none has begun.
@@ -46,8 +46,8 @@ class Submaps {
 
  private:
   double cell_spacing_m_;
-  std::size_t half_;  ///< of the keyframes of a submap
-  double half_m_;     ///< of the length of a submap
+  std::size_t half_keyframes_;  ///< half of the most keyframes of a submap
+  double half_m_;               ///< half of the greatest length of a submap
   std::deque<Submap> finished_{};
   std::deque<Submap> growing_{};  ///< one or two
 };

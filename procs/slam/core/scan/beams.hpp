@@ -27,8 +27,8 @@ struct Beam {
   double range_m{0.0};
 };
 
-/// Motion whose odometry noise equals the mean noise of the beams of a sweep, relative to the
-/// scan's pose. Zero if all beams were measured at once.
+/// Motion whose odometry noise is that of the mean error of all beams of a sweep relative to the
+/// scan's pose; the errors of single beams are larger. Zero if all beams were measured at once.
 struct MeanSweep {
   double distance_m{0.0};
   double turn_rad{0.0};  ///< absolute

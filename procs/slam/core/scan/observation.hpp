@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Input of an estimator: one scan with all else since the previous one, or a time without a scan.
+// Input of an estimator: a scan with the odometry and sightings since the previous observation;
+// these alone while the LiDAR is silent.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"

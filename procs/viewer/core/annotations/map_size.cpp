@@ -70,7 +70,7 @@ std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_m
 std::optional<corridor::CorridorLength> corridor_length(const GridMap& map,
                                                         const MapThresholds& thresholds) {
   constexpr double kElongated = 4.0;  // length over width
-  constexpr double kMinShare = 0.8;   // of the free cells that lie in the corridor
+  constexpr double kMinShare = 0.8;   // area of the corridor over that of all free cells
   constexpr double kMostCells = 1e6;  // a kilometre of corridor in cells of 5 cm; bounds the time
   const corridor::MapImage image = image_of(map, thresholds);
   const auto free_cells = static_cast<double>(

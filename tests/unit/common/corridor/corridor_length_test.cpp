@@ -28,7 +28,7 @@ TEST(CorridorLength, AStraightMapIsMeasuredInWholePixels) {
   }
 }
 
-TEST(CorridorLength, ACorridorUpTheImageIsMeasuredTheSameWay) {
+TEST(CorridorLength, AVerticalCorridorHasTheSameLength) {
   const Drawing drawing{61, 1020, 1000};
   EXPECT_NEAR(measure_corridor(draw(drawing, straight_shape(30, 5, M_PI / 2))).length_px, 1000.0,
               kExact);

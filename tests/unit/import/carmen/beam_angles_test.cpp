@@ -63,7 +63,7 @@ TEST_P(BeamAnglesOf, AreThoseWithWhichWallsAreStraight) {
   }
 }
 
-TEST(BeamAngles, FollowTheConventionWhereNoWallShowsThem) {
+TEST(BeamAngles, AreThoseOfCarmensConventionWithoutWalls) {
   const std::vector<std::vector<double>> nothing(200, std::vector<double>(181, 81.91));
   EXPECT_EQ(found_in(nothing, 181)->step_rad, radians(1.0));
   EXPECT_FALSE(found_in(nothing, 90));

@@ -92,7 +92,7 @@ TEST(NoReturn, TheFarthestWallsAreNoCode) {
   EXPECT_FALSE(find_no_return_code({}));
 }
 
-TEST(NoReturn, AStandingRobotsConstantRangesAreNoCode) {
+TEST(NoReturn, ConstantRangesOfAStandingRobotAreNoNoReturnValue) {
   for (const double step_m : {0.001, 0.01, 0.05}) {
     const auto one = hall(100.0, 0.003, step_m, none);
     const std::vector<LidarScan> standing(200, one.front());

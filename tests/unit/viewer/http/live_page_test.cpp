@@ -132,7 +132,7 @@ map_tiles_t tile(int x, std::int8_t occupancy, double origin_x_m = 0.0) {
 constexpr std::size_t kHeaderBytes = 40;
 constexpr std::size_t kTileBytes = 8 + 4;
 
-TEST(LiveFeed, OnlyTilesThatChangedAreNew) {
+TEST(LiveFeed, OnlyChangedTilesAreSent) {
   Board board;
   LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
   feed.add(tile(0, 10));

@@ -97,7 +97,7 @@ TEST_F(PageServerTest, RefusesWhatItDoesNotHave) {
   EXPECT_EQ(status_of("/tiles?since=-1"), 400);
 }
 
-TEST_F(PageServerTest, IsReadOnlyAndForThisMachine) {
+TEST_F(PageServerTest, RefusesWritesAndForeignHostHeaders) {
   EXPECT_EQ(client_.Post("/", "x", "text/plain")->status, 405);
   EXPECT_EQ(client_.Delete("/map.png")->status, 405);
   EXPECT_EQ(client_.Get("/", {{"Host", "robot.example"}})->status, 403);

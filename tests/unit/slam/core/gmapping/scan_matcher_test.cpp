@@ -124,7 +124,7 @@ TEST(ScanMatcher, EarlyTerminationGivesTheSameDecisionAsTheFullScore) {
   }
 }
 
-TEST(ScanMatcher, AWallBeforeTheHitRejectsItOnlyInModeIntended) {
+TEST(ScanMatcher, AWallBeforeTheHitRejectsItOnlyIfFreeCellsIsIntended) {
   // Two walls, one sqrt(2) cells behind the other: the far one's free cell is the near one.
   HitMap map;
   add_hit(kFrame, {1.0, 0.0}, map);

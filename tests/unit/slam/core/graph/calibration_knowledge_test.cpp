@@ -14,7 +14,7 @@ namespace {
 
 TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
   Calibration sigmas = Calibration::Constant(0.01);
-  sigmas[kOdometryTerms + SightingSigmas::kFocal] = 1e-4;
+  sigmas[kOdometryTerms + SightingNoise::kFocal] = 1e-4;
   CalibrationKnowledge knowledge{sigmas};
   constexpr double kTrue = 5e-3;
   constexpr double kMeasured = 2e-4;
@@ -28,7 +28,7 @@ TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
     value -= h.ldlt().solve(g);
     knowledge.weigh(value, h.inverse().diagonal());
   }
-  const Eigen::Index focal = kOdometryTerms + SightingSigmas::kFocal;
+  const Eigen::Index focal = kOdometryTerms + SightingNoise::kFocal;
   EXPECT_NEAR(value[focal], kTrue, 3.0 * kMeasured);
   EXPECT_EQ(knowledge.doubted_terms(value), std::vector{static_cast<std::size_t>(focal)});
   EXPECT_NEAR(1.0 / std::sqrt(h(focal, focal)), kMeasured, 0.1 * kMeasured);
@@ -45,7 +45,7 @@ TEST(CalibrationKnowledge, AConsistentDescriptionKeepsItsWeight) {
     value -= h.ldlt().solve(g);
     knowledge.weigh(value, h.inverse().diagonal());
   }
-  EXPECT_NEAR(value[kOdometryTerms + SightingSigmas::kFocal], 0.75e-3, 1e-6);
+  EXPECT_NEAR(value[kOdometryTerms + SightingNoise::kFocal], 0.75e-3, 1e-6);
   EXPECT_TRUE(knowledge.doubted_terms(value).empty());
 }
 

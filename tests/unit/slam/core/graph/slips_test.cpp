@@ -84,8 +84,8 @@ TEST(Slips, WithoutMarkersNoneIsAssumed) {
   EXPECT_LT(graph.state().calibration[OdometryTerm::kScale], -0.005);
 }
 
-/// The gain that best_change() predicts is the one that optimisation with that kind brings.
-TEST(Slips, TheGainIsPredicted) {
+/// With exactly known poses, the gain of best_change() is the difference of the two costs.
+TEST(Slips, ThePredictedCostReductionIsExactForFixedPoses) {
   const Motion motion = Motion::between({}, {kStride_m, 0.0, 0.0});
   OdometryFactor factor{0, 1, motion};
   State state;
@@ -93,7 +93,6 @@ TEST(Slips, TheGainIsPredicted) {
   state.keyframes = {{}, {kStride_m + off_m, 0.0, 0.0}};
   const OdometryNoise noise;
   const LinearFactor linear = factor.linearise(state, noise);
-  // Both poses are known exactly: nothing moves, and the gain is the difference of the costs.
   const OdometryFactor::Change change =
       factor.best_change(linear, Eigen::Matrix3d::Zero(), state, noise, {});
   const double before = factor.cost(state, noise, {});

@@ -142,7 +142,7 @@ Surveyed surveyed_drive(std::uint64_t seed, double turn_rad) {
   return surveyed;
 }
 
-TEST(SurveyModel, CostsAsMuchAsTheWholeGraphHoweverTheFrameIsTurned) {
+TEST(SurveyModel, ItsCostEqualsThatOfTheWholeGraphForAnyRotationOfTheFrame) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     for (const double turn_rad : {0.0, 0.3}) {
       const Surveyed surveyed = surveyed_drive(seed, turn_rad);

@@ -122,7 +122,7 @@ TEST(MeasureMarkers, AViewByACameraWorseThanConfiguredIsNotRejectedAsFlipped) {
   observation.beams = corridor_beams(0.01, random);
   MarkerSensors sensors;
   sensors.base_from_camera = {0.07, 0.0, 0.0};
-  sensors.sigmas = {.learnt = {0.0005, 0.0001, 0.003},
+  sensors.sigmas = {.calibration = {0.0005, 0.0001, 0.003},
                     .bearing_rad = 0.00003,
                     .position_m = 0.0001,
                     .bulge_m = 0.0005,

@@ -30,7 +30,7 @@ TEST(UsualFit, TooFewMappedBeamsRefuteNothing) {
   EXPECT_FALSE(after_good_scans().is_refuted(fit(0.0, 0.1)));
 }
 
-TEST(UsualFit, AScanWhereNothingIsMappedContradictsNothingAndIsNotUsual) {
+TEST(UsualFit, AnUnmappedScanIsNoContradictionAndLeavesTheMeanUnchanged) {
   UsualFit usual = after_good_scans();
   EXPECT_FALSE(usual.is_contradicted(fit(0.0, 0.0)));
   for (int i = 0; i < 100; ++i)

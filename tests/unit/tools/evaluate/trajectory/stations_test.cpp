@@ -174,7 +174,7 @@ struct Kidnapped {
   }
 };
 
-TEST(Timeline, TimesAreCountedFromTheFirstSightingAfterTheKidnap) {
+TEST(Timeline, TimesUntilLostAndFoundCountFromTheFirstSightingAfterTheKidnap) {
   const Kidnapped run;
   const Timeline result = timeline(run.pairs, run.stamped, {}, 4.0, {1.0, 4.6, 4.7});
   ASSERT_TRUE(result.kidnap);

@@ -309,7 +309,7 @@ TEST(Labels, MarkersSideBySideGetLabelsSideBySide) {
   }
 }
 
-TEST(Labels, DistinguishInstances) {
+TEST(Labels, ShowInstanceAndState) {
   EXPECT_EQ(label_text({.id = 0, .instance = 0}), "0");
   EXPECT_EQ(label_text({.id = 7, .instance = 2}), "7.2");
   EXPECT_EQ(label_text({.id = 7, .state = LandmarkState::kMoved}), "7 moved");
