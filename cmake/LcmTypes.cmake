@@ -31,3 +31,16 @@ function(waymark_add_lcm_types target)
   target_include_directories(${target} SYSTEM INTERFACE "${generated_dir}")
   target_link_libraries(${target} INTERFACE lcm::lcm)
 endfunction()
+
+# waymark_add_lcm_layouts(TARGET FILE...): adds waymark/layouts.hpp, the wire layouts of all files, to a target of the above.
+function(waymark_add_lcm_layouts target)
+  set(header "${CMAKE_CURRENT_BINARY_DIR}/generated/waymark/layouts.hpp")
+  set(script "${PROJECT_SOURCE_DIR}/cmake/LcmLayouts.cmake")
+  add_custom_command(
+    OUTPUT "${header}"
+    COMMAND "${CMAKE_COMMAND}" -D "HEADER=${header}" -P "${script}" -- ${ARGN}
+    DEPENDS ${ARGN} "${script}"
+    VERBATIM)
+  add_custom_target(${target}_layouts DEPENDS "${header}")
+  add_dependencies(${target} ${target}_layouts)
+endfunction()

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The wire layout of our message types, to check the length fields of a payload before it reaches
-// the generated decoder, which throws, crashes or allocates gigabytes on hostile lengths (LCM
-// 1.3.1).
+// The wire layout of our message types (made from lcmtypes/*.lcm), to check the length fields of a
+// payload before it reaches the generated decoder, which throws, crashes or allocates gigabytes on
+// hostile lengths (LCM 1.3.1).
 #pragma once
 
 #include "common/messages/reject_reason.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -22,6 +23,8 @@ struct FieldLayout {
   int count_field{-1};                           ///< index in the same struct, or -1
   std::span<const FieldLayout> struct_fields{};  ///< kStruct only
 };
+
+inline constexpr std::size_t kMaxFields = 16;  ///< of a struct
 
 using StructLayout = std::span<const FieldLayout>;
 
