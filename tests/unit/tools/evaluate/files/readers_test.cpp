@@ -58,6 +58,16 @@ TEST(ReadMap, NegateSwapsBlackAndWhite) {
   EXPECT_THAT(map.cells, ElementsAre(Cell::kOccupied, Cell::kFree));
 }
 
+TEST(ReadMap, OccupancyAtAThresholdIsUnknown) {
+  const TemporaryFolder folder;
+  folder.file("map.pgm", std::string{"P5 2 1 255\n"} + "\xff" + std::string(1, '\0'));
+  const std::string widest =
+      replaced(replaced(kYaml, "occupied_thresh: 0.65", "occupied_thresh: 1"), "free_thresh: 0.196",
+               "free_thresh: 0");
+  const MapImage map = read_map(folder.file("map.yaml", widest));
+  EXPECT_THAT(map.cells, ElementsAre(Cell::kUnknown, Cell::kUnknown));
+}
+
 TEST(ReadMap, ErrorsAreNamed) {
   const std::string pgm = "P5 1 1 255\nx";
   EXPECT_THAT(map_error(replaced(kYaml, "resolution: 0.05\n", ""), pgm),

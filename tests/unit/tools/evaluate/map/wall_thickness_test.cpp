@@ -62,6 +62,43 @@ TEST(WallThickness, SeparateWallsAreMeasuredSeparately) {
             1);
 }
 
+TEST(WallThickness, AGapOfThreeCellsIsFilledAndOneOfFourIsNot) {
+  const std::string row = "##########";
+  const std::string gap = "..........";
+  EXPECT_EQ(wall_thickness_cells(picture({row, gap, gap, gap, row})), 5);
+  EXPECT_EQ(wall_thickness_cells(picture({row, gap, gap, gap, gap, row})), 1);
+}
+
+TEST(WallThickness, AWallNearAnEdgeIsNotJoinedToTheOppositeEdge) {
+  EXPECT_EQ(wall_thickness_cells(picture({"#......#..",  //
+                                          "#......#..",  //
+                                          "#......#..",  //
+                                          "#......#..",  //
+                                          "#......#..",  //
+                                          "#......#.."})),
+            1);
+}
+
+TEST(WallThickness, AWallAtAnEdgeIsAsThickAsElsewhere) {
+  EXPECT_EQ(wall_thickness_cells(picture({"....", "####", "####"})), 2);
+  EXPECT_EQ(wall_thickness_cells(picture({"##..", "##..", "##..", "##.."})), 2);
+}
+
+TEST(WallThickness, FewerThanHalfAPercentOfTheCellsAreIgnored) {
+  const auto wall_with_a_bump = [](std::size_t length) {
+    std::string bump(length, '.');
+    bump[length / 2] = bump[length / 2 + 1] = '#';  // one square of two by two cells
+    return wall_thickness_cells(picture({bump, std::string(length, '#')}));
+  };
+  EXPECT_EQ(wall_with_a_bump(190), 2);  // 1 of 192
+  EXPECT_EQ(wall_with_a_bump(210), 1);  // 1 of 212
+}
+
+TEST(WallThickness, OfAFilledBlockIsAtMostTwentyCells) {
+  EXPECT_EQ(wall_thickness_cells(picture(std::vector<std::string>(19, std::string(30, '#')))), 19);
+  EXPECT_EQ(wall_thickness_cells(picture(std::vector<std::string>(30, std::string(30, '#')))), 20);
+}
+
 TEST(WallThickness, WithoutWallsThereIsNoThickness) {
   EXPECT_EQ(wall_thickness_cells(picture({"....", "...."})), 0);
 }

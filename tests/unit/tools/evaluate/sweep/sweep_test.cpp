@@ -131,6 +131,38 @@ TEST(Sweep, TheWorstIsTheSmallestWhereMoreIsBetter) {
   EXPECT_NEAR(figures.median.value(), 0.925, 1e-12);
 }
 
+TEST(Sweep, ErrorsArePlottedByRowWithTheMissedExpectations) {
+  const SweptFolder sweep;
+  EXPECT_EQ(sweep_plots(sweep.rows()).errors_dat,
+            "# plain, odometry\n0 0.400000 0\n0 0.400000 0\n0 0.400000 0\n\n\n"
+            "# plain, waymark\n1 0.040000 0\n1 0.080000 0\n1 0.120000 1\n\n\n"
+            "# dark, odometry\n2 0.500000 0\n2 0.500000 0\n\n\n"
+            "# dark, waymark\n\n\n");
+}
+
+TEST(Sweep, StationsArePlottedByRowAlsoWhereARowHasNone) {
+  const SweptFolder sweep;
+  // Chi-square of 9 degrees of freedom over 3 runs, by the approximation of Wilson and Hilferty.
+  EXPECT_EQ(sweep_plots(sweep.rows()).stations_dat,
+            "# plain, odometry\nnan nan nan nan nan\n\n\n"
+            "# plain, waymark\n1 0.100000 3.0000 0.8915 6.3400\n"
+            "2 0.100000 99.0000 0.8915 6.3400\n\n\n"
+            "# dark, odometry\nnan nan nan nan nan\n\n\n"
+            "# dark, waymark\nnan nan nan nan nan\n\n\n");
+}
+
+TEST(Sweep, PlotsAreAsWideAndHaveAsManyLabelsAsThereAreRows) {
+  const SweptFolder sweep;
+  const std::string program = sweep_plots(sweep.rows()).program;
+  EXPECT_THAT(program, HasSubstr("set terminal pngcairo size 860,700 "));  // 700 + 40 for each row
+  EXPECT_THAT(program, HasSubstr("set xrange [-0.5:3.5]\n"));
+  EXPECT_THAT(program, HasSubstr("noenhanced (\"plain, odometry\" 0, \"plain, waymark\" 1, "
+                                 "\"dark, odometry\" 2, \"dark, waymark\" 3)\n"));
+  EXPECT_THAT(program, HasSubstr("array titles[4] = ['plain, odometry', 'plain, waymark', "
+                                 "'dark, odometry', 'dark, waymark']\n"));
+  EXPECT_THAT(program, HasSubstr("plot for [i=0:3] 'stations.dat'"));
+}
+
 TEST(Sweep, AllFilesAreWritten) {
   const SweptFolder sweep;
   EXPECT_EQ(run_sweep(sweep.folder.path(), {}), kExitOk);
