@@ -35,6 +35,31 @@ TEST(WholeFile, TheErrorNamesFileAndReason) {
   }
 }
 
+TEST(WholeFile, AFailedWriteLeavesNoFile) {
+  const auto folder = std::filesystem::path{::testing::TempDir()} / "whole_file_test_folder";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / ".map.pgm.part");  // cannot be opened for writing
+  EXPECT_THROW(write_whole_file(folder / "map.pgm", "bytes"), std::system_error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "map.pgm"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WholeFile, OnlyTheFileIsLeftInTheFolder) {
+  const auto folder = std::filesystem::path{::testing::TempDir()} / "whole_file_test_folder";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "taken");
+  write_whole_file(folder / "map.pgm", "bytes");
+  EXPECT_EQ(read_whole_file(folder / "map.pgm"), "bytes");
+  EXPECT_THROW(write_whole_file(folder / "taken", "bytes"), std::system_error);  // a folder
+  EXPECT_FALSE(std::filesystem::exists(folder / ".map.pgm.part"));
+  EXPECT_FALSE(std::filesystem::exists(folder / ".taken.part"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WholeFile, AMissingFileCannotBeRead) {
+  EXPECT_THROW(read_whole_file("/no/such/file"), std::system_error);
+}
+
 TEST(WritableFolder, IsMadeAndLeftEmpty) {
   const auto folder = std::filesystem::path{::testing::TempDir()} / "writable_folder_test";
   std::filesystem::remove_all(folder);
