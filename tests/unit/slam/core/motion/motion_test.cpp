@@ -196,6 +196,84 @@ TEST(OdometryBuffer, AResetOfAParkedRobotIsNoMotion) {
   }
 }
 
+TEST(OdometryBuffer, AClockStepShiftsTheSamples) {
+  OdometryBuffer buffer;
+  buffer.add({at_ms(0), Se2{}});
+  buffer.add({at_ms(100), Se2{0.2, 0.0, 0.0}});
+  buffer.shift(at_ms(5000) - at_ms(0));
+  EXPECT_FALSE(buffer.covers(at_ms(50)));
+  EXPECT_TRUE(buffer.covers(at_ms(5000)) && buffer.covers(at_ms(5100)));
+  EXPECT_NEAR(buffer.pose_at(at_ms(5025)).x(), 0.05, 1e-12);
+  EXPECT_EQ(buffer.newest(), at_ms(5100));
+}
+
+TEST(OdometryBuffer, AClockStepDoesNotChangeHowLongARobotHasStood) {
+  for (const double driven_m : {1.5, 7.0}) {
+    for (const int step_ms : {-10'000, 10'000}) {
+      OdometryBuffer buffer;
+      const Se2 standing{5.0, 1.0, 0.5};
+      for (int ms = 0; ms <= 1000; ms += 50)
+        buffer.add({at_ms(ms), standing});
+      buffer.shift(at_ms(step_ms) - at_ms(0));
+      EXPECT_EQ(
+          buffer.add({at_ms(step_ms + 1050), standing * Se2{driven_m, 0.0, 0.0}}),
+          driven_m < 2.0 ? OdometryBuffer::Outcome::kCaughtUp : OdometryBuffer::Outcome::kJumped);
+    }
+  }
+}
+
+TEST(OdometryBuffer, AClockStepShiftsLateMotion) {
+  OdometryBuffer buffer;
+  outcome_after_standing(Se2{5.0, 1.0, 0.5} * Se2{1.5, 0.1, 0.2}, buffer);
+  buffer.shift(at_ms(5000) - at_ms(0));
+  EXPECT_TRUE(buffer.late_motion(at_ms(6000), at_ms(6050)));
+  EXPECT_FALSE(buffer.late_motion(at_ms(1000), at_ms(1050)));
+}
+
+/// Garbage for five samples, with a step of the clock in its middle; then the odometry goes on
+/// `moved_m` farther than before.
+OdometryBuffer after_garbage(int clock_step_ms, double moved_m) {
+  Random random{{5}};
+  OdometryBuffer buffer;
+  for (int step = 0; step <= 30; ++step) {
+    const bool is_garbage = step > 10 && step <= 15;
+    Se2 pose{3.0 + 0.005 * step + (step > 10 ? moved_m : 0.0), -1.0, 0.3};
+    if (is_garbage) pose = pose * Se2{random.uniform(2.0, 9.0), random.uniform(2.0, 9.0), 0.0};
+    if (step == 13) buffer.shift(at_ms(clock_step_ms) - at_ms(0));
+    buffer.add({at_ms(33 * step + (step < 13 ? 0 : clock_step_ms)), pose});
+  }
+  return buffer;
+}
+
+TEST(OdometryBuffer, AClockStepDuringGarbageDoesNotChangeWhatFollowsIt) {
+  for (const int clock_step_ms : {-10'000, 0, 10'000}) {
+    const auto at_step = [clock_step_ms](int step) {
+      return at_ms(33 * step + clock_step_ms);
+    };
+    const OdometryBuffer buffer = after_garbage(clock_step_ms, 0.0);
+    const auto late_motion = buffer.late_motion(at_step(10), at_step(30));
+    ASSERT_TRUE(late_motion) << clock_step_ms;
+    EXPECT_NEAR(late_motion->start_from_end.translation().norm(), 0.05, 0.01) << clock_step_ms;
+    EXPECT_TRUE(buffer.has_jumped(at_step(10), at_step(11))) << clock_step_ms;
+    EXPECT_FALSE(buffer.has_jumped(at_step(0), at_step(10))) << clock_step_ms;
+    EXPECT_FALSE(buffer.has_jumped(at_step(22), at_step(30))) << clock_step_ms;
+    const OdometryBuffer reset = after_garbage(clock_step_ms, 6.0);
+    EXPECT_FALSE(reset.late_motion(at_step(10), at_step(30))) << clock_step_ms;
+  }
+}
+
+TEST(OdometryBuffer, AClockStepShiftsAJumpThatIsOver) {
+  OdometryBuffer buffer = after_garbage(0, 0.0);  // held from step 10 to step 19
+  buffer.shift(at_ms(5000) - at_ms(0));
+  const auto has_jumped = [&buffer](int from_step, int to_step) {
+    return buffer.has_jumped(at_ms(5000 + 33 * from_step), at_ms(5000 + 33 * to_step));
+  };
+  EXPECT_FALSE(has_jumped(0, 10));
+  EXPECT_TRUE(has_jumped(10, 11) && has_jumped(18, 19));
+  EXPECT_FALSE(has_jumped(20, 30));
+  EXPECT_FALSE(buffer.has_jumped(at_ms(33 * 10), at_ms(33 * 20)));
+}
+
 TEST(OdometryBuffer, MeasuresThePathNotTheDistanceOfItsEnds) {
   OdometryBuffer buffer;
   for (int step = 0; step <= 20; ++step) {

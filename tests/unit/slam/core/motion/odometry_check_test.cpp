@@ -40,6 +40,27 @@ TEST(OdometryCheck, AJumpIsReplacedByTheLastEstimatedStep) {
   EXPECT_EQ(motion.guessed_s, 0.5 * kScan_s);
 }
 
+TEST(OdometryCheck, ARejectedStepIsReplacedByTheShareOfTheLastOneInItsTime) {
+  OdometryCheck check = after_a_drive();
+  check.note_estimated({0.08, 0.02, -0.04}, kScan_s);
+  const Se2 half = check.plausible(drive(1.5), 0.5 * kScan_s, false).start_from_end;
+  EXPECT_DOUBLE_EQ(half.x(), 0.04);
+  EXPECT_DOUBLE_EQ(half.y(), 0.01);
+  EXPECT_DOUBLE_EQ(half.theta(), -0.02);
+  const Se2 longer = check.plausible(drive(3.0), 2.0 * kScan_s, false).start_from_end;
+  EXPECT_DOUBLE_EQ(longer.x(), 0.08);  // not extrapolated
+  EXPECT_DOUBLE_EQ(longer.theta(), -0.04);
+}
+
+TEST(OdometryCheck, WithoutAnEstimatedSpeedTheRobotIsAssumedToStand) {
+  OdometryCheck check = after_a_drive();
+  check.note_estimated({0.08, 0.0, 0.0}, 0.0);
+  const Motion motion = check.plausible(drive(1.5), kScan_s, false);
+  EXPECT_TRUE(check.is_refused());
+  EXPECT_EQ(motion.start_from_end.x(), 0.0);
+  EXPECT_EQ(motion.guessed_s, kScan_s);
+}
+
 TEST(OdometryCheck, HypothesesAreStandingTheLastStepAndTheRejectedStep) {
   OdometryCheck check = after_a_drive();
   check.plausible(drive(1.5), kScan_s, false);
