@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -43,6 +44,36 @@ TEST(TurnBetween, AcceptsCorrectOdometry) {
 TEST(TurnBetween, GivesNothingWithoutScans) {
   EXPECT_FALSE(turn_between({}, scan_of_room({}), {}));
   EXPECT_FALSE(turn_between(scan_of_room({}), {}, {}));
+}
+
+/// The beams that point ahead, up to that angle to both sides.
+std::vector<AnnotatedBeam> ahead_of(std::vector<AnnotatedBeam> beams, double half_angle_deg) {
+  std::erase_if(beams, [half_angle_deg](const AnnotatedBeam& annotated) {
+    const Eigen::Vector2d& end = annotated.beam.end_in_base;
+    return std::abs(std::atan2(end.y(), end.x())) > half_angle_deg * kDegree;
+  });
+  return beams;
+}
+
+TEST(TurnBetween, ALidarThatLooksAheadOnlyIsEnough) {
+  for (const double slip_deg : {-12.0, 8.0}) {
+    const Se2 start{-0.5, 0.3, 0.2};
+    const auto found =
+        turn_between(ahead_of(scan_of_room(start), 90.0),
+                     ahead_of(scan_of_room(start * Se2{0.0, 0.0, slip_deg * kDegree}), 90.0), {});
+    ASSERT_TRUE(found) << slip_deg;
+    EXPECT_TRUE(found->contradicts_odometry) << slip_deg;
+    EXPECT_NEAR(found->turn_rad, slip_deg * kDegree, 1.6 * kDegree) << slip_deg;
+  }
+}
+
+TEST(TurnBetween, NeedsMoreThanHalfOfTheLaterScanInTheEarlierOne) {
+  const auto scan = scan_of_room({-0.5, 0.3, 0.2});
+  EXPECT_FALSE(turn_between(ahead_of(scan, 45.0), ahead_of(scan, 90.0), {}));
+  const auto found = turn_between(ahead_of(scan, 65.0), ahead_of(scan, 90.0), {});
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->contradicts_odometry);
+  EXPECT_EQ(found->turn_rad, 0.0);
 }
 
 /// Every step is 0.05 m and a degree by odometry; the wheels miss 20 degrees, spread over `steps`.
