@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -69,6 +71,35 @@ TEST(Random, DependsOnTheKeyOnly) {
   EXPECT_EQ(first_draw({1, 2}), first_draw({1, 2}));
   EXPECT_NE(first_draw({1, 2}), first_draw({2, 1}));
   EXPECT_NE(first_draw({1}), first_draw({1, 0}));
+}
+
+/// Recorded runs are repeated with the same draws. The values are those of SplitMix64 (Steele, Lea,
+/// Flood 2014), with a state that is mixed with each part of the key.
+TEST(Random, TheDrawsOfAKeyNeverChange) {
+  EXPECT_EQ(first_draw({}), 0x6e789e6aa1b965f4ULL);
+  Random random{1, 2};
+  EXPECT_EQ(random(), 0x27d6f4e45e24533fULL);
+  EXPECT_EQ(random(), 0x40b894e1bd8dbe6ULL);
+}
+
+TEST(Random, UniformDrawsAreBetweenTheirLimits) {
+  Random random{3};
+  double least = 5.0;
+  double most = 2.0;
+  for (int i = 0; i < 1000; ++i) {
+    const double value = random.uniform(2.0, 5.0);
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  EXPECT_GE(least, 2.0);
+  EXPECT_LT(least, 2.05);
+  EXPECT_GT(most, 4.95);
+  EXPECT_LT(most, 5.0);
+}
+
+TEST(Random, ANormalDrawIsScaledAndShifted) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed)
+    EXPECT_EQ(Random{seed}.normal(3.0, 0.5), 3.0 + 0.5 * Random{seed}.normal());
 }
 
 TEST(Random, HasTheRightMoments) {
