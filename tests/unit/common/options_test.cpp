@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/runtime/options.hpp"
 
+#include "common/errors/exit_codes.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,13 +12,17 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-ProcessOptions parsed(std::vector<std::string> words) {
+ParsedOptions result_of(std::vector<std::string> words) {
   words.insert(words.begin(), "program");
   std::vector<char*> arguments;
   for (std::string& word : words)
     arguments.push_back(word.data());
-  const ParsedOptions result = parse_options(static_cast<int>(arguments.size()), arguments.data(),
-                                             {"slam", "Does nothing.", false}, {.maps = true});
+  return parse_options(static_cast<int>(arguments.size()), arguments.data(),
+                       {"slam", "Does nothing.", false}, {.maps = true});
+}
+
+ProcessOptions parsed(const std::vector<std::string>& words) {
+  const ParsedOptions result = result_of(words);
   EXPECT_FALSE(result.exit_code);
   return result.options;
 }
@@ -26,6 +32,13 @@ TEST(Options, ModeAndStartOverrideSet) {
   EXPECT_THAT(parsed({"--mode", "localise", "--set", "slam.mode=map", "--start", "anywhere"})
                   .config_sources.overrides,
               ElementsAre("slam.mode=map", "slam.mode=localise", "slam.start=anywhere"));
+}
+
+TEST(Options, HelpAndVersionAreASuccessAndUnknownOptionsAUsageError) {
+  for (const char* word : {"--help", "--version"})
+    EXPECT_EQ(result_of({word}).exit_code, kExitOk) << word;
+  for (const char* word : {"--mod", "localise"})
+    EXPECT_EQ(result_of({word}).exit_code, kExitUsage) << word;
 }
 
 }  // namespace
