@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// JPEG and PNG against OpenCV's own codecs.
+// JPEG and PNG against OpenCV's own codecs; headers of JPEGs written by hand.
 #include "common/pictures/jpeg.hpp"
+#include "common/pictures/jpeg_header.hpp"
 #include "common/pictures/png.hpp"
 #include "common/random/random.hpp"
 
@@ -10,6 +11,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <vector>
 
 namespace waymark {
 namespace {
@@ -128,6 +131,28 @@ TEST(Png, WhatIsDamagedOrTooLargeIsRefused) {
   const std::int64_t pixels = std::int64_t{image.cols} * image.rows;
   EXPECT_TRUE(grey_of_png(span_of(png), pixels - 1).empty());
   EXPECT_FALSE(grey_of_png(span_of(png), pixels).empty());
+}
+
+/// A JPEG of one segment with this marker, 640 x 480 if it is a frame header.
+std::optional<JpegHeader> header_of_segment(std::uint8_t marker) {
+  const std::vector<std::uint8_t> bytes{0xFF, 0xD8, 0xFF, marker, 0,  11, 8,    1,   0xE0,
+                                        2,    0x80, 1,    1,      17, 0,  0xFF, 0xD9};
+  return read_jpeg_header(bytes);
+}
+
+TEST(JpegHeader, EveryKindOfFrameHeaderHasTheSizeOfTheImage) {
+  for (const int marker : {0xC0, 0xC1, 0xC2, 0xC3, 0xC5, 0xC7, 0xC9, 0xCB, 0xCD, 0xCF}) {
+    const auto header = header_of_segment(static_cast<std::uint8_t>(marker));
+    ASSERT_TRUE(header) << marker;
+    EXPECT_EQ(header->width_px, 640) << marker;
+    EXPECT_EQ(header->height_px, 480) << marker;
+    EXPECT_TRUE(header->complete) << marker;
+  }
+}
+
+TEST(JpegHeader, OtherSegmentsAreNoFrameHeaders) {
+  for (const int marker : {0xBF, 0xC4, 0xC8, 0xCC, 0xDB, 0xE0})
+    EXPECT_FALSE(header_of_segment(static_cast<std::uint8_t>(marker))) << marker;
 }
 
 }  // namespace
