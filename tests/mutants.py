@@ -6,8 +6,8 @@ Each mutant is built and tested in the release folder, and undone. One that does
 a missing test, or a change that makes no difference: which, has to be looked at.
 
 usage: tests/mutants.py [--count N] [--seed N] [--suite NAME]
-  --suite  common (default): procs/common against its unit and transport tests; slam: procs/slam/core against unit, property and statistics tests;
-           evaluate: tools/evaluate
+  --suite  common (default): procs/common against its unit tests, those of the tools, and the transport's;
+           slam: procs/slam/core against unit, property and statistics tests; evaluate: tools/evaluate
 """
 import argparse
 import os
@@ -20,7 +20,8 @@ import sys
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 BUILD = SOURCE / "build/release"
 SUITES = {  # folder, build targets, which are test programs
-    "common": ("procs/common", ["tests/unit/common/common_unit_test", "tests/process/transport_test"]),
+    "common": ("procs/common", ["tests/unit/common/common_unit_test", "tests/unit/common/pictures_unit_test",
+                               "tests/unit/tools/tools_unit_test", "tests/process/transport_test"]),
     "slam": (
         "procs/slam/core",
         ["tests/unit/slam/slam_unit_test", "tests/property/slam/slam_property_test", "tests/unit/slam/daily_life_test",

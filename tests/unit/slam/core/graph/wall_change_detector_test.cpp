@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 namespace waymark {
@@ -76,17 +77,19 @@ Observation wall_across(int rows, double away_m) {
   return rows_of_beams(rows, [away_m](int) { return away_m; });
 }
 
-std::shared_ptr<const MapSnapshot> map_of(const Observation& observation) {
+std::shared_ptr<const MapSnapshot> map_of(const Observation& observation,
+                                          const Se2& map_from_base = {}) {
   auto map = std::make_shared<MapSnapshot>();
   map->grid.frame = GridFrame::centred_on_map_origin(kCell_m);
   for (int scan = 0; scan < 20; ++scan)
-    insert_beams(observation.beams, {}, map->grid);
+    insert_beams(observation.beams, map_from_base, map->grid);
   return map;
 }
 
-void add_scans(int scans, const Observation& observation, WallChangeDetector& detector) {
+void add_scans(int scans, const Observation& observation, WallChangeDetector& detector,
+               const Se2& map_from_base = {}) {
   for (int scan = 0; scan < scans; ++scan)
-    detector.add(observation, {});
+    detector.add(observation, map_from_base);
 }
 
 /// Of the inner rows: a changed cell needs free cells on all sides.
@@ -155,16 +158,18 @@ TEST(WallChangeDetector, ChangesAreOneClusterUpToAGapOfOneCell) {
     const auto wall_with_a_gap = [gap](int row) {
       return row >= 10 && row < 10 + gap ? kFar_m : kWall_m;
     };
-    WallChangeDetector detector{map_of(rows_of_beams(22, wall_with_a_gap))};
-    add_scans(20, wall_across(22, kFar_m), detector);
-    EXPECT_EQ(detector.changes().size(), gap == 1 ? 1U : 2U) << gap;
+    for (const double heading_rad : {0.0, 0.5 * std::numbers::pi}) {  // walls along y, along x
+      const Se2 pose{0.0, 0.0, heading_rad};
+      WallChangeDetector detector{map_of(rows_of_beams(22, wall_with_a_gap), pose)};
+      add_scans(20, wall_across(22, kFar_m), detector, pose);
+      EXPECT_EQ(detector.changes().size(), gap == 1 ? 1U : 2U) << gap << ", " << heading_rad;
+    }
   }
 }
 
 TEST(WallChangeDetector, ScansFromAnUnmappedPlaceAreIgnored) {
   WallChangeDetector detector{map_of(wall_across(kRows, kWall_m))};
-  for (int scan = 0; scan < 20; ++scan)
-    detector.add(wall_across(kRows, kFar_m), {-1.0, 0.0, 0.0});
+  add_scans(20, wall_across(kRows, kFar_m), detector, {-1.0, 0.0, 0.0});
   EXPECT_TRUE(detector.changes().empty());
 }
 
