@@ -20,7 +20,7 @@ done
 
 sanitizers() {
   build asan unit_tests property_tests statistics_tests
-  ctest --preset asan-statistics --parallel 2
+  ctest --preset asan-statistics
 }
 threads() { tests/simulation/thread_sanitizer.sh; }
 fuzz() { tests/fuzz/run.sh --seconds 600; }

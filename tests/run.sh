@@ -11,4 +11,4 @@ no_arguments "$@"
 "$deploy_dir/install-deps.sh" --tests
 build ci
 cd "$source_dir"
-tests/with_network.sh ctest --preset ci --parallel 2 </dev/null
+tests/with_network.sh ctest --preset ci </dev/null
