@@ -41,8 +41,11 @@ expect_field "b_t b;" ".kind = FieldLayout::Kind::kStruct, .count_field = -1, .s
 b_line=$(grep -n " b_t\[\]" layouts.hpp | cut -d: -f1) a_line=$(grep -n " a_t\[\]" layouts.hpp | cut -d: -f1)
 ((b_line < a_line)) || fail "b_t is used before it is defined"
 
-expect_error "double x[n]; int32_t n;" "a_t.lcm: the length 'n' of 'x' is no earlier field"
-expect_error "int32_t n; double x[3][n];" "a_t.lcm: the length 'n' of 'x' is no earlier field, or not the first one"
+expect_error "double x[n]; int32_t n;" "a_t.lcm: the length 'n' of 'x' is no earlier int32_t"
+expect_error "int64_t n; double x[n];" "a_t.lcm: the length 'n' of 'x' is no earlier int32_t"
+expect_error "int32_t n[2]; double x[n];" "a_t.lcm: the length 'n' of 'x' is no earlier int32_t"
+expect_error "int32_t n; double x[3][n];" "a_t.lcm: not understood: 'double x.3..n.'"
+expect_error "int32_t n; int32_t m; double x[n][m];" "a_t.lcm: not understood: 'double x.n..m.'"
 expect_error "b_t b[2];" "a_t.lcm: 'b': an array of constant length"
 expect_error "double x, y;" "a_t.lcm: not understood: 'double x, y'"
 expect_error "other_t x;" "unknown ones: a_t"
