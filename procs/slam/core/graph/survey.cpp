@@ -13,8 +13,8 @@ namespace {
 constexpr double kWrong = 5.0;           // sigmas beyond which an entry is reported
 constexpr double kLeastApart_m = 1.0;    // between two markers that define a frame's rotation
 constexpr double kClearlyBetter = 25.0;  // chi^2 that switching the wrong prior off has to save
-constexpr int kConfirmed = 3;            // sightings of a landmark before its entry is tested
-constexpr int kTestedAgain = 4;          // times as many sightings as at the last test
+constexpr int kConfirmed = 3;    // sightings of a landmark before it is assigned to an entry
+constexpr int kTestedAgain = 4;  // times as many sightings as at the last test
 // Largest excess of chi^2 over its mean with correct priors: the larger of a constant and so many
 // standard deviations.
 constexpr double kContradiction = 50.0;

@@ -39,12 +39,12 @@ Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNo
 /// The same for any motion; never below a floor.
 Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
 
-/// Systematic errors of odometry and of the LiDAR's mounting.
-/// kScale: true distance = (1 + scale) measured distance.
-/// kDrift [rad/m], kTurnScale: true turn = measured turn + drift * advance + turn scale * t, where
-/// t is the part of the measured turn that exceeds its noise. kLidarAhead [m], kLidarYaw [rad,
-/// left]: errors of the mounting. The first displaces the LiDAR in turns on the spot, the second
-/// makes straight drives seem to drift sideways.
+/// Systematic errors of odometry and of the LiDAR's mounting:
+/// - kScale: true distance = (1 + scale) measured distance.
+/// - kDrift [rad/m], kTurnScale: true turn = measured turn + drift * advance + turn scale * t;
+///   t is the part of the measured turn that exceeds its noise.
+/// - kLidarAhead [m], kLidarYaw [rad, left]: errors of the mounting. The first displaces the LiDAR
+///   in turns on the spot, the second makes straight drives seem to drift sideways.
 struct OdometryTerm {
   enum Index : Eigen::Index { kScale, kDrift, kTurnScale, kLidarAhead, kLidarYaw, kCount };
 };

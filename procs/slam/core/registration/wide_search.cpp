@@ -21,9 +21,9 @@ constexpr double kReach_rad = 0.6;
 constexpr std::size_t kBeams = 120;
 constexpr double kUnseen_rad_s = 0.5;  // rate at which the window of turns grows between scans
 // Ratios of inliers, found to plain match, that the found match needs:
-constexpr double kClearlyMore = 1.05;   // in any case
-constexpr double kMuchMore = 1.5;       // if odometry contradicts it, and fits are about as usual
-constexpr double kFarMore = 2.0;        // if odometry does not, and it fits nearly as usual
+constexpr double kClearlyMore = 1.05;  // in any case
+constexpr double kMuchMore = 1.5;  // if odometry contradicts it, and it fits as usual where mapped
+constexpr double kFarMore = 2.0;   // if odometry does not, and it fits nearly as usual
 constexpr double kLeavesFarMore = 3.0;  // ratio of unexplained beams, plain to found match
 constexpr double kContradictedSigmas = 5.0;
 constexpr double kFarFarther = 4.0;  // ratio of distances from odometry, found to plain match

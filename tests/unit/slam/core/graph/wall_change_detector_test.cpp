@@ -92,6 +92,14 @@ void add_scans(int scans, const Observation& observation, WallChangeDetector& de
     detector.add(observation, map_from_base);
 }
 
+/// The changes after one more scan; before it there are none.
+std::vector<MapChange> changes_by_one_more(const Observation& observation,
+                                           WallChangeDetector& detector) {
+  EXPECT_TRUE(detector.changes().empty());
+  add_scans(1, observation, detector);
+  return detector.changes();
+}
+
 /// Of the inner rows: a changed cell needs free cells on all sides.
 void expect_change_of_inner_rows(const std::vector<MapChange>& changes, MapChange::Kind kind,
                                  double away_m) {
@@ -106,35 +114,29 @@ void expect_change_of_inner_rows(const std::vector<MapChange>& changes, MapChang
 TEST(WallChangeDetector, AWallIsGoneOnceEightBeamsHavePassedThroughEveryCell) {
   WallChangeDetector detector{map_of(wall_across(kRows, kWall_m))};
   add_scans(7, wall_across(kRows, kFar_m), detector);
-  EXPECT_TRUE(detector.changes().empty());
-  add_scans(1, wall_across(kRows, kFar_m), detector);
-  expect_change_of_inner_rows(detector.changes(), MapChange::Kind::kWallGone, kWall_m);
+  expect_change_of_inner_rows(changes_by_one_more(wall_across(kRows, kFar_m), detector),
+                              MapChange::Kind::kWallGone, kWall_m);
 }
 
 TEST(WallChangeDetector, AWallIsNewOnceEightBeamsHaveEndedInEveryCell) {
   WallChangeDetector detector{map_of(wall_across(kRows, kWall_m))};
   add_scans(7, wall_across(kRows, kNear_m), detector);
-  EXPECT_TRUE(detector.changes().empty());
-  add_scans(1, wall_across(kRows, kNear_m), detector);
-  expect_change_of_inner_rows(detector.changes(), MapChange::Kind::kWallNew, kNear_m);
+  expect_change_of_inner_rows(changes_by_one_more(wall_across(kRows, kNear_m), detector),
+                              MapChange::Kind::kWallNew, kNear_m);
 }
 
 TEST(WallChangeDetector, AWallThatIsHitByATenthOfTheBeamsIsNotGone) {
   WallChangeDetector detector{map_of(wall_across(kRows, kWall_m))};
   add_scans(2, wall_across(kRows, kWall_m), detector);
   add_scans(18, wall_across(kRows, kFar_m), detector);
-  EXPECT_TRUE(detector.changes().empty());
-  add_scans(1, wall_across(kRows, kFar_m), detector);
-  EXPECT_EQ(detector.changes().size(), 1U);
+  EXPECT_EQ(changes_by_one_more(wall_across(kRows, kFar_m), detector).size(), 1U);
 }
 
 TEST(WallChangeDetector, AnObstacleThatStopsHalfOfTheBeamsIsNoWall) {
   WallChangeDetector detector{map_of(wall_across(kRows, kWall_m))};
   add_scans(10, wall_across(kRows, kNear_m), detector);
   add_scans(10, wall_across(kRows, kWall_m), detector);
-  EXPECT_TRUE(detector.changes().empty());
-  add_scans(1, wall_across(kRows, kNear_m), detector);
-  EXPECT_EQ(detector.changes().size(), 1U);
+  EXPECT_EQ(changes_by_one_more(wall_across(kRows, kNear_m), detector).size(), 1U);
 }
 
 TEST(WallChangeDetector, AWallThatIsSeenOneCellNearerOrFartherHasNotChanged) {
