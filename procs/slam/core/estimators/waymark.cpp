@@ -235,6 +235,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
 
 void WaymarkEstimator::map_keyframe(const Observation& observation, const Points& points) {
   const Se2& map_from_base = graph_.state().keyframes.back();
+  submaps_.follow(graph_.state().keyframes);
   submaps_.add_keyframe(points, graph_.state().keyframes);
   map_.add(observation, map_from_base);
   map_.follow(poses_of(graph_));

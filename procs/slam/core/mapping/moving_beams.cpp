@@ -4,12 +4,27 @@
 #include "slam/core/mapping/seen_through.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <utility>
 
 namespace waymark {
 namespace {
 
 constexpr double kSigmas = 3.0;
 constexpr double kMostOff_m = 0.3;  // a beam whose end is more uncertain is kept
+constexpr double kOutlineCell_m = 0.2;
+
+/// Length of the outline that the points show, in cells: most beams of a scan may end on somebody
+/// who is close by.
+std::size_t outline_length(const std::vector<Eigen::Vector2d>& points) {
+  std::set<std::pair<std::int64_t, std::int64_t>> cells;
+  for (const Eigen::Vector2d& point : points)
+    cells.emplace(std::llround(point.x() / kOutlineCell_m),
+                  std::llround(point.y() / kOutlineCell_m));
+  return cells.size();
+}
 
 }  // namespace
 
@@ -24,7 +39,7 @@ std::vector<Eigen::Vector2d> without_moving(const std::vector<Eigen::Vector2d>& 
     if (off_m > kMostOff_m || !is_seen_through(map, map_from_base * point, off_m))
       standing.push_back(point);
   }
-  return 2 * standing.size() < points_in_base.size() ? points_in_base : standing;
+  return 2 * outline_length(standing) < outline_length(points_in_base) ? points_in_base : standing;
 }
 
 }  // namespace waymark

@@ -2,11 +2,10 @@
 // A few metres of scans in the frame of a keyframe.
 #pragma once
 
+#include "slam/core/motion/pose_sequence.hpp"
 #include "slam/core/registration/coarse_ndt.hpp"
 #include "slam/core/registration/scan_match.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <unordered_set>
@@ -18,30 +17,22 @@ class Submap {
  public:
   /// The submap's frame is the base frame of the first keyframe.
   Submap(double cell_spacing_m, std::size_t first_keyframe)
-      : first_keyframe_{first_keyframe}, ndt_{cell_spacing_m}, coarse_{cell_spacing_m} {}
+      : spacing_m_{cell_spacing_m},
+        first_keyframe_{first_keyframe},
+        ndt_{cell_spacing_m},
+        coarse_{cell_spacing_m} {}
 
   /// Inserts the next keyframe; there must be no gap.
-  void insert(const Points& points_in_base, const Se2& submap_from_base) {
-    if (!poses_.empty())
-      length_m_ += (submap_from_base.translation() - poses_.back().translation()).norm();
-    poses_.push_back(submap_from_base);
-    reach_m_ = std::max(reach_m_, submap_from_base.translation().norm());
-    add(points_in_base, submap_from_base);
-  }
+  void insert(const Points& points_in_base, const Se2& submap_from_base);
 
   /// Inserts a scan between keyframes, attributed to the newest keyframe.
-  void add(const Points& points_in_base, const Se2& submap_from_base) {
-    const auto keyframe = static_cast<int>(last_keyframe());
-    for (const Eigen::Vector2d& point : points_in_base) {
-      const Eigen::Vector2d there = submap_from_base * point;
-      ndt_.add(there, keyframe);
-      const auto column = static_cast<int>(std::lround(there.x() / kThinned_m));
-      const auto row = static_cast<int>(std::lround(there.y() / kThinned_m));
-      if (!occupied_.insert(NdtMap::key(column, row)).second) continue;
-      points_.push_back(there);
-      coarse_.add(there);
-    }
-  }
+  void add(const Points& points_in_base, const Se2& submap_from_base);
+
+  /// Whether the keyframes have moved relative to each other since they were inserted.
+  bool is_bent(const PoseSequence& keyframes) const;
+
+  /// The same scans, inserted at the present poses of their keyframes. Precondition: not finished.
+  Submap straightened(const PoseSequence& keyframes) const;
 
   std::size_t first_keyframe() const { return first_keyframe_; }
 
@@ -57,7 +48,7 @@ class Submap {
   const Points& points() const { return points_; }
 
   /// To be called after the last insertion: frees memory.
-  void finish() { occupied_.clear(); }
+  void finish();
 
   /// Largest distance of a keyframe from the first one.
   double reach_m() const { return reach_m_; }
@@ -71,14 +62,25 @@ class Submap {
   }
 
  private:
+  /// A scan that was inserted.
+  struct Scan {
+    Points points_in_base{};
+    std::size_t keyframe{0};
+    Se2 keyframe_from_base{};
+  };
+
   static constexpr double kThinned_m = 0.05;
 
+  void draw(const Points& points_in_base, const Se2& submap_from_base);
+
+  double spacing_m_;
   std::size_t first_keyframe_;
   NdtMap ndt_;
   CoarseNdt coarse_;
   std::vector<Se2> poses_{};
   double reach_m_{0.0};
   double length_m_{0.0};
+  std::vector<Scan> scans_{};                   ///< until the submap is finished
   std::unordered_set<NdtMap::Key> occupied_{};  ///< cells of kThinned_m; never iterated over
   Points points_{};
 };

@@ -39,6 +39,11 @@ void Submaps::add_between(const Points& points_in_base, const Se2& map_from_base
     submap.add(points_in_base, submap_from_map(submap, keyframes) * map_from_base);
 }
 
+void Submaps::follow(const PoseSequence& keyframes) {
+  for (Submap& submap : growing_)
+    if (submap.is_bent(keyframes)) submap = submap.straightened(keyframes);
+}
+
 void Submaps::forget(const std::function<bool(std::size_t)>& is_removed) {
   std::erase_if(finished_, [&is_removed](const Submap& submap) {
     for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k)

@@ -38,6 +38,11 @@ class Submaps {
   void add_between(const Points& points_in_base, const Se2& map_from_base,
                    const PoseSequence& keyframes);
 
+  /// Redraws unfinished submaps whose keyframes have moved relative to each other. Otherwise, after
+  /// a loop closure has moved the newest keyframes, the next scans would be matched at their old
+  /// poses.
+  void follow(const PoseSequence& keyframes);
+
   /// Drops unfinished submaps, after the robot was relocated.
   void begin_anew() { growing_.clear(); }
 

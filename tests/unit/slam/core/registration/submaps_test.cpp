@@ -73,6 +73,44 @@ TEST(Submaps, ScansAreWhereTheirKeyframesAre) {
   EXPECT_NEAR(points[3].y(), 0.5, 1e-9);
 }
 
+/// As after a loop closure. The scan between keyframes moves with the one before it.
+TEST(Submaps, ScansFollowTheirKeyframesWhenTheseMoveRelativeToEachOther) {
+  Drive drive;
+  drive.go(3);
+  drive.submaps.add_between({{1.0, 0.5}}, {0.25, 0.0, 0.0}, drive.keyframes);
+  drive.keyframes[2] = {0.2, 0.3, 0.0};
+  drive.submaps.follow(drive.keyframes);
+  const Submap& submap = *drive.submaps.matched();
+  ASSERT_EQ(submap.points().size(), 4U);
+  EXPECT_NEAR(submap.points()[1].y(), 0.0, 1e-9);
+  EXPECT_NEAR(submap.points()[2].y(), 0.3, 1e-9);
+  EXPECT_NEAR(submap.points()[3].x(), 1.25, 1e-9);
+  EXPECT_NEAR(submap.points()[3].y(), 0.8, 1e-9);
+  EXPECT_EQ(submap.num_keyframes(), 3U);
+  EXPECT_NEAR(submap.submap_from_keyframe(2).y(), 0.3, 1e-9);
+}
+
+TEST(Submaps, TheSecondSubmapFollowsToo) {
+  Drive drive;
+  drive.go(8);
+  drive.keyframes[7] = {0.7, 0.3, 0.0};
+  drive.submaps.follow(drive.keyframes);
+  drive.go(3);
+  ASSERT_EQ(drive.submaps.matched()->first_keyframe(), 5U);
+  EXPECT_NEAR(drive.submaps.matched()->submap_from_keyframe(7).y(), 0.3, 1e-9);
+}
+
+TEST(Submaps, KeyframesThatMoveTogetherLeaveTheSubmapAsItIs) {
+  Drive drive;
+  drive.go(3);
+  const Se2 moved{5.0, 1.0, 0.5};
+  for (std::size_t i = 0; i < 3; ++i)
+    drive.keyframes[i] = moved * drive.keyframes[i];
+  EXPECT_FALSE(drive.submaps.matched()->is_bent(drive.keyframes));
+  drive.keyframes[2] = drive.keyframes[2] * Se2{0.0, 0.0, 0.05};
+  EXPECT_TRUE(drive.submaps.matched()->is_bent(drive.keyframes));
+}
+
 TEST(Submaps, StartingANewSubmapKeepsFinishedOnes) {
   Drive drive;
   drive.go(21);
