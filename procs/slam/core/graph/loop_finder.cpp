@@ -192,8 +192,8 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
   return {};
 }
 
-/// @return none if there is no good match, or one that contradicts the estimated pose without being
-///         convincing.
+/// @return none if there is no good match, one that contradicts the estimated pose without being
+///         convincing, or one that corrects it along the direction that it does not observe.
 std::optional<LoopFinder::Place> LoopFinder::place_near(const Guess& guess, const Scan& scan) {
   const Submap* old = nearest_submap(guess, scan);
   if (old == nullptr) return std::nullopt;
@@ -206,6 +206,12 @@ std::optional<LoopFinder::Place> LoopFinder::place_near(const Guess& guess, cons
   const bool is_surprise =
       !guess.is_estimate || chi2(off, covariance_in(*old, scan.search)) > config_.gate;
   if (is_surprise && !is_convincing(loop->match)) return std::nullopt;
+  const auto& observed = loop->match.observed;
+  const Eigen::Vector2d weak =
+      scan.state.keyframes[old->first_keyframe()].rotation() * observed.weak_direction;
+  // The search slides along a wall to where more of the scan is mapped.
+  if (observed.is_degenerate && std::abs(weak.dot(off.head<2>())) > kDirectReach_m)
+    return std::nullopt;
   const bool is_close =
       off.head<2>().norm() < kDirectReach_m && std::abs(off.z()) < kDirectReach_rad;
   place.is_expected = is_close && !is_surprise;

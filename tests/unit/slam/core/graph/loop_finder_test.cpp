@@ -204,6 +204,15 @@ TEST(LoopFinder, ADegenerateMatchBeyondTheGateIsRejected) {
   EXPECT_EQ(found_in([](double) { return false; }), 0U);
 }
 
+/// Beyond the end of what is mapped of a bare corridor, more of a scan is mapped further back.
+TEST(LoopFinder, AMatchDoesNotCorrectThePoseAlongAWall) {
+  Corridor corridor{[](double) { return false; }};
+  for (const double x : {16.0, 16.5, 17.0}) {
+    const Se2 beyond{x, 0.0, 0.0};
+    EXPECT_TRUE(corridor.look_around(beyond, beyond).empty()) << x;
+  }
+}
+
 /// Half a period, a whole one, and none: the scan fits in all three places.
 TEST(LoopFinder, SimilarPlacesStayAmbiguous) {
   Corridor corridor{every_two_metres};
