@@ -45,7 +45,8 @@ class SlamNode final : public Node {
   /// trajectory. Also after the estimator has thrown: then each of these as far as possible.
   void finish() override;
 
-  /// True if messages arrived but no pose or no map could be computed from them.
+  /// True if the messages gave no pose or no map, the map could not be saved, or finish() was
+  /// incomplete.
   bool failed() const override { return failed_; }
 
   std::vector<std::string_view> needed_channels() const override {

@@ -23,7 +23,8 @@ class ChannelNames {
   void describe(Fields& fields);
   void check(Problems& problems) const;
 
-  /// False for a channel of kNetworkOnceNamed that [channels] gives no name.
+  /// Whether the channel is on the network: not if it is ChannelUse::kNetworkOnceNamed and section
+  /// [channels] does not name it.
   bool uses(std::string_view channel) const { return !on_network(channel).empty(); }
 
   /// @param channel  a channel of channels.hpp; any other name is returned as it is.

@@ -33,7 +33,8 @@ namespace config_detail {
 using Locations = std::map<std::string, std::string, std::less<>>;
 }  // namespace config_detail
 
-/// Problems that concern several fields at once, found by a struct's `check(Problems&)`.
+/// Problems found by a struct's `check(Problems&)`: what the range of a single field cannot
+/// express.
 class Problems {
  public:
   Problems() = default;

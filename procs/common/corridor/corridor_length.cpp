@@ -23,7 +23,7 @@ Vector2d left_of(const Vector2d& direction) {
   return {-direction.y(), direction.x()};
 }
 
-/// The two ends and the distance between the origins from which they are seen.
+/// Where each end is searched for, and the way between the two origins (0: they coincide).
 struct Views {
   EndView start{};
   EndView end{};

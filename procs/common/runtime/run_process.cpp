@@ -31,7 +31,7 @@ constexpr seconds kNothingHint{10};
 constexpr seconds kSilence{1};  // after this, no older message is expected
 // How long received messages are still processed after a stop signal.
 constexpr seconds kDrain{2};
-// Longer than the jitter between our processes, shorter than a scan period.
+// Longer than the jitter between our processes, shorter than the default LiDAR's period.
 constexpr Duration kReorderWindow = milliseconds{150};
 
 void publish_all(Bus& bus, const std::vector<Message>& messages) {

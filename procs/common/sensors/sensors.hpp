@@ -32,7 +32,7 @@ struct LidarScan {
   std::vector<Duration> beam_time_offsets{};  ///< measured at time + offset
 };
 
-/// One square marker in one camera frame; see lcmtypes/marker_detection_t.lcm for the marker frame.
+/// One square marker in one image. Its coordinate frame: lcmtypes/marker_detection_t.lcm.
 struct MarkerDetection {
   int id{kNoMarker};
   /// Clockwise from the marker's top left.

@@ -166,8 +166,8 @@ FittedQuad intersect(const Sides& sides, const std::array<EdgeLine, 4>& lines) {
   return quad;
 }
 
-/// Standard deviation of a side's offset: errors by sampling and neighbouring bits that all of its
-/// points have in common.
+/// Standard deviation of the error that all points of a side have in common: from sampling, and
+/// from the bits beside a thin border.
 double common_sigma_px(double border_px, const RefinementConfig& config) {
   constexpr double kThinnestBorderPx = 1.0;
   const double thickness = std::max(kThinnestBorderPx, border_px);

@@ -120,8 +120,6 @@ class EventStream {
   }
 
   std::string event(const LiveView& view) {
-    // A path shorter than what was sent belongs to another run.
-    if (view.path_length < path_sent_) path_sent_ = 0;
     const auto growth = board_.path(path_sent_, view.path_length);
     const std::string json = with_path(*newest_text_.of(view, board_), path_sent_, growth);
     path_sent_ += growth.size();

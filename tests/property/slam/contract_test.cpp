@@ -92,7 +92,7 @@ TEST_P(Contract, EqualLogsGiveEqualResultsToTheLastBit) {
 }
 
 /// Threads finish in any order: here from the last to the first.
-TEST_P(Contract, TheOrderOfThreadsDoesNotMatter) {
+TEST_P(Contract, TheOrderOfParallelTasksDoesNotMatter) {
   const SensorLog log = drive(corridor());
   const ParallelFor backwards = [](std::size_t count,
                                    const std::function<void(std::size_t)>& body) {

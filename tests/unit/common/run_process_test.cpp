@@ -221,7 +221,7 @@ TEST(RunSimulator, WithoutANetworkItDoesNotBegin) {
   EXPECT_EQ(simulated.asked, "");
 }
 
-TEST_F(ProtectedInputs, AScenarioIsNotOverwrittenByTheEffectiveOne) {
+TEST_F(ProtectedInputs, AScenarioIsNotOverwrittenByTheCopyInTheOutputFolder) {
   std::ofstream{folder_ / "scenario.toml"} << "precious";
   const Simulated simulated =
       simulate("over", {"--lcm-url", "memq://", "--config", path("deeper/../scenario.toml"),

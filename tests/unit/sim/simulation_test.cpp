@@ -81,7 +81,7 @@ TEST(Simulation, SameScenarioSameBytes) {
   }
 }
 
-TEST(Simulation, SeedsDiffer) {
+TEST(Simulation, AnotherSeedGivesAnotherImage) {
   Scenario other_seed = small_scenario();
   other_seed.run.seed = 2;
   EXPECT_NE(Simulation{small_scenario()}.advance().frames[0].jpeg,

@@ -60,7 +60,7 @@ TEST(SlamNode, TheResultDoesNotDependOnHowMessagesAreGrouped) {
   }
 }
 
-TEST(SlamNode, TheMapIsCompleteAtTheEndAndForALateSubscriber) {
+TEST(SlamNode, TheLastPublicationHasTheWholeMap) {
   Slam slam;
   const auto output = slam.feed(messages_of_drive());
   std::map<std::pair<int, int>, map_tile_t> from_changes;

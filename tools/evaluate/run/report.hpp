@@ -28,7 +28,8 @@ Json results_json(const RunTruth& truth, const std::vector<EstimatorResult>& res
 /// Table I of the paper, as Markdown.
 std::string length_table(const std::vector<EstimatorResult>& results);
 
-/// Errors of trajectory and markers, NEES, flags; the final trajectory has a row of its own.
+/// Errors of trajectory and markers, NEES, and warnings such as lost messages. The trajectory as
+/// corrected by the end of the run has a row of its own.
 std::string error_table(const std::vector<EstimatorResult>& results);
 
 /// One row per figure that the scenario expects; empty if it expects none.

@@ -9,7 +9,8 @@
 
 namespace waymark {
 
-/// Collects the scatter of nine neighbouring beams about the best straight wall.
+/// Fits a straight wall to each group of nine neighbouring beams, and collects their scatter about
+/// it.
 class WallScatter {
  public:
   void add(const LidarScan& scan);

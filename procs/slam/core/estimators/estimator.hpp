@@ -86,7 +86,7 @@ class Estimator {
 
   /// Sets the robot's pose for the next update.
   /// @return false: the method does not support it, has no map yet, or the pose is more than
-  ///         farthest_pose_m() away.
+  ///         farthest_pose_m() from the present one (before the first one: from the map).
   virtual bool set_pose(const StartPose& /*pose*/) { return false; }
 
   /// Learnt properties of the sensors; only of methods that learn them.

@@ -145,7 +145,8 @@ class Graph {
   /// The same relative to the previous keyframe, as of optimise(); zero for the first keyframe.
   Eigen::Matrix3d covariance_of_newest_step() const;
 
-  /// Map's axes, as of optimise(); of a landmark behind the window as of when it left it.
+  /// Covariance in the map's axes, from the last optimise(); if the landmark has left the window,
+  /// the one that it had then.
   Eigen::Matrix3d landmark_covariance(std::size_t landmark) const;
 
  private:

@@ -54,7 +54,8 @@ double contradiction_of(double chi2, const std::vector<LandmarkPrior>& priors) {
   return excess > usual ? excess : 0.0;
 }
 
-/// Priors that may be switched off, those first that would reduce the cost most.
+/// At most kMostTried priors that may be switched off; first the one without which the cost is
+/// least.
 std::vector<std::size_t> most_suspicious(const std::vector<LandmarkPrior>& priors,
                                          const SurveyModel::Solution& solution) {
   std::vector<std::pair<double, std::size_t>> savings;

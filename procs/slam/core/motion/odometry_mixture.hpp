@@ -61,11 +61,12 @@ struct MixtureNoise {
 /// -2 log of a component's prior probability.
 double penalty(MotionKind kind);
 
-/// -2 log-likelihood of a zero residual under one component, up to a constant.
+/// -2 log of a component's prior probability times its density at a zero residual, up to a
+/// constant.
 /// @param root  Cholesky factor of the covariance.
 double cost_at_zero(MotionKind kind, const Eigen::LLT<Eigen::Matrix3d>& root);
 
-/// -2 log-likelihood of a residual under one component, up to a constant.
+/// The same at a residual.
 /// @param residual  observed minus measured (x, y, theta), in the frame at the start.
 double mixture_cost(MotionKind kind, const Eigen::Vector3d& residual, const MixtureNoise& noise);
 

@@ -86,7 +86,8 @@ void CorrelativeField::draw(std::span<const Eigen::Vector2d> points, double sigm
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }
-  // On the low side the maxima of the top level extend 2^top - 1 cells beyond the field.
+  // A cell of the top level has the maximum of the 2^top cells from it upwards: the first one that
+  // is not zero lies 2^top - 1 cells below the lowest drawn cell.
   const int reach = static_cast<int>(std::ceil(kSigmas * sigma_m / resolution_m));
   const int margin = reach + (1 << kTopLevel) - 1;
   // Cell centres at multiples of the resolution: walls there do not lie on cell borders.

@@ -57,7 +57,8 @@ struct BeamTerm {
   double robust{0.0};  ///< Geman-McClure weight, 0..1
 };
 
-/// @param ray  from the robot to the point, map's axes; approximates that from the LiDAR.
+/// @param ray  from the base to the point, map's axes; approximates the beam, which begins at the
+///             LiDAR.
 BeamTerm compare(const NdtCell& cell, const Eigen::Vector2d& point, const Eigen::Vector2d& ray,
                  double point_variance_m2, double blur_m2, const ScanMatchConfig& config) {
   BeamTerm term;

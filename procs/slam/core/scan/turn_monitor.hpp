@@ -17,7 +17,9 @@ class TurnMonitor {
   /// To be called with each observation.
   /// @param beams  of its scan; none: nothing is compared.
   /// @param motion  since the previous observation, by odometry.
-  /// @return true minus odometry's turn [rad], reported once; none while odometry is plausible.
+  /// @return turn since the reference scan by the scans, minus that by odometry [rad]; once. None
+  /// if
+  ///         the two agree or cannot be compared.
   std::optional<double> missing_turn(std::span<const AnnotatedBeam> beams, const Motion& motion);
 
  private:

@@ -201,7 +201,7 @@ TEST(CarmenReader, TheRearLidarIsReadOnRequest) {
   EXPECT_DOUBLE_EQ(log.robot.lidar.yaw_rad, std::numbers::pi);
 }
 
-TEST(CarmenReader, RangeMaximumIsTheHeadersUnlessGiven) {
+TEST(CarmenReader, MaximumRangeIsThatOfTheLineUnlessGiven) {
   const std::string line =
       "ROBOTLASER1 0 0 2 1 20 0 0 3 1 19 20 0 0 0 0 0 0 0 0 0 0 0 0 1 host 0\n";
   EXPECT_EQ(read_text(line).robot.lidar.range_max_m, 20.0);

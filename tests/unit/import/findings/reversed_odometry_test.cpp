@@ -32,7 +32,7 @@ TEST(ReversedOdometry, BackingUpThatIsCountedAsForwardIsFound) {
   EXPECT_NEAR(steps[5].distance_m, 0.05, 1e-9);
 }
 
-TEST(ReversedOdometry, CorrectOdometryIsUnchanged) {
+TEST(ReversedOdometry, CorrectOdometryHasNoReversedSteps) {
   EXPECT_THAT(find_reversed_steps(drive(to_and_fro(), CountedAs::kDriven)), IsEmpty());
 }
 

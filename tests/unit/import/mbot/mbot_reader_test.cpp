@@ -89,7 +89,7 @@ Imported read(const std::vector<Message>& events, const MbotOptions& options) {
   return {std::move(log), std::move(report)};
 }
 
-TEST(MbotReader, RotatingScansAreKeptAsTheyAre) {
+TEST(MbotReader, ScansWithATimePerBeamKeepTheirBytes) {
   const auto [log, report] = read({ticks_event(kStart_us, 0, 0), rotating_event(kStart_us + 1000),
                                    ticks_event(kStart_us + 500'000, 200, 200)},
                                   encoder_options());

@@ -21,7 +21,7 @@ TEST(SolveSchedule, NothingIsDueWithoutLoops) {
   EXPECT_GT(keyframes_until_due(schedule, 0, 1000), 1000);
 }
 
-TEST(SolveSchedule, ALoopIsDueAtOnceIfTheGraphHasGrown) {
+TEST(SolveSchedule, AfterALoopAStepIsDueAtOnceIfTheGraphHasGrown) {
   SolveSchedule schedule;
   schedule.note_loop(true);
   EXPECT_TRUE(schedule.is_step_due(1000));

@@ -44,7 +44,7 @@ bool is_believed(RangeScaleMonitor& monitor, const Points& points, const Se2& ma
                           RangeNoise{kRangeSigma_m});
 }
 
-TEST(FitRangeScale, FindsTheScaleTogetherWithThePose) {
+TEST(FitRangeScale, FindsTheScaleAtAnInexactPose) {
   NdtMap map{kCellSpacing_m};
   for (const Eigen::Vector2d& point : corridor_end({}, 2.0, 1))
     map.add(point, 0);

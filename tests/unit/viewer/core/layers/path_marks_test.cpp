@@ -188,7 +188,7 @@ TEST(ChooseMarks, MagnifiesSmallEllipsesOnly) {
   EXPECT_EQ(magnification(1e6), 1);
 }
 
-TEST(ChooseMarks, AFewLargeEllipsesAreNotMagnifiedOverThePage) {
+TEST(ChooseMarks, AFewLargeEllipsesLimitTheMagnification) {
   std::vector<EstimatedPose> path = straight_path(20.0, 0.001);
   for (std::size_t i = path.size() - 45; i < path.size(); ++i)
     path[i].covariance = covariance(0.2, 0.2);
