@@ -11,7 +11,7 @@
 
 namespace waymark {
 
-/// The frame in colour: outline, first corner, id and range of each marker.
+/// The frame in colour, with outline, first corner, id and range of each marker drawn on it.
 cv::Mat annotated(const cv::Mat& gray, const MarkerDetections& detections);
 
 class DebugPictures {

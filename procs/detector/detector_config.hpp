@@ -10,7 +10,7 @@
 
 namespace waymark {
 
-/// The stages of detection, and pictures for people.
+/// Parameters of the stages of detection, and of the debug pictures.
 struct DetectorSection : MarkerDetectorConfig {
   std::string debug_dir{};
   int debug_every{10};

@@ -15,7 +15,7 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMarkersPerMessage = 130;  // 492 bytes each
+constexpr std::size_t kMarkersPerMessage = 130;  // each takes 492 bytes
 
 }  // namespace
 

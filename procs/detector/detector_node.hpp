@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The detector as a process: CAMERA in, MARKERS out, one for one.
+// The detector as a process: each CAMERA frame that it takes gives one MARKERS message.
 #pragma once
 
 #include "common/node/node.hpp"
@@ -25,12 +25,14 @@ class DetectorNode final : public Node {
   void finish() override {}
 
  private:
-  /// Answers every frame, an unreadable one with an empty list, so that slam does not wait for it.
+  /// Publishes MARKERS for every frame, for an unreadable one with an empty list, so that slam does
+  /// not wait for that frame's markers.
   void handle(const image_t& image);
-  /// Keeps as many markers as a message can hold, the largest ones, which are the most accurate.
+  /// Keeps at most as many markers as a message can hold: the widest in the image, which are
+  /// measured most accurately.
   void keep_largest(std::vector<MarkerDetection>& markers);
   void count(const MarkerDetections& detections);
-  /// Counts the problem; logs the size of the first image of a wrong size.
+  /// Counts the problem of a frame; logs the size of the first frame of a wrong size.
   void reject(const DecodedFrame& frame);
 
   cv::Size image_size_;

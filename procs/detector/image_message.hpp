@@ -7,7 +7,7 @@
 
 namespace waymark {
 
-/// decode_frame() of a message; the frame may share its bytes.
+/// Applies decode_frame() to an image message; the decoded frame may share the message's bytes.
 DecodedFrame decode_image(const image_t& image, cv::Size expected_size);
 
 }  // namespace waymark

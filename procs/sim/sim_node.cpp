@@ -72,12 +72,13 @@ void SimNode::write_start_files() {
   write_whole_file(config_.out_dir / "scenario.toml", dump_config(config_));
   write_whole_file(config_.out_dir / "robot.toml", dump_robot_config(config_.robot));
   write_whole_file(config_.out_dir / "truth_markers.csv", truth_markers_csv(simulation_->world()));
-  std::filesystem::remove(config_.out_dir / "truth_marker_moves.csv");  // of another run
+  std::filesystem::remove(config_.out_dir / "truth_marker_moves.csv");  // left by an earlier run
   if (!config_.markers.moved.empty()) write_moves({});
   truth_.emplace(config_.out_dir / "truth.tum");
 }
 
-/// Rewrites the file at each move, so that it is complete also when the run is cut short.
+/// Rewrites truth_marker_moves.csv at each move, so that it is complete even if the run is cut
+/// short.
 void SimNode::write_moves(const std::vector<MovedMarker>& moved) {
   moved_markers_.insert(moved_markers_.end(), moved.begin(), moved.end());
   write_whole_file(config_.out_dir / "truth_marker_moves.csv",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulator as a source of ticks.
+// The simulator as a process: simulates tick by tick and publishes the measurements.
 #pragma once
 
 #include "common/runtime/run_simulator.hpp"
@@ -15,9 +15,9 @@
 
 namespace waymark {
 
-/// Publishes CAMERA, LIDAR, ODOMETRY and TRUE_POSE; obeys DRIVE_COMMAND when the scenario says so.
-/// With an output folder it writes scenario.toml, robot.toml, truth_markers.csv, truth.tum,
-/// and truth_marker_moves.csv when the scenario moves markers.
+/// Publishes CAMERA, LIDAR, ODOMETRY and TRUE_POSE; obeys DRIVE_COMMAND with route.source =
+/// command. With an output folder it writes scenario.toml, robot.toml, truth_markers.csv,
+/// truth.tum, and truth_marker_moves.csv when the scenario moves markers.
 class SimNode final : public TickSource {
  public:
   using Config = SimConfig;

@@ -14,18 +14,19 @@ namespace waymark {
 /// `id,instance,x_m,y_m,yaw_rad` of every marker, world frame; yaw = direction that it faces.
 std::string truth_markers_csv(const World& world);
 
-/// `t_s,id,instance,x_m,y_m,yaw_rad`: new places of moved markers, in order of time. Their first
-/// places are in truth_markers.csv.
+/// `t_s,id,instance,x_m,y_m,yaw_rad`: new places of moved markers, in order of time. The places
+/// at the start of the run are in truth_markers.csv.
 std::string truth_marker_moves_csv(const std::vector<MovedMarker>& moves);
 
-/// truth.tum: `t x y z qx qy qz qw` of the base in the world frame, growing during the run.
+/// Writes truth.tum: `t x y z qx qy qz qw` of the base in the world frame. During the run the file
+/// is named truth.tum.unfinished.
 class TruthTrajectory {
  public:
   /// @throws SetupError when the file cannot be created.
   explicit TruthTrajectory(const std::filesystem::path& path);
   void add(const TruePose& pose);
-  /// Renames the temporary file to its final name.
-  /// @throws std::runtime_error naming it when the disk is full.
+  /// Renames the file to truth.tum.
+  /// @throws std::runtime_error naming the file when it cannot be written or renamed.
   void finish();
 
  private:

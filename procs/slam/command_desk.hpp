@@ -60,7 +60,7 @@ class CommandDesk {
 
   std::deque<reply_t> answers_{};
   std::optional<Timestamp> second_begin_{};
-  int taken_{0};  ///< commands since then
+  int taken_{0};  ///< commands since second_begin_
 };
 
 }  // namespace waymark

@@ -13,7 +13,7 @@ namespace {
 
 // Less than these is not reported.
 constexpr double kWorse = 1.9;        // factor on a standard deviation; learnt in steps of sqrt(2)
-constexpr double kNoisier = 1.3;      // the same for ranges
+constexpr double kNoisier = 1.3;      // factor on the standard deviation of ranges
 constexpr double kManyBeams = 0.05;   // moving; a few are noise at edges of walls
 constexpr double kManyScans = 0.05;   // contradict a loaded map; fewer are people and doors
 constexpr double kBriefly = 0.001;    // of observations; fewer are a push, or a wrong match

@@ -21,7 +21,7 @@ struct Finding {
 };
 
 /// The findings that are worth reporting; empty if all is as described.
-/// @param repeated_scans  number of scans that the sensor queue has left out.
+/// @param repeated_scans  number of repeated scans that the sensor queue has left out.
 std::vector<Finding> worth_saying(const Findings& findings, std::int64_t repeated_scans);
 
 /// The texts, separated by semicolons; "nothing" without any.

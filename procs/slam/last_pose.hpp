@@ -16,7 +16,7 @@ namespace waymark {
 
 struct LastPose {
   Timestamp time{};
-  std::int64_t map_id{0};  ///< of the map file in whose frame it is
+  std::int64_t map_id{0};  ///< of the map file in whose frame the pose is
   Se2 map_from_base{};
   Eigen::Vector3d sigmas{Eigen::Vector3d::Zero()};  ///< x [m], y [m], heading [rad]
   Se2 odom_from_base{};                             ///< as it was sent

@@ -17,7 +17,7 @@ namespace waymark {
 class MapPublisher {
  public:
   std::vector<map_tiles_t> changes(const GridMap& map, Timestamp time);
-  /// The whole map, and empty tiles where the previously published map had others.
+  /// The whole map, and empty tiles where only the previously published map had tiles.
   std::vector<map_tiles_t> complete(const GridMap& map, Timestamp time);
 
  private:

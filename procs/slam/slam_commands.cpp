@@ -29,7 +29,7 @@ StartPose unknown_start() {
   return start;
 }
 
-/// Start of another estimator at an estimate.
+/// The start for another estimator that continues from an estimate.
 StartPose start_at(const Estimate& estimate) {
   constexpr double kLeast_m = 0.02;  // the map is known to about a cell
   constexpr double kLeast_rad = 0.01;
@@ -154,7 +154,8 @@ std::string SlamNode::set_mode(MapMode mode) {
   return "the map is extended";
 }
 
-/// At the first observation, since odometry decides whether the last pose is still valid.
+/// To be called at the first observation, since odometry decides whether the last pose is still
+/// valid.
 void SlamNode::resume_last_pose(const Observation& first) {
   was_resumed_ = true;
   if (config_.slam.start.kind != StartKind::kLast) return;

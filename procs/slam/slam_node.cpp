@@ -146,7 +146,7 @@ std::optional<std::vector<Finding>> SlamNode::findings() const {
   return worth_saying(*found, counters_.get(to_string(Skip::kScanRepeated)));
 }
 
-/// Publishes the findings; shares of unused data are also counters, which the status has.
+/// Publishes the findings; shares of unused data are also counted, for the status.
 void SlamNode::publish_findings(Timestamp time) {
   const auto found = findings();
   if (!found) return;
@@ -226,7 +226,7 @@ void SlamNode::process_ready_scans() {
   while (!is_broken_) {
     const auto ready = queue_.next();
     if (!ready) break;
-    is_broken_ = true;  // unless it returns
+    is_broken_ = true;  // unless process() returns
     process(*ready);
     is_broken_ = false;
   }
@@ -279,7 +279,7 @@ void SlamNode::publish_map_when_due(Timestamp time) {
   keep_last_pose();
 }
 
-/// A failure to save is only counted here: a later save may succeed. The one at the end fails.
+/// A failure to save is only counted here: a later save may succeed. At the end it is a failure.
 void SlamNode::save_map_when_due(Timestamp time) {
   if (config_.slam.save_map_every_s <= 0.0 || !save_period_.is_due(time)) return;
   if (!save_map()) counters_.add("map not saved", CountKind::kLoss);

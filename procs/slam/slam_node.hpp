@@ -42,7 +42,8 @@ class SlamNode final : public Node {
   static void check(const Config& config);
 
   /// Processes the scans that still wait for camera frames; publishes the whole map and the final
-  /// trajectory. Also after the estimator has thrown: then each of these as far as possible.
+  /// trajectory. Is called even after the estimator has thrown: then it does each of these as far
+  /// as possible.
   void finish() override;
 
   /// True if the messages gave no pose or no map, the map could not be saved, or finish() was
@@ -91,7 +92,7 @@ class SlamNode final : public Node {
   std::shared_ptr<const MapSnapshot> loaded_map_;
   std::vector<SurveyedMarker> survey_;
   std::int64_t map_id_;        ///< of the published map; 0: not begun
-  std::int64_t frame_map_id_;  ///< of the map file whose frame it has; 0: none
+  std::int64_t frame_map_id_;  ///< of the map file whose frame the map has; 0: none
   std::unique_ptr<Estimator> estimator_;
   MapPublisher map_publisher_{};
   CorrectionMaker correction_{};
@@ -99,7 +100,7 @@ class SlamNode final : public Node {
   std::optional<Timestamp> last_estimate_{};
   std::optional<Estimate> placed_{};  ///< newest estimate with a pose, in this map
   Se2 odom_from_base_{};              ///< of the newest observation
-  Timestamp newest_{};                ///< observation
+  Timestamp newest_{};                ///< time of the newest observation
   std::set<int> named_survey_ids_{};
   bool was_resumed_{false};  ///< resume_last_pose() was called, successfully or not
   bool is_broken_{false};    ///< the estimator threw: it is given no more scans

@@ -6,8 +6,8 @@
 
 namespace waymark::viewer {
 
-/// After work that took c, the next may start c / share after its start. Wall-clock time: results
-/// must not depend on it.
+/// After work of duration c, the next work may start c / max_share after the start of that work.
+/// Uses wall-clock time, so that results must not depend on it.
 class Pacer {
  public:
   using Clock = std::chrono::steady_clock;

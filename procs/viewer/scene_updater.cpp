@@ -10,7 +10,7 @@
 namespace waymark::viewer {
 namespace {
 
-/// Parts of one marker map, of up to 500 markers each.
+/// Largest number of parts of one marker map; a part has up to 500 markers.
 constexpr std::int32_t kMaxMarkerParts = 256;
 
 Eigen::Matrix3d to_matrix(const double (&row_major)[9]) {

@@ -28,8 +28,8 @@ struct ViewerConfig {
   std::string http{};               ///< HOST:PORT of the live page (--http); empty = none
   std::string http_token{};         ///< of --http-token; empty = the page is read-only
   std::string lcm_url{};            ///< where the page's commands go (--lcm-url)
-  ChannelNames channels{};          ///< names on that network
-  bool is_replay{false};            ///< there is a --log
+  ChannelNames channels{};          ///< names of the channels at lcm_url
+  bool is_replay{false};            ///< messages come from a log (--log)
 
   void describe(Fields& fields);
 };

@@ -214,7 +214,7 @@ void ViewerNode::write_data() {
   folder_.write("map.pgm", viewer::pgm_text(map, config_.viewer.map_page.thresholds));
   folder_.write("map.yaml",
                 viewer::map_yaml_text(map, config_.viewer.map_page.thresholds, "map.pgm"));
-  if (!scene_.estimates.empty()) {  // empty for a map file
+  if (!scene_.estimates.empty()) {  // a map file has no estimates
     folder_.write("trajectory.tum", viewer::tum_text(scene_.estimates));
     folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
     folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
@@ -233,7 +233,7 @@ void ViewerNode::write_final_trajectory() {
   }
 }
 
-/// Only when all parts have come.
+/// Writes graph.g2o when all parts have come; else removes that of an earlier run.
 void ViewerNode::write_graph() {
   constexpr auto kName = "graph.g2o";
   if (graph_parts_.empty() || std::ssize(graph_parts_) != graph_parts_.front().num_parts)

@@ -33,7 +33,8 @@ class ViewerNode final : public Node {
   /// @throws SetupError for an invalid address or token of the live page.
   static void check(const Config& config);
 
-  /// Writes everything once more, if anything has come from slam.
+  /// Writes everything once more, if anything has come from slam. With a log and a live page, then
+  /// waits for Ctrl-C.
   void finish() override;
 
   /// True when a file could not be written, now or earlier.

@@ -86,7 +86,7 @@ TEST_F(BusTest, NewestOnlyKeepsTheNewest) {
   EXPECT_EQ(counted("CAMERA skipped: newer one came"), 9);
 }
 
-TEST_F(BusTest, TooLargeToSendIsAnErrorOfTheSender) {
+TEST_F(BusTest, PublishingAMessageAboveTheSizeLimitThrows) {
   Message large = pose(1);
   large.payload.resize(kMaxPayloadBytes + 1);
   EXPECT_THROW(bus_.publish(large), std::logic_error);
@@ -115,7 +115,8 @@ TEST_F(BusTest, CorruptDatagramsAreCountedAndTheNextMessageIsReceived) {
   EXPECT_EQ(counted(kFragments), 3);
 }
 
-// Two fragments whose offset lies outside of their message: liblcm 1.3.1 writes there.
+// Two fragments whose offset lies beyond the end of their message: liblcm 1.3.1 writes out of
+// bounds.
 TEST_F(BusTest, ForgedFragmentOffsetsAreRefused) {
   const std::vector<std::uint8_t> body(1000, 0x41);
   for (int i = 0; i < 100; ++i) {
@@ -147,7 +148,7 @@ TEST(BusSetup, FragmentedMessagesAreReceivedWhereLargeOnesAreAllowed) {
   EXPECT_EQ(bus.receive(milliseconds{2000}), large);
 }
 
-TEST_F(BusTest, LargeMessagesOfOthersAreRefused) {
+TEST_F(BusTest, FragmentedMessagesAreRefusedUnlessLargeOnesAreAllowed) {
   std::vector<std::uint8_t> body{'O', 'D', 'O', 'M', 'E', 'T', 'R', 'Y', 0};
   body.resize(9 + 40000);
   network_.send_datagram(lcm_fragment(80000, 0, 0, 2, body));
@@ -215,7 +216,7 @@ TEST(BusPublishers, CommandsAreAcceptedFromAnyPublisher) {
   EXPECT_EQ(bus.receive(milliseconds{1000}), command);
 }
 
-// In liblcm 1.3.1 all groups of a port hear each other.
+// In liblcm 1.3.1, a socket receives the messages of all multicast groups on its port.
 TEST(BusSetup, OtherMulticastGroupsOnTheSamePortAreIgnored) {
   const PrivateNetwork network;
   std::string elsewhere = network.url();

@@ -33,7 +33,7 @@ void publish(const std::string& url, const ImportedLog& log) {
   }
 }
 
-TEST(DoctorLive, AMirroredLidarIsNamedWhileTheRobotRuns) {
+TEST(DoctorLive, AMirroredLidarIsFoundInALogRecordedLive) {
   const PrivateNetwork network;
   const ImportedLog drive = drive_in_room({.is_mirrored = true}).log;
   std::jthread robot{[&] {

@@ -109,7 +109,7 @@ TEST_F(Replay, MergesLogsByTime) {
   EXPECT_EQ(out.next()->channel, "TRUE_POSE");
 }
 
-TEST_F(Replay, ReadsAPartOfALog) {
+TEST_F(Replay, ReadsOnlyTheTimesBetweenSkipAndUntil) {
   ProcessOptions options;
   options.skip_s = 2.0;
   options.until_s = 4.0;
@@ -120,7 +120,7 @@ TEST_F(Replay, ReadsAPartOfALog) {
   EXPECT_EQ(heard_, "ODOMETRY 12000000 1\nODOMETRY 13000000 1\nODOMETRY 14000000 1\nend\n");
 }
 
-TEST_F(Replay, ProgressIsThatOfAllLogsTogether) {
+TEST_F(Replay, ProgressRisesOnceTo100PercentOverAllLogs) {
   std::vector<Message> early;
   std::vector<Message> late;
   for (int i = 0; i < 100; ++i) {
@@ -194,7 +194,7 @@ TEST_F(Replay, ALogWithoutAChannelThatIsNeededFailsAndSaysWhatItHas) {
   EXPECT_THAT(said, Not(HasSubstr("has no ODOMETRY")));
 }
 
-TEST_F(Replay, OfSeveralLogsAnEmptyOneIsNamedAndTheOthersAreReplayed) {
+TEST_F(Replay, AnUnusableLogAmongSeveralIsNamedAndTheOthersAreReplayed) {
   const auto good = log("good.lcm", {pose("ODOMETRY", 1, 1)});
   ::testing::internal::CaptureStdout();
   EXPECT_EQ(replay({good, log("empty.lcm", {})}), kExitFailed);
@@ -212,7 +212,7 @@ TEST_F(Replay, ALogWhoseChannelsAreAllReplacedIsNoError) {
   EXPECT_EQ(replay({run, log("again.lcm", {pose("SLAM_POSE", 1, 2)})}), kExitOk);
 }
 
-TEST_F(Replay, AFileThatIsNoLogIsAnError) {
+TEST_F(Replay, AFileThatIsNotAnLcmLogIsAnError) {
   const auto text = folder_ / "notes.txt";
   std::ofstream{text} << "no log";
   ::testing::internal::CaptureStdout();

@@ -121,7 +121,7 @@ TEST_F(ClosedLoop, WritesEverythingThatScriptsRelyOn) {
   }
 }
 
-TEST_F(ClosedLoop, RecordsDataChannelsOnlyInOrder) {
+TEST_F(ClosedLoop, TheLogHasDataChannelsOnlyInOrderToATenthOfASecond) {
   LogReader reader{folder() / "reference/run.lcm"};
   std::optional<Message> last;
   while (auto message = reader.next()) {
@@ -135,7 +135,7 @@ TEST_F(ClosedLoop, RecordsDataChannelsOnlyInOrder) {
   }
 }
 
-TEST_F(ClosedLoop, ASecondRunWithStoppedProcessesGivesTheSameBytes) {
+TEST_F(ClosedLoop, PausingEachProcessGivesTheSameBytes) {
   auto run = launch_in_background("stopped");
   for (const std::string program : {"detector", "slam", "viewer", "recorder"}) {
     const pid_t pid = process_of_run("stopped", program);
@@ -187,7 +187,7 @@ TEST_F(ClosedLoop, AReplayGivesTheSameMapAsTheLiveRun) {
   }
 }
 
-/// The smoke test of deploy/sweep.sh's scenarios; they themselves take hours.
+/// A short drive with faults, in place of the scenarios of deploy/sweep.sh, which take hours.
 TEST_F(ClosedLoop, WaymarkIsAccurateDespiteFaultyMessages) {
   const std::string variants = (kSource / "tests/data/faults/short.toml").string();
   const std::string faults = (kPrograms / "waymark-faults").string();
@@ -209,7 +209,7 @@ TEST_F(ClosedLoop, WaymarkIsAccurateDespiteFaultyMessages) {
   EXPECT_GE(count, 5);
 }
 
-TEST_F(ClosedLoop, AHostilePublisherChangesNothing) {
+TEST_F(ClosedLoop, InjectedAndGarbageMessagesChangeNoResult) {
   PrivateNetwork network;
   auto run = launch_in_background("hostile", "--lcm-url '" + network.url() + "'");
   process_of_run("hostile", "slam");
@@ -242,7 +242,7 @@ TEST_F(ClosedLoop, TwoStacksAtOnceDoNotDisturbEachOther) {
   expect_same_result("twin-2");
 }
 
-TEST_F(ClosedLoop, InRealTimeNothingIsLost) {
+TEST_F(ClosedLoop, InRealTimeEveryDataMessageOfLockstepIsRecorded) {
   const Finished finished = launch("real-time", "--real-time");
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
   const auto lockstep = events_by_channel(folder() / "reference/run.lcm");
@@ -254,7 +254,7 @@ TEST_F(ClosedLoop, InRealTimeNothingIsLost) {
   }
 }
 
-TEST_F(ClosedLoop, BlankMarkersAreNotSeen) {
+TEST_F(ClosedLoop, WithBlankPlatesNoMarkerIsDetected) {
   const fs::path scenario = folder() / "blank.toml";
   std::ofstream{scenario} << content_of(kSource / "tests/data/scenarios/short.toml") << "\n";
   const std::string text = content_of(scenario);

@@ -18,7 +18,7 @@ constexpr std::size_t kFewestViews = 10;
 constexpr std::size_t kMostViews = 40;      // more take seconds and improve little
 constexpr double kSameView = 0.02;          // smallest move of the outline, in image widths
 constexpr double kTilt_deg = 15.0;          // at less, focal length and distance are ambiguous
-constexpr std::ptrdiff_t kTiltedViews = 3;  // about each axis
+constexpr std::ptrdiff_t kTiltedViews = 3;  // views with at least kTilt_deg, for each axis
 
 bool lie_in_a_line(const std::vector<cv::Point3f>& points_m) {
   const auto same_x = [&](const cv::Point3f& point) {

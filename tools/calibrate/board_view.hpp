@@ -18,10 +18,11 @@ struct BoardView {
   std::vector<cv::Point2f> corners_px{};          ///< inner corners of the chessboard
   std::vector<cv::Point3f> corners_in_board_m{};  ///< the same corners, board frame
   std::array<cv::Point2d, 4> outline{};           ///< corners of the board, in image widths
-  cv::Vec3d normal{};  ///< of the board, optical frame; for a guessed lens, like the outline
+  cv::Vec3d normal{};  ///< of the board, optical frame; like the outline, for a guessed lens
 };
 
-/// nullopt when fewer than 8 corners are found, or all on one line.
+/// nullopt when fewer than 8 corners (or, on a smaller board, not all) are found, or all found ones
+/// are on one line.
 std::optional<BoardView> find_board(const std::string& name, const cv::Mat& gray,
                                     const cv::Ptr<cv::aruco::CharucoBoard>& board);
 

@@ -13,8 +13,8 @@ struct CameraCalibration {
   FrameCounts frames{};
   std::vector<std::string> without_board{};  ///< names of frames in which no board was found
   std::size_t num_with_board{0};
-  std::vector<BoardView> views{};      ///< different_views() of all
-  std::optional<LensFit> fit{};        ///< nullopt when views are missing
+  std::vector<BoardView> views{};      ///< different_views() of all views of the board
+  std::optional<LensFit> fit{};        ///< nullopt when the views do not determine a lens
   std::vector<std::string> missing{};  ///< why there is no lens, or why it is not accurate enough
 };
 

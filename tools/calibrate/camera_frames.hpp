@@ -16,7 +16,7 @@ namespace waymark::calibrate {
 struct FrameCounts {
   std::int64_t num_frames{0};                                  ///< read, or refused with a reason
   cv::Size size{};                                             ///< of the first readable one
-  std::map<std::string, std::vector<std::string>> problems{};  ///< names, by reason
+  std::map<std::string, std::vector<std::string>> problems{};  ///< refused frames, by reason
 };
 
 using UseFrame = std::function<void(const std::string& name, const cv::Mat& gray)>;

@@ -18,8 +18,8 @@ constexpr int kNumLens = 9;
 constexpr int kNumPose = 6;
 using LensMatrix = Eigen::Matrix<double, kNumLens, kNumLens>;
 
-constexpr double kOutlier = 3.0;        // a view is left out beyond so many median errors of views
-constexpr double kCornerOutlier = 5.0;  // a corner, median residuals: 6 sigma
+constexpr double kOutlier = 3.0;        // a view above this many times the views' median error
+constexpr double kCornerOutlier = 5.0;  // a corner above so many median residuals (6 sigma)
 constexpr int kMostSteps = 100;
 constexpr double kConverged = 1e-10;  // relative change of the parameters
 
@@ -56,7 +56,7 @@ class LensInformation {
 
  private:
   LensMatrix information_{LensMatrix::Zero()};
-  LensMatrix scores_{LensMatrix::Zero()};  ///< sum of outer products
+  LensMatrix scores_{LensMatrix::Zero()};  ///< sum over the views of score * score^T
   double num_views_{0.0};
 };
 
@@ -153,8 +153,8 @@ std::size_t drop_corners(std::vector<BoardView>& views,
   return num_dropped;
 }
 
-/// Removes one view at a time, the worst one, because it distorts the errors of the others; then
-/// corners.
+/// Removes outlier views, only the worst one before each new fit, because it distorts the errors of
+/// the others; then outlier corners.
 LensFit fit_without_outliers(std::vector<BoardView> views, cv::Size image) {
   std::vector<std::string> dropped;
   std::size_t num_dropped_corners = 0;

@@ -17,8 +17,8 @@ constexpr Limits kFocal{0.01, 0.05};
 constexpr Limits kSize{0.01, 0.03};
 constexpr Limits kYaw_rad{0.0087, 0.035};  // 0.5 and 2 degrees
 constexpr Limits kLate_s{0.01, 0.05};
-// Corners are refined within three pixels of the edge (RefinementConfig::reach_px): a blur of half
-// of that as sigma fills this range, one of all of it exceeds it.
+// Corners are refined within three pixels of the edge (RefinementConfig::reach_px). A blur whose
+// sigma is half of that reach fills it; one whose sigma is the whole reach exceeds it.
 constexpr Limits kBlur_px{1.5, 3.0};
 constexpr Limits kUnreadable{0.01, 0.1};  // share of the frames
 constexpr std::size_t kFewestMarkers = 20;
@@ -33,7 +33,7 @@ Measured median_of(const std::vector<double>& values) {
                      std::sqrt(static_cast<double>(values.size()))};
 }
 
-/// The smallest dictionary of the same family that has all ids.
+/// The smallest dictionary of the family of `largest` that contains `id`.
 std::string smallest_dictionary(const std::string& largest, int id) {
   const std::string family = largest.substr(0, largest.rfind('_') + 1);
   if (!largest.ends_with("_1000")) return largest;

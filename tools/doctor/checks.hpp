@@ -30,7 +30,7 @@ Check check_turn_scale(const std::optional<TurnComparison>& turns);
 Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig& robot);
 Check check_distance_scale(const std::optional<HandEye>& calibration);
 Check check_backing_up(const ImportedLog& log);
-/// x, y and yaw.
+/// One check each for x, y and yaw of the LiDAR.
 std::vector<Check> check_mounting(const DoctorInput& input,
                                   const std::optional<HandEye>& calibration, RobotConfig& robot);
 

@@ -10,8 +10,8 @@
 namespace waymark {
 namespace {
 
-// A measured odometry scale is used to check the camera if it is better than the first sigma; else
-// the scale is 1 with the second one, that of ordinary wheels.
+// A measured odometry scale is used to check the camera if its sigma is below kGoodScaleSigma; else
+// the scale is 1 with kUnmeasuredScaleSigma, the sigma of ordinary wheels.
 constexpr double kGoodScaleSigma = 0.005;
 constexpr double kUnmeasuredScaleSigma = 0.01;
 
@@ -25,7 +25,7 @@ ImportedLog with_lidar(ImportedLog log, const LidarConfig& lidar, bool is_mirror
   return log;
 }
 
-/// The measured scale if it is accurate, else 1.
+/// Absolute value of the measured scale if it is accurate, else 1.
 Measured best_scale(const Measured& measured) {
   if (measured.sigma < kGoodScaleSigma) return {std::abs(measured.value), measured.sigma};
   return {1.0, kUnmeasuredScaleSigma};

@@ -32,7 +32,8 @@ struct DoctorInput {
   std::optional<CameraRecord> camera{};  ///< of an LCM log with CAMERA or MARKERS, if described
 };
 
-/// Names of the channels to read from an LCM log; empty = the only one of its kind.
+/// Names of the channels to read from an LCM log. Empty: `lidar` is the only channel with scans;
+/// odometry is ODOMETRY or, if that is missing, comes from the only channel with encoder ticks.
 struct InputChannels {
   std::string lidar{};
   std::string odometry{};

@@ -15,7 +15,7 @@ namespace waymark {
 class LiveLog {
  public:
   /// Records CAMERA, MARKERS, LIDAR and ODOMETRY, or the `wanted` channels in place of the last
-  /// two, for that duration or until a stop signal.
+  /// two, for `duration` or until a stop signal.
   /// @throws SetupError when there is no network, or no message came.
   LiveLog(const std::string& lcm_url, const InputChannels& wanted, std::chrono::seconds duration,
           const ShowProgress& progress = {});

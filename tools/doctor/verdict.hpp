@@ -17,7 +17,7 @@ struct Limits {
 
 inline constexpr double kSigmas = 3.0;
 
-/// Judges the deviation minus three standard deviations.
+/// Judges the absolute deviation minus three standard deviations.
 inline Verdict verdict_of(double deviation, double sigma, Limits limits) {
   const double certain = std::abs(deviation) - kSigmas * sigma;
   return certain <= limits.good  ? Verdict::kPass
@@ -30,8 +30,8 @@ inline bool is_known(const Measured& measured, Limits limits) {
   return kSigmas * measured.sigma <= limits.bad;
 }
 
-/// True when a measured value should replace the described one: it contradicts it, or it is much
-/// more accurate than a description has to be.
+/// True when a measured value should replace the described one: the two differ by more than three
+/// standard deviations, or the measurement is much more accurate than the limit `good`.
 inline bool is_worth_writing(double deviation, double sigma, Limits limits) {
   constexpr double kMuchBetter = 2.0;
   return std::abs(deviation) > kSigmas * sigma || kMuchBetter * kSigmas * sigma < limits.good;

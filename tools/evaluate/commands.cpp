@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Prints skipped lines on standard error. @return the exit code.
+/// Prints the first skipped lines on standard error. @return the exit code.
 int report_skipped(const Skipped& skipped, const Output& output) {
   constexpr std::size_t kShown = 10;
   for (std::size_t i = 0; i < std::min(skipped.size(), kShown); ++i)

@@ -188,7 +188,7 @@ std::string McapWriter::statistics() const {
   std::uint64_t last_ns = 0;
   bool is_first = true;
   for (const Chunk& chunk : chunks_) {
-    if (chunk.index_offsets.empty()) continue;  // channels without messages
+    if (chunk.index_offsets.empty()) continue;  // a chunk with channels but no messages
     first_ns = is_first ? chunk.first_ns : std::min(first_ns, chunk.first_ns);
     last_ns = std::max(last_ns, chunk.last_ns);
     is_first = false;

@@ -17,9 +17,9 @@ struct FaultConfig {
   double ghost_share{0.0};
   double flipped_share{0.0};
   double dropped_share{0.0};
-  int every_id{-1};                ///< -1 = ids stay
-  std::vector<int> renamed_ids{};  ///< pairs: id, its new id
-  std::vector<double> camera_off_s{};
+  int every_id{-1};                    ///< -1 = ids stay
+  std::vector<int> renamed_ids{};      ///< pairs: id, its new id
+  std::vector<double> camera_off_s{};  ///< pairs: from, to
   std::vector<double> markers_off_s{};
   std::vector<double> lidar_off_s{};
   double odometry_distance_factor{1.0};

@@ -30,8 +30,8 @@ inline constexpr std::array<std::string_view, 8> kFiles{kMark,
 /// truth_markers.csv (with the new ids), as far as they exist; writes expect.toml and, last,
 /// run.lcm, without the messages of slam. Seed of the faults: the scenario's run.seed, else 1.
 /// @return how often each fault was injected.
-/// @throws SetupError when run_dir holds no run or one that has faults already, when it is out_dir,
-/// or when another recorded run is there.
+/// @throws SetupError when run_dir holds no run or one that has faults already, when run_dir is
+/// out_dir, or when out_dir holds a recorded run without faults.
 /// @throws std::runtime_error naming a file that cannot be read or written, or when ids are changed
 /// in a run with moved markers.
 std::map<std::string, std::int64_t> write_faulty_run(const std::filesystem::path& run_dir,

@@ -13,7 +13,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kInlier_m = 0.3;      // largest distance of a marker's positions in both maps
+constexpr double kInlier_m = 0.3;  // largest distance between a marker's positions in the two maps
 constexpr double kLeastApart_m = 1.0;  // of two markers that determine the rotation
 constexpr int kSamplesAlong = 6;       // sample points along an NDT cell's major axis
 constexpr double kSameMarker_m = 0.5;  // landmarks of one id closer than this are one marker

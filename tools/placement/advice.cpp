@@ -25,7 +25,7 @@ class Search {
 
   void aim_at(const std::vector<double>& reachable_m) { aims_m_ = reachable_m; }
 
-  /// [m^3]
+  /// Excess of these sigmas, one per step [m^3].
   double excess(std::span<const double> sigmas_m) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < sigmas_m.size(); ++i) {
@@ -51,7 +51,7 @@ std::vector<std::size_t> with(std::vector<std::size_t> chosen, std::size_t place
 struct Gain {
   std::size_t place{0};
   double gain{std::numeric_limits<double>::infinity()};
-  std::size_t round{0};  ///< in which it was evaluated
+  std::size_t round{0};  ///< round in which `gain` was evaluated
 };
 
 /// The place that lowers the excess most; nothing when none does.

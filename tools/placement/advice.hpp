@@ -28,7 +28,8 @@ struct Advice {
   std::vector<double> worst_after_m{};  ///< largest sigma with the first i + 1 chosen places
   std::vector<double> now_m{};          ///< sigma by step, with the existing markers
   std::vector<double> then_m{};         ///< sigma by step, with the chosen places as well
-  /// By step: the target, or where even markers everywhere cannot meet it, what they reach.
+  /// By step: the target or, where even markers everywhere do not meet it, 1.02 times the sigma
+  /// that they reach.
   std::vector<double> reachable_m{};
 };
 

@@ -26,7 +26,7 @@ Variable landmark(std::size_t marker) {
   return {VariableKind::kLandmark, marker};
 }
 
-/// Variance per metre of the odometry's distance that depends on the learnt noise scale.
+/// The part of odometry's variance per metre that depends on the learnt noise scale.
 double along_m2_per_m(const OdometryNoise& noise, const OdometryScale& scale, double hidden_slips) {
   const double rolling = scale.along * noise.along_per_sqrt_m;
   return rolling * rolling + hidden_slips * scale.slip_m2_per_m;
@@ -180,7 +180,7 @@ std::vector<Eigen::Matrix3d> CovarianceModel::predict(
   const std::vector<std::size_t> last_use = last_uses(plan);
   std::vector<std::size_t> kept;
   std::vector<Eigen::Matrix3d> covariances;
-  double unfixed_m2 = 0.0;  // additional variance by the noise scale known now against later
+  double unfixed_m2 = 0.0;  // variance by the noise scale known now minus that by the later one
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Step& step = steps_[i];
     const StepPlan& now = plan[i];

@@ -11,7 +11,7 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kSeen = 0.5;  // least share of the scans with a marker for it to be in view
+constexpr double kSeen = 0.5;  // from this share of scans with a marker on, markers show the way
 
 /// Distance between keyframes that are due every `least_m`, rounded up to whole scan intervals.
 double spacing(double least_m, double apart_m) {
@@ -100,7 +100,7 @@ void choose_loops(std::span<const Step> steps, const WaymarkConfig& config,
     searched_m = steps[i].travel_m;
     double least_m = config.loops.reach_m;
     for (std::size_t k = 0; k < i; ++k) {
-      // The rest is too recent: in the submaps being filled.
+      // Step k and later ones are too recent: their scans are in the submaps being filled.
       if (plan[i].keyframes_before - plan[k].keyframes_before < 2.0 * config.submap_keyframes)
         break;
       const double away_m =

@@ -24,13 +24,13 @@ struct StepPlan {
   double keyframes{0.0};         ///< expected number of keyframes in the step
   double keyframes_before{0.0};  ///< in all steps before
   bool shows_way{false};         ///< walls or markers observe the motion along the path
-  double hidden_slips{0.0};      ///< share of the slips that they do not show
+  double hidden_slips{0.0};      ///< share of odometry's slips that walls and markers do not show
   std::vector<StepSighting> sightings{};
   /// Steps whose poses represent the submap that the scans are matched with, and their shares.
   std::vector<std::pair<std::size_t, double>> submap{};
   std::optional<std::size_t> loop{};  ///< an old step with which a loop is closed
   OdometryScale noise{};              ///< learnt up to this step
-  std::size_t leaves_window{0};       ///< the step at which its factors are marginalised
+  std::size_t leaves_window{0};       ///< the step at which this step's factors are marginalised
 };
 
 std::vector<StepPlan> plan_keyframes(std::span<const Step> steps,

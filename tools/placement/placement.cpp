@@ -13,7 +13,7 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kMargin = 0.85;         // on the target, for errors of the model
+constexpr double kMargin = 0.85;         // factor on the target, for errors of the model
 constexpr double kQuietModules = 2.0;    // on each side, as on printed marker sheets
 constexpr double kSpacing_m = 0.5;       // between candidate places along a wall
 constexpr double kSignificant_m = 1e-3;  // smaller sigmas are not compared with the run's

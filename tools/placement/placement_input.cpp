@@ -58,7 +58,7 @@ PlacedMapImage image_of(const GridMap& grid) {
   return image;
 }
 
-/// The folder in a run with the estimate by waymark.
+/// The run itself if it is a row; else its row `waymark`, or its only row.
 fs::path row_in(const fs::path& run) {
   if (fs::exists(run / "trajectory.tum")) return run;
   if (fs::exists(run / "waymark" / "trajectory.tum")) return run / "waymark";

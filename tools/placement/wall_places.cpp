@@ -15,7 +15,7 @@ const double kSameWall = std::cos(radians(10.0));  // least cosine between norma
 constexpr double kFreeBefore_m = 0.15;             // free space needed before the wall's line
 
 /// Whether over the width of a plate there are occupied cells within one cell of the line, and free
-/// ones before it.
+/// cells before the line.
 bool is_bare_and_straight(const OccupiedWalls& walls, const Eigen::Vector2d& place,
                           const Eigen::Vector2d& normal, double plate_m) {
   const double cell_m = walls.image().resolution_m;

@@ -42,7 +42,8 @@ SetupError no_network(const std::string& url) {
                     "\n  or set another --lcm-url (see docs/reference.md, \"No multicast route\")"};
 }
 
-/// Several processes may publish statuses, commands, and, in lockstep, acknowledgements.
+/// False for statuses, commands and (in lockstep) acknowledgements: several processes may publish
+/// them.
 bool has_one_publisher(std::string_view channel) {
   using namespace channels;
   return !channel.ends_with("_STATUS") && channel != kSlamCommand.name &&
@@ -75,7 +76,7 @@ class Bus::Implementation {
       const std::string name{names_.on_network(subscription.channel)};
       std::vector<std::string>& channels = channels_of_[name];
       channels.push_back(subscription.channel);
-      if (channels.size() > 1 || group) continue;  // channels on one name are told apart by type
+      if (channels.size() > 1 || group) continue;  // subscribed already, or datagrams_ receives
       lcm_subscription_t* handle = lcm_subscribe(lcm_.get(), name.c_str(), &on_receive, this);
       if (handle == nullptr) throw no_network(url);
       lcm_subscription_set_queue_capacity(handle, kLcmQueueCapacity);
@@ -84,7 +85,7 @@ class Bus::Implementation {
     if (group) {
       join(*group, url);
     } else if (!is_connected()) {
-      // A missing TCP server is reported nowhere else, and waiting on its descriptor would abort.
+      // A missing TCP server shows in LCM's invalid descriptor only; waiting on that would abort.
       throw no_network(url);
     }
     receiver_ = std::thread{[this] {
@@ -157,15 +158,15 @@ class Bus::Implementation {
     if (buffer->data == nullptr) return;
     // No exception may pass through C frames.
     try {
-      // For a datagram whose channel name has no end liblcm 1.3.1 gives the size -1, which
-      // enqueue() rejects as too large.
+      // For a datagram whose channel name has no terminating zero, liblcm 1.3.1 gives the size -1,
+      // which enqueue() rejects as too large.
       static_cast<Implementation*>(self)->enqueue(
           name, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size}, std::nullopt);
     } catch (...) {
     }
   }
 
-  /// @param sender  known on UDP multicast only.
+  /// @param sender  nullopt if liblcm received the message: it does not report the sender.
   void enqueue(std::string_view name, std::span<const std::uint8_t> bytes,
                const std::optional<Sender>& sender) {
     const std::lock_guard lock{mutex_};
@@ -258,22 +259,24 @@ class Bus::Implementation {
   std::size_t max_payload_bytes_;
   ChannelNames names_;
   Publishers publishers_;
-  std::map<std::string, std::vector<std::string>, std::less<>> channels_of_;  ///< network -> ours
+  /// Name on the network -> Waymark's channels that have it.
+  std::map<std::string, std::vector<std::string>, std::less<>> channels_of_;
   std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;
-  std::optional<DatagramReceiver> datagrams_;  ///< nothing: liblcm receives
+  std::optional<DatagramReceiver> datagrams_;  ///< nullopt: liblcm receives instead
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::map<std::string, Queue, std::less<>> queues_;
   std::deque<Queue*> order_;  ///< queue of each waiting message, by arrival
   Counters counts_;
   ChannelOwners owners_;
-  std::map<std::string, ChannelOwners::Time, std::less<>> warned_;  ///< of a rival, by channel
+  /// Time of the last warning of a rival publisher, by channel.
+  std::map<std::string, ChannelOwners::Time, std::less<>> warned_;
   std::atomic<bool> stop_{false};
   std::thread receiver_;
 };
 
 void check_network(const std::string& url) {
-  // Without a subscription LCM would not join the network.
+  // Without a subscription Bus would not join the network.
   const Bus bus{url, {{"CHECK"}}};
 }
 

@@ -17,13 +17,13 @@ namespace waymark {
 /// Messages of several datagrams: we send none, but a robot's camera driver may.
 enum class LargeMessages {
   kRefused,
-  kAccepted,  ///< up to 4 MiB; who can send to the network can crash liblcm 1.3.1 then
+  kAccepted,  ///< up to 4 MiB; liblcm receives, and forged fragments can crash version 1.3.1
 };
 
 /// Which publishers are accepted. Statuses and commands are accepted from all.
 enum class Publishers {
-  kAny,            ///< in lockstep: a TICK lists the messages that belong to it
-  kOnePerChannel,  ///< ChannelOwners; known on udpm and without large messages only
+  kAny,            ///< for lockstep, where each TICK lists the messages that belong to it
+  kOnePerChannel,  ///< see ChannelOwners; without effect except on udpm without large messages
 };
 
 /// `--lcm-url`, else $LCM_DEFAULT_URL, else the loopback default.
@@ -36,10 +36,10 @@ void check_network(const std::string& url);
 /// Messages in and out over one LCM instance.
 ///
 /// A receiver thread empties LCM's queues (which drop the newest message when full), rejects
-/// messages of impossible size or time, and keeps a bounded queue per channel. UDP multicast is
-/// received without liblcm (DatagramReceiver), which accepts only messages that fit one datagram.
-/// Messages are not decoded here, and no exception passes through LCM's C frames. Message::channel
-/// is Waymark's name; the network uses the names of section [channels].
+/// messages of impossible size or time, and keeps a bounded queue per channel. On UDP multicast
+/// without large messages, DatagramReceiver receives instead of liblcm: only messages that fit one
+/// datagram. Messages are not decoded here, and no exception passes through LCM's C frames.
+/// Message::channel is Waymark's name; the network uses the names of section [channels].
 class Bus {
  public:
   /// @throws SetupError when there is no multicast route or the URL is invalid; it says what to do.
@@ -53,11 +53,11 @@ class Bus {
   /// Oldest queued message, waiting for one up to `timeout`.
   std::optional<Message> receive(std::chrono::milliseconds timeout);
 
-  /// @throws std::logic_error when the payload does not fit one datagram, or its channel is not
-  /// used.
+  /// @throws std::logic_error when the payload does not fit one datagram, or the channel has no
+  /// name on the network (ChannelNames::uses()).
   void publish(const Message& message);
 
-  /// Adds what was refused or dropped since the last call to the counters.
+  /// Adds to `counters` the numbers of messages refused or dropped since the last call.
   void collect_counts(Counters& counters);
 
  private:

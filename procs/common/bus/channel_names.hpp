@@ -27,16 +27,17 @@ class ChannelNames {
   /// [channels] does not name it.
   bool uses(std::string_view channel) const { return !on_network(channel).empty(); }
 
-  /// @param channel  a channel of channels.hpp; any other name is returned as it is.
+  /// @return the channel's name on the network, empty if it has none; a name that is not in
+  /// channels.hpp, or only in map files, is returned as it is.
   std::string_view on_network(std::string_view channel) const;
 
-  /// The channel among `candidates`, which share a name on the network, whose type has that
-  /// fingerprint; the first one if none has, and the message is then rejected there.
+  /// Of the channels `candidates`, which share a name on the network, the one whose type has the
+  /// fingerprint; the first one if none has: its handler then rejects the message.
   static const std::string& of_type(const std::vector<std::string>& candidates,
                                     std::int64_t fingerprint);
 
  private:
-  std::map<std::string, std::string, std::less<>> names_;  ///< ours -> the network's
+  std::map<std::string, std::string, std::less<>> names_;  ///< Waymark's -> network's
 };
 
 }  // namespace waymark

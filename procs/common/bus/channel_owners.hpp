@@ -14,8 +14,8 @@ namespace waymark {
 
 /// A channel belongs to the first sender on it while that sender is active on any channel; other
 /// senders are refused. Where two senders publish on the same channels, the one that owned the
-/// first contested channel gets all of them, so that data of two robots are never mixed. It may be
-/// the wrong one of the two: nothing here can tell.
+/// first contested channel gets all of them, so that data of two robots are never mixed. Which of
+/// the two senders is the right one cannot be told here.
 class ChannelOwners {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -30,7 +30,7 @@ class ChannelOwners {
     kRefused
   };
 
-  /// To be called for every message, also those on channels that are not checked.
+  /// To be called for every message, also on channels for which check() is not called.
   void note_activity(const Sender& sender, Time now);
 
   Verdict check(std::string_view channel, const Sender& sender, Time now);
@@ -53,7 +53,7 @@ class ChannelOwners {
   bool precedes(const Sender& sender, const Sender& owner) const;
   void put_behind(const Sender& junior, const Sender& senior);
 
-  // More than anybody runs at once: bounds memory against forged senders.
+  // More pairs of rival senders than ever run at once; bounds the memory that forged senders take.
   static constexpr std::size_t kMaxPrecedences = 64;
 
   std::map<std::string, Owner, std::less<>> owners_{};  ///< by channel

@@ -15,7 +15,7 @@ namespace waymark {
 
 /// Socket that a datagram came from: each publishing process has its own.
 struct Sender {
-  std::uint32_t address{0};  ///< IPv4, in the order of this machine
+  std::uint32_t address{0};  ///< IPv4, in host byte order
   std::uint16_t port{0};
 
   auto operator<=>(const Sender&) const = default;
@@ -25,11 +25,11 @@ struct Sender {
 std::string to_string(const Sender& sender);
 
 struct MulticastGroup {
-  std::uint32_t address{0};  ///< IPv4, in the order of this machine
+  std::uint32_t address{0};  ///< IPv4, in host byte order
   std::uint16_t port{0};
 };
 
-/// The group of udpm://ADDRESS:PORT?..., with LCM's defaults for what is missing; nothing when the
+/// The group of udpm://ADDRESS:PORT?..., with LCM's defaults for what is missing; nullopt when the
 /// URL is of another kind of network.
 /// @throws SetupError when address or port is invalid.
 std::optional<MulticastGroup> multicast_group_of(const std::string& lcm_url);
@@ -40,22 +40,22 @@ struct WholeMessage {
   std::span<const std::uint8_t> payload{};
 };
 
-/// Views of the datagram's bytes; nothing where they are no whole message of LCM.
+/// The message as views of the datagram's bytes; nullopt if they are not one whole LCM message.
 std::optional<WholeMessage> whole_message_in(std::span<const std::uint8_t> datagram);
 
-/// Whether it is a part of a message that is larger than a datagram. Source: lcm_udpm.c.
+/// Whether the datagram is a part of a message larger than one datagram. Source: lcm_udpm.c.
 bool is_fragment(std::span<const std::uint8_t> datagram);
 
 /// Receives the messages of a multicast group that fit one datagram.
 ///
-/// Replaces liblcm's receiver, which does not report the sender; that of 1.3.1 also reassembles
-/// fragments without checking their offsets, so that two forged datagrams make it write outside of
-/// its buffer. None of our messages needs fragments.
+/// Replaces liblcm's receiver, which does not report the sender. The receiver of liblcm 1.3.1 also
+/// reassembles fragments without checking their offsets: two forged datagrams make it write outside
+/// of its buffer. None of our messages needs fragments.
 class DatagramReceiver {
  public:
   struct Received {
     Sender sender{};
-    WholeMessage message{};  ///< valid until the next call
+    WholeMessage message{};  ///< valid until the next receive()
   };
 
   /// @throws std::system_error when the group cannot be joined.
@@ -64,7 +64,8 @@ class DatagramReceiver {
   DatagramReceiver(const DatagramReceiver&) = delete;
   DatagramReceiver& operator=(const DatagramReceiver&) = delete;
 
-  /// nullopt when the next datagram is invalid, or none comes within kWait.
+  /// The message in the next datagram; nullopt when it holds no whole message, or none comes within
+  /// kWait.
   std::optional<Received> receive();
 
   /// Datagrams since the last call that were neither a message nor a fragment.
@@ -73,7 +74,7 @@ class DatagramReceiver {
   /// Datagrams since the last call that were fragments of large messages.
   std::int64_t take_fragments();
 
-  /// Datagrams since the last call that were dropped because the queue was full.
+  /// Datagrams since the last call that the kernel dropped because the socket's queue was full.
   std::int64_t take_overflowed();
 
  private:
@@ -85,7 +86,7 @@ class DatagramReceiver {
   std::vector<std::uint8_t> bytes_{};
   std::int64_t malformed_{0};
   std::int64_t fragments_{0};
-  std::uint32_t overflowed_before_{0};  ///< by the kernel's count, which wraps
+  std::uint32_t overflowed_before_{0};  ///< kernel's count at the last call; it wraps around
 };
 
 }  // namespace waymark

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Allows one lockstep simulator per UDP port of this machine: with two, processes would answer the
-// ticks of the other's run.
+// Allows one lockstep simulator per UDP port of this machine: with two, a process could
+// answer the ticks of the wrong simulator.
 #pragma once
 
 #include "common/bus/channel_names.hpp"
@@ -9,8 +9,9 @@
 
 namespace waymark {
 
-/// Held during the object's lifetime; the system releases it however the process ends. It covers
-/// one port and one name of the channel TICK; on networks other than udpm nothing is locked.
+/// Held during the object's lifetime; the system releases it however the process ends. Simulators
+/// on another port, or with another network name of TICK, are not excluded; on networks other than
+/// udpm nothing is locked.
 class SimulatorLock {
  public:
   /// @throws SetupError when another simulator has the port, or the system refuses the lock.

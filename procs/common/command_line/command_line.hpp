@@ -19,7 +19,7 @@ class Option;
 
 namespace waymark {
 
-/// One option of a command, which owns it.
+/// Refers to one option of a command; the command owns the option.
 class CommandOption {
  public:
   explicit CommandOption(CLI::Option& option) : option_{&option} {}
@@ -40,7 +40,7 @@ class CommandOption {
   CLI::Option* option_;
 };
 
-/// A subcommand, or the program itself, which owns it.
+/// The program itself or a subcommand, which the program owns.
 class Command {
  public:
   explicit Command(CLI::App& app) : app_{&app} {}

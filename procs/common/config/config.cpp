@@ -46,13 +46,13 @@ struct Entry {
   enum class Kind { kTable, kElement, kValue, kEmptyList };
 
   Kind kind{Kind::kValue};
-  std::string table{};    ///< "slam.", "path.waypoints[0]."; its own, or the one that it is in
+  std::string table{};    ///< "slam.", "path.waypoints[0].": the table that it is, or is in
   std::string key{};      ///< "slam.estimator", "path.waypoints[0].x_m"
   std::string heading{};  ///< of a table or element, e.g. "path.waypoints"
   std::string value{};    ///< as TOML
-  std::string text{};     ///< the same, strings bare
+  std::string text{};     ///< the value, strings without quotes
   std::string meaning{};
-  std::string unused{};  ///< why; empty = it is used
+  std::string unused{};  ///< why the key is unused; empty = it is used
 };
 
 /// Lists all that a configuration describes, in file order.
@@ -205,8 +205,8 @@ std::vector<std::string> used_keys(const std::vector<Entry>& entries) {
   return keys;
 }
 
-/// The key that is used in place of one that is not: of the same part of the configuration, with
-/// the same name or one that ends with it; empty if there is none.
+/// The used key that probably replaces the unused `key`: in the same top-level table, its last word
+/// the same or ending with "_" and that of `key`. Empty if there is none.
 std::string used_instead(const std::string& key, const std::vector<Entry>& entries) {
   const std::string part = key.substr(0, key.find('.') + 1);
   const std::string name = last_word(key);
@@ -263,7 +263,7 @@ std::vector<std::string> config_detail::read_part(const std::filesystem::path& f
   return log.problems;
 }
 
-// A value belongs to the last heading before it, so those of a table come before its own tables.
+// In TOML a value belongs to the last heading before it: a table's values precede its subtables.
 std::string config_detail::dump(const Describe& describe) {
   struct Table {
     std::string path{};

@@ -21,8 +21,8 @@ class ConfigError : public std::runtime_error {
   explicit ConfigError(const std::vector<std::string>& problems);
 };
 
-/// Where a configuration comes from; later sources win over earlier ones, and all over the
-/// defaults.
+/// Where a configuration comes from: later files win over earlier ones, overrides over all files,
+/// and both over the defaults.
 struct ConfigSources {
   std::vector<std::filesystem::path> files{};
   std::vector<std::string> overrides{};  ///< "key.subkey=value", value as in TOML or a bare word
@@ -41,7 +41,7 @@ class Problems {
 
   explicit Problems(config_detail::Locations locations) : locations_{std::move(locations)} {}
 
-  /// @param key  as in "robot.lidar.range_min_m"; its line in a file is put before it.
+  /// @param key  e.g. "robot.lidar.range_min_m"; the line begins with the source that set the key.
   void add(const std::string& key, const std::string& problem);
 
   const std::vector<std::string>& lines() const { return lines_; }
@@ -64,8 +64,8 @@ std::string value(const Describe& describe, const std::string& key);
 
 /// The struct's defaults, overlaid by the sources, checked.
 /// @throws ConfigError with all problems: unreadable files, syntax, unknown keys (with the nearest
-/// known one), keys that the other settings do not use, types, ranges, and what the struct's own
-/// check() finds.
+/// known one), keys that the other settings do not use, types, ranges; if there are none of these,
+/// what the struct's own check() finds.
 template <class Config>
 Config load_config(const ConfigSources& sources) {
   Config config{};
@@ -83,8 +83,9 @@ Config load_config(const ConfigSources& sources) {
   return config;
 }
 
-/// The struct's defaults, overlaid by what it knows of a file; other keys are left alone.
-/// @throws ConfigError as above, but for unknown keys.
+/// The struct's defaults, overlaid by the keys of a file that the struct describes; other keys are
+/// ignored, and the struct's check() is not called.
+/// @throws ConfigError for an unreadable file, syntax, types and ranges.
 template <class Config>
 Config load_part(const std::filesystem::path& file) {
   Config config{};
@@ -94,8 +95,8 @@ Config load_part(const std::filesystem::path& file) {
   return config;
 }
 
-/// The effective configuration as TOML, each key that is used with its meaning as a comment.
-/// Reading it back gives the same.
+/// The effective configuration as TOML: each used key with its meaning as a comment. Reading the
+/// text back gives the same values.
 template <class Config>
 std::string dump_config(const Config& config) {
   Config copy = config;

@@ -94,7 +94,7 @@ class Fields {
   }
 
  protected:
-  /// Index of the chosen word.
+  /// Visits a choice. @param index  of the chosen word; a reader replaces it.
   virtual void word(std::string_view key, std::span<const std::string_view> words,
                     std::size_t& index, std::string_view meaning) = 0;
   /// False when there is nothing to visit in that table.
@@ -104,7 +104,7 @@ class Fields {
   /// False when unused fields are not to be visited.
   virtual bool enter_use(bool is_used, std::string_view unused) = 0;
   virtual void leave_use() = 0;
-  /// Number of elements of the list that replaces the current one; nullopt when there is none.
+  /// Number of elements of the list that replaces the current one; nullopt: the current one stays.
   virtual std::optional<std::size_t> list_size(std::string_view key, std::size_t current_size,
                                                std::string_view meaning) = 0;
 };

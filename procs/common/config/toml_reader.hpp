@@ -27,7 +27,7 @@ struct ReadLog {
 void read_toml_file(const std::filesystem::path& file, const std::function<void(Fields&)>& describe,
                     ReadLog& log, UnknownKeys unknown_keys = UnknownKeys::kProblem);
 
-/// The same for one `key.subkey=value` of the command line.
+/// Sets the field that one `key.subkey=value` of the command line names.
 void read_toml_override(const std::string& text, const std::function<void(Fields&)>& describe,
                         ReadLog& log);
 

@@ -13,11 +13,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kStraightDeviation = 0.1;   ///< in corridor widths
-constexpr double kStraightExcess_px = 0.25;  ///< arc length minus chord
+constexpr double kStraightDeviation = 0.1;   ///< of a straight medial line, in corridor widths
+constexpr double kStraightExcess_px = 0.25;  ///< of a straight medial line: arc minus chord
 constexpr double kAnchorInset = 0.5;         ///< from the ends of the medial line, in widths
-constexpr double kElongated = 2.0;           ///< length over width below which axes are doubtful
-constexpr double kAlongImage_px = 1.0;       ///< sideways over the whole length
+constexpr double kElongated = 2.0;           ///< length over width; below it, axes are doubtful
+constexpr double kAlongImage_px = 1.0;       ///< drift of the axis from a pixel row over its length
 
 Vector2d left_of(const Vector2d& direction) {
   return {-direction.y(), direction.x()};
@@ -50,8 +50,8 @@ double arc_length_px(const MedialLine& line, const Anchors& anchors) {
   return length_px;
 }
 
-/// The axis along the nearest row or column of pixels, if that makes no visible difference: then
-/// straight maps are measured in whole pixels.
+/// The axis, turned to the nearest row or column of pixels if it drifts from that by no more than
+/// kAlongImage_px: straight maps are then measured in whole pixels.
 Axis along_image_if_near(Axis axis, double length_px) {
   Eigen::Index main{};
   axis.direction.cwiseAbs().maxCoeff(&main);

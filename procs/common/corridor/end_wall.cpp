@@ -24,7 +24,7 @@ constexpr int kMaxTilt_deg = 20;
 struct Band {
   int half_rows{};
   std::map<int, std::vector<double>> occupied_px{};  ///< distances of the occupied cells of a row
-  std::map<int, int> free_cells{};                   ///< number of free cells per whole distance
+  std::map<int, int> free_cells{};                   ///< number of free cells by distance, rounded
 
   double rows() const { return 2.0 * half_rows + 1.0; }
 };
@@ -48,7 +48,8 @@ Band central_band(const MapImage& map, const EndView& view, double width_px) {
   return band;
 }
 
-/// Last distance at which half of the central rows are free, before a break of half a width.
+/// Last distance at which at least half of the central rows are free; a gap of more than half a
+/// corridor width between such distances ends the search.
 int last_free_px(const Band& band, double begin_px, double width_px) {
   int last = static_cast<int>(std::lround(begin_px));
   for (const auto& [distance_px, cells] : band.free_cells) {
@@ -62,7 +63,7 @@ int last_free_px(const Band& band, double begin_px, double width_px) {
 struct WallLine {
   double offset_px{};
   double slope{};
-  int rows{};  ///< that have an occupied cell on it
+  int rows{};  ///< number of rows with an occupied cell on the line
 
   double at(int row) const { return offset_px + slope * row; }
 };
@@ -77,7 +78,7 @@ int rows_on(const WallLine& line, const Band& band) {
   return rows;
 }
 
-/// The tilt with the most rows at this offset; the smaller tilt among equals.
+/// The line through this offset with the most rows; among equals, the one with the smaller tilt.
 WallLine best_tilt(double offset_px, const Band& band) {
   WallLine best{offset_px, 0.0, -1};
   for (int size_deg = 0; size_deg <= kMaxTilt_deg; ++size_deg) {

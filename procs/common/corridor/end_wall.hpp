@@ -16,7 +16,7 @@ struct EndView {
   Eigen::Vector2d origin_px{};
   Eigen::Vector2d outward{};
   Eigen::Vector2d across{};
-  double begin_px{};  ///< distance of a place that is inside the corridor
+  double begin_px{};  ///< the search begins here, inside the corridor
 };
 
 struct CorridorEnd {
@@ -27,9 +27,10 @@ struct CorridorEnd {
   double free_extent_px{};  ///< distance of the outer edge of the free space
 };
 
-/// The end wall is the innermost line of occupied cells, within one corridor width of the end of
-/// the free space and turned less than 20 degrees, that covers two fifths of the central rows (the
-/// middle two thirds): false cells inside the corridor and holes in the wall do not matter.
+/// The end wall is the innermost line of occupied cells, at most one corridor width before and
+/// about half a width behind the end of the free space and tilted at most 20 degrees, that covers
+/// two fifths of the central rows (the middle two thirds): false cells inside the corridor and
+/// holes in the wall do not matter.
 CorridorEnd find_corridor_end(const MapImage& map, const EndView& view, double width_px);
 
 }  // namespace waymark::corridor

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// All in corridor widths, so that nothing depends on the size of a cell.
+// In corridor widths where possible, so that little depends on the size of a cell.
 constexpr double kSpacing = 1.0 / 8.0;    ///< between slices
 constexpr double kSmoothing = 1.5;        ///< half window of the local fit: noise goes, bends stay
 constexpr double kExtension = 1.0;        ///< slices tried beyond the ends of the line so far
@@ -27,7 +27,7 @@ constexpr double kSpeck_px = 3.0;  ///< a shorter break in a slice is a false ce
 constexpr std::size_t kFewestSlices = 5;
 constexpr std::size_t kFewestCells = 50;
 
-/// A slice's middle at its place along the line so far.
+/// A slice across the corridor: its place along the line found so far, its middle, its width.
 struct Station {
   double at_px{};
   Vector2d middle_px{};
@@ -57,7 +57,7 @@ std::vector<Station> inliers(const std::vector<Station>& stations, double tolera
   return kept;
 }
 
-/// Value of the weighted quadratic fit to the stations near `at_px`.
+/// Middle of the corridor at `at_px` by a weighted quadratic fit to the stations near it.
 Vector2d local_fit(const std::vector<Station>& stations, double at_px, double half_window_px) {
   std::vector<std::pair<double, const Station*>> near;
   for (const Station& station : stations) {
@@ -113,7 +113,7 @@ std::vector<Station> slices_across_axis(const std::vector<Vector2d>& region) {
   return filled;
 }
 
-/// Length of free space from a point in a direction, over specks.
+/// Length of the free space from a point in a direction [px]; breaks up to kSpeck_px do not end it.
 double free_reach(const MapImage& map, const Vector2d& from_px, const Vector2d& direction,
                   double limit_px) {
   constexpr double kStep_px = 0.25;
@@ -198,7 +198,7 @@ MedialLine medial_line(const MapImage& map, const std::vector<Vector2d>& region)
   if (region.size() < kFewestCells)
     throw NotACorridor{
         "the map has no free space to measure (free cells that touch: fewer than 50)"};
-  constexpr double kRoughTolerance = 0.5;  // slices across the axis are oblique where it bends
+  constexpr double kRoughTolerance = 0.5;  // where the corridor bends, these slices are oblique
   std::vector<Station> stations = inliers(slices_across_axis(region), kRoughTolerance);
   double width_px = median_width(stations);
   for (int pass = 0; pass < 2; ++pass) {

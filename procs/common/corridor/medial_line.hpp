@@ -15,7 +15,7 @@ std::vector<Eigen::Vector2d> largest_free_region(const MapImage& map);
 
 struct Axis {
   Eigen::Vector2d centre_px{};
-  Eigen::Vector2d direction{};  ///< unit; points to the map's +x, or +y if it is nearer to that
+  Eigen::Vector2d direction{};  ///< unit; towards the map's +x, or +y if the axis is nearer to y
 };
 
 /// Mean and direction of largest spread. @param points at least two.

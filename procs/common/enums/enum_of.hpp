@@ -5,7 +5,7 @@
 
 namespace waymark {
 
-/// The value with that number; the first one, kUnknown, for a number beyond 0 ... last.
+/// The enumerator with this number; enumerator 0 (kUnknown) for a number outside 0 ... last.
 template <class Enum>
 constexpr Enum enum_of(std::int64_t number, Enum last) {
   const bool is_known = number >= 0 && number <= static_cast<std::int64_t>(last);

@@ -15,14 +15,14 @@ constexpr double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
 }
 
-/// The same direction in (-pi, pi].
+/// The angle plus the multiple of 2 pi that brings it into (-pi, pi].
 inline double wrap_angle(double angle_rad) {
   if (angle_rad > -std::numbers::pi && angle_rad <= std::numbers::pi) return angle_rad;
   const double wrapped = std::remainder(angle_rad, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }
 
-/// Smallest signed turn that leads from one direction to the other, in (-pi, pi].
+/// Smallest signed turn from direction `from_rad` to direction `to_rad`, in (-pi, pi].
 inline double angle_difference(double to_rad, double from_rad) {
   return wrap_angle(to_rad - from_rad);
 }

@@ -8,7 +8,7 @@
 
 namespace waymark {
 
-/// Standard deviation over the median absolute deviation, of a normal distribution.
+/// Standard deviation divided by the median absolute deviation (MAD) of a normal distribution.
 inline constexpr double kSigmaOfMad = 1.4826;
 
 /// Median; of an even number of values the mean of the two middle ones. O(n log n).

@@ -56,8 +56,8 @@ Se2 along_arc(const Eigen::Vector3d& step);
 /// blockdiag(rotation, 1): rotates (x, y) of (x, y, theta).
 Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation);
 
-/// Covariance or information of (x, y, theta), given in the child's axes, in the parent's axes:
-/// R matrix R^T with R = turning(rotation) and the rotation of parent_from_child.
+/// Converts a covariance or information of (x, y, theta) from the child's axes to the parent's:
+/// R matrix R^T with R = turning(rotation), `rotation` being that of parent_from_child.
 Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix);
 
 /// Jacobian that carries a small pose difference along the lever arm `step_in_map` = (dx, dy) [m]:

@@ -26,12 +26,12 @@ std::vector<channel_content_t> contents_of(std::vector<Message> messages);
 /// Bounded: the oldest messages are dropped, and arrive again when their tick is re-sent.
 class MessagePool {
  public:
-  /// False when the same message is here already.
+  /// False when the pool already has a message with this channel and payload.
   bool add(Message message);
 
   bool has(std::int64_t hash) const { return messages_.contains(hash); }
 
-  /// Needs has(hash).
+  /// A copy of the message, which stays in the pool for later ticks. Requires has(hash).
   Message take(std::int64_t hash);
 
  private:

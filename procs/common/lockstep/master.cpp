@@ -69,7 +69,8 @@ std::vector<Message> LockstepMaster::resend() const {
   return messages;
 }
 
-/// The tick's messages, then its TICK. first_open_tick is where a restarted process begins.
+/// Appends the tick's messages, then its TICK, whose first_open_tick tells a restarted process
+/// where to begin.
 void LockstepMaster::append(const OpenTick& open, std::vector<Message>& messages) const {
   messages.insert(messages.end(), open.messages.begin(), open.messages.end());
   tick_t tick = open.tick;

@@ -35,7 +35,7 @@ class LockstepMaster {
   std::vector<Message> open_tick(Timestamp end, std::vector<Message> messages, bool is_last);
   /// @return true when the message is an acknowledgement that was still missing.
   bool take(const Message& message);
-  /// All open ticks again.
+  /// Messages and TICKs of all open ticks, to be sent again.
   std::vector<Message> resend() const;
   /// Participants that have not acknowledged the oldest open tick, in their order. Each waits for
   /// those before it: the first one is the cause, the others may only be waiting for it.

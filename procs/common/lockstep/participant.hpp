@@ -17,7 +17,7 @@ namespace waymark {
 /// Pure: messages in, messages to publish out; no network, no clock.
 ///
 /// A tick is processed when everything that TICK names on the wanted channels has come, and
-/// everything that the participants before this one in the list named in their ACKs. Ticks are
+/// everything that the participants before this one in TICK's list named in their ACKs. Ticks are
 /// processed in order. A re-sent tick is answered from a cache, so that the simulator repairs every
 /// loss by re-sending.
 class LockstepParticipant {
@@ -25,7 +25,8 @@ class LockstepParticipant {
   /// Processes the messages of one tick, in order, and returns what it publishes for it.
   using Process = std::function<std::vector<Message>(const std::vector<Message>&, bool is_last)>;
 
-  /// @param counters  counts rejected and repeated messages and those of other runs; outlives this.
+  /// @param counters  count rejected and repeated messages and those of other runs; must outlive
+  /// this object.
   LockstepParticipant(std::string name, std::vector<std::string> wanted_channels, bool joins_midway,
                       Process process, Counters& counters);
 

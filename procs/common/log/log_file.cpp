@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01U;
 constexpr std::int64_t kHeaderBytes = 28;
-constexpr std::int64_t kMaxChannelBytes = 999;                  // as liblcm
+constexpr std::int64_t kMaxChannelBytes = 999;                  // limit of liblcm's reader
 constexpr std::int64_t kMaxDataBytes = std::int64_t{64} << 20;  // raw images of other robots fit
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 constexpr std::size_t kReadBufferBytes = std::size_t{32} << 10;  // small: images are often skipped
@@ -92,7 +92,7 @@ std::optional<Message> LogReader::next(const std::function<bool(std::string_view
   return std::nullopt;
 }
 
-/// True when a whole event starts at the offset; leaves the file behind its header.
+/// True when a whole event starts at the offset; file_ then stands behind the event's header.
 bool LogReader::read_header(std::int64_t offset, Header& header) {
   if (size_bytes_ - offset < kHeaderBytes) return false;
   std::array<char, kHeaderBytes> bytes{};
@@ -107,8 +107,8 @@ bool LogReader::read_header(std::int64_t offset, Header& header) {
          header.channel_bytes + header.data_bytes <= size_bytes_ - offset - kHeaderBytes;
 }
 
-/// Offset of the next complete event at or after `offset`. O(bytes up to there), also in a log with
-/// a byte of garbage after every event: the window starts small.
+/// Offset of the next complete event at or after `offset`. O(bytes skipped), also in a log with a
+/// byte of garbage after every event, since each search starts with a small window.
 std::optional<std::int64_t> LogReader::find_event(std::int64_t offset) {
   const std::array<char, 4> sync{'\xED', '\xA1', '\xDA', '\x01'};
   std::vector<char> window(kFirstSearchBytes);

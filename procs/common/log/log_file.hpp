@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LCM event logs, as lcm-logger writes and lcm-logplayer reads them. Not by liblcm, whose reader
+// LCM event logs, as lcm-logger writes and lcm-logplayer reads them. liblcm is not used: its reader
 // crashes on hostile lengths and discards intact events in front of garbage. Format: big-endian
 // {u32 0xEDA1DA01, i64 event number, i64 time us, i32 channel length, i32 data length}, channel
 // without terminating zero, data.
@@ -19,7 +19,7 @@
 
 namespace waymark {
 
-/// Reads events in file order; skips and counts what is not an event.
+/// Reads events in file order; skips and counts bytes that belong to no complete event.
 class LogReader {
  public:
   /// @throws std::runtime_error saying why the file cannot be opened.
@@ -87,12 +87,14 @@ class LogWriter {
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
-  /// Log time = message time. @throws std::runtime_error naming the file when the disk is full.
+  /// Appends an event with the time of the message.
+  /// @throws std::runtime_error naming the file when it cannot be written, e.g. on a full disk.
   void write(const Message& message);
-  /// @throws std::runtime_error when not everything reached the file.
+  /// Completes the part and renames it to the final name.
+  /// @throws std::runtime_error when not everything could be written, or the rename failed.
   void close();
-  /// Like close(), and safe against power failure: the name refers to the old file or to the
-  /// complete new one. File and folder are flushed to the disk, which may take a second.
+  /// Like close(), and safe against power failure: the final name refers to the old file or to the
+  /// complete new one. Flushes file and folder to the disk; this may take a second.
   void close_on_disk();
 
  private:

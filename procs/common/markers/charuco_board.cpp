@@ -23,7 +23,8 @@ constexpr int kSmallestHalfWindow_px = 2;  // of the search for a corner
 constexpr int kLargestHalfWindow_px = 7;   // in larger windows, lens distortion bends the edges
 constexpr int kMostSteps = 50;
 constexpr double kConverged_px = 1e-3;
-// A marker needs white around it to be found, and pixels to be read.
+// Side of a marker over that of its square: it needs white around it to be found, and pixels to be
+// read.
 constexpr double kSmallestShare = 0.3;
 constexpr double kLargestShare = 0.9;
 
@@ -67,9 +68,9 @@ cv::Ptr<cv::aruco::CharucoBoard> make_board(const BoardOptions& options) {
 }
 
 BoardCorners find_corners(const cv::Mat& gray, const cv::Ptr<cv::aruco::CharucoBoard>& board) {
-  // OpenCV discards the smaller of two quads whose corners are nearer than this share of the
-  // perimeter. The share has to be below the distance of a marker from its white square, which
-  // OpenCV finds, too; half of that distance leaves room for perspective.
+  // OpenCV finds a marker and also the white square around it. Of two quads whose corners are
+  // nearer than minMarkerDistanceRate times the perimeter it discards the smaller, so this must be
+  // less than the distance between marker and square: half of it, to leave room for perspective.
   const auto parameters = cv::aruco::DetectorParameters::create();
   const double gap = 0.5 * (board->getSquareLength() / board->getMarkerLength() - 1.0);
   parameters->minMarkerDistanceRate =

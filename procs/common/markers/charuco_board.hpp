@@ -9,7 +9,7 @@
 
 namespace waymark {
 
-/// Defaults fill an A4 page.
+/// The default board, 224 mm x 160 mm, fits an A4 page.
 struct BoardOptions {
   std::string squares{"7x5"};  ///< columns x rows
   double square_m{0.032};      ///< side of a square

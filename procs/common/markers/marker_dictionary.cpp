@@ -17,8 +17,8 @@ struct NamedDictionary {
   int correctable_bits{kAsInOpenCv};
 };
 
-// AprilTag families: half the code distance (the number after the h). None for 16h5: its 16 bits
-// match random image content too often.
+// AprilTag families correct the most bits below half the code distance (the number after the h);
+// 16h5 corrects none, since its 16 bits match random image content too often.
 constexpr std::array kDictionaries{
     NamedDictionary{"DICT_4X4_50", cv::aruco::DICT_4X4_50},
     NamedDictionary{"DICT_4X4_100", cv::aruco::DICT_4X4_100},

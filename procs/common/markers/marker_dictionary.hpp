@@ -14,8 +14,8 @@
 namespace waymark {
 
 /// OpenCV's predefined dictionary of that name, e.g. "DICT_6X6_250" or "DICT_APRILTAG_36h11".
-/// OpenCV 4.6 corrects no bit of AprilTag dictionaries; here they correct as many as their code
-/// distance allows. nullopt for an unknown name.
+/// OpenCV 4.6 corrects no bit of AprilTag dictionaries; here all but 16h5 correct as many as their
+/// code distance allows. nullopt for an unknown name.
 std::optional<cv::aruco::Dictionary> find_dictionary(std::string_view name);
 
 std::vector<std::string> dictionary_names();

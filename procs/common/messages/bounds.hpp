@@ -8,9 +8,9 @@ namespace waymark::bounds {
 
 /// Of positions in any frame: up to UTM's northings, for GNSS frames.
 inline constexpr double kPosition_m = 1e7;
-/// Of headings, which some odometries do not wrap: 1.6 million turns.
+/// Of beam angles and headings; some odometries do not wrap headings: 1.6 million turns.
 inline constexpr double kAngle_rad = 1e7;
-/// Of LiDAR ranges; the longest of robots' LiDARs measure some hundred metres.
+/// Of LiDAR ranges; LiDARs of robots measure some hundred metres at most.
 inline constexpr double kRange_m = 1e4;
 /// Of drive commands: faster than any ground robot.
 inline constexpr double kSpeed_mps = 100.0;
@@ -24,11 +24,11 @@ inline constexpr int kImageSide_px = 16384;
 inline constexpr int kBeams = 16384;
 /// Of a beam's time relative to its scan's: a sweep takes far less than 10 s.
 inline constexpr std::int64_t kBeamTimeOffset_us = 10'000'000;
-/// Of tiles and cells from the map's origin.
+/// Of the indices of tiles and (below) cells, which count from the map's origin.
 inline constexpr int kTileIndex = 1 << 20;
 inline constexpr int kTileSize_cells = 1024;
 inline constexpr int kCellIndex = 1 << 24;
-/// The year 2100, since 1970.
+/// Of message times: from 1970 to the beginning of 2100.
 inline constexpr std::int64_t kTime_us = 4'102'444'800'000'000;
 
 }  // namespace waymark::bounds

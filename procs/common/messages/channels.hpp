@@ -37,7 +37,7 @@ namespace waymark {
 /// Where a channel occurs.
 enum class ChannelUse {
   kNetwork,
-  kNetworkOnceNamed,  ///< only where [channels] names it
+  kNetworkOnceNamed,  ///< on the network only if section [channels] gives it a name
   kMapFiles,
 };
 
@@ -73,13 +73,13 @@ inline constexpr Channel<trajectory_t> kSlamTrajectory{"SLAM_TRAJECTORY"};
 inline constexpr Channel<command_t> kSlamCommand{"SLAM_COMMAND"};
 inline constexpr Channel<reply_t> kSlamReply{"SLAM_REPLY"};
 
-// An MBot's.
+// Of the MBot's software: the status that we send to it, and its request to reset SLAM.
 inline constexpr Channel<slam_status_t> kMbotSlamStatus{"MBOT_SLAM_STATUS",
                                                         ChannelUse::kNetworkOnceNamed};
 inline constexpr Channel<mbot_slam_reset_t> kMbotSystemReset{"MBOT_SYSTEM_RESET",
                                                              ChannelUse::kNetworkOnceNamed};
 
-// In map files; the graph at the end of a run, too.
+// In map files; MAP_GRAPH is also published on the network, at the end of a run.
 inline constexpr Channel<map_header_t> kMapHeader{"MAP_HEADER", ChannelUse::kMapFiles};
 inline constexpr Channel<map_walls_t> kMapWalls{"MAP_WALLS", ChannelUse::kMapFiles};
 inline constexpr Channel<pose_graph_t> kMapGraph{"MAP_GRAPH"};

@@ -12,7 +12,7 @@ LidarScan to_scan(const planar_lidar_t& message);
 /// MBot's clockwise angles become counter-clockwise; range 0 (its "no return") becomes +inf;
 /// per-beam times become offsets.
 LidarScan to_scan(const lidar_t& message);
-/// Needs evenly spaced beams.
+/// The beams must be evenly spaced. @throws std::logic_error for a scan without beams.
 planar_lidar_t to_planar_lidar(const LidarScan& scan);
 lidar_t to_mbot_lidar(const LidarScan& scan);
 

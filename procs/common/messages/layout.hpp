@@ -12,8 +12,8 @@
 
 namespace waymark {
 
-/// One field on the wire: `count` elements, or as many as the earlier int32 field at index
-/// `count_field`.
+/// One field on the wire: `count` elements, or as many as the value of the earlier int32 field at
+/// index `count_field`.
 struct FieldLayout {
   enum class Kind { kFixed, kString, kStruct };
 

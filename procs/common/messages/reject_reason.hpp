@@ -11,12 +11,12 @@ enum class RejectReason {
   kTooLarge,
   kTruncated,  ///< shorter than its length fields say
   kWrongType,  ///< fingerprint of another type
-  kBadLength,  ///< negative or absurd length field
+  kBadLength,  ///< negative length, or a string without exactly one zero, at its end
   kTrailingBytes,
   kNotFinite,     ///< NaN or infinity where none may be
   kInconsistent,  ///< arrays that must agree in size do not, or a field has no such value
   kOutOfBounds,   ///< a number beyond bounds.hpp, which no robot has
-  kBadTime,       ///< utime negative or absurdly far in the future
+  kBadTime,       ///< utime negative or beyond bounds.hpp, or a beam's time far from it
 };
 
 std::string_view to_string(RejectReason reason);

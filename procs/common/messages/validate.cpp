@@ -51,7 +51,7 @@ bool are_ranges_within(const std::vector<float>& ranges_m) {
   });
 }
 
-/// The first failed check. (Numbers that are not finite are not within bounds either.)
+/// The first failed check. NaN and infinity violate bounds, too, but are reported as not finite.
 RejectReason first_of(bool consistent, bool is_finite, bool is_within_bounds = true) {
   if (!consistent) return RejectReason::kInconsistent;
   if (!is_finite) return RejectReason::kNotFinite;

@@ -26,7 +26,7 @@ struct Count {
 /// Named counts, in order of name.
 class Counters {
  public:
-  /// The kind is that of the first call for a name.
+  /// Adds to the count of this name, which keeps the kind of its first call.
   void add(std::string_view name, CountKind kind = CountKind::kEvent, std::int64_t value = 1);
   std::int64_t get(std::string_view name) const;
   /// Sum over all counts of a kind.

@@ -43,7 +43,7 @@ class Inbox {
                 });
   }
 
-  /// Any message on a channel, undecoded (recorder).
+  /// Hands every message on the channel to `handler`, undecoded (used by the recorder).
   void on_raw(std::string_view channel, std::function<void(const Message&)> handler);
 
   void deliver(const Message& message);
@@ -99,7 +99,7 @@ class Node {
   /// it happens, and the exit code at the end is kExitFailed.
   virtual bool failed() const { return false; }
 
-  /// Channels that a log to replay must have.
+  /// Channels that a replay needs: each must be in at least one of its logs.
   virtual std::vector<std::string_view> needed_channels() const { return {}; }
 };
 

@@ -43,7 +43,7 @@ cv::Mat grey_of_jpeg(std::span<const std::uint8_t> bytes, cv::Size size) {
   const bool failed =
       tjDecompress2(decompressor.get(), bytes.data(), bytes.size(), grey.data, size.width,
                     static_cast<int>(grey.step), size.height, TJPF_GRAY, 0) != 0;
-  // Warnings are of bytes that some cameras add between segments.
+  // Warnings are accepted: some cameras add bytes between segments.
   if (failed && tjGetErrorCode(decompressor.get()) == TJERR_FATAL) return {};
   return grey;
 }

@@ -56,7 +56,7 @@ std::optional<JpegHeader> read_jpeg_header(std::span<const std::uint8_t> bytes) 
     const int length = read_big_endian<std::uint16_t>(&bytes[at + 2]);
     if (length < 2) break;
     if (is_frame_header(marker)) {
-      // A second frame header would let the image differ from what was checked.
+      // With a second frame header the decoded size could differ from the one that was checked.
       if (header || at + kFrameHeaderBytes > bytes.size()) return std::nullopt;
       header = JpegHeader{read_big_endian<std::uint16_t>(&bytes[at + 7]),
                           read_big_endian<std::uint16_t>(&bytes[at + 5]), false};

@@ -14,8 +14,9 @@ struct JpegHeader {
   bool complete{false};  ///< the end-of-image marker is there
 };
 
-/// Walks the segments of a JPEG stream (ITU-T T.81, annex B). nullopt when it is not one, or ends
-/// before its frame header. Never reads outside the span; allocates nothing.
+/// Walks the segments of a JPEG stream (ITU-T T.81, annex B). nullopt when the bytes are no JPEG
+/// stream, or it has no complete frame header, or a second one. Never reads outside the span;
+/// allocates nothing.
 std::optional<JpegHeader> read_jpeg_header(std::span<const std::uint8_t> bytes);
 
 }  // namespace waymark

@@ -11,7 +11,7 @@
 namespace waymark {
 
 /// @param image  8 bit, grey or BGR, not empty.
-/// Throws std::runtime_error if libpng cannot encode it.
+/// @throws std::runtime_error if libpng cannot encode it.
 std::string png_bytes(const cv::Mat& image);
 
 /// @return 8 bit, grey; empty if the bytes cannot be decoded or are of more than `max_pixels`.

@@ -25,7 +25,7 @@ class CameraModel {
   /// Inverse of raw_from_ideal(), by fixed-point iteration; the distortion must be invertible in
   /// the image.
   Eigen::Vector2d ideal_from_raw(const Eigen::Vector2d& raw_px) const;
-  /// Point with z = 1 of the ray through an ideal pixel.
+  /// (x, y) at z = 1, in the optical frame, of the ray through an ideal pixel.
   Eigen::Vector2d normalized_from_ideal(const Eigen::Vector2d& ideal_px) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace waymark {
 
 /// @param scan  raw; the angles of a mirrored LiDAR count clockwise.
-/// @return angles counter-clockwise, stamps on odometry's clock.
+/// @return the scan with angles counter-clockwise, stamped on odometry's clock.
 inline LidarScan as_described(LidarScan scan, const LidarConfig& lidar) {
   scan.time -= duration_from_seconds(lidar.late_s);
   if (lidar.mirrored) {
@@ -18,7 +18,7 @@ inline LidarScan as_described(LidarScan scan, const LidarConfig& lidar) {
   return scan;
 }
 
-/// @return stamps on odometry's clock.
+/// @return the detections, stamped on odometry's clock.
 inline MarkerDetections as_described(MarkerDetections frame, const CameraConfig& camera) {
   frame.time -= duration_from_seconds(camera.late_s);
   return frame;

@@ -35,7 +35,7 @@ struct ProcessOptions {
   std::optional<std::int64_t> seed{};
 };
 
-/// All files that a process reads.
+/// Input files that the options name: logs, configuration files, and the map to load.
 std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options);
 
 /// Which of the optional options a process has.
@@ -57,7 +57,8 @@ struct ParsedOptions {
 ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
                             const OptionSet& option_set);
 
-/// @throws SetupError for an option that would have no effect, or would overwrite an input.
+/// @throws SetupError for an option that would have no effect or overwrite an input, and for a
+/// --save-map that cannot be written.
 void check_options(const ProcessOptions& options, const OptionSet& option_set);
 
 }  // namespace waymark

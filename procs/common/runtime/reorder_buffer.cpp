@@ -42,7 +42,8 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
   return release_until(newest_ - window_);
 }
 
-/// A command without a stamp acts now: it gets the newest stamp, so that a log has it in its place.
+/// A command without a stamp (utime 0) acts now: it gets the newest stamp, so that a replay of the
+/// log executes it at the same place.
 Message ReorderBuffer::stamped(Message message) const {
   const auto command = decode<command_t>(message.payload);
   if (!has_any_ || !command.message) return message;
@@ -65,7 +66,8 @@ bool ReorderBuffer::leads(const Stream& stream, Timestamp time) const {
   return !stream.newest || time > *stream.newest + 2 * stream.usual_step;
 }
 
-/// @param time  stamp of the next message of the same channel.
+/// Decides on the messages set aside: a later stamp confirms them, an earlier one drops them.
+/// @param time  stamp of the channel's next message.
 void ReorderBuffer::resolve_aside(Stream& stream, Timestamp time, Counters& counters) {
   if (stream.aside.empty() || stream.aside.front().time == time) return;
   if (time > stream.aside.front().time) {

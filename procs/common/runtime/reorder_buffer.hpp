@@ -18,15 +18,15 @@ namespace waymark {
 /// Holds messages until one is `window` newer, then releases them by (time, channel, payload). A
 /// channel may lag behind the others by more than the window, as computed results do. Drops and
 /// counts messages that are older than a released one of their channel, and messages more than
-/// ClockStepDetector::kLongestPause ahead, which would release all others; unless the clock was
-/// set.
+/// ClockStepDetector::kLongestPause ahead of the newest one, which would release all others. When
+/// many of these agree, the clock was set: the order begins anew with the latest of them.
 ///
 /// A message moderately far ahead of all channels is set aside: either there was a pause, or its
 /// stamp is wrong. The next message of its channel decides: a newer one confirms it, an older one
 /// drops it.
 ///
-/// Memory is bounded, also with a sender whose clock stands still: of one stamp that is set aside
-/// kMostAside messages are kept, and when more than kMostWaiting wait, the oldest are released.
+/// Memory is bounded, also with a sender whose clock stands still: at most kMostAside messages of
+/// one stamp are set aside, and when more than kMostWaiting wait, the oldest are released.
 class ReorderBuffer {
  public:
   // Our processes send few messages of one stamp, and some tens within a window.
@@ -44,19 +44,20 @@ class ReorderBuffer {
     bool operator()(const Message& a, const Message& b) const { return comes_before(a, b); }
   };
 
-  /// How a stamp relates to the messages before: older than a released one, or too far ahead.
+  /// Why a message cannot be put into order: older than a released one of its channel (kLate), or
+  /// too far ahead of the newest message (kAhead).
   enum class Misfit { kNone, kLate, kAhead };
 
-  // A message this far ahead of all others is set aside, which delays it by a period of its
-  // channel: above sensors' periods and the jitter between processes.
+  // A message more than this ahead of all others may be set aside, which delays it by a period of
+  // its channel. Above odometry's default period and the jitter between processes.
   static constexpr Duration kLead = std::chrono::milliseconds{100};
   static constexpr Duration kLongestStep = std::chrono::milliseconds{500};
 
   /// What is known of a channel.
   struct Stream {
-    std::optional<Timestamp> newest{};    ///< stamp of the messages that are or were waiting
+    std::optional<Timestamp> newest{};    ///< newest stamp that was put into waiting_
     std::optional<Timestamp> released{};  ///< stamp of the last released message
-    Duration usual_step{kLongestStep};    ///< the last step, growing at most by a factor of 2
+    Duration usual_step{kLongestStep};    ///< between the last two stamps; at most doubles
     std::vector<Message> aside{};         ///< set aside; all of one stamp
   };
 

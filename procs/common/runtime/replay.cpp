@@ -35,8 +35,8 @@ struct Source {
   }
 };
 
-/// A channel is taken from the last log that has it. What SLAM publishes belongs together: a log
-/// with any SLAM_* or MAP_* channel replaces all of them in the logs before it.
+/// All channels of a group are taken from the last log that has any of them. SLAM_* and MAP_*
+/// channels, which belong together, are one group; any other channel is its own group.
 std::string group_of(const std::string& channel) {
   constexpr std::string_view kSlam = "SLAM_";
   constexpr std::string_view kMap = "MAP_";
@@ -67,7 +67,7 @@ std::vector<Source> open_sources(const std::vector<std::filesystem::path>& paths
   return sources;
 }
 
-/// The source whose next message is oldest; the first one among equals.
+/// The source whose next message is oldest, the first one among equals; nullptr if all have ended.
 Source* oldest(std::vector<Source>& sources) {
   Source* best = nullptr;
   for (Source& source : sources) {
@@ -98,8 +98,9 @@ bool report_skipped(const std::vector<Source>& sources) {
   return any;
 }
 
-/// Reports each log that has no channel of this process, and the channels that it has. (A log whose
-/// channels are all replaced by later logs is not reported.)
+/// Reports each log that has no channel of this process, with the channels that it does have. (A
+/// log whose channels are all replaced by later logs is not reported.) @return whether there is
+/// any.
 bool report_useless(const std::vector<Source>& sources,
                     const std::vector<Inbox::Subscription>& subscriptions) {
   std::vector<std::string> wanted;
@@ -122,7 +123,8 @@ bool report_useless(const std::vector<Source>& sources,
   return any;
 }
 
-/// Reports each needed channel that no log has, and the channels that they have.
+/// Reports each needed channel that no log has, with the channels that the logs do have.
+/// @return whether there is any.
 bool report_missing(const std::vector<Source>& sources,
                     const std::vector<std::string_view>& needed) {
   std::set<std::string> held;

@@ -12,7 +12,7 @@ namespace waymark {
 
 struct ReplayReport {
   std::int64_t messages{};
-  double log_s{};   ///< from the first to the last message
+  double log_s{};   ///< log time from --skip-s to the last replayed message
   double wall_s{};  ///< wall-clock time of the replay
   double peak_memory_mb{};
 

@@ -28,7 +28,7 @@ constexpr milliseconds kPoll{50};
 // How long a participant answers re-sent ticks when the simulator's closing TICK got lost.
 constexpr seconds kLinger{5};
 constexpr seconds kNothingHint{10};
-constexpr seconds kSilence{1};  // after this, no older message is expected
+constexpr seconds kSilence{1};  // after this long without a message, no delayed one is expected
 // How long received messages are still processed after a stop signal.
 constexpr seconds kDrain{2};
 // Longer than the jitter between our processes, shorter than the default LiDAR's period.
@@ -43,7 +43,8 @@ bool is_command(std::string_view channel) {
   return channel == channels::kMbotSystemReset.name;
 }
 
-/// Statuses and commands belong to no tick and have no sensor's stamp: they are delivered at once.
+/// Statuses and MBOT_SYSTEM_RESET belong to no tick and have no sensor's stamp: they are delivered
+/// at once.
 bool is_untimed(std::string_view channel) {
   return channel.ends_with("_STATUS") || is_command(channel);
 }
@@ -59,7 +60,7 @@ std::vector<std::string> names_in_ticks(const std::vector<Inbox::Subscription>& 
 struct Network {
   std::string url;
   ChannelNames names;
-  LargeMessages large_messages;  ///< in real time: in lockstep nobody sends them
+  LargeMessages large_messages;  ///< for real time; in lockstep nobody sends them
 };
 
 /// Thrown through the participant, so that a tick on which the node failed is not acknowledged.
@@ -248,7 +249,7 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
     try {
       return run(description.traits, network, *node, inbox, outbox);
     } catch (const NodeFailed&) {
-      node->finish();  // its files; what it publishes belongs to no tick
+      node->finish();  // writes its files; its messages are not sent: they belong to no tick
       return int{kExitFailed};
     }
   });

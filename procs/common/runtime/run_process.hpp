@@ -14,7 +14,7 @@
 
 namespace waymark {
 
-/// A node type with its template parameters erased.
+/// A node type and its configuration, type-erased, so that run_described_process() is no template.
 struct ProcessDescription {
   ProcessTraits traits{};
   OptionSet option_set{};

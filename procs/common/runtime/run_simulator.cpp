@@ -79,7 +79,7 @@ class Run {
     for (int i = 0; i < kClosingRepeats; ++i)
       bus_.publish(master.closing());
     for (const auto& [who, hash] : master.state_hashes()) {
-      if (hash == 0) continue;  // the recorder has no state
+      if (hash == 0) continue;  // it has published nothing, like the recorder
       logging::info("state hash of {}: {:016x}", who, static_cast<std::uint64_t>(hash));
     }
     return kExitOk;
@@ -210,7 +210,7 @@ ChannelNames names_of(const ProcessOptions& options, const SimulatorDescription&
   return description.channel_names ? description.channel_names(options) : ChannelNames{};
 }
 
-/// Null in real time, where each channel belongs to its first publisher (ChannelOwners).
+/// Null in real time, where receivers accept one publisher per channel (ChannelOwners).
 std::unique_ptr<SimulatorLock> lock_of(const ProcessOptions& options,
                                        const SimulatorDescription& description) {
   if (options.real_time) return nullptr;
@@ -218,7 +218,7 @@ std::unique_ptr<SimulatorLock> lock_of(const ProcessOptions& options,
                                          names_of(options, description));
 }
 
-/// Builds the world, too, but writes no file.
+/// Option --check: builds the world and joins the network, but writes no file.
 int check(ProcessOptions options, const SimulatorDescription& description) {
   options.out_dir.clear();
   Inbox inbox;

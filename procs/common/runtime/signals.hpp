@@ -4,7 +4,8 @@
 
 namespace waymark {
 
-/// From now on the first of these signals sets the flag, and a second one ends the process at once.
+/// From now on the first of these signals sets the flag, and another one more than 0.3 s later ends
+/// the process at once. SIGPIPE is ignored.
 void install_stop_signals();
 
 /// The signal that asked to stop, or 0.

@@ -15,7 +15,7 @@ class StatusReporter {
  public:
   explicit StatusReporter(std::string_view process_name);
 
-  /// Reports, once a second at most. @return whether it did.
+  /// Sends a status unless the last one is less than a second old. @return true if it was sent.
   bool report(Bus& bus, Counters& counters, Timestamp newest, std::string_view state);
 
  private:

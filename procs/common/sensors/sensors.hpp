@@ -29,7 +29,7 @@ struct LidarScan {
   Timestamp time{};
   std::vector<double> ranges_m{};    ///< +inf = no return within range, NaN = invalid (REP-117)
   std::vector<double> angles_rad{};  ///< counter-clockwise from x, LiDAR frame
-  std::vector<Duration> beam_time_offsets{};  ///< measured at time + offset
+  std::vector<Duration> beam_time_offsets{};  ///< a beam is measured at time + its offset
 };
 
 /// One square marker in one image. Its coordinate frame: lcmtypes/marker_detection_t.lcm.

@@ -5,7 +5,7 @@ namespace waymark {
 namespace {
 
 constexpr int kConsecutive = 20;                     // stamps after which the clock counts as set
-constexpr Duration kNear = std::chrono::seconds{2};  // between consistent stamps
+constexpr Duration kNear = std::chrono::seconds{2};  // between consistent stamps, at most
 
 }  // namespace
 

@@ -6,16 +6,17 @@
 
 namespace waymark {
 
-/// White zone, black border, and the bits behind it, convolved with a Gaussian point spread.
+/// Across a side: quiet zone (white), border (black) and first bits, blurred by a Gaussian.
 struct BlurredSide {
-  double blur_px{0.0};      ///< standard deviation
-  double border_px{0.0};    ///< thickness
+  double blur_px{0.0};      ///< standard deviation of the Gaussian
+  double border_px{0.0};    ///< thickness of the black border
   double inner_white{0.0};  ///< share of the bits behind the border that are white
 
   /// Brightness from 0 (black) to 1 (white) across the side, whose edge is at offset 0.
   EdgeProfile profile(double reach_px) const;
 
-  /// Bias of EdgeProfile::edge_px() [px], positive outwards.
+  /// What EdgeProfile::edge_px() returns for this model, whose true edge is at 0: its bias [px],
+  /// positive outwards.
   double bias_px(double reach_px, double black_level, double half_window_px) const;
 };
 

@@ -14,25 +14,27 @@
 namespace waymark {
 namespace {
 
-// The first pass starts half a pixel off the edge, the second one on it; blurred sides need more.
+// The first pass starts from sides about half a pixel off the edge, the second from fitted ones;
+// blurred images need more passes.
 constexpr int kMinPasses = 2;
 constexpr int kMaxPasses = 6;
-constexpr double kConvergedPx = 0.1;  // iteration ends when the corners move by less
-// Neighbouring profiles share pixels, so that N of them count as N / 2.2 independent ones
-// (measured: the factor at which the squared errors of rendered markers agree with their
+constexpr double kConvergedPx = 0.1;  // a pass that moves every corner by less is the last one
+// Neighbouring profiles share pixels, so that N of them carry the information of N / 2.2
+// independent ones (measured on rendered markers: with 2.2, squared errors agree with the
 // covariance).
 constexpr double kSharedNoise = 2.2;
 constexpr double kOutlierSigmas = 2.5;
-// Below this, residuals are rounding of grey values.
+// Lower bound of the residuals: below it they come from the rounding of grey levels.
 constexpr double kSmallestResidualPx = 0.01;
-// Standard deviations of the correction for blur: as a share of the bias, and of the blur itself.
+// Standard deviation of the blur correction: root sum of squares of these shares of the bias and of
+// the blur.
 constexpr double kBiasSigmaShare = 0.5;
 constexpr double kBlurSigmaShare = 0.02;
 
 using Sides = std::array<Side, 4>;
 
-/// Offset of the edge from a side, `at_start + slope * along`, with the covariance of the offsets
-/// at the side's two corners.
+/// Outward offset [px] of the fitted edge from a side, `at_start_px + slope * along_px`, with the
+/// covariance [px^2] of its offsets at the side's two corners.
 struct EdgeLine {
   double at_start_px{0.0};
   double slope{0.0};
@@ -50,8 +52,7 @@ Sides sides_of(const Corners& corners) {
           Side{corners[3], corners[0]}};
 }
 
-/// @param corner_px  length left out at both ends, where the neighbouring sides' blur bends the
-/// edge.
+/// @param corner_px  see SampledSquare::corner_px().
 std::vector<EdgePoint> edge_points(const SampledSide& sampled, double black, double corner_px,
                                    double min_contrast) {
   const double half_window_px = sampled.half_window_px();
@@ -66,7 +67,7 @@ std::vector<EdgePoint> edge_points(const SampledSide& sampled, double black, dou
   return points;
 }
 
-/// Ordinary least squares of the offsets: in the frame of the side, slopes are tiny.
+/// Ordinary least squares in the frame of the side, in which the slope of the edge is tiny.
 EdgeLine fit_once(const std::vector<EdgePoint>& points, double length_px) {
   const double n = static_cast<double>(points.size());
   double mean_along = 0.0;
@@ -98,7 +99,7 @@ EdgeLine fit_once(const std::vector<EdgePoint>& points, double length_px) {
   return line;
 }
 
-/// Repeats the fit without outliers.
+/// Fits up to three times, each time without the outliers of the fit before.
 std::optional<EdgeLine> fit_line(std::vector<EdgePoint> points, double length_px, int min_points) {
   constexpr int kRounds = 3;
   if (std::ssize(points) < min_points) return std::nullopt;
@@ -166,8 +167,8 @@ FittedQuad intersect(const Sides& sides, const std::array<EdgeLine, 4>& lines) {
   return quad;
 }
 
-/// Standard deviation of the error that all points of a side have in common: from sampling, and
-/// from the bits beside a thin border.
+/// Standard deviation [px] of the error that all edge points of a side share: from sampling, and
+/// from the bits behind a thin border.
 double common_sigma_px(double border_px, const RefinementConfig& config) {
   constexpr double kThinnestBorderPx = 1.0;
   const double thickness = std::max(kThinnestBorderPx, border_px);

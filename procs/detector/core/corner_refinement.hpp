@@ -28,18 +28,18 @@ struct RefinementConfig {
 /// Corners with their covariance.
 struct MeasuredCorners {
   Corners ideal_px{};  ///< without lens distortion
-  /// [px^2] order u0 v0 u1 v1 u2 v2 u3 v3.
+  /// [px^2]; rows and columns in the order u0 v0 u1 v1 u2 v2 u3 v3.
   Eigen::Matrix<double, 8, 8> covariance{Eigen::Matrix<double, 8, 8>::Identity()};
   bool refined{false};
 };
 
 /// Finds points on the black-white edge along the four sides of a marker, fits a line to each side,
 /// and intersects neighbouring lines. Works in ideal pixels, where lens distortion does not bend
-/// lines. If a side has too few good points, or a corner would move too far, the corners stay as
-/// they are, with a large covariance.
+/// lines. If a side has too few good points, or a corner would move too far, all four corners stay
+/// where they were, with the standard deviation unrefined_sigma_px.
 ///
 /// @param gray                8-bit, one channel.
-/// @param raw_corners_px      to within about two pixels, from the first stage.
+/// @param raw_corners_px      from the first stage, right to within about two pixels.
 /// @param modules_per_side    bits of the dictionary plus the two of the border.
 MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
                                const Corners& raw_corners_px, int modules_per_side,

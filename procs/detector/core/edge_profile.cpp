@@ -9,14 +9,14 @@ namespace {
 
 constexpr int kStepsPerPixel = 4;
 constexpr int kMaxProfilesPerSide = 80;
-// Near a corner the blur of the neighbouring side bends the edge.
+// No profiles nearer to a corner, where the blur of the neighbouring side bends the edge.
 constexpr double kCornerMarginPx = 2.0;
 constexpr double kMaxCornerMarginRate = 0.2;
-// Where levels are read, as shares of the reach: beyond the blur of the edge.
+// Where the white and black levels are read, as shares of the reach: outside the blur of the edge.
 constexpr double kWhiteFrom = 0.6;
 constexpr double kBlackAt = 0.5 * kThickBorder;
 constexpr double kBlackHalfWidth = 0.15;
-constexpr double kDark = 0.12;  // share of the contrast up to which a bit is black
+constexpr double kDark = 0.12;  // a bit up to this share of the contrast above the darkest is black
 
 /// Bilinear; nullopt outside the image.
 std::optional<double> brightness_at(const cv::Mat& gray, const Eigen::Vector2d& raw_px) {
@@ -52,8 +52,8 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
 
 }  // namespace
 
-/// In front of a white bit, the black level of a thin border is read in its middle, farthest from
-/// both edges.
+/// Where the bit behind a thin border is white, the black level is read in the middle of the
+/// border, farthest from its outer edge and from the bit.
 void read_levels(EdgeProfile& profile, double border_px) {
   profile.white = mean_between(profile, kWhiteFrom, 1.0);
   const double middle = 0.5 * border_px / profile.reach_px;
@@ -99,7 +99,7 @@ std::optional<double> EdgeProfile::edge_px(double black_level, double half_windo
 }
 
 std::optional<double> EdgeProfile::blur_px(double black_level) const {
-  constexpr double kQuartileDistance = 1.349;  // of a normal distribution, in standard deviations
+  constexpr double kQuartileDistance = 1.349;  // between quartiles of a normal, in sigmas
   const auto low = crossing_px(black_level + 0.25 * (white - black_level));
   const auto high = crossing_px(black_level + 0.75 * (white - black_level));
   if (!low || !high || *high < *low) return std::nullopt;

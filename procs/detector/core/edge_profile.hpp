@@ -12,14 +12,16 @@
 
 namespace waymark {
 
-/// Modules from a side to the middle of the bits behind the border.
+/// Distance [modules] from the outer edge of the black border to the centres of the first row of
+/// bits.
 inline constexpr double kInnerBits = 1.5;
 
-/// Thickness of a border, in units of its profiles' reach, from which on blur of the bits behind it
-/// does not change its black level.
+/// A black border at least this many times as thick as the reach of its profiles has a black level
+/// that the blur of the bits behind it does not change.
 inline constexpr double kThickBorder = 1.5;
 
-/// One side of a marker in ideal pixels, from corner to corner, clockwise around the marker.
+/// One side of a marker's black square in ideal pixels (without lens distortion), from corner to
+/// corner, clockwise around the marker.
 struct Side {
   Eigen::Vector2d start_px{};
   Eigen::Vector2d end_px{};
@@ -31,41 +33,44 @@ struct Side {
   Eigen::Vector2d outward() const { return {direction().y(), -direction().x()}; }
 };
 
-/// Brightness along a normal of a side, in equal steps from -reach (inside, the black border) to
-/// +reach (outside, the white zone).
+/// Grey levels along a line perpendicular to a side, in equal steps from -reach_px (inside, in the
+/// black border) to +reach_px (outside, in the white quiet zone).
 struct EdgeProfile {
   double along_px{0.0};  ///< distance from the side's start
   double reach_px{0.0};
   std::vector<double> brightness{};
-  bool is_white_behind{false};  ///< the bit behind the border
-  double white{0.0};            ///< mean level outside
-  double black{0.0};            ///< mean level inside; blur makes a thin border's too bright
+  bool is_white_behind{false};  ///< the bit behind the black border is white
+  double white{0.0};            ///< mean grey level outside, in the quiet zone
+  double black{0.0};  ///< mean grey level in the border; too bright if blurred in a thin border
 
   double step_px() const;
-  /// Brightness at an offset; linear between the samples, constant beyond them.
+  /// Grey level at an offset from the side; linear between the samples, constant beyond them.
   double at(double offset_px) const;
-  /// Offset [px, outwards] of the dark-to-bright crossing of a level; the one nearest to the side.
+  /// Offset [px, outwards] at which the profile rises through a grey level; of several such
+  /// crossings the one nearest to the side.
   std::optional<double> crossing_px(double level) const;
-  /// Offset [px, outwards] of the ideal step edge with the same mean brightness as the profile in a
-  /// window about the crossing. Unlike the crossing itself, which in sharp images is up to 0.09 px
-  /// off, it does not depend on the edge's position within a pixel. nullopt without a crossing.
+  /// Offset [px, outwards] of the ideal black-white step with the same mean grey level as the
+  /// profile in a window about its half-height crossing. In sharp images the crossing itself is off
+  /// by up to 0.09 px, depending on where in a pixel the edge lies; this offset does not depend on
+  /// that. nullopt without a crossing.
   std::optional<double> edge_px(double black_level, double half_window_px) const;
-  /// Standard deviation of the point spread [px], from the distance between the crossings of a
-  /// quarter and of three quarters of the edge's height, where bits behind the border hardly
-  /// matter.
+  /// Standard deviation [px] of the point spread across the edge, from the distance between the
+  /// crossings at 25 % and 75 % of the step from black to white; the bits behind the border hardly
+  /// affect these crossings. nullopt when one of them is missing.
   std::optional<double> blur_px(double black_level) const;
 };
 
-/// Sets the profile's white and black levels.
-/// @param border_px  thickness of the border.
+/// Sets `white` and `black` of a profile from its samples.
+/// @param border_px  thickness of the black border.
 void read_levels(EdgeProfile& profile, double border_px);
 
-/// About one profile per pixel along the side, 2 to 80, away from its corners. Profiles that would
-/// leave the image are left out.
+/// About one profile per pixel of the side's length, 2 to 80 in all, none near its corners.
+/// Profiles that would leave the image are left out.
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
                                          const Side& side, double reach_px, double border_px);
 
-/// Mean brightness along the parallel at a distance inside a side; nullopt if it leaves the image.
+/// Mean grey level along the line parallel to a side, inside_px inside it; nullopt if that line
+/// leaves the image.
 std::optional<double> mean_brightness_inside(const cv::Mat& gray, const CameraModel& camera,
                                              const Side& side, double inside_px);
 

@@ -17,10 +17,10 @@ enum class FrameProblem {
   kEmpty,
   kUnknownFormat,
   kWrongSize,  ///< not the configured camera's width and height
-  kTooShort,   ///< fewer bytes than rows of that stride need
+  kTooShort,   ///< fewer bytes than height_px rows of row_stride_bytes need
   kNotAJpeg,
   kTruncatedJpeg,
-  kBrokenJpeg,  ///< looks like one, cannot be decoded
+  kBrokenJpeg,  ///< looks like a JPEG, but cannot be decoded
 };
 
 std::string_view to_string(FrameProblem problem);
@@ -38,10 +38,10 @@ struct DecodedFrame {
   cv::Mat
       gray{};  ///< 8-bit, one channel; empty when there is a problem; may share the input's bytes
   FrameProblem problem{FrameProblem::kNone};
-  cv::Size wrong_size{};  ///< of kWrongSize
+  cv::Size wrong_size{};  ///< size of the received image; set for kWrongSize only
 };
 
-/// Sizes are checked before anything is allocated for them. Never throws for bad bytes.
+/// The image size is checked before memory is allocated for it. Never throws for bad bytes.
 DecodedFrame decode_frame(const EncodedFrame& frame, cv::Size expected_size);
 
 }  // namespace waymark

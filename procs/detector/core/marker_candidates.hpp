@@ -21,7 +21,8 @@ struct CandidateConfig {
   int threshold_window_min_px{3};
   int threshold_window_max_px{23};
   int threshold_window_step_px{10};
-  /// OpenCV's 7 finds edges in image noise; from 10 on, pale markers in photographs are missed.
+  /// At OpenCV's default of 7, noise gives false edges; from 10 on, pale markers in photographs are
+  /// missed.
   double threshold_constant{8.0};
   double error_correction_rate{0.6};
   double min_perimeter_rate{0.03};

@@ -31,8 +31,8 @@ bool overlap(const MarkerDetection& a, const MarkerDetection& b) {
   return (centre_px(a) - centre_px(b)).norm() < 0.5 * std::max(a.width_px, b.width_px);
 }
 
-/// One marker can yield two quads with the same id (inner and outer contour). Keeps the one with
-/// the smaller reprojection error.
+/// One marker can yield two quads with the same id (inner and outer contour of its border). Of each
+/// such pair, keeps the quad with the smaller reprojection error.
 std::vector<MarkerDetection> without_overlaps(const std::vector<MarkerDetection>& detections) {
   std::vector<MarkerDetection> kept;
   for (const MarkerDetection& detection : detections) {

@@ -17,9 +17,10 @@
 
 namespace waymark {
 
-/// Standard deviations of the camera's calibration, added to the covariance of every pose. Zero:
-/// intrinsics and mounting are exact, as in simulation. A carefully calibrated real camera: 0.005,
-/// 0.005 rad (0.3 degrees), 0.017 rad (1 degree).
+/// Standard deviations of the errors of the camera's calibration; their squares are added to the
+/// covariance of every pose. Zero: intrinsics and mounting are exact, as in simulation. A carefully
+/// calibrated real camera: range_rate 0.005, bearing_rad 0.005 (0.3 degrees), orientation_rad 0.017
+/// (1 degree).
 struct CalibrationErrorConfig {
   double range_rate{0.0};
   double bearing_rad{0.0};

@@ -10,12 +10,12 @@
 namespace waymark {
 namespace {
 
-// Largest standard deviation of the point spread that does not displace edges. Sharp images have
-// 0.5 to 0.75 px, by the area of the pixels and the interpolation between them.
+// Up to this standard deviation [px] of the point spread, blur does not displace edges. Sharp
+// images have 0.5 to 0.75 px, from the area of the pixels and the interpolation between them.
 constexpr double kSharpPx = 0.95;
 constexpr double kMinBorderPx = 2.0;
-constexpr double kCornerBlurs = 3.0;  // reach of a corner, in standard deviations of the blur
-constexpr double kHalfWhite = 0.5;    // share of white bits where it hardly matters
+constexpr double kCornerBlurs = 3.0;  // length that a corner bends the edge, in sigmas of the blur
+constexpr double kHalfWhite = 0.5;    // assumed share of white bits; matters little here
 constexpr std::size_t kMinLevels = 4;
 
 double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
@@ -50,8 +50,8 @@ std::array<double, 4> border_thickness_px(const std::array<Side, 4>& sides, int 
   return thickness_px;
 }
 
-/// Median black level of the two opposite sides with the thicker borders. If these are thin, white
-/// bits behind them brighten the level by blur: then only profiles in front of black bits count.
+/// Median black level of the two opposite sides with the thicker borders. If even these borders are
+/// thin, blur lets white bits brighten them: then only profiles in front of black bits count.
 double black_level(const SampledSquare& square) {
   const std::size_t first = square.thick_side();
   std::vector<double> levels;

@@ -16,12 +16,12 @@ namespace waymark {
 struct SampledSide {
   Side side{};
   double border_px{0.0};  ///< thickness of the black border
-  double reach_px{0.0};   ///< of the profiles
+  double reach_px{0.0};   ///< half the length of each profile
   std::vector<EdgeProfile> profiles{};
-  double blur_px{0.0};  ///< standard deviation of the point spread across it
+  double blur_px{0.0};  ///< standard deviation of the point spread across the side
 
-  /// True when blur displaces the edge. False also where the border is too thin to measure blur:
-  /// bits behind it make the edge look wider.
+  /// True when the image is blurred so much that the edge is displaced. False also for a thin
+  /// border (up to 2 px), where blur cannot be measured: the bits behind the border widen the edge.
   bool is_blurred() const;
 
   /// Half window for EdgeProfile::edge_px(): wide enough for the blur of the edge, narrow enough to
@@ -31,14 +31,15 @@ struct SampledSide {
 
 struct SampledSquare {
   std::array<SampledSide, 4> sides{};
-  double black{0.0};  ///< level of the border
+  double black{0.0};  ///< grey level of the black border
 
   bool is_blurred() const;
 
-  /// Length [px] at both ends of a side where the blur of the neighbouring sides bends the edge.
+  /// Length [px] to leave out at both ends of a side, where the blur of the neighbouring sides
+  /// bends the edge; 0 when neither neighbour is blurred.
   double corner_px(std::size_t side) const;
 
-  /// Index, 0 or 1, of the first of the two opposite sides with the thicker borders.
+  /// 0 when sides 0 and 2 have thicker borders than sides 1 and 3, in sum; else 1.
   std::size_t thick_side() const;
 };
 
@@ -48,8 +49,8 @@ SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
                             const std::array<Side, 4>& sides, int modules_per_side,
                             double reach_px);
 
-/// Outward bias [px] of a blurred side's edge, from the model BlurredSide: white bits behind the
-/// border brighten it.
+/// Outward bias [px] that EdgeProfile::edge_px() has on a blurred side, by the model BlurredSide:
+/// white bits behind the border brighten the border and shift the edge.
 double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const SampledSquare& square,
                     std::size_t side);
 

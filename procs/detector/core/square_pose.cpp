@@ -173,8 +173,7 @@ std::optional<SquarePoses> solve_square(const MeasuredCorners& corners, const Ca
   if (starts.size() != 2 || !refiner.usable()) return std::nullopt;
 
   std::array refined{refiner.refine(starts[0]), refiner.refine(starts[1])};
-  // Both refinements may end in the same minimum; the closed-form solution then stands for the
-  // other.
+  // Both refinements may end in the same minimum; then the unrefined closed-form pose is `other`.
   if (are_the_same(refined[0], refined[1])) refined[1] = starts[1];
 
   std::array<SquarePose, 2> poses;

@@ -29,13 +29,13 @@ struct SquarePose {
 struct SquarePoses {
   SquarePose best{};
   SquarePose other{};
-  /// Of the best one: x y z rx ry rz [m^2, rad^2], errors added in the optical frame, rotations
-  /// about its axes.
+  /// Covariance of `best` [m^2, rad^2], order x y z rx ry rz: errors of translation and rotation
+  /// along and about the axes of the camera's optical frame.
   Eigen::Matrix<double, 6, 6> covariance_in_camera{Eigen::Matrix<double, 6, 6>::Zero()};
 };
 
-/// Both solutions in closed form (Collins, Bartoli, "Infinitesimal plane-based pose estimation",
-/// 2014), each refined to the least reprojection error weighted by the corners' covariance. Marker
+/// Both poses in closed form (Collins, Bartoli, "Infinitesimal plane-based pose estimation", 2014),
+/// each refined to the least reprojection error weighted by the corners' covariance. Marker
 /// frame: see lcmtypes/marker_detection_t.lcm. nullopt when the corners are no square in front of
 /// the camera.
 std::optional<SquarePoses> solve_square(const MeasuredCorners& corners, const CameraModel& camera,

@@ -25,7 +25,7 @@ namespace waymark {
 struct RunConfig {
   std::int64_t seed{1};
   double tick_s{0.1};
-  int physics_rate_hz{600};  ///< divisible by 30, 10 and 5 Hz
+  int physics_rate_hz{600};  ///< the default is divisible by 30, 10 and 5 Hz
   bool rolling_scan{false};
   std::vector<std::string> participants{"detector", "slam", "viewer", "recorder"};
   int window_ticks{4};
@@ -35,8 +35,8 @@ struct RunConfig {
   void describe(Fields& fields);
 };
 
-/// Default of [robot]: sigmas of camera and markers as in simulation, where only rendering and
-/// detection leave errors (0.02 px). A scenario with [camera_errors] has to set larger ones.
+/// Default of [robot]: its sigmas of camera and markers suit the simulation, where only rendering
+/// and detection cause errors (0.02 px). A scenario with [camera_errors] has to set larger sigmas.
 RobotConfig simulated_robot();
 
 struct Scenario {
@@ -51,13 +51,13 @@ struct Scenario {
   RunConfig run{};
   std::vector<FaultConfig> faults{};
   std::vector<KidnapConfig> kidnaps{};
-  ExpectConfig expect{};  ///< not used by the simulation, but by waymark-evaluate
+  ExpectConfig expect{};  ///< used by waymark-evaluate only
 
   MarkerPrint marker_print() const {
     return {robot.markers.dictionary, robot.markers.size_m, markers.quiet_zone_modules};
   }
 
-  /// Physics steps from one measurement of a sensor to the next.
+  /// Physics steps between two measurements of a sensor that measures at rate_hz.
   int steps_per(double rate_hz) const;
   int steps_per_tick() const;
 

@@ -14,8 +14,9 @@ namespace {
 
 constexpr double kRoundingSlack_m = 1e-9;
 constexpr double kSameWall_rad = 1e-6;
-// Smallest distance of the base to a wall, from the Waffle Pi's size: where the robot turns on the
-// spot, its body extends furthest behind the base; where it drives, half of its width is enough.
+// Smallest distance of the base frame's origin to a wall, from the Waffle Pi's size. Where the
+// robot turns on the spot: the length of its body behind the base; where it drives: half of its
+// width.
 constexpr double kTurningRoom_m = 0.20;
 constexpr double kDrivingRoom_m = 0.16;
 constexpr double kRobotLength_m = 0.30;
@@ -35,8 +36,8 @@ double distance_m(const BoxConfig& box, const Eigen::Vector2d& point_m) {
   return beyond_m.norm();
 }
 
-/// Empty if the point is at least `needed_m` away from every wall, and from every box at whatever
-/// time it is present; else a sentence.
+/// Empty if the point is at least `needed_m` away from every wall and every box, also from boxes
+/// that are present for a time only; else a sentence about the problem.
 std::string what_is_too_close(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
                               const Eigen::Vector2d& point_m, double needed_m) {
   const double to_wall_m = clearance_m(walls, point_m);

@@ -8,7 +8,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kStandBefore_s = 1.0;  // stopped, then lifted
+constexpr double kStandBefore_s = 1.0;  // from the stop until the robot is lifted
 constexpr double kStandAfter_s = 1.0;
 const Eigen::Vector3d kOutOfSight_m{0.0, 0.0, -100.0};  // deep under the floor
 

@@ -13,9 +13,9 @@
 
 namespace waymark {
 
-/// The robot is stopped, lifted and put down elsewhere, without any turn of its wheels. It then
-/// turns towards the line of the route that it was on and follows it, so the place should be near
-/// that line.
+/// A kidnap: the robot is stopped, lifted and put down elsewhere, its wheels standing still. It
+/// then turns towards the piece of the route that it was following and follows that piece again, so
+/// it should be put down near that piece.
 struct KidnapConfig {
   Trigger when{};
   double to_x_m{0.0};
@@ -38,13 +38,14 @@ class SceneDynamics {
  public:
   explicit SceneDynamics(const World& world);
 
-  /// Updates the model. @return the markers that were moved since the last call.
+  /// Shows and hides boxes and moves markers in the physics model.
+  /// @return the markers moved by this call.
   std::vector<MovedMarker> update(Timestamp time, const Moment& moment, Physics& physics);
 
  private:
   std::vector<MarkerPlate> markers_;
   std::vector<Eigen::Vector2d> moved_by_m_;  ///< displacement of each marker so far
-  std::vector<MarkerMove> moves_;            ///< still to come
+  std::vector<MarkerMove> moves_;            ///< moves still to come
   std::vector<BoxConfig> boxes_;
   std::vector<bool> is_shown_;
 };
@@ -56,11 +57,12 @@ class Kidnapper {
 
   enum class Grip { kNone, kHeld, kReleased };
 
-  /// Call at every step. While kHeld the robot must stand; kReleased is returned once, at the end.
+  /// Call at every physics step. While it returns kHeld, the robot must be commanded to stand; at
+  /// the end of a kidnap it returns kReleased once.
   Grip update(const Moment& moment, Physics& physics);
 
  private:
-  std::vector<KidnapConfig> kidnaps_;  ///< those to come, the next one first
+  std::vector<KidnapConfig> kidnaps_;  ///< kidnaps still to come, in order
   double held_since_s_{-1.0};
   bool has_moved_{false};
 };

@@ -12,7 +12,7 @@ namespace waymark {
 namespace {
 
 constexpr std::int64_t kNotYet = -1;
-// Time limit of a route without route.duration_s: a multiple of length over speed, and a reserve.
+// A route without route.duration_s must end within factor * length / speed + reserve.
 constexpr double kTimeLimitFactor = 3.0;
 constexpr double kTimeReserve_s = 60.0;
 constexpr int kPicturesPerExposure = 5;
@@ -149,8 +149,8 @@ Random Simulation::garbage_random(Sensor sensor) const {
                 static_cast<std::uint64_t>(sensor), static_cast<std::uint64_t>(step_)};
 }
 
-/// A few beams in every step. A finished sweep is stamped with the time of its last beams, so that
-/// messages stay in order of time.
+/// Measures a few beams of the sweep in every physics step. A finished sweep is stamped with the
+/// time of its last beams (offsets of earlier beams are negative), so that stamps never go back.
 void Simulation::measure_rolling_scan() {
   const int num_beams = scenario_.robot.lidar.num_beams;
   const int steps_per_sweep = scenario_.steps_per(scenario_.robot.lidar.rate_hz);
@@ -176,7 +176,8 @@ cv::Mat Simulation::render_at(double later_s) {
                           camera_.config().base_from_camera());
 }
 
-/// The mean of a few pictures over the exposure time, centred on now.
+/// The mean of kPicturesPerExposure pictures, spread over the exposure time centred on now(); blurs
+/// by motion.
 cv::Mat Simulation::render_exposure() {
   const double exposure_s = scenario_.camera_noise.exposure_s;
   if (exposure_s == 0.0) return render_at(0.0);

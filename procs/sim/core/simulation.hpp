@@ -26,8 +26,8 @@ struct TruePose {
   Se2 world_from_base{};
 };
 
-/// Measurements stamped from the end of the last tick (inclusive) to the end of this one
-/// (exclusive), and the markers that were moved.
+/// Measurements with stamps from the end of the previous tick (inclusive) to `end` (exclusive), and
+/// the markers moved at the start of this tick.
 struct Tick {
   Timestamp end{};
   std::vector<OdometrySample> odometry{};
@@ -50,7 +50,8 @@ class Simulation {
   /// A velocity command (route.source = command only).
   CommandOutcome command(Timestamp stamp, const Velocity& velocity);
 
-  /// The robot has stood at the end for route.settle_s, or with commands route.duration_s is over.
+  /// True when the robot arrived at the end of the route at least route.settle_s ago; with
+  /// route.source = command, when route.duration_s is over.
   bool finished() const;
 
   Timestamp now() const { return time_of_step(step_); }
@@ -59,7 +60,8 @@ class Simulation {
 
   Se2 world_from_base() const { return physics_.world_from_base(); }
 
-  /// Share of the route, or with commands of the time: 0 at the start, 1 when finished.
+  /// Share of the route driven so far, or, with route.source = command, of route.duration_s; 1 when
+  /// finished.
   double progress_fraction() const;
 
  private:

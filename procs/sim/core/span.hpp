@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Intervals and instants of a run, by time, by distance driven, or both.
+// Intervals and instants of a run, by time, by progress along the route, or both.
 #pragma once
 
 #include "common/config/config.hpp"
 
 namespace waymark {
 
-/// Progress of the run.
+/// Time since the start of the run, and progress along the route.
 struct Moment {
   double time_s{0.0};
-  double route_m{0.0};  ///< progress along the route; 0 when commands drive
+  double route_m{0.0};  ///< length of the route driven so far; 0 with route.source = command
 };
 
 /// Later than the end of any run; finite, so that it can be written in TOML.
 constexpr double kNever = 1e9;
 
-/// Active while both time and distance driven are within bounds; by default always.
+/// Active while time and route_m are both within [from, to); by default always.
 struct Span {
   double from_s{0.0};
   double to_s{kNever};
@@ -36,7 +36,7 @@ struct Span {
   void describe(Fields& fields);
 };
 
-/// Happens once, when both time and distance are reached.
+/// Happens once, as soon as both at_s and at_m are reached.
 struct Trigger {
   double at_s{0.0};
   double at_m{0.0};
@@ -45,7 +45,7 @@ struct Trigger {
     return moment.time_s >= at_s && moment.route_m >= at_m;
   }
 
-  /// False when it would already be reached at the start of the run.
+  /// False when neither at_s nor at_m is set: it would happen at the start of the run.
   bool is_set() const { return at_s > 0.0 || at_m > 0.0; }
 
   void describe(Fields& fields);

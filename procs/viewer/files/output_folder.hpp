@@ -23,7 +23,7 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return folder_; }
 
-  /// Names of the files that could not be written at least once.
+  /// Names of the files whose writing or removal has failed at least once.
   const std::set<std::string>& failed_files() const { return failed_files_; }
 
  private:

@@ -19,8 +19,8 @@ std::string tum_text(std::span<const EstimatedPose> path);
 /// of the trajectory [m^2, m rad, rad^2]; health as the number in lcmtypes/slam_estimate_t.lcm.
 std::string covariance_csv_text(std::span<const EstimatedPose> path);
 
-/// `id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state`, by id and
-/// instance.
+/// `id,instance,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad,sightings,state`, sorted by
+/// id and instance.
 std::string markers_csv_text(std::vector<Landmark> landmarks);
 
 /// `change,id,instance,x_m,y_m,yaw_rad,was_x_m,was_y_m,size_m,sigmas,support`: one line for each

@@ -31,8 +31,8 @@ class Board {
   /// The newest view; null before the first.
   ViewPtr newest() const;
 
-  /// The last view up to that time, or the first one; null before the first. At most kMaxHistory
-  /// views are kept, evenly spaced in message time.
+  /// The last kept view up to `time`; the earliest kept one if all are later; null before the first
+  /// post. At most kMaxHistory views are kept, about evenly spaced in message time.
   ViewPtr at(Timestamp time) const;
 
   /// Waits for a view with a higher number. @return null after `timeout` and when closed.

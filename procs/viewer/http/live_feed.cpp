@@ -96,7 +96,7 @@ void LiveFeed::add(const image_t& message) {
 void LiveFeed::add(const marker_detections_t& message) {
   const Timestamp time = timestamp_from_us(message.utime);
   current_.last_camera = time;
-  // The detections of the frame that is shown; of every frame where there are no images.
+  // Keeps the detections of the image that is shown; without images, those of every frame.
   if (!current_.camera || current_.camera->time == time) {
     SeenMarkers seen{
         .time = time, .image_width = message.image_width, .image_height = message.image_height};

@@ -12,9 +12,9 @@
 
 namespace waymark::viewer {
 
-/// For the node's thread. In a live run posts five views per second of wall-clock time, one without
-/// clients, and skips a view when a reader holds the board; on a log, five per second of message
-/// time.
+/// For the node's thread only. In a live run it posts five views per second of wall-clock time (one
+/// per second while no client reads), and skips a view when a reader holds the board. On a log it
+/// posts five per second of message time.
 class LiveFeed {
  public:
   enum class Pace { kWallClock, kMessageTime };

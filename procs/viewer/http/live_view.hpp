@@ -15,7 +15,7 @@
 
 namespace waymark::viewer {
 
-/// A tile of the map, with the number of its last change.
+/// A tile of the map. `version`: LiveMap::version at the tile's last change.
 struct LiveTile {
   int x{0};
   int y{0};
@@ -61,7 +61,7 @@ using PathPoint = std::array<float, 2>;  ///< (x, y) [m], map frame
 
 struct LiveView {
   std::uint64_t number{0};  ///< counts the views of a run
-  Timestamp time{};         ///< newest message
+  Timestamp time{};         ///< of the newest message
   std::string title{};
   std::optional<EstimatedPose> estimate{};
   bool is_unplaced{false};  ///< slam runs, but has not found the robot in its map
@@ -69,14 +69,14 @@ struct LiveView {
   std::vector<Landmark> markers{};
   std::vector<Finding> findings{};  ///< of the sensors, by slam
   std::vector<Se2> particles{};
-  std::vector<PathPoint> scan{};  ///< ends of the beams
+  std::vector<PathPoint> scan{};  ///< ends of the beams, map frame
   std::shared_ptr<const CameraFrame> camera{};
   std::optional<SeenMarkers> seen_markers{};
   std::optional<Timestamp> last_camera{};  ///< last frame or detections, with markers or without
   std::optional<Timestamp> last_marker{};  ///< last estimate with a marker sighting
   std::vector<ProcessState> processes{};
-  std::size_t path_begin{0};   ///< the map's first point
-  std::size_t path_length{0};  ///< points of the board's path up to here
+  std::size_t path_begin{0};   ///< index of the first path point in the present map
+  std::size_t path_length{0};  ///< number of points of the board's path up to this view
 };
 
 }  // namespace waymark::viewer

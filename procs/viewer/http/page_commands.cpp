@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kShortestToken = 16;
 constexpr std::size_t kLongestToken = 200;
 
-/// @throws std::exception unless the list is exactly that many numbers.
+/// @throws std::exception unless the list is exactly kSize numbers.
 template <std::size_t kSize>
 void copy_numbers(const nlohmann::json& list, double (&numbers)[kSize]) {
   const auto values = list.get<std::array<double, kSize>>();
@@ -26,7 +26,7 @@ void copy_numbers(const nlohmann::json& list, double (&numbers)[kSize]) {
   std::copy(values.begin(), values.end(), numbers);
 }
 
-/// @throws std::exception for what is no command.
+/// @throws std::exception when the JSON is no command.
 command_t command_of(const nlohmann::json& json) {
   command_t command{};
   const auto kind = json.at("command").get<std::string>();

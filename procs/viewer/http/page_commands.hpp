@@ -12,7 +12,7 @@
 namespace waymark::viewer {
 
 struct PageCommands {
-  std::string token{};  ///< the secret that authorises them
+  std::string token{};  ///< the secret that authorises commands
   std::function<std::optional<reply_t>(const command_t&)> ask{};  ///< nullopt: no answer came
 };
 

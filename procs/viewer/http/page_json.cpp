@@ -151,7 +151,7 @@ std::string view_json(const LiveView& view, const Board::Span& history) {
 std::string with_path(std::string view_json, std::size_t first,
                       std::span<const PathPoint> path_growth) {
   const Json path{{"first", first}, {"xy", points_json(path_growth)}};
-  view_json.pop_back();  // the brace that closes it
+  view_json.pop_back();  // the closing brace of view_json
   return view_json + ",\"path\":" + dump(path) + "}";
 }
 

@@ -18,8 +18,8 @@ std::string with_path(std::string view_json, std::size_t first,
                       std::span<const PathPoint> path_growth);
 
 /// Tiles newer than a version, little-endian: u32 generation, version, side [cells], number of
-/// tiles; f64 origin x, y, resolution [m]; for each tile i32 x, y and its cells (one byte each, 255
-/// = unknown).
+/// tiles; f64 origin x, y, resolution [m]; for each tile i32 x, y and its cells (one byte each:
+/// occupancy [%], 255 = unknown).
 std::string tile_bytes(const LiveMap& map, std::uint32_t since_version);
 
 }  // namespace waymark::viewer

@@ -113,7 +113,8 @@ class EventStream {
   }
 
  private:
-  /// In short sleeps, so that closing the board does not wait for a period.
+  /// Waits until kEventPeriod after the last event, in short sleeps so that closing the board ends
+  /// the wait.
   void wait_for_period() const {
     while (steady_clock::now() - last_ < kEventPeriod && !board_.closed())
       std::this_thread::sleep_for(milliseconds{20});

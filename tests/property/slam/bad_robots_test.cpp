@@ -115,7 +115,7 @@ TEST(BadRobots, NoisyOdometryIsDetectedAndTheCovarianceConsistent) {
   EXPECT_GT(drives.findings.odometry_along, 2.0);
 }
 
-/// From the second pair of markers on: nothing can show slips before the first one.
+/// Wheels slip after the second pair of markers: before the first pair nothing shows slips.
 TEST(BadRobots, WheelSlipIsDetectedAndTheCovarianceConsistent) {
   constexpr double kSecondMarkers_m = 8.0;
   const Drives drives = drive_all(
@@ -157,7 +157,7 @@ TEST(BadRobots, StuckOdometryIsDetectedAndItsLateMotionUsed) {
   EXPECT_EQ(drives.findings.odometry_caught_up, 1);
 }
 
-/// So long that the keyframe where it began is behind the window.
+/// The standstill is so long that the keyframe where it began has left the window.
 TEST(BadRobots, LateMotionAfterALongStandstillIsUsed) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random&) {
     const auto [from, to] = samples_of(6.0);
@@ -177,7 +177,7 @@ TEST(BadRobots, OdometryThatNeverMovesIsReportedAndTheCovarianceConsistent) {
   EXPECT_LT(drives.nees, 5.0);
 }
 
-TEST(BadRobots, FalseTurnsAreNotTakenForARangeScale) {
+TEST(BadRobots, FalseOdometryTurnsAreNotTakenForAWrongRangeScale) {
   const Drives drives = drive_all(as_described, [](SensorLog& log, Random& random) {
     for (std::size_t i = 600; i < log.odometry.size(); i += 300) {
       const double turn_rad = random.uniform(0.2, 0.5);

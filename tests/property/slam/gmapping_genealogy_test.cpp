@@ -244,7 +244,7 @@ TEST(PublishedMap, MemoryIsBoundedAsParticlesShareTheirPast) {
   EXPECT_LE(alive(nodes), 2 * 5 + 1);
 }
 
-TEST(Resampling, IsUnbiased) {
+TEST(Resampling, TheMeanNumberOfCopiesIsProportionalToTheWeight) {
   const std::vector<double> weights{0.02, 0.5, 0.18, 0.0, 0.3};
   constexpr std::uint64_t kRounds = 20000;
   std::vector<double> copies(weights.size());

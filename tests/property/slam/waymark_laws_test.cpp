@@ -126,7 +126,7 @@ TEST(WaymarkEstimator, ACommandedPoseOutsideTheLargestGridIsRefused) {
   EXPECT_FALSE(estimator.set_pose(far));
 }
 
-TEST(WaymarkEstimator, TheFinalTrajectoryIsNoWorseThanTheOneWhileDriving) {
+TEST(WaymarkEstimator, TheFinalTrajectoryIsNoLessAccurateAlongTheCorridorThanLive) {
   const SyntheticCorridor corridor = corridor_with_markers(4);
   WaymarkEstimator estimator{estimator_setup_of(corridor, 1), {}};
   const std::vector<Step> steps = run(estimator, drive(corridor), setup_of(corridor));
@@ -138,7 +138,7 @@ TEST(WaymarkEstimator, TheFinalTrajectoryIsNoWorseThanTheOneWhileDriving) {
   EXPECT_LT(std::sqrt(sum / static_cast<double>(steps.size())), test::along_rmse_m(steps) + 0.005);
 }
 
-/// A stuck encoder: nothing for a while, then at once what was driven meanwhile.
+/// A stuck encoder reports no motion for a while, then at once all motion of that time.
 TEST(WaymarkEstimator, LateMotionIsNotCountedTwice) {
   const SyntheticCorridor corridor = corridor_with_markers(1);
   std::vector<Observation> scans = test::observations_of(drive(corridor), corridor);
@@ -162,7 +162,7 @@ TEST(WaymarkEstimator, LateMotionIsNotCountedTwice) {
   EXPECT_LT((with_gap.translation() - without_gap.translation()).norm(), 0.1);
 }
 
-TEST(WaymarkEstimator, ARandomScanIsNotMapped) {
+TEST(WaymarkEstimator, ScansOfRandomRangesAreNotMapped) {
   const SyntheticCorridor corridor = corridor_with_markers(2);
   std::vector<Observation> scans = test::observations_of(drive(corridor), corridor);
   WaymarkEstimator dirty{estimator_setup_of(corridor, 1), {}};

@@ -114,7 +114,7 @@ TEST(CalibrateProgram, AFolderGivesACameraAndNamesWhatItCannotUse) {
   EXPECT_EQ(read_file(toml), before);
 }
 
-TEST(CalibrateProgram, ALogGivesACameraToo) {
+TEST(CalibrateProgram, AnLcmLogGivesACameraAndItsBadFramesAreNamed) {
   const evaluate::TemporaryFolder folder;
   const std::string log = (folder.path() / "run.lcm").string();
   LogWriter writer{log};

@@ -44,7 +44,7 @@ CameraCalibration calibrated(const std::vector<BoardView>& views) {
 }
 
 /// Six seeds; WAYMARK_SEEDS=40 takes as many as tools/calibrate/README.md speaks of.
-TEST(Lens, FocalLengthIsWithinAThousandthAndSigmasAreHonest) {
+TEST(Lens, FocalLengthIsWithinAThousandthAndErrorsMatchTheirSigmas) {
   const CameraConfig truth = known_camera();
   const char* wanted = std::getenv("WAYMARK_SEEDS");
   const int num_seeds = wanted != nullptr ? std::stoi(wanted) : 6;

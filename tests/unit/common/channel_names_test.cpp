@@ -44,7 +44,7 @@ TEST(ChannelNames, AreTheDefaultsUnlessConfigured) {
     EXPECT_FALSE(names.uses(channel)) << channel;
 }
 
-TEST(ChannelNames, OfAnMbotAreAccepted) {
+TEST(ChannelNames, TheShippedMbotFileMapsItsChannels) {
   const std::filesystem::path file = WAYMARK_SOURCE_DIR "/deploy/mbot.toml";
   const ChannelNames names = load({{file}, {}}).channels;
   EXPECT_EQ(names.on_network("ODOMETRY"), "MBOT_ODOMETRY");
@@ -53,7 +53,7 @@ TEST(ChannelNames, OfAnMbotAreAccepted) {
   EXPECT_EQ(names.on_network("LIDAR"), "LIDAR");
 }
 
-TEST(ChannelNames, TwoOfOneTypeOnOneNameAreRefusedWithTheirLine) {
+TEST(ChannelNames, TwoChannelsOfOneTypeOnOneNameAreRefusedWithTheirLine) {
   const auto file = std::filesystem::path{::testing::TempDir()} / "channel_names_test.toml";
   std::ofstream{file} << "[channels]\n\nslam_pose = \"TRUE_POSE\"\n";
   EXPECT_THAT(error_of({{file}, {}}),
@@ -65,7 +65,7 @@ TEST(ChannelNames, TwoOfOneTypeOnOneNameAreRefusedWithTheirLine) {
                     HasSubstr("channels.slam_pose")));
 }
 
-TEST(ChannelNames, TwoOfDifferentTypesMayShareAName) {
+TEST(ChannelNames, ChannelsOfDifferentTypesMayShareAName) {
   const ConfigSources sources{{}, {"channels.slam_grid=SLAM_MAP"}};
   EXPECT_EQ(load(sources).channels.on_network("SLAM_GRID"), "SLAM_MAP");
   const std::vector<std::string> sharing{"SLAM_MAP", "SLAM_GRID"};
@@ -97,7 +97,7 @@ std::set<std::string> channels_in_readme() {
   return rows;
 }
 
-TEST(Channels, AreThoseOfTheReadme) {
+TEST(Channels, EveryChannelIsListedInTheReadmeWithItsType) {
   std::set<std::string> listed;
   channels::visit_all([&]<class... Types>(const Channel<Types>&... channels) {
     (listed.insert(std::string{channels.name} + " " + Types::getTypeName()), ...);
@@ -106,7 +106,7 @@ TEST(Channels, AreThoseOfTheReadme) {
   EXPECT_EQ(listed, channels_in_readme());
 }
 
-TEST(ChannelNames, EveryChannelOfTheNetworkCanHaveAnother) {
+TEST(ChannelNames, ChannelsOfTheNetworkCanBeRenamedAndThoseOfFilesCannot) {
   const ChannelNames names =
       load({{},
             {"channels.slam_correction=POSE_CORRECTION", "channels.slam_command=ORDER",

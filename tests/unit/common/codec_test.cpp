@@ -275,8 +275,8 @@ TEST(Codec, TruncatedEmptyLongAndForeignBytesAreRefused) {
             RejectReason::kTooLarge);
 }
 
-// An oracle that cannot share a mistake with the walk: whatever is accepted encodes to the same
-// bytes.
+// Whatever decode() accepts must encode to the same bytes: this oracle shares no code with the
+// check of lengths.
 TEST(Codec, MutatedBytesAreRefusedOrDecodeToWhatTheySay) {
   Random random{{1, 2}};
   const auto original = payload_of(channels::kTick, small_tick());
@@ -318,7 +318,7 @@ TEST(Codec, RejectsImplausibleValues) {
   EXPECT_FALSE(time_of(payload));
 }
 
-TEST(Codec, TilesFarOutAreRefused) {
+TEST(Codec, TilesBeyondTheLargestMapIndexAreRefused) {
   using Limits = std::numeric_limits<std::int32_t>;
   for (const std::int32_t far_index : {Limits::min(), Limits::max()}) {
     map_tiles_t map = small_map();
@@ -330,7 +330,7 @@ TEST(Codec, TilesFarOutAreRefused) {
   }
 }
 
-TEST(Convert, MbotAnglesAreNegatedAndZeroMeansNoReturn) {
+TEST(Convert, AnMbotScansAnglesAreNegatedAndItsZeroRangesAreNoReturns) {
   lidar_t m{};
   m.utime = 100;
   m.num_ranges = 2;

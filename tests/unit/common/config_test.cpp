@@ -117,7 +117,7 @@ TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
   EXPECT_THAT(error_of({{::testing::TempDir()}, {}}), HasSubstr("cannot be read: it is a folder"));
 }
 
-TEST(Config, APartOfAFileMayBeRead) {
+TEST(Config, OnePartOfAConfigurationMayBeReadWithoutTheOthers) {
   const auto file = file_with("[other]\nkey = 1\n[robot.base]\nwheel_radius_m = 0.1\n");
   EXPECT_EQ(load_part<RobotOnly>(file).robot.base.wheel_radius_m, 0.1);
   const auto wrong = file_with("[other]\nkey = 1\n[robot.base]\nwheel_radius_m = 'a'\n");
@@ -183,7 +183,7 @@ TEST(Config, ADumpLeavesOutWhatIsNotUsed) {
   EXPECT_EQ(house_error_of({{file_with(dump_config(house))}, {}}), "no error");
 }
 
-TEST(Config, OneValueCanBeAskedFor) {
+TEST(Config, TheValueOfOneKeyCanBeQueried) {
   const Room room{.shelves = {{.books = 3, .vases = 5}}};
   EXPECT_EQ(config_value(room, "chairs"), "4");
   EXPECT_EQ(config_value(room, "shelves[0].vases"), "5");

@@ -31,7 +31,7 @@ TEST(Angle, WrapsIntoTheHalfOpenInterval) {
   EXPECT_NEAR(angle_difference(-3.0, 3.0), 2.0 * kPi - 6.0, 1e-12);
 }
 
-TEST(Angle, HalfATurnIs180Degrees) {
+TEST(Angle, PiRadiansAre180Degrees) {
   EXPECT_NEAR(radians(180.0), kPi, 1e-15);
   EXPECT_NEAR(degrees(kPi), 180.0, 1e-12);
 }
@@ -146,7 +146,7 @@ TEST(CameraConfig, LooksForwardByDefault) {
   EXPECT_TRUE((camera.base_from_camera() * ahead).isApprox(-Eigen::Vector3d::UnitZ()));
 }
 
-TEST(Counters, CountersAreNamedWithoutTheirKind) {
+TEST(Counters, TheKindOfACountDoesNotFollowFromItsName) {
   Counters counters;
   counters.add("late rejected words that were dropped");
   EXPECT_EQ(counters.total(CountKind::kEvent), 1);

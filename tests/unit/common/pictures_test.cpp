@@ -67,13 +67,13 @@ TEST(Jpeg, IsEncodedAndDecodedAsByOpenCv) {
   }
 }
 
-TEST(Jpeg, APartOfAPictureIsEncodedAlone) {
+TEST(Jpeg, ASubmatrixIsEncodedAsItsCopy) {
   const cv::Mat whole = picture(CV_8UC3);
   const cv::Mat part = whole(cv::Rect{8, 4, 32, 24});
   EXPECT_EQ(jpeg_bytes(part, 90), jpeg_bytes(part.clone(), 90));
 }
 
-TEST(Jpeg, NeedsNoHuffmanTables) {
+TEST(Jpeg, AnImageWithoutHuffmanTablesDecodesWithTheStandardOnes) {
   const cv::Mat image = picture(CV_8UC1);
   const Bytes jpeg = jpeg_bytes(image, 90);
   const Bytes bare = without_tables(jpeg);
@@ -101,7 +101,7 @@ TEST(Jpeg, DamagedBytesGiveAPictureOfTheRightSizeOrNone) {
   EXPECT_TRUE(grey_of_jpeg(good, {}).empty());
 }
 
-TEST(Png, IsWhatWasEncoded) {
+TEST(Png, EncodedPicturesDecodeToTheSamePixels) {
   for (const int type : {CV_8UC1, CV_8UC3}) {
     const cv::Mat image = picture(type);
     const std::string png = png_bytes(image);
@@ -122,7 +122,7 @@ TEST(Png, BecomesGreyAsByOpenCv) {
   }
 }
 
-TEST(Png, WhatIsDamagedOrTooLargeIsRefused) {
+TEST(Png, DamagedOrTooLargeImagesAreRefused) {
   const cv::Mat image = picture(CV_8UC3);
   const std::string png = png_bytes(image);
   EXPECT_TRUE(grey_of_png({}, kMany).empty());

@@ -49,7 +49,7 @@ TEST(ReorderBuffer, SortsWithinItsWindowAndDropsWhatIsLate) {
   EXPECT_EQ(buffer.flush().size(), 1U);
 }
 
-TEST(ReorderBuffer, AChannelMayLagBehindTheOthers) {
+TEST(ReorderBuffer, AMessageOlderThanOtherChannelsIsReleasedIfItsOwnIsInOrder) {
   Counters counters;
   ReorderBuffer buffer{Duration{100}};
   buffer.add(at(1000, "SENSOR"), counters);
@@ -60,7 +60,7 @@ TEST(ReorderBuffer, AChannelMayLagBehindTheOthers) {
   EXPECT_EQ(counters.get("ANSWER late, dropped"), 1);
 }
 
-TEST(ReorderBuffer, AClockStepIsFollowed) {
+TEST(ReorderBuffer, AfterAClockStepMessagesAreReleasedAgain) {
   constexpr std::int64_t kHour_us = 3'600'000'000;
   for (const std::int64_t step_us : {-kHour_us, kHour_us}) {
     Counters counters;
@@ -137,7 +137,7 @@ TEST(ReorderBuffer, MessagesInPartsStayTogether) {
   EXPECT_EQ(counters.total(CountKind::kRejection) + counters.total(CountKind::kLoss), 0);
 }
 
-// Its payloads differ, so that none is a duplicate.
+// The payloads differ, so that no message is a duplicate of another.
 TEST(ReorderBuffer, AFloodOfOneStampStaysBounded) {
   for (const std::int64_t stamp_us : {kSecond_us, 10 * kSecond_us}) {  // the other is set aside
     Counters counters;

@@ -209,7 +209,7 @@ Simulated simulate(std::string_view name, std::vector<std::string> words) {
   return simulated;
 }
 
-TEST(RunSimulator, BeginsOnceItHasJoinedTheNetwork) {
+TEST(RunSimulator, WithANetworkItBeginsAdvancesAndFinishes) {
   const Simulated simulated = simulate("joined", {"--lcm-url", "memq://"});
   EXPECT_EQ(simulated.result.exit_code, kExitOk) << simulated.result.output;
   EXPECT_EQ(simulated.asked, "begin advance finish ");

@@ -120,7 +120,7 @@ TEST(Validate, MapChangesHaveAKnownKind) {
        }});
 }
 
-TEST(Validate, EdgesOfTheGraphHaveTwoEnds) {
+TEST(Validate, GraphEdgesNeedBothVerticesAndAPartNumberInRange) {
   pose_graph_t graph{};
   graph.num_parts = 2;
   graph.num_edges = 1;

@@ -35,7 +35,7 @@ TEST(CameraModel, RawPixelsAreWhatOpenCvProjects) {
   }
 }
 
-TEST(CameraModel, UndistortingIsTheInverse) {
+TEST(CameraModel, UndistortingAndDistortingGivesTheSamePixel) {
   const CameraModel camera{bent_camera()};
   for (const double u : {0.0, 100.0, 319.5, 639.0}) {
     for (const double v : {0.0, 240.0, 479.0}) {

@@ -107,8 +107,8 @@ TEST(CornerRefinement, CornersInACorridorAreUnbiasedOnBothWalls) {
   }
 }
 
-// White bits behind a thin border brighten it. Were that taken for its black, all four sides would
-// move outwards, and the marker nearer.
+// White bits behind a thin border brighten it by blur. If that level were taken for black, all four
+// sides would move outwards, and the marker would be measured too near.
 TEST(CornerRefinement, SmallMarkersHaveNoSizeBias) {
   for (const double ahead_m : {8.0, 8.7, 9.4, 10.1, 10.8}) {  // the border is 2.5 to 3.3 px thick
     for (const double shift_m : {0.0, 0.005, 0.01, 0.015}) {
@@ -123,8 +123,8 @@ TEST(CornerRefinement, SmallMarkersHaveNoSizeBias) {
   }
 }
 
-// Blur mixes the bits behind a thin border into its edge. Without a model of that the corners of
-// the far side are 0.1 px and more off, all to the same side.
+// Blur mixes the bits behind a thin border into its edge. Without a model of that, the corners of
+// the marker's far side are off by 0.1 px and more, all in the same direction.
 TEST(CornerRefinement, CornersOfABlurredCameraAreNearlyUnbiased) {
   for (const double wall_y_m : {1.0, -1.0}) {
     for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 1.0, 3.0))
@@ -144,7 +144,7 @@ TEST(CornerRefinement, BlurMakesCornersLessCertain) {
   EXPECT_GT(variance_of(1.0), 1.5 * variance_of(0.3));
 }
 
-TEST(BlurredSide, EdgeIsUnbiasedUnlessTheBorderIsThin) {
+TEST(BlurredSide, BlurMovesTheEdgeOnlyIfWhiteBitsLieBehindAThinBorder) {
   const auto bias_px = [](double border_px, double inner_white) {
     const BlurredSide side{1.1, border_px, inner_white};
     const double black = BlurredSide{1.1, 10.0, 0.5}.profile(3.0).black;

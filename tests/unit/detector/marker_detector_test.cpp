@@ -79,7 +79,7 @@ TEST(MarkerDetector, RangeAndBearingInACorridor) {
   }
 }
 
-TEST(MarkerDetector, CovarianceIsHonestOnImages) {
+TEST(MarkerDetector, PoseErrorsInRenderedImagesMatchTheirCovariance) {
   const RobotConfig robot;
   constexpr int kTrials = 40;
   double nees = 0.0;
@@ -110,7 +110,7 @@ TEST(MarkerDetector, ALensDoesNotChangeThePose) {
   EXPECT_LT(angle_between(detections[0].base_from_marker, truth), radians(0.3));
 }
 
-TEST(MarkerDetector, OnlyIdsOfTheListAreReported) {
+TEST(MarkerDetector, OnlyMarkersOfTheConfiguredIdsAreReported) {
   RobotConfig robot;
   robot.markers.ids = {0, 5};
   const auto detections =

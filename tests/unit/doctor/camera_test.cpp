@@ -39,7 +39,7 @@ TEST(DoctorsCamera, AWrongOdometryScaleDoesNotBiasTheFocalLength) {
   EXPECT_EQ(check_of(input, "odometry_distance_scale").verdict, Verdict::kWarn);
 }
 
-TEST(DoctorsCamera, AnotherDictionaryIsNamed) {
+TEST(DoctorsCamera, MarkersOfAnotherDictionaryAreReportedWithItsName) {
   DoctorInput input = drive_in_room({.duration_s = 20.0});
   input.camera->markers_of_described = 2;  // read by chance
   input.camera->markers_by_dictionary = {{"DICT_4X4_1000", 60}, {"DICT_7X7_1000", 1}};
@@ -75,7 +75,7 @@ TEST(DoctorsCamera, WithoutMarkersTheirChecksAreSkipped) {
   }
 }
 
-TEST(DoctorsCamera, BlurIsTheStandardDeviationAcrossTheSides) {
+TEST(DoctorsCamera, TheMeasuredBlurIsTheStandardDeviationOfTheGaussian) {
   constexpr int kModules = 8;
   constexpr int kSide_px = 160;
   const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250);

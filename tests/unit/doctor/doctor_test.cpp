@@ -26,8 +26,8 @@ TEST(Doctor, AHealthyRobotPassesEverything) {
   EXPECT_NEAR(find(diagnosis, "time_offset").value.value(), 0.0, 10.0);
 }
 
-/// Between samples interpolation smooths odometry's noise: a fit there is better, and no sign of an
-/// offset.
+/// Interpolation between samples smooths the noise of odometry: a better fit at a time between
+/// samples is no sign of a time offset.
 TEST(Doctor, NoisyOdometryIsNotReportedAsATimeOffset) {
   const Diagnosis diagnosis = diagnosis_of({.odometry_noise_rad = 0.004});
   const Check& check = find(diagnosis, "time_offset");
@@ -57,7 +57,7 @@ TEST(Doctor, WithoutTurnsTheLidarsPositionIsUnknown) {
     EXPECT_EQ(find(straight, name).verdict, Verdict::kUnchecked) << find(straight, name).finding;
 }
 
-TEST(Doctor, ReportsTheLidarsYawInDegreesAndWritesItInRadians) {
+TEST(Doctor, LidarYawIsReportedInDegreesAndAdvisedInRadians) {
   const Check yaw =
       find(diagnosis_of({.base_from_lidar = Se2{0.1, -0.05, radians(12.0)}}), "lidar_yaw");
   EXPECT_THAT(yaw.finding, HasSubstr("the LiDAR's yaw is 12.0"));

@@ -57,7 +57,7 @@ TEST(DoctorProgram, AHealthyRobotGives0AndAFaultyOne1) {
   EXPECT_THAT(mirrored.out, HasSubstr("FAIL  lidar_mirrored"));
 }
 
-TEST(DoctorProgram, WritesARobotOnce) {
+TEST(DoctorProgram, WritesARobotFileButReplacesNone) {
   const std::string log = run_of({.base_from_lidar = Se2{-0.2, -0.05, 0.0}});
   const std::string robot = (test_folder() / "found.toml").string();
 

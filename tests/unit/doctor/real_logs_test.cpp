@@ -36,7 +36,7 @@ Seen see(const std::filesystem::path& file) {
   return {diagnose(read_input(file, {}, {}))};
 }
 
-TEST(DoctorOnRealLogs, Fr079AsItWasPublished) {
+TEST(DoctorOnRealLogs, PublishedFr079CountsBackingUpAsForward) {
   const auto file = real_log("fr079_original.clf.bz2");
   if (!file) GTEST_SKIP() << "shared/data/logs/fr079_original.clf.bz2 is not on this machine";
   const Seen seen = see(*file);
@@ -47,7 +47,7 @@ TEST(DoctorOnRealLogs, Fr079AsItWasPublished) {
   EXPECT_EQ(seen.at("lidar_yaw").verdict, Verdict::kPass);
 }
 
-TEST(DoctorOnRealLogs, Fr079Rebuilt) {
+TEST(DoctorOnRealLogs, RebuiltFr079PassesTheCheckOfBackingUp) {
   const auto file = real_log("fr079.clf.gz");
   if (!file) GTEST_SKIP() << "shared/data/logs/fr079.clf.gz is not on this machine";
   const Seen seen = see(*file);
@@ -56,7 +56,7 @@ TEST(DoctorOnRealLogs, Fr079Rebuilt) {
   EXPECT_NE(seen.at("odometry_distance_scale").verdict, Verdict::kFail);
 }
 
-TEST(DoctorOnRealLogs, Aces) {
+TEST(DoctorOnRealLogs, AcesWrites50MetresForNoReturn) {
   const auto file = real_log("aces.clf.bz2");
   if (!file) GTEST_SKIP() << "shared/data/logs/aces.clf.bz2 is not on this machine";
   const Seen seen = see(*file);
@@ -67,7 +67,7 @@ TEST(DoctorOnRealLogs, Aces) {
   EXPECT_EQ(seen.at("time_offset").verdict, Verdict::kPass);
 }
 
-TEST(DoctorOnRealLogs, MbotConvex) {
+TEST(DoctorOnRealLogs, MbotConvexPassesTheLidarAndTrafficChecks) {
   const auto file = real_log("mbot_convex.lcm");
   if (!file) GTEST_SKIP() << "shared/data/logs/mbot_convex.lcm is not on this machine";
   const Seen seen = see(*file);

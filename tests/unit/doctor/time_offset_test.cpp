@@ -23,7 +23,7 @@ TurnComparison seldom_comparison(int late_steps, int period_steps) {
   return compare_turns(lidar_motions(input.log).turns, input.log.odometry).value();
 }
 
-TEST(DoctorTimeOffset, BetweenSamplesIsFoundToMilliseconds) {
+TEST(DoctorTimeOffset, AnOffsetBetweenSamplesIsMeasuredToThreeMilliseconds) {
   for (const double late_s : {-0.047, -0.013, 0.0, 0.013, 0.034}) {
     const DoctorInput input = drive_in_room({.lidar_late_s = late_s, .odometry_noise_rad = 0.0005});
     const Measured found =
@@ -34,7 +34,7 @@ TEST(DoctorTimeOffset, BetweenSamplesIsFoundToMilliseconds) {
   }
 }
 
-TEST(DoctorTimeOffset, AtLowSampleRatesIsWithinThreeSigmas) {
+TEST(DoctorTimeOffset, AtLowSampleRatesTheErrorIsWithinItsSigmas) {
   for (const int period_steps : {5, 10}) {
     for (int late_steps = -period_steps; late_steps <= period_steps; ++late_steps) {
       const Measured late = seldom_comparison(late_steps, period_steps).lidar_late_s;
@@ -44,7 +44,7 @@ TEST(DoctorTimeOffset, AtLowSampleRatesIsWithinThreeSigmas) {
   }
 }
 
-TEST(DoctorTimeOffset, IsFoundAtVeryLowSampleRates) {
+TEST(DoctorTimeOffset, AtVeryLowSampleRatesALargeOffsetIsSignificant) {
   for (const int late_steps : {7, 10}) {
     const Measured late = seldom_comparison(late_steps, 10).lidar_late_s;
     EXPECT_LT(late.sigma, 0.01);

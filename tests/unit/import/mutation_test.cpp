@@ -83,7 +83,7 @@ bool import_survives(int trial, ImportReport& report, const Read& read) {
   }
 }
 
-TEST(Mutations, OfACarmenLogNeverCrash) {
+TEST(Mutations, MutationsOfACarmenLogNeverCrashTheImporter) {
   const std::string good = read_file(data_file("small.clf")) +
                            "ROBOTLASER1 0 -1 2 0.5 20 0.01 1 4 1 2 3 50 1 7 1 0.25 1.5707963 1 0 "
                            "1.5707963 0 0 0 0 0 13 host 3\n";

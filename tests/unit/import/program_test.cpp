@@ -57,7 +57,7 @@ TEST(ImportProgram, InvalidNumbersGive2) {
   EXPECT_FALSE(std::filesystem::exists(test_folder() / "out.lcm"));
 }
 
-TEST(ImportProgram, EmptyUnreadableAndUnknownGive2) {
+TEST(ImportProgram, EmptyOrMissingLogsAndIncompleteArgumentsGive2) {
   EXPECT_EQ(exit_code(carmen(write_file("empty.clf", ""))), 2);
   EXPECT_EQ(exit_code(carmen("/nowhere/log.clf")), 2);
   EXPECT_EQ(exit_code("mbot " + write_file("empty.lcm", "").string() +

@@ -57,7 +57,7 @@ Found import_carmen(const std::filesystem::path& file, const CarmenOptions& opti
   return found;
 }
 
-TEST(RealLogs, Fr079) {
+TEST(RealLogs, RebuiltFr079IsReadWholeWithRepairedSigns) {
   const auto file = real_log("fr079.clf.gz");
   if (!file) GTEST_SKIP() << "shared/data/logs/fr079.clf.gz is not on this machine";
 
@@ -84,7 +84,7 @@ TEST(RealLogs, Fr079) {
   EXPECT_LT(log.robot.lidar.range_sigma_m, kSickSigma_m);
 }
 
-TEST(RealLogs, Fr079WithOdomLines) {
+TEST(RealLogs, RebuiltFr079IsReadWithItsOdomLines) {
   const auto file = real_log("fr079.clf.gz");
   if (!file) GTEST_SKIP() << "shared/data/logs/fr079.clf.gz is not on this machine";
   CarmenOptions options{};
@@ -132,7 +132,7 @@ TEST(RealLogs, AcesWritesFiftyMetresForNoReturn) {
   EXPECT_LT(log.robot.lidar.range_sigma_m, 0.03);
 }
 
-TEST(RealLogs, Csail) {
+TEST(RealLogs, CsailIsReadWholeWithItsNoReturnCode) {
   const auto file = real_log("csail.clf.bz2");
   if (!file) GTEST_SKIP() << "shared/data/logs/csail.clf.bz2 is not on this machine";
 
@@ -146,7 +146,7 @@ TEST(RealLogs, Csail) {
   EXPECT_LT(log.robot.lidar.range_sigma_m, kSickSigma_m);
 }
 
-TEST(RealLogs, MbotConvex) {
+TEST(RealLogs, MbotConvexGivesScansWheelOdometryAndReference) {
   const auto file = real_log("mbot_convex.lcm");
   if (!file) GTEST_SKIP() << "shared/data/logs/mbot_convex.lcm is not on this machine";
   ImportReport report{*file, AddressUnit::kByte};

@@ -40,7 +40,7 @@ TEST(ImageNoise, FramesAreIndependentAndRepeatable) {
   EXPECT_NEAR(cv::mean(product)[0], 100.0, 0.5);  // E[(10+a)(10+b)] = 100 when uncorrelated
 }
 
-TEST(ImageNoise, Saturates) {
+TEST(ImageNoise, WhitePixelsDoNotWrapToBlackNorBlackOnesToWhite) {
   cv::Mat white = grey(255), black = grey(0);
   ImageNoise{10.0, 1}.add_to(white, 0);
   ImageNoise{10.0, 1}.add_to(black, 0);
@@ -51,7 +51,7 @@ TEST(ImageNoise, Saturates) {
   EXPECT_LT(high, 100.0);
 }
 
-TEST(Lens, WithoutDistortionNothingIsTouched) {
+TEST(Lens, WithoutDistortionThePictureIsPassedThroughUncopied) {
   const Lens lens{CameraConfig{}};
   EXPECT_EQ(lens.pinhole().width_px, 640);
   EXPECT_EQ(lens.pinhole().cx_px, 319.5);
@@ -59,7 +59,7 @@ TEST(Lens, WithoutDistortionNothingIsTouched) {
   EXPECT_EQ(lens.apply(picture).data, picture.data);
 }
 
-TEST(Lens, DistortionIsOpenCvs) {
+TEST(Lens, DistortionFollowsOpenCvsProjection) {
   CameraConfig camera{};
   camera.distortion = {0.16, -0.25, 0.001, -0.002, 0.05};
   camera.fy_px = 520.0;

@@ -166,7 +166,7 @@ TEST(CommandFollower, TheQueueOfCommandsIsBounded) {
   EXPECT_EQ(num_refused, 90'000);
 }
 
-TEST(CommandFollower, OrderOfArrivalDoesNotMatter) {
+TEST(CommandFollower, CommandsActInTheOrderOfTheirStampsNotOfArrival) {
   const std::vector<std::pair<std::int64_t, double>> commands{{0, 0.1}, {50'000, 0.3}};
   CommandFollower in_order{{}, Duration{100'000}, kPeriod_s};
   CommandFollower reversed{{}, Duration{100'000}, kPeriod_s};

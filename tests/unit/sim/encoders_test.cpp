@@ -118,7 +118,7 @@ TEST(Encoders, SlipsLengthenThePath) {
   EXPECT_NEAR(sum_m / kRuns, 5.0 * 4.0 * 0.02, 0.03);  // sigma of the mean: 0.009
 }
 
-TEST(Encoders, SeedsGiveTheDefaultErrors) {
+TEST(Encoders, TheSeedDeterminesSignOfScaleAndSizeOfHeadingScale) {
   EXPECT_EQ(errors_of_seed({}, 1).scale, 0.01);
   EXPECT_EQ(errors_of_seed({}, 2).scale, -0.01);
   for (std::int64_t seed = 0; seed < 50; ++seed)

@@ -48,7 +48,7 @@ Sent send_ten(const FaultConfig& config) {
   return sent;
 }
 
-TEST(Span, TimeAndDistanceMustBothBeWithin) {
+TEST(Span, ASpanIsActiveWhereTimeAndDistanceAreBothWithinIt) {
   const Span span{.from_s = 1.0, .to_s = 2.0, .from_m = 5.0};
   EXPECT_TRUE(span.covers({1.0, 5.0}));
   EXPECT_FALSE(span.covers({2.0, 5.0}));
@@ -63,7 +63,7 @@ TEST(FaultyOutlet, ADisabledSensorIsSilent) {
   EXPECT_THAT(send_ten(fault(FaultKind::kOff, {.from_m = 0.15})).values, ElementsAre(0, 1));
 }
 
-TEST(FaultyOutlet, AnotherSensorsFaultsDoNotMatter) {
+TEST(FaultyOutlet, FaultsOfAnotherSensorAreNotApplied) {
   FaultyOutlet<Reading> camera{Faults{Sensor::kCamera, {fault(FaultKind::kOff)}}, 1};
   camera.take({timestamp_from_us(0), 1}, {});
   EXPECT_EQ(camera.release(timestamp_from_us(1)).size(), 1U);
@@ -89,7 +89,7 @@ TEST(FaultyOutlet, ADelayedSensorIsStampedAndSentLate) {
   EXPECT_THAT(sent.values, ElementsAre(0, 1, 3, 2, 4, 5, 6, 7, 8, 9));
 }
 
-TEST(FaultyOutlet, AnIntermittentSensorLosesItsShare) {
+TEST(FaultyOutlet, AnIntermittentSensorLosesTheConfiguredShareOfMessages) {
   FaultConfig config = fault(FaultKind::kIntermittent);
   config.share = 1.0;
   EXPECT_THAT(send_ten(config).values, IsEmpty());

@@ -47,7 +47,7 @@ std::vector<int> ids_of(const World& world) {
   return ids;
 }
 
-TEST(Layout, ACornerOfAnLIsWhereItShouldBe) {
+TEST(Layout, TheCornerOfAnLHasItsOuterAndInnerWallsAtTheConfiguredPlaces) {
   WorldConfig config{};
   config.layout = Layout::kL;
   config.length_m = 10.0;
@@ -148,7 +148,7 @@ TEST(Markers, DoNotHangInDoorways) {
   EXPECT_EQ(place_count(config, {}, kPlate_m), 23U);
 }
 
-TEST(Markers, MissingOnesLeaveTheirIdUnused) {
+TEST(Markers, AMissingMarkersIdIsNotGivenToAnother) {
   MarkerLayoutConfig markers{};
   markers.last_m = 16.0;
   markers.missing = {0, 3};
@@ -160,7 +160,7 @@ TEST(Markers, MissingOnesLeaveTheirIdUnused) {
   EXPECT_THAT(ids_of(build_world({}, markers, kPlate_m, 1)), ElementsAre(0, 5));
 }
 
-TEST(Markers, AddedOnesHangOnTheNearestWall) {
+TEST(Markers, AddedMarkersHangOnTheNearestWall) {
   WorldConfig config{};
   config.openings = {{.side = Side::kLeft, .centre_m = 10.0, .depth_m = 4.0, .room_width_m = 5.0}};
   MarkerLayoutConfig markers{};

@@ -75,7 +75,7 @@ TEST(Lidar, NoiseAndDropoutsAreAsConfigured) {
   EXPECT_NEAR(static_cast<double>(dropped) / seen, 0.1, 0.02);
 }
 
-TEST(Lidar, WhatIsTooCloseIsInvalid) {
+TEST(Lidar, RangesBelowTheMinimumAreNan) {
   const Physics physics = standing_at({10.0, 0.0, 0.0});
   LidarConfig config{};
   config.range_min_m = 1.1;

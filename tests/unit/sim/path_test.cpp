@@ -28,7 +28,7 @@ TEST(Path, ACornerBecomesAnArcThatTouchesBothLines) {
   }
 }
 
-TEST(Path, TurningBackStaysACorner) {
+TEST(Path, AReversalOfDirectionIsNotRounded) {
   const auto path = path_through({{0.0, 0.0}, {5.0, 0.0}, {0.0, 0.0}}, 1.0);
   ASSERT_EQ(path.size(), 2U);
   EXPECT_FALSE(path[0].is_smooth_end);
@@ -41,7 +41,7 @@ TEST(Path, ArcsShrinkToTheAvailableSpace) {
   EXPECT_NEAR(path.back().world_from(path.back().length_m).x(), 0.0, 1e-12);
 }
 
-TEST(Path, LocateIsTheInverseOfWorldFrom) {
+TEST(Path, LocatingAPoseOnAPieceOfPathInvertsWorldFrom) {
   Random random{1};
   for (int i = 0; i < 200; ++i) {
     const double curvature = i % 3 == 0 ? 0.0 : random.uniform(-1.0, 1.0);

@@ -94,7 +94,7 @@ TEST(Renderer, ManyMarkersShowTheirOwnIds) {
   }
 }
 
-TEST(Renderer, RepeatedIdsShareOneTexture) {
+TEST(Renderer, PlatesOfRepeatedIdsShowTheirIds) {
   MarkerLayoutConfig markers{};
   markers.last_m = 8.0;
   markers.ids = {9, 9, 5, 9};

@@ -45,7 +45,7 @@ TEST(Scenario, TheShippedDefaultCorridorIsTheDefault) {
   EXPECT_EQ(dump_config(shipped), dump_config(Scenario{}));
 }
 
-TEST(Scenario, EveryHardCorridorHasExpectations) {
+TEST(Scenario, EveryHardScenarioHasExpectations) {
   const std::filesystem::path folder =
       std::filesystem::path{WAYMARK_SOURCE_DIR} / "deploy" / "scenarios" / "hard";
   int count = 0;
@@ -72,7 +72,7 @@ TEST(Scenario, MarkersMustHangInsideTheWalls) {
   EXPECT_EQ(error_of({"markers.layout=none", "markers.last_m=99"}), "no error");
 }
 
-TEST(Scenario, IdsMustBeInTheDictionary) {
+TEST(Scenario, MarkerIdsMustBeInTheDictionaryAndAsManyAsMarkers) {
   EXPECT_THAT(error_of({"markers.first_id=240"}),
               HasSubstr("markers.first_id: marker id 250 is not in DICT_6X6_250"));
   EXPECT_THAT(error_of({"robot.markers.dictionary=DICT_9X9"}), HasSubstr("got 'DICT_9X9'"));
@@ -99,7 +99,7 @@ TEST(Scenario, TheRouteMustKeepClearOfTheWalls) {
   EXPECT_THAT(error_of({"route.end_x_m=51"}), HasSubstr("route.end_x_m"));
 }
 
-TEST(Scenario, TheWholeRouteMustBeFree) {
+TEST(Scenario, RouteAndKidnapTargetsMustBeClearOfWallsAndBoxes) {
   EXPECT_THAT(error_of({"world.boxes=[{x_m=20.0, y_m=0.3}]"}), HasSubstr("from a wall or box"));
   EXPECT_THAT(error_of({"world.layout=L", "kidnaps=[{at_m=3.0, to_x_m=20.0, to_y_m=10.0}]"}),
               HasSubstr("outside of the walls"));
@@ -123,7 +123,7 @@ TEST(Scenario, SensorsMustFitThePhysicsSteps) {
   EXPECT_THAT(error_of({"run.tick_s=0.0123"}), HasSubstr("run.tick_s"));
 }
 
-TEST(Scenario, CommandsMustNotReachIntoTheWindow) {
+TEST(Scenario, CommandsNeedADelayBeyondTheLockstepWindowAndADuration) {
   EXPECT_THAT(
       error_of({"route.source=command", "route.duration_s=5", "route.command_delay_ticks=2"}),
       HasSubstr("route.command_delay_ticks"));

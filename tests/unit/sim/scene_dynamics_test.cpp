@@ -47,7 +47,7 @@ FaultConfig fault(Sensor sensor, FaultKind kind, Span during = {}) {
   return config;
 }
 
-TEST(Kidnap, TruthJumpsWithoutOdometryAndTheRouteIsFinished) {
+TEST(Kidnap, TheTruePoseJumpsOdometryDoesNotAndTheRouteIsFinished) {
   Scenario scenario = small_scenario();
   scenario.kidnaps = {{{.at_m = 0.5}, 2.0, 0.1, 0.2}};
   double largest_true_m = 0.0, largest_counted_m = 0.0, counted_m = 0.0;
@@ -99,7 +99,7 @@ TEST(Faults, ADisabledCameraSendsNothing) {
     EXPECT_TRUE(tick.frames.empty());
 }
 
-TEST(Faults, DelayedStampsBelongToTheTickThatSendsThem) {
+TEST(Faults, ADelayedFrameIsStampedInTheTickThatSendsIt) {
   Scenario scenario = small_scenario();
   scenario.faults = {fault(Sensor::kCamera, FaultKind::kDelayed)};
   scenario.faults[0].delay_s = 0.15;
@@ -117,7 +117,7 @@ TEST(Faults, DelayedStampsBelongToTheTickThatSendsThem) {
   EXPECT_GT(count, 10U);
 }
 
-TEST(Faults, WithoutFaultsTheOutputIsUnchanged) {
+TEST(Faults, FaultsThatNeverBeginLeaveTheOutputUnchanged) {
   Scenario later = small_scenario();
   later.faults = {fault(Sensor::kLidar, FaultKind::kGarbage, {.from_s = 1000.0}),
                   fault(Sensor::kCamera, FaultKind::kStuck, {.from_s = 1000.0})};
@@ -175,13 +175,13 @@ TEST(SceneDynamics, AMovedMarkerIsReportedOnceAndSeenAtItsNewPlace) {
   EXPECT_NE(ticks[6].frames[0].jpeg, still_ticks[6].frames[0].jpeg);
 }
 
-TEST(RealCamera, DiffersFromTheNominalOneByTheConfiguredErrors) {
+TEST(RealCamera, TheTrueCameraDiffersFromTheNominalOneByTheConfiguredErrors) {
   const CameraConfig real = real_camera({}, {.focal_share = 0.005, .yaw_deg = 0.3}, 1);
   EXPECT_NEAR(real.fx_px, 1.005 * CameraConfig{}.fx_px, 1e-9);
   EXPECT_NEAR(real.yaw_rad, radians(0.3), 1e-12);
 }
 
-TEST(RealCamera, DiffersFromRunToRunByTheSigmas) {
+TEST(RealCamera, ErrorsDifferBetweenSeedsByTheConfiguredSigmas) {
   constexpr int kRuns = 2000;
   const CameraErrorConfig errors{.focal_share = 0.002, .focal_sigma = 0.001, .yaw_sigma_deg = 0.5};
   double focal = 0.0;

@@ -27,7 +27,7 @@ std::vector<double> stations_of(const World& world, double side) {
   return stations;
 }
 
-TEST(World, DefaultIsThePapersCorridor) {
+TEST(World, TheDefaultHas24MarkersFrom4To48MetresLeftBeforeRight) {
   const World world = corridor_world();
 
   ASSERT_EQ(world.markers.size(), 24U);
@@ -111,7 +111,7 @@ TEST(MarkerPicture, OpenCvReadsIt) {
   EXPECT_THAT(ids, ElementsAre(77));
 }
 
-TEST(MarkerPicture, TheSquareTakesItsShareOfThePlate) {
+TEST(MarkerPicture, ThePlateIsTheBlackSquareAndTheQuietZoneOnBothSides) {
   MarkerPrint print{};
   EXPECT_THAT(plate_size_m(print), DoubleNear(0.6, 1e-12));  // 8 modules are 0.4 m, 12 are 0.6 m
   print.quiet_zone_modules = 0.0;

@@ -115,7 +115,7 @@ TEST(CommandDesk, AFloodIsRefusedWithOneAnswerASecond) {
   EXPECT_NE(last.find("more than 5 commands"), std::string::npos);
 }
 
-TEST(CommandRelay, StampsCommandsOfATickAndIgnoresItsOwn) {
+TEST(CommandRelay, StampsQueuedCommandsWithTheTickAndIgnoresItsOwnMessages) {
   Counters counters;
   CommandRelay relay{counters};
   for (int i = 0; i < 20; ++i) {
@@ -217,7 +217,7 @@ TEST_F(CommandedSlam, AResetStartsANewMapAtTheRobot) {
   EXPECT_LT(drive.markers.size(), corridor_of(1).markers.size());
 }
 
-TEST_F(CommandedSlam, ItsOwnMapCanBeSwitchedToLocalisation) {
+TEST_F(CommandedSlam, MappingCanBeSwitchedToLocalisingInTheMapJustMade) {
   const test::Drive drive = drive_with(mapping(), messages_of(*drive_, 0.0, 18.0),
                                        {{13.0, mode_command(command_t::MODE_EXTEND)},
                                         {14.0, mode_command(command_t::MODE_LOCALISE)},
@@ -288,7 +288,8 @@ TEST_F(CommandedSlam, ACommandedPoseWithAnySigmasGivesValidEstimates) {
   }
 }
 
-// Grids are bounded in cells: of finer ones, half of the largest is less far.
+// The number of cells of a grid is bounded, so with finer cells the largest grid is smaller in
+// metres.
 TEST_F(CommandedSlam, APoseBeyondTheLargestGridIsRefused) {
   SlamConfig config = mapping();
   config.slam.grid.resolution_m = 0.02;
@@ -306,7 +307,7 @@ TEST_F(CommandedSlam, APoseBeyondTheLargestGridIsRefused) {
   EXPECT_NEAR(drive.estimates.back().x_m, 420.0, 1.0);
 }
 
-// Carried further and further away, until the grid would be larger than the largest.
+// The robot is carried further and further away, until the grid would exceed its largest size.
 TEST_F(CommandedSlam, ResultsBeforeTheEstimatorThrowsAreWritten) {
   SlamConfig config = mapping();
   config.slam.grid.resolution_m = 0.005;

@@ -71,7 +71,7 @@ TEST_F(DailyLife, TheCorrectionComposedWithOdometryIsTheEstimate) {
   }
 }
 
-TEST_F(DailyLife, TheCorrectionsCovarianceAtTheRobotIsThatOfItsPose) {
+TEST_F(DailyLife, TheCorrectionsCovarianceCarriedToTheRobotIsThatOfTheEstimate) {
   const test::Drive drive = test::drive_through(SlamConfig{}, messages_of(*drive_, 0.0, 20.0));
   const correction_t correction = sent_on(channels::kSlamCorrection, drive).back();
   const slam_estimate_t& estimate = drive.estimates.back();
@@ -84,7 +84,7 @@ TEST_F(DailyLife, TheCorrectionsCovarianceAtTheRobotIsThatOfItsPose) {
   EXPECT_TRUE(carried.isApprox(Eigen::Map<const RowMajor3>{estimate.covariance}, 1e-6));
 }
 
-TEST_F(DailyLife, MarkersMakeCorrections) {
+TEST_F(DailyLife, CorrectionsComeFromScansAndFromMarkers) {
   const test::Drive drive = test::drive_through(SlamConfig{}, messages_of(*drive_));
   std::map<int, int> counts;
   for (const correction_t& correction : sent_on(channels::kSlamCorrection, drive))
@@ -108,7 +108,7 @@ TEST_F(DailyLife, ARestartedSlamContinuesAtItsLastPose) {
   EXPECT_LT(test::worst_error_m(lost, today, map_from_world(*drive_)), 0.1);
 }
 
-// Killed, so that nothing but what it saved on the way is left.
+// Slam is killed, so only the map that it saved during the run is left.
 TEST_F(DailyLife, AKilledSlamContinuesWithTheMapThatItWasDrawing) {
   SlamConfig config = config_for(MapMode::kMap, folder_ / "unfinished.map.lcm");
   config.slam.state_folder = folder_;
@@ -130,7 +130,7 @@ TEST_F(DailyLife, AKilledSlamContinuesWithTheMapThatItWasDrawing) {
   EXPECT_EQ(read_map_file(config.save_map).map.landmarks.size(), num_markers);
 }
 
-// Ahead of it there is nothing of its map, and no marker anywhere.
+// Ahead of the robot nothing is mapped, and there are no markers.
 TEST_F(DailyLife, ARestartWithinSecondsNeedsNoConfirmationOfThePose) {
   test::SyntheticCorridor bare = corridor_of(1);
   bare.markers.clear();
@@ -170,7 +170,7 @@ TEST_F(DailyLife, SavingPeriodicallyAndContinuingNeedAFile) {
   EXPECT_THROW(test::drive_through(config, {}), SetupError);
 }
 
-// One marker is gone, one hangs a metre further on, one is new, and a wall has come.
+// One marker is gone, one was moved by a metre, one is new, and there is a new wall.
 TEST_F(DailyLife, ChangesOfTheMapAreReported) {
   test::SyntheticCorridor changed = corridor_of(2);
   changed.markers[2].position_m.x() += 1.0;
@@ -222,7 +222,7 @@ TEST_F(DailyLife, AMapOfAnotherBuildingIsReported) {
   }
 }
 
-// Nothing is in common but where the robot is said to start.
+// The other building shares nothing with the map but the configured start pose.
 TEST_F(DailyLife, AMapIsNotExtendedInAnotherBuilding) {
   test::SyntheticCorridor other = corridor_of(2);
   other.width_m = 3.0;
@@ -306,7 +306,7 @@ TEST_F(SurveyedMap, PosesAreInTheSurveysFrame) {
   EXPECT_EQ(drive.markers.size(), markers.size());
 }
 
-TEST_F(SurveyedMap, WithoutItsFrameIsNotSaved) {
+TEST_F(SurveyedMap, AMapThatIsNotInTheSurveysFrameIsNotSaved) {
   SlamConfig config;
   config.robot.markers.survey_file = survey(kHeader + std::string{"249,1,2,0,0.01,0.01,0.01\n"});
   config.save_map = folder_ / "unplaced.map.lcm";
@@ -314,7 +314,7 @@ TEST_F(SurveyedMap, WithoutItsFrameIsNotSaved) {
   EXPECT_FALSE(fs::exists(config.save_map));
 }
 
-TEST_F(SurveyedMap, OfTwoContradictoryEntriesBothAreReportedAndTheMapStaysConsistent) {
+TEST_F(SurveyedMap, TwoContradictoryEntriesAreBothReportedAndTheMapStaysConsistent) {
   const auto markers = corridor_of(1).markers;
   const test::SyntheticMarker& first = markers.front();
   const test::SyntheticMarker& last = markers.back();

@@ -72,7 +72,7 @@ TEST(OccupancyGrid, ALargeMapIsSentWithLargerCellsAndKeepsItsWalls) {
   EXPECT_FALSE(to_occupancy_grid(GridMap{}, timestamp_from_us(1)));
 }
 
-TEST(MbotSlam, AResetIsObeyedOnlyInTheSameModeWithoutRetainPose) {
+TEST(MbotSlam, AResetIsObeyedOnlyForTheCurrentModeWithoutRetainPose) {
   auto input = messages_of_drive(2.0);
   const auto middle = input.begin() + static_cast<std::ptrdiff_t>(input.size() / 2);
   const auto poses_with = [&](const std::vector<Message>& resets) {

@@ -36,8 +36,9 @@ TEST(SlamNode, DoesNotSubscribeToTheTruePose) {
     EXPECT_NE(subscription.channel, "TRUE_POSE");
 }
 
-// Whatever the order within the delay that slam waits for, the result is the same bytes.
-TEST(SlamNode, TheResultDoesNotDependOnHowMessagesAreGrouped) {
+// The result is the same to the byte, however messages are ordered within the delay for which slam
+// waits.
+TEST(SlamNode, TheResultDoesNotDependOnTheDelaysOfTheChannels) {
   const auto input = messages_of_drive();
   const auto expected = Slam{}.feed(input);
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
@@ -99,7 +100,7 @@ std::vector<trajectory_t> trajectories_in(const std::vector<Message>& output) {
   return trajectories;
 }
 
-TEST(SlamNode, ASmoothersTrajectoryIsSentAtTheEnd) {
+TEST(SlamNode, GmappingSendsItsTrajectoryAtTheEndAndOdometrySendsNone) {
   SlamConfig config = small_config();
   config.slam.estimator = EstimatorName::kGmapping;
   const auto input = messages_of_drive();
@@ -160,7 +161,7 @@ TEST(SlamNode, BadScansAndTimesAreCountedAndSkipped) {
   EXPECT_GT(count_by_channel(output)["SLAM_POSE"], 5);
 }
 
-TEST(SlamNode, WithoutAPoseOrAMapItHasFailed) {
+TEST(SlamNode, WithoutEstimatesOrAMapTheNodeReportsFailure) {
   const auto input = messages_of_drive(0.2);
   Slam slam;
   slam.feed(input);
@@ -179,7 +180,7 @@ TEST(SlamNode, WithoutAPoseOrAMapItHasFailed) {
   EXPECT_TRUE(blind.node.failed());
 }
 
-TEST(SlamNode, AScanOfMoreBeamsThanSlamScanHoldsIsThinnedThere) {
+TEST(SlamNode, AScanOfTooManyBeamsForSlamScanIsThinnedInSlamScan) {
   auto input = messages_of_drive(0.2);
   planar_lidar_t scan{};
   scan.utime = to_us(input[input.size() / 2].time) + 1;
@@ -215,7 +216,7 @@ TEST(SlamNode, ScansDoNotWaitForeverForACamera) {
   EXPECT_EQ(count_by_channel(Slam{}.feed(input))["SLAM_POSE"], scans);
 }
 
-TEST(SlamNode, WithBlankIdsAllMarkersAreIgnored) {
+TEST(SlamNode, WithBlankIdsNoMarkerIsInTheMap) {
   SlamConfig config = small_config();
   config.slam.blank_ids = true;
   const auto input = messages_of_drive();

@@ -21,7 +21,7 @@ TEST(Period, IsDueOncePerPeriod) {
   EXPECT_FALSE(period.is_due(after_s(119)));
 }
 
-TEST(Period, MayBeginAfterAPeriod) {
+TEST(Period, TheFirstTimeMayBeDueOnlyAfterAPeriod) {
   Period period{10.0, Period::First::kAfterAPeriod};
   EXPECT_FALSE(period.is_due(after_s(100)));
   EXPECT_FALSE(period.is_due(after_s(109)));

@@ -30,7 +30,7 @@ slam_estimate_t estimate_at(std::int64_t utime) {
   return message;
 }
 
-TEST(SceneUpdater, ALongPathIsThinnedInItsPastOnly) {
+TEST(SceneUpdater, ALongPathIsThinnedInItsPastAndDenseAtItsEnd) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};
@@ -66,7 +66,7 @@ TEST(SceneUpdater, MarkersAppearWhenAllPartsAreThere) {
   EXPECT_EQ(scene.landmarks[0].id, 4) << "parts of different times do not mix";
 }
 
-TEST(SceneUpdater, AWeakAxisIsKeptWhenThereIsOne) {
+TEST(SceneUpdater, AnEstimateKeepsItsWeakAxisAndItsSource) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};
@@ -88,7 +88,7 @@ TEST(SceneUpdater, AWeakAxisIsKeptWhenThereIsOne) {
   EXPECT_EQ(scene.estimates[2].weak_axis->source, WeakAxisSource::kUnknown);
 }
 
-TEST(SceneUpdater, TheScanWithMarkersStays) {
+TEST(SceneUpdater, AScanWithoutMarkersDoesNotReplaceOneWithMarkers) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};

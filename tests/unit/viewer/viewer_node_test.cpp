@@ -262,8 +262,8 @@ TEST_F(ViewerNodeTest, AFileThatCannotBeWrittenIsAFailureAndTheOthersAreWritten)
   EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("1.000000 "));
 }
 
-// Slam was started again: what it draws now is another map in another frame.
-TEST_F(ViewerNodeTest, FollowsANewMapAndKeepsTheFilesOfTheOneBefore) {
+// Slam was restarted: its map has another id and another frame.
+TEST_F(ViewerNodeTest, AnotherMapIdStartsNewFilesAndKeepsTheEarlierOnesInAFolder) {
   ViewerNode node{config_, inbox_, outbox_};
   slam_estimate_t estimate = estimate_at(1.0, 7.0);
   estimate.map_id = 0xab;

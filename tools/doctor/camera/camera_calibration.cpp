@@ -28,7 +28,7 @@ constexpr double kSlowStep_s = 0.25;  // about the time in which a robot starts 
 constexpr int kIterations = 8;
 constexpr double kCutoff = 3.0;  // kernel width of the robust weights, in sigmas
 constexpr int kFewestTracks = 4;
-constexpr double kLongestPause_s = 2.0;  // in a track
+constexpr double kLongestPause_s = 2.0;  // between consecutive sightings of a track
 constexpr double kFarEnough_m = 0.3;     // between two sightings of a pair
 constexpr double kTurnedEnough_rad = 0.15;
 constexpr double kNearestScan_s = 0.15;
@@ -44,7 +44,8 @@ struct TrackEquations {
   Errors slope{Errors::Zero()};
 };
 
-/// A residual of one or two rows as a function of the errors, with the covariance of its noise.
+/// A residual of one or two rows as a function of the errors, with the information (inverse
+/// covariance) of its noise.
 struct Residual {
   std::size_t track{0};
   std::function<Eigen::Vector2d(const Errors&)> value{};
@@ -105,9 +106,9 @@ class Problem {
     return slope.dot(residual.information * slope);
   }
 
-  /// Half of the interval between odometry samples. Odometry's noise from sample to sample can
-  /// shift the time offset by this much; the share of noise in the observed motion is that which
-  /// vanishes with the long step kSlowStep_s.
+  /// Half of the interval between odometry samples. Noise from sample to sample can shift the time
+  /// offset by up to this. Its weight is the share of noise in late_information(): the part that
+  /// the long step kSlowStep_s does not show.
   double half_interval_s() const {
     return 0.5 * to_seconds(log_.odometry.back().time - log_.odometry.front().time) /
            static_cast<double>(log_.odometry.size());
@@ -217,7 +218,7 @@ void Problem::add_track(const std::vector<const CameraSighting*>& track) {
   }
 }
 
-/// Linearisation point: selects walls and pairs with these errors.
+/// Sets the linearisation point, and selects the residuals of walls and pairs there.
 void Problem::collect(const Errors& errors) {
   errors_ = errors;
   residuals_.clear();
@@ -316,7 +317,7 @@ std::vector<ImportedPose> rescaled(const std::vector<ImportedPose>& odometry, do
   std::vector<ImportedPose> scaled = odometry;
   for (std::size_t i = 1; i < odometry.size(); ++i) {
     const Se2 step = odometry[i - 1].pose.inverse() * odometry[i].pose;
-    // The chord of an arc points along half of the turn, which is scaled, too.
+    // An arc's chord points along half of its turn: scaling the turn rotates the chord.
     const double half_rad = 0.5 * step.theta();
     const Eigen::Vector2d along = Se2{0.0, 0.0, half_rad / turn_scale - half_rad} *
                                   Eigen::Vector2d{step.translation() / distance_scale};

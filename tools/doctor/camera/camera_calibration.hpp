@@ -15,11 +15,11 @@ namespace waymark {
 struct CameraCalibration {
   Measured focal{};        ///< true over described focal length
   Measured marker_size{};  ///< true over described size
-  Measured yaw_rad{};      ///< true minus described
+  Measured yaw_rad{};      ///< true yaw minus described yaw
   Measured late_s{};       ///< delay of the frames' stamps, relative to odometry's clock
   int num_walls{0};        ///< sightings with a wall behind them
   int num_pairs{0};        ///< pairs of sightings of one marker
-  int num_tracks{0};       ///< times at which one marker was in view without a longer pause
+  int num_tracks{0};       ///< stretches of sightings of one marker with pauses of at most 2 s
 };
 
 /// Relative standard deviations of odometry's scales.

@@ -21,7 +21,7 @@ namespace {
 constexpr std::int64_t kMostFrames = 400;
 constexpr std::size_t kMostMessages = 1200;
 constexpr std::int64_t kDictionaryFrames = 30;
-constexpr double kReach_px = 8.0;  // of edge profiles; for blurs of up to half of it
+constexpr double kReach_px = 8.0;  // half length of edge profiles; for blurs of up to half of it
 
 /// The largest dictionary of every family: the smaller ones are its first ids.
 constexpr std::array<std::string_view, 9> kFamilies{
@@ -113,7 +113,7 @@ double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
     if (side.blur_px > 0.0) blurs_px.push_back(side.blur_px);
   }
   if (blurs_px.empty()) return -1.0;
-  // Motion blurs two opposite sides.
+  // Motion blurs only two opposite sides: the largest median counts.
   return std::ranges::max(blurs_px);
 }
 

@@ -26,10 +26,10 @@ struct CameraSighting {
 };
 
 struct CameraRecord {
-  bool has_images{true};                           ///< false: only sightings, from MARKERS
-  std::vector<Timestamp> times{};                  ///< of all frames
-  std::int64_t num_decoded{0};                     ///< frames that were decoded, evenly spread
-  std::map<std::string, std::int64_t> problems{};  ///< their number by reason
+  bool has_images{true};           ///< false: only sightings, from MARKERS
+  std::vector<Timestamp> times{};  ///< of all frames
+  std::int64_t num_decoded{0};     ///< frames decoded, evenly spread; of MARKERS all messages
+  std::map<std::string, std::int64_t> problems{};  ///< number of unusable frames by reason
   std::vector<CameraSighting> sightings{};
   std::vector<double> blurs_px{};    ///< one per sighting: standard deviation across its sides
   std::vector<double> modules_px{};  ///< one per sighting: side of a module

@@ -33,7 +33,7 @@ bool covers(const std::vector<ImportedPose>& odometry, Timestamp from, Timestamp
 
 /// Turns of LiDAR and odometry, one entry per pair of scans.
 struct Turns {
-  std::vector<Timestamp> from{};  ///< of odometry
+  std::vector<Timestamp> from{};  ///< start of the turn on odometry's clock
   std::vector<Timestamp> to{};
   std::vector<double> lidar_rad{};
   std::vector<double> odometry_rad{};
@@ -59,7 +59,7 @@ Turns turns_with(const std::vector<LidarTurn>& turns, const std::vector<Imported
 struct Line {
   double ratio{0.0};
   double ratio_sigma{0.0};
-  double cost{0.0};  ///< mean of Cauchy's loss over its square cutoff
+  double cost{0.0};  ///< mean of log(1 + (residual / cutoff)^2): Cauchy's loss
 };
 
 double weight_of(double residual, double cutoff) {
@@ -70,7 +70,7 @@ double weight_of(double residual, double cutoff) {
 std::optional<Line> fit_line(const Turns& turns, double cutoff_rad) {
   if (turns.lidar_rad.size() < kFewest) return std::nullopt;
   Line line;
-  // From both signs: a robust fit may not leave the wrong one.
+  // Starts from both signs: a robust fit may not leave the wrong sign.
   double best = 0.0;
   for (const double start : {1.0, -1.0}) {
     double ratio = start;
@@ -180,8 +180,8 @@ std::optional<Solution<kUnknowns>> solve_robustly(const Equations<kRows, kUnknow
   return Solution<kUnknowns>{found, (sigma2 * inverse).cwiseMax(inverse * spread * inverse).eval()};
 }
 
-/// The remaining time offset after `late_s`: an offset changes a turn of the odometry by the offset
-/// times the difference of the turn rates at its ends.
+/// The time offset that remains after correcting by `late_s`: an offset changes a turn of the
+/// odometry by the offset times the difference of the turn rates at its ends.
 std::optional<Measured> remaining_offset_s(const std::vector<LidarTurn>& turns,
                                            const std::vector<ImportedPose>& odometry,
                                            double late_s) {
@@ -205,7 +205,7 @@ double median_interval_s(const std::vector<ImportedPose>& odometry) {
   return std::max(kShortestInterval_s, upper_median(std::move(intervals_s)));
 }
 
-/// For odometry too infrequent to search for an offset.
+/// Result for odometry too infrequent to search for an offset: 0 with a sigma of kLargestOffset_s.
 std::optional<TurnComparison> comparison_without_offset(TurnComparison comparison, const Turns& now,
                                                         double cutoff_rad) {
   const auto line = fit_line(now, cutoff_rad);
@@ -238,8 +238,8 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
     cutoff_rad =
         kCutoff * std::max(kLeastResidual_rad, kSigmaOfMad * upper_median(std::move(residuals)));
   }
-  // Offsets of whole odometry samples: between them odometry is interpolated, which smooths its
-  // noise and makes every fit better.
+  // Only offsets of whole odometry intervals: at other offsets odometry is interpolated, which
+  // smooths its noise and makes the fit better than at the true offset.
   const double interval_s = median_interval_s(odometry);
   const int steps = static_cast<int>(std::floor(kLargestOffset_s / interval_s));
   if (steps < 1) return comparison_without_offset(comparison, now, cutoff_rad);

@@ -14,10 +14,10 @@ constexpr std::size_t kMostPoints = 360;
 constexpr std::size_t kScansPerProgress = 50;
 constexpr double kFarthest_m = 0.3;  // from the reference scan
 constexpr double kMostTurned_rad = 0.35;
-constexpr double kGuessSigma_m = 0.1;  // of the prediction that the last step repeats
+constexpr double kGuessSigma_m = 0.1;  // sigma of the predicted pose: the last step repeated
 constexpr double kGuessSigma_rad = 0.1;
 constexpr double kFewestMapped = 0.4;  // share of the beams that end where the first scan has walls
-constexpr double kFewestInliers = 0.5;  // share of these that lie on them
+constexpr double kFewestInliers = 0.5;  // share of those beams that lie on the walls
 
 Points points_of(const LidarScan& scan, double range_max_m) {
   Points points;

@@ -50,7 +50,8 @@ Figure found_again_s(const EstimatorResult& result) {
                                                     : std::nullopt;
 }
 
-/// The earlier of both: an estimator that has found the pose again need not report `lost`.
+/// The earlier of says_lost_s and found_again_s: an estimator that has found the pose again need
+/// not report `lost`.
 Figure says_lost_s(const EstimatorResult& result) {
   if (!result.timeline || !result.timeline->kidnap) return std::nullopt;
   const Kidnap& kidnap = *result.timeline->kidnap;

@@ -25,7 +25,7 @@ Json metrics_json(const EstimatorResult& result);
 /// Content of results.json: the truth, and each estimator's metrics with its configuration.
 Json results_json(const RunTruth& truth, const std::vector<EstimatorResult>& results);
 
-/// Table I of the paper, as Markdown.
+/// Corridor lengths like Table I of the marker-matching paper, as Markdown.
 std::string length_table(const std::vector<EstimatorResult>& results);
 
 /// Errors of trajectory and markers, NEES, and warnings such as lost messages. The trajectory as

@@ -56,7 +56,7 @@ ScenarioPart read_scenario(const fs::path& file) {
   }
 }
 
-/// Unlike in a scenario, unknown keys are errors.
+/// Reads expect.toml, in which (unlike in a scenario) unknown keys are errors.
 ExpectConfig read_expectations(const fs::path& file) {
   try {
     return load_config<ExpectFile>({{file}, {}}).expect;
@@ -103,7 +103,7 @@ std::optional<std::string> json_if_there(const fs::path& file) {
   return text;
 }
 
-/// Lines after the header.
+/// Lines of changes.csv after its header; empty without the file.
 std::vector<std::string> changes_in(const fs::path& file) {
   std::vector<std::string> lines;
   std::istringstream text{text_if_there(file).value_or("")};
@@ -185,7 +185,7 @@ void add_figures_of_scenario(const ExpectConfig& expect, EstimatorResult& result
   result.expectations = check_expectations(expect, result);
 }
 
-/// Position in the table.
+/// Position of an estimator in the table, see estimators_in().
 std::size_t rank_of(const std::string& name) {
   constexpr std::array<std::string_view, 4> kFirst{"odometry", "gmapping", "gmapping_turtlebot3",
                                                    "marker_matching"};

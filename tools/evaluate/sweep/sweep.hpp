@@ -23,7 +23,7 @@ struct PlannedRun {
   std::string again{};   ///< command that repeats this run alone
 };
 
-/// @throws InputError if the plan cannot be read or a line is not five words between tabs.
+/// @throws InputError if the plan cannot be read or a line is not five fields separated by tabs.
 std::vector<PlannedRun> read_plan(const std::filesystem::path& sweep_dir);
 
 struct SweptRun {
@@ -44,7 +44,8 @@ struct SweptRun {
   std::optional<double> figure(const std::string& key) const;
 };
 
-/// A run without metrics.json has failed; the file `failed` in its row or its folder says why.
+/// A run has failed if its folder or its row has a file `failed`, which says why, or if
+/// metrics.json is missing or has no ATE.
 std::vector<SweptRun> read_runs(const std::filesystem::path& sweep_dir);
 
 /// Over the seeds that have the figure; worst = largest, or smallest if higher is better.
@@ -66,8 +67,8 @@ struct SweepRow {
 
   bool expects_anything() const;
 
-  /// True if the required shares of seeds (without failures) and of stations (with mean NEES in its
-  /// band) meet the expectations.
+  /// True if the share of seeds that neither failed nor missed an expectation, and the share of
+  /// stations whose mean NEES is in its band, reach their limits in [expect].
   bool is_hit() const;
 
   /// The seed with the largest ATE, among those that missed expectations if there are any; null if

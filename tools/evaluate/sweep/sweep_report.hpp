@@ -9,7 +9,8 @@
 
 namespace waymark::evaluate {
 
-/// One line per scenario and estimator, then a command for each seed that failed or missed.
+/// One line per scenario and estimator, then a command for each seed that failed or missed an
+/// expectation.
 std::string sweep_markdown(const std::vector<SweepRow>& rows);
 
 /// One line per scenario and estimator.

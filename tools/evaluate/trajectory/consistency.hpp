@@ -17,7 +17,7 @@ double chi_square_quantile(double degrees_of_freedom, double normal_quantile);
 /// One station over all runs that reached it.
 struct StationConsistency {
   double travel_m{};
-  std::size_t runs{};  ///< with a covariance there
+  std::size_t runs{};  ///< number of runs with a covariance at this station
   double mean_nees{};
   double band_low{};  ///< with consistent covariances, 95 % of the means are in the band
   double band_high{};

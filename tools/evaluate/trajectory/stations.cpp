@@ -10,7 +10,7 @@ namespace waymark::evaluate {
 namespace {
 
 constexpr double kSpacing_m = 1.0;
-constexpr double kFastest_mps = 1.0;  ///< twice the fastest scenario's robot
+constexpr double kFastest_mps = 1.0;  ///< twice the speed of the fastest scenario's robot
 /// Written for nullopt, because every column has to be a finite number; valid values are not
 /// negative.
 constexpr double kNone = -1.0;

@@ -10,12 +10,12 @@
 
 namespace waymark::evaluate {
 
-/// Behaviour after the robot was lifted for the first time. Times are seconds after `sighting_t_s`;
-/// nullopt = it never happened.
+/// Behaviour after the robot was lifted for the first time. says_lost_s and found_again_s count
+/// from `sighting_t_s`; nullopt = it never happened.
 struct Kidnap {
   double lifted_t_s{};
-  double sighting_t_s{};  ///< first frame with a marker since then; without a log: lifted_t_s
-  std::optional<double> says_lost_s{};    ///< health `lost`; 0 if before the sighting
+  double sighting_t_s{};  ///< first frame with a marker from lifted_t_s on; if none: lifted_t_s
+  std::optional<double> says_lost_s{};    ///< first health `lost`; 0 if before the sighting
   std::optional<double> found_again_s{};  ///< first pose that is right for at least a second
   double confident_wrong_s{};             ///< total time with a wrong pose, NEES > 16.3, not `lost`
 };

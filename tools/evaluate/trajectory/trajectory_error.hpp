@@ -49,7 +49,7 @@ struct TrajectoryError {
   double ate_origin_m{};                ///< RMS distance after alignment on the first pose
   double ate_se2_m{};                   ///< RMS distance after the best rigid fit
   std::optional<double> ate_frame_m{};  ///< RMS distance in a known frame, without alignment
-  // Below: after `alignment`.
+  // The errors below are after `alignment`, on which RPE does not depend.
   Spread distance_m{};
   std::optional<Spread> along_m{};   ///< along the line from the first to the last true pose
   std::optional<Spread> across_m{};  ///< absent if that line is shorter than a metre
@@ -62,7 +62,7 @@ struct TrajectoryError {
 };
 
 /// @param pairs           not empty.
-/// @param world_from_map  the map's frame if it is known; then nothing is aligned.
+/// @param world_from_map  the map's frame if it is known; then used instead of `alignment`.
 TrajectoryError trajectory_error(const std::vector<PosePair>& pairs, Alignment alignment,
                                  const std::optional<Se2>& world_from_map = std::nullopt);
 

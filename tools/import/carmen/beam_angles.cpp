@@ -20,7 +20,7 @@ constexpr std::size_t kFewestBeams = 9;  // in a window
 constexpr std::size_t kFewestWindows = 100;
 constexpr double kFarthestWall_m = 30.0;
 constexpr double kFloor_m = 0.003;  // smallest scatter that is distinguished
-constexpr double kClearly = 0.02;   // of the mean logarithm; a wrong field of view gives 0.1
+constexpr double kClearly = 0.02;   // least drop of the mean logarithm; a wrong field adds 0.1
 
 constexpr double kRound = 0.004;  // smallest relative spread of a wall's ranges in a window
 

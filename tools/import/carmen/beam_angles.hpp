@@ -21,8 +21,8 @@ std::optional<BeamAngles> conventional_angles(std::size_t num_beams);
 double first_angle_rad(std::size_t num_beams, double step_rad);
 
 /// The field of view, among those of common LiDARs, with which walls are straightest, if it is
-/// clearly better than conventional_angles(); else these. nullopt if neither is known: an unusual
-/// number of beams, and few walls.
+/// clearly better than conventional_angles(); else conventional_angles(). nullopt if neither is
+/// known: an unusual number of beams, and few walls.
 /// @param scans  ranges [m] of scans of num_beams; only finite positive ones are used.
 std::optional<BeamAngles> straightest_angles(std::span<const std::span<const double>> scans,
                                              std::size_t num_beams);

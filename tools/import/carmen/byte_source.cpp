@@ -20,7 +20,7 @@ constexpr std::string_view kBzip2Magic = "BZh";
 struct Archive {
   std::string_view magic;
   std::string_view kind;
-  std::string_view unpack;  ///< program that does it
+  std::string_view unpack;  ///< program that unpacks it
 };
 
 constexpr std::array<Archive, 5> kArchives{{{"PK\x03\x04", "a zip archive", "unzip"},

@@ -18,7 +18,7 @@ constexpr double kLatestTime_s = 4e9;      // the year 2096
 constexpr double kLargestPose = 1e6;       // [m, rad]
 constexpr double kLargestMounting = 10.0;  // [m, rad]
 
-// Keywords of CARMEN's loggers without LiDAR scans and odometry that are used here.
+// Keywords of CARMEN's loggers whose lines are not used here.
 constexpr std::array<std::string_view, 23> kOtherKeywords{
     "SYNC",      "TRUEPOS",  "RAWLASER1", "RAWLASER2",        "RAWLASER3",     "RAWLASER4",
     "RAWLASER5", "LASER3",   "LASER4",    "LASER5",           "ROBOTVELOCITY", "POSITION",
@@ -77,7 +77,7 @@ void take_times(FieldCursor& fields, const CarmenUnits& units, Line& line) {
                                               "--time-unit ms or us"
                                             : ""));
   }
-  // A wrong logger's time is no error: it is only used if ipc_timestamp is unusable.
+  // A wrong logger_timestamp is no error: it is only used if ipc_timestamp is unusable.
   line.logger_time_s = std::clamp(line.logger_time_s, 0.0, kLatestTime_s);
 }
 
@@ -110,7 +110,7 @@ CarmenLine parse_old_laser(FieldCursor& fields, CarmenLidar lidar, const Given& 
   return finish(fields, scan);
 }
 
-/// Angular step: the header's resolution, or field of view over beams if that is 0.
+/// Angular step: the header's resolution; if that is 0, field of view / (number of beams - 1).
 double angle_step(FieldCursor& fields, double field_of_view_rad, double resolution_rad,
                   int num_beams) {
   const double gaps = std::max(1, num_beams - 1);

@@ -15,7 +15,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kFewOutOfOrder = 0.1;  // share of lines from which on they are sorted
+constexpr double kFewOutOfOrder = 0.1;  // all lines are sorted if a larger share is out of order
 constexpr Duration kLongPeriod = std::chrono::seconds{30};  // longer than any real scan period
 
 Timestamp after_start(double seconds) {
@@ -44,7 +44,8 @@ void count_by_period(std::vector<ReadScan>& scans, std::optional<double> period_
       "the lines have no times: scans are taken to be {:g} s apart, as asked for", *period_s));
 }
 
-/// A sample gets the correction of the neighbouring scan in the file whose stamp is nearer.
+/// A sample gets the correction of the scan before or behind it in the file, of that with the
+/// nearer stamp.
 void shift_odometry(std::vector<ReadOdometry>& odometry, const std::vector<ReadScan>& scans,
                     const std::vector<Timestamp>& stamps, const std::vector<Duration>& late) {
   std::size_t behind = 0;  // the next scan in the file

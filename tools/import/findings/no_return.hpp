@@ -14,7 +14,7 @@ namespace waymark {
 /// Ranges that stand for "no return", as found in a log.
 struct NoReturnCode {
   std::vector<double> codes_m{};  ///< ascending; a SICK has several
-  std::int64_t count{0};          ///< ranges of the smallest code or more in these scans
+  std::int64_t count{0};          ///< number of ranges not below the smallest code
 };
 
 /// A range is such a code when it piles up (ten times as frequent as ranges up to a fifth shorter,

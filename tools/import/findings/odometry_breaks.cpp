@@ -24,12 +24,12 @@ constexpr double kJump_rad = 0.5;
 
 constexpr double kGapInPeriods = 10.0;
 constexpr Duration kShortestGap = std::chrono::seconds{2};
-constexpr double kSamePlace_m = 0.06;  // misfit of two scans of one place
-constexpr double kNowhere_m = 0.15;    // misfit of two scans of different places
+constexpr double kSamePlace_m = 0.06;  // two scans with a smaller misfit are of one place
+constexpr double kNowhere_m = 0.15;    // two scans with this misfit or more are of different places
 constexpr double kOften = 0.05;        // share of the steps
-// In a bare corridor a scan fits anywhere along it. That it fits where the robot was before a gap
-// is evidence only if it does not fit 1 m away from there.
-constexpr double kDistinct_m = 0.1;  // misfit of two scans of places that can be distinguished
+// In a bare corridor a scan fits anywhere along the corridor. A scan that fits where the robot was
+// before a gap is evidence only if it does not fit 1 m away from there.
+constexpr double kDistinct_m = 0.1;  // places with a smaller misfit cannot be distinguished
 const std::array<Eigen::Vector2d, 4> kSteppedAside{
     {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}};
 

@@ -7,9 +7,8 @@
 namespace waymark {
 
 /// Repairs, with a note for each:
-///  - odometry that is 0 at first and then jumps: joined if the scans show that the robot stood;
-///  else
-///    the scans before the jump are left out;
+///  - odometry that is 0 at first and then jumps: joined if the scans show that the robot stood,
+///    else the scans before the jump are left out;
 ///  - a single wrong pose between two consistent ones: interpolated;
 ///  - odometry that begins anew while the scans show that the robot stands: continued;
 ///  - a pause so long that slam would assume that the clock was set: interpolated.

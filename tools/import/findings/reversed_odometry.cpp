@@ -17,8 +17,8 @@ constexpr double kLargestMisfit_m = 0.15;  // of the better direction; above, ne
 constexpr double kFloor_m = 1e-4;       // of a misfit, so that the ratio of two perfect fits is 1
 constexpr double kSmallestScore = 0.2;  // smaller scores are noise, as along a wall
 constexpr double kLargestScore = 2.0;   // of one step: a factor of 7
-// Score that a change of direction costs. A sequence has two: reversed, its misfits have to be half
-// of those as counted (ln 2).
+// Score that a change of direction costs. A reversed sequence has two changes: with the reversed
+// motion, its misfits have to be half of those with the motion as counted (ln 2).
 constexpr double kChange = 0.5 * std::numbers::ln2;
 constexpr double kUsualBraking_m_s2 = 2.0;  // of an indoor robot
 

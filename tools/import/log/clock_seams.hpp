@@ -18,7 +18,8 @@ struct ClockSeam {
 };
 
 /// Steps back by more than kSmallDisorder, or ahead by more than kLongestLog, with ten stamps in
-/// order before the step and ten after it. With fewer, those stamps are wrong, not the clock. O(n).
+/// order before the step and ten after it. With fewer, single stamps are wrong, not the clock.
+/// O(n).
 /// @param stamps  in the order of the file
 std::vector<ClockSeam> find_clock_seams(std::span<const Timestamp> stamps);
 
@@ -27,8 +28,8 @@ std::vector<ClockSeam> find_clock_seams(std::span<const Timestamp> stamps);
 /// the end of the one before.
 bool are_pieces_in_disorder(std::span<const Timestamp> stamps, std::span<const ClockSeam> seams);
 
-/// What to add to each stamp. The longest piece keeps its stamps, unless others would then be
-/// before 0.
+/// Correction to add to each stamp. The longest piece keeps its stamps, unless stamps of other
+/// pieces would then become negative.
 std::vector<Duration> corrections(std::span<const Timestamp> stamps,
                                   std::span<const ClockSeam> seams);
 

@@ -75,9 +75,9 @@ Se2 odometry_between(const ImportedLog& log, std::size_t first, std::size_t last
 void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& report);
 
 /// Extends odometry to cover the scans, for slam processes no scan without odometry. Where odometry
-/// starts after the first scan or ends before the last one by at most a second, its first or last
-/// pose is held, or the motion of the adjacent second extrapolated. Scans and images beyond that
-/// are removed.
+/// starts after the first scan or ends before the last one by at most a second, the motion of the
+/// adjacent second is extrapolated; with too few samples there, the first or last pose is held.
+/// Scans and images more than a second outside odometry's times are removed.
 void cover_scans(ImportedLog& log, ImportReport& report);
 
 /// Sorts all records by time, uses the scans' odometry if there is no other, and sets the rates and

@@ -38,7 +38,7 @@ std::vector<Timestamp> times_of(const std::vector<Record>& records) {
   return times;
 }
 
-/// From each record (with a member `time`) to the next.
+/// Time from each record (with a member `time`) to the next.
 template <class Record>
 std::vector<Duration> periods_of(const std::vector<Record>& records) {
   std::vector<Duration> periods;
@@ -89,7 +89,7 @@ void spread_equal_stamps(std::vector<Record>& records, std::string_view what,
 }
 
 /// Removes records (with members `time` and `at`) more than kLongestLog from the median: their
-/// clock was not set. Otherwise the log would span that time.
+/// clock was not set. Kept, they would make the log span months.
 template <class Record>
 void remove_absurd_times(std::vector<Record>& records, std::string_view what,
                          ImportReport& report) {

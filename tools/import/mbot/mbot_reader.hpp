@@ -13,7 +13,7 @@ namespace waymark {
 struct MbotOptions {
   std::string lidar_channel{"RPLIDAR_LASER"};  ///< lidar_t or planar_lidar_t
   std::string odometry_channel{};   ///< pose2D_t, pose_xyt_t, odometry_t or bot_core.pose_t
-  std::string encoder_channel{};    ///< MAEBot's encoders; at most one of the two is given
+  std::string encoder_channel{};    ///< MAEBot's encoders; given only without odometry_channel
   std::string reference_channel{};  ///< poses to compare with, types as for odometry; empty: none
   std::optional<double> meters_per_tick{};  ///< nullopt = geometry_of() the messages
   std::optional<double> wheel_base_m{};     ///< nullopt = geometry_of() the messages

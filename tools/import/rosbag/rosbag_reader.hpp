@@ -16,7 +16,7 @@ struct RosbagOptions {
   std::string camera_info_topic{};  ///< empty = the only one
   std::string base_frame{};         ///< empty = odometry's child frame
   bool without_images{false};
-  std::optional<double> range_max_m{};  ///< nullopt = see mark_no_returns(); usual: as scans say
+  std::optional<double> range_max_m{};  ///< nullopt = see mark_no_returns(), scans' range_max
   LidarMounting mounting{};
 };
 

@@ -26,8 +26,8 @@ struct CameraNoiseConfig {
   void describe(Fields& fields);
 };
 
-/// Errors of the camera's description in robot.toml: fixed ones, and random ones (`..._sigma`) that
-/// are drawn from the run's seed.
+/// How the true camera differs from its description in robot.toml: fixed errors, and random ones
+/// (`..._sigma`) drawn from the run's seed.
 struct CameraErrorConfig {
   double focal_share{0.0};
   double yaw_deg{0.0};
@@ -38,7 +38,7 @@ struct CameraErrorConfig {
   void describe(Fields& fields);
 };
 
-/// The camera that takes the pictures: the configured one with the errors applied.
+/// The true camera, which takes the pictures: `nominal` with the errors applied.
 CameraConfig real_camera(const CameraConfig& nominal, const CameraErrorConfig& errors,
                          std::int64_t seed);
 
@@ -51,7 +51,8 @@ struct CameraFrame {
   std::vector<std::uint8_t> jpeg{};
 };
 
-/// A frame must fit one datagram: kMaxPayloadBytes, less the other fields of image_t.
+/// Largest JPEG of a frame that fits one datagram: kMaxPayloadBytes less the other fields of
+/// image_t.
 constexpr std::size_t kMaxJpegBytes = 64000;
 
 class Camera {
@@ -63,7 +64,7 @@ class Camera {
   const CameraConfig& config() const { return camera_; }
 
   /// Applies lens, blur and noise to a rendered 8-bit RGB picture.
-  /// @param frame  number of the frame, key of its noise.
+  /// @param frame  number of the frame; selects its noise.
   /// @param light  factor on the brightness, before the noise.
   /// @return 8 bit, one channel (grey) or three (BGR).
   cv::Mat expose(const cv::Mat& rendered, std::uint64_t frame, double light = 1.0) const;
@@ -71,7 +72,8 @@ class Camera {
   /// A picture of random values.
   cv::Mat random_picture(Random& random) const;
 
-  /// Compresses at the configured quality, or at the best lower one that fits kMaxJpegBytes.
+  /// Compresses at the configured JPEG quality; lowers it in steps until the frame fits
+  /// kMaxJpegBytes or the lowest step is reached.
   CameraFrame compress(const cv::Mat& picture, Timestamp time) const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace waymark {
 
-/// Current in the thread that created it. Pictures are drawn to framebuffer objects.
+/// The context is current in the thread that created it. Pictures are drawn to framebuffer objects.
 class GlContext {
  public:
   /// @throws SimulatorError when OSMesa cannot create a context.
@@ -20,7 +20,7 @@ class GlContext {
     void operator()(osmesa_context* context) const { OSMesaDestroyContext(context); }
   };
 
-  std::vector<unsigned char> window_;  // required by OSMesa; nothing is drawn there
+  std::vector<unsigned char> window_;  // buffer that OSMesa requires; nothing is drawn to it
   std::unique_ptr<osmesa_context, Destroy> context_;
 };
 

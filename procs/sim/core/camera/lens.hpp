@@ -14,16 +14,17 @@ class Lens {
  public:
   explicit Lens(const CameraConfig& camera);
 
-  /// The pinhole camera to render with: covers the field of view of the lens at its central
-  /// resolution; the camera itself when it has no distortion and square pixels.
+  /// The pinhole camera to render with: it covers the field of view of the configured lens at the
+  /// resolution of the image centre. Without distortion and with square pixels it is that camera.
   const Pinhole& pinhole() const { return pinhole_; }
 
-  /// The camera's picture; shares the memory of its argument when the lens is ideal.
+  /// The configured camera's picture from the pinhole's; the same memory as the argument when the
+  /// lens has no distortion and square pixels.
   cv::Mat apply(const cv::Mat& pinhole_picture) const;
 
  private:
   Pinhole pinhole_;
-  cv::Mat source_pixels_;  ///< for each pixel of the camera its position in the pinhole's picture
+  cv::Mat source_pixels_;  ///< where in the pinhole's picture each pixel comes from
 };
 
 }  // namespace waymark

@@ -13,12 +13,13 @@ namespace {
 
 constexpr int kWhite = 255;
 constexpr int kRaysPerSide = 8;
-// Relative difference in depth up to which a pixel shows the plate, and not something in front of
-// it.
+// A pixel shows the plate, not something in front of it, if the rendered inverse depth differs from
+// the plate's by at most this share.
 constexpr double kDepthTolerance = 0.002;
 
-/// Offsets [px] of a pixel's rays from its centre. Rows and columns are sheared, so that edges
-/// along a row or a column of pixels are sampled at 64 positions, not at 8.
+/// Offsets [px] of a pixel's 8 x 8 rays from its centre. The grid is sheared, so that its rays have
+/// 64 different u and 64 different v, not 8: edges along pixel rows or columns are sampled 8 times
+/// finer.
 using RayPattern = std::array<Eigen::Vector2d, kRaysPerSide * kRaysPerSide>;
 
 RayPattern ray_pattern() {
@@ -34,8 +35,8 @@ RayPattern ray_pattern() {
   return pattern;
 }
 
-/// Homography from homogeneous pixels to homogeneous texels (column, row, counted from the outer
-/// edge of the first), whose third coordinate is 1/z of the plate there.
+/// Homography from homogeneous pixels to homogeneous texels (column, row; 0 is the outer edge of
+/// the first texel). The third coordinate is the plate's inverse depth 1/z [1/m] at the pixel.
 Eigen::Matrix3d texel_from_pixel(const Pinhole& pinhole, const Eigen::Isometry3d& camera_from_plate,
                                  double texels_per_m, const cv::Size& size) {
   Eigen::Matrix3d camera_from_plane;

@@ -26,9 +26,10 @@ struct View {
   cv::Mat inverse_depth_per_m{};          ///< float: 1/z at each pixel's centre
 };
 
-/// The pictures of all ids. Each pixel gets the mean of the print over its own area, like a pixel
-/// of a sensor. OpenGL's texture filters take fewer samples, which displaces edges along a row of
-/// pixels by up to 0.04 px, in the same direction for all markers at the same height.
+/// Draws the printed pictures of all marker ids. Each camera pixel gets the mean of the print over
+/// the pixel's area, as on a sensor. OpenGL's texture filters average over fewer samples: they
+/// would displace edges along a row of pixels by up to 0.04 px, equally for all markers at one
+/// height.
 class PlatePrints {
  public:
   /// @param pictures       8-bit grey pictures of whole plates, top row first, of at most a million
@@ -36,8 +37,9 @@ class PlatePrints {
   /// @param plate_size_m   side of a plate.
   PlatePrints(const std::map<int, cv::Mat>& pictures, double plate_size_m);
 
-  /// Darkens the pixels of the view that show this plate, by what is printed there.
-  /// @param world_from_plate  of the front face: origin in its middle, x right, y up, z outwards.
+  /// Multiplies the pixels of the view that show a plate by the grey level printed there.
+  /// @param world_from_plate  frame of the plate's front face: origin in its middle, x right, y up,
+  ///                          z away from the wall.
   void print(int id, const Eigen::Isometry3d& world_from_plate, View& view) const;
 
  private:

@@ -96,8 +96,8 @@ const cv::Mat& Renderer::render(const Eigen::Isometry3d& world_from_camera) {
   return view_.rgb;
 }
 
-/// Sets MuJoCo's camera to the view's. A picture extends half a pixel beyond the outer pixel
-/// centres.
+/// Sets MuJoCo's camera to the pose and pinhole of the view. A picture extends half a pixel beyond
+/// the centres of its outermost pixels.
 void Renderer::place_camera() {
   const Pinhole& pinhole = view_.pinhole;
   mjvGLCamera& camera = scene_.camera[0];
@@ -111,7 +111,7 @@ void Renderer::place_camera() {
   camera.frustum_top = at_near(pinhole.cy_px + 0.5);
   camera.frustum_bottom = at_near(pinhole.cy_px + 0.5 - pinhole.height_px);
   camera.frustum_center = at_near(0.5 * pinhole.width_px - (pinhole.cx_px + 0.5));
-  scene_.camera[1] = camera;  // mjr_render takes the mean of both eyes
+  scene_.camera[1] = camera;  // mjr_render averages the left and the right eye
 }
 
 /// OpenGL's depth is linear in 1/z: 0 at the near plane, 1 at the far one.

@@ -16,18 +16,18 @@
 
 namespace waymark {
 
-/// What is on the plates.
+/// What is printed on the markers' plates.
 enum class PlatePrint { kMarkers, kBlank };
 
 struct PlateGeom {
-  int geom{0};  ///< number in MuJoCo's model
-  int id{0};    ///< of the marker
+  int geom{0};  ///< index of the geom in MuJoCo's model
+  int id{0};    ///< id of the marker
 };
 
 /// Renders the robot's camera; the robot's body is not in the picture. One per thread.
 class Renderer {
  public:
-  /// @param physics  of that world; outlives the renderer.
+  /// @param physics  physics of `world`; must outlive the renderer.
   Renderer(const World& world, const MarkerPrint& print, PlatePrint plate_print,
            const Pinhole& pinhole, Physics& physics);
   ~Renderer();

@@ -13,19 +13,19 @@ namespace waymark {
 /// Replaces every range by a random one within the LiDAR's limits.
 void make_garbage(LidarScan& scan, const LidarConfig& lidar, Random& random);
 
-/// Scales every range by 1 + share; results above the largest range become +inf, below the smallest
-/// one NaN.
+/// Scales every range by 1 + share; results above lidar.range_max_m become +inf, results below
+/// lidar.range_min_m become NaN.
 void scale_ranges(LidarScan& scan, const LidarConfig& lidar, double share);
 
-/// Moves the pose by a random offset of up to 1 m along each axis, and makes its heading random.
+/// Adds a random offset in [-1, 1] m to x and to y, and replaces the heading by a random one.
 void make_garbage(OdometrySample& sample, Random& random);
 
-/// Wheels that slip: while the odometry is faulty ("wrong"), they turn by 1 + share times the angle
-/// that they roll.
+/// Encoders of wheels that spin: while a fault "wrong" of the odometry is active, they count
+/// 1 + share times the angle by which the wheel rolls; what they counted in excess is kept.
 class SpinningWheels {
  public:
-  /// The angles that the encoders measure. Call in order of time.
-  /// @param angles  without slip.
+  /// The angles that the encoders count. Call in order of time.
+  /// @param angles  true angles of the wheels since the start.
   WheelPair counted(const WheelPair& angles, const Faults& odometry, const Moment& moment);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faults of sensors, named as PX4's failure injection names them.
+// Faults of sensors, with the names of PX4's failure injection.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -12,11 +12,12 @@ namespace waymark {
 enum class Sensor { kCamera, kLidar, kOdometry };
 
 /// off: no measurements. stuck: repeats the last measurement with new stamps. garbage: random
-/// values. wrong: values scaled by 1 + share. slow: sends every keep_every-th measurement. delayed:
-/// stamped and sent delay_s late. intermittent: each measurement is lost with probability `share`.
+/// values. wrong: ranges, brightness or counted wheel angles scaled by 1 + share. slow: sends every
+/// keep_every-th measurement. delayed: stamped and sent delay_s late. intermittent: each
+/// measurement is lost with probability `share`.
 enum class FaultKind { kOff, kStuck, kGarbage, kWrong, kSlow, kDelayed, kIntermittent };
 
-/// Which wheel slips (odometry, wrong).
+/// The wheel that a fault "wrong" of the odometry concerns.
 enum class Wheel { kBoth, kLeft, kRight };
 
 struct FaultConfig {
@@ -39,7 +40,7 @@ class Faults {
   /// The first fault of this kind that is active now, or null.
   const FaultConfig* active(FaultKind kind, const Moment& moment) const;
 
-  /// True when a fault of this kind is active at any time of the run.
+  /// True when a fault of this kind is configured, whether or not it is active now.
   bool have(FaultKind kind) const;
 
   Sensor sensor() const { return sensor_; }

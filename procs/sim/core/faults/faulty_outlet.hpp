@@ -14,7 +14,8 @@
 
 namespace waymark {
 
-/// Applies the faults of a sensor to its stream of measurements, which have a member `time`.
+/// Applies the faults of a sensor to its stream of measurements, whose stamp is their member
+/// `time`.
 template <class Measurement>
 class FaultyOutlet {
  public:
@@ -23,7 +24,8 @@ class FaultyOutlet {
 
   const Faults& faults() const { return faults_; }
 
-  /// Takes a new measurement; one with a stamp before 0 is lost.
+  /// Takes a new measurement and applies the faults active at `moment`. A measurement stamped
+  /// before 0 is dropped.
   void take(Measurement measured, const Moment& moment) {
     const std::uint64_t number = count_++;
     if (measured.time < Timestamp{} || is_lost(number, moment)) return;
@@ -36,7 +38,7 @@ class FaultyOutlet {
     waiting_.insert(later, std::move(measured));
   }
 
-  /// Everything stamped before a time, in order of the stamps.
+  /// Removes and returns all measurements stamped before a time, in order of their stamps.
   std::vector<Measurement> release(Timestamp before) {
     const auto end =
         std::find_if(waiting_.begin(), waiting_.end(),

@@ -8,15 +8,15 @@
 namespace waymark {
 namespace {
 
-// Steering onto a line at speed v: turn rate = -v (kOffsetGain offset + kHeadingGain heading
-// error), critically damped (kHeadingGain = 2 sqrt(kOffsetGain)) within about a metre of path.
+// Steering onto a line at speed v: turn rate = -v (kOffsetGain * offset + kHeadingGain * heading
+// error). kHeadingGain = 2 sqrt(kOffsetGain) is critical damping: offsets decay within about 1 m.
 constexpr double kOffsetGain_per_m2 = 4.0;
 constexpr double kHeadingGain_per_m = 4.0;
 constexpr double kAligned_rad = 0.002;           // heading error at which a turn on the spot ends
-constexpr double kTurnAcceleration_per_m = 5.0;  // over forward acceleration: similar at the wheels
+constexpr double kTurnAcceleration_per_m = 5.0;  // turn acceleration / forward acceleration
 constexpr double kArrived_m = 0.001;
-constexpr double kSlowestShare = 0.1;     // of the speed, while braking, so that the robot arrives
-constexpr double kSteeringReserve = 0.8;  // share of the turn speed that an arc may take
+constexpr double kSlowestShare = 0.1;  // least share of the speed while braking, so that it arrives
+constexpr double kSteeringReserve = 0.8;  // arcs use this share of the turn speed
 constexpr std::size_t kMaxPendingCommands = 10'000;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The robot's velocity: from a route that is followed, or from DRIVE_COMMAND messages.
+// The robot's velocity: from following a route, or from DRIVE_COMMAND messages.
 #pragma once
 
 #include "common/config/config.hpp"
@@ -52,7 +52,7 @@ struct RouteConfig {
 
   /// The points to visit after the start: the waypoints in every lap, or the end at end_x_m.
   std::vector<Eigen::Vector2d> points() const;
-  /// The same with the start before them.
+  /// The start of the route, followed by points().
   std::vector<Eigen::Vector2d> corners() const;
   void describe(Fields& fields);
 };
@@ -67,7 +67,8 @@ class RouteFollower {
   /// @param world_from_base  the true pose.
   Velocity next(const Se2& world_from_base);
 
-  /// Starts again from standstill: turns towards the path first. For use after a kidnap.
+  /// To be called after a kidnap: starts again from standstill, with a turn on the spot towards the
+  /// present piece of the path.
   void begin_anew();
 
   /// The robot stands at the last point.
@@ -100,12 +101,13 @@ class RouteFollower {
 /// What happens to a velocity command.
 enum class CommandOutcome {
   kInTime,
-  kLate,      ///< it arrives after the time at which it should act, and acts at once
-  kOutdated,  ///< a newer one has acted already: ignored
-  kTooMany,   ///< too many wait for their time to act: ignored
+  kLate,      ///< received after the time at which it should act; acts at once
+  kOutdated,  ///< ignored: a command with a newer stamp has acted already
+  kTooMany,   ///< ignored: too many commands wait for their time to act
 };
 
-/// Executes velocity commands, each a fixed delay after its stamp, within the robot's acceleration.
+/// Lets each velocity command act a fixed delay after its stamp; the robot then approaches the
+/// commanded velocity within its acceleration limit.
 class CommandFollower {
  public:
   CommandFollower(const RouteConfig& config, Duration delay, double period_s);
@@ -120,8 +122,8 @@ class CommandFollower {
   Duration delay_;
   double period_s_;
   Timestamp now_{};
-  std::map<Timestamp, Velocity> pending_;  ///< by the time at which they act
-  Timestamp wanted_since_{};               ///< time at which `wanted_` acts
+  std::map<Timestamp, Velocity> pending_;  ///< keyed by the time at which they act
+  Timestamp wanted_since_{};               ///< time from which `wanted_` acts
   Velocity wanted_{};
   Velocity current_{};
 };

@@ -23,7 +23,7 @@ PathPiece arc_between(const PathPiece& before, const PathPiece& after, double ra
       std::abs(turn_rad) > kTurnsBack_rad) {
     return {};
   }
-  // Half of each line at most, so that arcs at both of its ends fit.
+  // An arc takes at most half of each line, so that the arcs at both ends of a line fit.
   const double per_radius = std::tan(0.5 * std::abs(turn_rad));
   const double trimmed_m =
       std::min(radius_m * per_radius, 0.5 * std::min(before.length_m, after.length_m));
@@ -46,7 +46,7 @@ PathPlace locate(const PathPiece& piece, const Se2& world_from_base) {
   const Se2 start_from_base = piece.world_from_start.inverse() * world_from_base;
   if (piece.curvature_per_m == 0.0)
     return {start_from_base.x(), start_from_base.y(), start_from_base.theta()};
-  // A right turn is mirrored to a left turn.
+  // A right turn is computed as a mirrored left turn.
   const double left = std::copysign(1.0, piece.curvature_per_m);
   const double radius_m = std::abs(1.0 / piece.curvature_per_m);
   const double x = start_from_base.x();
@@ -63,7 +63,7 @@ std::vector<PathPiece> path_through(const std::vector<Eigen::Vector2d>& points_m
     lines.push_back(line(points_m[i - 1], points_m[i]));
 
   std::vector<PathPiece> path;
-  double trimmed_m = 0.0;  // from the beginning of the line
+  double trimmed_m = 0.0;  // what the arc before takes of the present line
   for (std::size_t i = 0; i < lines.size(); ++i) {
     PathPiece piece = lines[i];
     if (trimmed_m > 0.0) piece.world_from_start = path.back().world_from(path.back().length_m);

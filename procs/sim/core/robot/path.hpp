@@ -31,7 +31,7 @@ struct PathPlace {
 PathPlace locate(const PathPiece& piece, const Se2& world_from_base);
 
 /// Lines from point to point. With a radius above 0, corners become arcs of that radius, or of a
-/// smaller one where the adjoining lines are too short; where the path turns back they stay sharp.
+/// smaller radius where the adjoining lines are short; turns of more than 160 degrees stay sharp.
 std::vector<PathPiece> path_through(const std::vector<Eigen::Vector2d>& points_m,
                                     double corner_radius_m);
 

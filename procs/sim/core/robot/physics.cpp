@@ -56,7 +56,7 @@ Physics::Wheel Physics::find_wheel(const char* name) const {
   return {model_->jnt_qposadr[joint], mj_name2id(model_.get(), mjOBJ_ACTUATOR, name), 0.0};
 }
 
-/// Contacts are soft: the robot sinks in by micrometres before it is at rest.
+/// Contacts are soft: the robot sinks into the floor by micrometres before it is at rest.
 void Physics::come_to_rest() {
   for (int i = 0; i * model_->opt.timestep < kSettlingTime_s; ++i)
     step({});
@@ -71,7 +71,7 @@ void Physics::step(const WheelPair& target_speed_per_s) {
 }
 
 void Physics::put_down(const Se2& world_from_there) {
-  // Height and tilt stay, so that the robot is at rest on its contacts at once.
+  // Height and tilt do not change, so that the robot rests on its wheels and casters at once.
   const double turn_rad = angle_difference(world_from_there.theta(), world_from_base().theta());
   double* position = data_->qpos + base_position_address_;
   const Eigen::Quaterniond before{position[3], position[4], position[5], position[6]};
@@ -106,7 +106,7 @@ Eigen::Isometry3d Physics::world_from_base_3d_at(double later_s) const {
 }
 
 Eigen::Isometry3d Physics::world_from_base_3d() const {
-  // From the free joint's coordinates: mj_step leaves the derived body poses one step behind.
+  // From the free joint's coordinates, because mj_step() leaves body poses one step behind them.
   const double* position = data_->qpos + base_position_address_;
   Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();
   world_from_base.translation() = Eigen::Map<const Eigen::Vector3d>{position};

@@ -13,7 +13,7 @@
 
 namespace waymark {
 
-/// An error of MuJoCo or OpenGL, with their message, or a run that does not come to its end.
+/// An error of MuJoCo or OpenGL, with its message, or a robot that does not arrive in time.
 class SimulatorError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -34,7 +34,7 @@ class Physics {
   /// One time step; the wheels follow the target speeds [rad/s] within the torque of their motors.
   void step(const WheelPair& target_speed_per_s);
 
-  /// Puts the robot down elsewhere, at rest; the wheels do not turn.
+  /// Places the robot at a pose, at rest; the wheel angles do not change.
   void put_down(const Se2& world_from_there);
 
   /// Places a movable body (see body_of() in mjcf.hpp) at an offset from its original position.
@@ -42,16 +42,18 @@ class Physics {
 
   /// Planar pose of the base: position between the wheels, heading.
   Se2 world_from_base() const;
-  /// The same with height and tilt.
+  /// Pose of the base with height and tilt.
   Eigen::Isometry3d world_from_base_3d() const;
-  /// The pose `later_s` from now (negative: before now), at the present velocity.
+  /// The pose of the base at now + later_s (which may be negative), extrapolated at its present
+  /// velocity.
   Eigen::Isometry3d world_from_base_3d_at(double later_s) const;
-  /// Joint angles since construction; they grow beyond a turn.
+  /// Angles [rad] by which the wheels have turned since construction; not wrapped.
   WheelPair wheel_angles() const;
 
   const mjModel& model() const { return *model_; }
 
-  /// For ray casting and rendering. mj_step() leaves the robot's derived poses one step behind.
+  /// MuJoCo's state, for ray casting and rendering. In it, the poses of the robot's parts (not its
+  /// joint coordinates) are those before the last mj_step().
   mjData& data() { return *data_; }
 
   const mjData& data() const { return *data_; }

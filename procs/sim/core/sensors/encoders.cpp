@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-// The default errors: what a well-kept TurtleBot3 shows.
+// Constant errors drawn from the seed: as large as on a well-kept TurtleBot3.
 constexpr double kScaleOfOddSeeds = 0.01;
 constexpr double kMaxHeadingScale = 0.005;
 
@@ -62,7 +62,8 @@ OdometrySample Encoders::measure(Timestamp time, const WheelPair& angles) {
   const double right_m = (counted.right_rad - last_.right_rad) * base_.wheel_radius_m;
   last_ = counted;
 
-  // Variances grow with the path, so that no error depends on how often it is measured.
+  // Variances grow with the path, so that the errors do not depend on how often measure() is
+  // called.
   const double path_m = 0.5 * (std::abs(left_m) + std::abs(right_m));
   Random random{seed_, random_streams::kOdometry, step_++};
   const double sqrt_path = std::sqrt(path_m);
@@ -73,7 +74,7 @@ OdometrySample Encoders::measure(Timestamp time, const WheelPair& angles) {
       (right_m - left_m) / base_.wheel_separation_m * (1.0 + errors_.heading_scale) +
       radians(errors_.heading_diffusion_deg_per_sqrt_m) * sqrt_path * random.normal();
 
-  // Second order: the chord of the arc points along the mean heading.
+  // Midpoint rule: the robot moves along the mean of its headings before and after the step.
   const Se2 half_turn{0.0, 0.0, 0.5 * turn_rad};
   odom_from_base_ = odom_from_base_ * half_turn * Se2{forward_m, 0.0, 0.0} * half_turn;
   return {time, odom_from_base_};

@@ -26,17 +26,17 @@ struct OdometryErrorConfig {
   void describe(Fields& fields);
 };
 
-/// The constant errors of this seed: with draw_from_seed +1 % of distance on odd seeds and -1 % on
-/// even ones, and up to half a percent of heading either way; else as configured.
+/// The configured errors; with draw_from_seed, `scale` is replaced by +1 % on odd and -1 % on even
+/// seeds, and `heading_scale` by a random value within +-0.5 %.
 OdometryErrorConfig errors_of_seed(const OdometryErrorConfig& config, std::int64_t seed);
 
-/// Integrates wheel angles to a pose that starts at the identity.
+/// Integrates wheel angles, with the errors of the odometry, to a pose that starts at the identity.
 class Encoders {
  public:
   Encoders(const BaseConfig& base, const OdometryErrorConfig& errors, std::int64_t seed);
 
   /// Call at the odometry rate, in order of time.
-  /// @param angles  of the wheels since the start.
+  /// @param angles  angles [rad] of the wheels since the start.
   OdometrySample measure(Timestamp time, const WheelPair& angles);
 
  private:

@@ -11,7 +11,7 @@
 
 namespace waymark {
 
-/// True noise of the ranges; what the robot assumes is robot.lidar.range_sigma_m.
+/// True noise of the simulated ranges; the noise that slam assumes is robot.lidar.range_sigma_m.
 struct LidarNoiseConfig {
   double range_sigma_m{0.01};
   double dropout_probability{0.005};
@@ -27,9 +27,9 @@ class Lidar {
   /// A whole sweep at one instant.
   LidarScan scan(Timestamp time, const Physics& physics);
 
-  /// Appends the next beams of a sweep, measured from the robot's present pose. Angles count from
-  /// the x axis, counter-clockwise; a mirrored LiDAR labels its clockwise beams in the same way.
-  /// The sweep is complete with config().num_beams beams.
+  /// Appends the next `count` beams of a sweep, measured from the robot's present pose. Angles
+  /// increase from the LiDAR's x axis; a mirrored LiDAR turns clockwise, but gives its beams the
+  /// same angles. A sweep is complete with config().num_beams beams.
   void add_beams(LidarScan& scan, int count, const Physics& physics);
 
   const LidarConfig& config() const { return config_; }
@@ -40,7 +40,7 @@ class Lidar {
   LidarConfig config_;
   LidarNoiseConfig noise_;
   std::uint64_t seed_;
-  std::uint64_t beam_{0};  ///< number of the beam in the run, key of its noise
+  std::uint64_t beam_{0};  ///< beams measured so far in the run; selects the noise
 };
 
 /// Distance to the first wall or box along a direction in the world frame; +inf when there is none.

@@ -12,7 +12,7 @@ namespace waymark {
 namespace {
 
 constexpr int kTexelsPerModule = 16;
-constexpr int kBorderModules = 1;  // of the black frame, part of the marker
+constexpr int kBorderModules = 1;  // thickness of the black border [modules]
 constexpr int kPaperWhite = 235;   // leaves room for light and noise below 255
 constexpr int kInkBlack = 20;
 
@@ -35,7 +35,8 @@ std::optional<int> dictionary_size(const std::string& dictionary) {
 }
 
 double plate_size_m(const MarkerPrint& print) {
-  // From the texels, not from quiet_zone_modules: the picture's scale must be exact.
+  // From the whole number of texels, not from quiet_zone_modules, so that the black square in the
+  // picture has exactly size_m.
   const int square_texels = black_square_modules(print) * kTexelsPerModule;
   return print.size_m * (square_texels + 2 * quiet_zone_texels(print)) / square_texels;
 }

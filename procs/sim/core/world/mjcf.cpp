@@ -11,7 +11,7 @@ namespace waymark {
 namespace {
 
 // Masses and sizes of the Waffle Pi: turtlebot3_description, turtlebot3_waffle_pi.urdf; the total
-// is the data sheet's 1.8 kg, the body's share is what the other parts leave.
+// is the data sheet's 1.8 kg; the body has what is left without the wheels.
 constexpr double kWheelMass_kg = 0.0285;
 constexpr double kWheelWidth_m = 0.018;
 constexpr double kBodyMass_kg = 1.8 - 2 * kWheelMass_kg;
@@ -26,14 +26,14 @@ constexpr double kCasterRadius_m = 0.010;
 
 // Wheel servo: torque = gain * (target speed - speed); the wheel reaches its speed in about 20 ms.
 constexpr double kServoGain_Nms = 0.05;
-constexpr double kMotorTorque_Nm = 1.4;      // XM430-W210, stall at 12 V is 3
-constexpr double kRotorInertia_kgm2 = 1e-4;  // seen through the gear; keeps a lifted wheel stable
+constexpr double kMotorTorque_Nm = 1.4;      // limit; an XM430-W210 stalls at 3 Nm (12 V)
+constexpr double kRotorInertia_kgm2 = 1e-4;  // at the wheel; keeps a lifted wheel stable
 
-// Contacts about as stiff as the time step allows (time constant: two steps). With MuJoCo's default
-// the wheels sink in by 0.4 mm, and the robot drives 0.6 % less than the wheels turn.
+// Contacts about as stiff as the time step allows (time constant: two steps). With MuJoCo's
+// defaults the wheels sink in by 0.4 mm, and the robot drives 0.6 % less far than the wheels roll.
 constexpr const char* kStiffContact = R"(solref="0.004 1" solimp="0.98 0.999 0.0001")";
 
-/// Options of the whole model. extent = 1, because near and far plane are given in multiples of it.
+/// Options of the whole model. extent = 1, because znear and zfar are multiples of the extent.
 std::string header(const MjcfOptions& options) {
   return fmt::format(R"(<mujoco model="waymark">
   <compiler angle="radian"/>
@@ -91,7 +91,7 @@ std::string wall_geom(const Wall& wall) {
       along.y(), -along.y(), along.x());
 }
 
-/// A thin box; the marker is on its +z face, with x to the right as seen from the front.
+/// A thin box; the marker is on its +z face, its x axis points to the right as seen from the front.
 std::string marker_geom(const MarkerPlate& marker, std::size_t index, double plate_size_m) {
   const Eigen::Vector3d facing{std::cos(marker.yaw_rad), std::sin(marker.yaw_rad), 0.0};
   const Eigen::Vector3d right{-facing.y(), facing.x(), 0.0};
@@ -172,8 +172,8 @@ std::string wheel(const char* name, double y_m, double radius_m) {
       0.5 * kWheelWidth_m, kWheelMass_kg, kStiffContact);
 }
 
-/// Casters have no friction, because dragging casters make the wheels slip. They need the priority:
-/// without it a contact has the greater friction of its two geoms.
+/// Casters have no friction, because dragging casters would make the wheels slip. This needs
+/// priority=1: without it, a contact takes the greater friction of its two geoms.
 std::string caster(double y_m) {
   return fmt::format(
       "      <geom type=\"sphere\" group=\"{}\" material=\"robot\" pos=\"{} {} {}\" size=\"{}\" "

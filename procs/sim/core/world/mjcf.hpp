@@ -10,7 +10,7 @@
 
 namespace waymark {
 
-/// Geom groups, by which sensors and contacts include or ignore geoms.
+/// Groups of geoms; sensors see or ignore a whole group.
 enum class GeomGroup : int {
   kWalls = 0,    ///< seen by LiDAR and camera, collide
   kRobot = 1,    ///< seen by nobody on board, collides
@@ -35,8 +35,9 @@ struct MjcfOptions {
   Se2 world_from_start{};  ///< initial pose of the base
 };
 
-/// Name of the body of a marker or box, given the name of its geom. Only those that move, appear or
-/// disappear have a body (a mocap body at the origin); the others belong to the world body.
+/// Name of the body of a marker or box, given the name of its geom. Only markers and boxes that
+/// move, appear or disappear have a body of their own (a mocap body at the world's origin); the
+/// others belong to the world body.
 std::string body_of(const std::string& geom);
 
 /// The model of a TurtleBot3 Waffle Pi (masses and sizes: turtlebot3_description) in the world.

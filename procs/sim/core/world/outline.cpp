@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kQuarterTurn_rad = 0.5 * std::numbers::pi;
 
-/// Start of a wall that runs to the next corner of its closed line.
+/// A corner of a closed line: the start of the wall that runs to the next corner.
 struct Corner {
   Eigen::Vector2d at_m{0.0, 0.0};
   WallKind kind{WallKind::kSide};
@@ -56,7 +56,7 @@ std::vector<ClosedLine> plain_lines(const WorldConfig& world) {
 }
 
 /// The corners of an opening in the frame of its wall (x along the wall, y into the free space), in
-/// the order of the closed line; the last one continues the wall.
+/// the order of the closed line; at the last corner, the wall that was cut goes on.
 std::vector<Corner> opening_corners(const OpeningConfig& opening, double centre_m,
                                     double partition_m, WallKind wall_kind) {
   const double from = centre_m - 0.5 * opening.width_m;
@@ -77,7 +77,7 @@ std::vector<Corner> opening_corners(const OpeningConfig& opening, double centre_
       {{to, -partition_m}, kSide}, {{to, 0.0}, wall_kind}};
 }
 
-/// Middle of an opening on the face of its wall.
+/// Middle of an opening on the face of its wall, world frame.
 Eigen::Vector2d centre_on_wall(const OpeningConfig& opening, const WorldConfig& world) {
   const Corridor corridor = corridors(world).at(static_cast<std::size_t>(opening.corridor));
   const double side = opening.side == Side::kLeft ? 1.0 : -1.0;
@@ -85,7 +85,8 @@ Eigen::Vector2d centre_on_wall(const OpeningConfig& opening, const WorldConfig& 
          Eigen::Vector2d{opening.centre_m, side * 0.5 * world.width_m};
 }
 
-/// True when the wall from -> to reaches more than half a width beyond the point on either side.
+/// True when the point lies on the wall from -> to, more than half of width_m from both of its
+/// ends.
 bool has_wall(const Eigen::Vector2d& point_m, double width_m, const Corner& from,
               const Corner& to) {
   constexpr double kSlack_m = 1e-9;
@@ -96,8 +97,8 @@ bool has_wall(const Eigen::Vector2d& point_m, double width_m, const Corner& from
          at_m < (to.at_m - from.at_m).norm() - 0.5 * width_m;
 }
 
-/// Replaces the part of the wall where the opening is by the walls of the opening. False when the
-/// closed line has no such wall.
+/// Cuts the opening into its wall and inserts the walls of the opening. False when no wall of the
+/// closed line is at the opening's centre, or none is wide enough.
 bool cut(ClosedLine& line, const OpeningConfig& opening, const WorldConfig& world) {
   const Eigen::Vector2d centre_m = centre_on_wall(opening, world);
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -107,7 +108,7 @@ bool cut(ClosedLine& line, const OpeningConfig& opening, const WorldConfig& worl
     const Eigen::Vector2d along_m = to.at_m - from.at_m;
     const Se2 world_from_wall{from.at_m, std::atan2(along_m.y(), along_m.x())};
     const double at_m = (centre_m - from.at_m).norm();
-    // Thick enough for the bodies of both walls, the corridor's and the room's.
+    // Between corridor and room there are two walls, one of each, back to back.
     const double partition_m = 2.0 * world.wall_thickness_m;
     std::vector<Corner> corners = opening_corners(opening, at_m, partition_m, from.kind);
     for (Corner& corner : corners)
@@ -122,7 +123,8 @@ void append_walls(const ClosedLine& line, const WorldConfig& world, std::vector<
   const auto at = [&line](std::size_t i) {
     return line[i % line.size()].at_m;
   };
-  // Only at left turns of the line is there room behind the corner for a longer wall.
+  // Walls are made longer only where the line turns left (seen from the free space: inner corners);
+  // where it turns right, the longer wall would reach into the free space.
   const auto beyond_m = [&](std::size_t i) {
     const Eigen::Vector2d before = at(i) - at(i + line.size() - 1);
     return cross(before, at(i + 1) - at(i)) > 0.0 ? world.wall_thickness_m : 0.0;

@@ -22,21 +22,22 @@ struct Corridor {
 
 enum class WallKind { kSide, kEnd, kDoor };
 
-/// A wall by its inner face. Its body lies to the right of from -> to, the free space to the left.
+/// A wall, given by its inner face from_m -> to_m: the free space lies to the left of that line,
+/// the solid wall to its right.
 struct Wall {
   WallKind kind{WallKind::kSide};
   Eigen::Vector2d from_m{0.0, 0.0};
   Eigen::Vector2d to_m{0.0, 0.0};
   double height_m{0.0};
   double thickness_m{0.0};
-  double beyond_from_m{0.0};  ///< the body extends beyond the face, to close outer corners
+  double beyond_from_m{0.0};  ///< the solid wall extends beyond the face, to close corners
   double beyond_to_m{0.0};
 
   double length_m() const { return (to_m - from_m).norm(); }
 
   Eigen::Vector2d along() const { return (to_m - from_m).normalized(); }
 
-  /// Direction out of the free space.
+  /// Unit normal of the face, out of the free space.
   Eigen::Vector2d outward() const { return {along().y(), -along().x()}; }
 };
 
@@ -46,7 +47,7 @@ std::vector<Corridor> corridors(const WorldConfig& world);
 /// All walls; consecutive walls of a closed line share a point.
 std::vector<Wall> outline(const WorldConfig& world);
 
-/// Index of the first opening that does not fit into a wall at its centre.
+/// Index of the first opening at whose centre there is no wall of its corridor that is wide enough.
 std::optional<std::size_t> opening_without_wall(const WorldConfig& world);
 
 /// True when two walls cross or overlap, e.g. those of two rooms in the same place.

@@ -16,11 +16,12 @@ namespace {
 struct Place {
   Eigen::Vector2d centre_m{0.0, 0.0};
   double yaw_rad{0.0};
-  int station{0};  ///< of its corridor
+  int station{0};  ///< number of the station along its corridor
   Side side{Side::kLeft};
 };
 
-/// Stations first, first + spacing, ... up to last; computed, not accumulated.
+/// Distances [m] first_m, first_m + spacing_m, ... up to last_m along a corridor; multiplied, not
+/// summed up, so that rounding errors do not accumulate.
 std::vector<double> stations(const MarkerLayoutConfig& markers) {
   std::vector<double> stations_m;
   constexpr double kRoundingSlack = 1e-9;
@@ -30,7 +31,7 @@ std::vector<double> stations(const MarkerLayoutConfig& markers) {
   return stations_m;
 }
 
-/// Where the right wall's marker of a station hangs, if it has one.
+/// Distance [m] along the corridor of a station's marker on the right wall; nullopt if it has none.
 std::optional<double> right_station(const MarkerLayoutConfig& markers, double station_m) {
   if (markers.layout == MarkerLayout::kOpposite) return station_m;
   const double between_m = station_m + 0.5 * markers.spacing_m;
@@ -156,7 +157,7 @@ World build_world(const WorldConfig& world, const MarkerLayoutConfig& markers, d
   }
   for (const MarkerAddConfig& added : markers.added) {
     auto plate = plate_near(built.walls, {added.x_m, added.y_m}, plate_size_m);
-    if (!plate) continue;  // Scenario::check refuses it
+    if (!plate) continue;  // Scenario::check() refuses such a scenario
     plate->id = added.id;
     plate->instance = instances[added.id]++;
     plate->centre_m.z() = markers.centre_height_m;

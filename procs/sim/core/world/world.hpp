@@ -18,8 +18,8 @@ namespace waymark {
 /// A marker on a wall, world frame.
 struct MarkerPlate {
   int id{0};
-  int instance{0};                          ///< counts the markers with the same id
-  Eigen::Vector3d centre_m{0.0, 0.0, 0.0};  ///< of the black square, on the printed surface
+  int instance{0};                          ///< 0, 1, ... among the markers with the same id
+  Eigen::Vector3d centre_m{0.0, 0.0, 0.0};  ///< centre of the black square, on the printed surface
   double yaw_rad{0.0};                      ///< direction that the marker faces
 };
 
@@ -34,7 +34,7 @@ struct MarkerMove {
 struct World {
   std::vector<Wall> walls{};
   std::vector<BoxConfig> boxes{};
-  std::vector<MarkerPlate> markers{};  ///< as at the beginning, in order of their places
+  std::vector<MarkerPlate> markers{};  ///< at the start; ordered by place, added ones last
   std::vector<MarkerMove> moves{};
   double ceiling_height_m{0.0};
 };
@@ -46,12 +46,13 @@ constexpr double kPlateThickness_m = 0.002;
 World build_world(const WorldConfig& world, const MarkerLayoutConfig& markers, double plate_size_m,
                   std::int64_t seed);
 
-/// Number of the layout's places for markers, also of missing ones. Where there is no wall behind
-/// the whole plate (a doorway, a junction), there is no place.
+/// Number of places for markers in the layout, those of missing markers included. Where no wall is
+/// behind the whole plate (at a doorway or a junction), there is no place.
 std::size_t place_count(const WorldConfig& world, const MarkerLayoutConfig& markers,
                         double plate_size_m);
 
-/// Ids by place: the configured list, its single id for all, or numbers from first_id on.
+/// The marker ids in order of places: markers.ids, or its only element for every place, or, if it
+/// is empty, consecutive ids from first_id on.
 std::vector<int> marker_ids(const MarkerLayoutConfig& markers, std::size_t num_places);
 
 /// The plate on a wall that is nearest to a point; sets centre x, y and yaw.

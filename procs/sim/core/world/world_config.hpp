@@ -84,7 +84,7 @@ struct MarkerLayoutConfig {
   double spacing_m{4.0};
   double last_m{48.0};
   double centre_height_m{0.3};
-  double quiet_zone_modules{2.0};  ///< at 1, OpenCV 4.6 may detect the plate's outline instead
+  double quiet_zone_modules{2.0};  ///< with 1, OpenCV 4.6 may detect the plate, not the marker
   bool blank{false};
   int first_id{0};
   std::vector<int> ids{};

@@ -115,7 +115,7 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
-/// Without prediction and match at the first scan and after a commanded pose.
+/// The first scan and that after a commanded pose get neither a prediction nor a match.
 WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& observation) const {
   Look look{points_of(observation)};
   if (graph_.state().keyframes.empty() || given_pose_) return look;
@@ -128,7 +128,8 @@ WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& o
       without_moving(look.points, map_.map(), searched.map_from_base, searched.covariance);
   look.beams_moving = all - look.points.size();
   look.scan = matched(look.points, searched);
-  // A scan that contradicts the map may fit at another pose; its range scale is tested only if not.
+  // A scan that contradicts the map may fit at another pose; its range scale is tested only if it
+  // fits none.
   if (look.scan && usual_fit_.is_contradicted(look.scan->match)) search_widely(observation, look);
   return look;
 }
@@ -168,7 +169,8 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   return used;
 }
 
-/// Relocates the newest keyframe if markers show that the robot was carried.
+/// Relocates the newest keyframe if markers show that the robot was carried, or that the last
+/// relocalisation was wrong.
 void WaymarkEstimator::check_pose(std::span<const MarkerMeasurement> measurements) {
   verdict_ = relocalisation_.update(graph_.state().keyframes.back(), hints(measurements), motion_);
   if (verdict_ == RelocalisationMonitor::Verdict::kRelocated ||
@@ -246,8 +248,8 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
                   graph_.covariance_of({VariableKind::kKeyframe, newest()}));
 }
 
-/// Scans between keyframes reduce the noise of the submaps. One that fits worse than usual is left
-/// out: its pose may be wrong, and the next scans would be matched with it.
+/// Scans between keyframes reduce the noise of the submaps. A scan that fits worse than usual is
+/// left out: its pose may be wrong, and later scans would be matched with it.
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
   if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||

@@ -57,7 +57,7 @@ struct WaymarkConfig {
 };
 
 inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]; the first pose defines the map frame
-/// Keyframes in a group, which one of them represents in scan factors.
+/// Keyframes in a group; one of them represents the group in scan factors.
 inline constexpr std::size_t kGroupedKeyframes = 15;
 
 /// Prior standard deviations of the calibration.
@@ -154,12 +154,12 @@ class WaymarkEstimator final : public Estimator {
   /// An interval in which odometry stands still; it may be stuck.
   struct Standstill {
     std::size_t keyframe{0};
-    Motion motion{};       ///< since that keyframe
-    Se2 map_from_start{};  ///< pose when it began
+    Motion motion{};       ///< since `keyframe`
+    Se2 map_from_start{};  ///< pose when the standstill began
     Se2 map_from_base{};   ///< pose of the last keyframe at which the robot was observed to move
     Timestamp since{};
-    double moved_at_s{0.0};                             ///< time of that keyframe, by clock_s_
-    Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| since start
+    double moved_at_s{0.0};                             ///< clock_s_ at map_from_base
+    Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| from start
   };
 
   bool place(const Observation& observation);
@@ -257,7 +257,7 @@ class WaymarkEstimator final : public Estimator {
   UsualFit usual_fit_;
   RangeScaleMonitor range_scale_;
   Motion motion_{};            ///< since the keyframe `moved_from_`
-  std::size_t moved_from_{0};  ///< the newest one, unless odometry was stuck
+  std::size_t moved_from_{0};  ///< the newest keyframe, unless odometry was stuck
   std::optional<Standstill> standstill_{};
   int keyframes_standing_{0};  ///< in a row
   OdometryCheck odometry_check_{};
@@ -275,9 +275,9 @@ class WaymarkEstimator final : public Estimator {
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
   Points loaded_points_{};                     ///< of the loaded map's walls
   CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
-                                             : config_.scan.cell_spacing_m};  ///< of the same
+                                             : config_.scan.cell_spacing_m};  ///< of loaded_points_
   bool is_confirmed_{true};   ///< markers or walls confirm the pose in the loaded map
-  bool was_confirmed_{true};  ///< at least once
+  bool was_confirmed_{true};  ///< is_confirmed_ was true at least once
   std::optional<WallChangeDetector> wall_changes_{};  ///< relative to the loaded map
   Survey survey_;
   std::optional<StartPose> given_pose_{};  ///< commanded pose of the next keyframe
@@ -291,7 +291,7 @@ class WaymarkEstimator final : public Estimator {
   bool markers_known_{false};
   EstimateReason reason_{EstimateReason::kOdometry};
 
-  // Of the newest scan that was compared with a map:
+  // Of the newest scan:
   bool is_rescaled_{false};
 };
 

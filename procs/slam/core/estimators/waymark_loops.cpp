@@ -14,8 +14,8 @@ constexpr double kLoopContradicts = 11.3;
 constexpr double kLoopSlack_m = 0.05;  // sigma of old poses, whose covariance is not kept
 constexpr double kLoopSlack_rad = 0.01;
 
-/// Covariance of a pose relative to an old one: that in the map or the drift since, whichever is
-/// smaller.
+/// Covariance of the newest pose relative to an old one, with margins: the smaller of its
+/// covariance in the map and the drift since the old one.
 Eigen::Matrix3d covariance_against_old(const Eigen::Matrix3d& in_map,
                                        const Eigen::Matrix3d& drifted) {
   Eigen::Matrix3d covariance = kLoopCovarianceMargin * smaller_covariance(drifted, in_map);

@@ -19,8 +19,8 @@ namespace waymark {
 namespace {
 
 constexpr int kSurveySteps = 12;
-constexpr double kLeastMapped = 0.6;  // least share of beams on mapped walls, to be in the map
-constexpr std::int64_t kScansToDecide = 10;  // at keyframes, before the loaded map is refuted
+constexpr double kLeastMapped = 0.6;  // least share of mapped beams, for a scan to be in the map
+constexpr std::int64_t kScansToDecide = 10;  // of keyframes, before the loaded map can be refuted
 
 }  // namespace
 
@@ -62,7 +62,7 @@ void WaymarkEstimator::confirm_place(const MatchedScan& scan) {
     is_confirmed_ = true;
 }
 
-/// Compares the scan of the newest keyframe, at its estimated pose.
+/// Compares the newest keyframe's scan, at its estimated pose, with the loaded map.
 void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
   if (!setup_.loaded_map) return;
   const MapFit fit =
@@ -83,9 +83,9 @@ void WaymarkEstimator::add_map_factor(std::size_t keyframe, const ScanMatch& mat
   graph_.add(PosePrior{keyframe, match.map_from_base, root_of(match.observed.information)});
 }
 
-/// A surveyed marker with enough sightings becomes a prior, which is tested again with more. After
-/// a new frame or a switched prior the whole graph is solved at once; otherwise the window is, and
-/// the other poses follow with the next solution of the whole graph.
+/// A surveyed marker with enough sightings becomes a prior, which is tested again after many more
+/// sightings. After a new frame or a switched prior the whole graph is solved at once; otherwise
+/// only the window, and the other poses follow with the next steps of the whole graph.
 void WaymarkEstimator::use_survey() {
   if (survey_.is_empty() || !survey_.match(graph_, book_)) return;
   const auto survey_from_map = survey_.new_frame(graph_);
@@ -123,7 +123,7 @@ std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
 }
 
 /// None before the pose in the loaded map was confirmed: the map might mix two buildings. None
-/// before the survey's frame is known: the map would be in another one.
+/// before the survey's frame is known: the map would be in another frame.
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   if (is_frozen() || graph_.state().keyframes.empty() || !was_confirmed_ || !has_frame())
     return std::nullopt;

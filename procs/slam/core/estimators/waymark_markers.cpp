@@ -9,8 +9,8 @@ namespace waymark {
 namespace {
 
 constexpr double kSamePlace_m = 0.5;    // between two markers at the same place
-constexpr double kContradicts_m = 0.5;  // of a sighting from all markers of its id
-// The same while odometry stands still: the larger of a distance and so many sigmas.
+constexpr double kContradicts_m = 0.5;  // distance of a sighting from all mapped markers of its id
+// That distance while odometry stands still: the larger of kStandsStill_m and so many sigmas.
 constexpr double kStandsStill_m = 0.03;
 constexpr double kStandsStillSigmas = 4.0;
 // A marker counts as missed if no frame of the last second has shown it.
@@ -19,7 +19,7 @@ constexpr Duration kSightingAge = std::chrono::seconds{1};
 }  // namespace
 
 /// A sighting far from all markers of its id needs a keyframe at once: the robot may have been
-/// carried. While odometry stands still, a smaller distance is enough: it may be stuck.
+/// carried. While odometry stands still, a smaller distance is enough: odometry may be stuck.
 bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const {
   if (observation.sightings.empty() || keyframes_standing_ >= kMaxStanding) return false;
   const Se2 map_from_base = prediction().map_from_base;
@@ -34,7 +34,7 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
       });
 }
 
-/// Whether known markers are in view, which will observe the motion.
+/// Whether known markers are in view: these will observe the motion.
 bool WaymarkEstimator::sees_known_markers(const Observation& observation) const {
   return std::any_of(observation.sightings.begin(), observation.sightings.end(),
                      [&](const MarkerSighting& seen) { return book_.knows(seen.id); });
@@ -103,7 +103,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
   }
   if (!matches.empty()) note_reason(EstimateReason::kMarker);
   if (markers_known_) unobserved_m_ = 0.0;
-  // Before landmarks are added: the window that it solves must not have any without measurements.
+  // Before new landmarks are added: the step solves the window, where each needs a measurement.
   if (!returning.empty()) step_everything(returning);
   const std::size_t first_new = book_.entries().size();
   for (const Match& match : matches) {
@@ -119,8 +119,8 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
   if (!returning.empty()) solve_schedule_.note_loop(true);
 }
 
-/// Landmark of a marker that was not in the map; further sightings of it in the same scan get the
-/// same one.
+/// Landmark of a marker that was not in the map; further sightings of that marker in the same scan
+/// get the same landmark.
 /// @param first_new  index of the first landmark that this scan has added.
 std::size_t WaymarkEstimator::new_landmark(const MarkerMeasurement& measurement,
                                            std::size_t first_new) {
@@ -136,8 +136,8 @@ std::size_t WaymarkEstimator::new_landmark(const MarkerMeasurement& measurement,
   return graph_.add_landmark(there);
 }
 
-/// Negative information: a marker is missed if the camera should have seen it and nothing occludes
-/// it, since the LiDAR sees its wall.
+/// Negative information: a marker without a sighting is missed if the camera should have seen it
+/// and nothing occludes it, since the LiDAR sees its wall.
 void WaymarkEstimator::note_misses(const Observation& observation) {
   if (!observation.camera_reported) return;
   const auto is_in_view = [&](const Se2& base_from_marker) {

@@ -18,7 +18,7 @@ constexpr double kMoved_rad = 0.05;
 constexpr double kNearStandstill_m = 0.3;
 constexpr double kNearStandstill_rad = 0.2;
 constexpr double kReturned = 0.7;
-constexpr double kOtherNoise = 2.0;  // ratio of variances beyond which the whole graph is re-solved
+constexpr double kOtherNoise = 2.0;  // ratio of variances beyond which the whole graph takes a step
 constexpr std::size_t kWeighedEvery = 10;  // keyframes
 
 double along_m2_per_m(const OdometryNoise& noise) {
@@ -111,7 +111,7 @@ void WaymarkEstimator::add_odometry_factor(std::size_t keyframe) {
   odometry.motion = motion_;
   odometry.unmeasured_m = unmeasured_motion_.take_unmeasured_m();
   graph_.add(odometry);
-  // If the keyframe at which odometry got stuck has left the window.
+  // The keyframe at which odometry got stuck has left the window: only such a step uses the factor.
   if (!graph_.is_active({VariableKind::kKeyframe, moved_from_})) step_everything({});
 }
 
@@ -179,7 +179,7 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
 }
 
 /// Learns from the innovation of a known marker, if nothing has observed the motion along the path
-/// since the last one.
+/// since the last known marker.
 void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
                                    const MarkerMeasurement& measurement) {
   if (!config_.learn_noise || unobserved_m_ <= 0.0 || unmeasured_motion_.is_silent()) return;

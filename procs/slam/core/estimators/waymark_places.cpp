@@ -58,8 +58,8 @@ void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   begin_submaps_anew();
 }
 
-/// After the pose has changed without a motion, by a command or a new map frame. (A relocalisation
-/// does not call it but keeps the standstill, since odometry may have been stuck.)
+/// To be called after a command or a new map frame has changed the pose. (A relocalisation does not
+/// call it but keeps the standstill, since odometry may have been stuck.)
 void WaymarkEstimator::forget_recent_motion() {
   is_put_elsewhere_ = true;
   standstill_.reset();

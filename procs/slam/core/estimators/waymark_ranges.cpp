@@ -53,8 +53,8 @@ std::optional<WaymarkEstimator::RescaledScan> WaymarkEstimator::rescaled(
   return scaled;
 }
 
-/// Replaces a scan that fits at another scale, if that is believed.
-/// @return the corrected observation; none: it is used as it is.
+/// Rescales the ranges of a scan that fits only at another scale, if that scale is believed.
+/// @return the corrected observation; none: the measured one is used.
 std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation& observation,
                                                               Look& look) {
   is_rescaled_ = false;

@@ -38,7 +38,7 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
 
 /// If a scan fits worse than usual, odometry may be off by more than the matcher's basin of
 /// convergence: then wide windows are searched about the predicted pose and about poses that do not
-/// use odometry, which are off by the motion since the last scan at most. Needs a matched scan.
+/// use odometry: these are off by the motion since the last scan at most. Needs a matched scan.
 void WaymarkEstimator::search_widely(const Observation& observation, Look& look) const {
   MatchedScan& scan = *look.scan;
   if (look.is_searched || !usual_fit_.is_worse_than_usual(scan.match)) return;
@@ -65,8 +65,8 @@ void WaymarkEstimator::search_widely(const Observation& observation, Look& look)
 }
 
 /// Inliers of a match by the keyframes that observed their walls: neighbouring keyframes form a
-/// group, which one of them represents. It is the same one for every scan, so that the graph stays
-/// sparse.
+/// group, which one of them represents: where possible the same one for every scan, so that the
+/// graph stays sparse.
 std::vector<WaymarkEstimator::KeyframeGroup> WaymarkEstimator::keyframe_groups(
     const ScanMatch& match, bool is_loop) const {
   std::vector<KeyframeGroup> groups;

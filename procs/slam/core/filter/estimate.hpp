@@ -65,7 +65,7 @@ Se2 mean_pose(const ParticleSet<State>& particles) {
 }
 
 /// Mean square of the particles' deviations from a pose, map frame. If the pose is not their mean,
-/// it includes the square of the difference, as an error of that pose.
+/// the result includes the square of the difference, as an error of that pose.
 /// @tparam State  has a member map_from_base.
 template <class State>
 Eigen::Matrix3d covariance_about(const Se2& map_from_base, const ParticleSet<State>& particles) {

@@ -61,7 +61,7 @@ void PublishedMap::finalise(const Trajectory& trunk) {
   }
   trunk->scan.reset();
   trunk->parent.reset();
-  // Otherwise the pointer would keep the freed trunk, or a dead branch, in memory.
+  // Otherwise drawn_until_ would keep the freed trunk, or a dead branch, in memory.
   if (!passes_through(trunk.get(), drawn_until_.get())) drawn_until_.reset();
 }
 

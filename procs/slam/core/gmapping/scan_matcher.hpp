@@ -55,8 +55,8 @@ class ScanMatcher {
 
   /// Sum over the beams of exp(-d^2 / sigma); 0 for a beam without a hit nearby. From 0 to the
   /// number of beams.
-  /// @param to_beat  once the score cannot exceed it, an upper bound that does not exceed it either
-  ///                 is returned, without evaluating the remaining beams.
+  /// @param to_beat  once the score cannot exceed this, the remaining beams are not evaluated: the
+  ///                 result is an upper bound of the score, not above `to_beat`.
   double score(const Se2& map_from_base, double to_beat = -1.0);
 
   /// Sum over the beams of -d^2 / lsigma; -0.5 / lsigma for a beam without a hit nearby.

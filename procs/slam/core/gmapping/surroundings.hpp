@@ -28,8 +28,8 @@ struct BeamCells {
 /// without a branch, in one cache line. Benchmark: tests/benchmark/gmapping_speed.cpp.
 class Surroundings {
  public:
-  /// @param needs_free_cell  leave out a hit if the cell before it is hit, too: at the offset from
-  ///                         `end` to `before`.
+  /// @param needs_free_cell  leave out a hit if the cell in front of it is hit, too, that is the
+  ///                         cell at the offset from `end` to `before`.
   Surroundings(const HitMap& map, int reach, bool needs_free_cell);
 
   static constexpr float kNothingAround = std::numeric_limits<float>::infinity();

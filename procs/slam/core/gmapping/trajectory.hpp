@@ -28,10 +28,10 @@ struct TrajectoryNode {
   std::shared_ptr<TrajectoryNode> parent;  ///< one processed scan earlier; null at the root
 };
 
-using Trajectory = std::shared_ptr<TrajectoryNode>;  ///< its newest node
+using Trajectory = std::shared_ptr<TrajectoryNode>;  ///< the newest node
 
-/// The newest node that all trajectories share; null if there is none. They must have equal
-/// lengths. O(particles x nodes that they do not share).
+/// The newest node that all trajectories share; null if there is none. The trajectories must have
+/// equal lengths. O(particles x nodes that they do not share).
 Trajectory common_ancestor(std::vector<Trajectory> trajectories);
 
 /// map_from_base of the nodes that still have their scan, oldest first.

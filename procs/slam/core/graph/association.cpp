@@ -75,7 +75,7 @@ void MarkerBook::add(int id, Timestamp time) {
   moved_from_.emplace_back();
 }
 
-/// Resets the times: those of another run cannot be compared with this run's.
+/// Resets the times, which cannot be compared with this run's, and the missed detections.
 void MarkerBook::add_known(const Landmark& landmark) {
   entries_.push_back(landmark);
   ++num_known_;

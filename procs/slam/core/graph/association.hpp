@@ -22,8 +22,8 @@ struct MarkerInnovation {
   double distance_m() const { return residual.head<2>().norm(); }
 };
 
-/// Innovation with the joint covariance of pose, landmark and camera calibration. A landmark behind
-/// the window is assumed to be independent of the pose.
+/// Innovation with the joint covariance of pose, landmark and camera calibration. A landmark that
+/// has left the window counts as independent of the pose.
 MarkerInnovation compare(const Graph& graph, std::size_t keyframe, std::size_t landmark,
                          const MarkerMeasurement& measurement);
 
@@ -42,8 +42,8 @@ class MarkerBook {
   /// Adds a marker of a loaded map.
   void add_known(const Landmark& landmark);
 
-  /// Whether the limit of added markers is reached (LandmarkMap::kMaxLandmarks): more would be
-  /// noise or an attack, and must not be added.
+  /// Whether the limit of added markers is reached (LandmarkMap::kMaxLandmarks): further markers
+  /// would be noise or an attack, and must not be added.
   bool is_full() const { return entries_.size() - num_known_ >= LandmarkMap::kMaxLandmarks; }
 
   void note_sighting(std::size_t landmark, Timestamp time);
@@ -55,7 +55,7 @@ class MarkerBook {
                    const std::function<bool(const Se2& base_from_marker)>& is_in_view,
                    Timestamp since);
 
-  /// The retired landmark of the same marker, before it was moved.
+  /// The retired landmark at the former place of this landmark's marker; none: it was not moved.
   std::optional<std::size_t> moved_from(std::size_t landmark) const {
     return moved_from_[landmark];
   }
@@ -73,16 +73,16 @@ class MarkerBook {
   std::optional<MarkerInnovation> nearest(const Graph& graph, std::size_t keyframe,
                                           const MarkerMeasurement& measurement) const;
 
-  /// The landmark of that id, if there is exactly one and it is confirmed.
+  /// The landmark of `id` that is not retired, if there is exactly one and it is confirmed.
   std::optional<std::size_t> unique(int id) const;
 
-  /// Whether a new id was misread: a confirmed marker of another id, not missed since, is mapped at
-  /// that place, and two markers cannot share one place.
+  /// Whether the measurement's id was misread: a confirmed marker of another id, not missed since,
+  /// is mapped at the measured place, and two markers cannot share one place.
   bool is_misread(const State& state, std::size_t keyframe,
                   const MarkerMeasurement& measurement) const;
 
  private:
-  std::size_t num_known_{0};         ///< of a loaded map
+  std::size_t num_known_{0};         ///< markers of a loaded map
   std::vector<Landmark> entries_{};  ///< pose and covariance are not maintained: see Graph
   std::vector<bool> is_retired_{};
   std::vector<std::optional<std::size_t>> moved_from_{};

@@ -15,9 +15,9 @@ namespace waymark {
 
 /// The robot's description as a prior, and measurements of the camera by walls and by perspective:
 /// all linear in the calibration, so that their sum is one quadratic. The prior is a scale mixture
-/// of normal distributions, which has the long tails of a Student-t: a value that the measurements
-/// contradict by many standard deviations gets a prior that is as much wider (West 1987, "On scale
-/// mixtures of normal distributions").
+/// of normal distributions, which has the long tails of a Student-t: a term whose description the
+/// measurements contradict by many standard deviations gets a prior that much wider (West 1987, "On
+/// scale mixtures of normal distributions").
 class CalibrationKnowledge {
  public:
   /// @param sigmas  standard deviations of the description, units as in Calibration; 0: exact.

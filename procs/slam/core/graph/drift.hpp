@@ -11,8 +11,8 @@
 
 namespace waymark {
 
-/// Sums the covariances of the steps from keyframe to keyframe as if they were independent, which
-/// overestimates: scans matched with the same submap, and loops, correlate the steps.
+/// Sums the covariances of the steps from keyframe to keyframe as if the steps were independent: an
+/// overestimate, since scans matched with the same submap, and loops, correlate the steps.
 class Drift {
  public:
   /// @param covariance  of the keyframe's pose relative to the previous one, map's axes; zero for

@@ -36,7 +36,7 @@ struct OdometryFactor {
   std::size_t to{0};
   Motion motion{};
   bool is_cut{false};        ///< the motion is unknown: the factor has no information
-  double hidden_slips{0.0};  ///< hidden_share()
+  double hidden_slips{0.0};  ///< share of the slips that is unobserved, see hidden_share()
   double unmeasured_m{0.0};  ///< distance that odometry may have missed (one sigma)
   MotionKind kind{MotionKind::kRolling};
 
@@ -51,7 +51,7 @@ struct OdometryFactor {
 
   struct Change {
     MotionKind kind{MotionKind::kRolling};
-    double gain{0.0};  ///< by which the cost of the graph falls, once it is optimised
+    double gain{0.0};  ///< reduction of the graph's cost, once it is optimised
   };
 
   /// The component that would reduce the cost of the whole graph most; kRolling: none.
@@ -75,7 +75,7 @@ struct OdometryFactor {
 };
 
 /// A scan matched with walls that other keyframes have observed: measures the keyframe's pose
-/// relative to the weighted mean of theirs.
+/// relative to the weighted mean of their poses.
 struct ScanFactor {
   struct Reference {
     std::size_t keyframe{0};

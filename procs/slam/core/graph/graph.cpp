@@ -161,11 +161,12 @@ void Graph::relocate_newest(const Se2& map_from_base) {
     return std::find(variables.begin(), variables.end(),
                      Variable{VariableKind::kKeyframe, newest}) != variables.end();
   };
-  while (!factors_.empty() && is_about_it(factors_.back())) {  // they came last
+  while (!factors_.empty() && is_about_it(factors_.back())) {  // the newest keyframe's come last
     std::erase(active_factors_, factors_.size() - 1);
     factors_.pop_back();
   }
-  // After step_all() the prior may contain factors between it and variables behind the window.
+  // After step_all() the prior may contain factors between the newest keyframe and variables behind
+  // the window.
   const Variable variable{VariableKind::kKeyframe, newest};
   eliminate(variable);
   insert_variable(variable);

@@ -68,7 +68,7 @@ class Graph {
   void add(const Factor& factor);
 
   /// Transforms the whole state into another map frame. The prior of the first pose, which defined
-  /// the old frame, is dropped: priors of landmarks must define the new one.
+  /// the old frame, loses its information: priors of landmarks must define the new frame.
   void move_to_frame(const Se2& new_from_old);
 
   /// Switches the LandmarkPrior of a landmark on or off. Takes effect in step_all() at the latest.
@@ -78,11 +78,11 @@ class Graph {
   /// Sum of the robust costs (chi^2) of all factors.
   double cost() const;
 
-  /// Gives the newest keyframe another pose. Drops its factors: an odometry factor without
-  /// information replaces them.
+  /// Gives the newest keyframe another pose. An odometry factor without information replaces all
+  /// factors on that keyframe.
   void relocate_newest(const Se2& map_from_base);
 
-  /// Removes the information of the window's odometry from that keyframe on, which was wrong.
+  /// Removes the information of the window's odometry factors from `keyframe` on.
   void cut_odometry_since(std::size_t keyframe);
 
   bool is_active(const Variable& variable) const { return offsets_.contains(variable); }
@@ -101,8 +101,8 @@ class Graph {
   /// which rebuilds the window's prior; solves the window; substitutes back. A step that increases
   /// the cost is halved, a few times, and in the end dropped.
   /// @param activated  landmarks that are put back into the window.
-  /// @return largest step of any variable behind the window, or of any in it if none is behind it
-  ///         [m, rad]; infinite if the equations have no solution: then nothing has changed.
+  /// @return largest step [m, rad] of the variables behind the window or, if there are none, of the
+  ///         window's variables; infinite if there is no solution: then nothing has changed.
   double step_all(const std::vector<std::size_t>& activated = {});
 
   /// step_all() until it converges or has no solution, at most `steps` times.
@@ -120,8 +120,8 @@ class Graph {
   /// landmarks behind it constants. After that step_all() must not be called.
   void forget_behind_window();
 
-  /// Random walk of the calibration: information about it fades while the robot drives. Not for a
-  /// graph that is solved as a whole, where the calibration is one constant.
+  /// Random walk of the calibration: information about the calibration fades while the robot
+  /// drives. Not for a graph that is solved as a whole, where the calibration is one constant.
   void let_calibration_wander(double driven_m);
 
   /// Takes keyframes behind the window out of the graph, with all factors on them.
@@ -132,8 +132,8 @@ class Graph {
     return keyframe < is_removed_.size() && is_removed_[keyframe];
   }
 
-  /// Joint covariance of two variables of the window as of optimise(), map's axes: the calibration,
-  /// landmarks and the two newest keyframes. Zero for variables that were added since.
+  /// Joint covariance of two variables of the window when it was last solved, map's axes. Known for
+  /// the calibration, landmarks and the two keyframes that were newest then; else zero.
   Eigen::MatrixXd covariance(const Variable& a, const Variable& b) const;
 
   Eigen::Matrix3d covariance_of(const Variable& a) const { return covariance(a, a); }
@@ -142,11 +142,12 @@ class Graph {
   /// Factorises the window's equations.
   Eigen::Matrix3d covariance_since(std::size_t keyframe) const;
 
-  /// The same relative to the previous keyframe, as of optimise(); zero for the first keyframe.
+  /// Covariance of the newest keyframe's pose relative to the previous keyframe, map's axes, when
+  /// the window was last solved; zero for the first keyframe.
   Eigen::Matrix3d covariance_of_newest_step() const;
 
-  /// Covariance in the map's axes, from the last optimise(); if the landmark has left the window,
-  /// the one that it had then.
+  /// Covariance of the landmark's pose in the map's axes, from the last solution of the window that
+  /// contained the landmark.
   Eigen::Matrix3d landmark_covariance(std::size_t landmark) const;
 
  private:
@@ -199,7 +200,7 @@ class Graph {
   std::map<Variable, Eigen::Index> covariance_offsets_{};
   std::vector<Eigen::Matrix3d> landmark_covariances_{};
   std::vector<bool> is_fixed_{};    ///< by landmark
-  std::vector<bool> is_removed_{};  ///< by keyframe; the newest ones may be missing: not removed
+  std::vector<bool> is_removed_{};  ///< by keyframe; may end early: later ones are not removed
   std::vector<Carried> carried_{};
 };
 

@@ -95,7 +95,7 @@ KeyframeThinning::Assessment KeyframeThinning::assess(std::size_t keyframe, cons
   return assessment;
 }
 
-/// One past the last keyframe of a run's head, which stays; `end` if the whole run has to stay.
+/// One past the last keyframe of a run's head; the head stays. `end`: the whole run has to stay.
 std::size_t KeyframeThinning::end_of_head(std::size_t begin, std::size_t end) const {
   std::size_t ties = 0;
   for (std::size_t k = begin; k < end; ++k) {
@@ -105,7 +105,7 @@ std::size_t KeyframeThinning::end_of_head(std::size_t begin, std::size_t end) co
   return end;
 }
 
-/// First keyframe of a run's tail, which stays; `begin` if the whole run has to stay.
+/// First keyframe of a run's tail; the tail stays. `begin`: the whole run has to stay.
 std::size_t KeyframeThinning::begin_of_tail(std::size_t begin, std::size_t end,
                                             const Graph& graph) const {
   std::size_t ties = 0;

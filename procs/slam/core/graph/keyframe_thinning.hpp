@@ -11,8 +11,8 @@
 
 namespace waymark {
 
-/// The first keyframes of each place are needed, and so are keyframes that see a marker which few
-/// needed ones have seen. Consecutive keyframes that are not needed form a run, which is redundant
+/// The first keyframes of each place are needed, and so are keyframes that see a marker seen by few
+/// needed keyframes. Consecutive keyframes that are not needed form a run, which is redundant
 /// except for its two ends. Each end is long enough to have constraints (ties) to keyframes older
 /// than the run, by markers and loops.
 class KeyframeThinning {
@@ -24,9 +24,9 @@ class KeyframeThinning {
       : per_place_{static_cast<std::size_t>(per_place)},
         least_end_{static_cast<std::size_t>(least_end)} {}
 
-  /// To be called after each keyframe; goes through the graph at every hundredth one.
+  /// To be called after each keyframe; goes through the graph once per 100 keyframes.
   /// @return keyframes behind the window that may be removed. The carrier of each is the nearest
-  ///         needed one.
+  ///         needed keyframe.
   std::vector<RemovedKeyframe> surplus(const Graph& graph);
 
  private:
@@ -41,7 +41,7 @@ class KeyframeThinning {
   /// Constraints of one keyframe.
   struct Ties {
     std::vector<std::size_t> landmarks{};  ///< that it has measured
-    std::size_t oldest{0};  ///< keyframe of its loops, 0 with a prior, itself with neither
+    std::size_t oldest{0};  ///< oldest one that its loops refer to, 0 with a prior, else itself
   };
 
   static Place place_of(const Se2& map_from_base);
@@ -60,7 +60,7 @@ class KeyframeThinning {
 
   struct Sightings {
     std::size_t first_keyframe{0};
-    std::size_t needed{0};  ///< keyframes
+    std::size_t needed{0};  ///< number of needed keyframes
   };
 
   std::map<std::size_t, Sightings> sightings_{};  ///< of landmarks

@@ -25,7 +25,7 @@ const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a match in a submap
 const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
 constexpr double kAgree_m = 0.3;  // between two candidates' corrections
 constexpr double kAgree_rad = 0.05;
-constexpr double kAgreeWithin_m = 5.0;  // largest distance between them, driven and straight
+constexpr double kAgreeWithin_m = 5.0;  // largest distance between the matches, driven and straight
 
 double reach_m(const Eigen::Matrix3d& covariance) {
   return kSigmas * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
@@ -100,8 +100,8 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Guess& guess
         match_scan(scan.points, old.ndt(), best->submap_from_base, kFound, scan.noise, scan_);
     if (!is_good(loop.match)) return std::nullopt;
   }
-  // A runner-up is searched around the match itself, so that the window contains it, and as far as
-  // the estimated pose.
+  // The search for a runner-up is centred at the match, so that its window contains the match, and
+  // reaches as far as the estimated pose.
   const Se2& found = loop.match.map_from_base;
   const Se2 estimated = submap_from_map * scan.search.map_from_base;
   const double moved_m = (found.translation() - estimated.translation()).norm();
@@ -129,16 +129,17 @@ bool LoopFinder::is_good(const ScanMatch& match) const {
          match.mapped_share >= config_.min_mapped_share;
 }
 
-/// Whether a match is good enough to override the covariance of the pose. A single wall, which
-/// leaves a direction unobserved, is not: it looks like any other.
+/// Whether a match is good enough to override the covariance of the pose. A match with a single
+/// wall is not: it leaves a direction unobserved, and walls look alike.
 bool LoopFinder::is_convincing(const ScanMatch& match) const {
   return !match.observed.is_degenerate && match.inlier_share >= config_.surprise_share &&
          match.mapped_share >= config_.surprise_share;
 }
 
 /// Covariance of the estimated pose relative to a submap. After a recent loop with it or with a
-/// neighbour, the error is bounded by that loop's and the drift since: consistent loops support
-/// each other (Mangelson et al. 2018), and one that contradicts them exceeds the gate sooner.
+/// neighbour, the error is bounded by that loop's error and the drift since then: consistent loops
+/// support each other (Mangelson et al. 2018), and one that contradicts them exceeds the gate
+/// sooner.
 Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& search) const {
   const auto is_near = [&old](const Found& confirmed) {
     return confirmed.loop.submap + old.num_keyframes() >= old.first_keyframe() &&
@@ -192,8 +193,8 @@ std::vector<LoopFinder::Found> LoopFinder::find(std::size_t keyframe, const Poin
   return {};
 }
 
-/// @return none if there is no good match, one that contradicts the estimated pose without being
-///         convincing, or one that corrects it along the direction that it does not observe.
+/// @return none if there is no good match, or if the match contradicts the estimated pose without
+///         being convincing, or moves it along the match's unobserved direction.
 std::optional<LoopFinder::Place> LoopFinder::place_near(const Guess& guess, const Scan& scan) {
   const Submap* old = nearest_submap(guess, scan);
   if (old == nullptr) return std::nullopt;
@@ -218,7 +219,7 @@ std::optional<LoopFinder::Place> LoopFinder::place_near(const Guess& guess, cons
   return place;
 }
 
-/// The present pose as the candidate's correction has it.
+/// The newest estimated pose, moved by the candidate's correction.
 LoopFinder::Guess LoopFinder::corrected_by_candidate(const LoopSearch& search) const {
   const Eigen::Matrix3d since = since_match(candidate_->found.keyframe, search);
   return {candidate_->correction * search.map_from_base, [since](std::size_t) { return since; },
@@ -226,7 +227,7 @@ LoopFinder::Guess LoopFinder::corrected_by_candidate(const LoopSearch& search) c
 }
 
 bool LoopFinder::agrees_with_candidate(const Place& place, const LoopSearch& search) const {
-  // Both corrections are compared at the present pose.
+  // Both corrections are compared at the newest pose.
   const Eigen::Vector3d apart =
       pose_difference(candidate_->correction * search.map_from_base, place.map_from_base);
   return (candidate_->map_from_base.translation() - search.map_from_base.translation()).norm() <

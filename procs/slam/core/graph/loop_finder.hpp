@@ -34,7 +34,7 @@ struct LoopConfig {
 
 /// The scan of a keyframe, registered in an old submap.
 struct LoopMatch {
-  std::size_t submap{0};  ///< its first keyframe
+  std::size_t submap{0};  ///< first keyframe of the submap
   ScanMatch match{};      ///< submap frame
 };
 
@@ -42,10 +42,10 @@ struct LoopMatch {
 struct LoopSearch {
   Se2 map_from_base{};
   double driven_m{0.0};  ///< since the last search
-  /// Of map_from_base relative to the pose of an old keyframe.
+  /// Covariance of map_from_base relative to the pose of an old keyframe.
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_against{};
-  std::size_t first_recent_keyframe{0};  ///< submaps that contain it or later ones are not old
-  /// Of map_from_base relative to the pose of a recent keyframe (first_recent_keyframe or later).
+  std::size_t first_recent_keyframe{0};  ///< submaps with it or later keyframes are not old
+  /// Covariance of map_from_base relative to a recent keyframe (first_recent_keyframe or later).
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_since{};
 };
 
@@ -61,8 +61,8 @@ inline const Eigen::Matrix3d& smaller_covariance(const Eigen::Matrix3d& a,
 
 /// A match closes a loop at once if it lies within the pose's covariance and close to the estimated
 /// pose. Otherwise a second match, from another place, must agree on the correction; it is searched
-/// for where that correction has the robot, too, since the search about the estimated pose may not
-/// reach so far.
+/// for about the estimated pose and about the pose corrected by the first match, which the search
+/// about the estimated pose may not reach.
 class LoopFinder {
  public:
   LoopFinder(const LoopConfig& config, const ScanMatchConfig& scan)
@@ -71,7 +71,7 @@ class LoopFinder {
   struct Found {
     std::size_t keyframe{0};  ///< whose scan was matched
     LoopMatch loop{};
-    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< found minus estimated pose at that time
+    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< matched minus estimated pose then, map axes
   };
 
   /// Loops to close: none, one, or two that agree, the first of which was found at an earlier

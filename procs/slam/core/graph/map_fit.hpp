@@ -23,7 +23,7 @@ struct MapFit {
 
   bool is_decisive() const { return fitting + contradicting >= kLeastBeams; }
 
-  /// Share of the contradicting beams, 0 to 1.
+  /// Contradicting beams / (fitting + contradicting beams), 0 to 1.
   double misfit() const {
     return static_cast<double>(contradicting) / std::max(1, fitting + contradicting);
   }

@@ -18,7 +18,7 @@ struct OdometryInnovation {
 };
 
 /// A bank of models (Magill 1965), one for each noise scale of a grid; their log-likelihoods of the
-/// innovations (Mehra 1972) fade exponentially. scale() is the posterior mean over the bank.
+/// innovations (Mehra 1972) fade exponentially. scale() is the posterior root mean square.
 ///
 /// Slips must not count as noise: in each model an innovation may also come from a wide component,
 /// as in likeliest_kind() of odometry_mixture.hpp. A slip in the turn may continue: a wheel that
@@ -27,7 +27,7 @@ struct OdometryInnovation {
 /// a marker. The scales of both axes are coupled by a prior: noise in the turn, which walls observe
 /// everywhere, is probably as large along the path, which is unobservable in a bare corridor.
 ///
-/// Where neither markers nor walls observe slips, these add mean and variance to the motion along
+/// Where neither markers nor walls observe slips, slips add mean and variance to the motion along
 /// the path: the first two moments per metre of the slips that markers have observed (a compound
 /// Poisson process, with pseudo-observations as its prior).
 class OdometryNoiseLearner {
@@ -59,7 +59,7 @@ class OdometryNoiseLearner {
    private:
     struct Model {
       double log_likelihood{0.0};
-      bool slips{false};  ///< the newest innovation was a slip, according to this model
+      bool slips{false};  ///< the newest innovation was a slip that may continue
     };
 
     std::array<Model, kScales> models_{};

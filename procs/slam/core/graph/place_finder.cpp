@@ -22,18 +22,18 @@ constexpr double kHopeless = 12.0;  // score below the best one at which a hypot
 
 // Markers.
 constexpr double kSighting = 1.0;     // score of a marker that is sighted where the map has it,
-constexpr double kUnexpected = -1.0;  // of one whose id is mapped elsewhere, or at another marker,
+constexpr double kUnexpected = -1.0;  // of one that is mapped elsewhere, or in another's place,
 constexpr double kMissed = -0.5;      // and of one that should be in view but is not sighted
-constexpr double kMostOfOne = 3.0;    // bound on the absolute score of one marker
+constexpr double kMostOfOne = 3.0;    // bound on the absolute score of one marker in one pass
 constexpr double kFollowed = 0.5;     // gain with which a sighting corrects a hypothesis
-constexpr double kAtMarker_m = 0.5;   // a sighting nearer than this is of that marker,
-constexpr double kInItsPlace_m = 0.25;  // and nearer than this there is no other marker
-constexpr double kPassed_m = 1.0;       // driven until a marker may contribute again
+constexpr double kAtMarker_m = 0.5;   // the nearest marker of its id within this is the one sighted
+constexpr double kInItsPlace_m = 0.25;  // another marker within this of a sighting contradicts it
+constexpr double kPassed_m = 1.0;       // driven without contribution until a marker's pass is over
 
 // Walls.
 constexpr double kWallsEvery_m = 0.1;
 constexpr double kUsualMisfit = 0.15;  // share of beams that noise and changes make contradict
-constexpr double kMisfit = 3.0;        // lost score per share of beams beyond that
+constexpr double kMisfit = 3.0;        // lost score per share of beams beyond kUsualMisfit
 constexpr double kLeastMapped = 0.3;   // share of beams on mapped walls at the right place
 const Eigen::Vector3d kMatchSigmas{0.15, 0.15, 0.06};  // of a pose from one marker [m, m, rad]
 

@@ -19,14 +19,14 @@
 namespace waymark {
 
 /// Tracks a hypothesis for every pose at which a sighted marker would be one of the map's, until
-/// one of them wins.
+/// one hypothesis wins.
 ///
 /// Each hypothesis has a score, a log-likelihood ratio against the null hypothesis that the robot
-/// is nowhere in the map. The contribution of one marker is bounded, since markers are taken down
-/// and moved. The best hypothesis wins once it is clearly better than both the second best and the
-/// null hypothesis. So one marker whose id is unique is enough if nothing contradicts it; among
-/// several markers of one id, other markers and walls decide. While no marker has been seen, walls
-/// alone may decide (WallPlaceFinder).
+/// is nowhere in the map. The contribution of one marker in one pass is bounded, since markers are
+/// taken down and moved. The best hypothesis wins once it is clearly better than both the second
+/// best and the null hypothesis. So one marker whose id is unique is enough if nothing contradicts
+/// it; among several markers of one id, other markers and walls decide. While no marker has been
+/// seen, walls alone may decide (WallPlaceFinder).
 class PlaceFinder {
  public:
   PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);

@@ -30,9 +30,9 @@ struct PoseGraph {
 /// Keyframes with their odometry and scan factors, without markers.
 PoseGraph pose_graph_of(const Graph& graph);
 
-/// Adds the poses of an earlier map's graph where the robot has not been since, and the edges among
-/// them; no edge connects them to the other poses. So graphs of extended maps grow with the area
-/// and not with the number of runs.
+/// Adds the poses of an earlier map's graph that are near no pose of `graph`, and the edges among
+/// them; no edge connects them to the poses of `graph`. So graphs of extended maps grow with the
+/// area and not with the number of runs.
 void add_unvisited(const PoseGraph& earlier, PoseGraph& graph);
 
 }  // namespace waymark

@@ -7,13 +7,13 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMarkersNeeded = 2;  // for the same pose
+constexpr std::size_t kMarkersNeeded = 2;  // markers that agree on a pose
 constexpr int kSightingsNeeded = 2;        // of each of them: a misread id rarely repeats
 constexpr double kSamePlace_m = 0.5;
 constexpr double kSameHeading_rad = 0.35;
 constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
-constexpr double kMisread_m = 0.5;   // driven without another sighting: it was a misreading
-constexpr double kPatience_m = 5.0;  // the same after kRealSightings or more
+constexpr double kMisread_m = 0.5;   // driven without another sighting: the first was a misreading
+constexpr double kPatience_m = 5.0;  // that limit after kRealSightings or more
 constexpr double kReturn_m = 30.0;   // driven until a relocalisation is final
 
 }  // namespace

@@ -15,10 +15,10 @@ namespace waymark {
 /// One sighted marker compared with the map at the estimated pose.
 struct PoseHint {
   enum class Kind {
-    kAgrees,     ///< it is sighted where the map has it
+    kAgrees,     ///< the marker is sighted where the map has it
     kNew,        ///< its id is not in the map
-    kElsewhere,  ///< confirmed and unique, but sighted far from its place in the map
-    kAmbiguous,  ///< far from its place in the map, but may be another marker of the same id
+    kElsewhere,  ///< its id is mapped once, confirmed, but far from the sighting
+    kAmbiguous,  ///< its id is mapped far away, but the marker may be another of that id
   };
 
   Kind kind{Kind::kNew};
@@ -30,8 +30,8 @@ struct PoseHint {
 /// Decides between two hypotheses. Either the estimated pose is right, and a marker that is sighted
 /// elsewhere was moved, is misread or has a duplicate; or the robot was carried, and the mapped
 /// places of such markers give its pose. The robot is relocated when two markers agree on the other
-/// pose while none is sighted in its place or new. After a relocalisation to a place that only
-/// looks alike, new ids appear where the map has other markers: two of them revert it.
+/// pose while no marker is sighted in its place and none is new. After a relocalisation to a place
+/// that only looks alike, new ids appear where the map has other markers: two of them revert it.
 class RelocalisationMonitor {
  public:
   enum class Verdict { kConsistent, kSuspicious, kRelocated, kReverted };
@@ -55,8 +55,8 @@ class RelocalisationMonitor {
 
   Se2 relocated_{};
   std::optional<Se2> alternative_{};
-  std::map<int, int> sightings_{};  ///< number that support the alternative, by id
-  double unsupported_m_{0.0};       ///< driven since the last of them
+  std::map<int, int> sightings_{};  ///< number of sightings that support the alternative, by id
+  double unsupported_m_{0.0};       ///< driven since the last such sighting
 
   std::optional<Se2> abandoned_{};  ///< pose before the relocalisation, propagated by odometry
   std::set<int> unexpected_ids_{};

@@ -42,7 +42,7 @@ void Graph::remove_keyframes(const std::vector<RemovedKeyframe>& removed) {
     kept.push_back(std::move(factors_[index]));
   }
   factors_ = std::move(kept);
-  // The motion between the ends of a gap is not known.
+  // Odometry without information replaces the factors across a gap.
   std::size_t filled = 0;
   for (const RemovedKeyframe& gone : removed) {
     if (gone.keyframe < filled) continue;

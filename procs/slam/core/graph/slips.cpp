@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-// Keyframes: older motions were examined when they were among these.
+// Newest keyframes: older motions were examined when their keyframes were among these.
 constexpr std::size_t kExamined = 20;
 
 }  // namespace
@@ -17,9 +17,9 @@ bool Graph::has_markers() const {
   });
 }
 
-/// Changes the kind of the motion that reduces the cost most, and moves the window there, so that
-/// choose_kind() keeps it. The covariance of a residual J x is J P J' = (L^-1 J')' (L^-1 J'); rows
-/// of L before the motion's first variable do not contribute.
+/// Of all changes of a motion's kind, applies the one that reduces the cost most, and takes a step
+/// of the window, so that choose_kind() keeps it. The covariance of a residual J x is J P J' =
+/// (L^-1 J')' (L^-1 J'); rows of L before the motion's first variable do not contribute.
 /// @return false if no change reduces the cost.
 bool Graph::assume_slip() {
   const std::size_t count = state_.keyframes.size();

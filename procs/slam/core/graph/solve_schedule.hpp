@@ -47,7 +47,7 @@ class SolveSchedule {
 
  private:
   static constexpr std::size_t kEvery = 10;        ///< keyframes
-  static constexpr std::size_t kShare = 200;       ///< 1/200 of all, after loops that contradict it
+  static constexpr std::size_t kShare = 200;       ///< 1/200, after loops that contradict the pose
   static constexpr std::size_t kRoutineShare = 8;  ///< 1/8, after loops that only confirm the pose
   static constexpr double kConverged = 5e-3;       ///< [m, rad]; less is not worth a further step
 

@@ -20,7 +20,7 @@ inline double step_share(double turn_rad) {
   return turn_rad > kMost_rad ? kMost_rad / turn_rad : 1.0;
 }
 
-/// The same by the largest turn of a keyframe.
+/// step_share() for the largest turn of a keyframe in `step`.
 /// @param place_of  index of a variable in `step`.
 template <class PlaceOf>
 double step_share(const Eigen::VectorXd& step, const std::vector<Variable>& variables,

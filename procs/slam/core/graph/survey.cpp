@@ -32,7 +32,7 @@ LandmarkPrior prior_of(const SurveyedMarker& marker, std::size_t landmark) {
   return prior;
 }
 
-/// Whether the other priors determine the frame's position and rotation.
+/// Whether the priors other than `without` determine the frame's position and rotation.
 bool hold_frame(const std::vector<LandmarkPrior>& priors, std::size_t without) {
   int num_places = 0;
   for (std::size_t i = 0; i < priors.size(); ++i) {
@@ -60,7 +60,7 @@ std::vector<std::size_t> most_suspicious(const std::vector<LandmarkPrior>& prior
                                          const SurveyModel::Solution& solution) {
   std::vector<std::pair<double, std::size_t>> savings;
   for (std::size_t i = 0; i < priors.size(); ++i)
-    // Only if the others determine the frame: of the last two, either could be the wrong one.
+    // Only if the other priors determine the frame: of the last two, either could be wrong.
     if (!priors[i].is_off && hold_frame(priors, i))
       savings.emplace_back(saving_without(priors[i], solution), i);
   std::stable_sort(savings.begin(), savings.end(),
@@ -73,7 +73,7 @@ std::vector<std::size_t> most_suspicious(const std::vector<LandmarkPrior>& prior
 }
 
 /// Switches contradicted priors off.
-/// @return the contradiction that is left.
+/// @return contradiction_of() for the priors that stay on.
 double switch_wrong_off(std::vector<LandmarkPrior>& priors, const SurveyModel& model) {
   const double free = model.cost_without_priors();
   SurveyModel::Solution solution = model.solve(priors);

@@ -24,8 +24,8 @@ class Survey {
   bool has_frame() const { return has_frame_; }
 
   /// Associates surveyed markers with landmarks that have enough sightings.
-  /// @return whether there are new ones, or some have been sighted so much more often since their
-  ///         priors were tested that these have to be tested again.
+  /// @return whether there are new associations, or landmarks have been sighted so much more often
+  ///         since their priors were tested that the priors have to be tested again.
   bool match(const Graph& graph, const MarkerBook& book);
 
   /// survey_from_map, once, when the survey first defines the frame.
@@ -57,7 +57,7 @@ class Survey {
 
   std::vector<Entry> entries_{};
   bool has_frame_{false};
-  double unresolved_sigmas_{0.0};  ///< contradiction that remains while none is clearly wrong
+  double unresolved_sigmas_{0.0};  ///< root of the excess of chi^2 that remains; 0: none
 };
 
 }  // namespace waymark

@@ -9,8 +9,9 @@
 
 namespace waymark {
 
-/// Graph::marginal_of() has eliminated everything else. Its cost is quadratic in the landmarks' own
-/// frames, so it stays valid when all of them turn; only the priors are linearised again.
+/// Graph::marginal_of() has eliminated all other variables. The marginal's cost is quadratic in the
+/// landmarks' own frames, so it stays valid when all of them turn; only the priors are linearised
+/// again.
 class SurveyModel {
  public:
   struct Solution {

@@ -8,8 +8,8 @@
 namespace waymark {
 
 /// When the odometry stands still, the robot nearly always does, too. If markers or walls observe
-/// that it moves, the odometry is stuck until it moves again; if nothing is observed, it may be
-/// stuck. Meanwhile the robot may have continued at its last speed.
+/// that the robot moves, the odometry is stuck until it shows motion again; if nothing is observed,
+/// the odometry may be stuck. Meanwhile the robot may have continued at its last speed.
 class UnmeasuredMotion {
  public:
   /// To be called with each observation.
@@ -21,8 +21,8 @@ class UnmeasuredMotion {
     standing_s_ = 0.0;
   }
 
-  /// They have observed that the robot moved by `distance_m` in `elapsed_s`. If the odometry stands
-  /// still, it is stuck.
+  /// Markers or walls have observed that the robot moved by `distance_m` in `elapsed_s`. If the
+  /// odometry stands still, it is stuck.
   void note_moved(double distance_m, double elapsed_s);
 
   /// The robot is back where the odometry came to a standstill: the odometry is not stuck.
@@ -39,7 +39,8 @@ class UnmeasuredMotion {
   /// Distance that may have been driven while the odometry was silent, one sigma.
   double unmeasured_m() const { return speed_m_s_ * silent_s_; }
 
-  /// Returns the same and resets it to zero: from now on a factor of the graph accounts for it.
+  /// Returns unmeasured_m() and resets it to zero: from now on a factor of the graph accounts for
+  /// it.
   double take_unmeasured_m();
 
   /// Distance that may have been driven since the odometry came to a standstill, one sigma. Since
@@ -49,7 +50,7 @@ class UnmeasuredMotion {
  private:
   double speed_m_s_{0.0};   ///< from odometry or, while that is stuck, from the estimate
   double silent_s_{0.0};    ///< since the motion was last observed
-  double standing_s_{0.0};  ///< standing and not silent
+  double standing_s_{0.0};  ///< time standing and not silent
   bool is_standing_{false};
   bool is_stuck_{false};
   bool is_jumping_{false};

@@ -14,7 +14,7 @@ constexpr std::uint32_t kLeastVisits = 8;   // beams; a person walking past leav
 constexpr double kWall = 0.5;               // least occupancy of a wall, and
 constexpr double kFree = 0.1;               // largest one of free space
 constexpr int kAgedEvery = 100;             // scans
-constexpr std::uint32_t kMostVisits = 200;  // the counts of a cell beyond it are halved
+constexpr std::uint32_t kMostVisits = 200;  // of a cell; beyond it the counts are halved
 constexpr std::size_t kLeastCells = 6;      // 0.3 m of wall in cells of 0.05 m
 constexpr int kGap = 2;                     // between neighbours in a cluster, at most [cells]
 

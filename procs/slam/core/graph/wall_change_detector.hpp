@@ -13,9 +13,9 @@
 namespace waymark {
 
 /// Counts the beams of this run in a grid of its own, and compares it with the map's, cell by cell.
-/// A wall cell has appeared if the map is free in it and in all of its neighbours; one of the map
-/// has disappeared if this run's grid is free there. So a pose error of one cell makes no change.
-/// Memory is bounded by the map's area and the LiDAR's range.
+/// A wall cell has appeared if the map is free in it and all its neighbours; a wall cell of the map
+/// has disappeared if this run's grid is free in it and all its neighbours. So a pose error of one
+/// cell makes no change. Memory is bounded by the map's area and the LiDAR's range.
 class WallChangeDetector {
  public:
   explicit WallChangeDetector(std::shared_ptr<const MapSnapshot> map);

@@ -34,7 +34,7 @@ class TileMap {
   /// @throws std::length_error when the map would span more than kMaxTableTiles tiles.
   Cell& edit(CellIndex cell) { return edit_tile(tile_of(cell))[offset_in_tile(cell)]; }
 
-  /// The same for a whole tile; the reference is valid until the map is copied.
+  /// A whole tile for writing, as edit(); the reference is valid until the map is copied.
   Tile& edit_tile(TileIndex index) {
     if (!covers(index)) grow_to(index);
     return table_[place_of(index)].edit();

@@ -18,14 +18,14 @@ class OdometryStream {
  public:
   /// Consequences of a sample for the other sensors' queues.
   struct News {
-    bool is_first{false};  ///< of all samples: stamps can be checked from now on
+    bool is_first{false};  ///< first of all samples: stamps can be checked from now on
     std::optional<Duration>
         clock_set{};  ///< the clock was set, by so much: older stamps are invalid
   };
 
   News add(const OdometrySample& sample, Skips& skips);
 
-  /// To be called after the last sample: uses the one that is held back.
+  /// To be called after the last sample: accepts the sample that is held back.
   void finish(Skips& skips);
 
   bool has_passed(Timestamp time) const { return !buffer_.is_empty() && buffer_.newest() >= time; }
@@ -33,8 +33,8 @@ class OdometryStream {
   /// Stamp of the newest sample, one that is held back included; needs a sample.
   Timestamp newest() const { return leading_ ? leading_->time : buffer_.newest(); }
 
-  /// A stamp of another sensor later than this is wrong. An earlier one may be ahead of odometry
-  /// that arrives in bursts. Needs a sample.
+  /// A stamp of another sensor later than this is wrong, unless the next sample confirms it. An
+  /// earlier one may be ahead of odometry that arrives in bursts. Needs a sample.
   Timestamp lead_limit() const { return newest() + kLongestLead; }
 
   bool is_ahead(Timestamp time) const { return !buffer_.is_empty() && time > lead_limit(); }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr Duration kStepWithoutScan{200'000};  // a LiDAR's usual period
 
-// Of LiDARs and cameras with up to 100 scans or frames a second.
+// Bounds of the queues, for up to 100 scans or frames a second.
 constexpr std::size_t kCapacity = 2000;
 constexpr Duration kLongest = std::chrono::seconds{20};
 constexpr QueuePolicy kScanPolicy{.capacity = kCapacity,

@@ -23,8 +23,9 @@ struct QueuePolicy {
 
 /// Values (with a member `time`) in order of time. A value older than the newest one is set aside:
 /// either its own stamp is too early, or others are too late. The next value decides: if it is
-/// newer than all, the value aside is dropped; if it is newer than the value aside only, those not
-/// older than that one are. A second value with the newest stamp is dropped.
+/// newer than all, the value aside is dropped; if it is newer than the value aside only, the queued
+/// values not older than the value aside are dropped; else it replaces the value aside. A second
+/// value with the newest stamp is dropped.
 ///
 /// A value that arrives long before the odometry of its time, as after a pause of all sensors, is
 /// held outside the queue until the next sample of the odometry decides.

@@ -23,7 +23,7 @@ constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the 
 constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
 
 // All beams on one wall are measured at about the same time, on average a quarter of the sweep from
-// its middle, so with the odometry noise of a quarter; MeanSweep has that of a twelfth.
+// its middle, so with the odometry noise of a quarter of it; MeanSweep has that of a twelfth.
 constexpr double kWallOverMeanSweep = 3.0;
 
 /// Least standard deviations of the calibration (order of SightingNoise::calibration) in the gate

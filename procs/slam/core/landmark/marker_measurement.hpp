@@ -82,7 +82,7 @@ struct MarkerMeasurement {
     return (Eigen::Matrix3d{} << jacobian_camera, jacobian_standoff).finished();
   }
 
-  /// The same, linearised at another place of the marker in the base frame, the estimated one: a
+  /// jacobian_calibration(), linearised at the marker's estimated instead of its measured place: a
   /// Jacobian that contains the measurement's noise is correlated with the residual, and biases the
   /// calibration.
   Eigen::Matrix3d jacobian_calibration_at(const Eigen::Vector2d& place_in_base) const;

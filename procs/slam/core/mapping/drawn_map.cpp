@@ -31,8 +31,8 @@ void DrawnMap::draw_markers(const std::vector<MarkerSighting>& sightings, const 
 }
 
 void DrawnMap::add(const Observation& observation, const Se2& map_from_base) {
-  // Drawn as the archive keeps it, in single precision, so that it can be erased exactly; and
-  // archived last, since a scan outside the largest grid throws.
+  // The scan is drawn as the archive keeps it, in single precision, so that it can be erased
+  // exactly; and archived last, since a scan outside the largest grid throws.
   if (const auto old = scans_.emptied_by(observation, map_from_base))
     erase_beams(scans_.at(*old).beams, drawn_at_[*old], map_);
   insert_beams(ScanArchive::as_kept(observation).beams, map_from_base, map_);

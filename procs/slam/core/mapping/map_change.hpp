@@ -22,7 +22,7 @@ struct MapChange {
   Kind kind{Kind::kMarkerNew};
   int id{kNoMarker};  ///< of the marker
   int instance{0};
-  Se2 place{};                                      ///< now; if it is gone, where it was; map frame
+  Se2 place{};                                      ///< now, or before it was gone; map frame
   Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};  ///< [m] in the loaded map, or the survey
   double size_m{0.0};                               ///< of a wall: longer side of its bounding box
   double sigmas{0.0};                               ///< of kSurveyOff: in standard deviations

@@ -12,8 +12,8 @@
 namespace waymark {
 
 /// Removes points that lie in free space of the map for every pose within the covariance: people
-/// who walk beside the robot would bias the match. If these are most of the outline that the scan
-/// shows, the pose is wrong, and all points are kept.
+/// who walk beside the robot would bias the match. If the removed points are most of the outline
+/// that the scan shows, the pose is wrong, and all points are kept.
 ///
 /// @param covariance  of map_from_base: (x, y, theta), map's axes.
 std::vector<Eigen::Vector2d> without_moving(const std::vector<Eigen::Vector2d>& points_in_base,

@@ -20,8 +20,8 @@ class OdometryBuffer {
   /// (ClockStepDetector::kLongestPause). Odometry that stood still and then jumps no farther than
   /// the robot can have driven meanwhile was stuck: the jump is late motion. After a jump that no
   /// robot can drive, the pose is held until some samples in a row are consistent. If the robot can
-  /// have driven to them since before the jump, the samples in between were garbage, and the motion
-  /// is late motion; otherwise the odometry was reset, which is no motion.
+  /// have driven from the pose before the jump to these samples, those in between were garbage, and
+  /// the motion is late motion; otherwise the odometry was reset, which is no motion.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }
@@ -49,7 +49,7 @@ class OdometryBuffer {
     return jump_interval_ && jump_interval_->from < to && from < jump_interval_->to;
   }
 
-  /// Time of the first sample at or after that time.
+  /// Time of the first sample at or after `time`.
   std::optional<Timestamp> first_from(Timestamp time) const;
 
   Timestamp newest() const { return samples_.back().time; }
@@ -77,7 +77,7 @@ class OdometryBuffer {
   struct Jump {
     OdometrySample before{};  ///< the last sample before it
     Se2 begin{};              ///< odom_from_base at the first of the consistent samples
-    int consistent{0};        ///< samples since then
+    int consistent{0};        ///< consistent samples after that one
   };
 
   struct Interval {
@@ -92,7 +92,7 @@ class OdometryBuffer {
 
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
   static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
-  static constexpr double kMaxDrive_m_s = 2.0;        ///< mean speed of late motion
+  static constexpr double kMaxDrive_m_s = 2.0;        ///< largest mean speed of late motion
   static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
   static constexpr int kConsistentSamples = 4;        ///< samples that end a jump
   static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz; the oldest go first
@@ -103,7 +103,7 @@ class OdometryBuffer {
   Timestamp changed_{};  ///< when the pose last changed
   std::optional<CatchUp> catch_up_{};
   std::optional<Jump> jump_{};
-  std::optional<Interval> jump_interval_{};  ///< the last one, possibly not over yet
+  std::optional<Interval> jump_interval_{};  ///< of the last jump, possibly not over yet
 };
 
 }  // namespace waymark

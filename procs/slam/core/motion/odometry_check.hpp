@@ -11,8 +11,8 @@ namespace waymark {
 
 class OdometryCheck {
  public:
-  /// The step itself; if it exceeds the robot's speed limits, the last estimated step, shortened to
-  /// `step_s` where that is less than it took, and marked as a guess (Motion::guessed_s).
+  /// The step itself or, if it exceeds the robot's speed limits, the last estimated step: shortened
+  /// in proportion if it took longer than `step_s`, and marked as a guess (Motion::guessed_s).
   ///
   /// @param has_caught_up  the step includes late motion, which took longer: it is accepted.
   Motion plausible(const Motion& step, double step_s, bool has_caught_up);
@@ -20,7 +20,7 @@ class OdometryCheck {
   /// Whether the last step was rejected.
   bool is_refused() const { return is_refused_; }
 
-  /// The last step as the estimator corrected it.
+  /// To be called with the newest step as estimated.
   void note_estimated(const Se2& start_from_end, double step_s);
 
   /// Hypotheses of the motion since the last scan that do not rely on odometry's newest step: no

@@ -38,8 +38,8 @@ Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise) {
   // The wheels also roll while the robot turns on the spot.
   const double rolled_m = std::max(motion.distance_m, noise.half_track_m * motion.turn_rad);
   const double along_m2 = squared(noise.along_per_sqrt_m) * rolled_m + kVarianceFloor;
-  // Integrated random walk of the heading over a length L: the lateral variance is L^2 / 3 of the
-  // final heading's, their covariance L / 2 of it.
+  // Integrated random walk of the heading over a length L: the lateral variance is L^2 / 3 times
+  // the final heading's variance, their covariance L / 2 times that.
   const double across_m2 = squared(length_m) * turn_rad2 / 3.0 +
                            squared(noise.across_per_sqrt_m) * rolled_m + kVarianceFloor;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();

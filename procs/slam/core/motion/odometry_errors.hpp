@@ -36,7 +36,7 @@ double turn_variance(const OdometryNoise& noise, double distance_m, double turn_
 /// the frame at the start; zero without motion.
 Eigen::Matrix3d random_walk(double distance_m, double turn_rad, const OdometryNoise& noise);
 
-/// The same for any motion; never below a floor.
+/// That covariance for any motion; with a floor on the variances, also without motion.
 Eigen::Matrix3d random_walk(const Motion& motion, const OdometryNoise& noise);
 
 /// Systematic errors of odometry and of the LiDAR's mounting:
@@ -58,9 +58,9 @@ using OdometryJacobian = Eigen::Matrix<double, 3, kOdometryTerms>;
 /// A measured motion, corrected for systematic errors.
 struct CorrectedMotion {
   Se2 start_from_end{};
-  /// Of the pose at the end, in the frame at the start.
+  /// Jacobian of the pose at the end, in the frame at the start.
   OdometryJacobian jacobian_calibration{OdometryJacobian::Zero()};
-  /// Of (x, y, theta) in the same frame, from the random walk and guessed steps.
+  /// Covariance of (x, y, theta) in the frame at the start, from the random walk and guessed steps.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
 };
 

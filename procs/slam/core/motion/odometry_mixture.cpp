@@ -19,11 +19,11 @@ constexpr double kJerkedPenalty = 8.4;     // 0.015
 constexpr double kAnythingPenalty = 10.6;  // 0.005
 // Widths, in standard deviations of the configured noise.
 constexpr double kSpinningTurn = 25.0;  // turn caused by a spinning wheel, and distance with it
-constexpr double kSpinningRest = 3.0;   // all other errors meanwhile
+constexpr double kSpinningRest = 3.0;   // all other errors while a wheel spins
 constexpr double kSlipping = 25.0;      // distance alone
 constexpr double kJerked = 25.0;
 constexpr double kAnything = 125.0;
-// A push while the odometry stands still, when its configured noise is zero.
+// A push, also while the odometry stands still and its configured noise is almost zero.
 constexpr double kPushed_m = 0.1;
 constexpr double kPushed_rad = 0.1;
 

@@ -19,7 +19,7 @@ struct OdometryScale {
   double along{1.0};
   double turn{1.0};
   double slip_per_m{0.0};     ///< mean of (true - measured distance); negative: wheels spin
-  double slip_m2_per_m{0.0};  ///< variance along the path
+  double slip_m2_per_m{0.0};  ///< variance that slips add along the path
   double slip_m2{0.0};        ///< mean square of one slip
 };
 
@@ -66,7 +66,7 @@ double penalty(MotionKind kind);
 /// @param root  Cholesky factor of the covariance.
 double cost_at_zero(MotionKind kind, const Eigen::LLT<Eigen::Matrix3d>& root);
 
-/// The same at a residual.
+/// -2 log of a component's prior probability times its density at a residual, up to a constant.
 /// @param residual  observed minus measured (x, y, theta), in the frame at the start.
 double mixture_cost(MotionKind kind, const Eigen::Vector3d& residual, const MixtureNoise& noise);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kSlowest = 0.01;  // [m/s, rad/s]; less is standing
 constexpr double kBinRatio = 1.1;  // of speeds, from bin to bin: up to 20 m/s
 constexpr double kUsualShare = 0.95;
-constexpr double kFaster = 2.0;  // factor on the usual speed; to which these margins are added
+constexpr double kFaster = 2.0;  // factor on the usual speed, before these margins are added
 constexpr double kSlack_m_s = 0.5;
 constexpr double kSlack_rad_s = 1.0;
 constexpr double kMost_m_s2 = 1.0;  // floor robots accelerate less (TurtleBot3: top speed 0.26 m/s)

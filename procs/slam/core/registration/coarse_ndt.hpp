@@ -16,7 +16,7 @@ namespace waymark {
 /// walls.
 class CoarseNdt {
  public:
-  /// @param finest_spacing_m  of the map that they complement.
+  /// @param finest_spacing_m  cell spacing of the NDT map that these levels complement.
   explicit CoarseNdt(double finest_spacing_m)
       : levels_{NdtMap{2.0 * finest_spacing_m}, NdtMap{4.0 * finest_spacing_m}} {}
 

@@ -197,14 +197,15 @@ class CorrelativeField::Search {
   }
 
  private:
-  /// Of min_score * points * 255, so that a search with the score of a match finds that match.
+  /// Rounding error of min_score * points * 255, so that a search with the score of a match finds
+  /// that match.
   static constexpr double kRounding = 1e-6;
 
   /// The scan, rotated.
   struct Heading {
     int step{0};
     double theta_rad{0.0};
-    bool is_excluded{false};  ///< at those offsets whose translation is excluded, too
+    bool is_excluded{false};  ///< turn within the limit: excluded where the shift is, too
     std::vector<CellIndex> cells{};
     CellIndex low{};  ///< first and last offset in the window at which a point can be in the field
     CellIndex high{};

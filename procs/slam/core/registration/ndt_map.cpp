@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMinPoints = 4;         // of a cell, to have a distribution
 constexpr double kPriorPoints = 6.0;  // weight of the prior on a cell's variance, in points
-constexpr double kLineRatio = 0.1;    // of a line's variances, across to along
+constexpr double kLineRatio = 0.1;    // largest ratio of variances, across to along, of a line
 
 }  // namespace
 

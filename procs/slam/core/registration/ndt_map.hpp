@@ -33,8 +33,8 @@ struct NdtCellSums {
 };
 
 /// Square cells of side `2 spacing` whose centres are `spacing` apart: each point is added to four
-/// overlapping cells, but compared with the one with the nearest centre only. So the steps of the
-/// cost where that cell changes are small.
+/// overlapping cells, but compared with the one with the nearest centre only. So the cost jumps
+/// little where a point changes from cell to cell.
 class NdtMap {
  public:
   explicit NdtMap(double spacing_m) : spacing_m_{spacing_m} {}
@@ -68,7 +68,7 @@ class NdtMap {
   void add(const NdtCellSums& sums);
 
  private:
-  static constexpr double kStale = -1.0;  ///< points were added since the fit
+  static constexpr double kStale = -1.0;  ///< no fit, or points were added since
 
   struct Cell {
     double count{0.0};

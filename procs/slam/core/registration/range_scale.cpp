@@ -16,7 +16,7 @@ constexpr int kScaleSteps = 8;
 constexpr double kScaleKernel_m = 0.1;
 constexpr double kScalePrior = 0.2;
 
-constexpr double kAgreeing = 0.01;  // largest difference of shares
+constexpr double kAgreeing = 0.01;  // largest difference between equal scales
 
 using Vector4 = Eigen::Vector4d;
 

@@ -30,13 +30,13 @@ RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
 
 /// Tells ranges whose scale has changed from scans that were matched at a wrong place, where they
 /// fit at another scale by chance: the scale of a LiDAR changes from one scan to the next, wherever
-/// the robot is. So a scale is believed if it is the one between this scan and the last one that
-/// fitted the map as it was, or if that of the scan before was.
+/// the robot is. So a scale is believed if the scan has it, too, relative to the last scan that
+/// fitted the map unscaled, or if the same scale has been believed since that scan.
 class RangeScaleMonitor {
  public:
   explicit RangeScaleMonitor(double cell_spacing_m) : cell_spacing_m_{cell_spacing_m} {}
 
-  /// Notes a scan that fits the map as it is.
+  /// Notes a scan that fits the map unscaled.
   void note_unscaled(const Points& points_in_base, const Se2& map_from_base);
 
   /// Whether to believe the scale at which the newest scan fits the map; remembers it if so.
@@ -47,9 +47,9 @@ class RangeScaleMonitor {
 
  private:
   double cell_spacing_m_;
-  Points unscaled_in_base_{};  ///< the last scan that fitted as it was
+  Points unscaled_in_base_{};  ///< the last scan that fitted unscaled
   Se2 map_from_unscaled_{};
-  std::optional<double> share_{};  ///< of the last scan, if believed
+  std::optional<double> share_{};  ///< last one believed since the unscaled scan
 };
 
 }  // namespace waymark

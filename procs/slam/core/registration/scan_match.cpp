@@ -17,12 +17,12 @@ namespace waymark {
 namespace {
 
 constexpr double kBlurStep = 1.0 / 3.0;  // factor from one stage to the next finer one
-constexpr double kFinestBlur_m = 0.01;   // less is none
+constexpr double kFinestBlur_m = 0.01;   // a smaller blur is left out
 constexpr int kStepsPerStage = 3;
 constexpr int kFinalSteps = 6;
 constexpr double kConverged = 2e-5;   // metres or radians
 constexpr double kMaxBlur_m = 0.25;   // no more than half of a cell
-constexpr double kReachOfCell = 0.5;  // of a level's spacing; from less, the next finer converges
+constexpr double kReachOfCell = 0.5;  // of a level's spacing; a nearer guess skips the level
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
 // Number of beams in one cell that count as independent: the error of the cell's mean is common to
@@ -232,8 +232,8 @@ class Descent {
 };
 
 /// Information that keeps the pose in unobserved directions and has little effect in the others:
-/// that of the guess with ten times its standard deviations. Not more, so that the step stays small
-/// enough for the quadratic model.
+/// that of the guess with kGuessFades times its standard deviations, plus kLeastFaded. Not less
+/// information, so that the step stays small enough for the quadratic model.
 Eigen::Matrix3d nearly_none(const Eigen::Matrix3d& guess_covariance) {
   Eigen::Matrix3d covariance = squared(kGuessFades) * guess_covariance;
   covariance.diagonal() += kLeastFaded.cwiseAbs2();
@@ -260,7 +260,7 @@ bool ObservedAxes::is_along_weak(const Eigen::Vector2d& shift) const {
   return is_degenerate && std::abs(weak_direction.dot(shift)) >= kAlongWeak * shift.norm();
 }
 
-/// The other axes are marginal: the Schur complement of the direction.
+/// What stays is the marginal information about the other axes: a Schur complement.
 void ObservedAxes::forget(const Eigen::Vector2d& direction) {
   const Eigen::Vector3d axis{direction.x(), direction.y(), 0.0};
   const Eigen::Vector3d column = information * axis;

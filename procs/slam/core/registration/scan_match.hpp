@@ -29,7 +29,7 @@ struct ScanMatchConfig {
 
 /// Information about a pose, with unobserved directions removed.
 struct ObservedAxes {
-  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};     ///< nothing along weak_direction
+  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};     ///< degenerate: 0 along weak_direction
   Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit
   bool is_degenerate{false};
 

@@ -7,9 +7,9 @@
 namespace waymark {
 namespace {
 
-// Less is within the thickness of the walls in a submap.
+// A smaller displacement is within the thickness of the walls in a submap.
 constexpr double kBent_m = 0.03;
-constexpr double kBent_rad = 0.006;  // the same 5 m away
+constexpr double kBent_rad = 0.006;  // displaces walls 5 m away by as much
 
 }  // namespace
 

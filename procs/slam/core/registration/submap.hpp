@@ -31,7 +31,8 @@ class Submap {
   /// Whether the keyframes have moved relative to each other since they were inserted.
   bool is_bent(const PoseSequence& keyframes) const;
 
-  /// The same scans, inserted at the present poses of their keyframes. Precondition: not finished.
+  /// A submap of the same scans, inserted at the present poses of their keyframes. Precondition:
+  /// not finished.
   Submap straightened(const PoseSequence& keyframes) const;
 
   std::size_t first_keyframe() const { return first_keyframe_; }

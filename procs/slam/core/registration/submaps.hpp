@@ -39,8 +39,8 @@ class Submaps {
                    const PoseSequence& keyframes);
 
   /// Redraws unfinished submaps whose keyframes have moved relative to each other. Otherwise, after
-  /// a loop closure has moved the newest keyframes, the next scans would be matched at their old
-  /// poses.
+  /// a loop closure has moved the newest keyframes, the next scans would be matched with walls at
+  /// the old poses.
   void follow(const PoseSequence& keyframes);
 
   /// Drops unfinished submaps, after the robot was relocated.
@@ -54,7 +54,7 @@ class Submaps {
   std::size_t half_keyframes_;  ///< half of the most keyframes of a submap
   double half_m_;               ///< half of the greatest length of a submap
   std::deque<Submap> finished_{};
-  std::deque<Submap> growing_{};  ///< one or two
+  std::deque<Submap> growing_{};  ///< at most two, the older one first
 };
 
 }  // namespace waymark

@@ -12,14 +12,15 @@
 
 namespace waymark {
 
-/// Another place than a match is apart from it by one of these, the width of the match's peak.
+/// A place is another one than a match if it is at least one of these, the width of the match's
+/// peak, away from the match.
 inline constexpr double kOtherPlace_m = 0.3;
 inline constexpr double kOtherPlace_rad = 0.35;
 
 /// Conditions under which the best place of a search counts as unique.
 struct UniquePlaceLimits {
   double min_score{0.0};        ///< of the best place
-  double runner_up_share{1.0};  ///< of the best score, from which a runner-up makes it ambiguous
+  double runner_up_share{1.0};  ///< of the best score; a runner-up above it is ambiguous
   double min_runner_up{0.0};    ///< score below which a runner-up never counts
   double apart_m{0.5};          ///< a place nearer to the best one than this,
   double apart_rad{0.3};        ///< and turned by less than this, is the same place

@@ -23,12 +23,12 @@ constexpr double kUnseen_rad_s = 0.5;  // rate at which the window of turns grow
 // Ratios of inliers, found to plain match, that the found match needs:
 constexpr double kClearlyMore = 1.05;  // in any case
 constexpr double kMuchMore = 1.5;  // if odometry contradicts it, and it fits as usual where mapped
-constexpr double kFarMore = 2.0;   // if odometry does not, and it fits nearly as usual
+constexpr double kFarMore = 2.0;   // if odometry agrees with it, and it fits nearly as usual
 constexpr double kLeavesFarMore = 3.0;  // ratio of unexplained beams, plain to found match
 constexpr double kContradictedSigmas = 5.0;
 constexpr double kFarFarther = 4.0;  // ratio of distances from odometry, found to plain match
-// Ratio of scores and of inliers, other to found place: on thinned logs of fr079 and aces those of
-// wrong places were above it, those of most right ones below.
+// Ratio of scores and of inliers, other to found place: on thinned logs of fr079 and aces the
+// ratios at wrong places were above it, those at most right places below.
 constexpr double kNearlyAsWell = 0.8;
 constexpr double kSameHeading_rad = 0.1;               // 3 sigmas of a search
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a heading step
@@ -83,9 +83,10 @@ class PlaceSearch {
     return best;
   }
 
-  /// Whether the scan fits nearly as well at another heading, unless `plain` is there. Another
-  /// position with the same heading takes from `found` the information along the line between the
-  /// two.
+  /// Whether the scan fits nearly as well at another heading or, if `found` is degenerate, at
+  /// another position that is not along the weak direction; never if `plain` is there. Otherwise
+  /// another position with the same heading takes from `found` the information along the line
+  /// between both.
   bool is_ambiguous(ScanMatch& found, const ScanMatch& plain) const {
     const Se2& pose = found.map_from_base;
     const SearchWindow around{2.0 * window_.half_width_m,

@@ -12,28 +12,29 @@ namespace waymark {
 
 struct WideSearch {
   Se2 by_odometry{};  ///< map_from_base; windows about it and `without_odometry` are searched
-  Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of it, map's axes
+  Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of by_odometry, map's axes
   std::vector<Se2> without_odometry{};                               ///< map_from_base
   double since_last_s{0.0};  ///< time since the last scan, which widens the window of turns
-  double driven_m{0.0};      ///< by odometry since then, which widens the windows of positions
+  double driven_m{0.0};      ///< by odometry since the last scan; widens the windows of positions
   double min_score{0.0};     ///< least SearchMatch::score
   /// Whether the map, including its free space, contradicts the scan at a pose.
   std::function<bool(const Se2& map_from_base)> contradicts_map{};
 };
 
 /// Matches the scan from the best place of each window, and compares the match with the most
-/// inliers with the plain match. It replaces the plain one if it has more inliers, and
+/// inliers, the found one, with the plain match. The found match replaces it if it has more
+/// inliers, and
 ///   - the map contradicts the plain match, or
-///   - the scan fits there as well as usual, or
-///   - it fits nearly as well, and either has twice the inliers or odometry contradicts the plain
-///     match.
-/// A match that odometry contradicts much more than the plain one must fit as well as usual, and if
-/// the map does not contradict the plain match, leave a third of its unexplained beams at most; or
-/// have 1.5 times the inliers of a contradicted plain match, and fit as well as usual where there
-/// are mapped walls. It must not fit nearly as well at another heading in or around the windows,
-/// since rooms look alike; and if it explains less than half of the scan, the map's free space must
-/// not contradict the rest. These conditions keep the plain match for a view of a new place, where
-/// a correct match has few inliers.
+///   - the found match fits as well as usual, or
+///   - it fits nearly as well as usual, and either has twice the inliers or odometry contradicts
+///     the plain match.
+/// A found match that odometry contradicts much more than the plain one must fit as well as usual
+/// and, if the map does not contradict the plain match, leave a third of its unexplained beams at
+/// most; or have 1.5 times the inliers of a contradicted plain match, and fit as well as usual
+/// where there are mapped walls. The scan must not fit nearly as well at another heading in or
+/// around the windows, since rooms look alike; and if the found match explains less than half of
+/// the scan, the map's free space must not contradict the rest. These conditions keep the plain
+/// match for a view of a new place, where a correct match has few inliers.
 ///
 /// @param points     ends of beams, base frame.
 /// @param ndt        map that the scan is matched with.

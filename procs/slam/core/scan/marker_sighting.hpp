@@ -23,8 +23,8 @@ struct MarkerSighting {
   /// [m^2, m rad, rad^2] order x y yaw, base frame.
   Eigen::Matrix3d covariance_in_base{Eigen::Matrix3d::Zero()};
   double size_m{0.0};  ///< side of the black square
-  /// Motion by odometry from the frame's time to the scan's; the covariance does not include its
-  /// noise.
+  /// Motion by odometry from the frame's time to the scan's; the covariance does not include the
+  /// noise of that motion.
   double carried_m{0.0};
   double carried_rad{0.0};
   std::optional<FocalSighting> focal{};  ///< measurement of the camera's focal length

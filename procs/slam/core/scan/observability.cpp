@@ -13,8 +13,8 @@ constexpr int kNeighbours = 5;               // beams on each side to which the 
 constexpr double kSurfaceReach_m = 0.5;      // neighbours further away belong to other surfaces
 constexpr double kMaxThicknessRatio = 0.15;  // of the standard deviations across and along a line
 constexpr int kMinPoints = 5;
-// Noise turns fitted normals by some degrees, which leaks their sin^2 of the information into the
-// weak direction: below this share of the strong direction's it is not significant.
+// Noise turns fitted normals by some degrees: sin^2 of these angles of the strong direction's
+// information leaks into the weak direction, where less than this share is not significant.
 constexpr double kDegenerateShare = 0.03;
 
 }  // namespace

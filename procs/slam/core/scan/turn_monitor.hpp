@@ -17,8 +17,7 @@ class TurnMonitor {
   /// To be called with each observation.
   /// @param beams  of its scan; none: nothing is compared.
   /// @param motion  since the previous observation, by odometry.
-  /// @return turn since the reference scan by the scans, minus that by odometry [rad]; once. None
-  /// if
+  /// @return scans' minus odometry's turn since the reference scan [rad], reported once; none if
   ///         the two agree or cannot be compared.
   std::optional<double> missing_turn(std::span<const AnnotatedBeam> beams, const Motion& motion);
 

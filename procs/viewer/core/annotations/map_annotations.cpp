@@ -47,7 +47,7 @@ double duration_s(const std::vector<EstimatedPose>& path) {
   return path.empty() ? 0.0 : to_seconds(path.back().time - path.front().time);
 }
 
-/// False for a path that was not driven, as of a map file: it has neither times nor health.
+/// False for a path shorter than 1 s, such as that of a map file, whose poses have no times.
 bool has_times(const std::vector<EstimatedPose>& path) {
   return duration_s(path) >= 1.0;
 }
@@ -85,7 +85,8 @@ constexpr std::pair<Health, std::string_view> named(Health health) {
   return {health, name_of(health)};
 }
 
-/// Shares of the updates; empty without any.
+/// Shares of the updates in each health state, and with a weak axis by what observed the motion
+/// along it; empty without updates.
 std::string health_summary(const std::vector<EstimatedPose>& estimates) {
   constexpr std::array kHealths{named(Health::kInitialising), named(Health::kTracking),
                                 named(Health::kDegenerate), named(Health::kLost),

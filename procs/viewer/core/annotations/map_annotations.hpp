@@ -14,10 +14,10 @@ void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& tit
                   const PageContent& content, const Se2& view_from_map,
                   const MapThresholds& thresholds);
 
-/// Metre ticks below a strip.
+/// Ruler in metres below a strip.
 void draw_ruler(cv::Mat& page, const Panel& panel);
 
-/// Frames of the strips in the overview, with their letters.
+/// A bracket with a letter for each strip below the overview; the same letter beside the strip.
 void draw_strip_marks(cv::Mat& page, const MapPage& layout);
 
 /// A bar of a round length.

@@ -10,8 +10,8 @@
 namespace waymark::viewer {
 namespace {
 
-/// Counts free cells per bin of one cell along one axis; the extent is that of bins with at least
-/// kStray cells.
+/// Histogram of the free cells along one axis, in bins one cell wide. The extent reaches from the
+/// first to the last bin with at least kStray cells.
 class ExtentCounter {
  public:
   void add(double position_m, double resolution_m) {
@@ -54,7 +54,7 @@ std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_m
   for (int row = 0; row < map.occupancy_percent.rows; ++row) {
     for (int column = 0; column < map.occupancy_percent.cols; ++column) {
       if (kind_of(map.occupancy_percent(row, column), thresholds) != CellKind::kFree) continue;
-      // Relative to the first cell, so that unrotated cells fall in the middle of their bins.
+      // Relative to the corner of cell (0, 0), so that centres of unrotated cells are mid-bin.
       const Eigen::Vector2d point =
           view_from_map.rotation() * (map.cell_centre_m(row, column) - map.origin_m);
       along.add(point.x(), map.resolution_m);

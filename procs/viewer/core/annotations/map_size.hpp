@@ -11,13 +11,14 @@
 
 namespace waymark::viewer {
 
-/// Between the outermost free cells, along x and y of the view frame.
+/// Extent of the free cells along x (length) and y (width) of the view frame.
 struct FreeExtent {
   double length_m{0.0};
   double width_m{0.0};
 };
 
-/// Ignores rows and columns with fewer than three free cells; nullopt if there are no others.
+/// Ignores rows and columns (of the view frame) with fewer than three free cells; nullopt if no row
+/// or no column has three.
 std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_map,
                                       const MapThresholds& thresholds);
 
@@ -26,7 +27,8 @@ std::optional<FreeExtent> free_extent(const GridMap& map, const Se2& view_from_m
 std::optional<corridor::CorridorLength> corridor_length(const GridMap& map,
                                                         const MapThresholds& thresholds);
 
-/// The corridor's length in metres and pixels; the extent of the free space where there is none.
+/// The corridor's length in metres and pixels; the extent of the free space if it is no
+/// single corridor.
 std::string size_text(const GridMap& map, const Se2& view_from_map,
                       const MapThresholds& thresholds);
 

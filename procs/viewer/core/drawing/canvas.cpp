@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kShift = 4;  // fractional bits of OpenCV's fixed-point coordinates
 constexpr double kOne = 1 << kShift;
-/// Coordinates are clamped to this, so that fixed-point numbers do not overflow.
+/// Coordinates are clamped to +- this value, so that fixed-point numbers do not overflow.
 constexpr double kFarAway_px = 1e6;
 
 int fixed(double value_px) {

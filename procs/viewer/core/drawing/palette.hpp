@@ -35,14 +35,14 @@ inline const cv::Scalar kEllipse = rgb(0, 114, 178);
 inline const cv::Scalar kParticle = rgb(86, 180, 233);  // sky blue
 inline const cv::Scalar kMarker = rgb(196, 78, 20);     // vermillion, darker for white text
 inline const cv::Scalar kMoved = rgb(126, 47, 142);     // a marker that is not where it was
-inline const cv::Scalar kFinal = rgb(38, 44, 52);       // the path as known at the end
+inline const cv::Scalar kFinal = rgb(38, 44, 52);  // the trajectory as known at the end of the run
 
 inline const cv::Scalar kInitialising = rgb(190, 222, 245);
 inline const cv::Scalar kDegenerate = rgb(240, 228, 66);  // yellow
 inline const cv::Scalar kLost = rgb(204, 121, 167);       // reddish purple
 inline const cv::Scalar kNoHealth = rgb(214, 214, 214);
 
-/// White or black, whichever has the better contrast on that background.
+/// Colour of text: white on a dark background, kInk on a bright one.
 cv::Scalar text_on(const cv::Scalar& background);
 
 }  // namespace palette

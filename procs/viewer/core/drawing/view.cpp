@@ -4,7 +4,8 @@
 namespace waymark::viewer {
 
 cv::Matx23d View::page_from_cells(const GridMap& map) const {
-  // Pixel centres are integers on both sides; (*this)() counts from pixel corners.
+  // For cv::warpAffine, pixel centres have integer coordinates in the map's picture and on the
+  // page; (*this)() counts from the corner of the upper left pixel.
   const cv::Point2d half{0.5, 0.5};
   const cv::Point2d zero = (*this)(map.cell_centre_m(0, 0)) - half;
   const cv::Point2d along_columns = (*this)(map.cell_centre_m(0, 1)) - half - zero;

@@ -11,8 +11,9 @@
 
 namespace waymark::viewer {
 
-/// Markers: a cross where one is missing, a line from the old to the new place of a moved one, a
-/// ring around a new one. Walls: a box, dashed where the wall is gone.
+/// Markers: a cross where one is missing; for a moved one or one that the survey has elsewhere, a
+/// line from a small ring at the old or surveyed place to the present place; a ring around a new
+/// one. Walls: a box, dashed where the wall is gone.
 void draw_changes(cv::Mat& panel, const View& view, std::span<const MapChange> changes);
 
 }  // namespace waymark::viewer

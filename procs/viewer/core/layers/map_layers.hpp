@@ -23,7 +23,7 @@ StrokeWidths strokes_at(double px_per_m);
 constexpr double kDash_px = 14.0;
 constexpr double kDashGap_px = 12.0;
 
-/// One pixel per cell, row 0 = lowest y, BGR.
+/// Picture of the map for draw_cells(): one pixel per cell, row 0 = lowest y, BGR.
 cv::Mat colour_cells(const GridMap& map);
 
 void draw_cells(cv::Mat& panel, const View& view, const GridMap& map, const cv::Mat& cell_colours);

@@ -14,7 +14,7 @@ namespace waymark::viewer {
 namespace {
 
 constexpr double kClearance_px = 4.0;  // between labels
-/// Cells below are open space.
+/// Cells with a lower occupancy are open space.
 constexpr int kOpenBelow_percent = 50;
 
 /// Share of a box on the page that lies on open space.
@@ -70,8 +70,8 @@ struct Placer {
   const std::vector<cv::Rect2d>& taken;
   cv::Rect2d panel;
 
-  /// Lower is better: outside the panel >> on another label >> on open space >> distance moved
-  /// [px].
+  /// Lower is better. Weights of the parts: area outside the panel >> area on other labels >> area
+  /// on open space >> distance moved [px].
   double cost(const cv::Rect2d& box, double moved_px) const {
     constexpr double kOutside = 1e6, kOnLabel = 1e5, kOnOpenSpace = 1e3;
     double cost = moved_px;

@@ -15,11 +15,11 @@
 namespace waymark::viewer {
 namespace {
 
-// At full size; see mark_scale().
+// Sizes of marks where mark_scale() is 1.
 constexpr double kLongestBar_px = 34.0;   // half length
 constexpr double kShortestBar_px = 11.0;  // half length
 constexpr int kBarWidth_px = 6;
-/// Of one kind; more would hide the map.
+/// Marks of one kind on the map; more would hide it.
 constexpr std::size_t kMostMarks = 60;
 
 bool is_finite(const EstimatedPose& pose) {
@@ -73,7 +73,7 @@ std::vector<EstimatedPose> ellipse_candidates(const std::vector<EstimatedPose>& 
 std::vector<EstimatedPose> weak_axis_candidates(const std::vector<EstimatedPose>& estimates,
                                                 double spacing_m) {
   std::vector<EstimatedPose> chosen;
-  const EstimatedPose* before = nullptr;  // when it had a weak axis
+  const EstimatedPose* before = nullptr;  // the pose before, if it had a weak axis; else null
   double travelled_m = 0.0;
   for (const EstimatedPose& pose : estimates) {
     if (!has_weak_axis(pose)) {
@@ -253,7 +253,7 @@ void draw_weak_axis_bar(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px,
 }
 
 void draw_weak_axes(cv::Mat& panel, const View& view, const PathMarks& marks) {
-  constexpr double kMostlyHeading = 0.7;  // share of a unit vector
+  constexpr double kMostlyHeading = 0.7;  // theta component of the unit direction
   const double scale = mark_scale(view.px_per_m);
   const int width_px = bar_width_px(scale);
   for (const EstimatedPose& pose : marks.weak_axes) {

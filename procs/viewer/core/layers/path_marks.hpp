@@ -26,15 +26,16 @@ std::optional<Ellipse> two_sigma_ellipse(const Eigen::Matrix3d& covariance);
 struct PathMarks {
   int magnification{1};                    ///< of ellipses and weak axes, so that they are visible
   double px_per_m{1.0};                    ///< of the page that the marks were chosen for
-  double spacing_m{1.0};                   ///< along the path
+  double spacing_m{1.0};                   ///< distance along the path between marks
   std::vector<EstimatedPose> ellipses{};   ///< in order of time; each has an ellipse
   std::vector<EstimatedPose> weak_axes{};  ///< in order of time; each has a weak axis
 };
 
-/// Ellipses every round number of metres and at the end; weak axes at the same spacing, and
-/// wherever another source begins to observe them. Of overlapping marks the least certain one is
-/// kept (of weak axes: the one with the worst source); the clearance grows until at most 60 of a
-/// kind are left. O(n + c log c + c m): n poses, c candidates, m marks kept in the first pass.
+/// Ellipses every round number of metres and at the end; weak axes at the same spacing,
+/// where one begins, and where another source begins to observe it. Of overlapping marks the least
+/// certain one is kept (of weak axes: the one with the worst source); the clearance grows until at
+/// most 60 of a kind are left. O(n + c log c + c m): n poses, c candidates, m marks kept in the
+/// first pass.
 PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
                        double spacing_px);
 

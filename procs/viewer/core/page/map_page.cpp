@@ -85,7 +85,7 @@ struct Folding {
   }
 };
 
-/// The number of strips with the largest scale.
+/// The number of strips with the largest scale, or a smaller number whose scale is nearly as large.
 Folding best_folding(const Box& box, const MapPageStyle& style) {
   Folding best;
   const double width_px = style.page_width_px - 2 * kMargin_px;

@@ -50,8 +50,8 @@ PageContent content_of(const Scene& scene);
 /// from the map are ignored. Never empty.
 Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry);
 
-/// Rotation that makes a long map horizontal; identity for other maps, and for those within 20
-/// degrees of it.
+/// Rotation that makes a long map horizontal; identity for other maps, and for long maps that are
+/// within 20 degrees of horizontal.
 Se2 view_from_map(const GridMap& map);
 
 MapPage lay_out(const PageContent& content, const MapPageStyle& style);

@@ -35,7 +35,7 @@ cv::Mat colour_ids(const GridMap& map) {
   return image;
 }
 
-/// Direction from a cell towards the open cells around it; 0 when there are none.
+/// Direction (map frame) from a cell towards the open cells around it; 0 when there are none.
 double direction_of_open_space_rad(const GridMap& map, cv::Point middle) {
   constexpr int kReach_cells = 8;
   constexpr int kOpenBelow_percent = 50;

@@ -9,7 +9,7 @@
 
 namespace waymark::viewer {
 
-/// @return BGR, at most style.page_width_px wide (a little more for the legend of tiny maps).
+/// @return BGR, at most style.page_width_px wide.
 cv::Mat paint_map(const Scene& scene, const MapPageStyle& style);
 
 }  // namespace waymark::viewer

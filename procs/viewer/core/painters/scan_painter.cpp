@@ -14,7 +14,7 @@ namespace waymark::viewer {
 namespace {
 
 struct Beam {
-  cv::Point2d direction{};  ///< on the picture
+  cv::Point2d direction{};  ///< unit vector on the picture, y down
   double range_m{};
   int marker_id{kNoMarker};
 };

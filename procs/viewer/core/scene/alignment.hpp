@@ -13,9 +13,9 @@ namespace waymark::viewer {
 /// Pose at a time, interpolated; nullopt outside the path's times.
 std::optional<Se2> pose_at(std::span<const TimedPose> path, Timestamp time);
 
-/// The path in the map frame, through the first estimated pose whose time it covers:
+/// The path in the map frame, moved through the first estimate within the path's times:
 /// map_from_frame = map_from_base * inverse(frame_from_base), both at that estimate's time. Empty
-/// when it covers no estimate. For pictures: it is not the best fit.
+/// when no estimate is within the path's times. For pictures: this is not the best fit.
 std::vector<TimedPose> aligned_on_first(std::span<const EstimatedPose> estimates,
                                         std::span<const TimedPose> path);
 

@@ -9,7 +9,7 @@ namespace waymark::viewer {
 
 constexpr int kUnknownOccupancy = -1;
 
-/// A cell is occupied from the first occupancy on, and free up to the second. Defaults: those of
+/// A cell is occupied from an occupancy of `occupied` on, and free up to `free`. Defaults: those of
 /// ROS's map_saver.
 struct MapThresholds {
   double occupied{0.65};
@@ -29,7 +29,7 @@ inline CellKind kind_of(int occupancy_percent, const MapThresholds& thresholds) 
 struct GridMap {
   cv::Mat_<schar> occupancy_percent{};                ///< 0..100, -1 = unknown
   cv::Mat_<short> marker_ids{};                       ///< same size; -1 = no marker
-  Eigen::Vector2d origin_m{Eigen::Vector2d::Zero()};  ///< lower left corner of cell (0, 0), map
+  Eigen::Vector2d origin_m{Eigen::Vector2d::Zero()};  ///< corner of cell (0, 0), map frame
   double resolution_m{0.05};
 
   bool empty() const { return occupancy_percent.empty(); }

@@ -32,7 +32,7 @@ std::string_view name_of(LandmarkState state);
 struct WeakAxis {
   /// Unit vector; order x y theta (scaled by 1 m), map frame.
   Eigen::Vector3d direction{Eigen::Vector3d::Zero()};
-  double information{0.0};  ///< [1/m^2] of one scan along it
+  double information{0.0};  ///< [1/m^2] of one scan along `direction`
   WeakAxisSource source{WeakAxisSource::kUnknown};
 };
 
@@ -69,8 +69,8 @@ struct MapChange {
   int instance{0};
   Se2 place{};
   Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};
-  double size_m{0.0};  ///< of a wall
-  double sigmas{0.0};  ///< of kSurveyOff
+  double size_m{0.0};  ///< longer side of the box around a wall
+  double sigmas{0.0};  ///< distance from the survey in standard deviations; only for kSurveyOff
   int support{0};
 };
 
@@ -95,10 +95,10 @@ struct AnnotatedScan {
 
 /// Plain state. Paths are in order of time, without repeats.
 struct Scene {
-  std::string title{};  ///< what made the map, e.g. the estimator's name
+  std::string title{};  ///< heading of map.png: viewer.title, else the output folder's name
   TiledMap map{kMaxMapCells};
   std::vector<Landmark> landmarks{};
-  std::optional<std::vector<MapChange>> changes{};  ///< nullopt: slam does not compare
+  std::optional<std::vector<MapChange>> changes{};  ///< nullopt: slam has sent no comparison
   std::optional<std::vector<Finding>> findings{};   ///< nullopt: slam has not reported any
   std::vector<EstimatedPose> estimates{};
   std::vector<TimedPose> final_trajectory{};  ///< as the estimator knows it at the end

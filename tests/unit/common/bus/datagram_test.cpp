@@ -57,7 +57,7 @@ TEST(WholeMessage, RejectsOtherDatagrams) {
   }
 }
 
-TEST(Fragment, HasAMagicOfItsOwn) {
+TEST(Fragment, IsRecognisedByTheMagicNumberLC03) {
   EXPECT_TRUE(is_fragment(bytes("LC03\0\0\0\7rest"s)));
   for (const std::string& text : {""s, "LC03"s, "LC03\0\0\0"s, "LC02\0\0\0\7LIDAR\0abc"s})
     EXPECT_FALSE(is_fragment(bytes(text))) << text;

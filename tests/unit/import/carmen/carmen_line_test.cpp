@@ -105,7 +105,7 @@ TEST(CarmenLine, ParametersSayWhereTheLidarsAreMounted) {
   EXPECT_EQ(parse<CarmenOther>("RAWLASER1 0").keyword, "RAWLASER1");
 }
 
-TEST(CarmenLine, OtherSensorsCommentsAndBlankLinesAreNoProblem) {
+TEST(CarmenLine, OtherSensorsCommentsAndBlankLinesAreIgnored) {
   for (const char* line :
        {"", "  \r", "# FLASER", "PARAM a b c", "NMEAGGA 1 2", "PARAM robot_frontlaser_use yes"})
     parse<CarmenOther>(line);

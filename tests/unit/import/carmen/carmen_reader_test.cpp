@@ -106,7 +106,7 @@ TEST(CarmenReader, OdometryMayComeFromOdomLines) {
   EXPECT_THAT(report.notes(), ::testing::Contains(HasSubstr("0.900 s before the last scan")));
 }
 
-TEST(CarmenReader, MountingIsTheDifferenceOfThePoses) {
+TEST(CarmenReader, TheLidarsMountingIsItsPoseRelativeToTheRobots) {
   ImportReport report{"small.clf", AddressUnit::kLine};
 
   const ImportedLog log = read_carmen_log(data_file("small.clf"), four_beams(), report);
@@ -201,7 +201,7 @@ TEST(CarmenReader, TheRearLidarIsReadOnRequest) {
   EXPECT_DOUBLE_EQ(log.robot.lidar.yaw_rad, std::numbers::pi);
 }
 
-TEST(CarmenReader, MaximumRangeIsThatOfTheLineUnlessGiven) {
+TEST(CarmenReader, TheMaximumRangeComesFromTheLineUnlessConfigured) {
   const std::string line =
       "ROBOTLASER1 0 0 2 1 20 0 0 3 1 19 20 0 0 0 0 0 0 0 0 0 0 0 0 1 host 0\n";
   EXPECT_EQ(read_text(line).robot.lidar.range_max_m, 20.0);
@@ -212,7 +212,7 @@ TEST(CarmenReader, MaximumRangeIsThatOfTheLineUnlessGiven) {
   EXPECT_EQ(lidar_message(read_text(line, options).scans[0]).ranges[1], kInfinity);
 }
 
-TEST(CarmenReader, CompressedIsTheSame) {
+TEST(CarmenReader, AGzipFileIsReadLikeThePlainLog) {
   const auto file = test_folder() / "small.clf.gz";
   const std::string text = read_file(data_file("small.clf"));
   gzFile gz = gzopen(file.c_str(), "wb");
@@ -235,7 +235,7 @@ std::filesystem::path write_bzip2(const std::string& name, const std::string& te
   return file;
 }
 
-TEST(CarmenReader, Bzip2IsTheSameAlsoInSeveralStreams) {
+TEST(CarmenReader, ABzip2FileOfSeveralStreamsIsReadWhole) {
   const std::string stream =
       read_file(write_bzip2("small.clf.bz2", read_file(data_file("small.clf"))));
   const std::string second =

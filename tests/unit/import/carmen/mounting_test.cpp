@@ -71,7 +71,7 @@ TEST(Mounting, ComesFromParametersWhereTheLinesHaveNone) {
   expect_is(find(lines({}), parameters, kRear).mounting, -0.5, 0.0, 0.0);
 }
 
-TEST(Mounting, TheLastOfAParametersValuesCounts) {
+TEST(Mounting, TheLastValueOfARepeatedParameterCounts) {
   expect_is(
       find(lines({}), {{kFront, What::kForward, 0.1}, {kFront, What::kForward, 0.2}}).mounting, 0.2,
       0.0, 0.0);

@@ -84,7 +84,7 @@ TEST(MotionFit, ALidarWhoseBeamsCountTheOtherWayIsNamed) {
   EXPECT_THAT(what_is_found(log), Contains(HasSubstr("lidar.mirrored = true")));
 }
 
-TEST(MotionFit, ALidarThatLooksAheadHasNoYaw) {
+TEST(MotionFit, ALidarThatLooksAheadHasAYawOfZeroAndNoFinding) {
   const auto error = lidar_yaw_error(long_drive(), {});
   ASSERT_TRUE(error);
   EXPECT_NEAR(degrees(error->yaw_rad), 0.0, 0.5);

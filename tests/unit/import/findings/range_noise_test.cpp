@@ -32,7 +32,7 @@ double estimated_sigma_m(double sigma_m, double step_m = 1e-3) {
   return noise.sigma_m().value_or(-1.0);
 }
 
-TEST(WallScatter, IsTheRangeNoiseFromMillimetresToDecimetres) {
+TEST(WallScatter, RangeNoiseIsEstimatedFromMillimetresToADecimetre) {
   for (const double sigma_m : {0.003, 0.01, 0.03, 0.1})
     EXPECT_NEAR(estimated_sigma_m(sigma_m), sigma_m, 0.1 * sigma_m) << sigma_m;
 }
@@ -56,7 +56,7 @@ TEST(WallScatter, ClutterInHalfOfTheBeamsDoesNotRaiseTheNoise) {
   }
 }
 
-TEST(WallScatter, IncludesRounding) {
+TEST(WallScatter, RoundingOfRangesCountsAsNoise) {
   EXPECT_NEAR(estimated_sigma_m(0.0, 0.01), 0.01 / std::sqrt(12.0), 5e-4);
   EXPECT_NEAR(estimated_sigma_m(0.01, 0.05), std::hypot(0.01, 0.05 / std::sqrt(12.0)), 2e-3);
 }

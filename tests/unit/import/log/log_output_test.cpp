@@ -76,7 +76,7 @@ TEST(LogOutput, ReferenceIsATumFile) {
             "1447367746.002196 1.500000 -2.000000 0 0 0 1.000000000 0.000000000\n");
 }
 
-TEST(LogOutput, AnImpossibleRobotIsRefusedBeforeAnythingIsWritten) {
+TEST(LogOutput, AnInvalidRobotDescriptionIsRefusedBeforeAnythingIsWritten) {
   ImportReport report{"small.clf", AddressUnit::kLine};
   ImportedLog log = small_log(report);
   log.robot.lidar.range_min_m = 100.0;

@@ -43,7 +43,7 @@ struct Record {
   std::int64_t at{0};
 };
 
-TEST(KeepAscending, ALossOfManyRecordsIsNotedWithAdvice) {
+TEST(KeepAscending, ALossOfTenRecordsIsNotedAndOfOneIsNot) {
   for (const std::int64_t late : {1, 10}) {
     std::vector<Record> records;
     for (std::int64_t i = 0; i < 100; ++i)

@@ -51,7 +51,7 @@ TEST(EvaluateProgram, WrongUsageAndMissingFilesGive2) {
   EXPECT_EQ(exit_code("trajectory " + tum + " " + tum + " --align se2 --json"), 0);
 }
 
-TEST(EvaluateProgram, ALengthIsPositive) {
+TEST(EvaluateProgram, TheTrueLengthMustBePositive) {
   const TemporaryFolder folder;
   const std::string said = (folder.path() / "said").string();
   for (const char* wrong : {"-3", "0", "nan", "long"}) {
@@ -65,7 +65,7 @@ TEST(EvaluateProgram, ALengthIsPositive) {
   }
 }
 
-TEST(EvaluateProgram, SkippedRelationsAreOneUnlessTolerated) {
+TEST(EvaluateProgram, SkippedRelationsGive1UnlessTolerated) {
   const TemporaryFolder folder;
   const std::string tum = folder.file("a.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n").string();
   const std::string both = folder.file("both", "0 1 1 0 0 0 0 0\n0 7 1 0 0 0 0 0\n").string();
@@ -75,7 +75,7 @@ TEST(EvaluateProgram, SkippedRelationsAreOneUnlessTolerated) {
   EXPECT_EQ(exit_code("relations --tolerant " + tum + " " + none), 1);
 }
 
-TEST(EvaluateProgram, ConsistencyNeedsStationsAndSkipsNone) {
+TEST(EvaluateProgram, ConsistencyGives1WithoutStationsOrForABadLine) {
   const std::string columns =
       "travel_m,t,along_m,across_m,heading_rad,nees,sigma_along_m,sigma_across_m,sigma_heading_rad,"
       "health\n";

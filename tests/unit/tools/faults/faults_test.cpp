@@ -139,7 +139,7 @@ TEST(Faults, AFalseDetectionIsAdded) {
   EXPECT_EQ(frame.detections[0].id, 3);
 }
 
-TEST(Faults, IdsCanBeMadeEqual) {
+TEST(Faults, MarkersCanBeGivenTheIdOfOthersAlsoInTheTruth) {
   EXPECT_EQ(with({.every_id = 4}).frame(8).detections[1].id, 4);
   const Faulty renamed = with({.renamed_ids = {8, 2, 9, 3}});
   EXPECT_EQ(renamed.frame(8).detections[0].id, 2);

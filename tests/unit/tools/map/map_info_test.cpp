@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(MapInfo, ADeviationThatRoundsToZeroHasNoMinus) {
+TEST(MapInfo, ACalibrationErrorThatRoundsToZeroHasNoMinusSign) {
   MapSnapshot map;
   map.grid.frame = GridFrame::centred_on_map_origin(0.05);
   map.calibration.mean.setConstant(-1e-9);

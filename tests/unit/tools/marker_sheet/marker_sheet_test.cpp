@@ -24,7 +24,7 @@ std::string error_of(const SheetOptions& options, int id) {
   return "no error";
 }
 
-TEST(MarkerSheet, IdsAreNumbersAndRanges) {
+TEST(MarkerSheet, IdsAreParsedFromNumbersAndRanges) {
   EXPECT_THAT(parse_ids("0-3,7"), ElementsAre(0, 1, 2, 3, 7));
   for (const char* wrong : {"", "a", "3-1", "1-", "-1", "1,,2", "1-2-3", "0-999999999"})
     EXPECT_THROW(parse_ids(wrong), std::runtime_error) << wrong;

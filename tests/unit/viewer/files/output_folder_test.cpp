@@ -60,7 +60,7 @@ TEST_F(OutputFolderTest, AFullDiskIsReportedAndLeavesNoFile) {
   EXPECT_THAT(folder.failed_files(), ElementsAre("a"));
 }
 
-TEST_F(OutputFolderTest, AFailureKeepsTheOldFileAndTheOthersGoOn) {
+TEST_F(OutputFolderTest, AFileThatCannotBeWrittenIsListedAndTheOthersAreWritten) {
   OutputFolder folder{root_};
   fs::create_directories(root_ / "map.png" / "in the way");
 

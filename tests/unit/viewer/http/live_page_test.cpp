@@ -34,7 +34,7 @@ TEST(HttpAddress, IsHostAndPort) {
   EXPECT_FALSE(parse_http_address("127.example.org:8080").is_loopback());
 }
 
-TEST(HttpAddress, RefusesAnythingElse) {
+TEST(HttpAddress, RefusesTextThatIsNotHostAndPort) {
   for (const auto* text : {"", "8080", "localhost", "a:0", "a:65536", "a:-1", "a:80x", "a b:80",
                            "::1:80", "http://a:80", "[]:80", "a:"})
     EXPECT_THROW(parse_http_address(text), SetupError) << text;
@@ -79,7 +79,7 @@ TEST_F(HealthText, ShowsHowLongTheCameraOrMarkersHaveBeenMissing) {
   EXPECT_THAT(health_reason(view_), EndsWith(" No marker so far."));
 }
 
-TEST_F(HealthText, LostIsShown) {
+TEST_F(HealthText, SaysWhenTheScanDoesNotFitOrSlamSendsNothing) {
   view_.estimate->health = Health::kLost;
   EXPECT_THAT(health_reason(view_), HasSubstr("does not fit the map"));
   view_.estimate.reset();

@@ -84,7 +84,7 @@ TEST_F(PageServerTest, SendsAViewAsAnEvent) {
   EXPECT_THAT(received, StartsWith("data: {"));
 }
 
-TEST_F(PageServerTest, RefusesWhatItDoesNotHave) {
+TEST_F(PageServerTest, UnknownPathsGive404AndInvalidParameters400) {
   EXPECT_EQ(status_of("/view"), 200);
   EXPECT_EQ(status_of("/view?time_s=12.5"), 200);
   EXPECT_EQ(status_of("/tiles?since=0"), 200);

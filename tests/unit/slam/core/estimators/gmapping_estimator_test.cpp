@@ -35,7 +35,7 @@ std::vector<Beam> noisy_beams_at(double x_m, const SyntheticCorridor& corridor, 
   return beams;
 }
 
-TEST(GmappingInABareCorridor, AScanScoresMoreFurtherBackAlthoughOdometryIsPerfect) {
+TEST(GmappingInABareCorridor, AScanMovedBackScoresMoreThoughOdometryIsPerfect) {
   // The reason of the collapse: beams that end beyond the mapped walls score nothing where they
   // belong, and something when the scan is moved back to where there are walls already.
   SyntheticCorridor corridor = bare_corridor();
@@ -62,7 +62,7 @@ TEST(GmappingInABareCorridor, AScanScoresMoreFurtherBackAlthoughOdometryIsPerfec
   EXPECT_THAT(scores, ::testing::WhenSorted(::testing::ElementsAreArray(scores)));
 }
 
-TEST(GmappingInABareCorridor, PlausibleTurnsAreNotChanged) {
+TEST(GmappingInABareCorridor, WatchingTurnsChangesNothingWhileOdometryTurnsAreRight) {
   SyntheticCorridor corridor;
   corridor.drive_m = 10.0;
   corridor.turn_noise_per_sqrt_m = 0.0175;
@@ -130,7 +130,7 @@ double heading_error_after_slip(bool watch_turns, std::uint64_t seed) {
   return std::abs(angle_difference(estimate.map_from_base.theta(), driven.theta()));
 }
 
-TEST(GmappingEstimator, TurnsWithTheScansWhereTheWheelsSlipped) {
+TEST(GmappingEstimator, AfterAWheelSlipTheHeadingFollowsTheScansIfTurnsAreWatched) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     EXPECT_LT(heading_error_after_slip(true, seed), 0.03);
     EXPECT_GT(heading_error_after_slip(false, seed), 0.4);  // the released code
@@ -203,8 +203,8 @@ TEST(GmappingEstimator, ResultsDoNotDependOnThreads) {
   EXPECT_GT(cells, 0U);
 }
 
-// Oracle: from the best particle back from parent to parent, as they were published.
-TEST(GmappingEstimator, TheTrajectoryIsThatOfTheBestParticlesAncestors) {
+// Oracle: the poses of the best particle and of its ancestors, from parent to parent as published.
+TEST(GmappingEstimator, TheTrajectoryFollowsTheAncestorsOfTheBestParticle) {
   const SyntheticCorridor corridor = room();
   const auto observations = observations_of(drive(corridor), corridor);
   for (const double resample_threshold : {0.0, 0.99}) {

@@ -40,7 +40,7 @@ TEST(ScanTrajectory, FollowsOdometryAfterTheLastUpdate) {
   expect_pose(poses[2], 2, {6.0, 2.0, std::numbers::pi / 2});
 }
 
-TEST(ScanTrajectory, PassesThroughTheUpdatesAndDistributesTheDifference) {
+TEST(ScanTrajectory, PassesThroughTheUpdatesAndSpreadsTheDifferenceOverTheSteps) {
   ScanTrajectory trail;
   trail.add(at(0), {}, true);
   trail.add(at(1), step(1.0), false);
@@ -56,7 +56,7 @@ TEST(ScanTrajectory, PassesThroughTheUpdatesAndDistributesTheDifference) {
   expect_pose(poses[4], 4, updates[2]);
 }
 
-TEST(ScanTrajectory, TurnsCountInTheDistributionOfTheDifference) {
+TEST(ScanTrajectory, TheDifferenceIsDistributedInProportionToTurnsToo) {
   ScanTrajectory trail;
   trail.add(at(0), {}, true);
   trail.add(at(1), step(0.0, 0.25), false);

@@ -17,7 +17,7 @@ Trajectory appended(const Trajectory& before, std::shared_ptr<const StoredScan> 
   return std::make_shared<TrajectoryNode>(Se2{}, std::move(scan), before);
 }
 
-TEST(StepNoise, HasTheReleasedStandardDeviations) {
+TEST(StepNoise, HasTheStandardDeviationsOfTheReleasedGmapping) {
   const StepNoise noise{.srr = 0.1, .srt = 0.2, .str = 0.3, .stt = 0.4};
   const Se2 step{0.5, -0.2, 0.1};
   constexpr int kSamples = 40000;

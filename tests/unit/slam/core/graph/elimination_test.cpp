@@ -86,7 +86,7 @@ struct Dense {
   }
 };
 
-TEST(Elimination, TheCornerIsTheSchurComplement) {
+TEST(Elimination, TheReducedSystemIsTheSchurComplement) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Chain chain{seed};
     const Dense dense{chain};
@@ -121,7 +121,7 @@ TEST(Elimination, BackSubstitutionSolvesTheRowsOfTheEliminatedUnknowns) {
   }
 }
 
-TEST(Elimination, PlacesAreAPermutationOfTheEliminatedUnknowns) {
+TEST(Elimination, EachEliminatedUnknownHasARowBlockOfItsOwn) {
   const Chain chain{1};
   const Elimination elimination = chain.elimination();
   std::vector<Eigen::Index> places;

@@ -65,7 +65,7 @@ TEST(OdometryNoiseLearner, SlipsAddTheirSecondMomentPerMetre) {
   EXPECT_NEAR(learner.scale().slip_m2, 0.01, 0.002);
 }
 
-TEST(OdometryNoiseLearner, WithoutSlipsTheirVarianceIsSmall) {
+TEST(OdometryNoiseLearner, WithoutSlipsTheLearntSlipVarianceIsSmall) {
   EXPECT_LT(learner_after(0.0).scale().slip_m2_per_m, 2e-5);
 }
 

@@ -49,14 +49,14 @@ Graph drive_with_slip(double slip_m, double sigma_m) {
   return graph;
 }
 
-TEST(Slips, OneIsNotTakenForAWrongScale) {
+TEST(Slips, ASingleSlipIsNotTakenForAWrongOdometryScale) {
   const Graph graph = drive_with_slip(kSlip_m, 0.008);
   const double sigma = std::sqrt(graph.covariance({}, {})(0, 0));
   EXPECT_LT(std::abs(graph.state().calibration[OdometryTerm::kScale]), sigma);
   EXPECT_NEAR(graph.state().keyframes.back().x(), kStride_m * (kStrides - 1), 0.01);
 }
 
-TEST(Slips, NoneIsFoundWhereOdometryIsRight) {
+TEST(Slips, CorrectOdometryGivesNoSlip) {
   const Graph right = drive_with_slip(0.0, 0.015);
   Graph again = right;
   again.optimise();
@@ -64,7 +64,7 @@ TEST(Slips, NoneIsFoundWhereOdometryIsRight) {
   EXPECT_LT(right.cost(), 1e-3);
 }
 
-TEST(Slips, WithoutMarkersNoneIsAssumed) {
+TEST(Slips, WithoutMarkersASlipIsTakenForAWrongScale) {
   GraphNoise noise;
   Calibration sigmas = Calibration::Constant(1e-6);
   sigmas[OdometryTerm::kScale] = kScaleSigma;

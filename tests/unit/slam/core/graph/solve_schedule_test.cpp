@@ -28,7 +28,7 @@ TEST(SolveSchedule, AfterALoopAStepIsDueAtOnceIfTheGraphHasGrown) {
   EXPECT_EQ(schedule.num_since_solution(1000), 0U);
 }
 
-TEST(SolveSchedule, ASolutionEndsWhenNothingMoves) {
+TEST(SolveSchedule, SolvingStopsWhenAStepMovesNothing) {
   SolveSchedule schedule;
   schedule.note_loop(true);
   EXPECT_TRUE(schedule.is_step_due(1000));
@@ -38,7 +38,7 @@ TEST(SolveSchedule, ASolutionEndsWhenNothingMoves) {
   EXPECT_FALSE(schedule.is_step_due(1002));
 }
 
-TEST(SolveSchedule, ASolutionTakesABoundedNumberOfSteps) {
+TEST(SolveSchedule, SolvingTakesABoundedNumberOfSteps) {
   SolveSchedule schedule;
   schedule.note_loop(true);
   for (int i = 0; i < SolveSchedule::kSteps; ++i) {
@@ -48,7 +48,7 @@ TEST(SolveSchedule, ASolutionTakesABoundedNumberOfSteps) {
   EXPECT_FALSE(schedule.is_step_due(1000));
 }
 
-TEST(SolveSchedule, LoopsThatOnlyConfirmWaitLonger) {
+TEST(SolveSchedule, LoopsThatConfirmThePoseWaitLongerThanContradictions) {
   const auto wait = [](bool contradicts_pose) {
     SolveSchedule schedule;
     schedule.note_loop(true);

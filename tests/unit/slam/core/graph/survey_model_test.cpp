@@ -142,7 +142,7 @@ Surveyed surveyed_drive(std::uint64_t seed, double turn_rad) {
   return surveyed;
 }
 
-TEST(SurveyModel, ItsCostEqualsThatOfTheWholeGraphForAnyRotationOfTheFrame) {
+TEST(SurveyModel, TheCostOfThePriorsIsThatInTheWholeGraphInARotatedFrameToo) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     for (const double turn_rad : {0.0, 0.3}) {
       const Surveyed surveyed = surveyed_drive(seed, turn_rad);
@@ -161,7 +161,7 @@ TEST(SurveyModel, ItsCostEqualsThatOfTheWholeGraphForAnyRotationOfTheFrame) {
   }
 }
 
-TEST(SurveyModel, ASavingIsThatOfASolutionWithoutThePrior) {
+TEST(SurveyModel, ThePredictedSavingIsThatOfSolvingWithoutThePrior) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Surveyed surveyed = surveyed_drive(seed, 0.0);
     const SurveyModel model = surveyed.model();

@@ -48,7 +48,7 @@ TEST(UnmeasuredMotion, IsSuspectedWhileOdometryStandsUntilTheMotionIsObserved) {
   EXPECT_EQ(robot.motion.suspected_m(), 0.0);
 }
 
-TEST(UnmeasuredMotion, NoiseOfAGyroIsNoMotion) {
+TEST(UnmeasuredMotion, StepsOfAFifthOfAMillimetreAreStandingAndOfTwoMillimetresAreNot) {
   Robot robot;
   robot.drive();
   robot.observe(0.0002);
@@ -79,7 +79,7 @@ TEST(UnmeasuredMotion, GrowsWhileOdometryIsStuck) {
   EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
 }
 
-TEST(UnmeasuredMotion, OdometryOfARobotThatIsBackWasNotStuck) {
+TEST(UnmeasuredMotion, AfterARobotReturnsItsOdometryIsNotTakenForStuck) {
   Robot robot;
   robot.drive();
   robot.stand(1);

@@ -125,21 +125,21 @@ TEST(WallChangeDetector, AWallIsNewOnceEightBeamsHaveEndedInEveryCell) {
                               MapChange::Kind::kWallNew, kNear_m);
 }
 
-TEST(WallChangeDetector, AWallThatIsHitByATenthOfTheBeamsIsNotGone) {
+TEST(WallChangeDetector, AWallIsGoneOnceFewerThanATenthOfTheBeamsHitIt) {
   WallChangeDetector detector{map_of(wall_across(kRows, kWall_m))};
   add_scans(2, wall_across(kRows, kWall_m), detector);
   add_scans(18, wall_across(kRows, kFar_m), detector);
   EXPECT_EQ(changes_by_one_more(wall_across(kRows, kFar_m), detector).size(), 1U);
 }
 
-TEST(WallChangeDetector, AnObstacleThatStopsHalfOfTheBeamsIsNoWall) {
+TEST(WallChangeDetector, AnObstacleIsANewWallOnceItStopsMoreThanHalfOfTheBeams) {
   WallChangeDetector detector{map_of(wall_across(kRows, kWall_m))};
   add_scans(10, wall_across(kRows, kNear_m), detector);
   add_scans(10, wall_across(kRows, kWall_m), detector);
   EXPECT_EQ(changes_by_one_more(wall_across(kRows, kNear_m), detector).size(), 1U);
 }
 
-TEST(WallChangeDetector, AWallThatIsSeenOneCellNearerOrFartherHasNotChanged) {
+TEST(WallChangeDetector, AWallSeenOneCellOffHasNotChangedAndTwoCellsOffHasChanged) {
   for (const int cells : {-2, -1, 1, 2}) {
     WallChangeDetector detector{map_of(wall_across(kRows, kWall_m))};
     add_scans(20, wall_across(kRows, kWall_m + cells * kCell_m), detector);

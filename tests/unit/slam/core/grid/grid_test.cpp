@@ -32,7 +32,7 @@ TEST(TileMap, ReadsDefaultsWhereNothingWasWritten) {
   EXPECT_EQ(map.num_tiles(), 1U);
 }
 
-TEST(TileMap, ACopySharesEveryTileUntilOneIsWritten) {
+TEST(TileMap, AWrittenTileIsNoLongerSharedByTheCopyAndTheOthersAre) {
   TileMap<int> original;
   original.edit({0, 0}) = 1;
   original.edit({100, 0}) = 2;
@@ -115,7 +115,7 @@ TEST(VisitLine, TouchesBothEndsAndEveryCellBetween) {
   EXPECT_THAT(cells, ElementsAre(CellIndex{2, 2}));
 }
 
-TEST(MarkerCell, IdZeroIsAMarkerAndNoneIsNot) {
+TEST(MarkerCell, IdZeroIsAMarkerAndAVoteForNoMarkerIsNot) {
   MarkerCell cell;
   EXPECT_EQ(cell.most_supported(), kNoMarker);
   cell.vote(kNoMarker, 2.0F);

@@ -236,7 +236,7 @@ TEST(SensorQueue, OdometryWithAWrongStampIsDroppedAlone) {
   }
 }
 
-TEST(SensorQueue, WhenAllStampsOfAMomentAreWrongOnlyTheseValuesAreDropped) {
+TEST(SensorQueue, WrongStampsOfAllSensorsAtOnceCostOnlyThoseValues) {
   const Drive clean = drive_with({});
   for (const int by_ms : kAheadOrPast_ms) {
     const Drive drive = drive_with({.by_ms = by_ms, .odometry = true, .scan = true, .frame = true});
@@ -247,7 +247,7 @@ TEST(SensorQueue, WhenAllStampsOfAMomentAreWrongOnlyTheseValuesAreDropped) {
   }
 }
 
-TEST(SensorQueue, TheFirstOfASensorMayBeStampedAhead) {
+TEST(SensorQueue, AFirstValueStampedAheadCostsNoLaterValue) {
   const Drive clean = drive_with({});
   const auto from_second = without(clean.times_ms, 0);
   for (const int by_ms : {250, 3000, 9950}) {
@@ -276,7 +276,7 @@ TEST(SensorQueue, AScanStampedAheadBlocksNothingWhileTheLidarIsSilent) {
   EXPECT_EQ(times_ms(all).back(), 2000);
 }
 
-TEST(SensorQueue, ValuesJustBeforeOdometryAfterAPauseAreUsedWithTheNextSampleOrAtTheEnd) {
+TEST(SensorQueue, AScanAtTheFirstOdometryAfterAPauseWaitsForTheNextSampleOrTheEnd) {
   for (const int pause_ms : {5000, 29'000}) {
     for (const bool ends : {false, true}) {
       SensorQueue queue{setup_without_waiting()};

@@ -76,7 +76,7 @@ TEST(StampedQueue, ValuesMuchOlderThanTheNewestAreDropped) {
   EXPECT_EQ(queue.front().time, at_s(15));
 }
 
-TEST(StampedQueue, ClearingSkipsTheValueAsideAndAcceptsOlderStampsAgain) {
+TEST(StampedQueue, ClearingCountsPendingValuesAndAcceptsOlderStampsAgain) {
   StampedQueue<Value> queue{kPolicy};
   Skips skips;
   for (const int time_s : {5, 6, 2})
@@ -89,7 +89,7 @@ TEST(StampedQueue, ClearingSkipsTheValueAsideAndAcceptsOlderStampsAgain) {
   EXPECT_TRUE(skips.take().empty());
 }
 
-TEST(StampedQueue, AHeldValueIsAddedOnceItIsNoLongerAhead) {
+TEST(StampedQueue, AHeldValueIsAddedOnceItsStampIsReached) {
   StampedQueue<Value> queue{kPolicy};
   Skips skips;
   queue.hold({at_s(30)}, skips);

@@ -74,7 +74,7 @@ TEST(MeasureMarkers, OdometryBetweenFrameAndScanMovesASighting) {
   EXPECT_GT(more(2, 2), 0.0);
 }
 
-TEST(MeasureMarkers, AWallOfARollingScanIsLessCertain) {
+TEST(MeasureMarkers, AWallFromARollingScanIsLessCertainThanFromAStillOne) {
   Random random{8};
   Observation observation;
   observation.beams = corridor_beams(0.01, random);
@@ -115,8 +115,8 @@ TEST(MeasureMarkers, AFlippedViewGivesNoMeasurement) {
   EXPECT_TRUE(flipped.empty());
 }
 
-// It could not be learnt from views that are thrown away.
-TEST(MeasureMarkers, AViewByACameraWorseThanConfiguredIsNotRejectedAsFlipped) {
+// The camera's yaw error could not be learnt if its views were rejected.
+TEST(MeasureMarkers, ACameraYawErrorBeyondItsConfiguredSigmaIsNotTakenForAFlip) {
   Random random{9};
   Observation observation;
   observation.beams = corridor_beams(0.01, random);

@@ -51,7 +51,7 @@ TEST(LandmarkMap, TheErrorOfTheRobotsPoseDoesNotAverageOut) {
   EXPECT_NEAR(map.landmarks()[0].covariance(1, 1), 0.01, 0.001);
 }
 
-TEST(LandmarkMap, HeadingErrorsActAtTheEndOfTheLever) {
+TEST(LandmarkMap, HeadingVarianceCountsWithTheSquaredDistanceOfTheMarker) {
   LandmarkMap map{1.0};
   const Eigen::Matrix3d pose_covariance = Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal();
   map.add(sighting(1, 3.0, 0.0), Se2{}, pose_covariance);

@@ -30,19 +30,19 @@ TEST(SeenThrough, FreeSpaceIsSeenThroughAndWallsAreNot) {
   EXPECT_FALSE(is_seen_through(map, {0.5, 0.5}));
 }
 
-TEST(SeenThrough, CellsNextToAWallAreNot) {
+TEST(SeenThrough, CellsNextToAWallAreNotSeenThrough) {
   const GridMap map = room_with_a_wall();
   EXPECT_FALSE(is_seen_through(map, {0.45, 0.5}));
   EXPECT_TRUE(is_seen_through(map, {0.4, 0.5}));
 }
 
-TEST(SeenThrough, PlacesWithAWallWithinReachAreNot) {
+TEST(SeenThrough, PointsWithinReachOfAWallAreNotSeenThrough) {
   const GridMap map = room_with_a_wall();
   EXPECT_TRUE(is_seen_through(map, {0.3, 0.5}, 0.12));
   EXPECT_FALSE(is_seen_through(map, {0.3, 0.5}, 0.17));
 }
 
-TEST(SeenThrough, UnmappedCellsAreNot) {
+TEST(SeenThrough, UnmappedAndEdgeCellsAreNotSeenThrough) {
   const GridMap map = room_with_a_wall();
   EXPECT_FALSE(is_seen_through(map, {3.0, 0.5}));
   EXPECT_FALSE(is_seen_through(map, {0.0, 0.5}));  // at the edge of what was seen

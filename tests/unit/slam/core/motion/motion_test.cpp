@@ -22,7 +22,8 @@ TEST(Motion, DrivingBackwardsCountsNegativeInTheAdvance) {
   EXPECT_NEAR(ahead.then(back).distance_m, 0.7, 1e-12);
 }
 
-/// A wheel that is larger than the other turns the robot the other way when it backs up.
+/// With one wheel larger than the other, the robot turns one way driving forwards and the opposite
+/// way backwards.
 TEST(OdometryErrors, DriftTurnsInTheOppositeDirectionInReverse) {
   OdometryErrors errors = OdometryErrors::Zero();
   errors[OdometryTerm::kDrift] = 0.01;  // rad/m
@@ -78,7 +79,8 @@ TEST(OdometryErrors, TheJacobianIsTheDerivativeByEachError) {
   }
 }
 
-/// The wheels roll, so the middle between them is as uncertain as on a way of that length.
+/// The wheels roll, so a turn on the spot has the noise of a straight path of the length
+/// that each wheel rolls.
 TEST(OdometryErrors, ATurnOnTheSpotHasPositionNoise) {
   OdometryNoise noise;
   noise.half_track_m = 0.2;
@@ -245,7 +247,7 @@ OdometryBuffer after_garbage(int clock_step_ms, double moved_m) {
   return buffer;
 }
 
-TEST(OdometryBuffer, AClockStepDuringGarbageDoesNotChangeWhatFollowsIt) {
+TEST(OdometryBuffer, AClockStepDuringGarbageDoesNotChangeWhatIsReportedAfterIt) {
   for (const int clock_step_ms : {-10'000, 0, 10'000}) {
     const auto at_step = [clock_step_ms](int step) {
       return at_ms(33 * step + clock_step_ms);
@@ -262,7 +264,7 @@ TEST(OdometryBuffer, AClockStepDuringGarbageDoesNotChangeWhatFollowsIt) {
   }
 }
 
-TEST(OdometryBuffer, AClockStepShiftsAJumpThatIsOver) {
+TEST(OdometryBuffer, AClockStepShiftsTheTimesOfAPastJump) {
   OdometryBuffer buffer = after_garbage(0, 0.0);  // held from step 10 to step 19
   buffer.shift(at_ms(5000) - at_ms(0));
   const auto has_jumped = [&buffer](int from_step, int to_step) {

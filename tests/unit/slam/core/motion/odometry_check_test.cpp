@@ -40,7 +40,7 @@ TEST(OdometryCheck, AJumpIsReplacedByTheLastEstimatedStep) {
   EXPECT_EQ(motion.guessed_s, 0.5 * kScan_s);
 }
 
-TEST(OdometryCheck, ARejectedStepIsReplacedByTheShareOfTheLastOneInItsTime) {
+TEST(OdometryCheck, ARejectedStepIsReplacedByTheLastVelocityForAtMostOneScan) {
   OdometryCheck check = after_a_drive();
   check.note_estimated({0.08, 0.02, -0.04}, kScan_s);
   const Se2 half = check.plausible(drive(1.5), 0.5 * kScan_s, false).start_from_end;

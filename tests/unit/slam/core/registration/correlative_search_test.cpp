@@ -228,7 +228,7 @@ TEST(CorrelativeSearch, BareCorridorIsFlatAlongItsAxisAndKeepsTheGuessThere) {
   EXPECT_NEAR(match->submap_from_base.y(), 0.0, 0.5 * kResolution_m + kRounding);
 }
 
-TEST(CorrelativeSearch, RunnerUpOfASquareRoomIsAsGoodAndOfAnotherRoomIsNot) {
+TEST(CorrelativeSearch, TheSecondBestPoseScoresAsWellOnlyInASymmetricRoom) {
   constexpr double kApart_m = 0.5;
   constexpr double kApart_rad = 0.5;
   constexpr SearchWindow kEverywhere{1.0, std::numbers::pi};

@@ -63,8 +63,8 @@ Submap submap_of(View view, double step_m = 0.1) {
   return submap;
 }
 
-/// The noise of ranges is learnt during a run.
-TEST(NdtMap, ACellFollowsThePointVariance) {
+/// The point variance changes during a run, because the noise of ranges is learnt.
+TEST(NdtMap, ACellIsRecomputedForANewPointVariance) {
   const auto wall = [] {
     NdtMap map{0.25};
     for (int i = 0; i < 8; ++i)
@@ -275,8 +275,9 @@ TEST(ScanMatch, FewInliersOrNoHeadingAreNotUsable) {
   EXPECT_FALSE(match.is_usable({}));
 }
 
-/// What is known of a sum says nothing of its parts once one of them is unknown.
-TEST(ObservedAxes, AForgottenDirectionTakesWhatIsKnownThroughItAlone) {
+/// The information is about x + heading: once x is forgotten, that sum says nothing about the
+/// heading.
+TEST(ObservedAxes, ForgettingADirectionKeepsTheMarginalInformationOfTheOthers) {
   const Eigen::Vector3d sum{1.0, 0.0, 1.0};  // of x and the heading
   ObservedAxes observed;
   observed.information = 100.0 * sum * sum.transpose();

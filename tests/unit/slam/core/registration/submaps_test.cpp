@@ -21,7 +21,7 @@ struct Drive {
   }
 };
 
-TEST(Submaps, ThereIsNoneAtFirst) {
+TEST(Submaps, WithoutKeyframesThereIsNoSubmap) {
   const Submaps submaps{0.25, kKeyframesEach, 100.0};
   EXPECT_EQ(submaps.matched(), nullptr);
   EXPECT_TRUE(submaps.finished().empty());
@@ -50,8 +50,8 @@ TEST(Submaps, FinishedSubmapsOverlapByHalfALength) {
   EXPECT_EQ(drive.submaps.find(1), nullptr);
 }
 
-/// Keyframes of a LiDAR that is slow or a robot that is fast are far apart.
-TEST(Submaps, AreNoLongerThanTheLengthGiven) {
+/// The given length bounds submaps where keyframes are far apart (a slow LiDAR, a fast robot).
+TEST(Submaps, EndAtTheGivenLengthOrAtMostAFifthLater) {
   Drive drive;
   drive.submaps = Submaps{0.25, 1000, 2.0};
   drive.go(60);
@@ -90,7 +90,7 @@ TEST(Submaps, ScansFollowTheirKeyframesWhenTheseMoveRelativeToEachOther) {
   EXPECT_NEAR(submap.submap_from_keyframe(2).y(), 0.3, 1e-9);
 }
 
-TEST(Submaps, TheSecondSubmapFollowsToo) {
+TEST(Submaps, ASubmapBegunBeforeItsPredecessorEndsFollowsItsKeyframes) {
   Drive drive;
   drive.go(8);
   drive.keyframes[7] = {0.7, 0.3, 0.0};

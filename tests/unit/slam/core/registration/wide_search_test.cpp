@@ -121,7 +121,7 @@ TEST(WideSearch, TheWindowOfPositionsGrowsWithTheDistanceDriven) {
   EXPECT_LT(off(1.5), 0.02);
 }
 
-/// The room looks almost the same to a robot that has turned round.
+/// The room looks almost the same after a turn of 180 degrees.
 TEST(WideSearch, OfTwoPlacesTheOneWithMoreInliersIsTakenWhateverTheirOrder) {
   Submap submap = mapped_room();
   Points crate;
@@ -181,9 +181,9 @@ TEST(WideSearch, APlaceThatOdometryContradictsHasToExplainMostOutliers) {
   }
 }
 
-/// The room looks the same to a robot that has turned round, for which the windows are wide enough
-/// some time after the last scan.
-TEST(WideSearch, APlaceThatOdometryContradictsHasToBeTheOnlyOne) {
+/// The room looks the same after a turn of 180 degrees; only some time after the last scan are the
+/// search windows wide enough for that turn.
+TEST(WideSearch, AMatchFarFromOdometryIsTakenOnlyIfNoOtherPoseFits) {
   for (const double since_last_s : {0.0, 5.0}) {
     const ScanMatch best = searched_from_plain(0.7, 0.05, kPlain, 10, since_last_s);
     const Se2& expected = since_last_s < 1.0 ? kTruth : kPlain;
@@ -191,9 +191,9 @@ TEST(WideSearch, APlaceThatOdometryContradictsHasToBeTheOnlyOne) {
   }
 }
 
-/// Half of the scan fits at the plain match. Whether all of it fits at another heading decides only
-/// if the plain match is not there.
-TEST(WideSearch, ThePlaceOfThePlainMatchIsNoOtherPlace) {
+/// The whole scan fits at the true pose and also after a turn of 180 degrees. That second fit makes
+/// the true pose ambiguous, unless the plain match (half of the scan) is itself at the second fit.
+TEST(WideSearch, OnlyAPoseAwayFromThePlainMatchCountsAsAnotherPlace) {
   const Submap submap = mapped_room();
   const Points seen = seen_from(kTruth, whole_room());
   const Se2 turned_round{3.0, -0.3, std::numbers::pi};
@@ -215,8 +215,9 @@ TEST(WideSearch, ThePlaceOfThePlainMatchIsNoOtherPlace) {
   }
 }
 
-/// Two of a corridor's partitions are in view. With a third one the scan fits further on, too.
-TEST(WideSearch, AnotherPlaceWithTheSameHeadingTakesTheInformationAlongTheLineBetweenThem) {
+/// Two partitions of a corridor, 2 m apart, are in view. With a third one, the scan fits also 2 m
+/// further on.
+TEST(WideSearch, ASecondFitWithTheSameHeadingMakesTheLineBetweenBothUnobserved) {
   for (const bool has_third : {false, true}) {
     const auto corridor = [&](double from_x, double to_x) {
       Points points = walls(from_x, to_x);
@@ -245,8 +246,9 @@ TEST(WideSearch, AnotherPlaceWithTheSameHeadingTakesTheInformationAlongTheLineBe
   }
 }
 
-/// After a gap in a log, a third of the scan fits into the map by chance, a turn away.
-TEST(WideSearch, AFewWallsFarFromOdometryMustNotLieAcrossTheMapsFreeSpace) {
+/// A third of the scan fits into the map at a pose far from odometry, as by chance after a gap in a
+/// log.
+TEST(WideSearch, AMatchFarFromOdometryThatContradictsTheMapIsRejected) {
   const Submap submap = mapped_room();
   Points room = whole_room();
   const std::size_t all = room.size();

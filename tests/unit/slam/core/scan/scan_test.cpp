@@ -68,8 +68,8 @@ TEST(Beams, AScanIsStampedAtTheMiddleOfItsSweep) {
     EXPECT_EQ(middle.time + middle.beam_time_offsets[i], scan.time + scan.beam_time_offsets[i]);
 }
 
-// Odometry walks at random while a sweep is measured: its mean beam is off by as much as a walk of
-// the length of mean_sweep() is at its end.
+// While a sweep is measured, the error of odometry is a random walk: the mean over the beams is off
+// by as much as the end of a random walk of length mean_sweep().distance_m.
 TEST(Beams, TheMeanSweepHasTheNoiseOfItsBeams) {
   constexpr int kSteps = 200;
   constexpr int kWalks = 4000;
@@ -195,7 +195,7 @@ double surface_share(std::span<const AnnotatedBeam> beams) {
   return on_surface / static_cast<double>(beams.size());
 }
 
-TEST(Observability, RandomRangesHaveNoSurfaces) {
+TEST(Observability, FewBeamsOfARandomScanLieOnASurface) {
   auto beams = annotate(beams_from(Se2{20.0, 0.2, 0.1}), {}, nullptr, 0.08);
   EXPECT_GT(surface_share(beams), 0.5);
   Random random{3};

@@ -50,7 +50,7 @@ double face_score(const GridMap& map, int id, double x_m) {
   return sum;
 }
 
-TEST(MarkerScore, RewardsMatchesPunishesDifferencesIgnoresTheRest) {
+TEST(MarkerScore, EqualIdsAreRewardedOtherIdsPunishedAndUnmappedPlacesScoreZero) {
   const GridMap map = map_with_marker(0, 3.0);
   EXPECT_NEAR(marker_score(map, {3.0, 1.0}, 0, kRewards), kRewards.strong_reward, 0.1);
   EXPECT_NEAR(marker_score(map, {3.0, 1.0}, 4, kRewards), -kRewards.penalty, 0.1);
@@ -143,8 +143,8 @@ TEST(WallScore, UnmappedEndsAddNothing) {
   EXPECT_EQ(score.beyond(0.8), 0.0);
 }
 
-// GMapping's flaw: the newest beams end on wall that is not mapped yet, so a pose further back
-// scores higher. Ours must not change at all.
+// In GMapping the newest beams end on walls that are not mapped yet, so a pose further back scores
+// higher. Our score stays the same, but for the small error of the weak direction.
 TEST(WallScore, MovingAScanBackAlongABareCorridorGainsNothing) {
   const Mapped mapped = mapped_until(12.0);
   const Se2 right{12.0, 0.0, 0.0};
@@ -160,7 +160,7 @@ TEST(WallScore, MovingAScanBackAlongABareCorridorGainsNothing) {
   }
 }
 
-// The world in a mirror along the corridor scores the same.
+// A world mirrored about the axis of the corridor scores the same.
 TEST(Scores, AreTheSameInAMirror) {
   Mapped mapped = mapped_until(8.0);
   GridMap mirrored_map;
@@ -224,7 +224,7 @@ TEST(Resampling, CountsAreTheRoundedShares) {
   }
 }
 
-TEST(Resampling, EffectiveNumberGoesFromOneToAll) {
+TEST(Resampling, TheEffectiveNumberIsOneForOneParticleAndNForEqualWeights) {
   EXPECT_NEAR(effective_number(std::vector{0.25, 0.25, 0.25, 0.25}), 4.0, 1e-12);
   EXPECT_NEAR(effective_number(std::vector{1.0, 0.0, 0.0, 0.0}), 1.0, 1e-12);
 }

@@ -20,7 +20,7 @@ MapImage picture(const std::vector<std::string>& rows) {
   return map;
 }
 
-TEST(WallThickness, OfARoomWithThinWalls) {
+TEST(WallThickness, WallsOfOneCellHaveAThicknessOfOneCell) {
   EXPECT_EQ(wall_thickness_cells(picture({"##########",  //
                                           "#........#",  //
                                           "#........#",  //

@@ -125,7 +125,7 @@ TEST(Sweep, StationsOutsideTheirBandAreAnUnmetExpectation) {
   EXPECT_FALSE(rows_with(fmt::format(fmt::runtime(wanted), 0.6))[0].is_hit());
 }
 
-TEST(Sweep, TheWorstIsTheSmallestWhereMoreIsBetter) {
+TEST(Sweep, TheWorstFigureIsTheSmallestWhereLargerIsBetter) {
   const Figures figures = rows_with("{}")[0].figures("marker_map_share");
   EXPECT_NEAR(figures.worst.value(), 0.91, 1e-12);
   EXPECT_NEAR(figures.median.value(), 0.925, 1e-12);

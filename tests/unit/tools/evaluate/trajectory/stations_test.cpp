@@ -48,14 +48,14 @@ TEST(Stations, AreAMetreApartWithErrorsInTheTrueBaseFrame) {
   EXPECT_EQ(found[2].health, Health::kTracking);
 }
 
-TEST(Stations, AKidnapIsNoTravel) {
+TEST(Stations, TheJumpOfAKidnapIsNotCountedAsDistanceDriven) {
   auto pairs = drive(15, {});
   for (std::size_t i = 8; i < pairs.size(); ++i)
     pairs[i].world_from_truth = Se2{5.0, 0.0, 0.0} * pairs[i].world_from_truth;
   EXPECT_EQ(stations(pairs, {}, {}).size(), 1u);
 }
 
-TEST(Stations, MetresWithoutAPoseAreLeftOut) {
+TEST(Stations, DistancesAtWhichThereIsNoPoseGetNoStation) {
   auto pairs = drive(55, {});
   pairs.erase(pairs.begin() + 15, pairs.begin() + 45);  // no pose from 1.5 to 4.5 m
   std::vector<double> travel_m;
@@ -89,7 +89,7 @@ TEST(Stations, TheFileReadsBack) {
   EXPECT_TRUE(skipped.empty());
 }
 
-TEST(Stations, SigmasAreAlongAndAcrossTheRobot) {
+TEST(Stations, SigmasAreAlongAndAcrossTheRobotsHeading) {
   std::vector<PosePair> pairs = drive(12, {});
   const Se2 turned{0.0, 0.0, std::numbers::pi / 2.0};
   for (PosePair& pair : pairs) {
@@ -204,7 +204,7 @@ TEST(Timeline, AWideCovarianceIsNotConfident) {
   EXPECT_EQ(timeline(run.pairs, run.stamped, {}, 4.0, {}).kidnap->confident_wrong_s, 0.0);
 }
 
-TEST(Timeline, AJumpIsWhatOdometryCannotExplain) {
+TEST(Timeline, AJumpIsAStepOfTheEstimateThatDiffersFromTheTrueMotion) {
   auto pairs = drive(20, {});
   for (std::size_t i = 10; i < pairs.size(); ++i)
     pairs[i].map_from_estimate = Se2{0.0, 0.25, 0.0} * pairs[i].map_from_estimate;

@@ -48,7 +48,7 @@ TEST(DashedPolyline, TerminatesForAbsurdPoints) {
   draw_dashed_polyline(image, path, {kBlack, 1}, 5.0, 5.0);
 }
 
-TEST(TintPolygons, TintsTheUnionOnce) {
+TEST(TintPolygons, OverlappingPolygonsAreTintedOnce) {
   Image image = white();
   const std::vector<cv::Point2d> box{{10, 10}, {50, 10}, {50, 50}, {10, 50}};
   tint_polygons(image, {box, box}, kBlack, 0.2);

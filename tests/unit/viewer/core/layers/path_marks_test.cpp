@@ -135,7 +135,7 @@ TEST(ChooseMarks, NonFinitePosesAreSkipped) {
   EXPECT_THAT(marks.weak_axes, IsEmpty());
 }
 
-TEST(ChooseMarks, OfOverlappingMarksTheLessCertainIsKept) {
+TEST(ChooseMarks, WhereAPathReturnsTheMarksOfTheLessCertainPassAreKept) {
   std::vector<EstimatedPose> path = straight_path(9.0, 0.05);
   const int there = static_cast<int>(path.size());
   for (int i = 0; i < there; ++i)
@@ -195,7 +195,7 @@ TEST(ChooseMarks, AFewLargeEllipsesLimitTheMagnification) {
   EXPECT_EQ(choose_marks(path, kPxPerM, kSpacing_px).magnification, 2);
 }
 
-TEST(ChooseMarks, EverySourceOfTheWeakAxisHasAMark) {
+TEST(ChooseMarks, EverySourceOfTheWeakAxisHasAMarkHoweverShortItsStretch) {
   std::vector<EstimatedPose> path = straight_path(40.0, 0.01);
   for (std::size_t i = 20; i < path.size(); ++i) {
     const bool by_odometry = i >= 195 && i < 201;

@@ -247,7 +247,7 @@ double share_of_colour(const cv::Mat& image, const cv::Scalar& colour) {
   return static_cast<double>(cv::countNonZero(mask)) / static_cast<double>(image.total());
 }
 
-TEST(PaintMap, MarksDoNotCoverABuilding) {
+TEST(PaintMap, HealthAndUncertaintyMarksHideLessThan60PercentOfFreeSpace) {
   const Scene scene = building_scene();
   const MapPage page = lay_out(content_of(scene), kStyle);
   const double px_per_m = page.strips.front().view.px_per_m;

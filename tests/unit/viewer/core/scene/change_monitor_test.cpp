@@ -40,7 +40,7 @@ TEST(ChangeMonitorOfHealth, ReportsEachChangeOnce) {
   EXPECT_EQ(monitor.update(estimate(4, Health::kTracking)), std::nullopt);
 }
 
-TEST(ChangeMonitorOfHealth, APlaceThatRoundsToZeroHasNoMinus) {
+TEST(ChangeMonitorOfHealth, ACoordinateThatRoundsToZeroHasNoMinusSign) {
   ChangeMonitor monitor;
   EstimatedPose at_origin = estimate(1, Health::kInitialising);
   at_origin.map_from_base = {-0.001, -0.002, 0.0};
