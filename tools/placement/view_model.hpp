@@ -22,9 +22,9 @@ struct MarkerView {
 /// Share of the frames in which the detector reads a marker with modules of that size [px].
 double read_share_of(double module_px);
 
-/// Propagates the detector's corner noise through pose estimation and the estimator's alignment to
-/// the wall, with the same functions as they use, at measurements without errors. Assumes markers
-/// at the height of the camera.
+/// Propagates the detector's corner noise, linearised at measurements without errors, through pose
+/// estimation and alignment to the wall, with the functions of detector and estimator. Assumes
+/// markers at the height of the camera.
 class ViewModel {
  public:
   /// @param modules_per_side  bits along a side of a marker plus two modules of border.

@@ -27,8 +27,8 @@ class ChannelNames {
   /// [channels] does not name it.
   bool uses(std::string_view channel) const { return !on_network(channel).empty(); }
 
-  /// @return the channel's name on the network, empty if it has none; a name that is not in
-  /// channels.hpp, or only in map files, is returned as it is.
+  /// @return the channel's name on the network, empty if it has none. Names that channels.hpp
+  /// does not list, and those of channels in map files only, are returned as they are.
   std::string_view on_network(std::string_view channel) const;
 
   /// Of the channels `candidates`, which share a name on the network, the one whose type has the

@@ -205,8 +205,8 @@ std::vector<std::string> used_keys(const std::vector<Entry>& entries) {
   return keys;
 }
 
-/// The used key that probably replaces the unused `key`: in the same top-level table, its last word
-/// the same or ending with "_" and that of `key`. Empty if there is none.
+/// The used key that probably replaces the unused `key`: the first one in the same top-level table
+/// whose last word is that of `key`, or ends with "_" and that word. Empty if there is none.
 std::string used_instead(const std::string& key, const std::vector<Entry>& entries) {
   const std::string part = key.substr(0, key.find('.') + 1);
   const std::string name = last_word(key);

@@ -37,7 +37,8 @@ struct Tick {
   std::vector<MovedMarker> moved_markers{};
 };
 
-/// Deterministic: scenario and stamped commands determine every value.
+/// Deterministic: scenario and stamped commands determine every value, if every command is received
+/// in time (CommandOutcome::kInTime).
 class Simulation {
  public:
   /// @param scenario  one that Scenario::check() accepts.

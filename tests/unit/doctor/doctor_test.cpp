@@ -72,7 +72,9 @@ TEST(Doctor, WritesMeasuredParametersIntoTheRobotFile) {
   EXPECT_NEAR(diagnosis.robot.lidar.x_m, -0.2, 0.02);
   EXPECT_NEAR(diagnosis.robot.lidar.y_m, -0.05, 0.005);
   EXPECT_EQ(diagnosis.robot.lidar.range_max_m, 12.0);
-  EXPECT_THAT(to_robot_toml(diagnosis, "run.lcm"), HasSubstr("# FAIL lidar_x: the LiDAR's x is"));
+  const std::string file = to_robot_toml(diagnosis, "run.lcm");
+  EXPECT_THAT(file, HasSubstr("# FAIL lidar_x: the LiDAR's x is"));
+  EXPECT_THAT(file, HasSubstr("range_max_m = 12"));
 }
 
 TEST(Doctor, JsonHasEveryCheck) {

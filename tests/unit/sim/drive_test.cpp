@@ -122,7 +122,7 @@ TEST(RouteFollower, DrivesThroughRoundedCornersWithoutStopping) {
   EXPECT_NEAR(follower.route_length_m(), 32.0 - 7 * (2.0 - 0.5 * std::numbers::pi) * 0.6, 1e-9);
 }
 
-TEST(RouteFollower, ProgressEndsAtTheRoutesLength) {
+TEST(RouteFollower, LengthAndProgressAreMeasuredAlongTheRoute) {
   RouteConfig config{};
   config.waypoints = {{2.0, 0.0}, {2.0, 0.5}};
   RouteFollower follower{config, kPeriod_s};

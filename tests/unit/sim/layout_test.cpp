@@ -93,7 +93,7 @@ TEST(Layout, RecessesAndRoomsOpenFromTheirCorridor) {
   EXPECT_NEAR(ray_m(physics, 12.0, -1.1, 0.0), 0.45, 1e-6);        // the jamb
 }
 
-TEST(Layout, OverlappingPartsAreReported) {
+TEST(Layout, OpeningsWithoutAWallAndCrossingRoomsAreReported) {
   WorldConfig config{};
   config.length_m = 20.0;
   config.openings = {{0, Side::kLeft, 6.0}, {0, Side::kLeft, 6.5}};

@@ -19,7 +19,8 @@ class ChannelClock {
   /// Median of logger time minus stamp. @pre !empty()
   Duration logger_ahead() const;
 
-  /// Whether both clocks advance by about the same, so that their difference means something.
+  /// Whether the log is less than twice as long by one clock (stamps, logger) as by the other;
+  /// otherwise their difference means nothing.
   bool is_comparable() const;
 
  private:

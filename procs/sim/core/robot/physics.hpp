@@ -52,8 +52,8 @@ class Physics {
 
   const mjModel& model() const { return *model_; }
 
-  /// MuJoCo's state, for ray casting and rendering. In it, the poses of the robot's parts (not its
-  /// joint coordinates) are those before the last mj_step().
+  /// MuJoCo's state, for ray casting and rendering. The poses of the robot's parts in it are older
+  /// than the joint coordinates after step(), by one step, and after put_down().
   mjData& data() { return *data_; }
 
   const mjData& data() const { return *data_; }

@@ -9,8 +9,9 @@
 
 namespace waymark {
 
-/// Linear interpolation in 1024 equal steps of d^2. Its error is below (limit / width)^2 / 8e6:
-/// 2e-8 for GMapping's defaults. Benchmark: tests/benchmark/gmapping_speed.cpp.
+/// Linear interpolation in 1024 equal steps of d^2. Without rounding its error is below
+/// (limit / width)^2 / 8e6, 2e-8 for GMapping's defaults; single precision adds up to 1e-7.
+/// Benchmark: tests/benchmark/gmapping_speed.cpp.
 class BellCurve {
  public:
   /// @param width_squared  `width` above, e.g. [cells^2].

@@ -12,7 +12,8 @@
 
 namespace waymark {
 
-/// Schur complement: the prior absorbs all factors on the variable, without the variable.
+/// Adds all factors on the variable to the prior, and eliminates the variable from the prior (Schur
+/// complement).
 void Graph::eliminate(const Variable& variable) {
   std::vector<std::size_t> kept;
   for (const std::size_t index : active_factors_) {

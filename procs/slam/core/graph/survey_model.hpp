@@ -23,8 +23,9 @@ class SurveyModel {
   explicit SurveyModel(LandmarkMarginal marginal) : marginal_{std::move(marginal)} {}
 
   /// O(number of landmarks ^ 3).
-  /// @param priors  on landmarks by their index in the marginal. Those that are off do not count;
-  ///                the others must determine the frame.
+  /// @param priors  their `landmark` is an index in the marginal. Those with is_off are ignored;
+  /// the
+  ///                others must determine the map's position and heading.
   Solution solve(const std::vector<LandmarkPrior>& priors) const;
 
   /// The least cost of the measurements alone.

@@ -22,8 +22,9 @@ constexpr double kMinExtent_m = 0.1;            // standard deviation of the poi
 constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
 constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
 
-// All beams on one wall are measured at about the same time, on average a quarter of the sweep from
-// its middle, so with the odometry noise of a quarter of it; MeanSweep has that of a twelfth.
+// Ratio of variances of the odometry noise, a single wall to the mean of a sweep (MeanSweep). All
+// beams on a wall are measured at about the same time, on average a quarter of the sweep from its
+// middle: the wall has the noise of a quarter of the sweep, and the mean that of a twelfth.
 constexpr double kWallOverMeanSweep = 3.0;
 
 /// Least standard deviations of the calibration (order of SightingNoise::calibration) in the gate

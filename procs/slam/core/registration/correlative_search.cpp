@@ -276,7 +276,7 @@ class CorrelativeField::Search {
     headings_.push_back(std::move(heading));
   }
 
-  /// The lowest level at which one node covers the window, up to the top.
+  /// The lowest level at which one node covers the window, but at most kTopLevel.
   int top_level() const {
     int level = 0;
     while (level < kTopLevel && (1 << level) < 2 * half_width_ + 1)

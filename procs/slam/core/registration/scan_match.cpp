@@ -240,7 +240,8 @@ Eigen::Matrix3d nearly_none(const Eigen::Matrix3d& guess_covariance) {
   return covariance.inverse();
 }
 
-/// Standard deviation [m] of the beams' ends due to the covariance of the pose.
+/// Standard deviation [m] of the beams' ends, across the beams, due to the covariance of the pose:
+/// root mean square over all beams; position and heading count as uncorrelated.
 double ends_open_m(std::span<const Eigen::Vector2d> points_in_base,
                    const Eigen::Matrix3d& covariance) {
   double lever2_m2 = 0.0;

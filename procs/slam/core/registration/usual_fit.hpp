@@ -22,7 +22,8 @@ class UsualFit {
   /// Nearly as many mapped beams are inliers as usual.
   bool is_as_usual_where_mapped(const ScanMatch& match) const;
 
-  /// Fewer of all beams are inliers than usual: the scan contradicts the map, or shows a new place.
+  /// The share of all beams that are inliers is smaller than usual: the scan contradicts the map,
+  /// or shows a new place. is_nearly_usual() may hold as well.
   bool is_worse_than_usual(const ScanMatch& match) const;
 
   /// Nearly as many of all beams are inliers as usual.

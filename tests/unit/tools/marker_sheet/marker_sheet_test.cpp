@@ -30,7 +30,7 @@ TEST(MarkerSheet, IdsAreParsedFromNumbersAndRanges) {
     EXPECT_THROW(parse_ids(wrong), std::runtime_error) << wrong;
 }
 
-TEST(MarkerSheet, TheDetectorReadsWhatIsDrawnAtItsPlaceAndSize) {
+TEST(MarkerSheet, OpenCvReadsTheDrawnMarkerAtItsPlaceAndSize) {
   const SheetOptions options{"DICT_6X6_250", 0.1, 2, 100.0};
   const Sheet sheet = draw_sheet(options, 23);
   std::vector<int> ids;

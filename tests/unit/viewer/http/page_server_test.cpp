@@ -194,7 +194,7 @@ TEST_F(PageServerTest, ATakenPortIsASetupError) {
   EXPECT_THROW((PageServer{{.host = "127.0.0.1", .port = port_}, board, "."}), SetupError);
 }
 
-TEST_F(PageServerTest, AnswersGarbageWith4xxAndKeepsServing) {
+TEST_F(PageServerTest, GarbageCausesNoServerErrorAndServingContinues) {
   std::mt19937 random{5};
   const std::string good =
       "GET /view?time_s=1 HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";

@@ -70,7 +70,7 @@ TEST(MarkerError, MovedMarkersAreScoredAtTheirFinalPlace) {
   EXPECT_EQ(error.moved_named_share, 1.0);
 }
 
-TEST(MarkerError, UnreportedMovesAndFalseReportsAreCounted) {
+TEST(MarkerError, UnreportedMovesAndFalseReportsLowerTheNamedShare) {
   const Marker moved{.id = 1, .has_moved = true};
   const Marker still{.id = 2};
   EXPECT_EQ(marker_error({{1, Se2{}}}, {moved, still}, Se2{}, kGate_m).moved_named_share, 0.0);

@@ -96,7 +96,7 @@ TEST(PaintMap, ShowsLostStretchesAndMovedMarkersInMapAndLegend) {
   EXPECT_TRUE(contains_colour(page, palette::kMoved));
 }
 
-TEST(PaintMap, TheLegendListsOnlyWhatIsDrawn) {
+TEST(PaintMap, TheLegendGrowsWithWhatIsDrawn) {
   const int height_px = paint_map(corridor_scene(50.0), kStyle).rows;
   Scene scene = corridor_scene(50.0);
   for (EstimatedPose& pose : scene.estimates)
