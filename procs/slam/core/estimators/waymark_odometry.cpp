@@ -39,6 +39,7 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
   if (observation.odometry_caught_up && standstill_) {
     const std::size_t start = standstill_->keyframe;
     graph_.cut_odometry_since(start);
+    submaps_.keep_shape();
     const bool is_in_graph = !is_frozen() && !graph_.is_removed(start);
     if (is_in_graph || graph_.is_active({VariableKind::kKeyframe, start})) {
       moved_from_ = start;

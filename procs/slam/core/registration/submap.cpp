@@ -40,6 +40,7 @@ void Submap::draw(const Points& points_in_base, const Se2& submap_from_base) {
 }
 
 bool Submap::is_bent(const PoseSequence& keyframes) const {
+  if (keeps_shape_) return false;
   const Se2 submap_from_map = keyframes[first_keyframe_].inverse();
   for (std::size_t k = first_keyframe_; k <= last_keyframe(); ++k) {
     const Eigen::Vector3d moved =

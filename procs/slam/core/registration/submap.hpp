@@ -31,6 +31,9 @@ class Submap {
   /// Whether the keyframes have moved relative to each other since they were inserted.
   bool is_bent(const PoseSequence& keyframes) const;
 
+  /// From now on the scans stay where they were inserted: is_bent() is false.
+  void keep_shape() { keeps_shape_ = true; }
+
   /// A submap of the same scans, inserted at the present poses of their keyframes. Precondition:
   /// not finished.
   Submap straightened(const PoseSequence& keyframes) const;
@@ -81,6 +84,7 @@ class Submap {
   std::vector<Se2> poses_{};
   double reach_m_{0.0};
   double length_m_{0.0};
+  bool keeps_shape_{false};
   std::vector<Scan> scans_{};                   ///< until the submap is finished
   std::unordered_set<NdtMap::Key> occupied_{};  ///< cells of kThinned_m; never iterated over
   Points points_{};

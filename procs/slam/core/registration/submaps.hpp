@@ -43,6 +43,13 @@ class Submaps {
   /// the old poses.
   void follow(const PoseSequence& keyframes);
 
+  /// Unfinished submaps no longer follow. To be called when keyframes have lost their odometry:
+  /// where walls do not show the motion, hardly anything holds these keyframes together any more.
+  void keep_shape() {
+    for (Submap& submap : growing_)
+      submap.keep_shape();
+  }
+
   /// Drops unfinished submaps, after the robot was relocated.
   void begin_anew() { growing_.clear(); }
 

@@ -206,7 +206,9 @@ TEST(LoopFinder, ADegenerateMatchBeyondTheGateIsRejected) {
 
 /// Beyond the end of what is mapped of a bare corridor, more of a scan is mapped further back.
 TEST(LoopFinder, AMatchDoesNotCorrectThePoseAlongAWall) {
-  Corridor corridor{[](double) { return false; }};
+  Corridor corridor{[](double) {
+    return false;
+  }};
   for (const double x : {16.0, 16.5, 17.0}) {
     const Se2 beyond{x, 0.0, 0.0};
     EXPECT_TRUE(corridor.look_around(beyond, beyond).empty()) << x;
