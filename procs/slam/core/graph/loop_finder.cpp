@@ -50,7 +50,7 @@ const Submap* LoopFinder::nearest_submap(const Guess& guess, const Scan& scan) c
   for (const Submap& submap : scan.submaps) {
     if (submap.last_keyframe() >= scan.search.first_recent_keyframe) break;
     const Eigen::Vector2d place =
-        scan.state.keyframes[submap.first_keyframe()].inverse() * guess.map_from_base.translation();
+        submap.submap_from_map(scan.state.keyframes) * guess.map_from_base.translation();
     const double off_m = reach_m(guess.covariance_against(submap.first_keyframe()));
     double near_m = std::min(least_m, config_.reach_m + std::min(config_.max_search_m, off_m));
     if (place.norm() - submap.reach_m() >= near_m) continue;
@@ -79,7 +79,7 @@ const CorrelativeField& LoopFinder::field_of(const Submap& old) {
 
 std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Guess& guess,
                                            const Scan& scan) {
-  const Se2 submap_from_map = scan.state.keyframes[old.first_keyframe()].inverse();
+  const Se2 submap_from_map = old.submap_from_map(scan.state.keyframes);
   const Se2 expected = submap_from_map * guess.map_from_base;
   const Eigen::Matrix3d covariance =
       in_axes(submap_from_map.rotation(), guess.covariance_against(old.first_keyframe()));
@@ -201,15 +201,15 @@ std::optional<LoopFinder::Place> LoopFinder::place_near(const Guess& guess, cons
   const auto loop = match(*old, guess, scan);
   if (!loop) return std::nullopt;
   Place place;
-  place.map_from_base = scan.state.keyframes[old->first_keyframe()] * loop->match.map_from_base;
+  const Se2& map_from_submap = scan.state.keyframes[old->first_keyframe()];
+  place.map_from_base = map_from_submap * loop->match.map_from_base;
   const Eigen::Vector3d off = pose_difference(place.map_from_base, scan.search.map_from_base);
   place.found = {scan.keyframe, *loop, off};
   const bool is_surprise =
       !guess.is_estimate || chi2(off, covariance_in(*old, scan.search)) > config_.gate;
   if (is_surprise && !is_convincing(loop->match)) return std::nullopt;
   const auto& observed = loop->match.observed;
-  const Eigen::Vector2d weak =
-      scan.state.keyframes[old->first_keyframe()].rotation() * observed.weak_direction;
+  const Eigen::Vector2d weak = map_from_submap.rotation() * observed.weak_direction;
   // The search slides along a wall to where more of the scan is mapped.
   if (observed.is_degenerate && std::abs(weak.dot(off.head<2>())) > kDirectReach_m)
     return std::nullopt;

@@ -39,6 +39,7 @@ std::vector<Eigen::Vector2d> without_moving(const std::vector<Eigen::Vector2d>& 
     if (off_m > kMostOff_m || !is_seen_through(map, map_from_base * point, off_m))
       standing.push_back(point);
   }
+  if (standing.size() == points_in_base.size()) return standing;
   return 2 * outline_length(standing) < outline_length(points_in_base) ? points_in_base : standing;
 }
 

@@ -41,20 +41,20 @@ void Submap::draw(const Points& points_in_base, const Se2& submap_from_base) {
 
 bool Submap::is_bent(const PoseSequence& keyframes) const {
   if (keeps_shape_) return false;
-  const Se2 submap_from_map = keyframes[first_keyframe_].inverse();
+  const Se2 here_from_map = submap_from_map(keyframes);
   for (std::size_t k = first_keyframe_; k <= last_keyframe(); ++k) {
     const Eigen::Vector3d moved =
-        pose_difference(submap_from_map * keyframes[k], submap_from_keyframe(k));
+        pose_difference(here_from_map * keyframes[k], submap_from_keyframe(k));
     if (moved.head<2>().norm() > kBent_m || std::abs(moved.z()) > kBent_rad) return true;
   }
   return false;
 }
 
 Submap Submap::straightened(const PoseSequence& keyframes) const {
-  const Se2 submap_from_map = keyframes[first_keyframe_].inverse();
+  const Se2 here_from_map = submap_from_map(keyframes);
   Submap submap{spacing_m_, first_keyframe_};
   for (const Scan& scan : scans_) {
-    const Se2 submap_from_keyframe = submap_from_map * keyframes[scan.keyframe];
+    const Se2 submap_from_keyframe = here_from_map * keyframes[scan.keyframe];
     if (scan.keyframe == first_keyframe_ + submap.num_keyframes())
       submap.insert(scan.points_in_base, submap_from_keyframe);
     else

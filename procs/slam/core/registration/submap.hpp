@@ -40,6 +40,11 @@ class Submap {
 
   std::size_t first_keyframe() const { return first_keyframe_; }
 
+  /// At the present pose of the first keyframe.
+  Se2 submap_from_map(const PoseSequence& keyframes) const {
+    return keyframes[first_keyframe_].inverse();
+  }
+
   std::size_t last_keyframe() const { return first_keyframe_ + poses_.size() - 1; }
 
   std::size_t num_keyframes() const { return poses_.size(); }

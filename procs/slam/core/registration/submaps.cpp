@@ -4,14 +4,6 @@
 #include <utility>
 
 namespace waymark {
-namespace {
-
-Se2 submap_from_map(const Submap& submap, const PoseSequence& keyframes) {
-  return keyframes[submap.first_keyframe()].inverse();
-}
-
-}  // namespace
-
 const Submap* Submaps::find(std::size_t first_keyframe) const {
   const auto found = std::find_if(
       finished_.begin(), finished_.end(),
@@ -30,13 +22,13 @@ void Submaps::add_keyframe(const Points& points_in_base, const PoseSequence& key
     growing_.emplace_back(cell_spacing_m_, keyframes.size() - 1);
   }
   for (Submap& submap : growing_)
-    submap.insert(points_in_base, submap_from_map(submap, keyframes) * keyframes.back());
+    submap.insert(points_in_base, submap.submap_from_map(keyframes) * keyframes.back());
 }
 
 void Submaps::add_between(const Points& points_in_base, const Se2& map_from_base,
                           const PoseSequence& keyframes) {
   for (Submap& submap : growing_)
-    submap.add(points_in_base, submap_from_map(submap, keyframes) * map_from_base);
+    submap.add(points_in_base, submap.submap_from_map(keyframes) * map_from_base);
 }
 
 void Submaps::follow(const PoseSequence& keyframes) {
