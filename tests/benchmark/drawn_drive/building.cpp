@@ -142,6 +142,44 @@ Building draw_outdoors(Random& random) {
   return ground;
 }
 
+/// Square rooms between thin walls: a random tree of ways through them, and a few loops more.
+Building draw_maze(Random& random) {
+  constexpr int kRooms = 5;  // on each side
+  constexpr double kRoom_m = 1.4;
+  constexpr double kThin_m = 0.05;
+  constexpr double kMoreDoors = 0.15;  // share of the walls left
+  const double side_m = kRooms * kRoom_m;
+  Building maze{side_m + 2.0, side_m + 2.0};
+  const auto corner = [&](int column, int row) {
+    return Vector2d{1.0 + column * kRoom_m, 1.0 + row * kRoom_m};
+  };
+  const Vector2d room{kRoom_m - kThin_m, kRoom_m - kThin_m};
+  std::vector<int> part;  // number of the connected part that a room belongs to
+  for (int i = 0; i < kRooms * kRooms; ++i) {
+    part.push_back(i);
+    const Vector2d low = corner(i % kRooms, i / kRooms);
+    maze.carve(low, low + room);
+  }
+  const auto open = [&](int from, int to) {
+    const Vector2d low = corner(from % kRooms, from / kRooms);
+    maze.carve(low, corner(to % kRooms, to / kRooms) + room);
+    const int old = part[static_cast<std::size_t>(to)];
+    std::replace(part.begin(), part.end(), old, part[static_cast<std::size_t>(from)]);
+  };
+  const auto index = [](int number) {
+    return static_cast<std::size_t>(number);
+  };
+  for (int i = 0; i < 40 * kRooms * kRooms; ++i) {
+    const int from = static_cast<int>(random.uniform(0.0, kRooms * kRooms));
+    const bool across = random.uniform() < 0.5;
+    const int to = from + (across ? 1 : kRooms);
+    if ((across && to % kRooms == 0) || to >= kRooms * kRooms) continue;
+    if (part[index(from)] != part[index(to)] || random.uniform() < kMoreDoors / 40.0)
+      open(from, to);
+  }
+  return maze;
+}
+
 }  // namespace
 
 Building::Building(double width_m, double height_m)
@@ -150,7 +188,7 @@ Building::Building(double width_m, double height_m)
       walls_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), true) {}
 
 std::vector<std::string> Building::kinds() {
-  return {"office", "grid", "long", "bare", "hall", "outdoors"};
+  return {"office", "grid", "long", "bare", "hall", "outdoors", "lab", "campus", "maze"};
 }
 
 Building Building::draw(const std::string& kind, Random& random) {
@@ -161,6 +199,9 @@ Building Building::draw(const std::string& kind, Random& random) {
   if (kind == "bare") return draw_corridors({1, 1, 70.0, 90.0, width_m, 0.2, 3}, random);
   if (kind == "hall") return draw_hall(random);
   if (kind == "outdoors") return draw_outdoors(random);
+  if (kind == "lab") return draw_corridors({2, 2, 7.5, 10.0, 1.6, 0.9, 6}, random);
+  if (kind == "campus") return draw_corridors({3, 2, 30.0, 60.0, width_m, 0.4, 4}, random);
+  if (kind == "maze") return draw_maze(random);
   throw std::invalid_argument{"no building of kind '" + kind + "'"};
 }
 

@@ -22,7 +22,9 @@ class Building {
   static std::vector<std::string> kinds();
 
   /// `office` (rooms and clutter around two loops), `grid` (four blocks of rooms), `long` (two
-  /// blocks of 60 to 80 m), `bare` (one block of 70 to 90 m, hardly a door), `hall`, `outdoors`.
+  /// blocks of 60 to 80 m), `bare` (one block of 70 to 90 m, hardly a door), `hall`, `outdoors`,
+  /// `lab` (four small blocks full of furniture), `campus` (six blocks of 30 to 60 m), `maze` (7 m
+  /// x 7 m of rooms of 1.4 m).
   /// @throws std::invalid_argument  of another kind.
   static Building draw(const std::string& kind, Random& random);
 

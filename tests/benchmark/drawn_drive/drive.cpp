@@ -86,10 +86,19 @@ void Drive::walk(Vector2d& person) {
 
 void Drive::write_scan(fmt::ostream& log, double time_s) {
   const Se2& pose = robot_.pose();
-  log.print("FLASER {}", options_.beams);
+  const double view_rad = options_.view_deg * std::numbers::pi / 180.0;
+  // The old format has no angles: 181 and 361 beams are over 180 degrees.
+  const bool is_old =
+      options_.view_deg == 180.0 && (options_.beams == 181 || options_.beams == 361);
+  if (is_old) {
+    log.print("FLASER {}", options_.beams);
+  } else {
+    log.print("ROBOTLASER1 0 {:.8f} {:.8f} {:.8f} {:.2f} 0.01 0 {}", -0.5 * view_rad, view_rad,
+              view_rad / (options_.beams - 1), kNoReturn_m, options_.beams);
+  }
   for (int i = 0; i < options_.beams; ++i) {
     const double direction_rad =
-        pose.theta() + std::numbers::pi * (static_cast<double>(i) / (options_.beams - 1) - 0.5);
+        pose.theta() + view_rad * (static_cast<double>(i) / (options_.beams - 1) - 0.5);
     double range_m = building_.range_m(pose.translation(), direction_rad, options_.range_m);
     for (const Vector2d& person : people_)
       if (const auto at = range_to(person, pose.translation(), direction_rad))
@@ -98,8 +107,10 @@ void Drive::write_scan(fmt::ostream& log, double time_s) {
     log.print(" {:.2f}", range_m < options_.range_m ? measured_m : kNoReturn_m);
   }
   const Se2& odom = odometry_.pose();
+  if (!is_old) log.print(" 0");
   for (int i = 0; i < 2; ++i)
     log.print(" {:.6f} {:.6f} {:.6f}", odom.x(), odom.y(), odom.theta());
+  if (!is_old) log.print(" 0 0 0 0 0");
   log.print(" {:.6f} nohost {:.6f}\n", 1000.0 + time_s, time_s);
 }
 

@@ -19,7 +19,8 @@ struct DriveOptions {
   double range_m{30.0};
   double range_sigma_m{0.015};
   double odometry_noise{1.0};  ///< times that of a good robot
-  int beams{181};              ///< over 180 degrees
+  int beams{181};
+  double view_deg{180.0};  ///< angle between the first and the last beam
   int people{0};
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drives a robot through a building that is drawn at random, and writes what it measured as a
 // CARMEN log with true relations: for deploy/real_logs.sh. Plane geometry, no physics: odometry
-// with wrong scales and noise, a LiDAR of 180 degrees, people who walk about the robot.
+// with wrong scales and noise, a LiDAR, people who walk about the robot.
 #include "common/command_line/command_line.hpp"
 #include "common/errors/exit_codes.hpp"
 #include "drawn_drive/drive.hpp"
@@ -82,8 +82,13 @@ int main(int argc, char** argv) {
   program.add_option("--range-sigma-m", options.range_sigma_m, "noise")
       .check(nonnegative_number())
       .show_default();
-  program.add_option("--beams", options.beams, "over 180 degrees")
-      .one_of({"181", "361"})
+  program.add_option("--beams", options.beams, "of a scan")
+      .check({[](double beams) { return beams >= 2.0 && beams <= 2000.0; }, "2 to 2000 beams",
+              "INT in [2 - 2000]"})
+      .show_default();
+  program.add_option("--view-deg", options.view_deg, "angle of view")
+      .check({[](double view) { return view > 0.0 && view < 360.0; }, "less than 360",
+              "FLOAT in (0 - 360)"})
       .show_default();
   program.add_option("--odometry-noise", options.odometry_noise, "times that of a good robot")
       .check(nonnegative_number())
