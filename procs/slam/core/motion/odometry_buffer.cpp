@@ -36,8 +36,14 @@ OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
 OdometryBuffer::Outcome OdometryBuffer::add_newer(const OdometrySample& sample) {
   const double elapsed_s = to_seconds(sample.time - newest());
   const Se2 step = last_raw_.inverse() * sample.odom_from_base;
-  const bool jumps = !(step.translation().norm() <= kMaxSpeed_m_s * elapsed_s) ||
-                     !(std::abs(step.theta()) <= kMaxTurnRate_rad_s * elapsed_s);
+  const bool has_stood = to_seconds(newest() - changed_) >= kStood_s;
+  const double most_m = (has_stood ? kMaxDrive_m_s : kMaxSpeed_m_s) * elapsed_s;
+  const double most_rad = (has_stood ? kMaxDrive_rad_s : kMaxTurnRate_rad_s) * elapsed_s;
+  const bool is_reset =
+      !is_other(sample.odom_from_base, Se2{}) &&
+      (step.translation().norm() > kReset_m || std::abs(step.theta()) > kReset_rad);
+  const bool jumps =
+      is_reset || !(step.translation().norm() <= most_m) || !(std::abs(step.theta()) <= most_rad);
   if (!jumps && !jump_) return Outcome::kAdded;
   const Se2 held = samples_.back().odom_from_base;
   if (!jump_ && is_catching_up(step, sample)) {
@@ -74,7 +80,7 @@ OdometryBuffer::Outcome OdometryBuffer::resolve_jump(const OdometrySample& sampl
   return Outcome::kAdded;
 }
 
-/// A jump to the odometry's origin is a reset, however short it is.
+/// A jump to the odometry's origin is a reset.
 bool OdometryBuffer::is_catching_up(const Se2& step, const OdometrySample& sample) const {
   const double stuck_s = to_seconds(newest() - changed_);
   return is_other(sample.odom_from_base, Se2{}) &&

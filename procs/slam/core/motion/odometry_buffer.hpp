@@ -19,9 +19,10 @@ class OdometryBuffer {
   /// Refuses a sample that is not newer than the last one, or newer by more than any pause
   /// (ClockStepDetector::kLongestPause). Odometry that stood still and then jumps no farther than
   /// the robot can have driven meanwhile was stuck: the jump is late motion. After a jump that no
-  /// robot can drive, the pose is held until some samples in a row are consistent. If the robot can
-  /// have driven from the pose before the jump to these samples, those in between were garbage, and
-  /// the motion is late motion; otherwise the odometry was reset, which is no motion.
+  /// robot can drive, or one to the odometry's origin, also after a gap, the pose is held until
+  /// some samples in a row are consistent. If the robot can have driven from the pose before the
+  /// jump to these samples, those in between were garbage, and the motion is late motion; otherwise
+  /// the odometry was reset, which is no motion.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }
@@ -92,6 +93,9 @@ class OdometryBuffer {
 
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
   static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
+  static constexpr double kStood_s = 0.5;             ///< after that, a leap is late motion
+  static constexpr double kReset_m = 0.25;            ///< a longer step to the origin is a reset
+  static constexpr double kReset_rad = 0.5;           ///< same for turning
   static constexpr double kMaxDrive_m_s = 2.0;        ///< largest mean speed of late motion
   static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
   static constexpr int kConsistentSamples = 4;        ///< samples that end a jump

@@ -125,6 +125,46 @@ TEST(OdometryBuffer, AResetOfTheOdometryIsNoMotion) {
   EXPECT_FALSE(buffer.late_motion(at_ms(0), at_ms(231)));
 }
 
+TEST(OdometryBuffer, AResetAfterAGapIsNoMotion) {
+  OdometryBuffer buffer;
+  buffer.add({at_ms(0), Se2{5.0, 0.0, 0.3}});
+  EXPECT_EQ(buffer.add({at_ms(8000), Se2{}}), OdometryBuffer::Outcome::kJumped);
+  for (int step = 1; step <= 6; ++step)
+    buffer.add({at_ms(8000 + 33 * step), Se2{0.01 * step, 0.0, 0.0}});
+
+  const Motion motion = buffer.motion_between(at_ms(0), at_ms(8198));
+
+  EXPECT_NEAR(motion.start_from_end.x(), 0.06, 1e-12);
+  EXPECT_FALSE(buffer.late_motion(at_ms(0), at_ms(8198)));
+}
+
+TEST(OdometryBuffer, DrivingSlowlyThroughTheOriginIsMotion) {
+  OdometryBuffer buffer;
+  for (int step = -5; step <= 5; ++step) {
+    EXPECT_EQ(buffer.add({at_ms(1000 + 100 * step), Se2{0.05 * step, 0.0, 0.0}}),
+              OdometryBuffer::Outcome::kAdded);
+  }
+  EXPECT_NEAR(buffer.motion_between(at_ms(500), at_ms(1500)).start_from_end.x(), 0.5, 1e-12);
+}
+
+TEST(OdometryBuffer, AfterAShortStandstillALeapIsLateMotionAtAnyRate) {
+  for (const int rate_hz : {10, 30, 100}) {
+    for (const double stuck_s : {1.0, 2.0, 4.0}) {
+      OdometryBuffer buffer;
+      const int period_ms = 1000 / rate_hz;
+      const int samples = static_cast<int>(stuck_s * rate_hz);
+      for (int i = 0; i <= samples; ++i)
+        buffer.add({at_ms(i * period_ms), Se2{1.0, 0.0, 0.0}});
+      const int end_ms = (samples + 1) * period_ms;
+      const double late_m = 0.25 * stuck_s;  // as of a TurtleBot3
+      buffer.add({at_ms(end_ms), Se2{1.0 + late_m, 0.0, 0.0}});
+      const auto late = buffer.late_motion(at_ms(0), at_ms(end_ms));
+      ASSERT_TRUE(late) << rate_hz << " Hz, " << stuck_s << " s";
+      EXPECT_NEAR(late->start_from_end.x(), late_m, 1e-9);
+    }
+  }
+}
+
 TEST(OdometryBuffer, MotionDuringGarbageIsReportedAfterIt) {
   Random random{{5}};
   OdometryBuffer buffer;
