@@ -121,7 +121,8 @@ std::string SlamNode::reset() {
 std::string SlamNode::set_pose(const StartPose& pose) {
   if (!estimator_->set_pose(pose)) {
     throw Refusal{
-        fmt::format("there is no map yet, the pose is more than {} m away, or the estimator does "
+        fmt::format("there is no map yet, or not yet its frame, the pose is more than {} m "
+                    "away, or the estimator does "
                     "not support it",
                     farthest_pose_m(config_.slam.grid.resolution_m))};
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Commands: what is refused and why, and what the others do.
+#include "common/files/whole_file.hpp"
 #include "common/lockstep/command_relay.hpp"
 #include "slam/command_desk.hpp"
 #include "unit/slam/map_drives.hpp"
@@ -187,6 +188,19 @@ TEST_F(CommandedSlam, RefusesWhileCommandsAreOff) {
   ASSERT_EQ(replies.size(), 1U);
   EXPECT_EQ(replies[0].state, reply_t::STATE_REFUSED);
   EXPECT_NE(replies[0].text.find("slam.commands = true"), std::string::npos);
+}
+
+TEST_F(CommandedSlam, TakesNoPoseBeforeTheSurveysFrameIsKnown) {
+  fs::create_directories(folder_);
+  const fs::path survey = folder_ / "survey.csv";
+  write_whole_file(
+      survey, "id,x_m,y_m,yaw_rad,sigma_x_m,sigma_y_m,sigma_yaw_rad\n249,1,2,0,0.01,0.01,0.01\n");
+  SlamConfig config = mapping();
+  config.robot.markers.survey_file = survey;
+  const auto replies = replies_of(
+      drive_with(config, messages_of(*drive_, 0.0, 5.0), {{3.0, pose_command(1.0, 0.0)}}));
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].state, reply_t::STATE_REFUSED) << replies[0].text;
 }
 
 TEST_F(CommandedSlam, SavesAMapThatCanBeLocalisedIn) {

@@ -237,6 +237,22 @@ TEST_F(DailyLife, AMapIsNotExtendedInAnotherBuilding) {
   EXPECT_EQ(drive.estimates.back().health, slam_estimate_t::HEALTH_LOST);
 }
 
+// Its own markers are those of this run, also when the robot comes back to them.
+TEST_F(DailyLife, MarkersOfThisRunDoNotConfirmTheLoadedMap) {
+  test::SyntheticCorridor other = corridor_of(2);
+  other.width_m = 4.0;
+  other.length_m = 24.0;
+  other.drive_m = 68.0;
+  other.turn_back_every_m = 22.0;
+  other.markers = test::opposite_markers(other, 3.5, 3.0);
+  for (test::SyntheticMarker& marker : other.markers)
+    marker.id += 100;
+  const test::Drive drive = test::drive_through(
+      config_for(MapMode::kLocalise, *file_, StartKind::kOrigin), messages_of(test::drive(other)));
+  for (std::size_t i = drive.estimates.size() / 4; i < drive.estimates.size(); ++i)
+    ASSERT_EQ(drive.estimates[i].health, slam_estimate_t::HEALTH_LOST) << i;
+}
+
 class SurveyedMap : public DailyLife {
  protected:
   fs::path survey(const std::string& text) {

@@ -162,6 +162,12 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| from start
   };
 
+  /// Scans of keyframes compared with the loaded map since the pose was last commanded.
+  struct ScansInLoadedMap {
+    std::int64_t decisive{0};    ///< that can show whether the pose is right
+    std::int64_t contradict{0};  ///< of these, those that do not fit
+  };
+
   bool place(const Observation& observation);
   Estimate unplaced(const Observation& observation) const;
   void load(const MapSnapshot& map);
@@ -276,6 +282,7 @@ class WaymarkEstimator final : public Estimator {
   Points loaded_points_{};                     ///< of the loaded map's walls
   CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
                                              : config_.scan.cell_spacing_m};  ///< of loaded_points_
+  ScansInLoadedMap scans_here_{};
   bool is_confirmed_{true};   ///< markers or walls confirm the pose in the loaded map
   bool was_confirmed_{true};  ///< is_confirmed_ was true at least once
   std::optional<WallChangeDetector> wall_changes_{};  ///< relative to the loaded map

@@ -69,13 +69,16 @@ void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
       fit_in_map(setup_.loaded_map->grid, observation.beams, graph_.state().keyframes.back());
   if (!fit.is_decisive()) return;
   ++findings_.scans_in_loaded_map;
-  if (fit.is_contradicted()) ++findings_.scans_contradict_loaded_map;
+  ++scans_here_.decisive;
+  if (!fit.is_contradicted()) return;
+  ++findings_.scans_contradict_loaded_map;
+  ++scans_here_.contradict;
 }
 
 /// Whether nothing has confirmed the pose in the loaded map, and most scans contradict it.
 bool WaymarkEstimator::is_loaded_map_refuted() const {
-  return !is_confirmed_ && findings_.scans_in_loaded_map >= kScansToDecide &&
-         2 * findings_.scans_contradict_loaded_map > findings_.scans_in_loaded_map;
+  return !is_confirmed_ && scans_here_.decisive >= kScansToDecide &&
+         2 * scans_here_.contradict > scans_here_.decisive;
 }
 
 /// The loaded map is fixed: a match with it is a prior on the pose.

@@ -96,9 +96,11 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     book_.note_sighting(nearest->landmark, measurement.time);
     if (!markers_known_) learn_noise(*nearest, measurement);
     markers_known_ = true;
-    if (graph_.is_fixed(nearest->landmark))
+    // In a frozen map, this run's own markers are fixed, too, once they have left the window.
+    if (setup_.loaded_map && nearest->landmark < setup_.loaded_map->landmarks.size())
       is_confirmed_ = true;
-    else if (!graph_.is_active({VariableKind::kLandmark, nearest->landmark}))
+    if (!graph_.is_fixed(nearest->landmark) &&
+        !graph_.is_active({VariableKind::kLandmark, nearest->landmark}))
       returning.push_back(nearest->landmark);
   }
   if (!matches.empty()) note_reason(EstimateReason::kMarker);

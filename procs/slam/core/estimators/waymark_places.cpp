@@ -25,6 +25,7 @@ void WaymarkEstimator::add_first_keyframe() {
 }
 
 bool WaymarkEstimator::set_pose(const StartPose& pose) {
+  if (!has_frame()) return false;
   const bool has_begun = !graph_.state().keyframes.empty();
   if (!has_begun && !setup_.loaded_map) return false;  // there is no map that it could be in
   const Eigen::Vector2d given{pose.x_m, pose.y_m};
@@ -53,6 +54,7 @@ void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
   const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
   is_confirmed_ = !setup_.loaded_map || pose.is_certain;
+  scans_here_ = {};
   relocalisation_ = {};
   forget_recent_motion();
   begin_submaps_anew();
