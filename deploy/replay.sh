@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs one estimator and the viewer on a recorded log.
+# Runs one estimator and the viewer on a recorded log, and before them the detector if the log has images (CAMERA)
+# but no MARKERS.
 #
 # usage: deploy/replay.sh LOG --estimator NAME [options]
 #   --config FILE    configuration of slam; may be given several times, later files win
@@ -15,11 +16,11 @@
 #   --robot FILE     sensors and their mounting (default: robot.toml beside the log)
 #   --out DIR        (default: the log's folder)
 #
-# Deletes the results of an earlier replay in DIR/ROW, and its logs DIR/logs/ROW.slam.log and .viewer.log; other
-# files there stay. A damaged log gives what is left of it, and exit code 1.
+# Deletes the results of an earlier replay in DIR/ROW, and its logs DIR/logs/ROW.slam.log, .viewer.log and
+# .detector.log; other files there stay. A damaged log gives what is left of it, and exit code 1.
 # Writes map, pictures, trajectory and markers into DIR/ROW (docs/reference.md, "What a run leaves"), with slam.lcm
-# (what slam published), config.toml and timings.json. The seed is that of the run when its scenario.toml
-# is beside the log, so that a run and its replay give the same bytes.
+# (what slam published), markers.lcm (what the detector published, if it ran), config.toml and timings.json. The
+# seed is that of the run when its scenario.toml is beside the log, so that a run and its replay give the same bytes.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -64,6 +65,7 @@ prepare() {
   robot=${robot:-$log_folder/robot.toml}
   [[ -f $robot ]] || die $kExitUsage "no '$robot'; say with --robot which sensors the log is from"
   check_slam
+  check_detector
   row=${row:-$estimator}
   need_row_name "$row"
   out=$(make_folder "${out:-$log_folder}")
@@ -84,11 +86,23 @@ check_slam() {
   "$bin_dir/waymark-slam" "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --check || exit $?
 }
 
+# check_detector: sets detector_options; empty if the log has markers, or no images to find them in.
+check_detector() {
+  detector_options=()
+  local channels
+  channels=$("$bin_dir/waymark-slam" --log "$log" --print-channels) || exit $?
+  grep -qx CAMERA <<<"$channels" || return 0
+  ! grep -qx MARKERS <<<"$channels" || return 0
+  need_programs waymark-detector
+  detector_options=(--config "$robot" "${part[@]}" --log "$log")
+  "$bin_dir/waymark-detector" "${detector_options[@]}" --check || exit $?
+}
+
 # clear_old_results: so that a replay that fails leaves none that look new. config.toml stays until it is
 # replaced, for it may be a --config of this replay.
 clear_old_results() {
-  old_files=("${kRowResults[@]/#/"$folder/"}" "$folder/"{slam.lcm.part,slam.report,viewer.report}
-    "$logs/$row."{slam,viewer}.log)
+  old_files=("${kRowResults[@]/#/"$folder/"}" "$folder/"{markers.lcm,{slam,markers}.lcm.part,{slam,viewer,detector}.report}
+    "$logs/$row."{slam,viewer,detector}.log)
   protect_inputs "$log" "$robot" "${slam_files[@]}"
   rm -f -- "${old_files[@]}"
 }
@@ -107,8 +121,12 @@ run() {
 }
 
 write_timings() {
-  put_text "$folder/timings.json" "{\"slam\": $(<"$folder/slam.report"),"$'\n'"\"viewer\": $(<"$folder/viewer.report")}"
-  rm -f -- "$folder/"{slam,viewer}.report
+  local name text=''
+  for name in detector slam viewer; do
+    [[ ! -f $folder/$name.report ]] || text+="${text:+,$'\n'}\"$name\": $(<"$folder/$name.report")"
+  done
+  put_text "$folder/timings.json" "{$text}"
+  rm -f -- "$folder/"{detector,slam,viewer}.report
 }
 
 parse_arguments "$@"
@@ -116,7 +134,13 @@ prepare
 show_progress_bars
 put_text "$folder/config.toml" "$config"
 incomplete=()
-run slam "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --out-log "$folder/slam.lcm"
+inputs=(--log "$log")
+if ((${#detector_options[@]} > 0)); then
+  say "the log has images, but no markers: looking for them"
+  run detector "${detector_options[@]}" --out-log "$folder/markers.lcm"
+  inputs+=(--log "$folder/markers.lcm")
+fi
+run slam "${slam_options[@]}" "${map_options[@]}" "${part[@]}" "${inputs[@]}" --out-log "$folder/slam.lcm"
 run viewer "${part[@]}" --log "$log" --log "$folder/slam.lcm" --out "$folder"
 [[ -f $folder/map.pgm ]] || die $kExitFailed "the log has given no map; see $logs/$row.slam.log"
 write_timings

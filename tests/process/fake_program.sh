@@ -11,6 +11,7 @@
 #   FAKE_NAME_thinks=S    NAME --check takes so many seconds
 #   FAKE_NAME_replays=S   a replay takes so many seconds
 #   FAKE_NAME_replayed=CODE a replay comes to its end with this code
+#   FAKE_channels=NAMES   a log has these channels (default: LIDAR MARKERS ODOMETRY)
 #   FAKE_viewer_mute=1    a replay leaves no map
 #   FAKE_NAME_stays=1     NAME ignores both the end of the run and SIGINT
 # With --real-time all but the simulator run until SIGINT and then end well.
@@ -43,6 +44,7 @@ case " $* " in
     [[ -z $(setting refuses) || " $* " != *"$(setting refuses)"* ]] || { echo "$name refuses" >&2 && exit 2; }
     [[ -z $(setting thinks) ]] || { echo $$ >>"$FAKE_DIR/pids" && sleep "$(setting thinks)"; }
     exit ;;
+  *" --print-channels "*) tr ' ' '\n' <<<"${FAKE_channels:-LIDAR MARKERS ODOMETRY}" && exit ;;
   *" --list "*) echo wrong_ids && exit ;;
   *" --variant "*) touch "$(argument --out "$@")"/{run.lcm,robot.toml} && exit ;;
   " run "* | " sweep "*) echo "$*" >>"$FAKE_DIR/$name.calls" && exit ;;
@@ -67,7 +69,7 @@ case " $* " in
     echo "replayed" >&2
     echo '{"messages": 12, "wall_s": 0.5}' >"$(argument --report "$@")"
     echo "$*" >"$FAKE_DIR/$name.replay"
-    [[ $name != slam ]] || touch "$(argument --out-log "$@")"
+    [[ $name != slam && $name != detector ]] || touch "$(argument --out-log "$@")"
     [[ $name != viewer || -n $(setting mute) ]] || touch "$(argument --out "$@")"/{map.pgm,trajectory.tum}
     code=$(setting replayed)
     exit "${code:-0}" ;;

@@ -54,6 +54,8 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
         "--log", options.logs,
         "replay this LCM log instead of listening; may be given several times: a channel is "
         "taken from the last log that has it");
+    app.add_flag("--print-channels", options.print_channels,
+                 "with --log: print the names of the logs' channels, one in a line, and exit");
     app.add_option("--report", options.report,
                    "after a replay, write its timing, memory and counts there (JSON)");
     app.add_option("--skip-s", options.skip_s,
@@ -106,6 +108,7 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
 void check_options(const ProcessOptions& options, const OptionSet& option_set) {
   const bool is_recorder = !option_set.log;
   const bool is_replay = !options.logs.empty();
+  if (!is_replay && options.print_channels) throw SetupError{"--print-channels needs --log"};
   if (!is_replay && (options.skip_s > 0.0 || options.until_s))
     throw SetupError{"--skip-s and --until-s need --log"};
   if (!is_recorder && !is_replay && !options.out_log.empty()) {

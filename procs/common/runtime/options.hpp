@@ -19,6 +19,7 @@ struct ProcessOptions {
   bool dump_robot_config{false};
   std::string print_config{};  ///< the key to print; empty = none
   bool check{false};
+  bool print_channels{false};
   std::string lcm_url{};
   bool real_time{false};
   bool large_messages{false};

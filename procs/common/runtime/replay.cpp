@@ -5,6 +5,7 @@
 #include "common/files/whole_file.hpp"
 #include "common/log/log_file.hpp"
 #include "common/logging/logging.hpp"
+#include "common/messages/channels.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/replay_report.hpp"
@@ -145,12 +146,47 @@ bool report_missing(const std::vector<Source>& sources,
   return any;
 }
 
+/// Whether the logs have images, but not what a detector sees in them, which this process wants.
+bool has_only_images(const std::vector<Source>& sources,
+                     const std::vector<Inbox::Subscription>& subscriptions) {
+  const auto is_wanted = [&](std::string_view channel) {
+    return std::ranges::find(subscriptions, channel, &Inbox::Subscription::channel) !=
+           subscriptions.end();
+  };
+  const auto is_held = [&](std::string_view channel) {
+    return std::ranges::any_of(sources, [channel](const Source& source) {
+      return std::ranges::find(source.all_channels, channel) != source.all_channels.end();
+    });
+  };
+  return is_wanted(channels::kMarkers.name) && !is_wanted(channels::kCamera.name) &&
+         is_held(channels::kCamera.name) && !is_held(channels::kMarkers.name);
+}
+
 }  // namespace
+
+void print_channels(const std::vector<std::filesystem::path>& logs) {
+  std::set<std::string> names;
+  try {
+    for (const std::filesystem::path& log : logs)
+      for (std::string& name : channels_in(log))
+        names.insert(std::move(name));
+  } catch (const std::exception& error) {
+    throw SetupError{error.what()};
+  }
+  for (const std::string& name : names)
+    fmt::print("{}\n", name);
+}
 
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox) {
   std::vector<Source> sources = open_sources(options.logs, inbox.subscriptions());
   const bool useless = report_useless(sources, inbox.subscriptions());
   const bool missing = !useless && report_missing(sources, node.needed_channels());
+  if (has_only_images(sources, inbox.subscriptions())) {
+    logging::warn(
+        "the log has images ({}), but no {}: the markers in them are not used. `waymark-detector "
+        "--config robot.toml --log LOG --out-log FILE` finds them; then --log LOG --log FILE",
+        channels::kCamera.name, channels::kMarkers.name);
+  }
   if (oldest(sources) == nullptr) {
     report_skipped(sources);
     return kExitFailed;

@@ -7,6 +7,10 @@
 
 namespace waymark {
 
+/// Prints the names of the channels that occur in the logs, sorted, one in a line.
+/// @throws SetupError for a log that cannot be read.
+void print_channels(const std::vector<std::filesystem::path>& logs);
+
 /// Replays the logs of the options through the node.
 /// @return exit code. 1: a log has bytes that are not events, or none of the channels that this
 /// process reads; a channel that the node needs is in no log; nothing is left between --skip-s and

@@ -237,6 +237,10 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
       return int{kExitOk};
     }
     check_options(options, description.option_set);
+    if (options.print_channels) {
+      print_channels(options.logs);
+      return int{kExitOk};
+    }
     Inbox inbox;
     Outbox outbox;
     const auto node = description.make_node(options, inbox, outbox);
