@@ -9,14 +9,14 @@
 #   --record-only     no slam and no viewer: only a log, for deploy/replay.sh
 #   --no-images       leave the camera's images out of the log
 #   --real-time       as fast as the clock and without lockstep, like on a real robot
-#   --estimator NAME  slam.estimator (default: what waymark-slam's configuration says)
+#   --estimator NAME  odometry, gmapping, marker_matching or waymark (default: what waymark-slam's configuration says)
 #   --config FILE     configuration of slam; may be given several times, later files win
 #   --set KEY=VALUE   the same for one value; may be given several times
-#   --load-map FILE  map of an earlier run (NAME.map.lcm); needs --mode
-#   --mode NAME      what for: localise (it stays as it is) or extend (what is new is added)
-#   --start NAME     where in it the robot is: origin (default), pose (slam.start_pose), last
-#                    (needs --set slam.state_folder=DIR), anywhere
-#   --save-map FILE  write the map there at the end
+#   --load-map FILE   map of an earlier run (NAME.map.lcm); needs --mode
+#   --mode NAME       what for: localise (it stays as it is) or extend (what is new is added)
+#   --start NAME      where in it the robot is: origin (default), pose (slam.start_pose), last
+#                     (needs --set slam.state_folder=DIR), anywhere
+#   --save-map FILE   write the map there at the end
 #   --channels FILE   section [channels], for every process: other names on the network, e.g. deploy/mbot.toml
 #   --http HOST:PORT  show the run as a live page there, e.g. 127.0.0.1:8080
 #   --http-token TOKEN|@FILE  whoever gives it on the page may command slam (needs --set slam.commands=true)
@@ -26,8 +26,7 @@
 # it. Files that no run or replay writes stay; a folder with such names that is no run of launch.sh is refused.
 # detector and viewer are restarted when they die, at most five times, and so is slam with --real-time and --start
 # last; the death of simulator, slam or recorder ends the run. Exit codes: 0 fine, 1 the run failed, 2 bad usage or
-# set-up, 3 a process died,
-# 4 time-out, 128+n signal n.
+# set-up, 3 a process died, 4 time-out, 128+n signal n.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

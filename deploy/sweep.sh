@@ -5,7 +5,8 @@
 # usage: deploy/sweep.sh SCENARIO... --out DIR [options]
 #   --seeds LIST        e.g. 1-20 or 1,3,7-9 (default: 1-20)
 #   --estimators LIST   rows of the table, NAME or NAME=ESTIMATOR:KEY=VALUE:..., separated by commas
-#                       (default: odometry,waymark); e.g. no_ids=waymark:slam.blank_ids=true
+#                       (default: odometry,waymark; ESTIMATOR is odometry, gmapping, marker_matching or waymark);
+#                       e.g. no_ids=waymark:slam.blank_ids=true
 #   --variants FILE     faults that are put into each recorded log, a row for each (waymark-faults --help)
 #   --out DIR           where everything goes; the same command again goes on where it stopped
 #   --jobs N            jobs at the same time (default: one per core)
