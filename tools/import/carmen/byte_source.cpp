@@ -126,9 +126,13 @@ class Bzip2Source final : public ByteSource {
 
 std::unique_ptr<ByteSource> open_bytes(const std::filesystem::path& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw SetupError{path.string() + ": there is no such file"};
-  }
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw SetupError{path.string() + ": there is no such file"};
+  if (std::filesystem::is_directory(status))
+    throw SetupError{path.string() + ": is a folder; name the log in it"};
+  if (!std::filesystem::is_regular_file(status))
+    throw SetupError{path.string() +
+                     ": is no regular file; write a pipe's content to a file first"};
   if (std::filesystem::file_size(path, error) == 0) throw SetupError{path.string() + ": is empty"};
   File file{std::fopen(path.c_str(), "rb")};
   if (!file) throw SetupError{path.string() + ": cannot be read"};

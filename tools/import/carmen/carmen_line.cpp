@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/carmen/carmen_line.hpp"
 
+#include "common/messages/bounds.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,15 +17,15 @@ namespace {
 
 constexpr int kMaxBeams = 4000;            // as robot.lidar.num_beams
 constexpr double kLatestTime_s = 4e9;      // the year 2096
-constexpr double kLargestPose = 1e6;       // [m, rad]
 constexpr double kLargestMounting = 10.0;  // [m, rad]
 
 // Keywords of CARMEN's loggers whose lines are not used here.
-constexpr std::array<std::string_view, 23> kOtherKeywords{
-    "SYNC",      "TRUEPOS",  "RAWLASER1", "RAWLASER2",        "RAWLASER3",     "RAWLASER4",
-    "RAWLASER5", "LASER3",   "LASER4",    "LASER5",           "ROBOTVELOCITY", "POSITION",
-    "MARKER",    "SCANMARK", "NMEAGGA",   "NMEARMC",          "SONAR",         "BUMPER",
-    "IMU",       "IMU_CORR", "PANTILT",   "FOLLOWTRAJECTORY", "BASEVELOCITY"};
+constexpr std::array<std::string_view, 27> kOtherKeywords{
+    "ROBOTLASER3", "ROBOTLASER4",      "ROBOTLASER5",   "ARM",       "SYNC",      "TRUEPOS",
+    "RAWLASER1",   "RAWLASER2",        "RAWLASER3",     "RAWLASER4", "RAWLASER5", "LASER3",
+    "LASER4",      "LASER5",           "ROBOTVELOCITY", "POSITION",  "MARKER",    "SCANMARK",
+    "NMEAGGA",     "NMEARMC",          "SONAR",         "BUMPER",    "IMU",       "IMU_CORR",
+    "PANTILT",     "FOLLOWTRAJECTORY", "BASEVELOCITY"};
 
 /// User's options that apply to all lines.
 struct Given {
@@ -37,7 +39,8 @@ Se2 take_pose(FieldCursor& fields, std::string_view name, const CarmenUnits& uni
   const double y_m = fields.number(name) * units.odometry_m;
   const double theta_rad = fields.number(name) * units.odometry_rad;
   if (heading_rad != nullptr) *heading_rad = theta_rad;
-  if (std::max({std::abs(x_m), std::abs(y_m), std::abs(theta_rad)}) > kLargestPose) {
+  if (std::max(std::abs(x_m), std::abs(y_m)) > bounds::kPosition_m ||
+      std::abs(theta_rad) > bounds::kAngle_rad) {
     fields.fail("number out of range",
                 fmt::format("{} is ({}, {}, {})", name, x_m, y_m, theta_rad));
   }
@@ -195,8 +198,8 @@ CarmenLine parse_parameter(FieldCursor& fields) {
 
 CarmenLine parse_carmen_line(std::string_view line, const CarmenBeams& beams,
                              const CarmenUnits& units) {
-  const bool is_blank = line.find_first_not_of(" \t\r") == std::string_view::npos;
-  if (is_blank || line.front() == '#') return CarmenOther{};
+  const std::size_t start = line.find_first_not_of(" \t\r");
+  if (start == std::string_view::npos || line[start] == '#') return CarmenOther{};
   FieldCursor fields{line};
   const Given given{beams, units};
   const std::string_view keyword = fields.word("the keyword");

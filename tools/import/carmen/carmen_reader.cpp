@@ -25,7 +25,9 @@ namespace {
 // A SICK LMS 200 measures up to 80 m; from 8183 on, in centimetres, its values are error codes
 // (SICK, Telegrams for configuring and operating the LMS 2xx).
 constexpr double kSickRangeMax_m = 81.83;
-constexpr double kFarthest_m = 150.0;  // largest plausible median of the ranges
+constexpr double kFarthest_m = 150.0;    // largest plausible median of the ranges
+constexpr double kNearestLimit_m = 2.0;  // no LiDAR's maximum range is shorter
+constexpr double kCommonShare = 0.05;    // of the scans; see keep_usual_beam_count()
 
 Timestamp timestamp_from_seconds(double seconds) {
   return Timestamp{duration_from_seconds(seconds)};
@@ -37,6 +39,9 @@ CarmenTimes line_times(const Line& line) {
 }
 
 constexpr std::size_t kScansForAngles = 300;  // evenly over the log
+
+/// Ranges of scans with the same number of beams.
+using SameSize = std::vector<std::span<const double>>;
 
 class CarmenReader {
  public:
@@ -63,11 +68,14 @@ class CarmenReader {
 
   void apply_stamps();
   void note_assumptions();
+  std::optional<BeamAngles> angles_of(std::size_t num_beams, const SameSize& scans) const;
+  void note_angles(std::size_t num_beams, const BeamAngles& angles);
   void complete_angles();
   std::string what_is_not_read() const;
   void add_scan(const ReadScan& read);
   void apply_mounting();
-  double usual_range_max_m();
+  double usual_range_max_m() const;
+  void note_untimed_odometry();
 
   const CarmenOptions& options_;
   ImportReport& report_;
@@ -76,6 +84,8 @@ class CarmenReader {
   std::map<std::string, std::int64_t> counts_{};
   std::vector<ReadScan> scans_{};
   std::vector<ReadOdometry> odometry_{};
+  std::vector<std::int64_t> untimed_odometry_{};  ///< line numbers
+  CarmenOdometrySource source_{CarmenOdometrySource::kLaserLines};
   std::vector<CarmenMounting> mountings_{};
 };
 
@@ -89,7 +99,11 @@ void CarmenReader::take_content(CarmenScan scan) {
 
 void CarmenReader::take_content(const CarmenOdometry& odometry) {
   ++counts_["ODOM"];
-  if (odometry.num_times > 0) odometry_.push_back({line_times(odometry), at_, odometry, {}});
+  if (odometry.num_times > 0) {
+    odometry_.push_back({line_times(odometry), at_, odometry, {}});
+  } else {
+    untimed_odometry_.push_back(at_);
+  }
 }
 
 void CarmenReader::apply_stamps() {
@@ -117,9 +131,8 @@ void CarmenReader::add_scan(const ReadScan& read) {
     message.ranges.push_back(static_cast<float>(std::min(range_m, bounds::kRange_m)));
   log_.scans.push_back(
       {read.time, read.time, read.at, message.nranges, 0.0, encode(channels::kLidar, message), {}});
-  if (log_.odometry.empty()) {
+  if (source_ == CarmenOdometrySource::kLaserLines)
     log_.scans.back().odom_from_base = scan.odom_from_base;
-  }
 }
 
 void CarmenReader::apply_mounting() {
@@ -138,11 +151,17 @@ void CarmenReader::apply_mounting() {
   lidar.yaw_rad = options_.mounting.yaw_rad.value_or(base_from_lidar.theta());
 }
 
-/// Median maximum range of the lines; a SICK's for lines without one.
-double CarmenReader::usual_range_max_m() {
+/// Median maximum range of the lines; a SICK's for lines without one. In some logs it is in metres
+/// although the ranges are not: in their unit it would be too short.
+double CarmenReader::usual_range_max_m() const {
+  const auto limit_m = [this](const CarmenScan& scan) {
+    if (!scan.range_max_m) return kSickRangeMax_m;
+    const double in_unit_m = *scan.range_max_m * options_.range_unit_m;
+    return in_unit_m < kNearestLimit_m ? *scan.range_max_m : in_unit_m;
+  };
   std::vector<double> limits_m;
   for (const auto& scan : scans_)
-    limits_m.push_back(scan.line.range_max_m.value_or(kSickRangeMax_m));
+    limits_m.push_back(limit_m(scan.line));
   return upper_median(std::move(limits_m));
 }
 
@@ -153,7 +172,8 @@ std::string CarmenReader::what_is_not_read() const {
   if (report_.skipped_by_kind().contains("bad time"))
     return ": the times of its lines are none: if they are milliseconds or microseconds, give "
            "--time-unit ms or us";
-  if (counts_.contains("RAWLASER1"))
+  if (std::ranges::any_of(counts_,
+                          [](const auto& entry) { return entry.first.starts_with("RAWLASER"); }))
     return ": RAWLASER lines, which have no odometry, are not read; write them as ROBOTLASER1";
   return "";
 }
@@ -171,6 +191,14 @@ void CarmenReader::note_assumptions() {
   if (no_ranges > 0)
     report_.note(fmt::format("{} ranges are negative or NaN: taken as not measured", no_ranges));
   if (ranges_m.empty() || options_.range_max_m) return;
+  const double longest_m = std::ranges::max(ranges_m);
+  if (longest_m > kFarthest_m &&
+      std::ranges::all_of(ranges_m, [](double r) { return r == std::floor(r); })) {
+    throw SetupError{fmt::format(
+        "all ranges are whole numbers, up to {:g}: are they in cm or mm? Give --range-unit cm or "
+        "mm, or --max-range-m if they are metres",
+        longest_m)};
+  }
   const double usual_m = upper_median(std::move(ranges_m));
   if (usual_m > kFarthest_m) {
     throw SetupError{fmt::format(
@@ -180,37 +208,25 @@ void CarmenReader::note_assumptions() {
   }
 }
 
-/// Sets the angles of lines without them: as given, else those found for the most frequent number
-/// of beams.
-/// @throws SetupError when they are unknown.
-void CarmenReader::complete_angles() {
+/// As given, else those that walls show; nullopt if they are unknown.
+std::optional<BeamAngles> CarmenReader::angles_of(std::size_t num_beams,
+                                                  const SameSize& scans) const {
   const auto& [given_first_rad, given_step_rad] = options_.beams;
-  std::map<std::size_t, std::vector<std::span<const double>>> scans_by_size;
-  for (const auto& scan : scans_)
-    if (!scan.line.angles)
-      scans_by_size[scan.line.ranges_m.size()].emplace_back(scan.line.ranges_m);
-  if (scans_by_size.empty()) return;
-  const auto& [num_beams, scans] = *std::ranges::max_element(
-      scans_by_size, {}, [](const auto& some) { return some.second.size(); });
-  BeamAngles angles;
+  std::optional<BeamAngles> angles;
   if (given_step_rad) {
     angles = {first_angle_rad(num_beams, *given_step_rad), *given_step_rad};
   } else {
-    std::vector<std::span<const double>> some;
+    SameSize some;
     for (std::size_t i = 0; i < scans.size(); i += 1 + scans.size() / kScansForAngles)
       some.push_back(scans[i]);
-    const auto found = straightest_angles(some, num_beams);
-    if (!found) {
-      throw SetupError{fmt::format(
-          "the lines do not say the angles of their {} beams, and walls do not show them: give "
-          "--first-angle-deg and --angle-step-deg",
-          num_beams)};
-    }
-    angles = *found;
+    angles = straightest_angles(some, num_beams);
   }
-  if (given_first_rad) angles.first_rad = *given_first_rad;
-  for (auto& scan : scans_)
-    if (!scan.line.angles) scan.line.angles = angles;
+  if (angles && given_first_rad) angles->first_rad = *given_first_rad;
+  return angles;
+}
+
+void CarmenReader::note_angles(std::size_t num_beams, const BeamAngles& angles) {
+  const auto& [given_first_rad, given_step_rad] = options_.beams;
   if (given_first_rad && given_step_rad) return;
   const auto usual = conventional_angles(num_beams);
   const bool is_usual = usual && usual->step_rad == angles.step_rad;
@@ -219,6 +235,47 @@ void CarmenReader::complete_angles() {
       "(--first-angle-deg, --angle-step-deg)",
       num_beams, degrees(angles.step_rad), degrees(angles.first_rad),
       is_usual || given_step_rad ? "assumed" : "taken, with which walls are straight"));
+}
+
+/// Sets the angles of lines without them, for each number of beams. Those that differ by one from
+/// the most frequent number have its angles, and so have rare ones that are unknown.
+/// @throws SetupError when they are unknown.
+void CarmenReader::complete_angles() {
+  std::map<std::size_t, SameSize> scans_by_size;
+  for (const auto& scan : scans_)
+    if (!scan.line.angles)
+      scans_by_size[scan.line.ranges_m.size()].emplace_back(scan.line.ranges_m);
+  if (scans_by_size.empty()) return;
+  const std::size_t usual = std::ranges::max_element(scans_by_size, {}, [](const auto& some) {
+                              return some.second.size();
+                            })->first;
+  std::map<std::size_t, BeamAngles> angles_by_size;
+  for (const auto& [num_beams, scans] : scans_by_size) {
+    if (num_beams + 1 == usual || num_beams == usual + 1) continue;
+    const auto angles = angles_of(num_beams, scans);
+    const bool is_common =
+        num_beams == usual ||
+        static_cast<double>(scans.size()) >= kCommonShare * static_cast<double>(scans_.size());
+    if (!angles && is_common) {
+      throw SetupError{fmt::format(
+          "the lines do not say the angles of their {} beams, and walls do not show them: give "
+          "--first-angle-deg and --angle-step-deg",
+          num_beams)};
+    }
+    if (angles) angles_by_size.emplace(num_beams, *angles);
+    if (is_common) note_angles(num_beams, *angles);
+  }
+  for (auto& scan : scans_) {
+    if (scan.line.angles) continue;
+    const auto found = angles_by_size.find(scan.line.ranges_m.size());
+    scan.line.angles = found == angles_by_size.end() ? angles_by_size.at(usual) : found->second;
+  }
+}
+
+void CarmenReader::note_untimed_odometry() {
+  if (untimed_odometry_.empty()) return;
+  report_.note(fmt::format("{} ODOM lines have no times, the first is line {}: they are not used",
+                           untimed_odometry_.size(), untimed_odometry_.front()));
 }
 
 ImportedLog CarmenReader::finish() {
@@ -234,9 +291,9 @@ ImportedLog CarmenReader::finish() {
   complete_angles();
   complete_times(scans_, options_.scan_period_s, report_);
   keep_one_lidar(scans_, report_);
-  if (choose_odometry(scans_, odometry_, options_.odometry, report_) ==
-      CarmenOdometrySource::kLaserLines)
-    odometry_.clear();
+  note_untimed_odometry();
+  source_ = choose_odometry(scans_, odometry_, options_.odometry, report_);
+  if (source_ == CarmenOdometrySource::kLaserLines) odometry_.clear();
   check_headings(scans_);
   apply_stamps();
   remove_absurd_times(scans_, "a scan", report_);

@@ -21,7 +21,7 @@ struct CarmenOptions {
   std::optional<CarmenStamps> stamps{};   ///< nullopt = see choose_stamps()
   std::optional<double> range_max_m{};    ///< nullopt = see mark_no_returns(); default: SICK LMS
   double range_min_m{0.0};
-  double range_unit_m{1.0};  ///< of the lines' ranges
+  double range_unit_m{1.0};  ///< of the lines' ranges, and of plausible maximum ranges
   LidarMounting mounting{};
 };
 

@@ -115,6 +115,11 @@ CarmenOdometrySource choose_odometry(const std::vector<ReadScan>& scans,
                                      const std::vector<ReadOdometry>& odometry,
                                      std::optional<CarmenOdometrySource> wanted,
                                      ImportReport& report) {
+  if (wanted == CarmenOdometrySource::kOdomLines && odometry.empty()) {
+    throw SetupError{
+        "--odometry odom: the log has no ODOM line with a pose and a time; --odometry laser takes "
+        "the poses in the LiDAR's lines"};
+  }
   if (wanted) return *wanted;
   if (moves(scans) || odometry.empty() || !moves(odometry))
     return CarmenOdometrySource::kLaserLines;

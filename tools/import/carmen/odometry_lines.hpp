@@ -25,6 +25,7 @@ void keep_one_lidar(std::vector<ReadScan>& scans, ImportReport& report);
 
 /// The wanted source; else the scans' lines, or, if these never move and the ODOM lines do, the
 /// ODOM lines, which is reported.
+/// @throws SetupError when the ODOM lines are wanted, and there are none.
 CarmenOdometrySource choose_odometry(const std::vector<ReadScan>& scans,
                                      const std::vector<ReadOdometry>& odometry,
                                      std::optional<CarmenOdometrySource> wanted,

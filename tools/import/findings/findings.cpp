@@ -43,6 +43,26 @@ void estimate_range_noise(ImportedLog& log, ImportReport& report) {
                   log.robot.lidar.range_sigma_m, *sigma_m > kLargestSigma_m ? " or more" : ""));
 }
 
+/// Poses are written as float, which are too coarse at the coordinates of a map grid (UTM).
+void start_near_the_origin(ImportedLog& log, ImportReport& report) {
+  constexpr double kFar_m = 1000.0;
+  const auto farthest_m = [&](const Eigen::Vector2d& origin) {
+    double most_m = 0.0;
+    for (const ImportedPose& sample : log.odometry)
+      most_m = std::max(most_m, (sample.pose.translation() - origin).cwiseAbs().maxCoeff());
+    return most_m;
+  };
+  const Eigen::Vector2d start = log.odometry.front().pose.translation();
+  const double before_m = farthest_m(Eigen::Vector2d::Zero());
+  if (before_m <= kFar_m || farthest_m(start) >= before_m) return;
+  for (ImportedPose& sample : log.odometry)
+    sample.pose = Se2{sample.pose.translation() - start, sample.pose.theta()};
+  report.note(fmt::format(
+      "odometry starts at ({:.3f}, {:.3f}) m, too far away for the floats that are written: it is "
+      "shifted to start at (0, 0)",
+      start.x(), start.y()));
+}
+
 void check_that_odometry_moves(const ImportedLog& log, ImportReport& report) {
   const auto change_m = change_of_scans_while_standing_m(log);
   if (!change_m) return;
@@ -117,8 +137,8 @@ void check_turns(const ImportedLog& log, const BodyBeams& body, ImportReport& re
   if (!turns_against_odometry(log, body)) return;
   report.note(
       "scans turn the other way round than odometry: if the LiDAR's beams count clockwise, the map "
-      "will be a mirror image; lidar.mirrored = true in robot.toml puts that right. If odometry's "
-      "headings do, only its calibration will be odd");
+      "will be a mirror image; robot.lidar.mirrored = true in robot.toml puts that right. If the "
+      "headings of odometry do, only its calibration will be odd");
 }
 
 void check_yaw(const ImportedLog& log, const BodyBeams& body, ImportReport& report) {
@@ -164,6 +184,7 @@ void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry w
 void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report) {
   check_short_ranges(log, report);
   mend_odometry_breaks(log, report);
+  start_near_the_origin(log, report);
   estimate_range_noise(log, report);
   check_that_odometry_moves(log, report);
   const BodyBeams body = check_body(log, report);

@@ -68,11 +68,12 @@ double mean_misfit_m(std::span<const Pair> pairs, const Se2& base_from_lidar, do
 }
 
 /// The rotation of least misfit: vertex of a parabola through the minimum and its neighbours 4
-/// degrees away.
-double best_turn_rad(std::span<const Pair> pairs, const Se2& base_from_lidar) {
+/// degrees away. nullopt if that has none, as where no two scans overlap.
+std::optional<double> best_turn_rad(std::span<const Pair> pairs, const Se2& base_from_lidar) {
   constexpr double kStep_rad = radians(1.0);
   constexpr std::size_t kSteps = 34;  // on both sides
   constexpr std::size_t kAside = 4;
+  constexpr double kFlat_m = 1e-6;
   std::array<double, 2 * kSteps + 1> misfits_m{};
   for (std::size_t i = 0; i < misfits_m.size(); ++i) {
     const double turn_rad = kStep_rad * (static_cast<double>(i) - static_cast<double>(kSteps));
@@ -82,7 +83,8 @@ double best_turn_rad(std::span<const Pair> pairs, const Se2& base_from_lidar) {
   const double below_m = *(least - kAside);
   const double above_m = *(least + kAside);
   const double curvature_m = below_m - 2.0 * *least + above_m;
-  const double aside = curvature_m > 0.0 ? 0.5 * (below_m - above_m) / curvature_m : 0.0;
+  if (curvature_m < kFlat_m) return std::nullopt;
+  const double aside = 0.5 * (below_m - above_m) / curvature_m;
   return kStep_rad * (static_cast<double>(least - misfits_m.begin()) - static_cast<double>(kSteps) +
                       static_cast<double>(kAside) * aside);
 }
@@ -126,8 +128,11 @@ std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams&
   for (std::size_t part = 0; part < kParts; ++part) {
     const std::size_t begin = part * pairs.size() / kParts;
     const std::size_t end = (part + 1) * pairs.size() / kParts;
+    const auto turn_rad =
+        best_turn_rad(std::span{pairs}.subspan(begin, end - begin), base_from_lidar);
+    if (!turn_rad) return std::nullopt;
     // To a LiDAR turned to the left, the robot seems to drive to the right.
-    found_rad[part] = -best_turn_rad(std::span{pairs}.subspan(begin, end - begin), base_from_lidar);
+    found_rad[part] = -*turn_rad;
   }
   const double mean_rad =
       std::accumulate(found_rad.begin(), found_rad.end(), 0.0) / static_cast<double>(kParts);

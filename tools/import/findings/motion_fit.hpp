@@ -20,8 +20,8 @@ struct YawError {
 };
 
 /// True minus described yaw of the LiDAR, up to 30 degrees, from straight drives in eight parts of
-/// the log; nullopt with fewer than 40 pairs of scans on straight drives. Assumes that the robot
-/// drives along its heading.
+/// the log; nullopt with fewer than 40 pairs of scans on straight drives, and where the scans of a
+/// part fit equally well with any yaw. Assumes that the robot drives along its heading.
 std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams& body);
 
 /// True if scans turn in the opposite direction to odometry: mirrored, they fit its turns much

@@ -149,6 +149,8 @@ struct Counts {
   std::int64_t ranges{0};
   std::int64_t from_limit{0};
   std::int64_t zeros{0};
+  std::int64_t removed{0};  ///< finite ones from the limit on
+  std::int64_t left{0};     ///< that are measured
 };
 
 template <class Type>
@@ -162,11 +164,13 @@ void mark(ImportedScan& scan, Channel<Type> channel, float limit_m, float no_ret
     counts.zeros += range_m == 0.0F;
     const bool is_beyond = range_m >= limit_m;
     counts.from_limit += is_beyond;
+    counts.removed += is_beyond && std::isfinite(range_m);
     const float marked_m = is_beyond ? no_return : range_m == 0.0F ? no_range : range_m;
     has_changed |= marked_m != range_m;
     range_m = marked_m;
-    if (std::isfinite(range_m))
-      scan.longest_range_m = std::max(scan.longest_range_m, double{range_m});
+    if (!std::isfinite(range_m)) continue;
+    counts.left += range_m > 0.0F;
+    scan.longest_range_m = std::max(scan.longest_range_m, double{range_m});
   }
   if (has_changed) scan.message = encode(channel, message);
 }
@@ -180,6 +184,16 @@ std::string text_of(const std::vector<double>& ranges_m) {
 
 double percent(std::int64_t part, std::int64_t whole) {
   return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(1, whole));
+}
+
+/// @throws SetupError when no range is left.
+void check_ranges_are_left(const Counts& counts, double limit_m) {
+  if (counts.left > 0) return;
+  if (counts.removed == 0) throw SetupError{"no beam of any scan has a range"};
+  throw SetupError{fmt::format(
+      "no range is left: {} of {} are {:.2f} m or longer, which counts as no return; if they are "
+      "not metres give --range-unit (carmen), else --max-range-m",
+      counts.removed, counts.ranges, limit_m)};
 }
 
 /// Rounded down to 0.1 mm, so that the same number as float is not below it.
@@ -210,6 +224,7 @@ void mark_no_returns(ImportedLog& log, const RangeLimit& limit, ImportReport& re
       mark(scan, channels::kLidar, from_m, kNoReturn, kNotMeasured, counts);
     }
   }
+  check_ranges_are_left(counts, limit_m);
   if (code) {
     log.no_return_codes_m = code->codes_m;
     report.note(fmt::format(
@@ -230,7 +245,6 @@ void mark_no_returns(ImportedLog& log, const RangeLimit& limit, ImportReport& re
                     "the maximum; --max-range-m says otherwise",
                     limit_m));
   }
-  if (limit_m <= 0.0) throw SetupError{"no beam of any scan has a range"};
   log.robot.lidar.range_max_m = std::min(limit_m, kLongestLimit_m);
 }
 

@@ -32,7 +32,7 @@ struct RangeLimit {
 /// Finds the code, replaces it and all longer ranges by "no return" (+inf, in lidar_t 0), and a
 /// range 0 of planar_lidar_t by NaN; sets the robot's range_max_m, and reports what was found.
 /// @param log  complete.
-/// @throws SetupError when there is no limit, and no beam has a range.
+/// @throws SetupError when no beam has a range below the limit.
 void mark_no_returns(ImportedLog& log, const RangeLimit& limit, ImportReport& report);
 
 }  // namespace waymark

@@ -6,11 +6,13 @@
 #include "common/log/log_file.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
+#include "common/robot/robot_config.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -61,10 +63,42 @@ void write_log(const ImportedLog& log, const std::filesystem::path& out) {
   writer.close();
 }
 
-void check_robot(const RobotConfig& robot) {
-  Problems problems;
-  robot.check(problems);
-  if (!problems.lines().empty()) throw SetupError{problems.lines().front()};
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    if (::mkdtemp(name_.data()) == nullptr)
+      throw SetupError{"no folder can be made in " + name_ + ": set TMPDIR to where there is room"};
+  }
+
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(name_, ignored);
+  }
+
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::filesystem::path path() const { return name_; }
+
+ private:
+  std::string name_{(std::filesystem::temp_directory_path() / "waymark-import-XXXXXX").string()};
+};
+
+/// Reads the text as slam will.
+/// @throws SetupError with the first problem.
+void check_robot(const std::string& toml) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "robot.toml";
+  write_whole_file(file, toml);
+  try {
+    load_config<RobotOnly>({{file}, {}});
+  } catch (const ConfigError& error) {
+    std::string problem = error.what();
+    problem = problem.substr(0, problem.find('\n'));
+    const std::string where = folder.path().string() + "/";
+    if (problem.starts_with(where)) problem.erase(0, where.size());
+    throw SetupError{"slam would refuse the robot's description: " + problem};
+  }
 }
 
 double longest_range_m(const ImportedLog& log) {
@@ -98,12 +132,13 @@ std::string skipped(const ImportReport& report) {
 
 void write_imported_log(const ImportedLog& log, const ImportReport& report,
                         const std::filesystem::path& out) {
-  check_robot(log.robot);
+  const std::string robot = dump_robot_config(log.robot);
   const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
   std::vector<std::pair<std::filesystem::path, std::string>> beside{
-      {folder / "robot.toml", findings_of(report) + dump_robot_config(log.robot)}};
+      {folder / "robot.toml", findings_of(report) + robot}};
   if (!log.reference.empty()) beside.emplace_back(folder / "reference.tum", to_tum(log.reference));
   try {
+    check_robot(robot);
     check_is_new(out);
     for (const auto& [path, text] : beside)
       check_not_replaced(path, text);

@@ -2,6 +2,7 @@
 #include "import/mbot/foreign_messages.hpp"
 
 #include "common/bytes/big_endian.hpp"
+#include "common/messages/bounds.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
 
@@ -61,10 +62,9 @@ PoseResult read_planar_pose(std::span<const std::uint8_t> payload) {
   return ForeignPose{timestamp_from_us(decoded.message->utime), to_se2(*decoded.message)};
 }
 
-/// Larger coordinates are garbage, and too imprecise as the floats of pose2D_t.
+/// Larger coordinates are garbage.
 bool is_plausible(const Se2& pose) {
-  constexpr double kLargest_m = 1e6;
-  return std::abs(pose.x()) <= kLargest_m && std::abs(pose.y()) <= kLargest_m &&
+  return std::abs(pose.x()) <= bounds::kPosition_m && std::abs(pose.y()) <= bounds::kPosition_m &&
          std::isfinite(pose.theta());
 }
 

@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <ranges>
@@ -151,11 +152,15 @@ void MbotReader::check_channels() {
     log_.contents += fmt::format("{}{} {}", log_.contents.empty() ? "" : ", ", channel, count);
   }
   if (log_.contents.empty()) throw SetupError{"the file holds no LCM event"};
-  for (const std::string& channel : {options_.lidar_channel, options_.odometry_channel,
-                                     options_.encoder_channel, options_.reference_channel}) {
-    if (channel.empty() || events_by_channel_.contains(channel)) continue;
-    throw SetupError{
-        fmt::format("there is no channel {} in the log; it holds {}", channel, log_.contents)};
+  const std::array<std::pair<std::string_view, std::string_view>, 4> wanted{
+      {{"--lidar-channel", options_.lidar_channel},
+       {"--odometry-channel", options_.odometry_channel},
+       {"--encoder-channel", options_.encoder_channel},
+       {"--reference-channel", options_.reference_channel}}};
+  for (const auto& [option, channel] : wanted) {
+    if (channel.empty() || events_by_channel_.contains(std::string{channel})) continue;
+    throw SetupError{fmt::format("there is no channel {} in the log; it holds {}: give {}", channel,
+                                 log_.contents, option)};
   }
 }
 

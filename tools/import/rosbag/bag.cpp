@@ -2,6 +2,9 @@
 #include "import/rosbag/bag.hpp"
 
 #include "common/errors/setup_error.hpp"
+#include "import/rosbag/decompress.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -58,6 +61,10 @@ void read_bag(const std::filesystem::path& file, const TakeRecord& take, ImportR
   if (start.starts_with(kRos1Magic)) return read_ros1_bag(file, take, report);
   if (start.starts_with(kSqliteMagic)) return read_db3_bag(file, take, report);
   if (start.starts_with(kMcapMagic)) return read_mcap_bag(file, take, report);
+  if (is_zstd_frame({reinterpret_cast<const std::uint8_t*>(start.data()), start.size()})) {
+    throw SetupError{fmt::format("{}: is compressed by zstd; unpack it first (unzstd {} -o {})",
+                                 file.string(), file.filename().string(), file.stem().string())};
+  }
   throw SetupError{file.string() +
                    ": is no bag of ROS: neither .bag (version 2.0) nor .db3 nor .mcap"};
 }

@@ -33,11 +33,24 @@ constexpr std::array kPixelKinds{
     PixelKind{"rgb8", CV_8UC3, cv::COLOR_RGB2GRAY},
     PixelKind{"bgra8", CV_8UC4, cv::COLOR_BGRA2GRAY},
     PixelKind{"rgba8", CV_8UC4, cv::COLOR_RGBA2GRAY},
+    PixelKind{"bayer_rggb8", CV_8UC1, cv::COLOR_BayerRGGB2GRAY},
+    PixelKind{"bayer_bggr8", CV_8UC1, cv::COLOR_BayerBGGR2GRAY},
+    PixelKind{"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGBRG2GRAY},
+    PixelKind{"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGRBG2GRAY},
+    PixelKind{"yuv422", CV_8UC2, cv::COLOR_YUV2GRAY_UYVY},
+    PixelKind{"uyvy", CV_8UC2, cv::COLOR_YUV2GRAY_UYVY},
+    PixelKind{"yuv422_yuy2", CV_8UC2, cv::COLOR_YUV2GRAY_YUY2},
+    PixelKind{"yuyv", CV_8UC2, cv::COLOR_YUV2GRAY_YUY2},
 };
 
-std::optional<cv::Mat> grey_of_pixels(const RosImage& image) {
+const PixelKind* kind_of(const RosImage& image) {
   const auto* const kind = std::ranges::find(kPixelKinds, image.format, &PixelKind::name);
-  if (kind == kPixelKinds.end()) return std::nullopt;
+  return kind == kPixelKinds.end() ? nullptr : kind;
+}
+
+std::optional<cv::Mat> grey_of_pixels(const RosImage& image) {
+  const PixelKind* const kind = kind_of(image);
+  if (kind == nullptr) return std::nullopt;
   const std::int64_t needed = std::int64_t{image.width_px} * CV_ELEM_SIZE(kind->type);
   if (needed > image.row_bytes) return std::nullopt;
   if (std::max(image.width_px, image.height_px) > kMaxJpegSide_px) return std::nullopt;
@@ -72,6 +85,10 @@ std::optional<cv::Mat> decoded(const RosImage& image) {
 }
 
 }  // namespace
+
+bool has_known_encoding(const RosImage& image) {
+  return image.width_px == 0 || kind_of(image) != nullptr;
+}
 
 std::optional<image_t> to_camera_message(const RosImage& image, Timestamp time) {
   const auto jpeg_sent = image.width_px == 0 ? read_jpeg_header(image.data) : std::nullopt;

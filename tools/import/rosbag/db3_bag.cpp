@@ -22,8 +22,22 @@ struct Topic {
   bool is_cdr{false};
 };
 
+/// @throws SetupError when messages are still in the write-ahead log of a recorder that was killed:
+/// SQLite cannot read it without writing beside the file.
+void check_is_checkpointed(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path log{file.string() + "-wal"};
+  const auto size = std::filesystem::file_size(log, error);
+  if (error || size == 0) return;
+  throw SetupError{fmt::format(
+      "{}: holds messages that are not in the bag yet, for its recorder was interrupted; move them "
+      "into it (sqlite3 {} 'PRAGMA wal_checkpoint(TRUNCATE)'), perhaps in a copy of both files",
+      log.string(), file.string())};
+}
+
 /// Read-only, and without a lock or a journal beside the file.
 Database open_database(const std::filesystem::path& file) {
+  check_is_checkpointed(file);
   std::string name;
   for (const char c : std::filesystem::absolute(file).string()) {
     const bool is_special = c == '%' || c == '?' || c == '#';

@@ -18,6 +18,28 @@ std::string name_of(const std::string& base_frame) {
   return base_frame.empty() ? "the base" : base_frame;
 }
 
+bool has_projection(const RosCameraInfo& info) {
+  const auto& p = info.projection;
+  return std::ranges::all_of(p, [](double d) { return std::isfinite(d); }) && p[0] > 0.0 &&
+         p[5] > 0.0;
+}
+
+/// Rectified images are those of a pinhole camera with the projection matrix P.
+void describe_pinhole(CameraConfig& camera, const RosCameraInfo& info, ImportReport& report) {
+  const auto& p = info.projection;
+  const bool is_known = has_projection(info);
+  const auto& k = info.camera_matrix;
+  camera.fx_px = is_known ? p[0] : k[0];
+  camera.cx_px = is_known ? p[2] : k[2];
+  camera.fy_px = is_known ? p[5] : k[4];
+  camera.cy_px = is_known ? p[6] : k[5];
+  camera.distortion.assign(kDistortionParameters, 0.0);
+  report.note(is_known ? "the images are rectified: the lens is taken from CameraInfo's P, "
+                         "without distortion"
+                       : "the images are rectified, but CameraInfo has no P: the lens is "
+                         "taken from its K, without distortion; check [robot.camera]");
+}
+
 void describe_lens(CameraConfig& camera, const RosCameraInfo& info, ImportReport& report) {
   const auto& k = info.camera_matrix;
   camera.fx_px = k[0];
@@ -71,17 +93,21 @@ ScanPlane describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
 
 void describe_camera(CameraConfig& camera, const StaticFrames& transforms,
                      const SensorFrames& frames, const std::optional<RosCameraInfo>& info,
-                     const ImportedImage& image, ImportReport& report) {
+                     const ImportedImage& image, Rectified rectified, ImportReport& report) {
   const image_t picture = decode<image_t>(image.message.payload).message.value();
   camera.width_px = picture.width;
   camera.height_px = picture.height;
-  if (!info || info->camera_matrix[0] <= 0.0) {
+  const bool is_known = info && (info->camera_matrix[0] > 0.0 ||
+                                 (rectified == Rectified::kYes && has_projection(*info)));
+  if (!is_known) {
     report.note("no CameraInfo: the camera's focal length is a guess; edit [robot.camera]");
   } else if (info->width_px != picture.width || info->height_px != picture.height) {
     report.note(fmt::format(
         "CameraInfo is of images of {}x{}, but they have {}x{}: the camera's focal length is a "
         "guess; edit [robot.camera]",
         info->width_px, info->height_px, picture.width, picture.height));
+  } else if (rectified == Rectified::kYes) {
+    describe_pinhole(camera, *info, report);
   } else {
     describe_lens(camera, *info, report);
   }

@@ -23,10 +23,13 @@ ScanPlane describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
                          const SensorFrames& frames, const LidarMounting& given,
                          ImportReport& report);
 
+/// Whether the camera's images are as taken, or have been rectified by CameraInfo.
+enum class Rectified { kNo, kYes };
+
 /// Sets lens and mounting of the camera; values that the bag lacks are guessed, with a note.
 /// @param image  an image of the bag, for its size in pixels
 void describe_camera(CameraConfig& camera, const StaticFrames& transforms,
                      const SensorFrames& frames, const std::optional<RosCameraInfo>& info,
-                     const ImportedImage& image, ImportReport& report);
+                     const ImportedImage& image, Rectified rectified, ImportReport& report);
 
 }  // namespace waymark

@@ -165,6 +165,8 @@ std::optional<RosCameraInfo> read_camera_info(const RosRecord& record) {
   info.distortion_model = cursor.text();
   info.distortion = cursor.list<double>();
   info.camera_matrix = cursor.doubles<9>();
+  cursor.doubles<9>();  // rectification
+  info.projection = cursor.doubles<12>();
   const bool is_sane =
       width <= kMaxSide_px && height <= kMaxSide_px &&
       std::ranges::all_of(info.camera_matrix, [](double d) { return std::isfinite(d); }) &&
@@ -175,9 +177,9 @@ std::optional<RosCameraInfo> read_camera_info(const RosRecord& record) {
   return info;
 }
 
-std::optional<std::vector<RosTransform>> read_transforms(const RosRecord& record) {
+std::optional<RosTransforms> read_transforms(const RosRecord& record) {
   RosCursor cursor{record};
-  std::vector<RosTransform> transforms;
+  RosTransforms transforms;
   const auto count = cursor.number<std::uint32_t>();
   for (std::uint32_t i = 0; i < count && cursor.good(); ++i) {
     RosTransform transform;
@@ -185,12 +187,15 @@ std::optional<std::vector<RosTransform>> read_transforms(const RosRecord& record
     transform.child = cursor.text();
     const auto position = cursor.doubles<3>();
     const auto turn = rotation(cursor.doubles<4>());
-    if (!cursor.good() || !turn || !are_finite({position[0], position[1], position[2]}))
-      return std::nullopt;
+    if (!cursor.good()) break;
+    if (!turn || !are_finite({position[0], position[1], position[2]})) {
+      transforms.bad.push_back(std::move(transform.child));
+      continue;
+    }
     transform.parent_from_child.translation() =
         Eigen::Vector3d{position[0], position[1], position[2]};
     transform.parent_from_child.linear() = turn->toRotationMatrix();
-    transforms.push_back(std::move(transform));
+    transforms.good.push_back(std::move(transform));
   }
   if (!cursor.good()) return std::nullopt;
   return transforms;

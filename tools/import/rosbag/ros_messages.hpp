@@ -56,13 +56,20 @@ struct RosCameraInfo {
   std::string distortion_model{};
   std::vector<double> distortion{};
   std::array<double, 9> camera_matrix{};
+  std::array<double, 12> projection{};  ///< of rectified images; may be 0 or not finite
 };
 
-/// One transform of tf2_msgs/TFMessage.
+/// From one frame to another, by a tf2_msgs/TFMessage.
 struct RosTransform {
   std::string parent{};
   std::string child{};
   Eigen::Isometry3d parent_from_child{Eigen::Isometry3d::Identity()};
+};
+
+/// The transforms of a tf2_msgs/TFMessage.
+struct RosTransforms {
+  std::vector<RosTransform> good{};
+  std::vector<std::string> bad{};  ///< child frames of those that are no rotation and translation
 };
 
 /// The decoded message; nothing if its bytes are damaged or its numbers are not finite.
@@ -71,6 +78,6 @@ std::optional<RosOdometry> read_odometry(const RosRecord& record);
 std::optional<RosImage> read_compressed_image(const RosRecord& record);
 std::optional<RosImage> read_image(const RosRecord& record);
 std::optional<RosCameraInfo> read_camera_info(const RosRecord& record);
-std::optional<std::vector<RosTransform>> read_transforms(const RosRecord& record);
+std::optional<RosTransforms> read_transforms(const RosRecord& record);
 
 }  // namespace waymark

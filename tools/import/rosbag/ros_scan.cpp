@@ -4,6 +4,8 @@
 #include "common/messages/codec.hpp"
 #include "common/messages/validate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,13 +46,23 @@ lidar_t rotating_message(const RosScan& scan, Timestamp time, float sense) {
   return message;
 }
 
+LineProblem absurd(RejectReason reason) {
+  return {"absurd scan", std::string{to_string(reason)}};
+}
+
 }  // namespace
 
-std::optional<ImportedScan> to_imported_scan(const RosScan& scan, Timestamp time, std::int64_t at,
-                                             ScanPlane plane) {
+RosScanResult to_imported_scan(const RosScan& scan, Timestamp time, std::int64_t at,
+                               ScanPlane plane) {
   const std::size_t num_beams = scan.ranges_m.size();
   const double sweep_s = std::abs(double{scan.time_increment_s}) * static_cast<double>(num_beams);
-  if (num_beams == 0 || num_beams > kMaxBeams || sweep_s > kLongestSweep_s) return std::nullopt;
+  if (num_beams == 0) return LineProblem{"absurd scan", "no beam"};
+  if (num_beams > kMaxBeams) {
+    return LineProblem{"too many beams",
+                       fmt::format("{}, at most {} are read", num_beams, kMaxBeams)};
+  }
+  if (sweep_s > kLongestSweep_s)
+    return LineProblem{"absurd scan", fmt::format("its beams take {:g} s", sweep_s)};
   std::vector<float> ranges_m;
   ImportedScan imported{.time = time, .last_beam_time = time, .at = at};
   imported.num_beams = static_cast<int>(num_beams);
@@ -64,14 +76,16 @@ std::optional<ImportedScan> to_imported_scan(const RosScan& scan, Timestamp time
     planar_lidar_t message = planar_message(scan, time, sense);
     message.nranges = imported.num_beams;
     message.ranges = std::move(ranges_m);
-    if (validate(message) != RejectReason::kNone) return std::nullopt;
+    const RejectReason reason = validate(message);
+    if (reason != RejectReason::kNone) return absurd(reason);
     imported.message = encode(channels::kLidar, message);
   } else {
     lidar_t message = rotating_message(scan, time, sense);
     message.num_ranges = imported.num_beams;
     message.ranges = std::move(ranges_m);
     imported.last_beam_time = timestamp_from_us(std::ranges::max(message.times));
-    if (validate(message) != RejectReason::kNone) return std::nullopt;
+    const RejectReason reason = validate(message);
+    if (reason != RejectReason::kNone) return absurd(reason);
     imported.message = encode(channels::kMbotLidar, message);
   }
   return imported;

@@ -5,18 +5,20 @@
 #include "import/log/imported_log.hpp"
 #include "import/rosbag/ros_messages.hpp"
 
-#include <optional>
+#include <variant>
 
 namespace waymark {
 
 /// Angles of an upside-down LiDAR count clockwise in the base frame.
 enum class ScanPlane { kUpright, kUpsideDown };
 
+using RosScanResult = std::variant<ImportedScan, LineProblem>;
+
 /// A scan with a time increment keeps the time of each beam (lidar_t); otherwise it becomes a
 /// planar_lidar_t. Ranges follow REP-117: +inf = no return (also from range_max on), NaN = no
 /// measurement (also below range_min, and 0).
-/// @return nothing if the number of beams, angles or duration are impossible for a LiDAR.
-std::optional<ImportedScan> to_imported_scan(const RosScan& scan, Timestamp time, std::int64_t at,
-                                             ScanPlane plane);
+/// @return a problem if the number of beams, angles or duration are impossible for a LiDAR.
+RosScanResult to_imported_scan(const RosScan& scan, Timestamp time, std::int64_t at,
+                               ScanPlane plane);
 
 }  // namespace waymark

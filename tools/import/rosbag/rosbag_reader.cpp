@@ -181,6 +181,10 @@ void RosbagReader::take_image(const RosRecord& record) {
   const auto image = record.type == kImageType ? read_image(record) : read_compressed_image(record);
   if (!image) return skip("bad image message", record);
   const Timestamp time = time_of(image->header, record);
+  if (!has_known_encoding(*image)) {
+    return report_.skip("image of an encoding that is not read", record.at,
+                        fmt::format("{}: '{}'", record.topic, image->format));
+  }
   const auto message = to_camera_message(*image, time);
   if (!message) return skip("image that cannot be decoded", record);
   if (validate(*message) != RejectReason::kNone) return skip("absurd image", record);
@@ -198,17 +202,21 @@ void RosbagReader::take_transforms(const RosRecord& record) {
   const auto transforms = read_transforms(record);
   if (!transforms) return skip("bad transforms", record);
   const bool is_static = record.topic.ends_with("tf_static");
-  for (const RosTransform& transform : *transforms) {
+  for (const std::string& child : transforms->bad) {
+    skip("bad transform of " + child, record);
+  }
+  for (const RosTransform& transform : transforms->good) {
     transforms_.add(transform, is_static ? TransformSource::kStatic : TransformSource::kRepeated);
   }
 }
 
 void RosbagReader::add_scans(ScanPlane plane) {
   for (const HeldScan& held : scans_) {
-    if (auto imported = to_imported_scan(held.scan, held.time, held.at, plane)) {
-      log_.scans.push_back(std::move(*imported));
+    RosScanResult result = to_imported_scan(held.scan, held.time, held.at, plane);
+    if (const auto* problem = std::get_if<LineProblem>(&result)) {
+      report_.skip(problem->kind, held.at, scan_ + ": " + problem->detail);
     } else {
-      report_.skip("absurd scan", held.at, scan_);
+      log_.scans.push_back(std::move(std::get<ImportedScan>(result)));
     }
   }
 }
@@ -252,7 +260,9 @@ ImportedLog RosbagReader::finish() {
   robot.lidar.range_min_m = std::max(0.0, upper_median(std::move(shortest_m)));
   mark_no_returns(log_, {options_.range_max_m, usual_range_max_m()}, report_);
   if (!log_.images.empty()) {
-    describe_camera(robot.camera, transforms_, frames_, info_, log_.images.front(), report_);
+    const bool is_rectified = image_.find("image_rect") != std::string::npos;
+    describe_camera(robot.camera, transforms_, frames_, info_, log_.images.front(),
+                    is_rectified ? Rectified::kYes : Rectified::kNo, report_);
   }
   return std::move(log_);
 }

@@ -106,9 +106,18 @@ TEST(CarmenLine, ParametersSayWhereTheLidarsAreMounted) {
 }
 
 TEST(CarmenLine, OtherSensorsCommentsAndBlankLinesAreIgnored) {
-  for (const char* line :
-       {"", "  \r", "# FLASER", "PARAM a b c", "NMEAGGA 1 2", "PARAM robot_frontlaser_use yes"})
+  for (const char* line : {"", "  \r", "# FLASER", "  # FLASER", "PARAM a b c", "NMEAGGA 1 2",
+                           "PARAM robot_frontlaser_use yes"})
     parse<CarmenOther>(line);
+}
+
+TEST(CarmenLine, KeywordsOfFurtherLidarsAndOfArmsAreKnown) {
+  for (const char* keyword : {"ROBOTLASER3", "ROBOTLASER4", "ROBOTLASER5", "ARM"})
+    EXPECT_EQ(parse<CarmenOther>(std::string{keyword} + " 0 1 2").keyword, keyword);
+}
+
+TEST(CarmenLine, UtmCoordinatesAreRead) {
+  EXPECT_EQ(parse<CarmenOdometry>("ODOM 500000 5400000 0 0 0 0 1 h 1").odom_from_base.y(), 5.4e6);
 }
 
 struct BadLine {

@@ -134,7 +134,9 @@ TEST(CarmenReader, ACorrectedLogHasNoMounting) {
 }
 
 std::string scan_line(int num_beams, double time_s, double logger_time_s = 0.0) {
-  const std::vector<double> ranges_m(static_cast<std::size_t>(num_beams), 2.0);
+  std::vector<double> ranges_m;
+  for (int i = 0; i < num_beams; ++i)
+    ranges_m.push_back(i % 2 == 0 ? 2.0 : 1.95);  // equal ones would be a code for "no return"
   return fmt::format("FLASER {} {} 0 0 0 0 0 0 {:.6f} host {:.6f}\n", num_beams,
                      fmt::join(ranges_m, " "), time_s, logger_time_s);
 }

@@ -5,6 +5,7 @@
 #include "import_files.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@
 namespace waymark {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -158,6 +160,76 @@ TEST(OddLines, OdometryIsThatOfTheOdomLinesWhereTheScansHaveNone) {
   EXPECT_THAT(read.report.notes(), Contains(HasSubstr("ODOM lines does: the latter is taken")));
   const auto laser = read_lines(text, {.odometry = CarmenOdometrySource::kLaserLines});
   EXPECT_EQ(path_length_m(laser.log.odometry), 0.0);
+}
+
+TEST(OddLines, OdomLinesThatAreAskedForAndNotThereAreAnError) {
+  const CarmenOptions odom{.odometry = CarmenOdometrySource::kOdomLines};
+  const auto no_odom = ThrowsMessage<SetupError>(HasSubstr("the log has no ODOM line"));
+  const std::string scans = forty([](int, Line&) {});
+  EXPECT_THAT([&] { read_lines(scans, odom); }, no_odom);
+  EXPECT_THAT([&] { read_lines(scans + "ODOM 9 0 0 0 0 0\n", odom); }, no_odom);
+
+  const auto read = read_lines(scans + "ODOM 9 0 0 0 0 0\nODOM 9 0 0 0 0 0\n");
+  EXPECT_THAT(read.report.notes(),
+              Contains(HasSubstr("2 ODOM lines have no times, the first is line 41")));
+}
+
+/// Scans of a corridor 1.8 m wide, in whole centimetres.
+std::string corridor_in_cm(const std::string& start, const std::string& end) {
+  std::string text;
+  for (int i = 0; i < 40; ++i)
+    text +=
+        fmt::format("{} 90 95 110 8191 {} {} 0 0 {} 0 0{} {:.1f} h {:.1f}\n", start, end, 0.1 * i,
+                    0.1 * i, end.empty() ? "" : " 0 0 0 0 0", 100.0 + 0.2 * i, 0.2 * i);
+  return text;
+}
+
+TEST(OddLines, WholeNumbersThatAreShortAsCentimetresAreRefusedToo) {
+  EXPECT_THAT([] { read_lines(corridor_in_cm("FLASER 4", "")); },
+              ThrowsMessage<SetupError>(
+                  AllOf(HasSubstr("whole numbers, up to 8191"), HasSubstr("--range-unit"))));
+  EXPECT_THAT(read_lines(corridor_in_cm("FLASER 4", ""), {.range_unit_m = 0.01}).log.scans,
+              SizeIs(40));
+}
+
+TEST(OddLines, TheMaximumRangeHasTheRangesUnitUnlessItWouldBeTooShort) {
+  for (const char* limit : {"4000", "40"}) {
+    const std::string text =
+        corridor_in_cm(fmt::format("ROBOTLASER1 0 -1 1.5 0.5 {} 0 0 4", limit), "0");
+    const auto read = read_lines(text, {.range_unit_m = 0.01});
+    EXPECT_NEAR(read.log.robot.lidar.range_max_m, 40.0, 1e-9) << limit;
+  }
+}
+
+TEST(OddLines, EachNumberOfBeamsHasItsOwnAngles) {
+  std::string text;
+  for (int i = 0; i < 30; ++i) {
+    const int num_beams = i % 3 == 0 ? 361 : i % 3 == 1 ? 181 : 180;
+    std::vector<double> ranges_m;
+    for (int beam = 0; beam < num_beams; ++beam)
+      ranges_m.push_back(beam % 2 == 0 ? 2.0 : 1.95);
+    text += fmt::format("FLASER {} {} {} 0 0 {} 0 0 {} h {}\n", num_beams, fmt::join(ranges_m, " "),
+                        0.1 * i, 0.1 * i, 1.0 + i, i);
+  }
+  ImportReport report{"log.clf", AddressUnit::kLine};
+  const ImportedLog log = read_carmen_log(write_file("log.clf", text), {}, report);
+  ASSERT_THAT(log.scans, SizeIs(30));
+  EXPECT_NEAR(degrees(scan_of(log.scans[0]).angles_rad.back()), 90.0, 1e-3) << "361 beams";
+  EXPECT_NEAR(degrees(scan_of(log.scans[1]).angles_rad.back()), 90.0, 1e-3) << "181 beams";
+  EXPECT_NEAR(degrees(scan_of(log.scans[2]).angles_rad.back()), 89.0, 1e-3) << "180 beams";
+}
+
+TEST(OddLines, ForRawLinesOfAnyLidarThereIsAdvice) {
+  EXPECT_THAT([] { read_lines("RAWLASER3 0 0\n"); },
+              ThrowsMessage<SetupError>(HasSubstr("write them as ROBOTLASER1")));
+}
+
+TEST(OddLines, AFolderIsNamedAsSuch) {
+  ImportReport report{"log", AddressUnit::kLine};
+  EXPECT_THAT([&] { read_carmen_log(test_folder(), {}, report); },
+              ThrowsMessage<SetupError>(HasSubstr("is a folder")));
+  EXPECT_THAT([&] { read_carmen_log("/dev/null", {}, report); },
+              ThrowsMessage<SetupError>(HasSubstr("is no regular file")));
 }
 
 TEST(OddLines, ArchivesAreNamedWithWhatUnpacksThem) {

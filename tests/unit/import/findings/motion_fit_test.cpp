@@ -71,6 +71,30 @@ TEST(MotionFit, ALidarThatIsTurnedByFiveDegreesIsNamedWithItsYaw) {
   EXPECT_THAT(what_is_found(log), Contains(HasSubstr("further to the left than described")));
 }
 
+TEST(MotionFit, ScansThatDoNotOverlapShowNoYaw) {
+  ImportedLog log = long_drive();
+  edit_ranges(log, [](float, std::size_t) { return std::numeric_limits<float>::infinity(); });
+
+  EXPECT_FALSE(lidar_yaw_error(log, {}));
+  EXPECT_THAT(what_is_found(log), Not(Contains(HasSubstr("further to the"))));
+}
+
+TEST(MotionFit, OdometryInAMapGridStartsAtTheOrigin) {
+  ImportedLog log = long_drive();
+  for (ImportedPose& sample : log.odometry)
+    sample.pose = Se2{500'000.0, 5'400'000.0, 0.0} * sample.pose;
+  const Se2 motion = log.odometry.front().pose.inverse() * log.odometry.back().pose;
+  ImportReport report{"log", AddressUnit::kLine};
+
+  examine(log, ReversedOdometry::kReport, report);
+
+  EXPECT_EQ(log.odometry.front().pose.translation().norm(), 0.0);
+  EXPECT_NEAR((log.odometry.front().pose.inverse() * log.odometry.back().pose).x(), motion.x(),
+              1e-6);
+  EXPECT_THAT(report.notes(), Contains(HasSubstr("shifted to start at (0, 0)")));
+  EXPECT_THAT(what_is_found(long_drive()), Not(Contains(HasSubstr("shifted"))));
+}
+
 TEST(MotionFit, ALidarWhoseBeamsCountTheOtherWayIsNamed) {
   ImportedLog log = drive(to_and_fro_turning(), CountedAs::kDriven);
   EXPECT_THAT(what_is_found(log), Not(Contains(HasSubstr("the other way round"))));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/findings/no_return.hpp"
 
+#include "common/errors/setup_error.hpp"
 #include "common/messages/convert.hpp"
 #include "synthetic_log.hpp"
 
@@ -12,10 +13,12 @@
 namespace waymark {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::FloatEq;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
 
 /// Scans of a hall of 60 m x 45 m from places all over it. What is further than `reach_m`, and one
 /// beam of fifty at random, has no return: `code(random)`.
@@ -156,6 +159,20 @@ TEST(NoReturn, WithoutALimitTheLongestRangeIsUsed) {
   EXPECT_GT(longest_m, 3.0);
   EXPECT_EQ(log.robot.lidar.range_max_m, longest_m);
   EXPECT_THAT(report.notes(), ElementsAre(HasSubstr("written as the maximum")));
+}
+
+TEST(NoReturn, ALogOfWhichNoRangeIsLeftIsRefused) {
+  ImportedLog log = drive(to_and_fro(), CountedAs::kDriven);
+  edit_ranges(log, [](float range_m, std::size_t) { return 100.0F + 100.0F * range_m; });
+  ImportReport report{"log", AddressUnit::kLine};
+
+  EXPECT_THAT(
+      [&] {
+        mark_no_returns(log, {std::nullopt, 81.83}, report);
+      },
+      ThrowsMessage<SetupError>(AllOf(HasSubstr("no range is left"),
+                                      HasSubstr("are 81.83 m or longer"), HasSubstr("--range-unit"),
+                                      HasSubstr("--max-range-m"))));
 }
 
 TEST(NoReturn, ARotatingLidarsCodeIsZeroAndOtherScansAreUnchanged) {

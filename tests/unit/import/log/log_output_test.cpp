@@ -86,6 +86,18 @@ TEST(LogOutput, AnInvalidRobotDescriptionIsRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(LogOutput, WhatSlamWouldRefuseInRobotTomlIsRefused) {
+  ImportReport report{"small.clf", AddressUnit::kLine};
+  ImportedLog log = small_log(report);
+  log.robot.lidar.x_m = 7.0;
+  const auto out = test_folder() / "never.lcm";
+
+  EXPECT_THAT([&] { write_imported_log(log, report, out); },
+              ::testing::ThrowsMessage<SetupError>(
+                  ::testing::AllOf(HasSubstr("robot.toml:"), HasSubstr("robot.lidar.x_m: got 7"))));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST(LogOutput, AnotherRobotsFileBesideTheLogIsNotReplaced) {
   ImportReport report{"small.clf", AddressUnit::kLine};
   ImportedLog log = small_log(report);

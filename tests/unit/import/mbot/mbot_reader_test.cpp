@@ -306,7 +306,8 @@ TEST(MbotReader, AChannelThatIsNotThereIsAUsageError) {
     read({ticks_event(kStart_us, 0, 0)}, options);
     ADD_FAILURE() << "a log without the channel was accepted";
   } catch (const SetupError& error) {
-    EXPECT_STREQ(error.what(), "there is no channel LASER in the log; it holds TICKS 1");
+    EXPECT_STREQ(error.what(),
+                 "there is no channel LASER in the log; it holds TICKS 1: give --lidar-channel");
   }
   EXPECT_THROW(read({}, encoder_options()), SetupError) << "an empty log";
   MbotOptions both = encoder_options();
