@@ -123,6 +123,8 @@ Command add_mbot(Command& app, Options& options) {
   mbot.add_option("--encoder-channel", chosen.encoder_channel,
                   "left and right encoder ticks of a MAEBot (default, without --odometry-channel: "
                   "the only channel with ticks)");
+  mbot.add_option("--camera-channel", chosen.camera_channel,
+                  "image_t (default: CAMERA, if the log has such images)");
   mbot.add_option("--reference-channel", chosen.reference_channel,
                   "poses to write as reference.tum, types as for --odometry-channel");
   mbot.add_option("--meters-per-tick", chosen.meters_per_tick,

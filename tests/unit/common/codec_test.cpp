@@ -330,6 +330,15 @@ TEST(Codec, TilesBeyondTheLargestMapIndexAreRefused) {
   }
 }
 
+TEST(Convert, APlanarScanHasAnAngleForEachRange) {
+  planar_lidar_t m{};
+  m.nranges = 3;
+  m.ranges = {1.0F, 2.0F, 3.0F};
+  m.rad0 = -0.5F;
+  m.radstep = 0.25F;
+  EXPECT_EQ(to_scan(m).angles_rad, (std::vector<double>{-0.5, -0.25, 0.0}));
+}
+
 TEST(Convert, AnMbotScansAnglesAreNegatedAndItsZeroRangesAreNoReturns) {
   lidar_t m{};
   m.utime = 100;

@@ -2,10 +2,13 @@
 #include "import/mbot/clocks.hpp"
 
 #include "common/geometry/median.hpp"
+#include "common/messages/channels.hpp"
+#include "common/messages/codec.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace waymark {
 namespace {
@@ -13,6 +16,20 @@ namespace {
 constexpr Duration kSameClock = std::chrono::seconds{1};
 constexpr std::int64_t kLatest_us = 4'000'000'000'000'000;  // year 2096: later stamps are garbage
 constexpr double kComparable = 0.5;  // least ratio of the spans by the two clocks
+
+/// By which the other's stamps are to be shifted; none, or with a note.
+std::optional<Duration> shift_of(const ChannelClock& lidar, const ChannelClock& other,
+                                 std::string_view name, ImportReport& report) {
+  if (lidar.empty() || other.empty() || !lidar.is_comparable() || !other.is_comparable())
+    return std::nullopt;
+  const Duration shift = other.logger_ahead() - lidar.logger_ahead();
+  if (shift > -kSameClock && shift < kSameClock) return std::nullopt;
+  report.note(fmt::format(
+      "stamps of {} are of another clock than the LiDAR's, {:.3f} s apart by the logger's times: "
+      "put onto the LiDAR's; only as exact as the logger",
+      name, to_seconds(shift)));
+  return shift;
+}
 
 }  // namespace
 
@@ -41,17 +58,25 @@ bool ChannelClock::is_comparable() const {
 
 void put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::string_view name,
                   std::vector<ImportedPose>& poses, ImportReport& report) {
-  if (lidar.empty() || other.empty() || !lidar.is_comparable() || !other.is_comparable()) return;
-  const Duration shift = other.logger_ahead() - lidar.logger_ahead();
-  if (shift > -kSameClock && shift < kSameClock) return;
+  const auto shift = shift_of(lidar, other, name, report);
+  if (!shift) return;
   // A stamp that would become negative is garbage: left as it is, to be removed as out of order.
   for (ImportedPose& pose : poses) {
-    if (to_us(pose.time + shift) >= 0) pose.time += shift;
+    if (to_us(pose.time + *shift) >= 0) pose.time += *shift;
   }
-  report.note(fmt::format(
-      "stamps of {} are of another clock than the LiDAR's, {:.3f} s apart by the logger's times: "
-      "put onto the LiDAR's; only as exact as the logger",
-      name, to_seconds(shift)));
+}
+
+void put_on_clock(const ChannelClock& lidar, const ChannelClock& camera,
+                  std::vector<ImportedImage>& images, ImportReport& report) {
+  const auto shift = shift_of(lidar, camera, "images", report);
+  if (!shift) return;
+  for (ImportedImage& image : images) {
+    if (to_us(image.time + *shift) < 0) continue;
+    image.time += *shift;
+    image_t message = *decode<image_t>(image.message.payload).message;
+    message.utime = to_us(image.time);
+    image.message = encode(channels::kCamera, message);
+  }
 }
 
 }  // namespace waymark

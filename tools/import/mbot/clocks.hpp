@@ -34,4 +34,8 @@ class ChannelClock {
 void put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::string_view name,
                   std::vector<ImportedPose>& poses, ImportReport& report);
 
+/// The same for images.
+void put_on_clock(const ChannelClock& lidar, const ChannelClock& camera,
+                  std::vector<ImportedImage>& images, ImportReport& report);
+
 }  // namespace waymark

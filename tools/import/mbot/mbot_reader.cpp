@@ -46,6 +46,8 @@ class MbotReader {
   void take_pose(const Message& event, std::int64_t at, std::vector<ImportedPose>& poses,
                  ChannelClock& clock);
   void take_encoders(const Message& event, std::int64_t at);
+  void take_image(const Message& event, std::int64_t at);
+  void describe_camera();
   bool ranges_are_good(std::span<const float> ranges, const std::string& channel, std::int64_t at);
 
   void skip(const LineProblem& problem, const std::string& channel, std::int64_t at) {
@@ -59,6 +61,8 @@ class MbotReader {
   ChannelClock lidar_clock_{};
   ChannelClock odometry_clock_{};
   ChannelClock reference_clock_{};
+  ChannelClock camera_clock_{};
+  std::int64_t num_foreign_images_{0};  ///< of another type, on CAMERA
   bool has_planar_scans_{false};
   std::map<std::string, std::int64_t> events_by_channel_{};
 };
@@ -69,6 +73,9 @@ void MbotReader::take(const Message& event, std::int64_t at) {
   if (event.channel == options_.odometry_channel)
     take_pose(event, at, log_.odometry, odometry_clock_);
   if (event.channel == options_.encoder_channel) take_encoders(event, at);
+  if (event.channel == (options_.camera_channel.empty() ? std::string{channels::kCamera.name}
+                                                        : options_.camera_channel))
+    take_image(event, at);
   if (event.channel == options_.reference_channel)
     take_pose(event, at, log_.reference, reference_clock_);
 }
@@ -147,13 +154,43 @@ void MbotReader::take_encoders(const Message& event, std::int64_t at) {
   odometry_clock_.add(ticks_.back().time, event.time);
 }
 
+void MbotReader::take_image(const Message& event, std::int64_t at) {
+  if (fingerprint_of(event.payload) != image_t::getHash()) {
+    if (!options_.camera_channel.empty())
+      return skip(unknown_type(event.payload), event.channel, at);
+    ++num_foreign_images_;
+    return;
+  }
+  const Decoded<image_t> decoded = decode<image_t>(event.payload);
+  if (!decoded.message)
+    return skip({"bad image message", std::string{to_string(decoded.reason)}}, event.channel, at);
+  const Timestamp time = timestamp_from_us(decoded.message->utime);
+  camera_clock_.add(time, event.time);
+  log_.images.push_back({time, at, encode(channels::kCamera, *decoded.message)});
+}
+
+void MbotReader::describe_camera() {
+  if (num_foreign_images_ > 0) {
+    report_.note(fmt::format("{} messages of {} are no image_t: they are not taken over",
+                             num_foreign_images_, channels::kCamera.name));
+  }
+  if (log_.images.empty()) return;
+  const auto image = decode<image_t>(log_.images.front().message.payload).message;
+  log_.robot.camera.width_px = image->width;
+  log_.robot.camera.height_px = image->height;
+  report_.note(
+      "the log does not say what lens the camera has, nor where it sits: [robot.camera] in "
+      "robot.toml has the values of another one; put yours there (docs/robot.md)");
+}
+
 void MbotReader::check_channels() {
   for (const auto& [channel, count] : events_by_channel_) {
     log_.contents += fmt::format("{}{} {}", log_.contents.empty() ? "" : ", ", channel, count);
   }
   if (log_.contents.empty()) throw SetupError{"the file holds no LCM event"};
-  const std::array<std::pair<std::string_view, std::string_view>, 4> wanted{
+  const std::array<std::pair<std::string_view, std::string_view>, 5> wanted{
       {{"--lidar-channel", options_.lidar_channel},
+       {"--camera-channel", options_.camera_channel},
        {"--odometry-channel", options_.odometry_channel},
        {"--encoder-channel", options_.encoder_channel},
        {"--reference-channel", options_.reference_channel}}};
@@ -192,6 +229,8 @@ ImportedLog MbotReader::finish() {
   apply_ticks();
   put_on_clock(lidar_clock_, odometry_clock_, "odometry", log_.odometry, report_);
   put_on_clock(lidar_clock_, reference_clock_, "reference", log_.reference, report_);
+  put_on_clock(lidar_clock_, camera_clock_, log_.images, report_);
+  describe_camera();
   // Turns of a rotating LiDAR (lidar_t) differ by a few beams; planar_lidar_t scans do not.
   if (has_planar_scans_) keep_usual_beam_count(log_.scans, report_);
   LidarConfig& lidar = log_.robot.lidar;

@@ -299,6 +299,64 @@ TEST(MbotReader, OdometryOfAnotherClockIsShiftedToTheLidarsClock) {
   EXPECT_THAT(report.notes(), Contains(HasSubstr("of another clock than the LiDAR's")));
 }
 
+Message image_event(const std::string& channel, std::int64_t utime_us) {
+  image_t image{};
+  image.utime = utime_us;
+  image.width = 320;
+  image.height = 240;
+  image.row_stride = 320;
+  image.pixelformat = image_t::PIXEL_FORMAT_GRAY;
+  image.size = 320 * 240;
+  image.data.assign(320 * 240, 7);
+  return event(channel, encode(channels::kCamera, image).payload);
+}
+
+TEST(MbotReader, ImagesAreTakenOver) {
+  const std::vector<Message> drive{ticks_event(kStart_us, 0, 0), rotating_event(kStart_us + 1000),
+                                   ticks_event(kStart_us + 500'000, 200, 200)};
+  for (const std::string channel : {"CAMERA", "FRONT"}) {
+    std::vector<Message> events = drive;
+    events.push_back(image_event(channel, kStart_us + 2000));
+    MbotOptions options = encoder_options();
+    if (channel != "CAMERA") options.camera_channel = channel;
+    const auto [log, report] = read(events, options);
+
+    ASSERT_THAT(log.images, SizeIs(1)) << channel;
+    EXPECT_EQ(log.images[0].message.channel, "CAMERA");
+    EXPECT_EQ(log.images[0].message.time, timestamp_from_us(kStart_us + 2000));
+    EXPECT_EQ(log.images[0].message.payload, events.back().payload);
+    EXPECT_EQ(log.robot.camera.width_px, 320);
+    EXPECT_THAT(report.notes(), Contains(HasSubstr("[robot.camera]")));
+  }
+}
+
+TEST(MbotReader, ImagesOfAnotherClockAreShiftedToTheLidarsClock) {
+  std::vector<Message> events;
+  for (int i = 0; i < 10; ++i) {
+    events.push_back(rotating_event(kStart_us + 200'000 * i));
+    events.push_back(ticks_event(kStart_us + 200'000 * i, i, i));
+    events.push_back(image_event("CAMERA", 77 + 200'000 * i));
+    for (std::size_t k = events.size() - 3; k < events.size(); ++k)
+      events[k].time = timestamp_from_us(9'000'000 + 200'000 * i);
+  }
+  const auto [log, report] = read(events, encoder_options());
+
+  ASSERT_THAT(log.images, SizeIs(10));
+  EXPECT_EQ(log.images[3].time, log.scans[3].time);
+  EXPECT_EQ(decode<image_t>(log.images[3].message.payload).message->utime, kStart_us + 200'000 * 3);
+  EXPECT_THAT(report.notes(), Contains(HasSubstr("stamps of images are of another clock")));
+}
+
+TEST(MbotReader, OtherMessagesOnCameraAreNoted) {
+  const auto [log, report] =
+      read({ticks_event(kStart_us, 0, 0), rotating_event(kStart_us + 1000),
+            ticks_event(kStart_us + 500'000, 200, 200), pose_event("CAMERA", kStart_us, 0.0)},
+           encoder_options());
+  EXPECT_THAT(log.images, SizeIs(0));
+  EXPECT_EQ(report.num_skipped(), 0);
+  EXPECT_THAT(report.notes(), Contains(HasSubstr("1 messages of CAMERA are no image_t")));
+}
+
 TEST(MbotReader, AChannelThatIsNotThereIsAUsageError) {
   MbotOptions options = encoder_options();
   options.lidar_channel = "LASER";
