@@ -247,6 +247,8 @@ void Problems::add(const std::string& key, const std::string& problem) {
 std::vector<std::string> config_detail::read(const ConfigSources& sources, const Describe& describe,
                                              Locations& locations) {
   ReadLog log;
+  for (const auto& [name, text] : sources.texts)
+    read_toml_text(text, name, describe, log);
   for (const auto& file : sources.files)
     read_toml_file(file, describe, log);
   for (const auto& text : sources.overrides)

@@ -21,11 +21,12 @@ class ConfigError : public std::runtime_error {
   explicit ConfigError(const std::vector<std::string>& problems);
 };
 
-/// Where a configuration comes from: later files win over earlier ones, overrides over all files,
-/// and both over the defaults.
+/// Where a configuration comes from: files win over texts, later files over earlier ones, overrides
+/// over all files, and all of them over the defaults.
 struct ConfigSources {
   std::vector<std::filesystem::path> files{};
   std::vector<std::string> overrides{};  ///< "key.subkey=value", value as in TOML or a bare word
+  std::map<std::string, std::string> texts{};  ///< TOML, by the file's name for messages
 };
 
 namespace config_detail {

@@ -308,11 +308,17 @@ void read_toml_file(const std::filesystem::path& file, const std::function<void(
       log.problems.push_back(fmt::format("{}: cannot be read: {}", file.string(), why_not(file)));
     return;
   }
+  read_toml_text(text.str(), file.string(), describe, log, unknown_keys);
+}
+
+void read_toml_text(const std::string& text, const std::string& name,
+                    const std::function<void(Fields&)>& describe, ReadLog& log,
+                    UnknownKeys unknown_keys) {
   try {
-    read_table(toml::parse(text.str(), file.string()), file.string(), describe, log, unknown_keys);
+    read_table(toml::parse(text, name), name, describe, log, unknown_keys);
   } catch (const toml::parse_error& error) {
-    log.problems.push_back(fmt::format("{}:{}: not TOML: {}", file.string(),
-                                       error.source().begin.line, described(error)));
+    log.problems.push_back(
+        fmt::format("{}:{}: not TOML: {}", name, error.source().begin.line, described(error)));
   }
 }
 

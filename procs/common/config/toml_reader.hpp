@@ -27,6 +27,12 @@ struct ReadLog {
 void read_toml_file(const std::filesystem::path& file, const std::function<void(Fields&)>& describe,
                     ReadLog& log, UnknownKeys unknown_keys = UnknownKeys::kProblem);
 
+/// The same for the text of a file.
+/// @param name  of the file, for messages.
+void read_toml_text(const std::string& text, const std::string& name,
+                    const std::function<void(Fields&)>& describe, ReadLog& log,
+                    UnknownKeys unknown_keys = UnknownKeys::kProblem);
+
 /// Sets the field that one `key.subkey=value` of the command line names.
 void read_toml_override(const std::string& text, const std::function<void(Fields&)>& describe,
                         ReadLog& log);

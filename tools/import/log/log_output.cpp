@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -63,41 +62,15 @@ void write_log(const ImportedLog& log, const std::filesystem::path& out) {
   writer.close();
 }
 
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    if (::mkdtemp(name_.data()) == nullptr)
-      throw SetupError{"no folder can be made in " + name_ + ": set TMPDIR to where there is room"};
-  }
-
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(name_, ignored);
-  }
-
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::filesystem::path path() const { return name_; }
-
- private:
-  std::string name_{(std::filesystem::temp_directory_path() / "waymark-import-XXXXXX").string()};
-};
-
 /// Reads the text as slam will.
 /// @throws SetupError with the first problem.
 void check_robot(const std::string& toml) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "robot.toml";
-  write_whole_file(file, toml);
   try {
-    load_config<RobotOnly>({{file}, {}});
+    load_config<RobotOnly>({.texts = {{"robot.toml", toml}}});
   } catch (const ConfigError& error) {
-    std::string problem = error.what();
-    problem = problem.substr(0, problem.find('\n'));
-    const std::string where = folder.path().string() + "/";
-    if (problem.starts_with(where)) problem.erase(0, where.size());
-    throw SetupError{"slam would refuse the robot's description: " + problem};
+    const std::string problems = error.what();
+    throw SetupError{"slam would refuse the robot's description: " +
+                     problems.substr(0, problems.find('\n'))};
   }
 }
 
