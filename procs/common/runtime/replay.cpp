@@ -124,19 +124,25 @@ bool report_useless(const std::vector<Source>& sources,
   return any;
 }
 
+/// Channels that occur in the logs.
+std::set<std::string, std::less<>> channels_held(const std::vector<Source>& sources) {
+  std::set<std::string, std::less<>> held;
+  for (const Source& source : sources)
+    held.insert(source.all_channels.begin(), source.all_channels.end());
+  return held;
+}
+
 /// Reports each needed channel that no log has, with the channels that the logs do have.
 /// @return whether there is any.
 bool report_missing(const std::vector<Source>& sources,
                     const std::vector<std::string_view>& needed) {
-  std::set<std::string> held;
+  const auto held = channels_held(sources);
   std::vector<std::string> names;
-  for (const Source& source : sources) {
-    held.insert(source.all_channels.begin(), source.all_channels.end());
+  for (const Source& source : sources)
     names.push_back(source.path.string());
-  }
   bool any = false;
   for (const std::string_view channel : needed) {
-    if (held.empty() || held.contains(std::string{channel})) continue;
+    if (held.empty() || held.contains(channel)) continue;
     any = true;
     logging::error(
         "{}: has no {}, but {}: did the driver run while it was recorded? Where the channel has "
@@ -153,13 +159,9 @@ bool has_only_images(const std::vector<Source>& sources,
     return std::ranges::find(subscriptions, channel, &Inbox::Subscription::channel) !=
            subscriptions.end();
   };
-  const auto is_held = [&](std::string_view channel) {
-    return std::ranges::any_of(sources, [channel](const Source& source) {
-      return std::ranges::find(source.all_channels, channel) != source.all_channels.end();
-    });
-  };
+  const auto held = channels_held(sources);
   return is_wanted(channels::kMarkers.name) && !is_wanted(channels::kCamera.name) &&
-         is_held(channels::kCamera.name) && !is_held(channels::kMarkers.name);
+         held.contains(channels::kCamera.name) && !held.contains(channels::kMarkers.name);
 }
 
 }  // namespace

@@ -148,6 +148,7 @@ Building draw_maze(Random& random) {
   constexpr double kRoom_m = 1.4;
   constexpr double kThin_m = 0.05;
   constexpr double kMoreDoors = 0.15;  // share of the walls left
+  constexpr double kTries = 40.0;      // to open a wall, for each room
   const double side_m = kRooms * kRoom_m;
   Building maze{side_m + 2.0, side_m + 2.0};
   const auto corner = [&](int column, int row) {
@@ -160,22 +161,20 @@ Building draw_maze(Random& random) {
     const Vector2d low = corner(i % kRooms, i / kRooms);
     maze.carve(low, low + room);
   }
+  const auto part_of = [&](int number) {
+    return part[static_cast<std::size_t>(number)];
+  };
   const auto open = [&](int from, int to) {
     const Vector2d low = corner(from % kRooms, from / kRooms);
     maze.carve(low, corner(to % kRooms, to / kRooms) + room);
-    const int old = part[static_cast<std::size_t>(to)];
-    std::replace(part.begin(), part.end(), old, part[static_cast<std::size_t>(from)]);
+    std::replace(part.begin(), part.end(), part_of(to), part_of(from));
   };
-  const auto index = [](int number) {
-    return static_cast<std::size_t>(number);
-  };
-  for (int i = 0; i < 40 * kRooms * kRooms; ++i) {
+  for (int i = 0; i < kTries * kRooms * kRooms; ++i) {
     const int from = static_cast<int>(random.uniform(0.0, kRooms * kRooms));
     const bool across = random.uniform() < 0.5;
     const int to = from + (across ? 1 : kRooms);
     if ((across && to % kRooms == 0) || to >= kRooms * kRooms) continue;
-    if (part[index(from)] != part[index(to)] || random.uniform() < kMoreDoors / 40.0)
-      open(from, to);
+    if (part_of(from) != part_of(to) || random.uniform() < kMoreDoors / kTries) open(from, to);
   }
   return maze;
 }

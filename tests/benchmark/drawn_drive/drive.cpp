@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drawn_drive/drive.hpp"
 
+#include "common/geometry/angle.hpp"
 #include "common/geometry/squared.hpp"
 
 #include <algorithm>
@@ -86,7 +87,7 @@ void Drive::walk(Vector2d& person) {
 
 void Drive::write_scan(fmt::ostream& log, double time_s) {
   const Se2& pose = robot_.pose();
-  const double view_rad = options_.view_deg * std::numbers::pi / 180.0;
+  const double view_rad = radians(options_.view_deg);
   // The old format has no angles: 181 and 361 beams are over 180 degrees.
   const bool is_old =
       options_.view_deg == 180.0 && (options_.beams == 181 || options_.beams == 361);

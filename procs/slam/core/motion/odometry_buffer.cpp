@@ -13,6 +13,10 @@ bool is_other(const Se2& a, const Se2& b) {
   return a.translation() != b.translation() || a.theta() != b.theta();
 }
 
+bool is_at_origin(const Se2& odom_from_base) {
+  return !is_other(odom_from_base, Se2{});
+}
+
 }  // namespace
 
 OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample& sample) {
@@ -40,7 +44,7 @@ OdometryBuffer::Outcome OdometryBuffer::add_newer(const OdometrySample& sample) 
   const double most_m = (has_stood ? kMaxDrive_m_s : kMaxSpeed_m_s) * elapsed_s;
   const double most_rad = (has_stood ? kMaxDrive_rad_s : kMaxTurnRate_rad_s) * elapsed_s;
   const bool is_reset =
-      !is_other(sample.odom_from_base, Se2{}) &&
+      is_at_origin(sample.odom_from_base) &&
       (step.translation().norm() > kReset_m || std::abs(step.theta()) > kReset_rad);
   const bool jumps =
       is_reset || !(step.translation().norm() <= most_m) || !(std::abs(step.theta()) <= most_rad);
@@ -68,7 +72,7 @@ OdometryBuffer::Outcome OdometryBuffer::resolve_jump(const OdometrySample& sampl
   jump_.reset();
   const Se2 since = jump.before.odom_from_base.inverse() * sample.odom_from_base;
   const double elapsed_s = to_seconds(sample.time - jump.before.time);
-  const bool went_on = is_other(jump.begin, Se2{}) &&
+  const bool went_on = !is_at_origin(jump.begin) &&
                        since.translation().norm() <= kMaxDrive_m_s * elapsed_s &&
                        std::abs(since.theta()) <= kMaxDrive_rad_s * elapsed_s;
   if (went_on) {
@@ -83,7 +87,7 @@ OdometryBuffer::Outcome OdometryBuffer::resolve_jump(const OdometrySample& sampl
 /// A jump to the odometry's origin is a reset.
 bool OdometryBuffer::is_catching_up(const Se2& step, const OdometrySample& sample) const {
   const double stuck_s = to_seconds(newest() - changed_);
-  return is_other(sample.odom_from_base, Se2{}) &&
+  return !is_at_origin(sample.odom_from_base) &&
          step.translation().norm() <= kMaxDrive_m_s * stuck_s &&
          std::abs(step.theta()) <= kMaxDrive_rad_s * stuck_s;
 }
