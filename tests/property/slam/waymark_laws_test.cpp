@@ -7,8 +7,10 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace waymark {
@@ -139,11 +141,7 @@ TEST(WaymarkEstimator, TheFinalTrajectoryIsNoLessAccurateAlongTheCorridorThanLiv
 }
 
 /// A stuck encoder reports no motion for a while, then at once all motion of that time.
-TEST(WaymarkEstimator, LateMotionIsNotCountedTwice) {
-  const SyntheticCorridor corridor = corridor_with_markers(1);
-  std::vector<Observation> scans = test::observations_of(drive(corridor), corridor);
-  const std::size_t begin = scans.size() / 3;
-  const std::size_t end = 2 * scans.size() / 3;
+void make_stuck(std::vector<Observation>& scans, std::size_t begin, std::size_t end) {
   Motion late_motion;
   for (std::size_t i = begin; i < end; ++i) {
     late_motion = late_motion.then(scans[i].motion);
@@ -151,6 +149,12 @@ TEST(WaymarkEstimator, LateMotionIsNotCountedTwice) {
   }
   scans[end].motion = late_motion.then(scans[end].motion);
   scans[end].odometry_caught_up = true;
+}
+
+TEST(WaymarkEstimator, LateMotionIsNotCountedTwice) {
+  const SyntheticCorridor corridor = corridor_with_markers(1);
+  std::vector<Observation> scans = test::observations_of(drive(corridor), corridor);
+  make_stuck(scans, scans.size() / 3, 2 * scans.size() / 3);
   WaymarkEstimator stuck{estimator_setup_of(corridor, 1), {}};
   WaymarkEstimator sound{estimator_setup_of(corridor, 1), {}};
   Se2 with_gap;
@@ -160,6 +164,48 @@ TEST(WaymarkEstimator, LateMotionIsNotCountedTwice) {
   for (const Observation& scan : test::observations_of(drive(corridor), corridor))
     without_gap = sound.update(scan).map_from_base;
   EXPECT_LT((with_gap.translation() - without_gap.translation()).norm(), 0.1);
+}
+
+/// The robot stands for a while and drives on, both while its encoder is stuck: markers show when.
+TEST(WaymarkEstimator, TheFinalTrajectoryFollowsMarkersWhileOdometryIsStuck) {
+  const SyntheticCorridor corridor = corridor_with_markers(1);
+  std::vector<Observation> scans;
+  SensorQueue queue{setup_of(corridor)};
+  test::feed(queue, drive(corridor),
+             [&scans](const SensorQueue::Ready& ready) { scans.push_back(ready.observation); });
+  std::size_t begin = scans.size() / 3;
+  while (scans[begin].sightings.empty())
+    ++begin;
+  const std::size_t end = 2 * scans.size() / 3;
+  constexpr int kPause = 60;
+  constexpr std::chrono::milliseconds kStep{200};
+  Observation pause = scans[begin];
+  pause.motion = {};
+  for (std::size_t i = begin + 1; i < scans.size(); ++i)
+    scans[i].time += kPause * kStep;
+  for (int i = kPause; i > 0; --i) {
+    pause.time = scans[begin].time + i * kStep;
+    for (MarkerSighting& sighting : pause.sightings)
+      sighting.time = pause.time;
+    scans.insert(scans.begin() + static_cast<std::ptrdiff_t>(begin) + 1, pause);
+  }
+  WaymarkEstimator sound{estimator_setup_of(corridor, 1), {}};
+  for (const Observation& scan : scans)
+    sound.update(scan);
+  make_stuck(scans, begin + 1, end + kPause);
+  WaymarkEstimator stuck{estimator_setup_of(corridor, 1), {}};
+  for (const Observation& scan : scans)
+    stuck.update(scan);
+  const std::vector<TimedPose> expected = sound.trajectory();
+  const std::vector<TimedPose> found = stuck.trajectory();
+  ASSERT_EQ(found.size(), expected.size());
+  double worst_m = 0.0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Eigen::Vector2d off =
+        found[i].map_from_base.translation() - expected[i].map_from_base.translation();
+    worst_m = std::max(worst_m, off.norm());
+  }
+  EXPECT_LT(worst_m, 0.3);
 }
 
 TEST(WaymarkEstimator, ScansOfRandomRangesAreNotMapped) {

@@ -68,7 +68,9 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
 Estimate WaymarkEstimator::update(const Observation& measured) {
   newest_time_ = measured.time;
   clock_s_ += measured.elapsed_s;
+  book_.set_clock(measured.clock_set);
   is_put_elsewhere_ = false;
+  is_observed_ = false;
   solved_.reset();
   follow_odometry(measured);
   if (place_finder_ && !place(measured)) return unplaced(measured);
@@ -91,9 +93,11 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
     add_keyframe(observation, look);
     since_insertion_m_ = observation.motion.distance_m;
   } else {
+    if (look.scan) note_fit(look.scan->match);
     since_insertion_m_ += observation.motion.distance_m;
     if (between.shows_all_axes || sees_known_markers(observation))
       unmeasured_motion_.note_observed();
+    is_observed_ = between.shows_all_axes;
     if (between.match) insert_between(look.points, *between.match, between.map_from_base);
   }
   if (between.match) note_reason(EstimateReason::kScan);
@@ -106,7 +110,8 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   reason_ = EstimateReason::kOdometry;
   if (!is_frozen()) {
     scan_poses_.push_back({observation.time, newest(),
-                           graph_.state().keyframes.back().inverse() * now.map_from_base});
+                           graph_.state().keyframes.back().inverse() * now.map_from_base,
+                           is_observed_});
   }
   return has_frame() ? now : unplaced(observation);
 }
@@ -221,7 +226,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
   }
   weigh_past_anew();
   compare_with_odometry();
-  if (markers_known_ || scan.shows_all_axes) unmeasured_motion_.note_observed();
+  is_observed_ = markers_known_ || scan.shows_all_axes;
+  if (is_observed_) unmeasured_motion_.note_observed();
   compare_with_loaded_map(observation);
   was_confirmed_ |= is_confirmed_;
   // A scan whose pose is uncertain is not mapped.
@@ -261,11 +267,10 @@ void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& mat
   submaps_.add_between(points, map_from_base, graph_.state().keyframes);
 }
 
-WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Look& look) {
+WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Look& look) const {
   const Prediction& expected = look.expected;
   BetweenKeyframes between{expected.map_from_base, expected.covariance};
   const auto& scan = look.scan;
-  if (scan) note_fit(scan->match);
   if (!scan || !scan->match.is_usable(config_.scan) || usual_fit_.is_refuted(scan->match))
     return between;
   const Se2 found = scan->map_from_submap * scan->match.map_from_base;

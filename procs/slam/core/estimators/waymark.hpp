@@ -140,6 +140,7 @@ class WaymarkEstimator final : public Estimator {
     Timestamp time{};
     std::size_t keyframe{0};
     Se2 keyframe_from_base{};
+    bool is_observed{false};  ///< in every direction, by markers or walls
   };
 
   /// Pose at a scan that is no keyframe.
@@ -239,7 +240,7 @@ class WaymarkEstimator final : public Estimator {
   Estimate estimate(const Observation& observation, const Se2& map_from_base,
                     const Eigen::Matrix3d& covariance) const;
   Estimate estimate_at_keyframe(const Observation& observation) const;
-  BetweenKeyframes between_keyframes(const Look& look);
+  BetweenKeyframes between_keyframes(const Look& look) const;
   Estimate estimate_between(const Observation& observation, const BetweenKeyframes& between) const;
   void insert_between(const Points& points, const ScanMatch& match, const Se2& map_from_base);
 
@@ -300,6 +301,7 @@ class WaymarkEstimator final : public Estimator {
 
   // Of the newest scan:
   bool is_rescaled_{false};
+  bool is_observed_{false};  ///< see ScanPose
 };
 
 }  // namespace waymark

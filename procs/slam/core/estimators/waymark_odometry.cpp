@@ -139,16 +139,32 @@ void WaymarkEstimator::compare_with_odometry() {
   standstill_->moved_at_s = clock_s_;
 }
 
-/// Distributes late motion evenly over the scans of the standstill, for the final trajectory.
+/// For the final trajectory: distributes late motion evenly over the scans of the standstill, and
+/// between those that markers or walls observed.
 void WaymarkEstimator::spread_late_motion(const Observation& observation) {
-  const double whole_s = to_seconds(observation.time - standstill_->since);
-  const Motion& before = standstill_->motion;
-  for (auto scan = scan_poses_.rbegin(); scan != scan_poses_.rend(); ++scan) {
-    if (scan->time <= standstill_->since) break;
-    const double share = to_seconds(scan->time - standstill_->since) / whole_s;
-    scan->keyframe = standstill_->keyframe;
-    scan->keyframe_from_base =
-        before.start_from_end * interpolate(Se2{}, observation.motion.start_from_end, share);
+  ScanPose known{standstill_->since, standstill_->keyframe, standstill_->motion.start_from_end};
+  const ScanPose end{observation.time, known.keyframe,
+                     known.keyframe_from_base * observation.motion.start_from_end};
+  const auto map_from = [this](const ScanPose& scan) {
+    return graph_.state().keyframes[scan.keyframe] * scan.keyframe_from_base;
+  };
+  auto scan = std::find_if(scan_poses_.rbegin(), scan_poses_.rend(), [&known](const auto& earlier) {
+                return earlier.time <= known.time;
+              }).base();
+  while (scan != scan_poses_.end()) {
+    const auto next =
+        std::find_if(scan, scan_poses_.end(), [](const auto& later) { return later.is_observed; });
+    const ScanPose& then = next != scan_poses_.end() ? *next : end;
+    const Se2 moved = map_from(known).inverse() * map_from(then);
+    const double whole_s = to_seconds(then.time - known.time);
+    for (; scan != next; ++scan) {
+      const double share = to_seconds(scan->time - known.time) / whole_s;
+      scan->keyframe = known.keyframe;
+      scan->keyframe_from_base = known.keyframe_from_base * interpolate(Se2{}, moved, share);
+    }
+    if (next == scan_poses_.end()) return;
+    known = *next;
+    ++scan;
   }
 }
 

@@ -92,6 +92,12 @@ void MarkerBook::note_sighting(std::size_t landmark, Timestamp time) {
   entries_[landmark].last_seen = time;
 }
 
+void MarkerBook::set_clock(Duration later) {
+  for (Landmark& entry : entries_)
+    for (Timestamp* time : {&entry.first_seen, &entry.last_seen})
+      if (*time != Timestamp{}) *time += later;
+}
+
 void MarkerBook::note_misses(const State& state, std::size_t keyframe,
                              const std::function<bool(const Se2&)>& is_in_view, Timestamp since) {
   const Se2 base_from_map = state.keyframes[keyframe].inverse();

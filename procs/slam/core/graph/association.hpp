@@ -48,6 +48,9 @@ class MarkerBook {
 
   void note_sighting(std::size_t landmark, Timestamp time);
 
+  /// To be called when the clock was set: the times of all sightings are in the new clock then.
+  void set_clock(Duration later);
+
   /// Counts a missed detection for every marker that should be in view and has not been sighted
   /// since `since`. If another marker of the same id has appeared after the missing one was last
   /// seen, the marker was moved: its old landmark is retired.

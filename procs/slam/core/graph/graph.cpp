@@ -124,11 +124,12 @@ void Graph::switch_prior(std::size_t landmark, bool is_on) {
       prior->is_off = !is_on;
 }
 
-bool Graph::is_prior_on(std::size_t landmark) const {
-  return std::any_of(factors_.begin(), factors_.end(), [landmark](const Factor& factor) {
-    const auto* prior = std::get_if<LandmarkPrior>(&factor);
-    return prior != nullptr && prior->landmark == landmark && !prior->is_off;
-  });
+/// Null: none.
+const LandmarkPrior* Graph::prior_of(std::size_t landmark) const {
+  for (const Factor& factor : factors_)
+    if (const auto* prior = std::get_if<LandmarkPrior>(&factor))
+      if (prior->landmark == landmark) return prior;
+  return nullptr;
 }
 
 /// The loss that belongs to the robust weight of MarkerFactor.

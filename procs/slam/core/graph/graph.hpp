@@ -73,7 +73,12 @@ class Graph {
 
   /// Switches the LandmarkPrior of a landmark on or off. Takes effect in step_all() at the latest.
   void switch_prior(std::size_t landmark, bool is_on);
-  bool is_prior_on(std::size_t landmark) const;
+
+  bool has_prior(std::size_t landmark) const { return prior_of(landmark) != nullptr; }
+
+  bool is_prior_on(std::size_t landmark) const {
+    return has_prior(landmark) && !prior_of(landmark)->is_off;
+  }
 
   /// Sum of the robust costs (chi^2) of all factors.
   double cost() const;
@@ -161,6 +166,7 @@ class Graph {
     Se2 carrier_from_keyframe{};
   };
 
+  const LandmarkPrior* prior_of(std::size_t landmark) const;
   bool forget_removed(Factor& factor) const;
   void carry_removed();
 

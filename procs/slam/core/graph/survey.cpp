@@ -123,10 +123,19 @@ std::optional<std::size_t> Survey::landmark_of(const SurveyedMarker& marker, con
   return nearest;
 }
 
+/// An entry whose prior is on keeps its landmark; one whose prior is off may have been associated
+/// with another marker of its id before the frame was known.
+void Survey::associate(Entry& entry, const Graph& graph, const MarkerBook& book) const {
+  if (entry.has_prior && graph.is_prior_on(*entry.landmark)) return;
+  const auto landmark = landmark_of(entry.marker, graph, book);
+  if (landmark == entry.landmark || (entry.has_prior && !landmark)) return;
+  entry = Entry{entry.marker, landmark};
+}
+
 bool Survey::match(const Graph& graph, const MarkerBook& book) {
   bool is_due = false;
   for (Entry& entry : entries_) {
-    if (!entry.landmark) entry.landmark = landmark_of(entry.marker, graph, book);
+    associate(entry, graph, book);
     if (!entry.landmark) continue;
     const int sightings = book.entries()[*entry.landmark].sightings;
     if (sightings < kTestedAgain * entry.tested_sightings) continue;
@@ -167,7 +176,7 @@ std::optional<Se2> Survey::new_frame(const Graph& graph) {
 void Survey::add_priors(Graph& graph) {
   for (Entry& entry : entries_) {
     if (!entry.landmark || entry.has_prior) continue;
-    graph.add(prior_of(entry.marker, *entry.landmark));
+    if (!graph.has_prior(*entry.landmark)) graph.add(prior_of(entry.marker, *entry.landmark));
     entry.has_prior = true;
   }
 }

@@ -23,7 +23,8 @@ class Survey {
 
   bool has_frame() const { return has_frame_; }
 
-  /// Associates surveyed markers with landmarks that have enough sightings.
+  /// Associates surveyed markers with landmarks that have enough sightings, and those whose priors
+  /// are off with the nearest landmarks of their ids.
   /// @return whether there are new associations, or landmarks have been sighted so much more often
   ///         since their priors were tested that the priors have to be tested again.
   bool match(const Graph& graph, const MarkerBook& book);
@@ -52,6 +53,7 @@ class Survey {
 
   std::optional<std::size_t> landmark_of(const SurveyedMarker& marker, const Graph& graph,
                                          const MarkerBook& book) const;
+  void associate(Entry& entry, const Graph& graph, const MarkerBook& book) const;
   void add_priors(Graph& graph);
   double sigmas_off(const Entry& entry, const Graph& graph) const;
 

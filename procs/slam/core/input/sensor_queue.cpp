@@ -61,6 +61,7 @@ void SensorQueue::add(const OdometrySample& sample) {
   }
   if (news.clock_set) {
     if (last_observed_) *last_observed_ += *news.clock_set;
+    clock_set_ += *news.clock_set;
     scans_.clear(skips_);
     frames_.clear(skips_);
   }
@@ -156,6 +157,7 @@ Observation SensorQueue::observation_at(Timestamp time, std::span<const Beam> be
   Observation observation;
   observation.time = time;
   if (last_observed_) observation.elapsed_s = to_seconds(time - *last_observed_);
+  observation.clock_set = std::exchange(clock_set_, {});
   drive_to(time, observation);
   look_until(time, observation);
   const bool camera_saw_all = observation.camera_reported && !setup_.blank_ids;

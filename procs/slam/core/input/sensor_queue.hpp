@@ -79,6 +79,7 @@ class SensorQueue {
   std::vector<double> newest_ranges_m_{};
   Motion since_new_ranges_{};
   std::optional<Timestamp> last_observed_{};
+  Duration clock_set_{};  ///< since the last observation
   Skips skips_{};
   bool has_finished_{false};
 };

@@ -13,6 +13,7 @@ namespace waymark {
 struct Observation {
   Timestamp time{};                    ///< of the scan, else of odometry
   double elapsed_s{0.0};               ///< since the previous one, without steps of the clock
+  Duration clock_set{};                ///< step of the clock since the previous one
   Motion motion{};                     ///< since the previous observation; none for the first
   Se2 odom_from_base{};                ///< odometry as it was sent, at this time
   std::vector<AnnotatedBeam> beams{};  ///< none while the LiDAR is silent

@@ -225,5 +225,37 @@ TEST(Survey, APriorIsTestedAgainWhenItsMarkerHasBeenSightedMuchMoreOften) {
   EXPECT_TRUE(survey.match(drive.graph(), book));
 }
 
+/// Before the frame is known, an entry is associated with another marker of its id, which was
+/// sighted first.
+TEST(Survey, AnEntryWithoutPriorGoesToTheNearestMarkerOfItsIdOnceTheFrameIsKnown) {
+  SurveyedDrive drive{6, 1};
+  Graph& graph = drive.graph();
+  const std::size_t twin = 11;  // of marker 2, at the other end
+  MarkerBook book;
+  for (std::size_t m = 0; m <= twin; ++m) {
+    book.add(m == twin ? 2 : static_cast<int>(m), {});
+    if (m == 2) continue;
+    for (int i = 0; i < 2; ++i)
+      book.note_sighting(m, {});
+  }
+  const SurveyedMarker right = drive.surveyed(2, 0.005);
+  Survey survey{
+      {drive.surveyed(0, 0.005), drive.surveyed(5, 0.005), drive.surveyed(8, 0.005), right}};
+  ASSERT_TRUE(survey.match(graph, book));
+  graph.move_to_frame(*survey.new_frame(graph));
+  survey.apply(graph);
+  EXPECT_FALSE(graph.is_prior_on(twin));
+  EXPECT_EQ(survey.changes(graph).size(), 1U);
+  for (int i = 0; i < 2; ++i)
+    book.note_sighting(2, {});
+  ASSERT_TRUE(survey.match(graph, book));
+  survey.apply(graph);
+  EXPECT_TRUE(graph.is_prior_on(2));
+  EXPECT_FALSE(graph.is_prior_on(twin));
+  EXPECT_TRUE(survey.changes(graph).empty());
+  const Se2& place = graph.state().landmarks[2];
+  EXPECT_LT((place.translation() - right.survey_from_marker.translation()).norm(), 0.1);
+}
+
 }  // namespace
 }  // namespace waymark

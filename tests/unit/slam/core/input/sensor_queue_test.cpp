@@ -120,8 +120,12 @@ TEST(SensorQueue, AClockStepLosesNoMotion) {
     EXPECT_GT(all.size(), 170U) << step_ms;
     EXPECT_NEAR(way_m(all), 2.0, 1e-9) << step_ms;
     double elapsed_s = 0.0;
-    for (const SensorQueue::Ready& ready : all)
+    Duration clock_set{};
+    for (const SensorQueue::Ready& ready : all) {
       elapsed_s += ready.observation.elapsed_s;
+      clock_set += ready.observation.clock_set;
+    }
+    EXPECT_NEAR(to_seconds(clock_set), 1e-3 * step_ms, 0.2);
     EXPECT_NEAR(elapsed_s, 20.0, 1.0) << step_ms;
     const auto skips = queue.take_skips();
     EXPECT_EQ(std::ranges::count(skips, Skip::kClockSet), 1) << step_ms;
