@@ -154,6 +154,21 @@ TEST(GmappingEstimator, FollowsOdometryBetweenUpdates) {
   EXPECT_EQ(corrections, 4);  // 4.2 m of odometry
 }
 
+/// As in the released code, which asks for odometry at scans only.
+TEST(GmappingEstimator, JitterOfOdometryBetweenScansOpensNoGate) {
+  SyntheticCorridor corridor = bare_corridor();
+  corridor.drive_m = 0.5;
+  const std::vector<Observation> scans = observations_of(drive(corridor), corridor);
+  GmappingEstimator estimator{setup_for(corridor), {}};
+  int updates = 0;
+  for (Observation scan : scans) {
+    scan.motion.distance_m += 1.0;
+    scan.motion.turn_rad += 1.0;
+    updates += estimator.update(scan).updated;
+  }
+  EXPECT_EQ(updates, 1);
+}
+
 TEST(GmappingEstimator, AnUnreachableMinimumScoreFollowsOdometryAndIsLost) {
   const SyntheticCorridor corridor = room();
   GmappingConfig config;
