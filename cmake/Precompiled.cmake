@@ -11,6 +11,13 @@ add_compile_definitions(FMT_SHARED)
 # GCC warns wrongly of std::optional at -O1.
 set(waymark_plain_options "$<$<CONFIG:Release>:-O1;-Wno-maybe-uninitialized>")
 
+# AddressSanitizer looks for references that outlive their scope in our libraries. In tests, whose macros open a scope each,
+# that check alone takes two fifths of the compiler's time.
+set(waymark_test_options ${waymark_plain_options})
+if(WAYMARK_SANITIZE MATCHES address)
+  list(APPEND waymark_test_options -fno-sanitize-address-use-after-scope)
+endif()
+
 function(waymark_precompiled name)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES;OPTIONS" ${ARGN})
   file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp" CONTENT "")

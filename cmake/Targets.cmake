@@ -62,7 +62,7 @@ function(waymark_test name)
   add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} test_own_folder GTest::gmock_main waymark_warnings)
-  target_compile_options(${name} PRIVATE ${waymark_plain_options})
+  target_compile_options(${name} PRIVATE ${waymark_test_options})
   target_precompile_headers(${name} REUSE_FROM precompiled_tests)
   target_compile_definitions(${name} PRIVATE
     WAYMARK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WAYMARK_BUILD_DIR="${PROJECT_BINARY_DIR}")
