@@ -18,13 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Prints the first skipped lines on standard error. @return the exit code.
-int report_skipped(const Skipped& skipped, const Output& output) {
-  constexpr std::size_t kShown = 10;
-  for (std::size_t i = 0; i < std::min(skipped.size(), kShown); ++i)
-    fmt::print(stderr, "skipped: {}\n", skipped[i]);
-  if (skipped.size() > kShown) fmt::print(stderr, "skipped: {} more\n", skipped.size() - kShown);
-  return skipped.empty() || output.tolerant ? kExitOk : kExitFailed;
+/// Prints on standard error what part of the reference an estimate leaves out. @return the exit
+/// code.
+int report_overlap(const Overlap& overlap, const fs::path& estimate_file, const Output& output) {
+  constexpr std::string_view kTruth = "reference";
+  const std::vector<std::string> problems = problems_of(overlap, kTruth);
+  for (const std::string& problem : problems)
+    fmt::print(stderr, "{}: {}\n", estimate_file.string(), problem);
+  if (const auto late = late_start_of(overlap, kTruth))
+    fmt::print(stderr, "{}: {}\n", estimate_file.string(), *late);
+  return problems.empty() || output.tolerant ? kExitOk : kExitFailed;
 }
 
 /// Prints JSON, or one `key: value` per line without null values.
@@ -45,6 +48,14 @@ std::string file_text(const Json& json) {
 
 }  // namespace
 
+int report_skipped(const Skipped& skipped, const Output& output) {
+  constexpr std::size_t kShown = 10;
+  for (std::size_t i = 0; i < std::min(skipped.size(), kShown); ++i)
+    fmt::print(stderr, "skipped: {}\n", skipped[i]);
+  if (skipped.size() > kShown) fmt::print(stderr, "skipped: {} more\n", skipped.size() - kShown);
+  return skipped.empty() || output.tolerant ? kExitOk : kExitFailed;
+}
+
 int run_command(std::string_view program, const std::function<int()>& command) {
   const auto fail = [&](const std::exception& error) {
     fmt::print(stderr, "{}: {}\n", program, error.what());
@@ -59,6 +70,8 @@ int run_command(std::string_view program, const std::function<int()>& command) {
   } catch (const ConfigError& error) {
     return fail(error);
   } catch (const SetupError& error) {
+    return fail(error);
+  } catch (const nlohmann::json::exception& error) {
     return fail(error);
   }
 }
@@ -80,14 +93,20 @@ int run_trajectory(const fs::path& estimate_file, const fs::path& reference_file
   const Trajectory estimate = read_tum(estimate_file, skipped);
   const Trajectory reference = read_tum(reference_file, skipped);
   const std::vector<PosePair> pairs = associate(estimate, reference);
-  if (pairs.empty())
-    throw InputError{fmt::format("{}: no pose within the time span of {}; are the two of one run?",
-                                 estimate_file.string(), reference_file.string())};
+  if (pairs.size() < 2)
+    throw InputError{
+        fmt::format("{}: fewer than two poses within the time span of {}; are the two of one run?",
+                    estimate_file.string(), reference_file.string())};
+  const Overlap overlap = overlap_of(estimate, reference, pairs);
   Json json = json_of(trajectory_error(pairs, alignment));
-  json["poses_outside_reference"] = estimate.size() - pairs.size();
+  json["poses_outside_reference"] = overlap.outside;
+  json["first_pose_s"] = overlap.first_pose_s;
+  json["reference_covered_share"] = overlap.covered_share;
   json["skipped"] = skipped.size();
   print(json, output);
-  return report_skipped(skipped, output);
+  const int overlap_code = report_overlap(overlap, estimate_file, output);
+  const int skipped_code = report_skipped(skipped, output);
+  return overlap_code == kExitOk ? skipped_code : overlap_code;
 }
 
 int run_relations(const fs::path& trajectory_file, const fs::path& relations_file,
@@ -136,7 +155,7 @@ int run_run(const fs::path& run_dir, const std::vector<std::string>& wanted,
     write_whole_file(run_dir / name / "metrics.json", file_text(metrics_json(result)));
     write_whole_file(run_dir / name / "stations.csv", stations_csv(result.stations));
     skipped.insert(skipped.end(), result.skipped.begin(), result.skipped.end());
-    complete = complete && result.problems.empty();
+    complete = complete && result.problems.empty() && !misses_a_figure(result.expectations);
   }
   const Json json = results_json(truth, results);
   const std::string markdown = results_markdown(truth, results);

@@ -17,16 +17,20 @@ namespace waymark::evaluate {
 
 struct Output {
   bool json{};      ///< print JSON instead of text
-  bool tolerant{};  ///< skipped lines do not fail the program
+  bool tolerant{};  ///< neither skipped lines nor a partly covered reference fail the program
 };
 
 /// Runs a sub-command; prints what it throws on standard error.
 /// @return its exit code, or kExitUsage after an exception.
 int run_command(std::string_view program, const std::function<int()>& command);
 
+/// Prints the first skipped lines on standard error. @return the exit code.
+int report_skipped(const Skipped& skipped, const Output& output);
+
 int run_length(const std::filesystem::path& map_yaml, std::optional<double> true_length_m,
                const Output& output);
 
+/// @return kExitFailed, too, if the two overlap in part only: see overlap.hpp.
 int run_trajectory(const std::filesystem::path& estimate, const std::filesystem::path& reference,
                    Alignment alignment, const Output& output);
 
@@ -35,14 +39,17 @@ int run_relations(const std::filesystem::path& trajectory, const std::filesystem
 
 /// Writes metrics.json into each estimator's folder, results.json and results.md into the run's.
 /// @param estimators  names of sub-folders; empty = all that have a trajectory.tum.
+/// @return kExitFailed if a row has problems, an expected figure is missing or lines were skipped.
 int run_run(const std::filesystem::path& run_dir, const std::vector<std::string>& estimators,
             const EvaluationOptions& options, const Output& output);
 
 /// Writes results.md, results.csv, runs.csv, index.html and plots/ into a sweep's folder.
 /// @return kExitOk also when runs failed or missed their expectations; the table shows them.
+///         kExitFailed if lines were skipped.
 int run_sweep(const std::filesystem::path& sweep_dir, const Output& output);
 
 /// Mean NEES per station over estimator folders with a stations.csv.
+/// @return kExitFailed if a station has no usable covariance, there is none, or lines were skipped.
 int run_consistency(const std::vector<std::filesystem::path>& row_dirs, const Output& output);
 
 }  // namespace waymark::evaluate

@@ -40,9 +40,9 @@ void add_output(Command& command, Arguments& arguments, const std::string& json_
   command.add_flag("--json", arguments.output.json, json_help);
 }
 
-void add_tolerant(Command& command, Arguments& arguments) {
-  command.add_flag("--tolerant", arguments.output.tolerant,
-                   "exit with 0 although lines were skipped (they are named in any case)");
+void add_tolerant(Command& command, Arguments& arguments,
+                  const std::string& what = "lines were skipped (they are named in any case)") {
+  command.add_flag("--tolerant", arguments.output.tolerant, "exit with 0 although " + what);
 }
 
 void add_true_length(Command& command, Arguments& arguments) {
@@ -101,7 +101,8 @@ void add_trajectory(Command& program, Arguments& arguments, Action& chosen) {
   command.add_option("REFERENCE", arguments.reference, "TUM file, interpolated").required();
   add_alignment(command, arguments);
   add_output(command, arguments, "print JSON");
-  add_tolerant(command, arguments);
+  add_tolerant(command, arguments,
+               "lines were skipped or the two overlap in part only (both are named in any case)");
   command.when_given([&] {
     chosen = [&] {
       return run_trajectory(arguments.trajectory, arguments.reference, arguments.options.alignment,
@@ -131,6 +132,7 @@ void add_sweep(Command& program, Arguments& arguments, Action& chosen) {
       "sweep", "all runs of deploy/sweep.sh: writes results.md, results.csv, runs.csv, index.html");
   command.add_option("DIR", arguments.run_dir, "the sweep's folder").required();
   add_output(command, arguments, "print JSON instead of the table");
+  add_tolerant(command, arguments);
   command.when_given([&] {
     chosen = [&] {
       return run_sweep(arguments.run_dir, arguments.output);
@@ -184,7 +186,8 @@ int main(int argc, char** argv) {
   Action chosen;
   waymark::Program program{
       "Measures the errors of maps and trajectories.\n"
-      "Exit code: 0 success; 1 a figure is missing, or lines were skipped; 2 wrong usage or files.",
+      "Exit code: 0 success; 1 a figure is missing or of a part of the run, or lines were skipped; "
+      "2 wrong usage or files.",
       "waymark-evaluate"};
   program.require_subcommand();
   add_length(program, arguments, chosen);

@@ -39,9 +39,14 @@ int run_sweep(const fs::path& sweep_dir, const Output& output) {
   write_whole_file(sweep_dir / "index.html", sweep_page(rows));
   const std::string markdown = sweep_markdown(rows);
   write_whole_file(sweep_dir / "results.md", markdown);
+  Skipped skipped;
+  for (const SweepRow& row : rows) {
+    for (const SweptRun& run : row.runs)
+      skipped.insert(skipped.end(), run.skipped.begin(), run.skipped.end());
+  }
   if (!output.json) {
     fmt::print("{}", markdown);
-    return kExitOk;
+    return report_skipped(skipped, output);
   }
   auto json = nlohmann::ordered_json::array();
   for (const SweepRow& row : rows)
@@ -49,9 +54,11 @@ int run_sweep(const fs::path& sweep_dir, const Output& output) {
                     {"estimator", row.row},
                     {"failures", row.failures()},
                     {"misses", row.misses()},
+                    {"problems", row.with_problems()},
+                    {"stations_left_out", row.stations_left_out},
                     {"stations", json_of(row.stations)}});
   fmt::print("{}\n", json.dump(2));
-  return kExitOk;
+  return report_skipped(skipped, output);
 }
 
 int run_consistency(const std::vector<fs::path>& row_dirs, const Output& output) {
@@ -60,6 +67,7 @@ int run_consistency(const std::vector<fs::path>& row_dirs, const Output& output)
   for (const fs::path& dir : row_dirs)
     runs.push_back(read_stations(dir / "stations.csv", skipped));
   const std::vector<StationConsistency> stations = consistency(runs);
+  const std::size_t left_out = count_without_covariance(runs);
   if (output.json) {
     fmt::print("{}\n", json_of(stations).dump(2));
   } else {
@@ -75,9 +83,11 @@ int run_consistency(const std::vector<fs::path>& row_dirs, const Output& output)
     fmt::print("in the band: {:.1f} % of {} stations\n", 100.0 * share_in_band(stations),
                stations.size());
   }
-  for (const std::string& line : skipped)
-    fmt::print(stderr, "skipped: {}\n", line);
-  return stations.empty() || !skipped.empty() ? kExitFailed : kExitOk;
+  if (left_out > 0)
+    fmt::print(stderr, "left out: {} stations of single runs, without a usable covariance\n",
+               left_out);
+  const int skipped_code = report_skipped(skipped, output);
+  return stations.empty() || left_out > 0 ? kExitFailed : skipped_code;
 }
 
 }  // namespace waymark::evaluate

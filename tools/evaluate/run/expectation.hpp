@@ -26,6 +26,9 @@ struct ExpectedFigure {
 /// True if there are expectations of this row.
 bool is_expected_of(const ExpectConfig& expect, const std::string& row);
 
+/// True if an expected figure is not available, or what it measures never happened.
+bool misses_a_figure(const std::vector<ExpectedFigure>& figures);
+
 /// One entry for each expected figure, in the order of the section; empty for other rows.
 std::vector<ExpectedFigure> check_expectations(const ExpectConfig& expect,
                                                const EstimatorResult& result);

@@ -49,7 +49,17 @@ Json json_of(const std::optional<Nees>& nees) {
   json["nees_mean"] = nees ? number(nees->mean) : Json{};
   json["nees_share_in_95_band"] = nees ? number(nees->share_in_band) : Json{};
   json["nees_poses"] = nees ? Json(nees->poses) : Json{};
+  json["nees_missing"] = nees ? Json(nees->missing) : Json{};
+  json["nees_invalid"] = nees ? Json(nees->invalid) : Json{};
   json["nees_singular"] = nees ? Json(nees->singular) : Json{};
+  return json;
+}
+
+Json json_of(const std::optional<Overlap>& overlap) {
+  Json json;
+  json["poses_outside_truth"] = overlap ? Json(overlap->outside) : Json{};
+  json["first_pose_s"] = overlap ? number(overlap->first_pose_s) : Json{};
+  json["truth_covered_share"] = overlap ? number(overlap->covered_share) : Json{};
   return json;
 }
 
@@ -159,7 +169,8 @@ Json metrics_json(const EstimatorResult& result) {
                                 : nulls_like(json_of(TrajectoryError{})));
   json.update(as_final(result.final_trajectory ? json_of(*result.final_trajectory)
                                                : nulls_like(json_of(TrajectoryError{}))));
-  json["poses_outside_truth"] = result.poses_outside_truth;
+  json.update(json_of(result.overlap));
+  json.update(as_final(json_of(result.final_overlap)));
   json.update(json_of(result.markers));
   json.update(json_of(result.nees));
   json["wall_cells"] = result.wall_cells ? Json(*result.wall_cells) : Json{};
@@ -174,6 +185,7 @@ Json metrics_json(const EstimatorResult& result) {
   json["changes"] = result.changes;
   json["findings"] = parsed(result.findings_json);
   json["problems"] = result.problems;
+  json["notes"] = result.notes;
   json["skipped"] = result.skipped;
   return json;
 }

@@ -64,10 +64,18 @@ bool has_counted(const EstimatorResult& result, std::string_view kind) {
                      [kind](const Json& counter) { return counter.value("kind", "") == kind; });
 }
 
+constexpr const char* kPartOfRun = "part_of_run";
+
+/// True if the errors of a trajectory are not those of the whole run.
+bool is_partial(const std::optional<Overlap>& overlap) {
+  return overlap && !problems_of(*overlap, "truth").empty();
+}
+
 std::string flags_of(const EstimatorResult& result) {
   std::vector<std::string> flags =
       result.length ? result.length->flags : std::vector<std::string>{};
   if (!result.problems.empty()) flags.emplace_back("incomplete");
+  if (is_partial(result.overlap)) flags.emplace_back(kPartOfRun);
   if (!result.skipped.empty()) flags.emplace_back("lines_skipped");
   if (has_counted(result, "loss")) flags.emplace_back("messages_lost");
   if (has_counted(result, "rejection")) flags.emplace_back("messages_rejected");
@@ -124,13 +132,23 @@ Row error_row(const EstimatorResult& result, std::optional<double> odometry_alon
   return row;
 }
 
+/// That of the first row, and the rows with another one.
+std::string alignments(const std::vector<EstimatorResult>& results) {
+  if (results.empty() || !results.front().trajectory) return "";
+  const Alignment first = results.front().trajectory->alignment;
+  std::string text = fmt::format(", aligned by `{}`", name_of(first));
+  for (const EstimatorResult& result : results) {
+    if (result.trajectory && result.trajectory->alignment != first)
+      text += fmt::format(", of {} by `{}`", result.name, name_of(result.trajectory->alignment));
+  }
+  return text;
+}
+
 std::string explanation(const std::vector<EstimatorResult>& results) {
   std::string text =
       "Length: measured on the map image from end wall to end wall. Errors: RMSE of the base's "
       "position and heading against the truth";
-  if (!results.empty() && results.front().trajectory)
-    text += fmt::format(", aligned by `{}`", name_of(results.front().trajectory->alignment));
-  return text +
+  return text + alignments(results) +
          "; `x odometry`: along RMSE over that of the row `odometry`. Markers: mean distance "
          "over all true markers that were mapped. NEES: 3 is right, far more is a covariance that "
          "is far too small. Trajectories are the poses given during the run; `final`: corrected "
@@ -156,9 +174,9 @@ std::string error_table(const std::vector<EstimatorResult>& results) {
   std::vector<Row> rows;
   for (const EstimatorResult& result : results) {
     rows.push_back(error_row(result, odometry_along_m));
-    if (result.final_trajectory)
-      rows.push_back(
-          error_row(result.name + ", final", *result.final_trajectory, odometry_along_m));
+    if (!result.final_trajectory) continue;
+    rows.push_back(error_row(result.name + ", final", *result.final_trajectory, odometry_along_m));
+    if (is_partial(result.final_overlap)) rows.back().back() = kPartOfRun;
   }
   return table_of(kErrorColumns, rows);
 }
@@ -194,8 +212,10 @@ std::string results_markdown(const RunTruth& truth, const std::vector<EstimatorR
       text +=
           fmt::format("\n* {}: {} things are not as the map or the survey has them (changes.csv)",
                       result.name, result.changes.size());
-    for (const std::string& problem : result.problems)
-      text += fmt::format("\n* {}: {}", result.name, problem);
+    for (const auto* lines : {&result.problems, &result.notes}) {
+      for (const std::string& line : *lines)
+        text += fmt::format("\n* {}: {}", result.name, line);
+    }
     if (!result.skipped.empty())
       text += fmt::format("\n* {}: {} lines skipped, first: {}", result.name, result.skipped.size(),
                           result.skipped.front());

@@ -17,9 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// If a larger share of the poses is outside the truth's times, the files are not of the same run.
-constexpr double kOutsideShare = 0.05;
-
 std::optional<std::string> text_if_there(const fs::path& file) {
   if (!fs::exists(file)) return std::nullopt;
   return read_text(file);
@@ -65,8 +62,21 @@ ExpectConfig read_expectations(const fs::path& file) {
   }
 }
 
-/// The part of slam's configuration that the evaluation reads.
+/// The part of slam's configuration that the evaluation reads. Defaults are slam's.
 struct SlamPart {
+  static constexpr const char* kWaymark = "waymark";
+  static constexpr const char* kNewMap = "map";
+
+  struct Slam {
+    std::string estimator{kWaymark};
+    std::string mode{kNewMap};
+
+    void describe(Fields& fields) {
+      fields.field("estimator", estimator, "only one of them uses a survey");
+      fields.field("mode", mode, "in the others the frame is that of the loaded map");
+    }
+  };
+
   struct Robot {
     struct Markers {
       std::string survey_file{};
@@ -82,15 +92,23 @@ struct SlamPart {
   };
 
   Robot robot{};
+  Slam slam{};
 
-  void describe(Fields& fields) { fields.section("robot", robot); }
+  void describe(Fields& fields) {
+    fields.section("robot", robot);
+    fields.section("slam", slam);
+  }
+
+  bool uses_survey() const {
+    return slam.estimator == kWaymark && slam.mode == kNewMap && !robot.markers.survey_file.empty();
+  }
 };
 
-/// True if slam used a survey: the map frame is then the world frame.
+/// True if slam drew its map in a survey's frame, which is the world frame.
 bool is_surveyed(const fs::path& config_file) {
   if (!fs::exists(config_file)) return false;
   try {
-    return !load_part<SlamPart>(config_file).robot.markers.survey_file.empty();
+    return load_part<SlamPart>(config_file).uses_survey();
   } catch (const ConfigError& error) {
     throw InputError{error.what()};
   }
@@ -100,6 +118,23 @@ bool is_surveyed(const fs::path& config_file) {
 std::optional<std::string> json_if_there(const fs::path& file) {
   std::optional<std::string> text = text_if_there(file);
   if (text && !nlohmann::json::accept(*text)) throw InputError{file.string() + ": not JSON"};
+  return text;
+}
+
+/// timings.json, in which slam's counters are as this program reads them.
+/// @throws InputError if the file exists and is something else.
+std::optional<std::string> timings_if_there(const fs::path& file) {
+  std::optional<std::string> text = json_if_there(file);
+  if (!text) return std::nullopt;
+  const auto timings = nlohmann::json::parse(*text);
+  const auto pointer = nlohmann::json::json_pointer{"/slam/counters"};
+  if (!timings.contains(pointer)) return text;
+  const auto is_counter = [](const nlohmann::json& counter) {
+    return counter.is_object() && counter.value("kind", nlohmann::json("")).is_string();
+  };
+  const auto& counters = timings.at(pointer);
+  if (!counters.is_array() || !std::all_of(counters.begin(), counters.end(), is_counter))
+    throw InputError{file.string() + ": slam.counters is not a list of objects with a kind"};
   return text;
 }
 
@@ -122,24 +157,44 @@ void attempt(std::vector<std::string>& problems, const std::function<void()>& pa
   }
 }
 
-/// @throws InputError when no pose lies within the truth's times.
-std::vector<PosePair> pairs_of(const fs::path& file, const Trajectory& estimate,
-                               const Trajectory& truth) {
-  std::vector<PosePair> pairs = associate(estimate, truth);
-  if (pairs.empty()) throw InputError{file.string() + ": no pose within the truth's time span"};
-  return pairs;
+/// A trajectory with the truth at its times.
+struct Compared {
+  std::vector<PosePair> pairs{};  ///< at least two
+  Overlap overlap{};
+};
+
+/// Adds what is wrong with the overlap to the problems.
+/// @throws InputError when fewer than two poses lie within the truth's times.
+Compared compare(const fs::path& file, const Trajectory& truth, EstimatorResult& result) {
+  const Trajectory estimate = read_tum(file, result.skipped);
+  Compared compared{associate(estimate, truth), {}};
+  if (compared.pairs.size() < 2)
+    throw InputError{file.string() + ": fewer than two poses within the truth's time span"};
+  compared.overlap = overlap_of(estimate, truth, compared.pairs);
+  for (const std::string& problem : problems_of(compared.overlap, "truth"))
+    result.problems.push_back(fmt::format("{}: {}", file.string(), problem));
+  if (const auto late = late_start_of(compared.overlap, "truth"))
+    result.notes.push_back(fmt::format("{} {}", file.filename().string(), *late));
+  return compared;
+}
+
+void add_nees(const fs::path& covariance_file, const std::vector<PosePair>& pairs,
+              const std::vector<StampedCovariance>& covariances, const Se2& world_from_map,
+              EstimatorResult& result) {
+  const Nees& nees = result.nees.emplace(evaluate::nees(pairs, covariances, world_from_map));
+  if (leaves_out_too_many(nees, nees.missing + nees.invalid))
+    result.problems.push_back(
+        fmt::format("{}: of {} poses, {} have no covariance and {} an invalid one",
+                    covariance_file.string(), pairs.size(), nees.missing, nees.invalid));
+  if (leaves_out_too_many(nees, nees.singular))
+    result.notes.push_back(fmt::format("{} of {} covariances are singular, and left out of NEES",
+                                       nees.singular, pairs.size()));
 }
 
 void add_trajectory(const fs::path& dir, const RunTruth& truth, const EvaluationOptions& options,
                     EstimatorResult& result, Se2& world_from_map) {
-  const Trajectory estimate = read_tum(dir / "trajectory.tum", result.skipped);
-  const std::vector<PosePair> pairs = pairs_of(dir / "trajectory.tum", estimate, *truth.trajectory);
-  result.poses_outside_truth = estimate.size() - pairs.size();
-  if (static_cast<double>(result.poses_outside_truth) >
-      kOutsideShare * static_cast<double>(estimate.size()))
-    result.problems.push_back(fmt::format("{}: {} of {} poses are outside the truth's time span",
-                                          (dir / "trajectory.tum").string(),
-                                          result.poses_outside_truth, estimate.size()));
+  const auto [pairs, overlap] = compare(dir / "trajectory.tum", *truth.trajectory, result);
+  result.overlap = overlap;
   result.trajectory = trajectory_error(pairs, options.alignment, options.world_from_map);
   world_from_map =
       options.world_from_map ? *options.world_from_map : align(pairs, Alignment::kOrigin);
@@ -147,7 +202,7 @@ void add_trajectory(const fs::path& dir, const RunTruth& truth, const Evaluation
   std::vector<StampedCovariance> covariances;
   if (fs::exists(covariance_file)) {
     covariances = read_covariances(covariance_file, result.skipped);
-    result.nees = nees(pairs, covariances, world_from_map);
+    add_nees(covariance_file, pairs, covariances, world_from_map, result);
   }
   result.driven_m = driven_m(pairs);
   result.stations = stations(pairs, covariances, world_from_map);
@@ -159,9 +214,9 @@ void add_final_trajectory(const fs::path& dir, const Trajectory& truth,
                           const EvaluationOptions& options, EstimatorResult& result) {
   const fs::path file = dir / "trajectory_final.tum";
   if (!fs::exists(file)) return;
-  const Trajectory estimate = read_tum(file, result.skipped);
-  result.final_trajectory =
-      trajectory_error(pairs_of(file, estimate, truth), options.alignment, options.world_from_map);
+  const auto [pairs, overlap] = compare(file, truth, result);
+  result.final_overlap = overlap;
+  result.final_trajectory = trajectory_error(pairs, options.alignment, options.world_from_map);
 }
 
 /// slam.peak_memory_mb of timings.json.
@@ -275,7 +330,7 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
     });
   }
   attempt(result.problems, [&] { result.config_toml = text_if_there(dir / "config.toml"); });
-  attempt(result.problems, [&] { result.timings_json = json_if_there(dir / "timings.json"); });
+  attempt(result.problems, [&] { result.timings_json = timings_if_there(dir / "timings.json"); });
   attempt(result.problems, [&] { result.findings_json = json_if_there(dir / "findings.json"); });
   add_figures_of_scenario(truth.expect, result);
   return result;

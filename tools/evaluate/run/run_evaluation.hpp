@@ -5,6 +5,7 @@
 #include "common/corridor/corridor_length.hpp"
 #include "evaluate/map/marker_error.hpp"
 #include "evaluate/run/expectation.hpp"
+#include "evaluate/trajectory/overlap.hpp"
 #include "evaluate/trajectory/stations.hpp"
 #include "evaluate/trajectory/timeline.hpp"
 #include "evaluate/trajectory/trajectory_error.hpp"
@@ -46,7 +47,8 @@ struct EstimatorResult {
   std::optional<int> wall_cells{};                    ///< wall thickness [cells]
   std::optional<TrajectoryError> trajectory{};        ///< of the poses published during the run
   std::optional<TrajectoryError> final_trajectory{};  ///< of the trajectory corrected at the end
-  std::size_t poses_outside_truth{};
+  std::optional<Overlap> overlap{};                   ///< of `trajectory` with the truth
+  std::optional<Overlap> final_overlap{};             ///< of `final_trajectory`
   std::optional<MarkerError> markers{};
   std::optional<Nees> nees{};
   std::vector<Station> stations{};
@@ -60,7 +62,8 @@ struct EstimatorResult {
   std::optional<std::string> timings_json{};
   std::vector<std::string> changes{};  ///< lines of changes.csv after its header
   std::optional<std::string> findings_json{};
-  std::vector<std::string> problems{};  ///< why figures are missing
+  std::vector<std::string> problems{};  ///< why figures are missing, or are not those of the run
+  std::vector<std::string> notes{};     ///< what figures leave out for good reasons
   Skipped skipped{};                    ///< lines that were left out
 };
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -34,6 +35,22 @@ std::string first_line(const fs::path& file) {
   return lines.empty() ? file.string() + ": empty" : lines.front();
 }
 
+/// True if all that is read from metrics.json has the form that `run` gives it.
+bool is_as_written(const Json& metrics) {
+  if (!metrics.is_object()) return false;
+  const auto all_of = [&metrics](const char* key, const std::function<bool(const Json&)>& is_good) {
+    const Json list = metrics.value(key, Json::array());
+    return list.is_array() && std::all_of(list.begin(), list.end(), is_good);
+  };
+  const auto has_all_keys = [](const Json& figure) {
+    return figure.is_object() && figure.contains("got") &&
+           figure.value("figure", Json{}).is_string() &&
+           figure.value("limit", Json{}).is_number() && figure.value("hit", Json{}).is_boolean();
+  };
+  return all_of("expectations", has_all_keys) &&
+         all_of("problems", [](const Json& problem) { return problem.is_string(); });
+}
+
 SweptRun read_run(const fs::path& sweep_dir, const PlannedRun& plan) {
   SweptRun run{.plan = plan};
   const fs::path folder = sweep_dir / plan.folder;
@@ -49,13 +66,16 @@ SweptRun read_run(const fs::path& sweep_dir, const PlannedRun& plan) {
     return run;
   }
   run.metrics = Json::parse(read_text(metrics), nullptr, false);
-  if (run.metrics.is_discarded() || !run.figure("ate_origin_m")) {
+  if (!is_as_written(run.metrics))
+    run.failure = fmt::format("not as waymark-evaluate run writes it: {}", metrics.string());
+  else if (!run.figure("ate_origin_m"))
     run.failure = fmt::format("no trajectory error; see {}", metrics.string());
+  if (run.has_failed()) {
     run.metrics = nullptr;
     return run;
   }
-  Skipped skipped;
-  if (fs::exists(row / "stations.csv")) run.stations = read_stations(row / "stations.csv", skipped);
+  if (fs::exists(row / "stations.csv"))
+    run.stations = read_stations(row / "stations.csv", run.skipped);
   return run;
 }
 
@@ -96,6 +116,11 @@ bool SweptRun::misses() const {
                      [](const Json& figure) { return !figure.value("hit", false); });
 }
 
+std::vector<std::string> SweptRun::problems() const {
+  if (has_failed()) return {};
+  return metrics.value("problems", std::vector<std::string>{});
+}
+
 double SweptRun::limit_of_seeds(const std::string& key) const {
   const Json::json_pointer place{"/expected_of_seeds/" + key};
   if (!metrics.is_object() || !metrics.contains(place) || !metrics[place].is_number()) return 0.0;
@@ -125,14 +150,22 @@ std::size_t SweepRow::misses() const {
       std::count_if(runs.begin(), runs.end(), [](const SweptRun& run) { return run.misses(); }));
 }
 
+std::size_t SweepRow::with_problems() const {
+  return static_cast<std::size_t>(std::count_if(
+      runs.begin(), runs.end(), [](const SweptRun& run) { return !run.problems().empty(); }));
+}
+
 Figures SweepRow::figures(const std::string& key) const {
   std::vector<double> values;
   for (const SweptRun& run : runs) {
     if (const auto value = run.figure(key)) values.push_back(*value);
   }
-  if (values.empty()) return {};
+  Figures figures{.count = values.size(), .seeds = runs.size() - failures()};
+  if (values.empty()) return figures;
+  figures.median = median(values);
   const auto [smallest, largest] = std::ranges::minmax(values);
-  return {median(values), is_higher_better(key) ? smallest : largest};
+  if (!figures.is_partial()) figures.worst = is_higher_better(key) ? smallest : largest;
+  return figures;
 }
 
 double SweepRow::limit(const std::string& key) const {
@@ -153,7 +186,10 @@ bool SweepRow::expects_anything() const {
 bool SweepRow::is_hit() const {
   constexpr double kAll = 1.0;
   const double wanted = limit("seeds_share") > 0.0 ? limit("seeds_share") : kAll;
-  const double hits = static_cast<double>(runs.size() - failures() - misses());
+  const auto is_good = [](const SweptRun& run) {
+    return !run.has_failed() && !run.misses() && run.problems().empty();
+  };
+  const auto hits = static_cast<double>(std::count_if(runs.begin(), runs.end(), is_good));
   constexpr double kRounding = 1e-9;
   return hits + kRounding >= wanted * static_cast<double>(runs.size()) &&
          (limit("nees_in_band_share") <= 0.0 ||
@@ -189,6 +225,7 @@ std::vector<SweepRow> sweep_rows(std::vector<SweptRun> runs) {
     for (const SweptRun& run : row.runs)
       stations.push_back(run.stations);
     row.stations = consistency(stations);
+    row.stations_left_out = count_without_covariance(stations);
   }
   return rows;
 }

@@ -31,11 +31,15 @@ struct SweptRun {
   nlohmann::ordered_json metrics{};  ///< content of metrics.json; null if the run failed
   std::string failure{};             ///< why there are no metrics; empty = success
   std::vector<Station> stations{};
+  Skipped skipped{};  ///< lines of stations.csv that were left out
 
   bool has_failed() const { return !failure.empty(); }
 
   /// True if an expectation of the scenario was not met.
   bool misses() const;
+
+  /// Why figures are missing or not those of the whole run; empty if nothing is wrong.
+  std::vector<std::string> problems() const;
 
   /// A limit in [expect] that holds over all seeds; 0 = none.
   double limit_of_seeds(const std::string& key) const;
@@ -45,13 +49,17 @@ struct SweptRun {
 };
 
 /// A run has failed if its folder or its row has a file `failed`, which says why, or if
-/// metrics.json is missing or has no ATE.
+/// metrics.json is missing, is not as `run` writes it, or has no ATE.
 std::vector<SweptRun> read_runs(const std::filesystem::path& sweep_dir);
 
-/// Over the seeds that have the figure; worst = largest, or smallest if higher is better.
+/// One figure over the seeds that did not fail; worst = largest, or smallest if higher is better.
 struct Figures {
-  std::optional<double> median{};
-  std::optional<double> worst{};
+  std::optional<double> median{};  ///< of the seeds that have it
+  std::optional<double> worst{};   ///< nullopt if a seed does not have it, which may be the worst
+  std::size_t count{};             ///< seeds that have it
+  std::size_t seeds{};
+
+  bool is_partial() const { return count > 0 && count < seeds; }
 };
 
 /// All seeds of one scenario and estimator.
@@ -60,15 +68,17 @@ struct SweepRow {
   std::string row{};
   std::vector<SweptRun> runs{};
   std::vector<StationConsistency> stations{};
+  std::size_t stations_left_out{};  ///< of single runs, without a usable covariance
 
   std::size_t failures() const;
   std::size_t misses() const;
+  std::size_t with_problems() const;
   Figures figures(const std::string& key) const;
 
   bool expects_anything() const;
 
-  /// True if the share of seeds that neither failed nor missed an expectation, and the share of
-  /// stations whose mean NEES is in its band, reach their limits in [expect].
+  /// True if the share of seeds that neither failed nor missed an expectation nor have problems,
+  /// and the share of stations whose mean NEES is in its band, reach their limits in [expect].
   bool is_hit() const;
 
   /// The seed with the largest ATE, among those that missed expectations if there are any; null if

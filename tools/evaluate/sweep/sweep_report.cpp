@@ -37,6 +37,14 @@ std::string for_csv(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "";
 }
 
+/// Median and worst; if only some of the seeds have the figure, how many.
+std::string shown(const Figures& figures, int decimals) {
+  if (figures.is_partial())
+    return fmt::format("{} / none ({} of {})", shown(figures.median, decimals), figures.count,
+                       figures.seeds);
+  return fmt::format("{} / {}", shown(figures.median, decimals), shown(figures.worst, decimals));
+}
+
 std::string label_of(const SweepRow& row) {
   return row.scenario + ", " + row.row;
 }
@@ -77,13 +85,11 @@ std::string verdict_of(const SweepRow& row) {
 std::string row_line(const SweepRow& row) {
   std::string line = fmt::format("| {} | {} | {} |", row.scenario, row.row, row.runs.size());
   for (const Column& column : kColumns) {
-    const Figures figures = row.figures(column.key);
-    line += fmt::format(" {} / {} |", shown(figures.median, column.decimals),
-                        shown(figures.worst, column.decimals));
+    line += fmt::format(" {} |", shown(row.figures(column.key), column.decimals));
   }
-  return line + fmt::format(" {} | {} | {} | {} | {} |\n",
+  return line + fmt::format(" {} | {} | {} | {} | {} | {} |\n",
                             shown(100.0 * share_in_band(row.stations), 0), row.failures(),
-                            row.misses(), expected_of(row), verdict_of(row));
+                            row.misses(), row.with_problems(), expected_of(row), verdict_of(row));
 }
 
 std::string missed_of(const SweptRun& run) {
@@ -96,6 +102,28 @@ std::string missed_of(const SweptRun& run) {
                         got.is_number() ? fmt::format("{:.3g}", got.get<double>()) : "none",
                         figure["limit"].get<double>());
   }
+  return text;
+}
+
+/// Why a run is not as it should be; empty if nothing is wrong.
+std::string faults_of(const SweptRun& run) {
+  if (run.has_failed()) return fmt::format("FAILED: {}", run.failure);
+  std::vector<std::string> faults = run.problems();
+  if (run.misses()) faults.insert(faults.begin(), missed_of(run));
+  return fmt::format("{}", fmt::join(faults, "; "));
+}
+
+/// Lines of the list of what the statistics leave out; empty if that is nothing.
+std::string left_out_of(const SweepRow& row) {
+  std::string text;
+  for (const SweptRun& run : row.runs) {
+    if (!run.skipped.empty())
+      text += fmt::format("* {}, seed {}: {} lines skipped, first: {}\n", label_of(row),
+                          run.plan.seed, run.skipped.size(), run.skipped.front());
+  }
+  if (row.stations_left_out > 0)
+    text += fmt::format("* {}: {} stations of single runs have no usable covariance\n",
+                        label_of(row), row.stations_left_out);
   return text;
 }
 
@@ -124,25 +152,29 @@ std::string sweep_markdown(const std::vector<SweepRow>& rows) {
   std::string text = "# Sweep\n\n| scenario | estimator | runs |";
   for (const Column& column : kColumns)
     text += fmt::format(" {} |", column.name);
-  text += " NEES in band [%] | failures | misses | expected | verdict |\n|---|---|---|";
-  for (std::size_t i = 0; i < kColumns.size() + 5; ++i)
+  text += " NEES in band [%] | failures | misses | problems | expected | verdict |\n|---|---|---|";
+  for (std::size_t i = 0; i < kColumns.size() + 6; ++i)
     text += "---|";
   text += "\n";
   for (const SweepRow& row : rows)
     text += row_line(row);
   text +=
-      "\nTwo numbers: median / worst over the seeds. NEES in band: stations, one every metre, "
-      "where "
-      "the mean over the seeds lies in its 95 % band. Misses: seeds that do not reach what the "
-      "scenario expects. Failures: runs without a result.\n";
+      "\nTwo numbers: median / worst over the seeds; `none (2 of 3)`: the third seed does not have "
+      "the figure, and may be the worst. NEES in band: stations, one every metre, where the mean "
+      "over the seeds lies in its 95 % band. Misses: seeds that do not reach what the scenario "
+      "expects. Failures: runs without a result. Problems: runs with figures that are missing or "
+      "of a part of the run; none of them is a hit.\n";
+  std::string left_out;
+  for (const SweepRow& row : rows)
+    left_out += left_out_of(row);
+  if (!left_out.empty()) text += "\nLeft out of the statistics:\n\n" + left_out;
   std::string commands;
   for (const SweepRow& row : rows) {
     for (const SweptRun& run : row.runs) {
-      if (!run.has_failed() && !run.misses()) continue;
-      commands +=
-          fmt::format("\n# {}, seed {}: {}\n{}\n", label_of(row), run.plan.seed,
-                      run.has_failed() ? fmt::format("FAILED: {}", run.failure) : missed_of(run),
-                      run.plan.again);
+      const std::string faults = faults_of(run);
+      if (faults.empty()) continue;
+      commands += fmt::format("\n# {}, seed {}: {}\n{}\n", label_of(row), run.plan.seed, faults,
+                              run.plan.again);
     }
   }
   if (commands.empty()) return text;
@@ -150,18 +182,20 @@ std::string sweep_markdown(const std::vector<SweepRow>& rows) {
 }
 
 std::string sweep_csv(const std::vector<SweepRow>& rows) {
-  std::string text = "scenario,estimator,runs,failures,misses,nees_in_band_share";
+  std::string text = "scenario,estimator,runs,failures,misses,problems,nees_in_band_share";
   for (const Column& column : kColumns)
     text += fmt::format(",{0}_median,{0}_worst", column.key);
   for (const char* key : kMoreKeys)
     text += fmt::format(",{0}_median,{0}_worst", key);
   text += "\n";
   for (const SweepRow& row : rows) {
-    text += fmt::format("{},{},{},{},{},{}", row.scenario, row.row, row.runs.size(), row.failures(),
-                        row.misses(), for_csv(share_in_band(row.stations)));
+    text +=
+        fmt::format("{},{},{},{},{},{},{}", row.scenario, row.row, row.runs.size(), row.failures(),
+                    row.misses(), row.with_problems(), for_csv(share_in_band(row.stations)));
     const auto add = [&](const char* key) {
       const Figures figures = row.figures(key);
-      text += fmt::format(",{},{}", for_csv(figures.median), for_csv(figures.worst));
+      text += fmt::format(",{},{}", for_csv(figures.median),
+                          figures.is_partial() ? "none" : for_csv(figures.worst));
     };
     for (const Column& column : kColumns)
       add(column.key);
@@ -178,7 +212,7 @@ std::string sweep_runs_csv(const std::vector<SweepRow>& rows) {
     text += fmt::format(",{}", column.key);
   for (const char* key : kMoreKeys)
     text += fmt::format(",{}", key);
-  text += "\n";
+  text += ",problems\n";
   for (const SweepRow& row : rows) {
     for (const SweptRun& run : row.runs) {
       text += fmt::format("{},{},{},{}/{},{},{}", row.scenario, row.row, run.plan.seed,
@@ -187,7 +221,7 @@ std::string sweep_runs_csv(const std::vector<SweepRow>& rows) {
         text += fmt::format(",{}", for_csv(run.figure(column.key)));
       for (const char* key : kMoreKeys)
         text += fmt::format(",{}", for_csv(run.figure(key)));
-      text += "\n";
+      text += fmt::format(",{}\n", run.problems().size());
     }
   }
   return text;

@@ -9,11 +9,11 @@
 
 namespace waymark::evaluate {
 
-/// One line per scenario and estimator, then a command for each seed that failed or missed an
-/// expectation.
+/// One line per scenario and estimator; what the statistics leave out; a command for each seed that
+/// failed, missed an expectation or has problems.
 std::string sweep_markdown(const std::vector<SweepRow>& rows);
 
-/// One line per scenario and estimator.
+/// One line per scenario and estimator. The worst of a figure is "none" if a seed does not have it.
 std::string sweep_csv(const std::vector<SweepRow>& rows);
 
 /// One line per run.

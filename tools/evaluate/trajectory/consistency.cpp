@@ -18,6 +18,12 @@ struct Sums {
   double heading_squared{0.0};
 };
 
+bool has_covariance(const Station& station) {
+  return station.nees && station.sigma_along_m.value_or(0.0) > 0.0 &&
+         station.sigma_across_m.value_or(0.0) > 0.0 &&
+         station.sigma_heading_rad.value_or(0.0) > 0.0;
+}
+
 }  // namespace
 
 double chi_square_quantile(double degrees_of_freedom, double normal_quantile) {
@@ -61,7 +67,7 @@ SquaresOverVariances squares_over_variances(const std::vector<std::vector<Statio
   };
   for (const std::vector<Station>& run : runs) {
     for (const Station& station : run) {
-      if (!station.nees) continue;
+      if (!has_covariance(station)) continue;
       sums.along += ratio(station.along_m, station.sigma_along_m);
       sums.across += ratio(station.across_m, station.sigma_across_m);
       sums.heading += ratio(station.heading_rad, station.sigma_heading_rad);
@@ -69,6 +75,15 @@ SquaresOverVariances squares_over_variances(const std::vector<std::vector<Statio
     }
   }
   return {sums.along / count, sums.across / count, sums.heading / count};
+}
+
+std::size_t count_without_covariance(const std::vector<std::vector<Station>>& runs) {
+  std::size_t count = 0;
+  for (const std::vector<Station>& run : runs) {
+    for (const Station& station : run)
+      count += has_covariance(station) ? 0U : 1U;
+  }
+  return count;
 }
 
 double share_in_band(const std::vector<StationConsistency>& stations) {

@@ -40,6 +40,9 @@ struct SquaresOverVariances {
 
 SquaresOverVariances squares_over_variances(const std::vector<std::vector<Station>>& runs);
 
+/// Stations of single runs that have no usable covariance, and are left out of the means above.
+std::size_t count_without_covariance(const std::vector<std::vector<Station>>& runs);
+
 /// Share of the stations whose mean NEES is in its band; NaN without stations.
 double share_in_band(const std::vector<StationConsistency>& stations);
 

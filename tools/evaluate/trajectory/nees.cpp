@@ -19,10 +19,23 @@ constexpr double kBandHigh = 9.3484;
 constexpr double kSmallestVariance = 1e-12;
 /// Times are written with six decimals.
 constexpr double kSameTime_s = 1e-5;
+/// Covariances are written with fewer digits than they have.
+constexpr double kLargestCorrelation = 1.001;
+constexpr double kLeftOutShare = 0.01;
 
 bool has_health(const std::filesystem::path& file) {
   const std::vector<std::string> lines = read_lines(file);
   return !lines.empty() && lines.front().ends_with(",health");
+}
+
+/// False for what is no covariance, singular or not. Only pairs of axes are checked.
+bool is_valid(const Eigen::Matrix3d& covariance) {
+  const Eigen::Vector3d variances = covariance.diagonal();
+  if (variances.minCoeff() < 0.0) return false;
+  const Eigen::Vector3d sigmas = variances.cwiseSqrt();
+  const Eigen::Matrix3d largest = kLargestCorrelation * sigmas * sigmas.transpose() +
+                                  Eigen::Matrix3d::Constant(kSmallestVariance);
+  return (covariance.cwiseAbs().array() <= largest.array()).all();
 }
 
 }  // namespace
@@ -73,6 +86,11 @@ std::optional<double> nees_of(const PosePair& pair, const Eigen::Matrix3d& covar
   return error.dot(factor.solve(error));
 }
 
+bool leaves_out_too_many(const Nees& nees, std::size_t left_out) {
+  return static_cast<double>(left_out) >
+         kLeftOutShare * static_cast<double>(nees.poses + nees.left_out());
+}
+
 Nees nees(const std::vector<PosePair>& pairs, const std::vector<StampedCovariance>& covariances,
           const Se2& world_from_map) {
   Nees result{};
@@ -80,10 +98,13 @@ Nees nees(const std::vector<PosePair>& pairs, const std::vector<StampedCovarianc
   std::size_t in_band = 0;
   for (const PosePair& pair : pairs) {
     const StampedCovariance* const stamped = covariance_at(covariances, pair.t_s);
-    if (stamped == nullptr) continue;
+    if (stamped == nullptr) {
+      ++result.missing;
+      continue;
+    }
     const std::optional<double> value = nees_of(pair, stamped->covariance, world_from_map);
     if (!value) {
-      ++result.singular;
+      ++(is_valid(stamped->covariance) ? result.singular : result.invalid);
       continue;
     }
     sum += *value;

@@ -23,10 +23,18 @@ struct StampedCovariance {
 /// covariances are consistent.
 struct Nees {
   std::size_t poses{};
-  std::size_t singular{};  ///< poses left out as their covariance is singular (e.g. the first)
+  // Poses that are left out:
+  std::size_t missing{};   ///< without a covariance of their time
+  std::size_t invalid{};   ///< a variance is negative, or a correlation above 1
+  std::size_t singular{};  ///< the covariance has no inverse, e.g. that of the first pose
   double mean{};           ///< NaN if there is no pose
   double share_in_band{};  ///< between the 2.5 % and 97.5 % quantiles; 0.95 if consistent
+
+  std::size_t left_out() const { return missing + invalid + singular; }
 };
+
+/// True if `left_out` is more than 1 % of all poses: the mean is then not that of the run.
+bool leaves_out_too_many(const Nees& nees, std::size_t left_out);
 
 /// Reads `t,cxx,cxy,cxt,cyy,cyt,ctt` and, if present, `health` of covariance.csv; in order of time.
 std::vector<StampedCovariance> read_covariances(const std::filesystem::path& file,

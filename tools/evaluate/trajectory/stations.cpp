@@ -10,6 +10,7 @@ namespace waymark::evaluate {
 namespace {
 
 constexpr double kSpacing_m = 1.0;
+constexpr double kLifted_m = 0.3;     ///< a shorter step may be driven, whatever its duration
 constexpr double kFastest_mps = 1.0;  ///< twice the speed of the fastest scenario's robot
 /// Written for nullopt, because every column has to be a finite number; valid values are not
 /// negative.
@@ -45,13 +46,17 @@ Station station_at(double travel_m, const PosePair& pair, const StampedCovarianc
 
 /// Travel of the true robot from one pose to the next [m]; 0 if it was lifted in between.
 double step_m(const PosePair& before, const PosePair& after) {
-  const double distance_m =
-      (after.world_from_truth.translation() - before.world_from_truth.translation()).norm();
-  const double most_m = std::max(kLifted_m, kFastest_mps * (after.t_s - before.t_s));
-  return distance_m < most_m ? distance_m : 0.0;
+  if (was_lifted(before.world_from_truth, after.world_from_truth, after.t_s - before.t_s))
+    return 0.0;
+  return (after.world_from_truth.translation() - before.world_from_truth.translation()).norm();
 }
 
 }  // namespace
+
+bool was_lifted(const Se2& before, const Se2& after, double duration_s) {
+  return (after.translation() - before.translation()).norm() >
+         std::max(kLifted_m, kFastest_mps * duration_s);
+}
 
 double driven_m(const std::vector<PosePair>& pairs) {
   double sum_m = 0.0;

@@ -25,8 +25,8 @@ struct Station {
   Health health{Health::kUnknown};
 };
 
-/// A larger step between two true poses means that the robot was lifted.
-inline constexpr double kLifted_m = 0.3;
+/// True if the robot was lifted between two true poses: it is further away than it can drive.
+bool was_lifted(const Se2& before, const Se2& after, double duration_s);
 
 /// Length of the true trajectory [m], without steps in which the robot was lifted.
 double driven_m(const std::vector<PosePair>& pairs);

@@ -37,7 +37,7 @@ std::optional<double> found_t_s(const std::vector<PosePair>& pairs, const Se2& w
     if (!since_s) since_s = pair.t_s;
     if (pair.t_s - *since_s >= kStaysRight_s) return since_s;
   }
-  return since_s;
+  return std::nullopt;
 }
 
 double jump_m(const PosePair& before, const PosePair& after) {
@@ -101,9 +101,9 @@ std::vector<double> sighting_times(const std::filesystem::path& log) {
 
 std::optional<double> lifted_t_s(const Trajectory& truth) {
   for (std::size_t i = 1; i < truth.size(); ++i) {
-    const Eigen::Vector2d step_m =
-        truth[i].parent_from_base.translation() - truth[i - 1].parent_from_base.translation();
-    if (step_m.norm() > kLifted_m) return truth[i].t_s;
+    if (was_lifted(truth[i - 1].parent_from_base, truth[i].parent_from_base,
+                   truth[i].t_s - truth[i - 1].t_s))
+      return truth[i].t_s;
   }
   return std::nullopt;
 }

@@ -88,6 +88,7 @@ TEST(EvaluateProgram, ConsistencyGives1WithoutStationsOrForABadLine) {
   EXPECT_EQ(code(station), 0);
   EXPECT_EQ(code(station + "2,much\n"), 1);
   EXPECT_EQ(code(""), 1);
+  EXPECT_EQ(code(station + "2,20.0,0.01,0.01,0.001,-1,-1,-1,-1,2\n"), 1);
 }
 
 }  // namespace

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The run sub-command on a folder as a run leaves it.
 #include "evaluate/commands.hpp"
-#include "evaluate/run/report.hpp"
-#include "support/drawn_map.hpp"
-#include "unit/tools/temporary_folder.hpp"
+#include "unit/tools/evaluate/run/run_folder.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,47 +12,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-const Output kQuietly{false, false};
-
-/// A drive of 8 m from x = 1 m; the estimate's steps are longer by a factor.
-std::string tum(double x0_m, double factor) {
-  std::string text;
-  for (int i = 0; i <= 80; ++i)
-    text += fmt::format("{:.6f} {:.6f} 0 0 0 0 0 1\n", 0.2 * i, x0_m + factor * 0.1 * i);
-  return text;
-}
-
-std::string pgm(const corridor::MapImage& map) {
-  std::string text = fmt::format("P5\n{} {}\n255\n", map.width_px, map.height_px);
-  for (int y = map.height_px - 1; y >= 0; --y) {
-    for (int x = 0; x < map.width_px; ++x)
-      text += map.at(x, y) == corridor::Cell::kFree       ? '\xfe'
-              : map.at(x, y) == corridor::Cell::kOccupied ? '\0'
-                                                          : '\xcd';
-  }
-  return text;
-}
-
-void add_estimator(const TemporaryFolder& run, const std::string& name, double length_px,
-                   double factor) {
-  run.file(name + "/trajectory.tum", tum(0.0, factor));
-  run.file(name + "/map.pgm",
-           pgm(corridor::draw({230, 61, length_px}, corridor::straight_shape(7, 30, 0))));
-  run.file(name + "/map.yaml",
-           "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
-           "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
-}
-
-void add_truth(const TemporaryFolder& run) {
-  run.file("scenario.toml", "[world]\nlength_m = 10\n");
-  run.file("truth.tum", tum(1.0, 1.0));
-  run.file("truth_markers.csv", "id,instance,x_m,y_m,yaw_rad\n0,0,4,1,-1.5708\n1,0,8,1,-1.5708\n");
-}
-
-Json json_in(const std::filesystem::path& file) {
-  return Json::parse(read_text(file));
-}
 
 TEST(Run, WritesMetricsAndTheTable) {
   const TemporaryFolder run;
@@ -68,8 +24,7 @@ TEST(Run, WritesMetricsAndTheTable) {
            "0,0,3.02,1,-1.5708,0.1,0.1,0.1,7\n");
   run.file("waymark/config.toml", "[slam]\nseed = 7\n");
   run.file("waymark/timings.json", "{\"scan_ms\": 1.5}");
-  run.file("waymark/covariance.csv",
-           "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n0.2,0.01,0,0,0.01,0,0.01,2\n");
+  run.file("waymark/covariance.csv", covariance_csv(kPoses, kUnitCovariance));
 
   EXPECT_EQ(run_run(run.path(), {}, {}, kQuietly), kExitOk);
 
@@ -79,7 +34,7 @@ TEST(Run, WritesMetricsAndTheTable) {
   EXPECT_EQ(waymark["ate_origin_m"], 0.0);
   EXPECT_EQ(waymark["marker_error_mean_m"], 0.02);
   EXPECT_EQ(waymark["markers_missing"], 1);
-  EXPECT_EQ(waymark["nees_poses"], 1);
+  EXPECT_EQ(waymark["nees_poses"], kPoses);
   EXPECT_TRUE(waymark["max_jump_m"].is_number());
   EXPECT_TRUE(waymark["lifted_at_s"].is_null()) << "nobody lifted the robot";
   EXPECT_EQ(waymark["timings"]["scan_ms"], 1.5);

@@ -11,6 +11,7 @@
 namespace waymark::evaluate {
 namespace {
 
+using Json = nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -84,7 +85,7 @@ TEST(Sweep, TheTableListsACommandForEachBadSeed) {
   const SweptFolder sweep;
   const std::string table = sweep_markdown(sweep.rows());
   EXPECT_THAT(table, HasSubstr("| plain | waymark | 3 | 0.10 / 0.10 | 0.080 / 0.120 |"));
-  EXPECT_THAT(table, HasSubstr("| 0 | 1 | ate_origin_m 0.1 | MISS |"));
+  EXPECT_THAT(table, HasSubstr("| 0 | 1 | 0 | ate_origin_m 0.1 | MISS |"));
   EXPECT_THAT(table, HasSubstr("# plain, waymark, seed 3: ate_origin_m 0.12 (limit 0.1)\n"
                                "again plain 3\n"));
   EXPECT_THAT(table, HasSubstr("seed 1: FAILED: replay ended with code 139"));
@@ -163,11 +164,68 @@ TEST(Sweep, PlotsAreAsWideAndHaveAsManyLabelsAsThereAreRows) {
   EXPECT_THAT(program, HasSubstr("plot for [i=0:3] 'stations.dat'"));
 }
 
+/// Seed 2 of the row `waymark` of `plain` has other metrics.
+void change_metrics(const SweptFolder& sweep, const std::string& key, const Json& value) {
+  const auto file = sweep.folder.path() / "plain/seed-2/waymark/metrics.json";
+  Json json = Json::parse(read_text(file));
+  json[key] = value;
+  sweep.folder.file("plain/seed-2/waymark/metrics.json", json.dump());
+}
+
+TEST(Sweep, AFigureThatASeedDoesNotHaveHasNoWorst) {
+  const SweptFolder sweep;
+  change_metrics(sweep, "accuracy_percent", nullptr);
+  const auto rows = sweep.rows();
+  const Figures figures = rows[1].figures("length_error_percent");
+  EXPECT_TRUE(figures.median);
+  EXPECT_FALSE(figures.worst);
+  EXPECT_THAT(sweep_markdown(rows), HasSubstr("| plain | waymark | 3 | 0.10 / none (2 of 3) |"));
+  EXPECT_THAT(sweep_csv(rows), HasSubstr("\nplain,waymark,3,0,1,0,0.5,0.1,none,"));
+}
+
+TEST(Sweep, RunsWithProblemsAreCountedAndAreNoHits) {
+  const SweptFolder sweep;
+  change_metrics(sweep, "problems", {"covers 50 % of the truth"});
+  change_metrics(sweep, "expected_of_seeds", {{"seeds_share", 0.6}});
+  const auto rows = sweep.rows();
+  EXPECT_EQ(rows[1].with_problems(), 1u);
+  EXPECT_FALSE(rows[1].is_hit());
+  const std::string table = sweep_markdown(rows);
+  EXPECT_THAT(table, HasSubstr("| 0 | 1 | 1 | ate_origin_m 0.1, seeds_share 0.6 | MISS |"));
+  EXPECT_THAT(table, HasSubstr("seed 2: covers 50 % of the truth\nagain plain 2\n"));
+  change_metrics(sweep, "problems", Json::array());
+  EXPECT_TRUE(sweep.rows()[1].is_hit());
+}
+
+TEST(Sweep, MetricsOfAnotherFormAreAFailure) {
+  for (const char* damaged :
+       {R"([{"figure": "ate_origin_m", "got": 1, "hit": true}])", "[1]", "7"}) {
+    const SweptFolder sweep;
+    change_metrics(sweep, "expectations", Json::parse(damaged));
+    const auto rows = sweep.rows();
+    EXPECT_EQ(rows[1].failures(), 1u);
+    EXPECT_THAT(sweep_markdown(rows), HasSubstr("FAILED: not as waymark-evaluate run writes it: "));
+  }
+}
+
+TEST(Sweep, WhatIsLeftOutOfStationsIsNamed) {
+  const SweptFolder sweep;
+  EXPECT_THAT(sweep_markdown(sweep.rows()), Not(HasSubstr("Left out")));
+  const std::string file = "plain/seed-2/waymark/stations.csv";
+  const std::string text = read_text(sweep.folder.path() / file);
+  sweep.folder.file(file, text + "3,30,much\n4,40,0.1,0,0,-1,0.1,0.1,0.1,2\n");
+  const std::string table = sweep_markdown(sweep.rows());
+  EXPECT_THAT(table, HasSubstr("* plain, waymark, seed 2: 1 lines skipped, first: "));
+  EXPECT_THAT(table, HasSubstr("* plain, waymark: 1 stations of single runs have no usable"));
+  EXPECT_EQ(run_sweep(sweep.folder.path(), {}), kExitFailed);
+  EXPECT_EQ(run_sweep(sweep.folder.path(), Output{false, true}), kExitOk);
+}
+
 TEST(Sweep, AllFilesAreWritten) {
   const SweptFolder sweep;
   EXPECT_EQ(run_sweep(sweep.folder.path(), {}), kExitOk);
   const std::string csv = read_text(sweep.folder.path() / "results.csv");
-  EXPECT_THAT(csv, HasSubstr("\nplain,waymark,3,0,1,0.5,"));
+  EXPECT_THAT(csv, HasSubstr("\nplain,waymark,3,0,1,0,0.5,"));
   EXPECT_THAT(read_text(sweep.folder.path() / "runs.csv"),
               HasSubstr("\ndark,waymark,3,dark/seed-3/waymark,1,0,"));
   EXPECT_THAT(read_text(sweep.folder.path() / "index.html"),

@@ -155,6 +155,16 @@ TEST(Consistency, StationsWithoutACovarianceDoNotCount) {
   EXPECT_TRUE(std::isnan(share_in_band({})));
 }
 
+TEST(Consistency, StationsWithoutAUsableCovarianceAreCounted) {
+  const Station without{.travel_m = 1.0};
+  Station with_nees_only = without;
+  with_nees_only.nees = 3.0;
+  Station with = with_nees_only;
+  with.sigma_along_m = with.sigma_across_m = with.sigma_heading_rad = 0.1;
+  EXPECT_EQ(count_without_covariance({{without, with}, {with_nees_only}}), 2u);
+  EXPECT_TRUE(std::isnan(squares_over_variances({{with_nees_only}}).along));
+}
+
 // --------------------------------------------------------------------------- timeline
 
 /// Lifted by 3 m at t = 4 s; the estimate goes on as if nothing had been, says that it is lost from
@@ -218,6 +228,24 @@ TEST(Timeline, KidnapsAreJumpsOfTheTruth) {
   EXPECT_FALSE(lifted_t_s(truth));
   truth[20].parent_from_base = Se2{8.0, 0.0, 0.0};
   EXPECT_NEAR(lifted_t_s(truth).value(), 2.0, 1e-9);
+}
+
+TEST(Timeline, ATruthWithFewPosesIsNotLifted) {
+  Trajectory truth;
+  for (int i = 0; i < 30; ++i)
+    truth.push_back({1.0 * i, Se2{0.5 * i, 0.0, 0.0}});
+  EXPECT_FALSE(lifted_t_s(truth));
+  truth[20].parent_from_base = Se2{12.0, 0.0, 0.0};
+  EXPECT_NEAR(lifted_t_s(truth).value(), 20.0, 1e-9);
+}
+
+TEST(Timeline, APoseThatIsRightForLessThanASecondIsNotFoundAgain) {
+  Kidnapped run;
+  std::erase_if(run.pairs, [](const PosePair& pair) { return pair.t_s > 6.9; });
+  EXPECT_FALSE(timeline(run.pairs, run.stamped, {}, 4.0, {}).kidnap->found_again_s);
+  run = {};
+  std::erase_if(run.pairs, [](const PosePair& pair) { return pair.t_s > 7.1; });
+  EXPECT_TRUE(timeline(run.pairs, run.stamped, {}, 4.0, {}).kidnap->found_again_s);
 }
 
 TEST(Timeline, SightingsAreFramesThatShowAMarker) {

@@ -142,7 +142,9 @@ TEST(Nees, CovariancesThatCannotBeInvertedAreCounted) {
   const Nees result =
       nees(pairs, {{1.0, Eigen::Matrix3d::Zero()}, {2.0, indefinite}, {3.0, tiny}}, Se2{});
   EXPECT_EQ(result.poses, 0u);
-  EXPECT_EQ(result.singular, 3u);
+  EXPECT_EQ(result.singular, 2u);
+  EXPECT_EQ(result.invalid, 1u);
+  EXPECT_EQ(result.missing, 1u);
   EXPECT_TRUE(std::isnan(result.mean));
 }
 
