@@ -3,11 +3,12 @@
 
 #include "common/logging/logging.hpp"
 #include "common/messages/convert.hpp"
+#include "export/even_scan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace waymark::exporting {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 using std::chrono::seconds;
 
 constexpr Duration kMapPeriod = seconds{2};
-constexpr Duration kLongestGap = seconds{1};  // between poses that are interpolated
-constexpr std::size_t kMostPoses = 2000;
 constexpr double kMarkerHeight_m = 0.3;  // for display; the map has no heights
 constexpr double kMarkerSide_m = 0.4;
 constexpr double kMarkerThickness_m = 0.02;
@@ -24,6 +23,16 @@ constexpr Colour kMarkerColour{0.1, 0.4, 0.9, 0.9};
 constexpr Colour kMovedColour{0.6, 0.1, 0.7, 0.9};
 constexpr Colour kEllipseColour{0.9, 0.5, 0.0, 1.0};
 constexpr Colour kTextColour{0.0, 0.0, 0.0, 1.0};
+
+/// Removes all entities of a scene.
+Json delete_all_json(Timestamp time) {
+  constexpr int kDeleteAll = 1;
+  return Json::array({{{"timestamp", time_json(time)}, {"type", kDeleteAll}, {"id", ""}}});
+}
+
+viewer::TimedPose timed_pose(const pose2D_t& message) {
+  return {timestamp_from_us(message.utime), to_se2(message)};
+}
 
 Json marker_json(Timestamp time, const viewer::Landmark& landmark) {
   const std::string name = landmark.instance == 0
@@ -49,25 +58,6 @@ Json marker_json(Timestamp time, const viewer::Landmark& landmark) {
 
 }  // namespace
 
-void RecentPoses::add(Timestamp time, const Se2& pose) {
-  if (!poses_.empty() && time <= poses_.back().time) return;
-  poses_.push_back({time, pose});
-  if (poses_.size() > kMostPoses) poses_.pop_front();
-}
-
-std::optional<Se2> RecentPoses::at(Timestamp time) const {
-  const auto after =
-      std::lower_bound(poses_.begin(), poses_.end(), time,
-                       [](const viewer::TimedPose& pose, Timestamp t) { return pose.time < t; });
-  if (after == poses_.end()) return std::nullopt;
-  if (after->time == time) return after->frame_from_base;
-  if (after == poses_.begin()) return std::nullopt;
-  const viewer::TimedPose& before = *(after - 1);
-  if (after->time - before.time > kLongestGap) return std::nullopt;
-  const double fraction = to_seconds(time - before.time) / to_seconds(after->time - before.time);
-  return interpolate(before.frame_from_base, after->frame_from_base, fraction);
-}
-
 McapExport::McapExport(const std::filesystem::path& out, Inbox& inbox)
     : file_{out}, counters_{inbox.counters()}, updater_{scene_, inbox.counters()} {
   try {
@@ -86,11 +76,14 @@ McapExport::McapExport(const std::filesystem::path& out, Inbox& inbox)
   markers_ = channel("/markers", "SceneUpdate");
   camera_ = channel("/camera", "CompressedImage");
   truth_ = channel("/truth", "PoseInFrame");
+  const auto add_of_map = [this](const auto& message) {
+    if (follow(message.map_id, timestamp_from_us(message.utime))) add(message);
+  };
   inbox.on<annotated_scan_t>(channels::kSlamScan, [this](const auto& m) { add(m); });
   inbox.on<image_t>(channels::kCamera, [this](const auto& m) { add(m); });
-  inbox.on<map_tiles_t>(channels::kSlamMap, [this](const auto& m) { add(m); });
-  inbox.on<marker_map_t>(channels::kSlamMarkers, [this](const auto& m) { add(m); });
-  inbox.on<slam_estimate_t>(channels::kSlamEstimate, [this](const auto& m) { add(m); });
+  inbox.on<map_tiles_t>(channels::kSlamMap, add_of_map);
+  inbox.on<marker_map_t>(channels::kSlamMarkers, add_of_map);
+  inbox.on<slam_estimate_t>(channels::kSlamEstimate, add_of_map);
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) { add_odometry(m); });
   inbox.on<pose2D_t>(channels::kTruePose, [this](const auto& m) { add_truth(m); });
 }
@@ -119,18 +112,15 @@ void McapExport::write_pose(McapWriter::ChannelId channel, Timestamp time, const
 void McapExport::add(const annotated_scan_t& message) {
   const Timestamp time = timestamp_from_us(message.utime);
   if (message.angles.empty()) return;
-  Json ranges = Json::array();
-  // JSON has no infinity: 0 stands for "no return".
-  for (const float range : message.ranges)
-    ranges.push_back(std::isfinite(range) ? range : 0.0F);
+  const EvenScan scan = even_scan(message.angles, message.ranges);
   const Se2 map_from_lidar{message.x_m, message.y_m, message.theta_rad};
   write(scan_, time,
         {{"timestamp", time_json(time)},
          {"frame_id", "map"},
          {"pose", pose_json(map_from_lidar)},
-         {"start_angle", message.angles.front()},
-         {"end_angle", message.angles.back()},
-         {"ranges", ranges},
+         {"start_angle", scan.start_angle_rad},
+         {"end_angle", scan.end_angle_rad},
+         {"ranges", scan.ranges_m},
          {"intensities", Json::array()}});
 }
 
@@ -152,7 +142,7 @@ void McapExport::add(const map_tiles_t& message) {
   map_has_changed_ = true;
   const Timestamp time = timestamp_from_us(message.utime);
   const bool is_last_part = message.part + 1 == message.num_parts;
-  if (is_last_part && (!last_map_ || time - *last_map_ >= kMapPeriod)) write_map(time);
+  if (is_last_part && (!last_map_ || abs(time - *last_map_) >= kMapPeriod)) write_map(time);
 }
 
 void McapExport::write_map(Timestamp time) {
@@ -180,14 +170,10 @@ void McapExport::add(const marker_map_t& message) {
   updater_.add(message);
   if (message.part + 1 != message.num_parts) return;
   const Timestamp time = timestamp_from_us(message.utime);
-  constexpr int kDeleteAll = 1;
   Json entities = Json::array();
   for (const viewer::Landmark& landmark : scene_.landmarks)
     entities.push_back(marker_json(time, landmark));
-  write(markers_, time,
-        {{"deletions",
-          Json::array({{{"timestamp", time_json(time)}, {"type", kDeleteAll}, {"id", ""}}})},
-         {"entities", entities}});
+  write(markers_, time, {{"deletions", delete_all_json(time)}, {"entities", entities}});
 }
 
 void McapExport::add(const slam_estimate_t& message) {
@@ -201,33 +187,81 @@ void McapExport::add(const slam_estimate_t& message) {
   entity["lines"].push_back(
       ellipse_json(map_from_base.translation(), covariance.topLeftCorner<2, 2>(), kEllipseColour));
   write(ellipse_, time, {{"deletions", Json::array()}, {"entities", Json::array({entity})}});
-  if (const auto odom_from_base = odometry_.at(time)) {
-    write_transform(time,
-                    transform_json(time, "map", "odom", map_from_base * odom_from_base->inverse()));
-  } else {
-    counters_.add("SLAM_ESTIMATE without ODOMETRY around it");
-  }
+  odometry_.add_estimate({time, map_from_base});
+  write_odometry();
   if (has_world_) return;
-  if (const auto world_from_base = true_poses_.at(time)) {
-    has_world_ = true;
-    write_transform(
-        time, transform_json(time, "world", "map", *world_from_base * map_from_base.inverse()));
-  }
+  true_poses_.add_estimate({time, map_from_base});
+  write_truth();
 }
 
 void McapExport::add_odometry(const pose2D_t& message) {
-  const Timestamp time = timestamp_from_us(message.utime);
-  odometry_.add(time, to_se2(message));
-  write_transform(time, transform_json(time, "odom", "base", to_se2(message)));
+  odometry_.add_pose(timed_pose(message));
+  write_odometry();
+}
+
+void McapExport::write_odometry() {
+  for (const auto& [time, odom_from_base] : odometry_.take_poses())
+    write_transform(time, transform_json(time, "odom", "base", odom_from_base));
+  for (const auto& [time, map_from_base, odom_from_base] : odometry_.take_pairs())
+    write_transform(time,
+                    transform_json(time, "map", "odom", map_from_base * odom_from_base.inverse()));
 }
 
 void McapExport::add_truth(const pose2D_t& message) {
-  const Timestamp time = timestamp_from_us(message.utime);
-  true_poses_.add(time, to_se2(message));
-  write_pose(truth_, time, "world", to_se2(message));
+  true_poses_.add_pose(timed_pose(message));
+  write_truth();
+}
+
+void McapExport::write_truth() {
+  for (const auto& [time, world_from_base] : true_poses_.take_poses())
+    write_pose(truth_, time, "world", world_from_base);
+  for (const auto& [time, map_from_base, world_from_base] : true_poses_.take_pairs()) {
+    if (std::exchange(has_world_, true)) continue;
+    true_poses_.forget_estimates();
+    write_transform(
+        time, transform_json(time, "world", "map", world_from_base * map_from_base.inverse()));
+  }
+}
+
+bool McapExport::follow(std::int64_t map_id, Timestamp time) {
+  if (map_id == map_id_) {
+    map_clock_.see_fitting();
+    return true;
+  }
+  if (map_id_ && time < map_began_ && !map_clock_.see_misfit(time)) {
+    counters_.add("messages of an earlier map left out", CountKind::kLoss);
+    return false;
+  }
+  if (map_id_) begin_map(time);
+  map_id_ = map_id;
+  map_began_ = time;
+  return true;
+}
+
+void McapExport::begin_map(Timestamp time) {
+  updater_.begin_map();
+  last_map_.reset();
+  map_has_changed_ = false;
+  true_poses_.forget_estimates();
+  has_world_ = false;
+  write(markers_, time, {{"deletions", delete_all_json(time)}, {"entities", Json::array()}});
+}
+
+void McapExport::count_losses() {
+  const auto add = [this](std::string_view name, std::int64_t count) {
+    if (count > 0) counters_.add(name, CountKind::kLoss, count);
+  };
+  add("SLAM_ESTIMATE without ODOMETRY around it", odometry_.num_unpaired());
+  add("ODOMETRY left out: stamp out of order", odometry_.num_dropped_poses());
+  add("TRUE_POSE left out: stamp out of order", true_poses_.num_dropped_poses());
 }
 
 void McapExport::finish() {
+  odometry_.finish();
+  write_odometry();
+  true_poses_.finish();
+  write_truth();
+  count_losses();
   if (map_has_changed_) write_map(newest_);
   if (failed_) return;
   try {

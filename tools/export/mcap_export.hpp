@@ -3,31 +3,23 @@
 #pragma once
 
 #include "common/node/node.hpp"
+#include "common/time/clock_step_detector.hpp"
 #include "export/foxglove.hpp"
 #include "export/mcap_writer.hpp"
+#include "export/pose_pairing.hpp"
 #include "viewer/core/scene/scene.hpp"
 #include "viewer/scene_updater.hpp"
 
-#include <deque>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 namespace waymark::exporting {
 
-/// The latest poses, for interpolation.
-class RecentPoses {
- public:
-  void add(Timestamp time, const Se2& pose);
-  /// Interpolated pose; nullopt outside the stored times, and in gaps of more than a second.
-  std::optional<Se2> at(Timestamp time) const;
-
- private:
-  std::deque<viewer::TimedPose> poses_{};
-};
-
 /// Topics: /map, /scan, /pose, /pose_ellipse, /tf (world -> map -> odom -> base; world only where
-/// there is a truth), /markers, /camera, /truth.
+/// there is a truth), /markers, /camera, /truth. When slam begins another map, the markers are
+/// deleted, the next grid is written at once, and the world is aligned anew.
 class McapExport final : public Node {
  public:
   /// @throws SetupError when the file cannot be created.
@@ -45,6 +37,15 @@ class McapExport final : public Node {
   void add(const slam_estimate_t& message);
   void add_odometry(const pose2D_t& message);
   void add_truth(const pose2D_t& message);
+  /// Switches to that map when it is new, after a restart or a reset of slam.
+  /// @return false for a late message of an earlier map, unless so many of these come that the
+  /// clock was set back.
+  bool follow(std::int64_t map_id, Timestamp time);
+  void begin_map(Timestamp time);
+  /// Writes what has become known of the frames.
+  void write_odometry();
+  void write_truth();
+  void count_losses();
   void write_map(Timestamp time);
   void write_transform(Timestamp time, const Json& transform);
   void write_pose(McapWriter::ChannelId channel, Timestamp time, const char* frame,
@@ -58,8 +59,11 @@ class McapExport final : public Node {
   viewer::SceneUpdater updater_;
   McapWriter::ChannelId map_{}, scan_{}, pose_{}, ellipse_{}, tf_{}, markers_{}, camera_{},
       truth_{};
-  RecentPoses odometry_{};
-  RecentPoses true_poses_{};
+  PosePairing odometry_{};
+  PosePairing true_poses_{};
+  std::optional<std::int64_t> map_id_{};  ///< of the map in the scene
+  Timestamp map_began_{};
+  ClockStepDetector map_clock_{};
   std::optional<Timestamp> last_map_{};
   bool map_has_changed_{false};
   Timestamp newest_{};

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   Program program{
       "Shows, checks, exports, transforms and merges map files (NAME.map.lcm, written by "
       "waymark-slam --save-map).\n"
-      "Exit code: 0 success; 1 a file could not be written; 2 wrong usage, or no map file.",
+      "Exit code: 0 success; 1 not the whole map could be written; 2 wrong usage, or no map file.",
       "waymark-map"};
   program.require_subcommand();
   const auto add = [&](const char* name, const char* what) {

@@ -4,6 +4,7 @@
 #include "common/files/whole_file.hpp"
 #include "common/geometry/rounded.hpp"
 #include "common/log/log_file.hpp"
+#include "common/messages/bounds.hpp"
 #include "map/map_merge.hpp"
 #include "map/wall_alignment.hpp"
 #include "slam/core/graph/calibration_terms.hpp"
@@ -68,6 +69,43 @@ void check_are_mergeable(const MapFile& a, const MapFile& b) {
     throw SetupError{
         fmt::format("the maps were made with other slam.waymark.scan.cell_spacing_m: {} and {}",
                     spacing_a_m, spacing_b_m)};
+  }
+}
+
+/// Farthest that tiles and walls can be stored from the origin, along x and along y.
+double largest_coordinate_m(const MapSnapshot& map) {
+  constexpr double kMargin_m = 1000.0;  // for what lies beyond the mapped cells
+  const double tiles_m = map.grid.frame.resolution_m * kTileSize * bounds::kTileIndex;
+  const double walls_m = map.walls.spacing_m() * bounds::kCellIndex;
+  return std::min({tiles_m, walls_m, bounds::kPosition_m}) - kMargin_m;
+}
+
+/// @throws SetupError if the map would lie too far from the new origin to be stored.
+void check_is_storable(const MapSnapshot& map, const Se2& new_from_old) {
+  const double most_m = largest_coordinate_m(map);
+  const Extent old = extent_of(map.grid);
+  for (const double x_m : {old.least.x(), old.most.x()}) {
+    for (const double y_m : {old.least.y(), old.most.y()}) {
+      const Eigen::Vector2d corner = new_from_old * Eigen::Vector2d{x_m, y_m};
+      if (corner.cwiseAbs().maxCoeff() <= most_m) continue;
+      throw SetupError{fmt::format(
+          "--x-m {:.10g} --y-m {:.10g}: the map would lie at x {:.7g} m, y {:.7g} m, but one with "
+          "cells of {} m can be stored up to {:.0f} m from the origin; subtract a constant from "
+          "--x-m and --y-m",
+          new_from_old.x(), new_from_old.y(), corner.x(), corner.y(), map.grid.frame.resolution_m,
+          most_m)};
+    }
+  }
+}
+
+/// @throws std::runtime_error if the viewer has left out a part of the map.
+void check_is_complete(const Counters& counters) {
+  for (const auto& [name, count] : counters.all()) {
+    if (count.kind == CountKind::kEvent || count.value == 0) continue;
+    throw std::runtime_error{fmt::format(
+        "the map is too large, so nothing is written: {} ({} times); its bounding rectangle may "
+        "have {} million cells",
+        name, count.value, viewer::kMaxMapCells / 1'000'000)};
   }
 }
 
@@ -155,6 +193,7 @@ void export_map(const std::filesystem::path& file, const std::filesystem::path& 
   LogReader reader{file};
   while (const auto message = reader.next())
     inbox.deliver(*message);
+  check_is_complete(inbox.counters());
   viewer.finish();
   if (viewer.failed()) throw std::runtime_error{"not everything could be written"};
 }
@@ -163,6 +202,7 @@ std::string transform_map(const std::filesystem::path& file, const Se2& new_from
                           const std::string& frame, const std::filesystem::path& out) {
   check_is_new(out);
   MapFile map = read_map_file(file);
+  check_is_storable(map.map, new_from_old);
   MapSnapshot moved = transformed(map.map, new_from_old);
   moved.parent_map_id = map.map.map_id;
   if (!frame.empty()) map.info.frame = frame;

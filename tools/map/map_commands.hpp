@@ -14,9 +14,12 @@ namespace waymark {
 std::string map_info(const std::filesystem::path& file, bool as_json);
 
 /// Writes map.pgm, map.yaml, map.png, markers.csv and graph.g2o into a folder, with the viewer.
+/// @throws std::runtime_error if a part of the map is left out (nothing is written then), or a file
+/// cannot be written.
 void export_map(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 /// Writes the map in another frame.
+/// @throws SetupError also if the map would lie too far from the new origin to be stored.
 /// @param frame  name of the new frame; empty = keep the name.
 /// @return a sentence about the result.
 std::string transform_map(const std::filesystem::path& file, const Se2& new_from_old,

@@ -89,13 +89,14 @@ int main(int argc, char** argv) {
   program.add_option("--marker-m", options.board.marker_m, "side of the board's markers [m]")
       .show_default()
       .needs(charuco);
-  program.add_option("--dpi", options.sheet.dpi, "resolution of PNGs: pixels per inch")
-      .show_default();
+  CommandOption dpi =
+      program.add_option("--dpi", options.sheet.dpi, "resolution of PNGs: pixels per inch")
+          .show_default();
   CommandOption out =
       program.add_option("--out", options.folder, "folder for PNGs; created if missing");
   CommandOption to_pdf =
       program.add_option("--pdf", options.pdf_file, "instead of PNGs: one PDF with all pages");
-  to_pdf.excludes(out);
+  to_pdf.excludes(out).excludes(dpi);
   program.add_option("--page", options.page.page, "page size of the PDF: A4, A3 or Letter")
       .show_default()
       .needs(to_pdf);

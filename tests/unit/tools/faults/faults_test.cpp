@@ -146,7 +146,7 @@ TEST(Faults, MarkersCanBeGivenTheIdOfOthersAlsoInTheTruth) {
   EXPECT_EQ(renamed.frame(8).detections[1].id, 3);
   EXPECT_EQ(renamed.frame(1).detections[0].id, 1);
   EXPECT_EQ(
-      renamed_markers("id,instance,x_m\n8,0,1.5\n2,0,3.5\n1,0,4.5\n", {.renamed_ids = {8, 2}}),
+      renamed_markers("id,instance,x_m\n8,0,1.5\n2,0,3.5\n1,0,4.5\n", {.renamed_ids = {8, 2}}, ""),
       "id,instance,x_m\n2,0,1.5\n2,1,3.5\n1,0,4.5\n");
 }
 
@@ -172,15 +172,19 @@ TEST(Faults, OdometryIsScaledAndDrifts) {
               1e-3);
 }
 
+void write_drive(const std::filesystem::path& log) {
+  LogWriter writer{log};
+  for (const Message& message : drive())
+    writer.write(message);
+  writer.close();
+}
+
 TEST(FaultyRun, WritesACompleteRunFolder) {
   const TemporaryFolder folder;
   folder.file("run/robot.toml", "[robot]\n");
   folder.file("run/scenario.toml", "[run]\nseed = 3\n");
   folder.file("run/truth_markers.csv", "id,instance,x_m\n3,0,1\n");
-  LogWriter writer{folder.path() / "run/run.lcm"};
-  for (const Message& message : drive())
-    writer.write(message);
-  writer.close();
+  write_drive(folder.path() / "run/run.lcm");
   Variant variant{.name = "equal", .faults = {.every_id = 0}};
   variant.expect.ate_origin_m = 0.15;
   const auto out = folder.path() / "out";
@@ -214,18 +218,60 @@ TEST(FaultyRun, TheRecordedRunIsNotOverwritten) {
 }
 
 /// What refuses to put the faults in; empty: nothing does.
-std::string problem_of(const std::filesystem::path& run_dir, const std::filesystem::path& out_dir) {
+std::string problem_of(const std::filesystem::path& run_dir, const std::filesystem::path& out_dir,
+                       const FaultConfig& faults = {.every_id = 0}) {
   try {
-    write_faulty_run(run_dir, {.name = "equal", .faults = {.every_id = 0}}, out_dir);
-  } catch (const SetupError& error) {
+    write_faulty_run(run_dir, {.name = "equal", .faults = faults}, out_dir);
+  } catch (const std::runtime_error& error) {
     return error.what();
   }
   return "";
 }
 
+TEST(FaultyRun, FaultsOfWhichNoneAffectsTheLogAreNamedAndNothingIsWritten) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "run");
+  write_drive(folder.path() / "run/run.lcm");
+  const auto out = folder.path() / "out";
+  const FaultConfig without_effect{.renamed_ids = {999, 5}, .lidar_off_s = {5000.0, 6000.0}};
+  EXPECT_THAT(problem_of(folder.path() / "run", out, without_effect),
+              HasSubstr("nothing in the log is affected: renamed_ids, lidar_off_s"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_EQ(problem_of(folder.path() / "run", out, {}), "") << "no fault is configured";
+  EXPECT_EQ(problem_of(folder.path() / "run", folder.path() / "some",
+                       {.wrong_id_share = 0.5, .renamed_ids = {999, 5}}),
+            "");
+}
+
+TEST(FaultyRun, ABadLineOfTheTruthIsNamedBeforeAnythingIsWritten) {
+  const TemporaryFolder folder;
+  const auto truth = folder.file("run/truth_markers.csv", "id,instance,x_m\n3,0,1\nx,0,2\n");
+  write_drive(folder.path() / "run/run.lcm");
+  EXPECT_THAT(problem_of(folder.path() / "run", folder.path() / "out"),
+              HasSubstr(truth.string() + ":3: got 'x,0,2'"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST(FaultyRun, ReplaysOfOtherFaultsAreNotKeptBesideANewLog) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "run");
+  write_drive(folder.path() / "run/run.lcm");
+  const auto out = folder.path() / "out";
+  const FaultConfig others{.dropped_share = 0.5};
+  EXPECT_EQ(problem_of(folder.path() / "run", out), "");
+  EXPECT_EQ(problem_of(folder.path() / "run", out, others), "") << "not replayed yet";
+  folder.file("out/waymark/config.toml", "");
+  EXPECT_EQ(problem_of(folder.path() / "run", out, others), "") << "the same faults: made again";
+  EXPECT_THAT(problem_of(folder.path() / "run", out),
+              HasSubstr("waymark: is a replay of another drive or other faults"));
+  folder.file("run/truth.tum", "0 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(problem_of(folder.path() / "run", out, others), HasSubstr("another drive"));
+}
+
 TEST(FaultyRun, FaultsAreNotInjectedTwice) {
   const TemporaryFolder folder;
-  folder.file("run/run.lcm", "");
+  std::filesystem::create_directory(folder.path() / "run");
+  write_drive(folder.path() / "run/run.lcm");
   const auto faulty = folder.path() / "faulty";
   EXPECT_EQ(problem_of(folder.path() / "run", faulty), "");
   EXPECT_EQ(problem_of(folder.path() / "run", faulty), "") << "made anew";

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placement/placement.hpp"
 
+#include "common/log/log_file.hpp"
+#include "common/messages/codec.hpp"
+#include "common/messages/convert.hpp"
 #include "placement/placement_report.hpp"
 #include "placement/pose_covariance.hpp"
+#include "placement/view_model.hpp"
+#include "unit/tools/temporary_folder.hpp"
 
 #include <Eigen/LU>
 #include <gmock/gmock.h>
@@ -214,7 +219,8 @@ TEST(Placement, AnUnobservedScaleIsNamedAsTheLimit) {
   ASSERT_THAT(placement.limits, SizeIs(1));
   EXPECT_THAT(placement.limits.front().cause, testing::HasSubstr("focal_sigma"));
   EXPECT_LT(placement.limits.front().without_it_m, placement.reachable_m());
-  EXPECT_THAT(placement_text(input, placement), testing::HasSubstr("cannot be met by markers"));
+  EXPECT_THAT(placement_text(input, placement),
+              testing::HasSubstr("No markers were found with which the target is met"));
 }
 
 TEST(Placement, IdsInUseAreNotReused) {
@@ -228,6 +234,83 @@ TEST(Placement, IdsInUseAreNotReused) {
   EXPECT_EQ(placement.markers[1].id, 7);
   EXPECT_THAT(placement_csv(placement),
               testing::StartsWith("id,instance,x_m,y_m,yaw_rad,sigma_x_m"));
+}
+
+TEST(Placement, MarkersThatHangHighLeaveThePictureEarlier) {
+  PlacementInput input = drive(12.0);
+  const auto nearest_view_m = [&input](double height_m) {
+    const ViewModel views{input.config, 8, height_m};
+    double nearest_m = 10.0;
+    for (double ahead_m = 5.0; ahead_m > 0.5; ahead_m -= 0.05)
+      if (views.view({ahead_m, 0.3, std::numbers::pi}, {}, 0.0)) nearest_m = ahead_m;
+    return nearest_m;
+  };
+  const double camera_m = input.config.robot.camera.z_m;
+  EXPECT_LT(nearest_view_m(camera_m), 1.0);
+  EXPECT_GT(nearest_view_m(camera_m + 1.0), 2.0);
+}
+
+TEST(Placement, TheSigmaWithMarkersEverywhereIsReportedAsItIs) {
+  PlacementInput input = drive(16.0);
+  input.config.robot.camera.focal_sigma = 0.02;
+  input.config.slam.waymark.markers.perspective_max_sigma = 1e-9;
+  const Placement placement = place_markers(input, 0.012);
+  ASSERT_FALSE(placement.is_met());
+  EXPECT_EQ(placement.reachable_m(), placement.advice.everywhere_m);
+  // The markers that hang everywhere have the sigma that is reported.
+  const OccupiedWalls walls{input.image};
+  const std::vector<Step> steps = drive_along(input.places, walls, input.config);
+  constexpr double kPlate_m = 0.6, kApart_m = 0.5;
+  const auto places = free_wall_places(steps, walls, {}, kPlate_m, 3.5, kApart_m);
+  for (const std::size_t place : everywhere(places))
+    input.markers.push_back({static_cast<int>(place), 0, places[place].map_from_marker});
+  EXPECT_NEAR(worst(sigmas(input)), placement.reachable_m(), 1e-9);
+}
+
+/// The row of a run 2 m long, with its own camera.
+class PlacementRow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write("trajectory.tum", "0 0 0 0 0 0 0 1\n1 0.5 0 0 0 0 0 1\n");
+    write("config.toml",
+          "[robot.camera]\nfx_px = 777.0\nz_m = 0.2\n[slam]\nestimator = \"waymark\"\n");
+    write("map.yaml",
+          "image: map.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n"
+          "occupied_thresh: 0.65\nfree_thresh: 0.2\n");
+    write("map.pgm", std::string{"P5\n2 1\n255\n"} + '\0' + '\xfe');
+  }
+
+  void write(const char* file, const std::string& text) const { folder_.file(file, text); }
+
+  std::filesystem::path row() const { return folder_.path(); }
+
+ private:
+  evaluate::TemporaryFolder folder_;
+};
+
+TEST_F(PlacementRow, AConfigurationIsLaidOverThatOfTheRow) {
+  write("slam.toml", "[slam]\nestimator = \"waymark\"\n[robot.camera]\nz_m = 0.3\n");
+  const PlacementInput input = read_placement_input(row(), row() / "slam.toml");
+  EXPECT_EQ(input.config.robot.camera.fx_px, 777.0);
+  EXPECT_EQ(input.config.robot.camera.z_m, 0.3);
+}
+
+TEST_F(PlacementRow, MarkersHangAsHighAsTheLogSays) {
+  EXPECT_FALSE(read_placement_input(row(), {}).marker_height_m);
+  {
+    LogWriter log{row() / "markers.lcm"};
+    for (const double height_m : {1.4, 1.6, 9.0}) {
+      MarkerDetections frame{.time = timestamp_from_us(1), .image_width_px = 640};
+      frame.image_height_px = 480;
+      frame.detections.resize(1);
+      frame.detections[0].id = 7;
+      frame.detections[0].covariance_in_base.setIdentity();
+      frame.detections[0].base_from_marker.translation().z() = height_m;
+      log.write(encode(channels::kMarkers, to_detections_message(frame)));
+    }
+    log.close();
+  }
+  EXPECT_EQ(read_placement_input(row(), {}).marker_height_m, 1.6);
 }
 
 TEST(Placement, SmallModulesAreDetectedRarely) {
