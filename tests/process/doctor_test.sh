@@ -34,7 +34,7 @@ wrong() {
 "$work/share/waymark/deploy/launch.sh" "$source_dir/deploy/scenarios/corridor_fast.toml" --out "$work/run" --record-only \
   >"$work/output" 2>&1 || fail "no run"
 expect 0 ""
-for check in camera_frames marker_dictionary blur focal_length marker_size camera_yaw camera_time_offset; do
+for check in camera_frames marker_dictionary blur marker_size camera_yaw camera_time_offset; do
   grep -q "^PASS  $check " "$work/output" || fail "$check is no PASS"
 done
 
@@ -44,7 +44,9 @@ expect 0 "" --config "$work/found.toml"
 wrong marker_dictionary 's/^dictionary = .*/dictionary = "DICT_4X4_50"/'
 expect 1 marker_dictionary --config "$work/marker_dictionary.toml"
 wrong focal_length 's/^(f[xy]_px) = .*/\1 = 480.0/'
-expect 0 focal_length --config "$work/focal_length.toml" # the way's scale is not known better in a corridor: a WARN
+expect 0 "" --config "$work/focal_length.toml" --write-robot "$work/unmeasured.toml" # a corridor does not determine it
+grep -q '^----  focal_length ' "$work/output" || fail "focal_length is measured in a corridor"
+grep -q '^fx_px = 480.0 ' "$work/unmeasured.toml" || fail "an unmeasured focal length is written"
 wrong camera_frames 's/^width_px = .*/width_px = 800/'
 expect 1 camera_frames --config "$work/camera_frames.toml"
 wrong camera_yaw '/^\[robot.camera\]/,/^\[robot.markers\]/s/^yaw_rad = .*/yaw_rad = 0.06/'

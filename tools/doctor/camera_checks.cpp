@@ -108,8 +108,8 @@ Check blur_check(const CameraRecord& camera) {
 
 Check no_sightings(const char* name) {
   return unchecked(name, "too little of it shows in the markers that were seen",
-                   "drive past several markers on walls that the LiDAR sees, with turns that start "
-                   "and stop while one is in view");
+                   "drive past several markers, in a room rather than a bare corridor, with turns "
+                   "that start and stop while one is in view");
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ std::vector<Check> check_camera(const DoctorInput& input,
   }
   const RobotConfig described = robot;
   checks.push_back(frames_check(*input.camera, robot));
-  checks.push_back(check_camera_drops(*input.camera));
+  checks.push_back(check_camera_drops(input));
   if (input.camera->has_images) {
     checks.push_back(dictionary_check(*input.camera, robot));
     checks.push_back(blur_check(*input.camera));
@@ -141,7 +141,7 @@ std::vector<Check> check_camera(const DoctorInput& input,
     const double deviation = measured.value - expected;
     const Verdict verdict = verdict_of(deviation, measured.sigma, limits);
     const std::string to_do = verdict == Verdict::kPass ? "" : remedy();
-    if (is_worth_writing(deviation, measured.sigma, limits)) write();
+    if (is_worth_writing(verdict, deviation, measured.sigma, limits)) write();
     checks.push_back({name, verdict, finding, to_do, unit * measured.value});
   };
   if (!calibration) {

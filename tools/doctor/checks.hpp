@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The checks. Those with a parameter `robot` correct the description.
+// The checks. Those with a parameter `robot` correct the description where it does not pass.
 #pragma once
 
 #include "doctor/camera/camera_calibration.hpp"
@@ -14,8 +14,8 @@ namespace waymark {
 
 // The records of the log.
 Check check_records(const DoctorInput& input);
-Check check_lidar_drops(const ImportedLog& log);
-Check check_odometry_drops(const ImportedLog& log);
+Check check_lidar_drops(const DoctorInput& input);
+Check check_odometry_drops(const DoctorInput& input);
 Check check_traffic(const DoctorInput& input);
 
 // The LiDAR alone.
@@ -38,7 +38,8 @@ std::vector<Check> check_mounting(const DoctorInput& input,
 std::vector<Check> check_camera(const DoctorInput& input,
                                 const std::optional<CameraCalibration>& calibration,
                                 RobotConfig& robot);
-Check check_camera_drops(const CameraRecord& camera);
+/// @pre the log has a camera.
+Check check_camera_drops(const DoctorInput& input);
 
 /// The LiDAR's time offset if it is known well enough, else 0 [s].
 double usable_lateness_s(const TurnComparison& turns);

@@ -11,9 +11,9 @@ namespace waymark {
 namespace {
 
 // A measured odometry scale is used to check the camera if its sigma is below kGoodScaleSigma; else
-// the scale is 1 with kUnmeasuredScaleSigma, the sigma of ordinary wheels.
-constexpr double kGoodScaleSigma = 0.005;
-constexpr double kUnmeasuredScaleSigma = 0.01;
+// the scale is 1 with kUnmeasuredScaleSigma: wheels whose description nobody has checked.
+constexpr double kGoodScaleSigma = 0.01;
+constexpr double kUnmeasuredScaleSigma = 0.1;
 
 /// The log with the LiDAR's measured mounting, and with mirrored scans corrected.
 ImportedLog with_lidar(ImportedLog log, const LidarConfig& lidar, bool is_mirrored) {
@@ -58,8 +58,8 @@ Diagnosis diagnose(const DoctorInput& input, const ShowProgress& progress) {
   const auto calibration = hand_eye(motions.motions, input.log.odometry, is_mirrored, late);
 
   checks.push_back(check_records(input));
-  checks.push_back(check_lidar_drops(input.log));
-  checks.push_back(check_odometry_drops(input.log));
+  checks.push_back(check_lidar_drops(input));
+  checks.push_back(check_odometry_drops(input));
   checks.push_back(check_traffic(input));
   checks.push_back(check_no_return(input, diagnosis.robot));
   checks.push_back(check_range_noise(input, diagnosis.robot));

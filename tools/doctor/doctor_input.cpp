@@ -24,6 +24,7 @@ namespace waymark {
 namespace {
 
 constexpr std::size_t kScansForNoise = 1000;
+constexpr double kClockStep_s = 10.0;  // between consecutive records of a log, of any channel
 
 bool is_lcm_log(const std::filesystem::path& file) {
   constexpr std::array<char, 4> kMagic{'\xED', '\xA1', '\xDA', '\x01'};
@@ -36,13 +37,25 @@ bool is_lcm_log(const std::filesystem::path& file) {
 struct Contents {
   std::map<std::string, ChannelTraffic> channels{};
   std::set<std::string> lidars{};
+  double duration_s{0.0};
 };
+
+/// Time between consecutive records; 0 where the recorder's clock was set.
+double time_between_s(Timestamp before, Timestamp after) {
+  const double gap_s = to_seconds(after - before);
+  return gap_s > 0.0 && gap_s < kClockStep_s ? gap_s : 0.0;
+}
 
 Contents contents_of(const std::filesystem::path& file) {
   Contents contents;
   LogReader reader{file};
+  std::optional<Timestamp> last;
   while (const auto event = reader.next()) {
+    contents.duration_s += time_between_s(last.value_or(event->time), event->time);
+    last = event->time;
     ChannelTraffic& traffic = contents.channels[event->channel];
+    if (traffic.messages == 0) traffic.first_s = contents.duration_s;
+    traffic.last_s = contents.duration_s;
     const auto bytes = static_cast<std::int64_t>(event->payload.size());
     ++traffic.messages;
     traffic.bytes += bytes;
@@ -110,14 +123,25 @@ void estimate_noise(DoctorInput& input) {
 
 }  // namespace
 
+Silence silence_of(const DoctorInput& input, const std::string& channel) {
+  const auto traffic = input.channels.find(channel);
+  if (traffic == input.channels.end()) return {};
+  return {traffic->second.first_s, input.recorded_s - traffic->second.last_s};
+}
+
 DoctorInput read_input(const std::filesystem::path& file,
                        const std::vector<std::filesystem::path>& robot, const InputChannels& wanted,
                        const ShowProgress& progress) {
-  DoctorInput input{{}, {file, AddressUnit::kByte}, false, Mounting::kInLog, {}, {}, {}};
+  DoctorInput input{.report = {file, AddressUnit::kByte}, .mounting = Mounting::kInLog};
   if (is_lcm_log(file)) {
     const Contents contents = contents_of(file);
+    const MbotOptions options = choose(contents, wanted);
     input.channels = contents.channels;
-    input.log = read_log(file, contents, choose(contents, wanted), input.report);
+    input.recorded_s = contents.duration_s;
+    input.lidar_channel = options.lidar_channel;
+    input.odometry_channel =
+        options.odometry_channel.empty() ? options.encoder_channel : options.odometry_channel;
+    input.log = read_log(file, contents, options, input.report);
     input.mounting = Mounting::kUnknown;
   } else if (is_bag(file)) {
     input.log = read_rosbag(file, {.without_images = true}, input.report);

@@ -13,10 +13,18 @@
 
 namespace waymark {
 
+/// Times without a record of one sensor while others were recorded [s].
+struct Silence {
+  double at_start_s{0.0};
+  double at_end_s{0.0};
+};
+
 struct ChannelTraffic {
   std::int64_t messages{0};
   std::int64_t bytes{0};
   std::int64_t largest_bytes{0};
+  double first_s{0.0};  ///< recorded, since the start of the log
+  double last_s{0.0};
 };
 
 /// Origin of the LiDAR's mounting in log.robot.lidar.
@@ -29,8 +37,14 @@ struct DoctorInput {
   Mounting mounting{Mounting::kUnknown};
   std::optional<RobotConfig> described{};            ///< robot.toml
   std::map<std::string, ChannelTraffic> channels{};  ///< of an LCM log
+  double recorded_s{0.0};       ///< duration of an LCM log, without steps of the recorder's clock
+  std::string lidar_channel{};  ///< of an LCM log
+  std::string odometry_channel{};  ///< of an LCM log; empty: the only channel with wheel ticks
   std::optional<CameraRecord> camera{};  ///< of an LCM log with CAMERA or MARKERS, if described
 };
+
+/// Zero for channels that are not in the log.
+Silence silence_of(const DoctorInput& input, const std::string& channel);
 
 /// Names of the channels to read from an LCM log. Empty: `lidar` is the only channel with scans;
 /// odometry is ODOMETRY or, if that is missing, comes from the only channel with encoder ticks.

@@ -24,7 +24,6 @@ Check check_no_return(const DoctorInput& input, RobotConfig& robot) {
   }
   const double from_m = input.log.robot.lidar.range_max_m;
   const bool is_described = input.described && input.described->lidar.range_max_m < codes_m.front();
-  robot.lidar.range_max_m = std::min(robot.lidar.range_max_m, from_m);
   std::string finding = fmt::format("ranges pile up at {:.2f} m", codes_m.front());
   if (codes_m.size() > 1) finding += fmt::format(" (and up to {:.2f} m)", codes_m.back());
   finding += ": that is no return";
@@ -34,6 +33,7 @@ Check check_no_return(const DoctorInput& input, RobotConfig& robot) {
                         input.described->lidar.range_max_m),
             "", codes_m.front()};
   }
+  robot.lidar.range_max_m = std::min(robot.lidar.range_max_m, from_m);
   if (!input.described) {
     return {"no_return", Verdict::kWarn, finding,
             fmt::format("say so to every program: robot.lidar.range_max_m = {:.4g} (waymark-import "
@@ -55,12 +55,12 @@ Check check_range_noise(const DoctorInput& input, RobotConfig& robot) {
                      "record a longer log between walls");
   }
   const double described_m = robot.lidar.range_sigma_m;
-  robot.lidar.range_sigma_m = sigma_m;
   const std::string finding =
       fmt::format("ranges scatter by {:.4f} m about straight walls", sigma_m);
   if (!input.described) return {"range_noise", Verdict::kPass, finding, "", sigma_m};
   const bool is_as_described =
       sigma_m < kOtherNoise * described_m && described_m < kOtherNoise * sigma_m;
+  if (!is_as_described) robot.lidar.range_sigma_m = sigma_m;
   return {"range_noise", is_as_described ? Verdict::kPass : Verdict::kWarn,
           fmt::format("{}, robot.lidar.range_sigma_m is {:.4f} m", finding, described_m),
           is_as_described ? "" : fmt::format("robot.lidar.range_sigma_m = {:.4f}", sigma_m),

@@ -53,16 +53,16 @@ DoctorInput read(const Options& options) {
 }
 
 int run(const Options& options) {
+  if (!options.write_robot.empty() && std::filesystem::exists(options.write_robot)) {
+    throw SetupError{options.write_robot.string() +
+                     ": is there already; give --write-robot another name, or move it away"};
+  }
   const DoctorInput input = options.seconds > 0 ? listen(options) : read(options);
   Progress scans{"scans"};
   const Diagnosis diagnosis = diagnose(input, show_in(scans));
   scans.done();
   fmt::print("{}", options.as_json ? to_json(diagnosis, input) : to_text(diagnosis.checks));
   if (!options.write_robot.empty()) {
-    if (std::filesystem::exists(options.write_robot)) {
-      throw SetupError{options.write_robot.string() +
-                       ": is there already; give --write-robot another name, or move it away"};
-    }
     write_whole_file(options.write_robot,
                      to_robot_toml(diagnosis, options.seconds > 0 ? "a live run" : options.file));
   }

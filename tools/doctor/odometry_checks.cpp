@@ -99,7 +99,7 @@ Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig&
   const Verdict verdict = verdict_of(late.value, late.sigma, kOffset_s);
   const double described_s = robot.lidar.late_s;
   const double found_s = described_s + late.value;
-  if (is_worth_writing(late.value, late.sigma, kOffset_s)) robot.lidar.late_s = found_s;
+  if (is_worth_writing(verdict, late.value, late.sigma, kOffset_s)) robot.lidar.late_s = found_s;
   return {"time_offset", verdict,
           fmt::format(
               "the LiDAR's stamps are {:.0f} +- {:.0f} ms {} odometry's, described is {:.0f} ms",
@@ -166,8 +166,7 @@ std::vector<Check> check_mounting(const DoctorInput& input,
     // Without a described mounting nothing is contradicted, but the default of 0 would be wrong.
     const Verdict verdict =
         is_known_before || difference == Verdict::kPass ? difference : Verdict::kWarn;
-    if (verdict != Verdict::kPass || is_worth_writing(deviation, measured.sigma, limits))
-      target = measured.value;
+    if (is_worth_writing(verdict, deviation, measured.sigma, limits)) target = measured.value;
     checks.push_back(
         {name, verdict,
          fmt::format("the LiDAR's {} is {:.3f} +- {:.3f} {}, {}", axis, unit * measured.value,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks for damaged, missing or too large records of the log.
+#include "common/messages/channels.hpp"
 #include "doctor/checks.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +16,8 @@ constexpr double kManyMissing = 0.1;
 constexpr double kGap = 1.75;  // median intervals; in a longer gap, messages are missing
 constexpr std::int64_t kDatagram_bytes = 65'000;  // README: a message is one datagram
 constexpr std::size_t kFewestRecords = 10;
+// Sensors start and stop one after the other, and a LiDAR has to get up to speed.
+constexpr double kUsualSilence_s = 3.0;
 
 double percent(double share) {
   return 100.0 * share;
@@ -26,8 +29,23 @@ Verdict by_share(double share) {
                                  : Verdict::kFail;
 }
 
+/// Number of records that are missing in a silence at an end of the log.
+double missing_in(double silence_s, double usual_s) {
+  return silence_s > kUsualSilence_s ? std::round(silence_s / usual_s) : 0.0;
+}
+
+std::string silence_text(const Silence& silence) {
+  std::string text;
+  if (silence.at_start_s > kUsualSilence_s)
+    text += fmt::format(", none in the first {:.1f} s", silence.at_start_s);
+  if (silence.at_end_s > kUsualSilence_s)
+    text += fmt::format(", none in the last {:.1f} s", silence.at_end_s);
+  return text;
+}
+
 template <class Record>
-Check check_drops(std::string name, std::string_view what, const std::vector<Record>& records) {
+Check check_drops(std::string name, std::string_view what, const std::vector<Record>& records,
+                  const Silence& silence) {
   if (records.size() < kFewestRecords) {
     return unchecked(std::move(name), fmt::format("{} {} are too few", records.size(), what),
                      "record a longer log");
@@ -38,7 +56,7 @@ Check check_drops(std::string name, std::string_view what, const std::vector<Rec
   std::vector<double> sorted_s = gaps_s;
   std::ranges::sort(sorted_s);
   const double usual_s = sorted_s[sorted_s.size() / 2];
-  double missing = 0.0;
+  double missing = missing_in(silence.at_start_s, usual_s) + missing_in(silence.at_end_s, usual_s);
   for (const double gap_s : gaps_s) {
     if (gap_s > kGap * usual_s) missing += std::round(gap_s / usual_s) - 1.0;
   }
@@ -46,9 +64,10 @@ Check check_drops(std::string name, std::string_view what, const std::vector<Rec
   return {
       std::move(name), by_share(share),
       fmt::format("{:.1f} % of the {} are missing ({} are there, usually every {:.1f} ms, longest "
-                  "gap {:.2f} s)",
-                  percent(share), what, records.size(), 1e3 * usual_s, sorted_s.back()),
-      "look for a network or processor that is too slow, and for drivers that start anew",
+                  "gap {:.2f} s{})",
+                  percent(share), what, records.size(), 1e3 * usual_s, sorted_s.back(),
+                  silence_text(silence)),
+      "look for a network or processor that is too slow, and for drivers that end or start anew",
       percent(share)};
 }
 
@@ -70,28 +89,31 @@ Check check_records(const DoctorInput& input) {
           static_cast<double>(skipped)};
 }
 
-Check check_lidar_drops(const ImportedLog& log) {
-  return check_drops("lidar_drops", "scans", log.scans);
+Check check_lidar_drops(const DoctorInput& input) {
+  return check_drops("lidar_drops", "scans", input.log.scans,
+                     silence_of(input, input.lidar_channel));
 }
 
-Check check_odometry_drops(const ImportedLog& log) {
-  return check_drops("odometry_drops", "odometry samples", log.odometry);
+Check check_odometry_drops(const DoctorInput& input) {
+  return check_drops("odometry_drops", "odometry samples", input.log.odometry,
+                     silence_of(input, input.odometry_channel));
 }
 
-Check check_camera_drops(const CameraRecord& camera) {
+Check check_camera_drops(const DoctorInput& input) {
   std::vector<ImportedPose> frames;  // of which only the times count
-  for (const Timestamp time : camera.times)
+  for (const Timestamp time : input.camera->times)
     frames.push_back({.time = time});
   std::ranges::sort(frames, {}, &ImportedPose::time);
-  return check_drops("camera_drops", "camera frames", frames);
+  const auto& channel = input.camera->has_images ? channels::kCamera.name : channels::kMarkers.name;
+  return check_drops("camera_drops", "camera frames", frames,
+                     silence_of(input, std::string{channel}));
 }
 
 Check check_traffic(const DoctorInput& input) {
   if (input.channels.empty()) {
     return unchecked("traffic", "this is no LCM log", "record one with waymark-recorder");
   }
-  const double seconds =
-      std::max(1e-3, to_seconds(input.log.scans.back().time - input.log.scans.front().time));
+  const double seconds = std::max(1e-3, input.recorded_s);
   std::string text;
   double sum = 0.0;
   std::string too_large;

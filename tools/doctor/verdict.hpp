@@ -30,11 +30,12 @@ inline bool is_known(const Measured& measured, Limits limits) {
   return kSigmas * measured.sigma <= limits.bad;
 }
 
-/// True when a measured value should replace the described one: the two differ by more than three
-/// standard deviations, or the measurement is much more accurate than the limit `good`.
-inline bool is_worth_writing(double deviation, double sigma, Limits limits) {
+/// Whether a measured value should replace the described one: the verdict is against the described
+/// one, or the two differ clearly and the measurement is much more accurate than the limit `good`.
+inline bool is_worth_writing(Verdict verdict, double deviation, double sigma, Limits limits) {
   constexpr double kMuchBetter = 2.0;
-  return std::abs(deviation) > kSigmas * sigma || kMuchBetter * kSigmas * sigma < limits.good;
+  return verdict != Verdict::kPass ||
+         (std::abs(deviation) > kSigmas * sigma && kMuchBetter * kSigmas * sigma < limits.good);
 }
 
 }  // namespace waymark

@@ -58,6 +58,26 @@ void FaultConfig::check(const std::string& variant, Problems& problems) const {
   }
 }
 
+std::vector<std::string> FaultConfig::configured() const {
+  std::vector<std::string> keys;
+  const auto add = [&](const char* key, bool is_configured) {
+    if (is_configured) keys.emplace_back(key);
+  };
+  add("wrong_id_share", wrong_id_share > 0.0);
+  add("ghost_share", ghost_share > 0.0);
+  add("flipped_share", flipped_share > 0.0);
+  add("dropped_share", dropped_share > 0.0);
+  add("every_id", every_id >= 0);
+  add("renamed_ids", !renamed_ids.empty());
+  add("camera_off_s", !camera_off_s.empty());
+  add("markers_off_s", !markers_off_s.empty());
+  add("lidar_off_s", !lidar_off_s.empty());
+  add("odometry_distance_factor", odometry_distance_factor != 1.0);
+  add("odometry_turn_factor", odometry_turn_factor != 1.0);
+  add("odometry_drift_rad_per_m", odometry_drift_rad_per_m != 0.0);
+  return keys;
+}
+
 int FaultConfig::id_of(int id) const {
   if (every_id >= 0) return every_id;
   for (std::size_t i = 0; i + 1 < renamed_ids.size(); i += 2) {

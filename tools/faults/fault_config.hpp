@@ -29,6 +29,9 @@ struct FaultConfig {
   void describe(Fields& fields);
   void check(const std::string& variant, Problems& problems) const;
 
+  /// Keys of the faults that differ from the default.
+  std::vector<std::string> configured() const;
+
   bool changes_ids() const { return every_id >= 0 || !renamed_ids.empty(); }
 
   /// The marker's id after every_id and renamed_ids.

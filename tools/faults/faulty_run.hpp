@@ -31,7 +31,8 @@ inline constexpr std::array<std::string_view, 8> kFiles{kMark,
 /// run.lcm, without the messages of slam. Seed of the faults: the scenario's run.seed, else 1.
 /// @return how often each fault was injected.
 /// @throws SetupError when run_dir holds no run or one that has faults already, when run_dir is
-/// out_dir, or when out_dir holds a recorded run without faults.
+/// out_dir, when out_dir holds a recorded run without faults, or replays of another drive or other
+/// faults, or when none of the variant's faults affects the log.
 /// @throws std::runtime_error naming a file that cannot be read or written, or when ids are changed
 /// in a run with moved markers.
 std::map<std::string, std::int64_t> write_faulty_run(const std::filesystem::path& run_dir,
@@ -39,6 +40,8 @@ std::map<std::string, std::int64_t> write_faulty_run(const std::filesystem::path
                                                      const std::filesystem::path& out_dir);
 
 /// truth_markers.csv with the new ids; instances count equal ids.
-std::string renamed_markers(const std::string& csv, const FaultConfig& faults);
+/// @throws std::runtime_error with file and line of a line without an id.
+std::string renamed_markers(const std::string& csv, const FaultConfig& faults,
+                            const std::filesystem::path& file);
 
 }  // namespace waymark::faults

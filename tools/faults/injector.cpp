@@ -45,15 +45,23 @@ std::optional<Message> Injector::apply(const Message& message) {
   const bool is_camera = message.channel == channels::kCamera.name;
   const bool is_lidar = message.channel == channels::kLidar.name;
   if (is_markers) ++frame_;
-  const bool is_lost = ((is_markers || is_camera) && is_off(config_.camera_off_s, message.time)) ||
-                       (is_lidar && is_off(config_.lidar_off_s, message.time));
-  if (is_lost) {
+  const bool is_camera_off =
+      (is_markers || is_camera) && is_off(config_.camera_off_s, message.time);
+  const bool is_lidar_off = is_lidar && is_off(config_.lidar_off_s, message.time);
+  if (is_camera_off || is_lidar_off) {
+    injected_.insert(is_camera_off ? "camera_off_s" : "lidar_off_s");
     ++counts_[message.channel + " lost"];
     return std::nullopt;
   }
   if (is_markers) return with_faulty_markers(message);
   if (message.channel == channels::kOdometry.name) return with_faulty_odometry(message);
   return message;
+}
+
+std::vector<std::string> Injector::never_injected() const {
+  std::vector<std::string> keys = config_.configured();
+  std::erase_if(keys, [&](const std::string& key) { return injected_.contains(key); });
+  return keys;
 }
 
 bool Injector::is_off(const std::vector<double>& times_s, Timestamp time) const {
@@ -72,10 +80,12 @@ Message Injector::with_faulty_markers(const Message& message) {
   const bool is_dark = is_off(config_.markers_off_s, message.time);
   for (std::size_t i = 0; i < corrupted.detections.size(); ++i) {
     marker_detection_t detection = corrupted.detections[i];
-    if (is_dark)
+    if (is_dark) {
+      injected_.insert("markers_off_s");
       ++counts_["sightings in the dark"];
-    else if (corrupt(detection, i))
+    } else if (corrupt(detection, i)) {
       kept.push_back(detection);
+    }
   }
   corrupted.detections = std::move(kept);
   if (!is_dark) add_ghost(corrupted);
@@ -92,18 +102,23 @@ bool Injector::corrupt(marker_detection_t& detection, std::uint64_t index) {
   const double which = random.uniform();
   ++counts_["sightings"];
   if (is_dropped) {
+    injected_.insert("dropped_share");
     ++counts_["sightings dropped"];
     return false;
   }
   if (is_flipped) {
     flip(detection);
+    injected_.insert("flipped_share");
     ++counts_["sightings flipped"];
   }
   if (is_wrong && content_.ids.size() > 1) {
     detection.id = another_id(detection.id, which);
+    injected_.insert("wrong_id_share");
     ++counts_["wrong ids"];
   }
-  detection.id = config_.id_of(detection.id);
+  const int new_id = config_.id_of(detection.id);
+  if (new_id != detection.id) injected_.insert(config_.every_id >= 0 ? "every_id" : "renamed_ids");
+  detection.id = new_id;
   return true;
 }
 
@@ -121,6 +136,7 @@ void Injector::add_ghost(marker_detections_t& message) {
   marker_detection_t ghost = pick(content_.sightings, random.uniform());
   ghost.id = config_.id_of(pick(content_.ids, random.uniform()));
   message.detections.push_back(ghost);
+  injected_.insert("ghost_share");
   ++counts_["ghosts"];
 }
 
@@ -132,6 +148,8 @@ Message Injector::with_faulty_odometry(const Message& message) {
   const Se2 step = last_odometry_ ? last_odometry_->inverse() * recorded : Se2{};
   last_odometry_ = recorded;
   const double distance_m = step.translation().norm();
+  if (distance_m > 0.0) injected_.insert({"odometry_distance_factor", "odometry_drift_rad_per_m"});
+  if (step.theta() != 0.0) injected_.insert("odometry_turn_factor");
   odom_from_base_ = odom_from_base_ * Se2{config_.odometry_distance_factor * step.translation(),
                                           config_.odometry_turn_factor * step.theta() +
                                               config_.odometry_drift_rad_per_m * distance_m};

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ class Injector {
   /// How often each fault was injected, by name.
   const std::map<std::string, std::int64_t>& counts() const { return counts_; }
 
+  /// Keys of the configured faults that have affected no message.
+  std::vector<std::string> never_injected() const;
+
  private:
   bool is_off(const std::vector<double>& times_s, Timestamp time) const;
   Message with_faulty_markers(const Message& message);
@@ -52,6 +56,7 @@ class Injector {
   std::uint64_t frame_{0};
   std::optional<Se2> last_odometry_{};  ///< as recorded
   Se2 odom_from_base_{};                ///< with faults
+  std::set<std::string> injected_{};    ///< keys of faults
   std::map<std::string, std::int64_t> counts_{};
 };
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Camera and markers: what is written for them, and what the frames show.
+#include "corridor_drive.hpp"
+#include "doctor/camera/camera_calibration.hpp"
 #include "doctor/doctor.hpp"
 #include "doctor/report.hpp"
-#include "synthetic_drive.hpp"
+#include "doctor/verdict.hpp"
+#include "drive_diagnosis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,6 +34,60 @@ TEST(DoctorsCamera, MeasuredParametersAreWrittenIntoTheRobotFile) {
   const Diagnosis diagnosis = diagnose(input);
   EXPECT_NEAR(diagnosis.robot.markers.size_m, 0.96 * input.described->markers.size_m, 0.004);
   EXPECT_NEAR(diagnosis.robot.camera.fx_px, input.described->camera.fx_px, 1.6);  // 0.3 %
+}
+
+/// Nothing is contradicted, but all is measured much better than the limits.
+TEST(DoctorsCamera, AccurateMeasurementsAreWrittenEvenIfTheDescriptionPasses) {
+  const DoctorInput input = drive_in_room({.base_from_lidar = Se2{0.11, -0.05, 0.01},
+                                           .lidar_late_s = 0.01,
+                                           .focal = 1.006,
+                                           .marker_size = 1.005,
+                                           .camera_yaw_rad = 0.005,
+                                           .camera_late_s = 0.006});
+  const Diagnosis diagnosis = diagnose(input);
+  for (const Check& check : diagnosis.checks)
+    EXPECT_EQ(check.verdict, Verdict::kPass) << check.name << " " << check.finding;
+  const RobotConfig& described = *input.described;
+  const RobotConfig& written = diagnosis.robot;
+  EXPECT_NEAR(written.lidar.x_m, 0.11, 0.002);
+  EXPECT_NEAR(written.lidar.yaw_rad, 0.01, 0.001);
+  EXPECT_NEAR(written.lidar.late_s, 0.01, 0.002);
+  EXPECT_NEAR(written.camera.fx_px / described.camera.fx_px, 1.006, 0.002);
+  EXPECT_NEAR(written.camera.yaw_rad, 0.005, 0.001);
+  EXPECT_NEAR(written.camera.late_s, 0.006, 0.002);
+  EXPECT_NEAR(written.markers.size_m / described.markers.size_m, 1.005, 0.002);
+}
+
+TEST(DoctorsVerdict, OnlyWhatIsContradictedOrMeasuredMuchBetterThanItsLimitIsWritten) {
+  constexpr Limits kLimits{0.01, 0.05};
+  const auto is_written = [&](double deviation, double sigma) {
+    return is_worth_writing(verdict_of(deviation, sigma, kLimits), deviation, sigma, kLimits);
+  };
+  EXPECT_TRUE(is_written(0.02, 0.003));    // WARN
+  EXPECT_TRUE(is_written(0.005, 0.001));   // passes, but is 5 sigma off
+  EXPECT_FALSE(is_written(0.002, 0.001));  // not clearly different
+  EXPECT_FALSE(is_written(0.0298, 0.0094));
+}
+
+TEST(DoctorsCamera, AStraightCorridorDoesNotDetermineTheFocalLength) {
+  const DoctorInput input = drive_in_corridor();
+  const Diagnosis diagnosis = diagnose(input);
+  EXPECT_EQ(find(diagnosis, "odometry_distance_scale").verdict, Verdict::kUnchecked);
+  EXPECT_EQ(find(diagnosis, "focal_length").verdict, Verdict::kUnchecked)
+      << find(diagnosis, "focal_length").finding;
+  EXPECT_EQ(find(diagnosis, "marker_size").verdict, Verdict::kPass);
+  EXPECT_EQ(diagnosis.robot.camera.fx_px, input.described->camera.fx_px);
+}
+
+TEST(DoctorsCamera, NoiseOfDistancesDoesNotShrinkTheFocalLength) {
+  constexpr double kScaleSigma = 0.01;
+  const DoctorInput input = drive_in_corridor();
+  const auto found =
+      calibrate_camera(input.camera->sightings, input.described->camera, input.described->markers,
+                       input.log, Duration{0}, {kScaleSigma, kScaleSigma});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->focal.value, 1.0, 0.005) << "with an exact odometry scale";
+  EXPECT_GE(found->focal.sigma, 0.9 * kScaleSigma) << "which the calibration does not know";
 }
 
 TEST(DoctorsCamera, AWrongOdometryScaleDoesNotBiasTheFocalLength) {

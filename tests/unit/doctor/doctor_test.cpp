@@ -2,6 +2,7 @@
 // What the doctor says of a robot, and what it cannot know.
 #include "doctor/doctor.hpp"
 
+#include "doctor/checks.hpp"
 #include "doctor/report.hpp"
 #include "drive_diagnosis.hpp"
 
@@ -75,6 +76,20 @@ TEST(Doctor, WritesMeasuredParametersIntoTheRobotFile) {
   const std::string file = to_robot_toml(diagnosis, "run.lcm");
   EXPECT_THAT(file, HasSubstr("# FAIL lidar_x: the LiDAR's x is"));
   EXPECT_THAT(file, HasSubstr("range_max_m = 12"));
+}
+
+TEST(Doctor, ASensorThatIsSilentAtAnEndOfTheLogIsMissing) {
+  DoctorInput input = drive_in_room({});
+  ChannelTraffic& lidar = input.channels["LIDAR"];
+  lidar.first_s = 2.0;
+  EXPECT_EQ(check_lidar_drops(input).verdict, Verdict::kPass) << "it starts a little later";
+  lidar.first_s = 9.0;
+  EXPECT_THAT(check_lidar_drops(input).finding, HasSubstr("none in the first 9.0 s"));
+  EXPECT_EQ(check_lidar_drops(input).verdict, Verdict::kWarn);
+  input.recorded_s = 180.0;
+  EXPECT_THAT(check_lidar_drops(input).finding, HasSubstr("none in the last 90.0 s"));
+  EXPECT_EQ(check_lidar_drops(input).verdict, Verdict::kFail);
+  EXPECT_NEAR(check_traffic(input).value.value(), 1000.0 / 180.0, 1e-9);
 }
 
 TEST(Doctor, JsonHasEveryCheck) {

@@ -66,7 +66,9 @@ TEST(DoctorProgram, WritesARobotFileButReplacesNone) {
   EXPECT_EQ(first.code, 1);
   EXPECT_EQ(nlohmann::json::parse(first.out)["checks"][0]["name"], "records");
   EXPECT_NEAR(load_config<RobotOnly>({{robot}, {}}).robot.lidar.x_m, -0.2, 0.02);
-  EXPECT_EQ(doctor(log + " --write-robot " + robot).code, 2) << "it replaces nothing";
+  const Ended second = doctor(log + " --write-robot " + robot);
+  EXPECT_EQ(second.code, 2) << "it replaces nothing";
+  EXPECT_EQ(second.out, "") << "it says so before the analysis";
   EXPECT_EQ(doctor(log + " --config " + robot).code, 0) << "its own description is right";
 }
 
@@ -91,6 +93,31 @@ TEST(DoctorProgram, LogsThatCannotBeUsedGive2AndASentence) {
     EXPECT_EQ(ended.code, 2) << arguments;
     EXPECT_FALSE(ended.errors.empty()) << arguments;
   }
+}
+
+TEST(DoctorProgram, ASensorThatStopsForGoodIsNamedButAStepOfTheClockIsNot) {
+  const std::string log = run_of({});
+  constexpr std::int64_t kStep_us = 3'600'000'000;
+  LogWriter dead{test_folder() / "dead.lcm"};
+  LogWriter stepped{test_folder() / "stepped.lcm"};
+  std::optional<Timestamp> start;
+  LogReader reader{log};
+  while (auto event = reader.next()) {
+    const bool is_first = !start;
+    if (!start) start = event->time;
+    const double t_s = to_seconds(event->time - *start);
+    if (event->channel != channels::kLidar.name || t_s < 60.0) dead.write(*event);
+    if (!is_first) event->time = timestamp_from_us(to_us(event->time) + kStep_us);
+    stepped.write(*event);
+  }
+  dead.close();
+  stepped.close();
+
+  const Ended ended = doctor((test_folder() / "dead.lcm").string());
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.out, HasSubstr("FAIL  lidar_drops"));
+  EXPECT_THAT(ended.out, HasSubstr("none in the last 30."));
+  EXPECT_EQ(doctor((test_folder() / "stepped.lcm").string()).code, 0);
 }
 
 TEST(DoctorProgram, ADamagedLogIsNamedAndTheRestIsUsed) {

@@ -121,7 +121,9 @@ inline DoctorInput drive_in_room(const DriveFaults& faults) {
   log.robot.lidar.y_m = -0.05;
   log.robot.lidar.range_max_m = 20.0;
   input.described->lidar = log.robot.lidar;
-  input.channels["LIDAR"] = {900, 1'000'000, 1500};
+  input.channels["LIDAR"] = {900, 1'000'000, 1500, 0.0, faults.duration_s};
+  input.recorded_s = faults.duration_s;
+  input.lidar_channel = "LIDAR";
   input.camera.emplace();
   Se2 pose{};
   Se2 odometry{};

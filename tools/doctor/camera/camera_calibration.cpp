@@ -25,6 +25,10 @@ using Information = Eigen::Matrix<double, kTerms, kTerms>;
 const Eigen::Vector4d kPriorSigmas{0.3, 0.3, 0.3, 1.0};           // relative, relative, rad, s
 constexpr std::array kSteps{1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4};  // of numerical derivatives
 constexpr double kSlowStep_s = 0.25;  // about the time in which a robot starts or stops turning
+// Upper bound of the prior sigma of odometry's scales in the fit. With a wider one, the noise of
+// distances would shrink the scale and the focal length together (errors in variables). What the
+// scales' sigmas have beyond it is added to the variances of the result.
+constexpr double kWidestScalePrior = 0.001;
 constexpr int kIterations = 8;
 constexpr double kCutoff = 3.0;  // kernel width of the robust weights, in sigmas
 constexpr int kFewestTracks = 4;
@@ -238,7 +242,8 @@ void Problem::collect(const Errors& errors) {
 
 std::optional<CameraCalibration> Problem::solve() {
   Errors prior_sigmas;
-  prior_sigmas << kPriorSigmas, scales_.distance_sigma, scales_.turn_sigma;
+  prior_sigmas << kPriorSigmas, std::min(scales_.distance_sigma, kWidestScalePrior),
+      std::min(scales_.turn_sigma, kWidestScalePrior);
   const Information prior = prior_sigmas.cwiseAbs2().cwiseInverse().asDiagonal();
   Information information = Information::Zero();
   std::map<std::size_t, TrackEquations> equations_by_track;
@@ -288,9 +293,16 @@ std::optional<CameraCalibration> Problem::solve() {
     clustered += without * without.transpose();
   }
   const double scale = std::max(1.0, squares / std::max(1.0, weights));
+  // Variance of the scales beyond their prior, times the squared derivative of the term.
+  const auto scale_variance = [&](Eigen::Index term, Eigen::Index scale_term, double sigma) {
+    const double beyond = squared(sigma) - squared(prior_sigmas[scale_term]);
+    return squared(inverse(term, scale_term) / inverse(scale_term, scale_term)) * beyond;
+  };
   const auto measured = [&](Eigen::Index term, double offset) {
-    return Measured{offset + errors_[term],
-                    std::sqrt(std::max(clustered(term, term), scale * inverse(term, term)))};
+    const double variance = std::max(clustered(term, term), scale * inverse(term, term)) +
+                            scale_variance(term, kDistance, scales_.distance_sigma) +
+                            scale_variance(term, kTurn, scales_.turn_sigma);
+    return Measured{offset + errors_[term], std::sqrt(variance)};
   };
   CameraCalibration found = counts_;
   found.focal = measured(kFocal, 1.0);

@@ -32,7 +32,7 @@ struct ScaleSigmas {
 /// centre lies on the straight wall that the LiDAR measures around it, and a marker has not moved
 /// between two sightings some decimetres or tens of degrees of odometry apart. Errors within a
 /// track are correlated: the covariance is the jackknife's over tracks, but not below that of
-/// independent residuals.
+/// independent residuals, and includes the uncertainty of odometry's scales.
 /// @param log         with the LiDAR's true mounting in robot.lidar, and corrected odometry scales.
 /// @param lidar_late  subtracted from the scans' times.
 /// @return nullopt for less than four tracks, whose spread would be unknown.
