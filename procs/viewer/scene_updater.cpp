@@ -62,7 +62,39 @@ void keep_every_second(std::vector<Pose>& path) {
   path.resize(kept);
 }
 
+/// Puts the path before a time to which the clock was set back. Where only the last pose is later,
+/// its stamp was wrong.
+template <class Pose>
+void make_earlier_than(Timestamp time, std::vector<Pose>& path) {
+  if (path.back().time < time) return;
+  if (path.size() == 1 || path[path.size() - 2].time < time) {
+    path.pop_back();
+    return;
+  }
+  const Duration shift = path.back().time - time;
+  for (Pose& pose : path)
+    pose.time -= shift;
+}
+
 }  // namespace
+
+template <class Pose>
+void SceneUpdater::append_live(std::vector<Pose>& path, ClockStepDetector& clock, const Pose& pose,
+                               std::string_view path_name) {
+  const bool is_late = !path.empty() && pose.time < path.back().time;
+  const bool is_ahead =
+      !path.empty() && pose.time > path.back().time + ClockStepDetector::kLongestPause;
+  if (!is_late && !is_ahead) {
+    clock.see_fitting();
+  } else if (clock.see_misfit(pose.time)) {
+    counters_.add(fmt::format("{} clock was set", path_name), CountKind::kEvent);
+    make_earlier_than(clock.first_misfit(), path);
+  } else if (is_ahead) {
+    counters_.add(fmt::format("{} left out: time jumps ahead", path_name), CountKind::kLoss);
+    return;
+  }
+  append(path, pose, path_name);
+}
 
 template <class Pose>
 void SceneUpdater::append(std::vector<Pose>& path, const Pose& pose, std::string_view path_name) {
@@ -105,7 +137,9 @@ void SceneUpdater::add(const map_tiles_t& message) {
 
 void SceneUpdater::add(const marker_map_t& message) {
   const bool is_part = message.part >= 0 && message.part < message.num_parts;
-  if (!is_part || message.num_parts > kMaxMarkerParts || message.utime < marker_parts_utime_) {
+  const bool is_late =
+      is_older(timestamp_from_us(message.utime), timestamp_from_us(marker_parts_utime_));
+  if (!is_part || message.num_parts > kMaxMarkerParts || is_late) {
     counters_.add("SLAM_MARKERS left out: not a part of the newest map", CountKind::kLoss);
     return;
   }
@@ -148,13 +182,13 @@ void SceneUpdater::add(const findings_t& message) {
 }
 
 void SceneUpdater::add(const slam_estimate_t& message) {
-  append(scene_.estimates,
-         EstimatedPose{.time = timestamp_from_us(message.utime),
-                       .map_from_base = {message.x_m, message.y_m, message.theta_rad},
-                       .covariance = to_matrix(message.covariance),
-                       .health = enum_of(message.health, Health::kLost),
-                       .weak_axis = to_weak_axis(message)},
-         "SLAM_ESTIMATE");
+  append_live(scene_.estimates, estimate_clock_,
+              EstimatedPose{.time = timestamp_from_us(message.utime),
+                            .map_from_base = {message.x_m, message.y_m, message.theta_rad},
+                            .covariance = to_matrix(message.covariance),
+                            .health = enum_of(message.health, Health::kLost),
+                            .weak_axis = to_weak_axis(message)},
+              "SLAM_ESTIMATE");
 }
 
 void SceneUpdater::add(const annotated_scan_t& message) {
@@ -189,11 +223,11 @@ void SceneUpdater::add(const trajectory_t& message) {
 }
 
 void SceneUpdater::add_odometry(const pose2D_t& message) {
-  append(scene_.odometry, to_timed_pose(message), "ODOMETRY");
+  append_live(scene_.odometry, odometry_clock_, to_timed_pose(message), "ODOMETRY");
 }
 
 void SceneUpdater::add_truth(const pose2D_t& message) {
-  append(scene_.truth, to_timed_pose(message), "TRUE_POSE");
+  append_live(scene_.truth, truth_clock_, to_timed_pose(message), "TRUE_POSE");
 }
 
 }  // namespace waymark::viewer

@@ -4,6 +4,7 @@
 
 #include "common/messages/channels.hpp"
 #include "common/node/node.hpp"
+#include "common/time/clock_step_detector.hpp"
 #include "viewer/core/scene/scene.hpp"
 
 #include <cstdint>
@@ -37,11 +38,20 @@ class SceneUpdater {
   void add_truth(const pose2D_t& message);
 
  private:
+  /// Appends a pose as it comes from a sensor or slam: one with a wrong stamp is lost. When the
+  /// clock is set back, the poses so far get earlier stamps, so that the path stays in order.
+  template <class Pose>
+  void append_live(std::vector<Pose>& path, ClockStepDetector& clock, const Pose& pose,
+                   std::string_view path_name);
+  /// Appends a pose if it is newer than all before.
   template <class Pose>
   void append(std::vector<Pose>& path, const Pose& pose, std::string_view path_name);
 
   Scene& scene_;
   Counters& counters_;
+  ClockStepDetector estimate_clock_{};
+  ClockStepDetector odometry_clock_{};
+  ClockStepDetector truth_clock_{};
   std::int64_t marker_parts_utime_{-1};
   std::int32_t num_marker_parts_{0};
   std::map<std::int32_t, std::vector<Landmark>> marker_parts_{};

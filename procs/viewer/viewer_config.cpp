@@ -4,7 +4,7 @@
 namespace waymark {
 
 void ViewerSection::describe(Fields& fields) {
-  fields.field("title", title, "heading of map.png; empty = name of the output folder");
+  fields.field("title", title, "heading of map.png, in ASCII; empty = name of the output folder");
   fields.field("write_period_s", write_period_s, {0.1, 3600.0},
                "message time between writes of map, trajectory, markers, and one of the pictures");
   fields.field("max_write_share", max_write_share, {0.001, 1.0},

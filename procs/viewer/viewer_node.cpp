@@ -167,11 +167,15 @@ void ViewerNode::subscribe(Inbox& inbox) {
 }
 
 bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
-  if (map_id == map_id_) return true;
-  if (map_id_ && time < map_began_) return false;
+  if (map_id == map_id_) {
+    map_clock_.see_fitting();
+    return true;
+  }
+  if (map_id_ && time < map_began_ && !map_clock_.see_misfit(time)) return false;
   if (map_id_) {
     logging::info("slam has begun map {:016x}", static_cast<std::uint64_t>(map_id));
     archive_old_map();
+    graph_parts_.clear();
     updater_.begin_map();
     change_monitor_ = {};
     if (live_feed_) live_feed_->begin_map();
@@ -183,17 +187,23 @@ bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
 
 void ViewerNode::archive_old_map() {
   constexpr int kMostArchived = 20;  // bounds the disk space if slam keeps restarting
-  if (!has_slam_data(scene_) || num_archived_ == kMostArchived) return;
-  ++num_archived_;
+  if (!has_slam_data(scene_) || num_archived_ > kMostArchived) return;
+  if (++num_archived_ > kMostArchived) {
+    logging::warn("{}: the files of {} maps are kept; those of further maps are not",
+                  folder_.path().string(), kMostArchived);
+    return;
+  }
   const auto path =
       folder_.path() / fmt::format("map-{:016x}", static_cast<std::uint64_t>(*map_id_));
   try {
     viewer::OutputFolder current = std::exchange(folder_, viewer::OutputFolder{path});
     write_files();
+    archive_failed_ |= !folder_.failed_files().empty();
     folder_ = std::move(current);
     logging::info("the map before is in '{}'", path.string());
   } catch (const SetupError& error) {
     logging::error("the map before is lost: {}", error.what());
+    archive_failed_ = true;
   }
 }
 
@@ -209,37 +219,43 @@ void ViewerNode::write_when_due(Timestamp time) {
   pacer_.has_worked(start, viewer::Pacer::Clock::now());
 }
 
+template <class MakeBytes>
+void ViewerNode::write_or_remove(const std::string& name, bool has_data, MakeBytes make_bytes) {
+  if (has_data)
+    folder_.write(name, make_bytes());
+  else
+    folder_.remove(name);
+}
+
 void ViewerNode::write_data() {
   const viewer::GridMap map = scene_.map.grid();
   folder_.write("map.pgm", viewer::pgm_text(map, config_.viewer.map_page.thresholds));
   folder_.write("map.yaml",
                 viewer::map_yaml_text(map, config_.viewer.map_page.thresholds, "map.pgm"));
-  if (!scene_.estimates.empty()) {  // a map file has no estimates
-    folder_.write("trajectory.tum", viewer::tum_text(scene_.estimates));
-    folder_.write("covariance.csv", viewer::covariance_csv_text(scene_.estimates));
-    folder_.write("odometry.tum", viewer::tum_text(scene_.odometry));
-  }
+  const bool has_estimates = !scene_.estimates.empty();  // a map file has none
+  write_or_remove("trajectory.tum", has_estimates,
+                  [this] { return viewer::tum_text(scene_.estimates); });
+  write_or_remove("covariance.csv", has_estimates,
+                  [this] { return viewer::covariance_csv_text(scene_.estimates); });
+  write_or_remove("odometry.tum", has_estimates,
+                  [this] { return viewer::tum_text(scene_.odometry); });
   folder_.write("markers.csv", viewer::markers_csv_text(scene_.landmarks));
-  if (scene_.findings) folder_.write("findings.json", viewer::findings_json_text(*scene_.findings));
-  if (scene_.changes) folder_.write("changes.csv", viewer::changes_csv_text(*scene_.changes));
+  write_or_remove("findings.json", scene_.findings.has_value(),
+                  [this] { return viewer::findings_json_text(*scene_.findings); });
+  write_or_remove("changes.csv", scene_.changes.has_value(),
+                  [this] { return viewer::changes_csv_text(*scene_.changes); });
 }
 
 void ViewerNode::write_final_trajectory() {
-  constexpr auto kName = "trajectory_final.tum";
-  if (scene_.final_trajectory.empty()) {
-    folder_.remove(kName);
-  } else {
-    folder_.write(kName, viewer::tum_text(scene_.final_trajectory));
-  }
+  write_or_remove("trajectory_final.tum", !scene_.final_trajectory.empty(),
+                  [this] { return viewer::tum_text(scene_.final_trajectory); });
 }
 
-/// Writes graph.g2o when all parts have come; else removes that of an earlier run.
+/// Writes graph.g2o when all parts have come.
 void ViewerNode::write_graph() {
-  constexpr auto kName = "graph.g2o";
-  if (graph_parts_.empty() || std::ssize(graph_parts_) != graph_parts_.front().num_parts)
-    folder_.remove(kName);
-  else
-    folder_.write(kName, viewer::g2o_text(graph_parts_));
+  const bool is_complete =
+      !graph_parts_.empty() && std::ssize(graph_parts_) == graph_parts_.front().num_parts;
+  write_or_remove("graph.g2o", is_complete, [this] { return viewer::g2o_text(graph_parts_); });
 }
 
 void ViewerNode::write_map_picture() {
@@ -256,9 +272,9 @@ void ViewerNode::write_marker_layer() {
 void ViewerNode::write_scan_and_plain_map() {
   const cv::Mat plain = viewer::paint_plain(scene_.map.grid(), config_.viewer.map_page.thresholds);
   folder_.write("plain.png", png_bytes(plain));
-  if (!scene_.scan) return;
-  const cv::Mat scan = viewer::paint_scan(*scene_.scan, config_.viewer.scan_size_px);
-  folder_.write("scan.png", png_bytes(scan));
+  write_or_remove("scan.png", scene_.scan.has_value(), [this] {
+    return png_bytes(viewer::paint_scan(*scene_.scan, config_.viewer.scan_size_px));
+  });
 }
 
 void ViewerNode::finish() {
@@ -283,7 +299,12 @@ void ViewerNode::write_files() {
   write_map_picture();
   write_marker_layer();
   write_scan_and_plain_map();
-  if (failed()) {
+  if (const std::size_t num_left_out = scene_.map.num_left_out(); num_left_out > 0) {
+    logging::error("{}: {} of the map's tiles are in no file: it would span more than {} cells",
+                   folder_.path().string(), num_left_out, viewer::kMaxMapCells);
+    map_was_cut_ = true;
+  }
+  if (!folder_.failed_files().empty()) {
     logging::error("{}: could not always be written: {}", folder_.path().string(),
                    fmt::join(folder_.failed_files(), ", "));
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/node/node.hpp"
+#include "common/time/clock_step_detector.hpp"
 #include "viewer/core/scene/change_monitor.hpp"
 #include "viewer/core/scene/scene.hpp"
 #include "viewer/files/output_folder.hpp"
@@ -16,6 +17,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace waymark {
 
@@ -37,8 +39,10 @@ class ViewerNode final : public Node {
   /// waits for Ctrl-C.
   void finish() override;
 
-  /// True when a file could not be written, now or earlier.
-  bool failed() const override { return !folder_.failed_files().empty(); }
+  /// True when a file could not be written, now or earlier, or a map was too large for its files.
+  bool failed() const override {
+    return archive_failed_ || map_was_cut_ || !folder_.failed_files().empty();
+  }
 
  private:
   void subscribe(Inbox& inbox);
@@ -58,6 +62,9 @@ class ViewerNode final : public Node {
   /// Writes the data files when a period has passed, and one of the pictures: all at once would
   /// delay a lockstep run. Large maps, which take longer, are written less often (Pacer).
   void write_when_due(Timestamp time);
+  /// Without data removes the file, which is that of an earlier run.
+  template <class MakeBytes>
+  void write_or_remove(const std::string& name, bool has_data, MakeBytes make_bytes);
   void write_data();
   void write_final_trajectory();
   void write_graph();
@@ -73,7 +80,10 @@ class ViewerNode final : public Node {
   viewer::Pacer pacer_;
   std::optional<std::int64_t> map_id_{};  ///< of the map in the scene
   Timestamp map_began_{};
+  ClockStepDetector map_clock_{};  ///< of the messages of another map
   int num_archived_{0};
+  bool archive_failed_{false};
+  bool map_was_cut_{false};
   std::optional<Timestamp> last_write_time_{};
   std::size_t next_picture_{0};
   std::vector<pose_graph_t> graph_parts_{};

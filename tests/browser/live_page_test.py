@@ -84,6 +84,11 @@ def main():
         expect("silent" not in before, f"the camera is not silent yet: {before}")
         expect(browser.run("return document.getElementById('unlocked').hidden"), "without the token there are no commands")
         set_pose(browser, url, sys.argv[2])
+        browser.open("about:blank")
+        browser.open(f"{url}#token=base64+with/and%2B=")
+        expect(browser.run("return token") == "base64+with/and+=", "a token keeps its plus signs")
+        browser.open("about:blank")
+        browser.open(f"{url}#token={sys.argv[2]}")
         if len(sys.argv) > 3:
             browser.wait_for(lambda: browser.run("return view.markers.length >= 4"))
             browser.screenshot(sys.argv[3])

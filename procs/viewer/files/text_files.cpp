@@ -11,18 +11,15 @@
 namespace waymark::viewer {
 namespace {
 
-/// Seconds and microseconds, exact, without floating point.
-struct Seconds {
-  std::int64_t whole;
-  std::int64_t micro;
-
-  explicit Seconds(Timestamp time)
-      : whole{to_us(time) / 1'000'000}, micro{to_us(time) % 1'000'000} {}
-};
+/// Seconds with six decimals, exact, without floating point.
+std::string seconds_text(Timestamp time) {
+  const std::int64_t us = to_us(time);
+  return fmt::format("{}{}.{:06d}", us < 0 ? "-" : "", std::abs(us / 1'000'000),
+                     std::abs(us % 1'000'000));
+}
 
 void append_tum_line(std::string& text, Timestamp time, const Se2& frame_from_base) {
-  const Seconds t{time};
-  text += fmt::format("{}.{:06d} {:.9f} {:.9f} 0 0 0 {:.12f} {:.12f}\n", t.whole, t.micro,
+  text += fmt::format("{} {:.9f} {:.9f} 0 0 0 {:.12f} {:.12f}\n", seconds_text(time),
                       frame_from_base.x(), frame_from_base.y(),
                       std::sin(frame_from_base.theta() / 2), std::cos(frame_from_base.theta() / 2));
 }
@@ -50,11 +47,10 @@ std::string tum_text(std::span<const EstimatedPose> path) {
 std::string covariance_csv_text(std::span<const EstimatedPose> path) {
   std::string text = "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n";
   for (const EstimatedPose& pose : path) {
-    const Seconds t{pose.time};
     const Eigen::Matrix3d& c = pose.covariance;
-    text += fmt::format("{}.{:06d},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{}\n", t.whole,
-                        t.micro, c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2),
-                        static_cast<int>(pose.health));
+    text += fmt::format("{},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{}\n",
+                        seconds_text(pose.time), c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2),
+                        c(2, 2), static_cast<int>(pose.health));
   }
   return text;
 }

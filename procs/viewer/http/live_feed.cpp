@@ -13,6 +13,8 @@ constexpr std::chrono::milliseconds kUnwatchedPeriod{1000};  // for the slider's
 constexpr float kPathStep_m = 0.03F;
 /// 30 km of path.
 constexpr std::size_t kMaxPathPoints = 1'000'000;
+/// Between a stamp and those of other channels.
+constexpr Duration kLongestDelay = std::chrono::seconds{10};
 /// More than there are programs; bounds memory.
 constexpr std::size_t kMaxProcesses = 16;
 /// A square of 200 m in tiles of 32 cells of 0.05 m; further tiles are not shown.
@@ -160,13 +162,22 @@ void LiveFeed::grow_path(const Se2& map_from_base) {
 }
 
 void LiveFeed::advance_to(Timestamp time) {
-  current_.time = std::max(current_.time, time);
+  const bool is_first = current_.time == Timestamp{};
+  const bool fits = time >= current_.time - kLongestDelay &&
+                    time <= current_.time + ClockStepDetector::kLongestPause;
+  if (is_first || fits) {
+    current_.time = std::max(current_.time, time);
+    clock_steps_.see_fitting();
+  } else if (clock_steps_.see_misfit(time)) {
+    current_.time = time;
+  }
   post_when_due();
 }
 
 void LiveFeed::post_when_due() {
   if (pace_ == Pace::kMessageTime) {
-    if (current_.number != 0 && current_.time - last_post_ < kPostPeriod) return;
+    const bool is_due = current_.time < last_post_ || current_.time - last_post_ >= kPostPeriod;
+    if (current_.number != 0 && !is_due) return;
     last_post_ = current_.time;
     post_last();
     return;

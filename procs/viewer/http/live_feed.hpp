@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/messages/channels.hpp"
+#include "common/time/clock_step_detector.hpp"
 #include "viewer/http/board.hpp"
 
 #include <chrono>
@@ -44,6 +45,7 @@ class LiveFeed {
   void post_last();
 
  private:
+  /// A message has come; a wrong stamp is ignored, a clock that was set is followed.
   void advance_to(Timestamp time);
   void post_when_due();
   ViewPtr snapshot();
@@ -60,6 +62,7 @@ class LiveFeed {
   PathPoint last_path_point_{};
   std::chrono::steady_clock::time_point last_post_wall_{};
   Timestamp last_post_{};
+  ClockStepDetector clock_steps_{};
 };
 
 }  // namespace waymark::viewer

@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -35,6 +36,8 @@ constexpr int kMaxStreams = 8;
 constexpr std::size_t kThreads = 2 * kMaxStreams;  // streams occupy at most half of them
 constexpr int kSendBufferBytes = 256 * 1024;       // per client
 constexpr int kNiceness = 10;
+/// 140 kB of an event; a longer path comes in several.
+constexpr std::size_t kPathPointsPerEvent = 10'000;
 
 struct Download {
   const char* name;
@@ -121,10 +124,12 @@ class EventStream {
   }
 
   std::string event(const LiveView& view) {
-    const auto growth = board_.path(path_sent_, view.path_length);
+    const std::size_t path_end = std::min(view.path_length, path_sent_ + kPathPointsPerEvent);
+    const auto growth = board_.path(path_sent_, path_end);
     const std::string json = with_path(*newest_text_.of(view, board_), path_sent_, growth);
     path_sent_ += growth.size();
-    number_ = view.number;
+    // The view is sent again while its path is not complete.
+    if (path_end == view.path_length) number_ = view.number;
     return "data: " + json + "\n\n";
   }
 
@@ -194,17 +199,20 @@ class PageServer::Implementation {
                                  {"Content-Security-Policy",
                                   "default-src 'self' 'unsafe-inline'; img-src 'self' blob: data:; "
                                   "frame-ancestors 'none'"}});
-    server_.set_pre_routing_handler([this](const auto& request, auto& response) {
-      return refuse_other_origins(request, response);
-    });
+    server_.set_pre_routing_handler(
+        [this](const auto& request, auto& response) { return refuse(request, response); });
     server_.set_exception_handler([](const auto&, auto& response, std::exception_ptr) {
       answer(response, 400, "the query is not understood");
     });
   }
 
-  httplib::Server::HandlerResponse refuse_other_origins(const httplib::Request& request,
-                                                        httplib::Response& response) const {
+  httplib::Server::HandlerResponse refuse(const httplib::Request& request,
+                                          httplib::Response& response) const {
     using Outcome = httplib::Server::HandlerResponse;
+    if (request.ranges.size() > 1) {  // each may be the whole file again
+      answer(response, 416, "one range at most");
+      return Outcome::Handled;
+    }
     const bool is_command = request.method == "POST" && request.path == "/command";
     if (is_command && !commands_) {
       answer(response, 405, "read-only: commands need a viewer with --http-token");

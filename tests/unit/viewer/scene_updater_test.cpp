@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <functional>
 
 namespace waymark::viewer {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::SizeIs;
 
 marker_map_t markers_at(std::int64_t utime, int part, int num_parts, int id) {
@@ -86,6 +89,60 @@ TEST(SceneUpdater, AnEstimateKeepsItsWeakAxisAndItsSource) {
   EXPECT_EQ(scene.estimates[1].weak_axis->information, 50.0);
   EXPECT_EQ(scene.estimates[1].weak_axis->source, WeakAxisSource::kNothing);
   EXPECT_EQ(scene.estimates[2].weak_axis->source, WeakAxisSource::kUnknown);
+}
+
+std::vector<std::int64_t> seconds_of(const std::vector<EstimatedPose>& path) {
+  std::vector<std::int64_t> seconds;
+  for (const EstimatedPose& pose : path)
+    seconds.push_back(to_us(pose.time) / 1'000'000);
+  return seconds;
+}
+
+TEST(SceneUpdater, WhenTheClockIsSetBackThePathGoesOnAndStaysInOrder) {
+  Scene scene;
+  Counters counters;
+  SceneUpdater updater{scene, counters};
+  for (std::int64_t second = 1000; second < 1100; ++second)
+    updater.add(estimate_at(second * 1'000'000));
+  for (std::int64_t second = 500; second < 530; ++second)
+    updater.add(estimate_at(second * 1'000'000));
+  ASSERT_THAT(scene.estimates, SizeIs(100 + 30 - 19));
+  EXPECT_EQ(scene.estimates.back().time, timestamp_from_us(529'000'000));
+  EXPECT_TRUE(std::ranges::is_sorted(scene.estimates, std::less<>{}, &EstimatedPose::time));
+  EXPECT_EQ(counters.get("SLAM_ESTIMATE clock was set"), 1);
+}
+
+TEST(SceneUpdater, AStampAheadLosesItsPoseOnly) {
+  Scene scene;
+  Counters counters;
+  SceneUpdater updater{scene, counters};
+  updater.add(estimate_at(1'000'000));
+  updater.add(estimate_at(3'600'000'000));
+  updater.add(estimate_at(2'000'000));
+  EXPECT_THAT(seconds_of(scene.estimates), ElementsAre(1, 2));
+}
+
+// Less than the longest pause ahead it cannot be known at once.
+TEST(SceneUpdater, AStampSlightlyAheadIsRemovedAsSoonAsOthersDisagree) {
+  Scene scene;
+  Counters counters;
+  SceneUpdater updater{scene, counters};
+  updater.add(estimate_at(1'000'000));
+  updater.add(estimate_at(300'000'000));
+  for (std::int64_t second = 2; second <= 22; ++second)
+    updater.add(estimate_at(second * 1'000'000));
+  EXPECT_THAT(seconds_of(scene.estimates), ElementsAre(1, 21, 22));
+}
+
+TEST(SceneUpdater, MarkersGoOnWhenTheClockIsSetBack) {
+  Scene scene;
+  Counters counters;
+  SceneUpdater updater{scene, counters};
+  updater.add(markers_at(100'000'000, 0, 1, 4));
+  updater.add(markers_at(99'000'000, 0, 1, 5));
+  EXPECT_EQ(scene.landmarks[0].id, 4) << "late";
+  updater.add(markers_at(10'000'000, 0, 1, 6));
+  EXPECT_EQ(scene.landmarks[0].id, 6);
 }
 
 TEST(SceneUpdater, AScanWithoutMarkersDoesNotReplaceOneWithMarkers) {

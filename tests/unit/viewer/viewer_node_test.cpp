@@ -283,6 +283,71 @@ TEST_F(ViewerNodeTest, AnotherMapIdStartsNewFilesAndKeepsTheEarlierOnesInAFolder
   EXPECT_NE(content_of("map-00000000000000ab/map.pgm"), content_of("map.pgm"));
 }
 
+TEST_F(ViewerNodeTest, AnotherMapIsFollowedAfterTheClockWasSetBack) {
+  ViewerNode node{config_, inbox_, outbox_};
+  slam_estimate_t estimate = estimate_at(1000.0, 7.0);
+  estimate.map_id = 0xab;
+  deliver(channels::kSlamEstimate, estimate);
+  for (int i = 0; i < 30; ++i) {
+    estimate = estimate_at(100.0 + i, 0.5);
+    estimate.map_id = 0xcd;
+    deliver(channels::kSlamEstimate, estimate);
+  }
+  node.finish();
+  EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("129.000000 0.5"));
+}
+
+TEST_F(ViewerNodeTest, FilesOfAnEarlierRunThatThisOneHasNotAreRemoved) {
+  ViewerNode node{config_, inbox_, outbox_};
+  const std::vector<std::string> stale{"changes.csv",    "findings.json",  "scan.png",
+                                       "trajectory.tum", "covariance.csv", "odometry.tum"};
+  for (const std::string& name : stale)
+    std::ofstream{folder_ / name} << "of an earlier run";
+  deliver(channels::kSlamMap, tile_at(0, 0, 1));
+  node.finish();
+  EXPECT_TRUE(fs::exists(folder_ / "map.pgm"));
+  for (const std::string& name : stale)
+    EXPECT_FALSE(fs::exists(folder_ / name)) << name;
+}
+
+/// Maps one after the other, with an estimate each.
+void deliver_maps(Inbox& inbox, std::int64_t count) {
+  for (std::int64_t id = 1; id <= count; ++id) {
+    slam_estimate_t estimate = estimate_at(static_cast<double>(id), 0.0);
+    estimate.map_id = id;
+    inbox.deliver(encode(channels::kSlamEstimate, estimate));
+  }
+}
+
+TEST_F(ViewerNodeTest, AMapThatCannotBeArchivedIsAFailure) {
+  ViewerNode node{config_, inbox_, outbox_};
+  std::ofstream{folder_ / "map-0000000000000001"} << "in the way";
+  deliver_maps(inbox_, 2);
+  EXPECT_TRUE(node.failed());
+}
+
+TEST_F(ViewerNodeTest, AFileThatCannotBeArchivedIsAFailure) {
+  ViewerNode node{config_, inbox_, outbox_};
+  fs::create_directories(folder_ / "map-0000000000000001" / "map.yaml" / "in the way");
+  deliver_maps(inbox_, 2);
+  EXPECT_TRUE(node.failed());
+  EXPECT_THAT(content_of("map-0000000000000001/trajectory.tum"), HasSubstr("1.000000 "));
+}
+
+TEST_F(ViewerNodeTest, AMapTooLargeForItsFilesIsAFailure) {
+  ViewerNode node{config_, inbox_, outbox_};
+  deliver(channels::kSlamMap, tile_at(0, 0, 1));
+  deliver(channels::kSlamMap, tile_at(400'000, 0, 1));
+  node.finish();
+  EXPECT_FALSE(node.failed()) << "1.6 million cells";
+  map_tiles_t far = tile_at(0, 0, 1);
+  far.tiles[0].tile_y = 20;
+  deliver(channels::kSlamMap, far);
+  node.finish();
+  EXPECT_TRUE(node.failed());
+  EXPECT_TRUE(content_of("map.pgm").starts_with("P5\n800002 2\n"));
+}
+
 TEST_F(ViewerNodeTest, WritesChangesOfTheMap) {
   ViewerNode node{config_, inbox_, outbox_};
   deliver(channels::kSlamEstimate, estimate_at(1.0, 0.0));

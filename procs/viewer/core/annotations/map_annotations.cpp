@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,8 @@ namespace waymark::viewer {
 namespace {
 
 constexpr double kText_px = 17.0;
+constexpr double kScaleBar_px = 320.0;      // at most
+constexpr double kScaleBarRoom_px = 450.0;  // with its label
 
 /// 1, 2 or 5 times a power of ten: the largest that is not longer than the limit.
 double round_length(double limit) {
@@ -112,10 +115,30 @@ std::string health_summary(const std::vector<EstimatedPose>& estimates) {
 
 /// A line of text, in a smaller font if it would leave the area.
 void draw_fitting(cv::Mat& page, const std::string& text, const cv::Rect& area_px, double y_px) {
-  Font font{.height_px = 18.0, .colour = palette::kFaintInk};
-  const double width_px = text_width_px(text, font);
-  if (width_px > area_px.width) font.height_px *= area_px.width / width_px;
-  draw_text(page, text, {area_px.x + 0.0, area_px.y + y_px}, Anchor::kLeft, font);
+  const Font font{.height_px = 18.0, .colour = palette::kFaintInk};
+  draw_text(page, text, {area_px.x + 0.0, area_px.y + y_px}, Anchor::kLeft,
+            fitting(font, text, area_px.width));
+}
+
+/// With as many decimals as the step has.
+std::string metres_text(double at_m, double step_m) {
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step_m) + 1e-9)));
+  return fmt::format("{:.{}f} m", at_m, decimals);
+}
+
+/// Distance of a ruler's labels: a round length with room for the widest of them.
+double label_step(const View& view, const Font& font) {
+  constexpr double kRoom = 1.6;  // the first and last label are moved by half of their width
+  constexpr double kLongest_m = 1e9;
+  const auto has_room = [&](double step_m) {
+    const double widest_px = std::max(text_width_px(metres_text(view.box.left_m, step_m), font),
+                                      text_width_px(metres_text(view.box.right_m, step_m), font));
+    return step_m * view.px_per_m >= kRoom * widest_px;
+  };
+  double limit_m = std::max(2.2 * 110.0 / view.px_per_m, 1e-3);
+  while (limit_m < kLongest_m && !has_room(round_length(limit_m)))
+    limit_m *= 2.0;
+  return round_length(limit_m);
 }
 
 }  // namespace
@@ -123,8 +146,9 @@ void draw_fitting(cv::Mat& page, const std::string& text, const cv::Rect& area_p
 void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& title,
                   const PageContent& content, const Se2& view_from_map,
                   const MapThresholds& thresholds) {
+  const Font title_font{.height_px = 32.0, .colour = palette::kInk, .bold = true};
   draw_text(page, title, {area_px.x + 0.0, area_px.y + 46.0}, Anchor::kLeft,
-            {.height_px = 32.0, .colour = palette::kInk, .bold = true});
+            fitting(title_font, title, area_px.width - kScaleBarRoom_px));
   draw_fitting(page, summary(content, view_from_map, thresholds), area_px, 94.0);
   if (has_times(content.estimates))
     draw_fitting(page, health_summary(content.estimates), area_px, 128.0);
@@ -134,18 +158,19 @@ void draw_ruler(cv::Mat& page, const Panel& panel) {
   const cv::Rect& area = panel.page_px;
   const double y = area.br().y;
   const Box& box = panel.view.box;
-  const double label_step_m = round_length(std::max(2.2 * 110.0 / panel.view.px_per_m, 1e-3));
+  const Font font{.height_px = 15.0, .colour = palette::kFaintInk};
+  const double label_step_m = label_step(panel.view, font);
   const double tick_step_m = label_step_m / 5.0;
   draw_line(page, {area.x + 0.0, y}, {area.br().x + 0.0, y}, {palette::kFaintInk, 2});
-  const auto first = static_cast<int>(std::ceil(box.left_m / tick_step_m));
-  const auto last = static_cast<int>(std::floor(box.right_m / tick_step_m));
-  for (int tick = first; tick <= last; ++tick) {
-    const double x = area.x + panel.view.px_per_m * (tick * tick_step_m - box.left_m);
+  const auto first = static_cast<std::int64_t>(std::ceil(box.left_m / tick_step_m));
+  const auto last = static_cast<std::int64_t>(std::floor(box.right_m / tick_step_m));
+  for (std::int64_t tick = first; tick <= last; ++tick) {
+    const double at_m = static_cast<double>(tick) * tick_step_m;
+    const double x = area.x + panel.view.px_per_m * (at_m - box.left_m);
     const bool has_label = tick % 5 == 0;
     draw_line(page, {x, y}, {x, y + (has_label ? 14.0 : 7.0)}, {palette::kFaintInk, 2});
     if (!has_label) continue;
-    const Font font{.height_px = 15.0, .colour = palette::kFaintInk};
-    const std::string text = fmt::format("{:g} m", tick * tick_step_m);
+    const std::string text = metres_text(at_m, label_step_m);
     const double half_px = text_width_px(text, font) / 2;
     const double middle = std::clamp(x, area.x + half_px, area.br().x - half_px);
     draw_text(page, text, {middle, y + 30.0}, Anchor::kCentre, font);
@@ -175,7 +200,7 @@ void draw_strip_marks(cv::Mat& page, const MapPage& layout) {
 }
 
 void draw_scale_bar(cv::Mat& page, cv::Point2d right_end_px, double px_per_m) {
-  const double length_m = round_length(320.0 / px_per_m);
+  const double length_m = round_length(kScaleBar_px / px_per_m);
   const double length_px = length_m * px_per_m;
   constexpr int kPieces = 4;
   for (int piece = 0; piece < kPieces; ++piece) {

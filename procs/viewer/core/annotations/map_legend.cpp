@@ -47,7 +47,8 @@ class LegendWriter {
       : page_{page}, area_px_{area_px}, x_px_(area_px.x), y_px_(area_px.y + kFirstLine_px) {}
 
   void add(const std::string& meaning, const DrawSample& draw_sample) {
-    const Font font{.height_px = kLegendText_px, .colour = palette::kInk};
+    const Font font = fitting({.height_px = kLegendText_px, .colour = palette::kInk}, meaning,
+                              area_px_.width - kSampleWidth_px - 14.0);
     const double width_px = kSampleWidth_px + 14.0 + text_width_px(meaning, font);
     if (x_px_ > area_px_.x && x_px_ + width_px > area_px_.br().x) new_line();
     draw_sample({x_px_, y_px_}, {x_px_ + kSampleWidth_px, y_px_});

@@ -72,12 +72,12 @@ std::optional<corridor::CorridorLength> corridor_length(const GridMap& map,
   constexpr double kElongated = 4.0;  // length over width
   constexpr double kMinShare = 0.8;   // area of the corridor over that of all free cells
   constexpr double kMostCells = 1e6;  // a kilometre of corridor in cells of 5 cm; bounds the time
-  const corridor::MapImage image = image_of(map, thresholds);
   const auto free_cells = static_cast<double>(
-      std::count(image.cells.begin(), image.cells.end(), corridor::Cell::kFree));
+      std::count_if(map.occupancy_percent.begin(), map.occupancy_percent.end(),
+                    [&](int percent) { return kind_of(percent, thresholds) == CellKind::kFree; }));
   if (free_cells > kMostCells) return std::nullopt;
   try {
-    const corridor::CorridorLength length = corridor::measure_corridor(image);
+    const corridor::CorridorLength length = corridor::measure_corridor(image_of(map, thresholds));
     const bool is_corridor = length.length_px >= kElongated * length.width_px &&
                              length.length_px * length.width_px >= kMinShare * free_cells;
     return is_corridor ? std::optional{length} : std::nullopt;

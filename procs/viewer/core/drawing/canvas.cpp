@@ -35,6 +35,16 @@ std::vector<cv::Point> fixed(std::span<const cv::Point2d> points_px) {
 constexpr int kFace = cv::FONT_HERSHEY_DUPLEX;
 constexpr double kCapitalHeight_px = 21.0;  // of Hershey's capitals at scale 1
 
+std::string ascii(std::string_view utf8) {
+  std::string text;
+  for (const char byte : utf8) {
+    const auto bits = static_cast<unsigned char>(byte);
+    const bool continues = (bits & 0xC0U) == 0x80U;
+    if (!continues) text += bits < 0x80U ? byte : '?';
+  }
+  return text;
+}
+
 int stroke_px(const Font& font) {
   const double stroke = font.height_px / (font.bold ? 8.0 : 13.0);
   return std::max(1, static_cast<int>(std::lround(stroke)));
@@ -130,9 +140,15 @@ void fill_box(cv::Mat& image, const cv::Rect2d& box_px, double corner_radius_px,
 
 double text_width_px(std::string_view text, const Font& font) {
   int baseline = 0;
-  return cv::getTextSize(std::string{text}, kFace, font.height_px / kCapitalHeight_px,
-                         stroke_px(font), &baseline)
+  return cv::getTextSize(ascii(text), kFace, font.height_px / kCapitalHeight_px, stroke_px(font),
+                         &baseline)
       .width;
+}
+
+Font fitting(Font font, std::string_view text, double most_px) {
+  const double width_px = text_width_px(text, font);
+  if (width_px > most_px) font.height_px *= most_px / width_px;
+  return font;
 }
 
 void draw_text(cv::Mat& image, std::string_view text, cv::Point2d anchor_px, Anchor anchor,
@@ -143,8 +159,8 @@ void draw_text(cv::Mat& image, std::string_view text, cv::Point2d anchor_px, Anc
                                                   : anchor_px.x - width;
   const cv::Point origin{static_cast<int>(std::lround(left)),
                          static_cast<int>(std::lround(anchor_px.y + font.height_px / 2))};
-  cv::putText(image, std::string{text}, origin, kFace, font.height_px / kCapitalHeight_px,
-              font.colour, stroke_px(font), cv::LINE_AA);
+  cv::putText(image, ascii(text), origin, kFace, font.height_px / kCapitalHeight_px, font.colour,
+              stroke_px(font), cv::LINE_AA);
 }
 
 }  // namespace waymark::viewer

@@ -41,8 +41,11 @@ struct Font {
 
 enum class Anchor { kLeft, kCentre, kRight };
 
-/// Width of a line of text, which must be ASCII.
+/// Width of a line of text in UTF-8. OpenCV's fonts have ASCII only: any other character is a
+/// question mark.
 double text_width_px(std::string_view text, const Font& font);
+/// The font, or a smaller one in which the text is no wider than the limit.
+Font fitting(Font font, std::string_view text, double most_px);
 /// Writes a line of text whose capitals are centred vertically on the anchor.
 void draw_text(cv::Mat& image, std::string_view text, cv::Point2d anchor_px, Anchor anchor,
                const Font& font);

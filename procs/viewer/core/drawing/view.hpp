@@ -3,7 +3,6 @@
 #pragma once
 
 #include "common/geometry/se2.hpp"
-#include "viewer/core/scene/grid_map.hpp"
 
 #include <opencv2/core.hpp>
 
@@ -43,10 +42,6 @@ struct View {
     return {std::max(1, static_cast<int>(std::lround(px_per_m * box.width_m()))),
             std::max(1, static_cast<int>(std::lround(px_per_m * box.height_m())))};
   }
-
-  /// Matrix for cv::warpAffine that draws a picture of the map's cells (one pixel per cell, row 0
-  /// = lowest y).
-  cv::Matx23d page_from_cells(const GridMap& map) const;
 };
 
 /// Factor on the size of marks and strokes: 1 from 80 px/m on, smaller below.

@@ -2,11 +2,9 @@
 #include "viewer/core/layers/map_layers.hpp"
 
 #include "viewer/core/drawing/canvas.hpp"
-#include "viewer/core/drawing/palette.hpp"
+#include "viewer/core/drawing/cell_pixels.hpp"
 #include "viewer/core/drawing/path_points.hpp"
 #include "viewer/core/layers/marker_labels.hpp"
-
-#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,29 +25,29 @@ StrokeWidths strokes_at(double px_per_m) {
           .plate_px = scaled(full.plate_px, 4)};
 }
 
-cv::Mat colour_cells(const GridMap& map) {
+CellColour occupancy_colour() {
   std::array<Colour, 101> colours;
   for (int percent = 0; percent <= 100; ++percent)
     colours[static_cast<std::size_t>(percent)] =
         to_colour(blend(palette::kFree, palette::kOccupied, percent / 100.0));
-  const Colour unknown = to_colour(palette::kUnknown);
-  cv::Mat_<Colour> image(map.occupancy_percent.size());
-  for (int row = 0; row < image.rows; ++row) {
-    for (int column = 0; column < image.cols; ++column) {
-      const int percent = map.occupancy_percent(row, column);
-      image(row, column) =
-          percent < 0 ? unknown : colours[static_cast<std::size_t>(std::min(percent, 100))];
-    }
-  }
-  return image;
+  return [colours, unknown = to_colour(palette::kUnknown)](int percent, int /*marker_id*/) {
+    return percent < 0 ? unknown : colours[static_cast<std::size_t>(std::min(percent, 100))];
+  };
 }
 
-void draw_cells(cv::Mat& panel, const View& view, const GridMap& map, const cv::Mat& cell_colours) {
+void draw_cells(cv::Mat& panel, const View& view, const GridMap& map,
+                const CellColour& colour_of_cell) {
   panel.setTo(palette::kUnknown);
   if (map.empty()) return;
-  cv::warpAffine(cell_colours, panel, cv::Mat{view.page_from_cells(map)}, panel.size(),
-                 view.px_per_m * map.resolution_m < 1.0 ? cv::INTER_LINEAR : cv::INTER_NEAREST,
-                 cv::BORDER_CONSTANT, palette::kUnknown);
+  const double cells_per_px = 1.0 / (view.px_per_m * map.resolution_m);
+  const int longest = std::max(map.occupancy_percent.cols, map.occupancy_percent.rows);
+  constexpr double kRounding = 1e-6;
+  const GridMap cells =
+      shrunk(map, static_cast<int>(std::ceil(std::min(cells_per_px - kRounding, 1.0 * longest))));
+  cv::Mat_<Colour> pixels = panel;
+  for_each_pixel_on_map(view, cells, panel.size(), [&](cv::Point pixel, cv::Point cell) {
+    pixels(pixel) = colour_of_cell(cells.occupancy_percent(cell), cells.marker_ids(cell));
+  });
 }
 
 void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,

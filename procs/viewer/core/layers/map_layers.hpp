@@ -2,8 +2,10 @@
 // The layers of map.png, each drawn into one panel's piece of the page.
 #pragma once
 
+#include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/page/map_page.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace waymark::viewer {
@@ -23,10 +25,14 @@ StrokeWidths strokes_at(double px_per_m);
 constexpr double kDash_px = 14.0;
 constexpr double kDashGap_px = 12.0;
 
-/// Picture of the map for draw_cells(): one pixel per cell, row 0 = lowest y, BGR.
-cv::Mat colour_cells(const GridMap& map);
+using CellColour = std::function<Colour(int occupancy_percent, int marker_id)>;
 
-void draw_cells(cv::Mat& panel, const View& view, const GridMap& map, const cv::Mat& cell_colours);
+/// Walls dark, free space white.
+CellColour occupancy_colour();
+
+/// Where several cells share a pixel, they are drawn as one (shrunk()).
+void draw_cells(cv::Mat& panel, const View& view, const GridMap& map,
+                const CellColour& colour_of_cell);
 
 /// All paths, from the broadest stroke at the bottom to the finest, so that coinciding ones stay
 /// visible; the final trajectory is dashed, on top.

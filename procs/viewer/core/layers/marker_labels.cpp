@@ -2,6 +2,7 @@
 #include "viewer/core/layers/marker_labels.hpp"
 
 #include "viewer/core/drawing/canvas.hpp"
+#include "viewer/core/drawing/cell_pixels.hpp"
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -21,15 +22,13 @@ constexpr int kOpenBelow_percent = 50;
 class OpenSpace {
  public:
   OpenSpace(const GridMap& map, const View& view) {
-    cv::Mat open = cv::Mat::zeros(rows(view), columns(view), CV_8UC1);
-    if (!map.empty()) {
-      cv::Mat cells = (map.occupancy_percent >= 0) & (map.occupancy_percent < kOpenBelow_percent);
-      cells /= 255;
-      View coarse = view;
-      coarse.px_per_m /= kCoarse;
-      cv::warpAffine(cells, open, cv::Mat{coarse.page_from_cells(map)}, open.size(),
-                     cv::INTER_NEAREST, cv::BORDER_CONSTANT, 0);
-    }
+    cv::Mat_<uchar> open(rows(view), columns(view), uchar{0});
+    View coarse = view;
+    coarse.px_per_m /= kCoarse;
+    for_each_pixel_on_map(coarse, map, open.size(), [&](cv::Point pixel, cv::Point cell) {
+      const int percent = map.occupancy_percent(cell);
+      open(pixel) = percent >= 0 && percent < kOpenBelow_percent ? 1 : 0;
+    });
     cv::integral(open, sums_, CV_32S);
   }
 

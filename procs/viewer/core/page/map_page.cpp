@@ -14,6 +14,7 @@ namespace {
 constexpr int kMargin_px = 60;
 constexpr int kHeadingHeight_px = 158;
 constexpr int kLegendHeight_px = 320;
+constexpr int kNarrowLegendHeight_px = 1200;  // on a page below kMinPageWidth_px
 constexpr int kGap_px = 30;
 constexpr double kOverviewHeight_px = 600.0;
 /// Odometry's path is left out of the strips if it would reduce their scale to less than this
@@ -27,6 +28,8 @@ constexpr double kStripOverlap_m = 0.5;
 
 class BoxBuilder {
  public:
+  bool is_empty() const { return box_.isEmpty(); }
+
   void add(const Eigen::Vector2d& point) { box_.extend(point); }
 
   /// Adds the point if it lies within `reach`.
@@ -69,6 +72,14 @@ void add_known_cells(const GridMap& map, const Se2& view_from_map, BoxBuilder& b
     bounds.add(view_from_map * map.cell_centre_m(row, first));
     bounds.add(view_from_map * map.cell_centre_m(row, last));
   }
+}
+
+/// Where a run without cells is: its first pose, or else its first marker.
+std::optional<Eigen::Vector2d> start_of(const PageContent& content) {
+  std::optional<Eigen::Vector2d> start;
+  if (!content.landmarks.empty()) start = content.landmarks.front().map_from_marker.translation();
+  if (!content.estimates.empty()) start = content.estimates.front().map_from_base.translation();
+  return start && start->allFinite() ? start : std::nullopt;
 }
 
 Box padded(const Box& box, double margin_m) {
@@ -125,8 +136,10 @@ PageContent content_of(const Scene& scene) {
 Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry) {
   BoxBuilder bounds;
   add_known_cells(content.map, view_from_map, bounds);
-  const Eigen::AlignedBox2d reach_of_markers = bounds.reach(0.1, 3.0);
+  const bool has_cells = !bounds.is_empty();
+  if (const auto start = start_of(content); !has_cells && start) bounds.add(view_from_map * *start);
   const Eigen::AlignedBox2d reach_of_paths = bounds.reach(2.0, 100.0);
+  const Eigen::AlignedBox2d reach_of_markers = has_cells ? bounds.reach(0.1, 3.0) : reach_of_paths;
   for (const Landmark& landmark : content.landmarks)
     bounds.add_within(reach_of_markers, view_from_map * landmark.map_from_marker.translation());
   const auto add_path = [&](const auto& path) {
@@ -200,7 +213,9 @@ MapPage lay_out(const PageContent& content, const MapPageStyle& style) {
     only.x += (right_px - only.br().x) / 2;
   }
   page.heading_px = {kMargin_px, 0, right_px - kMargin_px, kHeadingHeight_px};
-  page.legend_px = {kMargin_px, y_px - kGap_px, right_px - kMargin_px, kLegendHeight_px};
+  const bool is_narrow = right_px + kMargin_px < kMinPageWidth_px;
+  page.legend_px = {kMargin_px, y_px - kGap_px, right_px - kMargin_px,
+                    is_narrow ? kNarrowLegendHeight_px : kLegendHeight_px};
   page.size_px = {right_px + kMargin_px, page.legend_px.br().y};
   return page;
 }

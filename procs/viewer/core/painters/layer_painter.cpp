@@ -19,20 +19,11 @@ namespace {
 constexpr double kText_px = 18.0;
 
 /// Faint version of the map, with the ids in strong colours.
-cv::Mat colour_ids(const GridMap& map) {
+Colour id_colour(int percent, int marker_id) {
   const cv::Scalar faint_wall = blend(palette::kFree, palette::kOccupied, 0.4);
-  cv::Mat_<Colour> image(map.occupancy_percent.size());
-  for (int row = 0; row < image.rows; ++row) {
-    for (int column = 0; column < image.cols; ++column) {
-      const int id = map.marker_ids(row, column);
-      const int percent = map.occupancy_percent(row, column);
-      image(row, column) = to_colour(
-          id >= 0       ? colour_of_id(id)
-          : percent < 0 ? palette::kUnknown
-                        : blend(palette::kFree, faint_wall, std::min(percent, 100) / 100.0));
-    }
-  }
-  return image;
+  if (marker_id >= 0) return to_colour(colour_of_id(marker_id));
+  if (percent < 0) return to_colour(palette::kUnknown);
+  return to_colour(blend(palette::kFree, faint_wall, std::min(percent, 100) / 100.0));
 }
 
 /// Direction (map frame) from a cell towards the open cells around it; 0 when there are none.
@@ -99,18 +90,17 @@ cv::Mat paint_marker_layer(const GridMap& map, const std::string& title,
                            const MapPageStyle& style) {
   const PageContent content{.map = map, .landmarks = landmarks_of_cells(map)};
   const MapPage layout = lay_out(content, style);
-  const cv::Mat cell_colours = colour_ids(map);
   cv::Mat page{layout.size_px, CV_8UC3, palette::kPage};
   draw_heading(page, layout.heading_px, title, content, layout.strips.front().view.view_from_map,
                style.thresholds);
   if (layout.overview) {
     cv::Mat panel = page(layout.overview->page_px);
-    draw_cells(panel, layout.overview->view, map, cell_colours);
+    draw_cells(panel, layout.overview->view, map, id_colour);
     draw_strip_marks(page, layout);
   }
   for (const Panel& strip : layout.strips) {
     cv::Mat panel = page(strip.page_px);
-    draw_cells(panel, strip.view, map, cell_colours);
+    draw_cells(panel, strip.view, map, id_colour);
     auto labels = place_labels(content.landmarks, map, strip.view, kText_px);
     for (MarkerLabel& label : labels)
       label.colour = colour_of_id(label.id);

@@ -26,21 +26,21 @@ double label_height_px(double px_per_m) {
 }
 
 void draw_overview(cv::Mat& page, const Panel& overview, const PageContent& content,
-                   const cv::Mat& cell_colours, const MapPageStyle& style) {
+                   const CellColour& cell_colour, const MapPageStyle& style) {
   cv::Mat panel = page(overview.page_px);
-  draw_cells(panel, overview.view, content.map, cell_colours);
+  draw_cells(panel, overview.view, content.map, cell_colour);
   draw_health(panel, overview.view, content.estimates, kFineStrokes.health_px);
   draw_paths(panel, overview.view, content, kFineStrokes, Odometry::kIncluded);
   draw_plates(panel, overview.view, content.landmarks, style.marker_size_m, kFineStrokes.plate_px);
 }
 
 void draw_strip(cv::Mat& page, const Panel& strip, const PageContent& content,
-                const cv::Mat& cell_colours, const MapPageStyle& style, const PathMarks& marks,
+                const CellColour& cell_colour, const MapPageStyle& style, const PathMarks& marks,
                 Odometry odometry) {
   cv::Mat panel = page(strip.page_px);
   const View& view = strip.view;
   const StrokeWidths widths = strokes_at(view.px_per_m);
-  draw_cells(panel, view, content.map, cell_colours);
+  draw_cells(panel, view, content.map, cell_colour);
   draw_health(panel, view, content.estimates, widths.health_px);
   draw_particles(panel, view, content.particles);
   draw_ellipses(panel, view, marks);
@@ -60,7 +60,7 @@ void draw_strip(cv::Mat& page, const Panel& strip, const PageContent& content,
 cv::Mat paint_map(const Scene& scene, const MapPageStyle& style) {
   const PageContent content = content_of(scene);
   const MapPage layout = lay_out(content, style);
-  const cv::Mat cell_colours = colour_cells(content.map);
+  const CellColour cell_colour = occupancy_colour();
   const double px_per_m = layout.strips.front().view.px_per_m;
   const PathMarks marks = choose_marks(content.estimates, px_per_m, style.mark_spacing_px);
 
@@ -68,11 +68,11 @@ cv::Mat paint_map(const Scene& scene, const MapPageStyle& style) {
   draw_heading(page, layout.heading_px, scene.title, content,
                layout.strips.front().view.view_from_map, style.thresholds);
   if (layout.overview) {
-    draw_overview(page, *layout.overview, content, cell_colours, style);
+    draw_overview(page, *layout.overview, content, cell_colour, style);
     draw_strip_marks(page, layout);
   }
   for (const Panel& strip : layout.strips)
-    draw_strip(page, strip, content, cell_colours, style, marks, layout.odometry_in_strips);
+    draw_strip(page, strip, content, cell_colour, style, marks, layout.odometry_in_strips);
   draw_scale_bar(page, {layout.heading_px.br().x - 2.0, layout.heading_px.y + 46.0}, px_per_m);
   const int bottom_px = draw_legend(page, layout, content, marks);
   return page(cv::Rect{0, 0, page.cols, bottom_px}).clone();

@@ -40,4 +40,8 @@ struct GridMap {
   }
 };
 
+/// A map of larger cells: each is `factor` x `factor` cells of the given one, with the highest
+/// occupancy and id among them, so that no wall is lost.
+GridMap shrunk(const GridMap& map, int factor);
+
 }  // namespace waymark::viewer

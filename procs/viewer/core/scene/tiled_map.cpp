@@ -9,6 +9,9 @@
 namespace waymark::viewer {
 namespace {
 
+constexpr double kLongestSide = 1e6;           // of a PNG file, by libpng
+constexpr std::size_t kMostCounted = 100'000;  // of the tiles left out; bounds memory
+
 bool is_well_formed(const TileLayout& layout, const TileUpdate& update) {
   if (!(layout.resolution_m > 0.0) || !std::isfinite(layout.resolution_m)) return false;
   if (!std::isfinite(layout.origin_x_m) || !std::isfinite(layout.origin_y_m)) return false;
@@ -30,10 +33,12 @@ void TiledMap::TileBox::include(std::int64_t x, std::int64_t y) {
   last_y = std::max(last_y, y);
 }
 
-double TiledMap::TileBox::cells(int size_cells) const {
-  const double side = size_cells;
-  return static_cast<double>(last_x - first_x + 1) * side *
-         (static_cast<double>(last_y - first_y + 1) * side);
+double TiledMap::TileBox::columns(int size_cells) const {
+  return static_cast<double>(last_x - first_x + 1) * size_cells;
+}
+
+double TiledMap::TileBox::rows(int size_cells) const {
+  return static_cast<double>(last_y - first_y + 1) * size_cells;
 }
 
 TiledMap::Outcome TiledMap::put(const TileLayout& layout, Timestamp time,
@@ -42,13 +47,20 @@ TiledMap::Outcome TiledMap::put(const TileLayout& layout, Timestamp time,
   const bool is_another_map = !(layout == layout_);
   TileBox box = is_another_map ? TileBox{} : box_;
   box.include(update.tile_x, update.tile_y);
-  if (box.cells(layout.size_cells) > static_cast<double>(max_cells_)) return Outcome::kTooFarAway;
-
-  if (is_another_map) tiles_.clear();
+  const double columns = box.columns(layout.size_cells);
+  const double rows = box.rows(layout.size_cells);
+  if (columns * rows > static_cast<double>(max_cells_) || std::max(columns, rows) > kLongestSide) {
+    if (left_out_.size() < kMostCounted) left_out_.insert({update.tile_x, update.tile_y});
+    return Outcome::kTooFarAway;
+  }
+  if (is_another_map) {
+    tiles_.clear();
+    left_out_.clear();
+  }
   layout_ = layout;
   box_ = box;
   Tile& tile = tiles_[{update.tile_x, update.tile_y}];
-  if (!tile.occupancy_percent.empty() && time < tile.time) return Outcome::kOlderThanKnown;
+  if (!tile.occupancy_percent.empty() && is_older(time, tile.time)) return Outcome::kOlderThanKnown;
   tile.time = time;
   tile.occupancy_percent.assign(update.occupancy_percent.begin(), update.occupancy_percent.end());
   tile.marker_ids.assign(update.marker_ids.begin(), update.marker_ids.end());

@@ -5,8 +5,10 @@
 #include "common/time/time.hpp"
 #include "viewer/core/scene/grid_map.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,17 +34,27 @@ struct TileUpdate {
   std::span<const std::int16_t> marker_ids{};
 };
 
+/// True for a stamp before a known one, unless it is so long before that the clock was set back or
+/// the known one was wrong: then what came last is newer.
+inline bool is_older(Timestamp time, Timestamp known) {
+  constexpr Duration kLongestDelay = std::chrono::seconds{10};
+  return time < known && time >= known - kLongestDelay;
+}
+
 class TiledMap {
  public:
   enum class Outcome { kStored, kOlderThanKnown, kMalformed, kTooFarAway };
 
   /// @param max_cells  largest rectangle of cells that the map may span: bounds the memory that a
-  ///                   stray tile can ask for.
+  ///                   stray tile can ask for. Tiles beyond are left out.
   explicit TiledMap(std::int64_t max_cells) : max_cells_{max_cells} {}
 
-  /// Stores a tile unless a newer one is known. Another layout belongs to another map, so that all
-  /// old tiles are removed.
+  /// Stores a tile unless a newer one is known (is_older()). Another layout belongs to another map,
+  /// so that all old tiles are removed.
   Outcome put(const TileLayout& layout, Timestamp time, const TileUpdate& update);
+
+  /// Number of tiles that were too far away: those of the map that are missing.
+  std::size_t num_left_out() const { return left_out_.size(); }
 
   /// True when no tile has come.
   bool empty() const { return tiles_.empty(); }
@@ -62,7 +74,8 @@ class TiledMap {
     std::int64_t first_x{0}, first_y{0}, last_x{-1}, last_y{-1};
 
     void include(std::int64_t x, std::int64_t y);
-    double cells(int size_cells) const;
+    double columns(int size_cells) const;
+    double rows(int size_cells) const;
   };
 
   GridMap grid_of_all_tiles() const;
@@ -71,6 +84,7 @@ class TiledMap {
   TileLayout layout_{};
   TileBox box_{};
   std::map<std::pair<int, int>, Tile> tiles_;
+  std::set<std::pair<int, int>> left_out_;
 };
 
 /// The smallest rectangle that holds all known cells.

@@ -30,6 +30,11 @@ TEST(TumText, TimedPosesHaveTheSameFormat) {
             "1.500000 0.000000000 0.000000000 0 0 0 0.000000000000 1.000000000000\n");
 }
 
+TEST(TumText, TimesBeforeZeroHaveOneSign) {
+  const std::vector<TimedPose> path{{timestamp_from_us(-1'500'000), {}}};
+  EXPECT_TRUE(tum_text(path).starts_with("-1.500000 "));
+}
+
 TEST(CovarianceCsv, ListsTheUpperTriangleAndHealth) {
   EXPECT_EQ(covariance_csv_text(std::vector{pose_at_us(2'000'000)}),
             "t,cxx,cxy,cxt,cyy,cyt,ctt,health\n"

@@ -179,6 +179,18 @@ TEST(LiveFeed, ShowsTheStateAtAGivenTimeOfALog) {
   EXPECT_EQ(json["history_s"], Json::parse("[0.0, 100.0]"));
 }
 
+TEST(LiveFeed, GoesOnWhenTheClockIsSetBack) {
+  Board board;
+  LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
+  for (int i = 0; i < 10; ++i)
+    feed.add_markers(at_s(1000.0 + i), {});
+  feed.add_markers(at_s(9000.0), {});
+  EXPECT_EQ(board.newest()->time, at_s(1009.0)) << "one stamp is wrong";
+  for (int i = 0; i < 30; ++i)
+    feed.add_markers(at_s(500.0 + i), {});
+  EXPECT_EQ(board.newest()->time, at_s(529.0));
+}
+
 TEST(LiveFeed, UpdatesSlowlyWithoutClients) {
   Board board;
   LiveFeed feed{board, "run", LiveFeed::Pace::kWallClock};

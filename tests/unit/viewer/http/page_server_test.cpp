@@ -84,6 +84,30 @@ TEST_F(PageServerTest, SendsAViewAsAnEvent) {
   EXPECT_THAT(received, StartsWith("data: {"));
 }
 
+// 10 km of path, which a client on a slow network could not receive in one event.
+TEST_F(PageServerTest, ALongPathComesInSeveralEvents) {
+  LiveView view;
+  view.number = 2;
+  view.path_length = 25'000;
+  board_.post(std::make_shared<LiveView>(view), std::vector<PathPoint>(view.path_length));
+  std::string received;
+  client_.Get("/events", [&](const char* data, std::size_t size) {
+    received.append(data, size);
+    const bool has_last = received.find("\"first\":20000,") != std::string::npos;
+    const bool is_quiet = received.ends_with("\n:\n\n");
+    return !is_quiet && (!has_last || !received.ends_with("\n\n"));
+  });
+  EXPECT_THAT(received, HasSubstr("\"path\":{\"first\":0,"));
+  EXPECT_THAT(received, HasSubstr("\"path\":{\"first\":10000,"));
+  EXPECT_LT(received.find("\n\n"), 150'000U) << "size of the first event";
+}
+
+TEST_F(PageServerTest, SeveralRangesAreRefused) {
+  httplib::Client client{"127.0.0.1", port_};
+  EXPECT_EQ(client.Get("/", {{"Range", "bytes=0-9"}})->status, 206);
+  EXPECT_EQ(client.Get("/", {{"Range", "bytes=0-,0-,0-"}})->status, 416);
+}
+
 TEST_F(PageServerTest, UnknownPathsGive404AndInvalidParameters400) {
   EXPECT_EQ(status_of("/view"), 200);
   EXPECT_EQ(status_of("/view?time_s=12.5"), 200);

@@ -60,5 +60,17 @@ TEST(TintPolygons, OverlappingPolygonsAreTintedOnce) {
   EXPECT_TRUE(is_blank(untouched));
 }
 
+TEST(Text, ACharacterBeyondAsciiIsOneQuestionMark) {
+  EXPECT_EQ(text_width_px("B\xC3\xBCro", {}), text_width_px("B?ro", {}));
+  EXPECT_EQ(text_width_px("\xE2\x82\xAC", {}), text_width_px("?", {}));
+}
+
+TEST(Text, AFittingFontIsNoWiderThanTheLimit) {
+  const Font font{.height_px = 30.0};
+  EXPECT_EQ(fitting(font, "ab", 1000.0).height_px, 30.0);
+  const std::string text(50, 'M');
+  EXPECT_LE(text_width_px(text, fitting(font, text, 300.0)), 310.0);
+}
+
 }  // namespace
 }  // namespace waymark::viewer

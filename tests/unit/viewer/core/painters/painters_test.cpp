@@ -111,24 +111,6 @@ TEST(PaintMap, TheLegendGrowsWithWhatIsDrawn) {
   EXPECT_LT(page.rows, height_px + 200);
 }
 
-TEST(Heading, LongTextIsClippedToItsArea) {
-  PageContent content = content_of(corridor_scene(50.0));
-  for (std::size_t i = 0; i < content.estimates.size(); ++i) {
-    content.estimates[i].health = static_cast<Health>(i % 5);
-    content.estimates[i].weak_axis =
-        WeakAxis{.direction = {1, 0, 0}, .source = static_cast<WeakAxisSource>(i % 4)};
-  }
-  cv::Mat_<Colour> page(160, 1200, Colour{255, 255, 255});
-  const cv::Rect area{60, 0, 1080, 158};
-  draw_heading(page, area, "corridor", content, Se2{}, {});
-  cv::Mat drawn;
-  cv::inRange(page, cv::Scalar{0, 0, 0}, cv::Scalar{250, 250, 250}, drawn);
-  const cv::Rect box = cv::boundingRect(drawn);
-  EXPECT_GT(box.width, 1000);
-  EXPECT_GE(box.x, area.x - 2);
-  EXPECT_LE(box.br().x, area.br().x + 2);
-}
-
 TEST(PaintMap, TheFinalTrajectoryIsDashedOverTheOthers) {
   const View view{.box = {0, -1, 4, 1}, .px_per_m = 50.0};
   PageContent content;
@@ -149,6 +131,32 @@ TEST(PaintMap, AnEmptySceneIsPainted) {
   const cv::Mat page = paint_map(Scene{}, kStyle);
   EXPECT_GE(page.cols, 800);
   EXPECT_FALSE(contains_colour(page, palette::kTrue)) << "no truth, no entry in the legend";
+}
+
+// OpenCV's warpAffine ends at 32767 pixels.
+TEST(PaintMap, AMapOf40000CellsIsPainted) {
+  const Scene scene = scene_of(room(-1, -1, 1999, 1));
+  for (const int max_strips : {1, 8}) {
+    const cv::Mat page = paint_map(scene, {.max_strips = max_strips});
+    EXPECT_TRUE(contains_colour(page, occupancy_colour()(96, -1)));
+  }
+  EXPECT_FALSE(paint_marker_layer(scene.map.grid(), "long", kStyle).empty());
+}
+
+TEST(PaintMap, WithoutCellsTheFrameIsAroundMarkersAndPoses) {
+  Scene scene;
+  scene.landmarks = {{.id = 1, .map_from_marker = {500, 500, 0}},
+                     {.id = 2, .map_from_marker = {504, 500, 0}}};
+  const auto frame = [&] {
+    return lay_out(content_of(scene), kStyle).strips.front().view.box;
+  };
+  EXPECT_LT(frame().left_m, 500.0);
+  EXPECT_GT(frame().left_m, 490.0);
+  EXPECT_GT(frame().right_m, 504.0);
+  scene.landmarks.clear();
+  scene.estimates = {{.map_from_base = {-300, 7, 0}}};
+  EXPECT_LT(frame().left_m, -300.0);
+  EXPECT_LT(frame().right_m, -290.0);
 }
 
 TEST(PaintMap, OneCellAndAbsurdNumbersArePainted) {
@@ -261,10 +269,10 @@ TEST(PaintMap, HealthAndUncertaintyMarksHideLessThan60PercentOfFreeSpace) {
     pose.covariance.setConstant(std::nan(""));
   }
   const cv::Mat without = paint_map(bare, kStyle);
-  const double free_with =
-      share_of_colour(with_marks, colour_cells(content_of(scene).map).at<Colour>(10, 10));
-  const double free_without =
-      share_of_colour(without, colour_cells(content_of(scene).map).at<Colour>(10, 10));
+  const double free_with = share_of_colour(
+      with_marks, occupancy_colour()(content_of(scene).map.occupancy_percent(10, 10), -1));
+  const double free_without = share_of_colour(
+      without, occupancy_colour()(content_of(scene).map.occupancy_percent(10, 10), -1));
   EXPECT_GT(free_with, 0.4 * free_without);
 }
 

@@ -82,6 +82,13 @@ TEST(TiledMap, TheNewestContentWinsWhateverTheOrderOfArrival) {
   EXPECT_EQ(map.grid().occupancy_percent(0, 0), 80);
 }
 
+TEST(TiledMap, ATileFromLongBeforeComesAfterAStepOfTheClock) {
+  TiledMap map{1000};
+  map.put(kLayout, at_s(100), Filled{80, -1}.at(0, 0));
+  EXPECT_EQ(map.put(kLayout, at_s(10), Filled{10, -1}.at(0, 0)), Outcome::kStored);
+  EXPECT_EQ(map.grid().occupancy_percent(0, 0), 10);
+}
+
 TEST(TiledMap, AStrayTileCannotAskForUnboundedMemory) {
   TiledMap map{1000};
   map.put(kLayout, at_s(1), Filled{0, -1}.at(0, 0));

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/core/annotations/map_annotations.hpp"
+
+#include "unit/viewer/drawn_scene.hpp"
+#include "viewer/core/drawing/palette.hpp"
+#include "viewer/core/painters/map_painter.hpp"
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace waymark::viewer {
+namespace {
+
+int count_pixels(const cv::Mat& image, const cv::Scalar& colour) {
+  cv::Mat mask;
+  cv::inRange(image, colour, colour, mask);
+  return cv::countNonZero(mask);
+}
+
+TEST(Heading, LongTextIsClippedToItsArea) {
+  PageContent content = content_of(corridor_scene(50.0));
+  for (std::size_t i = 0; i < content.estimates.size(); ++i) {
+    content.estimates[i].health = static_cast<Health>(i % 5);
+    content.estimates[i].weak_axis =
+        WeakAxis{.direction = {1, 0, 0}, .source = static_cast<WeakAxisSource>(i % 4)};
+  }
+  cv::Mat_<Colour> page(160, 1200, Colour{255, 255, 255});
+  const cv::Rect area{60, 0, 1080, 158};
+  draw_heading(page, area, "corridor", content, Se2{}, {});
+  cv::Mat drawn;
+  cv::inRange(page, cv::Scalar{0, 0, 0}, cv::Scalar{250, 250, 250}, drawn);
+  const cv::Rect box = cv::boundingRect(drawn);
+  EXPECT_GT(box.width, 1000);
+  EXPECT_GE(box.x, area.x - 2);
+  EXPECT_LE(box.br().x, area.br().x + 2);
+}
+
+TEST(Heading, ALongTitleLeavesRoomForTheScaleBar) {
+  cv::Mat page(160, 1200, CV_8UC3, palette::kPage);
+  draw_heading(page, {60, 0, 1080, 158}, std::string(100, 'M'), {}, Se2{}, {});
+  const cv::Mat scale_bar = page.rowRange(20, 70).colRange(720, 1200);
+  EXPECT_EQ(count_pixels(scale_bar, palette::kInk), 0);
+}
+
+TEST(Ruler, LabelsFarFromTheOriginDiffer) {
+  constexpr double kLeft_m = 5'000'000.0;
+  const Panel panel{{.box = {kLeft_m, 0, kLeft_m + 20, 1}, .px_per_m = 100.0},
+                    cv::Rect{0, 0, 2000, 100}};
+  cv::Mat page(200, 2000, CV_8UC3, palette::kPage);
+  draw_ruler(page, panel);
+  const auto label_at = [&](int x) {
+    return page.rowRange(115, 145).colRange(x - 80, x + 80);
+  };
+  EXPECT_GT(cv::norm(label_at(200), label_at(400)), 0.0);
+}
+
+TEST(Legend, ANarrowPageHasTheWholeLegend) {
+  Scene scene = corridor_scene(50.0);
+  scene.final_trajectory = {{scene.estimates.front().time, {0, 0, 0}},
+                            {scene.estimates.back().time, {48, 0, 0}}};
+  for (std::size_t i = 0; i < scene.estimates.size(); ++i) {
+    scene.estimates[i].health = static_cast<Health>(i % 5);
+    scene.estimates[i].weak_axis =
+        WeakAxis{.direction = {1, 0, 0}, .source = static_cast<WeakAxisSource>(i / 600 % 4)};
+  }
+  scene.changes.emplace();
+  for (const auto kind :
+       {MapChange::Kind::kMissing, MapChange::Kind::kMoved, MapChange::Kind::kNew,
+        MapChange::Kind::kSurveyOff, MapChange::Kind::kWallNew, MapChange::Kind::kWallGone})
+    scene.changes->push_back({.kind = kind});
+  for (std::size_t i = 0; i < 4; ++i)
+    scene.landmarks[i].state = static_cast<LandmarkState>(i);
+  const MapPageStyle narrow{.page_width_px = 800};
+  const cv::Mat page = paint_map(scene, narrow);
+  EXPECT_EQ(page.cols, 800);
+  EXPECT_LT(page.rows, lay_out(content_of(scene), narrow).size_px.height) << "there is room left";
+  const cv::Mat margin = page.colRange(page.cols - 50, page.cols);
+  EXPECT_EQ(count_pixels(margin, palette::kPage), margin.rows * margin.cols)
+      << "no text leaves its area";
+}
+
+}  // namespace
+}  // namespace waymark::viewer
