@@ -6,8 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <system_error>
 
 namespace waymark {
 namespace {
@@ -24,7 +26,7 @@ constexpr double kOdometryError = 0.05;  // share of the distance
 constexpr double kOdometryError_rad_per_m = 0.05;
 
 struct LastPoseFields {
-  std::string map_id{};
+  std::vector<std::string> map_ids{};
   std::int64_t utime{0};
   double x_m{0.0};
   double y_m{0.0};
@@ -37,8 +39,8 @@ struct LastPoseFields {
   double odometry_yaw_rad{0.0};
 
   void describe(Fields& fields) {
-    fields.field("map_id", map_id,
-                 "of the map file in whose frame the pose is, as waymark-map prints it");
+    fields.field("map_ids", map_ids,
+                 "of the map files in whose frame the pose is, as waymark-map prints them");
     fields.field("utime", utime, {0.0, 9e15}, "message time [us]");
     fields.field("x_m", x_m, kAnyNumber, "base in the map");
     fields.field("y_m", y_m, kAnyNumber, "base in the map");
@@ -54,13 +56,18 @@ struct LastPoseFields {
 
 }  // namespace
 
+bool is_in_map(const LastPose& pose, std::int64_t map_id) {
+  return std::ranges::find(pose.map_ids, map_id) != pose.map_ids.end();
+}
+
 std::filesystem::path last_pose_file(const std::filesystem::path& state_folder) {
   return state_folder / "last_pose.toml";
 }
 
 void write_last_pose(const std::filesystem::path& state_folder, const LastPose& pose) {
   LastPoseFields fields;
-  fields.map_id = fmt::format("{:016x}", static_cast<std::uint64_t>(pose.map_id));
+  for (const std::int64_t map_id : pose.map_ids)
+    fields.map_ids.push_back(fmt::format("{:016x}", static_cast<std::uint64_t>(map_id)));
   fields.utime = to_us(pose.time);
   fields.x_m = pose.map_from_base.x();
   fields.y_m = pose.map_from_base.y();
@@ -76,12 +83,15 @@ void write_last_pose(const std::filesystem::path& state_folder, const LastPose& 
 
 std::optional<LastPose> read_last_pose(const std::filesystem::path& state_folder) {
   const std::filesystem::path file = last_pose_file(state_folder);
-  if (!std::filesystem::exists(file)) return std::nullopt;
+  std::error_code ignored;  // of a file that cannot be examined: load_config() says what is wrong
+  if (std::filesystem::status(file, ignored).type() == std::filesystem::file_type::not_found)
+    return std::nullopt;
   ConfigSources sources;
   sources.files = {file};
   const auto fields = load_config<LastPoseFields>(sources);
   LastPose pose;
-  pose.map_id = static_cast<std::int64_t>(std::strtoull(fields.map_id.c_str(), nullptr, 16));
+  for (const std::string& map_id : fields.map_ids)
+    pose.map_ids.push_back(static_cast<std::int64_t>(std::strtoull(map_id.c_str(), nullptr, 16)));
   pose.time = timestamp_from_us(fields.utime);
   pose.map_from_base = {fields.x_m, fields.y_m, fields.yaw_rad};
   pose.sigmas = {fields.sigma_x_m, fields.sigma_y_m, fields.sigma_yaw_rad};
@@ -91,7 +101,7 @@ std::optional<LastPose> read_last_pose(const std::filesystem::path& state_folder
 
 Resumption resume(const LastPose& last, std::int64_t map_id, Timestamp now,
                   const Se2& odom_from_base) {
-  if (last.map_id != map_id) return {std::nullopt, "it is in another map"};
+  if (!is_in_map(last, map_id)) return {std::nullopt, "it is in another map"};
   if (now < last.time) return {std::nullopt, "it is newer than the sensors' messages"};
   const Se2 driven = last.odom_from_base.inverse() * odom_from_base;
   const double distance_m = driven.translation().norm();

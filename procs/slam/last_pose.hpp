@@ -11,16 +11,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace waymark {
 
 struct LastPose {
   Timestamp time{};
-  std::int64_t map_id{0};  ///< of the map file in whose frame the pose is
+  std::vector<std::int64_t> map_ids{};  ///< of the map files in whose frame the pose is
   Se2 map_from_base{};
   Eigen::Vector3d sigmas{Eigen::Vector3d::Zero()};  ///< x [m], y [m], heading [rad]
   Se2 odom_from_base{};                             ///< as it was sent
 };
+
+bool is_in_map(const LastPose& pose, std::int64_t map_id);
 
 std::filesystem::path last_pose_file(const std::filesystem::path& state_folder);
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 namespace waymark {
 namespace {
@@ -274,19 +275,38 @@ MapFile map_of(const std::vector<Message>& messages) {
 std::int64_t write_map_file(const std::filesystem::path& file, const MapSnapshot& map,
                             const MapFileInfo& info) {
   const std::int64_t map_id = id_of(messages_with_id(map, info, 0));
-  LogWriter writer{file};
-  for (const Message& message : messages_with_id(map, info, map_id))
-    writer.write(message);
-  writer.close_on_disk();
+  try {
+    LogWriter writer{file};
+    for (const Message& message : messages_with_id(map, info, map_id))
+      writer.write(message);
+    writer.close_on_disk();
+  } catch (const std::exception&) {
+    std::error_code ignored;
+    std::filesystem::remove(part_path_of(file), ignored);
+    throw;
+  }
   return map_id;
+}
+
+std::filesystem::path move_aside(const std::filesystem::path& file) {
+  std::filesystem::path free;
+  int number = 0;
+  do {
+    free = fmt::format("{}.{}", file.string(), ++number);
+  } while (std::filesystem::exists(free));
+  std::filesystem::rename(file, free);
+  return free;
 }
 
 MapFile read_map_file(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& what) {
     throw SetupError{fmt::format("map '{}' {}", file.string(), what)};
   };
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) fail("is not there, or is a folder");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    fail(error == std::errc::permission_denied ? "cannot be read: no permission"
+                                               : "is not there, or is a folder");
+  }
   LogReader reader{file};
   MapBuilder builder;
   while (const auto message = reader.next()) {

@@ -32,11 +32,17 @@ std::vector<Message> to_map_messages(const MapSnapshot& map, const MapFileInfo& 
 /// @throws std::logic_error  if they are no map.
 MapFile map_of(const std::vector<Message>& messages);
 
-/// Atomic, by a temporary name and renaming: a map file that exists is complete.
+/// Atomic, by a temporary name and renaming: a map file that exists is complete, and of one that
+/// could not be written nothing is left.
 /// @return the map's id.
 /// @throws std::runtime_error naming the file.
 std::int64_t write_map_file(const std::filesystem::path& file, const MapSnapshot& map,
                             const MapFileInfo& info);
+
+/// Renames a map file to the first of FILE.1, FILE.2, ... that does not exist.
+/// @return its new name.
+/// @throws std::filesystem::filesystem_error
+std::filesystem::path move_aside(const std::filesystem::path& file);
 
 /// @throws SetupError  in one sentence: missing, not a map, of another format, damaged, truncated.
 MapFile read_map_file(const std::filesystem::path& file);

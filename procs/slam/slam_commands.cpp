@@ -49,7 +49,6 @@ std::int64_t SlamNode::save_map_to(const std::filesystem::path& file, const MapS
   logging::info("map {:016x} is in '{}': {} markers, {} keyframes",
                 static_cast<std::uint64_t>(map_id), file.string(), map.landmarks.size(),
                 map.graph.poses.size());
-  frame_map_id_ = map_id;
   return map_id;
 }
 
@@ -79,6 +78,7 @@ std::string SlamNode::save_named(const std::string& name) {
   const auto file = std::filesystem::path{config_.slam.state_folder} / (name + ".map.lcm");
   try {
     const std::int64_t map_id = save_map_to(file, *map);
+    map_file_ids_.named = map_id;
     return fmt::format("map {:016x} is in '{}'", static_cast<std::uint64_t>(map_id), file.string());
   } catch (const std::exception& error) {
     throw Refusal{error.what()};
@@ -108,7 +108,8 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
   map_publisher_ = {};
   correction_.forget();
   if (keeps_frame) return;
-  frame_map_id_ = 0;
+  map_file_ids_ = {};
+  known_pose_.reset();
   frame_ = survey_.empty() ? "map" : "survey";
 }
 
@@ -163,7 +164,7 @@ void SlamNode::resume_last_pose(const Observation& first) {
   Resumption resumption{std::nullopt, "there is none"};
   try {
     if (const auto last = read_last_pose(config_.slam.state_folder))
-      resumption = resume(*last, frame_map_id_, first.time, first.odom_from_base);
+      resumption = resume(*last, map_file_ids_.loaded, first.time, first.odom_from_base);
   } catch (const std::exception& error) {
     logging::warn("{}", error.what());
     resumption.why_not = "it cannot be read";
@@ -175,17 +176,25 @@ void SlamNode::resume_last_pose(const Observation& first) {
   logging::info("the last pose is not used: {}; localises anywhere in the map", resumption.why_not);
 }
 
+/// Writes the newest known pose, with the ids of the map files of now: that of the map saved last
+/// too, even if the pose has been lost since.
 void SlamNode::keep_last_pose() {
   const bool is_known =
       placed_ && placed_->time == newest_ &&
       (placed_->health == Health::kTracking || placed_->health == Health::kDegenerate);
-  if (config_.slam.state_folder.empty() || frame_map_id_ == 0 || !is_known) return;
-  const Eigen::Vector3d sigmas = placed_->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  if (is_known) {
+    const Eigen::Vector3d sigmas = placed_->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    known_pose_ = LastPose{newest_, {}, placed_->map_from_base, sigmas, odom_from_base_};
+  }
+  if (config_.slam.state_folder.empty() || !known_pose_) return;
+  known_pose_->map_ids.clear();
+  for (const std::int64_t map_id : {map_file_ids_.loaded, map_file_ids_.saved, map_file_ids_.named})
+    if (map_id != 0) known_pose_->map_ids.push_back(map_id);
+  if (known_pose_->map_ids.empty()) return;
   try {
-    write_last_pose(config_.slam.state_folder,
-                    {newest_, frame_map_id_, placed_->map_from_base, sigmas, odom_from_base_});
+    write_last_pose(config_.slam.state_folder, *known_pose_);
   } catch (const std::exception& error) {
-    counters_.add("last pose not written");
+    counters_.add("last pose not written", CountKind::kLoss);
   }
 }
 

@@ -10,6 +10,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace waymark {
@@ -40,20 +42,33 @@ void check_map_options(const SlamConfig& config) {
         "slam.mode = localise leaves the map as it is: --save-map needs map or extend"};
 }
 
-/// The file of --save-map, if the last pose is in its map: mapping was interrupted.
-std::optional<MapFile> left_unfinished(const SlamConfig& config) {
-  if (config.slam.start.kind != StartKind::kLast || config.save_map.empty() ||
-      !std::filesystem::exists(config.save_map)) {
-    return std::nullopt;
-  }
+/// Whether there is a map that --save-map is to continue, and not only to replace. (The map of
+/// --load-map is replaced by its extension.)
+bool is_to_be_continued(const SlamConfig& config) {
+  std::error_code none;
+  return config.slam.start.kind == StartKind::kLast &&
+         std::filesystem::exists(config.save_map, none) &&
+         !std::filesystem::equivalent(config.save_map, config.load_map, none);
+}
+
+/// The file of --save-map, if the last pose is in its map: mapping was interrupted. If it is not,
+/// keeps_old_map is set.
+std::optional<MapFile> left_unfinished(SlamConfig& config) {
+  if (!is_to_be_continued(config)) return std::nullopt;
+  std::string why_not;
   try {
     const auto last = read_last_pose(config.slam.state_folder);
-    if (!last) return std::nullopt;
     MapFile file = read_map_file(config.save_map);
-    if (last->map_id == file.map.map_id) return file;
+    if (last && is_in_map(*last, file.map.map_id)) return file;
+    why_not = last ? "the last pose is in another map" : "there is no last pose";
   } catch (const std::exception& error) {
-    logging::warn("{}", error.what());
+    why_not = error.what();
   }
+  logging::warn(
+      "the map in '{}' is not continued: {}; when this run saves its map there, the old file gets "
+      "another name",
+      config.save_map.string(), why_not);
+  config.keeps_old_map = true;
   return std::nullopt;
 }
 

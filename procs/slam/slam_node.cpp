@@ -6,6 +6,7 @@
 #include "common/messages/convert.hpp"
 #include "common/robot/described_sensors.hpp"
 #include "slam/estimator_factory.hpp"
+#include "slam/map_file.hpp"
 #include "slam/slam_inputs.hpp"
 #include "slam/slam_messages.hpp"
 
@@ -61,7 +62,7 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
       loaded_map_{load_map(config_, frame_)},
       survey_{load_survey(config_)},
       map_id_{loaded_map_ && config_.slam.mode == MapMode::kLocalise ? loaded_map_->map_id : 0},
-      frame_map_id_{loaded_map_ ? loaded_map_->map_id : 0},
+      map_file_ids_{.loaded = loaded_map_ ? loaded_map_->map_id : 0},
       estimator_{make_estimator(config_, loaded_map_, survey_)},
       map_period_{config.slam.map_period_s, Period::First::kAtOnce},
       save_period_{config.slam.save_map_every_s, Period::First::kAfterAPeriod} {
@@ -174,7 +175,13 @@ bool SlamNode::save_map() {
     return false;
   }
   try {
-    save_map_to(config_.save_map, *map);
+    if (config_.keeps_old_map) {
+      const auto name = move_aside(config_.save_map);
+      logging::warn("the map that was in '{}' is in '{}'", config_.save_map.string(),
+                    name.string());
+      config_.keeps_old_map = false;
+    }
+    map_file_ids_.saved = save_map_to(config_.save_map, *map);
   } catch (const std::exception& error) {
     logging::error("{}", error.what());
     return false;
@@ -237,7 +244,7 @@ void SlamNode::process_ready_scans() {
 void SlamNode::process(const SensorQueue::Ready& ready) {
   newest_ = ready.observation.time;
   odom_from_base_ = ready.observation.odom_from_base;
-  if (map_id_ == 0) map_id_ = new_map_id(newest_, frame_map_id_);
+  if (map_id_ == 0) map_id_ = new_map_id(newest_, map_file_ids_.loaded);
   if (!was_resumed_) resume_last_pose(ready.observation);
   timer_.start();
   const Estimate estimate = estimator_->update(ready.observation);

@@ -9,6 +9,7 @@
 #include "slam/core/input/sensor_queue.hpp"
 #include "slam/correction.hpp"
 #include "slam/findings_text.hpp"
+#include "slam/last_pose.hpp"
 #include "slam/map_publisher.hpp"
 #include "slam/period.hpp"
 #include "slam/slam_config.hpp"
@@ -55,6 +56,14 @@ class SlamNode final : public Node {
   }
 
  private:
+  /// Ids of the map files in whose frame the map is, of each kind the newest; 0: none. Any of them
+  /// may be the one with which slam is started again.
+  struct MapFileIds {
+    std::int64_t loaded{0};
+    std::int64_t saved{0};  ///< by --save-map
+    std::int64_t named{0};  ///< by a command
+  };
+
   std::int64_t save_map_to(const std::filesystem::path& file, const MapSnapshot& map);
   std::string_view why_no_map() const;
   bool save_map();
@@ -91,16 +100,17 @@ class SlamNode final : public Node {
   std::string frame_{};  ///< name of the map's frame
   std::shared_ptr<const MapSnapshot> loaded_map_;
   std::vector<SurveyedMarker> survey_;
-  std::int64_t map_id_;        ///< of the published map; 0: not begun
-  std::int64_t frame_map_id_;  ///< of the map file whose frame the map has; 0: none
+  std::int64_t map_id_;  ///< of the published map; 0: not begun
+  MapFileIds map_file_ids_;
   std::unique_ptr<Estimator> estimator_;
   MapPublisher map_publisher_{};
   CorrectionMaker correction_{};
   CommandDesk command_desk_{};
   std::optional<Timestamp> last_estimate_{};
-  std::optional<Estimate> placed_{};  ///< newest estimate with a pose, in this map
-  Se2 odom_from_base_{};              ///< of the newest observation
-  Timestamp newest_{};                ///< time of the newest observation
+  std::optional<Estimate> placed_{};      ///< newest estimate with a pose, in this map
+  std::optional<LastPose> known_pose_{};  ///< newest pose of a good health, in this map's frame
+  Se2 odom_from_base_{};                  ///< of the newest observation
+  Timestamp newest_{};                    ///< time of the newest observation
   std::set<int> named_survey_ids_{};
   bool was_resumed_{false};  ///< resume_last_pose() was called, successfully or not
   bool is_broken_{false};    ///< the estimator threw: it is given no more scans

@@ -292,8 +292,11 @@ std::string described(const toml::parse_error& error) {
 }
 
 std::string_view why_not(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return "there is no such file";
-  if (std::filesystem::is_directory(file)) return "it is a folder; name a TOML file in it";
+  std::error_code ignored;
+  const auto type = std::filesystem::status(file, ignored).type();
+  if (type == std::filesystem::file_type::not_found) return "there is no such file";
+  if (type == std::filesystem::file_type::directory)
+    return "it is a folder; name a TOML file in it";
   return "no permission, or no regular file";
 }
 
@@ -303,8 +306,10 @@ void read_toml_file(const std::filesystem::path& file, const std::function<void(
                     ReadLog& log, UnknownKeys unknown_keys) {
   std::ifstream stream{file};
   std::stringstream text;
-  if (std::filesystem::is_directory(file) || !stream || !(text << stream.rdbuf())) {
-    if (!std::filesystem::is_regular_file(file) || std::filesystem::file_size(file) > 0)
+  std::error_code ignored;  // of what cannot be examined: it is no empty file
+  if (std::filesystem::is_directory(file, ignored) || !stream || !(text << stream.rdbuf())) {
+    if (!std::filesystem::is_regular_file(file, ignored) ||
+        std::filesystem::file_size(file, ignored) > 0)
       log.problems.push_back(fmt::format("{}: cannot be read: {}", file.string(), why_not(file)));
     return;
   }

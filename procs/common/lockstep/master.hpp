@@ -41,7 +41,7 @@ class LockstepMaster {
   /// those before it: the first one is the cause, the others may only be waiting for it.
   std::vector<std::string> silent() const;
   std::int64_t oldest_open_tick() const;
-  /// The TICK that ends the run, after the last acknowledgement.
+  /// The TICK that ends the run: after the last acknowledgement, or where the simulator stops.
   Message closing() const;
 
   /// Hash of all messages that each participant has published.

@@ -42,28 +42,44 @@ std::vector<Message> LockstepParticipant::take(Message message) {
 }
 
 std::vector<Message> LockstepParticipant::take_tick(const tick_t& tick) {
-  if (!run_id_) run_id_ = tick.run_id;
-  if (!is_of_this_run(tick.run_id)) return {};
+  const bool is_probe = tick.tick == tick_t::TICK_PROBE;
   if (tick.tick == tick_t::TICK_CLOSED) {
-    closed_ = true;
+    if (run_id_ && is_of_this_run(tick.run_id)) closed_ = true;
     return {};
   }
-  if (tick.tick == tick_t::TICK_PROBE) {
+  if (!run_id_ || (is_probe && !has_begun())) run_id_ = tick.run_id;
+  if (!is_of_this_run(tick.run_id)) return {};
+  if (is_probe) {
     if (!next_tick_) next_tick_ = 0;
     return {acknowledgement(tick, {})};
   }
   if (!next_tick_) start_at(tick);
-  if (tick.tick < *next_tick_) {
-    const auto cached = answers_.find(tick.tick);
-    counters_.add("TICK duplicates");
-    return cached == answers_.end() ? std::vector<Message>{} : cached->second;
-  }
+  if (tick.tick < *next_tick_) return answer_again(tick);
   if (tick.tick > *next_tick_ + kHorizon_ticks) {
     counters_.add("TICK rejected: out of order", CountKind::kRejection);
     return {};
   }
   open_ticks_[tick.tick].tick = tick;
   return advance();
+}
+
+/// A simulator never sends a tick again whose answer is no longer kept: then it is another one, of
+/// the same run.
+std::vector<Message> LockstepParticipant::answer_again(const tick_t& tick) {
+  counters_.add("TICK duplicates");
+  const auto cached = answers_.find(tick.tick);
+  if (cached != answers_.end()) return cached->second;
+  if (tick.tick == 0 && !finished_) {
+    throw std::runtime_error{"the run has begun again, but " + name_ + " has done " +
+                             std::to_string(*next_tick_) +
+                             " ticks of it already: start it again, too"};
+  }
+  return {};
+}
+
+/// Until then a process may take part in any run.
+bool LockstepParticipant::has_begun() const {
+  return next_tick_.value_or(0) > 0 || !open_ticks_.empty();
 }
 
 void LockstepParticipant::take_ack(const ack_t& ack) {
@@ -75,6 +91,7 @@ void LockstepParticipant::take_ack(const ack_t& ack) {
 
 bool LockstepParticipant::is_of_this_run(std::int64_t run_id) {
   if (run_id == run_id_) return true;
+  has_heard_another_run_ = true;
   counters_.add("TICK or ACK of another run");
   return false;
 }

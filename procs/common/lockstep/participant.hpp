@@ -31,15 +31,19 @@ class LockstepParticipant {
                       Process process, Counters& counters);
 
   /// @return what to publish now.
-  /// @throws std::runtime_error when the run has begun and this process cannot join it.
+  /// @throws std::runtime_error when the run has begun and this process cannot join it, or begins
+  ///                            again while this process is in the middle of it.
   std::vector<Message> take(Message message);
 
   bool has_seen_tick() const { return run_id_.has_value(); }
 
+  /// Somebody else's ticks or acknowledgements have come, which are ignored.
+  bool has_heard_another_run() const { return has_heard_another_run_; }
+
   /// The last tick has been acknowledged; the simulator may still re-send it until closed().
   bool finished() const { return finished_; }
 
-  /// The simulator has everybody's last acknowledgement.
+  /// The simulator has everybody's last acknowledgement, or has stopped before.
   bool closed() const { return closed_; }
 
  private:
@@ -50,6 +54,8 @@ class LockstepParticipant {
 
   std::vector<Message> take_tick(const tick_t& tick);
   void take_ack(const ack_t& ack);
+  bool has_begun() const;
+  std::vector<Message> answer_again(const tick_t& tick);
   bool is_of_this_run(std::int64_t run_id);
   void start_at(const tick_t& tick);
   std::vector<Message> advance();
@@ -69,6 +75,7 @@ class LockstepParticipant {
   std::optional<std::int64_t> next_tick_;
   bool finished_{false};
   bool closed_{false};
+  bool has_heard_another_run_{false};
   MessagePool pool_;
   std::map<std::int64_t, OpenTick> open_ticks_;
   std::map<std::int64_t, std::vector<Message>> answers_;  ///< of the newest ticks, to be sent again

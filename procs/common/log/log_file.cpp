@@ -177,7 +177,8 @@ void protect_inputs(std::string_view option, const std::filesystem::path& out,
 
 LogWriter::LogWriter(const std::filesystem::path& path)
     : path_{path}, part_path_{part_path_of(path)}, buffer_(kBufferBytes) {
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
+  std::error_code unknown;
+  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown)) {
     throw std::runtime_error{path.string() +
                              ": is a folder or a device; give the name of a file for the log"};
   }

@@ -22,13 +22,17 @@ class CameraModel {
   Eigen::Matrix<double, 2, 3> projection_jacobian(const Eigen::Vector3d& point_in_camera_m) const;
 
   Eigen::Vector2d raw_from_ideal(const Eigen::Vector2d& ideal_px) const;
-  /// Inverse of raw_from_ideal(), by fixed-point iteration; the distortion must be invertible in
-  /// the image.
+  /// Inverse of raw_from_ideal(), by Newton's method to 1e-9 px; NaN where the distortion cannot be
+  /// inverted.
   Eigen::Vector2d ideal_from_raw(const Eigen::Vector2d& raw_px) const;
   /// (x, y) at z = 1, in the optical frame, of the ray through an ideal pixel.
   Eigen::Vector2d normalized_from_ideal(const Eigen::Vector2d& ideal_px) const;
 
  private:
+  /// Lens distortion at z = 1.
+  Eigen::Vector2d distort(const Eigen::Vector2d& normalized) const;
+  /// Derivative of distort().
+  Eigen::Matrix2d distortion_jacobian(const Eigen::Vector2d& normalized) const;
   Eigen::Vector2d ideal_from_normalized(const Eigen::Vector2d& normalized) const;
 
   double fx_px_;

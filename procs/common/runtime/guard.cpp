@@ -8,16 +8,30 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
 #include <map>
+#include <system_error>
 #include <utility>
 
 namespace waymark {
+namespace {
+
+/// Writes what is left in the buffer of standard output: only then a full disk may show.
+/// @return the exit code: that of the work, unless its output is lost.
+int flush_output(int code) {
+  if (std::fflush(stdout) == 0) return code;
+  logging::error("standard output cannot be written: {}", std::generic_category().message(errno));
+  return code == kExitOk ? int{kExitFailed} : code;
+}
+
+}  // namespace
 
 int run_guarded(const ProcessTraits& traits, const std::function<int()>& body) {
   logging::begin(std::string{traits.name});
   install_stop_signals();
   try {
-    return body();
+    return flush_output(body());
   } catch (const ConfigError& error) {
     logging::error("configuration:\n{}", error.what());
     return kExitUsage;

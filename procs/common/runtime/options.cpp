@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <system_error>
+
 namespace waymark {
 
 std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options) {
@@ -45,10 +47,12 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
       "--real-time", options.real_time,
       "process what arrives when it arrives (a real robot) instead of in lockstep with the "
       "simulator");
-  app.add_flag(
-      "--large-messages", options.large_messages,
-      "with --real-time: also take messages of several datagrams, such as large images of a "
-      "camera driver; only in a network that you trust (see docs/reference.md, Limits)");
+  if (option_set.large_messages) {
+    app.add_flag(
+        "--large-messages", options.large_messages,
+        "with --real-time: also take messages of several datagrams, such as large images of a "
+        "camera driver; only in a network that you trust (see docs/reference.md, Limits)");
+  }
   if (option_set.log) {
     app.add_option(
         "--log", options.logs,
@@ -119,6 +123,8 @@ void check_options(const ProcessOptions& options, const OptionSet& option_set) {
         "--log reads a file and no network, as fast as it can: leave out --real-time and "
         "--lcm-url"};
   }
+  if (options.large_messages && !options.real_time)
+    throw SetupError{"--large-messages needs --real-time"};
   if (!is_replay && !options.report.empty()) {
     throw SetupError{"--report needs --log: it is about a replay"};
   }
@@ -132,9 +138,10 @@ void check_options(const ProcessOptions& options, const OptionSet& option_set) {
   protect_inputs("--save-map", options.save_map, inputs);
   const std::filesystem::path folder =
       options.save_map.has_parent_path() ? options.save_map.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder))
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error) && error != std::errc::permission_denied)
     throw SetupError{"--save-map: there is no folder '" + folder.string() + "'"};
-  if (std::filesystem::is_directory(options.save_map))
+  if (std::filesystem::is_directory(options.save_map, error))
     throw SetupError{"--save-map: '" + options.save_map.string() + "' is a folder"};
   if (::access(folder.c_str(), W_OK) != 0)
     throw SetupError{"--save-map: cannot write to the folder '" + folder.string() + "'"};

@@ -41,6 +41,7 @@ std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options);
 
 /// Which of the optional options a process has.
 struct OptionSet {
+  bool large_messages{false};
   bool log{false};
   bool out_log{false};
   bool out_dir{false};

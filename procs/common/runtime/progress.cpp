@@ -10,6 +10,15 @@
 #include <cstdlib>
 
 namespace waymark {
+namespace {
+
+/// The work goes on where this cannot be written: the terminal may be gone, or the disk full.
+void show_text(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
 
 Progress::Progress(std::string what)
     : what_{std::move(what)},
@@ -24,21 +33,20 @@ void Progress::show(double fraction, const std::string& detail) {
   if (is_terminal_) {
     if (now - last_shown_ < kRedraw) return;
     const int filled = static_cast<int>(done * kBarWidth);
-    fmt::print(stderr, "\r{} [{}{}] {:3.0f} %  {}\x1b[K", what_, std::string(filled, '#'),
-               std::string(kBarWidth - filled, '.'), 100.0 * done, detail);
+    show_text(fmt::format("\r{} [{}{}] {:3.0f} %  {}\x1b[K", what_, std::string(filled, '#'),
+                          std::string(kBarWidth - filled, '.'), 100.0 * done, detail));
     line_is_open_ = true;
   } else {
     const int tenth = static_cast<int>(done * 10.0);
     if (tenth == last_tenth_) return;
     last_tenth_ = tenth;
-    fmt::print(stderr, "{} {:3.0f} %  {}\n", what_, 100.0 * done, detail);
+    show_text(fmt::format("{} {:3.0f} %  {}\n", what_, 100.0 * done, detail));
   }
-  std::fflush(stderr);
   last_shown_ = now;
 }
 
 void Progress::done() {
-  if (line_is_open_) fmt::print(stderr, "\n");
+  if (line_is_open_) show_text("\n");
   line_is_open_ = false;
 }
 

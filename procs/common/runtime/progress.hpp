@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Progress of long work on standard error.
+// Progress of long work on standard error, where it can be written.
 #pragma once
 
 #include <chrono>

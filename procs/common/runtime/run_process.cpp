@@ -15,7 +15,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -27,6 +29,7 @@ using std::chrono::steady_clock;
 constexpr milliseconds kPoll{50};
 // How long a participant answers re-sent ticks when the simulator's closing TICK got lost.
 constexpr seconds kLinger{5};
+// Longer than the simulator waits before it sends a tick again.
 constexpr seconds kNothingHint{10};
 constexpr seconds kSilence{1};  // after this long without a message, no delayed one is expected
 // How long received messages are still processed after a stop signal.
@@ -57,6 +60,16 @@ std::vector<std::string> names_in_ticks(const std::vector<Inbox::Subscription>& 
   return names;
 }
 
+/// Lets a node be made or checked. @throws SetupError also for a file that cannot be examined.
+template <class Work>
+auto set_up(const Work& work) {
+  try {
+    return work();
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw SetupError{fmt::format("{}: {}", error.path1().string(), error.code().message())};
+  }
+}
+
 struct Network {
   std::string url;
   ChannelNames names;
@@ -73,6 +86,32 @@ void deliver_or_fail(const std::vector<Message>& messages, Inbox& inbox) {
   });
   if (!is_working) throw NodeFailed{};
 }
+
+/// Log lines for a user whose run does not go on, each once.
+class LockstepHints {
+ public:
+  /// @param silence  since the last TICK, or since the start.
+  void give(const LockstepParticipant& participant, steady_clock::duration silence) {
+    if (participant.has_heard_another_run() && !std::exchange(is_other_run_said_, true)) {
+      logging::warn(
+          "another run uses this network, too: if its simulator has replaced the one of this "
+          "process, start this process again");
+    }
+    if (silence <= kNothingHint || participant.finished()) return;
+    if (!participant.has_seen_tick()) {
+      if (!std::exchange(is_no_tick_said_, true))
+        logging::info("no TICK so far: start waymark-sim, or use --real-time with a real robot");
+    } else if (!std::exchange(is_silence_said_, true)) {
+      logging::warn("no TICK for {} s: if waymark-sim has ended, stop this process, too",
+                    kNothingHint.count());
+    }
+  }
+
+ private:
+  bool is_other_run_said_{false};
+  bool is_no_tick_said_{false};
+  bool is_silence_said_{false};
+};
 
 /// Live, in step with the simulator, until its last tick.
 int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node, Inbox& inbox,
@@ -97,24 +136,21 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
   Bus bus{network.url, subscriptions, LargeMessages::kRefused, network.names};
   StatusReporter reporter{traits.name};
   logging::info("ready, waits for ticks on {}", network.url);
-  const auto start = steady_clock::now();
-  auto last_tick = start;
+  auto last_tick = steady_clock::now();
   Timestamp newest{};
-  bool hinted = false;
+  LockstepHints hints;
   while (!participant.closed() && stop_signal() == 0) {
     auto message = bus.receive(kPoll);
     if (message && is_untimed(message->channel)) {
       deliver_or_fail({*message}, inbox);
     } else if (message) {
-      last_tick = steady_clock::now();
+      if (message->channel == channels::kTick.name) last_tick = steady_clock::now();
       newest = std::max(newest, message->time);
       publish_all(bus, participant.take(std::move(*message)));
     }
-    if (participant.finished() && steady_clock::now() - last_tick > kLinger) break;
-    if (!hinted && !participant.has_seen_tick() && steady_clock::now() - start > kNothingHint) {
-      logging::info("no TICK so far: start waymark-sim, or use --real-time with a real robot");
-      hinted = true;
-    }
+    const auto silence = steady_clock::now() - last_tick;
+    if (participant.finished() && silence > kLinger) break;
+    hints.give(participant, silence);
     reporter.report(bus, inbox.counters(), newest, "lockstep");
   }
   bus.collect_counts(inbox.counters());
@@ -224,7 +260,7 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
     if (options.check) {
       description.dump_config(options);
       check_options(options, description.option_set);
-      description.check_node(options);
+      set_up([&] { description.check_node(options); });
       if (options.logs.empty()) check_network(lcm_url_or_default(options.lcm_url));
       return int{kExitOk};
     }
@@ -243,7 +279,7 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
     }
     Inbox inbox;
     Outbox outbox;
-    const auto node = description.make_node(options, inbox, outbox);
+    const auto node = set_up([&] { return description.make_node(options, inbox, outbox); });
     if (!options.logs.empty()) return run_replay(options, *node, inbox, outbox);
     const Network network{
         lcm_url_or_default(options.lcm_url),

@@ -79,7 +79,8 @@ ProcessDescription describe_process() {
   };
   ProcessDescription description;
   description.traits = NodeType::kTraits;
-  description.option_set = {.log = !kIsRecorder,
+  description.option_set = {.large_messages = true,
+                            .log = !kIsRecorder,
                             .out_log = !kWritesFolder,
                             .out_dir = kWritesFolder,
                             .http = kServesPage,

@@ -50,39 +50,12 @@ class Run {
   int in_lockstep() {
     LockstepMaster master{source_.run_id(), source_.participants(), source_.window_ticks()};
     if (const int code = wait_until_ready(master); code != kExitOk) return code;
-    steady_clock::time_point last_ack = steady_clock::now();
-    milliseconds resend_after = kFirstResend;
-    auto last_sent = last_ack;
-    while (!(source_.finished() && master.all_acknowledged())) {
-      if (stop_signal() != 0) return kExitSignal + stop_signal();
-      const bool may_advance = !source_.finished() && master.has_room();
-      if (may_advance) {
-        send_tick(master);
-        last_sent = steady_clock::now();
-      }
-      if (take_messages(master, may_advance ? milliseconds{0} : kReceiveFor)) {
-        last_ack = steady_clock::now();
-        resend_after = kFirstResend;
-      }
-      const auto now = steady_clock::now();
-      if (!master.all_acknowledged() && now - last_ack > kSilenceTimeout) {
-        return report_silent(master);
-      }
-      if (!may_advance && now - std::max(last_ack, last_sent) > resend_after) {
-        publish(master.resend());
-        inbox_.counters().add("TICK resent");
-        last_sent = now;
-        resend_after = std::min(2 * resend_after, kLongestResend);
-      }
-      report("lockstep");
-    }
+    const int code = run_ticks(master);
+    // Also after a signal or a time-out, so that nobody waits for more ticks.
     for (int i = 0; i < kClosingRepeats; ++i)
       bus_.publish(master.closing());
-    for (const auto& [who, hash] : master.state_hashes()) {
-      if (hash == 0) continue;  // it has published nothing, like the recorder
-      logging::info("state hash of {}: {:016x}", who, static_cast<std::uint64_t>(hash));
-    }
-    return kExitOk;
+    if (code == kExitOk) log_state_hashes(master);
+    return code;
   }
 
   /// Paces the messages by the wall clock; nobody acknowledges.
@@ -146,6 +119,43 @@ class Run {
     }
     logging::info("all ready: {}", fmt::join(source_.participants(), ", "));
     return kExitOk;
+  }
+
+  int run_ticks(LockstepMaster& master) {
+    steady_clock::time_point last_ack = steady_clock::now();
+    milliseconds resend_after = kFirstResend;
+    auto last_sent = last_ack;
+    while (!(source_.finished() && master.all_acknowledged())) {
+      if (stop_signal() != 0) return kExitSignal + stop_signal();
+      const bool may_advance = !source_.finished() && master.has_room();
+      if (may_advance) {
+        send_tick(master);
+        last_sent = steady_clock::now();
+      }
+      if (take_messages(master, may_advance ? milliseconds{0} : kReceiveFor)) {
+        last_ack = steady_clock::now();
+        resend_after = kFirstResend;
+      }
+      const auto now = steady_clock::now();
+      if (!master.all_acknowledged() && now - last_ack > kSilenceTimeout) {
+        return report_silent(master);
+      }
+      if (!may_advance && now - std::max(last_ack, last_sent) > resend_after) {
+        publish(master.resend());
+        inbox_.counters().add("TICK resent");
+        last_sent = now;
+        resend_after = std::min(2 * resend_after, kLongestResend);
+      }
+      report("lockstep");
+    }
+    return kExitOk;
+  }
+
+  static void log_state_hashes(const LockstepMaster& master) {
+    for (const auto& [who, hash] : master.state_hashes()) {
+      if (hash == 0) continue;  // it has published nothing, like the recorder
+      logging::info("state hash of {}: {:016x}", who, static_cast<std::uint64_t>(hash));
+    }
   }
 
   void send_tick(LockstepMaster& master) {

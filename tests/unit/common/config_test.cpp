@@ -117,6 +117,15 @@ TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
   EXPECT_THAT(error_of({{::testing::TempDir()}, {}}), HasSubstr("cannot be read: it is a folder"));
 }
 
+// As root, too, the system does not say what a link to itself is; nor, else, what is in a folder
+// without permission.
+TEST(Config, AFileThatCannotBeExaminedIsNamed) {
+  const std::filesystem::path link = file_with("").parent_path() / "link.toml";
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(link, link);
+  EXPECT_THAT(error_of({{link}, {}}), HasSubstr("link.toml: cannot be read: no permission"));
+}
+
 TEST(Config, OnePartOfAConfigurationMayBeReadWithoutTheOthers) {
   const auto file = file_with("[other]\nkey = 1\n[robot.base]\nwheel_radius_m = 0.1\n");
   EXPECT_EQ(load_part<RobotOnly>(file).robot.base.wheel_radius_m, 0.1);

@@ -234,6 +234,52 @@ TEST(Lockstep, AStatefulProcessRefusesToJoinMidway) {
   EXPECT_THROW(late.take(tick.back()), std::runtime_error);
 }
 
+TEST(Lockstep, AProcessThatHasDoneNothingYetFollowsTheNextSimulator) {
+  Counters counters;
+  LockstepParticipant slam{"slam", {}, false, publish_nothing, counters};
+  LockstepMaster stopped{1, {"slam"}, 1};
+  slam.take(stopped.probe());
+
+  LockstepMaster next{2, {"slam"}, 1};
+  for (const Message& answer : slam.take(next.probe()))
+    next.take(answer);
+  for (const Message& answer : slam.take(next.open_tick({}, {}, true).back()))
+    next.take(answer);
+
+  EXPECT_TRUE(next.all_ready());
+  EXPECT_TRUE(next.all_acknowledged());
+  EXPECT_TRUE(slam.finished());
+}
+
+TEST(Lockstep, TheEndOfAnEarlierRunDoesNotEndAProcessThatWaits) {
+  Counters counters;
+  LockstepParticipant slam{"slam", {}, false, publish_nothing, counters};
+  slam.take(LockstepMaster{1, {"slam"}, 1}.closing());
+  EXPECT_FALSE(slam.closed());
+  EXPECT_FALSE(slam.has_seen_tick());
+}
+
+// The simulator was killed and started again. It begins with a tick that no simulator of the run
+// that this process is in can send again.
+TEST(Lockstep, AProcessInTheMiddleOfARunRefusesItsBeginning) {
+  Counters counters;
+  LockstepParticipant slam{"slam", {}, false, publish_nothing, counters};
+  LockstepMaster killed{1, {"slam"}, 1};
+  for (int tick = 0; tick <= kMaxWindowTicks; ++tick) {
+    for (const Message& answer : slam.take(killed.open_tick({}, {}, false).back()))
+      killed.take(answer);
+  }
+  LockstepMaster again{1, {"slam"}, 1};
+  slam.take(again.probe());
+  const Message first = again.open_tick({}, {}, false).back();
+  try {
+    slam.take(first);
+    FAIL() << "it waits for ever";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("begun again"));
+  }
+}
+
 TEST(Lockstep, TheMasterNamesSilentParticipantsInOrderOfTheirDependencies) {
   LockstepMaster master{1, {"slam", "recorder", "detector"}, 2};
   EXPECT_THAT(master.not_ready(), ::testing::ElementsAre("slam", "recorder", "detector"));

@@ -209,6 +209,9 @@ TEST_F(LogFile, WhatCannotBeOpenedIsNamedWithTheReason) {
             "/dev/null: is a folder or a device, not an LCM log");
   EXPECT_EQ(problem_of<LogWriter>("/no/such/folder.lcm"),
             "/no/such/folder.lcm.part: cannot be created: No such file or directory");
+  const std::string long_name = "/tmp/" + std::string(300, 'a');
+  EXPECT_EQ(problem_of<LogWriter>(long_name),
+            long_name + ".part: cannot be created: File name too long");
 }
 
 TEST_F(LogFile, OnlyARegularFileIsReplaced) {

@@ -2,9 +2,13 @@
 #include "common/runtime/options.hpp"
 
 #include "common/errors/exit_codes.hpp"
+#include "common/errors/setup_error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 namespace waymark {
 namespace {
@@ -39,6 +43,18 @@ TEST(Options, HelpAndVersionAreASuccessAndUnknownOptionsAUsageError) {
     EXPECT_EQ(result_of({word}).exit_code, kExitOk) << word;
   for (const char* word : {"--mod", "localise"})
     EXPECT_EQ(result_of({word}).exit_code, kExitUsage) << word;
+}
+
+TEST(Options, AFolderThatCannotBeExaminedIsASetupError) {
+  const auto link = std::filesystem::path{::testing::TempDir()} /
+                    ("link_to_itself_" + std::to_string(::getpid()));
+  std::filesystem::create_symlink(link, link);
+  ProcessOptions options;
+  options.save_map = link / "a.map.lcm";
+  EXPECT_THROW(check_options(options, {.maps = true}), SetupError);
+  options.save_map = link;
+  EXPECT_NO_THROW(check_options(options, {.maps = true}));
+  std::filesystem::remove(link);
 }
 
 }  // namespace

@@ -5,11 +5,15 @@
 #include "common/errors/exit_codes.hpp"
 #include "common/log/log_file.hpp"
 #include "common/messages/channels.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/run_simulator.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -34,7 +38,7 @@ Refused run(std::string_view name, std::vector<std::string> words) {
   const int exit_code = run_described_process(
       static_cast<int>(arguments.size()), arguments.data(),
       {.traits = {name, "Does nothing.", false},
-       .option_set = {.log = true, .out_log = true},
+       .option_set = {.large_messages = true, .log = true, .out_log = true},
        .make_node = [](const ProcessOptions&, Inbox&, Outbox&) -> std::unique_ptr<Node> {
          throw std::logic_error{"a node was made"};
        }});
@@ -49,6 +53,27 @@ TEST(RunProcess, OptionsOfLiveRunsAreRefusedWithALog) {
   const Refused network = run("networked", {"--log", "run.lcm", "--lcm-url", "nonsense"});
   EXPECT_EQ(network.exit_code, kExitUsage);
   EXPECT_THAT(network.output, HasSubstr("leave out --real-time and --lcm-url"));
+}
+
+TEST(RunProcess, LargeMessagesNeedRealTime) {
+  const Refused refused = run("unused", {"--large-messages"});
+  EXPECT_EQ(refused.exit_code, kExitUsage);
+  EXPECT_THAT(refused.output, HasSubstr("--large-messages needs --real-time"));
+}
+
+TEST(RunProcess, AFileThatANodeCannotExamineIsASetupError) {
+  ::testing::internal::CaptureStderr();
+  std::string program{"program"};
+  char* arguments[] = {program.data()};
+  const int exit_code = run_described_process(
+      1, arguments,
+      {.traits = {"unable", "Does nothing.", false},
+       .make_node = [](const ProcessOptions&, Inbox&, Outbox&) -> std::unique_ptr<Node> {
+         throw fs::filesystem_error{"status", "no/map",
+                                    std::make_error_code(std::errc::permission_denied)};
+       }});
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("no/map: Permission denied"));
+  EXPECT_EQ(exit_code, kExitUsage);
 }
 
 TEST(RunProcess, AnOutputLogNeedsAnInputLog) {
@@ -192,6 +217,33 @@ struct Simulated {
   std::string asked{};
 };
 
+/// A stream of this process that cannot be written, as on a full disk.
+class FullStream {
+ public:
+  explicit FullStream(std::FILE* stream)
+      : stream_{stream}, descriptor_{fileno(stream)}, saved_{::dup(descriptor_)} {
+    std::fflush(stream_);
+    const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+    ::dup2(full, descriptor_);
+    ::close(full);
+  }
+
+  FullStream(const FullStream&) = delete;
+  FullStream& operator=(const FullStream&) = delete;
+
+  ~FullStream() {
+    std::fflush(stream_);
+    std::clearerr(stream_);
+    ::dup2(saved_, descriptor_);
+    ::close(saved_);
+  }
+
+ private:
+  std::FILE* stream_;
+  int descriptor_;
+  int saved_;
+};
+
 Simulated simulate(std::string_view name, std::vector<std::string> words) {
   words.insert(words.begin(), "program");
   std::vector<char*> arguments;
@@ -202,6 +254,7 @@ Simulated simulate(std::string_view name, std::vector<std::string> words) {
   simulated.result.exit_code = run_described_simulator(
       static_cast<int>(arguments.size()), arguments.data(),
       {.traits = {name, "Does nothing.", false},
+       .config_value = [](const ProcessOptions&, const std::string&) { return "7"; },
        .make_source = [&](const ProcessOptions&,
                           Inbox&) { return std::make_unique<Source>(simulated.asked); },
        .files = {"scenario.toml"}});
@@ -219,6 +272,28 @@ TEST(RunSimulator, WithoutANetworkItDoesNotBegin) {
   const Simulated simulated = simulate("alone", {"--lcm-url", "no-such-scheme://"});
   EXPECT_EQ(simulated.result.exit_code, kExitUsage);
   EXPECT_EQ(simulated.asked, "");
+}
+
+TEST(RunSimulator, OutputThatIsLostIsAFailure) {
+  Simulated simulated;
+  {
+    const FullStream full{stdout};
+    simulated = simulate("lossy", {"--print-config", "run.seed"});
+  }
+  EXPECT_EQ(simulated.result.exit_code, kExitFailed);
+  EXPECT_THAT(simulated.result.output, HasSubstr("standard output"));
+}
+
+TEST(RunSimulator, LargeMessagesAreNotOffered) {
+  EXPECT_EQ(simulate("large", {"--large-messages", "--lcm-url", "memq://"}).result.exit_code,
+            kExitUsage);
+}
+
+TEST(ProgressOfWork, GoesOnWhereItCannotBeShown) {
+  const FullStream full{stderr};
+  Progress progress{"work"};
+  EXPECT_NO_THROW(progress.show(0.5, "half"));
+  EXPECT_NO_THROW(progress.done());
 }
 
 TEST_F(ProtectedInputs, AScenarioIsNotOverwrittenByTheCopyInTheOutputFolder) {

@@ -103,7 +103,7 @@ TEST_F(DailyLife, ARestartedSlamContinuesAtItsLastPose) {
   EXPECT_EQ(test::with_pose(rest), rest.estimates.size());
   EXPECT_LT(test::worst_error_m(rest, today, map_from_world(*drive_)), 0.1);
   // In another map it does not.
-  write_last_pose(folder_, {timestamp_from_us(22'000'000), 99, {}, {0.1, 0.1, 0.1}, {}});
+  write_last_pose(folder_, {timestamp_from_us(22'000'000), {99}, {}, {0.1, 0.1, 0.1}, {}});
   const test::Drive lost = test::drive_through(config, messages_of(today, 22.5));
   EXPECT_LT(test::worst_error_m(lost, today, map_from_world(*drive_)), 0.1);
 }
@@ -152,7 +152,7 @@ TEST_F(DailyLife, AMapWithoutTheLastPoseIsNotContinued) {
   SlamConfig config = config_for(MapMode::kMap, folder_ / "other.map.lcm");
   config.slam.state_folder = folder_;
   fs::copy_file(*file_, config.save_map);
-  write_last_pose(folder_, {timestamp_from_us(1), 99, {5.0, 0.0, 0.0}, {0.1, 0.1, 0.1}, {}});
+  write_last_pose(folder_, {timestamp_from_us(1), {99}, {5.0, 0.0, 0.0}, {0.1, 0.1, 0.1}, {}});
   config.slam.start.kind = StartKind::kLast;
   const test::Drive drive = test::drive_through(config, messages_of(*drive_, 0.0, 5.0));
   ASSERT_FALSE(drive.estimates.empty());

@@ -17,13 +17,16 @@ TEST(LastPose, IsReadAsItWasWritten) {
   const fs::path folder = fs::path{::testing::TempDir()} / ("last_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   EXPECT_FALSE(read_last_pose(folder));
-  const LastPose last{
-      timestamp_from_us(123'456'789), -5, {1.25, -2.5, 3.0}, {0.1, 0.2, 0.3}, {7.0, 8.0, -1.0}};
+  const LastPose last{timestamp_from_us(123'456'789),
+                      {-5, 7},
+                      {1.25, -2.5, 3.0},
+                      {0.1, 0.2, 0.3},
+                      {7.0, 8.0, -1.0}};
   write_last_pose(folder, last);
   const auto read = read_last_pose(folder);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->time, last.time);
-  EXPECT_EQ(read->map_id, last.map_id);
+  EXPECT_EQ(read->map_ids, last.map_ids);
   EXPECT_EQ(read->map_from_base.x(), 1.25);
   EXPECT_EQ(read->sigmas, last.sigmas);
   EXPECT_EQ(read->odom_from_base.theta(), -1.0);
@@ -32,7 +35,7 @@ TEST(LastPose, IsReadAsItWasWritten) {
 
 TEST(LastPose, IsUsedOnlyWhereMapAndOdometryFit) {
   const LastPose last{
-      timestamp_from_us(100'000'000), 7, {10.0, 0.0, 0.0}, {0.1, 0.1, 0.01}, {20.0, 1.0, 0.5}};
+      timestamp_from_us(100'000'000), {6, 7}, {10.0, 0.0, 0.0}, {0.1, 0.1, 0.01}, {20.0, 1.0, 0.5}};
   const auto at = [](double time_s) {
     return timestamp_from_us(static_cast<std::int64_t>(1e6 * time_s));
   };

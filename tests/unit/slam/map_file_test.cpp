@@ -71,6 +71,16 @@ TEST_F(SavedMap, ADamagedFileIsRefusedOrReadsTheSame) {
   fs::remove(damaged);
 }
 
+TEST_F(SavedMap, AFailedSaveLeavesNoPart) {
+  const MapFile map = read_map_file(*file_);
+  const fs::path full = other_file("full");
+  const fs::path part = part_path_of(full);
+  fs::create_symlink("/dev/full", part);
+  EXPECT_THROW(write_map_file(full, map.map, map.info), std::runtime_error);
+  EXPECT_FALSE(fs::is_symlink(part));
+  EXPECT_FALSE(fs::exists(full));
+}
+
 TEST_F(SavedMap, ATileFarFromTheOthersIsRefused) {
   const fs::path stray = other_file("stray");
   LogReader reader{*file_};
