@@ -11,6 +11,7 @@
 #include <functional>
 #include <iterator>
 #include <string>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -39,7 +40,12 @@ void DetectorNode::handle(const image_t& image) {
                               .image_height_px = image_size_.height};
   const DecodedFrame frame = decode_image(image, image_size_);
   if (frame.problem == FrameProblem::kNone) {
-    detections.detections = detector_.detect(frame.gray);
+    ImageMarkers found = detector_.examine(frame.gray);
+    detections.detections = std::move(found.markers);
+    if (found.beyond_lens > 0) {
+      inbox_.counters().add("markers dropped: robot.camera.distortion cannot be inverted there",
+                            CountKind::kLoss, found.beyond_lens);
+    }
     keep_largest(detections.detections);
     if (debug_pictures_ && !debug_pictures_->offer(frame.gray, detections)) {
       inbox_.counters().add("debug pictures not written", CountKind::kLoss);

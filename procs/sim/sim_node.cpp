@@ -5,6 +5,7 @@
 #include "common/files/writable_folder.hpp"
 #include "common/geometry/rounded.hpp"
 #include "common/lockstep/contents.hpp"
+#include "common/logging/logging.hpp"
 #include "common/messages/convert.hpp"
 
 #include <fmt/format.h>
@@ -69,10 +70,12 @@ void SimNode::begin() {
 }
 
 void SimNode::write_start_files() {
+  for (const char* of_an_earlier_run :
+       {"truth_marker_moves.csv", "truth.tum", "truth.tum.unfinished"})
+    std::filesystem::remove(config_.out_dir / of_an_earlier_run);
   write_whole_file(config_.out_dir / "scenario.toml", dump_config(config_));
   write_whole_file(config_.out_dir / "robot.toml", dump_robot_config(config_.robot));
   write_whole_file(config_.out_dir / "truth_markers.csv", truth_markers_csv(simulation_->world()));
-  std::filesystem::remove(config_.out_dir / "truth_marker_moves.csv");  // left by an earlier run
   if (!config_.markers.moved.empty()) write_moves({});
   truth_.emplace(config_.out_dir / "truth.tum");
 }
@@ -129,6 +132,8 @@ std::string SimNode::progress() const {
 }
 
 void SimNode::finish() {
+  for (const TimedEvent& event : simulation_->pending_events())
+    logging::warn("{}: did not begin in this run", event.key);
   if (truth_) truth_->finish();
 }
 

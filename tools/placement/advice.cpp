@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placement/advice.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -23,7 +25,7 @@ class Search {
     return model_.sigmas_m(model_.predict(hung_and(hung_, at_places_, chosen)));
   }
 
-  void aim_at(const std::vector<double>& reachable_m) { aims_m_ = reachable_m; }
+  void aim_at(const std::vector<double>& aims_m) { aims_m_ = aims_m; }
 
   /// Excess of these sigmas, one per step [m^3].
   double excess(std::span<const double> sigmas_m) const {
@@ -122,18 +124,19 @@ std::vector<const Sightings*> hung_and(std::span<const Sightings> hung,
 Advice advise(const CovarianceModel& model, std::span<const Step> steps,
               std::span<const Sightings> hung, std::span<const WallPlace> places,
               std::span<const Sightings> at_places, double plate_m, double target_m,
-              std::size_t most) {
+              std::size_t most, const Report& report) {
   Search search{model, steps, hung, at_places};
   Advice advice;
   advice.now_m = search.sigmas_m({});
-  advice.reachable_m.assign(advice.now_m.size(), target_m);
+  advice.aims_m.assign(advice.now_m.size(), target_m);
   std::vector<double> sigmas_m = advice.now_m;
   if (worst(sigmas_m) > target_m) {
     const std::vector<double> floor_m = search.sigmas_m(everywhere(places));
+    advice.everywhere_m = worst(floor_m);
     for (std::size_t i = 0; i < floor_m.size(); ++i)
-      if (floor_m[i] > target_m) advice.reachable_m[i] = kAboveFloor * floor_m[i];
+      if (floor_m[i] > target_m) advice.aims_m[i] = kAboveFloor * floor_m[i];
   }
-  search.aim_at(advice.reachable_m);
+  search.aim_at(advice.aims_m);
   std::vector<Gain> gains;
   for (std::size_t i = 0; i < places.size(); ++i)
     if (!at_places[i].empty()) gains.push_back({i});
@@ -144,6 +147,8 @@ Advice advise(const CovarianceModel& model, std::span<const Step> steps,
     advice.chosen.push_back(*best);
     sigmas_m = search.sigmas_m(advice.chosen);
     excess = search.excess(sigmas_m);
+    report(
+        fmt::format("new marker {}: worst sigma {:.4f} m", advice.chosen.size(), worst(sigmas_m)));
     std::erase_if(gains, [&](const Gain& gain) {
       return overlap(places[gain.place].map_from_marker, places[*best].map_from_marker, plate_m);
     });

@@ -24,7 +24,13 @@ void add_options(waymark::Command& program, PlacementOptions& options) {
       .check(waymark::positive_number())
       .show_default();
   program.add_option("--config", options.config,
-                     "robot.toml or slam configuration; needed for a map file, else the run's");
+                     "robot.toml or slam configuration; its keys win over the run's; needed for "
+                     "a map file");
+  program
+      .add_option("--marker-height-m", options.marker_height_m,
+                  "height of the markers' centres over the floor [m] (default: the median in the "
+                  "run's log; without a log, the camera's height)")
+      .check(waymark::positive_number());
   program.add_option("--json", options.json, "write the result to this JSON file");
   program.add_option("--csv", options.csv,
                      "write the new markers to this file, with the columns of markers.csv");
@@ -42,8 +48,8 @@ int main(int argc, char** argv) {
   waymark::Program program{
       "Finds where the position is more uncertain than a target, and few new markers with which "
       "the target is met.\n"
-      "Exit code: 0 the target is met, now or with the new markers; 1 it cannot be met; 2 wrong "
-      "usage or files.",
+      "Exit code: 0 the target is met, now or with the new markers; 1 no such markers were found; "
+      "2 wrong usage or files.",
       name};
   add_options(program, options);
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;

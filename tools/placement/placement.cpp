@@ -71,10 +71,10 @@ double Placement::worst_then_m() const {
 }
 
 double Placement::reachable_m() const {
-  return worst(advice.reachable_m);
+  return std::max(target_m, advice.everywhere_m);
 }
 
-Placement place_markers(const PlacementInput& input, double target_m) {
+Placement place_markers(const PlacementInput& input, double target_m, const Report& report) {
   const MarkerConfig& described = input.config.robot.markers;
   const auto dictionary = find_dictionary(described.dictionary);
   if (!dictionary)
@@ -86,7 +86,8 @@ Placement place_markers(const PlacementInput& input, double target_m) {
   placement.target_m = target_m;
   const OccupiedWalls walls{input.image};
   placement.steps = drive_along(input.places, walls, input.config);
-  const ViewModel views{input.config, modules};
+  const double camera_m = input.config.robot.camera.base_from_camera().translation().z();
+  const ViewModel views{input.config, modules, input.marker_height_m.value_or(camera_m)};
   const CovarianceModel model{placement.steps, input.config};
 
   std::vector<Se2> poses;
@@ -100,12 +101,14 @@ Placement place_markers(const PlacementInput& input, double target_m) {
   std::vector<Sightings> at_places;
   for (const WallPlace& place : places)
     at_places.push_back(sightings_along(placement.steps, place.map_from_marker, walls, views));
+  report(fmt::format("{} steps, {} free places", placement.steps.size(), places.size()));
   const std::vector<int> ids = free_ids(described, size_of(*dictionary), input.markers);
   placement.free_places = places.size();
   placement.free_ids = ids.size();
 
   const auto advise_for = [&](double sigma_m) {
-    return advise(model, placement.steps, hung, places, at_places, plate_m, sigma_m, ids.size());
+    return advise(model, placement.steps, hung, places, at_places, plate_m, sigma_m, ids.size(),
+                  report);
   };
   // Plan with a margin, unless the target is met already or cannot be met with the margin.
   placement.now = model.predict(hung_and(hung, {}, {}));

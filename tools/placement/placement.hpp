@@ -41,7 +41,7 @@ struct Placement {
   double worst_now_m() const;
   double worst_then_m() const;
 
-  /// Worst sigma with markers everywhere; the target if they meet it.
+  /// Worst sigma with a marker about every 2 m along every wall; the target if they meet it.
   double reachable_m() const;
 
   bool is_met() const { return worst_then_m() <= target_m; }
@@ -52,7 +52,9 @@ struct Placement {
   }
 };
 
+/// @param report  called now and then.
 /// @throws evaluate::InputError if the marker dictionary is unknown.
-Placement place_markers(const PlacementInput& input, double target_m);
+Placement place_markers(
+    const PlacementInput& input, double target_m, const Report& report = [](const std::string&) {});
 
 }  // namespace waymark::placement

@@ -21,8 +21,14 @@ fs::path picture_file(const PlacementOptions& options, const PlacementInput& inp
 }  // namespace
 
 int run_placement(const PlacementOptions& options) {
-  const PlacementInput input = read_placement_input(options.source, options.config);
-  const Placement placement = place_markers(input, options.target_m);
+  PlacementInput input = read_placement_input(options.source, options.config);
+  if (options.marker_height_m > 0.0) input.marker_height_m = options.marker_height_m;
+  if (!input.marker_height_m)
+    input.notes.emplace_back(
+        "no log says how high the markers hang: as high as the camera; --marker-height-m");
+  const Placement placement = place_markers(
+      input, options.target_m,
+      [](const std::string& progress) { fmt::print(stderr, "placement: {}\n", progress); });
   fmt::print("{}", placement_text(input, placement));
   if (!options.json.empty()) write_whole_file(options.json, placement_json(input, placement));
   if (!options.csv.empty()) write_whole_file(options.csv, placement_csv(placement));

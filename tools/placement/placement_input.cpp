@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placement/placement_input.hpp"
 
+#include "common/geometry/median.hpp"
+#include "common/log/log_file.hpp"
+#include "common/messages/codec.hpp"
 #include "evaluate/files/map_image.hpp"
 #include "evaluate/files/tum.hpp"
 #include "evaluate/run/run_evaluation.hpp"
@@ -81,13 +84,45 @@ void check_is_mapping(const PlacementInput& input) {
                      "mapped the place"};
 }
 
+/// Replaces the values whose keys are in the file.
+void overlay(const fs::path& file, SlamConfig& config) {
+  const auto problems =
+      config_detail::read_part(file, [&config](Fields& fields) { config.describe(fields); });
+  if (!problems.empty()) throw ConfigError{problems};
+}
+
+/// Median height of the markers that the detector measured [m]; the base frame is on the floor.
+std::optional<double> marker_height_in(const fs::path& log) {
+  std::vector<double> heights_m;
+  LogReader reader{log};
+  const auto is_wanted = [](std::string_view channel) {
+    return channel == channels::kMarkers.name;
+  };
+  while (const auto message = reader.next(is_wanted)) {
+    const auto decoded = decode<marker_detections_t>(message->payload);
+    if (!decoded.message) continue;
+    for (const marker_detection_t& marker : decoded.message->detections)
+      heights_m.push_back(marker.position_m[2]);
+  }
+  if (heights_m.empty()) return std::nullopt;
+  return upper_median(std::move(heights_m));
+}
+
+/// Of the log of the row's detector, or of the run.
+std::optional<double> marker_height_of(const fs::path& row) {
+  for (const fs::path& log : {row / "markers.lcm", row.parent_path() / "run.lcm"})
+    if (fs::exists(log))
+      if (const auto height_m = marker_height_in(log)) return height_m;
+  return std::nullopt;
+}
+
 void read_row(const fs::path& config, PlacementInput& input) {
   const fs::path& row = input.source;
   const fs::path own = row / "config.toml";
   if (config.empty() && !fs::exists(own))
     throw InputError{row.string() + ": no config.toml in it; give the robot with --config"};
-  input.config = load_part<SlamConfig>(fs::exists(own) ? own : config);
-  if (!config.empty()) input.config.robot = load_part<RobotOnly>(config).robot;
+  if (fs::exists(own)) input.config = load_part<SlamConfig>(own);
+  if (!config.empty()) overlay(config, input.config);
   check_is_mapping(input);
   evaluate::Skipped skipped;
   const fs::path final_trajectory = row / "trajectory_final.tum";
@@ -107,6 +142,7 @@ void read_row(const fs::path& config, PlacementInput& input) {
   if (fs::exists(row / "covariance.csv"))
     input.covariances = evaluate::read_covariances(row / "covariance.csv", skipped);
   input.image = image_in(row / "map.yaml");
+  input.marker_height_m = marker_height_of(fs::canonical(row));
   input.notes.insert(input.notes.end(), skipped.begin(), skipped.end());
 }
 

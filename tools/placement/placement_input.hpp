@@ -8,6 +8,7 @@
 #include "slam/slam_config.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,13 +25,14 @@ struct PlacementInput {
   SlamConfig config{};
   std::vector<ScanPlace> places{};  ///< the path, by the final estimate
   std::vector<MappedMarker> markers{};
+  std::optional<double> marker_height_m{};  ///< centres over the floor; none: of the camera
   PlacedMapImage image{};
   std::vector<evaluate::StampedCovariance> covariances{};  ///< reported during the run, if any
   std::vector<std::string> notes{};  ///< assumptions and omissions, one sentence each
 };
 
 /// @param source  folder of a run (its row of the estimator waymark is read) or row, or a map file.
-/// @param config  robot.toml or a slam configuration, instead of the row's own; empty: none.
+/// @param config  robot.toml or a slam configuration; its keys win over the row's own; empty: none.
 /// @throws evaluate::InputError, ConfigError, SetupError for unusable input.
 PlacementInput read_placement_input(const std::filesystem::path& source,
                                     const std::filesystem::path& config);

@@ -27,12 +27,15 @@ std::string verdict(const Placement& placement) {
     return "The target cannot be met: there is no bare, straight piece of wall wide enough for a "
            "marker.\n";
   if (placement.markers.size() == placement.free_ids)
-    return fmt::format("The target cannot be met with the {} ids that are free.\n",
+    return fmt::format("The target is not met with the {} ids that are free.\n",
                        placement.free_ids);
+  if (placement.advice.everywhere_m <= placement.target_m)
+    return "No few markers were found with which the target is met; with one about every 2 m along "
+           "every wall it would be.\n";
   return fmt::format(
-      "The target cannot be met by markers alone: with one at every free place the "
-      "worst sigma is {:.4f} m.\n",
-      placement.reachable_m());
+      "No markers were found with which the target is met: with one about every 2 m along every "
+      "wall the worst sigma is {:.4f} m.\n",
+      placement.advice.everywhere_m);
 }
 
 Json json_of(const Stretch& stretch, const std::vector<Step>& steps) {

@@ -126,13 +126,14 @@ double read_share_of(double module_px) {
   return 1.0;
 }
 
-ViewModel::ViewModel(const SlamConfig& config, int modules_per_side)
+ViewModel::ViewModel(const SlamConfig& config, int modules_per_side, double marker_height_m)
     : robot_{config.robot},
       measurement_{config.slam.waymark.markers},
       odometry_{config.slam.waymark.odometry},
       base_from_camera_{config.robot.camera.base_from_camera()},
       camera_{config.robot.camera},
       modules_per_side_{modules_per_side},
+      marker_height_m_{marker_height_m},
       corner_sigma_{sensor_setup(config).corner_sigma},
       max_sigma_m_{config.slam.preprocessing.max_sigma_m},
       reach_m_{config.robot.camera.fx_px * config.robot.markers.size_m /
@@ -145,7 +146,7 @@ std::optional<MarkerView> ViewModel::view(const Se2& base_from_marker,
                                           std::span<const Eigen::Vector2d> hits_in_base,
                                           double speed_mps) const {
   const Eigen::Isometry3d camera_from_marker =
-      base_from_camera_.inverse() * upright(base_from_marker, base_from_camera_.translation().z());
+      base_from_camera_.inverse() * upright(base_from_marker, marker_height_m_);
   if (camera_from_marker.linear().col(2).dot(camera_from_marker.translation()) >= 0.0)
     return std::nullopt;  // it faces away
   SeenCorners seen;

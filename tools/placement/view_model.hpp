@@ -23,12 +23,12 @@ struct MarkerView {
 double read_share_of(double module_px);
 
 /// Propagates the detector's corner noise, linearised at measurements without errors, through pose
-/// estimation and alignment to the wall, with the functions of detector and estimator. Assumes
-/// markers at the height of the camera.
+/// estimation and alignment to the wall, with the functions of detector and estimator.
 class ViewModel {
  public:
   /// @param modules_per_side  bits along a side of a marker plus two modules of border.
-  ViewModel(const SlamConfig& config, int modules_per_side);
+  /// @param marker_height_m   of every marker's centre over the floor.
+  ViewModel(const SlamConfig& config, int modules_per_side, double marker_height_m);
 
   /// @param hits_in_base  ends of the LiDAR's beams, base frame.
   /// @param speed_mps     speed of the robot between frame and scan.
@@ -48,6 +48,7 @@ class ViewModel {
   Eigen::Isometry3d base_from_camera_;
   CameraModel camera_;
   int modules_per_side_;
+  double marker_height_m_;
   double corner_sigma_;
   double max_sigma_m_;
   double reach_m_;  ///< beyond it, even a marker seen frontally is too small to be read

@@ -39,7 +39,8 @@ struct MeasuredCorners {
 /// where they were, with the standard deviation unrefined_sigma_px.
 ///
 /// @param gray                8-bit, one channel.
-/// @param raw_corners_px      from the first stage, right to within about two pixels.
+/// @param raw_corners_px      from the first stage, right to within about two pixels, and where the
+///                            lens can be inverted.
 /// @param modules_per_side    bits of the dictionary plus the two of the border.
 MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
                                const Corners& raw_corners_px, int modules_per_side,

@@ -76,13 +76,24 @@ MarkerDetector::MarkerDetector(const RobotConfig& robot, const MarkerDetectorCon
       modules_per_side_{modules_per_side(dictionary_of(robot.markers))},
       finder_{dictionary_of(robot.markers), config.candidates} {}
 
-std::vector<MarkerDetection> MarkerDetector::detect(const cv::Mat& gray) const {
-  std::vector<MarkerDetection> detections;
+ImageMarkers MarkerDetector::examine(const cv::Mat& gray) const {
+  ImageMarkers found;
   for (const MarkerCandidate& candidate : finder_.find(gray)) {
     if (!known_ids_.empty() && !known_ids_.contains(candidate.id)) continue;
-    if (const auto detection = measure(gray, candidate)) detections.push_back(*detection);
+    if (!is_within_lens(candidate)) {
+      ++found.beyond_lens;
+    } else if (const auto detection = measure(gray, candidate)) {
+      found.markers.push_back(*detection);
+    }
   }
-  return without_overlaps(detections);
+  found.markers = without_overlaps(found.markers);
+  return found;
+}
+
+bool MarkerDetector::is_within_lens(const MarkerCandidate& candidate) const {
+  return std::ranges::all_of(candidate.corners_px, [this](const Eigen::Vector2d& corner_px) {
+    return camera_.ideal_from_raw(corner_px).allFinite();
+  });
 }
 
 std::optional<MarkerDetection> MarkerDetector::measure(const cv::Mat& gray,

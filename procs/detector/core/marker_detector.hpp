@@ -39,6 +39,12 @@ struct MarkerDetectorConfig {
   void describe(Fields& fields);
 };
 
+/// What examine() finds in an image.
+struct ImageMarkers {
+  std::vector<MarkerDetection> markers{};
+  int beyond_lens{0};  ///< dropped: a corner is where robot.camera.distortion cannot be inverted
+};
+
 class MarkerDetector {
  public:
   /// @throws std::invalid_argument when robot.markers.dictionary is no dictionary.
@@ -47,9 +53,13 @@ class MarkerDetector {
   /// Markers of the configured ids, ordered by id, then from left to right. One id may occur more
   /// than once: an id is a class of markers, not a key.
   /// @param gray 8-bit, one channel, of the configured camera's size.
-  std::vector<MarkerDetection> detect(const cv::Mat& gray) const;
+  std::vector<MarkerDetection> detect(const cv::Mat& gray) const { return examine(gray).markers; }
+
+  /// detect(), with the count of the markers that it dropped.
+  ImageMarkers examine(const cv::Mat& gray) const;
 
  private:
+  bool is_within_lens(const MarkerCandidate& candidate) const;
   std::optional<MarkerDetection> measure(const cv::Mat& gray,
                                          const MarkerCandidate& candidate) const;
   Eigen::Matrix<double, 6, 6> covariance_in_base(const SquarePoses& poses) const;

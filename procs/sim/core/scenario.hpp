@@ -70,7 +70,11 @@ struct Scenario {
   void check_places(Problems& problems) const;
   void check_added(const World& built, int num_ids, Problems& problems) const;
   void check_moves(const World& built, Problems& problems) const;
+  /// Room that the robot needs beside it where it drives [m].
+  double driving_room_m() const;
+  void check_odometry(Problems& problems) const;
   void check_route(Problems& problems) const;
+  void check_events(Problems& problems) const;
   void check_faults(Problems& problems) const;
   void check_times(Problems& problems) const;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks of a scenario that concern several fields.
-#include "sim/core/robot/path.hpp"
+// Checks of a scenario that concern several fields; scenario_route_check.cpp has those of the route
+// and of what happens along it.
 #include "sim/core/scenario.hpp"
 
 #include <fmt/format.h>
@@ -12,43 +12,13 @@
 namespace waymark {
 namespace {
 
-constexpr double kRoundingSlack_m = 1e-9;
+constexpr double kPlateSlack_m = 1e-9;
 constexpr double kSameWall_rad = 1e-6;
-// Smallest distance of the base frame's origin to a wall, from the Waffle Pi's size. Where the
-// robot turns on the spot: the length of its body behind the base; where it drives: half of its
-// width.
-constexpr double kTurningRoom_m = 0.20;
-constexpr double kDrivingRoom_m = 0.16;
 constexpr double kRobotLength_m = 0.30;
-constexpr double kRouteSample_m = 0.05;
 
 bool is_whole(double value) {
   return std::abs(value - std::round(value)) < 1e-9 * std::max(1.0, std::abs(value)) &&
          std::round(value) >= 1.0;
-}
-
-/// Distance from a point to a box; 0 inside.
-double distance_m(const BoxConfig& box, const Eigen::Vector2d& point_m) {
-  const Se2 world_from_box{box.x_m, box.y_m, radians(box.yaw_deg)};
-  const Eigen::Vector2d in_box_m = world_from_box.inverse() * point_m;
-  const Eigen::Vector2d beyond_m =
-      (in_box_m.cwiseAbs() - 0.5 * Eigen::Vector2d{box.length_m, box.width_m}).cwiseMax(0.0);
-  return beyond_m.norm();
-}
-
-/// Empty if the point is at least `needed_m` away from every wall and every box, also from boxes
-/// that are present for a time only; else a sentence about the problem.
-std::string what_is_too_close(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
-                              const Eigen::Vector2d& point_m, double needed_m) {
-  const double to_wall_m = clearance_m(walls, point_m);
-  double nearest_m = to_wall_m;
-  for (const BoxConfig& box : boxes)
-    nearest_m = std::min(nearest_m, distance_m(box, point_m));
-  if (nearest_m >= needed_m - kRoundingSlack_m) return {};
-  const std::string place = to_wall_m < 0.0 ? "outside of the walls"
-                                            : fmt::format("{:.2f} m from a wall or box", nearest_m);
-  return fmt::format("({:.2f}, {:.2f}) is {}, expected {:.2f} m of room on all sides", point_m.x(),
-                     point_m.y(), place, needed_m);
 }
 
 std::string not_in_dictionary(int id, const std::string& dictionary, int num_ids) {
@@ -78,7 +48,9 @@ void Scenario::check(Problems& problems) const {
   if (!problems.lines().empty()) return;  // the other checks need a valid world
   check_markers(problems);
   if (problems.lines().empty()) check_places(problems);
+  check_odometry(problems);
   check_route(problems);
+  check_events(problems);
   check_faults(problems);
   check_times(problems);
 }
@@ -96,9 +68,9 @@ void Scenario::check_world(Problems& problems) const {
   check_length("world.length_m", world.length_m);
   if (world.layout != Layout::kStraight)
     check_length("world.second_length_m", world.second_length_m);
-  if (world.width_m < 2.0 * kDrivingRoom_m) {
+  if (const double robot_m = 2.0 * driving_room_m(); world.width_m < robot_m) {
     problems.add("world.width_m", fmt::format("got {}, expected more than the robot's width, {} m",
-                                              world.width_m, 2.0 * kDrivingRoom_m));
+                                              world.width_m, robot_m));
   }
   if (!problems.lines().empty()) return;
   if (const std::optional<std::size_t> opening = opening_without_wall(world)) {
@@ -107,6 +79,11 @@ void Scenario::check_world(Problems& problems) const {
   } else if (walls_cross(outline(world))) {
     problems.add("world.openings",
                  "two of them are in the same place, or reach through a corridor");
+  } else if (const auto at_m = solid_in_free_space(outline(world))) {
+    problems.add("world.wall_thickness_m",
+                 fmt::format("got {}, by which a wall reaches into the free space behind it, at "
+                             "({:.2f}, {:.2f})",
+                             world.wall_thickness_m, at_m->x(), at_m->y()));
   }
 }
 
@@ -121,8 +98,8 @@ void Scenario::check_markers(Problems& problems) const {
   }
   if (markers.layout == MarkerLayout::kNone && markers.added.empty()) return;
   const double half_plate_m = 0.5 * plate_size_m(marker_print());
-  if (markers.centre_height_m < half_plate_m - kRoundingSlack_m ||
-      markers.centre_height_m > world.wall_height_m - half_plate_m + kRoundingSlack_m) {
+  if (markers.centre_height_m < half_plate_m - kPlateSlack_m ||
+      markers.centre_height_m > world.wall_height_m - half_plate_m + kPlateSlack_m) {
     problems.add("markers.centre_height_m",
                  fmt::format("got {}, expected a plate of {:.2f} m to fit between floor and wall "
                              "top, {} m",
@@ -130,8 +107,8 @@ void Scenario::check_markers(Problems& problems) const {
   }
   if (markers.layout == MarkerLayout::kNone) return;
   const bool ends_in_time = world.layout != Layout::kStraight ||
-                            markers.last_m <= world.length_m - half_plate_m + kRoundingSlack_m;
-  if (markers.first_m < half_plate_m - kRoundingSlack_m || markers.last_m < markers.first_m ||
+                            markers.last_m <= world.length_m - half_plate_m + kPlateSlack_m;
+  if (markers.first_m < half_plate_m - kPlateSlack_m || markers.last_m < markers.first_m ||
       !ends_in_time) {
     problems.add("markers", fmt::format("first_m {} and last_m {} must lie in this order within "
                                         "the walls, from {:.2f} to {:.2f} m",
@@ -139,7 +116,7 @@ void Scenario::check_markers(Problems& problems) const {
                                         world.length_m - half_plate_m));
     return;
   }
-  if (markers.spacing_m < 2.0 * half_plate_m - kRoundingSlack_m) {
+  if (markers.spacing_m < 2.0 * half_plate_m - kPlateSlack_m) {
     problems.add("markers.spacing_m", fmt::format("got {}, expected at least the size of a plate, "
                                                   "{:.2f} m",
                                                   markers.spacing_m, 2.0 * half_plate_m));
@@ -186,7 +163,7 @@ void Scenario::check_added(const World& built, int num_ids, Problems& problems) 
     }
     const auto is_in_its_way = [&](const MarkerPlate& other) {
       return std::abs(angle_difference(other.yaw_rad, hung->yaw_rad)) < kSameWall_rad &&
-             (other.centre_m - hung->centre_m).head<2>().norm() < plate_m - kRoundingSlack_m;
+             (other.centre_m - hung->centre_m).head<2>().norm() < plate_m - kPlateSlack_m;
     };
     // The count includes the added marker itself.
     if (std::count_if(built.markers.begin(), built.markers.end(), is_in_its_way) > 1)
@@ -211,41 +188,15 @@ void Scenario::check_moves(const World& built, Problems& problems) const {
   }
 }
 
-void Scenario::check_route(Problems& problems) const {
-  const std::vector<Wall> walls = outline(world);
-  const auto check_free = [&](const std::string& key, const Eigen::Vector2d& point_m,
-                              double needed_m) {
-    const std::string problem = what_is_too_close(walls, world.boxes, point_m, needed_m);
-    if (!problem.empty()) problems.add(key, problem);
-    return problem.empty();
-  };
-  check_free("route.start", {route.start_x_m, route.start_y_m}, kTurningRoom_m);
-  for (std::size_t i = 0; i < kidnaps.size(); ++i) {
-    const std::string key = fmt::format("kidnaps[{}]", i);
-    check_free(key, {kidnaps[i].to_x_m, kidnaps[i].to_y_m}, kTurningRoom_m);
-    if (!kidnaps[i].when.is_set()) problems.add(key, "expected an at_s or at_m above 0");
-  }
-  if (route.source == DriveSource::kCommand) {
-    if (route.duration_s <= 0.0) {
-      problems.add("route.duration_s", "expected a number above 0 when commands drive");
-    }
-    if (route.command_delay_ticks <= run.window_ticks) {
-      problems.add("route.command_delay_ticks",
-                   fmt::format("got {}, expected more than run.window_ticks, {}: the next ticks "
-                               "have been simulated when a command arrives",
-                               route.command_delay_ticks, run.window_ticks));
-    }
-    return;
-  }
-  const char* key = route.waypoints.empty() ? "route.end_x_m" : "route.waypoints";
-  if (route.waypoints.empty() && route.laps > 1)
-    problems.add("route.laps", "expected waypoints that lead back to the start");
-  for (const PathPiece& piece : path_through(route.corners(), route.corner_radius_m)) {
-    const int num_samples = 1 + static_cast<int>(piece.length_m / kRouteSample_m);
-    for (int i = 0; i <= num_samples; ++i) {
-      const Se2 world_from_base = piece.world_from(i * piece.length_m / num_samples);
-      if (!check_free(key, world_from_base.translation(), kDrivingRoom_m)) return;  // one is enough
-    }
+void Scenario::check_odometry(Problems& problems) const {
+  if (!odometry_errors.draw_from_seed) return;
+  for (const auto& [key, value] : {std::pair{"scale", odometry_errors.scale},
+                                   std::pair{"heading_scale", odometry_errors.heading_scale}}) {
+    if (value == 0.0) continue;
+    problems.add(fmt::format("odometry_errors.{}", key),
+                 fmt::format("got {}, which odometry_errors.draw_from_seed replaces: expected "
+                             "draw_from_seed = false beside it",
+                             value));
   }
 }
 

@@ -12,9 +12,6 @@ namespace waymark {
 namespace {
 
 constexpr std::int64_t kNotYet = -1;
-// A route without route.duration_s must end within factor * length / speed + reserve.
-constexpr double kTimeLimitFactor = 3.0;
-constexpr double kTimeReserve_s = 60.0;
 constexpr int kPicturesPerExposure = 5;
 
 std::string mjcf_of(const Scenario& scenario, const World& world, const Pinhole& pinhole) {
@@ -50,6 +47,7 @@ Simulation::Simulation(const Scenario& scenario)
                 physics_},
       scene_dynamics_{world_},
       kidnapper_{scenario.kidnaps},
+      pending_events_{scenario},
       odometry_outlet_{Faults{Sensor::kOdometry, scenario.faults}, scenario.run.seed},
       lidar_outlet_{Faults{Sensor::kLidar, scenario.faults}, scenario.run.seed},
       camera_outlet_{Faults{Sensor::kCamera, scenario.faults}, scenario.run.seed} {}
@@ -105,6 +103,7 @@ Moment Simulation::moment() const {
 }
 
 void Simulation::measure(Tick& tick) {
+  pending_events_.update(moment());
   if (is_due(scenario_.robot.base.odometry_rate_hz)) {
     measure_odometry();
     tick.true_poses.push_back({now(), physics_.world_from_base()});
@@ -215,15 +214,12 @@ Velocity Simulation::next_velocity() {
 
 void Simulation::check_progress() const {
   if (scenario_.route.source == DriveSource::kCommand || route_.arrived()) return;
-  const double time_limit_s =
-      scenario_.route.duration_s > 0.0
-          ? scenario_.route.duration_s
-          : kTimeReserve_s + kTimeLimitFactor * route_.route_length_m() / scenario_.route.speed_mps;
-  if (to_seconds(now()) < time_limit_s) return;
+  if (to_seconds(now()) < route_.time_limit_s()) return;
   const Se2 at = physics_.world_from_base();
-  throw SimulatorError{
-      fmt::format("the robot has not arrived after {:.0f} s; it stands at ({:.2f}, {:.2f})",
-                  to_seconds(now()), at.x(), at.y())};
+  throw SimulatorError{fmt::format(
+      "the robot has not arrived after {:.0f} s; it stands at ({:.2f}, {:.2f}), {:.2f} m from a "
+      "wall or box; if none is in its way, set a larger route.duration_s",
+      to_seconds(now()), at.x(), at.y(), room_m(world_.walls, world_.boxes, at.translation()))};
 }
 
 }  // namespace waymark

@@ -14,6 +14,7 @@
 #include "sim/core/scene_dynamics.hpp"
 #include "sim/core/sensors/encoders.hpp"
 #include "sim/core/sensors/lidar.hpp"
+#include "sim/core/timed_events.hpp"
 #include "sim/core/world/world.hpp"
 
 #include <cstdint>
@@ -61,6 +62,9 @@ class Simulation {
 
   Se2 world_from_base() const { return physics_.world_from_base(); }
 
+  /// Events of the scenario that have not begun.
+  const std::vector<TimedEvent>& pending_events() const { return pending_events_.events(); }
+
   /// Share of the route driven so far, or, with route.source = command, of route.duration_s; 1 when
   /// finished.
   double progress_fraction() const;
@@ -91,6 +95,7 @@ class Simulation {
   Renderer renderer_;
   SceneDynamics scene_dynamics_;
   Kidnapper kidnapper_;
+  PendingEvents pending_events_;
   SpinningWheels spinning_wheels_{};
   FaultyOutlet<OdometrySample> odometry_outlet_;
   FaultyOutlet<LidarScan> lidar_outlet_;

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 
+#include <cmath>
+
 namespace waymark {
 namespace {
 
@@ -43,6 +45,32 @@ TEST(CameraModel, UndistortingAndDistortingGivesTheSamePixel) {
       EXPECT_LT((camera.raw_from_ideal(camera.ideal_from_raw(raw_px)) - raw_px).norm(), 1e-6);
     }
   }
+}
+
+TEST(CameraModel, AStrongPincushionLensIsInverted) {
+  CameraConfig config;
+  config.fx_px = config.fy_px = 320.0;
+  config.distortion = {1.0, 0.5, 0.01, -0.02, 0.0};
+  const CameraModel camera{config};
+  Random random{1};
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector2d raw_px{random.uniform(0, 639), random.uniform(0, 479)};
+    EXPECT_LT((camera.raw_from_ideal(camera.ideal_from_raw(raw_px)) - raw_px).norm(), 1e-6)
+        << raw_px.transpose();
+  }
+}
+
+TEST(CameraModel, WhereALensCannotBeInvertedThereIsNoIdealPixel) {
+  CameraConfig config;
+  config.fx_px = config.fy_px = 250.0;
+  config.distortion = {-0.3, 0.0, 0.0, 0.0, 0.0};
+  const CameraModel camera{config};
+  // The greatest radius is 250 px * 0.703, at r = 1 / sqrt(0.9).
+  EXPECT_TRUE(camera.ideal_from_raw({config.cx_px + 175.0, config.cy_px}).allFinite());
+  EXPECT_LT(camera.ideal_from_raw({config.cx_px + 175.0, config.cy_px}).x(),
+            config.cx_px + 250.0 / std::sqrt(0.9));
+  EXPECT_TRUE(camera.ideal_from_raw({config.cx_px + 176.0, config.cy_px}).hasNaN());
+  EXPECT_TRUE(camera.ideal_from_raw({0.0, 0.0}).hasNaN());
 }
 
 TEST(CameraModel, JacobianMatchesDifferences) {

@@ -52,6 +52,16 @@ class DetectorNodeTest : public ::testing::Test {
   Outbox outbox_;
 };
 
+TEST_F(DetectorNodeTest, AMarkerWhereTheLensCannotBeInvertedIsDroppedAndCounted) {
+  DetectorConfig config;
+  config.robot.camera.distortion = {-30.0, 0.0, 0.0, 0.0, 0.0};  // up to 37 px from the centre
+  DetectorNode node{config, inbox_, outbox_};
+  EXPECT_EQ(answer_to(jpeg_message(picture_of_marker_seven(), 1)).num_detections, 0);
+  EXPECT_EQ(
+      inbox_.counters().get("markers dropped: robot.camera.distortion cannot be inverted there"),
+      1);
+}
+
 TEST_F(DetectorNodeTest, AFrameIsAnsweredWithItsTimeAndMarkers) {
   DetectorNode node{DetectorConfig{}, inbox_, outbox_};
 

@@ -4,6 +4,7 @@
 #include "sim/core/camera/image_noise.hpp"
 #include "sim/core/camera/lens.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -107,6 +108,37 @@ TEST(Camera, LowersTheQualityUntilTheFrameFits) {
   EXPECT_LE(frame.jpeg.size(), kMaxJpegBytes);
   EXPECT_LT(frame.jpeg_quality, 95);
   EXPECT_EQ(cv::imdecode(frame.jpeg, cv::IMREAD_UNCHANGED).channels(), 3);
+}
+
+TEST(Camera, ARandomPictureHasTheCamerasSizeAndFits) {
+  for (const cv::Size size : {cv::Size{640, 480}, cv::Size{1283, 727}, cv::Size{1920, 1080}}) {
+    for (const ImageColour colour : {ImageColour::kGrey, ImageColour::kColour}) {
+      CameraConfig config{};
+      config.width_px = size.width;
+      config.height_px = size.height;
+      const Camera camera{config, {.colour = colour}, 1};
+      Random random{1};
+      const CameraFrame frame = camera.compress(camera.random_picture(random), {});
+      EXPECT_LE(frame.jpeg.size(), kMaxJpegBytes) << size;
+      const cv::Mat decoded = cv::imdecode(frame.jpeg, cv::IMREAD_GRAYSCALE);
+      EXPECT_EQ(decoded.size(), size);
+      cv::Scalar mean, sigma;
+      cv::meanStdDev(decoded, mean, sigma);
+      EXPECT_NEAR(mean[0], 127.5, 3.0) << size;
+      EXPECT_GT(sigma[0], 25.0) << size;  // 74 before compression
+    }
+  }
+}
+
+TEST(Camera, APictureTooLargeForADatagramNamesTheKey) {
+  const Camera camera{{}, {}, 1};
+  const cv::Mat picture{cv::Size{4000, 3000}, CV_8UC1, cv::Scalar(100)};
+  try {
+    camera.compress(picture, {});
+    FAIL() << "no error";
+  } catch (const SimulatorError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("robot.camera.width_px"));
+  }
 }
 
 TEST(Camera, BlurSmoothsEdges) {

@@ -180,5 +180,17 @@ TEST(CommandFollower, CommandsActInTheOrderOfTheirStampsNotOfArrival) {
   }
 }
 
+TEST(RouteFollower, TheTimeLimitCountsTurns) {
+  RouteConfig route{};
+  route.waypoints = {{2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 0.0}};
+  route.laps = 5;
+  const double limit_s = RouteFollower{route, kPeriod_s}.time_limit_s();
+  route.turn_speed_radps = 0.02;
+  // 19 corners of a quarter turn; a turn takes 1.6 s / 0.02 = 79 s instead of 3 s.
+  EXPECT_GT(RouteFollower(route, kPeriod_s).time_limit_s(), limit_s + 19 * 75.0);
+  route.duration_s = 7.0;
+  EXPECT_EQ(RouteFollower(route, kPeriod_s).time_limit_s(), 7.0);
+}
+
 }  // namespace
 }  // namespace waymark

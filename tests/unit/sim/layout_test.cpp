@@ -109,6 +109,22 @@ TEST(Layout, OpeningsWithoutAWallAndCrossingRoomsAreReported) {
   EXPECT_FALSE(walls_cross(outline(config)));
 }
 
+TEST(Layout, AWallThickerThanTheSolidBehindItReachesIntoFreeSpace) {
+  WorldConfig config{};
+  config.length_m = 20.0;
+  config.openings = {{0, Side::kLeft, 5.0, 1.0, 0.5}, {0, Side::kLeft, 6.1, 1.0, 0.5}};
+  EXPECT_EQ(solid_in_free_space(outline(config)), std::nullopt);  // 0.1 m apart, as thick as a wall
+  config.openings.back().centre_m = 6.05;
+  ASSERT_TRUE(solid_in_free_space(outline(config)));
+  EXPECT_NEAR(solid_in_free_space(outline(config))->x(), 5.525, 0.03);
+
+  WorldConfig ring = ring_20_by_14();
+  ring.wall_thickness_m = 9.9;  // the block has 16 by 10 m
+  EXPECT_EQ(solid_in_free_space(outline(ring)), std::nullopt);
+  ring.wall_thickness_m = 10.1;
+  EXPECT_TRUE(solid_in_free_space(outline(ring)));
+}
+
 TEST(Layout, ClearanceIsNegativeInsideTheBlock) {
   const std::vector<Wall> walls = outline(ring_20_by_14());
   EXPECT_NEAR(clearance_m(walls, {10.0, 0.3}), 0.7, 1e-12);

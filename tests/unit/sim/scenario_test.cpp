@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/scenario.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -99,6 +100,28 @@ TEST(Scenario, TheRouteMustKeepClearOfTheWalls) {
   EXPECT_THAT(error_of({"route.end_x_m=51"}), HasSubstr("route.end_x_m"));
 }
 
+TEST(Scenario, WhereTheRobotTurnsItNeedsMoreRoomThanWhereItDrives) {
+  const auto along_the_wall_at = [](double y_m) {
+    return error_of(
+        {fmt::format("route.waypoints=[{{x_m=3.0, y_m={}}}, {{x_m=3.0, y_m=0.0}}]", y_m),
+         "markers.layout=none"});
+  };
+  EXPECT_EQ(along_the_wall_at(0.76), "no error");
+  EXPECT_THAT(
+      along_the_wall_at(0.80),
+      HasSubstr("route.waypoints: (3.00, 0.80) is 0.20 m from a wall or box, expected 0.24"));
+  EXPECT_EQ(error_of({"route.start_y_m=0.7", "route.waypoints=[{x_m=9.0, y_m=0.83}]"}), "no error");
+}
+
+TEST(Scenario, WidelySpacedWheelsNeedMoreRoom) {
+  const std::string beside_the_wall = "route.start_y_m=0.75";
+  EXPECT_EQ(error_of({beside_the_wall}), "no error");
+  EXPECT_THAT(error_of({beside_the_wall, "robot.base.wheel_separation_m=0.6"}),
+              HasSubstr("expected 0.32 m of room"));
+  EXPECT_THAT(error_of({"world.width_m=0.5", "robot.base.wheel_separation_m=0.6"}),
+              HasSubstr("world.width_m"));
+}
+
 TEST(Scenario, RouteAndKidnapTargetsMustBeClearOfWallsAndBoxes) {
   EXPECT_THAT(error_of({"world.boxes=[{x_m=20.0, y_m=0.3}]"}), HasSubstr("from a wall or box"));
   EXPECT_THAT(error_of({"world.layout=L", "kidnaps=[{at_m=3.0, to_x_m=20.0, to_y_m=10.0}]"}),
@@ -116,6 +139,41 @@ TEST(Scenario, ImpossibleEventsAreErrors) {
   EXPECT_THAT(error_of({"faults=[{kind='delayed'}]"}), HasSubstr("expected a delay_s above 0"));
   EXPECT_THAT(error_of({"faults=[{from_s=3.0, to_s=2.0}]"}), HasSubstr("ends before it begins"));
   EXPECT_THAT(error_of({"faults=[{wheel='left'}]"}), HasSubstr("a wheel can only"));
+}
+
+TEST(Scenario, EventsThatTheRunCannotReachAreErrors) {
+  EXPECT_EQ(error_of({"faults=[{from_m=47.9, to_m=60.0}]"}), "no error");
+  EXPECT_THAT(error_of({"faults=[{from_m=48.0}]"}),
+              HasSubstr("faults[0]: would begin after 48 m, but the route has 48.00 m"));
+  EXPECT_THAT(error_of({"kidnaps=[{at_m=48.5, to_x_m=20.0}]"}), HasSubstr("kidnaps[0]: would"));
+  EXPECT_THAT(error_of({"world.boxes=[{x_m=20.0, y_m=0.7, from_m=49.0}]"}),
+              HasSubstr("world.boxes[0]: would begin"));
+  EXPECT_THAT(error_of({"markers.moved=[{place=3, at_s=9000.0, dx_m=1.0}]"}),
+              HasSubstr("markers.moved[0]: would begin after 9000 s, but the run ends after"));
+  EXPECT_THAT(error_of({"faults=[{from_s=12.0}]", "route.duration_s=10"}),
+              HasSubstr("would begin after 12 s, but the run ends after 11.0 s"));
+  const auto by_command = [](const std::string& event) {
+    return error_of({"route.source=command", "route.duration_s=60", event});
+  };
+  EXPECT_EQ(by_command("faults=[{from_s=12.0, to_s=80.0}]"), "no error");
+  EXPECT_THAT(by_command("faults=[{from_s=60.0}]"), HasSubstr("ends after 60.0 s"));
+  EXPECT_THAT(by_command("faults=[{from_m=1.0}]"), HasSubstr("command has no route"));
+  EXPECT_THAT(by_command("faults=[{to_m=1.0}]"), HasSubstr("command has no route"));
+  EXPECT_THAT(by_command("kidnaps=[{at_m=1.0, to_x_m=20.0}]"), HasSubstr("command has no route"));
+}
+
+TEST(Scenario, OdometryScalesNeedThatTheSeedDrawsNone) {
+  EXPECT_THAT(error_of({"odometry_errors.scale=0.05"}),
+              HasSubstr("odometry_errors.scale: got 0.05, which odometry_errors.draw_from_seed"));
+  EXPECT_THAT(error_of({"odometry_errors.heading_scale=0.1"}), HasSubstr("heading_scale: got 0.1"));
+  EXPECT_EQ(error_of({"odometry_errors.scale=0.05", "odometry_errors.draw_from_seed=false"}),
+            "no error");
+}
+
+TEST(Scenario, WallsMustNotReachIntoRecesses) {
+  EXPECT_THAT(error_of({"world.openings=[{centre_m=6.0, width_m=1.0, depth_m=0.5}, {centre_m=7.05, "
+                        "width_m=1.0, depth_m=0.5}]"}),
+              HasSubstr("world.wall_thickness_m: got 0.1, by which a wall reaches"));
 }
 
 TEST(Scenario, SensorsMustFitThePhysicsSteps) {

@@ -112,6 +112,30 @@ TEST(SimNode, AFailedStartLeavesExistingFiles) {
   std::filesystem::remove_all(config.out_dir);
 }
 
+TEST(SimNode, ARunThatFailsLeavesNoTruthOfAnEarlierRun) {
+  SimConfig config = short_run();
+  config.route.duration_s = 0.1;
+  config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_failed_run_test";
+  std::filesystem::remove_all(config.out_dir);
+  std::filesystem::create_directories(config.out_dir);
+  for (const std::string_view file : SimNode::kFiles)
+    std::ofstream{config.out_dir / file} << "of an earlier run";
+  Inbox inbox;
+  SimNode node{config, inbox};
+  node.begin();
+  Timestamp tick_end{};
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 4; ++i)
+          node.advance(tick_end);
+      },
+      SimulatorError);
+  for (const std::string_view file : SimNode::kFiles)
+    EXPECT_THAT(content(config.out_dir / file), Not(HasSubstr("of an earlier run"))) << file;
+  EXPECT_FALSE(std::filesystem::exists(config.out_dir / "truth.tum"));
+  std::filesystem::remove_all(config.out_dir);
+}
+
 TEST(SimNode, MovesOfMarkersAreWritten) {
   SimConfig config = short_run();
   config.out_dir = std::filesystem::path{::testing::TempDir()} / "sim_node_moves_test";

@@ -10,6 +10,7 @@ namespace waymark {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 /// A short corridor and a small camera: fast.
 Scenario small_scenario() {
@@ -123,12 +124,29 @@ TEST(Simulation, ARobotThatNeverArrivesIsAnError) {
   Scenario scenario = small_scenario();
   scenario.route.duration_s = 0.3;
   Simulation simulation{scenario};
-  EXPECT_THROW(
-      {
-        for (int i = 0; i < 4; ++i)
-          simulation.advance();
-      },
-      SimulatorError);
+  try {
+    for (int i = 0; i < 4; ++i)
+      simulation.advance();
+    FAIL() << "no error";
+  } catch (const SimulatorError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("route.duration_s"));
+    EXPECT_THAT(error.what(), HasSubstr("1.00 m from a wall or box"));
+  }
+}
+
+TEST(Simulation, EventsThatDidNotBeginArePending) {
+  Scenario scenario = small_scenario();
+  scenario.route.end_x_m = 1.2;
+  scenario.route.settle_s = 0.0;
+  scenario.faults = {{.during = {.from_m = 0.1, .to_m = 0.12}}, {.during = {.from_s = 50.0}}};
+  scenario.kidnaps = {{.when = {.at_m = 0.3}, .to_x_m = 3.0}};
+  scenario.markers.moved = {{0, {.at_s = 0.2}, 0.1, 0.0}};
+  Simulation simulation{scenario};
+  while (!simulation.finished())
+    simulation.advance();
+  ASSERT_EQ(simulation.pending_events().size(), 2U);
+  EXPECT_EQ(simulation.pending_events()[0].key, "faults[1]");
+  EXPECT_EQ(simulation.pending_events()[1].key, "kidnaps[0]");
 }
 
 }  // namespace

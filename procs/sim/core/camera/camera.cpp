@@ -5,6 +5,7 @@
 #include "common/pictures/jpeg.hpp"
 #include "sim/core/random_streams.hpp"
 
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -13,6 +14,10 @@ namespace waymark {
 namespace {
 
 constexpr int kQualityStep = 5;
+// Of a picture of random values. Values of single pixels make a JPEG of 46 kB of 640 x 480 pixels;
+// larger pictures fit a datagram only if each JPEG block has one value.
+constexpr std::size_t kMostSinglePixels = 640 * 480;
+constexpr int kJpegBlock_px = 8;
 
 }  // namespace
 
@@ -66,10 +71,16 @@ cv::Mat Camera::expose(const cv::Mat& rendered, std::uint64_t frame, double ligh
 
 cv::Mat Camera::random_picture(Random& random) const {
   const bool grey = noise_config_.colour == ImageColour::kGrey;
-  cv::Mat picture{camera_.height_px, camera_.width_px, grey ? CV_8UC1 : CV_8UC3};
+  const cv::Size size{camera_.width_px, camera_.height_px};
+  cv::Mat picture(size, grey ? CV_8UC1 : CV_8UC3);
+  const int cell_px = picture.total() <= kMostSinglePixels ? 1 : kJpegBlock_px;
+  cv::Mat cells((size.height + cell_px - 1) / cell_px, (size.width + cell_px - 1) / cell_px,
+                picture.type());
   constexpr std::uint64_t kGreyLevels = 256;
-  std::generate(picture.data, picture.data + picture.total() * picture.elemSize(),
+  std::generate(cells.data, cells.data + cells.total() * cells.elemSize(),
                 [&random] { return static_cast<std::uint8_t>(random() % kGreyLevels); });
+  cv::resize(cells, cells, cells.size() * cell_px, 0.0, 0.0, cv::INTER_NEAREST);
+  cells(cv::Rect{{}, size}).copyTo(picture);
   return picture;
 }
 
@@ -77,9 +88,14 @@ CameraFrame Camera::compress(const cv::Mat& picture, Timestamp time) const {
   CameraFrame frame{time, picture.cols, picture.rows, noise_config_.jpeg_quality, {}};
   while (true) {
     frame.jpeg = jpeg_bytes(picture, frame.jpeg_quality);
-    if (frame.jpeg.size() <= kMaxJpegBytes || frame.jpeg_quality <= kQualityStep) return frame;
+    if (frame.jpeg.size() <= kMaxJpegBytes) return frame;
+    if (frame.jpeg_quality <= kQualityStep) break;
     frame.jpeg_quality -= kQualityStep;
   }
+  throw SimulatorError{fmt::format(
+      "robot.camera.width_px, height_px: a frame of {} x {} px has {} bytes at JPEG quality {}, "
+      "expected at most {}: set a smaller picture, or less camera_noise.sigma_grey_levels",
+      picture.cols, picture.rows, frame.jpeg.size(), frame.jpeg_quality, kMaxJpegBytes)};
 }
 
 }  // namespace waymark

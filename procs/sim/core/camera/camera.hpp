@@ -69,11 +69,12 @@ class Camera {
   /// @return 8 bit, one channel (grey) or three (BGR).
   cv::Mat expose(const cv::Mat& rendered, std::uint64_t frame, double light = 1.0) const;
 
-  /// A picture of random values.
+  /// A picture of random values: of each pixel, or, in pictures of more than 640 x 480 pixels, of
+  /// each block of 8 x 8 pixels.
   cv::Mat random_picture(Random& random) const;
 
   /// Compresses at the configured JPEG quality; lowers it in steps until the frame fits
-  /// kMaxJpegBytes or the lowest step is reached.
+  /// kMaxJpegBytes. @throws SimulatorError when it does not fit at the lowest step.
   CameraFrame compress(const cv::Mat& picture, Timestamp time) const;
 
  private:

@@ -76,6 +76,10 @@ class RouteFollower {
 
   double route_length_m() const { return route_length_m_; }
 
+  /// Time in which the robot must arrive: route.duration_s, or, without one, a minute and three
+  /// times what driving and turning takes by the route's speeds and accelerations.
+  double time_limit_s() const;
+
   /// Length of the route up to the robot's projection onto it.
   double progress_m() const { return progress_m_; }
 

@@ -18,9 +18,11 @@ constexpr double kMaxHeadingScale = 0.005;
 void OdometryErrorConfig::describe(Fields& fields) {
   fields.field("draw_from_seed", draw_from_seed,
                "scale +0.01 on odd seeds, -0.01 on even ones; heading_scale drawn in +-0.005");
-  fields.field("scale", scale, {-0.5, 0.5}, "share by which distances are measured too long");
+  fields.field("scale", scale, {-0.5, 0.5},
+               "share by which distances are measured too long; with draw_from_seed = false");
   fields.field("heading_scale", heading_scale, {-0.5, 0.5},
-               "share by which turns are measured too large (wrong wheel base)");
+               "share by which turns are measured too large (wrong wheel base); with "
+               "draw_from_seed = false");
   fields.field("diffusion_m_per_sqrt_m", diffusion_m_per_sqrt_m, kNotNegative,
                "standard deviation of the distance after one metre; grows with its square root");
   fields.field("heading_diffusion_deg_per_sqrt_m", heading_diffusion_deg_per_sqrt_m, kNotNegative,

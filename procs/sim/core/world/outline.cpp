@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/world/outline.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -197,6 +199,25 @@ bool walls_cross(const std::vector<Wall>& walls) {
     for (std::size_t k = i + 1; k < walls.size(); ++k)
       if (cross_each_other(walls[i], walls[k]) || overlap(walls[i], walls[k])) return true;
   return false;
+}
+
+std::optional<Eigen::Vector2d> solid_in_free_space(const std::vector<Wall>& walls) {
+  constexpr double kTouching_m = 1e-6;
+  for (const Wall& wall : walls) {
+    const Se2 world_from_wall{wall.from_m, std::atan2(wall.along().y(), wall.along().x())};
+    const Se2 wall_from_world = world_from_wall.inverse();
+    // Walls meet at right angles, so in these axes every face is a box without width.
+    const Eigen::AlignedBox2d solid{
+        Eigen::Vector2d{kTouching_m - wall.beyond_from_m, kTouching_m - wall.thickness_m},
+        Eigen::Vector2d{wall.length_m() + wall.beyond_to_m - kTouching_m, -kTouching_m}};
+    for (const Wall& other : walls) {
+      Eigen::AlignedBox2d face;
+      face.extend(wall_from_world * other.from_m).extend(wall_from_world * other.to_m);
+      const Eigen::AlignedBox2d common = solid.intersection(face);
+      if (!common.isEmpty()) return world_from_wall * Eigen::Vector2d{common.center()};
+    }
+  }
+  return std::nullopt;
 }
 
 double clearance_m(const std::vector<Wall>& walls, const Eigen::Vector2d& point_m) {

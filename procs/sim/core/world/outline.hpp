@@ -53,6 +53,10 @@ std::optional<std::size_t> opening_without_wall(const WorldConfig& world);
 /// True when two walls cross or overlap, e.g. those of two rooms in the same place.
 bool walls_cross(const std::vector<Wall>& walls);
 
+/// A place where the solid part of a wall reaches into free space behind it, e.g. into a recess
+/// that is nearer than a wall's thickness to the next one; nullopt if there is none.
+std::optional<Eigen::Vector2d> solid_in_free_space(const std::vector<Wall>& walls);
+
 /// Distance from a point to the nearest wall face; negative outside the free space.
 double clearance_m(const std::vector<Wall>& walls, const Eigen::Vector2d& point_m);
 

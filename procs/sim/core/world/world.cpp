@@ -82,7 +82,24 @@ bool is_kept(const MarkerLayoutConfig& markers, const Place& place, std::size_t 
   return random.uniform() >= markers.missing_share;
 }
 
+/// Distance from a point to a box; 0 inside.
+double distance_m(const BoxConfig& box, const Eigen::Vector2d& point_m) {
+  const Se2 world_from_box{box.x_m, box.y_m, radians(box.yaw_deg)};
+  const Eigen::Vector2d in_box_m = world_from_box.inverse() * point_m;
+  const Eigen::Vector2d beyond_m =
+      (in_box_m.cwiseAbs() - 0.5 * Eigen::Vector2d{box.length_m, box.width_m}).cwiseMax(0.0);
+  return beyond_m.norm();
+}
+
 }  // namespace
+
+double room_m(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
+              const Eigen::Vector2d& point_m) {
+  double nearest_m = clearance_m(walls, point_m);
+  for (const BoxConfig& box : boxes)
+    nearest_m = std::min(nearest_m, distance_m(box, point_m));
+  return nearest_m;
+}
 
 std::optional<MarkerPlate> plate_near(const std::vector<Wall>& walls,
                                       const Eigen::Vector2d& point_m, double plate_size_m) {

@@ -60,6 +60,11 @@ std::vector<int> marker_ids(const MarkerLayoutConfig& markers, std::size_t num_p
 std::optional<MarkerPlate> plate_near(const std::vector<Wall>& walls,
                                       const Eigen::Vector2d& point_m, double plate_size_m);
 
+/// Distance from a point to the nearest wall or box, 0 inside a box; negative outside the free
+/// space.
+double room_m(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
+              const Eigen::Vector2d& point_m);
+
 /// True when there is a wall behind the whole plate.
 bool hangs_on_a_wall(const std::vector<Wall>& walls, const Eigen::Vector2d& centre_m,
                      double plate_size_m);
