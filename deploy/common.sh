@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Sourced by the scripts beside it: folders, errors, building, a port of one's own.
 set -euo pipefail
+unset CDPATH  # with it, cd prints where it went, and goes elsewhere
+export LC_ALL=C.UTF-8  # numbers have a point, whatever the user's language
 
 # shellcheck disable=SC2034  # used by the scripts that source this
 readonly kExitFailed=1 kExitUsage=2 kExitDied=3 kExitTimeout=4  # as in exit_codes.hpp
@@ -53,6 +55,12 @@ show_progress_bars() { [[ ! -t 2 ]] || export WAYMARK_PROGRESS_BAR=1; }
 need_value() { (($# >= 2)) || usage_error "$1 needs a value"; }
 
 need_number() { [[ $2 =~ ^[0-9]+$ ]] || usage_error "$1 needs a whole number, not '$2'"; }
+
+# need_decimal OPTION VALUE: 0 or more, without a unit.
+need_decimal() {
+  [[ $2 =~ ^([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]{1,2})?$ ]] ||
+    usage_error "$1 needs a number that is not below 0, not '$2'"
+}
 
 need_count() { [[ $2 =~ ^0*[1-9][0-9]*$ ]] || usage_error "$1 needs a whole number above 0, not '$2'"; }
 

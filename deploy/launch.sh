@@ -25,15 +25,17 @@
 # Deletes an earlier run in the --out folder: its log, truth, robot.toml, logs/, tables, and the rows of all replays of
 # it. Files that no run or replay writes stay; a folder with such names that is no run of launch.sh is refused.
 # detector and viewer are restarted when they die, at most five times, and so is slam with --real-time and --start
-# last; the death of simulator, slam or recorder ends the run. Exit codes: 0 fine, 1 the run failed, 2 bad usage or
-# set-up, 3 a process died, 4 time-out, 128+n signal n.
+# last; the death of simulator, slam or recorder ends the run. A signal stops everything in order, and a second one,
+# 0.3 s later or more, at once. Exit codes: 0 fine, 1 the run failed, 2 bad usage or set-up, 3 a process died, 4 time-out,
+# 128+n signal n.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-readonly kRestartDelays_s=(0.2 0.5 1 2 4)  # one per allowed restart
-readonly kFinish_s=15                      # after the simulator's end, for files to be written
-readonly kStop_s=7                         # from SIGINT to SIGKILL
-readonly kMark=logs/launch.log             # in a folder without it there is no run of ours
+readonly kRestartDelays_us=(200000 500000 1000000 2000000 4000000)  # one per allowed restart
+readonly kFinish_s=15            # after the simulator's end, for files to be written
+readonly kStop_s=7               # for each process to end after SIGINT
+readonly kSameRequest_us=300000  # as in signals.cpp: a terminal that closes sends SIGHUP twice
+readonly kMark=logs/launch.log   # in a folder without it there is no run of ours
 readonly kRunFiles=(run.lcm run.lcm.part scenario.toml robot.toml truth.tum truth_markers.csv truth_marker_moves.csv
   results.json results.md)
 
@@ -55,8 +57,8 @@ parse_arguments() {
       --estimator) slam_options+=(--set "slam.estimator=$2") ;;
       --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
       --set) slam_options+=(--set "$2") ;;
-      --load-map) need_file "$2" && map_options+=(--load-map "$2") ;;
-      --save-map) map_options+=(--save-map "$2") ;;
+      --load-map) need_file "$2" && slam_files+=("$2") && map_options+=(--load-map "$2") ;;
+      --save-map) slam_files+=("$2") && map_options+=(--save-map "$2") ;;
       --mode) slam_options+=(--set "slam.mode=$2") ;;
       --start) slam_options+=(--set "slam.start=$2") ;;
       --channels) need_file "$2" && channel_options=(--config "$2") ;;
@@ -127,6 +129,7 @@ check_slam() {
   local slam=("$bin_dir/waymark-slam" --config "$checked/robot.toml" "${slam_options[@]}")
   "${slam[@]}" --dump-config >"$checked/slam.toml" || exit $?
   estimator=$("${slam[@]}" --print-config slam.estimator) || exit $?
+  slam_files+=("$("${slam[@]}" --print-config robot.markers.survey_file)") || exit $?
 }
 
 # check_programs: each takes the options that it will be started with, and can join the network. (Where
@@ -185,38 +188,33 @@ command_of() {
   command=("$bin_dir/waymark-$1" "${command[@]}" --lcm-url "$lcm_url" "${real_time[@]}")
 }
 
-declare -A pid_of=() code_of=() restarts_of=()  # code_of: of those that have ended
+# code_of: of those that have ended. restart_us_of: when those will be started again that wait for it.
+declare -A pid_of=() code_of=() restarts_of=() restart_us_of=()
 
 # tell SENTENCE: to whoever started the script. Standard error itself is logs/launch.log during the run,
-# where bash may note the ends of its jobs.
-tell() { echo "$script_name: $*" >&"$terminal"; }
+# where bash may note the ends of its jobs. The terminal may be gone.
+tell() { echo "$script_name: $*" >&"$terminal" || true; }
 
-# start NAME [DELAY_S]: in a process group of its own, so that Ctrl-C reaches only this script, which
+# start NAME: in a process group of its own, so that Ctrl-C reaches only this script, which
 # then stops things in order; should the script itself be killed, the kernel ends its processes.
 start() {
-  local name=$1 delay=${2:-} command log=$out/logs/$1.log
+  local name=$1 command log=$out/logs/$1.log
   command_of "$name" "$out/robot.toml"
   (
-    [[ -z $delay ]] || sleep "$delay"
     if [[ $name == sim ]]; then  # its progress is for the terminal, too
-      exec 2> >(exec tee -i -a "$log" >&"$terminal")
+      exec 2> >(exec tee -ipa "$log" >&"$terminal")
     else
       exec 2>>"$log"
     fi
     exec setpriv --pdeathsig TERM "${command[@]}" >>"$log" </dev/null
   ) &
   pid_of[$name]=$!
-  unset "code_of[$name]"
+  unset "code_of[$name]" "restart_us_of[$name]"
 }
 
 is_running() { [[ -v pid_of[$1] ]] && kill -0 "${pid_of[$1]}" 2>/dev/null; }
 
-interrupt() {
-  local name
-  for name in "$@"; do
-    ! is_running "$name" || kill -INT "${pid_of[$name]}" 2>/dev/null || true
-  done
-}
+interrupt() { ! is_running "$1" || kill -INT "${pid_of[$1]}" 2>/dev/null || true; }
 
 # wait_for SECONDS NAME...: true when all have ended in time.
 wait_for() {
@@ -234,9 +232,18 @@ wait_for() {
 stop_all() {
   interrupt sim
   wait_for 2 sim || true
-  interrupt "${others[@]}"
-  wait_for $kStop_s sim "${others[@]}" || true
+  stop_others $kStop_s
+  wait_for $kStop_s sim || true
   kill_all
+}
+
+# stop_others SECONDS: those that speak before those that listen, which hear their last words. Each has so much time.
+stop_others() {
+  local i
+  for ((i = ${#others[@]} - 1; i >= 0; --i)); do
+    interrupt "${others[i]}"
+    wait_for "$1" "${others[i]}" || true
+  done
 }
 
 # kill_all: also what a signal has kept from getting a name: it may come between a process's start and pid_of.
@@ -245,15 +252,23 @@ kill_all() {
   for group in $(jobs -p); do
     kill -KILL -- "-$group" 2>/dev/null || true
   done
-  wait
+  wait || true
 }
 
 on_signal() {
+  signalled_us=${EPOCHREALTIME/./}
   # shellcheck disable=SC2064  # the number as it is now
-  trap "kill_all; exit $((128 + $2))" INT TERM HUP  # impatient
+  trap "on_next_signal $2" INT TERM HUP
   tell "stopped by SIG$1; what there is is in $out"
   stop_all
   exit $((128 + $2))
+}
+
+# on_next_signal NUMBER: somebody is impatient.
+on_next_signal() {
+  ((${EPOCHREALTIME/./} - signalled_us > kSameRequest_us)) || return 0
+  kill_all
+  exit $((128 + $1))
 }
 
 # end_run CODE SENTENCE [NAME]: stops the rest and shows the last words of the process that is to blame.
@@ -261,7 +276,7 @@ end_run() {
   tell "$2"
   if [[ -n ${3:-} && -s $out/logs/$3.log ]]; then
     tell "the end of $out/logs/$3.log:"
-    tr '\r' '\n' <"$out/logs/$3.log" | tail -n 8 >&"$terminal"
+    tr '\r' '\n' <"$out/logs/$3.log" | tail -n 8 >&"$terminal" || true
   fi
   stop_all
   tell "logs are in $out/logs"
@@ -296,15 +311,18 @@ on_other_end() {
   case $name in
     detector | viewer | slam)
       [[ $name != slam ]] || can_resume || end_run $kExitDied "$name $(how "$code")" "$name"
-      ((restarts < ${#kRestartDelays_s[@]})) ||
+      ((restarts < ${#kRestartDelays_us[@]})) ||
         end_run $kExitDied "$name $(how "$code") for the $((restarts + 1))th time" "$name"
       tell "$name $(how "$code"); starting it again"
-      start "$name" "${kRestartDelays_s[restarts]}"
+      restart_us_of[$name]=$((${EPOCHREALTIME/./} + kRestartDelays_us[restarts]))
       restarts_of[$name]=$((restarts + 1))
       ;;
     *) end_run $kExitDied "$name $(how "$code")" "$name" ;;
   esac
 }
+
+# is_death CODE: in lockstep all but the simulator end by themselves once it has said that the run is over.
+is_death() { (($1 != 0 || ${#real_time[@]} > 0)); }
 
 # take_exit_code NAME: sets `code`; false while the process runs and when the code was taken already.
 take_exit_code() {
@@ -320,29 +338,25 @@ supervise() {
   local name code
   until take_exit_code sim; do
     for name in "${others[@]}"; do
-      ! take_exit_code "$name" || ((code == 0)) || on_other_end "$name" "$code"
+      ! take_exit_code "$name" || ! is_death "$code" || on_other_end "$name" "$code"
+      [[ ! -v restart_us_of[$name] ]] || ((${EPOCHREALTIME/./} < restart_us_of[$name])) || start "$name"
     done
-    sleep 0.1
+    sleep 0.1 || true  # a signal may end it, too
   done
   on_sim_end "$code"
 }
 
-# finish: the others end by themselves in lockstep. In real time they are told to, those that speak
-# before those that listen.
+# finish: the others end by themselves in lockstep. In real time they are told to.
 finish() {
-  local name code i
-  if [[ ${#real_time[@]} -ne 0 ]]; then
-    for ((i = ${#others[@]} - 1; i >= 0; --i)); do
-      interrupt "${others[i]}"
-      wait_for $kFinish_s "${others[i]}" || break
-    done
-  fi
+  local name code
+  ((${#real_time[@]} == 0)) || stop_others $kFinish_s
   wait_for $kFinish_s "${others[@]}" ||
     end_run $kExitFailed "not all processes ended within $kFinish_s s of the simulator"
   for name in "${others[@]}"; do
     ! take_exit_code "$name" || ((code == 0)) ||
       end_run $kExitFailed "$name $(how "$code") when the run was over" "$name"
   done
+  [[ ! -v restart_us_of[slam] ]] || end_run $kExitDied "the run was over before slam was started again" slam
   ((${restarts_of[viewer]:-0} == 0)) || render_from_log
 }
 
@@ -357,6 +371,7 @@ parse_arguments "$@"
 prepare
 set -m
 trap kill_all EXIT
+trap '' PIPE  # whoever reads what this script says may be gone first
 trap 'on_signal INT 2' INT
 trap 'on_signal TERM 15' TERM
 trap 'on_signal HUP 1' HUP

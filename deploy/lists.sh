@@ -51,13 +51,13 @@ expand_rows() {
   ((${#rows[@]} > 0)) || usage_error "no row in --estimators '$estimators'"
 }
 
-# check_rows: wrong estimators and settings are found now, not after an hour.
+# check_rows [KEY=VALUE...]: wrong estimators and settings, here those of every row, are found now, not after an hour.
 check_rows() {
   local row words setting options
   for row in "${rows[@]}"; do
     read -r -a words <<<"$row"
     options=(--set "slam.estimator=${words[1]:-}")
-    for setting in "${words[@]:2}"; do options+=(--set "$setting"); done
+    for setting in "$@" "${words[@]:2}"; do options+=(--set "$setting"); done
     "$bin_dir/waymark-slam" "${options[@]}" --dump-config >/dev/null || exit $?
   done
 }

@@ -18,6 +18,7 @@
 #   --reverse       the last scan comes first, and the robot drives backwards
 #   --relations FILE  ground truth of LOG, written to OUT.relations as it is of the perturbed log
 #
+# Replaces OUT.clf and OUT.relations; refuses where one of them is LOG or FILE.
 # PARAM lines and the scans' own odometry are kept, ODOM lines are left out: the importer does not read both.
 # shellcheck source=deploy/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -33,11 +34,11 @@ parse_arguments() {
       --mirror) mirror=1 && shift && continue ;;
       --reverse) reverse=1 && shift && continue ;;
       --seed | --odometry-noise | --odometry-step | --noise-m | --every-s | --beam-step | --relations) need_value "$@" ;;&
-      --seed) seed=$2 ;;
-      --odometry-noise) odometry_noise=$2 ;;
-      --odometry-step) odometry_step=$2 ;;
-      --noise-m) noise_m=$2 ;;
-      --every-s) every_s=$2 ;;
+      --seed) need_number "$1" "$2" && seed=$2 ;;
+      --odometry-noise) need_decimal "$1" "$2" && odometry_noise=$2 ;;
+      --odometry-step) need_decimal "$1" "$2" && odometry_step=$2 ;;
+      --noise-m) need_decimal "$1" "$2" && noise_m=$2 ;;
+      --every-s) need_decimal "$1" "$2" && every_s=$2 ;;
       --beam-step) need_count "$1" "$2" && beam_step=$2 ;;
       --relations) relations=$2 ;;
       -*) usage_error "unknown option '$1'" ;;
@@ -49,6 +50,17 @@ parse_arguments() {
   [[ -f ${files[0]} ]] || usage_error "no log '${files[0]}'"
   [[ ${files[1]} == *.clf ]] || usage_error "the result is plain text: OUT.clf, not '${files[1]}'"
   [[ -z $relations || -f $relations ]] || usage_error "no relations '$relations'"
+  log=${files[0]} written=${files[1]} written_relations=${files[1]%.clf}.relations
+}
+
+# protect_log: what is read is not written at the same time.
+protect_log() {
+  local input
+  for input in "$log" "$relations"; do
+    [[ ! $written -ef $input ]] || usage_error "'$written' would replace '$input', which is read; give another OUT.clf"
+    [[ -z $relations || ! $written_relations -ef $input ]] ||
+      usage_error "'$written_relations' would replace '$input', which is read; give another OUT.clf"
+  done
 }
 
 unpacked() {
@@ -155,8 +167,12 @@ perturbed_relations() {
 }
 
 parse_arguments "$@"
-last_s=$(last_time "${files[0]}")
-[[ $last_s != 0.000000 && -n $last_s ]] || usage_error "no FLASER lines in '${files[0]}'"
-make_folder "$(dirname "${files[1]}")" >/dev/null
-unpacked "${files[0]}" | perturbed "$last_s" >"${files[1]}"
-[[ -z $relations ]] || perturbed_relations "$last_s" "$relations" >"${files[1]%.clf}.relations"
+protect_log
+last_s=$(last_time "$log")
+[[ $last_s != 0.000000 && -n $last_s ]] || usage_error "no FLASER lines in '$log'"
+make_folder "$(dirname "$written")" >/dev/null
+trap 'rm -f -- "$written.part" "$written_relations.part"' EXIT
+unpacked "$log" | perturbed "$last_s" >"$written.part"
+[[ -z $relations ]] || perturbed_relations "$last_s" "$relations" >"$written_relations.part"
+mv -- "$written.part" "$written"
+[[ -z $relations ]] || mv -- "$written_relations.part" "$written_relations"

@@ -15,7 +15,7 @@
 #   --jobs N          runs at the same time (default: 1, so that they do not disturb each other's times)
 #
 # NAME_ANYTHING without relations of its own takes those of NAME. Results: DIR/results.md, results.csv, and per run
-# DIR/NAME/ROW-sSEED as from deploy/replay.sh. Exit code 1 when a run failed; its row is in the table.
+# DIR/NAME/ROW-sSEED as from deploy/replay.sh. Exit code 1 when a run failed: `failed` in its row of the table.
 # Deletes, in DIR, an imported log that is out of date, and the results of an earlier run of the same row; the logs in
 # FOLDER are only read.
 # shellcheck source=deploy/common.sh
@@ -102,16 +102,19 @@ import_log() {
   printf '%s\n' "$key" >"$folder/import.key"
 }
 
-# run_row NAME SEED ROW ESTIMATOR [KEY=VALUE...]: one run, evaluated; what went wrong is in its own log.
+# run_row NAME SEED ROW ESTIMATOR [KEY=VALUE...]: one run, evaluated if replay.sh's exit code, in logs/ROW.code, is 0;
+# what went wrong is in its own log. An earlier run's logs go first, for a replay that is refused leaves them.
 run_row() {
-  local name=$1 seed=$2 row=$3-s$2 estimator=$4 setting options=() folder
+  local name=$1 seed=$2 row=$3-s$2 estimator=$4 setting options=() folder logs=$out/$1/logs code=0
   shift 4
   folder=$out/$name/$row
   [[ $estimator != gmapping ]] || options+=(--config "$deploy_dir/gmapping/slam_gmapping.toml")
   for setting in slam.map_period_s=3600 "slam.seed=$seed" "${settings[@]}" "$@"; do options+=(--set "$setting"); done
-  rm -f "$folder"/{online,final,walls}.txt
+  rm -f -- "$logs/$row".* "$folder"/{online,final,walls}.txt
   "$deploy_dir/replay.sh" "$out/$name/run.lcm" --estimator "$estimator" --row "$row" "${options[@]}" \
-    >"$out/$name/logs/$row.txt" 2>&1 || return 0
+    >"$logs/$row.txt" 2>&1 || code=$?
+  put_text "$logs/$row.code" $code
+  ((code == 0)) || return 0
   evaluate "$folder/trajectory.tum" >"$folder/online.txt" || true
   local final=$folder/trajectory_final.tum
   [[ -f $final ]] || final=$folder/trajectory.tum
@@ -134,7 +137,7 @@ readonly kColumns=log,row,seed,measure,translation_m,near_m,far_m,rotation_deg,o
 # collect NAME ROW SEED: one line of results.csv; what is not known is empty.
 collect() {
   local folder=$out/$1/$2-s$3 files=() file
-  for file in "$folder"/{final,online,walls}.txt "$out/$1/logs/$2-s$3.slam.log"; do
+  for file in "$folder"/{final,online,walls}.txt "$out/$1/logs/$2-s$3".{slam.log,code}; do
     [[ ! -f $file ]] || files+=("$file")
   done
   awk -v start="$1,$2,$3" '
@@ -142,6 +145,7 @@ collect() {
     FILENAME ~ /final.txt$/ { final[$1] = $2 }
     FILENAME ~ /online.txt$/ { online[$1] = $2 }
     FILENAME ~ /walls.txt$/ { walls = $2 }
+    FILENAME ~ /.code$/ { is_done = $1 == 0 }
     match($0, /estimator: [0-9]+ observations.*/) {
       split(substr($0, RSTART), word, " ")
       scans = word[2]; updates = word[4]; busy_s = word[6]; worst_ms = word[12]; process_s = word[15]
@@ -154,7 +158,7 @@ collect() {
       return rounded(values["ate_se2_m:"], 4) ",,," rounded(values["heading_rms_deg:"], 3)
     }
     END {
-      measure = "translation_mean_m:" in final ? "relations" : "ate_se2_m:" in final ? "ate" : scans > 0 ? "none" : "failed"
+      measure = !is_done ? "failed" : "translation_mean_m:" in final ? "relations" : "ate_se2_m:" in final ? "ate" : "none"
       print start "," measure "," error_of(final) "," error_of(online) "," walls "," scans "," updates "," \
         (scans > 0 ? rounded(1e3 * busy_s / scans, 2) : "") "," (updates > 0 ? rounded(1e3 * busy_s / updates, 2) : "") "," \
         worst_ms "," rounded(process_s, 1) "," peak_mb
@@ -178,7 +182,7 @@ table() {
 
 parse_arguments "$@"
 need_programs waymark-{import,slam,viewer,evaluate}
-check_rows
+check_rows "${settings[@]}"
 find_logs
 out=$(make_folder "$out")
 for name in "${names[@]}"; do

@@ -35,8 +35,8 @@ parse_arguments() {
       --estimator) estimator=$2 ;;
       --config) need_file "$2" && slam_files+=("$2") && slam_options+=(--config "$2") ;;
       --set) slam_options+=(--set "$2") ;;
-      --load-map) need_file "$2" && map_options+=(--load-map "$2") ;;
-      --save-map) map_options+=(--save-map "$2") ;;
+      --load-map) need_file "$2" && slam_files+=("$2") && map_options+=(--load-map "$2") ;;
+      --save-map) slam_files+=("$2") && map_options+=(--save-map "$2") ;;
       --mode) slam_options+=(--set "slam.mode=$2") ;;
       --start) slam_options+=(--set "slam.start=$2") ;;
       --skip-s | --until-s) part+=("$1" "$2") ;;
@@ -74,7 +74,7 @@ prepare() {
   clear_old_results
 }
 
-# check_slam: sets slam_options, and config to what they come to.
+# check_slam: sets slam_options, and config to what they come to; adds to slam_files the survey.
 check_slam() {
   local seed='' scenario=${log%/*}/scenario.toml
   if [[ -f $scenario ]]; then
@@ -83,6 +83,7 @@ check_slam() {
   fi
   slam_options=(--config "$robot" ${seed:+--set "slam.seed=$seed"} --set "slam.estimator=$estimator" "${slam_options[@]}")
   config=$("$bin_dir/waymark-slam" "${slam_options[@]}" --dump-config) || exit $?
+  slam_files+=("$("$bin_dir/waymark-slam" "${slam_options[@]}" --print-config robot.markers.survey_file)") || exit $?
   "$bin_dir/waymark-slam" "${slam_options[@]}" "${map_options[@]}" "${part[@]}" --log "$log" --check || exit $?
 }
 

@@ -158,15 +158,15 @@ run_jobs() {
 
 # on_signal NAME NUMBER
 on_signal() {
-  trap '' INT TERM HUP
-  say "stopped by SIG$1; the same command goes on from here"
+  trap '' INT TERM HUP PIPE
+  say "stopped by SIG$1; the same command goes on from here" || true  # whoever reads it may be gone
   [[ -z ${parallel_pid:-} ]] || kill -INT "$parallel_pid" 2>/dev/null || true
   wait
   exit $((128 + $2))
 }
 
 summarise() {
-  "$bin_dir/waymark-evaluate" sweep "$out" || die $? "no table"
+  "$bin_dir/waymark-evaluate" sweep "$out" --tolerant || die $? "no table"
   ! command -v gnuplot >/dev/null || (cd "$out/plots" && gnuplot plots.gp >plots.log 2>&1) || say "no plots; see $out/plots"
   say "table: $out/results.md, $out/results.csv; worst maps: $out/index.html"
 }
@@ -176,6 +176,7 @@ need_programs waymark-{sim,detector,slam,viewer,recorder,evaluate}
 [[ -z $variants ]] || need_programs waymark-faults
 command -v parallel >/dev/null || die $kExitUsage "GNU parallel is missing; install it with $deploy_dir/install-deps.sh --tests"
 check_scenarios
+# shellcheck disable=SC2119  # no settings of every row here
 check_rows
 out=$(make_folder "$out")
 exec {sweep_lock}<"$out"

@@ -205,4 +205,4 @@ if [[ $(cat "$base/finished" 2>/dev/null) == "$(everything)" ]] && [[ ! -e $base
 do_job
 put_text "$base/finished" "$(everything)"
 [[ -z $count ]] || report_count
-if [[ -n $again ]]; then "$bin_dir/waymark-evaluate" sweep "$sweep"; fi
+if [[ -n $again ]]; then "$bin_dir/waymark-evaluate" sweep "$sweep" --tolerant; fi

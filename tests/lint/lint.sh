@@ -7,6 +7,7 @@ set -eu  # no pipefail: grep finding nothing is good news
 
 readonly kMaxLines=400 kSkipped=77
 rule=${1:?usage: lint.sh RULE [SOURCE_DIR [BUILD_DIR]]}
+unset CDPATH
 root=${2:-$(cd "$(dirname "$0")/../.." && pwd)}
 build_dir=${3:-}
 cd "$root"

@@ -3,6 +3,7 @@
 # Every rule of lint.sh finds what it is there for, and leaves a clean tree alone.
 set -euo pipefail
 
+unset CDPATH
 lint=$(cd "$(dirname "$0")" && pwd)/lint.sh
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

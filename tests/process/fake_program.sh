@@ -52,6 +52,7 @@ case " $* " in
     seed=$(sed -nE 's/^seed = ([0-9]+).*/\1/p' "$(argument --config "$@")")
     echo "${seed:-7}"
     exit ;;
+  *" --print-config robot.markers.survey_file "*) sed -nE 's/.*robot.markers.survey_file=([^ ]+).*/\1/p' <<<"$*" && exit ;;
   *" --print-config slam.estimator "*)
     sed -E 's/.*slam.estimator=([a-z_]+).*/\1/' <<<"slam.estimator=fake_estimator $*"
     exit ;;
@@ -64,9 +65,11 @@ case " $* " in
     printf '[run]\nseed = 7  # seed\n\n[slam]\nestimator = "%s"  # name\n' "$estimator"
     exit ;;
   *" --dump-robot-config "*) echo "[robot]" && exit ;;
+  " carmen "*) log=$(argument --out "$@") && touch "$log" "${log%/*}/robot.toml" && exit ;;
+  " relations "*) echo "translation_mean_m: 0.5" && exit ;;
   *" --log "*) # replay
     [[ -z $(setting replays) ]] || { echo $$ >>"$FAKE_DIR/pids" && exec sleep "$(setting replays)"; }
-    echo "replayed" >&2
+    echo "estimator: 9 observations, 9 updates, 1.0 s of processor time, worst 2.0 ms" >&2
     echo '{"messages": 12, "wall_s": 0.5}' >"$(argument --report "$@")"
     echo "$*" >"$FAKE_DIR/$name.replay"
     [[ $name != slam && $name != detector ]] || touch "$(argument --out-log "$@")"

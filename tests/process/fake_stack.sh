@@ -4,6 +4,7 @@
 # script, and run_cases. A case is a function in lower case without arguments.
 set -euo pipefail
 
+unset CDPATH
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -15,7 +16,7 @@ deploy=$work/share/waymark/deploy
 mkdir -p "$work/bin" "$work/share/waymark"
 cp -r "$source_dir/deploy" "$deploy"
 cp "$source_dir/tests/process/fake_program.sh" "$work/bin/waymark-sim"
-for name in detector slam viewer recorder evaluate faults; do ln -s waymark-sim "$work/bin/waymark-$name"; done
+for name in detector slam viewer recorder evaluate faults import; do ln -s waymark-sim "$work/bin/waymark-$name"; done
 scenario=$work/short.toml
 touch "$scenario"
 # shellcheck disable=SC2034  # for the cases

@@ -5,6 +5,7 @@
 # usage: tests/process/lcm_layouts_test.sh
 set -euo pipefail
 
+unset CDPATH
 script=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/cmake/LcmLayouts.cmake
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -145,9 +145,14 @@ what_is_no_run_is_not_replaced() {
 
 an_old_run_stays_when_the_new_one_cannot_start() {
   leftovers_of_case
-  mv "$scenario" "$out/scenario.toml"
+  cp "$scenario" "$out/scenario.toml"
   expect 2 launch.sh "$out/scenario.toml" --out "$out" --estimator unknown && expect_output "got 'unknown'"
   expect 2 launch.sh "$out/scenario.toml" --out "$out" && expect_output "scenario.toml' belongs to the run"
+  local option
+  for option in "--load-map " "--save-map " "--set robot.markers.survey_file="; do
+    # shellcheck disable=SC2086  # two words
+    expect 2 launch.sh "$scenario" --out "$out" $option"$out/old_row/map.png" && expect_output "map.png' belongs to the run"
+  done
   expect_intact_of_case
 }
 
@@ -245,6 +250,31 @@ detector_and_viewer_are_restarted() {
   grep -q -- "--log $out/run.lcm --out $out/fake_estimator" "$work/viewer.replay" || fail "no pictures from the log"
 }
 
+# What ends by itself, or well because it was told to, is missing all the same.
+a_process_that_is_told_to_end_in_real_time_is_missing() {
+  FAKE_sim_seconds=30 env --default-signal=INT "$deploy/launch.sh" "$scenario" --out "$out" --real-time >"$output" 2>&1 &
+  local run=$! code=0
+  wait_until all_started
+  kill -TERM "$(cat "$work/pids.viewer")"
+  wait_until grep -q "viewer ended with code 0; starting it again" "$output"
+  kill -TERM "$(cat "$work/pids.recorder")"
+  wait $run || code=$?
+  ((code == 3)) || fail "exit code $code"
+  expect_output "recorder ended with code 0"
+  expect_nothing_left
+}
+
+# Dead for the fourth time, the viewer would be started again two seconds after that.
+a_run_that_ends_before_a_restart_is_good() {
+  local began=$SECONDS
+  FAKE_sim_seconds=3 FAKE_viewer_exit=crash expect 0 launch.sh "$scenario" --out "$out" --real-time
+  ((SECONDS - began < 12)) || fail "it took $((SECONDS - began)) s"
+  expect_output "its files are made once more, from the log"
+  rm "$work/closed"
+  FAKE_sim_seconds=3 FAKE_slam_exit=crash expect 3 launch.sh "$scenario" --out "$out" --real-time --start last
+  expect_output "the run was over before slam was started again"
+}
+
 restarts_end() {
   FAKE_sim_seconds=60 FAKE_detector_exit=crash expect 3 launch.sh "$scenario" --out "$out"
   [[ $(wc -l <"$work/pids.detector") == 6 ]] || fail "not five restarts"
@@ -273,9 +303,31 @@ signals_stop_everything() {
     local code=0
     wait $! || code=$?
     ((code == ${signal#*:})) || fail "exit code $code after SIG${signal%:*}"
-    [[ $(head -n 1 "$work/interrupted") == sim ]] || fail "sim was not the first to be told"
+    [[ $(xargs <"$work/interrupted") == "sim detector slam viewer recorder" ]] || fail "not in order"
     expect_nothing_left
   done
+}
+
+# What is said cannot be written any more, and SIGHUP comes from the terminal and from the shell in it.
+a_terminal_that_closes_stops_everything_in_order() {
+  local run code=0
+  FAKE_sim_seconds=30 env --default-signal=INT "$deploy/launch.sh" "$scenario" --out "$out" --real-time >/dev/full 2>&1 &
+  run=$!
+  wait_until all_started
+  kill -HUP $run
+  sleep 0.1
+  kill -HUP $run || true
+  wait $run || code=$?
+  ((code == 129)) || fail "exit code $code"
+  [[ $(xargs <"$work/interrupted") == "sim detector slam viewer recorder" ]] || fail "not in order"
+  expect_nothing_left
+}
+
+# As in: launch.sh ... | head
+a_reader_that_goes_first_does_not_end_the_run() {
+  exec 8> >(exec sleep 0.5)
+  FAKE_sim_seconds=1.5 "$deploy/launch.sh" "$scenario" --out "$out" >&8 2>&8 || fail "exit code $?"
+  [[ -e $out/run.lcm ]] || fail "no log"
 }
 
 a_signal_while_settings_are_checked_leaves_nothing() {
@@ -308,6 +360,7 @@ a_second_signal_ends_it_at_once() {
   wait_until all_started
   kill -TERM $run
   wait_until test -e "$work/interrupted"
+  sleep 0.4  # sooner it would count as the same one
   began=$SECONDS
   kill -TERM $run
   wait $run || code=$?

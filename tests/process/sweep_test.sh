@@ -171,13 +171,14 @@ a_failed_recording_is_a_failure_of_its_seed() {
   [[ -e $sweep/short/seed-1/mine/done && ! -e $sweep/short/seed-1/failed ]] || fail "it was not tried again"
 }
 
+# The reader of its output goes first.
 a_killed_sweep_goes_on() {
   expect 0 "${arguments[@]}" --plan-only
   expect 0 sweep_job.sh "$sweep" short 1
   local signal
   for signal in TERM:143 KILL:137; do
     rm -f "$work"/pids* "$work/closed"
-    FAKE_sim_seconds=30 "$deploy/${arguments[0]}" "${arguments[@]:1}" >"$output" 2>&1 &
+    FAKE_sim_seconds=30 "$deploy/${arguments[0]}" "${arguments[@]:1}" > >(exec head -n 1 >"$output") 2>&1 &
     local script=$!
     wait_until grep -qs . "$work/pids.sim"  # the last one to be started
     if [[ $signal == KILL* ]]; then kill -STOP $script && pkill -KILL -P $script; fi  # parallel first

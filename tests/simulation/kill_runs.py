@@ -3,10 +3,11 @@
 """Live runs of a short corridor, and replays of one, that are killed or stopped at random times.
 
 Each live run does one thing: SIGKILL to one of its five processes, or SIGTERM, SIGINT or SIGHUP to deploy/launch.sh, once
-or twice within 0.3 s. Each replay, one run in four: SIGKILL to slam or viewer, SIGTERM to deploy/replay.sh, or SIGINT or
-SIGHUP to all of it, as a terminal does. Afterwards no process of it lives (nor holds its port, which is locked by a file
-that processes inherit), the exit code is one that docs/reference.md names for it, every file is whole, and the map that
---save-map was to replace is the old one or a whole new one. A run takes 3 to 10 s: no part of tests/run.sh.
+or twice within 0.6 s (twice within 0.3 s counts as once). Each replay, one run in four: SIGKILL to slam or viewer, SIGTERM
+to deploy/replay.sh, or SIGINT or SIGHUP to all of it, as a terminal does. Afterwards no process of it lives (nor holds its
+port, which is locked by a file that processes inherit), the exit code is one that docs/reference.md names for it, every
+file is whole, and the map that --save-map was to replace is the old one or a whole new one. A run takes 3 to 10 s: no part
+of tests/run.sh.
 
 usage: tests/simulation/kill_runs.py [--runs N] [--seed N] [--deploy DIR] [--out DIR] [--keep]
 """
@@ -137,7 +138,7 @@ class Runs:
         at_s = self.random.uniform(0.0, 1.1 * self.duration_s[script])
         number = self.random.choice((signal.SIGKILL,) * len(STOPS) + STOPS)
         victim = self.random.choice(PROGRAMS if script == "launch" else ("slam", "viewer"))
-        twice_s = self.random.choice([None, self.random.uniform(0.0, 0.3)])
+        twice_s = self.random.choice([None, self.random.uniform(0.0, 0.6)])
         try:
             run.wait(at_s)
         except subprocess.TimeoutExpired:

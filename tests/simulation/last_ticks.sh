@@ -13,6 +13,7 @@
 # Deletes earlier runs of its own in DIR.
 set -euo pipefail
 
+unset CDPATH
 deploy_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../deploy" && pwd)
 out='' runs=40 single=''
 while (($# > 0)); do

@@ -12,6 +12,7 @@ case ${1:-} in
   --help | -h) sed -nE '3,/^set/{/^set/q; s/^# ?//p}' "$0" && exit 0 ;;
   ?*) echo "thread_sanitizer: takes no arguments (see --help)" >&2 && exit 2 ;;
 esac
+unset CDPATH
 build_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/build/tsan
 # shellcheck source=tests/process/installed.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../process/installed.sh"
