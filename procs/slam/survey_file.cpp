@@ -4,6 +4,7 @@
 #include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
 #include "common/markers/marker_dictionary.hpp"
+#include "common/messages/bounds.hpp"
 #include "slam/sigma_range.hpp"
 
 #include <fmt/format.h>
@@ -89,6 +90,17 @@ class SurveyReader {
     return *value;
   }
 
+  double needed_coordinate(const std::vector<std::string>& fields,
+                           const std::string& column) const {
+    const double value_m = needed(fields, column);
+    if (std::abs(value_m) > bounds::kMapCoordinate_m)
+      fail(
+          fmt::format("{} is {}, but poses are precise to a millimetre only up to {} m from the "
+                      "origin; subtract a constant from all {}",
+                      column, value_m, bounds::kMapCoordinate_m, column));
+    return value_m;
+  }
+
   double needed_sigma(const std::vector<std::string>& fields, const std::string& column) const {
     const double value = needed(fields, column);
     if (value < kSigmaRange.low || value > kSigmaRange.high)
@@ -106,7 +118,7 @@ class SurveyReader {
     if (!ids_.insert(marker.id).second) fail(fmt::format("id {} comes twice", marker.id));
     const auto yaw_rad = number(fields, "yaw_rad");
     marker.has_yaw = yaw_rad.has_value();
-    marker.survey_from_marker = {needed(fields, "x_m"), needed(fields, "y_m"),
+    marker.survey_from_marker = {needed_coordinate(fields, "x_m"), needed_coordinate(fields, "y_m"),
                                  yaw_rad.value_or(0.0)};
     marker.sigmas.x() = needed_sigma(fields, "sigma_x_m");
     marker.sigmas.y() = needed_sigma(fields, "sigma_y_m");

@@ -72,28 +72,18 @@ void check_are_mergeable(const MapFile& a, const MapFile& b) {
   }
 }
 
-/// Farthest that tiles and walls can be stored from the origin, along x and along y.
-double largest_coordinate_m(const MapSnapshot& map) {
-  constexpr double kMargin_m = 1000.0;  // for what lies beyond the mapped cells
-  const double tiles_m = map.grid.frame.resolution_m * kTileSize * bounds::kTileIndex;
-  const double walls_m = map.walls.spacing_m() * bounds::kCellIndex;
-  return std::min({tiles_m, walls_m, bounds::kPosition_m}) - kMargin_m;
-}
-
-/// @throws SetupError if the map would lie too far from the new origin to be stored.
-void check_is_storable(const MapSnapshot& map, const Se2& new_from_old) {
-  const double most_m = largest_coordinate_m(map);
+/// @throws SetupError if the map would lie so far from the new origin that poses are not precise.
+void check_is_near_origin(const MapSnapshot& map, const Se2& new_from_old) {
   const Extent old = extent_of(map.grid);
   for (const double x_m : {old.least.x(), old.most.x()}) {
     for (const double y_m : {old.least.y(), old.most.y()}) {
       const Eigen::Vector2d corner = new_from_old * Eigen::Vector2d{x_m, y_m};
-      if (corner.cwiseAbs().maxCoeff() <= most_m) continue;
+      if (corner.cwiseAbs().maxCoeff() <= bounds::kMapCoordinate_m) continue;
       throw SetupError{fmt::format(
-          "--x-m {:.10g} --y-m {:.10g}: the map would lie at x {:.7g} m, y {:.7g} m, but one with "
-          "cells of {} m can be stored up to {:.0f} m from the origin; subtract a constant from "
+          "--x-m {:.10g} --y-m {:.10g}: the map would lie at x {:.7g} m, y {:.7g} m, but poses are "
+          "precise to a millimetre only up to {:.0f} m from the origin; subtract a constant from "
           "--x-m and --y-m",
-          new_from_old.x(), new_from_old.y(), corner.x(), corner.y(), map.grid.frame.resolution_m,
-          most_m)};
+          new_from_old.x(), new_from_old.y(), corner.x(), corner.y(), bounds::kMapCoordinate_m)};
     }
   }
 }
@@ -202,7 +192,7 @@ std::string transform_map(const std::filesystem::path& file, const Se2& new_from
                           const std::string& frame, const std::filesystem::path& out) {
   check_is_new(out);
   MapFile map = read_map_file(file);
-  check_is_storable(map.map, new_from_old);
+  check_is_near_origin(map.map, new_from_old);
   MapSnapshot moved = transformed(map.map, new_from_old);
   moved.parent_map_id = map.map.map_id;
   if (!frame.empty()) map.info.frame = frame;

@@ -8,6 +8,9 @@ namespace waymark::bounds {
 
 /// Of positions in any frame: up to UTM's northings, for GNSS frames.
 inline constexpr double kPosition_m = 1e7;
+/// Of surveyed markers, and of maps in other coordinates. Poses are sent in single precision, too
+/// (pose2D_t), which has steps of 1 mm there.
+inline constexpr double kMapCoordinate_m = 16'384.0;
 /// Of beam angles and headings; some odometries do not wrap headings: 1.6 million turns.
 inline constexpr double kAngle_rad = 1e7;
 /// Of LiDAR ranges; LiDARs of robots measure some hundred metres at most.

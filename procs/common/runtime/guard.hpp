@@ -9,9 +9,8 @@
 namespace waymark {
 
 /// Sets up signals and logging, runs `body`, and logs what it throws.
-/// @return the exit code: that of `body`, or kExitUsage or kExitFailed after an exception;
-/// kExitFailed
-///         also if what it printed to standard output could not be written.
+/// @return the exit code: that of `body`; kExitUsage or kExitFailed after an exception; kExitFailed
+///         if what it printed to standard output could not be written.
 int run_guarded(const ProcessTraits& traits, const std::function<int()>& body);
 
 /// Lets a node process messages, and logs what it throws.

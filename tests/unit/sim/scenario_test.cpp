@@ -106,10 +106,10 @@ TEST(Scenario, WhereTheRobotTurnsItNeedsMoreRoomThanWhereItDrives) {
         {fmt::format("route.waypoints=[{{x_m=3.0, y_m={}}}, {{x_m=3.0, y_m=0.0}}]", y_m),
          "markers.layout=none"});
   };
-  EXPECT_EQ(along_the_wall_at(0.76), "no error");
+  EXPECT_EQ(along_the_wall_at(0.80), "no error");
   EXPECT_THAT(
-      along_the_wall_at(0.80),
-      HasSubstr("route.waypoints: (3.00, 0.80) is 0.20 m from a wall or box, expected 0.24"));
+      along_the_wall_at(0.83),
+      HasSubstr("route.waypoints: (3.00, 0.83) is 0.17 m from a wall or box, expected 0.20"));
   EXPECT_EQ(error_of({"route.start_y_m=0.7", "route.waypoints=[{x_m=9.0, y_m=0.83}]"}), "no error");
 }
 
@@ -141,22 +141,11 @@ TEST(Scenario, ImpossibleEventsAreErrors) {
   EXPECT_THAT(error_of({"faults=[{wheel='left'}]"}), HasSubstr("a wheel can only"));
 }
 
-TEST(Scenario, EventsThatTheRunCannotReachAreErrors) {
-  EXPECT_EQ(error_of({"faults=[{from_m=47.9, to_m=60.0}]"}), "no error");
-  EXPECT_THAT(error_of({"faults=[{from_m=48.0}]"}),
-              HasSubstr("faults[0]: would begin after 48 m, but the route has 48.00 m"));
-  EXPECT_THAT(error_of({"kidnaps=[{at_m=48.5, to_x_m=20.0}]"}), HasSubstr("kidnaps[0]: would"));
-  EXPECT_THAT(error_of({"world.boxes=[{x_m=20.0, y_m=0.7, from_m=49.0}]"}),
-              HasSubstr("world.boxes[0]: would begin"));
-  EXPECT_THAT(error_of({"markers.moved=[{place=3, at_s=9000.0, dx_m=1.0}]"}),
-              HasSubstr("markers.moved[0]: would begin after 9000 s, but the run ends after"));
-  EXPECT_THAT(error_of({"faults=[{from_s=12.0}]", "route.duration_s=10"}),
-              HasSubstr("would begin after 12 s, but the run ends after 11.0 s"));
+TEST(Scenario, EventsByDistanceNeedARoute) {
   const auto by_command = [](const std::string& event) {
     return error_of({"route.source=command", "route.duration_s=60", event});
   };
   EXPECT_EQ(by_command("faults=[{from_s=12.0, to_s=80.0}]"), "no error");
-  EXPECT_THAT(by_command("faults=[{from_s=60.0}]"), HasSubstr("ends after 60.0 s"));
   EXPECT_THAT(by_command("faults=[{from_m=1.0}]"), HasSubstr("command has no route"));
   EXPECT_THAT(by_command("faults=[{to_m=1.0}]"), HasSubstr("command has no route"));
   EXPECT_THAT(by_command("kidnaps=[{at_m=1.0, to_x_m=20.0}]"), HasSubstr("command has no route"));

@@ -293,6 +293,8 @@ TEST_F(SurveyedMap, ErrorsInTheFileAreReportedWithTheirLine) {
   expect(good + "250,3,0,0,0.1,0.01,0.01\n", "line 3: id is 250, but the dictionary has 0 to 249");
   expect(good + "-1,3,0,0,0.1,0.01,0.01\n", "line 3: id is -1");
   expect(good + "2,nan,0,0,0.1,0.01,0.01\n", "line 3: x_m is 'nan', which is not a number");
+  expect(good + "2,3,4500000,0,0.1,0.01,0.01\n",
+         "line 3: y_m is 4500000, but poses are precise to a millimetre only up to 16384 m");
   expect(good + "2,3\n", "line 3: there is no y_m");
   expect("id,x_m\n1,2\n", "line 1: there is no column y_m");
   expect(header, "defines no frame");

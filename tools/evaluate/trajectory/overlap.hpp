@@ -16,8 +16,7 @@ struct Overlap {
   std::size_t poses{};    ///< of the estimate
   std::size_t outside{};  ///< of these, outside the truth's time span
   double truth_s{};       ///< duration of the truth
-  double
-      first_pose_s{};  ///< from the truth's begin to the first pose inside; localising takes time
+  double first_pose_s{};  ///< from the truth's begin to the first pose inside
   /// Share of the truth's time from the first pose on, up to the last pose, and without the gaps in
   /// which the true robot drives more than 2 m.
   double covered_share{};
