@@ -167,25 +167,21 @@ void ViewerNode::subscribe(Inbox& inbox) {
 }
 
 bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
-  if (map_id == map_id_) {
-    map_clock_.see_fitting();
-    return true;
-  }
-  if (map_id_ && time < map_began_ && !map_clock_.see_misfit(time)) return false;
-  if (map_id_) {
+  using Origin = viewer::CurrentMap::Origin;
+  const auto old_map_id = current_map_.id();
+  const Origin origin = current_map_.take(map_id, time);
+  if (origin == Origin::kOfNewMap) {
     logging::info("slam has begun map {:016x}", static_cast<std::uint64_t>(map_id));
-    archive_old_map();
+    archive_map(*old_map_id);
     graph_parts_.clear();
     updater_.begin_map();
     change_monitor_ = {};
     if (live_feed_) live_feed_->begin_map();
   }
-  map_id_ = map_id;
-  map_began_ = time;
-  return true;
+  return origin != Origin::kLate;
 }
 
-void ViewerNode::archive_old_map() {
+void ViewerNode::archive_map(std::int64_t map_id) {
   constexpr int kMostArchived = 20;  // bounds the disk space if slam keeps restarting
   if (!has_slam_data(scene_) || num_archived_ > kMostArchived) return;
   if (++num_archived_ > kMostArchived) {
@@ -193,8 +189,7 @@ void ViewerNode::archive_old_map() {
                   folder_.path().string(), kMostArchived);
     return;
   }
-  const auto path =
-      folder_.path() / fmt::format("map-{:016x}", static_cast<std::uint64_t>(*map_id_));
+  const auto path = folder_.path() / fmt::format("map-{:016x}", static_cast<std::uint64_t>(map_id));
   try {
     viewer::OutputFolder current = std::exchange(folder_, viewer::OutputFolder{path});
     write_files();

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "common/node/node.hpp"
-#include "common/time/clock_step_detector.hpp"
 #include "viewer/core/scene/change_monitor.hpp"
+#include "viewer/core/scene/current_map.hpp"
 #include "viewer/core/scene/scene.hpp"
 #include "viewer/files/output_folder.hpp"
 #include "viewer/http/board.hpp"
@@ -56,8 +56,8 @@ class ViewerNode final : public Node {
   /// Switches to that map when it is new, after a restart or a reset of slam.
   /// @return false for a late message of an earlier map.
   bool follow(std::int64_t map_id, Timestamp time);
-  /// Writes the files of the old map to a folder of its own.
-  void archive_old_map();
+  /// Writes the files of the scene's map to a folder of its own.
+  void archive_map(std::int64_t map_id);
   void write_files();
   /// Writes the data files when a period has passed, and one of the pictures: all at once would
   /// delay a lockstep run. Large maps, which take longer, are written less often (Pacer).
@@ -78,9 +78,7 @@ class ViewerNode final : public Node {
   viewer::ChangeMonitor change_monitor_{};
   viewer::OutputFolder folder_;
   viewer::Pacer pacer_;
-  std::optional<std::int64_t> map_id_{};  ///< of the map in the scene
-  Timestamp map_began_{};
-  ClockStepDetector map_clock_{};  ///< of the messages of another map
+  viewer::CurrentMap current_map_{};
   int num_archived_{0};
   bool archive_failed_{false};
   bool map_was_cut_{false};

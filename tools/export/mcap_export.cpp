@@ -224,18 +224,12 @@ void McapExport::write_truth() {
 }
 
 bool McapExport::follow(std::int64_t map_id, Timestamp time) {
-  if (map_id == map_id_) {
-    map_clock_.see_fitting();
-    return true;
-  }
-  if (map_id_ && time < map_began_ && !map_clock_.see_misfit(time)) {
+  using Origin = viewer::CurrentMap::Origin;
+  const Origin origin = current_map_.take(map_id, time);
+  if (origin == Origin::kOfNewMap) begin_map(time);
+  if (origin == Origin::kLate)
     counters_.add("messages of an earlier map left out", CountKind::kLoss);
-    return false;
-  }
-  if (map_id_) begin_map(time);
-  map_id_ = map_id;
-  map_began_ = time;
-  return true;
+  return origin != Origin::kLate;
 }
 
 void McapExport::begin_map(Timestamp time) {

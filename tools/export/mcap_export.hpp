@@ -3,10 +3,10 @@
 #pragma once
 
 #include "common/node/node.hpp"
-#include "common/time/clock_step_detector.hpp"
 #include "export/foxglove.hpp"
 #include "export/mcap_writer.hpp"
 #include "export/pose_pairing.hpp"
+#include "viewer/core/scene/current_map.hpp"
 #include "viewer/core/scene/scene.hpp"
 #include "viewer/scene_updater.hpp"
 
@@ -38,8 +38,7 @@ class McapExport final : public Node {
   void add_odometry(const pose2D_t& message);
   void add_truth(const pose2D_t& message);
   /// Switches to that map when it is new, after a restart or a reset of slam.
-  /// @return false for a late message of an earlier map, unless so many of these come that the
-  /// clock was set back.
+  /// @return false for a late message of an earlier map.
   bool follow(std::int64_t map_id, Timestamp time);
   void begin_map(Timestamp time);
   /// Writes what has become known of the frames.
@@ -61,9 +60,7 @@ class McapExport final : public Node {
       truth_{};
   PosePairing odometry_{};
   PosePairing true_poses_{};
-  std::optional<std::int64_t> map_id_{};  ///< of the map in the scene
-  Timestamp map_began_{};
-  ClockStepDetector map_clock_{};
+  viewer::CurrentMap current_map_{};
   std::optional<Timestamp> last_map_{};
   bool map_has_changed_{false};
   Timestamp newest_{};

@@ -13,8 +13,6 @@ constexpr std::chrono::milliseconds kUnwatchedPeriod{1000};  // for the slider's
 constexpr float kPathStep_m = 0.03F;
 /// 30 km of path.
 constexpr std::size_t kMaxPathPoints = 1'000'000;
-/// Between a stamp and those of other channels.
-constexpr Duration kLongestDelay = std::chrono::seconds{10};
 /// More than there are programs; bounds memory.
 constexpr std::size_t kMaxProcesses = 16;
 /// A square of 200 m in tiles of 32 cells of 0.05 m; further tiles are not shown.

@@ -34,10 +34,12 @@ struct TileUpdate {
   std::span<const std::int16_t> marker_ids{};
 };
 
+/// Of a message after others: a stamp further behind theirs is no late one, but of another clock.
+inline constexpr Duration kLongestDelay = std::chrono::seconds{10};
+
 /// True for a stamp before a known one, unless it is so long before that the clock was set back or
 /// the known one was wrong: then what came last is newer.
 inline bool is_older(Timestamp time, Timestamp known) {
-  constexpr Duration kLongestDelay = std::chrono::seconds{10};
   return time < known && time >= known - kLongestDelay;
 }
 
