@@ -23,7 +23,7 @@ constexpr double kTimeReserve_s = 60.0;
 
 /// Upper bound of the time from rest to rest over a distance or an angle: the second term is what
 /// RouteFollower takes to turn if the speed is not limited; to drive takes less.
-double travel_time_s(double way, double speed, double acceleration) {
+double longest_time_s(double way, double speed, double acceleration) {
   return way / speed + std::sqrt(6.0 * way / acceleration);
 }
 
@@ -82,20 +82,23 @@ RouteFollower::RouteFollower(const RouteConfig& config, double period_s)
   path_ = path_through(config.corners(), config.corner_radius_m);
   for (const PathPiece& piece : path_)
     route_length_m_ += piece.length_m;
+  time_limit_s_ = config.duration_s > 0.0 ? config.duration_s
+                                          : kTimeReserve_s + kTimeLimitFactor * travel_time_s();
 }
 
-double RouteFollower::time_limit_s() const {
-  if (config_.duration_s > 0.0) return config_.duration_s;
+/// Upper bound, from the speeds and accelerations of the route.
+double RouteFollower::travel_time_s() const {
   double travel_s = 0.0;
   double heading_rad = config_.start_yaw_rad;
   for (const PathPiece& piece : path_) {
     const double turn_rad = angle_difference(piece.world_from_start.theta(), heading_rad);
-    travel_s += travel_time_s(std::abs(turn_rad), config_.turn_speed_radps,
-                              kTurnAcceleration_per_m * config_.acceleration_mps2);
-    travel_s += travel_time_s(piece.length_m, greatest_speed_mps(piece), config_.acceleration_mps2);
+    travel_s += longest_time_s(std::abs(turn_rad), config_.turn_speed_radps,
+                               kTurnAcceleration_per_m * config_.acceleration_mps2);
+    travel_s +=
+        longest_time_s(piece.length_m, greatest_speed_mps(piece), config_.acceleration_mps2);
     heading_rad = piece.world_from(piece.length_m).theta();
   }
-  return kTimeReserve_s + kTimeLimitFactor * travel_s;
+  return travel_s;
 }
 
 Velocity RouteFollower::next(const Se2& world_from_base) {

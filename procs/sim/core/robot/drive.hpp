@@ -78,7 +78,7 @@ class RouteFollower {
 
   /// Time in which the robot must arrive: route.duration_s, or, without one, a minute and three
   /// times what driving and turning takes by the route's speeds and accelerations.
-  double time_limit_s() const;
+  double time_limit_s() const { return time_limit_s_; }
 
   /// Length of the route up to the robot's projection onto it.
   double progress_m() const { return progress_m_; }
@@ -87,6 +87,7 @@ class RouteFollower {
   Velocity drive(const PathPlace& place);
   Velocity turn(double heading_error_rad);
   double greatest_speed_mps(const PathPiece& piece) const;
+  double travel_time_s() const;
   void begin_next_piece();
 
   RouteConfig config_;
@@ -98,6 +99,7 @@ class RouteFollower {
   double turn_speed_radps_{0.0};
   double steer_radps_{0.0};
   double route_length_m_{0.0};
+  double time_limit_s_{0.0};
   double finished_pieces_m_{0.0};
   double progress_m_{0.0};
 };

@@ -68,7 +68,7 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
 Estimate WaymarkEstimator::update(const Observation& measured) {
   newest_time_ = measured.time;
   clock_s_ += measured.elapsed_s;
-  book_.set_clock(measured.clock_set);
+  if (measured.clock_set != Duration{}) book_.set_clock(measured.clock_set);
   is_put_elsewhere_ = false;
   is_observed_ = false;
   solved_.reset();
