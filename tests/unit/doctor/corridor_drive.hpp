@@ -16,10 +16,7 @@ inline DoctorInput drive_in_corridor() {
   constexpr int kBeams = 360;
   std::mt19937 random{5};
   std::normal_distribution<double> noise{0.0, 1.0};
-  DoctorInput input{.report = {"corridor", AddressUnit::kByte},
-                    .noise_is_estimated = true,
-                    .mounting = Mounting::kDescribed,
-                    .described = RobotConfig{}};
+  DoctorInput input = described_input("corridor");
   input.log.robot = *input.described;
   input.camera.emplace();
   const Eigen::Isometry3d camera_from_base = input.described->camera.base_from_camera().inverse();

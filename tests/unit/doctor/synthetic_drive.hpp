@@ -106,16 +106,21 @@ inline void add_sightings(CameraRecord& record, const RobotConfig& described,
   }
 }
 
+/// Without records yet, and with the default description.
+inline DoctorInput described_input(const char* name) {
+  return {.report = {name, AddressUnit::kByte},
+          .noise_is_estimated = true,
+          .mounting = Mounting::kDescribed,
+          .described = RobotConfig{}};
+}
+
 /// Scans of 360 beams ten times a second with 1 cm of noise, odometry fifty times a second.
 inline DoctorInput drive_in_room(const DriveFaults& faults) {
   constexpr double kStep_s = 0.02;
   constexpr int kStepsPerScan = 5;
   std::mt19937 random{5};
   std::normal_distribution<double> noise{0.0, 1.0};
-  DoctorInput input{.report = {"drive", AddressUnit::kByte},
-                    .noise_is_estimated = true,
-                    .mounting = Mounting::kDescribed,
-                    .described = RobotConfig{}};
+  DoctorInput input = described_input("drive");
   ImportedLog& log = input.log;
   log.robot.lidar.x_m = 0.1;
   log.robot.lidar.y_m = -0.05;

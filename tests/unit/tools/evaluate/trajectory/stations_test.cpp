@@ -221,19 +221,23 @@ TEST(Timeline, AJumpIsAStepOfTheEstimateThatDiffersFromTheTrueMotion) {
   EXPECT_NEAR(timeline(pairs, {}, {}, std::nullopt, {}).max_jump_m, 0.25, 1e-9);
 }
 
-TEST(Timeline, KidnapsAreJumpsOfTheTruth) {
+/// 30 poses of a robot that drives at 0.5 m/s.
+Trajectory true_drive(double step_s) {
   Trajectory truth;
   for (int i = 0; i < 30; ++i)
-    truth.push_back({0.1 * i, Se2{0.05 * i, 0.0, 0.0}});
+    truth.push_back({step_s * i, Se2{0.5 * step_s * i, 0.0, 0.0}});
+  return truth;
+}
+
+TEST(Timeline, KidnapsAreJumpsOfTheTruth) {
+  Trajectory truth = true_drive(0.1);
   EXPECT_FALSE(lifted_t_s(truth));
   truth[20].parent_from_base = Se2{8.0, 0.0, 0.0};
   EXPECT_NEAR(lifted_t_s(truth).value(), 2.0, 1e-9);
 }
 
 TEST(Timeline, ATruthWithFewPosesIsNotLifted) {
-  Trajectory truth;
-  for (int i = 0; i < 30; ++i)
-    truth.push_back({1.0 * i, Se2{0.5 * i, 0.0, 0.0}});
+  Trajectory truth = true_drive(1.0);
   EXPECT_FALSE(lifted_t_s(truth));
   truth[20].parent_from_base = Se2{12.0, 0.0, 0.0};
   EXPECT_NEAR(lifted_t_s(truth).value(), 20.0, 1e-9);
