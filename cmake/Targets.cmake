@@ -54,16 +54,22 @@ foreach(label unit property statistics process simulation)
   add_custom_target(${label}_tests)
 endforeach()
 
-# waymark_test(NAME LABEL unit|property|statistics|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one GoogleTest
-# program, which is one test of CTest; the target LABEL_tests builds all of a label. statistics: accuracy over many drives, views
-# or samples; minutes under sanitizers, so .ci/run leaves these without them (tests/nightly.sh does not).
+# waymark_test(NAME [FAST] LABEL unit|property|statistics|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one
+# GoogleTest program, which is one test of CTest; the target LABEL_tests builds all of a label. statistics: accuracy over many
+# drives, views or samples; minutes under sanitizers, so .ci/run leaves these without them (tests/nightly.sh does not). FAST:
+# optimised, as all of statistics are, since the test itself loops over drives or solves equations.
 function(waymark_test name)
-  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;ALONE;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "FAST" "LABEL" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} test_own_folder GTest::gmock_main waymark_warnings)
-  target_compile_options(${name} PRIVATE ${waymark_test_options})
-  target_precompile_headers(${name} REUSE_FROM precompiled_tests)
+  if(ARG_FAST OR ARG_LABEL STREQUAL statistics)
+    target_compile_options(${name} PRIVATE ${waymark_fast_test_options})
+    target_precompile_headers(${name} REUSE_FROM precompiled_fast_tests)
+  else()
+    target_compile_options(${name} PRIVATE ${waymark_test_options})
+    target_precompile_headers(${name} REUSE_FROM precompiled_tests)
+  endif()
   target_compile_definitions(${name} PRIVATE
     WAYMARK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WAYMARK_BUILD_DIR="${PROJECT_BINARY_DIR}")
   waymark_unity(${name} ${ARG_ALONE})
