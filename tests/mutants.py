@@ -7,7 +7,8 @@ a missing test, or a change that makes no difference: which, has to be looked at
 
 usage: tests/mutants.py [--count N] [--seed N] [--suite NAME]
   --suite  common (default): procs/common against its unit tests, those of the tools, and the transport's;
-           slam: procs/slam/core against unit, property and statistics tests; evaluate: tools/evaluate
+           slam: procs/slam/core against unit, property and statistics tests;
+           detector, sim, viewer, doctor, evaluate, import: each folder against its own tests
 """
 import argparse
 import os
@@ -27,7 +28,12 @@ SUITES = {  # folder, build targets, which are test programs
         ["tests/unit/slam/slam_unit_test", "tests/property/slam/slam_property_test", "tests/unit/slam/daily_life_test",
          "tests/property/slam/slam_drives_test"],
     ),
+    "detector": ("procs/detector", ["tests/unit/detector/detector_unit_test", "tests/unit/detector/corner_refinement_test"]),
+    "sim": ("procs/sim", ["tests/unit/sim/sim_unit_test"]),
+    "viewer": ("procs/viewer", ["tests/unit/viewer/viewer_unit_test"]),
+    "doctor": ("tools/doctor", ["tests/unit/doctor/doctor_unit_test", "tests/unit/doctor/doctor_faults_test"]),
     "evaluate": ("tools/evaluate", ["tests/unit/tools/tools_unit_test"]),
+    "import": ("tools/import", ["tests/unit/import/import_unit_test"]),
 }
 CHANGES = [(r" < ", " <= "), (r" <= ", " < "), (r" > ", " >= "), (r" >= ", " > "), (r" == ", " != "), (r" != ", " == "),
            (r" && ", " || "), (r" \|\| ", " && "), (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "),

@@ -28,7 +28,7 @@ DetectorNode::DetectorNode(const DetectorConfig& config, Inbox& inbox, Outbox& o
   if (!config.detector.debug_dir.empty()) {
     debug_pictures_.emplace(config.detector.debug_dir, config.detector.debug_every);
   }
-  // OpenCV's own threads gain nothing on images this small.
+  // One thread: OpenCV's own threads gain nothing on images this small.
   cv::setNumThreads(1);
   inbox.on<image_t>(
       channels::kCamera, [this](const image_t& image) { handle(image); }, Backlog::kNewestOnly);

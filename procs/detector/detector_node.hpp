@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The detector as a process: each CAMERA frame that it takes gives one MARKERS message.
+// The detector as a process: publishes one MARKERS message for each CAMERA frame that it handles.
 #pragma once
 
 #include "common/node/node.hpp"
@@ -25,8 +25,8 @@ class DetectorNode final : public Node {
   void finish() override {}
 
  private:
-  /// Publishes MARKERS for every frame, for an unreadable one with an empty list, so that slam does
-  /// not wait for that frame's markers.
+  /// Publishes MARKERS for every frame; for an unreadable frame with an empty list, so that slam
+  /// does not wait for its markers.
   void handle(const image_t& image);
   /// Keeps at most as many markers as a message can hold: the widest in the image, which are
   /// measured most accurately.

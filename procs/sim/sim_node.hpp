@@ -15,8 +15,8 @@
 
 namespace waymark {
 
-/// Publishes CAMERA, LIDAR, ODOMETRY and TRUE_POSE; obeys DRIVE_COMMAND with route.source =
-/// command. With an output folder it writes scenario.toml, robot.toml, truth_markers.csv,
+/// Publishes CAMERA, LIDAR, ODOMETRY and TRUE_POSE; with route.source = command it follows
+/// DRIVE_COMMAND. With an output folder it writes scenario.toml, robot.toml, truth_markers.csv,
 /// truth.tum, and truth_marker_moves.csv when the scenario moves markers.
 class SimNode final : public TickSource {
  public:

@@ -87,15 +87,16 @@ Command checked(const command_t& message) {
   }
 }
 
-std::optional<reply_t> CommandDesk::take(const command_t& message, Timestamp now, const Act& act) {
+std::optional<reply_t> CommandDesk::handle(const command_t& message, Timestamp now,
+                                           const Act& act) {
   const auto before = std::ranges::find_if(
       answers_, [&](const reply_t& answer) { return answer.command_id == message.command_id; });
   if (before != answers_.end()) return *before;
   if (!second_begin_ || now < *second_begin_ || now - *second_begin_ >= kSecond) {
     second_begin_ = now;
-    taken_ = 0;
+    commands_ = 0;
   }
-  if (++taken_ > kMostPerSecond) return refused_as_flood(message, now);
+  if (++commands_ > kMaxPerSecond) return refused_as_flood(message, now);
   try {
     answers_.push_back(reply_to(message, now, reply_t::STATE_DONE, act(checked(message))));
   } catch (const Refusal& refusal) {
@@ -106,10 +107,10 @@ std::optional<reply_t> CommandDesk::take(const command_t& message, Timestamp now
 }
 
 std::optional<reply_t> CommandDesk::refused_as_flood(const command_t& message, Timestamp now) {
-  if (taken_ > kMostPerSecond + 1) return std::nullopt;
+  if (commands_ > kMaxPerSecond + 1) return std::nullopt;
   return reply_to(
       message, now, reply_t::STATE_REFUSED,
-      fmt::format("more than {} commands in a second of the sensors' time", kMostPerSecond));
+      fmt::format("more than {} commands in a second of the sensors' time", kMaxPerSecond));
 }
 
 }  // namespace waymark

@@ -39,19 +39,19 @@ Command checked(const command_t& message);
 /// systems.
 bool is_map_name(std::string_view name);
 
-/// Each command acts once: a repeated one gets the same answer again. Beyond kMostPerSecond of
+/// Each command acts once: a repeated one gets the same answer again. Beyond kMaxPerSecond of
 /// message time, commands are refused, only the first of them with an answer, so that a flood
 /// neither delays the scans nor fills the network.
 class CommandDesk {
  public:
-  static constexpr int kMostPerSecond = 5;
+  static constexpr int kMaxPerSecond = 5;
 
   /// Carries a command out. @return what was done; throws Refusal.
   using Act = std::function<std::string(const Command&)>;
 
   /// @param now  time of the newest observation.
-  /// @return the answer; nothing: the command was dropped.
-  std::optional<reply_t> take(const command_t& message, Timestamp now, const Act& act);
+  /// @return the answer; none: the command was dropped.
+  std::optional<reply_t> handle(const command_t& message, Timestamp now, const Act& act);
 
  private:
   static constexpr std::size_t kKeptAnswers = 32;
@@ -60,7 +60,7 @@ class CommandDesk {
 
   std::deque<reply_t> answers_{};
   std::optional<Timestamp> second_begin_{};
-  int taken_{0};  ///< commands since second_begin_
+  int commands_{0};  ///< received since second_begin_
 };
 
 }  // namespace waymark

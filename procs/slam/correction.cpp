@@ -44,7 +44,7 @@ correction_t CorrectionMaker::make(const Estimate& estimate, const Se2& odom_fro
   message.theta_rad = map_from_odom.theta();
   // The odometry pose is exact here: the covariance is the estimate's, for the lever arm to the
   // odometry's origin.
-  Eigen::Map<RowMajor3>{message.covariance} = carried_along(
+  Eigen::Map<RowMajor3>{message.covariance} = at_end_of_lever(
       estimate.covariance, map_from_odom.translation() - estimate.map_from_base.translation());
   message.health = static_cast<std::int8_t>(estimate.health);
   Eigen::Map<Eigen::Vector3d>{message.jump} =

@@ -12,12 +12,12 @@ namespace waymark {
 namespace {
 
 // Less than these is not reported.
-constexpr double kWorse = 1.9;        // factor on a standard deviation; learnt in steps of sqrt(2)
-constexpr double kNoisier = 1.3;      // factor on the standard deviation of ranges
-constexpr double kManyBeams = 0.05;   // moving; a few are noise at edges of walls
-constexpr double kManyScans = 0.05;   // contradict a loaded map; fewer are people and doors
-constexpr double kBriefly = 0.001;    // of observations; fewer are a push, or a wrong match
-constexpr double kWorthShare = 0.01;  // of scans or observations; fewer may be a door that opened
+constexpr double kWorse = 1.9;       // factor on a standard deviation; learnt in steps of sqrt(2)
+constexpr double kNoisier = 1.3;     // factor on the standard deviation of ranges
+constexpr double kManyBeams = 0.05;  // moving; a few are noise at edges of walls
+constexpr double kManyScans = 0.05;  // contradict a loaded map; fewer are people and doors
+constexpr double kBriefly = 0.001;   // of observations; fewer are a push, or a wrong match
+constexpr double kMinShare = 0.01;   // of the scans or observations; less may be an opened door
 
 double share_of(std::int64_t part, std::int64_t all) {
   return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0.0;
@@ -32,7 +32,7 @@ class List {
 
   /// @param text  with {} for the share in percent.
   void add_share(std::string name, fmt::format_string<double> text, std::int64_t part,
-                 std::int64_t all, double least = kWorthShare) {
+                 std::int64_t all, double least = kMinShare) {
     const double share = share_of(part, all);
     if (part == 0 || share < least) return;
     add(std::move(name), fmt::format(text, 100.0 * share), static_cast<double>(part), share);
@@ -44,7 +44,7 @@ class List {
   std::vector<Finding> list_{};
 };
 
-void add_odometry(const Findings& f, List& list) {
+void add_odometry(const SensorStatistics& f, List& list) {
   if (f.odometry_along >= kWorse) {
     list.add("odometry_along_noise_scale",
              fmt::format("odometry is {:.1f} times as noisy along the path as described",
@@ -75,7 +75,7 @@ void add_odometry(const Findings& f, List& list) {
   }
 }
 
-void add_ranges(const Findings& f, std::int64_t repeated_scans, List& list) {
+void add_ranges(const SensorStatistics& f, std::int64_t repeated_scans, List& list) {
   if (f.range_sigma_m >= kNoisier * f.described_range_sigma_m) {
     list.add("range_noise_scale",
              fmt::format("LiDAR ranges scatter by {:.3f} m, described are {:.3f} m",
@@ -85,10 +85,11 @@ void add_ranges(const Findings& f, std::int64_t repeated_scans, List& list) {
   list.add_share("scans_rescaled", "LiDAR ranges were at another scale in {:.1f} % of the scans",
                  f.scans_rescaled, f.scans, 0.0);
   if (f.scans_rescaled > 0) {
-    list.add("range_share",
-             fmt::format("in the last of them {:.1f} % too {}", 100.0 * std::abs(f.range_share),
-                         f.range_share > 0.0 ? "long" : "short"),
-             f.range_share);
+    list.add(
+        "range_share",
+        fmt::format("in the last of them {:.1f} % too {}", 100.0 * std::abs(f.range_scale_error),
+                    f.range_scale_error > 0.0 ? "long" : "short"),
+        f.range_scale_error);
   }
   list.add_share("scans_refuted", "{:.1f} % of the scans contradict the map and were left out",
                  f.scans_refuted, f.scans);
@@ -109,27 +110,28 @@ void add_ranges(const Findings& f, std::int64_t repeated_scans, List& list) {
 
 }  // namespace
 
-std::vector<Finding> worth_saying(const Findings& findings, std::int64_t repeated_scans) {
+std::vector<Finding> reportable_findings(const SensorStatistics& statistics,
+                                         std::int64_t repeated_scans) {
   List list;
-  add_odometry(findings, list);
-  add_ranges(findings, repeated_scans, list);
-  for (const Miscalibration& found : findings.miscalibrated) {
+  add_odometry(statistics, list);
+  add_ranges(statistics, repeated_scans, list);
+  for (const Miscalibration& found : statistics.miscalibrated) {
     const CalibrationTerm& term = kCalibrationTerms.at(found.term);
     list.add(fmt::format("calibration_{}", term.key),
              fmt::format("{}: {:+.4g} +- {:.1g} {} from the description", term.name,
                          term.per_unit * found.error, term.per_unit * found.sigma, term.unit),
              found.error);
   }
-  if (findings.loops_ambiguous > 0) {
+  if (statistics.loops_ambiguous > 0) {
     list.add("loops_ambiguous",
              fmt::format("scans fitted in several places of the map {} times, which closed no loop",
-                         findings.loops_ambiguous),
-             static_cast<double>(findings.loops_ambiguous));
+                         statistics.loops_ambiguous),
+             static_cast<double>(statistics.loops_ambiguous));
   }
-  if (findings.relocalisations > 0) {
+  if (statistics.relocalisations > 0) {
     list.add("relocalisations",
-             fmt::format("the robot was relocalised {} times", findings.relocalisations),
-             static_cast<double>(findings.relocalisations));
+             fmt::format("the robot was relocalised {} times", statistics.relocalisations),
+             static_cast<double>(statistics.relocalisations));
   }
   return list.take();
 }

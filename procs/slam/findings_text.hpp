@@ -2,7 +2,7 @@
 // Findings about the sensors as texts and numbers.
 #pragma once
 
-#include "slam/core/filter/findings.hpp"
+#include "slam/core/filter/sensor_statistics.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -17,12 +17,13 @@ struct Finding {
   std::string name{};             ///< for programs: a key in findings.json, a counter
   std::string text{};             ///< a clause for people
   double value{0.0};              ///< in the unit of the name's suffix; else a count or ratio
-  std::optional<double> share{};  ///< of the observations or scans that it concerns
+  std::optional<double> share{};  ///< affected observations or scans / all of them
 };
 
 /// The findings that are worth reporting; empty if all is as described.
 /// @param repeated_scans  number of repeated scans that the sensor queue has left out.
-std::vector<Finding> worth_saying(const Findings& findings, std::int64_t repeated_scans);
+std::vector<Finding> reportable_findings(const SensorStatistics& statistics,
+                                         std::int64_t repeated_scans);
 
 /// The texts, separated by semicolons; "nothing" without any.
 std::string sentence_of(std::span<const Finding> findings);

@@ -17,10 +17,10 @@ namespace waymark {
 
 struct LastPose {
   Timestamp time{};
-  std::vector<std::int64_t> map_ids{};  ///< of the map files in whose frame the pose is
+  std::vector<std::int64_t> map_ids{};  ///< ids of the map files in whose frame the pose is
   Se2 map_from_base{};
   Eigen::Vector3d sigmas{Eigen::Vector3d::Zero()};  ///< x [m], y [m], heading [rad]
-  Se2 odom_from_base{};                             ///< as it was sent
+  Se2 odom_from_base{};                             ///< odometry as it was sent
 };
 
 bool is_in_map(const LastPose& pose, std::int64_t map_id);

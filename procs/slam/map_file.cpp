@@ -69,7 +69,7 @@ calibration_t to_message(const LearntCalibration& calibration, Timestamp time) {
 std::vector<Message> messages_with_id(const MapSnapshot& map, const MapFileInfo& info,
                                       std::int64_t map_id) {
   std::vector<Message> messages(1);
-  for (map_tiles_t part : MapPublisher{}.complete(map.grid, map.time)) {
+  for (map_tiles_t part : MapPublisher{}.all_tiles(map.grid, map.time)) {
     part.map_id = map_id;
     messages.push_back(encode(channels::kSlamMap, part));
   }

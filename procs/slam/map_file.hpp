@@ -32,8 +32,8 @@ std::vector<Message> to_map_messages(const MapSnapshot& map, const MapFileInfo& 
 /// @throws std::logic_error  if they are no map.
 MapFile map_of(const std::vector<Message>& messages);
 
-/// Atomic, by a temporary name and renaming: a map file that exists is complete, and of one that
-/// could not be written nothing is left.
+/// Atomic, by a temporary name and renaming: a map file that exists is complete; a failed write
+/// leaves no file.
 /// @return the map's id.
 /// @throws std::runtime_error naming the file.
 std::int64_t write_map_file(const std::filesystem::path& file, const MapSnapshot& map,

@@ -124,7 +124,7 @@ bool MapPublisher::has_changed(const GridMap& map, TileIndex index) const {
          map.markers.tile(index) != published_.markers.tile(index);
 }
 
-std::vector<map_tiles_t> MapPublisher::changes(const GridMap& map, Timestamp time) {
+std::vector<map_tiles_t> MapPublisher::changed_tiles(const GridMap& map, Timestamp time) {
   const std::vector<TileIndex> all = tiles_of(map);
   std::vector<TileIndex> chosen;
   std::vector<TileIndex> others;
@@ -136,7 +136,7 @@ std::vector<map_tiles_t> MapPublisher::changes(const GridMap& map, Timestamp tim
   return to_messages(map, chosen, time);
 }
 
-std::vector<map_tiles_t> MapPublisher::complete(const GridMap& map, Timestamp time) {
+std::vector<map_tiles_t> MapPublisher::all_tiles(const GridMap& map, Timestamp time) {
   std::vector<TileIndex> tiles;
   std::ranges::set_union(tiles_of(map), tiles_of(published_), std::back_inserter(tiles));
   published_ = map;

@@ -16,9 +16,10 @@ namespace waymark {
 /// copy of the map, and a few of the others in turn, so that late subscribers get all tiles.
 class MapPublisher {
  public:
-  std::vector<map_tiles_t> changes(const GridMap& map, Timestamp time);
+  std::vector<map_tiles_t> changed_tiles(const GridMap& map, Timestamp time);
+
   /// The whole map, and empty tiles where only the previously published map had tiles.
-  std::vector<map_tiles_t> complete(const GridMap& map, Timestamp time);
+  std::vector<map_tiles_t> all_tiles(const GridMap& map, Timestamp time);
 
  private:
   static constexpr std::size_t kRefreshedTiles = 4;  ///< unchanged tiles per update

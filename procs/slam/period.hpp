@@ -14,8 +14,8 @@ class Period {
 
   Period(double period_s, First first) : period_{duration_from_seconds(period_s)}, first_{first} {}
 
-  /// Whether the work is due. If so, the next period begins. Restarts when the clock was set back
-  /// by more than a period.
+  /// Whether the work is due. If so, the next period begins. Restarts when `time` is before the
+  /// time at which work was last due.
   bool is_due(Timestamp time) {
     const bool is_new = !next_ || time < *next_ - period_;
     if (!is_new && time < *next_) return false;

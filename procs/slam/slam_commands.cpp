@@ -31,15 +31,15 @@ StartPose unknown_start() {
 
 /// The start for another estimator that continues from an estimate.
 StartPose start_at(const Estimate& estimate) {
-  constexpr double kLeast_m = 0.02;  // the map is known to about a cell
-  constexpr double kLeast_rad = 0.01;
+  constexpr double kMinSigma_m = 0.02;  // the map is known to about a cell
+  constexpr double kMinSigma_rad = 0.01;
   const Eigen::Vector3d sigmas = estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   return {StartKind::kPose,
           estimate.map_from_base.x(),
           estimate.map_from_base.y(),
           estimate.map_from_base.theta(),
-          std::max(kLeast_m, sigmas.head<2>().maxCoeff()),
-          std::max(kLeast_rad, sigmas.z())};
+          std::max(kMinSigma_m, sigmas.head<2>().maxCoeff()),
+          std::max(kMinSigma_rad, sigmas.z())};
 }
 
 }  // namespace
@@ -95,12 +95,12 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
   config_.slam.start = start;
   loaded_map_ = std::move(map);
   estimator_ = make_estimator(config_, loaded_map_, survey_);
-  placed_.reset();
+  newest_estimate_.reset();
   map_period_.reset();
-  if (last_estimate_) {
+  if (last_estimate_time_) {
     // Clears the old map's tiles at subscribers.
-    publish_tiles(map_publisher_.complete(estimator_->map(), *last_estimate_));
-    publish_markers(*last_estimate_);
+    publish_tiles(map_publisher_.all_tiles(estimator_->map(), *last_estimate_time_));
+    publish_markers(*last_estimate_time_);
   }
   if (mode == MapMode::kLocalise) return;
   // A map with an id of its own begins, in the loaded map's frame or in a new one.
@@ -151,7 +151,8 @@ std::string SlamNode::set_mode(MapMode mode) {
     file.map.map_id = map_id_;
     map = std::make_shared<const MapSnapshot>(std::move(file.map));
   }
-  begin_estimator(mode, std::move(map), placed_ ? start_at(*placed_) : unknown_start());
+  begin_estimator(mode, std::move(map),
+                  newest_estimate_ ? start_at(*newest_estimate_) : unknown_start());
   if (mode == MapMode::kLocalise) return "the map stays as it is";
   return "the map is extended";
 }
@@ -179,12 +180,13 @@ void SlamNode::resume_last_pose(const Observation& first) {
 /// Writes the newest known pose, with the ids of the map files of now: that of the map saved last
 /// too, even if the pose has been lost since.
 void SlamNode::keep_last_pose() {
-  const bool is_known =
-      placed_ && placed_->time == newest_ &&
-      (placed_->health == Health::kTracking || placed_->health == Health::kDegenerate);
+  const bool is_known = newest_estimate_ && newest_estimate_->time == newest_ &&
+                        (newest_estimate_->health == Health::kTracking ||
+                         newest_estimate_->health == Health::kDegenerate);
   if (is_known) {
-    const Eigen::Vector3d sigmas = placed_->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    known_pose_ = LastPose{newest_, {}, placed_->map_from_base, sigmas, odom_from_base_};
+    const Eigen::Vector3d sigmas =
+        newest_estimate_->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    known_pose_ = LastPose{newest_, {}, newest_estimate_->map_from_base, sigmas, odom_from_base_};
   }
   if (config_.slam.state_folder.empty() || !known_pose_) return;
   known_pose_->map_ids.clear();

@@ -47,7 +47,7 @@ struct SlamConfig {
   ChannelNames channels{};           ///< [channels], as in every program
   std::filesystem::path load_map{};  ///< from the command line; empty: none
   std::filesystem::path save_map{};
-  bool keeps_old_map{false};  ///< save_map is another map so far, to be moved aside: see load_map()
+  bool keeps_old_map{false};  ///< save_map holds another map, which is to be renamed: load_map()
 
   void describe(Fields& fields);
   void check(Problems& problems) const;

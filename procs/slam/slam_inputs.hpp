@@ -12,8 +12,9 @@
 
 namespace waymark {
 
-/// The map of --load-map; or, with slam.start = last, that of --save-map if an earlier run was
-/// interrupted while mapping it: then it is extended, else kept (config.keeps_old_map).
+/// The map of --load-map. With slam.start = last, and if an earlier run was interrupted while
+/// mapping to --save-map, the map of that file, which is then extended; another map in that file is
+/// kept (config.keeps_old_map).
 /// @param config  in: as configured; out: load_map, mode and start as they are used.
 /// @param frame   out: name of the frame that the map is in, or will be.
 /// @return nullptr: no map is to be loaded.

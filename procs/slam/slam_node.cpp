@@ -17,7 +17,7 @@ namespace waymark {
 namespace {
 
 constexpr std::string_view kScansProcessed = "scans processed";
-constexpr std::string_view kUnplaced = "estimates before the pose in the map was known";
+constexpr std::string_view kEstimatesWithoutPose = "estimates before the pose in the map was known";
 
 std::int32_t mbot_mode(MapMode mode) {
   if (mode == MapMode::kLocalise) return slam_status_t::MODE_LOCALISATION_ONLY;
@@ -67,8 +67,8 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
       map_period_{config.slam.map_period_s, Period::First::kAtOnce},
       save_period_{config.slam.save_map_every_s, Period::First::kAfterAPeriod} {
   if (!config.slam.state_folder.empty()) make_writable_folder(config.slam.state_folder);
-  inbox.on<planar_lidar_t>(channels::kLidar, [this](const auto& m) { take(to_scan(m)); });
-  inbox.on<lidar_t>(channels::kMbotLidar, [this](const auto& m) { take(to_scan(m)); });
+  inbox.on<planar_lidar_t>(channels::kLidar, [this](const auto& m) { handle(to_scan(m)); });
+  inbox.on<lidar_t>(channels::kMbotLidar, [this](const auto& m) { handle(to_scan(m)); });
   inbox.on<pose2D_t>(channels::kOdometry, [this](const auto& m) {
     queue_.add(to_odometry(m));
     process_ready_scans();
@@ -82,7 +82,7 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
   }
   inbox.on<command_t>(channels::kSlamCommand, [this](const auto& m) {
     const auto reply =
-        command_desk_.take(m, newest_, [this](const Command& command) { return obey(command); });
+        command_desk_.handle(m, newest_, [this](const Command& command) { return obey(command); });
     if (reply)
       outbox_.publish(channels::kSlamReply, *reply);
     else
@@ -105,12 +105,12 @@ void SlamNode::finish() {
   check_input();
   if (!config_.save_map.empty()) attempt("the map to save", [this] { failed_ |= !save_map(); });
   keep_last_pose();
-  if (last_estimate_) publish_end(*last_estimate_);
+  if (last_estimate_time_) publish_end(*last_estimate_time_);
 }
 
 void SlamNode::publish_end(Timestamp time) {
   attempt("the map", [&] {
-    publish_tiles(map_publisher_.complete(estimator_->redrawn_map(), time));
+    publish_tiles(map_publisher_.all_tiles(estimator_->redrawn_map(), time));
     publish_markers(time);
     publish_grid(time);
   });
@@ -142,9 +142,9 @@ void SlamNode::attempt(std::string_view part, const std::function<void()>& work)
 }
 
 std::optional<std::vector<Finding>> SlamNode::findings() const {
-  const std::optional<Findings> found = estimator_->findings();
+  const std::optional<SensorStatistics> found = estimator_->statistics();
   if (!found) return std::nullopt;
-  return worth_saying(*found, counters_.get(to_string(Skip::kScanRepeated)));
+  return reportable_findings(*found, counters_.get(to_string(Skip::kScanRepeated)));
 }
 
 /// Publishes the findings; shares of unused data are also counted, for the status.
@@ -163,7 +163,7 @@ void SlamNode::publish_findings(Timestamp time) {
 
 std::string_view SlamNode::why_no_map() const {
   if (loaded_map_) return "neither markers nor walls confirmed the pose in the loaded map";
-  if (!survey_.empty() && !placed_) return "the survey's frame is not known yet";
+  if (!survey_.empty() && !newest_estimate_) return "the survey's frame is not known yet";
   return "no scan was processed yet, or the estimator cannot save maps";
 }
 
@@ -193,20 +193,20 @@ bool SlamNode::save_map() {
 void SlamNode::check_input() {
   const std::int64_t scans = counters_.get(received_on(channels::kLidar.name));
   const std::int64_t odometry = counters_.get(received_on(channels::kOdometry.name));
-  const std::int64_t unplaced = counters_.get(kUnplaced);
-  if (!last_estimate_ && unplaced > 0 && loaded_map_ == nullptr) {
+  const std::int64_t without_pose = counters_.get(kEstimatesWithoutPose);
+  if (!last_estimate_time_ && without_pose > 0 && loaded_map_ == nullptr) {
     failed_ = true;
     logging::error(
         "no pose: in {} estimates the survey's frame was never known; that takes two surveyed "
         "markers, or one with yaw, each sighted three times",
-        unplaced);
-  } else if (!last_estimate_ && unplaced > 0) {
+        without_pose);
+  } else if (!last_estimate_time_ && without_pose > 0) {
     failed_ = true;
     logging::error(
         "no pose: in {} estimates the robot's pose in '{}' was never certain; more than one place, "
         "or none, fits the observations",
-        unplaced, config_.load_map.string());
-  } else if (!last_estimate_ && scans + odometry > 0) {
+        without_pose, config_.load_map.string());
+  } else if (!last_estimate_time_ && scans + odometry > 0) {
     failed_ = true;
     logging::error(
         "no pose: of LIDAR {} and of ODOMETRY {} messages could be read; both are needed", scans,
@@ -222,7 +222,7 @@ void SlamNode::check_input() {
   }
 }
 
-void SlamNode::take(LidarScan scan) {
+void SlamNode::handle(LidarScan scan) {
   if (std::ssize(scan.ranges_m) != config_.robot.lidar.num_beams)
     counters_.add("scans with another number of beams than configured");
   queue_.add(as_described(std::move(scan), config_.robot.lidar));
@@ -255,14 +255,14 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   message.map_id = map_id_;
   publish_mbot_status(time);
   if (!estimate.has_pose) {
-    counters_.add(kUnplaced);
+    counters_.add(kEstimatesWithoutPose);
     outbox_.publish(channels::kSlamEstimate, message);
     if (loaded_map_) publish_map_when_due(time);  // so that a user can command a pose in it
     return;
   }
   const Se2 map_from_lidar = estimate.map_from_base * config_.robot.lidar.base_from_lidar();
-  last_estimate_ = time;
-  placed_ = estimate;
+  last_estimate_time_ = time;
+  newest_estimate_ = estimate;
   if (estimate.odometry_refused) counters_.add("steps of the odometry that were rejected");
   if (estimate.calibration_widened) counters_.add("calibration found worse than configured");
   if (ready.scan && estimate.ranges_wrong) counters_.add("scans with wrong ranges");
@@ -278,7 +278,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
 
 void SlamNode::publish_map_when_due(Timestamp time) {
   if (!map_period_.is_due(time)) return;
-  publish_tiles(map_publisher_.changes(estimator_->map(), time));
+  publish_tiles(map_publisher_.changed_tiles(estimator_->map(), time));
   publish_markers(time);
   publish_grid(time);
   publish_findings(time);

@@ -25,9 +25,14 @@
 
 namespace waymark {
 
-/// Subscribes to LIDAR, ODOMETRY and MARKERS, never to ground truth. Publishes SLAM_SCAN,
-/// SLAM_POSE, SLAM_ESTIMATE, SLAM_CORRECTION and SLAM_PARTICLES for every scan, SLAM_MAP and
-/// SLAM_MARKERS once per map period, and SLAM_REPLY for every SLAM_COMMAND.
+/// Subscribes to LIDAR, ODOMETRY, MARKERS and SLAM_COMMAND, never to ground truth. Publishes
+/// - SLAM_ESTIMATE for every observation and, once the pose is known, SLAM_POSE, SLAM_CORRECTION,
+///   SLAM_PARTICLES and (with a scan) SLAM_SCAN;
+/// - once per map period SLAM_MAP, SLAM_MARKERS, SLAM_FINDINGS (estimator waymark) and, with a
+///   loaded map or a survey, SLAM_CHANGES;
+/// - SLAM_REPLY for every SLAM_COMMAND, unless there are too many;
+/// - at the end the whole map, SLAM_TRAJECTORY and MAP_GRAPH.
+/// SLAM_GRID and the MBot's channels are used if [channels] names them.
 class SlamNode final : public Node {
  public:
   using Config = SlamConfig;
@@ -78,7 +83,7 @@ class SlamNode final : public Node {
                        const StartPose& start);
   void resume_last_pose(const Observation& first);
   void keep_last_pose();
-  void take(LidarScan scan);
+  void handle(LidarScan scan);
   void check_input();
   std::optional<std::vector<Finding>> findings() const;
   void process_ready_scans();
@@ -100,20 +105,20 @@ class SlamNode final : public Node {
   std::string frame_{};  ///< name of the map's frame
   std::shared_ptr<const MapSnapshot> loaded_map_;
   std::vector<SurveyedMarker> survey_;
-  std::int64_t map_id_;  ///< of the published map; 0: not begun
+  std::int64_t map_id_;  ///< id of the published map; 0: not begun
   MapFileIds map_file_ids_;
   std::unique_ptr<Estimator> estimator_;
   MapPublisher map_publisher_{};
   CorrectionMaker correction_{};
   CommandDesk command_desk_{};
-  std::optional<Timestamp> last_estimate_{};
-  std::optional<Estimate> placed_{};      ///< newest estimate with a pose, in this map
-  std::optional<LastPose> known_pose_{};  ///< newest pose of a good health, in this map's frame
-  Se2 odom_from_base_{};                  ///< of the newest observation
+  std::optional<Timestamp> last_estimate_time_{};  ///< newest estimate with a pose, in any map
+  std::optional<Estimate> newest_estimate_{};      ///< newest one with a pose in this map
+  std::optional<LastPose> known_pose_{};  ///< newest pose of good health, in this map's frame
+  Se2 odom_from_base_{};                  ///< odometry at the newest observation, as it was sent
   Timestamp newest_{};                    ///< time of the newest observation
   std::set<int> named_survey_ids_{};
   bool was_resumed_{false};  ///< resume_last_pose() was called, successfully or not
-  bool is_broken_{false};    ///< the estimator threw: it is given no more scans
+  bool is_broken_{false};    ///< the estimator has thrown and gets no more scans
   Period map_period_;
   Period save_period_;
   UpdateTimer timer_{};

@@ -6,8 +6,8 @@
 
 namespace waymark::viewer {
 
-/// After work of duration c, the next work may start c / max_share after the start of that work.
-/// Uses wall-clock time, so that results must not depend on it.
+/// After work that took c, the next work may start c / max_share after the start of that work. Uses
+/// wall-clock time, so results must not depend on it.
 class Pacer {
  public:
   using Clock = std::chrono::steady_clock;
@@ -17,7 +17,7 @@ class Pacer {
 
   bool may_start(Clock::time_point now) const { return now >= next_start_; }
 
-  void has_worked(Clock::time_point start, Clock::time_point end) {
+  void record_work(Clock::time_point start, Clock::time_point end) {
     const std::chrono::duration<double> pause = (end - start) / max_share_;
     next_start_ = start + std::chrono::duration_cast<Clock::duration>(pause);
   }

@@ -53,7 +53,7 @@ std::string_view problem_of(TiledMap::Outcome outcome) {
   return "";
 }
 
-/// The first pose stays: paths are aligned on it.
+/// Keeps the first pose, on which paths are aligned, and every second one after it.
 template <class Pose>
 void keep_every_second(std::vector<Pose>& path) {
   std::size_t kept = 0;
@@ -62,8 +62,8 @@ void keep_every_second(std::vector<Pose>& path) {
   path.resize(kept);
 }
 
-/// Puts the path before a time to which the clock was set back. Where only the last pose is later,
-/// its stamp was wrong.
+/// Shifts the path before a time to which the clock was set back. If only the last pose is later,
+/// its stamp was wrong, and it is removed.
 template <class Pose>
 void make_earlier_than(Timestamp time, std::vector<Pose>& path) {
   if (path.back().time < time) return;
@@ -85,10 +85,10 @@ void SceneUpdater::append_live(std::vector<Pose>& path, ClockStepDetector& clock
   const bool is_ahead =
       !path.empty() && pose.time > path.back().time + ClockStepDetector::kLongestPause;
   if (!is_late && !is_ahead) {
-    clock.see_fitting();
-  } else if (clock.see_misfit(pose.time)) {
+    clock.note_consistent();
+  } else if (clock.note_inconsistent(pose.time)) {
     counters_.add(fmt::format("{} clock was set", path_name), CountKind::kEvent);
-    make_earlier_than(clock.first_misfit(), path);
+    make_earlier_than(clock.first_inconsistent(), path);
   } else if (is_ahead) {
     counters_.add(fmt::format("{} left out: time jumps ahead", path_name), CountKind::kLoss);
     return;
@@ -197,7 +197,7 @@ void SceneUpdater::add(const annotated_scan_t& message) {
                      .ranges_m = {message.ranges.begin(), message.ranges.end()},
                      .angles_rad = {message.angles.begin(), message.angles.end()},
                      .marker_ids = {message.marker_ids.begin(), message.marker_ids.end()}};
-  // scan.png shows the last scan with a marker, if there is one.
+  // scan.png shows the last scan with a beam on a marker, if there is one.
   if (scene_.scan && scene_.scan->has_marker() && !scan.has_marker()) return;
   scene_.scan = std::move(scan);
 }

@@ -26,7 +26,7 @@ struct ViewerConfig {
   ViewerSection viewer{};
   std::filesystem::path out_dir{};  ///< from the command line (--out)
   std::string http{};               ///< HOST:PORT of the live page (--http); empty = none
-  std::string http_token{};         ///< of --http-token; empty = the page is read-only
+  std::string http_token{};         ///< secret of --http-token; empty = the page is read-only
   std::string lcm_url{};            ///< where the page's commands go (--lcm-url)
   ChannelNames channels{};          ///< names of the channels at lcm_url
   bool is_replay{false};            ///< messages come from a log (--log)

@@ -36,7 +36,8 @@ std::string folder_name(const std::filesystem::path& folder) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-/// True when a period has passed since `last`. The first call and a jump back in time restart it.
+/// True when a period has passed since `last`, which then becomes `now`. The first call and a jump
+/// back in time restart the period.
 bool is_due(std::optional<Timestamp>& last, Timestamp now, double period_s) {
   if (!last || now < *last) last = now;
   if (now - *last < duration_from_seconds(period_s)) return false;
@@ -44,7 +45,7 @@ bool is_due(std::optional<Timestamp>& last, Timestamp now, double period_s) {
   return true;
 }
 
-/// False when all files would be empty, and would only replace those of an earlier run.
+/// False when all files would be empty: they would only replace those of an earlier run.
 bool has_slam_data(const viewer::Scene& scene) {
   return !scene.estimates.empty() || !scene.map.empty() || !scene.landmarks.empty() ||
          !scene.final_trajectory.empty();
@@ -78,10 +79,10 @@ void ViewerNode::check(const Config& config) {
 void ViewerNode::start_page() {
   using Pace = viewer::LiveFeed::Pace;
   const viewer::HttpAddress address = viewer::parse_http_address(config_.http);
-  live_feed_.emplace(board_, scene_.title,
+  live_feed_.emplace(views_, scene_.title,
                      config_.is_replay ? Pace::kMessageTime : Pace::kWallClock);
   page_server_ =
-      std::make_unique<viewer::PageServer>(address, board_, folder_.path(), page_commands());
+      std::make_unique<viewer::PageServer>(address, views_, folder_.path(), page_commands());
   logging::info("the live page is {}", address.url());
   if (!address.is_loopback())
     logging::warn("everybody who reaches {} can look at the live page", address.host);
@@ -169,7 +170,7 @@ void ViewerNode::subscribe(Inbox& inbox) {
 bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
   using Origin = viewer::CurrentMap::Origin;
   const auto old_map_id = current_map_.id();
-  const Origin origin = current_map_.take(map_id, time);
+  const Origin origin = current_map_.update(map_id, time);
   if (origin == Origin::kOfNewMap) {
     logging::info("slam has begun map {:016x}", static_cast<std::uint64_t>(map_id));
     archive_map(*old_map_id);
@@ -182,11 +183,11 @@ bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
 }
 
 void ViewerNode::archive_map(std::int64_t map_id) {
-  constexpr int kMostArchived = 20;  // bounds the disk space if slam keeps restarting
-  if (!has_slam_data(scene_) || num_archived_ > kMostArchived) return;
-  if (++num_archived_ > kMostArchived) {
+  constexpr int kMaxArchived = 20;  // bounds the disk space if slam restarts again and again
+  if (!has_slam_data(scene_) || num_archived_ > kMaxArchived) return;
+  if (++num_archived_ > kMaxArchived) {
     logging::warn("{}: the files of {} maps are kept; those of further maps are not",
-                  folder_.path().string(), kMostArchived);
+                  folder_.path().string(), kMaxArchived);
     return;
   }
   const auto path = folder_.path() / fmt::format("map-{:016x}", static_cast<std::uint64_t>(map_id));
@@ -211,7 +212,7 @@ void ViewerNode::write_when_due(Timestamp time) {
                                  &ViewerNode::write_scan_and_plain_map};
   (this->*kPictures[next_picture_])();
   next_picture_ = (next_picture_ + 1) % kPictures.size();
-  pacer_.has_worked(start, viewer::Pacer::Clock::now());
+  pacer_.record_work(start, viewer::Pacer::Clock::now());
 }
 
 template <class MakeBytes>

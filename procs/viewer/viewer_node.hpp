@@ -7,9 +7,9 @@
 #include "viewer/core/scene/current_map.hpp"
 #include "viewer/core/scene/scene.hpp"
 #include "viewer/files/output_folder.hpp"
-#include "viewer/http/board.hpp"
 #include "viewer/http/live_feed.hpp"
 #include "viewer/http/page_server.hpp"
+#include "viewer/http/view_store.hpp"
 #include "viewer/pacer.hpp"
 #include "viewer/scene_updater.hpp"
 #include "viewer/viewer_config.hpp"
@@ -62,7 +62,7 @@ class ViewerNode final : public Node {
   /// Writes the data files when a period has passed, and one of the pictures: all at once would
   /// delay a lockstep run. Large maps, which take longer, are written less often (Pacer).
   void write_when_due(Timestamp time);
-  /// Without data removes the file, which is that of an earlier run.
+  /// Writes the file, or, without data, removes it: it is of an earlier run.
   template <class MakeBytes>
   void write_or_remove(const std::string& name, bool has_data, MakeBytes make_bytes);
   void write_data();
@@ -85,7 +85,7 @@ class ViewerNode final : public Node {
   std::optional<Timestamp> last_write_time_{};
   std::size_t next_picture_{0};
   std::vector<pose_graph_t> graph_parts_{};
-  viewer::Board board_{};
+  viewer::ViewStore views_{};
   std::optional<viewer::LiveFeed> live_feed_{};
   std::unique_ptr<viewer::PageServer> page_server_{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A CARMEN log, plain or compressed.
+// Input: a CARMEN log, plain or compressed.
 #include "common/errors/setup_error.hpp"
 #include "import/carmen/carmen_reader.hpp"
 #include "memory_file.hpp"

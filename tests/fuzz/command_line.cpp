@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A command line: which program, then its words, each ended by a zero byte. It is refused, or what
-// it sets is what the option allows, can be printed, and read. No file is opened (but for a check
-// of whether it is there), no network joined.
+// Input: a byte that selects a program, then the words of its command line, each ended by a zero
+// byte. The program must refuse it, or accept only values that the options allow and that can be
+// printed and read back. No file is opened (only checked for existence) and no network joined.
 #include "command/command_line.hpp"
 
 #include "common/bus/bus.hpp"
@@ -25,14 +25,14 @@
 namespace waymark::fuzz {
 namespace {
 
-constexpr std::size_t kMostWords = 64;
+constexpr std::size_t kMaxWords = 64;
 
-/// argv: the words, whose memory is that of the caller's.
+/// argc and argv; owns the words.
 class Arguments {
  public:
   explicit Arguments(std::span<const std::uint8_t> bytes) {
     words_.emplace_back("program");
-    while (!bytes.empty() && words_.size() < kMostWords) {
+    while (!bytes.empty() && words_.size() < kMaxWords) {
       const auto end = std::ranges::find(bytes, std::uint8_t{0});
       words_.emplace_back(bytes.begin(), end);
       bytes = bytes.subspan(std::min<std::size_t>(words_.back().size() + 1, bytes.size()));
@@ -55,7 +55,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// What is not allowed is an error with a sentence, and of no other type.
+/// False if the action throws ConfigError or SetupError; any other exception is a bug.
 template <class Action>
 bool is_allowed(Action action) {
   try {
@@ -79,14 +79,15 @@ void check_page(const ProcessOptions& options) {
     require(viewer::parse_http_address(address.url().substr(7, address.url().size() - 8)).host ==
             address.host);
   });
-  if (options.http_token.starts_with('@')) return;  // a file
+  if (options.http_token.starts_with('@')) return;  // the name of a file
   is_allowed([&] {
     const std::string token = viewer::parse_http_token(options.http_token);
     require(viewer::carries_token("Bearer " + token, token));
   });
 }
 
-/// What the settings on the command line come to. Those of files are for the target `config`.
+/// Checks that the configuration by the command line can be printed and read back. Configuration
+/// files are tested by the target `config`.
 template <class Description>
 void check_settings(const Description& description, ProcessOptions options) {
   options.config_sources.files.clear();
@@ -101,7 +102,7 @@ void check_settings(const Description& description, ProcessOptions options) {
 }
 
 template <class Description>
-void take(Arguments& words, const Description& description, const OptionSet& option_set) {
+void check(Arguments& words, const Description& description, const OptionSet& option_set) {
   const ParsedOptions parsed =
       parse_options(words.count(), words.pointers(), description.traits, option_set);
   if (parsed.exit_code) return require(*parsed.exit_code == 0 || *parsed.exit_code == kExitUsage);
@@ -113,17 +114,17 @@ void take(Arguments& words, const Description& description, const OptionSet& opt
 }
 
 template <class NodeType>
-void take_process(Arguments& words) {
+void check_process(Arguments& words) {
   static const ProcessDescription description = describe_process<NodeType>();
-  take(words, description, description.option_set);
+  check(words, description, description.option_set);
 }
 
-void take_simulator(Arguments& words) {
+void check_simulator(Arguments& words) {
   static const SimulatorDescription description = describe_simulator<SimNode>();
-  take(words, description, kSimulatorOptions);
+  check(words, description, kSimulatorOptions);
 }
 
-void take_command(Arguments& words) {
+void check_command(Arguments& words) {
   const CommandLine line = parse_command_line(words.count(), words.pointers());
   if (line.exit_code) return require(*line.exit_code == 0 || *line.exit_code == kExitUsage);
   require(line.command.kind != 0);
@@ -136,28 +137,28 @@ void take_command(Arguments& words) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace waymark;
   using namespace waymark::fuzz;
-  std::cout.rdbuf(nullptr);  // --help, and what is wrong with a command line
+  std::cout.rdbuf(nullptr);  // silences --help and error messages
   std::cerr.rdbuf(nullptr);
   if (size == 0) return 0;
   Arguments words{{data + 1, size - 1}};
   switch (data[0] % 6) {
     case 0:
-      take_simulator(words);
+      check_simulator(words);
       break;
     case 1:
-      take_process<DetectorNode>(words);
+      check_process<DetectorNode>(words);
       break;
     case 2:
-      take_process<SlamNode>(words);
+      check_process<SlamNode>(words);
       break;
     case 3:
-      take_process<ViewerNode>(words);
+      check_process<ViewerNode>(words);
       break;
     case 4:
-      take_process<RecorderNode>(words);
+      check_process<RecorderNode>(words);
       break;
     default:
-      take_command(words);
+      check_command(words);
   }
   return 0;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file of settings of slam, the largest configuration. What is accepted can be printed and read.
+// Input: a configuration file of slam, which has the largest configuration. An accepted one can be
+// printed and read back.
 #include "common/runtime/run_process.hpp"
 #include "memory_file.hpp"
 #include "slam/slam_config.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A datagram from the network.
+// Input: a datagram from the network.
 #include "common/bus/datagram_receiver.hpp"
 
 #include <cstdlib>
@@ -7,7 +7,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto message = waymark::whole_message_in({data, size});
   if (!message) return 0;
-  // All that is not payload is magic, sequence number, and the channel with its zero.
+  // The bytes before the payload are magic, sequence number, and channel with its zero.
   const std::size_t rest = 8 + message->channel.size() + 1;
   if (rest + message->payload.size() != size || message->channel.empty()) std::abort();
   if (message->channel.find('\0') != std::string_view::npos) std::abort();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An LCM log: every byte is of an event or was skipped.
+// Input: an LCM log. Every byte must belong to an event or count as skipped.
 #include "common/log/log_file.hpp"
 #include "memory_file.hpp"
 

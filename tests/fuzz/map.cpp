@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map file: loaded, or refused in a sentence. What is loaded can be written.
+// Input: a map file. It must be refused with a sentence, or loaded and then be writable.
 #include "memory_file.hpp"
 #include "slam/map_file.hpp"
 

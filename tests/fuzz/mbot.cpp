@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An LCM log with the channels of another robot.
+// Input: an LCM log with the channels of another robot.
 #include "common/errors/setup_error.hpp"
 #include "import/mbot/mbot_reader.hpp"
 #include "memory_file.hpp"

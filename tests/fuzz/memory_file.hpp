@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file for what reads files, without a disk.
+// A file in memory, for code that reads files.
 #pragma once
 
 #include <sys/mman.h>
@@ -13,7 +13,7 @@
 
 namespace waymark::fuzz {
 
-/// The bytes as a file; the path is good until the next call.
+/// Path of a file with these bytes; valid until the next call.
 inline std::filesystem::path memory_file(std::span<const std::uint8_t> bytes) {
   static const int file = memfd_create("fuzz", MFD_CLOEXEC);
   const auto size = static_cast<off_t>(bytes.size());

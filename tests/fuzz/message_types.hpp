@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every type of message once, by index: the first byte of an input to the target `messages`.
+// Every message type once, by index: the first byte of an input of the target `messages`.
 #pragma once
 
 #include "common/messages/channels.hpp"

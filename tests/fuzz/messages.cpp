@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A type's index, then a payload without its fingerprint: decoded, checked, converted, encoded.
+// Input: the index of a message type, then a payload without its fingerprint. It is decoded,
+// checked, converted and encoded again.
 #include "common/bus/datagram_receiver.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
@@ -33,7 +34,7 @@ template <class Type>
 void convert(const Type&) {}
 
 template <class Type>
-void take(Channel<Type> channel, std::span<const std::uint8_t> body) {
+void check(Channel<Type> channel, std::span<const std::uint8_t> body) {
   std::vector<std::uint8_t> payload(8);
   const auto fingerprint = static_cast<std::uint64_t>(Type::getHash());
   for (std::size_t i = 0; i < payload.size(); ++i)
@@ -42,7 +43,7 @@ void take(Channel<Type> channel, std::span<const std::uint8_t> body) {
   const Decoded<Type> decoded = decode<Type>(payload);
   if (!decoded.message) return;
   convert(*decoded.message);
-  // What has been accepted can be sent on, and is accepted again.
+  // An accepted message can be sent on, and is accepted again.
   const Message again = encode(channel, *decoded.message);
   if (again.payload.size() != payload.size() || !decode<Type>(again.payload).message) std::abort();
 }
@@ -55,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::span bytes{data, size};
   for_each_type([&](std::size_t index, const auto& channel) {
-    if (index == bytes[0]) take(channel, bytes.subspan(1));
+    if (index == bytes[0]) check(channel, bytes.subspan(1));
   });
   return 0;
 }

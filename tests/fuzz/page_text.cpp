@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A piece of a browser's request, by its first byte: the JSON of a command, a Host header, or an
-// Authorization header. What the page lets through can be sent, and slam judges it.
+// Input: a byte that selects the kind, then a part of a browser's request: the JSON of a command, a
+// Host header, or an Authorization header. A command that the page accepts can be sent to slam,
+// which accepts or refuses it.
 #include "common/messages/codec.hpp"
 #include "slam/command_desk.hpp"
 #include "viewer/http/http_address.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::string_view kToken = "0123456789abcdef";
 
-void take_command(std::string_view json) {
+void check_command(std::string_view json) {
   try {
     const command_t command = viewer::parse_page_command(json);
     const Message message = encode(channels::kSlamCommand, command);
@@ -26,8 +27,9 @@ void take_command(std::string_view json) {
   }
 }
 
-/// A name with letters is this machine's only if it is "localhost", or hexadecimal in brackets.
-void take_host(std::string_view host) {
+/// A host name with letters names this machine only if it is "localhost" or an IPv6 address in
+/// brackets.
+void check_host(std::string_view host) {
   if (!viewer::names_loopback(host) || host == "localhost" || host.starts_with("localhost:") ||
       host.starts_with("[localhost") || host.starts_with("[::1"))
     return;
@@ -35,7 +37,7 @@ void take_host(std::string_view host) {
     if (std::isalpha(static_cast<unsigned char>(c)) != 0) std::abort();
 }
 
-void take_authorization(std::string_view header) {
+void check_authorization(std::string_view header) {
   if (viewer::carries_token(header, kToken) != (header == "Bearer " + std::string{kToken}))
     std::abort();
 }
@@ -49,13 +51,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text{reinterpret_cast<const char*>(data + 1), size - 1};
   switch (data[0] % 4) {
     case 0:
-      take_host(text);
+      check_host(text);
       break;
     case 1:
-      take_authorization(text);
+      check_authorization(text);
       break;
     default:
-      take_command(text);
+      check_command(text);
   }
   return 0;
 }

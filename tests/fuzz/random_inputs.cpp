@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In libFuzzer's place where there is no clang: inputs of a corpus with a few random changes each,
-// not guided by coverage. An input that ends the program, takes too long or allocates too much at
-// once is kept as PREFIXcrash.
+// Replaces libFuzzer where there is no clang: runs the target on inputs of a corpus with a few
+// random changes each, not guided by coverage. An input that ends the program, takes too long or
+// allocates too much at once is kept as PREFIXcrash.
 //
 // usage: fuzz_TARGET -runs=N [-seed=N] [-max_len=N] [-timeout=S] [-malloc_limit_mb=N]
 //                   [-artifact_prefix=PREFIX] CORPUS
@@ -28,12 +28,12 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-/// Of GCC's AddressSanitizer, without a header there.
+/// A function of AddressSanitizer that no header of GCC declares.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(
     void (*malloc_hook)(const volatile void* memory, std::size_t bytes),
     void (*free_hook)(const volatile void* memory));
 
-/// The program's last words are ours also where it ends with abort().
+/// Makes AddressSanitizer call our handler also after abort().
 extern "C" const char* __asan_default_options() {
   return "handle_abort=1";
 }
@@ -44,7 +44,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostChanges = 6;
+constexpr int kMaxChanges = 6;
 constexpr std::size_t kLongestPiece_bytes = 64;
 
 std::string input;
@@ -64,7 +64,7 @@ void watch_allocation(const volatile void*, std::size_t bytes) {
 
 void watch_free(const volatile void*) {}
 
-void take_input() {
+void run_target() {
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
 }
 
@@ -75,7 +75,7 @@ class Mutator {
 
   std::string next() {
     std::string bytes = any_input();
-    for (std::size_t changes = 1 + below(kMostChanges); changes > 0; --changes)
+    for (std::size_t changes = 1 + below(kMaxChanges); changes > 0; --changes)
       change(bytes);
     bytes.resize(std::min(bytes.size(), max_bytes_));
     return bytes;
@@ -155,7 +155,7 @@ struct Options {
   fs::path path;
 };
 
-/// Those of libFuzzer's options that are known here; others have no effect.
+/// Parses libFuzzer's options; those that are not supported here have no effect.
 Options parse(std::span<char*> words) {
   Options options;
   for (const std::string_view word : words) {
@@ -182,7 +182,7 @@ int run(const Options& options) {
   for (std::uint64_t i = 0; i < options.runs; ++i) {
     input = mutator.next();
     const auto start = Clock::now();
-    take_input();
+    run_target();
     longest = std::max(longest, Clock::now() - start);
     if (longest <= options.timeout) continue;
     keep_input();
@@ -203,7 +203,7 @@ int main(int argc, char** argv) {
     const Options options = parse({argv + 1, argv + argc});
     if (fs::is_directory(options.path)) return run(options);
     input = waymark::read_whole_file(options.path);
-    take_input();
+    run_target();
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

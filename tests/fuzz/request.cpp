@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All that a browser sends in one connection, over a socket, to the live page's server. It answers
-// with a status that is no server's error, or closes, and commands nothing without the token.
-// (cpp-httplib itself is compiled without instrumentation.)
+// Input: all bytes that a browser sends over one connection to the server of the live page. The
+// server must answer with a status that is no server error, or close the connection, and must send
+// no command without the token. (cpp-httplib itself is compiled without instrumentation.)
 #include "common/messages/codec.hpp"
 #include "support/loopback.hpp"
 #include "viewer/http/page_server.hpp"
@@ -35,10 +35,10 @@ class Page {
     view.number = 1;
     view.map = std::make_shared<viewer::LiveMap>(map);
     view.camera = std::make_shared<viewer::CameraFrame>();
-    board_.post(std::make_shared<viewer::LiveView>(view), {});
+    views_.post(std::make_shared<viewer::LiveView>(view), {});
   }
 
-  /// The beginning of what comes back; nothing when the request has no end.
+  /// The beginning of the answer; empty when the request is incomplete.
   std::string answer_to(std::span<const std::uint8_t> request) const {
     const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const sockaddr_in address = test::loopback(port_);
@@ -49,19 +49,19 @@ class Page {
     ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     pollfd waiting{.fd = socket, .events = POLLIN, .revents = 0};
     const bool is_answered = ::poll(&waiting, 1, kPatience_ms) == 1;
-    ::shutdown(socket, SHUT_WR);  // to which the server answers no more
+    ::shutdown(socket, SHUT_WR);  // the server answers nothing after this
     std::string answer;
     char buffer[4096];
     for (ssize_t size = 1; size > 0;) {
       size = ::recv(socket, buffer, sizeof buffer, 0);
       answer.append(buffer, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-      if (is_answered && answer.find("text/event-stream") != std::string::npos) break;  // no end
+      if (is_answered && answer.find("text/event-stream") != std::string::npos) break;  // endless
     }
     ::close(socket);
     return answer;
   }
 
-  /// Since it was last asked.
+  /// Number of commands since the last call.
   int num_commands() { return num_commands_.exchange(0); }
 
  private:
@@ -72,18 +72,18 @@ class Page {
   }
 
   std::atomic<int> num_commands_{0};
-  viewer::Board board_{};
+  viewer::ViewStore views_{};
   const int port_ = test::free_port();
   viewer::PageServer server_{
       {.host = "127.0.0.1", .port = port_},
-      board_,
+      views_,
       "/proc/self/none",
       viewer::PageCommands{std::string{kToken}, [this](const command_t& command) {
                              return answer(command);
                            }}};
 };
 
-/// "%41" -> "A", as the server does it in headers.
+/// Decodes "%41" to "A", as the server does in headers.
 std::string decoded(std::span<const std::uint8_t> bytes) {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bag of ROS: .bag or .mcap. (SQLite opens no file in memory, and is fuzzed by its makers.)
+// Input: a ROS bag, .bag or .mcap. (SQLite opens no file in memory, and its authors fuzz it.)
 #include "common/errors/setup_error.hpp"
 #include "import/rosbag/rosbag_reader.hpp"
 #include "memory_file.hpp"

@@ -48,7 +48,7 @@ void write_image(const fs::path& out, const Message& message) {
   if (image.message) write_seed(out / "jpeg", "image", text_of(image.message->data));
 }
 
-/// A few messages of each channel, alone and as logs.
+/// Writes a few messages of each channel, alone and as logs.
 void write_messages(const fs::path& out, const fs::path& log, const std::string& prefix) {
   std::map<std::string, int> counts;
   LogReader reader{log};
@@ -71,7 +71,7 @@ void write_copy(const fs::path& file, const fs::path& folder) {
   if (fs::exists(file)) write_seed(folder, file.filename().string(), read_whole_file(file));
 }
 
-/// A program's index as in command_line.cpp, then its words.
+/// Writes a program's index as in command_line.cpp, then its words.
 void write_command_line(const fs::path& out, int program, const std::vector<std::string>& words) {
   std::string seed(1, static_cast<char>(program));
   for (const std::string& word : words)
@@ -95,7 +95,7 @@ void write_command_lines(const fs::path& out) {
   write_command_line(out, 5, {"set-mode", "localise", "--help"});
 }
 
-/// Of the live page: whole requests, and their pieces with an index as in page_text.cpp.
+/// Writes requests to the live page: whole, and their parts with a first byte as in page_text.cpp.
 void write_requests(const fs::path& out) {
   for (const std::string path :
        {"/", "/events", "/view?time_s=1", "/tiles?since=1", "/camera.jpg", "/command", "/map.png"})

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A drive: what an estimator makes of messages and commands that are valid, however absurd. Nothing
-// may be thrown but where commands have made the map larger than the largest grid, and what slam
-// publishes is valid, too: encode() checks it.
+// Input: random choices for a drive of valid, but absurd messages and commands. Slam must not
+// throw, unless commands have made the map larger than the largest grid, and must publish valid
+// messages: encode() checks them.
 #include "common/messages/bounds.hpp"
 #include "common/messages/convert.hpp"
 #include "slam/slam_node.hpp"
@@ -19,7 +19,7 @@
 namespace waymark::fuzz {
 namespace {
 
-constexpr int kMostMessages = 200;
+constexpr int kMaxMessages = 200;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array kRanges_m{kNan, kInfinity, -1.0, 0.0,  1e-6,
@@ -47,7 +47,7 @@ class Drive {
     Outbox outbox;
     SlamNode node{config_, inbox, outbox};
     try {
-      for (int i = 0; i < kMostMessages && bytes_.remaining_bytes() > 0; ++i) {
+      for (int i = 0; i < kMaxMessages && bytes_.remaining_bytes() > 0; ++i) {
         if (const auto message = next_valid()) inbox.deliver(*message);
         outbox.take();
       }
@@ -62,12 +62,12 @@ class Drive {
     return bytes_.PickValueInArray(kSizes) * bytes_.ConsumeFloatingPointInRange(0.5, 2.0);
   }
 
-  /// Mostly small.
+  /// A number of either sign, mostly small.
   double signed_size() {
     return bytes_.PickValueInArray(kSizes) * bytes_.ConsumeFloatingPointInRange(-1.0, 1.0);
   }
 
-  /// What is not valid is for the target `messages`.
+  /// nullopt for a message that is not valid: these are tested by the target `messages`.
   std::optional<Message> next_valid() {
     try {
       return next();
@@ -104,7 +104,7 @@ class Drive {
     return encode(channels::kOdometry, to_pose_message(time(), here_));
   }
 
-  /// To the walls of a rectangle, or as far as it likes; some beams otherwise.
+  /// A scan of a rectangular room, or with one range everywhere; some beams have other ranges.
   Message lidar() {
     LidarScan scan;
     scan.time = time();
@@ -161,7 +161,7 @@ class Drive {
     return encode(channels::kMarkers, to_detections_message(frame));
   }
 
-  /// None that saves: there is no folder.
+  /// A command other than "save", for which there is no folder.
   Message command() {
     command_t command{};
     command.utime = to_us(time());

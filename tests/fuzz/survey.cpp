@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A table of surveyed markers.
+// Input: a table of surveyed markers.
 #include "common/errors/setup_error.hpp"
 #include "memory_file.hpp"
 #include "slam/survey_file.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bus over real LCM: nothing that anybody sends kills a receiver or makes it grow.
+// The bus over real LCM: no datagram may crash a receiver or make its memory grow.
 #include "common/bus/bus.hpp"
 
 #include "common/bus/simulator_lock.hpp"
@@ -32,7 +32,7 @@ Message pose(std::int64_t utime_us) {
 }
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr bool kKeepsFreedMemory = true;  // for a while, to find uses of it
+constexpr bool kKeepsFreedMemory = true;  // AddressSanitizer does, to find uses of it
 #else
 constexpr bool kKeepsFreedMemory = false;
 #endif
@@ -44,7 +44,7 @@ constexpr const char* kSomebodyElse = "ODOMETRY rejected: somebody else publishe
 
 class BusTest : public ::testing::Test {
  protected:
-  /// Everything that arrives until nothing has for a while.
+  /// All messages that arrive until 0.3 s pass without one.
   std::vector<Message> drain() {
     std::vector<Message> messages;
     while (auto message = bus_.receive(milliseconds{300}))
@@ -79,7 +79,7 @@ TEST_F(BusTest, NewestOnlyKeepsTheNewest) {
     bus_.publish(encode(channels::kCamera, image));
   }
   std::this_thread::sleep_for(
-      milliseconds{200});  // so that all have arrived before the first is taken
+      milliseconds{200});  // so that all have arrived before the first is received
   const auto messages = drain();
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(to_us(messages[0].time), 9);
@@ -92,7 +92,7 @@ TEST_F(BusTest, PublishingAMessageAboveTheSizeLimitThrows) {
   EXPECT_THROW(bus_.publish(large), std::logic_error);
 }
 
-// research/lcm.md A11.
+// The cases of research/lcm.md A11.
 TEST_F(BusTest, CorruptDatagramsAreCountedAndTheNextMessageIsReceived) {
   const auto good = pose(5).payload;
   auto bad_magic = lcm_datagram("ODOMETRY", good);
@@ -170,7 +170,7 @@ TEST_F(BusTest, QueuesStayBoundedInAFlood) {
   std::size_t held_bytes = 0;
   for (const Message& message : drain())
     held_bytes += message.payload.size();
-  EXPECT_LT(held_bytes, 20U << 20);  // and what was on its way to it
+  EXPECT_LT(held_bytes, 20U << 20);  // the queue, and what was on its way to it
   EXPECT_GT(counted("ODOMETRY dropped: queue full"), 0);
   bus_.publish(pose(7));
   const auto messages = drain();
@@ -186,7 +186,7 @@ Bus one_publisher_per_channel(const PrivateNetwork& network) {
              Publishers::kOnePerChannel};
 }
 
-/// Two publishers of the same channel, in turn.
+// Two publishers send on one channel in turn.
 TEST(BusPublishers, OfTwoPublishersOnAChannelTheFirstIsAccepted) {
   const PrivateNetwork network;
   Bus bus = one_publisher_per_channel(network);

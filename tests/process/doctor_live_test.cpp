@@ -18,7 +18,7 @@ namespace {
 
 using testing_support::PrivateNetwork;
 
-/// A drive's messages in order, as fast as a receiver takes them.
+/// Publishes a drive's messages in order, as fast as a receiver handles them.
 void publish(const std::string& url, const ImportedLog& log) {
   std::vector<Message> messages;
   for (const ImportedScan& scan : log.scans)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Processes in lockstep over real LCM: what they say while they run, and how a run ends.
+// Processes in lockstep over real LCM: what they log while they run, and how a run ends.
 #include "common/bus/bus.hpp"
 #include "common/errors/exit_codes.hpp"
 #include "common/lockstep/master.hpp"
@@ -28,7 +28,7 @@ using testing_support::PrivateNetwork;
 
 constexpr Channel<process_status_t> kListenerStatus{"LISTENER_STATUS"};
 
-/// Hears odometry, and does nothing with it.
+/// Receives odometry and ignores it.
 class Listener final : public Node {
  public:
   explicit Listener(Inbox& inbox) {
@@ -48,7 +48,7 @@ struct Arguments {
   std::vector<char*> pointers{};
 };
 
-/// @param name  one for each test: loggers have it, too.
+/// @param name  unique in this program, as a logger has the same name.
 int run_listener(const std::string& url, std::string_view name) {
   Arguments arguments{url};
   return run_described_process(static_cast<int>(arguments.pointers.size()),
@@ -87,7 +87,7 @@ TEST(LockstepProcess, TheStatusCountsMessagesThatTheNodeRejected) {
     }
     while (const auto message = bus.receive(milliseconds{100})) {
       if (message->channel == channels::kAck.name) {
-        master.take(*message);
+        master.handle(*message);
       } else if (const auto status = decode<process_status_t>(message->payload); status.message) {
         refused = count_in(*status.message, "ODOMETRY rejected: trailing bytes");
       }
@@ -111,12 +111,12 @@ void begin_run(LockstepMaster& master, Bus& bus) {
       is_open = true;
     }
     while (const auto message = bus.receive(milliseconds{100}))
-      master.take(*message);
+      master.handle(*message);
   }
   ASSERT_TRUE(is_open && master.all_acknowledged());
 }
 
-// The simulator was killed, and another one has begun.
+// The simulator is silent, as if killed, and another one begins.
 TEST(LockstepProcess, SilenceAndAnotherRunAreReportedAndTheEndOfItsRunEndsIt) {
   const PrivateNetwork network;
   Bus bus{network.url(), {{std::string{channels::kAck.name}}}};
@@ -175,7 +175,7 @@ int run_endless(const std::string& url) {
        }});
 }
 
-// The simulator is a process of its own: it takes signals.
+// The simulator is a process of its own, as it gets signals.
 TEST(LockstepProcess, AStoppedSimulatorEndsTheRunOfTheOthers) {
   const PrivateNetwork network;
   const pid_t simulator = ::fork();
@@ -196,7 +196,7 @@ TEST(LockstepProcess, AStoppedSimulatorEndsTheRunOfTheOthers) {
   const auto end = steady_clock::now() + std::chrono::seconds{20};
   while (!listener.closed() && steady_clock::now() < end) {
     if (auto message = bus.receive(milliseconds{100}))
-      for (const Message& answer : listener.take(std::move(*message)))
+      for (const Message& answer : listener.handle(std::move(*message)))
         bus.publish(answer);
     if (ticks < 5 || is_stopped) continue;
     ::kill(simulator, SIGTERM);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stand-in for an MBot's web app, made without any code of ours: its names of channels and its
-// message types, over liblcm. Reads pose, map and status of a live run, and resets it. Exit code 0:
-// all was as an MBot's.
+// Imitates an MBot's web app without any code of ours: with its channel names and message types,
+// over liblcm. Reads pose, map and status of a live run, and resets it. Exit code 0: all messages
+// were as an MBot sends them.
 //
 // usage: mbot_client LCM_URL
 #include <lcm/lcm-cpp.hpp>
@@ -26,18 +26,18 @@ using std::chrono::steady_clock;
 
 constexpr int kLocalisationOnly = 2;
 constexpr int kFullSlam = 3;
-constexpr std::size_t kDatagramBytes = 65499;  // what liblcm sends in one piece
+constexpr std::size_t kDatagramBytes = 65499;  // largest message that liblcm sends in one piece
 
 class Client {
  public:
   explicit Client(const std::string& url) : lcm_{url} {
-    listen("SLAM_POSE", &Client::take_pose);
-    listen("SLAM_MAP", &Client::take_map);
-    listen("SLAM_STATUS", &Client::take_status);
+    listen("SLAM_POSE", &Client::on_pose);
+    listen("SLAM_MAP", &Client::on_map);
+    listen("SLAM_STATUS", &Client::on_status);
   }
 
-  /// Hears messages until `condition` holds; false when it does not in time, or one was not an
-  /// MBot's.
+  /// Receives messages until `condition` holds; false when it does not hold in time, or a message
+  /// was not as an MBot sends it.
   bool wait_until(const std::function<bool()>& condition, seconds timeout) {
     const auto end = steady_clock::now() + timeout;
     while (!condition() && strange_.empty()) {
@@ -77,15 +77,15 @@ class Client {
     return std::nullopt;
   }
 
-  void take_pose(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+  void on_pose(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     if (const auto pose = decoded<pose2D_t>(buffer, channel)) poses.push_back(*pose);
   }
 
-  void take_map(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+  void on_map(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     if (auto grid = decoded<occupancy_grid_t>(buffer, channel)) map = std::move(grid);
   }
 
-  void take_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+  void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     if (auto heard = decoded<slam_status_t>(buffer, channel)) status = std::move(heard);
   }
 

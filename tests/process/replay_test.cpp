@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes on logs: order, which log a channel is taken from, and what is said about damaged logs.
+// Nodes on logs: order, which log a channel is read from, and errors about damaged logs.
 #include "common/runtime/replay.hpp"
 
 #include "common/errors/exit_codes.hpp"
@@ -29,7 +29,7 @@ Message pose(std::string_view channel, std::int64_t utime_us, float x_m) {
   return encode(Channel<pose2D_t>{channel}, message);
 }
 
-/// Writes down what it is given.
+/// Records the messages that it receives.
 class Listener final : public Node {
  public:
   Listener(Inbox& inbox, Outbox& outbox) : outbox_{outbox} {
@@ -59,7 +59,7 @@ class Replay : public ::testing::Test {
     folder_ = std::filesystem::path{::testing::TempDir()} /
               ::testing::UnitTest::GetInstance()->current_test_info()->name();
     std::filesystem::create_directories(folder_);
-    // The tests of processes before leave their own.
+    // Earlier tests of processes leave their own logger.
     spdlog::drop("replay_test");
     spdlog::set_default_logger(spdlog::stdout_logger_mt("replay_test"));
   }
@@ -89,7 +89,7 @@ class Replay : public ::testing::Test {
   std::vector<std::string_view> needed_{};
 };
 
-/// What the lines of progress say, "replay  30 %  ...".
+/// The percentages in the lines of progress, "replay  30 %  ...".
 std::vector<int> shown_percents(const std::string& text) {
   std::vector<int> percents;
   std::istringstream lines{text};

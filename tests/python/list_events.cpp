@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the C++ reader finds in logs, for comparison with the Python one: per log the number of
-// events, a hash of their contents, and the skipped bytes.
+// Prints what the C++ reader finds in logs, for comparison with the Python reader: for each log the
+// number of events, a hash of their contents, and the skipped bytes.
 //
 // usage: list_events LOG...
 #include "common/log/log_file.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The log of a ChArUco board that is held before the camera of a robot.toml: the simulator's world
-// has none.
+// Writes a log of camera frames that show a ChArUco board, with the camera of a robot.toml: the
+// simulator's world has no board.
 #include "common/config/config.hpp"
 #include "common/log/log_file.hpp"
 #include "common/messages/channels.hpp"
@@ -21,12 +21,12 @@ int main(int argc, char** argv) {
   Random random{std::strtoull(argv[4], nullptr, 10), 26};
   const calibrate::BoardRenderer renderer{camera};
   constexpr double kShareOfImage = 0.75;
-  constexpr double kMostTilt_rad = 0.7;
+  constexpr double kMaxTilt_rad = 0.7;
   constexpr std::int64_t kPeriod_us = 100'000;
   LogWriter writer{argv[2]};
   image_t image{};
   for (const Eigen::Isometry3d& view :
-       calibrate::hand_held(std::atoi(argv[3]), kShareOfImage, kMostTilt_rad, random, camera)) {
+       calibrate::hand_held(std::atoi(argv[3]), kShareOfImage, kMaxTilt_rad, random, camera)) {
     const cv::Mat gray = renderer.picture(view, random);
     image.utime += kPeriod_us;
     image.width = image.row_stride = gray.cols;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole stack, real in every part, on a short corridor: right, the same every time, and hard to
-// kill.
+// The whole stack with its real programs on a short corridor: results are right, the same every
+// time, and survive killed and paused processes.
 #include "common/log/log_file.hpp"
 #include "common/messages/channels.hpp"
 #include "common/messages/codec.hpp"
@@ -95,11 +95,9 @@ TEST_F(ClosedLoop, EstimatesPoseMapAndMarkers) {
   const auto metrics =
       nlohmann::json::parse(content_of(folder() / "reference" / kRow / "metrics.json"));
 
-  // The corridor is 6 m = 120 px long. Two cells, because the map grows by whole cells at both
-  // ends.
+  // The corridor is 6 m = 120 px long. Two cells are allowed: the map has whole cells at both ends.
   EXPECT_NEAR(metrics.at("length_px").get<double>(), 120.0, 2.0) << metrics.dump(1);
-  // 1 % of odometry scale over 4 m is 4 cm; what comes out must not be worse than that by more than
-  // a cell.
+  // 1 % of odometry scale over 4 m is 4 cm; the error may be larger by less than a cell.
   EXPECT_LT(metrics.at("ate_origin_m").get<double>(), 0.05) << metrics.dump(1);
   EXPECT_EQ(metrics.at("markers_missing"), 0);
   EXPECT_EQ(metrics.at("markers_spurious"), 0);
@@ -127,7 +125,7 @@ TEST_F(ClosedLoop, TheLogHasDataChannelsOnlyInOrderToATenthOfASecond) {
   while (auto message = reader.next()) {
     EXPECT_THAT(message->channel, ::testing::Not(::testing::AnyOf("TICK", "ACK", "SLAM_STATUS")));
     EXPECT_EQ(time_of(message->payload), message->time);
-    // Within 0.1 s: what slam publishes for a scan may stand in the tick behind it.
+    // Messages that slam publishes for a scan may be recorded in the tick behind it, 0.1 s later.
     if (last) {
       EXPECT_LE(last->time, message->time + 100ms);
     }

@@ -13,13 +13,13 @@
 
 namespace waymark::corridor {
 
-/// A place in a corridor: along its middle from the start wall's centre, and to the left of it.
+/// A place in a corridor: distance along its middle from the start wall, and to the left of it.
 struct InCorridor {
   double along_px{};
   double left_px{};
 };
 
-/// Where a point of the image lies in a corridor; nothing if it is nowhere near.
+/// Where a point of the image lies in a corridor; nullopt if it is not near it.
 using Shape = std::function<std::optional<InCorridor>(double x, double y)>;
 
 /// Straight, start wall at (x0, y0), turned by an angle.
@@ -63,8 +63,8 @@ struct Drawing {
   int width_px{};
   int height_px{};
   double length_px{};          ///< between the centres of the innermost cells of the end walls
-  double half_width_px{20.0};  ///< to the centres of the side walls
-  double thickness_px{1.0};    ///< of the walls; they grow outwards
+  double half_width_px{20.0};  ///< from the middle to the centres of the side walls
+  double thickness_px{1.0};    ///< thickness of the walls, which grow outwards
   bool has_start{true};
   bool has_end{true};
   double specks{0.0};  ///< probability of a false occupied cell in free space

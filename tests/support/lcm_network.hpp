@@ -8,7 +8,7 @@
 
 namespace waymark::testing_support {
 
-/// Holds a port under a lock for as long as it lives.
+/// Holds a lock on the port for the lifetime of the object.
 class PrivateNetwork {
  public:
   /// @throws std::runtime_error when no port is free.
@@ -21,13 +21,13 @@ class PrivateNetwork {
 
   int port() const { return port_; }
 
-  /// Sends raw bytes as one datagram to the network, past LCM.
+  /// Sends raw bytes as one datagram to the network, without LCM.
   void send_datagram(const std::vector<std::uint8_t>& bytes) const;
 
  private:
   int port_{0};
   int lock_file_{-1};
-  int socket_file_{-1};  ///< one for all, because LCM puts fragments together by sender
+  int socket_file_{-1};  ///< one for all datagrams, as LCM reassembles fragments by sender
 };
 
 /// LCM's small-message datagram: magic, sequence number, channel with its zero, payload.

@@ -18,7 +18,7 @@ inline sockaddr_in loopback(int port) {
   return address;
 }
 
-/// A TCP port that was free a moment ago.
+/// A TCP port that is free at the time of the call.
 inline int free_port() {
   const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address = loopback(0);

@@ -19,7 +19,7 @@ struct PlacedMarker {
   Eigen::Isometry3d camera_from_marker{Eigen::Isometry3d::Identity()};
 };
 
-/// How markers and camera turn light into grey levels.
+/// Grey levels, blur and noise of the pictures.
 struct ImageLook {
   double black{25.0};
   double white{215.0};
@@ -29,7 +29,7 @@ struct ImageLook {
   double noise_sigma{3.0};    ///< grey levels
 };
 
-/// What the camera sees: every pixel is the mean of 8 x 8 rays through lens, pinhole and marker
+/// The camera's picture: every pixel is the mean of 8 x 8 rays through lens, pinhole and marker
 /// plane, blurred, with Gaussian noise, rounded to 8 bits.
 cv::Mat render_markers(const RobotConfig& robot, const std::vector<PlacedMarker>& markers,
                        const ImageLook& look, Random random);

@@ -11,9 +11,9 @@
 namespace waymark::test {
 
 /// Feeds a drive to the queue in order of time, as sensors do.
-/// @param take  is given each SensorQueue::Ready.
-template <class Take>
-void feed(SensorQueue& queue, const SensorLog& log, Take&& take) {
+/// @param handle  called with each SensorQueue::Ready.
+template <class Handle>
+void feed(SensorQueue& queue, const SensorLog& log, Handle&& handle) {
   auto scan = log.scans.begin();
   auto frame = log.frames.begin();
   for (const OdometrySample& sample : log.odometry) {
@@ -23,11 +23,11 @@ void feed(SensorQueue& queue, const SensorLog& log, Take&& take) {
     for (; scan != log.scans.end() && scan->time <= sample.time; ++scan)
       queue.add(*scan);
     while (auto ready = queue.next())
-      take(std::move(*ready));
+      handle(std::move(*ready));
   }
 }
 
-/// Without camera frames.
+/// The observations of a drive without its camera frames.
 inline std::vector<Observation> observations_of(SensorLog log, const SyntheticCorridor& corridor) {
   SensorSetup setup;
   setup.lidar = {{corridor.lidar_x_m, 0.0, 0.0}, 0.05, corridor.range_max_m};

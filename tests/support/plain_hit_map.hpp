@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GMapping's map and score written the slow, obvious way: the oracle of the fast ones.
+// GMapping's map and score, implemented in a slow and obvious way: the oracle for the fast ones.
 #pragma once
 
 #include "slam/core/gmapping/scan_matcher.hpp"

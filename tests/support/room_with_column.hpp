@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scans of a room in which every pose looks different.
+// Scans in a room that looks different from every pose.
 #pragma once
 
 #include "common/random/random.hpp"
@@ -29,7 +29,7 @@ inline double range_in_room(const Eigen::Vector2d& from, double direction_rad) {
   return range_m;
 }
 
-/// 360 beams around, noise of 1 cm.
+/// A scan of 360 beams with noise of 1 cm.
 inline std::vector<AnnotatedBeam> scan_of_room(const Se2& map_from_base) {
   std::vector<AnnotatedBeam> beams;
   Random random{3};
@@ -46,12 +46,12 @@ inline std::vector<AnnotatedBeam> scan_of_room(const Se2& map_from_base) {
   return beams;
 }
 
-/// Twelve observations 0.2 s apart. The wheels tell the same step each time, and so the robot goes,
-/// but for one step: there it is pushed instead.
-/// @param take  is given each observation, and whether the push came before it.
-/// @return the way from the first pose to the last.
-template <class Take>
-Se2 drive_through_room(const Motion& step, int pushed_at, const Se2& push, Take&& take) {
+/// Twelve observations 0.2 s apart. Odometry measures the same step each time, and the robot moves
+/// by it, except once, when it is pushed instead.
+/// @param handle  called with each observation, and whether the push came before it.
+/// @return the last pose relative to the first.
+template <class Handle>
+Se2 drive_through_room(const Motion& step, int pushed_at, const Se2& push, Handle&& handle) {
   const Se2 start{-1.5, -0.6, 0.3};
   Se2 map_from_base = start;
   Observation observation;
@@ -62,7 +62,7 @@ Se2 drive_through_room(const Motion& step, int pushed_at, const Se2& push, Take&
     }
     observation.time += std::chrono::milliseconds{200};
     observation.beams = scan_of_room(map_from_base);
-    take(observation, i == pushed_at);
+    handle(observation, i == pushed_at);
   }
   return start.inverse() * map_from_base;
 }

@@ -19,7 +19,7 @@ inline Eigen::Matrix3d diagonal(double x, double y, double yaw) {
   return Eigen::Vector3d{x * x, y * y, yaw * yaw}.asDiagonal();
 }
 
-/// With errors of a centimetre along the view, half of it across, and 20 mrad.
+/// A measurement with sigmas of a centimetre along the view, half of it across, and 20 mrad.
 inline MarkerMeasurement measurement_of(const Se2& base_from_marker, int id = 7) {
   MarkerMeasurement measurement;
   measurement.id = id;
@@ -28,7 +28,7 @@ inline MarkerMeasurement measurement_of(const Se2& base_from_marker, int id = 7)
   return measurement;
 }
 
-/// A robot in the middle of a corridor of 2 m, walls in sight on both sides.
+/// Scan from the middle of a corridor 2 m wide, with walls on both sides.
 inline std::vector<AnnotatedBeam> corridor_beams(double noise_m, Random& random) {
   std::vector<AnnotatedBeam> beams;
   for (int i = 0; i < 360; ++i) {

@@ -18,7 +18,7 @@ constexpr int kStepsPerSecond = 30;
 constexpr int kStepsPerFrame = 3;
 constexpr int kStepsPerScan = 6;
 
-// Turning back on the spot.
+// Turn rate when the robot turns back on the spot.
 constexpr double kTurn_rad_per_step = 0.5 / kStepsPerSecond;
 constexpr double kAlongAxis_rad = 0.5;
 
@@ -38,7 +38,7 @@ double look_up(std::initializer_list<std::pair<double, double>> table, double x)
   return before->second;
 }
 
-/// research/markers.md table 4c, by distance ahead.
+/// Share of frames in which a marker is detected, by distance ahead: research/markers.md, table 4c.
 double detection_rate(double ahead_m) {
   return look_up({{3.0, 1.0}, {3.75, 0.96}, {4.25, 0.9}, {4.75, 0.82}, {5.25, 0.44}, {5.6, 0.0}},
                  ahead_m);

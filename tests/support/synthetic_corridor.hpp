@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A drive down a bare corridor, straight to sensor values: no physics, no pixels, milliseconds.
+// Sensor values of a drive down a bare corridor, computed in milliseconds without physics or
+// pixels.
 #pragma once
 
 #include "common/sensors/sensors.hpp"
@@ -70,11 +71,11 @@ SensorLog drive(const SyntheticCorridor& corridor);
 /// The scan without noise from a pose.
 LidarScan scan_from(const SyntheticCorridor& corridor, const Se2& world_from_base, Timestamp time);
 
-/// What an error-free camera reports of a marker; covariance as a cautious detector's.
+/// Detection of a marker without errors; the covariance is that of a cautious detector.
 MarkerDetection detection_of(const SyntheticMarker& marker, const Se2& world_from_base,
                              const SyntheticCorridor& corridor);
 
-/// Left becomes right: the same drive seen in a mirror that stands along the corridor.
+/// The same drive, mirrored along the corridor: left becomes right.
 SensorLog mirrored(const SensorLog& log);
 
 }  // namespace waymark::test

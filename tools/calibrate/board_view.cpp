@@ -13,11 +13,11 @@
 namespace waymark::calibrate {
 namespace {
 
-constexpr std::size_t kFewestCorners = 8;  // 16 equations, 6 of them for the pose
-constexpr std::size_t kFewestViews = 10;
-constexpr std::size_t kMostViews = 40;      // more take seconds and improve little
+constexpr std::size_t kMinCorners = 8;  // give 16 equations; 6 of them determine the pose
+constexpr std::size_t kMinViews = 10;
+constexpr std::size_t kMaxViews = 40;       // more views take seconds and improve little
 constexpr double kSameView = 0.02;          // smallest move of the outline, in image widths
-constexpr double kTilt_deg = 15.0;          // at less, focal length and distance are ambiguous
+constexpr double kTilt_deg = 15.0;          // with less, focal length and distance are ambiguous
 constexpr std::ptrdiff_t kTiltedViews = 3;  // views with at least kTilt_deg, for each axis
 
 bool lie_in_a_line(const std::vector<cv::Point3f>& points_m) {
@@ -30,7 +30,7 @@ bool lie_in_a_line(const std::vector<cv::Point3f>& points_m) {
   return std::ranges::all_of(points_m, same_x) || std::ranges::all_of(points_m, same_y);
 }
 
-/// Sets normal and outline, by the board's pose for a guessed lens.
+/// Sets normal and outline from the board's pose, computed with a guessed lens.
 void set_geometry(BoardView& view, const cv::aruco::CharucoBoard& board, cv::Size image) {
   const double focal_px = std::max(image.width, image.height);
   const cv::Matx33d guess{focal_px, 0.0,      0.5 * (image.width - 1),  //
@@ -97,7 +97,7 @@ std::vector<std::string_view> empty_parts(const std::vector<BoardView>& views, c
 std::optional<BoardView> find_board(const std::string& name, const cv::Mat& gray,
                                     const cv::Ptr<cv::aruco::CharucoBoard>& board) {
   BoardCorners found = find_corners(gray, board);
-  if (found.ids.size() < std::min(kFewestCorners, board->chessboardCorners.size()))
+  if (found.ids.size() < std::min(kMinCorners, board->chessboardCorners.size()))
     return std::nullopt;
   BoardView view{.name = name};
   view.corners_px = std::move(found.corners_px);
@@ -115,7 +115,7 @@ std::vector<BoardView> different_views(const std::vector<BoardView>& views) {
   auto next = static_cast<std::size_t>(
       std::ranges::max_element(views, {}, [](const BoardView& v) { return v.corners_px.size(); }) -
       views.begin());
-  while (chosen.size() < kMostViews && distances[next] >= kSameView) {
+  while (chosen.size() < kMaxViews && distances[next] >= kSameView) {
     chosen.push_back(views[next]);
     for (std::size_t i = 0; i < views.size(); ++i)
       distances[i] = std::min(distances[i], difference(views[i], views[next]));
@@ -126,9 +126,9 @@ std::vector<BoardView> different_views(const std::vector<BoardView>& views) {
 
 std::vector<std::string> missing_in(const std::vector<BoardView>& views, cv::Size image) {
   std::vector<std::string> missing;
-  if (views.size() < kFewestViews)
+  if (views.size() < kMinViews)
     missing.push_back(fmt::format("{} more different views of the board (there are {} of {})",
-                                  kFewestViews - views.size(), views.size(), kFewestViews));
+                                  kMinViews - views.size(), views.size(), kMinViews));
   if (views.empty()) return missing;
   if (const auto parts = empty_parts(views, image); !parts.empty())
     missing.push_back(

@@ -14,11 +14,11 @@
 namespace waymark::calibrate {
 
 struct BoardView {
-  std::string name{};                             ///< of the frame
+  std::string name{};                             ///< name of the frame
   std::vector<cv::Point2f> corners_px{};          ///< inner corners of the chessboard
   std::vector<cv::Point3f> corners_in_board_m{};  ///< the same corners, board frame
   std::array<cv::Point2d, 4> outline{};           ///< corners of the board, in image widths
-  cv::Vec3d normal{};  ///< of the board, optical frame; like the outline, for a guessed lens
+  cv::Vec3d normal{};  ///< normal of the board, optical frame; computed with a guessed lens
 };
 
 /// nullopt when fewer than 8 corners (or, on a smaller board, not all) are found, or all found ones

@@ -9,7 +9,7 @@ namespace waymark::calibrate {
 namespace {
 
 constexpr double kFocalSigma = 0.005;   // relative; waymark-doctor warns of errors from 1 % on
-constexpr double kLargestRms_px = 2.0;  // above: the board is bent, or not as described
+constexpr double kLargestRms_px = 2.0;  // above it, the board is bent, or not as described
 
 void add_missing(const LensFit& fit, std::vector<std::string>& missing) {
   if (!(fit.rms_px <= kLargestRms_px))

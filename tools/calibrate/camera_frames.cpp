@@ -17,9 +17,9 @@
 namespace waymark::calibrate {
 namespace {
 
-constexpr std::int64_t kMostFrames = 400;  // of a log
-constexpr int kSmallest_px = 16;           // limits of robot.camera.width_px
-constexpr int kLargest_px = 8192;
+constexpr std::int64_t kMaxFrames = 400;  // frames of a log that are read
+constexpr int kMinSide_px = 16;           // limits of robot.camera.width_px, height_px
+constexpr int kMaxSide_px = 8192;
 constexpr std::array<std::string_view, 8> kPictures{".png", ".jpg", ".jpeg", ".pgm",
                                                     ".ppm", ".bmp", ".tif",  ".tiff"};
 
@@ -32,7 +32,7 @@ class FrameSink {
     counts_.problems[std::string{reason}].push_back(name);
   }
 
-  void take(const std::string& name, const cv::Mat& gray) {
+  void use(const std::string& name, const cv::Mat& gray) {
     if (!is_possible(gray.size())) return refuse(name, "not 16 to 8192 pixels wide and high");
     if (counts_.size.empty()) counts_.size = gray.size();
     if (gray.size() != counts_.size) return refuse(name, "another size than the first frame's");
@@ -41,8 +41,8 @@ class FrameSink {
   }
 
   static bool is_possible(cv::Size size) {
-    return std::min(size.width, size.height) >= kSmallest_px &&
-           std::max(size.width, size.height) <= kLargest_px;
+    return std::min(size.width, size.height) >= kMinSide_px &&
+           std::max(size.width, size.height) <= kMaxSide_px;
   }
 
   const FrameCounts& counts() const { return counts_; }
@@ -64,7 +64,7 @@ cv::Mat read_picture(const std::filesystem::path& file) {
   try {
     return cv::imread(file.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {
-    return {};  // like an unreadable file
+    return {};  // as for an unreadable file
   }
 }
 
@@ -79,7 +79,7 @@ void read_folder(const std::filesystem::path& folder, FrameSink& sink) {
     if (gray.empty()) {
       sink.refuse(file.filename().string(), "no picture that can be read");
     } else {
-      sink.take(file.filename().string(), gray);
+      sink.use(file.filename().string(), gray);
     }
   }
 }
@@ -89,7 +89,7 @@ void read_image(const std::string& name, const image_t& image, FrameSink& sink) 
   if (!FrameSink::is_possible(size))
     return sink.refuse(name, "not 16 to 8192 pixels wide and high");
   const DecodedFrame frame = decode_image(image, size);
-  if (frame.problem == FrameProblem::kNone) return sink.take(name, frame.gray);
+  if (frame.problem == FrameProblem::kNone) return sink.use(name, frame.gray);
   sink.refuse(name, frame.problem == FrameProblem::kWrongSize ? "another size than it says"
                                                               : to_string(frame.problem));
 }
@@ -101,7 +101,7 @@ void read_log(const std::filesystem::path& log, FrameSink& sink) {
   std::int64_t num_frames = 0;
   for (LogReader reader{log}; reader.next(is_camera);)
     ++num_frames;
-  const std::int64_t every = 1 + num_frames / kMostFrames;
+  const std::int64_t every = 1 + num_frames / kMaxFrames;
   LogReader reader{log};
   for (std::int64_t number = 0; const auto event = reader.next(is_camera); ++number) {
     if (number % every != 0) continue;

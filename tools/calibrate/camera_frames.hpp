@@ -14,8 +14,8 @@
 namespace waymark::calibrate {
 
 struct FrameCounts {
-  std::int64_t num_frames{0};                                  ///< read, or refused with a reason
-  cv::Size size{};                                             ///< of the first readable one
+  std::int64_t num_frames{0};                                  ///< frames read or refused
+  cv::Size size{};                                             ///< size of the first readable frame
   std::map<std::string, std::vector<std::string>> problems{};  ///< refused frames, by reason
 };
 

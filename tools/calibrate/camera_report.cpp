@@ -11,14 +11,14 @@
 namespace waymark::calibrate {
 namespace {
 
-constexpr std::size_t kMostNames = 10;
+constexpr std::size_t kMaxNames = 10;
 constexpr float kMagnified = 100.0F;
 
 std::string names(const std::vector<std::string>& all) {
-  const std::span shown{all.data(), std::min(all.size(), kMostNames)};
+  const std::span shown{all.data(), std::min(all.size(), kMaxNames)};
   return fmt::format(
       "{}{}", fmt::join(shown, ", "),
-      all.size() > kMostNames ? fmt::format(" and {} more", all.size() - kMostNames) : "");
+      all.size() > kMaxNames ? fmt::format(" and {} more", all.size() - kMaxNames) : "");
 }
 
 std::size_t num_corners(const LensFit& fit) {

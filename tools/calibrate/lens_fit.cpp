@@ -18,9 +18,9 @@ constexpr int kNumLens = 9;
 constexpr int kNumPose = 6;
 using LensMatrix = Eigen::Matrix<double, kNumLens, kNumLens>;
 
-constexpr double kOutlier = 3.0;        // a view above this many times the views' median error
-constexpr double kCornerOutlier = 5.0;  // a corner above so many median residuals (6 sigma)
-constexpr int kMostSteps = 100;
+constexpr double kOutlier = 3.0;        // an outlier view has more than so many median errors
+constexpr double kCornerOutlier = 5.0;  // a corner, more than so many median residuals (6 sigma)
+constexpr int kMaxSteps = 100;
 constexpr double kConverged = 1e-10;  // relative change of the parameters
 
 /// Covariance of the lens with the views' poses marginalised (Schur complement of the Gauss-Newton
@@ -112,7 +112,7 @@ LensFit fit_once(const std::vector<BoardView>& views, cv::Size image, std::vecto
   fit.views = views;
   fit.rms_px = cv::calibrateCamera(
       points_m, points_px, image, matrix, distortion, turns, places, cv::noArray(), cv::noArray(),
-      errors, 0, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMostSteps, kConverged});
+      errors, 0, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMaxSteps, kConverged});
   fit.values = {matrix(0, 0), matrix(1, 1), matrix(0, 2), matrix(1, 2)};
   for (int i = 0; i < 5; ++i)
     fit.values[static_cast<std::size_t>(4 + i)] = distortion.at<double>(i);

@@ -26,7 +26,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
                   "called on the network")
       .existing_file();
   program.require_subcommand();
-  program.take_options_of_subcommands();
+  program.allow_options_after_subcommand();
   Command save = program.add_subcommand("save", "save the map in slam's state folder");
   save.add_option("name", command.name, "NAME of NAME.map.lcm: letters, digits, _ and -")
       .required();

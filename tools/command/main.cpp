@@ -3,8 +3,8 @@
 #include "command/command_line.hpp"
 #include "common/bus/ask_slam.hpp"
 #include "common/bus/bus.hpp"
+#include "common/command_line/run_tool.hpp"
 #include "common/config/config.hpp"
-#include "common/errors/exit_codes.hpp"
 
 #include <fmt/format.h>
 
@@ -40,10 +40,6 @@ int ask(const waymark::CommandLine& line) {
 int main(int argc, char** argv) {
   const waymark::CommandLine line = waymark::parse_command_line(argc, argv);
   if (line.exit_code) return *line.exit_code;
-  try {
-    return ask(line);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "waymark-command: {}\n", error.what());
-    return waymark::kExitUsage;
-  }
+  return waymark::run_tool(
+      "waymark-command", [&] { return ask(line); }, waymark::kExitUsage);
 }

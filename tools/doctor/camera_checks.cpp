@@ -21,8 +21,8 @@ constexpr Limits kLate_s{0.01, 0.05};
 // sigma is half of that reach fills it; one whose sigma is the whole reach exceeds it.
 constexpr Limits kBlur_px{1.5, 3.0};
 constexpr Limits kUnreadable{0.01, 0.1};  // share of the frames
-constexpr std::size_t kFewestMarkers = 20;
-constexpr double kSigmaOfMedian = 1.2533;  // times sigma / sqrt(n), of a normal distribution
+constexpr std::size_t kMinMarkers = 20;
+constexpr double kSigmaOfMedian = 1.2533;  // sigma of a normal's median, in sigma / sqrt(n)
 
 Measured median_of(const std::vector<double>& values) {
   const double value = upper_median(values);
@@ -70,7 +70,7 @@ Check dictionary_check(const CameraRecord& camera, RobotConfig& robot) {
     most = count;
     best = other;
   }
-  // Poisson: the standard deviation of a difference of counts is the root of their sum.
+  // Counts are Poisson: the variance of their difference is their sum.
   const double surplus = static_cast<double>(most - described);
   const bool is_other =
       most > 2 * described && surplus > kSigmas * std::sqrt(static_cast<double>(most + described));
@@ -92,7 +92,7 @@ Check dictionary_check(const CameraRecord& camera, RobotConfig& robot) {
 }
 
 Check blur_check(const CameraRecord& camera) {
-  if (camera.blurs_px.size() < kFewestMarkers) {
+  if (camera.blurs_px.size() < kMinMarkers) {
     return unchecked("blur", fmt::format("{} markers are too few", camera.blurs_px.size()),
                      "drive past markers");
   }

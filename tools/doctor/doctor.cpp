@@ -10,8 +10,8 @@
 namespace waymark {
 namespace {
 
-// A measured odometry scale is used to check the camera if its sigma is below kGoodScaleSigma; else
-// the scale is 1 with kUnmeasuredScaleSigma: wheels whose description nobody has checked.
+// A measured odometry scale is used to check the camera if its sigma is below kGoodScaleSigma. Else
+// the scale is 1 with kUnmeasuredScaleSigma, as for wheels whose description is unchecked.
 constexpr double kGoodScaleSigma = 0.01;
 constexpr double kUnmeasuredScaleSigma = 0.1;
 

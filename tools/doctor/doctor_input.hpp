@@ -23,8 +23,8 @@ struct ChannelTraffic {
   std::int64_t messages{0};
   std::int64_t bytes{0};
   std::int64_t largest_bytes{0};
-  double first_s{0.0};  ///< recorded, since the start of the log
-  double last_s{0.0};
+  double first_s{0.0};  ///< time of the first message since the start of the log
+  double last_s{0.0};   ///< time of the last message since the start of the log
 };
 
 /// Origin of the LiDAR's mounting in log.robot.lidar.
@@ -43,7 +43,7 @@ struct DoctorInput {
   std::optional<CameraRecord> camera{};  ///< of an LCM log with CAMERA or MARKERS, if described
 };
 
-/// Zero for channels that are not in the log.
+/// How long the channel is silent at both ends of the log; zero if it is not in the log.
 Silence silence_of(const DoctorInput& input, const std::string& channel);
 
 /// Names of the channels to read from an LCM log. Empty: `lidar` is the only channel with scans;

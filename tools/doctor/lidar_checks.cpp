@@ -9,10 +9,10 @@
 namespace waymark {
 namespace {
 
-constexpr double kOtherNoise = 2.0;  // times more or less than the description says
-constexpr double kFewLost = 0.02;
-constexpr double kManyLost = 0.2;
-constexpr std::size_t kFewestScans = 30;
+constexpr double kNoiseRatio = 2.0;  // measured / configured noise, or the inverse: warning
+constexpr double kFewLost = 0.02;    // share of scans that do not fit the one before: pass
+constexpr double kManyLost = 0.2;    // up to here a warning, above a failure
+constexpr std::size_t kMinScans = 30;
 
 }  // namespace
 
@@ -59,7 +59,7 @@ Check check_range_noise(const DoctorInput& input, RobotConfig& robot) {
       fmt::format("ranges scatter by {:.4f} m about straight walls", sigma_m);
   if (!input.described) return {"range_noise", Verdict::kPass, finding, "", sigma_m};
   const bool is_as_described =
-      sigma_m < kOtherNoise * described_m && described_m < kOtherNoise * sigma_m;
+      sigma_m < kNoiseRatio * described_m && described_m < kNoiseRatio * sigma_m;
   if (!is_as_described) robot.lidar.range_sigma_m = sigma_m;
   return {"range_noise", is_as_described ? Verdict::kPass : Verdict::kWarn,
           fmt::format("{}, robot.lidar.range_sigma_m is {:.4f} m", finding, described_m),
@@ -68,7 +68,7 @@ Check check_range_noise(const DoctorInput& input, RobotConfig& robot) {
 }
 
 Check check_scans_fit(const ImportedLog& log, const LidarMotions& motions) {
-  if (log.scans.size() < kFewestScans) {
+  if (log.scans.size() < kMinScans) {
     return unchecked("scans_fit", fmt::format("{} scans are too few", log.scans.size()),
                      "record a longer log");
   }

@@ -13,11 +13,11 @@
 namespace waymark {
 namespace {
 
-constexpr Limits kScale{0.03, 0.1};     // of one
-constexpr Limits kOffset_s{0.02, 0.1};  // at 1 rad/s a degree is 17 ms
+constexpr Limits kScale{0.03, 0.1};     // deviation from 1
+constexpr Limits kOffset_s{0.02, 0.1};  // at 1 rad/s, 17 ms are a degree
 constexpr Limits kPlace_m{0.03, 0.1};
 constexpr Limits kAngle_rad{0.026, 0.087};  // 1.5 and 5 degrees
-constexpr std::size_t kFewestReversed = 5;  // as waymark-import
+constexpr std::size_t kMinReversed = 5;     // as in waymark-import
 
 Check no_turns(std::string name) {
   return unchecked(std::move(name), "the robot turns too little (less than once around in all)",
@@ -135,7 +135,7 @@ Check check_backing_up(const ImportedLog& log) {
   double distance_m = 0.0;
   for (const ReversedStep& step : steps)
     distance_m += step.distance_m;
-  if (steps.size() < kFewestReversed) {
+  if (steps.size() < kMinReversed) {
     return {"backing_up", Verdict::kPass, "odometry and scans agree on the direction of driving",
             "", 0.0};
   }

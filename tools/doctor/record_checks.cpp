@@ -13,10 +13,11 @@ namespace {
 
 constexpr double kFewMissing = 0.01;
 constexpr double kManyMissing = 0.1;
-constexpr double kGap = 1.75;  // median intervals; in a longer gap, messages are missing
-constexpr std::int64_t kDatagram_bytes = 65'000;  // README: a message is one datagram
-constexpr std::size_t kFewestRecords = 10;
-// Sensors start and stop one after the other, and a LiDAR has to get up to speed.
+constexpr double kGap = 1.75;  // messages are missing in a gap longer than this [median intervals]
+constexpr std::int64_t kDatagram_bytes = 65'000;  // largest message that fits one datagram
+constexpr std::size_t kMinRecords = 10;
+// A shorter silence at an end of the log is usual: sensors start and stop one after the other, and
+// a LiDAR takes time to spin up.
 constexpr double kUsualSilence_s = 3.0;
 
 double percent(double share) {
@@ -46,7 +47,7 @@ std::string silence_text(const Silence& silence) {
 template <class Record>
 Check check_drops(std::string name, std::string_view what, const std::vector<Record>& records,
                   const Silence& silence) {
-  if (records.size() < kFewestRecords) {
+  if (records.size() < kMinRecords) {
     return unchecked(std::move(name), fmt::format("{} {} are too few", records.size(), what),
                      "record a longer log");
   }
@@ -100,7 +101,7 @@ Check check_odometry_drops(const DoctorInput& input) {
 }
 
 Check check_camera_drops(const DoctorInput& input) {
-  std::vector<ImportedPose> frames;  // of which only the times count
+  std::vector<ImportedPose> frames;  // only their times are used
   for (const Timestamp time : input.camera->times)
     frames.push_back({.time = time});
   std::ranges::sort(frames, {}, &ImportedPose::time);

@@ -17,7 +17,7 @@ struct Limits {
 
 inline constexpr double kSigmas = 3.0;
 
-/// Judges the absolute deviation minus three standard deviations.
+/// The verdict for the absolute deviation minus three standard deviations.
 inline Verdict verdict_of(double deviation, double sigma, Limits limits) {
   const double certain = std::abs(deviation) - kSigmas * sigma;
   return certain <= limits.good  ? Verdict::kPass

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <system_error>
 
 namespace waymark::evaluate {
 namespace {
@@ -48,32 +47,12 @@ std::string file_text(const Json& json) {
 
 }  // namespace
 
-int report_skipped(const Skipped& skipped, const Output& output) {
+int report_skipped(const SkippedLines& skipped, const Output& output) {
   constexpr std::size_t kShown = 10;
   for (std::size_t i = 0; i < std::min(skipped.size(), kShown); ++i)
     fmt::print(stderr, "skipped: {}\n", skipped[i]);
   if (skipped.size() > kShown) fmt::print(stderr, "skipped: {} more\n", skipped.size() - kShown);
   return skipped.empty() || output.tolerant ? kExitOk : kExitFailed;
-}
-
-int run_command(std::string_view program, const std::function<int()>& command) {
-  const auto fail = [&](const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", program, error.what());
-    return int{kExitUsage};
-  };
-  try {
-    return command();
-  } catch (const InputError& error) {
-    return fail(error);
-  } catch (const std::system_error& error) {
-    return fail(error);
-  } catch (const ConfigError& error) {
-    return fail(error);
-  } catch (const SetupError& error) {
-    return fail(error);
-  } catch (const nlohmann::json::exception& error) {
-    return fail(error);
-  }
 }
 
 int run_length(const fs::path& map_yaml, std::optional<double> true_length_m,
@@ -82,19 +61,19 @@ int run_length(const fs::path& map_yaml, std::optional<double> true_length_m,
   try {
     print(json_of(corridor::measure_corridor(map), true_length_m), output);
   } catch (const corridor::NotACorridor& error) {
-    throw InputError{fmt::format("{}: {}", map_yaml.string(), error.what())};
+    throw SetupError{fmt::format("{}: {}", map_yaml.string(), error.what())};
   }
   return kExitOk;
 }
 
 int run_trajectory(const fs::path& estimate_file, const fs::path& reference_file,
                    Alignment alignment, const Output& output) {
-  Skipped skipped;
+  SkippedLines skipped;
   const Trajectory estimate = read_tum(estimate_file, skipped);
   const Trajectory reference = read_tum(reference_file, skipped);
   const std::vector<PosePair> pairs = associate(estimate, reference);
   if (pairs.size() < 2)
-    throw InputError{
+    throw SetupError{
         fmt::format("{}: fewer than two poses within the time span of {}; are the two of one run?",
                     estimate_file.string(), reference_file.string())};
   const Overlap overlap = overlap_of(estimate, reference, pairs);
@@ -111,7 +90,7 @@ int run_trajectory(const fs::path& estimate_file, const fs::path& reference_file
 
 int run_relations(const fs::path& trajectory_file, const fs::path& relations_file,
                   const Output& output) {
-  Skipped skipped;
+  SkippedLines skipped;
   const Trajectory trajectory = read_tum(trajectory_file, skipped);
   const std::vector<Relation> relations = read_relations(relations_file, skipped);
   const RelationsError error = relations_error(trajectory, relations, relations_file, skipped);
@@ -127,24 +106,24 @@ int run_relations(const fs::path& trajectory_file, const fs::path& relations_fil
 int run_run(const fs::path& run_dir, const std::vector<std::string>& wanted,
             const EvaluationOptions& given, const Output& output) {
   if (!fs::is_directory(run_dir))
-    throw InputError{run_dir.string() + ": not a folder; give the output folder of a run"};
+    throw SetupError{run_dir.string() + ": not a folder; give the output folder of a run"};
   const std::vector<std::string> found = estimators_in(run_dir);
   if (found.empty())
-    throw InputError{run_dir.string() +
+    throw SetupError{run_dir.string() +
                      ": no sub-folder with a trajectory.tum; run an estimator on its log first"};
   for (const std::string& name : wanted) {
     if (std::find(found.begin(), found.end(), name) == found.end())
-      throw InputError{fmt::format("{}: no estimator '{}' (with a trajectory.tum); there are: {}",
+      throw SetupError{fmt::format("{}: no estimator '{}' (with a trajectory.tum); there are: {}",
                                    run_dir.string(), name, fmt::join(found, ", "))};
   }
   const RunTruth truth = read_truth(run_dir, given);
   std::vector<EstimatorResult> results;
-  Skipped skipped = truth.skipped;
+  SkippedLines skipped = truth.skipped;
   EvaluationOptions options = given;
   if (!given.mapped_in.empty()) {
     const fs::path file = given.mapped_in / "truth.tum";
     const Trajectory mapping = read_tum(file, skipped);
-    if (mapping.empty()) throw InputError{file.string() + ": no pose, so no frame of the map"};
+    if (mapping.empty()) throw SetupError{file.string() + ": no pose, so no frame of the map"};
     options.world_from_map = mapping.front().parent_from_base;
   }
   bool complete = true;

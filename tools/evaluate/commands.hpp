@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sub-commands: read, compute, print. Each returns the program's exit code, and throws
-// InputError for unusable input.
+// SetupError for unusable input.
 #pragma once
 
 #include "common/errors/exit_codes.hpp"
@@ -20,12 +20,8 @@ struct Output {
   bool tolerant{};  ///< neither skipped lines nor a partly covered reference fail the program
 };
 
-/// Runs a sub-command; prints what it throws on standard error.
-/// @return its exit code, or kExitUsage after an exception.
-int run_command(std::string_view program, const std::function<int()>& command);
-
 /// Prints the first skipped lines on standard error. @return the exit code.
-int report_skipped(const Skipped& skipped, const Output& output);
+int report_skipped(const SkippedLines& skipped, const Output& output);
 
 int run_length(const std::filesystem::path& map_yaml, std::optional<double> true_length_m,
                const Output& output);

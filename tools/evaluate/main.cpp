@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-evaluate: measures the errors of maps and trajectories.
 #include "common/command_line/command_line.hpp"
+#include "common/command_line/run_tool.hpp"
 #include "evaluate/commands.hpp"
 
 #include <unistd.h>
@@ -198,5 +199,5 @@ int main(int argc, char** argv) {
   add_consistency(program, arguments, chosen);
   add_placement(program, chosen);
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
-  return run_command("waymark-evaluate", chosen);
+  return waymark::run_tool("waymark-evaluate", chosen, waymark::kExitUsage);
 }

@@ -39,7 +39,7 @@ int run_sweep(const fs::path& sweep_dir, const Output& output) {
   write_whole_file(sweep_dir / "index.html", sweep_page(rows));
   const std::string markdown = sweep_markdown(rows);
   write_whole_file(sweep_dir / "results.md", markdown);
-  Skipped skipped;
+  SkippedLines skipped;
   for (const SweepRow& row : rows) {
     for (const SweptRun& run : row.runs)
       skipped.insert(skipped.end(), run.skipped.begin(), run.skipped.end());
@@ -62,7 +62,7 @@ int run_sweep(const fs::path& sweep_dir, const Output& output) {
 }
 
 int run_consistency(const std::vector<fs::path>& row_dirs, const Output& output) {
-  Skipped skipped;
+  SkippedLines skipped;
   std::vector<std::vector<Station>> runs;
   for (const fs::path& dir : row_dirs)
     runs.push_back(read_stations(dir / "stations.csv", skipped));

@@ -10,8 +10,8 @@
 namespace waymark::exporting {
 namespace {
 
-constexpr std::size_t kPlacesPerBeam = 4;  // of an uneven scan
-constexpr double kEven = 0.05;             // largest deviation from an even grid, in steps
+constexpr std::size_t kPlacesPerBeam = 4;  // places in the grid of an uneven scan, per beam
+constexpr double kEven = 0.05;  // largest deviation of an even scan from a grid, in steps
 
 /// The same directions without jumps of a turn.
 std::vector<double> unwrapped(std::span<const float> angles_rad) {

@@ -225,7 +225,7 @@ void McapExport::write_truth() {
 
 bool McapExport::follow(std::int64_t map_id, Timestamp time) {
   using Origin = viewer::CurrentMap::Origin;
-  const Origin origin = current_map_.take(map_id, time);
+  const Origin origin = current_map_.update(map_id, time);
   if (origin == Origin::kOfNewMap) begin_map(time);
   if (origin == Origin::kLate)
     counters_.add("messages of an earlier map left out", CountKind::kLoss);

@@ -41,7 +41,7 @@ class McapExport final : public Node {
   /// @return false for a late message of an earlier map.
   bool follow(std::int64_t map_id, Timestamp time);
   void begin_map(Timestamp time);
-  /// Writes what has become known of the frames.
+  /// Writes the transforms that have become known.
   void write_odometry();
   void write_truth();
   void count_losses();

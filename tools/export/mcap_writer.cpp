@@ -41,7 +41,8 @@ class Fields {
     return *this;
   }
 
-  /// A text after its length: 32 bit for texts and arrays, 64 bit for the records of a chunk.
+  /// Appends a text, preceded by its length: 32 bit for texts and arrays, 64 bit for the records of
+  /// a chunk.
   template <class Length = std::uint32_t>
   Fields& text(std::string_view value) {
     number(static_cast<Length>(value.size()));

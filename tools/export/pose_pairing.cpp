@@ -7,8 +7,8 @@
 namespace waymark::exporting {
 namespace {
 
-constexpr Duration kLongestGap = std::chrono::seconds{1};  // between poses that are interpolated
-constexpr std::size_t kMostPoses = 2000;
+constexpr Duration kMaxGap = std::chrono::seconds{1};  // between two poses to interpolate
+constexpr std::size_t kMaxPoses = 2000;
 
 }  // namespace
 
@@ -17,7 +17,7 @@ void PosePairing::add_pose(const viewer::TimedPose& frame_from_base) {
     accept(*std::exchange(held_back_, frame_from_base));
   } else if (is_newer(frame_from_base.time)) {
     if (std::exchange(held_back_, frame_from_base)) ++num_dropped_poses_;
-  } else if (clock_steps_.see_misfit(frame_from_base.time)) {
+  } else if (clock_steps_.note_inconsistent(frame_from_base.time)) {
     begin_anew(frame_from_base);
   } else {
     ++num_dropped_poses_;
@@ -37,9 +37,9 @@ void PosePairing::finish() {
 }
 
 void PosePairing::accept(const viewer::TimedPose& pose) {
-  clock_steps_.see_fitting();
+  clock_steps_.note_consistent();
   poses_.push_back(pose);
-  if (poses_.size() > kMostPoses) poses_.pop_front();
+  if (poses_.size() > kMaxPoses) poses_.pop_front();
   new_poses_.push_back(pose);
   for (const viewer::TimedPose& estimate : std::exchange(waiting_, {}))
     add_estimate(estimate);
@@ -62,7 +62,7 @@ std::optional<Se2> PosePairing::pose_at(Timestamp time) const {
   if (after->time == time) return after->frame_from_base;
   if (after == poses_.begin()) return std::nullopt;
   const viewer::TimedPose& before = *(after - 1);
-  if (after->time - before.time > kLongestGap) return std::nullopt;
+  if (after->time - before.time > kMaxGap) return std::nullopt;
   const double fraction = to_seconds(time - before.time) / to_seconds(after->time - before.time);
   return interpolate(before.frame_from_base, after->frame_from_base, fraction);
 }

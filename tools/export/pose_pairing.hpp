@@ -31,7 +31,7 @@ class PosePairing {
 
   void forget_estimates() { waiting_.clear(); }
 
-  /// No more poses come.
+  /// To be called when no more poses come.
   void finish();
 
   /// The poses whose stamps have turned out to be right since the last call.
@@ -54,7 +54,7 @@ class PosePairing {
 
   std::deque<viewer::TimedPose> poses_{};
   std::optional<viewer::TimedPose> held_back_{};
-  std::vector<viewer::TimedPose> waiting_{};  ///< estimates
+  std::vector<viewer::TimedPose> waiting_{};  ///< estimates that wait for the next pose
   std::vector<viewer::TimedPose> new_poses_{};
   std::vector<PosePair> new_pairs_{};
   ClockStepDetector clock_steps_{};

@@ -34,7 +34,7 @@ struct FaultConfig {
 
   bool changes_ids() const { return every_id >= 0 || !renamed_ids.empty(); }
 
-  /// The marker's id after every_id and renamed_ids.
+  /// The marker's new id by every_id and renamed_ids.
   int id_of(int id) const;
 };
 

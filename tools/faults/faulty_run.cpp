@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The part of a scenario that is read.
+/// The part of a scenario that is read here.
 struct SeedPart {
   struct Run {
     std::int64_t seed{1};
@@ -65,7 +65,8 @@ bool are_applied(const FaultConfig& faults, const fs::path& out_dir) {
   return applied.variant.size() == 1 && text(applied.variant.front().faults) == text(faults);
 }
 
-/// Replays belong to the log that was replayed: they may stay only if it is made again.
+/// Checks that replays in the folder will still belong to its log: replays of another log must not
+/// stay beside it.
 void check_replays(const fs::path& run_dir, const FaultConfig& faults, const fs::path& out_dir) {
   if (!fs::exists(out_dir / kMark)) return;
   if (is_same_drive(run_dir, out_dir) && are_applied(faults, out_dir)) return;
@@ -106,7 +107,8 @@ std::map<std::string, std::string> files_beside_log(const fs::path& run_dir,
   return files;
 }
 
-/// Injects into nothing. @throws SetupError naming the faults when none of them affects the log.
+/// Injects the faults without writing.
+/// @throws SetupError naming the faults when none of them affects the log.
 void check_effect(const fs::path& log, const Variant& variant, Injector injector) {
   for (LogReader reader{log}; const auto message = reader.next();)
     if (!is_output_of_slam(*message)) injector.apply(*message);

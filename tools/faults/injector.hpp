@@ -54,9 +54,9 @@ class Injector {
   const LogContent& content_;
   std::optional<Timestamp> start_{};
   std::uint64_t frame_{0};
-  std::optional<Se2> last_odometry_{};  ///< as recorded
-  Se2 odom_from_base_{};                ///< with faults
-  std::set<std::string> injected_{};    ///< keys of faults
+  std::optional<Se2> last_odometry_{};  ///< last pose as recorded
+  Se2 odom_from_base_{};                ///< last pose with faults
+  std::set<std::string> injected_{};    ///< keys of faults that have affected a message
   std::map<std::string, std::int64_t> counts_{};
 };
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-faults: copies a recorded run with faults in its messages.
 #include "common/command_line/command_line.hpp"
-#include "common/errors/exit_codes.hpp"
-#include "common/errors/setup_error.hpp"
+#include "common/command_line/run_tool.hpp"
 #include "common/log/log_file.hpp"
 #include "faults/faulty_run.hpp"
 
@@ -71,16 +70,5 @@ int main(int argc, char** argv) {
   if (!is_complete && !is_list && !arguments.explain)
     return program.refuse_without(
         "RUN_DIR, --variants, --variant and --out (or --list, --explain)");
-  try {
-    return run(arguments);
-  } catch (const ConfigError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return kExitUsage;
-  } catch (const SetupError& error) {
-    fmt::print(stderr, "waymark-faults: {}\n", error.what());
-    return kExitUsage;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "waymark-faults: {}\n", error.what());
-    return kExitFailed;
-  }
+  return run_tool("waymark-faults", [&] { return run(arguments); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-map: shows, checks, exports, transforms and merges map files.
 #include "common/command_line/command_line.hpp"
+#include "common/command_line/run_tool.hpp"
 #include "common/logging/logging.hpp"
 #include "map/map_commands.hpp"
 #include "slam/map_file.hpp"
@@ -78,14 +79,8 @@ int main(int argc, char** argv) {
   });
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   logging::set_level(logging::Level::kWarn);
-  try {
+  return run_tool("waymark-map", [&] {
     fmt::print("{}", command());
-    return 0;
-  } catch (const SetupError& error) {
-    fmt::print(stderr, "waymark-map: {}\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "waymark-map: {}\n", error.what());
-    return 1;
-  }
+    return kExitOk;
+  });
 }

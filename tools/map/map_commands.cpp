@@ -44,7 +44,7 @@ Extent extent_of(const GridMap& grid) {
   return extent;
 }
 
-/// Existing maps are never replaced: each took a drive.
+/// Existing maps are never replaced: to make one took a drive.
 /// @throws SetupError if the file exists.
 void check_is_new(const std::filesystem::path& out) {
   if (!std::filesystem::exists(out)) return;

@@ -14,7 +14,7 @@ namespace waymark {
 namespace {
 
 constexpr double kInlier_m = 0.3;  // largest distance between a marker's positions in the two maps
-constexpr double kLeastApart_m = 1.0;  // of two markers that determine the rotation
+constexpr double kMinApart_m = 1.0;    // distance of two markers that determine the rotation
 constexpr int kSamplesAlong = 6;       // sample points along an NDT cell's major axis
 constexpr double kSameMarker_m = 0.5;  // landmarks of one id closer than this are one marker
 
@@ -155,7 +155,7 @@ std::optional<MapAlignment> align_by_markers(const MapSnapshot& a, const MapSnap
   Pairs best;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     for (std::size_t k = i + 1; k < pairs.size(); ++k) {
-      if ((pairs[i].target - pairs[k].target).norm() < kLeastApart_m) continue;
+      if ((pairs[i].target - pairs[k].target).norm() < kMinApart_m) continue;
       const Pairs agree = inliers_of(pairs, rigid_fit({pairs[i], pairs[k]}));
       if (agree.size() > best.size()) best = agree;
     }

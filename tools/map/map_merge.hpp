@@ -17,11 +17,11 @@ MapSnapshot transformed(const MapSnapshot& map, const Se2& new_from_old);
 struct MapAlignment {
   Se2 a_from_b{};
   std::size_t shared{0};  ///< inliers: markers, or stretches of walls
-  double rms_m{0.0};      ///< of the inliers' distances
+  double rms_m{0.0};      ///< root mean square of the inliers' distances
 };
 
-/// Aligns by the markers whose id is unique in both maps. Uses the largest consistent set, so some
-/// moved markers do not matter. Nothing if there are no two consistent ones at least a metre apart.
+/// Aligns by the markers whose id is unique in both maps, using the largest consistent set, so that
+/// a few moved markers do not matter. nullopt if no two consistent markers are a metre apart.
 std::optional<MapAlignment> align_by_markers(const MapSnapshot& a, const MapSnapshot& b);
 
 /// Both maps as one, in the frame of `a`. Markers in both are averaged by their information.

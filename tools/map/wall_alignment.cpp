@@ -16,19 +16,19 @@ namespace {
 
 constexpr double kStretch_m = 4.0;  // radius of the walls around a place that are matched at once
 constexpr double kStretchesEvery_m = 3.0;
-constexpr std::size_t kMostStretches = 24;
+constexpr std::size_t kMaxStretches = 24;
 constexpr std::size_t kPoints = 250;
-constexpr std::size_t kLeastPoints = 80;
-constexpr double kLeastScore = 0.6;  // part of the walls may have changed
-constexpr UniquePlaceLimits kUnique{.min_score = kLeastScore,
+constexpr std::size_t kMinPoints = 80;
+constexpr double kMinScore = 0.6;  // below 1, as part of the walls may have changed
+constexpr UniquePlaceLimits kUnique{.min_score = kMinScore,
                                     .runner_up_share = 0.85,
-                                    .min_runner_up = kLeastScore,
+                                    .min_runner_up = kMinScore,
                                     .apart_m = 0.5,
                                     .apart_rad = 0.3};
-constexpr double kAgree_m = 0.3;  // of the alignments by two stretches
+constexpr double kAgree_m = 0.3;  // largest difference of the alignments by two stretches
 constexpr double kAgree_rad = 0.1;
-constexpr std::size_t kLeastConsistent = 2;  // stretches
-constexpr double kRangeSigma_m = 0.02;       // of points rounded to cell centres
+constexpr std::size_t kMinConsistent = 2;  // consistent stretches
+constexpr double kRangeSigma_m = 0.02;     // sigma of points that are rounded to cell centres
 const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};
 
 /// Poses along the trajectory of a map, some metres apart.
@@ -40,10 +40,10 @@ std::vector<Se2> places_of(const PoseGraph& graph) {
     });
     if (!is_near) places.push_back(pose);
   }
-  if (places.size() <= kMostStretches) return places;
+  if (places.size() <= kMaxStretches) return places;
   std::vector<Se2> some;
-  for (std::size_t i = 0; i < kMostStretches; ++i)
-    some.push_back(places[i * places.size() / kMostStretches]);
+  for (std::size_t i = 0; i < kMaxStretches; ++i)
+    some.push_back(places[i * places.size() / kMaxStretches]);
   return some;
 }
 
@@ -54,11 +54,11 @@ Points stretch_at(const Se2& place, const Points& walls) {
   return points;
 }
 
-/// a_from_place; nothing unless the stretch of walls fits at exactly one place.
+/// a_from_place; nullopt unless the stretch of walls fits at exactly one place.
 std::optional<Se2> found_in(const MapSnapshot& a, const CorrelativeField& field,
                             const SearchWindow& window, const Se2& middle, const Points& stretch) {
   const Points some = thinned(stretch, kPoints);
-  if (some.size() < kLeastPoints) return std::nullopt;
+  if (some.size() < kMinPoints) return std::nullopt;
   const auto best = unique_place(field, some, middle, window, kUnique);
   if (!best) return std::nullopt;
   const RangeNoise noise{kRangeSigma_m};
@@ -117,8 +117,8 @@ std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapsh
                  [&](const Found& other) { return one.agrees_with(other); });
     if (consistent.size() > best.size()) best = consistent;
   }
-  if (best.size() < kLeastConsistent) return std::nullopt;
-  // Averaged at the centre of the stretches, where rotation errors move poses least.
+  if (best.size() < kMinConsistent) return std::nullopt;
+  // Poses are averaged at the centre of the stretches, where rotation errors move them least.
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   for (const Found& one : best)
     centre += one.b_from_place.translation() / static_cast<double>(best.size());

@@ -10,8 +10,8 @@ namespace waymark {
 
 /// Searches `a` for stretches of walls of `b` (4 m around poses of its trajectory), anywhere and in
 /// any direction. A stretch counts if it fits at one place only and the match there is not
-/// degenerate (in a bare corridor it always is). Nothing unless at least two stretches are
-/// consistent; `shared` is their number. Takes seconds for maps of buildings.
+/// degenerate (in a bare corridor it always is). `shared` is the number of consistent stretches;
+/// nullopt if it is below two. Takes seconds for maps of buildings.
 std::optional<MapAlignment> align_by_walls(const MapSnapshot& a, const MapSnapshot& b);
 
 }  // namespace waymark

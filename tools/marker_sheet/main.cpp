@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // waymark-marker-sheet: markers and ChArUco boards to print at true size.
 #include "common/command_line/command_line.hpp"
+#include "common/command_line/run_tool.hpp"
 #include "common/files/whole_file.hpp"
 #include "marker_sheet/pdf_pages.hpp"
 
 #include <fmt/format.h>
-
-#include <cstdio>
 
 namespace waymark::marker_sheet {
 namespace {
@@ -107,11 +106,9 @@ int main(int argc, char** argv) {
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
   if (!out.is_given() && !to_pdf.is_given()) return program.refuse_without("--out or --pdf");
   if (!dictionary.empty()) options.sheet.dictionary = options.board.dictionary = dictionary;
-  try {
+  const auto write = [&] {
     options.is_board ? write_board(options) : write_markers(options);
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "waymark-marker-sheet: {}\n", error.what());
-    return 2;
-  }
+    return kExitOk;
+  };
+  return run_tool("waymark-marker-sheet", write, kExitUsage);
 }

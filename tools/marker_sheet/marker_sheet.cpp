@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kInch_m = 0.0254;
 constexpr int kMaxSide_px = 20'000;  ///< 1.7 m at 300 dpi; guards the memory
-constexpr double kMaxSide_m = 10.0;  ///< as robot.markers.size_m
+constexpr double kMaxSide_m = 10.0;  ///< limit of robot.markers.size_m
 constexpr int kMaxQuietZone_modules = 20;
 constexpr int kMaxId = 100'000;  ///< more than any dictionary has; guards against endless ranges
 

@@ -12,8 +12,8 @@ namespace waymark::marker_sheet {
 namespace {
 
 constexpr double kGap_mm = 3.0;        // between border, caption and ruler
-constexpr int kMostPages = 100;        // for one pattern
-constexpr double kRounding_mm = 1e-6;  // a sheet exactly as large as a page fits
+constexpr int kMaxPages = 100;         // for one pattern
+constexpr double kRounding_mm = 1e-6;  // tolerance, so that a sheet as large as a page fits
 
 struct NamedPage {
   std::string_view name;
@@ -76,10 +76,10 @@ Tiling tiling_of(const SheetLayout& sheet, const std::string& page, bool tiles) 
         sheet.pattern_width_mm, sheet.pattern_height_mm, sheet.width_mm, sheet.height_mm, page,
         upright.cell_width_mm, upright.cell_height_mm, pages)};
   }
-  if (pages > kMostPages) {
+  if (pages > kMaxPages) {
     throw std::runtime_error{
         fmt::format("a width of {:.4g} m: that is {} pages of {}, at most {} are written",
-                    1e-3 * sheet.pattern_width_mm, pages, page, kMostPages)};
+                    1e-3 * sheet.pattern_width_mm, pages, page, kMaxPages)};
   }
   return best;
 }

@@ -44,7 +44,7 @@ struct Tiling {
   int rows{1};
   double cell_width_mm{};  ///< width of a page without its margins
   double cell_height_mm{};
-  double offset_x_mm{};  ///< of the sheet in the first page's cell: centred if one page suffices
+  double offset_x_mm{};  ///< place of the sheet in the first cell: centred if one page is enough
   double offset_y_mm{};
 };
 

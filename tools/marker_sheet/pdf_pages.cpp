@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kPoint_per_mm = 72.0 / 25.4;
 constexpr double kInch_mm = 25.4;
-constexpr double kFewestPixels_per_mm = 2.0;  // modules are some millimetres wide
-constexpr double kMostPixels = 20'000.0;      // 1.7 m at 300 dpi; guards the memory
+constexpr double kMinPixels_per_mm = 2.0;  // modules are some millimetres wide
+constexpr double kMaxPixels = 20'000.0;    // 1.7 m at 300 dpi; guards the memory
 constexpr double kHairline_mm = 0.1;
 constexpr double kCutMark_mm = 5.0;
 constexpr int kTextPixels_per_mm = 24;  // 600 dots per inch
@@ -195,10 +195,10 @@ Sheet draw_picture(const Pattern& pattern, double dpi) {
   const SheetLayout sheet = layout_of(pattern);
   const double px_per_mm = dpi / kInch_mm;
   const double largest_px = px_per_mm * std::max(sheet.width_mm, sheet.height_mm);
-  if (!(px_per_mm >= kFewestPixels_per_mm && largest_px <= kMostPixels))
+  if (!(px_per_mm >= kMinPixels_per_mm && largest_px <= kMaxPixels))
     throw std::runtime_error{
         fmt::format("--dpi {}: expected {:.0f} or more, and a picture of at most {:.0f} pixels",
-                    dpi, kFewestPixels_per_mm * kInch_mm, kMostPixels)};
+                    dpi, kMinPixels_per_mm * kInch_mm, kMaxPixels)};
   const Surface surface{
       cairo_image_surface_create(CAIRO_FORMAT_A8,
                                  static_cast<int>(std::ceil(px_per_mm * sheet.width_mm)),

@@ -11,8 +11,8 @@ namespace waymark::placement {
 namespace {
 
 constexpr double kEverywhere_m = 2.0;  // spacing of markers that are hung everywhere
-constexpr double kAboveFloor = 1.02;   // factor on the sigmas with markers everywhere
-constexpr double kNothing = 1e-12;     // [m^3] of excess
+constexpr double kAboveFloor = 1.02;   // least aim / sigma with markers everywhere
+constexpr double kNothing = 1e-12;     // a smaller excess [m^3] counts as none
 
 /// Evaluates sets of places by their excess: variance above the aim, integrated along the path.
 class Search {
@@ -56,7 +56,7 @@ struct Gain {
   std::size_t round{0};  ///< round in which `gain` was evaluated
 };
 
-/// The place that lowers the excess most; nothing when none does.
+/// The place that lowers the excess most; nullopt when none does.
 std::optional<std::size_t> best_place(const Search& search, std::vector<Gain>& gains,
                                       const std::vector<std::size_t>& chosen, double excess,
                                       std::size_t round) {

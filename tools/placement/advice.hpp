@@ -29,7 +29,7 @@ struct Advice {
   std::vector<std::size_t> chosen{};    ///< indices of the places, in the order to add them
   std::vector<double> worst_after_m{};  ///< largest sigma with the first i + 1 chosen places
   std::vector<double> now_m{};          ///< sigma by step, with the existing markers
-  std::vector<double> then_m{};         ///< sigma by step, with the chosen places as well
+  std::vector<double> then_m{};         ///< sigma by step, also with markers at the chosen places
   /// By step: the target or, where even markers everywhere do not meet it, 1.02 times the sigma
   /// that they reach.
   std::vector<double> aims_m{};

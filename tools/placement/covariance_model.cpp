@@ -16,7 +16,7 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kInFront_m = 0.15;  // a view ends this far before the marker's own wall
+constexpr double kInFront_m = 0.15;  // a line of sight ends this far before the marker's own wall
 
 Variable pose_of_step(std::size_t step) {
   return {VariableKind::kKeyframe, step};
@@ -27,14 +27,15 @@ Variable landmark(std::size_t marker) {
 }
 
 /// The part of odometry's variance per metre that depends on the learnt noise scale.
-double along_m2_per_m(const OdometryNoise& noise, const OdometryScale& scale, double hidden_slips) {
+double along_m2_per_m(const OdometryNoise& noise, const LearntOdometryNoise& scale,
+                      double hidden_slips) {
   const double rolling = scale.along * noise.along_per_sqrt_m;
   return rolling * rolling + hidden_slips * scale.slip_m2_per_m;
 }
 
 void drive_step(const Se2& before, const Step& step, const OdometryNoise& described,
-                const OdometryScale& scale, double hidden_slips, PoseCovariance& known) {
-  OdometryScale slips = scale;
+                const LearntOdometryNoise& scale, double hidden_slips, PoseCovariance& known) {
+  LearntOdometryNoise slips = scale;
   slips.slip_per_m = 0.0;
   const CorrectedMotion moved =
       with_slips(corrected_motion(step.motion, OdometryErrors::Zero(), scaled(described, scale)),
@@ -42,8 +43,8 @@ void drive_step(const Se2& before, const Step& step, const OdometryNoise& descri
   Eigen::Matrix<double, 3, kCalibrationSize> jacobian_calibration =
       Eigen::Matrix<double, 3, kCalibrationSize>::Zero();
   jacobian_calibration.leftCols<kOdometryTerms>() =
-      turning(before.rotation()) * moved.jacobian_calibration;
-  known.move(carried_along(step.map_from_base.translation() - before.translation()),
+      block_rotation(before.rotation()) * moved.jacobian_calibration;
+  known.move(lever_arm_jacobian(step.map_from_base.translation() - before.translation()),
              jacobian_calibration, in_axes(before.rotation(), moved.covariance));
 }
 
@@ -82,8 +83,8 @@ void match_scan_of(std::span<const Step> steps, std::size_t now, const Reference
   known.measure(blocks_of(factor.linearise(state), variables, {}, std::sqrt(keyframes)));
 }
 
-/// Measures the camera's calibration by a view: by the LiDAR's wall, and by perspective (focal
-/// length).
+/// Updates the calibration with what a view of a marker observes of it: by the wall that the LiDAR
+/// measures, and by perspective (focal length).
 void learn_calibration(const MarkerMeasurement& measured, double keyframes, PoseCovariance& known) {
   const double root_weight = std::sqrt(keyframes);
   if (measured.wall) {
@@ -185,7 +186,7 @@ std::vector<Eigen::Matrix3d> CovarianceModel::predict(
     const Step& step = steps_[i];
     const StepPlan& now = plan[i];
     if (i > 0) {
-      const OdometryScale& later = plan[now.leaves_window].noise;
+      const LearntOdometryNoise& later = plan[now.leaves_window].noise;
       drive_step(steps_[i - 1].map_from_base, step, odometry, later, now.hidden_slips, known);
       match_scan_of(steps_, i, now.submap, now.keyframes, known);
       if (now.loop) match_scan_of(steps_, i, {{*now.loop, 1.0}}, 1.0, known);

@@ -11,7 +11,8 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kSeen = 0.5;  // from this share of scans with a marker on, markers show the way
+// If a marker is seen in this share of the scans, markers observe the motion along the path.
+constexpr double kSeen = 0.5;
 
 /// Distance between keyframes that are due every `least_m`, rounded up to whole scan intervals.
 double spacing(double least_m, double apart_m) {
@@ -165,7 +166,7 @@ void follow_noise(std::span<const Step> steps, const WaymarkConfig& config,
       }
       unobserved_m = 0.0;
     }
-    plan[i].noise = learner.scale();
+    plan[i].noise = learner.learnt_noise();
   }
   if (plan.size() > 1) plan[0].noise = plan[1].noise;
   for (std::size_t i = 0; i < steps.size(); ++i)

@@ -29,7 +29,7 @@ struct StepPlan {
   /// Steps whose poses represent the submap that the scans are matched with, and their shares.
   std::vector<std::pair<std::size_t, double>> submap{};
   std::optional<std::size_t> loop{};  ///< an old step with which a loop is closed
-  OdometryScale noise{};              ///< learnt up to this step
+  LearntOdometryNoise noise{};        ///< learnt up to this step
   std::size_t leaves_window{0};       ///< the step at which this step's factors are marginalised
 };
 

@@ -2,7 +2,7 @@
 // waymark-placement, also run as `waymark-evaluate placement`: where additional markers would
 // reduce the uncertainty of the position.
 #include "common/command_line/command_line.hpp"
-#include "evaluate/commands.hpp"
+#include "common/command_line/run_tool.hpp"
 #include "placement/placement_command.hpp"
 
 #include <filesystem>
@@ -53,6 +53,6 @@ int main(int argc, char** argv) {
       name};
   add_options(program, options);
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;
-  return waymark::evaluate::run_command(name,
-                                        [&] { return waymark::placement::run_placement(options); });
+  return waymark::run_tool(
+      name, [&] { return waymark::placement::run_placement(options); }, waymark::kExitUsage);
 }

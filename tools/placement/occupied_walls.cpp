@@ -9,9 +9,9 @@
 namespace waymark::placement {
 namespace {
 
-constexpr double kPatchRadius_m = 0.35;  // a line is fitted to the cells within
+constexpr double kPatchRadius_m = 0.35;  // a line is fitted to the cells within this distance
 constexpr double kLineRatio = 0.1;       // largest variance across a line over that along it
-constexpr int kLeastCells = 5;
+constexpr int kMinCells = 5;
 constexpr double kStep = 0.5;  // along a ray [cells]
 
 }  // namespace
@@ -76,7 +76,7 @@ WallPatch OccupiedWalls::fitted(std::size_t cell) const {
   WallPatch patch;
   patch.point = centre_of(cell) + mean;
   patch.normal = axes.directions.col(0);
-  patch.is_line = count >= kLeastCells && axes.values[0] < kLineRatio * axes.values[1];
+  patch.is_line = count >= kMinCells && axes.values[0] < kLineRatio * axes.values[1];
   return patch;
 }
 

@@ -16,8 +16,8 @@ namespace {
 constexpr double kMargin = 0.85;         // factor on the target, for errors of the model
 constexpr double kQuietModules = 2.0;    // on each side, as on printed marker sheets
 constexpr double kSpacing_m = 0.5;       // between candidate places along a wall
-constexpr double kSignificant_m = 1e-3;  // smaller sigmas are not compared with the run's
-constexpr double kMatters = 0.9;  // a limit is reported if without it sigma falls below this share
+constexpr double kSignificant_m = 1e-3;  // smaller sigmas are not compared with those of the run
+constexpr double kMatters = 0.9;  // a limit is reported if sigma without it is below this share
 
 /// Ids of the dictionary (or of robot.markers.ids) that no marker of the map has, ascending.
 std::vector<int> free_ids(const MarkerConfig& markers, int dictionary_size,
@@ -77,8 +77,7 @@ double Placement::reachable_m() const {
 Placement place_markers(const PlacementInput& input, double target_m, const Report& report) {
   const MarkerConfig& described = input.config.robot.markers;
   const auto dictionary = find_dictionary(described.dictionary);
-  if (!dictionary)
-    throw evaluate::InputError{"robot.markers.dictionary: unknown: " + described.dictionary};
+  if (!dictionary) throw SetupError{"robot.markers.dictionary: unknown: " + described.dictionary};
   const int modules = modules_per_side(*dictionary);
   const double plate_m = described.size_m * (1.0 + 2.0 * kQuietModules / modules);
 

@@ -53,7 +53,7 @@ struct Placement {
 };
 
 /// @param report  called now and then.
-/// @throws evaluate::InputError if the marker dictionary is unknown.
+/// @throws SetupError if the marker dictionary is unknown.
 Placement place_markers(
     const PlacementInput& input, double target_m, const Report& report = [](const std::string&) {});
 

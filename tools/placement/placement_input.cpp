@@ -20,7 +20,6 @@ namespace waymark::placement {
 namespace {
 
 namespace fs = std::filesystem;
-using evaluate::InputError;
 
 constexpr double kLongestStep_m = 1.0;  // between poses; a longer step is a gap, not driving
 
@@ -30,7 +29,7 @@ PlacedMapImage image_in(const fs::path& yaml_file) {
 }
 
 PlacedMapImage image_of(const GridMap& grid) {
-  constexpr viewer::MapThresholds kThresholds;  // of map.pgm
+  constexpr viewer::MapThresholds kThresholds;  // as for map.pgm
   std::vector<std::pair<CellIndex, Cell>> known;
   grid.occupancy.for_each_tile([&](TileIndex index, const auto& cells) {
     for (std::size_t offset = 0; offset < kTileCells; ++offset) {
@@ -68,18 +67,18 @@ fs::path row_in(const fs::path& run) {
   const std::vector<std::string> rows = evaluate::estimators_in(run);
   if (rows.size() == 1) return run / rows.front();
   if (rows.empty())
-    throw InputError{run.string() + ": neither a run nor a row: no trajectory.tum in it"};
-  throw InputError{fmt::format("{}: several rows, none of them 'waymark'; give one of {}",
+    throw SetupError{run.string() + ": neither a run nor a row: no trajectory.tum in it"};
+  throw SetupError{fmt::format("{}: several rows, none of them 'waymark'; give one of {}",
                                run.string(), fmt::join(rows, ", "))};
 }
 
 void check_is_mapping(const PlacementInput& input) {
   const SlamSection& slam = input.config.slam;
   if (slam.estimator != EstimatorName::kWaymark)
-    throw InputError{input.source.string() +
+    throw SetupError{input.source.string() +
                      ": not by the estimator 'waymark', whose covariances are what is predicted"};
   if (slam.mode != MapMode::kMap || !input.config.robot.markers.survey_file.empty())
-    throw InputError{input.source.string() +
+    throw SetupError{input.source.string() +
                      ": it was localised in a map or a survey; give the run or the map file that "
                      "mapped the place"};
 }
@@ -108,7 +107,7 @@ std::optional<double> marker_height_in(const fs::path& log) {
   return upper_median(std::move(heights_m));
 }
 
-/// Of the log of the row's detector, or of the run.
+/// Height of the markers in the log of the row's detector, or in that of the run.
 std::optional<double> marker_height_of(const fs::path& row) {
   for (const fs::path& log : {row / "markers.lcm", row.parent_path() / "run.lcm"})
     if (fs::exists(log))
@@ -120,11 +119,11 @@ void read_row(const fs::path& config, PlacementInput& input) {
   const fs::path& row = input.source;
   const fs::path own = row / "config.toml";
   if (config.empty() && !fs::exists(own))
-    throw InputError{row.string() + ": no config.toml in it; give the robot with --config"};
+    throw SetupError{row.string() + ": no config.toml in it; give the robot with --config"};
   if (fs::exists(own)) input.config = load_part<SlamConfig>(own);
   if (!config.empty()) overlay(config, input.config);
   check_is_mapping(input);
-  evaluate::Skipped skipped;
+  evaluate::SkippedLines skipped;
   const fs::path final_trajectory = row / "trajectory_final.tum";
   const auto trajectory = evaluate::read_tum(
       fs::exists(final_trajectory) ? final_trajectory : row / "trajectory.tum", skipped);
@@ -149,7 +148,7 @@ void read_row(const fs::path& config, PlacementInput& input) {
 void read_map_source(const fs::path& config, PlacementInput& input) {
   const MapFile file = read_map_file(input.source);
   if (file.map.parent_map_id != 0)
-    throw InputError{input.source.string() +
+    throw SetupError{input.source.string() +
                      ": extends another map, so it holds no single drive; give the first map"};
   if (config.empty())
     input.notes.emplace_back(
@@ -172,7 +171,7 @@ PlacementInput read_placement_input(const fs::path& source, const fs::path& conf
   PlacementInput input;
   std::error_code ignored;
   if (!fs::exists(source, ignored)) {
-    throw InputError{source.string() +
+    throw SetupError{source.string() +
                      ": is not there; give the folder of a run or of its row, or "
                      "a map file"};
   }
@@ -184,19 +183,19 @@ PlacementInput read_placement_input(const fs::path& source, const fs::path& conf
     read_map_source(config, input);
   }
   if (input.places.size() < 2)
-    throw InputError{input.source.string() + ": fewer than two poses, so no drive"};
+    throw SetupError{input.source.string() + ": fewer than two poses, so no drive"};
   for (std::size_t i = 1; i < input.places.size(); ++i) {
     const double step_m = (input.places[i].map_from_base.translation() -
                            input.places[i - 1].map_from_base.translation())
                               .norm();
     if (step_m > kLongestStep_m)
-      throw InputError{fmt::format(
+      throw SetupError{fmt::format(
           "{}: the trajectory jumps by {:.1f} m: the robot was carried, which no model predicts",
           input.source.string(), step_m)};
   }
   if (std::find(input.image.cells.begin(), input.image.cells.end(), Cell::kOccupied) ==
       input.image.cells.end())
-    throw InputError{input.source.string() + ": its map has no wall to hang a marker on"};
+    throw SetupError{input.source.string() + ": its map has no wall to hang a marker on"};
   return input;
 }
 

@@ -25,7 +25,7 @@ struct PlacementInput {
   SlamConfig config{};
   std::vector<ScanPlace> places{};  ///< the path, by the final estimate
   std::vector<MappedMarker> markers{};
-  std::optional<double> marker_height_m{};  ///< centres over the floor; none: of the camera
+  std::optional<double> marker_height_m{};  ///< height of their centres; nullopt = the camera's
   PlacedMapImage image{};
   std::vector<evaluate::StampedCovariance> covariances{};  ///< reported during the run, if any
   std::vector<std::string> notes{};  ///< assumptions and omissions, one sentence each
@@ -33,7 +33,7 @@ struct PlacementInput {
 
 /// @param source  folder of a run (its row of the estimator waymark is read) or row, or a map file.
 /// @param config  robot.toml or a slam configuration; its keys win over the row's own; empty: none.
-/// @throws evaluate::InputError, ConfigError, SetupError for unusable input.
+/// @throws SetupError for unusable input.
 PlacementInput read_placement_input(const std::filesystem::path& source,
                                     const std::filesystem::path& config);
 

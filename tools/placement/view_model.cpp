@@ -185,10 +185,10 @@ std::optional<MarkerView> ViewModel::view(const Se2& base_from_marker,
   sighting.id = 0;
   sighting.base_from_marker = base_from_marker;
   sighting.covariance_in_base = planar_covariance(in_base);
-  if (!sighting.covariance_in_base.allFinite() || sighting.sigma_along_m() > max_sigma_m_)
+  if (!sighting.covariance_in_base.allFinite() || sighting.sigma_along_wall_m() > max_sigma_m_)
     return std::nullopt;
   sighting.size_m = robot_.markers.size_m;
-  sighting.carried_m = 0.5 * speed_mps / robot_.camera.rate_hz;
+  sighting.driven_since_frame_m = 0.5 * speed_mps / robot_.camera.rate_hz;
   sighting.focal = focal_error_of(rays, corner_sigma_);
 
   Observation observation;

@@ -27,7 +27,7 @@ double read_share_of(double module_px);
 class ViewModel {
  public:
   /// @param modules_per_side  bits along a side of a marker plus two modules of border.
-  /// @param marker_height_m   of every marker's centre over the floor.
+  /// @param marker_height_m   height of every marker's centre over the floor.
   ViewModel(const SlamConfig& config, int modules_per_side, double marker_height_m);
 
   /// @param hits_in_base  ends of the LiDAR's beams, base frame.
@@ -51,7 +51,7 @@ class ViewModel {
   double marker_height_m_;
   double corner_sigma_;
   double max_sigma_m_;
-  double reach_m_;  ///< beyond it, even a marker seen frontally is too small to be read
+  double reach_m_;  ///< farther away, even a marker seen frontally is too small to be read
 };
 
 }  // namespace waymark::placement

@@ -11,7 +11,7 @@ namespace waymark::placement {
 namespace {
 
 constexpr int kBeams = 180;
-const double kSameWall = std::cos(radians(10.0));  // least cosine between normals of one wall
+const double kSameWall = std::cos(radians(10.0));  // least cosine between the normals of a wall
 constexpr double kFreeBefore_m = 0.15;             // free space needed before the wall's line
 
 /// Whether over the width of a plate there are occupied cells within one cell of the line, and free

@@ -23,7 +23,8 @@ namespace {
 
 constexpr std::string_view kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 constexpr std::size_t kMaxQueuedBytesPerChannel = std::size_t{16} << 20;
-// Small messages cost more than their payload; 10000 of them are minutes of any of our channels.
+// Bounds the number of small messages, which cost more than their payload. 10000 of them are
+// minutes of any of our channels.
 constexpr std::size_t kMaxQueuedMessagesPerChannel = 10000;
 constexpr std::size_t kMaxLargePayloadBytes = std::size_t{4} << 20;
 constexpr int kHandleTimeout_ms = 50;
@@ -85,7 +86,8 @@ class Bus::Implementation {
     if (group) {
       join(*group, url);
     } else if (!is_connected()) {
-      // A missing TCP server shows in LCM's invalid descriptor only; waiting on that would abort.
+      // Where a TCP server is missing, LCM reports no error, but gives an invalid descriptor, and
+      // waiting on that would abort.
       throw no_network(url);
     }
     receiver_ = std::thread{[this] {

@@ -31,8 +31,9 @@ class ChannelNames {
   /// does not list, and those of channels in map files only, are returned as they are.
   std::string_view on_network(std::string_view channel) const;
 
-  /// Of the channels `candidates`, which share a name on the network, the one whose type has the
-  /// fingerprint; the first one if none has: its handler then rejects the message.
+  /// @param candidates  channels that share a name on the network.
+  /// @return the one whose type has the fingerprint; the first one if none has, so that its handler
+  /// rejects the message.
   static const std::string& of_type(const std::vector<std::string>& candidates,
                                     std::int64_t fingerprint);
 

@@ -14,8 +14,8 @@ namespace waymark {
 
 /// A channel belongs to the first sender on it while that sender is active on any channel; other
 /// senders are refused. Where two senders publish on the same channels, the one that owned the
-/// first contested channel gets all of them, so that data of two robots are never mixed. Which of
-/// the two senders is the right one cannot be told here.
+/// first contested channel gets all of them, so that data of two robots are never mixed. Nothing
+/// here shows which of the two is the right one.
 class ChannelOwners {
  public:
   using Time = std::chrono::steady_clock::time_point;

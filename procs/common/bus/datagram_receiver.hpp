@@ -86,7 +86,7 @@ class DatagramReceiver {
   std::vector<std::uint8_t> bytes_{};
   std::int64_t malformed_{0};
   std::int64_t fragments_{0};
-  std::uint32_t overflowed_before_{0};  ///< kernel's count at the last call; it wraps around
+  std::uint32_t overflowed_before_{0};  ///< the kernel's count at the last call; wraps around
 };
 
 }  // namespace waymark

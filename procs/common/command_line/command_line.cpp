@@ -96,7 +96,7 @@ Command Command::add_subcommand(const std::string& name, const std::string& help
   return Command{*app_->add_subcommand(name, help)};
 }
 
-void Command::take_options_of_subcommands() {
+void Command::allow_options_after_subcommand() {
   app_->fallthrough();
 }
 

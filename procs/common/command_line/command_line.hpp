@@ -69,8 +69,8 @@ class Command {
 
   CommandOption add_flag(const std::string& name, bool& value, const std::string& help);
   Command add_subcommand(const std::string& name, const std::string& help);
-  /// Options of this command may also follow the subcommand.
-  void take_options_of_subcommands();
+  /// Options of this command may also come after the subcommand.
+  void allow_options_after_subcommand();
   /// Passes all remaining arguments on unparsed, --help included.
   void pass_on_the_rest();
   std::vector<std::string> rest() const;

@@ -10,8 +10,8 @@ namespace waymark {
 
 struct NumberCheck {
   bool (*is_good)(double finite){};
-  std::string expected{};  ///< in the sentence that refuses a number
-  std::string name{};      ///< in --help
+  std::string expected{};  ///< what is expected, for the error message: "a number above 0"
+  std::string name{};      ///< shown in --help as the kind of value: "POSITIVE"
 };
 
 inline NumberCheck positive_number() {

@@ -46,7 +46,7 @@ struct Entry {
   enum class Kind { kTable, kElement, kValue, kEmptyList };
 
   Kind kind{Kind::kValue};
-  std::string table{};    ///< "slam.", "path.waypoints[0].": the table that it is, or is in
+  std::string table{};    ///< the table that the line begins or belongs to: "path.waypoints[0]."
   std::string key{};      ///< "slam.estimator", "path.waypoints[0].x_m"
   std::string heading{};  ///< of a table or element, e.g. "path.waypoints"
   std::string value{};    ///< as TOML
@@ -148,8 +148,8 @@ class Lister final : public Fields {
 
  private:
   struct Table {
-    std::string name;     ///< as in a heading
-    std::string element;  ///< as in a key
+    std::string name;     ///< in a heading: "path.waypoints"
+    std::string element;  ///< in a key: "path.waypoints[0]"
   };
 
   void add(std::string_view key, const std::string& value, std::string_view meaning) {
@@ -236,7 +236,7 @@ void add_unused_keys(const config_detail::Describe& describe, config_detail::Rea
 }  // namespace
 
 ConfigError::ConfigError(const std::vector<std::string>& problems)
-    : std::runtime_error{join_lines(problems)} {}
+    : SetupError{join_lines(problems)} {}
 
 void Problems::add(const std::string& key, const std::string& problem) {
   const auto found = locations_.find(key);

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "common/config/fields.hpp"
+#include "common/errors/setup_error.hpp"
 
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +16,7 @@ namespace waymark {
 
 /// All problems of a configuration; what() has one line per problem: `where: key: got X, expected
 /// Y`.
-class ConfigError : public std::runtime_error {
+class ConfigError : public SetupError {
  public:
   explicit ConfigError(const std::vector<std::string>& problems);
 };

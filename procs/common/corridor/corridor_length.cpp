@@ -13,21 +13,23 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kStraightDeviation = 0.1;   ///< of a straight medial line, in corridor widths
-constexpr double kStraightExcess_px = 0.25;  ///< of a straight medial line: arc minus chord
-constexpr double kAnchorInset = 0.5;         ///< from the ends of the medial line, in widths
-constexpr double kElongated = 2.0;           ///< length over width; below it, axes are doubtful
-constexpr double kAlongImage_px = 1.0;       ///< drift of the axis from a pixel row over its length
+// A medial line is straight if all of it is nearer to its axis than this [corridor widths], ...
+constexpr double kStraightDeviation = 0.1;
+// ... and its arc is at most this much longer than its chord.
+constexpr double kStraightExcess_px = 0.25;
+constexpr double kAnchorInset = 0.5;    // from the ends of the medial line [corridor widths]
+constexpr double kElongated = 2.0;      // least length over width at which the axis is reliable
+constexpr double kAlongImage_px = 1.0;  // an axis along the image drifts at most this far
 
 Vector2d left_of(const Vector2d& direction) {
   return {-direction.y(), direction.x()};
 }
 
-/// Where each end is searched for, and the way between the two origins (0: they coincide).
+/// Where each end is searched for.
 struct Views {
   EndView start{};
   EndView end{};
-  double between_px{};
+  double between_px{};  ///< length of the medial line between the two origins; 0: they coincide
 };
 
 /// Indices of the medial line's points from which the ends are looked for.
@@ -96,12 +98,12 @@ double length_between(const CorridorEnd& start, const CorridorEnd& end) {
   const auto reach_px = [](const CorridorEnd& side) {
     return side.has_wall ? side.median_wall_px : side.free_extent_px;
   };
-  std::vector<double> row_lengths_px;
-  for (const auto& [row, start_px] : start.wall_px) {
-    const auto same_row = end.wall_px.find(row);
-    if (same_row != end.wall_px.end()) row_lengths_px.push_back(start_px + same_row->second);
+  std::vector<double> lengths_px;
+  for (const auto& [strip, start_px] : start.wall_px) {
+    const auto same_strip = end.wall_px.find(strip);
+    if (same_strip != end.wall_px.end()) lengths_px.push_back(start_px + same_strip->second);
   }
-  return row_lengths_px.empty() ? reach_px(start) + reach_px(end) : median(row_lengths_px);
+  return lengths_px.empty() ? reach_px(start) + reach_px(end) : median(lengths_px);
 }
 
 }  // namespace

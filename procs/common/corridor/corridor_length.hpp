@@ -25,11 +25,11 @@ struct CorridorLength {
   std::vector<std::string> flags{};
 };
 
-/// Median over the central rows of the distance between the centres of the innermost occupied cells
-/// of the two end walls. A straight corridor (its middle stays within a tenth of its width of a
-/// straight line) is measured along that line, rows of pixels if the line runs along the image; a
-/// curved one along its medial line. At an end without wall the outer edge of the free space
-/// counts.
+/// Corridor length: the median, over the central strips (end_wall.hpp), of the distance between the
+/// centres of the innermost occupied cells of the two end walls. A straight corridor (its middle
+/// stays within a tenth of its width of a straight line) is measured along that line, which is
+/// turned to the nearest pixel row or column if it nearly runs along it; a curved corridor is
+/// measured along its medial line. At an end without wall, the outer edge of the free space counts.
 /// @throws NotACorridor if the map shows no corridor.
 CorridorLength measure_corridor(const MapImage& map);
 

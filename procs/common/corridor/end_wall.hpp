@@ -10,8 +10,9 @@
 
 namespace waymark::corridor {
 
-/// The direction in which one end is looked for. Distances are measured from `origin_px` along
-/// `outward`; row r holds the cells whose centres are within half a pixel of r along `across`.
+/// Direction in which one end is looked for; distances are measured from `origin_px` along
+/// `outward`. Strip r, one pixel wide and parallel to `outward`, holds the cells whose centres are
+/// within half a pixel of r along `across`.
 struct EndView {
   Eigen::Vector2d origin_px{};
   Eigen::Vector2d outward{};
@@ -21,16 +22,16 @@ struct EndView {
 
 struct CorridorEnd {
   bool has_wall{};
-  /// Distance of the centre of the end wall's innermost cell in each central row that has one.
+  /// Distance of the centre of the end wall's innermost cell, by central strip, if it has one.
   std::map<int, double> wall_px{};
   double median_wall_px{};
   double free_extent_px{};  ///< distance of the outer edge of the free space
 };
 
-/// The end wall is the innermost line of occupied cells, at most one corridor width before and
-/// about half a width behind the end of the free space and tilted at most 20 degrees, that covers
-/// two fifths of the central rows (the middle two thirds): false cells inside the corridor and
-/// holes in the wall do not matter.
+/// The end wall is the innermost line of occupied cells that covers two fifths of the central
+/// strips (the middle two thirds of the width), is tilted at most 20 degrees, and lies at most one
+/// corridor width before and about half a width behind the end of the free space. So false cells
+/// inside the corridor and holes in the wall do not matter.
 CorridorEnd find_corridor_end(const MapImage& map, const EndView& view, double width_px);
 
 }  // namespace waymark::corridor

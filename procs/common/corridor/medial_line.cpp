@@ -16,76 +16,75 @@ namespace {
 
 using Eigen::Vector2d;
 
-// In corridor widths where possible, so that little depends on the size of a cell.
-constexpr double kSpacing = 1.0 / 8.0;    ///< between slices
-constexpr double kSmoothing = 1.5;        ///< half window of the local fit: noise goes, bends stay
-constexpr double kExtension = 1.0;        ///< slices tried beyond the ends of the line so far
-constexpr double kWidthTolerance = 0.15;  ///< of an inlier slice from the median
-constexpr double kReach = 1.5;            ///< how far a slice looks to each side
-constexpr double kWidthRounding_px = 2.0;
-constexpr double kSpeck_px = 3.0;  ///< a shorter break in a slice is a false cell, not a wall
-constexpr std::size_t kFewestSlices = 5;
-constexpr std::size_t kFewestCells = 50;
+// Lengths are in corridor widths where possible, so that little depends on the size of a cell.
+constexpr double kSpacing = 1.0 / 8.0;  // between slices
+constexpr double kSmoothing = 1.5;      // half window of the local fit: removes noise, keeps bends
+constexpr double kExtension = 1.0;      // how far slices are tried beyond the line's ends
+constexpr double kWidthTolerance = 0.15;   // largest deviation of an inlier's width from the median
+constexpr double kReach = 1.5;             // how far a slice extends to each side, at most
+constexpr double kWidthRounding_px = 2.0;  // rounding of a width, never an outlier
+constexpr double kSpeck_px = 3.0;          // a shorter break in a slice is a false cell, not a wall
+constexpr std::size_t kMinSlices = 5;
+constexpr std::size_t kMinCells = 50;
 
-/// A slice across the corridor: its place along the line found so far, its middle, its width.
-struct Station {
-  double at_px{};
+/// A slice across the corridor.
+struct Slice {
+  double at_px{};  ///< its place along the line found so far
   Vector2d middle_px{};
   double width_px{};
 };
 
-double median_width(std::vector<Station> stations) {
-  const auto middle = stations.begin() + static_cast<std::ptrdiff_t>(stations.size() / 2);
-  std::nth_element(stations.begin(), middle, stations.end(),
-                   [](const Station& a, const Station& b) { return a.width_px < b.width_px; });
+double median_width(std::vector<Slice> slices) {
+  const auto middle = slices.begin() + static_cast<std::ptrdiff_t>(slices.size() / 2);
+  std::nth_element(slices.begin(), middle, slices.end(),
+                   [](const Slice& a, const Slice& b) { return a.width_px < b.width_px; });
   return middle->width_px;
 }
 
-/// Stations of about the median width. @throws NotACorridor if they are too few.
-std::vector<Station> inliers(const std::vector<Station>& stations, double tolerance) {
-  std::vector<Station> kept;
-  if (!stations.empty()) {
-    const double width_px = median_width(stations);
-    for (const Station& station : stations) {
-      if (std::abs(station.width_px - width_px) <=
-          std::max(kWidthRounding_px, tolerance * width_px))
-        kept.push_back(station);
+/// Slices of about the median width. @throws NotACorridor if they are too few.
+std::vector<Slice> inliers(const std::vector<Slice>& slices, double tolerance) {
+  std::vector<Slice> kept;
+  if (!slices.empty()) {
+    const double width_px = median_width(slices);
+    for (const Slice& slice : slices) {
+      if (std::abs(slice.width_px - width_px) <= std::max(kWidthRounding_px, tolerance * width_px))
+        kept.push_back(slice);
     }
   }
-  if (kept.size() < kFewestSlices)
+  if (kept.size() < kMinSlices)
     throw NotACorridor{"the free space is not a corridor: too few slices of equal width"};
   return kept;
 }
 
-/// Middle of the corridor at `at_px` by a weighted quadratic fit to the stations near it.
-Vector2d local_fit(const std::vector<Station>& stations, double at_px, double half_window_px) {
-  std::vector<std::pair<double, const Station*>> near;
-  for (const Station& station : stations) {
-    const double distance = std::abs(station.at_px - at_px) / half_window_px;
-    if (distance < 1.0) near.emplace_back(std::pow(1.0 - std::pow(distance, 3), 3), &station);
+/// Middle of the corridor at `at_px` by a weighted quadratic fit to the slices near it.
+Vector2d local_fit(const std::vector<Slice>& slices, double at_px, double half_window_px) {
+  std::vector<std::pair<double, const Slice*>> near;
+  for (const Slice& slice : slices) {
+    const double distance = std::abs(slice.at_px - at_px) / half_window_px;
+    if (distance < 1.0) near.emplace_back(std::pow(1.0 - std::pow(distance, 3), 3), &slice);
   }
-  if (near.size() < kFewestSlices) return local_fit(stations, at_px, 2.0 * half_window_px);
+  if (near.size() < kMinSlices) return local_fit(slices, at_px, 2.0 * half_window_px);
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 2, 3> moments = Eigen::Matrix<double, 2, 3>::Zero();
-  for (const auto& [weight, station] : near) {
-    const double u = (station->at_px - at_px) / half_window_px;
+  for (const auto& [weight, slice] : near) {
+    const double u = (slice->at_px - at_px) / half_window_px;
     const Eigen::Vector3d terms{1.0, u, u * u};
     normal += weight * terms * terms.transpose();
-    moments += weight * station->middle_px * terms.transpose();
+    moments += weight * slice->middle_px * terms.transpose();
   }
   return moments * normal.inverse().col(0);
 }
 
-std::vector<Vector2d> smoothed(const std::vector<Station>& stations, double width_px) {
+std::vector<Vector2d> smoothed(const std::vector<Slice>& slices, double width_px) {
   std::vector<Vector2d> points;
   const double spacing_px = kSpacing * width_px;
-  for (double at_px = stations.front().at_px; at_px <= stations.back().at_px; at_px += spacing_px)
-    points.push_back(local_fit(stations, at_px, kSmoothing * width_px));
+  for (double at_px = slices.front().at_px; at_px <= slices.back().at_px; at_px += spacing_px)
+    points.push_back(local_fit(slices, at_px, kSmoothing * width_px));
   return points;
 }
 
 /// Middles of the region's cells in bins along the principal axis.
-std::vector<Station> slices_across_axis(const std::vector<Vector2d>& region) {
+std::vector<Slice> slices_across_axis(const std::vector<Vector2d>& region) {
   const Axis axis = principal_axis(region);
   const auto along = [&axis](const Vector2d& cell) {
     return (cell - axis.centre_px).dot(axis.direction);
@@ -98,13 +97,13 @@ std::vector<Station> slices_across_axis(const std::vector<Vector2d>& region) {
   }
   const double rough_width_px = static_cast<double>(region.size()) / (high - low + 1.0);
   const double bin_px = std::max(1.0, kSpacing * rough_width_px);
-  std::vector<Station> bins(static_cast<std::size_t>((high - low) / bin_px) + 1);
+  std::vector<Slice> bins(static_cast<std::size_t>((high - low) / bin_px) + 1);
   for (const Vector2d& cell : region) {
-    Station& bin = bins[static_cast<std::size_t>((along(cell) - low) / bin_px)];
+    Slice& bin = bins[static_cast<std::size_t>((along(cell) - low) / bin_px)];
     bin.middle_px += cell;
     bin.width_px += 1.0;
   }
-  std::vector<Station> filled;
+  std::vector<Slice> filled;
   for (std::size_t i = 0; i < bins.size(); ++i) {
     if (bins[i].width_px > 0.0)
       filled.push_back({(static_cast<double>(i) + 0.5) * bin_px,
@@ -127,12 +126,12 @@ double free_reach(const MapImage& map, const Vector2d& from_px, const Vector2d& 
   return reach_px;
 }
 
-std::vector<Station> slices_across_line(const MapImage& map, const std::vector<Vector2d>& line,
-                                        double width_px) {
+std::vector<Slice> slices_across_line(const MapImage& map, const std::vector<Vector2d>& line,
+                                      double width_px) {
   const double spacing_px = kSpacing * width_px;
   const auto extra = static_cast<std::ptrdiff_t>(kExtension / kSpacing);
   const auto last = static_cast<std::ptrdiff_t>(line.size()) - 1;
-  std::vector<Station> stations;
+  std::vector<Slice> slices;
   double at_px = 0.0;
   for (std::ptrdiff_t i = -extra; i <= last + extra; ++i) {
     const auto near = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 1, last - 1));
@@ -143,10 +142,10 @@ std::vector<Station> slices_across_line(const MapImage& map, const std::vector<V
     const double left_px = free_reach(map, place, across, kReach * width_px);
     const double right_px = free_reach(map, place, -across, kReach * width_px);
     if (left_px + right_px > 0.0)
-      stations.push_back({at_px, place + 0.5 * (left_px - right_px) * across, left_px + right_px});
+      slices.push_back({at_px, place + 0.5 * (left_px - right_px) * across, left_px + right_px});
     at_px += spacing_px;
   }
-  return stations;
+  return slices;
 }
 
 }  // namespace
@@ -195,19 +194,19 @@ Axis principal_axis(const std::vector<Vector2d>& points) {
 }
 
 MedialLine medial_line(const MapImage& map, const std::vector<Vector2d>& region) {
-  if (region.size() < kFewestCells)
+  if (region.size() < kMinCells)
     throw NotACorridor{
         "the map has no free space to measure (free cells that touch: fewer than 50)"};
   constexpr double kRoughTolerance = 0.5;  // where the corridor bends, these slices are oblique
-  std::vector<Station> stations = inliers(slices_across_axis(region), kRoughTolerance);
-  double width_px = median_width(stations);
+  std::vector<Slice> slices = inliers(slices_across_axis(region), kRoughTolerance);
+  double width_px = median_width(slices);
   for (int pass = 0; pass < 2; ++pass) {
-    const std::vector<Vector2d> line = smoothed(stations, width_px);
-    if (line.size() < kFewestSlices)
+    const std::vector<Vector2d> line = smoothed(slices, width_px);
+    if (line.size() < kMinSlices)
       throw NotACorridor{"the free space is not a corridor: it is not longer than wide"};
-    stations = inliers(slices_across_line(map, line, width_px), kWidthTolerance);
+    slices = inliers(slices_across_line(map, line, width_px), kWidthTolerance);
   }
-  return {smoothed(stations, width_px), kSpacing * width_px, median_width(stations)};
+  return {smoothed(slices, width_px), kSpacing * width_px, median_width(slices)};
 }
 
 }  // namespace waymark::corridor

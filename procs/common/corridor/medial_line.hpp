@@ -18,11 +18,11 @@ struct Axis {
   Eigen::Vector2d direction{};  ///< unit; towards the map's +x, or +y if the axis is nearer to y
 };
 
-/// Mean and direction of largest spread. @param points at least two.
+/// Mean of the points, and direction of their largest spread. @param points at least two.
 Axis principal_axis(const std::vector<Eigen::Vector2d>& points);
 
-/// Ordered along the corridor in the principal axis' direction, equally spaced, smooth; starts and
-/// ends where the corridor still has its full width, so a little before the end walls.
+/// Points ordered along the corridor in the principal axis' direction, equally spaced, smooth. The
+/// line starts and ends where the corridor still has its full width, so a little before the walls.
 struct MedialLine {
   std::vector<Eigen::Vector2d> points_px{};
   double spacing_px{};

@@ -8,8 +8,8 @@
 
 namespace waymark {
 
-/// Section [expect] of a scenario. 0 = no expectation. The last two hold over all seeds of a sweep,
-/// the others for each run.
+/// Section [expect] of a scenario; 0 = no expectation. The last two limit statistics over all seeds
+/// of a sweep, the others every run.
 struct ExpectConfig {
   std::string estimator{"waymark"};
   double length_error_percent{0.0};

@@ -44,28 +44,27 @@ Se2 along_arc(const Eigen::Vector3d& step) {
   return {Eigen::Vector2d{chord * (Se2{0.0, 0.0, half_rad} * step.head<2>())}, step.z()};
 }
 
-Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = rotation;
-  return turn;
+Eigen::Matrix3d block_rotation(const Eigen::Matrix2d& rotation) {
+  Eigen::Matrix3d block = Eigen::Matrix3d::Identity();
+  block.topLeftCorner<2, 2>() = rotation;
+  return block;
 }
 
 Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix) {
-  const Eigen::Matrix3d turn = turning(rotation);
-  return turn * matrix * turn.transpose();
+  const Eigen::Matrix3d block = block_rotation(rotation);
+  return block * matrix * block.transpose();
 }
 
-Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map) {
-  Eigen::Matrix3d by = Eigen::Matrix3d::Identity();
-  by(0, 2) = -step_in_map.y();
-  by(1, 2) = step_in_map.x();
-  return by;
+Eigen::Matrix3d lever_arm_jacobian(const Eigen::Vector2d& lever) {
+  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity();
+  jacobian(0, 2) = -lever.y();
+  jacobian(1, 2) = lever.x();
+  return jacobian;
 }
 
-Eigen::Matrix3d carried_along(const Eigen::Matrix3d& covariance,
-                              const Eigen::Vector2d& step_in_map) {
-  const Eigen::Matrix3d by = carried_along(step_in_map);
-  return by * covariance * by.transpose();
+Eigen::Matrix3d at_end_of_lever(const Eigen::Matrix3d& covariance, const Eigen::Vector2d& lever) {
+  const Eigen::Matrix3d jacobian = lever_arm_jacobian(lever);
+  return jacobian * covariance * jacobian.transpose();
 }
 
 }  // namespace waymark

@@ -54,18 +54,18 @@ Se2 moved_by(const Se2& pose, const Eigen::Vector3d& difference);
 Se2 along_arc(const Eigen::Vector3d& step);
 
 /// blockdiag(rotation, 1): rotates (x, y) of (x, y, theta).
-Eigen::Matrix3d turning(const Eigen::Matrix2d& rotation);
+Eigen::Matrix3d block_rotation(const Eigen::Matrix2d& rotation);
 
 /// Converts a covariance or information of (x, y, theta) from the child's axes to the parent's:
-/// R matrix R^T with R = turning(rotation), `rotation` being that of parent_from_child.
+/// R matrix R^T with R = block_rotation(rotation). @param rotation  of parent_from_child.
 Eigen::Matrix3d in_axes(const Eigen::Matrix2d& rotation, const Eigen::Matrix3d& matrix);
 
-/// Jacobian that carries a small pose difference along the lever arm `step_in_map` = (dx, dy) [m]:
-/// identity, but d(x, y)/d(theta) = (-dy, dx).
-Eigen::Matrix3d carried_along(const Eigen::Vector2d& step_in_map);
+/// Jacobian of a pose at the end of a lever arm by the pose at its start: identity, but
+/// d(x, y)/d(theta) = (-dy, dx). @param lever  (dx, dy) [m], in the axes of the poses.
+Eigen::Matrix3d lever_arm_jacobian(const Eigen::Vector2d& lever);
 
-/// Covariance of such a difference at the end of the lever arm: J covariance J^T.
-Eigen::Matrix3d carried_along(const Eigen::Matrix3d& covariance,
-                              const Eigen::Vector2d& step_in_map);
+/// Covariance of a pose at the end of a lever arm: J covariance J^T, J = lever_arm_jacobian(lever).
+/// @param covariance  of the pose at the start of the lever arm.
+Eigen::Matrix3d at_end_of_lever(const Eigen::Matrix3d& covariance, const Eigen::Vector2d& lever);
 
 }  // namespace waymark

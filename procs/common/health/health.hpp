@@ -9,7 +9,8 @@ namespace waymark {
 
 enum class Health : std::int8_t { kUnknown, kInitialising, kTracking, kDegenerate, kLost };
 
-/// Which measurements determine the motion in the direction that the walls determine least.
+/// Which measurements determine the motion along the weak axis, the direction that the walls
+/// determine least.
 enum class WeakAxisSource : std::int8_t { kUnknown, kOdometry, kMarkers, kNothing };
 
 /// "tracking", "degenerate", ...: the names of HEALTH_*.

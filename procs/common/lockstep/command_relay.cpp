@@ -5,7 +5,7 @@
 
 namespace waymark {
 
-void CommandRelay::take(const Message& message) {
+void CommandRelay::handle(const Message& message) {
   if (message.channel != channels::kSlamCommand.name) return;
   const auto command = decode<command_t>(message.payload);
   if (!command.message) {
@@ -13,7 +13,7 @@ void CommandRelay::take(const Message& message) {
                   CountKind::kRejection);
   } else if (command.message->in_tick != 0) {
     return;
-  } else if (waiting_.size() >= kMostPerTick) {
+  } else if (waiting_.size() >= kMaxPerTick) {
     counters_.add("SLAM_COMMAND dropped: too many", CountKind::kLoss);
   } else {
     waiting_.push_back(message);

@@ -13,12 +13,12 @@ namespace waymark {
 /// replay: the simulator puts it into the next tick that it opens, stamped with that tick's end.
 class CommandRelay {
  public:
-  static constexpr std::size_t kMostPerTick = 10;
+  static constexpr std::size_t kMaxPerTick = 10;
 
   explicit CommandRelay(Counters& counters) : counters_{counters} {}
 
-  /// Ignores commands that are already part of a tick.
-  void take(const Message& message);
+  /// Keeps a SLAM_COMMAND for the next tick; ignores commands that are already part of a tick.
+  void handle(const Message& message);
 
   /// Moves the waiting commands into the messages of a tick.
   void move_into(std::vector<Message>& tick, Timestamp tick_end);

@@ -9,8 +9,8 @@ namespace {
 // Bounds on memory; a window of ticks holds about 1 MB.
 constexpr std::size_t kMaxWaitingBytes = std::size_t{32} << 20;
 constexpr std::size_t kMaxWaitingMessages = 40000;
-constexpr std::size_t kMaxTakenBytes = std::size_t{16} << 20;
-constexpr std::size_t kMaxTakenMessages = 2000;
+constexpr std::size_t kMaxUsedBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxUsedMessages = 2000;
 
 }  // namespace
 
@@ -40,25 +40,25 @@ bool MessagePool::add(Message message) {
   return true;
 }
 
-Message MessagePool::take(std::int64_t hash) {
+Message MessagePool::use(std::int64_t hash) {
   Entry& entry = messages_.at(hash);
-  if (!entry.is_taken) {
-    entry.is_taken = true;
+  if (!entry.is_used) {
+    entry.is_used = true;
     waiting_.bytes -= entry.message.payload.size();
-    taken_.bytes += entry.message.payload.size();
-    taken_.hashes.push_back(hash);
+    used_.bytes += entry.message.payload.size();
+    used_.hashes.push_back(hash);
   }
   Message message = entry.message;
-  while (taken_.bytes > kMaxTakenBytes || taken_.hashes.size() > kMaxTakenMessages)
-    forget_oldest(taken_);
+  while (used_.bytes > kMaxUsedBytes || used_.hashes.size() > kMaxUsedMessages)
+    forget_oldest(used_);
   return message;
 }
 
 void MessagePool::forget_oldest(Queue& queue) {
   const auto oldest = messages_.find(queue.hashes.front());
   queue.hashes.pop_front();
-  const bool is_of_taken = &queue == &taken_;
-  if (oldest == messages_.end() || oldest->second.is_taken != is_of_taken) return;
+  const bool is_of_used = &queue == &used_;
+  if (oldest == messages_.end() || oldest->second.is_used != is_of_used) return;
   queue.bytes -= oldest->second.message.payload.size();
   messages_.erase(oldest);
 }

@@ -14,7 +14,7 @@
 
 namespace waymark {
 
-/// Ticks in flight at most; a participant keeps as many answers for re-sending.
+/// Largest number of ticks in flight; a participant keeps as many answers for re-sending.
 inline constexpr int kMaxWindowTicks = 100;
 
 /// Content hashes by channel, in the order of comes_before().
@@ -31,8 +31,9 @@ class MessagePool {
 
   bool has(std::int64_t hash) const { return messages_.contains(hash); }
 
-  /// A copy of the message, which stays in the pool for later ticks. Requires has(hash).
-  Message take(std::int64_t hash);
+  /// Marks the message as used. @return a copy; the message stays in the pool for later ticks.
+  /// Requires has(hash).
+  Message use(std::int64_t hash);
 
  private:
   /// Hashes in the order in which their messages are dropped.
@@ -43,14 +44,14 @@ class MessagePool {
 
   struct Entry {
     Message message{};
-    bool is_taken{false};
+    bool is_used{false};
   };
 
   void forget_oldest(Queue& queue);
 
   std::map<std::int64_t, Entry> messages_{};
-  Queue waiting_{};  ///< may list taken messages, too: forget_oldest() skips them
-  Queue taken_{};
+  Queue waiting_{};  ///< not used yet; used ones are still listed, and skipped by forget_oldest()
+  Queue used_{};
 };
 
 }  // namespace waymark

@@ -45,7 +45,7 @@ std::vector<Message> LockstepMaster::open_tick(Timestamp end, std::vector<Messag
   return to_send;
 }
 
-bool LockstepMaster::take(const Message& message) {
+bool LockstepMaster::handle(const Message& message) {
   const auto ack = decode<ack_t>(message.payload);
   if (!ack.message || ack.message->run_id != run_id_) return false;
   const std::string& who = ack.message->who;

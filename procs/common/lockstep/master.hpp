@@ -19,7 +19,7 @@ class LockstepMaster {
  public:
   LockstepMaster(std::int64_t run_id, std::vector<std::string> participants, int window_ticks);
 
-  /// A TICK that asks who takes part, to be repeated until all_ready().
+  /// A TICK that asks the participants to report, to be repeated until all_ready().
   Message probe() const;
 
   bool all_ready() const { return ready_.size() == participants_.size(); }
@@ -34,7 +34,7 @@ class LockstepMaster {
   /// Opens a tick. @return its messages, followed by the TICK.
   std::vector<Message> open_tick(Timestamp end, std::vector<Message> messages, bool is_last);
   /// @return true when the message is an acknowledgement that was still missing.
-  bool take(const Message& message);
+  bool handle(const Message& message);
   /// Messages and TICKs of all open ticks, to be sent again.
   std::vector<Message> resend() const;
   /// Participants that have not acknowledged the oldest open tick, in their order. Each waits for
@@ -51,7 +51,7 @@ class LockstepMaster {
   struct OpenTick {
     tick_t tick{};
     std::vector<Message> messages{};
-    std::set<std::string> missing{};  ///< who has not acknowledged it
+    std::set<std::string> missing{};  ///< participants that have not acknowledged it
   };
 
   Message special_tick(std::int64_t tick) const;

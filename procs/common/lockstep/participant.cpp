@@ -20,10 +20,10 @@ LockstepParticipant::LockstepParticipant(std::string name, std::vector<std::stri
       process_{std::move(process)},
       counters_{counters} {}
 
-std::vector<Message> LockstepParticipant::take(Message message) {
+std::vector<Message> LockstepParticipant::handle(Message message) {
   if (message.channel == channels::kTick.name) {
     const auto tick = decode<tick_t>(message.payload);
-    if (tick.message) return take_tick(*tick.message);
+    if (tick.message) return handle_tick(*tick.message);
     counters_.add("TICK rejected: " + std::string{to_string(tick.reason)}, CountKind::kRejection);
     return {};
   }
@@ -33,7 +33,7 @@ std::vector<Message> LockstepParticipant::take(Message message) {
       counters_.add("ACK rejected: " + std::string{to_string(ack.reason)}, CountKind::kRejection);
       return {};
     }
-    take_ack(*ack.message);
+    handle_ack(*ack.message);
   } else if (std::ranges::find(wanted_channels_, message.channel) != wanted_channels_.end()) {
     const std::string channel = message.channel;
     if (!pool_.add(std::move(message))) counters_.add(channel + " duplicates");
@@ -41,7 +41,7 @@ std::vector<Message> LockstepParticipant::take(Message message) {
   return advance();
 }
 
-std::vector<Message> LockstepParticipant::take_tick(const tick_t& tick) {
+std::vector<Message> LockstepParticipant::handle_tick(const tick_t& tick) {
   const bool is_probe = tick.tick == tick_t::TICK_PROBE;
   if (tick.tick == tick_t::TICK_CLOSED) {
     if (run_id_ && is_of_this_run(tick.run_id)) closed_ = true;
@@ -63,8 +63,8 @@ std::vector<Message> LockstepParticipant::take_tick(const tick_t& tick) {
   return advance();
 }
 
-/// A simulator never sends a tick again whose answer is no longer kept: then it is another one, of
-/// the same run.
+/// A simulator re-sends only ticks whose answers are still kept here. An older tick 0 comes from
+/// another simulator that has started the same run again.
 std::vector<Message> LockstepParticipant::answer_again(const tick_t& tick) {
   counters_.add("TICK duplicates");
   const auto cached = answers_.find(tick.tick);
@@ -77,12 +77,12 @@ std::vector<Message> LockstepParticipant::answer_again(const tick_t& tick) {
   return {};
 }
 
-/// Until then a process may take part in any run.
+/// A process that has not begun may take part in any run.
 bool LockstepParticipant::has_begun() const {
   return next_tick_.value_or(0) > 0 || !open_ticks_.empty();
 }
 
-void LockstepParticipant::take_ack(const ack_t& ack) {
+void LockstepParticipant::handle_ack(const ack_t& ack) {
   if (!run_id_ || !is_of_this_run(ack.run_id) || ack.tick < 0) return;
   const std::int64_t next = next_tick_.value_or(0);
   if (ack.tick < next || ack.tick > next + kHorizon_ticks) return;
@@ -117,7 +117,7 @@ std::vector<Message> LockstepParticipant::advance() {
     }
     std::vector<Message> messages;
     for (const std::int64_t hash : *needed)
-      messages.push_back(pool_.take(hash));
+      messages.push_back(pool_.use(hash));
     std::ranges::sort(messages, comes_before);
     const tick_t tick = *open->second.tick;
     open_ticks_.erase(open);

@@ -16,34 +16,34 @@ namespace waymark {
 
 /// Pure: messages in, messages to publish out; no network, no clock.
 ///
-/// A tick is processed when everything that TICK names on the wanted channels has come, and
-/// everything that the participants before this one in TICK's list named in their ACKs. Ticks are
-/// processed in order. A re-sent tick is answered from a cache, so that the simulator repairs every
-/// loss by re-sending.
+/// A tick is processed when all messages on the wanted channels have come that its TICK names, and
+/// those that the ACKs of the participants before this one in TICK's list name. Ticks are processed
+/// in order. A re-sent tick is answered from a cache, so that the simulator repairs every loss by
+/// re-sending.
 class LockstepParticipant {
  public:
   /// Processes the messages of one tick, in order, and returns what it publishes for it.
   using Process = std::function<std::vector<Message>(const std::vector<Message>&, bool is_last)>;
 
-  /// @param counters  count rejected and repeated messages and those of other runs; must outlive
-  /// this object.
+  /// @param counters  counts rejected and repeated messages and those of other runs; must outlive
+  ///                  this object.
   LockstepParticipant(std::string name, std::vector<std::string> wanted_channels, bool joins_midway,
                       Process process, Counters& counters);
 
-  /// @return what to publish now.
+  /// Handles a message of the network. @return what to publish now.
   /// @throws std::runtime_error when the run has begun and this process cannot join it, or begins
   ///                            again while this process is in the middle of it.
-  std::vector<Message> take(Message message);
+  std::vector<Message> handle(Message message);
 
   bool has_seen_tick() const { return run_id_.has_value(); }
 
-  /// Somebody else's ticks or acknowledgements have come, which are ignored.
+  /// Ticks or acknowledgements of another run have come; they are ignored.
   bool has_heard_another_run() const { return has_heard_another_run_; }
 
-  /// The last tick has been acknowledged; the simulator may still re-send it until closed().
+  /// True when the last tick has been acknowledged; the simulator may re-send it until closed().
   bool finished() const { return finished_; }
 
-  /// The simulator has everybody's last acknowledgement, or has stopped before.
+  /// True when the simulator has received every last acknowledgement, or has stopped before.
   bool closed() const { return closed_; }
 
  private:
@@ -52,8 +52,8 @@ class LockstepParticipant {
     std::map<std::string, ack_t> acks{};
   };
 
-  std::vector<Message> take_tick(const tick_t& tick);
-  void take_ack(const ack_t& ack);
+  std::vector<Message> handle_tick(const tick_t& tick);
+  void handle_ack(const ack_t& ack);
   bool has_begun() const;
   std::vector<Message> answer_again(const tick_t& tick);
   bool is_of_this_run(std::int64_t run_id);
@@ -78,7 +78,7 @@ class LockstepParticipant {
   bool has_heard_another_run_{false};
   MessagePool pool_;
   std::map<std::int64_t, OpenTick> open_ticks_;
-  std::map<std::int64_t, std::vector<Message>> answers_;  ///< of the newest ticks, to be sent again
+  std::map<std::int64_t, std::vector<Message>> answers_;  ///< to the newest ticks, for re-sending
   std::int64_t state_hash_{0};
 };
 

@@ -13,7 +13,7 @@ namespace waymark::logging {
 
 enum class Level { kInfo, kWarn, kError };
 
-/// From now on every line begins with the time and this name.
+/// Makes every line begin with the time and the name of the program.
 void begin(const std::string& program);
 
 /// Lines below this level are left out.

@@ -16,24 +16,24 @@
 namespace waymark {
 namespace {
 
-constexpr int kFewestSquares = 3;  // 2 x 2 inner corners: a homography needs four points
-constexpr int kMostSquares = 60;   // along a side: bounds the memory
-constexpr double kLargestSquare_m = 1.0;
-constexpr int kSmallestHalfWindow_px = 2;  // of the search for a corner
-constexpr int kLargestHalfWindow_px = 7;   // in larger windows, lens distortion bends the edges
-constexpr int kMostSteps = 50;
+constexpr int kMinSquares = 3;   // 2 x 2 inner corners: a homography needs four points
+constexpr int kMaxSquares = 60;  // along a side: bounds the memory
+constexpr double kMaxSquare_m = 1.0;
+constexpr int kMinHalfWindow_px = 2;  // half width of the window in which a corner is refined
+constexpr int kMaxHalfWindow_px = 7;  // in larger windows, lens distortion bends the edges
+constexpr int kMaxSteps = 50;
 constexpr double kConverged_px = 1e-3;
-// Side of a marker over that of its square: it needs white around it to be found, and pixels to be
-// read.
-constexpr double kSmallestShare = 0.3;
-constexpr double kLargestShare = 0.9;
+// Side of a marker over that of its square: a larger marker has too little white around it to be
+// found, a smaller one too few pixels to be read.
+constexpr double kMinMarkerShare = 0.3;
+constexpr double kMaxMarkerShare = 0.9;
 
 /// 0 if the text is not a valid number of squares.
 int number_in(std::string_view text) {
   int number{};
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool is_number = error == std::errc{} && stop == text.data() + text.size();
-  return is_number && number >= kFewestSquares && number <= kMostSquares ? number : 0;
+  return is_number && number >= kMinSquares && number <= kMaxSquares ? number : 0;
 }
 
 }  // namespace
@@ -45,14 +45,14 @@ cv::Ptr<cv::aruco::CharucoBoard> make_board(const BoardOptions& options) {
   const int rows = x == std::string::npos ? 0 : number_in(squares.substr(x + 1));
   if (columns == 0 || rows == 0)
     throw SetupError{fmt::format("--squares: got '{}', expected columns x rows, {} to {} each: 7x5",
-                                 squares, kFewestSquares, kMostSquares)};
-  if (!(options.square_m > 0.0 && options.square_m <= kLargestSquare_m))
+                                 squares, kMinSquares, kMaxSquares)};
+  if (!(options.square_m > 0.0 && options.square_m <= kMaxSquare_m))
     throw SetupError{fmt::format("--square-m: got {}, expected more than 0, up to {} m",
-                                 options.square_m, kLargestSquare_m)};
-  if (!(options.marker_m >= kSmallestShare * options.square_m &&
-        options.marker_m <= kLargestShare * options.square_m))
+                                 options.square_m, kMaxSquare_m)};
+  if (!(options.marker_m >= kMinMarkerShare * options.square_m &&
+        options.marker_m <= kMaxMarkerShare * options.square_m))
     throw SetupError{fmt::format("--marker-m: got {}, expected {} to {} of --square-m {}",
-                                 options.marker_m, kSmallestShare, kLargestShare,
+                                 options.marker_m, kMinMarkerShare, kMaxMarkerShare,
                                  options.square_m)};
   const auto dictionary = find_dictionary(options.dictionary);
   if (!dictionary)
@@ -88,9 +88,9 @@ BoardCorners find_corners(const cv::Mat& gray, const cv::Ptr<cv::aruco::CharucoB
   for (const auto& marker : markers)
     side_px = std::min(side_px, 0.25 * cv::arcLength(marker, true));
   const int half_px =
-      std::clamp(static_cast<int>(gap * side_px), kSmallestHalfWindow_px, kLargestHalfWindow_px);
+      std::clamp(static_cast<int>(gap * side_px), kMinHalfWindow_px, kMaxHalfWindow_px);
   cv::cornerSubPix(gray, found.corners_px, {half_px, half_px}, {-1, -1},
-                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMostSteps, kConverged_px});
+                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMaxSteps, kConverged_px});
   return found;
 }
 

@@ -17,8 +17,8 @@ struct NamedDictionary {
   int correctable_bits{kAsInOpenCv};
 };
 
-// AprilTag families correct the most bits below half the code distance (the number after the h);
-// 16h5 corrects none, since its 16 bits match random image content too often.
+// With code distance d (36h11: d = 11) an AprilTag family can correct floor((d - 1) / 2) bits.
+// 16h5 gets 0: its 16 bits match random image content too often.
 constexpr std::array kDictionaries{
     NamedDictionary{"DICT_4X4_50", cv::aruco::DICT_4X4_50},
     NamedDictionary{"DICT_4X4_100", cv::aruco::DICT_4X4_100},

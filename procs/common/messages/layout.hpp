@@ -24,14 +24,14 @@ struct FieldLayout {
   std::span<const FieldLayout> struct_fields{};  ///< kStruct only
 };
 
-inline constexpr std::size_t kMaxFields = 16;  ///< of a struct
+inline constexpr std::size_t kMaxFields = 16;  ///< largest number of fields of a struct
 
 using StructLayout = std::span<const FieldLayout>;
 
-/// Walks the fields of a payload. kNone when they take exactly all bytes.
+/// Walks the fields of a payload; checks every count against the bytes that are left. O(number of
+/// fields and struct elements), no allocation.
 /// @param body  the payload without its fingerprint.
-/// O(number of fields and struct elements), no allocation; every count is checked against the bytes
-/// left.
+/// @return kNone if the fields take exactly all bytes.
 RejectReason walk(std::span<const std::uint8_t> body, StructLayout layout);
 
 /// @param fingerprint  Type::getHash() of one of our message types.

@@ -15,7 +15,7 @@ enum class RejectReason {
   kTrailingBytes,
   kNotFinite,     ///< NaN or infinity where none may be
   kInconsistent,  ///< arrays that must agree in size do not, or a field has no such value
-  kOutOfBounds,   ///< a number beyond bounds.hpp, which no robot has
+  kOutOfBounds,   ///< a number beyond the limits in bounds.hpp
   kBadTime,       ///< utime negative or beyond bounds.hpp, or a beam's time far from it
 };
 

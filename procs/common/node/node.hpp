@@ -95,8 +95,8 @@ class Node {
   /// The input has ended: publish or write what is left.
   virtual void finish() = 0;
 
-  /// True when some output could not be produced (e.g. a file not written): logged by the node when
-  /// it happens, and the exit code at the end is kExitFailed.
+  /// True when some output could not be produced, e.g. a file not written. The node logs it when it
+  /// happens; the exit code at the end is kExitFailed.
   virtual bool failed() const { return false; }
 
   /// Channels that a replay needs: each must be in at least one of its logs.

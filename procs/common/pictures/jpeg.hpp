@@ -17,7 +17,7 @@ inline constexpr int kMaxJpegSide_px = 65500;
 std::vector<std::uint8_t> jpeg_bytes(const cv::Mat& image, int quality);
 
 /// Bytes that are damaged behind the header may give a picture with wrong parts.
-/// @param size  of read_jpeg_header().
+/// @param size  as read by read_jpeg_header().
 /// @return 8 bit, grey; empty if it cannot be decoded.
 cv::Mat grey_of_jpeg(std::span<const std::uint8_t> bytes, cv::Size size);
 

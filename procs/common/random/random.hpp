@@ -8,9 +8,9 @@
 
 namespace waymark {
 
-/// A generator that is determined by a key, e.g. {seed, stream, step, particle}: give every
-/// particle and step its own, and results do not depend on the order or the thread in which they
-/// are drawn. Meets UniformRandomBitGenerator. Source: Steele, Lea, Flood, "Fast splittable
+/// A generator that is determined by a key, e.g. {seed, stream, step, particle}. With a generator
+/// of its own for every particle and step, results do not depend on the order or the thread of the
+/// draws. Meets UniformRandomBitGenerator. Source: Steele, Lea, Flood, "Fast splittable
 /// pseudorandom number generators" (2014), SplitMix64.
 class Random {
  public:

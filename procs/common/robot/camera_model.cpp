@@ -45,7 +45,8 @@ Eigen::Vector2d CameraModel::ideal_from_raw(const Eigen::Vector2d& raw_px) const
   constexpr double kCloseEnoughPx = 1e-9;
   constexpr double kSmallestChange = 1e-12;
   const Eigen::Vector2d distorted = normalized_from_ideal(raw_px);
-  // Where the determinant of the Jacobian is negative, the lens model is folded: pixels repeat.
+  // Where the determinant of the Jacobian is negative, the lens model is folded: several rays have
+  // the same pixel.
   const auto is_folded = [this](const Eigen::Vector2d& p) {
     return !(distortion_jacobian(p).determinant() > 0.0);
   };

@@ -17,8 +17,8 @@
 namespace waymark {
 namespace {
 
-/// Writes what is left in the buffer of standard output: only then a full disk may show.
-/// @return the exit code: that of the work, unless its output is lost.
+/// Flushes standard output, as a write to a full disk may fail only then.
+/// @return `code`, or kExitFailed in place of kExitOk if output is lost.
 int flush_output(int code) {
   if (std::fflush(stdout) == 0) return code;
   logging::error("standard output cannot be written: {}", std::generic_category().message(errno));
@@ -44,9 +44,9 @@ int run_guarded(const ProcessTraits& traits, const std::function<int()>& body) {
   }
 }
 
-bool succeeds(const std::function<void()>& process_messages) {
+bool run_and_log_errors(const std::function<void()>& work) {
   try {
-    process_messages();
+    work();
     return true;
   } catch (const std::exception& error) {
     logging::error("the run ends here: {}", error.what());

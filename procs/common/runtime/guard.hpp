@@ -13,9 +13,9 @@ namespace waymark {
 ///         if what it printed to standard output could not be written.
 int run_guarded(const ProcessTraits& traits, const std::function<int()>& body);
 
-/// Lets a node process messages, and logs what it throws.
+/// Runs `work`, in which a node handles messages, and logs what it throws.
 /// @return false after an exception.
-bool succeeds(const std::function<void()>& process_messages);
+bool run_and_log_errors(const std::function<void()>& work);
 
 /// Logs all counters that are not zero, one line per kind; losses and rejections as warnings.
 void log_counters(const Counters& counters);

@@ -134,7 +134,7 @@ void check_options(const ProcessOptions& options, const OptionSet& option_set) {
   if (!options.out_log.empty()) protect_inputs("--out-log", options.out_log, inputs_of(options));
   if (options.save_map.empty()) return;
   std::vector<std::filesystem::path> inputs = inputs_of(options);
-  std::erase(inputs, options.load_map);  // it may be overwritten by its extended version
+  std::erase(inputs, options.load_map);  // the map may be replaced by its extended version
   protect_inputs("--save-map", options.save_map, inputs);
   const std::filesystem::path folder =
       options.save_map.has_parent_path() ? options.save_map.parent_path() : ".";

@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-/// The work goes on where this cannot be written: the terminal may be gone, or the disk full.
+/// Ignores errors, so that the work goes on if the terminal is gone or the disk full.
 void show_text(const std::string& text) {
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);

@@ -12,17 +12,17 @@ ReorderBuffer::ReorderBuffer(Duration window) : window_{window} {}
 std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
   if (message.time == Timestamp{} && message.channel == channels::kSlamCommand.name)
     return {stamped(std::move(message))};
-  if (const Misfit why = misfit(message); why != Misfit::kNone) {
-    if (why == Misfit::kLate) {
+  if (const OrderProblem problem = order_problem_of(message); problem != OrderProblem::kNone) {
+    if (problem == OrderProblem::kLate) {
       counters.add(message.channel + " late, dropped", CountKind::kLoss);
     } else {
       counters.add(message.channel + " rejected: time jumps ahead", CountKind::kRejection);
     }
-    if (!clock_steps_.see_misfit(message.time)) return {};
+    if (!clock_steps_.note_inconsistent(message.time)) return {};
     counters.add("clock was set");
     return begin_anew(std::move(message));
   }
-  clock_steps_.see_fitting();
+  clock_steps_.note_consistent();
   Stream& stream = streams_[message.channel];
   resolve_aside(stream, message.time, counters);
   if (waiting_.contains(message) ||
@@ -31,7 +31,7 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
     return {};
   }
   if (leads(stream, message.time)) {
-    if (stream.aside.size() == kMostAside) {
+    if (stream.aside.size() == kMaxSetAside) {
       counters.add(message.channel + " of one time, dropped", CountKind::kLoss);
       return {};
     }
@@ -52,13 +52,14 @@ Message ReorderBuffer::stamped(Message message) const {
   return encode(channels::kSlamCommand, timed);
 }
 
-ReorderBuffer::Misfit ReorderBuffer::misfit(const Message& message) const {
+ReorderBuffer::OrderProblem ReorderBuffer::order_problem_of(const Message& message) const {
   const auto stream = streams_.find(message.channel);
   if (stream != streams_.end() && stream->second.released &&
       message.time < *stream->second.released)
-    return Misfit::kLate;
-  if (has_any_ && message.time > newest_ + ClockStepDetector::kLongestPause) return Misfit::kAhead;
-  return Misfit::kNone;
+    return OrderProblem::kLate;
+  if (has_any_ && message.time > newest_ + ClockStepDetector::kLongestPause)
+    return OrderProblem::kAhead;
+  return OrderProblem::kNone;
 }
 
 bool ReorderBuffer::leads(const Stream& stream, Timestamp time) const {
@@ -111,7 +112,7 @@ std::vector<Message> ReorderBuffer::flush() {
 
 std::vector<Message> ReorderBuffer::release_until(Timestamp time) {
   std::vector<Message> released;
-  while (!waiting_.empty() && (waiting_.begin()->time <= time || waiting_.size() > kMostWaiting)) {
+  while (!waiting_.empty() && (waiting_.begin()->time <= time || waiting_.size() > kMaxWaiting)) {
     released.push_back(std::move(waiting_.extract(waiting_.begin()).value()));
     streams_[released.back().channel].released = released.back().time;
   }

@@ -15,23 +15,24 @@
 
 namespace waymark {
 
-/// Holds messages until one is `window` newer, then releases them by (time, channel, payload). A
-/// channel may lag behind the others by more than the window, as computed results do. Drops and
-/// counts messages that are older than a released one of their channel, and messages more than
-/// ClockStepDetector::kLongestPause ahead of the newest one, which would release all others. When
-/// many of these agree, the clock was set: the order begins anew with the latest of them.
+/// Holds messages until one is `window` newer, then releases them by (time, channel, payload).
+/// Drops and counts messages older than a released one of their channel, and messages more than
+/// ClockStepDetector::kLongestPause ahead of the newest one, which would release all others. Many
+/// of these in a row with consistent stamps mean that the clock was set: the waiting messages are
+/// released, and the order begins anew. A channel may lag by more than the window, as computed
+/// results do.
 ///
 /// A message moderately far ahead of all channels is set aside: either there was a pause, or its
 /// stamp is wrong. The next message of its channel decides: a newer one confirms it, an older one
 /// drops it.
 ///
-/// Memory is bounded, also with a sender whose clock stands still: at most kMostAside messages of
-/// one stamp are set aside, and when more than kMostWaiting wait, the oldest are released.
+/// Memory is bounded, also with a sender whose clock stands still: further messages that would be
+/// set aside are dropped, and when too many wait, the oldest are released.
 class ReorderBuffer {
  public:
-  // Our processes send few messages of one stamp, and some tens within a window.
-  static constexpr std::size_t kMostAside = 100;  ///< of each channel
-  static constexpr std::size_t kMostWaiting = 2000;
+  // Far more than our processes send: few messages share a stamp, some tens arrive per window.
+  static constexpr std::size_t kMaxSetAside = 100;  ///< per channel, all with one stamp
+  static constexpr std::size_t kMaxWaiting = 2000;  ///< of all channels
 
   explicit ReorderBuffer(Duration window);
 
@@ -46,10 +47,10 @@ class ReorderBuffer {
 
   /// Why a message cannot be put into order: older than a released one of its channel (kLate), or
   /// too far ahead of the newest message (kAhead).
-  enum class Misfit { kNone, kLate, kAhead };
+  enum class OrderProblem { kNone, kLate, kAhead };
 
   // A message more than this ahead of all others may be set aside, which delays it by a period of
-  // its channel. Above odometry's default period and the jitter between processes.
+  // its channel. Longer than odometry's default period and the jitter between processes.
   static constexpr Duration kLead = std::chrono::milliseconds{100};
   static constexpr Duration kLongestStep = std::chrono::milliseconds{500};
 
@@ -57,11 +58,11 @@ class ReorderBuffer {
   struct Stream {
     std::optional<Timestamp> newest{};    ///< newest stamp that was put into waiting_
     std::optional<Timestamp> released{};  ///< stamp of the last released message
-    Duration usual_step{kLongestStep};    ///< between the last two stamps; at most doubles
-    std::vector<Message> aside{};         ///< set aside; all of one stamp
+    Duration usual_step{kLongestStep};    ///< last step between stamps; at most doubles at once
+    std::vector<Message> aside{};         ///< messages set aside, all with one stamp
   };
 
-  Misfit misfit(const Message& message) const;
+  OrderProblem order_problem_of(const Message& message) const;
   Message stamped(Message message) const;
   bool leads(const Stream& stream, Timestamp time) const;
   void resolve_aside(Stream& stream, Timestamp time, Counters& counters);

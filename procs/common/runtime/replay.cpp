@@ -21,12 +21,12 @@
 namespace waymark {
 namespace {
 
-/// One log, read ahead by one message, restricted to the channels that are taken from it.
+/// One log, read ahead by one message, restricted to the channels that are read from it.
 struct Source {
   std::filesystem::path path;
   LogReader reader;
-  std::vector<std::string> all_channels;  ///< that occur in it
-  std::vector<std::string> channels{};    ///< that are taken
+  std::vector<std::string> all_channels;  ///< channels that occur in the log
+  std::vector<std::string> channels{};    ///< channels that are read from it
   std::optional<Message> head{};
 
   void advance() {
@@ -36,7 +36,7 @@ struct Source {
   }
 };
 
-/// All channels of a group are taken from the last log that has any of them. SLAM_* and MAP_*
+/// All channels of a group are read from the last log that has any of them. SLAM_* and MAP_*
 /// channels, which belong together, are one group; any other channel is its own group.
 std::string group_of(const std::string& channel) {
   constexpr std::string_view kSlam = "SLAM_";
@@ -152,7 +152,7 @@ bool report_missing(const std::vector<Source>& sources,
   return any;
 }
 
-/// Whether the logs have images, but not what a detector sees in them, which this process wants.
+/// Whether the logs have images, but not the detections in them, which this process reads.
 bool has_only_images(const std::vector<Source>& sources,
                      const std::vector<Inbox::Subscription>& subscriptions) {
   const auto is_wanted = [&](std::string_view channel) {
@@ -225,7 +225,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
       source->advance();
       continue;
     }
-    is_working = succeeds([&] { inbox.deliver(*source->head); });
+    is_working = run_and_log_errors([&] { inbox.deliver(*source->head); });
     write_out();
     ++num_messages;
     if (!is_working) break;

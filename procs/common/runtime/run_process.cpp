@@ -27,9 +27,9 @@ using std::chrono::seconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kPoll{50};
-// How long a participant answers re-sent ticks when the simulator's closing TICK got lost.
+// How long a participant that has finished answers re-sent ticks if the closing TICK is lost.
 constexpr seconds kLinger{5};
-// Longer than the simulator waits before it sends a tick again.
+// Without messages for this long, the user gets a hint. The simulator re-sends a tick sooner.
 constexpr seconds kNothingHint{10};
 constexpr seconds kSilence{1};  // after this long without a message, no delayed one is expected
 // How long received messages are still processed after a stop signal.
@@ -76,18 +76,18 @@ struct Network {
   LargeMessages large_messages;  ///< for real time; in lockstep nobody sends them
 };
 
-/// Thrown through the participant, so that a tick on which the node failed is not acknowledged.
+/// Thrown through LockstepParticipant, so that a tick on which the node failed is not acknowledged.
 struct NodeFailed {};
 
 void deliver_or_fail(const std::vector<Message>& messages, Inbox& inbox) {
-  const bool is_working = succeeds([&] {
+  const bool is_working = run_and_log_errors([&] {
     for (const Message& message : messages)
       inbox.deliver(message);
   });
   if (!is_working) throw NodeFailed{};
 }
 
-/// Log lines for a user whose run does not go on, each once.
+/// Tells the user why a run may have stopped; each log line once.
 class LockstepHints {
  public:
   /// @param silence  since the last TICK, or since the start.
@@ -146,7 +146,7 @@ int run_lockstep(const ProcessTraits& traits, const Network& network, Node& node
     } else if (message) {
       if (message->channel == channels::kTick.name) last_tick = steady_clock::now();
       newest = std::max(newest, message->time);
-      publish_all(bus, participant.take(std::move(*message)));
+      publish_all(bus, participant.handle(std::move(*message)));
     }
     const auto silence = steady_clock::now() - last_tick;
     if (participant.finished() && silence > kLinger) break;
@@ -173,8 +173,8 @@ class RealTimeFeed {
         outbox_{outbox},
         buffer_{inbox.subscriptions().size() > 1 ? kReorderWindow : Duration{0}} {}
 
-  /// Takes one message. @return false when none comes within the timeout.
-  bool take(milliseconds timeout) {
+  /// Receives one message. @return false when none comes within the timeout.
+  bool receive_one(milliseconds timeout) {
     auto message = bus_.receive(timeout);
     if (!message) return false;
     last_arrival_ = steady_clock::now();
@@ -223,8 +223,8 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   bool is_working = true;
   while (is_working && stop_signal() == 0) {
     const auto last = feed.last_arrival();
-    is_working = succeeds([&] {
-      if (!feed.take(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
+    is_working = run_and_log_errors([&] {
+      if (!feed.receive_one(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
     });
     if (!hinted && !last && steady_clock::now() - start > kNothingHint) {
       logging::warn("nothing has come on {} so far; is it the robot's LCM network?", network.url);
@@ -235,8 +235,8 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   }
   notify_supervisor(kStopping);
   const auto stop = steady_clock::now();
-  is_working = is_working && succeeds([&] {
-                 while (steady_clock::now() - stop < kDrain && feed.take(milliseconds{0})) {
+  is_working = is_working && run_and_log_errors([&] {
+                 while (steady_clock::now() - stop < kDrain && feed.receive_one(milliseconds{0})) {
                  }
                  feed.flush();
                });

@@ -51,14 +51,14 @@ class Run {
     LockstepMaster master{source_.run_id(), source_.participants(), source_.window_ticks()};
     if (const int code = wait_until_ready(master); code != kExitOk) return code;
     const int code = run_ticks(master);
-    // Also after a signal or a time-out, so that nobody waits for more ticks.
+    // Also after a signal or a time-out, so that no process waits for more ticks.
     for (int i = 0; i < kClosingRepeats; ++i)
       bus_.publish(master.closing());
     if (code == kExitOk) log_state_hashes(master);
     return code;
   }
 
-  /// Paces the messages by the wall clock; nobody acknowledges.
+  /// Paces the messages by the wall clock; no process acknowledges them.
   int in_real_time() {
     const auto start = steady_clock::now();
     while (!source_.finished()) {
@@ -69,7 +69,7 @@ class Run {
         // two messages, and delays those that are due meanwhile.
         const auto due = start + message.time.time_since_epoch() + kRealTimeLatency;
         while (stop_signal() == 0 && steady_clock::now() < due) {
-          take_commands(std::min<milliseconds>(
+          handle_commands(std::min<milliseconds>(
               kReceiveFor, duration_cast<milliseconds>(due - steady_clock::now())));
         }
         if (stop_signal() != 0) return kExitSignal + stop_signal();
@@ -115,7 +115,7 @@ class Run {
         bus_.publish(master.probe());
         last_probe = now;
       }
-      take_messages(master, kReceiveFor);
+      handle_messages(master, kReceiveFor);
     }
     logging::info("all ready: {}", fmt::join(source_.participants(), ", "));
     return kExitOk;
@@ -132,7 +132,7 @@ class Run {
         send_tick(master);
         last_sent = steady_clock::now();
       }
-      if (take_messages(master, may_advance ? milliseconds{0} : kReceiveFor)) {
+      if (handle_messages(master, may_advance ? milliseconds{0} : kReceiveFor)) {
         last_ack = steady_clock::now();
         resend_after = kFirstResend;
       }
@@ -164,14 +164,15 @@ class Run {
     publish(master.open_tick(tick_end_, std::move(messages), source_.finished()));
   }
 
-  /// @return true when a missing acknowledgement has come.
-  bool take_messages(LockstepMaster& master, milliseconds timeout) {
+  /// Handles the messages that come within the timeout. @return true when a missing acknowledgement
+  /// was among them.
+  bool handle_messages(LockstepMaster& master, milliseconds timeout) {
     bool acknowledged = false;
     for (auto message = bus_.receive(timeout); message; message = bus_.receive(milliseconds{0})) {
       if (message->channel == channels::kAck.name) {
-        acknowledged = master.take(*message) || acknowledged;
+        acknowledged = master.handle(*message) || acknowledged;
       } else if (message->channel == channels::kSlamCommand.name) {
-        commands_.take(*message);
+        commands_.handle(*message);
       } else {
         inbox_.deliver(*message);
       }
@@ -179,7 +180,7 @@ class Run {
     return acknowledged;
   }
 
-  void take_commands(milliseconds timeout) {
+  void handle_commands(milliseconds timeout) {
     if (auto message = bus_.receive(timeout)) inbox_.deliver(*message);
   }
 

@@ -4,8 +4,8 @@
 
 namespace waymark {
 
-/// From now on the first of these signals sets the flag, and another one more than 0.3 s later ends
-/// the process at once. SIGPIPE is ignored.
+/// Makes the first of these signals set the flag, and another one more than 0.3 s later end the
+/// process at once. SIGPIPE is ignored.
 void install_stop_signals();
 
 /// The signal that asked to stop, or 0.

@@ -4,20 +4,22 @@
 namespace waymark {
 namespace {
 
-constexpr int kConsecutive = 20;                     // stamps after which the clock counts as set
-constexpr Duration kNear = std::chrono::seconds{2};  // between consistent stamps, at most
+// So many consecutive inconsistent stamps, each near the one before, mean that the clock was set.
+constexpr int kConsecutive = 20;
+constexpr Duration kNear = std::chrono::seconds{2};
 
 }  // namespace
 
-bool ClockStepDetector::see_misfit(Timestamp time) {
-  const bool agrees = misfits_ > 0 && time >= last_misfit_ - kNear && time <= last_misfit_ + kNear;
-  if (!agrees) {
-    misfits_ = 0;
-    first_misfit_ = time;
+bool ClockStepDetector::note_inconsistent(Timestamp time) {
+  const bool is_near = num_inconsistent_ > 0 && time >= last_inconsistent_ - kNear &&
+                       time <= last_inconsistent_ + kNear;
+  if (!is_near) {
+    num_inconsistent_ = 0;
+    first_inconsistent_ = time;
   }
-  last_misfit_ = time;
-  if (++misfits_ < kConsecutive) return false;
-  misfits_ = 0;
+  last_inconsistent_ = time;
+  if (++num_inconsistent_ < kConsecutive) return false;
+  num_inconsistent_ = 0;
   return true;
 }
 

@@ -14,19 +14,21 @@ class ClockStepDetector {
   /// A stamp later than all before by more than this is inconsistent.
   static constexpr Duration kLongestPause = std::chrono::minutes{10};
 
-  void see_fitting() { misfits_ = 0; }
+  /// A stamp consistent with those before has come.
+  void note_consistent() { num_inconsistent_ = 0; }
 
+  /// An inconsistent stamp has come.
   /// @return true when the clock was set: many inconsistent stamps in a row are consistent with
   /// each other.
-  bool see_misfit(Timestamp time);
+  bool note_inconsistent(Timestamp time);
 
   /// The first of the present run of inconsistent stamps.
-  Timestamp first_misfit() const { return first_misfit_; }
+  Timestamp first_inconsistent() const { return first_inconsistent_; }
 
  private:
-  int misfits_{0};
-  Timestamp first_misfit_{};
-  Timestamp last_misfit_{};
+  int num_inconsistent_{0};
+  Timestamp first_inconsistent_{};
+  Timestamp last_inconsistent_{};
 };
 
 }  // namespace waymark

@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kSteps = 48;  // of a model's profile
+constexpr int kSteps = 48;  // samples of a model's profile
 
 double normal_cdf(double x) {
   return 0.5 * std::erfc(-x / std::numbers::sqrt2);

@@ -6,7 +6,8 @@
 
 namespace waymark {
 
-/// Across a side: quiet zone (white), border (black) and first bits, blurred by a Gaussian.
+/// Brightness across a side: quiet zone (white), border (black) and first bits, blurred by a
+/// Gaussian.
 struct BlurredSide {
   double blur_px{0.0};      ///< standard deviation of the Gaussian
   double border_px{0.0};    ///< thickness of the black border

@@ -24,10 +24,10 @@ constexpr double kConvergedPx = 0.1;  // a pass that moves every corner by less 
 // covariance).
 constexpr double kSharedNoise = 2.2;
 constexpr double kOutlierSigmas = 2.5;
-// Lower bound of the residuals: below it they come from the rounding of grey levels.
+// Lower bound of the residuals: smaller ones are only rounding of grey levels.
 constexpr double kSmallestResidualPx = 0.01;
-// Standard deviation of the blur correction: root sum of squares of these shares of the bias and of
-// the blur.
+// Standard deviation of the correction for blur: root sum of squares of these shares of the bias
+// and of the blur.
 constexpr double kBiasSigmaShare = 0.5;
 constexpr double kBlurSigmaShare = 0.02;
 

@@ -9,10 +9,11 @@ namespace {
 
 constexpr int kStepsPerPixel = 4;
 constexpr int kMaxProfilesPerSide = 80;
-// No profiles nearer to a corner, where the blur of the neighbouring side bends the edge.
+// Profiles nearer to a corner are left out: the blur of the neighbouring side bends the edge there.
 constexpr double kCornerMarginPx = 2.0;
 constexpr double kMaxCornerMarginRate = 0.2;
-// Where the white and black levels are read, as shares of the reach: outside the blur of the edge.
+// Offsets at which the white and black levels are read, as shares of the reach: outside the blur of
+// the edge.
 constexpr double kWhiteFrom = 0.6;
 constexpr double kBlackAt = 0.5 * kThickBorder;
 constexpr double kBlackHalfWidth = 0.15;
@@ -99,7 +100,7 @@ std::optional<double> EdgeProfile::edge_px(double black_level, double half_windo
 }
 
 std::optional<double> EdgeProfile::blur_px(double black_level) const {
-  constexpr double kQuartileDistance = 1.349;  // between quartiles of a normal, in sigmas
+  constexpr double kQuartileDistance = 1.349;  // distance of a normal's quartiles, in sigmas
   const auto low = crossing_px(black_level + 0.25 * (white - black_level));
   const auto high = crossing_px(black_level + 0.75 * (white - black_level));
   if (!low || !high || *high < *low) return std::nullopt;

@@ -42,7 +42,7 @@ struct MarkerDetectorConfig {
 /// What examine() finds in an image.
 struct ImageMarkers {
   std::vector<MarkerDetection> markers{};
-  int beyond_lens{0};  ///< dropped: a corner is where robot.camera.distortion cannot be inverted
+  int beyond_lens{0};  ///< markers dropped: robot.camera.distortion has no inverse at a corner
 };
 
 class MarkerDetector {

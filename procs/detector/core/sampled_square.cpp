@@ -14,8 +14,8 @@ namespace {
 // images have 0.5 to 0.75 px, from the area of the pixels and the interpolation between them.
 constexpr double kSharpPx = 0.95;
 constexpr double kMinBorderPx = 2.0;
-constexpr double kCornerBlurs = 3.0;  // length that a corner bends the edge, in sigmas of the blur
-constexpr double kHalfWhite = 0.5;    // assumed share of white bits; matters little here
+constexpr double kCornerBlurs = 3.0;  // a corner bends the edge over so many sigmas of the blur
+constexpr double kHalfWhite = 0.5;    // assumed share of white bits; has little effect here
 constexpr std::size_t kMinLevels = 4;
 
 double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {

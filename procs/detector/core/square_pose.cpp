@@ -105,7 +105,7 @@ class Refiner {
   std::optional<double> error_px(const Eigen::Isometry3d& camera_from_marker) const {
     const auto here = linearize(seen_px_, camera_, size_m_, camera_from_marker);
     if (!here) return std::nullopt;
-    return 0.5 * here->residual_px.norm();  // sqrt(sum of squares / four corners)
+    return 0.5 * here->residual_px.norm();  // root mean square over the four corners
   }
 
  private:

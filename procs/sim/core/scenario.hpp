@@ -70,8 +70,8 @@ struct Scenario {
   void check_places(Problems& problems) const;
   void check_added(const World& built, int num_ids, Problems& problems) const;
   void check_moves(const World& built, Problems& problems) const;
-  /// Room that the robot needs beside it where it drives [m].
-  double driving_room_m() const;
+  /// Clearance that the robot needs where it drives straight on [m].
+  double driving_clearance_m() const;
   void check_odometry(Problems& problems) const;
   void check_route(Problems& problems) const;
   void check_events(Problems& problems) const;

@@ -68,7 +68,7 @@ void Scenario::check_world(Problems& problems) const {
   check_length("world.length_m", world.length_m);
   if (world.layout != Layout::kStraight)
     check_length("world.second_length_m", world.second_length_m);
-  if (const double robot_m = 2.0 * driving_room_m(); world.width_m < robot_m) {
+  if (const double robot_m = 2.0 * driving_clearance_m(); world.width_m < robot_m) {
     problems.add("world.width_m", fmt::format("got {}, expected more than the robot's width, {} m",
                                               world.width_m, robot_m));
   }

@@ -13,20 +13,18 @@ namespace waymark {
 namespace {
 
 constexpr double kRoundingSlack_m = 1e-9;
-// Smallest distance of the base frame's origin to a wall, from the Waffle Pi's size. Where the
-// robot turns on the spot: the length of its body behind the base; where it drives: half of
-// its width.
-constexpr double kTurningRoom_m = 0.20;
-constexpr double kDrivingRoom_m = 0.16;
-constexpr double kBesideWheels_m = kDrivingRoom_m - 0.5 * BaseConfig{}.wheel_separation_m;
-constexpr double kTurns_rad = 0.02;  // smaller turns on the spot need no more room than driving
+// Smallest distance of the base frame's origin to a wall, from the Waffle Pi's size.
+constexpr double kTurningClearance_m = 0.20;  // turning on the spot: its length behind the base
+constexpr double kDrivingClearance_m = 0.16;  // driving straight on: half of its width
+constexpr double kBesideWheels_m = kDrivingClearance_m - 0.5 * BaseConfig{}.wheel_separation_m;
+constexpr double kTurns_rad = 0.02;  // smaller turns on the spot need no more clearance
 constexpr double kRouteSample_m = 0.05;
 
-/// Empty if the point is at least `needed_m` away from every wall and every box, also from boxes
-/// that are present for a time only; else a sentence about the problem.
+/// Empty if the point is at least `needed_m` away from every wall and every box, even one that is
+/// there only for a time; else a sentence about the problem.
 std::string what_is_too_close(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
                               const Eigen::Vector2d& point_m, double needed_m) {
-  const double nearest_m = room_m(walls, boxes, point_m);
+  const double nearest_m = clearance_m(walls, boxes, point_m);
   if (nearest_m >= needed_m - kRoundingSlack_m) return {};
   const std::string place = clearance_m(walls, point_m) < 0.0
                                 ? "outside of the walls"
@@ -37,8 +35,8 @@ std::string what_is_too_close(const std::vector<Wall>& walls, const std::vector<
 
 }  // namespace
 
-double Scenario::driving_room_m() const {
-  return std::max(kDrivingRoom_m, 0.5 * robot.base.wheel_separation_m + kBesideWheels_m);
+double Scenario::driving_clearance_m() const {
+  return std::max(kDrivingClearance_m, 0.5 * robot.base.wheel_separation_m + kBesideWheels_m);
 }
 
 void Scenario::check_route(Problems& problems) const {
@@ -49,8 +47,8 @@ void Scenario::check_route(Problems& problems) const {
     if (!problem.empty()) problems.add(key, problem);
     return problem.empty();
   };
-  const double driving_m = driving_room_m();
-  const double turning_m = std::max(kTurningRoom_m, driving_m);
+  const double driving_m = driving_clearance_m();
+  const double turning_m = std::max(kTurningClearance_m, driving_m);
   check_free("route.start", {route.start_x_m, route.start_y_m}, turning_m);
   for (std::size_t i = 0; i < kidnaps.size(); ++i) {
     const std::string key = fmt::format("kidnaps[{}]", i);
@@ -86,7 +84,8 @@ void Scenario::check_route(Problems& problems) const {
   }
 }
 
-/// Whether the others will happen shows at the end of the run: see PendingEvents.
+/// Checks events whose times can never come. Whether the others happen shows at the end of the run:
+/// see PendingEvents.
 void Scenario::check_events(Problems& problems) const {
   if (route.source != DriveSource::kCommand) return;
   for (const auto& [key, during] : timed_events(*this)) {

@@ -8,7 +8,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kStandBefore_s = 1.0;  // from the stop until the robot is lifted
+constexpr double kStandBefore_s = 1.0;  // time from the stop until the robot is lifted
 constexpr double kStandAfter_s = 1.0;
 const Eigen::Vector3d kOutOfSight_m{0.0, 0.0, -100.0};  // deep under the floor
 
@@ -54,11 +54,11 @@ std::vector<MovedMarker> SceneDynamics::update(Timestamp time, const Moment& mom
   return moved;
 }
 
-Kidnapper::Grip Kidnapper::update(const Moment& moment, Physics& physics) {
-  if (kidnaps_.empty()) return Grip::kNone;
+Kidnapper::RobotState Kidnapper::update(const Moment& moment, Physics& physics) {
+  if (kidnaps_.empty()) return RobotState::kFree;
   const KidnapConfig& kidnap = kidnaps_.front();
   if (held_since_s_ < 0.0) {
-    if (!kidnap.when.is_reached(moment)) return Grip::kNone;
+    if (!kidnap.when.is_reached(moment)) return RobotState::kFree;
     held_since_s_ = moment.time_s;
     has_moved_ = false;
   }
@@ -67,10 +67,10 @@ Kidnapper::Grip Kidnapper::update(const Moment& moment, Physics& physics) {
     physics.put_down(kidnap.world_from_there());
     has_moved_ = true;
   }
-  if (held_s < kStandBefore_s + kStandAfter_s) return Grip::kHeld;
+  if (held_s < kStandBefore_s + kStandAfter_s) return RobotState::kHeld;
   kidnaps_.erase(kidnaps_.begin());
   held_since_s_ = -1.0;
-  return Grip::kReleased;
+  return RobotState::kReleased;
 }
 
 }  // namespace waymark

@@ -55,11 +55,11 @@ class Kidnapper {
  public:
   explicit Kidnapper(const std::vector<KidnapConfig>& kidnaps) : kidnaps_{kidnaps} {}
 
-  enum class Grip { kNone, kHeld, kReleased };
+  enum class RobotState { kFree, kHeld, kReleased };
 
-  /// Call at every physics step. While it returns kHeld, the robot must be commanded to stand; at
-  /// the end of a kidnap it returns kReleased once.
-  Grip update(const Moment& moment, Physics& physics);
+  /// Call at every physics step.
+  /// @return kHeld: the robot must be commanded to stand; kReleased: once, at the end of a kidnap.
+  RobotState update(const Moment& moment, Physics& physics);
 
  private:
   std::vector<KidnapConfig> kidnaps_;  ///< kidnaps still to come, in order

@@ -89,7 +89,7 @@ double Simulation::progress_fraction() const {
 }
 
 Timestamp Simulation::time_of_step(std::int64_t step) const {
-  // From the step number, so that rounding errors do not add up.
+  // Computed from the step number, so that rounding errors do not add up.
   const std::int64_t rate_hz = scenario_.run.physics_rate_hz;
   return timestamp_from_us((step * 1'000'000 + rate_hz / 2) / rate_hz);
 }
@@ -116,7 +116,7 @@ void Simulation::measure(Tick& tick) {
   if (is_due(scenario_.robot.camera.rate_hz)) {
     CameraFrame frame = capture_frame();
     frame.time += duration_from_seconds(scenario_.robot.camera.late_s);
-    camera_outlet_.take(std::move(frame), moment());
+    camera_outlet_.push(std::move(frame), moment());
   }
 }
 
@@ -128,7 +128,7 @@ void Simulation::measure_odometry() {
     Random random = garbage_random(Sensor::kOdometry);
     make_garbage(sample, random);
   }
-  odometry_outlet_.take(sample, moment());
+  odometry_outlet_.push(sample, moment());
 }
 
 void Simulation::send_scan(LidarScan scan) {
@@ -140,7 +140,7 @@ void Simulation::send_scan(LidarScan scan) {
     make_garbage(scan, scenario_.robot.lidar, random);
   }
   scan.time += duration_from_seconds(scenario_.robot.lidar.late_s);
-  lidar_outlet_.take(std::move(scan), moment());
+  lidar_outlet_.push(std::move(scan), moment());
 }
 
 Random Simulation::garbage_random(Sensor sensor) const {
@@ -203,9 +203,9 @@ CameraFrame Simulation::capture_frame() {
 }
 
 Velocity Simulation::next_velocity() {
-  const Kidnapper::Grip grip = kidnapper_.update(moment(), physics_);
-  if (grip == Kidnapper::Grip::kHeld) return {};
-  if (grip == Kidnapper::Grip::kReleased) route_.begin_anew();
+  const Kidnapper::RobotState robot = kidnapper_.update(moment(), physics_);
+  if (robot == Kidnapper::RobotState::kHeld) return {};
+  if (robot == Kidnapper::RobotState::kReleased) route_.begin_anew();
   if (scenario_.route.source == DriveSource::kCommand) return commands_.next(now());
   const Velocity velocity = route_.next(physics_.world_from_base());
   if (route_.arrived() && arrival_step_ == kNotYet) arrival_step_ = step_;
@@ -219,7 +219,8 @@ void Simulation::check_progress() const {
   throw SimulatorError{fmt::format(
       "the robot has not arrived after {:.0f} s; it stands at ({:.2f}, {:.2f}), {:.2f} m from a "
       "wall or box; if none is in its way, set a larger route.duration_s",
-      to_seconds(now()), at.x(), at.y(), room_m(world_.walls, world_.boxes, at.translation()))};
+      to_seconds(now()), at.x(), at.y(),
+      clearance_m(world_.walls, world_.boxes, at.translation()))};
 }
 
 }  // namespace waymark

@@ -45,7 +45,7 @@ struct Trigger {
     return moment.time_s >= at_s && moment.route_m >= at_m;
   }
 
-  /// False when neither at_s nor at_m is set: it would happen at the start of the run.
+  /// False when neither at_s nor at_m is set: the event would happen at the start of the run.
   bool is_set() const { return at_s > 0.0 || at_m > 0.0; }
 
   void describe(Fields& fields);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scenario times: faults, boxes, kidnaps, moves of markers.
+// The events of a scenario: faults, boxes, kidnaps, moves of markers.
 #pragma once
 
 #include "sim/core/scenario.hpp"
@@ -10,8 +10,8 @@
 namespace waymark {
 
 struct TimedEvent {
-  std::string key{};  ///< in the scenario, e.g. "faults[0]"
-  Span during{};      ///< of a kidnap or a move: from its instant on
+  std::string key{};  ///< its place in the scenario, e.g. "faults[0]"
+  Span during{};      ///< for a kidnap or a move: from its instant on
 };
 
 std::vector<TimedEvent> timed_events(const Scenario& scenario);

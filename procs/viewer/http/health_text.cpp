@@ -9,9 +9,9 @@
 namespace waymark::viewer {
 namespace {
 
-// Twice the period of a camera with one frame a second.
+// Twice the period of a camera with one frame per second.
 constexpr double kCameraSilent_s = 2.0;
-// Longer than from marker to marker at 4 m spacing and walking pace.
+// Longer than a robot at walking pace takes between markers 4 m apart.
 constexpr double kMarkerOverdue_s = 5.0;
 
 bool is_turn(const WeakAxis& axis) {

@@ -9,18 +9,18 @@ namespace waymark::viewer {
 namespace {
 
 constexpr std::chrono::milliseconds kPostPeriod{200};
-constexpr std::chrono::milliseconds kUnwatchedPeriod{1000};  // for the slider's history
+constexpr std::chrono::milliseconds kUnwatchedPeriod{1000};  // keeps the time slider's history
 constexpr float kPathStep_m = 0.03F;
-/// 30 km of path.
+/// Enough for 30 km of path.
 constexpr std::size_t kMaxPathPoints = 1'000'000;
-/// More than there are programs; bounds memory.
+/// More than the programs of a run; bounds memory.
 constexpr std::size_t kMaxProcesses = 16;
 /// A square of 200 m in tiles of 32 cells of 0.05 m; further tiles are not shown.
 constexpr std::size_t kMaxTiles = 16'000;
 
 }  // namespace
 
-LiveFeed::LiveFeed(Board& board, std::string title, Pace pace) : board_{board}, pace_{pace} {
+LiveFeed::LiveFeed(ViewStore& views, std::string title, Pace pace) : views_{views}, pace_{pace} {
   current_.title = std::move(title);
 }
 
@@ -96,7 +96,7 @@ void LiveFeed::add(const image_t& message) {
 void LiveFeed::add(const marker_detections_t& message) {
   const Timestamp time = timestamp_from_us(message.utime);
   current_.last_camera = time;
-  // Keeps the detections of the image that is shown; without images, those of every frame.
+  // With images, only the detections in the shown image are kept; else those of every frame.
   if (!current_.camera || current_.camera->time == time) {
     SeenMarkers seen{
         .time = time, .image_width = message.image_width, .image_height = message.image_height};
@@ -165,8 +165,8 @@ void LiveFeed::advance_to(Timestamp time) {
                     time <= current_.time + ClockStepDetector::kLongestPause;
   if (is_first || fits) {
     current_.time = std::max(current_.time, time);
-    clock_steps_.see_fitting();
-  } else if (clock_steps_.see_misfit(time)) {
+    clock_steps_.note_consistent();
+  } else if (clock_steps_.note_inconsistent(time)) {
     current_.time = time;
   }
   post_when_due();
@@ -181,15 +181,15 @@ void LiveFeed::post_when_due() {
     return;
   }
   const auto now = std::chrono::steady_clock::now();
-  const auto period = board_.is_watched() ? kPostPeriod : kUnwatchedPeriod;
+  const auto period = views_.is_watched() ? kPostPeriod : kUnwatchedPeriod;
   if (now - last_post_wall_ < period) return;
-  if (!board_.try_post(snapshot(), path_growth_)) return;
+  if (!views_.try_post(snapshot(), path_growth_)) return;
   last_post_wall_ = now;
   path_growth_.clear();
 }
 
 void LiveFeed::post_last() {
-  board_.post(snapshot(), path_growth_);
+  views_.post(snapshot(), path_growth_);
   path_growth_.clear();
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages -> views on the board, five a second.
+// Messages -> views in the ViewStore, five a second.
 #pragma once
 
 #include "common/messages/channels.hpp"
 #include "common/time/clock_step_detector.hpp"
-#include "viewer/http/board.hpp"
+#include "viewer/http/view_store.hpp"
 
 #include <chrono>
 #include <map>
@@ -14,13 +14,13 @@
 namespace waymark::viewer {
 
 /// For the node's thread only. In a live run it posts five views per second of wall-clock time (one
-/// per second while no client reads), and skips a view when a reader holds the board. On a log it
+/// per second while no client reads), and skips a view while a reader holds the lock. On a log it
 /// posts five per second of message time.
 class LiveFeed {
  public:
   enum class Pace { kWallClock, kMessageTime };
 
-  LiveFeed(Board& board, std::string title, Pace pace);
+  LiveFeed(ViewStore& views, std::string title, Pace pace);
 
   /// Slam has begun another map: clears everything of the old one.
   void begin_map();
@@ -45,13 +45,14 @@ class LiveFeed {
   void post_last();
 
  private:
-  /// A message has come; a wrong stamp is ignored, a clock that was set is followed.
+  /// Advances the current time to a message's stamp; ignores single wrong stamps, and follows a
+  /// clock that was set.
   void advance_to(Timestamp time);
   void post_when_due();
   ViewPtr snapshot();
   void grow_path(const Se2& map_from_base);
 
-  Board& board_;
+  ViewStore& views_;
   Pace pace_;
   LiveView current_{};
   LiveMap map_{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The content of the live page at one time. A view on the board is immutable, so that any thread
-// can read it.
+// The content of the live page at one time. A posted view is immutable, so that any thread can read
+// it.
 #pragma once
 
 #include "viewer/core/scene/scene.hpp"
@@ -15,11 +15,10 @@
 
 namespace waymark::viewer {
 
-/// A tile of the map. `version`: LiveMap::version at the tile's last change.
 struct LiveTile {
   int x{0};
   int y{0};
-  std::uint32_t version{0};
+  std::uint32_t version{0};  ///< LiveMap::version at the tile's last change
   /// 0..100, -1 = unknown; row by row from the lower left.
   std::vector<std::int8_t> occupancy_percent{};
 };
@@ -27,8 +26,8 @@ struct LiveTile {
 /// Unchanged tiles are shared between views.
 struct LiveMap {
   TileLayout layout{};
-  std::uint32_t generation{0};  ///< number of the map; its change invalidates all tiles
-  std::uint32_t version{0};     ///< of the newest tile
+  std::uint32_t generation{0};  ///< number of the map; a new one invalidates all tiles
+  std::uint32_t version{0};     ///< version of the newest tile
   std::vector<std::shared_ptr<const LiveTile>> tiles{};
 };
 
@@ -60,14 +59,14 @@ struct ProcessState {
 using PathPoint = std::array<float, 2>;  ///< (x, y) [m], map frame
 
 struct LiveView {
-  std::uint64_t number{0};  ///< counts the views of a run
-  Timestamp time{};         ///< of the newest message
+  std::uint64_t number{0};  ///< number of the view in its run
+  Timestamp time{};         ///< stamp of the newest message
   std::string title{};
   std::optional<EstimatedPose> estimate{};
   bool is_unplaced{false};  ///< slam runs, but has not found the robot in its map
   std::shared_ptr<const LiveMap> map{std::make_shared<LiveMap>()};
   std::vector<Landmark> markers{};
-  std::vector<Finding> findings{};  ///< of the sensors, by slam
+  std::vector<Finding> findings{};  ///< about the sensors, from slam
   std::vector<Se2> particles{};
   std::vector<PathPoint> scan{};  ///< ends of the beams, map frame
   std::shared_ptr<const CameraFrame> camera{};
@@ -76,7 +75,7 @@ struct LiveView {
   std::optional<Timestamp> last_marker{};  ///< last estimate with a marker sighting
   std::vector<ProcessState> processes{};
   std::size_t path_begin{0};   ///< index of the first path point in the present map
-  std::size_t path_length{0};  ///< number of points of the board's path up to this view
+  std::size_t path_length{0};  ///< number of points of ViewStore::path() up to this view
 };
 
 }  // namespace waymark::viewer

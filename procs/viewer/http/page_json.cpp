@@ -17,12 +17,12 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little);
 
-/// To 0.1 mm and 0.1 mrad, finer than the page can show.
+/// Rounds to 0.1 mm or 0.1 mrad, finer than the page can show.
 double fine(double value) {
   return rounded(value, 1e4);
 }
 
-/// To millimetres.
+/// Rounds to millimetres.
 double metres(float value) {
   return rounded(static_cast<double>(value), 1e3);
 }
@@ -79,9 +79,9 @@ Json markers_json(const LiveView& view) {
 }
 
 Json particles_json(const std::vector<Se2>& particles) {
-  constexpr std::size_t kMost = 300;  // more cannot be distinguished on the page
+  constexpr std::size_t kMaxShown = 300;  // more cannot be distinguished on the page
   Json flat = Json::array();
-  const std::size_t step = particles.size() / kMost + 1;
+  const std::size_t step = particles.size() / kMaxShown + 1;
   for (std::size_t i = 0; i < particles.size(); i += step) {
     flat.push_back(fine(particles[i].x()));
     flat.push_back(fine(particles[i].y()));
@@ -112,7 +112,7 @@ Json processes_json(const std::vector<ProcessState>& processes) {
   return json;
 }
 
-Json to_json(const LiveView& view, const Board::Span& history) {
+Json to_json(const LiveView& view, const ViewStore::Span& history) {
   return {{"time_s", to_seconds(view.time)},
           {"history_s", {to_seconds(history.first), to_seconds(history.last)}},
           {"title", view.title},
@@ -144,7 +144,7 @@ void append(std::string& bytes, Value value) {
 
 }  // namespace
 
-std::string view_json(const LiveView& view, const Board::Span& history) {
+std::string view_json(const LiveView& view, const ViewStore::Span& history) {
   return dump(to_json(view, history));
 }
 

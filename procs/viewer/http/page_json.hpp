@@ -2,7 +2,7 @@
 // Views -> JSON and tiles for the page.
 #pragma once
 
-#include "viewer/http/board.hpp"
+#include "viewer/http/view_store.hpp"
 
 #include <span>
 #include <string>
@@ -10,7 +10,7 @@
 namespace waymark::viewer {
 
 /// One JSON object, without the path and the map's cells. Numbers that are not finite become null.
-std::string view_json(const LiveView& view, const Board::Span& history);
+std::string view_json(const LiveView& view, const ViewStore::Span& history);
 
 /// Adds the path's new points to a view's JSON.
 /// @param first  number of points that the client already has.

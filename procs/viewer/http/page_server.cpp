@@ -36,7 +36,7 @@ constexpr int kMaxStreams = 8;
 constexpr std::size_t kThreads = 2 * kMaxStreams;  // streams occupy at most half of them
 constexpr int kSendBufferBytes = 256 * 1024;       // per client
 constexpr int kNiceness = 10;
-/// 140 kB of an event; a longer path comes in several.
+/// About 140 kB of JSON; a longer path is sent in several events.
 constexpr std::size_t kPathPointsPerEvent = 10'000;
 
 struct Download {
@@ -50,7 +50,7 @@ constexpr std::array kDownloads{
     Download{"markers.csv", "text/csv"},
 };
 
-/// Without SO_REUSEPORT, which httplib sets by default: two viewers could share a port.
+/// Leaves out SO_REUSEPORT, which httplib sets by default: with it, two viewers could share a port.
 void set_socket_options(int socket) {
   const int on = 1;
   ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
@@ -75,12 +75,12 @@ void answer(httplib::Response& response, int status, const std::string& sentence
 }
 
 /// The newest view as JSON, created once for all clients.
-class NewestText {
+class NewestViewJson {
  public:
-  std::shared_ptr<const std::string> of(const LiveView& view, const Board& board) {
+  std::shared_ptr<const std::string> of(const LiveView& view, const ViewStore& views) {
     const std::scoped_lock lock{mutex_};
     if (!text_ || number_ != view.number)
-      text_ = std::make_shared<const std::string>(view_json(view, board.history()));
+      text_ = std::make_shared<const std::string>(view_json(view, views.history()));
     number_ = view.number;
     return text_;
   }
@@ -94,8 +94,8 @@ class NewestText {
 /// One client's stream of views.
 class EventStream {
  public:
-  EventStream(const Board& board, NewestText& newest_text, std::atomic<int>& num_streams)
-      : board_{board}, newest_text_{newest_text}, num_streams_{num_streams} {}
+  EventStream(const ViewStore& views, NewestViewJson& newest_json, std::atomic<int>& num_streams)
+      : views_{views}, newest_json_{newest_json}, num_streams_{num_streams} {}
 
   EventStream(const EventStream&) = delete;
   EventStream& operator=(const EventStream&) = delete;
@@ -105,8 +105,8 @@ class EventStream {
   /// Waits for a new view and sends it. @return false to end the connection.
   bool send_next(httplib::DataSink& sink) {
     wait_for_period();
-    const ViewPtr view = board_.wait_for_newer(number_, kKeepAlive);
-    if (board_.closed()) return false;
+    const ViewPtr view = views_.wait_for_newer(number_, kKeepAlive);
+    if (views_.closed()) return false;
     const auto start = steady_clock::now();
     const std::string text =
         view ? event(*view) : ":\n\n";  // a comment, to detect closed connections
@@ -116,25 +116,25 @@ class EventStream {
   }
 
  private:
-  /// Waits until kEventPeriod after the last event, in short sleeps so that closing the board ends
-  /// the wait.
+  /// Waits until kEventPeriod after the last event, in short sleeps so that closing the view store
+  /// ends the wait.
   void wait_for_period() const {
-    while (steady_clock::now() - last_ < kEventPeriod && !board_.closed())
+    while (steady_clock::now() - last_ < kEventPeriod && !views_.closed())
       std::this_thread::sleep_for(milliseconds{20});
   }
 
   std::string event(const LiveView& view) {
     const std::size_t path_end = std::min(view.path_length, path_sent_ + kPathPointsPerEvent);
-    const auto growth = board_.path(path_sent_, path_end);
-    const std::string json = with_path(*newest_text_.of(view, board_), path_sent_, growth);
+    const auto growth = views_.path(path_sent_, path_end);
+    const std::string json = with_path(*newest_json_.of(view, views_), path_sent_, growth);
     path_sent_ += growth.size();
     // The view is sent again while its path is not complete.
     if (path_end == view.path_length) number_ = view.number;
     return "data: " + json + "\n\n";
   }
 
-  const Board& board_;
-  NewestText& newest_text_;
+  const ViewStore& views_;
+  NewestViewJson& newest_json_;
   std::atomic<int>& num_streams_;
   std::uint64_t number_{0};
   std::size_t path_sent_{0};
@@ -155,10 +155,10 @@ void bind_to(httplib::Server& server, const HttpAddress& address) {
 
 class PageServer::Implementation {
  public:
-  Implementation(const HttpAddress& address, Board& board, std::filesystem::path folder,
+  Implementation(const HttpAddress& address, ViewStore& views, std::filesystem::path folder,
                  std::optional<PageCommands> commands)
       : address_{address},
-        board_{board},
+        views_{views},
         folder_{std::move(folder)},
         commands_{std::move(commands)} {
     set_limits();
@@ -176,7 +176,7 @@ class PageServer::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
   ~Implementation() {
-    board_.close();
+    views_.close();
     // stop() has no effect before the thread listens.
     while (!server_.is_running() && !has_ended_)
       std::this_thread::sleep_for(milliseconds{1});
@@ -237,7 +237,7 @@ class PageServer::Implementation {
     server_.Get("/events", [this](const auto&, auto& response) { serve_events(response); });
     server_.Get("/view", [this](const auto& request, auto& response) {
       if (const ViewPtr view = view_for(request, response))
-        response.set_content(view_json(*view, board_.history()), "application/json");
+        response.set_content(view_json(*view, views_.history()), "application/json");
     });
     server_.Get("/tiles", [this](const auto& request, auto& response) {
       const auto since = number_of<std::uint32_t>(request, "since").value_or(0);
@@ -269,9 +269,9 @@ class PageServer::Implementation {
     const auto time_s = number_of<double>(request, "time_s");
     constexpr double kLatest_s = 1e12;  // beyond all message times, within int64 microseconds
     if (time_s && !(std::abs(*time_s) < kLatest_s)) throw std::invalid_argument{"time_s"};
-    // Rounding of time_s must not select the view before.
+    // A microsecond more, so that rounding of time_s does not select the view before.
     const ViewPtr view =
-        time_s ? board_.at(Timestamp{duration_from_seconds(*time_s + 1e-6)}) : board_.newest();
+        time_s ? views_.at(Timestamp{duration_from_seconds(*time_s + 1e-6)}) : views_.newest();
     if (!view) answer(response, 404, "nothing has come so far");
     return view;
   }
@@ -282,7 +282,7 @@ class PageServer::Implementation {
       answer(response, 503, fmt::format("{} pages are open already; close one", kMaxStreams));
       return;
     }
-    const auto stream = std::make_shared<EventStream>(board_, newest_text_, num_streams_);
+    const auto stream = std::make_shared<EventStream>(views_, newest_json_, num_streams_);
     response.set_chunked_content_provider(
         "text/event-stream",
         [stream](std::size_t, httplib::DataSink& sink) { return stream->send_next(sink); });
@@ -314,11 +314,11 @@ class PageServer::Implementation {
   }
 
   HttpAddress address_;
-  Board& board_;
+  ViewStore& views_;
   std::filesystem::path folder_;
   std::optional<PageCommands> commands_;
   std::mutex command_mutex_{};
-  NewestText newest_text_{};
+  NewestViewJson newest_json_{};
   std::atomic<int> num_streams_{0};
   std::atomic<bool> has_ended_{false};
   httplib::Server server_;
@@ -330,9 +330,9 @@ void check_http_address(const HttpAddress& address) {
   bind_to(server, address);
 }
 
-PageServer::PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder,
+PageServer::PageServer(const HttpAddress& address, ViewStore& views, std::filesystem::path folder,
                        std::optional<PageCommands> commands)
-    : implementation_{std::make_unique<Implementation>(address, board, std::move(folder),
+    : implementation_{std::make_unique<Implementation>(address, views, std::move(folder),
                                                        std::move(commands))} {}
 
 PageServer::~PageServer() = default;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The web server of the live page: serves the board and the output folder, forwards commands to
+// The web server of the live page: serves views and the output folder, forwards commands to
 // slam.
 #pragma once
 
-#include "viewer/http/board.hpp"
 #include "viewer/http/http_address.hpp"
 #include "viewer/http/page_commands.hpp"
+#include "viewer/http/view_store.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -26,9 +26,9 @@ void check_http_address(const HttpAddress& address);
 /// 429 another command is under way, 504 no answer. Without commands: 405.
 class PageServer {
  public:
-  /// @param board  outlives this; is closed by the destructor.
+  /// @param views  must outlive this object; closed by the destructor.
   /// @throws SetupError when the address cannot be listened on.
-  PageServer(const HttpAddress& address, Board& board, std::filesystem::path folder,
+  PageServer(const HttpAddress& address, ViewStore& views, std::filesystem::path folder,
              std::optional<PageCommands> commands = {});
   ~PageServer();
   PageServer(const PageServer&) = delete;

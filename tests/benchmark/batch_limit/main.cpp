@@ -17,8 +17,7 @@ namespace {
 using namespace waymark;
 namespace fs = std::filesystem;
 using evaluate::Alignment;
-using evaluate::InputError;
-using evaluate::Skipped;
+using evaluate::SkippedLines;
 using evaluate::Trajectory;
 using evaluate::TrajectoryError;
 
@@ -80,7 +79,7 @@ void write_tum(const fs::path& file, const Trajectory& trajectory) {
 std::vector<evaluate::PosePair> pairs_of(const Trajectory& trajectory, const Trajectory& truth,
                                          const std::string& name) {
   auto pairs = evaluate::associate(trajectory, truth);
-  if (pairs.empty()) throw InputError{name + ": no pose within the time span of the truth"};
+  if (pairs.empty()) throw SetupError{name + ": no pose within the time span of the truth"};
   return pairs;
 }
 
@@ -93,7 +92,7 @@ void print_error(const char* name, const TrajectoryError& error) {
 void print_markers(const benchmark::Scene& scene, const fs::path& truth_file,
                    const Se2& world_from_map) {
   if (!fs::exists(truth_file)) return;
-  Skipped skipped;
+  SkippedLines skipped;
   std::vector<evaluate::Marker> in_map;
   for (const benchmark::Marker& marker : scene.markers)
     in_map.push_back({marker.id, marker.map_from_marker});
@@ -132,7 +131,7 @@ double print_against(const Trajectory& truth, const Trajectory& trajectory, cons
 
 int run(const Arguments& arguments) {
   const SlamConfig config = configuration(arguments);
-  Skipped skipped;
+  SkippedLines skipped;
   const auto drive = benchmark::recorded_drive(arguments.run_dir / "run.lcm", config);
   const Trajectory truth = evaluate::read_tum(arguments.run_dir / "truth.tum", skipped);
   const benchmark::BatchModel model = model_of(config, arguments);

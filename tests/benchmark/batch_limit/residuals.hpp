@@ -152,7 +152,7 @@ struct HangingResidual {
 };
 
 struct FocalResidual {
-  FocalSighting focal;
+  FocalMeasurement focal;
 
   template <class T>
   bool operator()(const T* camera, T* out) const {

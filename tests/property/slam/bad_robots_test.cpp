@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Robots whose sensors are worse than they are described: the error stays small where something
-// shows the way, the covariance is honest where nothing does, and what was found is named.
+// Robots whose sensors are worse than described: the error stays small where markers or walls
+// observe the motion, the covariance is consistent where they do not, and findings are reported.
 #include "common/random/random.hpp"
 #include "estimator_run.hpp"
 #include "slam/core/estimators/waymark.hpp"
@@ -20,10 +20,10 @@ using test::Step;
 using test::SyntheticCorridor;
 
 struct Drives {
-  double nees{0.0};     ///< mean
-  double ate_m{0.0};    ///< worst RMS of the position
-  double end_m{0.0};    ///< worst error at the end
-  Findings findings{};  ///< of the last one
+  double nees{0.0};               ///< mean
+  double ate_m{0.0};              ///< worst RMS of the position
+  double end_m{0.0};              ///< worst error at the end
+  SensorStatistics statistics{};  ///< of the last one
 };
 
 SyntheticCorridor corridor_of(std::uint64_t seed) {
@@ -67,7 +67,7 @@ Drives drive_all(const std::function<void(SyntheticCorridor&)>& make_worse,
     drives.end_m = std::max(drives.end_m, (steps.back().estimate.map_from_base.translation() -
                                            steps.back().truth.translation())
                                               .norm());
-    drives.findings = *estimator.findings();
+    drives.statistics = *estimator.statistics();
   }
   return drives;
 }
@@ -85,7 +85,7 @@ void insert_motion(SensorLog& log, std::size_t from, const Se2& extra) {
   }
 }
 
-/// Of the samples while the robot drives from 8 to 8 + `way_m` metres.
+/// First and last of the samples in which the robot drives from 8 to 8 + `way_m` metres.
 std::pair<std::size_t, std::size_t> samples_of(double way_m) {
   constexpr double kPerMetre = 30.0 / 0.2;
   return {static_cast<std::size_t>(8.0 * kPerMetre),
@@ -95,12 +95,12 @@ std::pair<std::size_t, std::size_t> samples_of(double way_m) {
 TEST(BadRobots, ARobotAsDescribedHasNoFindings) {
   const Drives drives = drive_all(as_described, not_at_all);
   EXPECT_LT(drives.nees, 5.0);
-  EXPECT_LT(drives.findings.odometry_turn, 1.9);
-  EXPECT_LT(drives.findings.odometry_along, 1.9);
-  EXPECT_LT(drives.findings.range_sigma_m, 1.3 * drives.findings.described_range_sigma_m);
-  EXPECT_EQ(drives.findings.odometry_stuck, 0);
-  EXPECT_EQ(drives.findings.scans_rescaled, 0);
-  EXPECT_LT(100 * drives.findings.beams_moving, drives.findings.beams);
+  EXPECT_LT(drives.statistics.odometry_turn, 1.9);
+  EXPECT_LT(drives.statistics.odometry_along, 1.9);
+  EXPECT_LT(drives.statistics.range_sigma_m, 1.3 * drives.statistics.described_range_sigma_m);
+  EXPECT_EQ(drives.statistics.odometry_stuck, 0);
+  EXPECT_EQ(drives.statistics.scans_rescaled, 0);
+  EXPECT_LT(100 * drives.statistics.beams_moving, drives.statistics.beams);
 }
 
 TEST(BadRobots, NoisyOdometryIsDetectedAndTheCovarianceConsistent) {
@@ -111,8 +111,8 @@ TEST(BadRobots, NoisyOdometryIsDetectedAndTheCovarianceConsistent) {
       },
       not_at_all);
   EXPECT_LT(drives.nees, 5.0);
-  EXPECT_GT(drives.findings.odometry_turn, 2.0);
-  EXPECT_GT(drives.findings.odometry_along, 2.0);
+  EXPECT_GT(drives.statistics.odometry_turn, 2.0);
+  EXPECT_GT(drives.statistics.odometry_along, 2.0);
 }
 
 /// Wheels slip after the second pair of markers: before the first pair nothing shows slips.
@@ -127,7 +127,7 @@ TEST(BadRobots, WheelSlipIsDetectedAndTheCovarianceConsistent) {
       },
       kSecondMarkers_m);
   EXPECT_LT(drives.nees, 8.0);
-  EXPECT_GT(drives.findings.slips, 2);
+  EXPECT_GT(drives.statistics.slips, 2);
 }
 
 TEST(BadRobots, BurstsOfGarbageDoNotDegradeThePoseAndAreReported) {
@@ -143,7 +143,7 @@ TEST(BadRobots, BurstsOfGarbageDoNotDegradeThePoseAndAreReported) {
   });
   EXPECT_LT(drives.nees, 5.0);
   EXPECT_LT(drives.ate_m, 0.06);
-  EXPECT_GT(drives.findings.odometry_jumping, 0);
+  EXPECT_GT(drives.statistics.odometry_jumping, 0);
 }
 
 TEST(BadRobots, StuckOdometryIsDetectedAndItsLateMotionUsed) {
@@ -153,8 +153,8 @@ TEST(BadRobots, StuckOdometryIsDetectedAndItsLateMotionUsed) {
       log.odometry[i].odom_from_base = log.odometry[from].odom_from_base;
   });
   EXPECT_LT(drives.nees, 8.0);
-  EXPECT_GT(drives.findings.odometry_stuck, 10);
-  EXPECT_EQ(drives.findings.odometry_caught_up, 1);
+  EXPECT_GT(drives.statistics.odometry_stuck, 10);
+  EXPECT_EQ(drives.statistics.odometry_caught_up, 1);
 }
 
 /// The standstill is so long that the keyframe where it began has left the window.
@@ -164,7 +164,7 @@ TEST(BadRobots, LateMotionAfterALongStandstillIsUsed) {
     for (std::size_t i = from; i < to; ++i)
       log.odometry[i].odom_from_base = log.odometry[from].odom_from_base;
   });
-  EXPECT_EQ(drives.findings.odometry_caught_up, 1);
+  EXPECT_EQ(drives.statistics.odometry_caught_up, 1);
   EXPECT_LT(drives.end_m, 0.06);
 }
 
@@ -173,7 +173,7 @@ TEST(BadRobots, OdometryThatNeverMovesIsReportedAndTheCovarianceConsistent) {
     for (OdometrySample& sample : log.odometry)
       sample.odom_from_base = {};
   });
-  EXPECT_GT(drives.findings.odometry_stuck, drives.findings.observations / 2);
+  EXPECT_GT(drives.statistics.odometry_stuck, drives.statistics.observations / 2);
   EXPECT_LT(drives.nees, 5.0);
 }
 
@@ -184,7 +184,7 @@ TEST(BadRobots, FalseOdometryTurnsAreNotTakenForAWrongRangeScale) {
       insert_motion(log, i, {0.0, 0.0, i % 600 == 0 ? turn_rad : -turn_rad});
     }
   });
-  EXPECT_EQ(drives.findings.scans_rescaled, 0);
+  EXPECT_EQ(drives.statistics.scans_rescaled, 0);
   EXPECT_LT(drives.ate_m, 0.06);
 }
 
@@ -200,7 +200,7 @@ TEST(BadRobots, OdometryThatLosesMotionIsDetected) {
   });
   EXPECT_LT(drives.nees, 12.0);
   EXPECT_LT(drives.ate_m, 0.3);
-  EXPECT_GT(drives.findings.odometry_stuck, 10);
+  EXPECT_GT(drives.statistics.odometry_stuck, 10);
 }
 
 TEST(BadRobots, PeopleWalkingBesideTheRobotAreExcludedAndReported) {
@@ -220,8 +220,8 @@ TEST(BadRobots, PeopleWalkingBesideTheRobotAreExcludedAndReported) {
   });
   EXPECT_LT(drives.nees, 5.0);
   EXPECT_LT(drives.ate_m, 0.04);
-  EXPECT_LT(drives.findings.odometry_along, 1.9);
-  EXPECT_GT(20 * drives.findings.beams_moving, drives.findings.beams);
+  EXPECT_LT(drives.statistics.odometry_along, 1.9);
+  EXPECT_GT(20 * drives.statistics.beams_moving, drives.statistics.beams);
 }
 
 /// The map's frame is the LiDAR's first pose, as it is taken to be mounted.
@@ -238,7 +238,7 @@ TEST(BadRobots, ALidarThatIsMountedAskewIsReportedAndCorrected) {
     const Se2 expected = mounting.inverse() * step.truth * mounting;
     EXPECT_LT(pose_difference(step.estimate.map_from_base, expected).head<2>().norm(), 0.1);
   }
-  const std::vector<Miscalibration> found = estimator.findings()->miscalibrated;
+  const std::vector<Miscalibration> found = estimator.statistics()->miscalibrated;
   const auto yaw =
       std::ranges::find(found, std::size_t{OdometryTerm::kLidarYaw}, &Miscalibration::term);
   ASSERT_NE(yaw, found.end());
@@ -249,7 +249,7 @@ TEST(BadRobots, RangeNoiseIsLearnt) {
   const Drives drives =
       drive_all([](SyntheticCorridor& corridor) { corridor.range_sigma_m = 0.04; }, not_at_all);
   EXPECT_LT(drives.nees, 5.0);
-  EXPECT_NEAR(drives.findings.range_sigma_m, 0.04, 0.008);
+  EXPECT_NEAR(drives.statistics.range_sigma_m, 0.04, 0.008);
 }
 
 TEST(BadRobots, AWrongRangeScaleIsCorrectedAndReported) {
@@ -260,8 +260,8 @@ TEST(BadRobots, AWrongRangeScaleIsCorrectedAndReported) {
   });
   EXPECT_LT(drives.nees, 5.0);
   EXPECT_LT(drives.ate_m, 0.04);
-  EXPECT_NEAR(static_cast<double>(drives.findings.scans_rescaled), 50.0, 5.0);
-  EXPECT_NEAR(drives.findings.range_share, 0.05, 0.01);
+  EXPECT_NEAR(static_cast<double>(drives.statistics.scans_rescaled), 50.0, 5.0);
+  EXPECT_NEAR(drives.statistics.range_scale_error, 0.05, 0.01);
 }
 
 }  // namespace

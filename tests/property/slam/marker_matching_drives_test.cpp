@@ -67,8 +67,8 @@ TEST(MarkerMatching, WithoutMarkersVarianceAlongTheCorridorGrowsWithoutBias) {
       const auto index = static_cast<std::size_t>(share * static_cast<double>(steps.size() - 1));
       return steps[index].estimate.covariance(0, 0);
     };
-    // 0.01 m per sqrt(m): 1.2e-3 m^2 after 12 m. Resampling for the walls' sake thins it out a
-    // little, as it does in every finite filter.
+    // 0.01 m per sqrt(m): 1.2e-3 m^2 after 12 m. Resampling by the walls reduces it a little, as
+    // in every finite filter.
     EXPECT_GT(variance_at(1.0), 0.3 * 1.2e-3) << seed;
     EXPECT_GT(variance_at(1.0), variance_at(0.3)) << seed;
     EXPECT_EQ(steps.back().estimate.health, Health::kDegenerate) << seed;

@@ -39,9 +39,9 @@ TEST(WaymarkDrives, MarkersBoundTheErrorAndItsCovarianceIsConsistent) {
   EXPECT_LT(nees / count, 8.0);  // 3 degrees of freedom; four drives are few
 }
 
-/// Ids of a detector that sees markers in noise, in a map that is not added to.
+/// Ids of a detector that sees markers in noise, in a fixed map.
 TEST(WaymarkDrives, AFloodOfIdsIsBounded) {
-  constexpr std::size_t kMost = 4096;
+  constexpr std::size_t kMax = 4096;
   constexpr int kInAFrame = 2;
   constexpr double kStep_m = 5.0;  // landmarks leave the window soon
   EstimatorSetup setup;
@@ -64,7 +64,7 @@ TEST(WaymarkDrives, AFloodOfIdsIsBounded) {
     }
     estimator.update(observation);
   }
-  EXPECT_EQ(estimator.landmarks().size(), kMost);
+  EXPECT_EQ(estimator.landmarks().size(), kMax);
 }
 
 /// Up and down the same corridor: the graph grows with the area, and is as good as one that keeps
@@ -95,7 +95,7 @@ TEST(WaymarkDrives, RevisitingAPlaceDoesNotMakeTheGraphGrow) {
   EXPECT_LT(error_m, 1.1 * error_of_all_m + 0.001);
 }
 
-/// The first one makes the solver step the whole graph, for which the second one must not stand in
+/// The returning marker makes the solver step the whole graph; meanwhile the new one must not be in
 /// the window without a measurement.
 TEST(WaymarkDrives, AReturningMarkerAndANewOneInOneScanAreBothUsed) {
   SyntheticCorridor corridor = corridor_with_markers(3);

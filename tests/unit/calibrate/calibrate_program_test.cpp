@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program: folders, logs, exit codes, and what it writes.
+// waymark-calibrate: folders, logs, exit codes, and the files that it writes.
 #include "common/config/config.hpp"
 #include "common/log/log_file.hpp"
 #include "common/messages/channels.hpp"
@@ -82,7 +82,7 @@ void expect_known_camera(const std::filesystem::path& toml) {
   EXPECT_EQ(camera.x_m, CameraConfig{}.x_m) << "the mounting is not measured";
 }
 
-TEST(CalibrateProgram, AFolderGivesACameraAndNamesWhatItCannotUse) {
+TEST(CalibrateProgram, AFolderOfImagesGivesACameraAndUnusableImagesAreListed) {
   const evaluate::TemporaryFolder folder;
   const std::string frames = write_frames(folder.path() / "frames", pictures(24));
   folder.file("frames/broken.png", "no picture\n");

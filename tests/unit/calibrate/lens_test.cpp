@@ -43,7 +43,7 @@ CameraCalibration calibrated(const std::vector<BoardView>& views) {
   return calibration;
 }
 
-/// Six seeds; WAYMARK_SEEDS=40 takes as many as tools/calibrate/README.md speaks of.
+/// Uses six seeds; tools/calibrate/README.md has the result for WAYMARK_SEEDS=40.
 TEST(Lens, FocalLengthIsWithinAThousandthAndErrorsMatchTheirSigmas) {
   const CameraConfig truth = known_camera();
   const char* wanted = std::getenv("WAYMARK_SEEDS");
@@ -68,7 +68,7 @@ TEST(Lens, FocalLengthIsWithinAThousandthAndErrorsMatchTheirSigmas) {
   const double centre = std::sqrt(centre_squares / (2.0 * num_seeds));
   RecordProperty("normalised_error_focal", std::to_string(focal));
   RecordProperty("normalised_error_centre", std::to_string(centre));
-  // 0.6 to 1.4 with 20 seeds; fx and fy err together, so that a seed is one value.
+  // The band is 0.6 to 1.4 with 20 seeds. fx and fy have a common error, so a seed is one value.
   const double band = 0.4 * std::sqrt(20.0 / num_seeds);
   EXPECT_NEAR(focal, 1.0, band);
   EXPECT_NEAR(centre, 1.0, band);
@@ -117,7 +117,7 @@ TEST(Lens, AnOutlierViewIsExcludedAndNamed) {
   Random random{5, 26};
   std::vector<BoardView> views = views_of(24, 0.7, kTilt_rad, random);
   for (std::size_t i = 0; i < views[7].corners_px.size(); i += 2)
-    views[7].corners_px[i].x += 3.0F;  // half of the picture was taken later
+    views[7].corners_px[i].x += 3.0F;  // as if half of the picture were taken later
   const CameraCalibration calibration = calibrated(views);
   ASSERT_TRUE(calibration.fit);
   EXPECT_THAT(calibration.fit->dropped, Contains("7"));

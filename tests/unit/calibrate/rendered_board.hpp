@@ -14,7 +14,7 @@
 
 namespace waymark::calibrate {
 
-/// A lens that is not quite what anybody assumes.
+/// A lens that differs from all default assumptions.
 inline CameraConfig known_camera() {
   CameraConfig camera;
   camera.fx_px = 512.3;
@@ -33,7 +33,7 @@ inline std::vector<Eigen::Isometry3d> hand_held(int num_views, double share, dou
   std::vector<Eigen::Isometry3d> views;
   for (int i = 0; i < num_views; ++i) {
     const double z_m = random.uniform(0.28, 0.45);
-    // One ninth of that after the other.
+    // The ninths of that area in turn.
     const double u = 0.5 + share * ((i % 3 + random.uniform()) / 3.0 - 0.5);
     const double v = 0.5 + share * ((i / 3 % 3 + random.uniform()) / 3.0 - 0.5);
     const Eigen::Vector3d middle_m{(u * camera.width_px - camera.cx_px) / camera.fx_px * z_m,
@@ -71,7 +71,7 @@ class BoardRenderer {
     }
   }
 
-  /// With blur of 0.7 px and noise of 2 grey levels.
+  /// A picture with blur of 0.7 px and noise of 2 grey levels.
   cv::Mat picture(const Eigen::Isometry3d& camera_from_board, Random& random) const {
     Eigen::Matrix3d image_from_board;
     image_from_board << camera_from_board.linear().leftCols<2>(), camera_from_board.translation();
@@ -97,12 +97,12 @@ class BoardRenderer {
   }
 
  private:
-  static constexpr double kPxPerMm = 2.0;  // as fine as the nearest board is seen
-  static constexpr int kFiner = 2;         // pixels are averages of so many squared
+  static constexpr double kPxPerMm = 2.0;  // the resolution at which the nearest board is seen
+  static constexpr int kFiner = 2;         // a pixel is the mean of kFiner x kFiner samples
 
   CameraConfig camera_;
   cv::Mat sheet_{};
-  Eigen::Vector2d corner_px_{};  ///< of the board in `sheet_`
+  Eigen::Vector2d corner_px_{};  ///< upper left corner of the board in `sheet_`
   cv::Mat_<cv::Vec2d> rays_{};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages with numbers that no robot has are refused, however finite they are.
+// Messages with finite, but physically impossible numbers are refused.
 #include "common/messages/codec.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ planar_lidar_t three_beams() {
   return lidar;
 }
 
-/// Why a message is refused that a sender has encoded without checking it.
+/// Why a message is refused; it is encoded without a check, as by another sender.
 template <class Type>
 RejectReason reason_of(const Type& message) {
   std::vector<std::uint8_t> payload(static_cast<std::size_t>(message.getEncodedSize()));

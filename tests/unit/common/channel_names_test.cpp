@@ -102,7 +102,7 @@ TEST(Channels, EveryChannelIsListedInTheReadmeWithItsType) {
   channels::visit_all([&]<class... Types>(const Channel<Types>&... channels) {
     (listed.insert(std::string{channels.name} + " " + Types::getTypeName()), ...);
   });
-  listed.erase("LIDAR lidar_t");  // in LIDAR's row
+  listed.erase("LIDAR lidar_t");  // the second type in LIDAR's row
   EXPECT_EQ(listed, channels_in_readme());
 }
 

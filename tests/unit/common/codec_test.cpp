@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The trust boundary: layouts of others, hostile bytes, semantic checks.
+// Decoding of untrusted bytes: types of other projects, hostile bytes, semantic checks.
 #include "common/messages/codec.hpp"
 
 #include "common/messages/convert.hpp"
@@ -91,8 +91,8 @@ void expect_round_trip(Channel<Type> channel, const Type& message) {
   EXPECT_EQ(payload_of(channel, *decoded.message), payload) << channel.name;
 }
 
-// LCM's fingerprint is made of field names and types only, so a type with the fields of another is
-// that type on the wire: drivers, viewers and logs of bot_core and MBot are ours.
+// LCM's fingerprint depends on field names and types only, so types with equal fields are the same
+// on the wire: drivers, viewers and logs of bot_core and MBot work with our types.
 TEST(Fingerprint, EqualsThatOfForeignTypesWithTheSameLayout) {
   EXPECT_EQ(planar_lidar_t::getHash(), bot_core::planar_lidar_t::getHash());
   EXPECT_EQ(image_t::getHash(), bot_core::image_t::getHash());
@@ -117,7 +117,7 @@ TEST(Codec, EveryTypeSurvivesARoundTrip) {
   expect_round_trip(channels::kSlamCorrection, correction_t{});
   command_t command{};
   command.name = "day_1";
-  command.pose[1] = std::numeric_limits<double>::quiet_NaN();  // is answered, not rejected
+  command.pose[1] = std::numeric_limits<double>::quiet_NaN();  // slam answers, decode() accepts it
   expect_round_trip(channels::kSlamCommand, command);
   reply_t reply{};
   reply.state = reply_t::STATE_REFUSED;
@@ -275,9 +275,9 @@ TEST(Codec, TruncatedEmptyLongAndForeignBytesAreRefused) {
             RejectReason::kTooLarge);
 }
 
-// Whatever decode() accepts must encode to the same bytes: this oracle shares no code with the
-// check of lengths.
-TEST(Codec, MutatedBytesAreRefusedOrDecodeToWhatTheySay) {
+// What decode() accepts must encode to the same bytes. This oracle shares no code with the check of
+// lengths.
+TEST(Codec, MutatedBytesAreRefusedOrEncodeToTheSameBytes) {
   Random random{{1, 2}};
   const auto original = payload_of(channels::kTick, small_tick());
   int accepted = 0;
@@ -292,7 +292,7 @@ TEST(Codec, MutatedBytesAreRefusedOrDecodeToWhatTheySay) {
     ++accepted;
     EXPECT_EQ(payload_of(channels::kTick, *decoded.message), payload);
   }
-  EXPECT_GT(accepted, 1000);  // changed numbers and letters are as good as the original ones
+  EXPECT_GT(accepted, 1000);  // changed numbers and letters are valid, too
 }
 
 TEST(Codec, RejectsImplausibleValues) {

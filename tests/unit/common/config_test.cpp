@@ -117,7 +117,7 @@ TEST(Config, SyntaxErrorsAndMissingFilesAreNamed) {
   EXPECT_THAT(error_of({{::testing::TempDir()}, {}}), HasSubstr("cannot be read: it is a folder"));
 }
 
-// As root, too, the system does not say what a link to itself is; nor, else, what is in a folder
+// Not even root can examine a link to itself, and other users cannot examine a file in a folder
 // without permission.
 TEST(Config, AFileThatCannotBeExaminedIsNamed) {
   const std::filesystem::path link = file_with("").parent_path() / "link.toml";
@@ -173,7 +173,7 @@ std::string house_error_of(const ConfigSources& sources) {
   return "no error";
 }
 
-TEST(Config, AKeyThatOtherSettingsMakeUselessIsAnError) {
+TEST(Config, AKeyThatTheOtherSettingsDoNotUseIsAnError) {
   const auto file = file_with("[wood]\nbooks = 2\n");
   EXPECT_THAT(house_error_of({{file}, {}}),
               HasSubstr("config_test.toml:2: wood.books: only heating = stove uses it"));
@@ -183,7 +183,7 @@ TEST(Config, AKeyThatOtherSettingsMakeUselessIsAnError) {
   EXPECT_EQ(house_error_of({{}, {"radiators=2"}}), "no error");
 }
 
-TEST(Config, ADumpLeavesOutWhatIsNotUsed) {
+TEST(Config, ADumpLeavesOutUnusedKeys) {
   House house{};
   EXPECT_THAT(dump_config(house), HasSubstr("radiators = 4"));
   EXPECT_THAT(dump_config(house), Not(HasSubstr("wood")));

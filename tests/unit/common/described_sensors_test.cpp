@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// robot.lidar.mirrored and the two late_s, which the doctor finds and every process uses.
+// The corrections by robot.lidar.mirrored and both late_s, which waymark-doctor measures.
 #include "common/robot/described_sensors.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ TEST(DescribedSensors, ConfiguredDelaysAreSubtractedFromStamps) {
   LidarConfig lidar;
   lidar.late_s = 0.03;
   CameraConfig camera;
-  camera.late_s = -0.02;  // before its time
+  camera.late_s = -0.02;  // stamped too early
   const Timestamp stamp{milliseconds{1000}};
   EXPECT_EQ(as_described(LidarScan{.time = stamp}, lidar).time, Timestamp{milliseconds{970}});
   EXPECT_EQ(as_described(MarkerDetections{.time = stamp}, camera).time,

@@ -124,7 +124,7 @@ TEST(Se2, PosesOnArcsAboutOnePointKeepTheirRelativePose) {
   const double turn_rad = 0.7;
   const Se2 turn{0.0, 0.0, turn_rad};
   for (const Se2& pose : {Se2{3.0, -1.0, 0.4}, Se2{-2.0, 5.0, 2.9}}) {
-    // How it begins to move, as seen from itself.
+    // Initial motion in the base frame.
     const Eigen::Vector2d begins =
         pose.rotation().transpose() * Eigen::Vector2d{-turn_rad * pose.y(), turn_rad * pose.x()};
     const Se2 moved = pose * along_arc({begins.x(), begins.y(), turn_rad});

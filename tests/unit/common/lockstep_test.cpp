@@ -29,7 +29,7 @@ std::vector<Message> publish_nothing(const std::vector<Message>&, bool) {
   return {};
 }
 
-/// Master, detector and slam; every message reaches everybody, as on a multicast bus.
+/// Master, detector and slam; every message reaches all of them, as on a multicast bus.
 class Stack {
  public:
   explicit Stack(double loss, std::uint64_t seed) : loss_{loss}, random_{{seed}} {
@@ -60,12 +60,12 @@ class Stack {
     while (!wave.empty()) {
       std::vector<Message> answers;
       for (const Message& message : wave) {
-        if (message.channel == "ACK" && !lost()) master_.take(message);
+        if (message.channel == "ACK" && !lost()) master_.handle(message);
         for (auto* participant : {detector_.get(), slam_.get()}) {
           if (lost()) continue;
           const int copies = random_.uniform() < 0.1 ? 2 : 1;
           for (int i = 0; i < copies; ++i) {
-            const auto published = participant->take(message);
+            const auto published = participant->handle(message);
             answers.insert(answers.end(), published.begin(), published.end());
           }
         }
@@ -134,7 +134,7 @@ TEST(Lockstep, SlamSeesEverythingOnceAndInOrder) {
   EXPECT_TRUE(stack.slam_->closed());
 }
 
-TEST(Lockstep, LossChangesNothing) {
+TEST(Lockstep, MessageLossDoesNotChangeTheResults) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     Stack stack{0.2, seed};
     stack.run(50);
@@ -142,7 +142,7 @@ TEST(Lockstep, LossChangesNothing) {
   }
 }
 
-TEST(Lockstep, ARestartedDetectorChangesNothing) {
+TEST(Lockstep, ARestartedDetectorDoesNotChangeTheResults) {
   Stack stack{0.05, 9};
   stack.restart_ = true;
   stack.run(50);
@@ -182,8 +182,7 @@ TEST(Lockstep, TicksOfAnotherRunAreIgnoredAndCounted) {
   EXPECT_GT(stack.slam_counters_.get("TICK or ACK of another run"), 0);
 }
 
-// What a restarted process sees first may be a tick that was opened when older ones were still
-// open.
+// The first tick that a restarted process sees may be newer than others that are still open.
 TEST(Lockstep, ARestartedProcessStartsAtTheOldestOpenTick) {
   LockstepMaster master{1, {"viewer"}, 4};
   Counters counters;
@@ -193,29 +192,29 @@ TEST(Lockstep, ARestartedProcessStartsAtTheOldestOpenTick) {
   const auto tick_0 = master.open_tick(timestamp_from_us(1), {}, false);
   const auto tick_1 = master.open_tick(timestamp_from_us(2), {}, false);
   LockstepParticipant first = make();
-  for (const Message& answer : first.take(tick_0.back()))
-    master.take(answer);
+  for (const Message& answer : first.handle(tick_0.back()))
+    master.handle(answer);
 
   LockstepParticipant restarted = make();
   for (const Message& message : master.resend()) {
-    for (const Message& answer : restarted.take(message))
-      master.take(answer);
+    for (const Message& answer : restarted.handle(message))
+      master.handle(answer);
   }
 
   EXPECT_TRUE(master.all_acknowledged());
 }
 
-// A process may be a whole window ahead of what the simulator has heard from it.
+// A process may be a whole window ahead of the acknowledgements that the simulator has received.
 TEST(Lockstep, EveryTickOfTheWidestWindowIsAnsweredAgain) {
   LockstepMaster master{1, {"viewer"}, kMaxWindowTicks};
   Counters counters;
   LockstepParticipant viewer{"viewer", {}, true, publish_nothing, counters};
   for (int end_us = 0; master.has_room(); ++end_us)
-    viewer.take(master.open_tick(timestamp_from_us(end_us), {}, false).back());
+    viewer.handle(master.open_tick(timestamp_from_us(end_us), {}, false).back());
 
   for (const Message& message : master.resend()) {
-    for (const Message& answer : viewer.take(message))
-      master.take(answer);
+    for (const Message& answer : viewer.handle(message))
+      master.handle(answer);
   }
 
   EXPECT_TRUE(master.all_acknowledged());
@@ -226,25 +225,25 @@ TEST(Lockstep, AStatefulProcessRefusesToJoinMidway) {
   Counters counters;
   LockstepParticipant first{"slam", {}, false, publish_nothing, counters};
   for (const Message& message : master.open_tick(timestamp_from_us(1), {}, false)) {
-    for (const Message& answer : first.take(message))
-      master.take(answer);
+    for (const Message& answer : first.handle(message))
+      master.handle(answer);
   }
   LockstepParticipant late{"slam", {}, false, publish_nothing, counters};
   const auto tick = master.open_tick(timestamp_from_us(2), {}, false);
-  EXPECT_THROW(late.take(tick.back()), std::runtime_error);
+  EXPECT_THROW(late.handle(tick.back()), std::runtime_error);
 }
 
 TEST(Lockstep, AProcessThatHasDoneNothingYetFollowsTheNextSimulator) {
   Counters counters;
   LockstepParticipant slam{"slam", {}, false, publish_nothing, counters};
   LockstepMaster stopped{1, {"slam"}, 1};
-  slam.take(stopped.probe());
+  slam.handle(stopped.probe());
 
   LockstepMaster next{2, {"slam"}, 1};
-  for (const Message& answer : slam.take(next.probe()))
-    next.take(answer);
-  for (const Message& answer : slam.take(next.open_tick({}, {}, true).back()))
-    next.take(answer);
+  for (const Message& answer : slam.handle(next.probe()))
+    next.handle(answer);
+  for (const Message& answer : slam.handle(next.open_tick({}, {}, true).back()))
+    next.handle(answer);
 
   EXPECT_TRUE(next.all_ready());
   EXPECT_TRUE(next.all_acknowledged());
@@ -254,26 +253,26 @@ TEST(Lockstep, AProcessThatHasDoneNothingYetFollowsTheNextSimulator) {
 TEST(Lockstep, TheEndOfAnEarlierRunDoesNotEndAProcessThatWaits) {
   Counters counters;
   LockstepParticipant slam{"slam", {}, false, publish_nothing, counters};
-  slam.take(LockstepMaster{1, {"slam"}, 1}.closing());
+  slam.handle(LockstepMaster{1, {"slam"}, 1}.closing());
   EXPECT_FALSE(slam.closed());
   EXPECT_FALSE(slam.has_seen_tick());
 }
 
-// The simulator was killed and started again. It begins with a tick that no simulator of the run
-// that this process is in can send again.
-TEST(Lockstep, AProcessInTheMiddleOfARunRefusesItsBeginning) {
+// The simulator was killed and started again, and begins with tick 0. The simulator of this
+// process's run would not send that tick again.
+TEST(Lockstep, AProcessInTheMiddleOfARunRefusesToBeginItAgain) {
   Counters counters;
   LockstepParticipant slam{"slam", {}, false, publish_nothing, counters};
   LockstepMaster killed{1, {"slam"}, 1};
   for (int tick = 0; tick <= kMaxWindowTicks; ++tick) {
-    for (const Message& answer : slam.take(killed.open_tick({}, {}, false).back()))
-      killed.take(answer);
+    for (const Message& answer : slam.handle(killed.open_tick({}, {}, false).back()))
+      killed.handle(answer);
   }
   LockstepMaster again{1, {"slam"}, 1};
-  slam.take(again.probe());
+  slam.handle(again.probe());
   const Message first = again.open_tick({}, {}, false).back();
   try {
-    slam.take(first);
+    slam.handle(first);
     FAIL() << "it waits for ever";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("begun again"));
@@ -292,7 +291,7 @@ TEST(Lockstep, TheMasterNamesSilentParticipantsInOrderOfTheirDependencies) {
 
 /// slam publishes each marker map up to three times, in one tick or in several: the last tick of a
 /// run repeats the one before it whenever no scan came in between.
-TEST(Lockstep, RepeatedBytesAreProcessedAsOftenAsTheyWerePublished) {
+TEST(Lockstep, EqualMessagesAreProcessedAsOftenAsTheyWerePublished) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Random random{{seed}};
     const double loss = seed % 2 == 0 ? 0.2 : 0.0;
@@ -327,10 +326,10 @@ TEST(Lockstep, RepeatedBytesAreProcessedAsOftenAsTheyWerePublished) {
       while (!wave.empty()) {
         std::vector<Message> answers;
         for (const Message& message : wave) {
-          if (message.channel == "ACK" && random.uniform() >= loss) master.take(message);
+          if (message.channel == "ACK" && random.uniform() >= loss) master.handle(message);
           for (LockstepParticipant* participant : {&slam, &viewer}) {
             if (random.uniform() < loss) continue;
-            const std::vector<Message> more = participant->take(message);
+            const std::vector<Message> more = participant->handle(message);
             answers.insert(answers.end(), more.begin(), more.end());
           }
         }
@@ -357,7 +356,7 @@ TEST(Lockstep, RepeatedBytesAreProcessedAsOftenAsTheyWerePublished) {
   }
 }
 
-TEST(MessagePool, ForgetsTheOldestInAFloodAndStaysSmall) {
+TEST(MessagePool, DropsTheOldestMessagesAndStaysBounded) {
   MessagePool pool;
   Message large = odometry(0, 0.0F);
   large.payload.resize(60000);

@@ -15,7 +15,7 @@
 
 namespace {
 
-std::vector<std::string> disk_calls;  ///< what was asked of the system, in order
+std::vector<std::string> disk_calls;  ///< system calls, in order
 
 std::string name_of(int descriptor) {
   return std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor))
@@ -25,7 +25,7 @@ std::string name_of(int descriptor) {
 
 }  // namespace
 
-// In the place of the C library's, which they call.
+// Replace the functions of the C library, and call them.
 extern "C" int fsync(int descriptor) {
   disk_calls.push_back("flush " + name_of(descriptor));
   return static_cast<int>(::syscall(SYS_fsync, descriptor));
@@ -160,7 +160,7 @@ TEST_F(LogFile, GarbageBehindEveryEventCostsNoMoreThanItsBytes) {
   for (int i = 0; i < kEvents; ++i)
     bytes += one;
   put(bytes);
-  const std::clock_t begin = std::clock();  // of this process, however busy the machine is
+  const std::clock_t begin = std::clock();  // CPU time, as the machine may be busy
   std::int64_t skipped_bytes = 0;
   EXPECT_EQ(read(skipped_bytes).size(), std::size_t{kEvents});
   EXPECT_EQ(skipped_bytes, kEvents);
@@ -190,7 +190,7 @@ TEST_F(LogFile, HostileLengthsSkipOneEventOnly) {
   }
 }
 
-/// What opening it says.
+/// The error message of opening a file.
 template <class Log>
 std::string problem_of(const std::filesystem::path& path) {
   try {
@@ -223,7 +223,7 @@ TEST_F(LogFile, OnlyARegularFileIsReplaced) {
   EXPECT_FALSE(std::filesystem::exists(path_.string() + ".part"));
 }
 
-TEST_F(LogFile, WouldOverwriteSeesThroughLinksAndSpellings) {
+TEST_F(LogFile, WouldOverwriteRecognisesLinksAndOtherSpellingsOfAPath) {
   good_log(1);
   const auto other_spelling = path_.parent_path() / "." / path_.filename();
   const std::filesystem::path link = path_.string() + ".link";

@@ -21,7 +21,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::int64_t kMany = 1'000'000;
 
-/// Smooth, with noise: something that JPEG changes.
+/// A smooth picture with noise, which JPEG changes.
 cv::Mat picture(int type, cv::Size size = {61, 45}) {
   cv::Mat made{size, type};
   Random random{3, 1};

@@ -12,7 +12,7 @@ Message at(std::int64_t utime_us, std::string channel = "A") {
 
 constexpr std::int64_t kSecond_us = 1'000'000;
 
-/// Channel "A" every 50 ms for 10 s; what was released, with what was to be.
+/// Channel "A" every 50 ms for 10 s: the released and the expected messages.
 struct Streamed {
   explicit Streamed(const std::map<int, std::int64_t>& wrong_by_us) {
     ReorderBuffer buffer{Duration{150'000}};
@@ -150,7 +150,7 @@ TEST(ReorderBuffer, AFloodOfOneStampStaysBounded) {
       released += buffer.add(std::move(message), counters).size();
     }
     const std::size_t held = buffer.flush().size();
-    EXPECT_LE(held, ReorderBuffer::kMostWaiting + ReorderBuffer::kMostAside);
+    EXPECT_LE(held, ReorderBuffer::kMaxWaiting + ReorderBuffer::kMaxSetAside);
     EXPECT_EQ(released + held + static_cast<std::size_t>(counters.get("A of one time, dropped")),
               kFlood + 1U);
   }

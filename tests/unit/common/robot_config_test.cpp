@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// What is said about one setting; empty when it is taken.
+/// The problem with one setting; empty when it is accepted.
 std::string problem_with(const std::string& setting) {
   try {
     load_config<RobotOnly>({{}, {setting}});
@@ -28,7 +28,7 @@ TEST(RobotConfig, DegreesAndMillimetresAreRefused) {
     EXPECT_NE(problem_with(wrong), "") << wrong;
 }
 
-TEST(RobotConfig, MountingsOfRealRobotsAreTaken) {
+TEST(RobotConfig, MountingsOfRealRobotsAreAccepted) {
   for (const char* right :
        {"robot.lidar.yaw_rad=3.141592653589793", "robot.lidar.yaw_rad=-3.141592653589793",
         "robot.lidar.x_m=-1.5", "robot.lidar.z_m=2.0", "robot.lidar.range_max_m=81.9"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Command lines that ask for what cannot be: refused before anything is done.
+// Command lines with impossible demands are refused before anything is done.
 #include "common/runtime/run_process.hpp"
 
 #include "common/errors/exit_codes.hpp"
@@ -28,7 +28,7 @@ struct Refused {
   std::string output{};
 };
 
-/// Runs a process whose node must not be made. Each needs a name of its own: loggers have them.
+/// Runs a process whose node must not be made. Each needs a unique name, which its logger has, too.
 Refused run(std::string_view name, std::vector<std::string> words) {
   words.insert(words.begin(), "program");
   std::vector<char*> arguments;
@@ -146,7 +146,7 @@ class ProtectedInputs : public ::testing::Test {
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  /// Writing to `out` is refused as it is `input`, and that stays as it is.
+  /// Expects that writing to `out` is refused because it is `input`, and that `input` is unchanged.
   void expect_refused(const std::string& process, const std::string& out,
                       const std::string& input) const {
     const Refused refused = run(
@@ -180,7 +180,7 @@ TEST_F(ProtectedInputs, LinksToAnInputAreTheSameFile) {
   EXPECT_THAT(refused.output, HasSubstr("would overwrite " + path("link.lcm")));
 }
 
-/// Writes down what is asked of it.
+/// Records the calls.
 class Source final : public TickSource {
  public:
   explicit Source(std::string& asked) : asked_{asked} {}
@@ -217,7 +217,7 @@ struct Simulated {
   std::string asked{};
 };
 
-/// A stream of this process that cannot be written, as on a full disk.
+/// Makes a stream of this process fail at writing, as on a full disk.
 class FullStream {
  public:
   explicit FullStream(std::FILE* stream)

@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-/// What comes on a socket of that name, which $NOTIFY_SOCKET has.
+/// The datagram that arrives on a socket of that name, which $NOTIFY_SOCKET is set to.
 std::string heard_on(const std::string& name, std::string_view state) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each condition on a message by itself: with it the message is taken, just beyond it refused.
+// Each condition on messages by itself: at the limit a message is accepted, just beyond it refused.
 #include "common/messages/bounds.hpp"
 #include "common/messages/codec.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 template <class Type>
 using Change = std::function<void(Type&)>;
 
-/// Why a message is refused that a sender has encoded without checking it.
+/// Why a message is refused; it is encoded without a check, as by another sender.
 template <class Type>
 RejectReason reason_of(const Type& message) {
   std::vector<std::uint8_t> payload(static_cast<std::size_t>(message.getEncodedSize()));

@@ -50,7 +50,7 @@ TEST(WholeFile, OnlyTheFileIsLeftInTheFolder) {
   std::filesystem::create_directories(folder / "taken");
   write_whole_file(folder / "map.pgm", "bytes");
   EXPECT_EQ(read_whole_file(folder / "map.pgm"), "bytes");
-  EXPECT_THROW(write_whole_file(folder / "taken", "bytes"), std::system_error);  // a folder
+  EXPECT_THROW(write_whole_file(folder / "taken", "bytes"), std::system_error);  // it is a folder
   EXPECT_FALSE(std::filesystem::exists(folder / ".map.pgm.part"));
   EXPECT_FALSE(std::filesystem::exists(folder / ".taken.part"));
   std::filesystem::remove_all(folder);

@@ -65,7 +65,7 @@ TEST(CameraModel, WhereALensCannotBeInvertedThereIsNoIdealPixel) {
   config.fx_px = config.fy_px = 250.0;
   config.distortion = {-0.3, 0.0, 0.0, 0.0, 0.0};
   const CameraModel camera{config};
-  // The greatest radius is 250 px * 0.703, at r = 1 / sqrt(0.9).
+  // The largest radius that has an inverse is 250 px * 0.703, at r = 1 / sqrt(0.9).
   EXPECT_TRUE(camera.ideal_from_raw({config.cx_px + 175.0, config.cy_px}).allFinite());
   EXPECT_LT(camera.ideal_from_raw({config.cx_px + 175.0, config.cy_px}).x(),
             config.cx_px + 250.0 / std::sqrt(0.9));

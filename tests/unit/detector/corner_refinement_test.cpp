@@ -42,7 +42,7 @@ Scene scene_with(const RobotConfig& robot, const Eigen::Isometry3d& base_from_ma
   return scene;
 }
 
-/// Corners as the first stage gives them: pulled inwards by half a pixel.
+/// Corners as from the first stage: moved inwards.
 Corners pulled_inwards(const Corners& corners, double pull_px) {
   const Eigen::Vector2d centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   Corners pulled;
@@ -98,7 +98,7 @@ Corners mean_error_in_corridor_px(double wall_y_m, double blur_sigma_px, double 
 }
 
 TEST(CornerRefinement, CornersInACorridorAreUnbiasedOnBothWalls) {
-  // What all markers of a corridor have in common does not average out along it.
+  // An error that all markers of a corridor have in common does not average out along it.
   for (const double wall_y_m : {1.0, -1.0}) {
     for (const Eigen::Vector2d& error : mean_error_in_corridor_px(wall_y_m, 0.0, 3.3))
       EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.01) << "pixels' own area, wall at " << wall_y_m;
@@ -107,7 +107,7 @@ TEST(CornerRefinement, CornersInACorridorAreUnbiasedOnBothWalls) {
   }
 }
 
-// White bits behind a thin border brighten it by blur. If that level were taken for black, all four
+// White bits behind a thin border brighten it by blur. If that level counted as black, all four
 // sides would move outwards, and the marker would be measured too near.
 TEST(CornerRefinement, SmallMarkersHaveNoSizeBias) {
   for (const double ahead_m : {8.0, 8.7, 9.4, 10.1, 10.8}) {  // the border is 2.5 to 3.3 px thick

@@ -102,7 +102,7 @@ TEST(FrameDecoder, RandomDamageIsHarmless) {
     auto bytes = good;
     for (int i = 0; i < 5; ++i)
       bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
-    problem_of(PixelFormat::kMjpeg, bytes);  // whatever it says, it returns
+    problem_of(PixelFormat::kMjpeg, bytes);  // any result is right, but it must return
   }
 }
 

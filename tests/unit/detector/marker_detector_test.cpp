@@ -46,7 +46,7 @@ TEST(MarkerDetector, AMarkerAheadHasItsPoseInTheBaseFrame) {
   const auto detections = detect(robot, {placed(robot, 0, base_from_marker)});
 
   ASSERT_EQ(detections.size(), 1U);
-  EXPECT_EQ(detections[0].id, 0);  // an id like any other
+  EXPECT_EQ(detections[0].id, 0);  // 0 is a valid id
   EXPECT_LT((detections[0].base_from_marker.translation() - base_from_marker.translation()).norm(),
             0.003);
   EXPECT_LT(angle_between(detections[0].base_from_marker, base_from_marker), radians(0.3));
@@ -93,7 +93,7 @@ TEST(MarkerDetector, PoseErrorsInRenderedImagesMatchTheirCovariance) {
     error << seen.base_from_marker.translation() - truth.translation(), turn.angle() * turn.axis();
     nees += error.dot(seen.covariance_in_base.ldlt().solve(error)) / kTrials;
   }
-  // 6 when exactly right; corner errors of images are not quite Gaussian and not quite independent.
+  // Ideally 6; but corner errors in images are not quite Gaussian and not quite independent.
   EXPECT_GT(nees, 2.0);
   EXPECT_LT(nees, 12.0);
 }

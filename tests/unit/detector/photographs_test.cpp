@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real photographs, kept outside the project: the detector must read at least what cv::aruco reads
-// and nothing that is not there. Skipped where the photographs are absent.
+// Real photographs, kept outside the project: the detector must read at least the markers that
+// cv::aruco reads, and no false ids. Skipped where the photographs are absent.
 #include "common/markers/marker_dictionary.hpp"
 #include "detector/core/marker_detector.hpp"
 
@@ -60,7 +60,7 @@ std::set<int> ids_by_opencv(const cv::Mat& gray, const std::string& dictionary_n
   return {ids.begin(), ids.end()};
 }
 
-/// The cameras of the photographs are unknown: any plausible one serves to read ids.
+/// The cameras of the photographs are unknown; any plausible one is good enough to read ids.
 RobotConfig robot_for(const cv::Mat& gray, const std::string& dictionary) {
   RobotConfig robot;
   robot.camera.width_px = gray.cols;

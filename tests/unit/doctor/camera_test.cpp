@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Camera and markers: what is written for them, and what the frames show.
+// Checks of camera and markers, and the parameters that are written for them.
 #include "corridor_drive.hpp"
 #include "doctor/camera/camera_calibration.hpp"
 #include "doctor/doctor.hpp"
@@ -36,7 +36,7 @@ TEST(DoctorsCamera, MeasuredParametersAreWrittenIntoTheRobotFile) {
   EXPECT_NEAR(diagnosis.robot.camera.fx_px, input.described->camera.fx_px, 1.6);  // 0.3 %
 }
 
-/// Nothing is contradicted, but all is measured much better than the limits.
+/// No described value is contradicted, but all are measured much better than the limits.
 TEST(DoctorsCamera, AccurateMeasurementsAreWrittenEvenIfTheDescriptionPasses) {
   const DoctorInput input = drive_in_room({.base_from_lidar = Se2{0.11, -0.05, 0.01},
                                            .lidar_late_s = 0.01,

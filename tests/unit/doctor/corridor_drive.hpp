@@ -6,8 +6,8 @@
 
 namespace waymark {
 
-/// 30 m at 0.2 m/s between walls at y = +-1.5 m. Markers every 1.5 m, in turns on the left and on
-/// the right; the noise of their depth grows with its square. The description is right.
+/// 30 m at 0.2 m/s between walls at y = +-1.5 m, with a marker every 1.5 m, alternately on the left
+/// and on the right. The noise of their depth grows with its square. The description is right.
 inline DoctorInput drive_in_corridor() {
   constexpr double kHalfWidth_m = 1.5;
   constexpr double kLength_m = 30.0;

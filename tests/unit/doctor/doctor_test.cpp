@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the doctor says of a robot, and what it cannot know.
+// The doctor's verdicts on a robot, also where the log observes nothing.
 #include "doctor/doctor.hpp"
 
 #include "doctor/checks.hpp"

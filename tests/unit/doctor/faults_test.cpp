@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One fault at a time: the doctor names it, and nothing else.
+// One fault at a time: the doctor reports that fault and no other.
 #include "doctor/report.hpp"
 #include "drive_diagnosis.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program: exit codes, files, and logs that cannot be used.
+// waymark-doctor: exit codes, files, and logs that cannot be used.
 #include "common/log/log_file.hpp"
 #include "import/log/log_output.hpp"
 #include "synthetic_drive.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real logs, which are third-party data and lie outside the project: the doctor finds what their
+// Real logs, which are third-party data outside the project: the doctor finds the faults that their
 // README states. Skipped where they are absent.
 #include "doctor/doctor.hpp"
 #include "doctor/report.hpp"

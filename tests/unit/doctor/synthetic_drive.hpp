@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The log of a robot that drives in a room for a minute and a half, with one thing or another
-// wrong.
+// The log of a robot that drives in a room for a minute and a half, with selectable faults.
 #pragma once
 
 #include "common/messages/codec.hpp"
@@ -19,16 +18,16 @@ struct DriveFaults {
   double distance_scale{1.0};
   double turn_scale{1.0};
   double lidar_late_s{0.0};
-  double no_return_m{0.0};  ///< what beams without a return say; 0 = +inf
+  double no_return_m{0.0};  ///< range of beams without a return; 0 = +inf
   int dropped_scans_of_ten{0};
   bool counts_backing_as_forward{false};
   double duration_s{90.0};
-  double turning{1.0};  ///< 0: straight on and back
-  double focal{1.0};    ///< true over described
+  double turning{1.0};  ///< factor on turn rates; 0: straight on and back
+  double focal{1.0};    ///< true / described focal length
   double marker_size{1.0};
   double camera_yaw_rad{0.0};  ///< true minus described
   double camera_late_s{0.0};
-  double odometry_noise_rad{0.0};  ///< of the turn in each sample
+  double odometry_noise_rad{0.0};  ///< sigma of the turn in each sample
 };
 
 struct RoomMarker {
@@ -36,7 +35,7 @@ struct RoomMarker {
   double facing_rad{0.0};
 };
 
-/// On the walls below.
+/// Markers on the walls below.
 inline const std::array<RoomMarker, 6> kRoomMarkers{{{{5.0, -1.0}, std::numbers::pi},
                                                      {{1.0, -3.0}, 0.5 * std::numbers::pi},
                                                      {{-4.0, 1.0}, 0.0},
@@ -71,7 +70,8 @@ inline double range_in_room_m(const Eigen::Vector2d& from, double angle_rad) {
   return nearest_m;
 }
 
-/// The markers that a camera with 62 degrees sees from there, as the description makes them.
+/// Adds the markers that a camera with 62 degrees sees from there, measured with the described
+/// camera.
 inline void add_sightings(CameraRecord& record, const RobotConfig& described,
                           const Se2& map_from_base, Timestamp time, const DriveFaults& faults,
                           std::mt19937& random) {
@@ -106,7 +106,7 @@ inline void add_sightings(CameraRecord& record, const RobotConfig& described,
   }
 }
 
-/// Without records yet, and with the default description.
+/// An input without records, with the default description.
 inline DoctorInput described_input(const char* name) {
   return {.report = {name, AddressUnit::kByte},
           .noise_is_estimated = true,
@@ -162,7 +162,7 @@ inline DoctorInput drive_in_room(const DriveFaults& faults) {
       add_sightings(*input.camera, *input.described, pose,
                     time + duration_from_seconds(faults.camera_late_s), faults, random);
     }
-    // Turns that start and stop, ways ahead and back.
+    // The robot drives ahead and back, with turns that start and stop.
     const double speed_m_s = 0.4 * std::sin(0.45 * t);
     const double turn_rad_s =
         faults.turning * 0.9 * std::sin(0.7 * t) * (std::sin(0.23 * t) > 0.0 ? 1.0 : 0.4);
@@ -174,7 +174,7 @@ inline DoctorInput drive_in_room(const DriveFaults& faults) {
     odometry = odometry * Se2{(is_wrong ? -1.0 : 1.0) * faults.distance_scale * motion.x(), 0.0,
                               faults.turn_scale * motion.theta() + turn_noise_rad};
   }
-  // As the importer leaves a log: scans within odometry.
+  // Keeps scans within the times of odometry, as the importer does.
   std::erase_if(log.scans, [&](const ImportedScan& scan) {
     return scan.time < log.odometry.front().time || scan.time > log.odometry.back().time;
   });

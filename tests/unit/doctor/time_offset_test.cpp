@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How late the LiDAR's stamps are: of a robot with many samples of odometry between two scans, and
-// with one per scan, at the scan's stamp, as in CARMEN's logs.
+// Measurement of the delay of the LiDAR's stamps, with many samples of odometry between two scans,
+// and with one per scan, at the scan's stamp, as in CARMEN logs.
 #include "doctor/motion/hand_eye.hpp"
 #include "synthetic_drive.hpp"
 
@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kStep_us = 20'000;  // of the synthetic drive
+constexpr int kStep_us = 20'000;  // time step of the synthetic drive
 constexpr double kSigmasOfATest = 3.0;
 
 /// @param period_steps  between samples of odometry, and between scans

@@ -18,7 +18,7 @@ inline std::filesystem::path data_file(const std::string& name) {
   return std::filesystem::path{WAYMARK_SOURCE_DIR} / "tests/data/import" / name;
 }
 
-/// A folder of its own for the running test, empty at first.
+/// An empty folder for the running test.
 inline std::filesystem::path test_folder() {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
   const auto folder = std::filesystem::path{::testing::TempDir()} / "waymark_import" /

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random damage to good logs: the importers return or say what is wrong; they never crash, and what
-// they give is always in order and valid.
+// Random damage to good logs: the importers return an error or a log, whose records are always in
+// order and valid; they never crash.
 #include "common/errors/setup_error.hpp"
 #include "common/messages/convert.hpp"
 #include "foreign_payloads.hpp"

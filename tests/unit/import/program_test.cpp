@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program's exit codes.
+// Exit codes of waymark-import.
 #include "import_files.hpp"
 
 #include <gmock/gmock.h>

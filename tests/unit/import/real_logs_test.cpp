@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real logs, which are third-party data and lie outside the project: their README states what they
-// are like. Skipped where they are absent.
+// Real logs, which are third-party data outside the project; their README states the expected
+// properties. Skipped where they are absent.
 #include "common/messages/convert.hpp"
 #include "import/carmen/carmen_reader.hpp"
 #include "import/findings/findings.hpp"
@@ -35,13 +35,13 @@ std::optional<std::filesystem::path> real_log(const std::string& name) {
   return std::nullopt;
 }
 
-/// The log with everything that was found, as the program makes it.
+/// The log with all findings, as the program makes it.
 struct Found {
   ImportedLog log{};
   ImportReport report{"", AddressUnit::kLine};
 };
 
-/// Of faults that none of these logs has.
+/// Checks that no fault is reported which none of these logs has.
 void expect_no_false_finding(const ImportReport& report) {
   for (const char* finding : {"further to the", "distances are about", "moved meanwhile", "anew",
                               "jumps away", "clock was set", "two LiDARs", "pairs of one time",

@@ -38,7 +38,7 @@ TEST(ImageNoise, FramesAreIndependentAndRepeatable) {
   EXPECT_EQ(cv::norm(first, again), 0.0);
   cv::Mat product;
   cv::multiply(first - 118, second - 118, product, 1.0, CV_64F);
-  EXPECT_NEAR(cv::mean(product)[0], 100.0, 0.5);  // E[(10+a)(10+b)] = 100 when uncorrelated
+  EXPECT_NEAR(cv::mean(product)[0], 100.0, 0.5);  // E[(10+a)(10+b)] of uncorrelated a, b
 }
 
 TEST(ImageNoise, WhitePixelsDoNotWrapToBlackNorBlackOnesToWhite) {

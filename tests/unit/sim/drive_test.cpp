@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPeriod_s = 0.01;
 
-/// A robot without inertia or slip, driven until it has arrived; all its poses.
+/// All poses of a robot without inertia or slip that follows the route to its end.
 std::vector<Se2> drive_ideal_robot(const RouteConfig& config) {
   RouteFollower follower{config, kPeriod_s};
   Se2 world_from_base = config.world_from_start();
@@ -33,7 +33,7 @@ RouteConfig short_route() {
   return config;
 }
 
-TEST(WheelSpeeds, StraightAndOnTheSpot) {
+TEST(WheelSpeeds, MatchTheGeometryStraightOnAndOnTheSpot) {
   const BaseConfig base{};
   const WheelPair straight = wheel_speeds(base, {0.33, 0.0});
   EXPECT_DOUBLE_EQ(straight.left_rad, 10.0);
@@ -48,7 +48,7 @@ TEST(RouteFollower, DrivesStraightToTheEndInTheExpectedTime) {
 
   EXPECT_NEAR(poses.back().x(), 4.0, 0.002);
   EXPECT_EQ(poses.back().y(), 0.0);
-  // 3 m at 0.1 m/s, speeding up and slowing down within half a second each, a short creep.
+  // 3 m at 0.1 m/s, with half a second each for speeding up and slowing down, and a short creep.
   EXPECT_NEAR(static_cast<double>(poses.size()) * kPeriod_s, 30.5, 1.0);
 }
 

@@ -18,7 +18,7 @@ OdometryErrorConfig no_errors() {
   return errors;
 }
 
-/// Odometry after driving by these wheel distances, measured in so many steps.
+/// Odometry after driving by these wheel distances, measured in `steps` steps.
 Se2 after(const OdometryErrorConfig& errors, double left_m, double right_m, int steps,
           std::int64_t seed = 1) {
   const BaseConfig base{};
@@ -86,7 +86,7 @@ TEST(Encoders, DiffusionIsAsConfiguredAndIndependentOfTheRate) {
   OdometryErrorConfig errors = no_errors();
   errors.diffusion_m_per_sqrt_m = 0.003;
   errors.heading_diffusion_deg_per_sqrt_m = 0.5;
-  // sigma of a sigma from 600 runs: 3 %; four of them allowed. Sideways drift adds nothing to x.
+  // A sigma from 600 runs has a sigma of 3 %; four are allowed. Sideways drift does not change x.
   for (const int steps : {4, 64}) {
     const Spread seen = spread(errors, 4.0, steps);
     EXPECT_NEAR(seen.sigma_x_m, 0.006, 0.12 * 0.006) << steps;

@@ -13,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Measured once per second; the value says when.
+/// Measured once per second; the value is the time.
 struct Reading {
   Timestamp time{};
   int value{0};
@@ -38,7 +38,7 @@ Sent send_ten(const FaultConfig& config) {
   Sent sent;
   for (int i = 0; i < 12; ++i) {
     const double now_s = i;
-    if (i < 10) outlet.take({timestamp_from_us(i * 1'000'000), i}, {now_s, 0.1 * now_s});
+    if (i < 10) outlet.push({timestamp_from_us(i * 1'000'000), i}, {now_s, 0.1 * now_s});
     for (const Reading& reading : outlet.release(timestamp_from_us((i + 1) * 1'000'000))) {
       EXPECT_GE(to_seconds(reading.time), now_s) << "sent after its tick";
       sent.stamps_s.push_back(to_seconds(reading.time));
@@ -65,7 +65,7 @@ TEST(FaultyOutlet, ADisabledSensorIsSilent) {
 
 TEST(FaultyOutlet, FaultsOfAnotherSensorAreNotApplied) {
   FaultyOutlet<Reading> camera{Faults{Sensor::kCamera, {fault(FaultKind::kOff)}}, 1};
-  camera.take({timestamp_from_us(0), 1}, {});
+  camera.push({timestamp_from_us(0), 1}, {});
   EXPECT_EQ(camera.release(timestamp_from_us(1)).size(), 1U);
 }
 
@@ -96,8 +96,8 @@ TEST(FaultyOutlet, AnIntermittentSensorLosesTheConfiguredShareOfMessages) {
   config.share = 0.3;
   FaultyOutlet<Reading> outlet{Faults{Sensor::kLidar, {config}}, 1};
   for (int i = 0; i < 1000; ++i)
-    outlet.take({timestamp_from_us(i), i}, {});
-  // Standard deviation of 1000 coins of 0.3: 14.5.
+    outlet.push({timestamp_from_us(i), i}, {});
+  // The count is binomial, 1000 trials with probability 0.3: standard deviation 14.5.
   EXPECT_NEAR(static_cast<double>(outlet.release(timestamp_from_us(1000)).size()), 700.0, 58.0);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layouts, openings, boxes and markers that are missing or move: geometry against rays in the
+// Layouts, openings, boxes, missing and moved markers: geometry compared with rays in MuJoCo's
 // model.
 #include "common/geometry/angle.hpp"
 #include "sim/core/sensors/lidar.hpp"
@@ -70,7 +70,7 @@ TEST(Layout, ARingHasABlockInside) {
   EXPECT_NEAR(ray_m(physics, 19.0, 12.0, 180.0), 19.0, 1e-6);  // along the third
 }
 
-TEST(Layout, NoRayEscapes) {
+TEST(Layout, NoRayLeavesTheWalls) {
   WorldConfig config = ring_20_by_14();
   config.openings = {{2, Side::kRight, 10.0, 0.9, 3.0, 4.0}, {1, Side::kLeft, 6.0}};
   const Physics physics = physics_of(config);
@@ -198,7 +198,7 @@ TEST(Markers, AddedMarkersHangOnTheNearestWall) {
   EXPECT_EQ(plates[3].instance, 1);
 }
 
-TEST(Markers, ASharedIdNumbersItsInstances) {
+TEST(Markers, MarkersWithTheSameIdGetInstanceNumbers) {
   MarkerLayoutConfig markers{};
   markers.last_m = 8.0;
   markers.ids = {7};
@@ -213,7 +213,7 @@ TEST(Markers, ASeededShareOfMarkersIsMissing) {
   std::size_t hanging = 0;
   for (int seed = 1; seed <= 40; ++seed)
     hanging += build_world({}, markers, kPlate_m, seed).markers.size();
-  // 960 coins: 480, standard deviation 15.5.
+  // The count is binomial, 960 trials with probability 0.5: 480, standard deviation 15.5.
   EXPECT_NEAR(static_cast<double>(hanging), 480.0, 4 * 15.5);
   EXPECT_NE(ids_of(build_world({}, markers, kPlate_m, 1)),
             ids_of(build_world({}, markers, kPlate_m, 2)));

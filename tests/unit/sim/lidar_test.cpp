@@ -20,7 +20,7 @@ Physics standing_at(const Se2& world_from_start) {
   return Physics{to_mjcf(build_world({}, {}, 0.6, 1), {}, options)};
 }
 
-/// Distance from inside the default corridor to its inner faces: the box's exit, by hand.
+/// Distance from inside the default corridor to its inner faces, computed by hand.
 double expected_range_m(const Se2& world_from_lidar, double angle_rad) {
   const double direction = world_from_lidar.theta() + angle_rad;
   const double dx = std::cos(direction);

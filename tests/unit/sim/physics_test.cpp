@@ -22,7 +22,7 @@ Physics standing_at(const Se2& world_from_start) {
   return Physics{to_mjcf(build_world({}, {}, 0.6, 1), {}, options)};
 }
 
-/// Speeds up within half a second, so that the tyres hold.
+/// Speeds up within half a second, so that the tyres do not slip.
 void drive(Physics& physics, const Velocity& velocity, double duration_s) {
   for (int i = 0; i < duration_s * kRate_hz; ++i) {
     const double share = std::min(1.0, 2.0 * i / kRate_hz);

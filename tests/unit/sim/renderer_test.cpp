@@ -129,8 +129,8 @@ TEST(Renderer, PixelsFollowThePinholeModel) {
   }
 }
 
-/// Row at which a column crosses from one level to the other: from the sum of its grey levels
-/// between the two rows, as exact as the pixels are means over their areas.
+/// Row at which a column changes from black to white, computed from the sum of its grey levels
+/// between the two rows; exact if every pixel is the mean over its area.
 double edge_row(const cv::Mat& grey, int column, int black_row, int white_row) {
   const double black = grey.at<std::uint8_t>(black_row, column);
   const double white = grey.at<std::uint8_t>(white_row, column);
@@ -143,7 +143,7 @@ double edge_row(const cv::Mat& grey, int column, int black_row, int white_row) {
 
 TEST(Renderer, EdgesAlongPixelRowsAreUnbiased) {
   // The default camera looks along the corridor and sees the lower edges of all markers within the
-  // same row of pixels: what is wrong there is wrong alike for every marker.
+  // same row of pixels: an error there is the same for every marker.
   const RobotConfig robot{};
   const Pinhole pinhole{640, 480, robot.camera.fx_px, robot.camera.cx_px, robot.camera.cy_px};
   Scene scene{{}, {}, PlatePrint::kMarkers, pinhole};
@@ -238,7 +238,7 @@ TEST(Renderer, TheRobotIsNotInItsOwnImages) {
   EXPECT_EQ(picture.at<cv::Vec3b>(180, 160), picture.at<cv::Vec3b>(235, 160));
 }
 
-TEST(Renderer, SamePoseSameBytes) {
+TEST(Renderer, TheSamePoseGivesTheSameBytes) {
   Scene scene{{}, {}, PlatePrint::kMarkers};
   const Eigen::Isometry3d here = looking_at(scene.world.markers[0], 1.0);
   const cv::Mat first = scene.renderer.render(here).clone();

@@ -42,7 +42,7 @@ TEST(Scenario, TheShippedDefaultCorridorIsTheDefault) {
   const std::filesystem::path file =
       std::filesystem::path{WAYMARK_SOURCE_DIR} / "deploy/scenarios/corridor.toml";
   Scenario shipped = load_config<Scenario>({{file}, {}});
-  shipped.expect = {};  // a world by itself expects nothing
+  shipped.expect = {};  // the default scenario has no expectations
   EXPECT_EQ(dump_config(shipped), dump_config(Scenario{}));
 }
 
@@ -151,7 +151,7 @@ TEST(Scenario, EventsByDistanceNeedARoute) {
   EXPECT_THAT(by_command("kidnaps=[{at_m=1.0, to_x_m=20.0}]"), HasSubstr("command has no route"));
 }
 
-TEST(Scenario, OdometryScalesNeedThatTheSeedDrawsNone) {
+TEST(Scenario, ConfiguredOdometryScalesAreRefusedWhileTheSeedDrawsThem) {
   EXPECT_THAT(error_of({"odometry_errors.scale=0.05"}),
               HasSubstr("odometry_errors.scale: got 0.05, which odometry_errors.draw_from_seed"));
   EXPECT_THAT(error_of({"odometry_errors.heading_scale=0.1"}), HasSubstr("heading_scale: got 0.1"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens to a simulated robot that is lifted, whose sensors fail, whose markers move.
+// Kidnaps, sensor faults and moved markers in a simulation.
 #include "sim/core/simulation.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-/// 8 m, a small camera, 0.5 m/s: fast.
+/// A fast test: 8 m at 0.5 m/s, with a small camera.
 Scenario small_scenario() {
   Scenario scenario{};
   scenario.world.length_m = 8.0;

@@ -12,7 +12,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A short corridor and a small camera: fast.
+/// A fast test: a short corridor and a small camera.
 Scenario small_scenario() {
   Scenario scenario{};
   scenario.world.length_m = 6.0;
@@ -62,11 +62,11 @@ TEST(Simulation, DrivesTheRouteAndStops) {
   EXPECT_EQ(simulation.progress_fraction(), 1.0);
   EXPECT_NEAR(simulation.world_from_base().x(), 2.0, 0.005);
   EXPECT_NEAR(simulation.world_from_base().y(), 0.0, 0.002);
-  // Odometry is 1 % long on seed 1, give or take three sigma of 3 mm per root metre.
+  // Odometry is 1 % too long with seed 1; tolerance: three sigma of 3 mm per root metre.
   EXPECT_NEAR(last.odometry.back().odom_from_base.x(), 1.01, 0.012);
 }
 
-TEST(Simulation, SameScenarioSameBytes) {
+TEST(Simulation, TheSameScenarioGivesTheSameBytes) {
   Simulation a{small_scenario()};
   Simulation b{small_scenario()};
   for (int i = 0; i < 12; ++i) {
@@ -134,7 +134,7 @@ TEST(Simulation, ARobotThatNeverArrivesIsAnError) {
   }
 }
 
-TEST(Simulation, EventsThatDidNotBeginArePending) {
+TEST(Simulation, EventsThatHaveNotBegunArePending) {
   Scenario scenario = small_scenario();
   scenario.route.end_x_m = 1.2;
   scenario.route.settle_s = 0.0;

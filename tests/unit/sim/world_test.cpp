@@ -69,7 +69,7 @@ TEST(World, MarkerPlacesAreNotAffectedByRounding) {
   EXPECT_EQ(place_count({}, markers, 0.05), 6U);
 }
 
-TEST(World, ExplicitIdsAreUsedAndRepeatedOnesCounted) {
+TEST(World, ExplicitIdsAreUsedAndRepeatedIdsGetInstanceNumbers) {
   MarkerLayoutConfig markers{};
   markers.last_m = 8.0;
   markers.ids = {7, 7, 3, 7};

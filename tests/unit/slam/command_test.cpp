@@ -87,8 +87,8 @@ TEST(CommandDesk, ARepeatedCommandActsOnceAndIsAnsweredAgain) {
   const auto act = [&](const Command&) {
     return std::to_string(++acted);
   };
-  const auto first = desk.take(save_command("a"), timestamp_from_us(1), act);
-  const auto again = desk.take(save_command("a"), timestamp_from_us(2), act);
+  const auto first = desk.handle(save_command("a"), timestamp_from_us(1), act);
+  const auto again = desk.handle(save_command("a"), timestamp_from_us(2), act);
   EXPECT_EQ(acted, 1);
   ASSERT_TRUE(first && again);
   EXPECT_EQ(again->text, "1");
@@ -103,7 +103,7 @@ TEST(CommandDesk, AFloodIsRefusedWithOneAnswerASecond) {
   for (int i = 0; i < 10000; ++i) {
     command_t command = save_command("a");
     command.command_id = 100 + i;
-    const auto reply = desk.take(command, timestamp_from_us(1'000'000 + i), [&](const Command&) {
+    const auto reply = desk.handle(command, timestamp_from_us(1'000'000 + i), [&](const Command&) {
       ++acted;
       return std::string{};
     });
@@ -111,8 +111,8 @@ TEST(CommandDesk, AFloodIsRefusedWithOneAnswerASecond) {
     ++answers;
     last = reply->text;
   }
-  EXPECT_EQ(acted, CommandDesk::kMostPerSecond);
-  EXPECT_EQ(answers, CommandDesk::kMostPerSecond + 1);
+  EXPECT_EQ(acted, CommandDesk::kMaxPerSecond);
+  EXPECT_EQ(answers, CommandDesk::kMaxPerSecond + 1);
   EXPECT_NE(last.find("more than 5 commands"), std::string::npos);
 }
 
@@ -122,15 +122,15 @@ TEST(CommandRelay, StampsQueuedCommandsWithTheTickAndIgnoresItsOwnMessages) {
   for (int i = 0; i < 20; ++i) {
     command_t command = save_command("a");
     command.command_id = i;
-    relay.take(encode(channels::kSlamCommand, command));
+    relay.handle(encode(channels::kSlamCommand, command));
   }
   std::vector<Message> tick;
   relay.move_into(tick, timestamp_from_us(5'000'000));
-  ASSERT_EQ(tick.size(), CommandRelay::kMostPerTick);
+  ASSERT_EQ(tick.size(), CommandRelay::kMaxPerTick);
   EXPECT_EQ(counters.get("SLAM_COMMAND dropped: too many"), 10);
   EXPECT_EQ(tick.front().time, timestamp_from_us(5'000'000));
   for (const Message& message : tick)
-    relay.take(message);
+    relay.handle(message);
   std::vector<Message> next;
   relay.move_into(next, timestamp_from_us(6'000'000));
   EXPECT_TRUE(next.empty());
@@ -190,7 +190,7 @@ TEST_F(CommandedSlam, RefusesWhileCommandsAreOff) {
   EXPECT_NE(replies[0].text.find("slam.commands = true"), std::string::npos);
 }
 
-TEST_F(CommandedSlam, TakesNoPoseBeforeTheSurveysFrameIsKnown) {
+TEST_F(CommandedSlam, RefusesAPoseBeforeTheSurveysFrameIsKnown) {
   fs::create_directories(folder_);
   const fs::path survey = folder_ / "survey.csv";
   write_whole_file(
@@ -330,7 +330,7 @@ TEST_F(CommandedSlam, ResultsBeforeTheEstimatorThrowsAreWritten) {
   config.save_map = other_file("thrown");
   std::vector<Message> messages = messages_of(*drive_, 0.0, 9.0);
   std::erase_if(messages, [](const Message& message) {
-    return message.channel == channels::kMarkers.name;  // they would say where it is
+    return message.channel == channels::kMarkers.name;  // would reveal the true pose
   });
   for (int i = 1; i <= 4; ++i) {
     command_t command = pose_command(100.0 * i, 0.0);

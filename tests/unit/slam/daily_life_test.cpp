@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole drives: corrections, going on at the last pose, what contradicts the map, and surveyed
-// markers.
+// Whole drives: corrections, resumption at the last pose, changes of the map, and surveyed markers.
 #include "common/files/whole_file.hpp"
 #include "slam/last_pose.hpp"
 #include "slam/survey_file.hpp"
@@ -71,7 +70,7 @@ TEST_F(DailyLife, TheCorrectionComposedWithOdometryIsTheEstimate) {
   }
 }
 
-TEST_F(DailyLife, TheCorrectionsCovarianceCarriedToTheRobotIsThatOfTheEstimate) {
+TEST_F(DailyLife, TheCorrectionsCovarianceTransformedToTheRobotIsThatOfTheEstimate) {
   const test::Drive drive = test::drive_through(SlamConfig{}, messages_of(*drive_, 0.0, 20.0));
   const correction_t correction = sent_on(channels::kSlamCorrection, drive).back();
   const slam_estimate_t& estimate = drive.estimates.back();
@@ -237,7 +236,7 @@ TEST_F(DailyLife, AMapIsNotExtendedInAnotherBuilding) {
   EXPECT_EQ(drive.estimates.back().health, slam_estimate_t::HEALTH_LOST);
 }
 
-// Its own markers are those of this run, also when the robot comes back to them.
+// The markers mapped in this run stay its own, also when the robot returns to them.
 TEST_F(DailyLife, MarkersOfThisRunDoNotConfirmTheLoadedMap) {
   test::SyntheticCorridor other = corridor_of(2);
   other.width_m = 4.0;

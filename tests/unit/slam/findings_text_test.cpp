@@ -9,27 +9,27 @@ namespace {
 
 using testing::HasSubstr;
 
-Findings as_described() {
-  Findings findings;
-  findings.observations = 1000;
-  findings.scans = 1000;
-  findings.range_sigma_m = 0.011;
-  findings.described_range_sigma_m = 0.01;
-  return findings;
+SensorStatistics as_described() {
+  SensorStatistics statistics;
+  statistics.observations = 1000;
+  statistics.scans = 1000;
+  statistics.range_sigma_m = 0.011;
+  statistics.described_range_sigma_m = 0.01;
+  return statistics;
 }
 
 TEST(FindingsText, ARobotAsDescribedHasNoFindings) {
-  const auto nothing = worth_saying(as_described(), 0);
+  const auto nothing = reportable_findings(as_described(), 0);
   EXPECT_TRUE(nothing.empty());
   EXPECT_EQ(sentence_of(nothing), "nothing");
 }
 
 TEST(FindingsText, DeviationsAreReportedWithNumbers) {
-  Findings findings = as_described();
-  findings.odometry_along = 5.7;
-  findings.range_sigma_m = 0.041;
-  findings.odometry_stuck = 20;
-  const auto found = worth_saying(findings, 40);
+  SensorStatistics statistics = as_described();
+  statistics.odometry_along = 5.7;
+  statistics.range_sigma_m = 0.041;
+  statistics.odometry_stuck = 20;
+  const auto found = reportable_findings(statistics, 40);
   const std::string sentence = sentence_of(found);
   EXPECT_THAT(sentence, HasSubstr("5.7 times as noisy along the path"));
   EXPECT_THAT(sentence, HasSubstr("scatter by 0.041 m"));
@@ -42,10 +42,10 @@ TEST(FindingsText, DeviationsAreReportedWithNumbers) {
 }
 
 TEST(FindingsText, AMountingThatIsNotAsDescribedIsReportedWithItsError) {
-  Findings findings = as_described();
-  findings.miscalibrated = {{OdometryTerm::kLidarYaw, 0.0873, 0.001},
-                            {OdometryTerm::kScale, -0.12, 0.004}};
-  const auto found = worth_saying(findings, 0);
+  SensorStatistics statistics = as_described();
+  statistics.miscalibrated = {{OdometryTerm::kLidarYaw, 0.0873, 0.001},
+                              {OdometryTerm::kScale, -0.12, 0.004}};
+  const auto found = reportable_findings(statistics, 0);
   EXPECT_EQ(sentence_of(found),
             "LiDAR yaw: +0.0873 +- 0.001 rad from the description; "
             "odometry's distances: -12 +- 0.4 % from the description");
@@ -53,17 +53,17 @@ TEST(FindingsText, AMountingThatIsNotAsDescribedIsReportedWithItsError) {
 }
 
 TEST(FindingsText, AFewScansThatDoNotFitAreNotReported) {
-  Findings findings = as_described();
-  findings.scans_refuted = 5;
-  EXPECT_TRUE(worth_saying(findings, 0).empty());
-  findings.scans_refuted = 50;
-  EXPECT_FALSE(worth_saying(findings, 0).empty());
-  findings = as_described();
-  findings.scans_in_loaded_map = 100;
-  findings.scans_contradict_loaded_map = 4;
-  EXPECT_TRUE(worth_saying(findings, 0).empty());
-  findings.scans_contradict_loaded_map = 6;
-  EXPECT_FALSE(worth_saying(findings, 0).empty());
+  SensorStatistics statistics = as_described();
+  statistics.scans_refuted = 5;
+  EXPECT_TRUE(reportable_findings(statistics, 0).empty());
+  statistics.scans_refuted = 50;
+  EXPECT_FALSE(reportable_findings(statistics, 0).empty());
+  statistics = as_described();
+  statistics.scans_in_loaded_map = 100;
+  statistics.scans_contradict_loaded_map = 4;
+  EXPECT_TRUE(reportable_findings(statistics, 0).empty());
+  statistics.scans_contradict_loaded_map = 6;
+  EXPECT_FALSE(reportable_findings(statistics, 0).empty());
 }
 
 }  // namespace

@@ -185,7 +185,7 @@ TEST_F(SavedMap, WithUnknownStartThereIsNoPoseBeforeAMarkerIsSeen) {
     EXPECT_EQ(estimate.health, slam_estimate_t::HEALTH_INITIALISING);
 }
 
-// Twins: nothing but the corridor's ends tells where the robot is.
+// All markers look alike: only the corridor's ends determine where the robot is.
 TEST_F(SavedMap, AmongMarkersOfOneIdNoWrongPoseIsPublished) {
   test::SyntheticCorridor twins = corridor_of(4);
   for (test::SyntheticMarker& marker : twins.markers)

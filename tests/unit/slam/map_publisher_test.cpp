@@ -14,10 +14,10 @@ TEST(MapPublisher, RemovedTilesAreSentEmpty) {
   GridMap map{GridFrame::centred_on_map_origin(0.05), {}, {}};
   map.occupancy.edit(map.frame.cell_of(Eigen::Vector2d{0.0, 0.0})) = {1, 1};
   MapPublisher publisher;
-  ASSERT_EQ(publisher.complete(map, Timestamp{})[0].num_tiles, 1);
+  ASSERT_EQ(publisher.all_tiles(map, Timestamp{})[0].num_tiles, 1);
   GridMap elsewhere{map.frame, {}, {}};
   elsewhere.occupancy.edit(map.frame.cell_of(Eigen::Vector2d{20.0, 0.0})) = {1, 1};
-  const auto parts = publisher.complete(elsewhere, Timestamp{std::chrono::seconds{1}});
+  const auto parts = publisher.all_tiles(elsewhere, Timestamp{std::chrono::seconds{1}});
   ASSERT_EQ(parts[0].num_tiles, 2);
   int emptied = 0;
   for (const map_tile_t& tile : parts[0].tiles) {

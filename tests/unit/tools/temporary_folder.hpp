@@ -29,7 +29,7 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Path of a file in it with this content; folders are made as needed.
+  /// Writes a file into the folder, making folders as needed. @return its path.
   std::filesystem::path file(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream{path_ / name, std::ios::binary} << text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenes for the painters: small drawn maps, and a corridor as the default world has it.
+// Scenes for the painters: small drawn maps, and a corridor as in the default world.
 #pragma once
 
 #include "common/random/random.hpp"
@@ -89,7 +89,7 @@ inline void mark_cells(GridMap& map, const Se2& map_from_marker, int id) {
 }
 
 /// A straight corridor along x as in the default world, driven from 1 m behind its start to 1 m
-/// before its end; the map starts where the robot does. Truth, estimate and odometry part slowly.
+/// before its end; the map starts at the robot's start. Truth, estimate and odometry drift apart.
 inline Scene corridor_scene(double length_m, std::uint64_t seed = 1) {
   Scene scene;
   scene.title = "marker_matching";
@@ -135,7 +135,7 @@ inline Scene corridor_scene(double length_m, std::uint64_t seed = 1) {
   return scene;
 }
 
-/// What the LiDAR sees in a corridor, with two markers ahead.
+/// A scan in a corridor with two markers ahead.
 inline AnnotatedScan corridor_scan() {
   AnnotatedScan scan{.time = Timestamp{Duration{31'400'000}}};
   for (int i = 0; i < 360; ++i) {

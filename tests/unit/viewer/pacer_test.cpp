@@ -15,23 +15,23 @@ TEST(Pacer, StartsAtOnce) {
 
 TEST(Pacer, ThePauseIsProportionalToTheTimeWorked) {
   Pacer pacer{0.25};
-  pacer.has_worked(kStart, kStart + 2s);
+  pacer.record_work(kStart, kStart + 2s);
   EXPECT_FALSE(pacer.may_start(kStart + 7999ms));
   EXPECT_TRUE(pacer.may_start(kStart + 8s));
 
-  pacer.has_worked(kStart + 8s, kStart + 8s + 20ms);
+  pacer.record_work(kStart + 8s, kStart + 8s + 20ms);
   EXPECT_FALSE(pacer.may_start(kStart + 8s + 79ms));
   EXPECT_TRUE(pacer.may_start(kStart + 8s + 80ms));
 }
 
-TEST(Pacer, TakesNoMoreThanItsShareHoweverOftenItIsAsked) {
+TEST(Pacer, RepeatedWorkTakesNoMoreThanItsShareOfTheTime) {
   Pacer pacer{0.05};
   std::chrono::milliseconds worked{0};
   auto now = kStart;
   for (; now < kStart + 60s; now += 1ms) {
     if (!pacer.may_start(now)) continue;
     const auto cost = 30ms + worked / 20;  // grows with the map
-    pacer.has_worked(now, now + cost);
+    pacer.record_work(now, now + cost);
     worked += cost;
     now += cost;
   }
@@ -41,7 +41,7 @@ TEST(Pacer, TakesNoMoreThanItsShareHoweverOftenItIsAsked) {
 
 TEST(Pacer, AShareOfOneMeansNoPause) {
   Pacer pacer{1.0};
-  pacer.has_worked(kStart, kStart + 2s);
+  pacer.record_work(kStart, kStart + 2s);
   EXPECT_TRUE(pacer.may_start(kStart + 2s));
 }
 

@@ -54,7 +54,7 @@ TEST(SceneUpdater, ALongPathIsThinnedInItsPastAndDenseAtItsEnd) {
   EXPECT_EQ(counters.get("ODOMETRY kept at half of the rate up to now"), 3);
 }
 
-TEST(SceneUpdater, MarkersAppearWhenAllPartsAreThere) {
+TEST(SceneUpdater, MarkersAppearWhenAllPartsHaveArrived) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};
@@ -98,7 +98,7 @@ std::vector<std::int64_t> seconds_of(const std::vector<EstimatedPose>& path) {
   return seconds;
 }
 
-TEST(SceneUpdater, WhenTheClockIsSetBackThePathGoesOnAndStaysInOrder) {
+TEST(SceneUpdater, WhenTheClockIsSetBackThePathContinuesAndStaysInOrder) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};
@@ -112,7 +112,7 @@ TEST(SceneUpdater, WhenTheClockIsSetBackThePathGoesOnAndStaysInOrder) {
   EXPECT_EQ(counters.get("SLAM_ESTIMATE clock was set"), 1);
 }
 
-TEST(SceneUpdater, AStampAheadLosesItsPoseOnly) {
+TEST(SceneUpdater, APoseWithAStampFarAheadIsLeftOut) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};
@@ -122,8 +122,8 @@ TEST(SceneUpdater, AStampAheadLosesItsPoseOnly) {
   EXPECT_THAT(seconds_of(scene.estimates), ElementsAre(1, 2));
 }
 
-// Less than the longest pause ahead it cannot be known at once.
-TEST(SceneUpdater, AStampSlightlyAheadIsRemovedAsSoonAsOthersDisagree) {
+// A stamp ahead by less than kLongestPause may be right; only later stamps show that it is wrong.
+TEST(SceneUpdater, APoseSlightlyAheadIsRemovedOnceEnoughLaterStampsAreConsistent) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};
@@ -134,7 +134,7 @@ TEST(SceneUpdater, AStampSlightlyAheadIsRemovedAsSoonAsOthersDisagree) {
   EXPECT_THAT(seconds_of(scene.estimates), ElementsAre(1, 21, 22));
 }
 
-TEST(SceneUpdater, MarkersGoOnWhenTheClockIsSetBack) {
+TEST(SceneUpdater, MarkersAreUpdatedAfterTheClockIsSetBack) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};
@@ -145,7 +145,7 @@ TEST(SceneUpdater, MarkersGoOnWhenTheClockIsSetBack) {
   EXPECT_EQ(scene.landmarks[0].id, 6);
 }
 
-TEST(SceneUpdater, AScanWithoutMarkersDoesNotReplaceOneWithMarkers) {
+TEST(SceneUpdater, AScanWithLabelledBeamsIsNotReplacedByOneWithout) {
   Scene scene;
   Counters counters;
   SceneUpdater updater{scene, counters};

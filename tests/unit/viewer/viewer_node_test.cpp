@@ -149,7 +149,7 @@ TEST_F(ViewerNodeTest, TheFinalFilesDoNotDependOnThePace) {
       inbox.deliver(encode(channels::kSlamMap, tile_at(i, 0, 1)));
       inbox.deliver(encode(channels::kSlamEstimate, estimate_at(1.0 * i, 0.1 * i)));
     }
-    // A share of a thousandth allows the first write and then none.
+    // With a share of a thousandth, only the first write is allowed.
     EXPECT_EQ(fs::exists(folder_ / "plain.png"), share == 1.0);
     node.finish();
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -275,7 +275,7 @@ TEST_F(ViewerNodeTest, AnotherMapIdStartsNewFilesAndKeepsTheEarlierOnesInAFolder
   estimate = estimate_at(2.0, 0.5);
   estimate.map_id = 0xcd;
   deliver(channels::kSlamEstimate, estimate);
-  deliver(channels::kSlamMap, tiles);  // late words about the map before
+  deliver(channels::kSlamMap, tiles);  // a late message of the map before
   node.finish();
   EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("2.000000 0.5"));
   EXPECT_EQ(content_of("trajectory.tum").find("7.0"), std::string::npos);
@@ -297,7 +297,7 @@ TEST_F(ViewerNodeTest, AnotherMapIsFollowedAfterTheClockWasSetBack) {
   EXPECT_THAT(content_of("trajectory.tum"), HasSubstr("129.000000 0.5"));
 }
 
-TEST_F(ViewerNodeTest, FilesOfAnEarlierRunThatThisOneHasNotAreRemoved) {
+TEST_F(ViewerNodeTest, FilesOfAnEarlierRunThatThisRunDoesNotWriteAreRemoved) {
   ViewerNode node{config_, inbox_, outbox_};
   const std::vector<std::string> stale{"changes.csv",    "findings.json",  "scan.png",
                                        "trajectory.tum", "covariance.csv", "odometry.tum"};

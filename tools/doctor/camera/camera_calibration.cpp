@@ -15,29 +15,30 @@
 namespace waymark {
 namespace {
 
-/// The last two are nuisance parameters: remaining scale errors of odometry.
+/// The estimated parameters. The last two, remaining scale errors of odometry, are nuisance
+/// parameters.
 enum Term : Eigen::Index { kFocal, kSize, kYaw, kLate, kDistance, kTurn, kTerms };
 
 using Errors = Eigen::Matrix<double, kTerms, 1>;
 using Information = Eigen::Matrix<double, kTerms, kTerms>;
 
-/// Far wider than errors in practice: only unobservable terms keep the prior.
+/// Far wider than errors in practice, so that only unobservable terms keep the prior.
 const Eigen::Vector4d kPriorSigmas{0.3, 0.3, 0.3, 1.0};           // relative, relative, rad, s
-constexpr std::array kSteps{1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4};  // of numerical derivatives
-constexpr double kSlowStep_s = 0.25;  // about the time in which a robot starts or stops turning
+constexpr std::array kSteps{1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4};  // for numerical derivatives
+constexpr double kSlowStep_s = 0.25;  // about the time that a robot takes to start or stop turning
 // Upper bound of the prior sigma of odometry's scales in the fit. With a wider one, the noise of
-// distances would shrink the scale and the focal length together (errors in variables). What the
-// scales' sigmas have beyond it is added to the variances of the result.
+// distances would shrink the scale and the focal length together (errors in variables). The part of
+// the scales' variances beyond this bound is added to the variances of the result.
 constexpr double kWidestScalePrior = 0.001;
 constexpr int kIterations = 8;
 constexpr double kCutoff = 3.0;  // kernel width of the robust weights, in sigmas
-constexpr int kFewestTracks = 4;
-constexpr double kLongestPause_s = 2.0;  // between consecutive sightings of a track
-constexpr double kFarEnough_m = 0.3;     // between two sightings of a pair
+constexpr int kMinTracks = 4;
+constexpr double kMaxPause_s = 2.0;  // between consecutive sightings of a track
+constexpr double kMinApart_m = 0.3;  // between the two sightings of a pair
 constexpr double kTurnedEnough_rad = 0.15;
 constexpr double kNearestScan_s = 0.15;
 constexpr double kWallReach_m = 1.5;
-// Odometry's random walk, of a TurtleBot3; it only weighs the residuals.
+// Random walk of a TurtleBot3's odometry; it only affects the weights of the residuals.
 constexpr double kWalk_m2_per_m = 9e-6;
 constexpr double kWalk_rad2_per_m = 7.6e-5;
 constexpr double kWalk_rad2_per_rad = 1e-4;
@@ -101,7 +102,7 @@ class Problem {
   std::vector<AnnotatedBeam> beams_at(const ImportedScan& scan, const Se2& base_from_odom) const;
   void collect(const Errors& errors);
 
-  /// Information [1/s^2] of a residual about the time offset, by central differences.
+  /// Information [1/s^2] of a residual about the time offset kLate, by central differences.
   double late_information(const Residual& residual, double step_s) const {
     Errors step = Errors::Zero();
     step[kLate] = step_s;
@@ -110,9 +111,9 @@ class Problem {
     return slope.dot(residual.information * slope);
   }
 
-  /// Half of the interval between odometry samples. Noise from sample to sample can shift the time
-  /// offset by up to this. Its weight is the share of noise in late_information(): the part that
-  /// the long step kSlowStep_s does not show.
+  /// Half of the interval between odometry samples: noise from sample to sample can shift the time
+  /// offset by up to this. It is weighted with the share of noise in late_information(), which is
+  /// the part that disappears with the long step kSlowStep_s.
   double half_interval_s() const {
     return 0.5 * to_seconds(log_.odometry.back().time - log_.odometry.front().time) /
            static_cast<double>(log_.odometry.size());
@@ -213,7 +214,7 @@ void Problem::add_track(const std::vector<const CameraSighting*>& track) {
     const Se2 base_from_odom = odom_at(*track[i], errors_).inverse();
     const auto is_apart = [&](const CameraSighting* later) {
       const Se2 motion = base_from_odom * odom_at(*later, errors_);
-      return motion.translation().norm() > kFarEnough_m ||
+      return motion.translation().norm() > kMinApart_m ||
              std::abs(motion.theta()) > kTurnedEnough_rad;
     };
     const auto later =
@@ -230,7 +231,7 @@ void Problem::collect(const Errors& errors) {
   for (const auto& [id, sightings] : tracks_by_id_) {
     std::vector<const CameraSighting*> track;
     for (const CameraSighting* sighting : sightings) {
-      if (!track.empty() && to_seconds(sighting->time - track.back()->time) > kLongestPause_s) {
+      if (!track.empty() && to_seconds(sighting->time - track.back()->time) > kMaxPause_s) {
         add_track(track);
         track.clear();
       }
@@ -253,7 +254,7 @@ std::optional<CameraCalibration> Problem::solve() {
   double slow = 0.0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     collect(errors_);
-    if (counts_.num_tracks < kFewestTracks) return std::nullopt;
+    if (counts_.num_tracks < kMinTracks) return std::nullopt;
     information = prior;
     Errors gradient = prior * errors_;
     equations_by_track.clear();
@@ -293,7 +294,7 @@ std::optional<CameraCalibration> Problem::solve() {
     clustered += without * without.transpose();
   }
   const double scale = std::max(1.0, squares / std::max(1.0, weights));
-  // Variance of the scales beyond their prior, times the squared derivative of the term.
+  // A scale's variance beyond the prior of the fit, times the term's squared derivative.
   const auto scale_variance = [&](Eigen::Index term, Eigen::Index scale_term, double sigma) {
     const double beyond = squared(sigma) - squared(prior_sigmas[scale_term]);
     return squared(inverse(term, scale_term) / inverse(scale_term, scale_term)) * beyond;

@@ -19,7 +19,7 @@ struct CameraCalibration {
   Measured late_s{};       ///< delay of the frames' stamps, relative to odometry's clock
   int num_walls{0};        ///< sightings with a wall behind them
   int num_pairs{0};        ///< pairs of sightings of one marker
-  int num_tracks{0};       ///< stretches of sightings of one marker with pauses of at most 2 s
+  int num_tracks{0};       ///< sequences of sightings of one marker with pauses of at most 2 s
 };
 
 /// Relative standard deviations of odometry's scales.

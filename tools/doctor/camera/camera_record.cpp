@@ -18,8 +18,8 @@
 namespace waymark {
 namespace {
 
-constexpr std::int64_t kMostFrames = 400;
-constexpr std::size_t kMostMessages = 1200;
+constexpr std::int64_t kMaxFrames = 400;
+constexpr std::size_t kMaxMessages = 1200;
 constexpr std::int64_t kDictionaryFrames = 30;
 constexpr double kReach_px = 8.0;  // half length of edge profiles; for blurs of up to half of it
 
@@ -55,7 +55,7 @@ class CameraReader {
       finders_.emplace_back(family, CandidateFinder{*find_dictionary(family), {}});
   }
 
-  void take(const image_t& image, bool try_dictionaries) {
+  void add(const image_t& image, bool try_dictionaries) {
     ++record_.num_decoded;
     const DecodedFrame frame =
         decode_image(image, {robot_.camera.width_px, robot_.camera.height_px});
@@ -113,7 +113,7 @@ double blur_of_marker_px(const cv::Mat& gray, const CameraConfig& camera,
     if (side.blur_px > 0.0) blurs_px.push_back(side.blur_px);
   }
   if (blurs_px.empty()) return -1.0;
-  // Motion blurs only two opposite sides: the largest median counts.
+  // Motion blurs only two opposite sides, so the largest median counts.
   return std::ranges::max(blurs_px);
 }
 
@@ -135,7 +135,7 @@ CameraRecord read_markers(const std::filesystem::path& lcm_log, const RobotConfi
     record.times.push_back(frames.back().time);
   }
   record.num_decoded = std::ssize(frames);
-  const std::size_t every = 1 + frames.size() / kMostMessages;
+  const std::size_t every = 1 + frames.size() / kMaxMessages;
   for (std::size_t i = 0; i < frames.size(); i += every) {
     for (const MarkerDetection& marker : frames[i].detections) {
       if (const auto sighting = sighting_of(robot, frames[i].time, marker))
@@ -155,7 +155,7 @@ CameraRecord read_camera(const std::filesystem::path& lcm_log, const RobotConfig
   for (LogReader reader{lcm_log}; reader.next(is_camera);)
     ++num_frames;
   CameraReader camera{robot};
-  const std::int64_t every = 1 + num_frames / kMostFrames;
+  const std::int64_t every = 1 + num_frames / kMaxFrames;
   const std::int64_t every_for_dictionaries = every * (1 + num_frames / every / kDictionaryFrames);
   LogReader reader{lcm_log};
   std::int64_t number = 0;
@@ -167,7 +167,7 @@ CameraRecord read_camera(const std::filesystem::path& lcm_log, const RobotConfig
     if (progress) progress(static_cast<double>(current) / static_cast<double>(num_frames));
     const auto image = decode<image_t>(event->payload);
     if (image.message) {
-      camera.take(*image.message, current % every_for_dictionaries == 0);
+      camera.add(*image.message, current % every_for_dictionaries == 0);
     } else {
       ++camera.record().num_decoded;
       ++camera.record().problems["damaged message"];

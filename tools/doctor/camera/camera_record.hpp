@@ -28,13 +28,13 @@ struct CameraSighting {
 struct CameraRecord {
   bool has_images{true};           ///< false: only sightings, from MARKERS
   std::vector<Timestamp> times{};  ///< of all frames
-  std::int64_t num_decoded{0};     ///< frames decoded, evenly spread; of MARKERS all messages
+  std::int64_t num_decoded{0};  ///< frames decoded, evenly spread; without images, MARKERS messages
   std::map<std::string, std::int64_t> problems{};  ///< number of unusable frames by reason
   std::vector<CameraSighting> sightings{};
   std::vector<double> blurs_px{};    ///< one per sighting: standard deviation across its sides
   std::vector<double> modules_px{};  ///< one per sighting: side of a module
-  /// Numbers of markers in some of the frames: with the described dictionary, and with the largest
-  /// one of every family.
+  /// Numbers of markers read in some of the frames: with the described dictionary, and with the
+  /// largest one of every family.
   std::int64_t markers_of_described{0};
   std::map<std::string, std::int64_t> markers_by_dictionary{};
   std::map<std::string, int> largest_id{};  ///< by dictionary

@@ -13,18 +13,18 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kFewest = 30;
-constexpr double kFewestTurns_rad = 2.0 * std::numbers::pi;
-constexpr double kLargestOffset_s = 0.5;
-constexpr double kRateOver_s = 0.2;  // window of turn rates; turns last longer
+constexpr std::size_t kMinMotions = 30;
+constexpr double kMinTurned_rad = 2.0 * std::numbers::pi;
+constexpr double kMaxOffset_s = 0.5;
+constexpr double kRateOver_s = 0.2;  // window in which turn rates are averaged; turns last longer
 // d(remaining offset) / d(offset): 1 without noise; below this the offset is not observable.
-constexpr double kLeastSlope = 0.05;
-constexpr double kShortestInterval_s = 0.005;  // step of the search for fast odometry
-constexpr double kCutoff = 3.0;                // kernel width of the robust weights, in sigmas
-constexpr double kLeastResidual_rad = 0.0017;  // a tenth of a degree
-constexpr double kLeastResidual_m = 1e-4;
+constexpr double kMinSlope = 0.05;
+constexpr double kMinInterval_s = 0.005;     // step of the search if odometry's interval is shorter
+constexpr double kCutoff = 3.0;              // kernel width of the robust weights, in sigmas
+constexpr double kMinResidual_rad = 0.0017;  // a tenth of a degree
+constexpr double kMinResidual_m = 1e-4;
 constexpr double kSmallest = 1e-9;
-constexpr double kUnknownPlace_m = 1.0;  // a robot's size
+constexpr double kUnknownPlace_m = 1.0;  // sigma of an unobserved position: a robot's size
 constexpr std::size_t kBlocks = 12;      // parts of the log that count as independent
 
 bool covers(const std::vector<ImportedPose>& odometry, Timestamp from, Timestamp to) {
@@ -68,7 +68,7 @@ double weight_of(double residual, double cutoff) {
 }
 
 std::optional<Line> fit_line(const Turns& turns, double cutoff_rad) {
-  if (turns.lidar_rad.size() < kFewest) return std::nullopt;
+  if (turns.lidar_rad.size() < kMinMotions) return std::nullopt;
   Line line;
   // Starts from both signs: a robust fit may not leave the wrong sign.
   double best = 0.0;
@@ -115,7 +115,7 @@ double turn_rate_rad_s(const std::vector<ImportedPose>& odometry, Timestamp time
   return angle_difference(after.theta(), before.theta()) / kRateOver_s;
 }
 
-/// values = rows * unknowns, each with noise.
+/// Linear equations: values = rows * unknowns + noise.
 template <int kRows, int kUnknowns>
 struct Equations {
   std::vector<Eigen::Matrix<double, kRows, kUnknowns>> rows{};
@@ -192,8 +192,8 @@ std::optional<Measured> remaining_offset_s(const std::vector<LidarTurn>& turns,
                                                        turn_rate_rad_s(odometry, both.from[i]));
     equations.values.emplace_back(both.odometry_rad[i]);
   }
-  if (equations.rows.size() < kFewest) return std::nullopt;
-  const auto solution = solve_robustly(equations, kLeastResidual_rad);
+  if (equations.rows.size() < kMinMotions) return std::nullopt;
+  const auto solution = solve_robustly(equations, kMinResidual_rad);
   if (!solution) return std::nullopt;
   return Measured{solution->unknowns[1], std::sqrt(solution->covariance(1, 1))};
 }
@@ -202,16 +202,16 @@ double median_interval_s(const std::vector<ImportedPose>& odometry) {
   std::vector<double> intervals_s;
   for (std::size_t i = 1; i < odometry.size(); ++i)
     intervals_s.push_back(to_seconds(odometry[i].time - odometry[i - 1].time));
-  return std::max(kShortestInterval_s, upper_median(std::move(intervals_s)));
+  return std::max(kMinInterval_s, upper_median(std::move(intervals_s)));
 }
 
-/// Result for odometry too infrequent to search for an offset: 0 with a sigma of kLargestOffset_s.
+/// Result for odometry too infrequent to search for an offset: 0 with a sigma of kMaxOffset_s.
 std::optional<TurnComparison> comparison_without_offset(TurnComparison comparison, const Turns& now,
                                                         double cutoff_rad) {
   const auto line = fit_line(now, cutoff_rad);
   if (!line) return std::nullopt;
   comparison.ratio = {line->ratio, line->ratio_sigma};
-  comparison.lidar_late_s = {0.0, kLargestOffset_s};
+  comparison.lidar_late_s = {0.0, kMaxOffset_s};
   return comparison;
 }
 
@@ -225,7 +225,7 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
     comparison.turned_rad += std::abs(turn.turn_rad);
     sizes_rad.push_back(std::abs(turn.turn_rad));
   }
-  if (turns.size() < kFewest || comparison.turned_rad < kFewestTurns_rad) return std::nullopt;
+  if (turns.size() < kMinMotions || comparison.turned_rad < kMinTurned_rad) return std::nullopt;
   // Cutoff from the residuals of the best line without an offset.
   const Turns now = turns_with(turns, odometry, 0.0);
   double cutoff_rad = 0.1;
@@ -236,12 +236,12 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
     for (std::size_t k = 0; k < now.lidar_rad.size(); ++k)
       residuals.push_back(std::abs(now.odometry_rad[k] - line->ratio * now.lidar_rad[k]));
     cutoff_rad =
-        kCutoff * std::max(kLeastResidual_rad, kSigmaOfMad * upper_median(std::move(residuals)));
+        kCutoff * std::max(kMinResidual_rad, kSigmaOfMad * upper_median(std::move(residuals)));
   }
   // Only offsets of whole odometry intervals: at other offsets odometry is interpolated, which
   // smooths its noise and makes the fit better than at the true offset.
   const double interval_s = median_interval_s(odometry);
-  const int steps = static_cast<int>(std::floor(kLargestOffset_s / interval_s));
+  const int steps = static_cast<int>(std::floor(kMaxOffset_s / interval_s));
   if (steps < 1) return comparison_without_offset(comparison, now, cutoff_rad);
   std::vector<Line> lines;
   std::size_t best = 0;
@@ -253,7 +253,7 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
   }
   const double late_s = (static_cast<double>(best) - steps) * interval_s;
   comparison.ratio = {lines[best].ratio, lines[best].ratio_sigma};
-  comparison.lidar_late_s = {late_s, kLargestOffset_s};
+  comparison.lidar_late_s = {late_s, kMaxOffset_s};
   const auto beside =
       static_cast<std::size_t>(std::max(1.0, std::round(0.5 * kRateOver_s / interval_s)));
   if (best < beside || best + beside >= lines.size()) return comparison;
@@ -265,7 +265,7 @@ std::optional<TurnComparison> compare_turns(const std::vector<LidarTurn>& turns,
   // Noise of the turn rates scales down the remaining offset, by the same factor at every offset:
   // the true offset is the zero of the line through `before` and `after`.
   const double slope = (before->value - after->value) / (2.0 * half_width_s);
-  if (slope < kLeastSlope) return comparison;
+  if (slope < kMinSlope) return comparison;
   const double found_s = late_s - half_width_s + before->value / slope;
   // A second estimate, from the nearest sample. The two differ where turns are too fast for the
   // odometry's rate; half of the difference is then added to the standard deviation.
@@ -297,8 +297,8 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
     turned_rad += std::abs(wrap_angle(motion.first_from_second.theta()));
     equations.values.push_back(base.translation());
   }
-  if (equations.rows.size() < kFewest) return std::nullopt;
-  const auto solution = solve_robustly(equations, kLeastResidual_m);
+  if (equations.rows.size() < kMinMotions) return std::nullopt;
+  const auto solution = solve_robustly(equations, kMinResidual_m);
   if (!solution) return std::nullopt;
   const auto& [found, covariance] = *solution;
   const double scale = std::hypot(found[0], found[1]);
@@ -307,7 +307,7 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
     return std::sqrt(covariance(i, i));
   };
   // Without turns, the lever arm is not observable.
-  const double least_sigma_m = turned_rad < kFewestTurns_rad ? kUnknownPlace_m : 0.0;
+  const double least_sigma_m = turned_rad < kMinTurned_rad ? kUnknownPlace_m : 0.0;
   const double sigma_direction = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
   return HandEye{{found[2] / scale, std::max(least_sigma_m, sigma(2) / scale)},
                  {found[3] / scale, std::max(least_sigma_m, sigma(3) / scale)},

@@ -10,14 +10,15 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMostPoints = 360;
+constexpr std::size_t kMaxPoints = 360;
 constexpr std::size_t kScansPerProgress = 50;
-constexpr double kFarthest_m = 0.3;  // from the reference scan
-constexpr double kMostTurned_rad = 0.35;
+constexpr double kMaxDistance_m = 0.3;  // from the reference scan; then it is replaced
+constexpr double kMaxTurned_rad = 0.35;
 constexpr double kGuessSigma_m = 0.1;  // sigma of the predicted pose: the last step repeated
 constexpr double kGuessSigma_rad = 0.1;
-constexpr double kFewestMapped = 0.4;  // share of the beams that end where the first scan has walls
-constexpr double kFewestInliers = 0.5;  // share of those beams that lie on the walls
+// A scan fits if so many of its beams end where the reference scan has walls, ...
+constexpr double kMinMappedShare = 0.4;
+constexpr double kMinInlierShare = 0.5;  // ... and so many of these lie on the walls
 
 Points points_of(const LidarScan& scan, double range_max_m) {
   Points points;
@@ -61,7 +62,7 @@ LidarMotions lidar_motions(const ImportedLog& log, const ShowProgress& progress)
       progress(static_cast<double>(done) / static_cast<double>(log.scans.size()));
     ++done;
     const LidarScan scan = at_middle_of_sweep(scan_of(imported));
-    const Points points = thinned(points_of(scan, log.robot.lidar.range_max_m), kMostPoints);
+    const Points points = thinned(points_of(scan, log.robot.lidar.range_max_m), kMaxPoints);
     if (!anchor) {
       anchor = anchor_of(scan.time, points, config);
       last = scan.time;
@@ -69,8 +70,8 @@ LidarMotions lidar_motions(const ImportedLog& log, const ShowProgress& progress)
     }
     const ScanMatch match = match_scan(points, anchor->map, anchor_from_last * last_step,
                                        guess_covariance, noise, config);
-    const bool fits = match.is_usable(config) && match.mapped_share > kFewestMapped &&
-                      match.inlier_share > kFewestInliers;
+    const bool fits = match.is_usable(config) && match.mapped_share > kMinMappedShare &&
+                      match.inlier_share > kMinInlierShare;
     if (!fits) {
       ++found.num_lost;
       anchor = anchor_of(scan.time, points, config);
@@ -82,8 +83,8 @@ LidarMotions lidar_motions(const ImportedLog& log, const ShowProgress& progress)
     anchor_from_last = match.map_from_base;
     found.turns.push_back({last, scan.time, wrap_angle(last_step.theta())});
     last = scan.time;
-    const bool is_far = anchor_from_last.translation().norm() > kFarthest_m ||
-                        std::abs(wrap_angle(anchor_from_last.theta())) > kMostTurned_rad;
+    const bool is_far = anchor_from_last.translation().norm() > kMaxDistance_m ||
+                        std::abs(wrap_angle(anchor_from_last.theta())) > kMaxTurned_rad;
     if (!is_far) continue;
     found.motions.push_back(
         {anchor->time, scan.time, anchor_from_last, !match.observed.is_degenerate});

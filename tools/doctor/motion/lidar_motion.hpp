@@ -9,7 +9,7 @@
 
 namespace waymark {
 
-/// From one scan to a later one, some decimetres or tens of degrees on.
+/// Motion from one scan to a later one, some decimetres or tens of degrees on.
 struct LidarMotion {
   Timestamp from{};
   Timestamp to{};

@@ -34,7 +34,7 @@ class MapYaml {
       if (trimmed(line).empty() || trimmed(line) == "---") continue;
       const std::size_t colon = line.find(':');
       if (colon == std::string::npos)
-        throw InputError{at_line(file, i + 1, fmt::format("got '{}', expected key: value", line))};
+        throw SetupError{at_line(file, i + 1, fmt::format("got '{}', expected key: value", line))};
       values_[std::string{trimmed(line.substr(0, colon))}] = trimmed(line.substr(colon + 1));
     }
   }
@@ -42,14 +42,14 @@ class MapYaml {
   std::string text(const std::string& key) const {
     const auto found = values_.find(key);
     if (found == values_.end() || found->second.empty())
-      throw InputError{fmt::format("{}: key '{}' is missing", file_.string(), key)};
+      throw SetupError{fmt::format("{}: key '{}' is missing", file_.string(), key)};
     return found->second;
   }
 
   double number(const std::string& key) const {
     const auto numbers = parse_numbers(text(key));
     if (!numbers || numbers->size() != 1)
-      throw InputError{fmt::format("{}: {}: got '{}', expected a finite number", file_.string(),
+      throw SetupError{fmt::format("{}: {}: got '{}', expected a finite number", file_.string(),
                                    key, text(key))};
     return numbers->front();
   }
@@ -69,7 +69,7 @@ class MapYaml {
   }
 
   [[noreturn]] void refuse(const std::string& key, std::string_view expected) const {
-    throw InputError{
+    throw SetupError{
         fmt::format("{}: {}: got '{}', expected {}", file_.string(), key, text(key), expected)};
   }
 
@@ -105,11 +105,11 @@ Picture read_pgm(const fs::path& file) {
   const long height = header_number(bytes, at);
   const long max_value = header_number(bytes, at);
   if (width <= 0 || height <= 0 || width * height > kMaxCells || max_value <= 0 || max_value > 255)
-    throw InputError{file.string() + ": not a binary 8-bit PGM (header 'P5 width height 255')"};
+    throw SetupError{file.string() + ": not a binary 8-bit PGM (header 'P5 width height 255')"};
   const std::size_t begin = at + 1;  // one white-space character ends the header
   const auto size = static_cast<std::size_t>(width * height);
   if (bytes.size() < begin + size)
-    throw InputError{fmt::format("{}: truncated: {} of {} pixels", file.string(),
+    throw SetupError{fmt::format("{}: truncated: {} of {} pixels", file.string(),
                                  bytes.size() - std::min(bytes.size(), begin), size)};
   return {static_cast<int>(width), static_cast<int>(height), static_cast<int>(max_value),
           bytes.substr(begin, size)};

@@ -16,7 +16,7 @@ using corridor::MapImage;
 
 /// Reads map.yaml (`image`, `resolution`, `origin`, `negate`, `occupied_thresh`, `free_thresh`, one
 /// `key: value` per line) and the binary 8-bit PGM it names, relative to its own folder.
-/// @throws InputError naming file, line and what was expected.
+/// @throws SetupError naming file, line and what was expected.
 MapImage read_map(const std::filesystem::path& yaml_file);
 
 struct MapWithOrigin {
@@ -25,7 +25,7 @@ struct MapWithOrigin {
 };
 
 /// Like read_map(), with the first two numbers of `origin` [m], or (0, 0) without that key.
-/// @throws InputError as above.
+/// @throws SetupError as above.
 MapWithOrigin read_map_with_origin(const std::filesystem::path& yaml_file);
 
 }  // namespace waymark::evaluate

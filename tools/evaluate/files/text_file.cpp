@@ -39,10 +39,10 @@ std::optional<double> parse_number(const std::string& word) {
 std::string read_text(const std::filesystem::path& file) {
   std::ifstream input{file, std::ios::binary};
   if (!input.is_open() || std::filesystem::is_directory(file))
-    throw InputError{
+    throw SetupError{
         fmt::format("{}: cannot be read; give the path of an existing file", file.string())};
   std::string text{std::istreambuf_iterator<char>{input}, {}};
-  if (input.bad()) throw InputError{fmt::format("{}: reading failed", file.string())};
+  if (input.bad()) throw SetupError{fmt::format("{}: reading failed", file.string())};
   return text;
 }
 
@@ -72,16 +72,16 @@ std::string at_line(const std::filesystem::path& file, std::size_t line_number,
 }
 
 CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns,
-                  Skipped& skipped) {
+                  SkippedLines& skipped) {
   const std::vector<std::string> lines = read_lines(file);
   const std::vector<std::string> names =
       lines.empty() ? std::vector<std::string>{} : split(lines.front());
   CsvTable table;
-  std::vector<std::size_t> places;  // of the wanted columns in a line
+  std::vector<std::size_t> places;  // places of the wanted columns in a line
   for (const std::string& column : columns) {
     const auto place = std::find(names.begin(), names.end(), column);
     if (place == names.end())
-      throw InputError{at_line(file, 1,
+      throw SetupError{at_line(file, 1,
                                fmt::format("no column '{}'; the first line must be '{}'", column,
                                            fmt::join(columns, ",")))};
     table.column_of[column] = places.size();

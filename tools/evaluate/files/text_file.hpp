@@ -2,30 +2,25 @@
 // Text files: lines, numbers, comma-separated tables.
 #pragma once
 
+#include "common/errors/setup_error.hpp"
+
 #include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace waymark::evaluate {
 
-/// Unusable input; what() says what, where and what to do.
-class InputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 /// Lines that were left out, as "file:line: reason".
-using Skipped = std::vector<std::string>;
+using SkippedLines = std::vector<std::string>;
 
-/// @throws InputError if the file cannot be read.
+/// @throws SetupError if the file cannot be read.
 std::string read_text(const std::filesystem::path& file);
 
-/// Lines without their ends ("\n" or "\r\n"). @throws InputError if the file cannot be read.
+/// Lines without their ends ("\n" or "\r\n"). @throws SetupError if the file cannot be read.
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 
 /// Finite numbers separated by white space or commas; nullopt if the line has anything else.
@@ -48,8 +43,8 @@ struct CsvTable {
 
 /// Reads the named columns; others may hold any words. Lines whose named columns are not finite
 /// numbers, or that have another number of words than the first line, are added to `skipped`.
-/// @throws InputError if the file cannot be read or a column is missing.
+/// @throws SetupError if the file cannot be read or a column is missing.
 CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& columns,
-                  Skipped& skipped);
+                  SkippedLines& skipped);
 
 }  // namespace waymark::evaluate

@@ -22,7 +22,7 @@ std::optional<double> yaw_of(double qx, double qy, double qz, double qw) {
 
 }  // namespace
 
-Trajectory read_tum(const std::filesystem::path& file, Skipped& skipped) {
+Trajectory read_tum(const std::filesystem::path& file, SkippedLines& skipped) {
   const std::vector<std::string> lines = read_lines(file);
   Trajectory trajectory;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -45,7 +45,7 @@ Trajectory read_tum(const std::filesystem::path& file, Skipped& skipped) {
       trajectory.push_back({n[0], Se2{n[1], n[2], *yaw_rad}});
   }
   if (trajectory.empty())
-    throw InputError{file.string() + ": no pose in it; expected lines t x y z qx qy qz qw"};
+    throw SetupError{file.string() + ": no pose in it; expected lines t x y z qx qy qz qw"};
   return trajectory;
 }
 

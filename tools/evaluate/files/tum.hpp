@@ -21,8 +21,8 @@ using Trajectory = std::vector<StampedPose>;
 
 /// Lines `t x y z qx qy qz qw`; z is ignored, the yaw is taken from the quaternion. '#' starts a
 /// comment. Lines of another form and lines whose time does not advance are added to `skipped`.
-/// @throws InputError if the file cannot be read or has no pose.
-Trajectory read_tum(const std::filesystem::path& file, Skipped& skipped);
+/// @throws SetupError if the file cannot be read or has no pose.
+Trajectory read_tum(const std::filesystem::path& file, SkippedLines& skipped);
 
 /// Interpolated pose at a time; nullopt outside the trajectory's span. Times are stored with six
 /// decimals, so that one microsecond outside counts as inside.

@@ -60,7 +60,7 @@ std::optional<double> moved_named_share(const std::vector<Marker>& in_map,
 
 }  // namespace
 
-std::vector<Marker> read_markers(const std::filesystem::path& file, Skipped& skipped) {
+std::vector<Marker> read_markers(const std::filesystem::path& file, SkippedLines& skipped) {
   std::vector<std::string> columns{"id", "instance", "x_m", "y_m", "yaw_rad"};
   const bool with_state = has_state(file);
   if (with_state) columns.emplace_back("state");
@@ -76,7 +76,7 @@ std::vector<Marker> read_markers(const std::filesystem::path& file, Skipped& ski
 }
 
 std::vector<Marker> with_moves(std::vector<Marker> markers, const std::filesystem::path& file,
-                               Skipped& skipped) {
+                               SkippedLines& skipped) {
   const CsvTable table = read_csv(file, {"id", "instance", "x_m", "y_m", "yaw_rad"}, skipped);
   for (const auto& row : table.rows) {
     Marker moved = marker_of(table, row);

@@ -16,7 +16,7 @@ struct Marker {
   int id{};
   Se2 parent_from_marker{};
   int instance{0};           ///< distinguishes markers of equal id
-  bool has_moved{false};     ///< true marker: was moved; estimated one: has state "moved"
+  bool has_moved{false};     ///< a true marker was moved; an estimated one has the state "moved"
   bool is_tentative{false};  ///< estimated marker with state "tentative"
 };
 
@@ -28,24 +28,24 @@ struct MarkerError {
   std::size_t missing{};    ///< true markers without an estimate
   std::size_t spurious{};   ///< estimates without a true marker
   std::size_t tentative{};  ///< tentative estimates, which are excluded from all other members
-  double right_share{};     ///< pairs within kRightMarker_m over matched + missing + spurious
+  double right_share{};     ///< pairs within kRightMarker_m / (matched + missing + spurious)
   std::optional<double> mean_position_m{};
   std::optional<double> max_position_m{};
   std::optional<double> mean_yaw_deg{};
   std::optional<double> max_yaw_deg{};
-  /// Markers that were moved and are reported so, over those that were moved or are reported so.
-  /// nullopt if there are none.
+  /// Markers that were moved and are reported as moved / markers that were moved or are reported as
+  /// moved; nullopt if there are none.
   std::optional<double> moved_named_share{};
 };
 
 /// Reads `id,instance,x_m,y_m,yaw_rad`, and `state` (as in marker_landmark_t) if it is there; more
 /// columns may follow.
-std::vector<Marker> read_markers(const std::filesystem::path& file, Skipped& skipped);
+std::vector<Marker> read_markers(const std::filesystem::path& file, SkippedLines& skipped);
 
 /// The markers at their final places.
 /// @param file  `t_s,id,instance,x_m,y_m,yaw_rad`, in order of time.
 std::vector<Marker> with_moves(std::vector<Marker> markers, const std::filesystem::path& file,
-                               Skipped& skipped);
+                               SkippedLines& skipped);
 
 /// Pairs estimated and true markers of the same id greedily, nearest pairs first, none further than
 /// `gate_m` apart; each marker is used once.

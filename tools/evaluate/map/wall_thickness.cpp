@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kGap_cells = 3;
 constexpr double kThickestShare = 0.005;
-constexpr int kThickest_cells = 20;  ///< thicker walls count as this; a metre at 5 cm
+constexpr int kThickest_cells = 20;  ///< a metre at 5 cm; thicker walls count as this thick
 
 class Mask {
  public:
@@ -39,7 +39,7 @@ void fill_gaps(int length, CellAt cell) {
     if (cell(i) != 1) continue;
     if (last_wall >= 0 && i - last_wall - 1 <= kGap_cells) {
       for (int gap = last_wall + 1; gap < i; ++gap)
-        cell(gap) = 2;  // filled, but not a wall for lines in the other direction
+        cell(gap) = 2;  // filled, but no wall when gaps are filled in the other direction
     }
     last_wall = i;
   }

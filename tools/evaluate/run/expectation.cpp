@@ -78,7 +78,7 @@ Figure memory_mb_per_m(const EstimatorResult& result) {
   return result.memory_mb_per_m;
 }
 
-/// Not available if the mean leaves out too many poses: the worst ones may be among them.
+/// nullopt if the mean leaves out too many poses: the worst ones may be among them.
 Figure nees_mean(const EstimatorResult& result) {
   if (!result.nees || leaves_out_too_many(*result.nees, result.nees->left_out()))
     return std::nullopt;

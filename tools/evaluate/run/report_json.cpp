@@ -7,7 +7,7 @@
 namespace waymark::evaluate {
 namespace {
 
-/// To six decimals; null for NaN and infinity, which JSON does not have.
+/// The number with six decimals; null for NaN and infinity, which JSON does not have.
 Json number(double value) {
   return std::isfinite(value) ? Json(rounded(value, 1e6)) : Json{};
 }

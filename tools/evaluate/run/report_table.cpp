@@ -42,7 +42,8 @@ std::string cell(const std::optional<double>& value, int decimals, std::string_v
   return fmt::format("{:.{}f}{}", *value, decimals, unit);
 }
 
-/// Two decimals; from 1000 on one significant digit ("3e+03"); "-" if it is not finite.
+/// Mean NEES with two decimals; from 1000 on with one significant digit ("3e+03"); "-" if not
+/// finite.
 std::string nees_cell(double nees) {
   return nees < 1000.0 || !std::isfinite(nees) ? cell(nees, 2) : fmt::format("{:.0e}", nees);
 }
@@ -132,7 +133,7 @@ Row error_row(const EstimatorResult& result, std::optional<double> odometry_alon
   return row;
 }
 
-/// That of the first row, and the rows with another one.
+/// The alignment of the first row, and the rows with another one.
 std::string alignments(const std::vector<EstimatorResult>& results) {
   if (results.empty() || !results.front().trajectory) return "";
   const Alignment first = results.front().trajectory->alignment;

@@ -46,20 +46,12 @@ struct ScenarioPart {
 };
 
 ScenarioPart read_scenario(const fs::path& file) {
-  try {
-    return load_part<ScenarioPart>(file);
-  } catch (const ConfigError& error) {
-    throw InputError{error.what()};
-  }
+  return load_part<ScenarioPart>(file);
 }
 
 /// Reads expect.toml, in which (unlike in a scenario) unknown keys are errors.
 ExpectConfig read_expectations(const fs::path& file) {
-  try {
-    return load_config<ExpectFile>({{file}, {}}).expect;
-  } catch (const ConfigError& error) {
-    throw InputError{error.what()};
-  }
+  return load_config<ExpectFile>({{file}, {}}).expect;
 }
 
 /// The part of slam's configuration that the evaluation reads. Defaults are slam's.
@@ -106,23 +98,18 @@ struct SlamPart {
 
 /// True if slam drew its map in a survey's frame, which is the world frame.
 bool is_surveyed(const fs::path& config_file) {
-  if (!fs::exists(config_file)) return false;
-  try {
-    return load_part<SlamPart>(config_file).uses_survey();
-  } catch (const ConfigError& error) {
-    throw InputError{error.what()};
-  }
+  return fs::exists(config_file) && load_part<SlamPart>(config_file).uses_survey();
 }
 
-/// @throws InputError if the file exists and is not JSON.
+/// @throws SetupError if the file exists and is not JSON.
 std::optional<std::string> json_if_there(const fs::path& file) {
   std::optional<std::string> text = text_if_there(file);
-  if (text && !nlohmann::json::accept(*text)) throw InputError{file.string() + ": not JSON"};
+  if (text && !nlohmann::json::accept(*text)) throw SetupError{file.string() + ": not JSON"};
   return text;
 }
 
-/// timings.json, in which slam's counters are as this program reads them.
-/// @throws InputError if the file exists and is something else.
+/// Content of timings.json, if the file exists.
+/// @throws SetupError if it has no counters of slam in the expected form.
 std::optional<std::string> timings_if_there(const fs::path& file) {
   std::optional<std::string> text = json_if_there(file);
   if (!text) return std::nullopt;
@@ -134,7 +121,7 @@ std::optional<std::string> timings_if_there(const fs::path& file) {
   };
   const auto& counters = timings.at(pointer);
   if (!counters.is_array() || !std::all_of(counters.begin(), counters.end(), is_counter))
-    throw InputError{file.string() + ": slam.counters is not a list of objects with a kind"};
+    throw SetupError{file.string() + ": slam.counters is not a list of objects with a kind"};
   return text;
 }
 
@@ -148,11 +135,11 @@ std::vector<std::string> changes_in(const fs::path& file) {
   return lines;
 }
 
-/// Runs one part of the evaluation; an InputError is added to the problems.
+/// Runs one part of the evaluation; an SetupError is added to the problems.
 void attempt(std::vector<std::string>& problems, const std::function<void()>& part) {
   try {
     part();
-  } catch (const InputError& error) {
+  } catch (const SetupError& error) {
     problems.emplace_back(error.what());
   }
 }
@@ -164,12 +151,12 @@ struct Compared {
 };
 
 /// Adds what is wrong with the overlap to the problems.
-/// @throws InputError when fewer than two poses lie within the truth's times.
+/// @throws SetupError when fewer than two poses lie within the truth's times.
 Compared compare(const fs::path& file, const Trajectory& truth, EstimatorResult& result) {
   const Trajectory estimate = read_tum(file, result.skipped);
   Compared compared{associate(estimate, truth), {}};
   if (compared.pairs.size() < 2)
-    throw InputError{file.string() + ": fewer than two poses within the truth's time span"};
+    throw SetupError{file.string() + ": fewer than two poses within the truth's time span"};
   compared.overlap = overlap_of(estimate, truth, compared.pairs);
   for (const std::string& problem : problems_of(compared.overlap, "truth"))
     result.problems.push_back(fmt::format("{}: {}", file.string(), problem));
@@ -310,7 +297,7 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
     try {
       result.length = corridor::measure_corridor(map);
     } catch (const corridor::NotACorridor& error) {
-      throw InputError{fmt::format("{}: {}", map_file.string(), error.what())};
+      throw SetupError{fmt::format("{}: {}", map_file.string(), error.what())};
     }
   });
   std::optional<Se2> world_from_map;

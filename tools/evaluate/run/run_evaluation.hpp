@@ -36,7 +36,7 @@ struct RunTruth {
   std::optional<std::vector<Marker>> markers{};
   std::optional<double> lifted_t_s{};  ///< when the robot was lifted and put down elsewhere
   std::vector<double> sightings_s{};   ///< times of frames with a marker; only if it was lifted
-  Skipped skipped{};
+  SkippedLines skipped{};
 };
 
 /// All results of one estimator. nullopt = not available: see `problems`, or the truth is missing.
@@ -45,32 +45,32 @@ struct EstimatorResult {
   std::optional<corridor::CorridorLength> length{};
   std::optional<double> true_length_m{};
   std::optional<int> wall_cells{};                    ///< wall thickness [cells]
-  std::optional<TrajectoryError> trajectory{};        ///< of the poses published during the run
-  std::optional<TrajectoryError> final_trajectory{};  ///< of the trajectory corrected at the end
-  std::optional<Overlap> overlap{};                   ///< of `trajectory` with the truth
-  std::optional<Overlap> final_overlap{};             ///< of `final_trajectory`
+  std::optional<TrajectoryError> trajectory{};        ///< errors of the poses published in the run
+  std::optional<TrajectoryError> final_trajectory{};  ///< errors of the poses corrected at the end
+  std::optional<Overlap> overlap{};                   ///< of the published poses with the truth
+  std::optional<Overlap> final_overlap{};             ///< of the corrected poses with the truth
   std::optional<MarkerError> markers{};
   std::optional<Nees> nees{};
   std::vector<Station> stations{};
   std::optional<Timeline> timeline{};
-  std::optional<double> driven_m{};         ///< by the true robot
+  std::optional<double> driven_m{};         ///< distance that the true robot drove
   std::optional<double> sigma_growth{};     ///< between the stations given in [expect]
-  std::optional<double> memory_mb_per_m{};  ///< peak of the process over `driven_m`
+  std::optional<double> memory_mb_per_m{};  ///< peak memory of the process / driven_m
   std::vector<ExpectedFigure> expectations{};
-  ExpectConfig expect{};  ///< all zero if nothing is expected of this row
+  ExpectConfig expect{};  ///< all zero if nothing is expected of this estimator
   std::optional<std::string> config_toml{};
   std::optional<std::string> timings_json{};
   std::vector<std::string> changes{};  ///< lines of changes.csv after its header
   std::optional<std::string> findings_json{};
   std::vector<std::string> problems{};  ///< why figures are missing, or are not those of the run
-  std::vector<std::string> notes{};     ///< what figures leave out for good reasons
-  Skipped skipped{};                    ///< lines that were left out
+  std::vector<std::string> notes{};     ///< omissions that do not make a figure wrong
+  SkippedLines skipped{};               ///< lines that were left out
 };
 
 /// Reads scenario.toml ([world] layout and length_m, default 50, and [expect], which an expect.toml
 /// replaces), truth.tum, truth_markers.csv and truth_marker_moves.csv; and, if the robot was
 /// lifted, the times of frames with markers from run.lcm.
-/// @throws InputError for existing files that cannot be read.
+/// @throws SetupError for existing files that cannot be read.
 RunTruth read_truth(const std::filesystem::path& run_dir, const EvaluationOptions& options);
 
 /// Names of the sub-folders with a trajectory.tum, in the table's order: odometry, gmapping,

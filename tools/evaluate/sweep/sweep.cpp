@@ -35,7 +35,7 @@ std::string first_line(const fs::path& file) {
   return lines.empty() ? file.string() + ": empty" : lines.front();
 }
 
-/// True if all that is read from metrics.json has the form that `run` gives it.
+/// True if all parts of metrics.json that are read here have the form in which `run` writes them.
 bool is_as_written(const Json& metrics) {
   if (!metrics.is_object()) return false;
   const auto all_of = [&metrics](const char* key, const std::function<bool(const Json&)>& is_good) {
@@ -102,11 +102,11 @@ std::vector<PlannedRun> read_plan(const fs::path& sweep_dir) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::vector<std::string> words = split_at_tabs(lines[i]);
     if (words.size() != 5)
-      throw InputError{at_line(
+      throw SetupError{at_line(
           file, i + 1, "expected scenario, seed, folder, row and command, separated by tabs")};
     plan.push_back({words[0], words[1], words[2], words[3], words[4]});
   }
-  if (plan.empty()) throw InputError{file.string() + ": no runs in it"};
+  if (plan.empty()) throw SetupError{file.string() + ": no runs in it"};
   return plan;
 }
 

@@ -18,12 +18,12 @@ namespace waymark::evaluate {
 struct PlannedRun {
   std::string scenario{};  ///< with "+VARIANT" for a log with faults
   std::string seed{};
-  std::string folder{};  ///< of the run, relative to the sweep's
+  std::string folder{};  ///< folder of the run, relative to the sweep's
   std::string row{};     ///< folder of the estimator, relative to `folder`
   std::string again{};   ///< command that repeats this run alone
 };
 
-/// @throws InputError if the plan cannot be read or a line is not five fields separated by tabs.
+/// @throws SetupError if the plan cannot be read or a line is not five fields separated by tabs.
 std::vector<PlannedRun> read_plan(const std::filesystem::path& sweep_dir);
 
 struct SweptRun {
@@ -31,7 +31,7 @@ struct SweptRun {
   nlohmann::ordered_json metrics{};  ///< content of metrics.json; null if the run failed
   std::string failure{};             ///< why there are no metrics; empty = success
   std::vector<Station> stations{};
-  Skipped skipped{};  ///< lines of stations.csv that were left out
+  SkippedLines skipped{};  ///< lines of stations.csv that were left out
 
   bool has_failed() const { return !failure.empty(); }
 
@@ -54,9 +54,9 @@ std::vector<SweptRun> read_runs(const std::filesystem::path& sweep_dir);
 
 /// One figure over the seeds that did not fail; worst = largest, or smallest if higher is better.
 struct Figures {
-  std::optional<double> median{};  ///< of the seeds that have it
-  std::optional<double> worst{};   ///< nullopt if a seed does not have it, which may be the worst
-  std::size_t count{};             ///< seeds that have it
+  std::optional<double> median{};  ///< over the seeds that have the figure
+  std::optional<double> worst{};   ///< nullopt if a seed (perhaps the worst) does not have it
+  std::size_t count{};             ///< number of seeds that have the figure
   std::size_t seeds{};
 
   bool is_partial() const { return count > 0 && count < seeds; }
@@ -68,7 +68,7 @@ struct SweepRow {
   std::string row{};
   std::vector<SweptRun> runs{};
   std::vector<StationConsistency> stations{};
-  std::size_t stations_left_out{};  ///< of single runs, without a usable covariance
+  std::size_t stations_left_out{};  ///< stations without a usable covariance, over all runs
 
   std::size_t failures() const;
   std::size_t misses() const;
@@ -89,7 +89,8 @@ struct SweepRow {
   double limit(const std::string& key) const;
 };
 
-/// In the order of the plan. Adds `length_error_percent` and `ate_over_odometry` to the metrics.
+/// Rows in the order of the plan, with `length_error_percent` and `ate_over_odometry` added to the
+/// metrics.
 std::vector<SweepRow> sweep_rows(std::vector<SweptRun> runs);
 
 }  // namespace waymark::evaluate

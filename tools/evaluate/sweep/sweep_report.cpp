@@ -12,7 +12,7 @@ namespace {
 
 struct Column {
   std::string_view name;
-  const char* key;  ///< of metrics.json
+  const char* key;  ///< in metrics.json
   int decimals;
 };
 
@@ -37,7 +37,7 @@ std::string for_csv(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "";
 }
 
-/// Median and worst; if only some of the seeds have the figure, how many.
+/// Median and worst value; the number of seeds with the figure if some do not have it.
 std::string shown(const Figures& figures, int decimals) {
   if (figures.is_partial())
     return fmt::format("{} / none ({} of {})", shown(figures.median, decimals), figures.count,

@@ -15,11 +15,11 @@ namespace {
 // Quantiles 0.025 and 0.975 of the chi-square distribution with 3 degrees of freedom.
 constexpr double kBandLow = 0.2158;
 constexpr double kBandHigh = 9.3484;
-/// Smaller variances are rounding errors: 1 um, 1 urad.
+/// Smaller variances, of less than 1 um or 1 urad, are rounding errors.
 constexpr double kSmallestVariance = 1e-12;
-/// Times are written with six decimals.
+/// Tolerance for rounding: times are written with six decimals.
 constexpr double kSameTime_s = 1e-5;
-/// Covariances are written with fewer digits than they have.
+/// Tolerance for rounding: covariances are written with few digits.
 constexpr double kLargestCorrelation = 1.001;
 constexpr double kLeftOutShare = 0.01;
 
@@ -28,7 +28,7 @@ bool has_health(const std::filesystem::path& file) {
   return !lines.empty() && lines.front().ends_with(",health");
 }
 
-/// False for what is no covariance, singular or not. Only pairs of axes are checked.
+/// False if the matrix cannot be a covariance, not even a singular one. Checks pairs of axes only.
 bool is_valid(const Eigen::Matrix3d& covariance) {
   const Eigen::Vector3d variances = covariance.diagonal();
   if (variances.minCoeff() < 0.0) return false;
@@ -41,7 +41,7 @@ bool is_valid(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 std::vector<StampedCovariance> read_covariances(const std::filesystem::path& file,
-                                                Skipped& skipped) {
+                                                SkippedLines& skipped) {
   std::vector<std::string> columns{"t", "cxx", "cxy", "cxt", "cyy", "cyt", "ctt"};
   const bool with_health = has_health(file);
   if (with_health) columns.emplace_back("health");

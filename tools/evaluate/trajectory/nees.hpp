@@ -23,8 +23,8 @@ struct StampedCovariance {
 /// covariances are consistent.
 struct Nees {
   std::size_t poses{};
-  // Poses that are left out:
-  std::size_t missing{};   ///< without a covariance of their time
+  // Numbers of poses that are left out:
+  std::size_t missing{};   ///< there is no covariance of their time
   std::size_t invalid{};   ///< a variance is negative, or a correlation above 1
   std::size_t singular{};  ///< the covariance has no inverse, e.g. that of the first pose
   double mean{};           ///< NaN if there is no pose
@@ -38,7 +38,7 @@ bool leaves_out_too_many(const Nees& nees, std::size_t left_out);
 
 /// Reads `t,cxx,cxy,cxt,cyy,cyt,ctt` and, if present, `health` of covariance.csv; in order of time.
 std::vector<StampedCovariance> read_covariances(const std::filesystem::path& file,
-                                                Skipped& skipped);
+                                                SkippedLines& skipped);
 
 /// The covariance with that stamp, or null.
 const StampedCovariance* covariance_at(const std::vector<StampedCovariance>& covariances,

@@ -8,9 +8,10 @@ namespace {
 
 /// If a larger share of either trajectory lies outside the other, the errors are not the run's.
 constexpr double kOutsideShare = 0.05;
-/// A pose may come late, as localising needs a unique place; less than half a run is not the run.
+/// The first pose may come late, as localising needs a unique place; but if less than half of the
+/// run is left, the errors are not the run's.
 constexpr double kLatestStartShare = 0.5;
-/// More than the travel between two updates of any estimator; a robot at rest needs no poses.
+/// Longer than the travel between two updates of any estimator. A robot at rest needs no poses.
 constexpr double kLongestGap_m = 2.0;
 
 /// Total time of the gaps between poses in which the true robot drives more than kLongestGap_m [s].

@@ -13,10 +13,10 @@
 namespace waymark::evaluate {
 
 struct Overlap {
-  std::size_t poses{};    ///< of the estimate
-  std::size_t outside{};  ///< of these, outside the truth's time span
+  std::size_t poses{};    ///< number of poses of the estimate
+  std::size_t outside{};  ///< how many of them lie outside the truth's time span
   double truth_s{};       ///< duration of the truth
-  double first_pose_s{};  ///< from the truth's begin to the first pose inside
+  double first_pose_s{};  ///< time of the first pose inside, since the truth's begin
   /// Share of the truth's time from the first pose on, up to the last pose, and without the gaps in
   /// which the true robot drives more than 2 m.
   double covered_share{};
@@ -28,10 +28,11 @@ Overlap overlap_of(const Trajectory& estimate, const Trajectory& truth,
 
 /// Why the errors are not those of the whole run: more than 5 % of the poses outside the truth,
 /// less than 95 % of the truth covered, or no pose in its first half. Empty if nothing is wrong.
-/// @param truth  what to call the truth.
+/// @param truth  name of the truth in the sentences.
 std::vector<std::string> problems_of(const Overlap& overlap, std::string_view truth);
 
-/// A sentence if the first pose comes after 5 % of the truth's time, which is no problem yet.
+/// A sentence if the first pose comes after more than 5 % of the truth's time; this alone is no
+/// problem.
 std::optional<std::string> late_start_of(const Overlap& overlap, std::string_view truth);
 
 }  // namespace waymark::evaluate

@@ -41,7 +41,7 @@ struct Errors {
 
 }  // namespace
 
-std::vector<Relation> read_relations(const std::filesystem::path& file, Skipped& skipped) {
+std::vector<Relation> read_relations(const std::filesystem::path& file, SkippedLines& skipped) {
   const std::vector<std::string> lines = read_lines(file);
   std::vector<Relation> relations;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -61,13 +61,13 @@ std::vector<Relation> read_relations(const std::filesystem::path& file, Skipped&
       relations.push_back({i + 1, n[0], n[1], Se2{n[2], n[3], n[7]}});
   }
   if (relations.empty())
-    throw InputError{file.string() +
+    throw SetupError{file.string() +
                      ": no relation in it; expected lines t1 t2 x y z roll pitch yaw"};
   return relations;
 }
 
 RelationsError relations_error(const Trajectory& trajectory, const std::vector<Relation>& relations,
-                               const std::filesystem::path& relations_file, Skipped& skipped) {
+                               const std::filesystem::path& relations_file, SkippedLines& skipped) {
   Errors all, near, far;
   for (const Relation& relation : relations) {
     const auto map_from_base1 = pose_at(trajectory, relation.t1_s);

@@ -18,7 +18,7 @@ struct Relation {
 
 struct MeanAndSigma {
   double mean{};
-  double sigma{};  ///< square root of the mean squared deviation from the mean
+  double sigma{};  ///< standard deviation
 };
 
 struct RelationsSummary {
@@ -39,13 +39,13 @@ struct RelationsError {
 };
 
 /// Lines `t1 t2 x y z roll pitch yaw`; '#' starts a comment. Lines of another form or out of the
-/// plane are added to `skipped`. @throws InputError if the file cannot be read or has no relation.
-std::vector<Relation> read_relations(const std::filesystem::path& file, Skipped& skipped);
+/// plane are added to `skipped`. @throws SetupError if the file cannot be read or has no relation.
+std::vector<Relation> read_relations(const std::filesystem::path& file, SkippedLines& skipped);
 
 /// Mean absolute error of the relative poses; relations outside the trajectory's times are added to
 /// `skipped`. Source: Kümmerle et al., "On measuring the accuracy of SLAM algorithms" (2009),
 /// equation 3, separately for translation and rotation.
 RelationsError relations_error(const Trajectory& trajectory, const std::vector<Relation>& relations,
-                               const std::filesystem::path& relations_file, Skipped& skipped);
+                               const std::filesystem::path& relations_file, SkippedLines& skipped);
 
 }  // namespace waymark::evaluate

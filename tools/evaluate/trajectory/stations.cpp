@@ -10,7 +10,7 @@ namespace waymark::evaluate {
 namespace {
 
 constexpr double kSpacing_m = 1.0;
-constexpr double kLifted_m = 0.3;     ///< a shorter step may be driven, whatever its duration
+constexpr double kLifted_m = 0.3;     ///< a shorter step counts as driven, whatever its duration
 constexpr double kFastest_mps = 1.0;  ///< twice the speed of the fastest scenario's robot
 /// Written for nullopt, because every column has to be a finite number; valid values are not
 /// negative.
@@ -110,7 +110,7 @@ std::string stations_csv(const std::vector<Station>& stations) {
   return text;
 }
 
-std::vector<Station> read_stations(const std::filesystem::path& file, Skipped& skipped) {
+std::vector<Station> read_stations(const std::filesystem::path& file, SkippedLines& skipped) {
   const CsvTable table =
       read_csv(file,
                {"travel_m", "t", "along_m", "across_m", "heading_rad", "nees", "sigma_along_m",

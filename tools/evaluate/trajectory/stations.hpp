@@ -13,7 +13,7 @@ namespace waymark::evaluate {
 
 /// Errors are estimate minus truth in the true base's frame: along = ahead, across = to the left.
 struct Station {
-  double travel_m{};  ///< driven by the true robot since the first pose; a whole number
+  double travel_m{};  ///< distance driven by the true robot since the first pose; a whole number
   double t_s{};
   double along_m{};
   double across_m{};
@@ -31,8 +31,8 @@ bool was_lifted(const Se2& before, const Se2& after, double duration_s);
 /// Length of the true trajectory [m], without steps in which the robot was lifted.
 double driven_m(const std::vector<PosePair>& pairs);
 
-/// The first pose at or after each metre; metres without a pose are left out. Being lifted is no
-/// travel.
+/// One station for each metre of travel: the first pose at or after it; metres without a pose are
+/// left out. Being lifted is no travel.
 std::vector<Station> stations(const std::vector<PosePair>& pairs,
                               const std::vector<StampedCovariance>& covariances,
                               const Se2& world_from_map);
@@ -45,7 +45,7 @@ std::optional<double> sigma_growth(const std::vector<Station>& stations, double 
 /// -1 = none.
 std::string stations_csv(const std::vector<Station>& stations);
 
-/// @throws InputError if the file cannot be read.
-std::vector<Station> read_stations(const std::filesystem::path& file, Skipped& skipped);
+/// @throws SetupError if the file cannot be read.
+std::vector<Station> read_stations(const std::filesystem::path& file, SkippedLines& skipped);
 
 }  // namespace waymark::evaluate

@@ -94,7 +94,7 @@ std::vector<double> sighting_times(const std::filesystem::path& log) {
         times_s.push_back(to_seconds(message->time));
     }
   } catch (const std::runtime_error& error) {
-    throw InputError{error.what()};
+    throw SetupError{error.what()};
   }
   return times_s;
 }
@@ -124,7 +124,7 @@ Timeline timeline(const std::vector<PosePair>& pairs,
   if (lifted_t_s)
     timeline.kidnap = kidnap_at(*lifted_t_s, pairs, covariances, world_from_map, sightings_s);
   for (std::size_t i = 1; i < pairs.size(); ++i) {
-    if (lifted_t_s && pairs[i].t_s >= *lifted_t_s) break;  // relocalisation has to jump
+    if (lifted_t_s && pairs[i].t_s >= *lifted_t_s) break;  // relocalising is a jump by nature
     timeline.max_jump_m = std::max(timeline.max_jump_m, jump_m(pairs[i - 1], pairs[i]));
   }
   return timeline;

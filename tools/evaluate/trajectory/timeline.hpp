@@ -29,7 +29,7 @@ struct Timeline {
 };
 
 /// Times [s] of the frames that show a marker, from channel MARKERS of a log.
-/// @throws InputError if the log cannot be read.
+/// @throws SetupError if the log cannot be read.
 std::vector<double> sighting_times(const std::filesystem::path& log);
 
 /// Time at which the robot was first lifted [s]; nullopt if it never was.

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kRpeTravel_m = 1.0;
-constexpr double kShortestAxis_m = 1.0;  ///< between first and last pose; shorter: no axis
+constexpr double kShortestAxis_m = 1.0;  ///< least distance between first and last pose
 
 class SpreadOf {
  public:

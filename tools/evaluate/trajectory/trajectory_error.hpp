@@ -21,9 +21,9 @@ struct PosePair {
 std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth);
 
 enum class Alignment {
-  kOrigin,  ///< on the first poses, where the map begins; for simulations
+  kOrigin,  ///< first pose on first pose, where the map begins; for simulations
   kSe2,     ///< best rigid fit of the positions; for real logs
-  kFrame    ///< none: the map's frame in the world is known
+  kFrame    ///< no alignment: the map's frame in the world is known
 };
 
 std::string_view name_of(Alignment alignment);

@@ -14,13 +14,14 @@ namespace {
 
 constexpr std::array kFields_deg{180.0, 270.0, 360.0, 240.0, 190.0, 100.0};  // the usual ones first
 constexpr double kUrgStep_deg = 360.0 / 1024.0;
-constexpr double kSameStep = 0.004;      // of the step: 682 beams of an URG make 240 degrees nearly
-constexpr std::size_t kWindows = 8;      // per scan
-constexpr std::size_t kFewestBeams = 9;  // in a window
-constexpr std::size_t kFewestWindows = 100;
+constexpr double kSameStep = 0.004;   // relative; 682 beams of an URG make nearly 240 degrees
+constexpr std::size_t kWindows = 8;   // windows of neighbouring beams per scan
+constexpr std::size_t kMinBeams = 9;  // beams in a window
+constexpr std::size_t kMinWindows = 100;
 constexpr double kFarthestWall_m = 30.0;
-constexpr double kFloor_m = 0.003;  // smallest scatter that is distinguished
-constexpr double kClearly = 0.02;   // least drop of the mean logarithm; a wrong field adds 0.1
+constexpr double kFloor_m = 0.003;  // smaller scatters are not distinguished
+// Least decrease of the mean logarithm of the scatter; a wrong field of view increases it by 0.1.
+constexpr double kClearly = 0.02;
 
 constexpr double kRound = 0.004;  // smallest relative spread of a wall's ranges in a window
 
@@ -53,7 +54,7 @@ std::vector<double> possible_steps_rad(std::size_t num_beams) {
 
 std::vector<Window> windows_of(std::span<const std::span<const double>> scans,
                                std::size_t num_beams) {
-  const std::size_t size = std::max(kFewestBeams, num_beams / kWindows);
+  const std::size_t size = std::max(kMinBeams, num_beams / kWindows);
   std::vector<Window> windows;
   for (const std::span<const double> ranges_m : scans) {
     for (std::size_t i = 0; i + size <= ranges_m.size(); i += size) {
@@ -91,7 +92,7 @@ std::optional<BeamAngles> straightest_angles(std::span<const std::span<const dou
                                              std::size_t num_beams) {
   const std::optional<BeamAngles> conventional = conventional_angles(num_beams);
   const std::vector<Window> windows = windows_of(scans, num_beams);
-  if (windows.size() < kFewestWindows) return conventional;
+  if (windows.size() < kMinWindows) return conventional;
   std::optional<BeamAngles> best = conventional;
   double least = best ? curvature_of_walls(windows, best->step_rad) : 0.0;
   for (const double step_rad : possible_steps_rad(num_beams)) {

@@ -12,9 +12,9 @@ struct BeamAngles {
   double step_rad{0.0};
 };
 
-/// SICK conventions over 180 degrees from -90: 181 and 361 beams reach +90 with the last one, 180
-/// and 360 end one step before (as in the logs of the relations benchmark). nullopt for other
-/// numbers.
+/// Conventions for a SICK, which covers 180 degrees from -90 on: the last of 181 or 361 beams is at
+/// +90, the last of 180 or 360 beams one step before (as in the logs of the relations benchmark).
+/// nullopt for other numbers.
 std::optional<BeamAngles> conventional_angles(std::size_t num_beams);
 
 /// Angle of the first beam of a scan that is centred ahead, rounded to whole degrees.

@@ -15,7 +15,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kMaxBeams = 4000;            // as robot.lidar.num_beams
+constexpr int kMaxBeams = 4000;            // limit of robot.lidar.num_beams
 constexpr double kLatestTime_s = 4e9;      // the year 2096
 constexpr double kLargestMounting = 10.0;  // [m, rad]
 
@@ -27,13 +27,13 @@ constexpr std::array<std::string_view, 27> kOtherKeywords{
     "NMEAGGA",     "NMEARMC",          "SONAR",         "BUMPER",    "IMU",       "IMU_CORR",
     "PANTILT",     "FOLLOWTRAJECTORY", "BASEVELOCITY"};
 
-/// User's options that apply to all lines.
+/// Options of the user that apply to all lines.
 struct Given {
   const CarmenBeams& beams;
   const CarmenUnits& units;
 };
 
-Se2 take_pose(FieldCursor& fields, std::string_view name, const CarmenUnits& units,
+Se2 read_pose(FieldCursor& fields, std::string_view name, const CarmenUnits& units,
               double* heading_rad = nullptr) {
   const double x_m = fields.number(name) * units.odometry_m;
   const double y_m = fields.number(name) * units.odometry_m;
@@ -48,7 +48,7 @@ Se2 take_pose(FieldCursor& fields, std::string_view name, const CarmenUnits& uni
 }
 
 /// Negative ranges become NaN and are counted, like NaN.
-void take_ranges(FieldCursor& fields, int num_beams, CarmenScan& scan) {
+void read_ranges(FieldCursor& fields, int num_beams, CarmenScan& scan) {
   scan.ranges_m.reserve(static_cast<std::size_t>(num_beams));
   for (int i = 0; i < num_beams && !fields.failed(); ++i) {
     const double range_m = fields.any_number(fmt::format("range {} of {}", i, num_beams));
@@ -63,7 +63,7 @@ constexpr std::size_t kAllTimes = 3;
 /// Reads the three fields that end every line, or the fewer ones of older loggers; checks that
 /// nothing follows.
 template <class Line>
-void take_times(FieldCursor& fields, const CarmenUnits& units, Line& line) {
+void read_times(FieldCursor& fields, const CarmenUnits& units, Line& line) {
   line.num_times = std::min(fields.num_left(), kAllTimes);
   if (line.num_times == 0) return;
   const bool has_host = line.num_times == kAllTimes || !fields.ends_with_number();
@@ -91,25 +91,25 @@ CarmenLine finish(FieldCursor& fields, CarmenLine line) {
 
 CarmenLine parse_odometry(FieldCursor& fields, const CarmenUnits& units) {
   CarmenOdometry odometry{};
-  odometry.odom_from_base = take_pose(fields, "the odometry pose", units);
+  odometry.odom_from_base = read_pose(fields, "the odometry pose", units);
   for (const std::string_view name : {"tv", "rv", "accel"})
     fields.number(name);
-  take_times(fields, units, odometry);
+  read_times(fields, units, odometry);
   return finish(fields, odometry);
 }
 
-void take_poses(FieldCursor& fields, const CarmenUnits& units, CarmenScan& scan) {
-  scan.odom_from_lidar = take_pose(fields, "the LiDAR pose", units);
-  scan.odom_from_base = take_pose(fields, "the odometry pose", units, &scan.heading_rad);
+void read_poses(FieldCursor& fields, const CarmenUnits& units, CarmenScan& scan) {
+  scan.odom_from_lidar = read_pose(fields, "the LiDAR pose", units);
+  scan.odom_from_base = read_pose(fields, "the odometry pose", units, &scan.heading_rad);
 }
 
 CarmenLine parse_old_laser(FieldCursor& fields, CarmenLidar lidar, const Given& given) {
   CarmenScan scan{};
   scan.lidar = lidar;
   const int num_beams = fields.integer("the number of ranges", 1, kMaxBeams);
-  take_ranges(fields, num_beams, scan);
-  take_poses(fields, given.units, scan);
-  take_times(fields, given.units, scan);
+  read_ranges(fields, num_beams, scan);
+  read_poses(fields, given.units, scan);
+  read_times(fields, given.units, scan);
   return finish(fields, scan);
 }
 
@@ -144,14 +144,14 @@ CarmenLine parse_robot_laser(FieldCursor& fields, CarmenLidar lidar, const Given
   fields.number("accuracy");
   fields.number("remission_mode");
   const int num_beams = fields.integer("the number of ranges", 1, kMaxBeams);
-  take_ranges(fields, num_beams, scan);
+  read_ranges(fields, num_beams, scan);
   const int num_remissions = fields.integer("the number of remissions", 0, kMaxBeams);
   for (int i = 0; i < num_remissions && !fields.failed(); ++i)
     fields.number("a remission");
-  take_poses(fields, given.units, scan);
+  read_poses(fields, given.units, scan);
   for (const std::string_view name : {"tv", "rv", "forward_safety", "side_safety", "turn_axis"})
     fields.number(name);
-  take_times(fields, given.units, scan);
+  read_times(fields, given.units, scan);
   angles.first_rad = given.beams.first_angle_rad.value_or(angles.first_rad);
   if (given.beams.angle_step_rad) {
     angles.step_rad = *given.beams.angle_step_rad;

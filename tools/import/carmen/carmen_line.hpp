@@ -44,7 +44,7 @@ struct CarmenScan {
   double logger_time_s{0.0};            ///< finite, not validated
   std::size_t num_times{0};             ///< number of time fields in the line: 0 to 3
   std::vector<double> ranges_m{};       ///< as written; may be +inf; NaN for negative ones
-  int num_no_ranges{0};                 ///< number of NaN in ranges_m
+  int num_no_ranges{0};                 ///< number of NaNs in ranges_m
   std::optional<BeamAngles> angles{};   ///< nullopt if the line has none
   std::optional<double> range_max_m{};  ///< nullopt if the line has none
   Se2 odom_from_lidar{};
@@ -70,7 +70,7 @@ struct CarmenMounting {
 
 /// Any other line: comment, other parameter, another sensor.
 struct CarmenOther {
-  std::string_view keyword{"other lines"};  ///< of a known sensor; static storage
+  std::string_view keyword{"other lines"};  ///< keyword of a known sensor; static storage
 };
 
 using CarmenLine =

@@ -27,7 +27,7 @@ namespace {
 constexpr double kSickRangeMax_m = 81.83;
 constexpr double kFarthest_m = 150.0;    // largest plausible median of the ranges
 constexpr double kNearestLimit_m = 2.0;  // no LiDAR's maximum range is shorter
-constexpr double kCommonShare = 0.05;    // of the scans; see keep_usual_beam_count()
+constexpr double kCommonShare = 0.05;    // least share of the scans, as in keep_usual_beam_count()
 
 Timestamp timestamp_from_seconds(double seconds) {
   return Timestamp{duration_from_seconds(seconds)};
@@ -38,7 +38,7 @@ CarmenTimes line_times(const Line& line) {
   return {timestamp_from_seconds(line.time_s), timestamp_from_seconds(line.logger_time_s)};
 }
 
-constexpr std::size_t kScansForAngles = 300;  // evenly over the log
+constexpr std::size_t kScansForAngles = 300;  // largest number of scans examined
 
 /// Ranges of scans with the same number of beams.
 using SameSize = std::vector<std::span<const double>>;
@@ -48,23 +48,23 @@ class CarmenReader {
   CarmenReader(const CarmenOptions& options, ImportReport& report)
       : options_{options}, report_{report} {}
 
-  void take(CarmenLine line, std::int64_t at) {
+  void add(CarmenLine line, std::int64_t at) {
     at_ = at;
-    std::visit([this](auto&& content) { take_content(std::forward<decltype(content)>(content)); },
+    std::visit([this](auto&& content) { add_content(std::forward<decltype(content)>(content)); },
                std::move(line));
   }
 
   ImportedLog finish();
 
  private:
-  void take_content(CarmenScan scan);
-  void take_content(const CarmenOdometry& odometry);
+  void add_content(CarmenScan scan);
+  void add_content(const CarmenOdometry& odometry);
 
-  void take_content(const CarmenMounting& mounting) { mountings_.push_back(mounting); }
+  void add_content(const CarmenMounting& mounting) { mountings_.push_back(mounting); }
 
-  void take_content(CarmenOther other) { ++counts_[std::string{other.keyword}]; }
+  void add_content(CarmenOther other) { ++counts_[std::string{other.keyword}]; }
 
-  void take_content(const LineProblem& problem) { report_.skip(problem.kind, at_, problem.detail); }
+  void add_content(const LineProblem& problem) { report_.skip(problem.kind, at_, problem.detail); }
 
   void apply_stamps();
   void note_assumptions();
@@ -89,7 +89,7 @@ class CarmenReader {
   std::vector<CarmenMounting> mountings_{};
 };
 
-void CarmenReader::take_content(CarmenScan scan) {
+void CarmenReader::add_content(CarmenScan scan) {
   ++counts_[scan.lidar == CarmenLidar::kFront ? "front scans" : "rear scans"];
   if (scan.lidar != options_.lidar) return;
   for (double& range : scan.ranges_m)
@@ -97,7 +97,7 @@ void CarmenReader::take_content(CarmenScan scan) {
   scans_.push_back({line_times(scan), at_, std::move(scan), {}});
 }
 
-void CarmenReader::take_content(const CarmenOdometry& odometry) {
+void CarmenReader::add_content(const CarmenOdometry& odometry) {
   ++counts_["ODOM"];
   if (odometry.num_times > 0) {
     odometry_.push_back({line_times(odometry), at_, odometry, {}});
@@ -115,7 +115,7 @@ void CarmenReader::apply_stamps() {
     scan.time = scan.times.by(stamps);
   for (auto& sample : odometry_)
     sample.time = sample.times.by(stamps);
-  mend_order(scans_, odometry_, report_);
+  repair_order(scans_, odometry_, report_);
   for (const ReadOdometry& sample : odometry_)
     log_.odometry.push_back({sample.time, sample.at, sample.line.odom_from_base});
 }
@@ -137,7 +137,7 @@ void CarmenReader::add_scan(const ReadScan& read) {
 
 void CarmenReader::apply_mounting() {
   Se2 base_from_lidar = find_mounting(lidar_poses(scans_), mountings_, options_.lidar, report_);
-  // Loggers write the robot's heading for the rear LiDAR, too, whose beam angles count from behind.
+  // Loggers write the robot's heading also for the rear LiDAR, whose beam angles count from behind.
   if (options_.lidar == CarmenLidar::kRear && std::abs(base_from_lidar.theta()) < radians(90.0)) {
     base_from_lidar = base_from_lidar * Se2{0.0, 0.0, radians(180.0)};
   }
@@ -151,8 +151,8 @@ void CarmenReader::apply_mounting() {
   lidar.yaw_rad = options_.mounting.yaw_rad.value_or(base_from_lidar.theta());
 }
 
-/// Median maximum range of the lines; a SICK's for lines without one. In some logs it is in metres
-/// although the ranges are not: in their unit it would be too short.
+/// Median maximum range of the lines; a SICK's for lines without one. If it would be too short in
+/// the ranges' unit, it is in metres.
 double CarmenReader::usual_range_max_m() const {
   const auto limit_m = [this](const CarmenScan& scan) {
     if (!scan.range_max_m) return kSickRangeMax_m;
@@ -178,7 +178,7 @@ std::string CarmenReader::what_is_not_read() const {
   return "";
 }
 
-/// Reports ranges that are not measured.
+/// Reports ranges that count as not measured.
 /// @throws SetupError for ranges that are not metres.
 void CarmenReader::note_assumptions() {
   std::int64_t no_ranges = 0;
@@ -208,7 +208,7 @@ void CarmenReader::note_assumptions() {
   }
 }
 
-/// As given, else those that walls show; nullopt if they are unknown.
+/// The angles that the user gives, else those that the walls show; nullopt if they are unknown.
 std::optional<BeamAngles> CarmenReader::angles_of(std::size_t num_beams,
                                                   const SameSize& scans) const {
   const auto& [given_first_rad, given_step_rad] = options_.beams;
@@ -237,8 +237,8 @@ void CarmenReader::note_angles(std::size_t num_beams, const BeamAngles& angles) 
       is_usual || given_step_rad ? "assumed" : "taken, with which walls are straight"));
 }
 
-/// Sets the angles of lines without them, for each number of beams. Those that differ by one from
-/// the most frequent number have its angles, and so have rare ones that are unknown.
+/// Sets the angles of lines without them, for each number of beams. A number that differs by one
+/// from the most frequent one gets its angles, and so does a rare number whose angles are unknown.
 /// @throws SetupError when they are unknown.
 void CarmenReader::complete_angles() {
   std::map<std::size_t, SameSize> scans_by_size;
@@ -320,7 +320,7 @@ ImportedLog read_carmen_log(const std::filesystem::path& file, const CarmenOptio
   TextLines lines{file};
   CarmenReader reader{options, report};
   while (const auto line = lines.next())
-    reader.take(parse_carmen_line(*line, options.beams, options.units), lines.line_number());
+    reader.add(parse_carmen_line(*line, options.beams, options.units), lines.line_number());
   if (!lines.fault().empty()) {
     report.skip("damaged file", lines.line_number(), "the file ends here: " + lines.fault());
   }

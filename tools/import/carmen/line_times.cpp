@@ -16,7 +16,7 @@ namespace waymark {
 namespace {
 
 constexpr double kFewOutOfOrder = 0.1;  // all lines are sorted if a larger share is out of order
-constexpr Duration kLongPeriod = std::chrono::seconds{30};  // longer than any real scan period
+constexpr Duration kLongPeriod = std::chrono::seconds{30};  // no scan period is longer
 
 Timestamp after_start(double seconds) {
   return Timestamp{duration_from_seconds(seconds)};
@@ -44,8 +44,8 @@ void count_by_period(std::vector<ReadScan>& scans, std::optional<double> period_
       "the lines have no times: scans are taken to be {:g} s apart, as asked for", *period_s));
 }
 
-/// A sample gets the correction of the scan before or behind it in the file, of that with the
-/// nearer stamp.
+/// Corrects each sample's stamp like the neighbouring scan in the file, before or after it, whose
+/// stamp is nearer.
 void shift_odometry(std::vector<ReadOdometry>& odometry, const std::vector<ReadScan>& scans,
                     const std::vector<Timestamp>& stamps, const std::vector<Duration>& late) {
   std::size_t behind = 0;  // the next scan in the file
@@ -123,8 +123,8 @@ void complete_times(std::vector<ReadScan>& scans, std::optional<double> scan_per
   }
 }
 
-void mend_order(std::vector<ReadScan>& scans, std::vector<ReadOdometry>& odometry,
-                ImportReport& report) {
+void repair_order(std::vector<ReadScan>& scans, std::vector<ReadOdometry>& odometry,
+                  ImportReport& report) {
   go_on_behind_seams(scans, odometry, report);
   sort_by_time(scans, "scans", report);
   sort_by_time(odometry, "ODOM lines", report);

@@ -32,8 +32,8 @@ void complete_times(std::vector<ReadScan>& scans, std::optional<double> scan_per
 /// Removes steps of the clock (see find_clock_seams()), and sorts the lines if more than a tenth
 /// are out of order; reports both.
 /// @param scans, odometry  in the order of the file, with `time`; odometry may be empty.
-void mend_order(std::vector<ReadScan>& scans, std::vector<ReadOdometry>& odometry,
-                ImportReport& report);
+void repair_order(std::vector<ReadScan>& scans, std::vector<ReadOdometry>& odometry,
+                  ImportReport& report);
 
 /// Reports scans so far apart that their times are probably milliseconds.
 void check_time_unit(const std::vector<ReadScan>& scans, ImportReport& report);

@@ -32,7 +32,8 @@ double median_of(std::span<const Se2> poses, const std::function<double(const Se
   return upper_median(std::move(values));
 }
 
-/// The pose that nearly all have; nullopt if they differ, as in a log with corrected LiDAR poses.
+/// The pose that nearly all lines have; nullopt if they differ, as in logs with corrected LiDAR
+/// poses.
 std::optional<Se2> common_pose(std::span<const Se2> poses) {
   const double some_rad = poses[poses.size() / 2].theta();
   const Se2 middle{median_of(poses, [](const Se2& pose) { return pose.x(); }),

@@ -13,13 +13,16 @@ namespace {
 
 constexpr double kOnePlace_m = 0.01;
 constexpr double kOnePlace_rad = 0.02;
-constexpr std::ptrdiff_t kFewest = 10;  // scans
-constexpr double kOften = 0.2;          // smallest share of the scans of the second LiDAR
-constexpr double kMostScans = 0.95;     // share of the scans of both LiDARs
-constexpr double kDecides_m = 0.02;     // shortest step that shows the direction of the drive
-constexpr double kLeastDriven_m = 5.0;
-constexpr double kAlong = 0.3;   // largest mean |sin| between heading and drive if they agree
-constexpr double kAcross = 0.5;  // smallest if they do not; 0.64 for random headings
+// There are two LiDARs if the second pose has at least so many scans and this share of all, and
+// both poses together have nearly all scans.
+constexpr std::ptrdiff_t kMinScans = 10;
+constexpr double kMinShareOfSecond = 0.2;
+constexpr double kMinShareOfBoth = 0.95;
+constexpr double kMinStep_m = 0.02;  // shortest step that shows the direction of driving
+constexpr double kMinDriven_m = 5.0;
+// Mean |sin| of the angle between heading and direction of driving:
+constexpr double kAligned = 0.3;     // largest mean |sin| if they agree
+constexpr double kMisaligned = 0.5;  // least mean |sin| if they disagree; 2/pi if random
 
 bool is_one_place(const Se2& a, const Se2& b) {
   return (a.translation() - b.translation()).norm() < kOnePlace_m &&
@@ -35,7 +38,7 @@ std::string place_text(const Se2& pose) {
                      degrees(pose.theta()));
 }
 
-/// Two LiDARs whose mounting poses alternate.
+/// If the scans are of two LiDARs with different mounting poses, keeps the LiDAR with more scans.
 void keep_the_more_frequent(std::vector<ReadScan>& scans, ImportReport& report) {
   const std::vector<Se2> poses = lidar_poses(scans);
   const Se2& first = poses.front();
@@ -46,9 +49,9 @@ void keep_the_more_frequent(std::vector<ReadScan>& scans, ImportReport& report) 
       std::ranges::count_if(poses, [&](const Se2& pose) { return is_one_place(pose, first); });
   const auto of_other =
       std::ranges::count_if(poses, [&](const Se2& pose) { return is_one_place(pose, *other); });
-  if (std::min(of_first, of_other) < kFewest ||
-      share_of(std::min(of_first, of_other), poses.size()) < kOften ||
-      share_of(of_first + of_other, poses.size()) < kMostScans) {
+  if (std::min(of_first, of_other) < kMinScans ||
+      share_of(std::min(of_first, of_other), poses.size()) < kMinShareOfSecond ||
+      share_of(of_first + of_other, poses.size()) < kMinShareOfBoth) {
     return;
   }
   const Se2 kept = of_first >= of_other ? first : *other;
@@ -131,20 +134,21 @@ CarmenOdometrySource choose_odometry(const std::vector<ReadScan>& scans,
 
 void check_headings(const std::vector<ReadScan>& scans) {
   double driven_m = 0.0;
-  double across_m = 0.0;          // by headings as they are
-  double across_degrees_m = 0.0;  // by headings as degrees
+  // Motion across the heading, if the headings are radians, and if they are degrees.
+  double across_m = 0.0;
+  double across_degrees_m = 0.0;
   for (std::size_t i = 1; i < scans.size(); ++i) {
     const CarmenScan& now = scans[i].line;
     const Eigen::Vector2d step =
         now.odom_from_base.translation() - scans[i - 1].line.odom_from_base.translation();
-    if (step.norm() < kDecides_m) continue;
+    if (step.norm() < kMinStep_m) continue;
     const double drive_rad = std::atan2(step.y(), step.x());
     driven_m += step.norm();
     across_m += step.norm() * std::abs(std::sin(drive_rad - now.heading_rad));
     across_degrees_m += step.norm() * std::abs(std::sin(drive_rad - radians(now.heading_rad)));
   }
-  if (driven_m < kLeastDriven_m || across_m < kAcross * driven_m ||
-      across_degrees_m > kAlong * driven_m) {
+  if (driven_m < kMinDriven_m || across_m < kMisaligned * driven_m ||
+      across_degrees_m > kAligned * driven_m) {
     return;
   }
   throw SetupError{

@@ -11,7 +11,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kGood = 0.9;  // share of usable scans; with less, not only single ones are wrong
+constexpr double kGood = 0.9;  // least share of usable scans if only single stamps are wrong
 
 /// Number of scans with distinct ascending times, after slight disorder has been sorted.
 std::size_t num_usable(const std::vector<CarmenTimes>& scans, CarmenStamps stamps) {

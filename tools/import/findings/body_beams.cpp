@@ -12,12 +12,12 @@
 namespace waymark {
 namespace {
 
-constexpr double kFarthest_m = 1.0;
+constexpr double kMaxRange_m = 1.0;
 constexpr double kSame_m = 0.05;
 constexpr double kShareSame = 0.95;
-constexpr std::size_t kScansOfBody = 500;  // evenly over the log
-constexpr double kLeastDriven_m = 20.0;
-constexpr double kLeastTurned_rad = 2.0 * std::numbers::pi;
+constexpr std::size_t kScansOfBody = 500;  // largest number of scans examined
+constexpr double kMinDriven_m = 20.0;
+constexpr double kMinTurned_rad = 2.0 * std::numbers::pi;
 
 double turned_rad(const std::vector<ImportedPose>& poses) {
   double sum = 0.0;
@@ -29,7 +29,7 @@ double turned_rad(const std::vector<ImportedPose>& poses) {
 }  // namespace
 
 BodyBeams find_body_beams(const ImportedLog& log) {
-  if (path_length_m(log.odometry) < kLeastDriven_m || turned_rad(log.odometry) < kLeastTurned_rad)
+  if (path_length_m(log.odometry) < kMinDriven_m || turned_rad(log.odometry) < kMinTurned_rad)
     return {};
   const auto num_beams = static_cast<std::size_t>(log.scans.front().num_beams);
   std::vector<std::vector<double>> ranges_m(num_beams);
@@ -50,7 +50,7 @@ BodyBeams find_body_beams(const ImportedLog& log) {
     const double usual_m = upper_median(of_beam);
     const auto same = std::ranges::count_if(
         of_beam, [&](double range_m) { return std::abs(range_m - usual_m) < kSame_m; });
-    if (usual_m <= 0.0 || usual_m > kFarthest_m ||
+    if (usual_m <= 0.0 || usual_m > kMaxRange_m ||
         static_cast<double>(same) < kShareSame * static_cast<double>(all)) {
       continue;
     }

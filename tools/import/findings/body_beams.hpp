@@ -14,8 +14,8 @@ struct BodyBeams {
   double longest_m{0.0};
 };
 
-/// Beams below 1 m whose range stays the same while the robot drives and turns. None for a robot
-/// that has driven less than 20 m or turned less than one revolution.
+/// Finds beams shorter than 1 m whose range stays the same while the robot drives and turns. Finds
+/// none for a robot that has driven less than 20 m or turned less than one revolution.
 BodyBeams find_body_beams(const ImportedLog& log);
 
 /// The scan with the ranges of these beams set to NaN.

@@ -17,10 +17,10 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kScansForNoise = 1000;  // evenly over the log
+constexpr std::size_t kScansForNoise = 1000;  // largest number of scans examined
 constexpr double kLargestSigma_m = 1.0;
-constexpr double kNearlyAll = 0.7;          // share of the path length
-constexpr std::size_t kFewestReversed = 5;  // steps; fewer may be chance
+constexpr double kNearlyAll = 0.7;       // share of the path length that counts as all of it
+constexpr std::size_t kMinReversed = 5;  // steps; fewer may be chance
 
 void estimate_range_noise(ImportedLog& log, ImportReport& report) {
   WallScatter noise;
@@ -43,7 +43,8 @@ void estimate_range_noise(ImportedLog& log, ImportReport& report) {
                   log.robot.lidar.range_sigma_m, *sigma_m > kLargestSigma_m ? " or more" : ""));
 }
 
-/// Poses are written as float, which are too coarse at the coordinates of a map grid (UTM).
+/// Shifts odometry to the origin if it begins far away: poses are written as float, which is too
+/// coarse at the coordinates of a map grid (UTM).
 void start_near_the_origin(ImportedLog& log, ImportReport& report) {
   constexpr double kFar_m = 1000.0;
   const auto farthest_m = [&](const Eigen::Vector2d& origin) {
@@ -74,7 +75,7 @@ void check_that_odometry_moves(const ImportedLog& log, ImportReport& report) {
       log.odometry.size(), *change_m));
 }
 
-/// Ranges below kShortestRange_m are codes, not measurements.
+/// Reports ranges below kShortestRange_m, which are codes, not measurements.
 void check_short_ranges(ImportedLog& log, ImportReport& report) {
   constexpr double kFew = 1e-3;
   std::int64_t all = 0;
@@ -142,10 +143,11 @@ void check_turns(const ImportedLog& log, const BodyBeams& body, ImportReport& re
 }
 
 void check_yaw(const ImportedLog& log, const BodyBeams& body, ImportReport& report) {
-  constexpr double kLeast_rad = radians(3.0);  // real logs are within 2.1 degrees
+  constexpr double kMinYaw_rad = radians(3.0);  // real logs are within 2.1 degrees
   constexpr double kSigmas = 5.0;
   const auto error = lidar_yaw_error(log, body);
-  if (!error || std::abs(error->yaw_rad) < std::max(kLeast_rad, kSigmas * error->sigma_rad)) return;
+  if (!error || std::abs(error->yaw_rad) < std::max(kMinYaw_rad, kSigmas * error->sigma_rad))
+    return;
   report.note(fmt::format(
       "the walls pass by as if the LiDAR looked {:.1f} +- {:.1f} degrees further to the {} than "
       "described: left as it is; if it is mounted like that, give --lidar-yaw-deg {:.1f}",
@@ -157,7 +159,7 @@ void check_yaw(const ImportedLog& log, const BodyBeams& body, ImportReport& repo
 void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry wanted,
                      ImportReport& report) {
   const std::vector<ReversedStep> steps = find_reversed_steps(log, body);
-  if (steps.size() < kFewestReversed) return;
+  if (steps.size() < kMinReversed) return;
   double distance_m = 0.0;
   for (const ReversedStep& step : steps)
     distance_m += step.distance_m;
@@ -172,7 +174,7 @@ void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry w
         "(--lidar-yaw-deg 180)?",
         distance_m));
   } else if (wanted == ReversedOdometry::kCorrect) {
-    log.odometry = with_steps_mended(log.odometry, steps);
+    log.odometry = with_steps_corrected(log.odometry, steps);
     report.note(found + ": turned round, as asked for");
   } else {
     report.note(found + ": left as it is; --fix-reversed-odometry turns it round");
@@ -183,7 +185,7 @@ void check_direction(ImportedLog& log, const BodyBeams& body, ReversedOdometry w
 
 void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report) {
   check_short_ranges(log, report);
-  mend_odometry_breaks(log, report);
+  repair_odometry_breaks(log, report);
   start_near_the_origin(log, report);
   estimate_range_noise(log, report);
   check_that_odometry_moves(log, report);

@@ -12,10 +12,10 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kPairs = 240;  // evenly over the log
-constexpr std::size_t kFewestPairs = 40;
-constexpr Duration kApart = std::chrono::milliseconds{800};  // of the two scans of a pair
-constexpr double kNoOverlap_m = 0.3;                         // as misfit_m() limits each beam
+constexpr std::size_t kPairs = 240;  // largest number, spread evenly over the log
+constexpr std::size_t kMinPairs = 40;
+constexpr Duration kApart = std::chrono::milliseconds{800};  // at least, between a pair's scans
+constexpr double kNoOverlap_m = 0.3;  // counts as the misfit of a pair that does not overlap
 
 /// Two scans, in order of angles, and odometry's motion between them.
 struct Pair {
@@ -68,10 +68,10 @@ double mean_misfit_m(std::span<const Pair> pairs, const Se2& base_from_lidar, do
 }
 
 /// The rotation of least misfit: vertex of a parabola through the minimum and its neighbours 4
-/// degrees away. nullopt if that has none, as where no two scans overlap.
+/// degrees away. nullopt if the misfit is flat, as where no two scans overlap.
 std::optional<double> best_turn_rad(std::span<const Pair> pairs, const Se2& base_from_lidar) {
   constexpr double kStep_rad = radians(1.0);
-  constexpr std::size_t kSteps = 34;  // on both sides
+  constexpr std::size_t kSteps = 34;  // on each side of 0
   constexpr std::size_t kAside = 4;
   constexpr double kFlat_m = 1e-6;
   std::array<double, 2 * kSteps + 1> misfits_m{};
@@ -97,18 +97,18 @@ Se2 mirrored(const Se2& pose) {
 
 std::optional<double> odometry_factor(const ImportedLog& log, const BodyBeams& body) {
   constexpr MotionLimits kAnyDistance{1e-3, 1e9, 0.2};
-  constexpr double kLeast = 5e-4;  // inches are 0.0254, millimetres 0.001
-  constexpr double kMost = 50.0;
+  constexpr double kMin = 5e-4;  // the factor for millimetres is 0.001, for inches 0.0254
+  constexpr double kMax = 50.0;
   constexpr double kStep = 1.1;
-  constexpr double kFarFrom1 = 1.25;   // estimators calibrate smaller errors
-  constexpr double kMuchBetter = 0.7;  // a LiDAR with a wrong yaw reaches 0.85
+  constexpr double kFarFrom1 = 1.25;   // smaller errors are calibrated by the estimators
+  constexpr double kMuchBetter = 0.7;  // largest ratio of misfits; 0.85 can be due to a wrong yaw
   const std::vector<Pair> pairs = pairs_of(log, body, kAnyDistance);
-  if (pairs.size() < kFewestPairs) return std::nullopt;
+  if (pairs.size() < kMinPairs) return std::nullopt;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
   const double as_it_is_m = mean_misfit_m(pairs, base_from_lidar, 1.0, 0.0);
   double best = 1.0;
   double least_m = as_it_is_m;
-  for (double factor = kLeast; factor < kMost; factor *= kStep) {
+  for (double factor = kMin; factor < kMax; factor *= kStep) {
     const double misfit_m = mean_misfit_m(pairs, base_from_lidar, factor, 0.0);
     if (misfit_m >= least_m) continue;
     least_m = misfit_m;
@@ -120,9 +120,9 @@ std::optional<double> odometry_factor(const ImportedLog& log, const BodyBeams& b
 
 std::optional<YawError> lidar_yaw_error(const ImportedLog& log, const BodyBeams& body) {
   constexpr MotionLimits kStraightOn{0.2, 1.5, 0.06};
-  constexpr std::size_t kParts = 8;  // of the log, for the standard deviation
+  constexpr std::size_t kParts = 8;  // parts of the log, for the standard deviation
   const std::vector<Pair> pairs = pairs_of(log, body, kStraightOn);
-  if (pairs.size() < kFewestPairs) return std::nullopt;
+  if (pairs.size() < kMinPairs) return std::nullopt;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
   std::array<double, kParts> found_rad{};
   for (std::size_t part = 0; part < kParts; ++part) {
@@ -146,7 +146,7 @@ bool turns_against_odometry(const ImportedLog& log, const BodyBeams& body) {
   constexpr MotionLimits kTurning{0.0, 1.0, 0.8, 0.1};
   constexpr double kMuchBetter = 0.5;
   std::vector<Pair> pairs = pairs_of(log, body, kTurning);
-  if (pairs.size() < kFewestPairs) return false;
+  if (pairs.size() < kMinPairs) return false;
   const Se2 base_from_lidar = log.robot.lidar.base_from_lidar();
   const double as_it_is_m = mean_misfit_m(pairs, base_from_lidar, 1.0, 0.0);
   // Mirroring the motion is equivalent to mirroring the scans.

@@ -10,8 +10,8 @@
 
 namespace waymark {
 
-/// Factor on odometry's distances with which scans fit, if it is far from 1 (another unit); else
-/// nullopt, also if the scans do not decide.
+/// Factor by which odometry's distances have to be multiplied for the scans to fit, if it is far
+/// from 1 (another unit). nullopt if it is near 1 or the scans do not determine it.
 std::optional<double> odometry_factor(const ImportedLog& log, const BodyBeams& body);
 
 struct YawError {

@@ -15,28 +15,29 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMostScans = 3000;  // evenly over the log: enough for codes of 1 in 10,000
+constexpr std::size_t kMaxScans = 3000;  // enough to find a code that 1 of 10,000 ranges has
 constexpr double kOtherPlace_m = 0.1;
-constexpr std::size_t kFewestPlaces = 20;
+constexpr std::size_t kMinPlaces = 20;
 constexpr double kFinest_m = 0.01;      // smallest width of a bin
-constexpr double kStepQuantile = 0.05;  // of neighbouring ranges' differences: their step
-constexpr double kBandShare = 0.2;   // of the range: width of the band that a pile is compared with
-constexpr double kNearShare = 0.05;  // of the range: neighbours on the same wall
-constexpr double kTimesBand = 10.0;
-constexpr std::int64_t kFewest = 20;
-constexpr std::int64_t kFewestBeams = 10;  // different ones; a far wall is hit by fewer
-constexpr double kMostBeyond = 0.1;  // number of longer ranges over number of ranges with the code
-constexpr double kMostNear = 0.2;    // share of neighbours that are slightly shorter
-constexpr double kLongestLimit_m = 500.0;  // as robot.lidar.range_max_m
-constexpr double kLongest_m = 1e4;         // more is garbage
-constexpr double kRounding_m = 1e-4;       // of a float
+constexpr double kStepQuantile = 0.05;  // this quantile of neighbours' differences is their step
+// A bin is compared with the band of ranges that are up to this share shorter.
+constexpr double kBandShare = 0.2;
+constexpr double kTimesBand = 10.0;  // least count over the mean count in the band
+constexpr double kNearShare = 0.05;  // a neighbour shorter by up to this share is slightly shorter
+constexpr std::int64_t kMinCount = 20;     // ranges in the bin
+constexpr std::int64_t kMinBeams = 10;     // different beams in the bin; a far wall is hit by fewer
+constexpr double kMaxBeyond = 0.1;         // longer ranges / ranges in the bin
+constexpr double kMaxNear = 0.2;           // share of neighbours that are slightly shorter
+constexpr double kLongestLimit_m = 500.0;  // limit of robot.lidar.range_max_m
+constexpr double kLongest_m = 1e4;         // longer ranges are garbage
+constexpr double kRounding_m = 1e-4;       // rounding error of a float
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 constexpr float kNotMeasured = std::numeric_limits<float>::quiet_NaN();
 
 struct Bin {
   std::int64_t count{0};
-  std::int64_t near{0};         ///< neighbours that are slightly shorter
-  std::vector<bool> is_beam{};  ///< by index: has had this range
+  std::int64_t near{0};         ///< number of neighbours that are slightly shorter
+  std::vector<bool> is_beam{};  ///< by index of the beam: true if it has had this range
   double smallest_m{kLongest_m};
 };
 
@@ -44,7 +45,7 @@ bool is_range(double range_m) {
   return range_m > 0.0 && range_m < kLongest_m;
 }
 
-/// The step in which ranges are written: narrower bins would be empty between the steps.
+/// Bins as wide as the steps in which ranges are written: narrower ones would be empty in between.
 double bin_width_m(std::span<const LidarScan> scans) {
   std::vector<double> differences_m;
   for (const LidarScan& scan : scans) {
@@ -79,7 +80,7 @@ class RangeHistogram {
     for (auto bin = bins_.rbegin(); bin != bins_.rend(); ++bin) {
       longer += bin->second.count;
       const std::int64_t beyond = longer - bin->second.count - found.count;
-      if (is_at_most(beyond, kMostBeyond, bin->second.count) && is_pile(bin->first)) {
+      if (is_at_most(beyond, kMaxBeyond, bin->second.count) && is_pile(bin->first)) {
         found.codes_m.insert(found.codes_m.begin(), bin->second.smallest_m);
         found.count = longer;
       }
@@ -108,8 +109,8 @@ class RangeHistogram {
 
   bool is_pile(std::int64_t place) const {
     const Bin& bin = bins_.at(place);
-    if (bin.count < kFewest || !is_at_most(bin.near, kMostNear, 2 * bin.count)) return false;
-    if (std::ranges::count(bin.is_beam, true) < kFewestBeams) return false;
+    if (bin.count < kMinCount || !is_at_most(bin.near, kMaxNear, 2 * bin.count)) return false;
+    if (std::ranges::count(bin.is_beam, true) < kMinBeams) return false;
     const auto low =
         static_cast<std::int64_t>(std::floor((1.0 - kBandShare) * static_cast<double>(place)));
     std::int64_t in_band = 0;
@@ -134,12 +135,12 @@ std::vector<LidarScan> scans_of_distinct_places(const ImportedLog& log) {
     indices.push_back(i);
     last = pose;
   }
-  if (indices.size() < kFewestPlaces) {
+  if (indices.size() < kMinPlaces) {
     indices.resize(log.scans.size());
     std::iota(indices.begin(), indices.end(), std::size_t{0});
   }
   std::vector<LidarScan> scans;
-  const std::size_t every = 1 + indices.size() / kMostScans;
+  const std::size_t every = 1 + indices.size() / kMaxScans;
   for (std::size_t i = 0; i < indices.size(); i += every)
     scans.push_back(scan_of(log.scans[indices[i]]));
   return scans;
@@ -149,8 +150,8 @@ struct Counts {
   std::int64_t ranges{0};
   std::int64_t from_limit{0};
   std::int64_t zeros{0};
-  std::int64_t removed{0};  ///< finite ones from the limit on
-  std::int64_t left{0};     ///< that are measured
+  std::int64_t removed{0};  ///< finite ranges at or above the limit
+  std::int64_t left{0};     ///< measured ranges below the limit
 };
 
 template <class Type>

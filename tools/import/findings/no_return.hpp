@@ -14,19 +14,19 @@ namespace waymark {
 /// Ranges that stand for "no return", as found in a log.
 struct NoReturnCode {
   std::vector<double> codes_m{};  ///< ascending; a SICK has several
-  std::int64_t count{0};          ///< number of ranges not below the smallest code
+  std::int64_t count{0};          ///< number of ranges at or above the smallest of codes_m
 };
 
-/// A range is such a code when it piles up (ten times as frequent as ranges up to a fifth shorter,
-/// and at least twenty times), when nearly no range is longer, and when neighbouring beams are not
-/// slightly shorter: on a wall, neighbours have similar ranges; beside a code, they differ.
+/// A range is such a code if it occurs at least 20 times and ten times as often as ranges up to a
+/// fifth shorter, if nearly no range is longer, and if neighbouring beams are rarely slightly
+/// shorter: on a wall, neighbours have similar ranges; beside a code, they differ.
 /// @param scans  of distinct places: the scans of a standing robot would pile up, too.
 std::optional<NoReturnCode> find_no_return_code(std::span<const LidarScan> scans);
 
 /// Largest valid range.
 struct RangeLimit {
-  std::optional<double> given_m{};  ///< by the user; then no code is searched
-  std::optional<double> usual_m{};  ///< of this kind of LiDAR; nullopt = the longest range
+  std::optional<double> given_m{};  ///< set by the user; then no code is searched for
+  std::optional<double> usual_m{};  ///< usual for this kind of LiDAR; nullopt = the longest range
 };
 
 /// Finds the code, replaces it and all longer ranges by "no return" (+inf, in lidar_t 0), and a

@@ -24,22 +24,22 @@ constexpr double kJump_rad = 0.5;
 
 constexpr double kGapInPeriods = 10.0;
 constexpr Duration kShortestGap = std::chrono::seconds{2};
-constexpr double kSamePlace_m = 0.06;  // two scans with a smaller misfit are of one place
-constexpr double kNowhere_m = 0.15;    // two scans with this misfit or more are of different places
-constexpr double kOften = 0.05;        // share of the steps
+constexpr double kSamePlace_m = 0.06;       // two scans with a smaller misfit are of one place
+constexpr double kDifferentPlace_m = 0.15;  // scans with this misfit or more: different places
+constexpr double kOften = 0.05;             // share of jumps above which odometry is not repaired
 // In a bare corridor a scan fits anywhere along the corridor. A scan that fits where the robot was
 // before a gap is evidence only if it does not fit 1 m away from there.
-constexpr double kDistinct_m = 0.1;  // places with a smaller misfit cannot be distinguished
-const std::array<Eigen::Vector2d, 4> kSteppedAside{
-    {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}};
+constexpr double kDistinct_m = 0.1;  // with a smaller misfit, places cannot be distinguished
+const std::array<Eigen::Vector2d, 4> kAside_m{{{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}};
 
-// A gap in which odometry stands still, but the scans change.
+// The robot was moved in a gap of more than kLongGap if odometry stands still, but the scans before
+// and behind differ: at least kMinChangedShare of the ranges in the same direction.
 constexpr Duration kLongGap = std::chrono::seconds{5};
 constexpr double kStood_m = 0.1;
 constexpr double kStood_rad = 0.1;
-constexpr double kOtherWall_m = 0.3;  // between ranges of one beam
-constexpr double kOtherShare = 0.25;  // of the beams
-constexpr std::size_t kFewestShared = 60;
+constexpr double kMinRangeChange_m = 0.3;
+constexpr double kMinChangedShare = 0.25;
+constexpr std::size_t kMinSharedBearings = 60;
 constexpr Duration kPauseStep = ClockStepDetector::kLongestPause / 2;
 
 using Poses = std::vector<ImportedPose>;
@@ -65,7 +65,7 @@ struct ScansAround {
   LidarScan behind{};
 };
 
-/// True if at least kOtherShare of the beams differ; people who walk by change fewer.
+/// True if at least kMinChangedShare of the beams differ; people who walk by change fewer.
 bool are_of_other_places(const ScansAround& scans) {
   std::size_t others = 0;
   std::size_t shared = 0;
@@ -77,10 +77,10 @@ bool are_of_other_places(const ScansAround& scans) {
     const double range_m =
         scans.behind.ranges_m[static_cast<std::size_t>(behind - scans.behind.angles_rad.begin())];
     ++shared;
-    if (std::abs(range_m - scans.before.ranges_m[i]) > kOtherWall_m) ++others;
+    if (std::abs(range_m - scans.before.ranges_m[i]) > kMinRangeChange_m) ++others;
   }
-  return shared >= kFewestShared &&
-         static_cast<double>(others) >= kOtherShare * static_cast<double>(shared);
+  return shared >= kMinSharedBearings &&
+         static_cast<double>(others) >= kMinChangedShare * static_cast<double>(shared);
 }
 
 std::optional<ScansAround> scans_around(const ImportedLog& log, Timestamp until, Timestamp from) {
@@ -148,9 +148,9 @@ Duration usual_period(const Poses& odometry) {
 }
 
 /// Removes breaks of the odometry by accumulating the transform from raw to continuous poses.
-class BreakMender {
+class BreakRepairer {
  public:
-  BreakMender(ImportedLog& log, ImportReport& report)
+  BreakRepairer(ImportedLog& log, ImportReport& report)
       : log_{log},
         report_{report},
         longest_{std::max(
@@ -160,12 +160,12 @@ class BreakMender {
 
   void run() {
     const Poses raw = log_.odometry;
-    Se2 mended_from_raw{};
+    Se2 repaired_from_raw{};
     for (std::size_t i = 1; i < raw.size(); ++i) {
       const Se2 before = i > 1 ? step_of(log_.odometry[i - 2], log_.odometry[i - 1]) : Se2{};
       if (const auto step = step_instead(raw[i - 1], raw[i], before))
-        mended_from_raw = log_.odometry[i - 1].pose * *step * raw[i].pose.inverse();
-      log_.odometry[i].pose = mended_from_raw * raw[i].pose;
+        repaired_from_raw = log_.odometry[i - 1].pose * *step * raw[i].pose.inverse();
+      log_.odometry[i].pose = repaired_from_raw * raw[i].pose;
     }
   }
 
@@ -182,7 +182,7 @@ class BreakMender {
     const auto misfit_with = [&](const Se2& step) {
       return misfit_m(scans->before, scans->behind,
                       base_from_lidar.inverse() * step * base_from_lidar)
-          .value_or(kNowhere_m);
+          .value_or(kDifferentPlace_m);
     };
     const Se2 step = step_of(before, now);
     const double counted_m = misfit_with(step);
@@ -190,13 +190,13 @@ class BreakMender {
     const double going_on_m = is_gap ? standing_m : misfit_with(step_before);
     const bool goes_on = going_on_m < standing_m;
     const auto is_only_place = [&] {
-      return std::ranges::none_of(kSteppedAside, [&](const Eigen::Vector2d& aside) {
+      return std::ranges::none_of(kAside_m, [&](const Eigen::Vector2d& aside) {
         return misfit_with({aside, 0.0}) < kDistinct_m;
       });
     };
     const bool is_reset = is_zero(now) && !is_zero(before);
     if (std::min(standing_m, going_on_m) < kSamePlace_m &&
-        (jumps || is_reset || (counted_m >= kNowhere_m && is_only_place()))) {
+        (jumps || is_reset || (counted_m >= kDifferentPlace_m && is_only_place()))) {
       name_new_beginning(now, step, goes_on);
       return goes_on ? step_before : Se2{};
     }
@@ -262,11 +262,11 @@ void bridge_long_pauses(Poses& odometry, ImportReport& report) {
 
 }  // namespace
 
-void mend_odometry_breaks(ImportedLog& log, ImportReport& report) {
+void repair_odometry_breaks(ImportedLog& log, ImportReport& report) {
   if (!jumps_often(log.odometry)) {
     begin_where_odometry_begins(log, report);
     interpolate_single_jumps(log.odometry, report);
-    BreakMender{log, report}.run();
+    BreakRepairer{log, report}.run();
   }
   bridge_long_pauses(log.odometry, report);
 }

@@ -14,6 +14,6 @@ namespace waymark {
 ///  - a pause so long that slam would assume that the clock was set: interpolated.
 /// A gap in the log in which the robot was moved is only reported.
 /// @param log  complete.
-void mend_odometry_breaks(ImportedLog& log, ImportReport& report);
+void repair_odometry_breaks(ImportedLog& log, ImportReport& report);
 
 }  // namespace waymark

@@ -10,15 +10,17 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kBeams = 9;    // of a wall: seven degrees of freedom about a line
-constexpr double kWidest_rad = 0.4;  // from the first to the last of them
-constexpr std::size_t kFewestWalls = 100;
-constexpr double kModeWidth =
-    0.3;  // of the logarithm: spread of a scatter with 7 degrees of freedom
-constexpr double kStraight = 2.0;  // times the mode; walls exceed it by chance in 2 of 10,000 cases
-constexpr double kSigmaOfStep = 0.2887;      // of rounding errors, in steps: 1 / sqrt(12)
-constexpr double kFloatRounding_m = 1e-4;    // rounding of a float
-constexpr double kSmallStepQuantile = 0.05;  // of the differences; ignores single garbled ranges
+constexpr std::size_t kBeams = 9;    // beams of a wall: 7 degrees of freedom about a line
+constexpr double kWidest_rad = 0.4;  // largest angle from the first to the last of them
+constexpr std::size_t kMinWalls = 100;
+// Width of the mode, in the logarithm of the scatter: its spread with 7 degrees of freedom.
+constexpr double kModeWidth = 0.3;
+// A scatter up to this many times the mode is of a straight wall; 2 of 10,000 walls exceed it.
+constexpr double kStraight = 2.0;
+constexpr double kSigmaOfStep = 0.2887;    // standard deviation of rounding, in steps: 1 / sqrt(12)
+constexpr double kFloatRounding_m = 1e-4;  // rounding error of a float
+// This quantile of neighbours' differences is the step; so single garbled ranges are ignored.
+constexpr double kSmallStepQuantile = 0.05;
 
 /// True if all are returns, with monotonic angles within kWidest_rad.
 bool is_one_sweep(std::span<const double> ranges_m, std::span<const double> angles_rad) {
@@ -31,7 +33,7 @@ bool is_one_sweep(std::span<const double> ranges_m, std::span<const double> angl
   return true;
 }
 
-/// Median of the values in the interval of that width with most values.
+/// Median of the values in that interval of the given width which has most values.
 double mode(std::vector<double> values, double width) {
   std::ranges::sort(values);
   std::size_t low = 0;
@@ -81,7 +83,7 @@ double WallScatter::step_m() const {
 }
 
 std::optional<double> WallScatter::sigma_m() const {
-  if (scatters_m_.size() < kFewestWalls) return std::nullopt;
+  if (scatters_m_.size() < kMinWalls) return std::nullopt;
   const double floor_m = kSigmaOfStep * step_m();
   std::vector<double> logarithms;
   for (const double scatter_m : scatters_m_)

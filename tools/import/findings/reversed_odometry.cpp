@@ -13,14 +13,14 @@ namespace {
 
 constexpr double kShortestApart_m = 0.01;  // a shorter step is noise
 constexpr double kLongestApart_m = 1.0;    // scans further apart overlap too little
-constexpr double kLargestMisfit_m = 0.15;  // of the better direction; above, neither is right
-constexpr double kFloor_m = 1e-4;       // of a misfit, so that the ratio of two perfect fits is 1
-constexpr double kSmallestScore = 0.2;  // smaller scores are noise, as along a wall
-constexpr double kLargestScore = 2.0;   // of one step: a factor of 7
-// Score that a change of direction costs. A reversed sequence has two changes: with the reversed
+constexpr double kLargestMisfit_m = 0.15;  // with a larger misfit, neither direction is right
+constexpr double kFloor_m = 1e-4;          // added to misfits: the ratio of two perfect fits is 1
+constexpr double kSmallestScore = 0.2;     // smaller scores are noise, as along a wall
+constexpr double kLargestScore = 2.0;  // limit for one step: the misfits differ by a factor of 7
+// Cost of a change of direction. A reversed sequence has two changes: with the reversed
 // motion, its misfits have to be half of those with the motion as counted (ln 2).
 constexpr double kChange = 0.5 * std::numbers::ln2;
-constexpr double kUsualBraking_m_s2 = 2.0;  // of an indoor robot
+constexpr double kUsualBraking_m_s2 = 2.0;  // usual deceleration of an indoor robot
 
 struct Step {
   ReversedStep step{};
@@ -91,7 +91,7 @@ std::vector<bool> most_likely(const std::vector<Step>& steps) {
 }
 
 /// Score of drives of 0.4 m along the steps [begin, end), positive if they fit better reversed.
-/// Unlike single steps, they are not decided by somebody who walks by.
+/// Unlike the scores of single steps, it does not depend on somebody who walks by.
 double score_of_drives(const ImportedLog& log, const BodyBeams& body, std::size_t begin,
                        std::size_t end) {
   constexpr double kDrive_m = 0.4;
@@ -139,21 +139,21 @@ std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log, const Body
   return reversed;
 }
 
-std::vector<ImportedPose> with_steps_mended(const std::vector<ImportedPose>& odometry,
-                                            const std::vector<ReversedStep>& steps) {
-  std::vector<ImportedPose> mended;
+std::vector<ImportedPose> with_steps_corrected(const std::vector<ImportedPose>& odometry,
+                                               const std::vector<ReversedStep>& steps) {
+  std::vector<ImportedPose> repaired;
   auto step = steps.begin();
   for (std::size_t i = 0; i < odometry.size(); ++i) {
-    mended.push_back(odometry[i]);
+    repaired.push_back(odometry[i]);
     if (i == 0) continue;
     while (step != steps.end() && step->until < odometry[i].time)
       ++step;
     Se2 motion = odometry[i - 1].pose.inverse() * odometry[i].pose;
     if (step != steps.end() && odometry[i].time > step->after)
       motion = Se2{-motion.translation(), motion.theta()};
-    mended[i].pose = mended[i - 1].pose * motion;
+    repaired[i].pose = repaired[i - 1].pose * motion;
   }
-  return mended;
+  return repaired;
 }
 
 }  // namespace waymark

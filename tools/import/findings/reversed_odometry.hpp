@@ -25,7 +25,7 @@ struct ReversedStep {
 std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log, const BodyBeams& body = {});
 
 /// Odometry with the translation of these steps negated; headings stay.
-std::vector<ImportedPose> with_steps_mended(const std::vector<ImportedPose>& odometry,
-                                            const std::vector<ReversedStep>& steps);
+std::vector<ImportedPose> with_steps_corrected(const std::vector<ImportedPose>& odometry,
+                                               const std::vector<ReversedStep>& steps);
 
 }  // namespace waymark

@@ -8,10 +8,11 @@
 namespace waymark {
 namespace {
 
-constexpr double kLargestError_m = 0.3;  // of a beam; larger ones are not of the same wall
-constexpr double kSameWall_m = 0.3;      // between ranges that are interpolated
-constexpr double kWidestGap_rad = 0.1;   // between beams that are interpolated
-constexpr std::size_t kFewestSharedBeams = 30;
+constexpr double kLargestError_m = 0.3;  // limit for a beam: larger errors are from another wall
+// Ranges are interpolated between neighbouring beams on the same wall, which differ at most by:
+constexpr double kSameWall_m = 0.3;
+constexpr double kWidestGap_rad = 0.1;
+constexpr std::size_t kMinSharedBeams = 30;
 
 /// The scan's interpolated range in a direction; nullopt at edges, in gaps, and outside the scan.
 std::optional<double> range_towards(const LidarScan& scan, double angle_rad) {
@@ -56,7 +57,7 @@ std::optional<double> misfit_m(const LidarScan& first, const LidarScan& second,
     sum_m += std::min(std::abs(*expected_m - end.norm()), kLargestError_m);
     ++count;
   }
-  if (count < kFewestSharedBeams) return std::nullopt;
+  if (count < kMinSharedBeams) return std::nullopt;
   return sum_m / static_cast<double>(count);
 }
 

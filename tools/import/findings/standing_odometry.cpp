@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kScans = 100;  // most scans to compare, evenly over the log
+constexpr std::size_t kScans = 100;  // largest number of scans that are compared
 constexpr double kSameSigmas = 5.0;
 
 bool stands(const std::vector<ImportedPose>& poses) {

@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kAgreeing = 10;  // consistent stamps before and after a seam
+constexpr std::size_t kConsistent = 10;  // consistent stamps before and after a seam
 constexpr Duration kBesideEachOther = std::chrono::seconds{10};
 
 using Stamps = std::span<const Timestamp>;
@@ -48,12 +48,12 @@ Duration usual_period(Stamps before, Stamps behind) {
 
 std::vector<ClockSeam> find_clock_seams(Stamps stamps) {
   std::vector<ClockSeam> seams;
-  for (std::size_t i = kAgreeing; i + kAgreeing <= stamps.size(); ++i) {
+  for (std::size_t i = kConsistent; i + kConsistent <= stamps.size(); ++i) {
     const bool steps =
         stamps[i] < stamps[i - 1] - kSmallDisorder || stamps[i] > stamps[i - 1] + kLongestLog;
     if (!steps) continue;
-    const Stamps before = stamps.subspan(i - kAgreeing, kAgreeing);
-    const Stamps behind = stamps.subspan(i, kAgreeing);
+    const Stamps before = stamps.subspan(i - kConsistent, kConsistent);
+    const Stamps behind = stamps.subspan(i, kConsistent);
     if (!ascend(before) || !ascend(behind)) continue;
     const bool is_set = std::ranges::max(behind) < std::ranges::min(before) ||
                         std::ranges::min(behind) > std::ranges::max(before) + kLongestLog;

@@ -11,7 +11,8 @@
 
 namespace waymark {
 
-/// The stamps from `index` on need `late` added to continue those before at the usual period.
+/// Adding `late` to the stamps from `index` on makes them continue those before at the usual
+/// period.
 struct ClockSeam {
   std::size_t index{0};
   Duration late{0};

@@ -18,8 +18,8 @@ namespace waymark {
 namespace {
 
 constexpr Duration kLongestHold = std::chrono::seconds{1};
-constexpr double kCommonShare = 0.05;   // of all scans: such a number of beams is intended
-constexpr std::int64_t kMinCommon = 2;  // scans
+constexpr double kCommonShare = 0.05;   // a number of beams that so many scans have is intended
+constexpr std::int64_t kMinCommon = 2;  // least number of such scans
 
 /// Records per second, within what the configuration allows.
 template <class Record>
@@ -29,7 +29,7 @@ double rate_hz(const std::vector<Record>& records, double low_hz, double high_hz
   return std::clamp(static_cast<double>(records.size() - 1) / seconds, low_hz, high_hz);
 }
 
-/// Repeated odometry is redundant, but no error: removed without a report.
+/// Removes repeated odometry without a report: it is redundant, but no error.
 void remove_repeats(std::vector<ImportedPose>& poses) {
   const auto repeats = std::ranges::unique(poses, [](const auto& a, const auto& b) {
     return a.time == b.time && a.pose.translation() == b.pose.translation() &&

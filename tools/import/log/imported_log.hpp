@@ -21,9 +21,9 @@ struct ImportedScan {
   int num_beams{0};
   double longest_range_m{0.0};          ///< no-returns excluded
   Message message{};                    ///< for the channel LIDAR
-  std::optional<Se2> odom_from_base{};  ///< if the scan's record has an odometry pose
+  std::optional<Se2> odom_from_base{};  ///< odometry pose in the scan's record, if it has one
   bool is_mirrored{false};              ///< the message's angles count clockwise
-  Duration late{0};                     ///< delay of the message's stamp; `time` is without it
+  Duration late{0};                     ///< delay of the message's stamp, not contained in `time`
 };
 
 struct ImportedPose {
@@ -74,7 +74,7 @@ Se2 odometry_between(const ImportedLog& log, std::size_t first, std::size_t last
 /// smallest), or that 5 % of all scans have: some drivers alternate between 180 and 181 beams.
 void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& report);
 
-/// Extends odometry to cover the scans, for slam processes no scan without odometry. Where odometry
+/// Extends odometry to cover the scans, as slam processes no scan without odometry. Where odometry
 /// starts after the first scan or ends before the last one by at most a second, the motion of the
 /// adjacent second is extrapolated; with too few samples there, the first or last pose is held.
 /// Scans and images more than a second outside odometry's times are removed.

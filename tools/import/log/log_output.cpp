@@ -29,7 +29,7 @@ void check_not_replaced(const std::filesystem::path& path, const std::string& te
 
 /// @throws SetupError
 void check_is_new(const std::filesystem::path& log) {
-  if (!std::filesystem::is_regular_file(log)) return;  // LogWriter says what else may be there
+  if (!std::filesystem::is_regular_file(log)) return;  // LogWriter refuses anything else
   throw SetupError{log.string() +
                    ": is there already; an import replaces no log: give --out another name, or "
                    "move it away"};
@@ -62,7 +62,7 @@ void write_log(const ImportedLog& log, const std::filesystem::path& out) {
   writer.close();
 }
 
-/// Reads the text as slam will.
+/// Reads the text as slam does.
 /// @throws SetupError with the first problem.
 void check_robot(const std::string& toml) {
   try {

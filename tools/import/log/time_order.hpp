@@ -16,11 +16,11 @@
 
 namespace waymark {
 
-/// For each time, whether it belongs to the longest strictly ascending subsequence, so that as few
-/// records as possible are removed, whether single times are too early or too late. O(n log n).
+/// True for each time of the longest strictly ascending subsequence. Removing the other records
+/// removes as few as possible, whether single times are too early or too late. O(n log n).
 std::vector<bool> longest_ascending(std::span<const Timestamp> times);
 
-/// Messages of several processes are logged out of order by up to this.
+/// Messages of several processes may be logged out of order by this much.
 inline constexpr Duration kSmallDisorder = std::chrono::milliseconds{200};
 
 /// A larger step between stamps means that the clock was set.
@@ -89,7 +89,7 @@ void spread_equal_stamps(std::vector<Record>& records, std::string_view what,
 }
 
 /// Removes records (with members `time` and `at`) more than kLongestLog from the median: their
-/// clock was not set. Kept, they would make the log span months.
+/// clock was not set, and the log would seem to span months.
 template <class Record>
 void remove_absurd_times(std::vector<Record>& records, std::string_view what,
                          ImportReport& report) {

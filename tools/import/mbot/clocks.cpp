@@ -15,9 +15,9 @@ namespace {
 
 constexpr Duration kSameClock = std::chrono::seconds{1};
 constexpr std::int64_t kLatest_us = 4'000'000'000'000'000;  // year 2096: later stamps are garbage
-constexpr double kComparable = 0.5;  // least ratio of the spans by the two clocks
+constexpr double kComparable = 0.5;  // least ratio of a log's durations by the two clocks
 
-/// By which the other's stamps are to be shifted; none, or with a note.
+/// Shift of the other channel's stamps, with a note; nullopt if none is needed.
 std::optional<Duration> shift_of(const ChannelClock& lidar, const ChannelClock& other,
                                  std::string_view name, ImportReport& report) {
   if (lidar.empty() || other.empty() || !lidar.is_comparable() || !other.is_comparable())
@@ -60,7 +60,7 @@ void put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::str
                   std::vector<ImportedPose>& poses, ImportReport& report) {
   const auto shift = shift_of(lidar, other, name, report);
   if (!shift) return;
-  // A stamp that would become negative is garbage: left as it is, to be removed as out of order.
+  // A stamp that would become negative is garbage: it stays, and is later removed as out of order.
   for (ImportedPose& pose : poses) {
     if (to_us(pose.time + *shift) >= 0) pose.time += *shift;
   }

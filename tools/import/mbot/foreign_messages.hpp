@@ -15,7 +15,7 @@
 
 namespace waymark {
 
-/// Message type, hence robot, of the encoder ticks.
+/// Message type of the encoder ticks, which shows the robot.
 enum class Encoders {
   kMaebot,      ///< MAEBOT_ENCODERS
   kMaebot2014,  ///< MAEBOT_MOTOR_FEEDBACK, whose further fields are not read

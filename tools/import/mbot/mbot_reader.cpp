@@ -23,30 +23,30 @@
 namespace waymark {
 namespace {
 
-constexpr int kMaxBeams = 4000;                 // as robot.lidar.num_beams
-constexpr double kRplidarRangeMax_m = 6.0;      // A1
-constexpr std::int64_t kEventHeaderBytes = 28;  // of LCM's log format
+constexpr int kMaxBeams = 4000;                 // limit of robot.lidar.num_beams
+constexpr double kRplidarRangeMax_m = 6.0;      // RPLIDAR A1
+constexpr std::int64_t kEventHeaderBytes = 28;  // in LCM's log format
 
 class MbotReader {
  public:
   MbotReader(const MbotOptions& options, ImportReport& report)
       : options_{options}, report_{report} {}
 
-  void take(const Message& event, std::int64_t at);
-  void take_garbage(std::int64_t num_bytes, std::int64_t end);
+  void add(const Message& event, std::int64_t at);
+  void note_garbage(std::int64_t num_bytes, std::int64_t end);
   ImportedLog finish();
 
  private:
   void check_channels();
   void apply_ticks();
   std::optional<double> usual_range_max_m() const;
-  void take_lidar(const Message& event, std::int64_t at);
-  void take_rotating(const lidar_t& scan, const Message& event, std::int64_t at);
-  void take_planar(const planar_lidar_t& scan, const Message& event, std::int64_t at);
-  void take_pose(const Message& event, std::int64_t at, std::vector<ImportedPose>& poses,
-                 ChannelClock& clock);
-  void take_encoders(const Message& event, std::int64_t at);
-  void take_image(const Message& event, std::int64_t at);
+  void add_lidar(const Message& event, std::int64_t at);
+  void add_rotating(const lidar_t& scan, const Message& event, std::int64_t at);
+  void add_planar(const planar_lidar_t& scan, const Message& event, std::int64_t at);
+  void add_pose(const Message& event, std::int64_t at, std::vector<ImportedPose>& poses,
+                ChannelClock& clock);
+  void add_encoders(const Message& event, std::int64_t at);
+  void add_image(const Message& event, std::int64_t at);
   void describe_camera();
   bool ranges_are_good(std::span<const float> ranges, const std::string& channel, std::int64_t at);
 
@@ -62,38 +62,38 @@ class MbotReader {
   ChannelClock odometry_clock_{};
   ChannelClock reference_clock_{};
   ChannelClock camera_clock_{};
-  std::int64_t num_foreign_images_{0};  ///< of another type, on CAMERA
+  std::int64_t num_foreign_images_{0};  ///< messages on CAMERA that are no image_t
   bool has_planar_scans_{false};
   std::map<std::string, std::int64_t> events_by_channel_{};
 };
 
-void MbotReader::take(const Message& event, std::int64_t at) {
+void MbotReader::add(const Message& event, std::int64_t at) {
   ++events_by_channel_[event.channel];
-  if (event.channel == options_.lidar_channel) take_lidar(event, at);
+  if (event.channel == options_.lidar_channel) add_lidar(event, at);
   if (event.channel == options_.odometry_channel)
-    take_pose(event, at, log_.odometry, odometry_clock_);
-  if (event.channel == options_.encoder_channel) take_encoders(event, at);
+    add_pose(event, at, log_.odometry, odometry_clock_);
+  if (event.channel == options_.encoder_channel) add_encoders(event, at);
   if (event.channel == (options_.camera_channel.empty() ? std::string{channels::kCamera.name}
                                                         : options_.camera_channel))
-    take_image(event, at);
+    add_image(event, at);
   if (event.channel == options_.reference_channel)
-    take_pose(event, at, log_.reference, reference_clock_);
+    add_pose(event, at, log_.reference, reference_clock_);
 }
 
-void MbotReader::take_garbage(std::int64_t num_bytes, std::int64_t end) {
+void MbotReader::note_garbage(std::int64_t num_bytes, std::int64_t end) {
   report_.skip("no LCM event", end - num_bytes, fmt::format("{} bytes", num_bytes));
 }
 
-void MbotReader::take_lidar(const Message& event, std::int64_t at) {
+void MbotReader::add_lidar(const Message& event, std::int64_t at) {
   const std::int64_t fingerprint = fingerprint_of(event.payload);
   RejectReason reason = RejectReason::kNone;
   if (fingerprint == lidar_t::getHash()) {
     const Decoded<lidar_t> decoded = decode<lidar_t>(event.payload);
-    if (decoded.message) return take_rotating(*decoded.message, event, at);
+    if (decoded.message) return add_rotating(*decoded.message, event, at);
     reason = decoded.reason;
   } else if (fingerprint == planar_lidar_t::getHash()) {
     const Decoded<planar_lidar_t> decoded = decode<planar_lidar_t>(event.payload);
-    if (decoded.message) return take_planar(*decoded.message, event, at);
+    if (decoded.message) return add_planar(*decoded.message, event, at);
     reason = decoded.reason;
   } else {
     return skip(unknown_type(event.payload), event.channel, at);
@@ -116,7 +116,7 @@ bool MbotReader::ranges_are_good(std::span<const float> ranges, const std::strin
   return true;
 }
 
-void MbotReader::take_rotating(const lidar_t& scan, const Message& event, std::int64_t at) {
+void MbotReader::add_rotating(const lidar_t& scan, const Message& event, std::int64_t at) {
   if (!ranges_are_good(scan.ranges, event.channel, at)) return;
   const Timestamp time = timestamp_from_us(scan.utime);
   const Timestamp last = timestamp_from_us(std::max(scan.utime, std::ranges::max(scan.times)));
@@ -125,7 +125,7 @@ void MbotReader::take_rotating(const lidar_t& scan, const Message& event, std::i
   log_.scans.push_back({time, last, at, scan.num_ranges, 0.0, message, {}});
 }
 
-void MbotReader::take_planar(const planar_lidar_t& scan, const Message& event, std::int64_t at) {
+void MbotReader::add_planar(const planar_lidar_t& scan, const Message& event, std::int64_t at) {
   if (!ranges_are_good(scan.ranges, event.channel, at)) return;
   has_planar_scans_ = true;
   const Timestamp time = timestamp_from_us(scan.utime);
@@ -133,8 +133,8 @@ void MbotReader::take_planar(const planar_lidar_t& scan, const Message& event, s
   log_.scans.push_back({time, time, at, scan.nranges, 0.0, encode(channels::kLidar, scan), {}});
 }
 
-void MbotReader::take_pose(const Message& event, std::int64_t at, std::vector<ImportedPose>& poses,
-                           ChannelClock& clock) {
+void MbotReader::add_pose(const Message& event, std::int64_t at, std::vector<ImportedPose>& poses,
+                          ChannelClock& clock) {
   const PoseResult result = read_pose(event.payload);
   if (const auto* problem = std::get_if<LineProblem>(&result)) {
     return skip(*problem, event.channel, at);
@@ -144,7 +144,7 @@ void MbotReader::take_pose(const Message& event, std::int64_t at, std::vector<Im
   clock.add(time, event.time);
 }
 
-void MbotReader::take_encoders(const Message& event, std::int64_t at) {
+void MbotReader::add_encoders(const Message& event, std::int64_t at) {
   const EncoderResult result = read_encoders(event.payload);
   if (const auto* problem = std::get_if<LineProblem>(&result)) {
     return skip(*problem, event.channel, at);
@@ -154,7 +154,7 @@ void MbotReader::take_encoders(const Message& event, std::int64_t at) {
   odometry_clock_.add(ticks_.back().time, event.time);
 }
 
-void MbotReader::take_image(const Message& event, std::int64_t at) {
+void MbotReader::add_image(const Message& event, std::int64_t at) {
   if (fingerprint_of(event.payload) != image_t::getHash()) {
     if (!options_.camera_channel.empty())
       return skip(unknown_type(event.payload), event.channel, at);
@@ -212,7 +212,8 @@ void MbotReader::apply_ticks() {
   log_.robot.base.wheel_separation_m = wheels.wheel_base_m;
 }
 
-/// Range limit of the usual LiDAR (RPLIDAR A1); nullopt if some range is longer.
+/// Range limit of the usual LiDAR (RPLIDAR A1); nullopt if some range is longer, or the log has
+/// planar_lidar_t scans.
 std::optional<double> MbotReader::usual_range_max_m() const {
   if (has_planar_scans_) return std::nullopt;
   double longest_m = 0.0;
@@ -314,13 +315,13 @@ ImportedLog read_mbot_log(const std::filesystem::path& file, const MbotOptions& 
         log.offset_bytes() - kEventHeaderBytes -
         static_cast<std::int64_t>(event->channel.size() + event->payload.size());
     if (log.skipped_bytes() > garbage_bytes) {
-      reader.take_garbage(log.skipped_bytes() - garbage_bytes, at);
+      reader.note_garbage(log.skipped_bytes() - garbage_bytes, at);
       garbage_bytes = log.skipped_bytes();
     }
-    reader.take(*event, at);
+    reader.add(*event, at);
   }
   if (log.skipped_bytes() > garbage_bytes) {
-    reader.take_garbage(log.skipped_bytes() - garbage_bytes, log.size_bytes());
+    reader.note_garbage(log.skipped_bytes() - garbage_bytes, log.size_bytes());
   }
   return reader.finish();
 }

@@ -19,7 +19,7 @@ struct WheelStep {
   double longest_m() const { return std::max(std::abs(left_m), std::abs(right_m)); }
 };
 
-/// Ticks gained, also across the counter's wrap-around.
+/// Increase of the count, also across the counter's wrap-around.
 std::int32_t gained(std::int32_t now, std::int32_t before) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(now) -
                                    static_cast<std::uint32_t>(before));

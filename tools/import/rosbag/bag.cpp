@@ -52,15 +52,15 @@ std::optional<Timestamp> time_from_ns(std::int64_t ns) {
   return timestamp_from_us(ns / 1000);
 }
 
-void read_bag(const std::filesystem::path& file, const TakeRecord& take, ImportReport& report) {
+void read_bag(const std::filesystem::path& file, const HandleRecord& handle, ImportReport& report) {
   if (std::filesystem::is_directory(file))
     throw SetupError{file.string() + ": is a folder; name the .db3 or .mcap file in it"};
   if (!std::filesystem::is_regular_file(file) || !std::ifstream{file})
     throw SetupError{file.string() + ": cannot be read as a bag"};
   const std::string start = start_of(file);
-  if (start.starts_with(kRos1Magic)) return read_ros1_bag(file, take, report);
-  if (start.starts_with(kSqliteMagic)) return read_db3_bag(file, take, report);
-  if (start.starts_with(kMcapMagic)) return read_mcap_bag(file, take, report);
+  if (start.starts_with(kRos1Magic)) return read_ros1_bag(file, handle, report);
+  if (start.starts_with(kSqliteMagic)) return read_db3_bag(file, handle, report);
+  if (start.starts_with(kMcapMagic)) return read_mcap_bag(file, handle, report);
   if (is_zstd_frame({reinterpret_cast<const std::uint8_t*>(start.data()), start.size()})) {
     throw SetupError{fmt::format("{}: is compressed by zstd; unpack it first (unzstd {} -o {})",
                                  file.string(), file.filename().string(), file.stem().string())};

@@ -27,19 +27,22 @@ struct RosRecord {
   ByteView data;
 };
 
-using TakeRecord = std::function<void(const RosRecord&)>;
+using HandleRecord = std::function<void(const RosRecord&)>;
 
 /// Whether the file starts like a bag; false if it cannot be read.
 bool is_bag(const std::filesystem::path& file);
 
-/// Calls `take` for every message in file order. Formats: .bag (ROS 1, version 2.0), .db3 and .mcap
-/// (ROS 2), recognised by their first bytes. Damaged records are reported as skipped.
+/// Calls `handle` for every message in file order. Formats: .bag (ROS 1, version 2.0), .db3 and
+/// .mcap (ROS 2), recognised by their first bytes. Damaged records are reported as skipped.
 /// @throws SetupError when the file cannot be read, or is no bag.
-void read_bag(const std::filesystem::path& file, const TakeRecord& take, ImportReport& report);
+void read_bag(const std::filesystem::path& file, const HandleRecord& handle, ImportReport& report);
 
-void read_ros1_bag(const std::filesystem::path& file, const TakeRecord& take, ImportReport& report);
-void read_db3_bag(const std::filesystem::path& file, const TakeRecord& take, ImportReport& report);
-void read_mcap_bag(const std::filesystem::path& file, const TakeRecord& take, ImportReport& report);
+void read_ros1_bag(const std::filesystem::path& file, const HandleRecord& handle,
+                   ImportReport& report);
+void read_db3_bag(const std::filesystem::path& file, const HandleRecord& handle,
+                  ImportReport& report);
+void read_mcap_bag(const std::filesystem::path& file, const HandleRecord& handle,
+                   ImportReport& report);
 
 /// Replaces bytes that are not printable ASCII by '?': ROS names have none, damaged ones may.
 std::string ros_name(std::string_view bytes);

@@ -22,7 +22,7 @@ constexpr std::int64_t kMaxPixels = 64'000'000;
 struct PixelKind {
   std::string_view name;
   int type;
-  int to_grey;  ///< code for cv::cvtColor; -1: already grey
+  int to_grey;  ///< code for cv::cvtColor; -1: the image is grey already
 };
 
 constexpr std::array kPixelKinds{

@@ -35,7 +35,7 @@ void check_is_checkpointed(const std::filesystem::path& file) {
       log.string(), file.string())};
 }
 
-/// Read-only, and without a lock or a journal beside the file.
+/// Opens the file read-only, without a lock or a journal beside it.
 Database open_database(const std::filesystem::path& file) {
   check_is_checkpointed(file);
   std::string name;
@@ -94,7 +94,8 @@ std::map<std::int64_t, Topic> read_topics(const Database& database,
 
 }  // namespace
 
-void read_db3_bag(const std::filesystem::path& file, const TakeRecord& take, ImportReport& report) {
+void read_db3_bag(const std::filesystem::path& file, const HandleRecord& handle,
+                  ImportReport& report) {
   report.count_in(AddressUnit::kRow);
   const Database database = open_database(file);
   const std::map<std::int64_t, Topic> topics = read_topics(database, file, report);
@@ -112,7 +113,7 @@ void read_db3_bag(const std::filesystem::path& file, const TakeRecord& take, Imp
     }
     if (!topic->second.is_cdr) continue;
     const auto hand_out = [&](ByteView data) {
-      take({topic->second.name, topic->second.type, RosEncoding::kCdr, *recorded, row, data});
+      handle({topic->second.name, topic->second.type, RosEncoding::kCdr, *recorded, row, data});
     };
     const ByteView data = blob_at(rows, 3);
     if (!is_zstd_frame(data)) {

@@ -25,7 +25,7 @@ enum Op : std::uint8_t {
 
 class McapReader {
  public:
-  McapReader(const TakeRecord& take, ImportReport& report) : take_{take}, report_{report} {}
+  McapReader(const HandleRecord& handle, ImportReport& report) : handle_{handle}, report_{report} {}
 
   void read(ByteView file) {
     ByteCursor cursor{file};
@@ -39,7 +39,7 @@ class McapReader {
                             fmt::format("{} bytes", file.size() - static_cast<std::size_t>(at)));
       }
       if (op == kDataEnd || op == kFooter) return;
-      take_record(op, content, at);
+      handle_record(op, content, at);
     }
     report_.skip("end of the data is missing", static_cast<std::int64_t>(file.size()),
                  "the file is cut off");
@@ -53,22 +53,22 @@ class McapReader {
     bool is_ros{false};
   };
 
-  void take_record(std::uint8_t op, ByteView content, std::int64_t at) {
+  void handle_record(std::uint8_t op, ByteView content, std::int64_t at) {
     switch (op) {
       case kSchema:
-        return take_schema(content, at);
+        return handle_schema(content, at);
       case kChannel:
-        return take_channel(content, at);
+        return handle_channel(content, at);
       case kMessage:
-        return take_message(content, at);
+        return handle_message(content, at);
       case kChunk:
-        return take_chunk(content, at);
+        return handle_chunk(content, at);
       default:
         return;  // index, attachment, metadata
     }
   }
 
-  void take_schema(ByteView content, std::int64_t at) {
+  void handle_schema(ByteView content, std::int64_t at) {
     ByteCursor cursor{content};
     const auto id = cursor.number<std::uint16_t>();
     const std::string name = ros_name(cursor.text());
@@ -76,7 +76,7 @@ class McapReader {
     types_[id] = ros_type_name(name);
   }
 
-  void take_channel(ByteView content, std::int64_t at) {
+  void handle_channel(ByteView content, std::int64_t at) {
     ByteCursor cursor{content};
     const auto id = cursor.number<std::uint16_t>();
     const auto schema = cursor.number<std::uint16_t>();
@@ -89,7 +89,7 @@ class McapReader {
                      encoding == "ros1" || encoding == "cdr"};
   }
 
-  void take_message(ByteView content, std::int64_t at) {
+  void handle_message(ByteView content, std::int64_t at) {
     ByteCursor cursor{content};
     const auto id = cursor.number<std::uint16_t>();
     cursor.number<std::uint32_t>();  // sequence
@@ -103,10 +103,10 @@ class McapReader {
     if (!of.is_ros) return;
     const auto recorded = time_from_ns(static_cast<std::int64_t>(log_ns));
     if (!recorded) return report_.skip("bad time", at, of.topic);
-    take_({of.topic, of.type, of.encoding, *recorded, at, cursor.take(cursor.left())});
+    handle_({of.topic, of.type, of.encoding, *recorded, at, cursor.take(cursor.left())});
   }
 
-  void take_chunk(ByteView content, std::int64_t at) {
+  void handle_chunk(ByteView content, std::int64_t at) {
     ByteCursor cursor{content};
     cursor.number<std::uint64_t>();  // first and last time
     cursor.number<std::uint64_t>();
@@ -115,7 +115,7 @@ class McapReader {
     const std::string compression = ros_name(cursor.text());
     const ByteView packed = cursor.block<std::uint64_t>();
     if (!cursor.good()) return report_.skip("damaged chunk", at, "shorter than its fields");
-    if (compression.empty()) return take_inside(packed, crc, at);
+    if (compression.empty()) return handle_records_of_chunk(packed, crc, at);
     if (!is_known_compression(compression)) {
       return report_.skip("unknown compression", at, compression);
     }
@@ -123,10 +123,10 @@ class McapReader {
     if (!unpacked) {
       return report_.skip("damaged chunk", at, fmt::format("{} bytes", packed.size()));
     }
-    take_inside(*unpacked, crc, at);
+    handle_records_of_chunk(*unpacked, crc, at);
   }
 
-  void take_inside(ByteView records, std::uint32_t crc, std::int64_t at) {
+  void handle_records_of_chunk(ByteView records, std::uint32_t crc, std::int64_t at) {
     if (crc != 0 && crc != crc32_z(0, records.data(), records.size())) {
       return report_.skip("damaged chunk", at, "its checksum is another one");
     }
@@ -135,11 +135,11 @@ class McapReader {
       const auto op = cursor.number<std::uint8_t>();
       const ByteView content = cursor.block<std::uint64_t>();
       if (!cursor.good() || op == kChunk) return report_.skip("no MCAP record", at, "in its chunk");
-      take_record(op, content, at);
+      handle_record(op, content, at);
     }
   }
 
-  const TakeRecord& take_;
+  const HandleRecord& handle_;
   ImportReport& report_;
   std::map<std::uint16_t, std::string> types_{};
   std::map<std::uint16_t, McapChannel> channels_{};
@@ -147,10 +147,10 @@ class McapReader {
 
 }  // namespace
 
-void read_mcap_bag(const std::filesystem::path& file, const TakeRecord& take,
+void read_mcap_bag(const std::filesystem::path& file, const HandleRecord& handle,
                    ImportReport& report) {
   const MappedFile bag{file};
-  McapReader{take, report}.read(bag.bytes());
+  McapReader{handle, report}.read(bag.bytes());
 }
 
 }  // namespace waymark

@@ -23,7 +23,7 @@ ScanPlane describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
                          const SensorFrames& frames, const LidarMounting& given,
                          ImportReport& report);
 
-/// Whether the camera's images are as taken, or have been rectified by CameraInfo.
+/// Whether the camera's images have been rectified by CameraInfo.
 enum class Rectified { kNo, kYes };
 
 /// Sets lens and mounting of the camera; values that the bag lacks are guessed, with a note.

@@ -93,7 +93,7 @@ std::size_t next_chunk(ByteView bag, std::size_t from) {
 
 class Ros1Reader {
  public:
-  Ros1Reader(const TakeRecord& take, ImportReport& report) : take_{take}, report_{report} {}
+  Ros1Reader(const HandleRecord& handle, ImportReport& report) : handle_{handle}, report_{report} {}
 
   void read(ByteView bag) {
     std::size_t offset = kMagicBytes;
@@ -107,7 +107,7 @@ class Ros1Reader {
         offset = next;
         continue;
       }
-      take_record(*record, static_cast<std::int64_t>(offset));
+      handle_record(*record, static_cast<std::int64_t>(offset));
       offset += cursor.offset();
     }
   }
@@ -118,23 +118,23 @@ class Ros1Reader {
     std::string type{};
   };
 
-  void take_record(const Record& record, std::int64_t at) {
+  void handle_record(const Record& record, std::int64_t at) {
     switch (record.op) {
       case kChunk:
-        return take_chunk(record, at);
+        return handle_chunk(record, at);
       case kConnection:
-        return take_connection(record, at);
+        return handle_connection(record, at);
       case kMessage:
-        return take_message(record, at);
+        return handle_message(record, at);
       default:
         return;  // index: not needed to read everything
     }
   }
 
-  void take_chunk(const Record& record, std::int64_t at) {
+  void handle_chunk(const Record& record, std::int64_t at) {
     const std::string compression = text_in(record.fields, "compression");
     const auto size = number_in<std::uint32_t>(record.fields, "size");
-    if (compression == "none") return take_inside(record.data, at);
+    if (compression == "none") return handle_records_of_chunk(record.data, at);
     if (!size || !is_known_compression(compression)) {
       return report_.skip("unknown compression", at, compression);
     }
@@ -142,10 +142,10 @@ class Ros1Reader {
     if (!unpacked) {
       return report_.skip("damaged chunk", at, fmt::format("{} bytes", record.data.size()));
     }
-    take_inside(*unpacked, at);
+    handle_records_of_chunk(*unpacked, at);
   }
 
-  void take_inside(ByteView chunk, std::int64_t at) {
+  void handle_records_of_chunk(ByteView chunk, std::int64_t at) {
     ByteCursor cursor{chunk};
     while (!cursor.at_end()) {
       const std::size_t start = cursor.offset();
@@ -154,18 +154,18 @@ class Ros1Reader {
         return report_.skip("no bag record", at,
                             fmt::format("{} bytes of its chunk", chunk.size() - start));
       }
-      take_record(*record, at);
+      handle_record(*record, at);
     }
   }
 
-  void take_connection(const Record& record, std::int64_t at) {
+  void handle_connection(const Record& record, std::int64_t at) {
     const auto id = number_in<std::uint32_t>(record.fields, "conn");
     const auto description = read_fields(record.data);
     if (!id || !description) return report_.skip("bad connection", at, "");
     connections_[*id] = {text_in(record.fields, "topic"), text_in(*description, "type")};
   }
 
-  void take_message(const Record& record, std::int64_t at) {
+  void handle_message(const Record& record, std::int64_t at) {
     const auto id = number_in<std::uint32_t>(record.fields, "conn");
     const auto stamp = number_in<std::uint64_t>(record.fields, "time");
     const auto connection = id ? connections_.find(*id) : connections_.end();
@@ -176,21 +176,21 @@ class Ros1Reader {
     const auto nsec = static_cast<std::int64_t>(*stamp >> 32U);
     const auto recorded = time_from_ns(sec * 1'000'000'000 + nsec);
     if (!recorded) return report_.skip("bad time", at, connection->second.topic);
-    take_({connection->second.topic, connection->second.type, RosEncoding::kRos1, *recorded, at,
-           record.data});
+    handle_({connection->second.topic, connection->second.type, RosEncoding::kRos1, *recorded, at,
+             record.data});
   }
 
-  const TakeRecord& take_;
+  const HandleRecord& handle_;
   ImportReport& report_;
   std::map<std::uint32_t, Connection> connections_{};
 };
 
 }  // namespace
 
-void read_ros1_bag(const std::filesystem::path& file, const TakeRecord& take,
+void read_ros1_bag(const std::filesystem::path& file, const HandleRecord& handle,
                    ImportReport& report) {
   const MappedFile bag{file};
-  Ros1Reader{take, report}.read(bag.bytes());
+  Ros1Reader{handle, report}.read(bag.bytes());
 }
 
 }  // namespace waymark

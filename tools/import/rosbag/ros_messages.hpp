@@ -59,7 +59,7 @@ struct RosCameraInfo {
   std::array<double, 12> projection{};  ///< of rectified images; may be 0 or not finite
 };
 
-/// From one frame to another, by a tf2_msgs/TFMessage.
+/// Transform from one frame to another, from a tf2_msgs/TFMessage.
 struct RosTransform {
   std::string parent{};
   std::string child{};
@@ -69,7 +69,7 @@ struct RosTransform {
 /// The transforms of a tf2_msgs/TFMessage.
 struct RosTransforms {
   std::vector<RosTransform> good{};
-  std::vector<std::string> bad{};  ///< child frames of those that are no rotation and translation
+  std::vector<std::string> bad{};  ///< child frames of invalid transforms
 };
 
 /// The decoded message; nothing if its bytes are damaged or its numbers are not finite.

@@ -14,7 +14,7 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMaxBeams = 4000;   // as robot.lidar.num_beams
+constexpr std::size_t kMaxBeams = 4000;   // limit of robot.lidar.num_beams
 constexpr double kLongestSweep_s = 10.0;  // limit for a lidar_t
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 constexpr float kNotMeasured = std::numeric_limits<float>::quiet_NaN();

@@ -102,17 +102,17 @@ class RosbagReader {
         choose(topics_, options.camera_info_topic, "--camera-info-topic", {kCameraInfoType});
   }
 
-  void take(const RosRecord& record) {
+  void add(const RosRecord& record) {
     if (record.topic == scan_) {
-      take_scan(record);
+      add_scan(record);
     } else if (record.topic == odometry_) {
-      take_odometry(record);
+      add_odometry(record);
     } else if (record.topic == image_) {
-      take_image(record);
+      add_image(record);
     } else if (record.topic == camera_info_) {
-      take_camera_info(record);
+      add_camera_info(record);
     } else if (record.type == kTransformType || record.type == kOldTransformType) {
-      take_transforms(record);
+      add_transforms(record);
     }
   }
 
@@ -136,11 +136,11 @@ class RosbagReader {
     return record.recorded;
   }
 
-  void take_scan(const RosRecord& record);
-  void take_odometry(const RosRecord& record);
-  void take_image(const RosRecord& record);
-  void take_camera_info(const RosRecord& record);
-  void take_transforms(const RosRecord& record);
+  void add_scan(const RosRecord& record);
+  void add_odometry(const RosRecord& record);
+  void add_image(const RosRecord& record);
+  void add_camera_info(const RosRecord& record);
+  void add_transforms(const RosRecord& record);
   void add_scans(ScanPlane plane);
   void note_zeros();
   std::optional<double> usual_range_max_m() const;
@@ -153,14 +153,14 @@ class RosbagReader {
   std::string image_{};
   std::string camera_info_{};
   ImportedLog log_{};
-  std::vector<HeldScan> scans_{};  // until transforms tell whether the LiDAR is upside down
+  std::vector<HeldScan> scans_{};  // kept until it is known whether the LiDAR is upside down
   StaticFrames transforms_{};
   SensorFrames frames_{};
   std::optional<RosCameraInfo> info_{};
   std::map<std::string, std::int64_t> unstamped_{};
 };
 
-void RosbagReader::take_scan(const RosRecord& record) {
+void RosbagReader::add_scan(const RosRecord& record) {
   auto scan = read_scan(record);
   if (!scan) return skip("bad scan message", record);
   const Timestamp time = time_of(scan->header, record);
@@ -168,7 +168,7 @@ void RosbagReader::take_scan(const RosRecord& record) {
   scans_.push_back({time, record.at, std::move(*scan)});
 }
 
-void RosbagReader::take_odometry(const RosRecord& record) {
+void RosbagReader::add_odometry(const RosRecord& record) {
   const auto odometry = read_odometry(record);
   if (!odometry) return skip("bad odometry message", record);
   if (odometry->pose.translation().cwiseAbs().maxCoeff() > bounds::kPosition_m)
@@ -177,7 +177,7 @@ void RosbagReader::take_odometry(const RosRecord& record) {
   log_.odometry.push_back({time_of(odometry->header, record), record.at, odometry->pose});
 }
 
-void RosbagReader::take_image(const RosRecord& record) {
+void RosbagReader::add_image(const RosRecord& record) {
   const auto image = record.type == kImageType ? read_image(record) : read_compressed_image(record);
   if (!image) return skip("bad image message", record);
   const Timestamp time = time_of(image->header, record);
@@ -192,13 +192,13 @@ void RosbagReader::take_image(const RosRecord& record) {
   log_.images.push_back({time, record.at, encode(channels::kCamera, *message)});
 }
 
-void RosbagReader::take_camera_info(const RosRecord& record) {
+void RosbagReader::add_camera_info(const RosRecord& record) {
   auto info = read_camera_info(record);
   if (!info) return skip("bad camera info", record);
   if (!info_) info_ = std::move(info);
 }
 
-void RosbagReader::take_transforms(const RosRecord& record) {
+void RosbagReader::add_transforms(const RosRecord& record) {
   const auto transforms = read_transforms(record);
   if (!transforms) return skip("bad transforms", record);
   const bool is_static = record.topic.ends_with("tf_static");
@@ -273,7 +273,7 @@ ImportedLog read_rosbag(const std::filesystem::path& file, const RosbagOptions& 
                         ImportReport& report) {
   RosbagReader reader{file, options, report};
   read_bag(
-      file, [&reader](const RosRecord& record) { reader.take(record); }, report);
+      file, [&reader](const RosRecord& record) { reader.add(record); }, report);
   return reader.finish();
 }
 

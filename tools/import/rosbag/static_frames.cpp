@@ -4,7 +4,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kSame = 1e-6;  // [m, and rotation matrix elements]: rounding of repeated messages
+constexpr double kSame = 1e-6;  // rounding of repeated transforms [m, rotation matrix elements]
 
 /// "/base_link" of ROS 1 is "base_link".
 std::string frame_name(const std::string& name) {

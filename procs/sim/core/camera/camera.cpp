@@ -14,9 +14,9 @@ namespace waymark {
 namespace {
 
 constexpr int kQualityStep = 5;
-// Of a picture of random values. Values of single pixels make a JPEG of 46 kB of 640 x 480 pixels;
-// larger pictures fit a datagram only if each JPEG block has one value.
-constexpr std::size_t kMostSinglePixels = 640 * 480;
+// Largest picture of random values with one value per pixel: the JPEG of such a picture has 46 kB.
+// Larger pictures fit a datagram only with one value per JPEG block.
+constexpr std::size_t kMaxSinglePixels = 640 * 480;
 constexpr int kJpegBlock_px = 8;
 
 }  // namespace
@@ -73,7 +73,7 @@ cv::Mat Camera::random_picture(Random& random) const {
   const bool grey = noise_config_.colour == ImageColour::kGrey;
   const cv::Size size{camera_.width_px, camera_.height_px};
   cv::Mat picture(size, grey ? CV_8UC1 : CV_8UC3);
-  const int cell_px = picture.total() <= kMostSinglePixels ? 1 : kJpegBlock_px;
+  const int cell_px = picture.total() <= kMaxSinglePixels ? 1 : kJpegBlock_px;
   cv::Mat cells((size.height + cell_px - 1) / cell_px, (size.width + cell_px - 1) / cell_px,
                 picture.type());
   constexpr std::uint64_t kGreyLevels = 256;

@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-// A million samples, so that two image rows rarely take overlapping parts of the sequence.
+// A million samples, so that two image rows rarely use overlapping parts of the sequence.
 constexpr std::size_t kSequenceLength = std::size_t{1} << 20;
 
 std::uint8_t saturated_sum(std::uint8_t pixel, std::int8_t noise) {

@@ -18,8 +18,8 @@ class Lens {
   /// resolution of the image centre. Without distortion and with square pixels it is that camera.
   const Pinhole& pinhole() const { return pinhole_; }
 
-  /// The configured camera's picture from the pinhole's; the same memory as the argument when the
-  /// lens has no distortion and square pixels.
+  /// Converts the pinhole's picture to that of the configured camera. Shares the argument's memory
+  /// when the lens has no distortion and square pixels.
   cv::Mat apply(const cv::Mat& pinhole_picture) const;
 
  private:

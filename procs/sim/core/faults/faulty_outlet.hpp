@@ -14,8 +14,7 @@
 
 namespace waymark {
 
-/// Applies the faults of a sensor to its stream of measurements, whose stamp is their member
-/// `time`.
+/// Applies the faults of a sensor to its measurements, which have a member `time`, their stamp.
 template <class Measurement>
 class FaultyOutlet {
  public:
@@ -24,9 +23,8 @@ class FaultyOutlet {
 
   const Faults& faults() const { return faults_; }
 
-  /// Takes a new measurement and applies the faults active at `moment`. A measurement stamped
-  /// before 0 is dropped.
-  void take(Measurement measured, const Moment& moment) {
+  /// Adds a measurement, with the faults active at `moment`. One stamped before 0 is dropped.
+  void push(Measurement measured, const Moment& moment) {
     const std::uint64_t number = count_++;
     if (measured.time < Timestamp{} || is_lost(number, moment)) return;
     if (faults_.have(FaultKind::kStuck)) repeat_if_stuck(measured, moment);

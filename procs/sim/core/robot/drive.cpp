@@ -15,14 +15,14 @@ constexpr double kHeadingGain_per_m = 4.0;
 constexpr double kAligned_rad = 0.002;           // heading error at which a turn on the spot ends
 constexpr double kTurnAcceleration_per_m = 5.0;  // turn acceleration / forward acceleration
 constexpr double kArrived_m = 0.001;
-constexpr double kSlowestShare = 0.1;  // least share of the speed while braking, so that it arrives
+constexpr double kSlowestShare = 0.1;  // least share of the speed, so that a braking robot arrives
 constexpr double kSteeringReserve = 0.8;  // arcs use this share of the turn speed
 constexpr std::size_t kMaxPendingCommands = 10'000;
 constexpr double kTimeLimitFactor = 3.0;
 constexpr double kTimeReserve_s = 60.0;
 
-/// Upper bound of the time from rest to rest over a distance or an angle: the second term is what
-/// RouteFollower takes to turn if the speed is not limited; to drive takes less.
+/// Upper bound of the time from rest to rest over a distance or an angle. The second term is the
+/// time that RouteFollower needs for a turn without a limit of the speed; driving needs less.
 double longest_time_s(double way, double speed, double acceleration) {
   return way / speed + std::sqrt(6.0 * way / acceleration);
 }
@@ -86,7 +86,7 @@ RouteFollower::RouteFollower(const RouteConfig& config, double period_s)
                                           : kTimeReserve_s + kTimeLimitFactor * travel_time_s();
 }
 
-/// Upper bound, from the speeds and accelerations of the route.
+/// Upper bound of the time for the route, from its speeds and accelerations.
 double RouteFollower::travel_time_s() const {
   double travel_s = 0.0;
   double heading_rad = config_.start_yaw_rad;

@@ -67,17 +67,17 @@ class RouteFollower {
   /// @param world_from_base  the true pose.
   Velocity next(const Se2& world_from_base);
 
-  /// To be called after a kidnap: starts again from standstill, with a turn on the spot towards the
-  /// present piece of the path.
+  /// Starts again from standstill, with a turn on the spot towards the present piece of the path.
+  /// To be called after a kidnap.
   void begin_anew();
 
-  /// The robot stands at the last point.
+  /// True when the robot stands at the last point.
   bool arrived() const { return target_ >= path_.size(); }
 
   double route_length_m() const { return route_length_m_; }
 
-  /// Time in which the robot must arrive: route.duration_s, or, without one, a minute and three
-  /// times what driving and turning takes by the route's speeds and accelerations.
+  /// Time in which the robot must arrive: route.duration_s if it is set; else three times the time
+  /// for driving and turning at the route's speeds and accelerations, plus a minute.
   double time_limit_s() const { return time_limit_s_; }
 
   /// Length of the route up to the robot's projection onto it.

@@ -63,7 +63,7 @@ std::vector<PathPiece> path_through(const std::vector<Eigen::Vector2d>& points_m
     lines.push_back(line(points_m[i - 1], points_m[i]));
 
   std::vector<PathPiece> path;
-  double trimmed_m = 0.0;  // what the arc before takes of the present line
+  double trimmed_m = 0.0;  // length of the present line that the arc before it replaces
   for (std::size_t i = 0; i < lines.size(); ++i) {
     PathPiece piece = lines[i];
     if (trimmed_m > 0.0) piece.world_from_start = path.back().world_from(path.back().length_m);

@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-// Constant errors drawn from the seed: as large as on a well-kept TurtleBot3.
+// Sizes of the constant errors drawn from the seed: those of a well-kept TurtleBot3.
 constexpr double kScaleOfOddSeeds = 0.01;
 constexpr double kMaxHeadingScale = 0.005;
 

@@ -40,7 +40,7 @@ class Lidar {
   LidarConfig config_;
   LidarNoiseConfig noise_;
   std::uint64_t seed_;
-  std::uint64_t beam_{0};  ///< beams measured so far in the run; selects the noise
+  std::uint64_t beam_{0};  ///< number of beams measured so far in the run; selects the noise
 };
 
 /// Distance to the first wall or box along a direction in the world frame; +inf when there is none.

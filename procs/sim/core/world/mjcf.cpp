@@ -10,8 +10,8 @@
 namespace waymark {
 namespace {
 
-// Masses and sizes of the Waffle Pi: turtlebot3_description, turtlebot3_waffle_pi.urdf; the total
-// is the data sheet's 1.8 kg; the body has what is left without the wheels.
+// Masses and sizes of the Waffle Pi, from turtlebot3_description, turtlebot3_waffle_pi.urdf. The
+// body has the data sheet's total of 1.8 kg less the wheels.
 constexpr double kWheelMass_kg = 0.0285;
 constexpr double kWheelWidth_m = 0.018;
 constexpr double kBodyMass_kg = 1.8 - 2 * kWheelMass_kg;

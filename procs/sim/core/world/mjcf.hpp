@@ -29,7 +29,7 @@ inline constexpr const char* kBoxPrefix = "box_";        ///< + index into World
 
 struct MjcfOptions {
   double time_step_s{1.0 / 600.0};
-  double plate_size_m{0.6};  ///< marker with quiet zone
+  double plate_size_m{0.6};  ///< side of a marker with its quiet zone
   int picture_width_px{640};
   int picture_height_px{480};
   Se2 world_from_start{};  ///< initial pose of the base

@@ -110,7 +110,7 @@ bool cut(ClosedLine& line, const OpeningConfig& opening, const WorldConfig& worl
     const Eigen::Vector2d along_m = to.at_m - from.at_m;
     const Se2 world_from_wall{from.at_m, std::atan2(along_m.y(), along_m.x())};
     const double at_m = (centre_m - from.at_m).norm();
-    // Between corridor and room there are two walls, one of each, back to back.
+    // Corridor and room each have a wall of their own here, back to back.
     const double partition_m = 2.0 * world.wall_thickness_m;
     std::vector<Corner> corners = opening_corners(opening, at_m, partition_m, from.kind);
     for (Corner& corner : corners)

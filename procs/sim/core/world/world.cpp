@@ -16,7 +16,7 @@ namespace {
 struct Place {
   Eigen::Vector2d centre_m{0.0, 0.0};
   double yaw_rad{0.0};
-  int station{0};  ///< number of the station along its corridor
+  int station{0};  ///< number of the station (spacing_m apart) along its corridor
   Side side{Side::kLeft};
 };
 
@@ -93,8 +93,8 @@ double distance_m(const BoxConfig& box, const Eigen::Vector2d& point_m) {
 
 }  // namespace
 
-double room_m(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
-              const Eigen::Vector2d& point_m) {
+double clearance_m(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
+                   const Eigen::Vector2d& point_m) {
   double nearest_m = clearance_m(walls, point_m);
   for (const BoxConfig& box : boxes)
     nearest_m = std::min(nearest_m, distance_m(box, point_m));

@@ -46,8 +46,8 @@ constexpr double kPlateThickness_m = 0.002;
 World build_world(const WorldConfig& world, const MarkerLayoutConfig& markers, double plate_size_m,
                   std::int64_t seed);
 
-/// Number of places for markers in the layout, those of missing markers included. Where no wall is
-/// behind the whole plate (at a doorway or a junction), there is no place.
+/// Number of places for markers in the layout, including those of missing markers. There is no
+/// place where the wall does not cover the whole back of the plate (at a doorway or a junction).
 std::size_t place_count(const WorldConfig& world, const MarkerLayoutConfig& markers,
                         double plate_size_m);
 
@@ -60,12 +60,12 @@ std::vector<int> marker_ids(const MarkerLayoutConfig& markers, std::size_t num_p
 std::optional<MarkerPlate> plate_near(const std::vector<Wall>& walls,
                                       const Eigen::Vector2d& point_m, double plate_size_m);
 
-/// Distance from a point to the nearest wall or box, 0 inside a box; negative outside the free
-/// space.
-double room_m(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
-              const Eigen::Vector2d& point_m);
+/// Like clearance_m() of the walls alone (outline.hpp), but with boxes: distance from a point to
+/// the nearest wall face or box; 0 inside a box, negative outside the walls.
+double clearance_m(const std::vector<Wall>& walls, const std::vector<BoxConfig>& boxes,
+                   const Eigen::Vector2d& point_m);
 
-/// True when there is a wall behind the whole plate.
+/// True when a wall covers the whole back of the plate.
 bool hangs_on_a_wall(const std::vector<Wall>& walls, const Eigen::Vector2d& centre_m,
                      double plate_size_m);
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "slam/core/filter/estimate.hpp"
-#include "slam/core/filter/findings.hpp"
 #include "slam/core/filter/parallel_for.hpp"
 #include "slam/core/filter/scan_trajectory.hpp"
+#include "slam/core/filter/sensor_statistics.hpp"
 #include "slam/core/filter/update_gate.hpp"
 #include "slam/core/graph/map_snapshot.hpp"
 #include "slam/core/grid/grid_map.hpp"
@@ -89,8 +89,8 @@ class Estimator {
   ///         farthest_pose_m() from the present one (before the first one: from the map).
   virtual bool set_pose(const StartPose& /*pose*/) { return false; }
 
-  /// Learnt properties of the sensors; only of methods that learn them.
-  virtual std::optional<Findings> findings() const { return std::nullopt; }
+  /// What was learnt about the sensors, and counts; only of methods that learn.
+  virtual std::optional<SensorStatistics> statistics() const { return std::nullopt; }
 
   /// Everything that another run needs to continue in this map; only of methods that support it.
   /// O(scans).

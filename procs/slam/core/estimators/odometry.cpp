@@ -19,7 +19,7 @@ Eigen::Matrix3d propagate(const Eigen::Matrix3d& covariance, const Se2& map_from
   }
   added(2, 2) = noise.turn_per_sqrt_m * noise.turn_per_sqrt_m * motion.distance_m +
                 noise.turn_per_sqrt_rad * noise.turn_per_sqrt_rad * motion.turn_rad;
-  return carried_along(covariance, step) + added;
+  return at_end_of_lever(covariance, step) + added;
 }
 
 }  // namespace

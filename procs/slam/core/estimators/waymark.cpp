@@ -32,8 +32,8 @@ GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config)
   return noise;
 }
 
-/// The map before the first scan of this run.
-GridMap ground_of(const EstimatorSetup& setup) {
+/// The map before this run's first scan.
+GridMap base_map_of(const EstimatorSetup& setup) {
   if (setup.loaded_map) return setup.loaded_map->grid;
   return {GridFrame::centred_on_map_origin(setup.grid.resolution_m), {}, {}};
 }
@@ -58,8 +58,8 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       submaps_{config.scan.cell_spacing_m, config.submap_keyframes, config.submap_length_m},
       usual_fit_{config.scan.min_inliers, config.min_inlier_share},
       range_scale_{config.scan.cell_spacing_m},
-      map_{setup.grid, ground_of(setup)},
-      weighed_with_{graph_.odometry_noise()},
+      map_{setup.grid, base_map_of(setup)},
+      noise_of_old_factors_{graph_.odometry_noise()},
       start_{setup.start},
       survey_{setup.loaded_map ? std::vector<SurveyedMarker>{} : setup.survey} {
   if (setup_.loaded_map) load(*setup_.loaded_map);
@@ -69,106 +69,110 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   newest_time_ = measured.time;
   clock_s_ += measured.elapsed_s;
   if (measured.clock_set != Duration{}) book_.set_clock(measured.clock_set);
-  is_put_elsewhere_ = false;
+  is_pose_reset_ = false;
   is_observed_ = false;
   solved_.reset();
   follow_odometry(measured);
-  if (place_finder_ && !place(measured)) return unplaced(measured);
-  Look look = look_from_expected(measured);
-  findings_.beams += static_cast<std::int64_t>(measured.beams.size());
-  findings_.beams_moving += static_cast<std::int64_t>(look.beams_moving);
-  const std::optional<Observation> corrected = with_right_scale(measured, look);
+  if (place_finder_ && !try_global_localisation(measured)) return estimate_without_pose(measured);
+  ScanAtPrediction scan = match_at_prediction(measured);
+  statistics_.beams += static_cast<std::int64_t>(measured.beams.size());
+  statistics_.beams_moving += static_cast<std::int64_t>(scan.beams_moving);
+  const std::optional<Observation> corrected = with_right_scale(measured, scan);
   const Observation& observation = corrected ? *corrected : measured;
-  bool is_keyframe = given_pose_ || odometry_check_.is_refused() || is_keyframe_due(observation) ||
-                     is_contradicted_by(observation);
+  bool is_keyframe = commanded_pose_ || odometry_check_.is_refused() ||
+                     is_keyframe_due(observation) || is_contradicted_by(observation);
   const Se2 map_from_last = graph_.state().keyframes.empty()
                                 ? Se2{}
                                 : graph_.state().keyframes.back() * newest_from_last_scan_;
   BetweenKeyframes between;
   if (!is_keyframe) {
-    between = between_keyframes(look);
-    is_keyframe = between.contradicts_odometry || has_moved_silently(between.map_from_base);
+    between = between_keyframes(scan);
+    is_keyframe = between.contradicts_odometry || has_moved_without_odometry(between.map_from_base);
   }
   if (is_keyframe) {
-    add_keyframe(observation, look);
+    add_keyframe(observation, scan);
     since_insertion_m_ = observation.motion.distance_m;
   } else {
-    if (look.scan) note_fit(look.scan->match);
+    if (scan.matched) note_fit(scan.matched->match);
     since_insertion_m_ += observation.motion.distance_m;
-    if (between.shows_all_axes || sees_known_markers(observation))
+    if (between.observes_all_axes || sees_known_markers(observation))
       unmeasured_motion_.note_observed();
-    is_observed_ = between.shows_all_axes;
-    if (between.match) insert_between(look.points, *between.match, between.map_from_base);
+    is_observed_ = between.observes_all_axes;
+    if (between.match) insert_between(scan.points, *between.match, between.map_from_base);
   }
   if (between.match) note_reason(EstimateReason::kScan);
   Estimate now =
       is_keyframe ? estimate_at_keyframe(observation) : estimate_between(observation, between);
   now.updated = is_keyframe;
   odometry_check_.note_estimated(
-      is_put_elsewhere_ ? Se2{} : map_from_last.inverse() * now.map_from_base, measured.elapsed_s);
+      is_pose_reset_ ? Se2{} : map_from_last.inverse() * now.map_from_base, measured.elapsed_s);
   newest_from_last_scan_ = graph_.state().keyframes.back().inverse() * now.map_from_base;
   reason_ = EstimateReason::kOdometry;
-  if (!is_frozen()) {
+  if (!is_map_fixed()) {
     scan_poses_.push_back({observation.time, newest(),
                            graph_.state().keyframes.back().inverse() * now.map_from_base,
                            is_observed_});
   }
-  return has_frame() ? now : unplaced(observation);
+  return has_frame() ? now : estimate_without_pose(observation);
 }
 
 void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
-/// The first scan and that after a commanded pose get neither a prediction nor a match.
-WaymarkEstimator::Look WaymarkEstimator::look_from_expected(const Observation& observation) const {
-  Look look{points_of(observation)};
-  if (graph_.state().keyframes.empty() || given_pose_) return look;
-  look.since_last_s = observation.elapsed_s;
-  look.expected = prediction();
-  Prediction searched = look.expected;
+/// The first scan and the one after a commanded pose get neither a prediction nor a match.
+WaymarkEstimator::ScanAtPrediction WaymarkEstimator::match_at_prediction(
+    const Observation& observation) const {
+  ScanAtPrediction scan{points_of(observation)};
+  if (graph_.state().keyframes.empty() || commanded_pose_) return scan;
+  scan.since_last_s = observation.elapsed_s;
+  scan.expected = prediction();
+  Prediction searched = scan.expected;
   if (unmeasured_motion_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
-  const std::size_t all = look.points.size();
-  look.points =
-      without_moving(look.points, map_.map(), searched.map_from_base, searched.covariance);
-  look.beams_moving = all - look.points.size();
-  look.scan = matched(look.points, searched);
+  const std::size_t all = scan.points.size();
+  scan.points =
+      without_moving(scan.points, map_.map(), searched.map_from_base, searched.covariance);
+  scan.beams_moving = all - scan.points.size();
+  scan.matched = matched(scan.points, searched);
   // A scan that contradicts the map may fit at another pose; its range scale is tested only if it
   // fits none.
-  if (look.scan && usual_fit_.is_contradicted(look.scan->match)) search_widely(observation, look);
-  return look;
+  if (scan.matched && usual_fit_.is_contradicted(scan.matched->match))
+    search_widely(observation, scan);
+  return scan;
 }
 
 /// Adds the newest keyframe at its predicted pose, with odometry and scan factor.
 WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
-    const Observation& observation, std::span<const MarkerMeasurement> measurements, Look& look) {
-  if (look.scan) search_widely(observation, look);
-  const auto& scan = look.scan;
+    const Observation& observation, std::span<const MarkerMeasurement> measurements,
+    ScanAtPrediction& scan) {
+  if (scan.matched) search_widely(observation, scan);
+  const auto& matched = scan.matched;
   KeyframeScan used;
-  used.is_refuted = scan && usual_fit_.is_refuted(scan->match);
-  used.is_used = scan && !used.is_refuted && scan->match.is_usable(config_.scan);
-  used.shows_all_axes = used.is_used && !scan->match.observed.is_degenerate;
+  used.is_refuted = matched && usual_fit_.is_refuted(matched->match);
+  used.is_used = matched && !used.is_refuted && matched->match.is_usable(config_.scan);
+  used.observes_all_axes = used.is_used && !matched->match.observed.is_degenerate;
   // The noise of standing odometry is so small that the solver would keep the predicted pose: the
   // keyframe is initialised at the match instead.
   const bool is_moved = used.is_used && unmeasured_motion_.is_standing();
-  const std::size_t keyframe = graph_.add_keyframe(
-      is_moved ? scan->map_from_submap * scan->match.map_from_base : look.expected.map_from_base);
+  const std::size_t keyframe =
+      graph_.add_keyframe(is_moved ? matched->map_from_submap * matched->match.map_from_base
+                                   : scan.expected.map_from_base);
   // Scans that observe all axes reveal slips, even with a large sigma along the path: reducing the
   // weight of odometry beside them makes long trajectories worse.
-  hidden_slips_ = used.shows_all_axes ? 0.0 : hidden_slips(measurements);
+  hidden_slips_ = used.observes_all_axes ? 0.0 : hidden_slips(measurements);
   add_odometry_factor(keyframe);
-  if (scan && scan->match.num_mapped >= config_.scan.min_inliers)
-    inlier_share_ = scan->match.inlier_share;
-  if (scan) note_fit(scan->match);
+  if (matched && matched->match.num_mapped >= config_.scan.min_inliers)
+    inlier_share_ = matched->match.inlier_share;
+  if (matched) note_fit(matched->match);
   if (used.is_used) {
     note_reason(EstimateReason::kScan);
-    learn_noise(look.expected, *scan);
-    confirm_place(*scan);
-    if (scan->submap != nullptr)
-      add_scan_factor(keyframe, *scan->submap, scan->match, false);
+    learn_noise(scan.expected, *matched);
+    confirm_place(*matched);
+    if (matched->submap != nullptr)
+      add_scan_factor(keyframe, *matched->submap, matched->match, false);
     else
-      add_map_factor(keyframe, scan->match);
-    usual_fit_.note_keyframe(scan->match);
+      add_map_factor(keyframe, matched->match);
+    usual_fit_.note_keyframe(matched->match);
   }
   unobserved_m_ += motion_.distance_m;
   return used;
@@ -195,46 +199,46 @@ void WaymarkEstimator::add_drift(bool has_scan_factor) {
 void WaymarkEstimator::slide_window() {
   while (graph_.num_active_keyframes() > num_window_keyframes())
     graph_.marginalise_oldest(kNear_m);
-  if (is_frozen()) {
-    graph_.let_calibration_wander(motion_.distance_m);
-    graph_.forget_behind_window();
+  if (is_map_fixed()) {
+    graph_.add_calibration_random_walk(motion_.distance_m);
+    graph_.forget_outside_window();
   } else {
-    forget_surplus();
+    remove_redundant_keyframes();
   }
 }
 
-void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) {
+void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPrediction& scan) {
   inlier_share_ = 1.0;
-  KeyframeScan scan;
+  KeyframeScan used;
   const std::vector<MarkerMeasurement> measurements = measured(observation);
   if (graph_.state().keyframes.empty())
     add_first_keyframe();
-  else if (given_pose_)
-    put_elsewhere(*std::exchange(given_pose_, std::nullopt));
+  else if (commanded_pose_)
+    add_keyframe_at_commanded_pose(*std::exchange(commanded_pose_, std::nullopt));
   else
-    scan = add_predicted_keyframe(observation, measurements, look);
+    used = add_predicted_keyframe(observation, measurements, scan);
   graph_.optimise();
   check_pose(measurements);
   const bool is_suspicious = verdict_ == RelocalisationMonitor::Verdict::kSuspicious;
   markers_known_ = false;
-  if (!is_frozen()) add_drift(scan.is_used);
+  if (!is_map_fixed()) add_drift(used.is_used);
   if (!is_suspicious) {
     use_markers(measurements);
     note_misses(observation);
     if (!measurements.empty()) use_survey();
-    if (config_.loops.enabled && !scan.is_refuted && !is_frozen()) close_loops(look.points);
+    if (config_.loops.enabled && !used.is_refuted && !is_map_fixed()) close_loops(scan.points);
   }
-  weigh_past_anew();
+  reweigh_old_factors();
   compare_with_odometry();
-  is_observed_ = markers_known_ || scan.shows_all_axes;
+  is_observed_ = markers_known_ || used.observes_all_axes;
   if (is_observed_) unmeasured_motion_.note_observed();
   compare_with_loaded_map(observation);
   was_confirmed_ |= is_confirmed_;
   // A scan whose pose is uncertain is not mapped.
-  const bool is_mapped = !is_suspicious && !scan.is_refuted && is_confirmed_;
+  const bool is_mapped = !is_suspicious && !used.is_refuted && is_confirmed_;
   if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
-  if (!is_frozen())
-    map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? look.points : Points{});
+  if (!is_map_fixed())
+    map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? scan.points : Points{});
   slide_window();
   motion_ = {};
   moved_from_ = newest();
@@ -243,10 +247,10 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, Look& look) 
 
 void WaymarkEstimator::map_keyframe(const Observation& observation, const Points& points) {
   const Se2& map_from_base = graph_.state().keyframes.back();
-  submaps_.follow(graph_.state().keyframes);
+  submaps_.rebuild_deformed(graph_.state().keyframes);
   submaps_.add_keyframe(points, graph_.state().keyframes);
   map_.add(observation, map_from_base);
-  map_.follow(poses_of(graph_));
+  map_.redraw_some(poses_of(graph_));
 }
 
 Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) const {
@@ -258,7 +262,7 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
 /// left out: its pose may be wrong, and later scans would be matched with it.
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
-  if (is_frozen() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||
+  if (is_map_fixed() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||
       usual_fit_.is_worse_than_usual(match) ||
       verdict_ == RelocalisationMonitor::Verdict::kSuspicious) {
     return;
@@ -267,22 +271,23 @@ void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& mat
   submaps_.add_between(points, map_from_base, graph_.state().keyframes);
 }
 
-WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(const Look& look) const {
-  const Prediction& expected = look.expected;
+WaymarkEstimator::BetweenKeyframes WaymarkEstimator::between_keyframes(
+    const ScanAtPrediction& scan) const {
+  const Prediction& expected = scan.expected;
   BetweenKeyframes between{expected.map_from_base, expected.covariance};
-  const auto& scan = look.scan;
-  if (!scan || !scan->match.is_usable(config_.scan) || usual_fit_.is_refuted(scan->match))
+  const auto& matched = scan.matched;
+  if (!matched || !matched->match.is_usable(config_.scan) || usual_fit_.is_refuted(matched->match))
     return between;
-  const Se2 found = scan->map_from_submap * scan->match.map_from_base;
+  const Se2 found = matched->map_from_submap * matched->match.map_from_base;
   const Eigen::Matrix3d information =
-      in_axes(scan->map_from_submap.rotation(), scan->match.observed.information);
+      in_axes(matched->map_from_submap.rotation(), matched->match.observed.information);
   const Eigen::Vector3d off = pose_difference(found, expected.map_from_base);
   between.covariance = (expected.covariance.inverse() + information).inverse();
   const Eigen::Vector3d pull = information * off;
   const Eigen::Vector3d step = between.covariance * pull;
   between.map_from_base = moved_by(expected.map_from_base, step);
-  between.match = scan->match;
-  between.shows_all_axes = !scan->match.observed.is_degenerate;
+  between.match = matched->match;
+  between.observes_all_axes = !matched->match.observed.is_degenerate;
   const double chi2 = off.dot(pull) - pull.dot(between.covariance * pull);
   between.contradicts_odometry =
       chi2 > kContradiction &&
@@ -295,7 +300,7 @@ Estimate WaymarkEstimator::estimate_between(const Observation& observation,
   const Eigen::Vector2d lever =
       between.map_from_base.translation() - graph_.state().keyframes.back().translation();
   const Eigen::Matrix3d covariance =
-      carried_along(graph_.covariance_of({VariableKind::kKeyframe, newest()}), lever) +
+      at_end_of_lever(graph_.covariance_of({VariableKind::kKeyframe, newest()}), lever) +
       between.covariance;
   return estimate(observation, between.map_from_base, covariance);
 }
@@ -304,8 +309,8 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                     const Eigen::Matrix3d& covariance) const {
   Estimate estimate = describe_observation(observation, map_from_base, setup_.range_sigma_m);
   estimate.covariance = 0.5 * (covariance + covariance.transpose());
-  estimate.covariance +=
-      in_axes(map_from_base.rotation(), unmeasured_covariance(unmeasured_motion_.suspected_m()));
+  estimate.covariance += in_axes(map_from_base.rotation(),
+                                 unmeasured_covariance(unmeasured_motion_.possibly_stuck_m()));
   if (setup_.loaded_map)
     estimate.covariance += covariance_at(*setup_.loaded_map, map_from_base.translation());
   if (relocalisation_.alternative()) {

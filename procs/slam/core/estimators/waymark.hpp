@@ -57,7 +57,7 @@ struct WaymarkConfig {
 };
 
 inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]; the first pose defines the map frame
-/// Keyframes in a group; one of them represents the group in scan factors.
+/// Consecutive keyframes in a group; one of them represents the group in scan factors.
 inline constexpr std::size_t kGroupedKeyframes = 15;
 
 /// Prior standard deviations of the calibration.
@@ -76,7 +76,7 @@ class WaymarkEstimator final : public Estimator {
   std::vector<TimedPose> trajectory() const override;
   GridMap redrawn_map() const override;
   std::optional<PoseGraph> pose_graph() const override;
-  std::optional<Findings> findings() const override;
+  std::optional<SensorStatistics> statistics() const override;
   std::optional<MapSnapshot> snapshot() const override;
   bool set_pose(const StartPose& pose) override;
   std::vector<MapChange> changes() const override;
@@ -84,8 +84,8 @@ class WaymarkEstimator final : public Estimator {
  private:
   static constexpr double kNear_m = 12.0;  ///< landmarks nearer than this stay in the window
   static constexpr int kMaxStanding = 20;  ///< keyframes in a row while odometry stands still
-  /// Keyframes of the window in a frozen map; few are enough, as the map gives each a prior.
-  static constexpr std::size_t kFrozenWindow = 16;
+  /// Keyframes of the window in a fixed map; few are enough, as the map gives each a prior.
+  static constexpr std::size_t kFixedMapWindow = 16;
 
   struct Prediction {
     Se2 map_from_base{};
@@ -98,6 +98,7 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< submap axes
   };
 
+  /// A scan registered in a submap or in the loaded map.
   struct MatchedScan {
     ScanMatch match{};              ///< submap frame
     const Submap* submap{nullptr};  ///< null: the loaded map, in its own frame
@@ -112,27 +113,27 @@ class WaymarkEstimator final : public Estimator {
   };
 
   /// A scan, matched at the predicted pose.
-  struct Look {
-    Points points{};
+  struct ScanAtPrediction {
+    Points points{};  ///< without beams that end on moving objects
     Prediction expected{};
-    std::optional<MatchedScan> scan{};
-    double since_last_s{0.0};     ///< time since the last scan
-    bool is_searched{false};      ///< the wide windows have been searched, too
-    std::size_t beams_moving{0};  ///< number of beams excluded from the points
+    std::optional<MatchedScan> matched{};
+    double since_last_s{0.0};         ///< time since the last scan
+    bool was_searched_widely{false};  ///< search_widely() has been called
+    std::size_t beams_moving{0};      ///< number of beams excluded from the points
   };
 
   struct RescaledScan {
-    double share{0.0};  ///< by which the ranges were too long, relative
+    double range_error{0.0};  ///< RangeScale::error of the ranges as measured
     Observation observation{};
     Points points{};
-    MatchedScan scan{};
+    MatchedScan matched{};
   };
 
   /// How the scan of a keyframe was used.
   struct KeyframeScan {
-    bool is_refuted{false};      ///< it contradicts the map
-    bool is_used{false};         ///< it has a factor
-    bool shows_all_axes{false};  ///< it has a factor and observes every direction
+    bool is_refuted{false};         ///< the scan contradicts the map
+    bool is_used{false};            ///< the scan has a factor
+    bool observes_all_axes{false};  ///< the scan has a factor and observes every direction
   };
 
   /// Pose of a scan relative to the newest keyframe at that time.
@@ -140,7 +141,7 @@ class WaymarkEstimator final : public Estimator {
     Timestamp time{};
     std::size_t keyframe{0};
     Se2 keyframe_from_base{};
-    bool is_observed{false};  ///< in every direction, by markers or walls
+    bool is_observed{false};  ///< markers or walls observe the pose in every direction
   };
 
   /// Pose at a scan that is no keyframe.
@@ -149,10 +150,10 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes
     std::optional<ScanMatch> match{};
     bool contradicts_odometry{false};
-    bool shows_all_axes{false};
+    bool observes_all_axes{false};
   };
 
-  /// An interval in which odometry stands still; it may be stuck.
+  /// A time without motion by odometry: the robot stands, or odometry is stuck.
   struct Standstill {
     std::size_t keyframe{0};
     Motion motion{};       ///< since `keyframe`
@@ -163,25 +164,25 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| from start
   };
 
-  /// Scans of keyframes compared with the loaded map since the pose was last commanded.
-  struct ScansInLoadedMap {
-    std::int64_t decisive{0};    ///< that can show whether the pose is right
-    std::int64_t contradict{0};  ///< of these, those that do not fit
+  /// Numbers of keyframes' scans compared with the loaded map since the pose was last commanded.
+  struct LoadedMapVotes {
+    std::int64_t decisive{0};       ///< scans with enough beams in mapped cells (MapFit)
+    std::int64_t contradicting{0};  ///< decisive scans that contradict the map
   };
 
-  bool place(const Observation& observation);
-  Estimate unplaced(const Observation& observation) const;
+  bool try_global_localisation(const Observation& observation);
+  Estimate estimate_without_pose(const Observation& observation) const;
   void load(const MapSnapshot& map);
   std::vector<Landmark> landmarks_of(const Graph& graph) const;
   const Graph& solved() const;
 
   bool has_frame() const { return survey_.is_empty() || survey_.has_frame(); }
 
-  bool is_frozen() const { return setup_.map_mode == MapMode::kLocalise; }
+  bool is_map_fixed() const { return setup_.map_mode == MapMode::kLocalise; }
 
   std::size_t num_window_keyframes() const {
     const auto all = static_cast<std::size_t>(config_.window_keyframes);
-    return is_frozen() ? std::min(all, kFrozenWindow) : all;
+    return is_map_fixed() ? std::min(all, kFixedMapWindow) : all;
   }
 
   const NdtMap& ndt_of(const MatchedScan& scan) const;
@@ -190,32 +191,35 @@ class WaymarkEstimator final : public Estimator {
   bool is_loaded_map_refuted() const;
   void confirm_place(const MatchedScan& scan);
   void compare_with_loaded_map(const Observation& observation);
-  std::optional<RescaledScan> rescaled(const Observation& observation, const Look& look) const;
-  std::optional<Observation> with_right_scale(const Observation& observation, Look& look);
+  std::optional<RescaledScan> rescaled(const Observation& observation,
+                                       const ScanAtPrediction& scan) const;
+  std::optional<Observation> with_right_scale(const Observation& observation,
+                                              ScanAtPrediction& scan);
   void note_fit(const ScanMatch& match);
   void follow_odometry(const Observation& observation);
   double hidden_slips(std::span<const MarkerMeasurement> measurements) const;
   void add_odometry_factor(std::size_t keyframe);
   void compare_with_odometry();
   void spread_late_motion(const Observation& observation);
-  void weigh_past_anew();
+  void reweigh_old_factors();
   bool is_keyframe_due(const Observation& observation) const;
-  bool has_moved_silently(const Se2& map_from_base) const;
+  bool has_moved_without_odometry(const Se2& map_from_base) const;
   bool is_contradicted_by(const Observation& observation) const;
   bool sees_known_markers(const Observation& observation) const;
   Prediction prediction() const;
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   static SubmapPrediction in_submap(const Prediction& prediction, const Se2& map_from_submap);
-  void search_widely(const Observation& observation, Look& look) const;
-  Look look_from_expected(const Observation& observation) const;
-  void add_keyframe(const Observation& observation, Look& look);
+  void search_widely(const Observation& observation, ScanAtPrediction& scan) const;
+  ScanAtPrediction match_at_prediction(const Observation& observation) const;
+  void add_keyframe(const Observation& observation, ScanAtPrediction& scan);
   KeyframeScan add_predicted_keyframe(const Observation& observation,
-                                      std::span<const MarkerMeasurement> measurements, Look& look);
+                                      std::span<const MarkerMeasurement> measurements,
+                                      ScanAtPrediction& scan);
   void check_pose(std::span<const MarkerMeasurement> measurements);
   void add_drift(bool has_scan_factor);
   void slide_window();
   void add_first_keyframe();
-  void put_elsewhere(const StartPose& pose);
+  void add_keyframe_at_commanded_pose(const StartPose& pose);
   void forget_recent_motion();
   void use_survey();
   void note_reason(EstimateReason reason);
@@ -224,8 +228,8 @@ class WaymarkEstimator final : public Estimator {
   void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
   void close_loops(const Points& points);
-  void forget_surplus();
-  void step_everything(const std::vector<std::size_t>& returning_landmarks);
+  void remove_redundant_keyframes();
+  void step_whole_graph(const std::vector<std::size_t>& returning_landmarks);
   static std::function<Se2(std::size_t)> poses_of(const Graph& graph);
   void learn_noise(const Prediction& expected, const MatchedScan& scan);
   void learn_noise(const MarkerInnovation& innovation, const MarkerMeasurement& measurement);
@@ -240,7 +244,7 @@ class WaymarkEstimator final : public Estimator {
   Estimate estimate(const Observation& observation, const Se2& map_from_base,
                     const Eigen::Matrix3d& covariance) const;
   Estimate estimate_at_keyframe(const Observation& observation) const;
-  BetweenKeyframes between_keyframes(const Look& look) const;
+  BetweenKeyframes between_keyframes(const ScanAtPrediction& scan) const;
   Estimate estimate_between(const Observation& observation, const BetweenKeyframes& between) const;
   void insert_between(const Points& points, const ScanMatch& match, const Se2& map_from_base);
 
@@ -253,8 +257,8 @@ class WaymarkEstimator final : public Estimator {
   RelocalisationMonitor relocalisation_{};
   RangeNoise range_noise_;
   OdometryNoiseLearner noise_learner_{};
-  Drift drift_{};
-  Drift unmatched_drift_{};  ///< the part of drift_ from keyframes without a scan factor
+  DriftCovariance drift_{};
+  DriftCovariance unmatched_drift_{};  ///< the part of drift_ from keyframes without a scan factor
   LoopFinder loop_finder_;
   KeyframeThinning thinning_;
   double since_loop_search_m_{0.0};
@@ -275,23 +279,24 @@ class WaymarkEstimator final : public Estimator {
   double unobserved_m_{0.0};  ///< driven since markers or walls last observed the motion
   DrawnMap map_;
   std::vector<ScanPose> scan_poses_{};
-  OdometryNoise weighed_with_;  ///< noise with which the graph behind the window was solved
-  Findings findings_{};         ///< counts
+  OdometryNoise noise_of_old_factors_;  ///< odometry noise when old factors were last reweighted
+  SensorStatistics statistics_{};       ///< only the counts; see statistics()
 
   StartPose start_;
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
-  Points loaded_points_{};                     ///< of the loaded map's walls
+  Points loaded_points_{};                     ///< the loaded map's walls
   CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
                                              : config_.scan.cell_spacing_m};  ///< of loaded_points_
-  ScansInLoadedMap scans_here_{};
+  LoadedMapVotes loaded_map_votes_{};
   bool is_confirmed_{true};   ///< markers or walls confirm the pose in the loaded map
   bool was_confirmed_{true};  ///< is_confirmed_ was true at least once
   std::optional<WallChangeDetector> wall_changes_{};  ///< relative to the loaded map
   Survey survey_;
-  std::optional<StartPose> given_pose_{};  ///< commanded pose of the next keyframe
+  std::optional<StartPose> commanded_pose_{};  ///< for the next keyframe
   Timestamp newest_time_{};
-  double clock_s_{0.0};           ///< time since the first observation, without steps of the clock
-  bool is_put_elsewhere_{false};  ///< a command or a new map frame has just changed the pose
+  double clock_s_{0.0};  ///< time since the first observation, without steps of the clock
+  /// A command, a new map frame or a relocalisation has just changed the pose.
+  bool is_pose_reset_{false};
 
   // Of the newest keyframe:
   RelocalisationMonitor::Verdict verdict_{RelocalisationMonitor::Verdict::kConsistent};

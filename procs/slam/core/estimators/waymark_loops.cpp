@@ -11,7 +11,7 @@ namespace {
 // chi^2 (3 degrees of freedom, 99 %) beyond which a loop contradicts the published pose, which is
 // wrong until the graph has been solved.
 constexpr double kLoopContradicts = 11.3;
-constexpr double kLoopSlack_m = 0.05;  // sigma of old poses, whose covariance is not kept
+constexpr double kLoopSlack_m = 0.05;  // sigma added for old poses, whose covariance is not kept
 constexpr double kLoopSlack_rad = 0.01;
 
 /// Covariance of the newest pose relative to an old one, with margins: the smaller of its
@@ -29,7 +29,8 @@ bool contradicts(const LoopFinder::Found& found, const Se2& map_from_submap,
                  const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix3d information =
       in_axes(map_from_submap.rotation(), found.loop.match.observed.information);
-  return found.off.dot(with_more_noise(information, covariance) * found.off) > kLoopContradicts;
+  return found.innovation.dot(with_more_noise(information, covariance) * found.innovation) >
+         kLoopContradicts;
 }
 
 }  // namespace
@@ -58,11 +59,11 @@ void WaymarkEstimator::close_loops(const Points& points) {
       note_reason(EstimateReason::kLoop);
     }
   }
-  if (solve_schedule_.is_step_due(graph_.state().keyframes.size())) step_everything({});
+  if (solve_schedule_.is_step_due(graph_.state().keyframes.size())) step_whole_graph({});
 }
 
 /// Takes one step of the whole graph; the published map follows it.
-void WaymarkEstimator::step_everything(const std::vector<std::size_t>& returning_landmarks) {
+void WaymarkEstimator::step_whole_graph(const std::vector<std::size_t>& returning_landmarks) {
   std::vector<std::size_t> activated = returning_landmarks;
   for (std::size_t i = 0; i < book_.entries().size(); ++i) {
     const double away_m =
@@ -71,7 +72,7 @@ void WaymarkEstimator::step_everything(const std::vector<std::size_t>& returning
     if (!book_.is_retired(i) && !graph_.is_fixed(i) && away_m < kNear_m) activated.push_back(i);
   }
   solve_schedule_.note_step(graph_.step_all(activated));
-  map_.begin_to_follow();
+  map_.note_poses_changed();
 }
 
 std::function<Se2(std::size_t)> WaymarkEstimator::poses_of(const Graph& graph) {
@@ -81,10 +82,10 @@ std::function<Se2(std::size_t)> WaymarkEstimator::poses_of(const Graph& graph) {
 }
 
 /// Removes redundant keyframes, so that memory and time grow with the mapped area.
-void WaymarkEstimator::forget_surplus() {
-  const std::vector<RemovedKeyframe> surplus = thinning_.surplus(graph_);
-  if (surplus.empty()) return;
-  graph_.remove_keyframes(surplus);
+void WaymarkEstimator::remove_redundant_keyframes() {
+  const std::vector<RemovedKeyframe> removable = thinning_.removable(graph_);
+  if (removable.empty()) return;
+  graph_.remove_keyframes(removable);
   submaps_.forget([this](std::size_t keyframe) { return graph_.is_removed(keyframe); });
 }
 
@@ -98,7 +99,7 @@ const Graph& WaymarkEstimator::solved() const {
 }
 
 std::vector<TimedPose> WaymarkEstimator::trajectory() const {
-  if (is_frozen()) return {};
+  if (is_map_fixed()) return {};
   const Graph& graph = solved();
   std::vector<TimedPose> trajectory;
   trajectory.reserve(scan_poses_.size());
@@ -109,7 +110,7 @@ std::vector<TimedPose> WaymarkEstimator::trajectory() const {
 }
 
 GridMap WaymarkEstimator::redrawn_map() const {
-  if (is_frozen()) return map();
+  if (is_map_fixed()) return map();
   const Graph& graph = solved();
   return map_.drawn_along(poses_of(graph));
 }

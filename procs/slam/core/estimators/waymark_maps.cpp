@@ -19,8 +19,8 @@ namespace waymark {
 namespace {
 
 constexpr int kSurveySteps = 12;
-constexpr double kLeastMapped = 0.6;  // least share of mapped beams, for a scan to be in the map
-constexpr std::int64_t kScansToDecide = 10;  // of keyframes, before the loaded map can be refuted
+constexpr double kMinMapped = 0.6;           // share of mapped beams, for a scan to be in the map
+constexpr std::int64_t kScansToDecide = 10;  // before the loaded map can be refuted
 
 }  // namespace
 
@@ -53,7 +53,7 @@ Points WaymarkEstimator::points_near(const MatchedScan& scan, const Se2& submap_
 
 bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
   return match.is_usable(config_.scan) && !usual_fit_.is_refuted(match) &&
-         match.mapped_share >= kLeastMapped;
+         match.mapped_share >= kMinMapped;
 }
 
 /// A match that observes every direction confirms the pose in the loaded map.
@@ -68,17 +68,17 @@ void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
   const MapFit fit =
       fit_in_map(setup_.loaded_map->grid, observation.beams, graph_.state().keyframes.back());
   if (!fit.is_decisive()) return;
-  ++findings_.scans_in_loaded_map;
-  ++scans_here_.decisive;
+  ++statistics_.scans_in_loaded_map;
+  ++loaded_map_votes_.decisive;
   if (!fit.is_contradicted()) return;
-  ++findings_.scans_contradict_loaded_map;
-  ++scans_here_.contradict;
+  ++statistics_.scans_contradict_loaded_map;
+  ++loaded_map_votes_.contradicting;
 }
 
 /// Whether nothing has confirmed the pose in the loaded map, and most scans contradict it.
 bool WaymarkEstimator::is_loaded_map_refuted() const {
-  return !is_confirmed_ && scans_here_.decisive >= kScansToDecide &&
-         2 * scans_here_.contradict > scans_here_.decisive;
+  return !is_confirmed_ && loaded_map_votes_.decisive >= kScansToDecide &&
+         2 * loaded_map_votes_.contradicting > loaded_map_votes_.decisive;
 }
 
 /// The loaded map is fixed: a match with it is a prior on the pose.
@@ -96,7 +96,7 @@ void WaymarkEstimator::use_survey() {
     graph_.move_to_frame(*survey_from_map);
     drift_.move_to_frame(*survey_from_map);
     unmatched_drift_.move_to_frame(*survey_from_map);
-    map_.redraw(poses_of(graph_));
+    map_.redraw_all(poses_of(graph_));
     relocalisation_ = {};
     loop_finder_.reset();
     forget_recent_motion();
@@ -105,7 +105,7 @@ void WaymarkEstimator::use_survey() {
   if (survey_.apply(graph_) || survey_from_map) graph_.optimise_all(kSurveySteps);
   graph_.optimise();
   solve_schedule_.begin(graph_.state().keyframes.size());
-  map_.begin_to_follow();
+  map_.note_poses_changed();
   note_reason(EstimateReason::kSurvey);
 }
 
@@ -121,14 +121,14 @@ std::vector<MapChange> WaymarkEstimator::changes() const {
 }
 
 std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
-  if (is_frozen() || graph_.state().keyframes.empty()) return std::nullopt;
+  if (is_map_fixed() || graph_.state().keyframes.empty()) return std::nullopt;
   return pose_graph_of(solved());
 }
 
 /// None before the pose in the loaded map was confirmed: the map might mix two buildings. None
 /// before the survey's frame is known: the map would be in another frame.
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
-  if (is_frozen() || graph_.state().keyframes.empty() || !was_confirmed_ || !has_frame())
+  if (is_map_fixed() || graph_.state().keyframes.empty() || !was_confirmed_ || !has_frame())
     return std::nullopt;
   const Graph& graph = solved();
   MapSnapshot snapshot;

@@ -28,7 +28,7 @@ bool WaymarkEstimator::is_contradicted_by(const Observation& observation) const 
         const Eigen::Vector2d place = map_from_base * seen.base_from_marker.translation();
         const double off_m =
             unmeasured_motion_.is_standing()
-                ? std::max(kStandsStill_m, kStandsStillSigmas * seen.sigma_along_m())
+                ? std::max(kStandsStill_m, kStandsStillSigmas * seen.sigma_along_wall_m())
                 : kContradicts_m;
         return book_.knows(seen.id) && !book_.has_one_near(graph_.state(), place, off_m, seen.id);
       });
@@ -96,7 +96,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     book_.note_sighting(nearest->landmark, measurement.time);
     if (!markers_known_) learn_noise(*nearest, measurement);
     markers_known_ = true;
-    // In a frozen map, this run's own markers are fixed, too, once they have left the window.
+    // In a fixed map, this run's own markers are fixed, too, once they have left the window.
     if (setup_.loaded_map && nearest->landmark < setup_.loaded_map->landmarks.size())
       is_confirmed_ = true;
     if (!graph_.is_fixed(nearest->landmark) &&
@@ -106,7 +106,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
   if (!matches.empty()) note_reason(EstimateReason::kMarker);
   if (markers_known_) unobserved_m_ = 0.0;
   // Before new landmarks are added: the step solves the window, where each needs a measurement.
-  if (!returning.empty()) step_everything(returning);
+  if (!returning.empty()) step_whole_graph(returning);
   const std::size_t first_new = book_.entries().size();
   for (const Match& match : matches) {
     MarkerFactor factor;

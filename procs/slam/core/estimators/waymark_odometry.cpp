@@ -19,7 +19,7 @@ constexpr double kNearStandstill_m = 0.3;
 constexpr double kNearStandstill_rad = 0.2;
 constexpr double kReturned = 0.7;
 constexpr double kOtherNoise = 2.0;  // ratio of variances beyond which the whole graph takes a step
-constexpr std::size_t kWeighedEvery = 10;  // keyframes
+constexpr std::size_t kReweighEvery = 10;  // keyframes
 
 double along_m2_per_m(const OdometryNoise& noise) {
   return noise.along_per_sqrt_m * noise.along_per_sqrt_m;
@@ -35,12 +35,12 @@ bool is_other(double a, double b) {
 /// keyframes, which markers or walls have triggered, lose their odometry factors.
 void WaymarkEstimator::follow_odometry(const Observation& observation) {
   unmeasured_motion_.follow(observation);
-  if (observation.odometry_caught_up) ++findings_.odometry_caught_up;
+  if (observation.odometry_caught_up) ++statistics_.odometry_caught_up;
   if (observation.odometry_caught_up && standstill_) {
     const std::size_t start = standstill_->keyframe;
-    graph_.cut_odometry_since(start);
-    submaps_.keep_shape();
-    const bool is_in_graph = !is_frozen() && !graph_.is_removed(start);
+    graph_.disable_odometry_since(start);
+    submaps_.freeze_shapes();
+    const bool is_in_graph = !is_map_fixed() && !graph_.is_removed(start);
     if (is_in_graph || graph_.is_active({VariableKind::kKeyframe, start})) {
       moved_from_ = start;
       motion_ = standstill_->motion;
@@ -61,26 +61,28 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
                      observation.motion.start_from_end;
     standstill_ = Standstill{moved_from_, motion_, here, here, observation.time, clock_s_};
   }
-  ++findings_.observations;
+  ++statistics_.observations;
   if (observation.odometry_jumped || odometry_check_.is_refused()) {
-    ++findings_.odometry_jumping;
-  } else if (unmeasured_motion_.is_silent()) {
-    ++findings_.odometry_stuck;
+    ++statistics_.odometry_jumping;
+  } else if (unmeasured_motion_.is_unreliable()) {
+    ++statistics_.odometry_stuck;
   }
 }
 
 bool WaymarkEstimator::is_keyframe_due(const Observation& observation) const {
   if (graph_.state().keyframes.empty()) return true;
   const bool is_seen = !observation.sightings.empty();
-  if (is_seen && unmeasured_motion_.is_silent() && keyframes_standing_ < kMaxStanding) return true;
+  if (is_seen && unmeasured_motion_.is_unreliable() && keyframes_standing_ < kMaxStanding)
+    return true;
   return motion_.start_from_end.translation().norm() >=
              (is_seen ? config_.marker_keyframe_distance_m : config_.keyframe_distance_m) ||
          std::abs(motion_.start_from_end.theta()) >= config_.keyframe_turn_rad;
 }
 
-/// Whether the estimate has moved by the distance or turn of a keyframe while odometry is silent.
-bool WaymarkEstimator::has_moved_silently(const Se2& map_from_base) const {
-  if (!unmeasured_motion_.is_silent()) return false;
+/// Whether the estimate has moved by the distance or turn of a keyframe while odometry is
+/// unreliable.
+bool WaymarkEstimator::has_moved_without_odometry(const Se2& map_from_base) const {
+  if (!unmeasured_motion_.is_unreliable()) return false;
   const Eigen::Vector3d moved = pose_difference(map_from_base, graph_.state().keyframes.back());
   return moved.head<2>().norm() >= config_.keyframe_distance_m ||
          std::abs(moved.z()) >= config_.keyframe_turn_rad;
@@ -89,19 +91,19 @@ bool WaymarkEstimator::has_moved_silently(const Se2& map_from_base) const {
 WaymarkEstimator::Prediction WaymarkEstimator::prediction() const {
   const CorrectedMotion moved = with_slips(
       corrected_motion(motion_, odometry_part(graph_.state().calibration), graph_.odometry_noise()),
-      motion_.distance_m, hidden_slips_, graph_.noise().scale);
+      motion_.distance_m, hidden_slips_, graph_.noise().learnt_odometry);
   const Eigen::Matrix3d covariance =
       moved.covariance + unmeasured_covariance(unmeasured_motion_.unmeasured_m());
   const Se2& from = graph_.state().keyframes[moved_from_];
   return {from * moved.start_from_end, in_axes(from.rotation(), covariance)};
 }
 
-/// Share of the slips since the last keyframe that known markers do not observe.
+/// Share of the slips since the keyframe moved_from_ that known markers do not observe.
 double WaymarkEstimator::hidden_slips(std::span<const MarkerMeasurement> measurements) const {
   std::vector<Eigen::Matrix2d> places;
   for (const MarkerMeasurement& measured : measurements)
     if (book_.knows(measured.id)) places.emplace_back(measured.covariance.topLeftCorner<2, 2>());
-  return hidden_share(motion_, places, graph_.noise().scale);
+  return hidden_share(motion_, places, graph_.noise().learnt_odometry);
 }
 
 void WaymarkEstimator::add_odometry_factor(std::size_t keyframe) {
@@ -112,8 +114,9 @@ void WaymarkEstimator::add_odometry_factor(std::size_t keyframe) {
   odometry.motion = motion_;
   odometry.unmeasured_m = unmeasured_motion_.take_unmeasured_m();
   graph_.add(odometry);
-  // The keyframe at which odometry got stuck has left the window: only such a step uses the factor.
-  if (!graph_.is_active({VariableKind::kKeyframe, moved_from_})) step_everything({});
+  // If the keyframe at which odometry got stuck has left the window, only a step of the whole graph
+  // uses the factor.
+  if (!graph_.is_active({VariableKind::kKeyframe, moved_from_})) step_whole_graph({});
 }
 
 /// Detects that odometry is stuck, and counts keyframes while the robot seems to stand.
@@ -139,8 +142,8 @@ void WaymarkEstimator::compare_with_odometry() {
   standstill_->moved_at_s = clock_s_;
 }
 
-/// For the final trajectory: distributes late motion evenly over the scans of the standstill, and
-/// between those that markers or walls observed.
+/// For the final trajectory: distributes late motion evenly in time over the scans of the
+/// standstill, separately between scans that markers or walls observed.
 void WaymarkEstimator::spread_late_motion(const Observation& observation) {
   ScanPose known{standstill_->since, standstill_->keyframe, standstill_->motion.start_from_end};
   const ScanPose end{observation.time, known.keyframe,
@@ -171,7 +174,7 @@ void WaymarkEstimator::spread_late_motion(const Observation& observation) {
 /// Learns from the innovation of a scan: matched minus predicted pose, in the base frame.
 void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan& scan) {
   if (!config_.learn_noise || motion_.guessed_s > 0.0 || unmeasured_motion_.is_standing() ||
-      unmeasured_motion_.is_silent()) {
+      unmeasured_motion_.is_unreliable()) {
     return;
   }
   const OdometryNoise& described = graph_.noise().odometry;
@@ -192,18 +195,18 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
                                   2.0 * covariance(0, 0), motion_.distance_m});
     unobserved_m_ = -motion_.distance_m;  // 0 after add_predicted_keyframe() has added this motion
   }
-  graph_.set_odometry_scale(noise_learner_.scale());
+  graph_.set_learnt_odometry_noise(noise_learner_.learnt_noise());
 }
 
 /// Learns from the innovation of a known marker, if nothing has observed the motion along the path
 /// since the last known marker.
 void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
                                    const MarkerMeasurement& measurement) {
-  if (!config_.learn_noise || unobserved_m_ <= 0.0 || unmeasured_motion_.is_silent()) return;
+  if (!config_.learn_noise || unobserved_m_ <= 0.0 || unmeasured_motion_.is_unreliable()) return;
   const double configured_m2 = along_m2_per_m(graph_.noise().odometry) * unobserved_m_;
   const double blind_m = std::max(0.0, unobserved_m_ - motion_.distance_m);
   const double learnt_m2 = along_m2_per_m(graph_.odometry_noise()) * unobserved_m_ +
-                           graph_.noise().scale.slip_m2_per_m * blind_m;
+                           graph_.noise().learnt_odometry.slip_m2_per_m * blind_m;
   // If the marker is further ahead than expected, the robot has driven less.
   const OdometryInnovation along{
       -innovation.residual.x(), configured_m2,
@@ -211,21 +214,21 @@ void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
       unobserved_m_};
   noise_learner_.observe_slip(along);
   noise_learner_.observe_along(along);
-  graph_.set_odometry_scale(noise_learner_.scale());
+  graph_.set_learnt_odometry_noise(noise_learner_.learnt_noise());
 }
 
 /// Takes a step of the whole graph when the learnt noise has changed, to reweight old factors.
-void WaymarkEstimator::weigh_past_anew() {
+void WaymarkEstimator::reweigh_old_factors() {
   const OdometryNoise noise = graph_.odometry_noise();
   const bool is_other_noise =
-      is_other(along_m2_per_m(noise), along_m2_per_m(weighed_with_)) ||
+      is_other(along_m2_per_m(noise), along_m2_per_m(noise_of_old_factors_)) ||
       is_other(noise.turn_per_sqrt_m * noise.turn_per_sqrt_m,
-               weighed_with_.turn_per_sqrt_m * weighed_with_.turn_per_sqrt_m);
+               noise_of_old_factors_.turn_per_sqrt_m * noise_of_old_factors_.turn_per_sqrt_m);
   const std::size_t all = graph_.state().keyframes.size();
-  if (is_frozen() || !is_other_noise || solve_schedule_.num_since_solution(all) < kWeighedEvery)
+  if (is_map_fixed() || !is_other_noise || solve_schedule_.num_since_solution(all) < kReweighEvery)
     return;
-  weighed_with_ = noise;
-  step_everything({});
+  noise_of_old_factors_ = noise;
+  step_whole_graph({});
 }
 
 }  // namespace waymark

@@ -36,7 +36,7 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
     known = loaded_points_.front();
   if ((given - known).norm() > farthest_pose_m(setup_.grid.resolution_m)) return false;
   if (has_begun)
-    given_pose_ = pose;
+    commanded_pose_ = pose;
   else
     start_ = pose;
   if (place_finder_) is_confirmed_ = pose.is_certain;
@@ -47,31 +47,30 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
 }
 
 /// Adds a keyframe at a commanded pose, without odometry from the previous keyframe.
-void WaymarkEstimator::put_elsewhere(const StartPose& pose) {
+void WaymarkEstimator::add_keyframe_at_commanded_pose(const StartPose& pose) {
   const Se2 map_from_base{pose.x_m, pose.y_m, pose.yaw_rad};
   const std::size_t keyframe = graph_.add_keyframe(map_from_base);
   graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_, true});
   const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
   is_confirmed_ = !setup_.loaded_map || pose.is_certain;
-  scans_here_ = {};
+  loaded_map_votes_ = {};
   relocalisation_ = {};
   forget_recent_motion();
   begin_submaps_anew();
 }
 
-/// To be called after a command or a new map frame has changed the pose. (A relocalisation does not
-/// call it but keeps the standstill, since odometry may have been stuck.)
+/// To be called after a command or a new map frame has changed the pose. (After a relocalisation
+/// the standstill is kept instead, since odometry may have been stuck.)
 void WaymarkEstimator::forget_recent_motion() {
-  is_put_elsewhere_ = true;
+  is_pose_reset_ = true;
   standstill_.reset();
   keyframes_standing_ = 0;
   unmeasured_motion_.note_observed();
 }
 
-/// Global localisation.
 /// @return whether the robot's pose in the loaded map is known now.
-bool WaymarkEstimator::place(const Observation& observation) {
+bool WaymarkEstimator::try_global_localisation(const Observation& observation) {
   const auto found = place_finder_->update(observation.motion, observation, measured(observation),
                                            setup_.camera, range_noise_);
   if (!found) return false;
@@ -83,7 +82,7 @@ bool WaymarkEstimator::place(const Observation& observation) {
   return true;
 }
 
-Estimate WaymarkEstimator::unplaced(const Observation& observation) const {
+Estimate WaymarkEstimator::estimate_without_pose(const Observation& observation) const {
   Estimate estimate = describe_observation(observation, {}, setup_.range_sigma_m);
   estimate.has_pose = false;
   estimate.health = Health::kInitialising;
@@ -91,14 +90,14 @@ Estimate WaymarkEstimator::unplaced(const Observation& observation) const {
 }
 
 void WaymarkEstimator::relocate(const Se2& map_from_base) {
-  ++findings_.relocalisations;
+  ++statistics_.relocalisations;
   graph_.relocate_newest(map_from_base);
   if (verdict_ == RelocalisationMonitor::Verdict::kReverted) {
     const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
     graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
   }
   graph_.optimise();
-  is_put_elsewhere_ = true;
+  is_pose_reset_ = true;
   begin_submaps_anew();
 }
 

@@ -25,9 +25,9 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
     scan.match =
         match_scan(points, setup_.loaded_map->walls, prediction.map_from_base,
                    prediction.covariance, range_noise_, config_.scan, loaded_coarse_.levels());
-    if (is_frozen() || is_in_loaded_map(scan.match)) return scan;
+    if (is_map_fixed() || is_in_loaded_map(scan.match)) return scan;
   }
-  scan.submap = submaps_.matched();
+  scan.submap = submaps_.current();
   if (scan.submap == nullptr) return std::nullopt;
   scan.map_from_submap = graph_.state().keyframes[scan.submap->first_keyframe()];
   const SubmapPrediction guess = in_submap(prediction, scan.map_from_submap);
@@ -36,37 +36,37 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
   return scan;
 }
 
-/// If a scan fits worse than usual, odometry may be off by more than the matcher's basin of
-/// convergence: then wide windows are searched about the predicted pose and about poses that do not
-/// use odometry: these are off by the motion since the last scan at most. Needs a matched scan.
-void WaymarkEstimator::search_widely(const Observation& observation, Look& look) const {
-  MatchedScan& scan = *look.scan;
-  if (look.is_searched || !usual_fit_.is_worse_than_usual(scan.match)) return;
-  look.is_searched = true;
-  const Se2 submap_from_last =
-      scan.map_from_submap.inverse() * (graph_.state().keyframes.back() * newest_from_last_scan_);
-  const SubmapPrediction expected = in_submap(look.expected, scan.map_from_submap);
+/// If a scan fits worse than usual, the predicted pose may be outside the matcher's basin of
+/// convergence. Then wide windows are searched around that pose and around poses that do not use
+/// odometry, which are wrong by the motion since the last scan at most. Needs a matched scan.
+void WaymarkEstimator::search_widely(const Observation& observation, ScanAtPrediction& scan) const {
+  MatchedScan& matched = *scan.matched;
+  if (scan.was_searched_widely || !usual_fit_.is_worse_than_usual(matched.match)) return;
+  scan.was_searched_widely = true;
+  const Se2 submap_from_last = matched.map_from_submap.inverse() *
+                               (graph_.state().keyframes.back() * newest_from_last_scan_);
+  const SubmapPrediction expected = in_submap(scan.expected, matched.map_from_submap);
   WideSearch search;
   for (const Se2& step : odometry_check_.steps_without_odometry())
     search.without_odometry.push_back(submap_from_last * step);
   search.by_odometry = expected.submap_from_base;
   search.odometry_covariance = expected.covariance;
-  search.since_last_s = look.since_last_s;
+  search.since_last_s = scan.since_last_s;
   search.driven_m = (submap_from_last.translation() - search.by_odometry.translation()).norm();
   search.min_score = config_.loops.min_score;
   search.contradicts_map = [&](const Se2& submap_from_base) {
-    const Se2 map_from_base = scan.map_from_submap * submap_from_base;
-    return fit_in_map(map_.map(), observation.beams, map_from_base).misfit() > MapFit::kMostMisfit;
+    const Se2 map_from_base = matched.map_from_submap * submap_from_base;
+    return fit_in_map(map_.map(), observation.beams, map_from_base).misfit() > MapFit::kMaxMisfit;
   };
-  scan.match = searched_widely(scan.match, look.points, ndt_of(scan),
-                               points_near(scan, expected.submap_from_base,
-                                           wide_search_reach_m(look.points, search.driven_m)),
-                               search, usual_fit_, range_noise_, config_.scan);
+  matched.match = searched_widely(matched.match, scan.points, ndt_of(matched),
+                                  points_near(matched, expected.submap_from_base,
+                                              wide_search_reach_m(scan.points, search.driven_m)),
+                                  search, usual_fit_, range_noise_, config_.scan);
 }
 
-/// Inliers of a match by the keyframes that observed their walls: neighbouring keyframes form a
-/// group, which one of them represents: where possible the same one for every scan, so that the
-/// graph stays sparse.
+/// Divides the inliers of a match among the keyframes that observed their walls. Neighbouring
+/// keyframes form a group, represented by one of them: where possible the same one for every scan,
+/// so that the graph stays sparse.
 std::vector<WaymarkEstimator::KeyframeGroup> WaymarkEstimator::keyframe_groups(
     const ScanMatch& match, bool is_loop) const {
   std::vector<KeyframeGroup> groups;

@@ -20,7 +20,7 @@ struct TimedPose {
 class ScanTrajectory {
  public:
   /// @param motion     since the previous scan.
-  /// @param is_update  along() is given a pose of this scan; must be true of the first scan.
+  /// @param is_update  whether along() gets a pose of this scan; must be true for the first scan.
   void add(Timestamp time, const Motion& motion, bool is_update);
 
   /// One pose per scan. Between two updates the poses follow odometry, and the difference that

@@ -50,8 +50,8 @@ void draw_scan(const StoredScan& scan, const Se2& map_from_base, double usable_r
 PublishedMap::PublishedMap(const GridFrame& frame, double usable_range_m, double occupied_threshold)
     : final_{frame, {}, {}},
       drawn_{final_},
-      decided_of_{final_},
-      decided_{final_},
+      thresholded_from_{final_},
+      thresholded_{final_},
       usable_range_m_{usable_range_m},
       occupied_threshold_{occupied_threshold} {}
 
@@ -76,27 +76,28 @@ void PublishedMap::draw(const Trajectory& trajectory) {
   drawn_until_ = trajectory;
 }
 
-void PublishedMap::decide(TileIndex tile) {
+void PublishedMap::apply_threshold(TileIndex tile) {
   for (std::size_t offset = 0; offset < kTileCells; ++offset) {
     const CellIndex index = cell_at(tile, offset);
     const OccupancyCell& cell = drawn_.occupancy[index];
-    const OccupancyCell decided{cell.occupancy() > occupied_threshold_ ? 1U : 0U,
-                                cell.is_mapped() ? 1U : 0U};
-    if (decided_.occupancy[index] != decided) decided_.occupancy.edit(index) = decided;
+    const OccupancyCell thresholded{cell.occupancy() > occupied_threshold_ ? 1U : 0U,
+                                    cell.is_mapped() ? 1U : 0U};
+    if (thresholded_.occupancy[index] != thresholded)
+      thresholded_.occupancy.edit(index) = thresholded;
   }
 }
 
 const GridMap& PublishedMap::along(const Trajectory& trajectory) {
   draw(trajectory);
   drawn_.occupancy.for_each_tile([&](TileIndex tile, const auto& cells) {
-    if (decided_of_.occupancy.tile(tile) != &cells) decide(tile);
+    if (thresholded_from_.occupancy.tile(tile) != &cells) apply_threshold(tile);
   });
   // Tiles that the previous trajectory had drawn and this one has not.
-  decided_of_.occupancy.for_each_tile([&](TileIndex tile, const auto&) {
-    if (!drawn_.occupancy.tile(tile)) decide(tile);
+  thresholded_from_.occupancy.for_each_tile([&](TileIndex tile, const auto&) {
+    if (!drawn_.occupancy.tile(tile)) apply_threshold(tile);
   });
-  decided_of_ = drawn_;
-  return decided_;
+  thresholded_from_ = drawn_;
+  return thresholded_;
 }
 
 }  // namespace waymark

@@ -28,12 +28,12 @@ class PublishedMap {
 
  private:
   void draw(const Trajectory& trajectory);
-  void decide(TileIndex tile);
+  void apply_threshold(TileIndex tile);
 
   GridMap final_;             ///< along the trunk, which all trajectories share
   GridMap drawn_;             ///< along the last trajectory asked for
-  GridMap decided_of_;        ///< the drawn_ that decided_ was computed from
-  GridMap decided_;           ///< drawn_ after the threshold
+  GridMap thresholded_from_;  ///< the drawn_ that thresholded_ was computed from
+  GridMap thresholded_;       ///< drawn_ after the threshold
   Trajectory drawn_until_{};  ///< newest node in drawn_
   double usable_range_m_;
   double occupied_threshold_;

@@ -17,10 +17,10 @@ Surroundings::Surroundings(const HitMap& map, int reach, bool needs_free_cell)
     : map_{map},
       reach_{reach},
       needs_free_cell_{needs_free_cell},
-      max_more_{max_groups(reach) - 1},
+      max_overflow_{max_groups(reach) - 1},
       keys_(kSlots),
       nearest_{std::make_unique_for_overwrite<EightHits[]>(kSlots)},
-      more_{std::make_unique_for_overwrite<EightHits[]>(max_more_ * kSlots)} {}
+      overflow_{std::make_unique_for_overwrite<EightHits[]>(max_overflow_ * kSlots)} {}
 
 void Surroundings::read(const BeamCells& beam, std::size_t slot) {
   const auto cleared = [](EightHits& hits) {
@@ -38,7 +38,7 @@ void Surroundings::read(const BeamCells& beam, std::size_t slot) {
   visit_touched_around(map_, beam.end, reach_, [&](CellIndex cell, const HitCell& hit) {
     if (needs_free_cell_ && is_hit(map_, {cell.x + free_offset.x, cell.y + free_offset.y})) return;
     if (hits == kHitsPerGroup) {
-      group = cleared(more_[slot * max_more_ + key.more++]);
+      group = cleared(overflow_[slot * max_overflow_ + key.overflow++]);
       hits = 0;
     }
     const std::size_t half = hits / 4;

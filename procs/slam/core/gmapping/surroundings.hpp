@@ -44,8 +44,9 @@ class Surroundings {
     if (key.beam != beam) [[unlikely]]
       read(beam, slot);
     Eigen::Array4f nearest = nearest_[slot].squared(from_centre_x, from_centre_y);
-    for (std::uint32_t i = 0; i < key.more; ++i)
-      nearest = nearest.min(more_[slot * max_more_ + i].squared(from_centre_x, from_centre_y));
+    for (std::uint32_t i = 0; i < key.overflow; ++i)
+      nearest =
+          nearest.min(overflow_[slot * max_overflow_ + i].squared(from_centre_x, from_centre_y));
     return nearest.minCoeff();
   }
 
@@ -65,7 +66,7 @@ class Surroundings {
 
   struct Key {
     BeamCells beam{kNoCell, kNoCell};
-    std::uint32_t more{0};  ///< number of groups of eight hits in more_
+    std::uint32_t overflow{0};  ///< number of groups of eight hits in overflow_
   };
 
   static constexpr CellIndex kNoCell{std::numeric_limits<int>::min(), 0};
@@ -84,11 +85,11 @@ class Surroundings {
   const HitMap& map_;
   int reach_;
   bool needs_free_cell_;
-  std::size_t max_more_;  ///< largest number of groups of a slot in more_
+  std::size_t max_overflow_;  ///< capacity per slot in overflow_, in groups of eight hits
   std::vector<Key> keys_;
   // Not initialised: valid where keys_ has an entry.
   std::unique_ptr<EightHits[]> nearest_;
-  std::unique_ptr<EightHits[]> more_;
+  std::unique_ptr<EightHits[]> overflow_;
 };
 
 }  // namespace waymark

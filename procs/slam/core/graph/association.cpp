@@ -10,8 +10,8 @@
 namespace waymark {
 namespace {
 
-constexpr int kLeastNewSightings = 3;  // of the marker at its new place, to retire the old one
-constexpr double kSamePlace = 0.25;    // of a marker's side length: boards carry adjacent markers
+constexpr int kMinNewSightings = 3;  // at its new place, to retire the old landmark
+constexpr double kSamePlace = 0.25;  // of a marker's side length: boards carry adjacent markers
 constexpr double kSameFacing_rad = radians(45.0);  // a wall has two sides
 
 /// Converts the Jacobians from steps in the poses' own frames to differences in the map's axes, as
@@ -19,7 +19,7 @@ constexpr double kSameFacing_rad = radians(45.0);  // a wall has two sides
 LinearFactor in_map_axes(LinearFactor linear, const State& state) {
   for (LinearFactor::Block& block : linear.blocks)
     if (block.variable.kind != VariableKind::kCalibration)
-      block.jacobian *= turning(state.pose(block.variable).rotation().transpose());
+      block.jacobian *= block_rotation(state.pose(block.variable).rotation().transpose());
   return linear;
 }
 
@@ -111,7 +111,7 @@ void MarkerBook::note_misses(const State& state, std::size_t keyframe,
     for (std::size_t k = 0; k < entries_.size(); ++k) {
       Landmark& other = entries_[k];
       if (k == i || is_retired_[k] || other.id != entries_[i].id ||
-          other.first_seen <= entries_[i].last_seen || other.sightings < kLeastNewSightings) {
+          other.first_seen <= entries_[i].last_seen || other.sightings < kMinNewSightings) {
         continue;
       }
       other.instance = entries_[i].instance;

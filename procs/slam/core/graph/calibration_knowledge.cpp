@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWidest = 256.0;     // width of the mixture's widest component
 constexpr double kTail = 2.0;         // a component k times as wide has 1 / k^2 of the probability
-constexpr double kLeastShare = 1e-9;  // less information, relative to the prior's, is rounding
+constexpr double kMinShare = 1e-9;    // information relative to the prior's; less is rounding
 constexpr double kDoubtSigmas = 5.0;  // error beyond which the description counts as wrong
 constexpr double kExactSigma = 1e-9;  // stands for 0, which has no inverse
 
@@ -30,7 +30,7 @@ void CalibrationKnowledge::observe(const WallInnovation& wall) {
   camera_vector_ += jacobian.transpose() * information * wall.residual;
 }
 
-void CalibrationKnowledge::observe(const FocalSighting& focal) {
+void CalibrationKnowledge::observe(const FocalMeasurement& focal) {
   const double information = 1.0 / (focal.sigma * focal.sigma);
   camera_information_(SightingNoise::kFocal, SightingNoise::kFocal) += information;
   camera_vector_[SightingNoise::kFocal] += information * focal.error;
@@ -41,22 +41,24 @@ void CalibrationKnowledge::fade(double share) {
   camera_vector_ *= share;
 }
 
-void CalibrationKnowledge::weigh(const Calibration& value, const Calibration& variances) {
+void CalibrationKnowledge::choose_prior_widths(const Calibration& value,
+                                               const Calibration& variances) {
   for (Eigen::Index term = 0; term < kOdometryTerms; ++term)
-    weigh({term}, value, variances);
-  weigh({kOdometryTerms, kOdometryTerms + 1, kOdometryTerms + 2}, value, variances);
+    choose_prior_widths({term}, value, variances);
+  choose_prior_widths({kOdometryTerms, kOdometryTerms + 1, kOdometryTerms + 2}, value, variances);
   const Eigen::Vector3d usual = SightingNoise{}.calibration;
   for (Eigen::Index i = 0; i < kCameraTerms; ++i) {
-    double& widened = widened_[kOdometryTerms + i];
-    if (widened > kDoubtSigmas) widened = std::max(widened, usual[i] / sigmas_[kOdometryTerms + i]);
+    double& width = widths_[kOdometryTerms + i];
+    if (width > kDoubtSigmas) width = std::max(width, usual[i] / sigmas_[kOdometryTerms + i]);
   }
 }
 
 /// Removes the prior, whose mean is 0, from the estimate: what remains are the mean and information
 /// of the measurements alone. Exact terms are left as they are. A term without a finite mean and
 /// variance (the window's equations were singular) does not influence the choice.
-void CalibrationKnowledge::weigh(std::initializer_list<Eigen::Index> terms,
-                                 const Calibration& value, const Calibration& variances) {
+void CalibrationKnowledge::choose_prior_widths(std::initializer_list<Eigen::Index> terms,
+                                               const Calibration& value,
+                                               const Calibration& variances) {
   const Calibration prior = prior_information();
   double least = std::numeric_limits<double>::infinity();
   double likeliest = 1.0;
@@ -65,7 +67,7 @@ void CalibrationKnowledge::weigh(std::initializer_list<Eigen::Index> terms,
     for (const Eigen::Index term : terms) {
       const double information = 1.0 / variances[term] - prior[term];
       const double measured = value[term] / (variances[term] * information);
-      const bool is_measured = information > kLeastShare * prior[term] && std::isfinite(measured);
+      const bool is_measured = information > kMinShare * prior[term] && std::isfinite(measured);
       if (sigmas_[term] <= kExactSigma || !is_measured) continue;
       const double variance = squared(factor * sigmas_[term]) + 1.0 / information;
       cost += std::log(variance) + squared(measured) / variance;
@@ -75,7 +77,7 @@ void CalibrationKnowledge::weigh(std::initializer_list<Eigen::Index> terms,
     likeliest = factor;
   }
   for (const Eigen::Index term : terms)
-    if (sigmas_[term] > kExactSigma) widened_[term] = likeliest;
+    if (sigmas_[term] > kExactSigma) widths_[term] = likeliest;
 }
 
 void CalibrationKnowledge::add_to(const Calibration& value, Eigen::Ref<Eigen::MatrixXd> h,

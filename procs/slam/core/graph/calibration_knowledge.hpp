@@ -24,14 +24,14 @@ class CalibrationKnowledge {
   explicit CalibrationKnowledge(const Calibration& sigmas);
 
   void observe(const WallInnovation& wall);
-  void observe(const FocalSighting& focal);
+  void observe(const FocalMeasurement& focal);
 
   /// Multiplies the information of all observations by `share`.
   void fade(double share);
 
   /// Variances that the calibration's random walk adds over `driven_m`: payload, tyre pressure and
-  /// knocks change it. After kMemory_m the walk's variance equals the prior's.
-  Calibration wander(double driven_m) const {
+  /// knocks change the calibration. After kMemory_m the walk's variance equals the prior's.
+  Calibration random_walk_variances(double driven_m) const {
     return driven_m / kMemory_m * prior_information().cwiseInverse();
   }
 
@@ -41,29 +41,28 @@ class CalibrationKnowledge {
   void add_to(const Calibration& value, Eigen::Ref<Eigen::MatrixXd> h,
               Eigen::Ref<Eigen::VectorXd> g) const;
 
-  /// Chooses the likeliest components of the mixtures: one for each term of the odometry, and a
-  /// common one for the camera's terms. If that common component is wide, the camera's description
-  /// is unreliable, and none of its terms gets a prior narrower than the usual one
+  /// Chooses the likeliest width of the prior (component of the mixture): one for each odometry
+  /// term, a common one for the three camera terms. If the latter is wide, the camera's configured
+  /// sigmas are unreliable: none of its priors is narrower than the default one
   /// (SightingNoise::calibration).
-  /// @param value      estimate with the components chosen previously.
+  /// @param value      estimate with the widths chosen previously.
   /// @param variances  of `value`.
-  void weigh(const Calibration& value, const Calibration& variances);
+  void choose_prior_widths(const Calibration& value, const Calibration& variances);
 
   /// Indices, ascending, of the terms whose estimate is more than 5 configured standard deviations
   /// from the description.
   std::vector<std::size_t> doubted_terms(const Calibration& value) const;
 
  private:
-  void weigh(std::initializer_list<Eigen::Index> terms, const Calibration& value,
-             const Calibration& variances);
+  void choose_prior_widths(std::initializer_list<Eigen::Index> terms, const Calibration& value,
+                           const Calibration& variances);
 
   Calibration prior_information() const {
-    return widened_.cwiseProduct(sigmas_).cwiseAbs2().cwiseInverse();
+    return widths_.cwiseProduct(sigmas_).cwiseAbs2().cwiseInverse();
   }
 
   Calibration sigmas_;
-  Calibration widened_{
-      Calibration::Ones()};  ///< width of the chosen component, a factor on sigmas_
+  Calibration widths_{Calibration::Ones()};  ///< chosen widths of the prior, factors on sigmas_
   Eigen::Matrix3d camera_information_{Eigen::Matrix3d::Zero()};
   Eigen::Vector3d camera_vector_{Eigen::Vector3d::Zero()};  ///< information * measured value
 };

@@ -13,7 +13,8 @@ class DampedRoot : public Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> {
   /// @param h  symmetric, diagonal positive; only the lower triangle is read.
   void compute(const Eigen::MatrixXd& h) {
     LLT::compute(h);
-    for (double damping = kLeast; info() != Eigen::Success && damping < kMost; damping *= 10.0) {
+    for (double damping = kMinDamping; info() != Eigen::Success && damping < kMaxDamping;
+         damping *= 10.0) {
       Eigen::MatrixXd damped = h;
       damped.diagonal() *= 1.0 + damping;
       LLT::compute(damped);
@@ -21,8 +22,8 @@ class DampedRoot : public Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> {
   }
 
  private:
-  static constexpr double kLeast = 1e-12;  ///< share of the diagonal
-  static constexpr double kMost = 10.0;
+  static constexpr double kMinDamping = 1e-12;  ///< share of the diagonal
+  static constexpr double kMaxDamping = 10.0;
 };
 
 }  // namespace waymark

@@ -11,9 +11,10 @@
 
 namespace waymark {
 
-/// Sums the covariances of the steps from keyframe to keyframe as if the steps were independent: an
-/// overestimate, since scans matched with the same submap, and loops, correlate the steps.
-class Drift {
+/// Covariance of the newest pose relative to each earlier keyframe, as if the steps between
+/// keyframes were independent: an overestimate, since scans matched with the same submap, and
+/// loops, correlate the steps.
+class DriftCovariance {
  public:
   /// @param covariance  of the keyframe's pose relative to the previous one, map's axes; zero for
   ///                    the first keyframe.
@@ -29,7 +30,7 @@ class Drift {
 
  private:
   Eigen::Vector2d newest_{Eigen::Vector2d::Zero()};
-  std::vector<Eigen::Matrix3d> sums_{};  ///< up to each keyframe, referred to the map's origin
+  std::vector<Eigen::Matrix3d> sums_{};  ///< sums up to each keyframe, at the map's origin
 };
 
 }  // namespace waymark

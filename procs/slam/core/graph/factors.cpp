@@ -13,12 +13,12 @@
 namespace waymark {
 namespace {
 
-// chi^2 beyond which a loop loses weight: loops are accurate to centimetres, but submaps bend by
-// as much. 25 is 5 sigmas of one axis.
+// chi^2 beyond which a loop loses weight: loops are accurate to centimetres, but submaps are
+// deformed by as much. 25 is 5 sigmas of one axis.
 constexpr double kLoopKernel = 25.0;
 
-// Sigma [m, rad] of odometry that is_cut: almost no information, yet equations with a solution.
-constexpr double kCutSigma = 1000.0;
+// Sigma [m, rad] of disabled odometry: almost no information, yet equations with a solution.
+constexpr double kDisabledSigma = 1000.0;
 
 /// Pose of one frame in another, with its Jacobians with respect to steps of both (State::retract).
 struct Relative {
@@ -32,8 +32,8 @@ Relative relative(const Se2& map_from_from, const Se2& map_from_to) {
   Relative result;
   result.pose << from_from_to.translation(),
       angle_difference(map_from_to.theta(), map_from_from.theta());
-  result.jacobian_to = turning(from_from_to.rotation());
-  result.jacobian_from = -carried_along(from_from_to.translation());
+  result.jacobian_to = block_rotation(from_from_to.rotation());
+  result.jacobian_from = -lever_arm_jacobian(from_from_to.translation());
   return result;
 }
 
@@ -69,20 +69,20 @@ Eigen::Matrix3d root_of(const Eigen::Matrix3d& information) {
 }
 
 CorrectedMotion OdometryFactor::moved(const State& state, const OdometryNoise& noise,
-                                      const OdometryScale& scale) const {
+                                      const LearntOdometryNoise& learnt) const {
   return with_slips(
-      corrected_motion(motion, odometry_part(state.calibration), scaled(noise, scale)),
-      motion.distance_m, hidden_slips, scale);
+      corrected_motion(motion, odometry_part(state.calibration), scaled(noise, learnt)),
+      motion.distance_m, hidden_slips, learnt);
 }
 
 void OdometryFactor::choose_kind(const State& state, const OdometryNoise& noise,
-                                 const OdometryScale& scale) {
-  if (is_cut || !noise.may_slip) return;
-  const CorrectedMotion measured = moved(state, noise, scale);
+                                 const LearntOdometryNoise& learnt) {
+  if (is_disabled || !noise.may_slip) return;
+  const CorrectedMotion measured = moved(state, noise, learnt);
   const Eigen::Vector3d off = residual(state, measured);
   const MixtureNoise mixture = noise_of(measured, noise);
   const MotionKind likeliest = likeliest_kind(off, mixture);
-  const bool slips = kind == MotionKind::kSlipping &&
+  const bool slips = kind == MotionKind::kBothSlip &&
                      mixture_cost(kind, off, mixture) <= mixture_cost(likeliest, off, mixture);
   if (!slips) kind = likeliest;
 }
@@ -95,7 +95,7 @@ Eigen::Vector3d OdometryFactor::residual(const State& state,
 
 Eigen::Matrix3d OdometryFactor::root_information(const CorrectedMotion& measured,
                                                  const OdometryNoise& noise) const {
-  if (is_cut) return Eigen::Matrix3d::Identity() / kCutSigma;
+  if (is_disabled) return Eigen::Matrix3d::Identity() / kDisabledSigma;
   const Eigen::LLT<Eigen::Matrix3d> covariance{covariance_of(kind, noise_of(measured, noise)) +
                                                unmeasured_covariance(unmeasured_m)};
   return covariance.matrixL().solve(Eigen::Matrix3d::Identity());
@@ -114,14 +114,14 @@ MixtureNoise OdometryFactor::noise_of(const CorrectedMotion& measured,
 OdometryFactor::Change OdometryFactor::best_change(const LinearFactor& linear,
                                                    const Eigen::Matrix3d& covariance,
                                                    const State& state, const OdometryNoise& noise,
-                                                   const OdometryScale& scale) const {
+                                                   const LearntOdometryNoise& learnt) const {
   Change best;
-  if (is_cut || !noise.may_slip || kind != MotionKind::kRolling) return best;
-  const CorrectedMotion measured = moved(state, noise, scale);
+  if (is_disabled || !noise.may_slip || kind != MotionKind::kRolling) return best;
+  const CorrectedMotion measured = moved(state, noise, learnt);
   const MixtureNoise mixture = noise_of(measured, noise);
   const Eigen::Matrix3d whiten = root_information(measured, noise);
-  for (const MotionKind other : {MotionKind::kLeftSpins, MotionKind::kRightSpins,
-                                 MotionKind::kSlipping, MotionKind::kJerked}) {
+  for (const MotionKind other : {MotionKind::kLeftSlips, MotionKind::kRightSlips,
+                                 MotionKind::kBothSlip, MotionKind::kDisturbed}) {
     const Eigen::Matrix3d wider =
         whiten * (covariance_of(other, mixture) - mixture.rolling) * whiten.transpose();
     const Eigen::Matrix3d observed =
@@ -135,10 +135,10 @@ OdometryFactor::Change OdometryFactor::best_change(const LinearFactor& linear,
 }
 
 double OdometryFactor::cost(const State& state, const OdometryNoise& noise,
-                            const OdometryScale& scale) const {
-  const CorrectedMotion measured = moved(state, noise, scale);
+                            const LearntOdometryNoise& learnt) const {
+  const CorrectedMotion measured = moved(state, noise, learnt);
   const double chi2 = (root_information(measured, noise) * residual(state, measured)).squaredNorm();
-  if (is_cut || kind == MotionKind::kRolling) return chi2;
+  if (is_disabled || kind == MotionKind::kRolling) return chi2;
   const MixtureNoise mixture = noise_of(measured, noise);
   const auto cost_of = [&](MotionKind of) {
     return cost_at_zero(of, Eigen::LLT<Eigen::Matrix3d>{covariance_of(of, mixture) +
@@ -148,14 +148,14 @@ double OdometryFactor::cost(const State& state, const OdometryNoise& noise,
 }
 
 LinearFactor OdometryFactor::linearise(const State& state, const OdometryNoise& noise,
-                                       const OdometryScale& scale) const {
-  const CorrectedMotion measured = moved(state, noise, scale);
+                                       const LearntOdometryNoise& learnt) const {
+  const CorrectedMotion measured = moved(state, noise, learnt);
   LinearFactor linear;
   const Relative found = relative(state.keyframes[from], state.keyframes[to]);
   const Eigen::Matrix3d root = root_information(measured, noise);
   linear.residual = root * pose_residual(found.pose - vector_of(measured.start_from_end));
   LinearFactor::Jacobian jacobian_calibration = LinearFactor::Jacobian::Zero(3, kCalibrationSize);
-  if (!is_cut)
+  if (!is_disabled)
     jacobian_calibration.leftCols<kOdometryTerms>() = -root * measured.jacobian_calibration;
   linear.blocks = {{keyframe_variable(from), root * found.jacobian_from},
                    {keyframe_variable(to), root * found.jacobian_to},
@@ -205,8 +205,8 @@ LinearFactor ScanFactor::linearise(const State& state) const {
     residual += reference.share * off.pose;
     jacobian_keyframe += reference.share * off.jacobian_to;
     const Se2& to_keyframe = reference.reference_from_keyframe;
-    const Eigen::Matrix3d jacobian_expected =
-        turning(to_keyframe.rotation().transpose()) * carried_along(to_keyframe.translation());
+    const Eigen::Matrix3d jacobian_expected = block_rotation(to_keyframe.rotation().transpose()) *
+                                              lever_arm_jacobian(to_keyframe.translation());
     linear.blocks.push_back({keyframe_variable(reference.keyframe),
                              reference.share * root * off.jacobian_from * jacobian_expected});
   }
@@ -240,7 +240,7 @@ LinearFactor LandmarkPrior::linearise(const State& state) const {
   const Se2& found = state.landmarks[landmark];
   LinearFactor linear;
   linear.residual = root * pose_difference(found, map_from_marker);
-  linear.blocks = {{{VariableKind::kLandmark, landmark}, root * turning(found.rotation())}};
+  linear.blocks = {{{VariableKind::kLandmark, landmark}, root * block_rotation(found.rotation())}};
   return linear;
 }
 
@@ -248,7 +248,8 @@ LinearFactor PosePrior::linearise(const State& state) const {
   const Se2& found = state.keyframes[keyframe];
   LinearFactor linear;
   linear.residual = root_information * pose_difference(found, map_from_base);
-  linear.blocks = {{keyframe_variable(keyframe), root_information * turning(found.rotation())}};
+  linear.blocks = {
+      {keyframe_variable(keyframe), root_information * block_rotation(found.rotation())}};
   return linear;
 }
 

@@ -35,19 +35,20 @@ struct OdometryFactor {
   std::size_t from{0};
   std::size_t to{0};
   Motion motion{};
-  bool is_cut{false};        ///< the motion is unknown: the factor has no information
-  double hidden_slips{0.0};  ///< share of the slips that is unobserved, see hidden_share()
+  bool is_disabled{false};   ///< the motion is unknown; a large sigma keeps the equations solvable
+  double hidden_slips{0.0};  ///< share of the slips that nothing observes, see hidden_share()
   double unmeasured_m{0.0};  ///< distance that odometry may have missed (one sigma)
   MotionKind kind{MotionKind::kRolling};
 
-  /// @param noise  as configured.
-  /// @param scale  as learnt.
+  /// @param noise   as configured.
+  /// @param learnt  corrections of `noise`.
   LinearFactor linearise(const State& state, const OdometryNoise& noise,
-                         const OdometryScale& scale = {}) const;
+                         const LearntOdometryNoise& learnt = {}) const;
 
   /// Chooses the component of the mixture. The poses of `state` must be optimised for its
   /// calibration: otherwise a change of the calibration looks like a slip.
-  void choose_kind(const State& state, const OdometryNoise& noise, const OdometryScale& scale);
+  void choose_kind(const State& state, const OdometryNoise& noise,
+                   const LearntOdometryNoise& learnt);
 
   struct Change {
     MotionKind kind{MotionKind::kRolling};
@@ -59,15 +60,16 @@ struct OdometryFactor {
   /// @param covariance  of linear.residual, given all factors.
   Change best_change(const LinearFactor& linear, const Eigen::Matrix3d& covariance,
                      const State& state, const OdometryNoise& noise,
-                     const OdometryScale& scale) const;
+                     const LearntOdometryNoise& learnt) const;
 
   /// -2 log-likelihood up to a constant: chi^2 plus the component's penalty and log-determinant
   /// relative to kRolling's.
-  double cost(const State& state, const OdometryNoise& noise, const OdometryScale& scale) const;
+  double cost(const State& state, const OdometryNoise& noise,
+              const LearntOdometryNoise& learnt) const;
 
  private:
   CorrectedMotion moved(const State& state, const OdometryNoise& noise,
-                        const OdometryScale& scale) const;
+                        const LearntOdometryNoise& learnt) const;
   MixtureNoise noise_of(const CorrectedMotion& measured, const OdometryNoise& noise) const;
   Eigen::Vector3d residual(const State& state, const CorrectedMotion& measured) const;
   Eigen::Matrix3d root_information(const CorrectedMotion& measured,
@@ -87,7 +89,7 @@ struct ScanFactor {
   std::vector<Reference> references{};
   Eigen::Matrix3d root_information{Eigen::Matrix3d::Zero()};  ///< base axes of `keyframe`
   bool is_loop{false};
-  double weight{1.0};  ///< of a loop: robust weight on its residual, 0..1; see reweigh()
+  double weight{1.0};  ///< of a loop: robust weight, multiplies the residual; 0..1, see reweigh()
 
   LinearFactor linearise(const State& state) const;
 

@@ -132,7 +132,7 @@ const LandmarkPrior* Graph::prior_of(std::size_t landmark) const {
   return nullptr;
 }
 
-/// The loss that belongs to the robust weight of MarkerFactor.
+/// The loss whose robust weight MarkerFactor uses.
 double Graph::cost_of(const MarkerFactor& factor) const {
   const double gate = noise_.marker_gate;
   const double chi2 =
@@ -142,7 +142,7 @@ double Graph::cost_of(const MarkerFactor& factor) const {
 
 double Graph::cost_of(const Factor& factor) const {
   if (const auto* odometry = std::get_if<OdometryFactor>(&factor))
-    return odometry->cost(state_, noise_.odometry, noise_.scale);
+    return odometry->cost(state_, noise_.odometry, noise_.learnt_odometry);
   if (const auto* scan = std::get_if<ScanFactor>(&factor)) return scan->cost(state_);
   if (const auto* marker = std::get_if<MarkerFactor>(&factor)) return cost_of(*marker);
   return linearised(factor).residual.squaredNorm();
@@ -166,29 +166,29 @@ void Graph::relocate_newest(const Se2& map_from_base) {
     std::erase(active_factors_, factors_.size() - 1);
     factors_.pop_back();
   }
-  // After step_all() the prior may contain factors between the newest keyframe and variables behind
-  // the window.
+  // After step_all() the window's prior may also constrain the newest keyframe, by marginalised
+  // factors between it and variables outside the window: that information is dropped, too.
   const Variable variable{VariableKind::kKeyframe, newest};
   eliminate(variable);
   insert_variable(variable);
   state_.keyframes.back() = map_from_base;
-  OdometryFactor cut;
-  cut.from = newest - 1;
-  cut.to = newest;
-  cut.is_cut = true;
-  add(cut);
+  OdometryFactor disabled;
+  disabled.from = newest - 1;
+  disabled.to = newest;
+  disabled.is_disabled = true;
+  add(disabled);
 }
 
-void Graph::cut_odometry_since(std::size_t keyframe) {
+void Graph::disable_odometry_since(std::size_t keyframe) {
   for (const std::size_t index : active_factors_) {
     auto* odometry = std::get_if<OdometryFactor>(&factors_[index]);
-    if (odometry != nullptr && odometry->from >= keyframe) odometry->is_cut = true;
+    if (odometry != nullptr && odometry->from >= keyframe) odometry->is_disabled = true;
   }
 }
 
 void Graph::choose_kind(Factor& factor) const {
   if (auto* odometry = std::get_if<OdometryFactor>(&factor))
-    odometry->choose_kind(state_, noise_.odometry, noise_.scale);
+    odometry->choose_kind(state_, noise_.odometry, noise_.learnt_odometry);
 }
 
 LinearFactor Graph::linearised(const Factor& factor) const {
@@ -196,7 +196,7 @@ LinearFactor Graph::linearised(const Factor& factor) const {
     const Graph& graph;
 
     LinearFactor operator()(const OdometryFactor& f) const {
-      return f.linearise(graph.state_, graph.noise_.odometry, graph.noise_.scale);
+      return f.linearise(graph.state_, graph.noise_.odometry, graph.noise_.learnt_odometry);
     }
 
     LinearFactor operator()(const ScanFactor& f) const { return f.linearise(graph.state_); }
@@ -232,12 +232,12 @@ Eigen::Matrix3d Graph::covariance_since(std::size_t keyframe) const {
   const Eigen::Vector2d lever =
       state_.keyframes[newest].translation() - state_.keyframes[keyframe].translation();
   const auto to_own_frame = [this](std::size_t index) {
-    return turning(state_.keyframes[index].rotation().transpose());
+    return block_rotation(state_.keyframes[index].rotation().transpose());
   };
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(prior_.g.size(), 3);
   difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, newest})) = to_own_frame(newest);
   difference.middleRows<3>(offsets_.at({VariableKind::kKeyframe, keyframe})) -=
-      to_own_frame(keyframe) * carried_along(lever).transpose();
+      to_own_frame(keyframe) * lever_arm_jacobian(lever).transpose();
   DampedRoot root;
   root.compute(window_equations().h);
   return difference.transpose() * root.solve(difference);
@@ -248,11 +248,11 @@ Eigen::Matrix3d Graph::covariance_of_newest_step() const {
   if (count < 2) return Eigen::Matrix3d::Zero();
   const Variable newest{VariableKind::kKeyframe, count - 1};
   const Variable before{VariableKind::kKeyframe, count - 2};
-  const Eigen::Matrix3d carried =
-      carried_along(state_.pose(newest).translation() - state_.pose(before).translation());
-  const Eigen::Matrix3d common = carried * covariance(before, newest);
-  return covariance_of(newest) + carried * covariance_of(before) * carried.transpose() - common -
-         common.transpose();
+  const Eigen::Matrix3d lever_arm =
+      lever_arm_jacobian(state_.pose(newest).translation() - state_.pose(before).translation());
+  const Eigen::Matrix3d common = lever_arm * covariance(before, newest);
+  return covariance_of(newest) + lever_arm * covariance_of(before) * lever_arm.transpose() -
+         common - common.transpose();
 }
 
 Eigen::Matrix3d Graph::landmark_covariance(std::size_t landmark) const {

@@ -17,8 +17,8 @@
 namespace waymark {
 
 struct GraphNoise {
-  OdometryNoise odometry{};
-  OdometryScale scale{};
+  OdometryNoise odometry{};  ///< as configured
+  LearntOdometryNoise learnt_odometry{};
   double marker_gate{16.3};  ///< chi^2, 3 degrees of freedom
 };
 
@@ -30,10 +30,10 @@ struct LandmarkMarginal {
   Eigen::VectorXd g{};
 };
 
-/// A keyframe that was taken out of the graph: it moves rigidly with another one, its carrier.
+/// A keyframe that was removed from the graph: its pose relative to its anchor stays constant.
 struct RemovedKeyframe {
   std::size_t keyframe{0};
-  std::size_t carrier{0};
+  std::size_t anchor{0};
 };
 
 class Graph {
@@ -46,9 +46,11 @@ class Graph {
 
   const GraphNoise& noise() const { return noise_; }
 
-  OdometryNoise odometry_noise() const { return scaled(noise_.odometry, noise_.scale); }
+  OdometryNoise odometry_noise() const { return scaled(noise_.odometry, noise_.learnt_odometry); }
 
-  void set_odometry_scale(const OdometryScale& scale) { noise_.scale = scale; }
+  void set_learnt_odometry_noise(const LearntOdometryNoise& learnt) {
+    noise_.learnt_odometry = learnt;
+  }
 
   CalibrationKnowledge& calibration_knowledge() { return calibration_; }
 
@@ -64,7 +66,7 @@ class Graph {
 
   bool is_fixed(std::size_t landmark) const { return is_fixed_[landmark]; }
 
-  /// A factor with a variable behind the window takes effect in step_all().
+  /// A factor with a variable outside the window takes effect in step_all().
   void add(const Factor& factor);
 
   /// Transforms the whole state into another map frame. The prior of the first pose, which defined
@@ -80,15 +82,16 @@ class Graph {
     return has_prior(landmark) && !prior_of(landmark)->is_off;
   }
 
-  /// Sum of the robust costs (chi^2) of all factors.
+  /// -2 log-likelihood of all factors, up to a constant; without the priors of calibration and
+  /// window.
   double cost() const;
 
-  /// Gives the newest keyframe another pose. An odometry factor without information replaces all
-  /// factors on that keyframe.
+  /// Gives the newest keyframe another pose. A disabled odometry factor replaces all factors on
+  /// that keyframe.
   void relocate_newest(const Se2& map_from_base);
 
-  /// Removes the information of the window's odometry factors from `keyframe` on.
-  void cut_odometry_since(std::size_t keyframe);
+  /// Marks the motion of the window's odometry factors from `keyframe` on as unknown.
+  void disable_odometry_since(std::size_t keyframe);
 
   bool is_active(const Variable& variable) const { return offsets_.contains(variable); }
 
@@ -96,18 +99,17 @@ class Graph {
 
   std::size_t num_active_keyframes() const { return state_.keyframes.size() - first_keyframe_; }
 
-  /// Gauss-Newton over the window. Where it has markers, also looks for slips that this local
-  /// search does not find: while every motion counts as rolling, a slip spreads over its neighbours
-  /// and the calibration. Scans alone do not show them reliably: a scan that was mismatched looks
-  /// like a slip.
+  /// Gauss-Newton over the window. If it contains markers, the newest odometry factors are then
+  /// tested for slip: Gauss-Newton alone spreads a slip over neighbouring motions and the
+  /// calibration. Not tested without markers: a mismatched scan looks like a slip, too.
   void optimise();
 
-  /// One step of Gauss-Newton over the whole graph: eliminates all variables behind the window,
+  /// One step of Gauss-Newton over the whole graph: eliminates all variables outside the window,
   /// which rebuilds the window's prior; solves the window; substitutes back. A step that increases
   /// the cost is halved, a few times, and in the end dropped.
   /// @param activated  landmarks that are put back into the window.
-  /// @return largest step [m, rad] of the variables behind the window or, if there are none, of the
-  ///         window's variables; infinite if there is no solution: then nothing has changed.
+  /// @return largest step [m, rad] of the variables outside the window or, if there are none, of
+  ///         the window's variables; infinite if there is no solution: then nothing has changed.
   double step_all(const std::vector<std::size_t>& activated = {});
 
   /// step_all() until it converges or has no solution, at most `steps` times.
@@ -118,19 +120,19 @@ class Graph {
   std::optional<LandmarkMarginal> marginal_of(const std::vector<std::size_t>& landmarks) const;
 
   /// Marginalises the window's oldest keyframe, and landmarks that no keyframe of the window has
-  /// measured and that are more than `far_m` from the newest keyframe.
-  void marginalise_oldest(double far_m);
+  /// measured and that are more than `keep_radius_m` from the newest keyframe.
+  void marginalise_oldest(double keep_radius_m);
 
-  /// Keeps only the window and its prior: drops keyframes and factors behind it, and makes
-  /// landmarks behind it constants. After that step_all() must not be called.
-  void forget_behind_window();
+  /// Keeps only the window and its prior: drops keyframes and factors outside it, and makes
+  /// landmarks outside it constants. After that step_all() must not be called.
+  void forget_outside_window();
 
-  /// Random walk of the calibration: information about the calibration fades while the robot
-  /// drives. Not for a graph that is solved as a whole, where the calibration is one constant.
-  void let_calibration_wander(double driven_m);
+  /// Lets the calibration perform a random walk: information about it fades while the robot drives.
+  /// Not for a graph that is solved as a whole, where the calibration is one constant.
+  void add_calibration_random_walk(double driven_m);
 
-  /// Takes keyframes behind the window out of the graph, with all factors on them.
-  /// @param removed  in order.
+  /// Removes keyframes outside the window from the graph, with all factors on them.
+  /// @param removed  in ascending order.
   void remove_keyframes(const std::vector<RemovedKeyframe>& removed);
 
   bool is_removed(std::size_t keyframe) const {
@@ -161,14 +163,15 @@ class Graph {
     Eigen::VectorXd g;
   };
 
-  struct Carried {
-    RemovedKeyframe keyframe{};
-    Se2 carrier_from_keyframe{};
+  struct AnchoredKeyframe {
+    RemovedKeyframe removed{};
+    Se2 anchor_from_keyframe{};
   };
 
   const LandmarkPrior* prior_of(std::size_t landmark) const;
   bool forget_removed(Factor& factor) const;
-  void carry_removed();
+  /// Moves the removed keyframes with their anchors.
+  void move_removed();
 
   /// See OdometryFactor.
   void choose_kind(Factor& factor) const;
@@ -195,19 +198,19 @@ class Graph {
   CalibrationKnowledge calibration_;
   State state_{};
   std::vector<Factor> factors_{};
-  std::vector<std::size_t> active_factors_{};  ///< within the window
-  std::size_t first_keyframe_{0};              ///< of the window
+  std::vector<std::size_t> active_factors_{};  ///< indices of the factors within the window
+  std::size_t first_keyframe_{0};              ///< oldest keyframe of the window
 
-  std::vector<Variable> layout_{};
-  std::map<Variable, Eigen::Index> offsets_{};
+  std::vector<Variable> layout_{};  ///< the window's variables, in the order of its equations
+  std::map<Variable, Eigen::Index> offsets_{};  ///< first row of each variable in the equations
   NormalEquations prior_{};       ///< of the window; g is the gradient at the current state
-  DampedRoot root_{};             ///< of the window's equations as of step_window()
+  DampedRoot root_{};             ///< root of the window's equations in the last step_window()
   Eigen::MatrixXd covariance_{};  ///< of the variables in covariance_offsets_
   std::map<Variable, Eigen::Index> covariance_offsets_{};
   std::vector<Eigen::Matrix3d> landmark_covariances_{};
   std::vector<bool> is_fixed_{};    ///< by landmark
   std::vector<bool> is_removed_{};  ///< by keyframe; may end early: later ones are not removed
-  std::vector<Carried> carried_{};
+  std::vector<AnchoredKeyframe> anchored_{};
 };
 
 }  // namespace waymark

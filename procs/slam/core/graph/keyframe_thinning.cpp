@@ -9,13 +9,15 @@ namespace waymark {
 namespace {
 
 constexpr double kPlace_m = 1.0;
-constexpr std::size_t kLookEvery = 100;      // keyframes, since each look goes through all factors
-constexpr std::size_t kLeastTies = 10;       // constraints of an end, since some may be wrong
-constexpr std::size_t kLeastSightings = 20;  // of a marker by needed keyframes, to be well mapped
-constexpr double kLeastInformation = 10.0;   // of a loop, as 1 / sigma: 0.1 m and 0.1 rad
+constexpr std::size_t kAssessedEvery = 100;  // keyframes, since it goes through all factors
+// Keyframes in the head (and in the tail) of a run that are tied to keyframes before the run; some
+// ties may be wrong.
+constexpr std::size_t kMinTies = 10;
+constexpr std::size_t kMinSightings = 20;  // kept keyframes that see a well mapped marker
+constexpr double kMinInformation = 10.0;   // [1/m, 1/rad] 1 / sigma of a loop along each axis
 
-bool shows_all_axes(const ScanFactor& loop) {
-  return loop.root_information.rowwise().norm().minCoeff() > kLeastInformation;
+bool observes_all_axes(const ScanFactor& loop) {
+  return loop.root_information.rowwise().norm().minCoeff() > kMinInformation;
 }
 
 }  // namespace
@@ -27,25 +29,25 @@ KeyframeThinning::Place KeyframeThinning::place_of(const Se2& map_from_base) {
           static_cast<int>(std::lround(map_from_base.theta() / kQuarter) + 4) % 4};
 }
 
-std::vector<RemovedKeyframe> KeyframeThinning::surplus(const Graph& graph) {
-  const std::size_t behind = graph.first_active_keyframe();
-  if (behind < assessments_.size() + kLookEvery) return {};
+std::vector<RemovedKeyframe> KeyframeThinning::removable(const Graph& graph) {
+  const std::size_t num_outside = graph.first_active_keyframe();
+  if (num_outside < assessments_.size() + kAssessedEvery) return {};
   for (const Ties& ties : ties_of_new(graph))
     assessments_.push_back(assess(assessments_.size(), ties, graph.state()));
-  std::vector<RemovedKeyframe> surplus;
-  for (std::size_t begin = open_run_, end = begin; end < behind; begin = end) {
-    while (begin < behind && assessments_[begin].is_needed)
+  std::vector<RemovedKeyframe> removable;
+  for (std::size_t begin = open_run_, end = begin; end < num_outside; begin = end) {
+    while (begin < num_outside && !assessments_[begin].is_redundant)
       ++begin;
     end = begin;
-    while (end < behind && !assessments_[end].is_needed)
+    while (end < num_outside && assessments_[end].is_redundant)
       ++end;
-    add_surplus(begin, end, graph, surplus);
+    add_removable(begin, end, graph, removable);
     open_run_ = begin;
   }
-  return surplus;
+  return removable;
 }
 
-/// Constraints of the keyframes that have left the window since the last look.
+/// Constraints of the keyframes that have left the window since the last assessment.
 std::vector<KeyframeThinning::Ties> KeyframeThinning::ties_of_new(const Graph& graph) const {
   const std::size_t first = assessments_.size();
   std::vector<Ties> ties(graph.first_active_keyframe() - first);
@@ -61,7 +63,7 @@ std::vector<KeyframeThinning::Ties> KeyframeThinning::ties_of_new(const Graph& g
       if (Ties* here = of(prior->keyframe)) here->oldest = 0;
     } else if (const auto* scan = std::get_if<ScanFactor>(&factor)) {
       Ties* here = of(scan->keyframe);
-      if (here == nullptr || !scan->is_loop || !shows_all_axes(*scan)) continue;
+      if (here == nullptr || !scan->is_loop || !observes_all_axes(*scan)) continue;
       for (const ScanFactor::Reference& reference : scan->references)
         here->oldest = std::min(here->oldest, reference.keyframe);
     }
@@ -73,20 +75,21 @@ KeyframeThinning::Assessment KeyframeThinning::assess(std::size_t keyframe, cons
                                                       const State& state) {
   Assessment assessment{false, 0, ties.oldest};
   const Se2& map_from_base = state.keyframes[keyframe];
-  std::vector<std::size_t>& there = needed_[place_of(map_from_base)];
-  assessment.is_needed = there.size() < per_place_;
+  std::vector<std::size_t>& there = kept_[place_of(map_from_base)];
+  bool is_kept = there.size() < per_place_;
   for (const std::size_t landmark : ties.landmarks) {
     const auto [seen, is_new] = sightings_.try_emplace(landmark, Sightings{keyframe, 0});
     assessment.tied_to = std::min(assessment.tied_to, seen->second.first_keyframe);
-    assessment.is_needed |= seen->second.needed < kLeastSightings;
+    is_kept |= seen->second.kept < kMinSightings;
   }
-  if (assessment.is_needed) {
+  if (is_kept) {
     there.push_back(keyframe);
     for (const std::size_t landmark : ties.landmarks)
-      ++sightings_.at(landmark).needed;
+      ++sightings_.at(landmark).kept;
     return assessment;
   }
-  assessment.carrier = *std::min_element(there.begin(), there.end(), [&](auto a, auto b) {
+  assessment.is_redundant = true;
+  assessment.anchor = *std::min_element(there.begin(), there.end(), [&](auto a, auto b) {
     const auto away_m = [&](std::size_t other) {
       return (state.keyframes[other].translation() - map_from_base.translation()).norm();
     };
@@ -100,7 +103,7 @@ std::size_t KeyframeThinning::end_of_head(std::size_t begin, std::size_t end) co
   std::size_t ties = 0;
   for (std::size_t k = begin; k < end; ++k) {
     ties += assessments_[k].tied_to < begin;
-    if (ties >= kLeastTies && k + 1 - begin >= least_end_) return k + 1;
+    if (ties >= kMinTies && k + 1 - begin >= min_end_) return k + 1;
   }
   return end;
 }
@@ -111,16 +114,16 @@ std::size_t KeyframeThinning::begin_of_tail(std::size_t begin, std::size_t end,
   std::size_t ties = 0;
   for (std::size_t k = end; k-- > begin && !graph.is_removed(k);) {
     ties += assessments_[k].tied_to < begin;
-    if (ties >= kLeastTies && end - k >= least_end_) return k;
+    if (ties >= kMinTies && end - k >= min_end_) return k;
   }
   return begin;
 }
 
-void KeyframeThinning::add_surplus(std::size_t begin, std::size_t end, const Graph& graph,
-                                   std::vector<RemovedKeyframe>& surplus) const {
+void KeyframeThinning::add_removable(std::size_t begin, std::size_t end, const Graph& graph,
+                                     std::vector<RemovedKeyframe>& removable) const {
   const std::size_t tail = begin_of_tail(begin, end, graph);
   for (std::size_t k = end_of_head(begin, end); k < tail; ++k)
-    if (!graph.is_removed(k)) surplus.push_back({k, assessments_[k].carrier});
+    if (!graph.is_removed(k)) removable.push_back({k, assessments_[k].anchor});
 }
 
 }  // namespace waymark

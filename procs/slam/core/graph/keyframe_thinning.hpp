@@ -11,37 +11,37 @@
 
 namespace waymark {
 
-/// The first keyframes of each place are needed, and so are keyframes that see a marker seen by few
-/// needed keyframes. Consecutive keyframes that are not needed form a run, which is redundant
-/// except for its two ends. Each end is long enough to have constraints (ties) to keyframes older
-/// than the run, by markers and loops.
+/// Keeps the first keyframes of each place, and those that see a marker which few kept keyframes
+/// see. The others are redundant. Of each run of consecutive redundant keyframes, the head and the
+/// tail stay, too: each has enough constraints (ties), by markers and loops, to keyframes before
+/// the run.
 class KeyframeThinning {
  public:
-  /// @param per_place  needed keyframes per square metre and quarter of a turn.
-  /// @param least_end  least number of keyframes in an end, however many ties it has: newer scans
-  ///                   and submaps refer to them.
-  KeyframeThinning(int per_place, int least_end)
+  /// @param per_place  keyframes to keep per square metre and quarter of a turn.
+  /// @param min_end    least number of keyframes in a head or tail, however many ties it has: newer
+  ///                   scans and submaps refer to them.
+  KeyframeThinning(int per_place, int min_end)
       : per_place_{static_cast<std::size_t>(per_place)},
-        least_end_{static_cast<std::size_t>(least_end)} {}
+        min_end_{static_cast<std::size_t>(min_end)} {}
 
   /// To be called after each keyframe; goes through the graph once per 100 keyframes.
-  /// @return keyframes behind the window that may be removed. The carrier of each is the nearest
-  ///         needed keyframe.
-  std::vector<RemovedKeyframe> surplus(const Graph& graph);
+  /// @return keyframes outside the window that may be removed. The anchor of each is the nearest
+  ///         kept keyframe within the same square metre and quarter of a turn.
+  std::vector<RemovedKeyframe> removable(const Graph& graph);
 
  private:
   using Place = std::array<int, 3>;  ///< column, row, direction
 
   struct Assessment {
-    bool is_needed{true};
-    std::size_t carrier{0};  ///< of a keyframe that is not needed
+    bool is_redundant{false};
+    std::size_t anchor{0};   ///< of a redundant keyframe
     std::size_t tied_to{0};  ///< oldest keyframe that a full-rank constraint ties it to, or itself
   };
 
-  /// Constraints of one keyframe.
+  /// Constraints of one keyframe to others.
   struct Ties {
-    std::vector<std::size_t> landmarks{};  ///< that it has measured
-    std::size_t oldest{0};  ///< oldest one that its loops refer to, 0 with a prior, else itself
+    std::vector<std::size_t> landmarks{};  ///< measured from this keyframe
+    std::size_t oldest{0};  ///< oldest keyframe in its loops; 0 with a pose prior; else itself
   };
 
   static Place place_of(const Se2& map_from_base);
@@ -49,21 +49,21 @@ class KeyframeThinning {
   Assessment assess(std::size_t keyframe, const Ties& ties, const State& state);
   std::size_t end_of_head(std::size_t begin, std::size_t end) const;
   std::size_t begin_of_tail(std::size_t begin, std::size_t end, const Graph& graph) const;
-  void add_surplus(std::size_t begin, std::size_t end, const Graph& graph,
-                   std::vector<RemovedKeyframe>& surplus) const;
+  void add_removable(std::size_t begin, std::size_t end, const Graph& graph,
+                     std::vector<RemovedKeyframe>& removable) const;
 
   std::size_t per_place_;
-  std::size_t least_end_;
-  std::vector<Assessment> assessments_{};  ///< of the keyframes behind the window
+  std::size_t min_end_;
+  std::vector<Assessment> assessments_{};  ///< of the keyframes outside the window
   std::size_t open_run_{0};                ///< first keyframe of a run that may still grow
-  std::map<Place, std::vector<std::size_t>> needed_{};
+  std::map<Place, std::vector<std::size_t>> kept_{};
 
   struct Sightings {
     std::size_t first_keyframe{0};
-    std::size_t needed{0};  ///< number of needed keyframes
+    std::size_t kept{0};  ///< number of kept keyframes that see the landmark
   };
 
-  std::map<std::size_t, Sightings> sightings_{};  ///< of landmarks
+  std::map<std::size_t, Sightings> sightings_{};  ///< by landmark
 };
 
 }  // namespace waymark

@@ -15,7 +15,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kSigmas = 3.0;         // half of a search window, in sigmas of the pose
+constexpr double kSigmas = 3.0;         // half side of a search window, in sigmas of the pose
 constexpr double kDirectReach_m = 0.3;  // scan matching converges from this far away
 constexpr double kDirectReach_rad = 0.15;
 constexpr std::size_t kSearchBeams = 120;
@@ -150,7 +150,7 @@ Eigen::Matrix3d LoopFinder::covariance_in(const Submap& old, const LoopSearch& s
   if (last == confirmed_.rend()) return covariance;
   // Holds whether or not the graph has already followed that loop.
   const Eigen::Matrix3d since =
-      last->off * last->off.transpose() + since_match(last->keyframe, search);
+      last->innovation * last->innovation.transpose() + since_match(last->keyframe, search);
   return smaller_covariance(since, covariance);
 }
 

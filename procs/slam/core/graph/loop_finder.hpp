@@ -44,12 +44,12 @@ struct LoopSearch {
   double driven_m{0.0};  ///< since the last search
   /// Covariance of map_from_base relative to the pose of an old keyframe.
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_against{};
-  std::size_t first_recent_keyframe{0};  ///< submaps with it or later keyframes are not old
+  std::size_t first_recent_keyframe{0};  ///< submaps with this or later keyframes are not old
   /// Covariance of map_from_base relative to a recent keyframe (first_recent_keyframe or later).
   std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_since{};
 };
 
-/// Factor on the covariances by which loops are searched and gated, since they come from a
+/// Factor on the covariances by which loops are searched and gated, since these come from a
 /// linearised graph and a model of the odometry: doubles the sigmas. Chosen, not measured.
 inline constexpr double kLoopCovarianceMargin = 4.0;
 
@@ -59,25 +59,26 @@ inline const Eigen::Matrix3d& smaller_covariance(const Eigen::Matrix3d& a,
   return a.determinant() < b.determinant() ? a : b;
 }
 
-/// A match closes a loop at once if it lies within the pose's covariance and close to the estimated
-/// pose. Otherwise a second match, from another place, must agree on the correction; it is searched
-/// for about the estimated pose and about the pose corrected by the first match, which the search
-/// about the estimated pose may not reach.
+/// A match within the pose's covariance and close to the estimated pose closes a loop at once. Any
+/// other match is a candidate: a second match, from another place, must agree with its correction.
+/// The second match is searched for around the estimated pose, and around that pose after the
+/// correction.
 class LoopFinder {
  public:
   LoopFinder(const LoopConfig& config, const ScanMatchConfig& scan)
       : config_{config}, scan_{scan} {}
 
   struct Found {
-    std::size_t keyframe{0};  ///< whose scan was matched
+    std::size_t keyframe{0};  ///< the one whose scan was matched
     LoopMatch loop{};
-    Eigen::Vector3d off{Eigen::Vector3d::Zero()};  ///< matched minus estimated pose then, map axes
+    Eigen::Vector3d innovation{Eigen::Vector3d::Zero()};  ///< matched minus estimated pose, when
+                                                          ///< the match was found; map axes
   };
 
   /// Loops to close: none, one, or two that agree, the first of which was found at an earlier
   /// keyframe.
-  /// @param keyframe  the newest.
-  /// @param points    its scan, base frame.
+  /// @param keyframe  the newest one.
+  /// @param points    the scan of that keyframe, base frame.
   std::vector<Found> find(std::size_t keyframe, const Points& points, const LoopSearch& search,
                           const std::deque<Submap>& submaps, const State& state,
                           const RangeNoise& noise);
@@ -92,11 +93,11 @@ class LoopFinder {
   }
 
  private:
-  /// A match far from the estimated pose, which a second scan has to confirm.
+  /// A match that does not close a loop at once; a second scan has to confirm it.
   struct Candidate {
     Found found{};
     Se2 correction{};     ///< found map_from_base * estimated map_from_base ^ -1
-    Se2 map_from_base{};  ///< as estimated
+    Se2 map_from_base{};  ///< estimated pose
   };
 
   /// The newest scan, and what it is compared with.
@@ -109,7 +110,7 @@ class LoopFinder {
     const RangeNoise& noise;
   };
 
-  /// Where the scan is searched for: about the estimated pose or a candidate's.
+  /// Where the scan is searched for: around the estimated pose, or around the candidate's.
   struct Guess {
     Se2 map_from_base{};
     std::function<Eigen::Matrix3d(std::size_t keyframe)> covariance_against{};
@@ -118,8 +119,8 @@ class LoopFinder {
 
   struct Place {
     Found found{};
-    Se2 map_from_base{};      ///< of the match
-    bool is_expected{false};  ///< closes a loop at once
+    Se2 map_from_base{};      ///< matched pose
+    bool is_expected{false};  ///< the match closes a loop at once
   };
 
   std::optional<Place> place_near(const Guess& guess, const Scan& scan);

@@ -8,10 +8,10 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kLookedAt = 120;  // beams
-constexpr double kBeforeEnd_m = 0.3;    // last part of a beam, where it may graze its own wall
-constexpr double kOccupied = 0.4;       // least occupancy of a wall, and
-constexpr double kFree = 0.1;           // largest one of free space
+constexpr std::size_t kMaxCompared = 120;  // beams
+constexpr double kBeforeEnd_m = 0.3;  // last part of a beam, which may graze the wall that it hits
+constexpr double kOccupied = 0.4;     // least occupancy of a wall
+constexpr double kFree = 0.1;         // largest occupancy of free space
 
 bool is_wall(const GridMap& map, CellIndex cell) {
   return map.occupancy[cell].occupancy() > kOccupied;
@@ -46,7 +46,7 @@ bool is_crossed(const GridMap& map, const Eigen::Vector2d& from, const Eigen::Ve
 MapFit fit_in_map(const GridMap& map, std::span<const AnnotatedBeam> beams,
                   const Se2& map_from_base) {
   MapFit fit;
-  const std::size_t step = 1 + beams.size() / kLookedAt;
+  const std::size_t step = 1 + beams.size() / kMaxCompared;
   for (std::size_t i = 0; i < beams.size(); i += step) {
     const Beam& beam = beams[i].beam;
     const Eigen::Vector2d end = map_from_base * beam.end_in_base;

@@ -14,21 +14,21 @@ namespace waymark {
 /// A scan's beams compared with a map. Beams that end in unmapped or uncertain cells count as
 /// neither fitting nor contradicting.
 struct MapFit {
-  int beams{0};          ///< compared
+  int beams{0};          ///< number of compared beams
   int fitting{0};        ///< end on a mapped wall
   int contradicting{0};  ///< cross a mapped wall, or end where the map is free
 
-  static constexpr int kLeastBeams = 20;      ///< fewer are not decisive
-  static constexpr double kMostMisfit = 0.3;  ///< of a correct map at the correct pose
+  static constexpr int kMinBeams = 20;  ///< fitting and contradicting beams; fewer are not decisive
+  static constexpr double kMaxMisfit = 0.3;  ///< misfit() of a correct map at the correct pose
 
-  bool is_decisive() const { return fitting + contradicting >= kLeastBeams; }
+  bool is_decisive() const { return fitting + contradicting >= kMinBeams; }
 
   /// Contradicting beams / (fitting + contradicting beams), 0 to 1.
   double misfit() const {
     return static_cast<double>(contradicting) / std::max(1, fitting + contradicting);
   }
 
-  bool is_contradicted() const { return is_decisive() && misfit() >= kMostMisfit; }
+  bool is_contradicted() const { return is_decisive() && misfit() >= kMaxMisfit; }
 };
 
 /// Compares at most 120 beams, evenly spread over the scan.

@@ -8,7 +8,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kMostPoints = 400.0;  // per cell, so that newer ones eventually outweigh them
+constexpr double kMaxPoints = 400.0;  // per cell, so that later points can outweigh them
 
 }  // namespace
 
@@ -23,7 +23,7 @@ NdtMap walls_to_save(const NdtMap& walls, const GridMap& grid, double point_vari
                         : is_seen_through(grid, centre + cell.sum_m / cell.count)) {
       continue;
     }
-    const double share = std::min(1.0, kMostPoints / cell.count);
+    const double share = std::min(1.0, kMaxPoints / cell.count);
     cell.count *= share;
     cell.sum_m *= share;
     cell.squares_m2 *= share;

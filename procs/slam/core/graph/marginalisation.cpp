@@ -60,12 +60,12 @@ void Graph::remove_from_layout(const Variable& variable) {
 /// Replaces the prior's calibration c by c' = c + w, w ~ N(0, Q): where H is the information about
 /// c and N = (I + H Q)^-1, the information about c' is N H. The other blocks follow from
 /// marginalising c.
-void Graph::let_calibration_wander(double driven_m) {
+void Graph::add_calibration_random_walk(double driven_m) {
   calibration_.fade(std::exp(-driven_m / CalibrationKnowledge::kMemory_m));
   const Eigen::Index at = offsets_.at({VariableKind::kCalibration, 0});
   prior_.h = Eigen::MatrixXd{prior_.h.selfadjointView<Eigen::Lower>()};
   using Square = Eigen::Matrix<double, kCalibrationSize, kCalibrationSize>;
-  const Square q = calibration_.wander(driven_m).asDiagonal();
+  const Square q = calibration_.random_walk_variances(driven_m).asDiagonal();
   const Square own = prior_.h.block<kCalibrationSize, kCalibrationSize>(at, at);
   const Square n = (Square::Identity() + own * q).inverse();
   const Calibration g = prior_.g.segment<kCalibrationSize>(at);
@@ -80,7 +80,7 @@ void Graph::let_calibration_wander(double driven_m) {
   prior_.g.segment<kCalibrationSize>(at) = n * g;
 }
 
-void Graph::forget_behind_window() {
+void Graph::forget_outside_window() {
   std::vector<Factor> kept;
   kept.reserve(active_factors_.size());
   for (std::size_t& index : active_factors_) {
@@ -93,7 +93,7 @@ void Graph::forget_behind_window() {
     if (!is_active({VariableKind::kLandmark, i})) is_fixed_[i] = true;
 }
 
-void Graph::marginalise_oldest(double far_m) {
+void Graph::marginalise_oldest(double keep_radius_m) {
   eliminate({VariableKind::kKeyframe, first_keyframe_++});
   std::set<std::size_t> seen;
   for (const std::size_t index : active_factors_)
@@ -105,7 +105,7 @@ void Graph::marginalise_oldest(double far_m) {
     const double away_m =
         (state_.landmarks[variable.index].translation() - state_.keyframes.back().translation())
             .norm();
-    if (away_m > far_m) eliminate(variable);
+    if (away_m > keep_radius_m) eliminate(variable);
   }
 }
 

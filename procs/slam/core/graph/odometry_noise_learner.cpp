@@ -12,12 +12,12 @@ namespace waymark {
 namespace {
 
 // The bank of models. All constants were chosen, not fitted.
-constexpr double kMemory = 0.99;       // forgetting factor of log-likelihoods per innovation
-constexpr double kPriorLogOdds = 3.0;  // of the configured scale against each larger one
-constexpr double kCoupling = 0.7;      // prior standard deviation of log(along / turn)
-constexpr double kSlipFactor = 5.0;    // sigma of the odometry in a slip, relative to its noise
-constexpr double kGoesOnSigmas = 5.0;  // a larger slip may continue at the next innovation
-const double kLogSlipShare = std::log(0.03);  // probability of a slip, as kSpinningPenalty
+constexpr double kMemory = 0.99;        // forgetting factor of log-likelihoods per innovation
+constexpr double kPriorLogOdds = 3.0;   // of the configured scale against each larger one
+constexpr double kCoupling = 0.7;       // prior standard deviation of log(along / turn)
+constexpr double kSlipFactor = 5.0;     // sigma of the odometry in a slip, relative to its noise
+constexpr double kLastingSigmas = 5.0;  // a larger slip may continue at the next innovation
+const double kLogSlipShare = std::log(0.03);  // of the probability of a slip, as kSlipPenalty
 
 // Moments of slips along the path.
 constexpr double kSlipSigmas = 4.0;       // a larger innovation is a slip
@@ -49,9 +49,9 @@ void OdometryNoiseLearner::Axis::add(const OdometryInnovation& innovation) {
     double slips = kLogSlipShare +
                    log_normal(innovation.value,
                               innovation.other_variance + squared(kSlipFactor) * odometry_variance);
-    if (slips_go_on_ && model.slips)
+    if (slips_may_last_ && model.slips)
       slips = std::max(slips, log_normal(change, (1.0 + squared(same_m)) * rolling));
-    model.slips = slips > rolls && squared(innovation.value) > squared(kGoesOnSigmas) * rolling;
+    model.slips = slips > rolls && squared(innovation.value) > squared(kLastingSigmas) * rolling;
     model.log_likelihood = kMemory * model.log_likelihood + std::max(rolls, slips);
   }
   last_ = innovation;
@@ -59,7 +59,7 @@ void OdometryNoiseLearner::Axis::add(const OdometryInnovation& innovation) {
 
 void OdometryNoiseLearner::observe_slip(const OdometryInnovation& innovation) {
   const double rolling_m2 =
-      innovation.other_variance + squared(scale().along) * innovation.odometry_variance;
+      innovation.other_variance + squared(learnt_noise().along) * innovation.odometry_variance;
   const double keeps = std::exp(-innovation.distance_m / kForgotten_m);
   slips_m_ *= keeps;
   slips_m2_ *= keeps;
@@ -86,7 +86,7 @@ double OdometryNoiseLearner::slip_m2_per_m() const {
   return kMeanIsUncertain * (slips_m2_ + kPriorSlips_m2) / (observed_m_ + kPriorDistance_m);
 }
 
-OdometryScale OdometryNoiseLearner::scale() const {
+LearntOdometryNoise OdometryNoiseLearner::learnt_noise() const {
   struct Model {
     double log_posterior;
     double along;
@@ -114,11 +114,11 @@ OdometryScale OdometryNoiseLearner::scale() const {
     along2 += posterior * squared(model.along);
     turn2 += posterior * squared(model.turn);
   }
-  OdometryScale scale{std::sqrt(along2 / sum), std::sqrt(turn2 / sum)};
-  scale.slip_m2_per_m = slip_m2_per_m();
-  scale.slip_m2 = (slips_m2_ + kPriorSlips_m2) / (slips_ + 1.0);
-  scale.slip_per_m = slips_m_ / (observed_m_ + kPriorDistance_m);
-  return scale;
+  LearntOdometryNoise learnt{std::sqrt(along2 / sum), std::sqrt(turn2 / sum)};
+  learnt.slip_m2_per_m = slip_m2_per_m();
+  learnt.slip_m2 = (slips_m2_ + kPriorSlips_m2) / (slips_ + 1.0);
+  learnt.slip_per_m = slips_m_ / (observed_m_ + kPriorDistance_m);
+  return learnt;
 }
 
 }  // namespace waymark

@@ -18,13 +18,13 @@ struct OdometryInnovation {
 };
 
 /// A bank of models (Magill 1965), one for each noise scale of a grid; their log-likelihoods of the
-/// innovations (Mehra 1972) fade exponentially. scale() is the posterior root mean square.
+/// innovations (Mehra 1972) fade exponentially. learnt_noise() is the posterior root mean square.
 ///
-/// Slips must not count as noise: in each model an innovation may also come from a wide component,
-/// as in likeliest_kind() of odometry_mixture.hpp. A slip in the turn may continue: a wheel that
-/// spins on a wet floor overcounts every step by the same share, while noise differs from step to
-/// step. Along the path, successive innovations are correlated anyway, until the pose has followed
-/// a marker. The scales of both axes are coupled by a prior: noise in the turn, which walls observe
+/// Slips must not count as noise, so each model also has a wide component for them, like
+/// likeliest_kind() of odometry_mixture.hpp. In the turn a slip may last: a wheel that spins on a
+/// wet floor overcounts each step by the same share, while noise differs from step to step. Not so
+/// along the path: there, successive innovations are correlated until the pose has followed a
+/// marker. A prior couples the scales of both axes: noise in the turn, which walls observe
 /// everywhere, is probably as large along the path, which is unobservable in a bare corridor.
 ///
 /// Where neither markers nor walls observe slips, slips add mean and variance to the motion along
@@ -40,7 +40,7 @@ class OdometryNoiseLearner {
   /// back to where the previous scans were matched, which looks like a slip.
   void observe_slip(const OdometryInnovation& innovation);
 
-  OdometryScale scale() const;
+  LearntOdometryNoise learnt_noise() const;
 
   int num_slips() const { return num_slips_; }
 
@@ -50,7 +50,7 @@ class OdometryNoiseLearner {
   /// Log-likelihoods of all scales, given the innovations of one axis.
   class Axis {
    public:
-    explicit Axis(bool slips_go_on) : slips_go_on_{slips_go_on} {}
+    explicit Axis(bool slips_may_last) : slips_may_last_{slips_may_last} {}
 
     void add(const OdometryInnovation& innovation);
 
@@ -64,7 +64,7 @@ class OdometryNoiseLearner {
 
     std::array<Model, kScales> models_{};
     OdometryInnovation last_{};
-    bool slips_go_on_{false};
+    bool slips_may_last_{false};
   };
 
   static double scale_at(std::size_t i);
@@ -74,9 +74,9 @@ class OdometryNoiseLearner {
   Axis turn_{true};
   // Sums that fade with the distance:
   double slips_{0.0};       ///< number of slips
-  double slips_m_{0.0};     ///< sizes, signed
-  double slips_m2_{0.0};    ///< squared sizes
-  double observed_m_{0.0};  ///< driven where a slip would have been observed
+  double slips_m_{0.0};     ///< sum of their sizes, signed
+  double slips_m2_{0.0};    ///< sum of their squared sizes
+  double observed_m_{0.0};  ///< distance driven where a slip would have been observed
   int num_slips_{0};
   double slip_m_{0.0};  ///< the newest slip, while innovations still show it; 0: none
 };

@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-// All scores are natural logarithms of likelihood ratios, chosen so that a decision takes sightings
+// All scores are natural logarithms of likelihood ratios, chosen so that a decision needs sightings
 // of a marker in three frames, since a single frame may be wrong.
 constexpr double kDecided = 2.5;  // lead over the second best hypothesis and the null hypothesis
 
@@ -21,12 +21,12 @@ constexpr std::size_t kMaxHypotheses = 500;
 constexpr double kHopeless = 12.0;  // score below the best one at which a hypothesis is dropped
 
 // Markers.
-constexpr double kSighting = 1.0;     // score of a marker that is sighted where the map has it,
-constexpr double kUnexpected = -1.0;  // of one that is mapped elsewhere, or in another's place,
-constexpr double kMissed = -0.5;      // and of one that should be in view but is not sighted
-constexpr double kMostOfOne = 3.0;    // bound on the absolute score of one marker in one pass
-constexpr double kFollowed = 0.5;     // gain with which a sighting corrects a hypothesis
-constexpr double kAtMarker_m = 0.5;   // the nearest marker of its id within this is the one sighted
+constexpr double kSighting = 1.0;        // score of a marker that is sighted where the map has it,
+constexpr double kUnexpected = -1.0;     // of one that is mapped elsewhere, or in another's place,
+constexpr double kMissed = -0.5;         // and of one that should be in view but is not sighted
+constexpr double kMaxMarkerScore = 3.0;  // bound on the absolute score of one marker in one pass
+constexpr double kFollowed = 0.5;        // gain with which a sighting corrects a hypothesis
+constexpr double kAtMarker_m = 0.5;  // the nearest marker of its id within this is the one sighted
 constexpr double kInItsPlace_m = 0.25;  // another marker within this of a sighting contradicts it
 constexpr double kPassed_m = 1.0;       // driven without contribution until a marker's pass is over
 
@@ -34,7 +34,7 @@ constexpr double kPassed_m = 1.0;       // driven without contribution until a m
 constexpr double kWallsEvery_m = 0.1;
 constexpr double kUsualMisfit = 0.15;  // share of beams that noise and changes make contradict
 constexpr double kMisfit = 3.0;        // lost score per share of beams beyond kUsualMisfit
-constexpr double kLeastMapped = 0.3;   // share of beams on mapped walls at the right place
+constexpr double kMinMapped = 0.3;     // share of beams on mapped walls at the right place
 const Eigen::Vector3d kMatchSigmas{0.15, 0.15, 0.06};  // of a pose from one marker [m, m, rad]
 
 // Markers in view.
@@ -62,9 +62,9 @@ double PlaceFinder::Hypothesis::score() const {
 
 void PlaceFinder::Hypothesis::add(Clue clue, int index, double score) {
   Episode& episode = clues[{clue, index}];
-  episode.score = std::clamp(episode.score + score, -kMostOfOne, kMostOfOne);
+  episode.score = std::clamp(episode.score + score, -kMaxMarkerScore, kMaxMarkerScore);
   episode.idle_m = 0.0;
-  if (clue == Clue::kLandmark && episode.score >= kMostOfOne) seen_in_place.insert(index);
+  if (clue == Clue::kLandmark && episode.score >= kMaxMarkerScore) seen_in_place.insert(index);
 }
 
 void PlaceFinder::Hypothesis::drive(double distance_m) {
@@ -92,12 +92,12 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
     place.drive(motion.distance_m);
   }
   propose(measurements);
-  const bool weighs_walls = !observation.beams.empty() && since_walls_m_ >= kWallsEvery_m;
-  if (weighs_walls) since_walls_m_ = 0.0;
+  const bool scores_walls = !observation.beams.empty() && since_walls_m_ >= kWallsEvery_m;
+  if (scores_walls) since_walls_m_ = 0.0;
   for (Hypothesis& place : hypotheses_) {
-    weigh_markers(place, observation, measurements, view);
-    if (weighs_walls || (place.wall_score == 0.0 && place.score() >= kDecided))
-      weigh_walls(place, observation, noise);
+    score_markers(place, observation, measurements, view);
+    if (scores_walls || (place.wall_score == 0.0 && place.score() >= kDecided))
+      score_walls(place, observation, noise);
   }
   if (hypotheses_.empty()) {
     return measurements.empty() ? by_walls_.search(observation, noise) : std::nullopt;
@@ -146,15 +146,15 @@ std::optional<int> PlaceFinder::landmark_at(int id, const Eigen::Vector2d& place
   return nearest;
 }
 
-void PlaceFinder::weigh_markers(Hypothesis& place, const Observation& observation,
+void PlaceFinder::score_markers(Hypothesis& place, const Observation& observation,
                                 std::span<const MarkerMeasurement> measurements,
                                 const CameraView& view) const {
-  const std::vector<int> seen = weigh_sightings(place, measurements);
-  if (observation.camera_reported) weigh_misses(place, observation, seen, view);
+  const std::vector<int> seen = score_sightings(place, measurements);
+  if (observation.camera_reported) score_misses(place, observation, seen, view);
 }
 
 /// @return the map's landmarks that were sighted, by index.
-std::vector<int> PlaceFinder::weigh_sightings(
+std::vector<int> PlaceFinder::score_sightings(
     Hypothesis& place, std::span<const MarkerMeasurement> measurements) const {
   std::vector<int> seen;
   for (const MarkerMeasurement& measurement : measurements) {
@@ -180,7 +180,7 @@ std::vector<int> PlaceFinder::weigh_sightings(
   return seen;
 }
 
-void PlaceFinder::weigh_misses(Hypothesis& place, const Observation& observation,
+void PlaceFinder::score_misses(Hypothesis& place, const Observation& observation,
                                std::span<const int> seen, const CameraView& view) const {
   const Se2 base_from_map = place.map_from_base.inverse();
   for (std::size_t i = 0; i < map_->landmarks.size(); ++i) {
@@ -205,15 +205,15 @@ void PlaceFinder::weigh_misses(Hypothesis& place, const Observation& observation
   }
 }
 
-void PlaceFinder::weigh_walls(Hypothesis& place, const Observation& observation,
+void PlaceFinder::score_walls(Hypothesis& place, const Observation& observation,
                               const RangeNoise& noise) const {
   const Points points = points_of(observation);
   const Eigen::Matrix3d near = kMatchSigmas.cwiseAbs2().asDiagonal();
   const ScanMatch match = match_scan(points, map_->walls, place.map_from_base, near, noise, scan_);
   if (match.is_usable(scan_)) place.map_from_base = match.map_from_base;
   const MapFit fit = fit_in_map(map_->grid, observation.beams, place.map_from_base);
-  place.fits_walls = fit.beams < MapFit::kLeastBeams ||
-                     (fit.fitting >= kLeastMapped * fit.beams && !fit.is_contradicted());
+  place.fits_walls = fit.beams < MapFit::kMinBeams ||
+                     (fit.fitting >= kMinMapped * fit.beams && !fit.is_contradicted());
   if (fit.is_decisive()) place.wall_score -= kMisfit * std::max(0.0, fit.misfit() - kUsualMisfit);
 }
 

@@ -23,17 +23,19 @@ namespace waymark {
 ///
 /// Each hypothesis has a score, a log-likelihood ratio against the null hypothesis that the robot
 /// is nowhere in the map. The contribution of one marker in one pass is bounded, since markers are
-/// taken down and moved. The best hypothesis wins once it is clearly better than both the second
-/// best and the null hypothesis. So one marker whose id is unique is enough if nothing contradicts
-/// it; among several markers of one id, other markers and walls decide. While no marker has been
-/// seen, walls alone may decide (WallPlaceFinder).
+/// taken down and moved. The best hypothesis wins if it fits the walls, is clearly better than the
+/// second best, and is clearly better than the null hypothesis or has two markers at their mapped
+/// places. So one marker with a unique id is enough if nothing contradicts it; among several
+/// markers of one id, other markers and walls decide. While there is no hypothesis and no marker is
+/// in view, walls alone may decide (WallPlaceFinder).
 class PlaceFinder {
  public:
   PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
 
   /// @param motion        since the last call.
   /// @param measurements  of the markers in the newest frame.
-  /// @param view          of the camera: a marker that it should see but does not is a miss.
+  /// @param view          of the camera: a marker that it should see but does not is a missed
+  ///                      detection.
   /// @return map_from_base, once decided.
   std::optional<Se2> update(const Motion& motion, const Observation& observation,
                             std::span<const MarkerMeasurement> measurements, const CameraView& view,
@@ -43,13 +45,14 @@ class PlaceFinder {
   enum class Clue { kLandmark, kUnexpectedId };
 
   struct Hypothesis {
+    /// One pass by a marker.
     struct Episode {
       double score{0.0};
       double idle_m{0.0};  ///< driven since the last contribution
     };
 
     Se2 map_from_base{};
-    double passed_score{0.0};  ///< of episodes that are over
+    double passed_score{0.0};  ///< sum over episodes that are over
     std::map<std::pair<Clue, int>, Episode> clues{};
     std::set<int> seen_in_place{};  ///< landmarks whose score has reached its upper bound
     double wall_score{0.0};
@@ -61,13 +64,13 @@ class PlaceFinder {
   };
 
   void propose(std::span<const MarkerMeasurement> measurements);
-  void weigh_markers(Hypothesis& place, const Observation& observation,
+  void score_markers(Hypothesis& place, const Observation& observation,
                      std::span<const MarkerMeasurement> measurements, const CameraView& view) const;
-  std::vector<int> weigh_sightings(Hypothesis& place,
+  std::vector<int> score_sightings(Hypothesis& place,
                                    std::span<const MarkerMeasurement> measurements) const;
-  void weigh_misses(Hypothesis& place, const Observation& observation, std::span<const int> seen,
+  void score_misses(Hypothesis& place, const Observation& observation, std::span<const int> seen,
                     const CameraView& view) const;
-  void weigh_walls(Hypothesis& place, const Observation& observation,
+  void score_walls(Hypothesis& place, const Observation& observation,
                    const RangeNoise& noise) const;
   std::optional<int> landmark_at(int id, const Eigen::Vector2d& place) const;
 

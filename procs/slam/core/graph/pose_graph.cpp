@@ -21,7 +21,7 @@ GraphEdge edge_of(const ScanFactor& factor) {
   const auto main =
       std::max_element(factor.references.begin(), factor.references.end(),
                        [](const auto& a, const auto& b) { return a.share < b.share; });
-  const Eigen::Matrix3d in_reference = turning(main->reference_from_keyframe.rotation());
+  const Eigen::Matrix3d in_reference = block_rotation(main->reference_from_keyframe.rotation());
   const Eigen::Matrix3d root = factor.weight * factor.root_information * in_reference.transpose();
   return {main->keyframe, factor.keyframe, main->reference_from_keyframe, root.transpose() * root};
 }
@@ -38,7 +38,7 @@ PoseGraph pose_graph_of(const Graph& graph) {
   const OdometryNoise noise = graph.odometry_noise();
   for (const Factor& factor : graph.factors()) {
     if (const auto* odometry = std::get_if<OdometryFactor>(&factor)) {
-      if (odometry->is_cut || odometry->motion.distance_m + odometry->motion.turn_rad <= 0.0)
+      if (odometry->is_disabled || odometry->motion.distance_m + odometry->motion.turn_rad <= 0.0)
         continue;
       const CorrectedMotion moved =
           corrected_motion(odometry->motion, odometry_part(graph.state().calibration), noise);

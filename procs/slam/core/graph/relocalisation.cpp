@@ -7,8 +7,8 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMarkersNeeded = 2;  // markers that agree on a pose
-constexpr int kSightingsNeeded = 2;        // of each of them: a misread id rarely repeats
+constexpr std::size_t kMarkersNeeded = 2;  // that agree on a pose
+constexpr int kSightingsNeeded = 2;        // of each marker: a misread id rarely repeats
 constexpr double kSamePlace_m = 0.5;
 constexpr double kSameHeading_rad = 0.35;
 constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
@@ -22,7 +22,7 @@ RelocalisationMonitor::Verdict RelocalisationMonitor::update(const Se2& map_from
                                                              std::span<const PoseHint> hints,
                                                              const Motion& motion) {
   propagate(motion);
-  if (is_twin_place(hints)) {
+  if (is_lookalike_place(hints)) {
     relocated_ = *abandoned_;
     abandoned_.reset();
     drop_alternative();
@@ -58,7 +58,7 @@ void RelocalisationMonitor::propagate(const Motion& motion) {
   }
 }
 
-bool RelocalisationMonitor::is_twin_place(std::span<const PoseHint> hints) {
+bool RelocalisationMonitor::is_lookalike_place(std::span<const PoseHint> hints) {
   if (!abandoned_) return false;
   for (const PoseHint& hint : hints)
     if (hint.kind == PoseHint::Kind::kNew && hint.is_in_known_place)

@@ -23,15 +23,17 @@ struct PoseHint {
 
   Kind kind{Kind::kNew};
   int id{-1};
-  Se2 map_from_base{};            ///< of kElsewhere: pose of the robot if the marker has not moved
-  bool is_in_known_place{false};  ///< of kNew: the map has another marker at that place
+  Se2 map_from_base{};            ///< if kElsewhere: pose of the robot if the marker has not moved
+  bool is_in_known_place{false};  ///< if kNew: the map has another marker at that place
 };
 
-/// Decides between two hypotheses. Either the estimated pose is right, and a marker that is sighted
-/// elsewhere was moved, is misread or has a duplicate; or the robot was carried, and the mapped
-/// places of such markers give its pose. The robot is relocated when two markers agree on the other
-/// pose while no marker is sighted in its place and none is new. After a relocalisation to a place
-/// that only looks alike, new ids appear where the map has other markers: two of them revert it.
+/// Decides between two hypotheses. (1) The estimated pose is right: markers sighted away from their
+/// mapped places were moved, are misread or have duplicates. (2) The robot was carried: the mapped
+/// places of such markers give its pose.
+///
+/// Two markers, each sighted twice, that agree on a pose relocate the robot. A marker sighted where
+/// it is mapped, or with an unknown id, supports (1). If two unknown ids then appear where the map
+/// has other markers, the relocalisation is reverted: the place only looked alike.
 class RelocalisationMonitor {
  public:
   enum class Verdict { kConsistent, kSuspicious, kRelocated, kReverted };
@@ -51,16 +53,16 @@ class RelocalisationMonitor {
   void support_alternative(const PoseHint& hint);
   int num_sightings() const;
   bool is_supported() const;
-  bool is_twin_place(std::span<const PoseHint> hints);
+  bool is_lookalike_place(std::span<const PoseHint> hints);
 
   Se2 relocated_{};
   std::optional<Se2> alternative_{};
   std::map<int, int> sightings_{};  ///< number of sightings that support the alternative, by id
-  double unsupported_m_{0.0};       ///< driven since the last such sighting
+  double unsupported_m_{0.0};       ///< distance driven since the last such sighting
 
   std::optional<Se2> abandoned_{};  ///< pose before the relocalisation, propagated by odometry
   std::set<int> unexpected_ids_{};
-  double relocated_m_{0.0};  ///< driven since the relocalisation
+  double relocated_m_{0.0};  ///< distance driven since the relocalisation
 };
 
 }  // namespace waymark

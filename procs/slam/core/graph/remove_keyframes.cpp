@@ -27,8 +27,8 @@ void Graph::remove_keyframes(const std::vector<RemovedKeyframe>& removed) {
   is_removed_.resize(state_.keyframes.size(), false);
   for (const RemovedKeyframe& gone : removed) {
     is_removed_[gone.keyframe] = true;
-    carried_.push_back(
-        {gone, state_.keyframes[gone.carrier].inverse() * state_.keyframes[gone.keyframe]});
+    anchored_.push_back(
+        {gone, state_.keyframes[gone.anchor].inverse() * state_.keyframes[gone.keyframe]});
   }
   std::vector<bool> is_active_factor(factors_.size(), false);
   for (const std::size_t index : active_factors_)
@@ -42,13 +42,13 @@ void Graph::remove_keyframes(const std::vector<RemovedKeyframe>& removed) {
     kept.push_back(std::move(factors_[index]));
   }
   factors_ = std::move(kept);
-  // Odometry without information replaces the factors across a gap.
+  // A disabled odometry factor bridges each gap.
   std::size_t filled = 0;
   for (const RemovedKeyframe& gone : removed) {
     if (gone.keyframe < filled) continue;
     OdometryFactor gap;
     gap.from = gap.to = gone.keyframe;
-    gap.is_cut = true;
+    gap.is_disabled = true;
     while (is_removed_[gap.from])
       --gap.from;
     while (is_removed_[gap.to])
@@ -58,10 +58,10 @@ void Graph::remove_keyframes(const std::vector<RemovedKeyframe>& removed) {
   }
 }
 
-void Graph::carry_removed() {
-  for (const Carried& carried : carried_)
-    state_.keyframes[carried.keyframe.keyframe] =
-        state_.keyframes[carried.keyframe.carrier] * carried.carrier_from_keyframe;
+void Graph::move_removed() {
+  for (const AnchoredKeyframe& anchored : anchored_)
+    state_.keyframes[anchored.removed.keyframe] =
+        state_.keyframes[anchored.removed.anchor] * anchored.anchor_from_keyframe;
 }
 
 }  // namespace waymark

@@ -42,7 +42,7 @@ bool Graph::assume_slip() {
         .triangularView<Eigen::Lower>()
         .solveInPlace(half);
     const OdometryFactor::Change change = odometry->best_change(
-        linear, half.transpose() * half, state_, noise_.odometry, noise_.scale);
+        linear, half.transpose() * half, state_, noise_.odometry, noise_.learnt_odometry);
     if (change.gain <= best.gain) continue;
     best = change;
     slipped = odometry;

@@ -34,7 +34,7 @@ class SolveSchedule {
     return steps_left_ > 0;
   }
 
-  /// @param moved  largest step of any pose behind the window [m, rad].
+  /// @param moved  largest step of any pose outside the window [m, rad].
   void note_step(double moved) {
     steps_left_ = moved < kConverged ? 0 : std::max(0, steps_left_ - 1);
   }
@@ -43,15 +43,16 @@ class SolveSchedule {
     return num_keyframes - solved_keyframes_;
   }
 
-  static constexpr int kSteps = 12;  ///< of a solution, at most
+  static constexpr int kSteps = 12;  ///< largest number of steps of a solution
 
  private:
-  static constexpr std::size_t kEvery = 10;        ///< keyframes
-  static constexpr std::size_t kShare = 200;       ///< 1/200, after loops that contradict the pose
-  static constexpr std::size_t kRoutineShare = 8;  ///< 1/8, after loops that only confirm the pose
+  // Growth of the graph since the last solution, after which loops begin another one:
+  static constexpr std::size_t kEvery = 10;        ///< keyframes, at least
+  static constexpr std::size_t kShare = 200;       ///< 1/200, if a loop contradicts the pose
+  static constexpr std::size_t kRoutineShare = 8;  ///< 1/8, if loops only confirm the pose
   static constexpr double kConverged = 5e-3;       ///< [m, rad]; less is not worth a further step
 
-  std::size_t solved_keyframes_{0};  ///< of the graph, when the last solution began
+  std::size_t solved_keyframes_{0};  ///< size of the graph when the last solution began
   int steps_left_{0};
   bool has_new_loops_{false};  ///< since the last solution began
   bool loops_matter_{false};   ///< one of them contradicts the pose

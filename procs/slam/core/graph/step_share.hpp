@@ -12,12 +12,12 @@
 
 namespace waymark {
 
-/// Share of a step to take: all of it, unless it turns a pose so far that the linearisation does
-/// not hold.
+/// Share of a step to take: all of it, unless it turns a pose so far that the linearisation is
+/// invalid.
 /// @param turn_rad  the largest turn in the step.
 inline double step_share(double turn_rad) {
-  constexpr double kMost_rad = 0.5;
-  return turn_rad > kMost_rad ? kMost_rad / turn_rad : 1.0;
+  constexpr double kMax_rad = 0.5;
+  return turn_rad > kMax_rad ? kMax_rad / turn_rad : 1.0;
 }
 
 /// step_share() for the largest turn of a keyframe in `step`.

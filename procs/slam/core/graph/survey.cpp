@@ -11,16 +11,16 @@ namespace waymark {
 namespace {
 
 constexpr double kWrong = 5.0;           // sigmas beyond which an entry is reported
-constexpr double kLeastApart_m = 1.0;    // between two markers that define a frame's rotation
+constexpr double kMinApart_m = 1.0;      // between two markers that define a frame's rotation
 constexpr double kClearlyBetter = 25.0;  // chi^2 that switching the wrong prior off has to save
-constexpr int kConfirmed = 3;    // sightings of a landmark before it is assigned to an entry
-constexpr int kTestedAgain = 4;  // times as many sightings as at the last test
-// Largest excess of chi^2 over its mean with correct priors: the larger of a constant and so many
-// standard deviations.
+constexpr int kConfirmed = 3;     // sightings of a landmark before it is assigned to an entry
+constexpr int kRetestFactor = 4;  // growth of the sightings after which a prior is tested again
+// Largest excess of chi^2 over its mean with correct priors: the larger of a constant and a
+// multiple of its standard deviation.
 constexpr double kContradiction = 50.0;
 constexpr double kContradictionSigmas = 5.0;
-constexpr int kMostLeftOut = 5;        // priors to switch off
-constexpr std::size_t kMostTried = 8;  // entries, the most suspicious ones
+constexpr int kMaxSwitchedOff = 5;    // priors
+constexpr std::size_t kMaxTried = 8;  // entries, the most suspicious ones
 
 LandmarkPrior prior_of(const SurveyedMarker& marker, std::size_t landmark) {
   LandmarkPrior prior;
@@ -33,7 +33,7 @@ LandmarkPrior prior_of(const SurveyedMarker& marker, std::size_t landmark) {
 }
 
 /// Whether the priors other than `without` determine the frame's position and rotation.
-bool hold_frame(const std::vector<LandmarkPrior>& priors, std::size_t without) {
+bool determine_frame(const std::vector<LandmarkPrior>& priors, std::size_t without) {
   int num_places = 0;
   for (std::size_t i = 0; i < priors.size(); ++i) {
     if (i == without || priors[i].is_off) continue;
@@ -46,7 +46,7 @@ bool hold_frame(const std::vector<LandmarkPrior>& priors, std::size_t without) {
 /// Excess of chi^2 over its mean, the number of degrees of freedom, if correct priors do not
 /// explain it; else 0.
 double contradiction_of(double chi2, const std::vector<LandmarkPrior>& priors) {
-  int freedom = -3;  // of the frame
+  int freedom = -3;  // the frame has three
   for (const LandmarkPrior& prior : priors)
     if (!prior.is_off) freedom += prior.root_information(2, 2) > 0.0 ? 3 : 2;
   const double excess = chi2 - freedom;
@@ -54,18 +54,18 @@ double contradiction_of(double chi2, const std::vector<LandmarkPrior>& priors) {
   return excess > usual ? excess : 0.0;
 }
 
-/// At most kMostTried priors that may be switched off; first the one without which the cost is
+/// At most kMaxTried priors that may be switched off; first the one without which the cost is
 /// least.
 std::vector<std::size_t> most_suspicious(const std::vector<LandmarkPrior>& priors,
                                          const SurveyModel::Solution& solution) {
   std::vector<std::pair<double, std::size_t>> savings;
   for (std::size_t i = 0; i < priors.size(); ++i)
     // Only if the other priors determine the frame: of the last two, either could be wrong.
-    if (!priors[i].is_off && hold_frame(priors, i))
+    if (!priors[i].is_off && determine_frame(priors, i))
       savings.emplace_back(saving_without(priors[i], solution), i);
   std::stable_sort(savings.begin(), savings.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  if (savings.size() > kMostTried) savings.resize(kMostTried);
+  if (savings.size() > kMaxTried) savings.resize(kMaxTried);
   std::vector<std::size_t> indices;
   for (const auto& [saving, index] : savings)
     indices.push_back(index);
@@ -77,7 +77,8 @@ std::vector<std::size_t> most_suspicious(const std::vector<LandmarkPrior>& prior
 double switch_wrong_off(std::vector<LandmarkPrior>& priors, const SurveyModel& model) {
   const double free = model.cost_without_priors();
   SurveyModel::Solution solution = model.solve(priors);
-  for (int i = 0; i < kMostLeftOut && contradiction_of(solution.cost - free, priors) > 0.0; ++i) {
+  for (int i = 0; i < kMaxSwitchedOff && contradiction_of(solution.cost - free, priors) > 0.0;
+       ++i) {
     // The wrong prior is the one whose removal reduces the cost most, and by enough.
     std::optional<std::size_t> wrong;
     SurveyModel::Solution best;
@@ -138,7 +139,7 @@ bool Survey::match(const Graph& graph, const MarkerBook& book) {
     associate(entry, graph, book);
     if (!entry.landmark) continue;
     const int sightings = book.entries()[*entry.landmark].sightings;
-    if (sightings < kTestedAgain * entry.tested_sightings) continue;
+    if (sightings < kRetestFactor * entry.tested_sightings) continue;
     entry.tested_sightings = sightings;
     is_due = true;
   }
@@ -161,7 +162,7 @@ std::optional<Se2> Survey::new_frame(const Graph& graph) {
       const Eigen::Vector2d by_survey =
           b.marker.survey_from_marker.translation() - a.marker.survey_from_marker.translation();
       const Eigen::Vector2d by_map = mapped(b).translation() - mapped(a).translation();
-      if (std::min(by_survey.norm(), by_map.norm()) < kLeastApart_m) continue;
+      if (std::min(by_survey.norm(), by_map.norm()) < kMinApart_m) continue;
       has_frame_ = true;
       const Se2 turn{0.0, 0.0,
                      std::atan2(by_survey.y(), by_survey.x()) - std::atan2(by_map.y(), by_map.x())};

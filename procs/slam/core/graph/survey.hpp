@@ -32,7 +32,7 @@ class Survey {
   /// survey_from_map, once, when the survey first defines the frame.
   std::optional<Se2> new_frame(const Graph& graph);
 
-  /// Adds the priors of new associations, and switches those off that are contradicted.
+  /// Adds the priors of new associations; switches contradicted priors off and the others on.
   /// @return whether a prior was switched: then the whole graph has to be solved.
   bool apply(Graph& graph);
 
@@ -47,8 +47,8 @@ class Survey {
   struct Entry {
     SurveyedMarker marker{};
     std::optional<std::size_t> landmark{};
-    int tested_sightings{0};  ///< of the landmark, when its prior was tested
-    bool has_prior{false};    ///< in the graph
+    int tested_sightings{0};  ///< landmark's sightings when its prior was last tested
+    bool has_prior{false};    ///< the graph has its prior
   };
 
   std::optional<std::size_t> landmark_of(const SurveyedMarker& marker, const Graph& graph,

@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kMostSteps = 20;
+constexpr int kMaxSteps = 20;
 constexpr double kConverged = 1e-5;  // [m, rad]
 constexpr double kGauge = 1e3;       // 1 / sigma [1/m, 1/rad] of the prior that fixes the gauge
 
@@ -27,7 +27,7 @@ Eigen::MatrixXd rigid_steps(const State& state) {
   for (std::size_t i = 0; i < state.landmarks.size(); ++i) {
     const Se2& place = state.landmarks[i];
     steps.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
-        turning(place.rotation().transpose()) * carried_along(place.translation());
+        block_rotation(place.rotation().transpose()) * lever_arm_jacobian(place.translation());
   }
   return steps;
 }
@@ -58,10 +58,10 @@ Equations equations_of(const std::vector<LandmarkPrior>& priors, const State& st
   return equations;
 }
 
-/// Applies steps of `next_step` until they are small, at most kMostSteps.
+/// Applies steps of `next_step` until they are small, at most kMaxSteps.
 template <class NextStep>
 void iterate(State& state, const NextStep& next_step) {
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     const Eigen::VectorXd step = next_step();
     retract_all(state, step);
     if (step.cwiseAbs().maxCoeff() < kConverged) break;

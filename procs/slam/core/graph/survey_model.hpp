@@ -23,8 +23,7 @@ class SurveyModel {
   explicit SurveyModel(LandmarkMarginal marginal) : marginal_{std::move(marginal)} {}
 
   /// O(number of landmarks ^ 3).
-  /// @param priors  their `landmark` is an index in the marginal. Those with is_off are ignored;
-  /// the
+  /// @param priors  `landmark` is an index in the marginal. Those with is_off are ignored; the
   ///                others must determine the map's position and heading.
   Solution solve(const std::vector<LandmarkPrior>& priors) const;
 
@@ -35,7 +34,7 @@ class SurveyModel {
   LandmarkMarginal marginal_;
 };
 
-/// By how much the cost falls, to first order, if that prior is left out (Baarda 1968, "A testing
+/// By how much the cost falls, to first order, if a prior is left out (Baarda 1968, "A testing
 /// procedure for use in geodetic networks"). The others must determine the frame.
 /// @param solution  with that prior.
 double saving_without(const LandmarkPrior& prior, const SurveyModel::Solution& solution);

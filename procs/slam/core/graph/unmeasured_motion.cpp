@@ -11,8 +11,8 @@ namespace {
 constexpr double kStill_m_s = 0.002;
 constexpr double kStill_rad_s = 0.005;
 constexpr double kSpeedMemory_s = 1.0;
-constexpr double kStuckShare = 0.05;        // probability that odometry that stops is stuck; chosen
-constexpr double kLongestSuspect_s = 20.0;  // a robot that stands for longer is parked
+constexpr double kStuckShare = 0.05;  // probability that odometry that stops is stuck; chosen
+constexpr double kLongestStandstill_s = 20.0;  // after that the robot is parked
 
 }  // namespace
 
@@ -24,9 +24,9 @@ void UnmeasuredMotion::follow(const Observation& observation) {
   if (observation.odometry_caught_up) {
     note_observed();
     is_stuck_ = false;
-  } else if (is_silent()) {
+  } else if (is_unreliable()) {
     is_stuck_ = is_stuck_ && is_standing_;
-    silent_s_ += elapsed_s;
+    unreliable_s_ += elapsed_s;
   } else if (is_standing_) {
     standing_s_ += elapsed_s;
   } else {
@@ -44,12 +44,12 @@ void UnmeasuredMotion::note_moved(double distance_m, double elapsed_s) {
 
 double UnmeasuredMotion::take_unmeasured_m() {
   const double sigma_m = unmeasured_m();
-  silent_s_ = 0.0;
+  unreliable_s_ = 0.0;
   return sigma_m;
 }
 
-double UnmeasuredMotion::suspected_m() const {
-  return std::sqrt(kStuckShare) * speed_m_s_ * std::min(standing_s_, kLongestSuspect_s);
+double UnmeasuredMotion::possibly_stuck_m() const {
+  return std::sqrt(kStuckShare) * speed_m_s_ * std::min(standing_s_, kLongestStandstill_s);
 }
 
 }  // namespace waymark

@@ -8,8 +8,8 @@
 namespace waymark {
 
 /// When the odometry stands still, the robot nearly always does, too. If markers or walls observe
-/// that the robot moves, the odometry is stuck until it shows motion again; if nothing is observed,
-/// the odometry may be stuck. Meanwhile the robot may have continued at its last speed.
+/// that the robot moves, the odometry is stuck until it shows motion again; if nothing observes the
+/// motion, the odometry may be stuck. Meanwhile the robot may have continued at its last speed.
 class UnmeasuredMotion {
  public:
   /// To be called with each observation.
@@ -17,7 +17,7 @@ class UnmeasuredMotion {
 
   /// Markers or walls have just observed the motion.
   void note_observed() {
-    silent_s_ = 0.0;
+    unreliable_s_ = 0.0;
     standing_s_ = 0.0;
   }
 
@@ -33,24 +33,24 @@ class UnmeasuredMotion {
 
   bool is_standing() const { return is_standing_; }
 
-  /// The odometry is known to be wrong at present.
-  bool is_silent() const { return is_stuck_ || is_jumping_; }
+  /// Odometry is known to be wrong: stuck while the robot moves, or jumping.
+  bool is_unreliable() const { return is_stuck_ || is_jumping_; }
 
-  /// Distance that may have been driven while the odometry was silent, one sigma.
-  double unmeasured_m() const { return speed_m_s_ * silent_s_; }
+  /// Standard deviation of the distance driven while odometry was unreliable.
+  double unmeasured_m() const { return speed_m_s_ * unreliable_s_; }
 
   /// Returns unmeasured_m() and resets it to zero: from now on a factor of the graph accounts for
-  /// it.
+  /// that motion.
   double take_unmeasured_m();
 
-  /// Distance that may have been driven since the odometry came to a standstill, one sigma. Since
-  /// the robot probably stands, it is added to published covariances only, not to the graph.
-  double suspected_m() const;
+  /// Standard deviation of the distance driven since odometry came to a standstill, in case it is
+  /// stuck. For published covariances only, not for the graph: the robot probably stands.
+  double possibly_stuck_m() const;
 
  private:
-  double speed_m_s_{0.0};   ///< from odometry or, while that is stuck, from the estimate
-  double silent_s_{0.0};    ///< since the motion was last observed
-  double standing_s_{0.0};  ///< time standing and not silent
+  double speed_m_s_{0.0};     ///< from odometry or, while that is stuck, from the estimate
+  double unreliable_s_{0.0};  ///< duration since the motion was last observed
+  double standing_s_{0.0};    ///< duration of the standstill while odometry may be right
   bool is_standing_{false};
   bool is_stuck_{false};
   bool is_jumping_{false};

@@ -10,13 +10,13 @@
 namespace waymark {
 namespace {
 
-constexpr std::uint32_t kLeastVisits = 8;   // beams; a person walking past leaves fewer
-constexpr double kWall = 0.5;               // least occupancy of a wall, and
-constexpr double kFree = 0.1;               // largest one of free space
-constexpr int kAgedEvery = 100;             // scans
-constexpr std::uint32_t kMostVisits = 200;  // of a cell; beyond it the counts are halved
-constexpr std::size_t kLeastCells = 6;      // 0.3 m of wall in cells of 0.05 m
-constexpr int kGap = 2;                     // between neighbours in a cluster, at most [cells]
+constexpr std::uint32_t kMinVisits = 8;    // beams; a person walking past leaves fewer
+constexpr double kWall = 0.5;              // least occupancy of a wall
+constexpr double kFree = 0.1;              // largest occupancy of free space
+constexpr int kAgedEvery = 100;            // scans
+constexpr std::uint32_t kMaxVisits = 200;  // a cell with more gets its counts halved
+constexpr std::size_t kMinCells = 6;       // 0.3 m of wall in cells of 0.05 m
+constexpr int kGap = 2;                    // between neighbours in a cluster, at most [cells]
 
 template <class Condition>
 bool all_around(CellIndex centre, Condition&& holds) {
@@ -71,7 +71,7 @@ void add_clusters(Cells cells, MapChange::Kind kind, const GridFrame& frame,
   for (auto& [place, is_taken] : cells) {
     if (is_taken) continue;
     const std::vector<CellIndex> cluster = cluster_from(place, cells);
-    if (cluster.size() >= kLeastCells) changes.push_back(change_of(cluster, kind, frame));
+    if (cluster.size() >= kMinCells) changes.push_back(change_of(cluster, kind, frame));
   }
 }
 
@@ -93,7 +93,7 @@ void WallChangeDetector::age() {
   seen_.occupancy.for_each_tile([&](TileIndex tile, const auto&) { tiles.push_back(tile); });
   for (const TileIndex tile : tiles) {
     for (OccupancyCell& cell : seen_.occupancy.edit_tile(tile)) {
-      if (cell.visits <= kMostVisits) continue;
+      if (cell.visits <= kMaxVisits) continue;
       cell.visits /= 2;
       cell.hits /= 2;
     }
@@ -107,13 +107,13 @@ std::vector<MapChange> WallChangeDetector::changes() const {
     return then[cell].is_mapped() && then[cell].occupancy() < kFree;
   };
   const auto is_free = [&](CellIndex cell) {
-    return now[cell].visits >= kLeastVisits && now[cell].occupancy() < kFree;
+    return now[cell].visits >= kMinVisits && now[cell].occupancy() < kFree;
   };
   Cells appeared;
   Cells gone;
   now.for_each_tile([&](TileIndex tile, const auto& cells) {
     for (std::size_t offset = 0; offset < kTileCells; ++offset) {
-      if (cells[offset].visits < kLeastVisits) continue;
+      if (cells[offset].visits < kMinVisits) continue;
       const CellIndex cell = cell_at(tile, offset);
       if (cells[offset].occupancy() > kWall && all_around(cell, was_free))
         appeared[{cell.y, cell.x}] = false;

@@ -12,10 +12,10 @@
 
 namespace waymark {
 
-/// Counts the beams of this run in a grid of its own, and compares it with the map's, cell by cell.
-/// A wall cell has appeared if the map is free in it and all its neighbours; a wall cell of the map
-/// has disappeared if this run's grid is free in it and all its neighbours. So a pose error of one
-/// cell makes no change. Memory is bounded by the map's area and the LiDAR's range.
+/// Counts this run's beams in a grid of its own, and compares that grid with the map's, cell by
+/// cell. A wall cell has appeared if the map is free in it and all its neighbours; a wall cell of
+/// the map has disappeared if this run's grid is free in it and all its neighbours. So a pose error
+/// of one cell makes no change. Memory is bounded by the map's area and the LiDAR's range.
 class WallChangeDetector {
  public:
   explicit WallChangeDetector(std::shared_ptr<const MapSnapshot> map);

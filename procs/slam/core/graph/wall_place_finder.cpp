@@ -15,13 +15,13 @@ namespace {
 constexpr double kSearchEvery_m = 0.4;
 constexpr int kConsistentScans = 3;  // in a row, to decide
 constexpr std::size_t kBeams = 150;
-constexpr std::size_t kLeastBeams = 60;
+constexpr std::size_t kMinBeams = 60;
 constexpr UniquePlaceLimits kUnique{
     .min_score = 0.7, .runner_up_share = 0.8, .apart_m = 0.5, .apart_rad = 0.3};
 constexpr double kAgree_m = 0.2;  // between a match and the candidate
 constexpr double kAgree_rad = 0.1;
-constexpr double kLeastInliers = 0.8;                // share of the mapped beams
-constexpr double kLeastMapped = 0.8;                 // share of all beams
+constexpr double kMinInliers = 0.8;                  // share of the mapped beams
+constexpr double kMinMapped = 0.8;                   // share of all beams
 const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};  // of the search's best place [m, m, rad]
 
 }  // namespace
@@ -49,7 +49,7 @@ void WallPlaceFinder::follow(const Motion& motion) {
 
 std::optional<Se2> WallPlaceFinder::search(const Observation& observation,
                                            const RangeNoise& noise) {
-  if (!field_ || observation.beams.size() < kLeastBeams || since_search_m_ < kSearchEvery_m)
+  if (!field_ || observation.beams.size() < kMinBeams || since_search_m_ < kSearchEvery_m)
     return std::nullopt;
   since_search_m_ = 0.0;
   const auto there = found(thinned(points_of(observation), kBeams), noise);
@@ -68,8 +68,8 @@ std::optional<Se2> WallPlaceFinder::found(const Points& points, const RangeNoise
   const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
   const ScanMatch match =
       match_scan(points, map_->walls, best->submap_from_base, near, noise, scan_);
-  const bool fits = match.is_usable(scan_) && match.inlier_share >= kLeastInliers &&
-                    match.mapped_share >= kLeastMapped && !match.observed.is_degenerate;
+  const bool fits = match.is_usable(scan_) && match.inlier_share >= kMinInliers &&
+                    match.mapped_share >= kMinMapped && !match.observed.is_degenerate;
   return fits ? std::optional{match.map_from_base} : std::nullopt;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kConverged = 1e-3;  // [m, rad]
 constexpr double kNoWorse = 1.0;     // rise of the cost that is not significant
-constexpr double kLeastShare = 0.1;  // a step is halved down to about this share, then dropped
+constexpr double kMinShare = 0.1;    // of a step: it is halved down to about this, then dropped
 
 }  // namespace
 
@@ -57,11 +57,11 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   std::vector<bool> is_active_factor(factors_.size(), false);
   for (const std::size_t index : active_factors_)
     is_active_factor[index] = true;
-  std::vector<LinearFactor> behind;
-  behind.reserve(factors_.size());
+  std::vector<LinearFactor> outside;
+  outside.reserve(factors_.size());
   for (std::size_t index = 0; index < factors_.size(); ++index)
-    if (!is_active_factor[index]) behind.push_back(linearised(factors_[index]));
-  const Elimination elimination{variables, behind, num_window, [this](const Variable& variable) {
+    if (!is_active_factor[index]) outside.push_back(linearised(factors_[index]));
+  const Elimination elimination{variables, outside, num_window, [this](const Variable& variable) {
                                   return offsets_.at(variable);
                                 }};
   if (!elimination.has_solution()) {
@@ -81,21 +81,21 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
     return elimination.place_of(variable);
   };
   x *= step_share(x, variables, place_of);
-  const auto retract_behind = [&](double share) {
+  const auto retract_outside = [&](double share) {
     for (const Variable& variable : variables)
       state_.retract(variable, share * x.segment(place_of(variable), 3));
   };
-  retract_behind(1.0);
+  retract_outside(1.0);
   double share = 1.0;
   while (cost() > cost_before + kNoWorse) {
-    share = share > kLeastShare ? 0.5 * share : 0.0;
+    share = share > kMinShare ? 0.5 * share : 0.0;
     state_ = before;
     prior_.g = window_g;
     retract_window(share * window_step);
-    retract_behind(share);
+    retract_outside(share);
     if (share == 0.0) break;
   }
-  carry_removed();
+  move_removed();
   reconsider_factors();
   return share * x.cwiseAbs().maxCoeff();
 }

@@ -102,7 +102,8 @@ Eigen::VectorXd Graph::solve_window() {
   }
   update_covariance();
   const Variable calibration{};
-  calibration_.weigh(state_.calibration, covariance(calibration, calibration).diagonal());
+  calibration_.choose_prior_widths(state_.calibration,
+                                   covariance(calibration, calibration).diagonal());
   return moved;
 }
 

@@ -30,32 +30,32 @@ bool is_refused(OdometryBuffer::Outcome outcome) {
 }  // namespace
 
 OdometryStream::News OdometryStream::add(const OdometrySample& sample, Skips& skips) {
-  if (leading_) weigh_leading(sample, skips);
+  if (held_) resolve_held(sample, skips);
   if (shows_first_was_ahead(sample)) {
     skips.add(Skip::kOdometryAhead);
     buffer_ = {};
   }
-  if (!leads(sample)) return take(sample, skips);
-  leading_ = sample;
+  if (!is_to_be_held(sample)) return accept(sample, skips);
+  held_ = sample;
   return {};
 }
 
 void OdometryStream::finish(Skips& skips) {
-  if (const auto leading = std::exchange(leading_, std::nullopt)) take(*leading, skips);
+  if (const auto held = std::exchange(held_, std::nullopt)) accept(*held, skips);
 }
 
 /// Accepts or drops the sample that is held back, depending on the next one.
-void OdometryStream::weigh_leading(const OdometrySample& sample, Skips& skips) {
-  if (sample.time > leading_->time) {
-    const OdometrySample leading = *std::exchange(leading_, std::nullopt);
-    take(leading, skips);
+void OdometryStream::resolve_held(const OdometrySample& sample, Skips& skips) {
+  if (sample.time > held_->time) {
+    const OdometrySample held = *std::exchange(held_, std::nullopt);
+    accept(held, skips);
   } else if (sample.time > buffer_.newest()) {
-    leading_.reset();
+    held_.reset();
     skips.add(Skip::kOdometryAhead);
   }
 }
 
-bool OdometryStream::leads(const OdometrySample& sample) const {
+bool OdometryStream::is_to_be_held(const OdometrySample& sample) const {
   if (buffer_.is_empty()) return false;
   const Duration step = sample.time - buffer_.newest();
   return step > 2 * usual_step_ && step <= ClockStepDetector::kLongestPause;
@@ -67,7 +67,7 @@ bool OdometryStream::shows_first_was_ahead(const OdometrySample& sample) const {
          sample.time >= buffer_.newest() - kLongestLead;
 }
 
-OdometryStream::News OdometryStream::take(const OdometrySample& sample, Skips& skips) {
+OdometryStream::News OdometryStream::accept(const OdometrySample& sample, Skips& skips) {
   News news;
   const bool is_first = buffer_.is_empty();
   const Duration step = is_first ? kLongestStep : sample.time - buffer_.newest();
@@ -75,9 +75,9 @@ OdometryStream::News OdometryStream::take(const OdometrySample& sample, Skips& s
   count(outcome, skips);
   if (!is_refused(outcome)) {
     usual_step_ = std::min(step, 2 * usual_step_);
-    clock_steps_.see_fitting();
+    clock_steps_.note_consistent();
     news.is_first = is_first;
-  } else if (clock_steps_.see_misfit(sample.time)) {
+  } else if (clock_steps_.note_inconsistent(sample.time)) {
     news.clock_set = set_clock(skips);
     count(buffer_.add(sample), skips);
   }
@@ -88,9 +88,9 @@ OdometryStream::News OdometryStream::take(const OdometrySample& sample, Skips& s
 /// @return the shift.
 Duration OdometryStream::set_clock(Skips& skips) {
   skips.add(Skip::kClockSet);
-  const Duration later = clock_steps_.first_misfit() - buffer_.newest();
+  const Duration later = clock_steps_.first_inconsistent() - buffer_.newest();
   buffer_.shift(later);
-  if (std::exchange(leading_, std::nullopt)) skips.add(Skip::kOdometryAhead);
+  if (std::exchange(held_, std::nullopt)) skips.add(Skip::kOdometryAhead);
   return later;
 }
 

@@ -12,15 +12,14 @@
 namespace waymark {
 
 /// A sample that is more than two usual steps newer than the one before may have a wrong stamp. It
-/// is held back (`leading_`) until a newer one confirms it; until then it does not count as
-/// received.
+/// is held back until a newer one confirms it; until then it does not count as received.
 class OdometryStream {
  public:
   /// Consequences of a sample for the other sensors' queues.
   struct News {
     bool is_first{false};  ///< first of all samples: stamps can be checked from now on
-    std::optional<Duration>
-        clock_set{};  ///< the clock was set, by so much: older stamps are invalid
+    /// The clock was set by this: older stamps are invalid.
+    std::optional<Duration> clock_set{};
   };
 
   News add(const OdometrySample& sample, Skips& skips);
@@ -31,10 +30,10 @@ class OdometryStream {
   bool has_passed(Timestamp time) const { return !buffer_.is_empty() && buffer_.newest() >= time; }
 
   /// Stamp of the newest sample, one that is held back included; needs a sample.
-  Timestamp newest() const { return leading_ ? leading_->time : buffer_.newest(); }
+  Timestamp newest() const { return held_ ? held_->time : buffer_.newest(); }
 
-  /// A stamp of another sensor later than this is wrong, unless the next sample confirms it. An
-  /// earlier one may be ahead of odometry that arrives in bursts. Needs a sample.
+  /// Latest plausible stamp of another sensor: odometry may arrive in bursts, so that other
+  /// messages are ahead of it. A later stamp needs confirmation by the next sample. Needs a sample.
   Timestamp lead_limit() const { return newest() + kLongestLead; }
 
   bool is_ahead(Timestamp time) const { return !buffer_.is_empty() && time > lead_limit(); }
@@ -48,9 +47,9 @@ class OdometryStream {
   }
 
  private:
-  News take(const OdometrySample& sample, Skips& skips);
-  void weigh_leading(const OdometrySample& sample, Skips& skips);
-  bool leads(const OdometrySample& sample) const;
+  News accept(const OdometrySample& sample, Skips& skips);
+  void resolve_held(const OdometrySample& sample, Skips& skips);
+  bool is_to_be_held(const OdometrySample& sample) const;
   bool shows_first_was_ahead(const OdometrySample& sample) const;
   Duration set_clock(Skips& skips);
 
@@ -59,9 +58,9 @@ class OdometryStream {
 
   OdometryBuffer buffer_{};
   ClockStepDetector clock_steps_{};
-  Duration usual_step_{kLongestStep};  ///< of samples; at most doubles from step to step
-  std::optional<OdometrySample> leading_{};
-  bool has_been_read_{false};
+  Duration usual_step_{kLongestStep};     ///< between samples; at most doubles from one to the next
+  std::optional<OdometrySample> held_{};  ///< sample that is held back
+  bool has_been_read_{false};             ///< forget_before() was called: observations were made
 };
 
 }  // namespace waymark

@@ -12,14 +12,14 @@ constexpr Duration kStepWithoutScan{200'000};  // a LiDAR's usual period
 
 // Bounds of the queues, for up to 100 scans or frames a second.
 constexpr std::size_t kCapacity = 2000;
-constexpr Duration kLongest = std::chrono::seconds{20};
+constexpr Duration kMaxAge = std::chrono::seconds{20};
 constexpr QueuePolicy kScanPolicy{.capacity = kCapacity,
-                                  .longest = kLongest,
+                                  .max_age = kMaxAge,
                                   .out_of_order = Skip::kScanOutOfOrder,
                                   .ahead = Skip::kScanAhead,
                                   .overflow = Skip::kScanOverflow};
 constexpr QueuePolicy kFramePolicy{.capacity = kCapacity,
-                                   .longest = kLongest,
+                                   .max_age = kMaxAge,
                                    .out_of_order = Skip::kFrameOutOfOrder,
                                    .ahead = Skip::kFrameAhead,
                                    .overflow = Skip::kFrameOverflow};
@@ -158,20 +158,20 @@ Observation SensorQueue::observation_at(Timestamp time, std::span<const Beam> be
   observation.time = time;
   if (last_observed_) observation.elapsed_s = to_seconds(time - *last_observed_);
   observation.clock_set = std::exchange(clock_set_, {});
-  drive_to(time, observation);
-  look_until(time, observation);
+  add_motion(time, observation);
+  add_frames(time, observation);
   const bool camera_saw_all = observation.camera_reported && !setup_.blank_ids;
   observation.beams =
       annotate(beams, observation.sightings, camera_saw_all ? &setup_.camera : nullptr,
                setup_.preprocessing.beam_tolerance_m);
   last_observed_ = time;
-  scans_.drop_aside_until(time, skips_);
+  scans_.drop_candidate_until(time, skips_);
   // Camera frames that still belong to the next scan are at most marker_wait_ older than this one.
   odometry_.forget_before(time - marker_wait_);
   return observation;
 }
 
-void SensorQueue::drive_to(Timestamp time, Observation& observation) const {
+void SensorQueue::add_motion(Timestamp time, Observation& observation) const {
   const OdometryBuffer& odometry = odometry_.buffer();
   observation.odom_from_base = odometry.sent_pose_at(time);
   if (!last_observed_ || !odometry.covers(*last_observed_)) return;
@@ -183,7 +183,7 @@ void SensorQueue::drive_to(Timestamp time, Observation& observation) const {
   }
 }
 
-void SensorQueue::look_until(Timestamp time, Observation& observation) {
+void SensorQueue::add_frames(Timestamp time, Observation& observation) {
   while (!frames_.is_empty() && frames_.front().time <= time) {
     const MarkerDetections frame = frames_.pop();
     if (repeats_the_one_before(frame)) {
@@ -195,11 +195,12 @@ void SensorQueue::look_until(Timestamp time, Observation& observation) {
       continue;
     }
     observation.camera_reported = true;
-    if (!setup_.blank_ids) sight_markers(frame, time, observation.sightings);
+    if (!setup_.blank_ids) add_sightings(frame, time, observation.sightings);
   }
 }
 
-std::optional<FocalSighting> SensorQueue::focal_sighting(const MarkerDetection& detection) const {
+std::optional<FocalMeasurement> SensorQueue::focal_measurement(
+    const MarkerDetection& detection) const {
   if (!setup_.ray_of_pixel) return std::nullopt;
   std::array<Eigen::Vector2d, 4> corners;
   for (std::size_t i = 0; i < corners.size(); ++i)
@@ -207,7 +208,7 @@ std::optional<FocalSighting> SensorQueue::focal_sighting(const MarkerDetection& 
   return focal_error_of(corners, setup_.corner_sigma);
 }
 
-void SensorQueue::sight_markers(const MarkerDetections& frame, Timestamp time,
+void SensorQueue::add_sightings(const MarkerDetections& frame, Timestamp time,
                                 std::vector<MarkerSighting>& sightings) {
   const Se2 scan_base_from_frame_base =
       odometry_.buffer().pose_at(time).inverse() * odometry_.buffer().pose_at(frame.time);
@@ -216,10 +217,10 @@ void SensorQueue::sight_markers(const MarkerDetections& frame, Timestamp time,
         sight_marker(detection, frame.time, scan_base_from_frame_base, setup_.marker_size_m);
     if (!sighting) {
       skips_.add(Skip::kMarkerImplausible);
-    } else if (sighting->sigma_along_m() > setup_.preprocessing.max_sigma_m) {
+    } else if (sighting->sigma_along_wall_m() > setup_.preprocessing.max_sigma_m) {
       skips_.add(Skip::kMarkerUncertain);
     } else {
-      sighting->focal = focal_sighting(detection);
+      sighting->focal = focal_measurement(detection);
       sightings.push_back(*sighting);
     }
   }

@@ -23,7 +23,7 @@ struct SensorSetup {
   Preprocessing preprocessing{};
   /// Ray of a pixel: its point at distance 1 in front of a camera without lens errors.
   std::function<Eigen::Vector2d(const Eigen::Vector2d&)> ray_of_pixel{};
-  double corner_sigma{1e-4};  ///< of a marker's corner, same unit as ray_of_pixel
+  double corner_sigma{1e-4};  ///< sigma of a marker's corner, same unit as ray_of_pixel
   bool blank_ids{false};      ///< control experiment: ignore all markers
 };
 
@@ -33,7 +33,8 @@ struct SensorSetup {
 /// So the result depends on the values only, and not on how they are interleaved.
 ///
 /// A wrong stamp affects its own value only: the next values of the same sensor decide whether a
-/// value that is ahead or late is wrong. When the clock was set, all earlier values are dropped.
+/// value that is ahead or late is wrong. After a step of the clock, waiting scans and frames are
+/// dropped; odometry continues.
 class SensorQueue {
  public:
   explicit SensorQueue(const SensorSetup& setup);
@@ -52,7 +53,7 @@ class SensorQueue {
   /// The next observation that is ready; call until there is none.
   std::optional<Ready> next();
 
-  /// Reasons of the values that were skipped since the last call, in order.
+  /// Why values were skipped since the last call, in order.
   std::vector<Skip> take_skips() { return skips_.take(); }
 
  private:
@@ -63,10 +64,10 @@ class SensorQueue {
   bool repeats_one_from_elsewhere(const LidarScan& scan, const Motion& motion);
   bool repeats_the_one_before(const MarkerDetections& frame);
   Observation observation_at(Timestamp time, std::span<const Beam> beams);
-  void drive_to(Timestamp time, Observation& observation) const;
-  void look_until(Timestamp time, Observation& observation);
-  std::optional<FocalSighting> focal_sighting(const MarkerDetection& detection) const;
-  void sight_markers(const MarkerDetections& frame, Timestamp time,
+  void add_motion(Timestamp time, Observation& observation) const;
+  void add_frames(Timestamp time, Observation& observation);
+  std::optional<FocalMeasurement> focal_measurement(const MarkerDetection& detection) const;
+  void add_sightings(const MarkerDetections& frame, Timestamp time,
                      std::vector<MarkerSighting>& sightings);
 
   SensorSetup setup_;
@@ -77,7 +78,7 @@ class SensorQueue {
   StampedQueue<MarkerDetections> frames_;
   std::vector<MarkerDetection> newest_detections_{};
   std::vector<double> newest_ranges_m_{};
-  Motion since_new_ranges_{};
+  Motion since_new_ranges_{};  ///< motion since the ranges last changed
   std::optional<Timestamp> last_observed_{};
   Duration clock_set_{};  ///< since the last observation
   Skips skips_{};

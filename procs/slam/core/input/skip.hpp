@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Why a sensor value was not used.
+// Why a sensor value was not used, or was used only in part.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@ namespace waymark {
 
 enum class Skip {
   kOdometryOutOfOrder,
-  kOdometryAhead,   ///< later than any pause explains, or than the samples after it
-  kClockSet,        ///< values that wait are dropped; the motion continues
+  kOdometryAhead,   ///< stamped later than any pause explains, or than the samples after it
+  kClockSet,        ///< waiting scans and frames are dropped; the motion continues
   kOdometryJumped,  ///< the jump is not used as motion
-  kOdometryStuck,   ///< stood still or jumped about, then reported the motion in one step
+  kOdometryStuck,   ///< stood still or jumped, then reported the motion in one step
   kScanOutOfOrder,
-  kScanAhead,           ///< of odometry by far, or of the scans that followed it
-  kScanWithoutReturns,  ///< its odometry and camera frames are used
+  kScanAhead,           ///< stamped far ahead of odometry, or ahead of the scans that followed
+  kScanWithoutReturns,  ///< odometry and camera frames up to its time are used
   kScanRepeated,        ///< identical to a scan from another place: the LiDAR is stuck
   kScanBeforeOdometry,
-  kScanWithoutOdometry,  ///< the input ended before odometry covered it
+  kScanWithoutOdometry,  ///< the input ended before odometry covered the scan
   kScanOverflow,         ///< waited too long for odometry
   kFrameOutOfOrder,
-  kFrameAhead,            ///< of odometry by far, or of the frames that followed it
+  kFrameAhead,            ///< stamped far ahead of odometry, or ahead of the frames that followed
   kFrameWithoutOdometry,  ///< odometry of that time was dropped already, or begins later
   kFrameOverflow,
   kFrameRepeated,  ///< detections identical to the previous frame's: the camera is stuck

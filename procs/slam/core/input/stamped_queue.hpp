@@ -14,28 +14,31 @@ namespace waymark {
 
 /// Bounds of a queue, and the reasons under which dropped values are counted.
 struct QueuePolicy {
-  std::size_t capacity{0};  ///< beyond, the oldest value is dropped
-  Duration longest{};       ///< so are values that are older than the newest by more
+  std::size_t capacity{0};  ///< largest number of values; with more, the oldest is dropped
+  Duration max_age{};       ///< values older than the newest by more are dropped, too
   Skip out_of_order{};
   Skip ahead{};
   Skip overflow{};
 };
 
-/// Values (with a member `time`) in order of time. A value older than the newest one is set aside:
-/// either its own stamp is too early, or others are too late. The next value decides: if it is
-/// newer than all, the value aside is dropped; if it is newer than the value aside only, the queued
-/// values not older than the value aside are dropped; else it replaces the value aside. A second
-/// value with the newest stamp is dropped.
+/// Values (with a member `time`) in order of time. A value older than the newest one becomes the
+/// candidate, outside the queue: either its stamp is too early, or queued stamps are too late. The
+/// next value decides:
+/// - newer than all: the candidate is dropped;
+/// - newer than the candidate only: the queued values from the candidate's time on are dropped, and
+///   both are added;
+/// - otherwise it replaces the candidate.
+/// Without a candidate, a second value with the newest stamp is dropped.
 ///
-/// A value that arrives long before the odometry of its time, as after a pause of all sensors, is
-/// held outside the queue until the next sample of the odometry decides.
+/// A value stamped far ahead of odometry, as after a pause of all sensors, is held outside the
+/// queue (hold()) until the next sample of the odometry decides.
 template <class Value>
 class StampedQueue {
  public:
   explicit StampedQueue(const QueuePolicy& policy) : policy_{policy} {}
 
   void add(Value value, Skips& skips) {
-    auto before = std::exchange(aside_, std::nullopt);
+    auto before = std::exchange(candidate_, std::nullopt);
     if (!newest_ || value.time > *newest_) {
       skips.add(policy_.out_of_order, before ? 1 : 0);
       push(std::move(value), skips);
@@ -47,14 +50,14 @@ class StampedQueue {
       push(std::move(value), skips);
     } else if (value.time < *newest_) {
       skips.add(policy_.out_of_order, before ? 1 : 0);
-      aside_ = std::move(value);
+      candidate_ = std::move(value);
     } else {
       skips.add(policy_.out_of_order);
-      aside_ = std::move(before);
+      candidate_ = std::move(before);
     }
   }
 
-  /// Holds a value until add_held() or drop_held(); of several the last one is held.
+  /// Holds a value until add_held() or drop_held(), in place of one that is already held.
   void hold(Value value, Skips& skips) {
     drop_held(skips);
     held_ = std::move(value);
@@ -84,13 +87,13 @@ class StampedQueue {
   /// Whether a value of that time or later has been added; it may have been popped since.
   bool has_reached(Timestamp time) const { return newest_ && *newest_ >= time; }
 
-  /// Whether values with that stamp may still be dropped because of the value aside.
-  bool may_be_dropped(Timestamp time) const { return aside_ && time > aside_->time; }
+  /// Whether values with that stamp may still be dropped because of the candidate.
+  bool may_be_dropped(Timestamp time) const { return candidate_ && time > candidate_->time; }
 
-  /// Drops the value aside if it is not newer than `time`.
-  void drop_aside_until(Timestamp time, Skips& skips) {
-    if (!aside_ || aside_->time > time) return;
-    aside_.reset();
+  /// Drops the candidate (the value set aside by add()) if its stamp is `time` or earlier.
+  void drop_candidate_until(Timestamp time, Skips& skips) {
+    if (!candidate_ || candidate_->time > time) return;
+    candidate_.reset();
     skips.add(policy_.out_of_order);
   }
 
@@ -102,17 +105,17 @@ class StampedQueue {
 
   /// Drops all values but the one that is held, after the clock was set.
   void clear(Skips& skips) {
-    skips.add(policy_.out_of_order, values_.size() + (aside_ ? 1 : 0));
+    skips.add(policy_.out_of_order, values_.size() + (candidate_ ? 1 : 0));
     values_.clear();
     newest_.reset();
-    aside_.reset();
+    candidate_.reset();
   }
 
  private:
   void push(Value value, Skips& skips) {
     newest_ = value.time;
     values_.push_back(std::move(value));
-    while (values_.size() > policy_.capacity || *newest_ - values_.front().time > policy_.longest) {
+    while (values_.size() > policy_.capacity || *newest_ - values_.front().time > policy_.max_age) {
       values_.pop_front();
       skips.add(policy_.overflow);
     }
@@ -120,8 +123,8 @@ class StampedQueue {
 
   QueuePolicy policy_;
   std::deque<Value> values_{};
-  std::optional<Timestamp> newest_{};  ///< of all that were pushed
-  std::optional<Value> aside_{};
+  std::optional<Timestamp> newest_{};  ///< stamp of the newest value that was pushed
+  std::optional<Value> candidate_{};
   std::optional<Value> held_{};
 };
 

@@ -29,7 +29,7 @@ constexpr double kWallOverMeanSweep = 3.0;
 
 /// Least standard deviations of the calibration (order of SightingNoise::calibration) in the gate
 /// for flipped poses: with a too confident description all views would be rejected.
-const Eigen::Vector3d kLeastCalibrationSigmas{0.01, 0.005, 0.005};
+const Eigen::Vector3d kMinCalibrationSigmas{0.01, 0.005, 0.005};
 
 struct Line {
   Eigen::Vector2d point;
@@ -78,8 +78,9 @@ Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const MarkerSenso
   covariance.topLeftCorner<2, 2>().diagonal().array() += squared(sensors.sigmas.position_m);
   covariance(2, 2) += squared(sensors.sigmas.bearing_rad);
   // Odometry noise since the camera frame: a heading error turns the sighting about the robot.
-  return covariance + carried_along(random_walk(sighting.carried_m, sighting.carried_rad, odometry),
-                                    sighting.base_from_marker.translation());
+  return covariance + at_end_of_lever(random_walk(sighting.driven_since_frame_m,
+                                                  sighting.turned_since_frame_rad, odometry),
+                                      sighting.base_from_marker.translation());
 }
 
 /// d(measured pose) / d(yaw of the mounting, relative focal length): a camera that is turned
@@ -113,13 +114,13 @@ std::optional<MarkerMeasurement> constrain_to_wall(MarkerMeasurement measurement
   innovation.jacobian_camera = -rows * measurement.jacobian_camera;
   innovation.jacobian_standoff = -Eigen::Vector2d::UnitX();  // the normal points to the robot
   const Eigen::Matrix3d of_both =
-      measurement.covariance + carried_along(sweep_covariance, wall.point);
+      measurement.covariance + at_end_of_lever(sweep_covariance, wall.point);
   innovation.covariance = rows * of_both * rows.transpose();
   innovation.covariance(0, 0) += squared(wall.sigma_m) + squared(sigmas.bulge_m);
   innovation.covariance(1, 1) += squared(wall.sigma_rad) + squared(sigmas.skew_rad);
 
   const Eigen::Vector3d error_variance =
-      sigmas.calibration.cwiseMax(kLeastCalibrationSigmas).cwiseAbs2();
+      sigmas.calibration.cwiseMax(kMinCalibrationSigmas).cwiseAbs2();
   const Eigen::Matrix2d spread =
       innovation.covariance + innovation.jacobian_calibration() * error_variance.asDiagonal() *
                                   innovation.jacobian_calibration().transpose();
@@ -189,8 +190,8 @@ std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
   return wall;
 }
 
-std::optional<FocalSighting> usable(std::optional<FocalSighting> focal,
-                                    const MarkerMeasurementConfig& config) {
+std::optional<FocalMeasurement> usable(std::optional<FocalMeasurement> focal,
+                                       const MarkerMeasurementConfig& config) {
   if (!focal || focal->sigma > config.perspective_max_sigma) return std::nullopt;
   focal->sigma = std::hypot(focal->sigma, config.perspective_sigma);
   return focal;

@@ -35,10 +35,10 @@ struct MarkerSensors {
 
 /// A straight piece of wall, base frame.
 struct WallLine {
-  Eigen::Vector2d point{Eigen::Vector2d::Zero()};    ///< of the wall, nearest to the marker
+  Eigen::Vector2d point{Eigen::Vector2d::Zero()};    ///< the wall's point nearest to the marker
   Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< unit, towards the robot
-  double sigma_m{0.0};                               ///< across the wall, at `point`
-  double sigma_rad{0.0};                             ///< of the normal's direction
+  double sigma_m{0.0};    ///< standard deviation across the wall at `point`
+  double sigma_rad{0.0};  ///< standard deviation of the normal's direction
 };
 
 /// Fits a line to the beams' ends around a place, given its expected normal; none if too few beams
@@ -47,9 +47,9 @@ std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
                                  const Eigen::Vector2d& place_in_base, double normal_rad,
                                  double range_sigma_m, double reach_m);
 
-/// Innovation of the wall, given the camera's view of a marker.
+/// Innovation of a fitted wall, relative to the camera's measurement of a marker in it.
 struct WallInnovation {
-  /// Wall minus view: distance [m] and direction [rad] of the wall's normal.
+  /// Wall minus camera: distance [m] and direction [rad] of the wall's normal.
   Eigen::Vector2d residual{Eigen::Vector2d::Zero()};
   Eigen::Matrix2d jacobian_camera{Eigen::Matrix2d::Zero()};  ///< columns as in MarkerMeasurement
   Eigen::Vector2d jacobian_standoff{Eigen::Vector2d::UnitX()};
@@ -69,13 +69,13 @@ struct MarkerMeasurement {
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   /// d(x, y, yaw) / d(yaw of the camera's mounting [rad], focal length (relative)).
   Eigen::Matrix<double, 3, 2> jacobian_camera{Eigen::Matrix<double, 3, 2>::Zero()};
-  Eigen::Vector3d jacobian_standoff{
-      Eigen::Vector3d::Zero()};  ///< d(x, y, yaw) / d(standoff from the wall [m])
+  /// d(x, y, yaw) / d(standoff from the wall [m]).
+  Eigen::Vector3d jacobian_standoff{Eigen::Vector3d::Zero()};
   Se2 base_from_camera{};
-  Eigen::Matrix3d jacobian_view{Eigen::Matrix3d::Zero()};  ///< d(pose) / d(camera's view): I - K H
-                                                           ///< of the update with the wall
-  std::optional<FocalSighting> focal{};                    ///< from the marker's perspective
-  std::optional<WallInnovation> wall{};  ///< uncorrelated with the error of base_from_marker
+  /// d(pose) / d(pose measured by the camera alone): I - K H of the update with the wall.
+  Eigen::Matrix3d jacobian_view{Eigen::Matrix3d::Zero()};
+  std::optional<FocalMeasurement> focal{};  ///< from the marker's perspective
+  std::optional<WallInnovation> wall{};     ///< uncorrelated with the error of base_from_marker
 
   /// d(x, y, yaw) / d(camera yaw [rad], focal length (relative), standoff [m]).
   Eigen::Matrix3d jacobian_calibration() const {

@@ -14,13 +14,14 @@ struct SightingNoise {
   static constexpr Eigen::Index kFocal = 1;
   static constexpr Eigen::Index kStandoff = 2;
 
-  /// Priors of the systematic errors, which are estimated as part of the calibration (0: exact):
-  /// yaw of the mounting [rad], focal length (relative), standoff of the markers [m].
+  /// Standard deviations of the systematic errors, which are estimated with the calibration (0:
+  /// known exactly): camera yaw [rad], focal length (relative), distance of markers from their
+  /// walls [m].
   Eigen::Vector3d calibration{0.0087, 0.002, 0.003};
-  double bearing_rad{0.0001};
-  double position_m{0.0003};
-  double bulge_m{0.002};
-  double skew_rad{0.01};
+  double bearing_rad{0.0001};  ///< bearing error common to neighbouring frames
+  double position_m{0.0003};   ///< position error common to neighbouring frames
+  double bulge_m{0.002};       ///< spread of the markers' distances from their walls
+  double skew_rad{0.01};       ///< angle between a marker and its wall
 };
 
 }  // namespace waymark

@@ -10,17 +10,17 @@
 namespace waymark {
 namespace {
 
-// Scans that one follow() redraws: 1 / kDrawnShare of all, within bounds.
-constexpr std::size_t kLeastDrawn = 8;
-constexpr std::size_t kMostDrawn = 64;
+// Scans that one redraw_some() redraws: 1 / kDrawnShare of all, within bounds.
+constexpr std::size_t kMinDrawn = 8;
+constexpr std::size_t kMaxDrawn = 64;
 constexpr std::size_t kDrawnShare = 40;
 constexpr std::size_t kCheckedPerDrawn = 32;  // checking so many costs as much as redrawing one
 constexpr double kLever_m = 5.0;              // usual distance of walls from the robot
 
 }  // namespace
 
-DrawnMap::DrawnMap(const MapperConfig& config, const GridMap& ground)
-    : config_{config}, ground_{ground}, map_{ground} {}
+DrawnMap::DrawnMap(const MapperConfig& config, const GridMap& base_map)
+    : config_{config}, base_map_{base_map}, map_{base_map} {}
 
 void DrawnMap::draw_markers(const std::vector<MarkerSighting>& sightings, const Se2& map_from_base,
                             GridMap& map) const {
@@ -41,10 +41,10 @@ void DrawnMap::add(const Observation& observation, const Se2& map_from_base) {
   drawn_at_.push_back(map_from_base);
 }
 
-void DrawnMap::follow(const std::function<Se2(std::size_t)>& pose_of) {
+void DrawnMap::redraw_some(const std::function<Se2(std::size_t)>& pose_of) {
   if (unchecked_ == 0) return;
   const std::size_t budget =
-      std::clamp(scans_.size() / kDrawnShare, kLeastDrawn, kMostDrawn) * kCheckedPerDrawn;
+      std::clamp(scans_.size() / kDrawnShare, kMinDrawn, kMaxDrawn) * kCheckedPerDrawn;
   for (std::size_t spent = 0; unchecked_ > 0 && spent < budget; ++spent) {
     --unchecked_;
     if (next_ == 0) next_ = scans_.size();
@@ -63,12 +63,12 @@ void DrawnMap::follow(const std::function<Se2(std::size_t)>& pose_of) {
   }
   if (unchecked_ > 0 || !has_moved_) return;
   has_moved_ = false;
-  map_.markers = ground_.markers;
+  map_.markers = base_map_.markers;
   for (std::size_t scan = 0; scan < scans_.size(); ++scan)
     draw_markers(scans_.sightings(scan), drawn_at_[scan], map_);
 }
 
-void DrawnMap::redraw(const std::function<Se2(std::size_t)>& pose_of) {
+void DrawnMap::redraw_all(const std::function<Se2(std::size_t)>& pose_of) {
   map_ = drawn_along(pose_of);
   for (std::size_t scan = 0; scan < scans_.size(); ++scan)
     drawn_at_[scan] = pose_of(scan);
@@ -77,7 +77,7 @@ void DrawnMap::redraw(const std::function<Se2(std::size_t)>& pose_of) {
 }
 
 GridMap DrawnMap::drawn_along(const std::function<Se2(std::size_t)>& pose_of) const {
-  GridMap map = ground_;
+  GridMap map = base_map_;
   for (std::size_t scan = 0; scan < scans_.size(); ++scan) {
     insert_beams(scans_.at(scan).beams, pose_of(scan), map);
     draw_markers(scans_.sightings(scan), pose_of(scan), map);

@@ -16,22 +16,22 @@ namespace waymark {
 /// Scans that the archive has emptied are removed from the map.
 class DrawnMap {
  public:
-  /// @param ground  map to which the scans are added: a loaded one, or an empty one.
-  DrawnMap(const MapperConfig& config, const GridMap& ground);
+  /// @param base_map  map to which the scans are added: a loaded one, or an empty one.
+  DrawnMap(const MapperConfig& config, const GridMap& base_map);
 
   /// Adds the next scan, with its markers.
   /// @throws std::length_error as TileMap does; the scan is not kept then.
   void add(const Observation& observation, const Se2& map_from_base);
 
-  /// After the poses have changed: makes follow() check all scans.
-  void begin_to_follow() { unchecked_ = scans_.size(); }
+  /// To be called after the poses have changed: redraw_some() will check all scans.
+  void note_poses_changed() { unchecked_ = scans_.size(); }
 
   /// Redraws scans that have moved by a cell, a few at each call; markers once all are redrawn.
   /// @param pose_of  map_from_base of a scan, by its number.
-  void follow(const std::function<Se2(std::size_t)>& pose_of);
+  void redraw_some(const std::function<Se2(std::size_t)>& pose_of);
 
   /// Redraws all scans at once, for a new map frame.
-  void redraw(const std::function<Se2(std::size_t)>& pose_of);
+  void redraw_all(const std::function<Se2(std::size_t)>& pose_of);
 
   /// The same map drawn along other poses.
   GridMap drawn_along(const std::function<Se2(std::size_t)>& pose_of) const;
@@ -45,12 +45,12 @@ class DrawnMap {
                     GridMap& map) const;
 
   MapperConfig config_;
-  GridMap ground_;
+  GridMap base_map_;
   GridMap map_;
   ScanArchive scans_{};
   std::vector<Se2> drawn_at_{};
   std::size_t next_{0};       ///< the scan before this one is checked next; before 0: the newest
-  std::size_t unchecked_{0};  ///< scans that may have moved
+  std::size_t unchecked_{0};  ///< number of scans that may have moved
   bool has_moved_{false};     ///< scans were redrawn, the markers not yet
 };
 

@@ -59,7 +59,7 @@ void LandmarkMap::add(const MarkerSighting& sighting, const Se2& map_from_base,
   nearest->information += information;
   nearest->weighted_deviation += information * deviation;
   nearest->pose_covariance_sum +=
-      carried_along(pose_covariance, map_from_marker.translation() - map_from_base.translation());
+      at_end_of_lever(pose_covariance, map_from_marker.translation() - map_from_base.translation());
   ++nearest->first.sightings;
   nearest->first.last_seen = sighting.time;
 }

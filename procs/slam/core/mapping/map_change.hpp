@@ -22,11 +22,11 @@ struct MapChange {
   Kind kind{Kind::kMarkerNew};
   int id{kNoMarker};  ///< of the marker
   int instance{0};
-  Se2 place{};                                      ///< now, or before it was gone; map frame
+  Se2 place{};                                      ///< map frame; of what is gone: the last place
   Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};  ///< [m] in the loaded map, or the survey
   double size_m{0.0};                               ///< of a wall: longer side of its bounding box
-  double sigmas{0.0};                               ///< of kSurveyOff: in standard deviations
-  int support{0};  ///< sightings, missed detections, or cells of a wall
+  double sigmas{0.0};  ///< of kSurveyOff: distance in standard deviations
+  int support{0};      ///< sightings, missed detections, or cells of a wall
 };
 
 }  // namespace waymark

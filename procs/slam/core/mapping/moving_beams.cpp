@@ -13,7 +13,7 @@ namespace waymark {
 namespace {
 
 constexpr double kSigmas = 3.0;
-constexpr double kMostOff_m = 0.3;  // a beam whose end is more uncertain is kept
+constexpr double kMaxUncertainty_m = 0.3;  // a beam whose end is more uncertain is kept
 constexpr double kOutlineCell_m = 0.2;
 
 /// Length of the outline that the points show, in cells: most beams of a scan may end on somebody
@@ -36,7 +36,7 @@ std::vector<Eigen::Vector2d> without_moving(const std::vector<Eigen::Vector2d>& 
   standing.reserve(points_in_base.size());
   for (const Eigen::Vector2d& point : points_in_base) {
     const double off_m = kSigmas * std::sqrt(position_m2 + covariance(2, 2) * point.squaredNorm());
-    if (off_m > kMostOff_m || !is_seen_through(map, map_from_base * point, off_m))
+    if (off_m > kMaxUncertainty_m || !is_seen_through(map, map_from_base * point, off_m))
       standing.push_back(point);
   }
   if (standing.size() == points_in_base.size()) return standing;

@@ -24,7 +24,7 @@ class ScanArchive {
 
   void add(const Observation& observation, const Se2& map_from_base);
 
-  /// What at() will return of a scan.
+  /// The observation as at() will return it.
   static Observation as_kept(const Observation& observation) {
     return unpacked(packed(observation));
   }

@@ -13,11 +13,11 @@ namespace waymark {
 /// @param place  map frame.
 inline bool is_seen_through(const GridMap& map, const Eigen::Vector2d& place,
                             double within_m = 0.0) {
-  constexpr double kMostOccupied = 0.1;
+  constexpr double kMaxOccupancy = 0.1;
   const CellIndex centre = map.frame.cell_of(place);
   const auto is_free = [&](int x, int y) {
     const OccupancyCell& cell = map.occupancy[{centre.x + x, centre.y + y}];
-    return cell.is_mapped() && cell.occupancy() <= kMostOccupied;
+    return cell.is_mapped() && cell.occupancy() <= kMaxOccupancy;
   };
   if (!is_free(0, 0)) return false;  // most calls end here
   const int reach = 1 + static_cast<int>(within_m / map.frame.resolution_m);

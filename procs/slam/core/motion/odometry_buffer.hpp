@@ -16,13 +16,15 @@ class OdometryBuffer {
   /// What add() made of a sample.
   enum class Outcome { kAdded, kOutOfOrder, kTooFarAhead, kJumped, kCaughtUp };
 
-  /// Refuses a sample that is not newer than the last one, or newer by more than any pause
-  /// (ClockStepDetector::kLongestPause). Odometry that stood still and then jumps no farther than
-  /// the robot can have driven meanwhile was stuck: the jump is late motion. After a jump that no
-  /// robot can drive, or one to the odometry's origin, also after a gap, the pose is held until
-  /// some samples in a row are consistent. If the robot can have driven from the pose before the
-  /// jump to these samples, those in between were garbage, and the motion is late motion; otherwise
-  /// the odometry was reset, which is no motion.
+  /// Refuses a sample that is not newer than the last one, or newer by more than
+  /// ClockStepDetector::kLongestPause.
+  ///
+  /// Stuck odometry: the pose did not change, then changes in one step by no more than the robot
+  /// can have driven meanwhile. That is real motion, reported late: late_motion().
+  ///
+  /// Jump: a step that no robot can drive, or one to odometry's origin, also after a gap. The pose
+  /// is held until some samples in a row are consistent. If the robot can have driven to them from
+  /// the pose before the jump, the motion is late motion; otherwise odometry was reset: no motion.
   Outcome add(const OdometrySample& sample);
 
   bool is_empty() const { return samples_.empty(); }
@@ -36,7 +38,7 @@ class OdometryBuffer {
   /// Interpolated, with jumps removed; needs covers(time).
   Se2 pose_at(Timestamp time) const;
 
-  /// Interpolated in the frame in which it was sent, jumps included; needs covers(time).
+  /// Interpolated, in the frame in which the samples were sent, jumps included; needs covers(time).
   Se2 sent_pose_at(Timestamp time) const;
 
   /// Along the path of the samples, without late_motion(). Needs both times covered, from <= to.
@@ -64,13 +66,13 @@ class OdometryBuffer {
  private:
   struct Sample {
     Timestamp time{};
-    Se2 odom_from_base{};  ///< without jumps
-    Se2 smooth_from_raw{};
+    Se2 odom_from_base{};   ///< without jumps
+    Se2 smooth_from_raw{};  ///< transform that removes the jumps so far
   };
 
-  /// Motion that was reported in one step after the odometry had stood still or jumped.
+  /// Late motion.
   struct CatchUp {
-    Timestamp time{};  ///< of the sample that reported it
+    Timestamp time{};  ///< when it was reported
     Motion motion{};
   };
 
@@ -93,13 +95,13 @@ class OdometryBuffer {
 
   static constexpr double kMaxSpeed_m_s = 10.0;       ///< faster is a reset, not a drive
   static constexpr double kMaxTurnRate_rad_s = 20.0;  ///< same for turning
-  static constexpr double kStood_s = 0.5;             ///< after that, a leap is late motion
-  static constexpr double kReset_m = 0.25;            ///< a longer step to the origin is a reset
-  static constexpr double kReset_rad = 0.5;           ///< same for turning
-  static constexpr double kMaxDrive_m_s = 2.0;        ///< largest mean speed of late motion
-  static constexpr double kMaxDrive_rad_s = 2.0;      ///< same for turning
-  static constexpr int kConsistentSamples = 4;        ///< samples that end a jump
-  static constexpr std::size_t kMaxSamples = 20000;   ///< 10 minutes at 30 Hz; the oldest go first
+  static constexpr double kStood_s = 0.5;       ///< a jump after a longer standstill is late motion
+  static constexpr double kReset_m = 0.25;      ///< a longer step to the origin is a reset
+  static constexpr double kReset_rad = 0.5;     ///< same for turning
+  static constexpr double kMaxDrive_m_s = 2.0;  ///< largest mean speed of late motion
+  static constexpr double kMaxDrive_rad_s = 2.0;     ///< same for turning
+  static constexpr int kConsistentSamples = 4;       ///< samples that end a jump
+  static constexpr std::size_t kMaxSamples = 20000;  ///< 10 minutes at 30 Hz
 
   std::deque<Sample> samples_{};
   Se2 smooth_from_raw_{};
@@ -107,7 +109,7 @@ class OdometryBuffer {
   Timestamp changed_{};  ///< when the pose last changed
   std::optional<CatchUp> catch_up_{};
   std::optional<Jump> jump_{};
-  std::optional<Interval> jump_interval_{};  ///< of the last jump, possibly not over yet
+  std::optional<Interval> jump_interval_{};  ///< of the last jump, which may not be over yet
 };
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random errors of odometry: while the wheels roll, slip or spin, and after pushes.
+// Random errors of odometry: while the wheels roll or slip, and after pushes.
 #pragma once
 
 #include "slam/core/motion/motion.hpp"
@@ -13,40 +13,40 @@
 
 namespace waymark {
 
-/// Noise of the odometry as learnt: factors on the configured standard deviations, and moments of
-/// slips along the path, to be added where neither markers nor walls observe them.
-struct OdometryScale {
-  double along{1.0};
-  double turn{1.0};
+/// Learnt noise of the odometry: factors on the configured standard deviations, and the mean and
+/// variance that slip adds along the path where neither markers nor walls observe it.
+struct LearntOdometryNoise {
+  double along{1.0};          ///< factor on the standard deviations of the position
+  double turn{1.0};           ///< factor on the standard deviations of the heading
   double slip_per_m{0.0};     ///< mean of (true - measured distance); negative: wheels spin
   double slip_m2_per_m{0.0};  ///< variance that slips add along the path
   double slip_m2{0.0};        ///< mean square of one slip
 };
 
-/// The noise with its standard deviations multiplied by the scale.
-OdometryNoise scaled(OdometryNoise noise, const OdometryScale& scale);
+/// The noise with its standard deviations multiplied by the learnt factors.
+OdometryNoise scaled(OdometryNoise noise, const LearntOdometryNoise& learnt);
 
 /// Share (0..1) of a motion's slips that remain unobserved although known markers are sighted at
 /// its end: 1 without markers, near 0 where their standard deviation along the path is small
 /// compared with a slip, 0 without translation. Observed slips are modelled by MotionKind.
 /// @param places  covariances [m^2] of the markers' measured positions, base axes at the end.
 double hidden_share(const Motion& motion, std::span<const Eigen::Matrix2d> places,
-                    const OdometryScale& scale);
+                    const LearntOdometryNoise& learnt);
 
-/// Adds mean and variance of slips to a measured motion.
-/// @param share  of the slips that are hidden, 0..1.
+/// Adds mean and variance of unobserved slips to a measured motion.
+/// @param share  of the slips that nothing observes, 0..1 (hidden_share()).
 CorrectedMotion with_slips(CorrectedMotion moved, double distance_m, double share,
-                           const OdometryScale& scale);
+                           const LearntOdometryNoise& learnt);
 
 /// Components of the odometry's noise, a mixture of normal distributions of which each factor uses
 /// the likeliest one (Olson and Agarwal 2013, "Inference on networks of mixtures").
 enum class MotionKind : std::uint8_t {
-  kRolling,
-  kLeftSpins,  ///< the left wheel slips, which changes distance and turn together
-  kRightSpins,
-  kSlipping,  ///< both wheels slip, which changes the distance alone; proposed by best_change()
-  kJerked,    ///< a short slip or push during a normal drive
-  kAnything,  ///< a gross error: the robot was pushed, or odometry jumped
+  kRolling,    ///< no slip
+  kLeftSlips,  ///< the left wheel slips: distance and turn change together
+  kRightSlips,
+  kBothSlip,    ///< both wheels slip: the distance alone changes; proposed by best_change() only
+  kDisturbed,   ///< a short slip or push during a normal drive
+  kGrossError,  ///< the robot was pushed, or odometry jumped
 };
 
 /// Covariances of (x, y, theta) of a motion, in the frame at its start, while the wheels roll.

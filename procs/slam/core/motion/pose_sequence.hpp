@@ -17,6 +17,7 @@ class PoseSequence {
 
   PoseSequence(std::initializer_list<Se2> poses) : poses_{poses} {}
 
+  /// Number of all poses ever added, dropped ones included.
   std::size_t size() const { return first_ + poses_.size(); }
 
   bool empty() const { return size() == 0; }
@@ -32,6 +33,7 @@ class PoseSequence {
 
   void push_back(const Se2& pose) { poses_.push_back(pose); }
 
+  /// Drops the poses before this one.
   void forget_before(std::size_t index) {
     for (; first_ < index; ++first_)
       poses_.pop_front();

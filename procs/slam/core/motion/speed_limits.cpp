@@ -9,16 +9,17 @@ namespace waymark {
 namespace {
 
 constexpr double kSlowest = 0.01;  // [m/s, rad/s]; less is standing
-constexpr double kBinRatio = 1.1;  // of speeds, from bin to bin: up to 20 m/s
+constexpr double kBinRatio = 1.1;  // upper / lower edge of a speed bin; 80 bins reach 20 m/s
 constexpr double kUsualShare = 0.95;
-constexpr double kFaster = 2.0;  // factor on the usual speed, before these margins are added
+constexpr double kFaster = 2.0;  // factor on the usual speed, to which these margins are added:
 constexpr double kSlack_m_s = 0.5;
 constexpr double kSlack_rad_s = 1.0;
-constexpr double kMost_m_s2 = 1.0;  // floor robots accelerate less (TurtleBot3: top speed 0.26 m/s)
-constexpr double kMost_rad_s2 = 2.0;
+// Floor robots accelerate less (TurtleBot3: top speed 0.26 m/s).
+constexpr double kMaxAcceleration_m_s2 = 1.0;
+constexpr double kMaxAcceleration_rad_s2 = 2.0;
 constexpr double kNewStep = 0.05;  // weight of the newest step in the mean duration
-constexpr int kLeastSteps = 20;    // before any step is rejected
-constexpr int kMostRefused = 20;   // in a row; then the histograms are reset
+constexpr int kMinSteps = 20;      // driving plus turning samples before any step is rejected
+constexpr int kMaxRefused = 20;    // in a row, before the histograms are reset
 
 }  // namespace
 
@@ -48,13 +49,13 @@ bool SpeedLimits::allow(const Motion& step, double step_s) {
   const double lasted_s = std::max(step_s, mean_step_s_) + left_over_s;
   const double drive_m_s = step.distance_m / lasted_s;
   const double turn_rad_s = step.turn_rad / lasted_s;
-  const bool is_known = drives_.count() + turns_.count() >= kLeastSteps;
+  const bool is_known = drives_.count() + turns_.count() >= kMinSteps;
   const double most_m_s =
-      std::max(kFaster * drives_.high() + kSlack_m_s, drive_m_s_ + kMost_m_s2 * step_s);
-  const double most_rad_s =
-      std::max(kFaster * turns_.high() + kSlack_rad_s, turn_rad_s_ + kMost_rad_s2 * step_s);
+      std::max(kFaster * drives_.high() + kSlack_m_s, drive_m_s_ + kMaxAcceleration_m_s2 * step_s);
+  const double most_rad_s = std::max(kFaster * turns_.high() + kSlack_rad_s,
+                                     turn_rad_s_ + kMaxAcceleration_rad_s2 * step_s);
   if (is_known && (drive_m_s > most_m_s || turn_rad_s > most_rad_s)) {
-    if (++refused_in_a_row_ <= kMostRefused) return false;
+    if (++refused_in_a_row_ <= kMaxRefused) return false;
     drives_ = {};
     turns_ = {};
   }

@@ -9,9 +9,9 @@
 
 namespace waymark {
 
-/// A robot hardly ever drives much faster than usual, unless it accelerates no more than wheels
-/// can. A single faster step of the odometry is wrong. This is detected even in a bare corridor,
-/// where no other sensor observes the motion.
+/// A step is implausible if it is much faster than this robot's usual speed and needs a higher
+/// acceleration than wheels can give. This is detected even in a bare corridor, where no other
+/// sensor observes the motion.
 class SpeedLimits {
  public:
   /// @param step  one step of the odometry, which took `step_s` seconds.
@@ -38,7 +38,7 @@ class SpeedLimits {
   int refused_in_a_row_{0};
   double mean_step_s_{0.0};
   double last_step_s_{0.0};
-  double drive_m_s_{0.0};  ///< of the newest step that was accepted
+  double drive_m_s_{0.0};  ///< speed in the newest accepted step
   double turn_rad_s_{0.0};
 };
 

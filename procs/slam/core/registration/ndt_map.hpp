@@ -39,8 +39,8 @@ class NdtMap {
  public:
   explicit NdtMap(double spacing_m) : spacing_m_{spacing_m} {}
 
-  /// @param keyframe  from which the point was observed.
-  /// @param weight    number of points that it counts as.
+  /// @param keyframe  the one that observed the point.
+  /// @param weight    number of points that this point counts as.
   void add(const Eigen::Vector2d& point, int keyframe, double weight = 1.0);
 
   /// Column and row of a cell, packed.
@@ -52,7 +52,7 @@ class NdtMap {
   Key key_at(const Eigen::Vector2d& point) const;
 
   /// The distribution of a cell; nullptr if it has too few points.
-  /// @param point_variance_m2  of points across a wall, the prior for cells with few points.
+  /// @param point_variance_m2  variance of points across a wall: prior of a cell with few points.
   const NdtCell* at(Key key, double point_variance_m2) const;
 
   const NdtCell* at(const Eigen::Vector2d& point, double point_variance_m2) const {
@@ -77,7 +77,7 @@ class NdtMap {
     double xy{0.0};
     double yy{0.0};
     NdtCell distribution{};
-    double fitted_with_m2{kStale};  ///< point variance that the distribution was fitted with
+    double fitted_with_m2{kStale};  ///< point_variance_m2 of the fit of `distribution`
   };
 
   void refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const;

@@ -16,7 +16,7 @@ constexpr int kScaleSteps = 8;
 constexpr double kScaleKernel_m = 0.1;
 constexpr double kScalePrior = 0.2;
 
-constexpr double kAgreeing = 0.01;  // largest difference between equal scales
+constexpr double kAgreeing = 0.01;  // largest difference between equal errors
 
 using Vector4 = Eigen::Vector4d;
 
@@ -25,15 +25,15 @@ struct ScaleEquations {
   Vector4 gradient{Vector4::Zero()};
 };
 
-/// Normal equations for (x, y, theta, share of the ranges), linearised at a pose and a share.
+/// Normal equations for (x, y, theta, RangeScale::error), linearised at a pose and an error.
 ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
                                const Eigen::Vector2d& origin, const NdtMap& map, const Se2& pose,
-                               double share, double point_variance_m2) {
+                               double error, double point_variance_m2) {
   ScaleEquations sum;
   const Eigen::Matrix2d rotation = pose.rotation();
   for (const Eigen::Vector2d& measured : points) {
     const Eigen::Vector2d ray = measured - origin;
-    const Eigen::Vector2d lever = rotation * (origin + ray / (1.0 + share));
+    const Eigen::Vector2d lever = rotation * (origin + ray / (1.0 + error));
     const Eigen::Vector2d there = lever + pose.translation();
     const NdtCell* cell = map.at(there, point_variance_m2);
     if (cell == nullptr || !cell->is_line) continue;
@@ -44,7 +44,7 @@ ScaleEquations scale_equations(std::span<const Eigen::Vector2d> points,
     const double weight = robust / (cell->across_m2 + point_variance_m2);
     const Vector4 jacobian{normal.x(), normal.y(),
                            normal.dot(Eigen::Vector2d{-lever.y(), lever.x()}),
-                           -normal.dot(rotation * ray) / squared(1.0 + share)};
+                           -normal.dot(rotation * ray) / squared(1.0 + error)};
     sum.information += weight * jacobian * jacobian.transpose();
     sum.gradient += weight * off_m * jacobian;
   }
@@ -64,13 +64,13 @@ RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
   RangeScale scale;
   for (int i = 0; i < kScaleSteps; ++i) {
     const ScaleEquations seen = scale_equations(points_in_base, origin_in_base, map, pose,
-                                                scale.share, noise.variance_m2());
+                                                scale.error, noise.variance_m2());
     Vector4 off;
-    off << pose_difference(pose, guess), scale.share;
+    off << pose_difference(pose, guess), scale.error;
     const Eigen::Matrix4d covariance = (seen.information + prior).inverse();
     const Vector4 step = -covariance * (seen.gradient + prior * off);
     pose = moved_by(pose, step.head<3>());
-    scale.share = std::clamp(scale.share + step[3], -kScalePrior, kScalePrior);
+    scale.error = std::clamp(scale.error + step[3], -kScalePrior, kScalePrior);
     scale.sigma = std::sqrt(covariance(3, 3));
   }
   return scale;
@@ -79,16 +79,16 @@ RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
 void RangeScaleMonitor::note_unscaled(const Points& points_in_base, const Se2& map_from_base) {
   unscaled_in_base_ = points_in_base;
   map_from_unscaled_ = map_from_base;
-  share_.reset();
+  error_.reset();
 }
 
-bool RangeScaleMonitor::believes(double share, const Points& points_in_base,
-                                 const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
-                                 const Eigen::Matrix3d& covariance, const RangeNoise& noise) {
-  const auto agrees = [share](double other) {
-    return std::abs(share - other) < kAgreeing;
+bool RangeScaleMonitor::accepts(double error, const Points& points_in_base,
+                                const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
+                                const Eigen::Matrix3d& covariance, const RangeNoise& noise) {
+  const auto agrees = [error](double other) {
+    return std::abs(error - other) < kAgreeing;
   };
-  if (!share_ || !agrees(*share_)) {
+  if (!error_ || !agrees(*error_)) {
     NdtMap last{cell_spacing_m_};
     for (const Eigen::Vector2d& point : unscaled_in_base_)
       last.add(point, 0);
@@ -96,9 +96,9 @@ bool RangeScaleMonitor::believes(double share, const Points& points_in_base,
     const RangeScale since_last =
         fit_range_scale(points_in_base, origin_in_base, last, last_from_map * map_from_base,
                         in_axes(last_from_map.rotation(), covariance), noise);
-    if (!agrees(since_last.share)) return false;
+    if (!agrees(since_last.error)) return false;
   }
-  share_ = share;
+  error_ = error;
   return true;
 }
 

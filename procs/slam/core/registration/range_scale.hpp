@@ -15,12 +15,12 @@
 namespace waymark {
 
 struct RangeScale {
-  double share{0.0};  ///< by which the ranges are longer than in the map, relative
-  double sigma{0.0};  ///< its standard deviation
+  double error{0.0};  ///< relative: measured range / range in the map - 1
+  double sigma{0.0};  ///< standard deviation of `error`
 };
 
-/// Fits the scale of ranges together with the pose; it is observable by walls on opposite sides.
-/// @param origin_in_base    of the beams.
+/// Fits the scale of ranges together with the pose; walls on opposite sides make it observable.
+/// @param origin_in_base    where the beams start.
 /// @param guess             map_from_base.
 /// @param guess_covariance  of (x, y, theta), map's axes.
 RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
@@ -28,10 +28,10 @@ RangeScale fit_range_scale(std::span<const Eigen::Vector2d> points_in_base,
                            const Se2& guess, const Eigen::Matrix3d& guess_covariance,
                            const RangeNoise& noise);
 
-/// Tells ranges whose scale has changed from scans that were matched at a wrong place, where they
-/// fit at another scale by chance: the scale of a LiDAR changes from one scan to the next, wherever
-/// the robot is. So a scale is believed if the scan has it, too, relative to the last scan that
-/// fitted the map unscaled, or if the same scale has been believed since that scan.
+/// Decides whether an estimated scale error is real. At a wrong pose a scan may fit the map at a
+/// wrong scale by chance; a real error begins between two scans, wherever the robot is. So an error
+/// is accepted if the scan has it relative to the last scan that fitted the map unscaled, too, or
+/// if an equal error has been accepted since that scan.
 class RangeScaleMonitor {
  public:
   explicit RangeScaleMonitor(double cell_spacing_m) : cell_spacing_m_{cell_spacing_m} {}
@@ -39,17 +39,18 @@ class RangeScaleMonitor {
   /// Notes a scan that fits the map unscaled.
   void note_unscaled(const Points& points_in_base, const Se2& map_from_base);
 
-  /// Whether to believe the scale at which the newest scan fits the map; remembers it if so.
+  /// Whether the scale error at which the newest scan fits the map is real. If so, it counts as
+  /// accepted.
   /// @param covariance  of (x, y, theta) of map_from_base, map's axes.
-  bool believes(double share, const Points& points_in_base, const Eigen::Vector2d& origin_in_base,
-                const Se2& map_from_base, const Eigen::Matrix3d& covariance,
-                const RangeNoise& noise);
+  bool accepts(double error, const Points& points_in_base, const Eigen::Vector2d& origin_in_base,
+               const Se2& map_from_base, const Eigen::Matrix3d& covariance,
+               const RangeNoise& noise);
 
  private:
   double cell_spacing_m_;
   Points unscaled_in_base_{};  ///< the last scan that fitted unscaled
   Se2 map_from_unscaled_{};
-  std::optional<double> share_{};  ///< last one believed since the unscaled scan
+  std::optional<double> error_{};  ///< last error accepted since the unscaled scan
 };
 
 }  // namespace waymark

@@ -22,23 +22,24 @@ constexpr int kStepsPerStage = 3;
 constexpr int kFinalSteps = 6;
 constexpr double kConverged = 2e-5;   // metres or radians
 constexpr double kMaxBlur_m = 0.25;   // no more than half of a cell
-constexpr double kReachOfCell = 0.5;  // of a level's spacing; a nearer guess skips the level
+constexpr double kReachOfCell = 0.5;  // of a level's spacing; a more certain guess skips the level
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
-// Number of beams in one cell that count as independent: the error of the cell's mean is common to
-// all of them, and so is the displacement if they end on a person.
+// Largest number of beams in one cell that count as independent: the error of the cell's mean is
+// common to all of them, and so is the displacement if they end on a person.
 constexpr double kIndependentBeams = 4.0;
-// The information of a beam has the factor n / (n + this), where n keyframes lie between the first
-// and the last that observed its cell, both counted: the error of the cell's mean falls with their
-// number, and a person stays at one place for a few.
+// The information of a beam has the factor n / (n + kFewKeyframes), where n is the number of
+// keyframes from the first to the last that observed its cell: the error of the cell's mean falls
+// with n, and a person stays at one place for a few keyframes only.
 constexpr double kFewKeyframes = 3.0;
 constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
 
-constexpr double kGuessFades = 10.0;               // factor on the guess's sigmas in the last step,
-const Eigen::Vector3d kLeastFaded{0.2, 0.2, 0.1};  // and what is added to them [m, m, rad]
+// In the last step the guess's sigmas are multiplied by the first, then the second is added.
+constexpr double kGuessFactor = 10.0;
+const Eigen::Vector3d kGuessAdded{0.2, 0.2, 0.1};  // [m, m, rad]
 
 // Noise of ranges.
-constexpr int kWellSeen = 20;      // least number of points of a cell
+constexpr int kWellSeen = 20;      // least number of points in a cell
 constexpr double kSquareOn = 0.5;  // least cosine of a beam's angle of incidence
 
 /// A quadratic model of the cost about a pose: cost + gradient' d + d' information d / 2.
@@ -232,11 +233,11 @@ class Descent {
 };
 
 /// Information that keeps the pose in unobserved directions and has little effect in the others:
-/// that of the guess with kGuessFades times its standard deviations, plus kLeastFaded. Not less
+/// that of the guess with kGuessFactor times its standard deviations, plus kGuessAdded. Not less
 /// information, so that the step stays small enough for the quadratic model.
 Eigen::Matrix3d nearly_none(const Eigen::Matrix3d& guess_covariance) {
-  Eigen::Matrix3d covariance = squared(kGuessFades) * guess_covariance;
-  covariance.diagonal() += kLeastFaded.cwiseAbs2();
+  Eigen::Matrix3d covariance = squared(kGuessFactor) * guess_covariance;
+  covariance.diagonal() += kGuessAdded.cwiseAbs2();
   return covariance.inverse();
 }
 
@@ -262,7 +263,7 @@ bool ObservedAxes::is_along_weak(const Eigen::Vector2d& shift) const {
 }
 
 /// What stays is the marginal information about the other axes: a Schur complement.
-void ObservedAxes::forget(const Eigen::Vector2d& direction) {
+void ObservedAxes::drop_information_along(const Eigen::Vector2d& direction) {
   const Eigen::Vector3d axis{direction.x(), direction.y(), 0.0};
   const Eigen::Vector3d column = information * axis;
   information -= (column * column.transpose() / axis.dot(column)).eval();

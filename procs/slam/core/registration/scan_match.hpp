@@ -33,11 +33,12 @@ struct ObservedAxes {
   Eigen::Vector2d weak_direction{Eigen::Vector2d::Zero()};  ///< unit
   bool is_degenerate{false};
 
-  /// Whether a shift (not zero) is one along the unobserved direction.
+  /// Whether a shift (not zero) is nearly parallel to the unobserved direction.
   bool is_along_weak(const Eigen::Vector2d& shift) const;
 
-  /// Makes `direction` (unit) the weak one. Precondition: not degenerate, and information > 0.
-  void forget(const Eigen::Vector2d& direction);
+  /// Removes the information along `direction` (unit), which becomes the weak one. Precondition:
+  /// not degenerate, and information > 0.
+  void drop_information_along(const Eigen::Vector2d& direction);
 };
 
 /// Factor on the information of each beam, given the number of the scan's beams that end in the
@@ -57,7 +58,7 @@ struct ScanMatch {
   double inlier_share{0.0};     ///< inliers / num_mapped
   double mapped_share{0.0};     ///< num_mapped / all beams
   int num_mapped{0};            ///< beams that ended in a cell with a distribution
-  int inliers{0};               ///< of these, robust weight at least a quarter
+  int inliers{0};               ///< mapped beams with a robust weight of at least a quarter
   double range_scatter_m{0.0};  ///< standard deviation of ranges about the walls they end on
   int num_scattered{0};         ///< beams that range_scatter_m was computed from
   /// For keyframes first_keyframe, first_keyframe + 1, ...: their share in the cells of the

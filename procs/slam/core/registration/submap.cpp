@@ -8,8 +8,8 @@ namespace waymark {
 namespace {
 
 // A smaller displacement is within the thickness of the walls in a submap.
-constexpr double kBent_m = 0.03;
-constexpr double kBent_rad = 0.006;  // displaces walls 5 m away by as much
+constexpr double kDeformed_m = 0.03;
+constexpr double kDeformed_rad = 0.006;  // displaces walls 5 m away by as much
 
 }  // namespace
 
@@ -39,18 +39,18 @@ void Submap::draw(const Points& points_in_base, const Se2& submap_from_base) {
   }
 }
 
-bool Submap::is_bent(const PoseSequence& keyframes) const {
-  if (keeps_shape_) return false;
+bool Submap::is_deformed(const PoseSequence& keyframes) const {
+  if (is_shape_frozen_) return false;
   const Se2 here_from_map = submap_from_map(keyframes);
   for (std::size_t k = first_keyframe_; k <= last_keyframe(); ++k) {
     const Eigen::Vector3d moved =
         pose_difference(here_from_map * keyframes[k], submap_from_keyframe(k));
-    if (moved.head<2>().norm() > kBent_m || std::abs(moved.z()) > kBent_rad) return true;
+    if (moved.head<2>().norm() > kDeformed_m || std::abs(moved.z()) > kDeformed_rad) return true;
   }
   return false;
 }
 
-Submap Submap::straightened(const PoseSequence& keyframes) const {
+Submap Submap::rebuilt(const PoseSequence& keyframes) const {
   const Se2 here_from_map = submap_from_map(keyframes);
   Submap submap{spacing_m_, first_keyframe_};
   for (const Scan& scan : scans_) {

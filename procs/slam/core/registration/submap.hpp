@@ -28,19 +28,19 @@ class Submap {
   /// Inserts a scan between keyframes, attributed to the newest keyframe.
   void add(const Points& points_in_base, const Se2& submap_from_base);
 
-  /// Whether the keyframes have moved relative to each other since they were inserted.
-  bool is_bent(const PoseSequence& keyframes) const;
+  /// Whether the keyframes' relative poses have changed since they were inserted.
+  bool is_deformed(const PoseSequence& keyframes) const;
 
-  /// From now on the scans stay where they were inserted: is_bent() is false.
-  void keep_shape() { keeps_shape_ = true; }
+  /// From now on is_deformed() is false: the scans stay where they were inserted.
+  void freeze_shape() { is_shape_frozen_ = true; }
 
   /// A submap of the same scans, inserted at the present poses of their keyframes. Precondition:
   /// not finished.
-  Submap straightened(const PoseSequence& keyframes) const;
+  Submap rebuilt(const PoseSequence& keyframes) const;
 
   std::size_t first_keyframe() const { return first_keyframe_; }
 
-  /// At the present pose of the first keyframe.
+  /// For the first keyframe's present pose.
   Se2 submap_from_map(const PoseSequence& keyframes) const {
     return keyframes[first_keyframe_].inverse();
   }
@@ -89,7 +89,7 @@ class Submap {
   std::vector<Se2> poses_{};
   double reach_m_{0.0};
   double length_m_{0.0};
-  bool keeps_shape_{false};
+  bool is_shape_frozen_{false};
   std::vector<Scan> scans_{};                   ///< until the submap is finished
   std::unordered_set<NdtMap::Key> occupied_{};  ///< cells of kThinned_m; never iterated over
   Points points_{};

@@ -31,9 +31,9 @@ void Submaps::add_between(const Points& points_in_base, const Se2& map_from_base
     submap.add(points_in_base, submap.submap_from_map(keyframes) * map_from_base);
 }
 
-void Submaps::follow(const PoseSequence& keyframes) {
+void Submaps::rebuild_deformed(const PoseSequence& keyframes) {
   for (Submap& submap : growing_)
-    if (submap.is_bent(keyframes)) submap = submap.straightened(keyframes);
+    if (submap.is_deformed(keyframes)) submap = submap.rebuilt(keyframes);
 }
 
 void Submaps::forget(const std::function<bool(std::size_t)>& is_removed) {

@@ -17,14 +17,14 @@ namespace waymark {
 class Submaps {
  public:
   /// @param keyframes_each  largest number of keyframes in a submap.
-  /// @param length_m        largest length of the path through a submap: drift bends longer ones.
+  /// @param length_m        largest length of the path through a submap: drift deforms longer ones.
   Submaps(double cell_spacing_m, int keyframes_each, double length_m)
       : cell_spacing_m_{cell_spacing_m},
         half_keyframes_{static_cast<std::size_t>(std::max(1, keyframes_each / 2))},
         half_m_{0.5 * length_m} {}
 
-  /// The submap to match scans with; null: none has begun.
-  const Submap* matched() const { return growing_.empty() ? nullptr : &growing_.front(); }
+  /// The submap that new scans are matched with; null: none has begun.
+  const Submap* current() const { return growing_.empty() ? nullptr : &growing_.front(); }
 
   const std::deque<Submap>& finished() const { return finished_; }
 
@@ -38,28 +38,29 @@ class Submaps {
   void add_between(const Points& points_in_base, const Se2& map_from_base,
                    const PoseSequence& keyframes);
 
-  /// Redraws unfinished submaps whose keyframes have moved relative to each other. Otherwise, after
-  /// a loop closure has moved the newest keyframes, the next scans would be matched with walls at
-  /// the old poses.
-  void follow(const PoseSequence& keyframes);
+  /// Rebuilds unfinished submaps whose keyframes have moved relative to each other. Otherwise,
+  /// after a loop closure has moved the newest keyframes, the next scans would be matched with
+  /// walls at the old poses.
+  void rebuild_deformed(const PoseSequence& keyframes);
 
-  /// Unfinished submaps no longer follow. To be called when keyframes have lost their odometry:
-  /// where walls do not show the motion, hardly anything holds these keyframes together any more.
-  void keep_shape() {
+  /// From now on unfinished submaps are not rebuilt. To be called when keyframes have lost their
+  /// odometry: where walls do not observe the motion, hardly anything holds these keyframes
+  /// together any more.
+  void freeze_shapes() {
     for (Submap& submap : growing_)
-      submap.keep_shape();
+      submap.freeze_shape();
   }
 
   /// Drops unfinished submaps, after the robot was relocated.
   void begin_anew() { growing_.clear(); }
 
-  /// Drops finished submaps that have removed keyframes.
+  /// Drops finished submaps that contain removed keyframes.
   void forget(const std::function<bool(std::size_t)>& is_removed);
 
  private:
   double cell_spacing_m_;
-  std::size_t half_keyframes_;  ///< half of the most keyframes of a submap
-  double half_m_;               ///< half of the greatest length of a submap
+  std::size_t half_keyframes_;  ///< half of the largest number of keyframes in a submap
+  double half_m_;               ///< half of the largest length of a submap
   std::deque<Submap> finished_{};
   std::deque<Submap> growing_{};  ///< at most two, the older one first
 };

@@ -12,18 +12,17 @@
 
 namespace waymark {
 
-/// A place is another one than a match if it is at least one of these, the width of the match's
-/// peak, away from the match.
+/// Two poses are different places if they differ by at least one of these (the width of a peak).
 inline constexpr double kOtherPlace_m = 0.3;
 inline constexpr double kOtherPlace_rad = 0.35;
 
 /// Conditions under which the best place of a search counts as unique.
 struct UniquePlaceLimits {
-  double min_score{0.0};        ///< of the best place
-  double runner_up_share{1.0};  ///< of the best score; a runner-up above it is ambiguous
-  double min_runner_up{0.0};    ///< score below which a runner-up never counts
-  double apart_m{0.5};          ///< a place nearer to the best one than this,
-  double apart_rad{0.3};        ///< and turned by less than this, is the same place
+  double min_score{0.0};        ///< least score of the best place
+  double runner_up_share{1.0};  ///< ratio of scores, runner-up to best place; above it: ambiguous
+  double min_runner_up{0.0};    ///< a runner-up with a lower score never counts
+  double apart_m{0.5};          ///< places nearer to each other than this,
+  double apart_rad{0.3};        ///< and turned by less than this, are one
 };
 
 /// The best place in the window, unless there is none or another one fits nearly as well.

@@ -4,14 +4,6 @@
 #include <algorithm>
 
 namespace waymark {
-namespace {
-
-constexpr double kMemory = 0.05;       // weight of the newest scan in the running means
-constexpr double kContradicted = 0.8;  // of the usual share of inliers among the mapped beams
-constexpr double kWorse = 0.93;        // of the usual share of inliers
-constexpr double kNearly = 0.8;
-
-}  // namespace
 
 bool UsualFit::is_refuted(const ScanMatch& match) const {
   return match.num_mapped >= min_inliers_ && match.inlier_share < min_inlier_share_;
@@ -23,15 +15,15 @@ bool UsualFit::is_contradicted(const ScanMatch& match) const {
 }
 
 bool UsualFit::is_as_usual_where_mapped(const ScanMatch& match) const {
-  return match.inlier_share >= kWorse * inlier_share_;
+  return match.inlier_share >= kAsUsual * inlier_share_;
 }
 
 bool UsualFit::is_worse_than_usual(const ScanMatch& match) const {
-  return match.inlier_share * match.mapped_share < kWorse * overall_share_;
+  return match.inlier_share * match.mapped_share < kAsUsual * overall_share_;
 }
 
 bool UsualFit::is_nearly_usual(const ScanMatch& match) const {
-  return match.inlier_share * match.mapped_share > kNearly * overall_share_;
+  return match.inlier_share * match.mapped_share > kNearlyUsual * overall_share_;
 }
 
 void UsualFit::note_scan(const ScanMatch& match) {

@@ -8,25 +8,26 @@ namespace waymark {
 
 class UsualFit {
  public:
-  /// @param min_inliers       mapped beams below which a scan is not classified.
-  /// @param min_inlier_share  of the mapped beams, below which a scan is refuted.
+  /// @param min_inliers       a scan with fewer mapped beams is not classified.
+  /// @param min_inlier_share  a scan with a smaller ScanMatch::inlier_share is refuted.
   UsualFit(int min_inliers, double min_inlier_share)
       : min_inliers_{min_inliers}, min_inlier_share_{min_inlier_share} {}
 
   /// Most mapped beams are outliers: sensor or pose is wrong. (In a new place beams are unmapped.)
   bool is_refuted(const ScanMatch& match) const;
 
-  /// Many more mapped beams are outliers than usual: pose or ranges may be wrong.
+  /// Inliers among the mapped beams: less than kContradicted times the mean, or refuted. Pose or
+  /// ranges may be wrong.
   bool is_contradicted(const ScanMatch& match) const;
 
-  /// Nearly as many mapped beams are inliers as usual.
+  /// Inliers among the mapped beams: at least kAsUsual times the mean.
   bool is_as_usual_where_mapped(const ScanMatch& match) const;
 
-  /// The share of all beams that are inliers is smaller than usual: the scan contradicts the map,
-  /// or shows a new place. is_nearly_usual() may hold as well.
+  /// Inliers among all beams: less than kAsUsual times the mean. The scan contradicts the map, or
+  /// shows a new place. is_nearly_usual() may hold as well.
   bool is_worse_than_usual(const ScanMatch& match) const;
 
-  /// Nearly as many of all beams are inliers as usual.
+  /// Inliers among all beams: more than kNearlyUsual times the mean.
   bool is_nearly_usual(const ScanMatch& match) const;
 
   /// Updates the means with a scan that is not contradicted.
@@ -36,9 +37,14 @@ class UsualFit {
   void note_keyframe(const ScanMatch& match);
 
  private:
+  static constexpr double kMemory = 0.05;  ///< weight of the newest scan in the running means
+  static constexpr double kContradicted = 0.8;
+  static constexpr double kAsUsual = 0.93;
+  static constexpr double kNearlyUsual = 0.8;
+
   int min_inliers_;
   double min_inlier_share_;
-  double inlier_share_{0.0};   ///< of the mapped beams, mean over scans
+  double inlier_share_{0.0};   ///< share of the mapped beams that are inliers, mean over scans
   double overall_share_{0.0};  ///< share of all beams that are inliers, mean over keyframes
 };
 

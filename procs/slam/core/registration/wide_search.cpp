@@ -16,7 +16,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kLeastReach_m = 0.5;
+constexpr double kMinReach_m = 0.5;
 constexpr double kReach_rad = 0.6;
 constexpr std::size_t kBeams = 120;
 constexpr double kUnseen_rad_s = 0.5;  // rate at which the window of turns grows between scans
@@ -27,15 +27,15 @@ constexpr double kFarMore = 2.0;   // if odometry agrees with it, and it fits ne
 constexpr double kLeavesFarMore = 3.0;  // ratio of unexplained beams, plain to found match
 constexpr double kContradictedSigmas = 5.0;
 constexpr double kFarFarther = 4.0;  // ratio of distances from odometry, found to plain match
-// Ratio of scores and of inliers, other to found place: on thinned logs of fr079 and aces the
-// ratios at wrong places were above it, those at most right places below.
+// Ratio of scores and of inliers, other to found place, above which the found place is ambiguous.
+// On thinned logs of fr079 and aces it was higher at wrong places, and lower at most right ones.
 constexpr double kNearlyAsWell = 0.8;
 constexpr double kSameHeading_rad = 0.1;               // 3 sigmas of a search
 const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a heading step
 
 /// Half the side of the windows.
 double reach_m(double driven_m) {
-  return std::max(kLeastReach_m, driven_m);
+  return std::max(kMinReach_m, driven_m);
 }
 
 /// Mahalanobis distance of a match from the pose predicted by odometry.
@@ -102,7 +102,7 @@ class PlaceSearch {
     const Eigen::Vector2d shift = apart.head<2>();
     if (is_same_place(apart) || found.observed.is_along_weak(shift)) return false;
     if (found.observed.is_degenerate) return true;
-    found.observed.forget(shift.normalized());
+    found.observed.drop_information_along(shift.normalized());
     return false;
   }
 

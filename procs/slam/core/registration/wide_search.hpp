@@ -10,31 +10,31 @@
 
 namespace waymark {
 
+/// Windows around `by_odometry` and around each pose of `without_odometry` are searched.
 struct WideSearch {
-  Se2 by_odometry{};  ///< map_from_base; windows about it and `without_odometry` are searched
+  Se2 by_odometry{};  ///< map_from_base, as predicted by odometry
   Eigen::Matrix3d odometry_covariance{Eigen::Matrix3d::Identity()};  ///< of by_odometry, map's axes
-  std::vector<Se2> without_odometry{};                               ///< map_from_base
+  /// map_from_base, by hypotheses that do not rely on odometry's newest step.
+  std::vector<Se2> without_odometry{};
   double since_last_s{0.0};  ///< time since the last scan, which widens the window of turns
   double driven_m{0.0};      ///< by odometry since the last scan; widens the windows of positions
-  double min_score{0.0};     ///< least SearchMatch::score
+  double min_score{0.0};     ///< least SearchMatch::score of a place in a window
   /// Whether the map, including its free space, contradicts the scan at a pose.
   std::function<bool(const Se2& map_from_base)> contradicts_map{};
 };
 
-/// Matches the scan from the best place of each window, and compares the match with the most
-/// inliers, the found one, with the plain match. The found match replaces it if it has more
-/// inliers, and
-///   - the map contradicts the plain match, or
-///   - the found match fits as well as usual, or
-///   - it fits nearly as well as usual, and either has twice the inliers or odometry contradicts
-///     the plain match.
-/// A found match that odometry contradicts much more than the plain one must fit as well as usual
-/// and, if the map does not contradict the plain match, leave a third of its unexplained beams at
-/// most; or have 1.5 times the inliers of a contradicted plain match, and fit as well as usual
-/// where there are mapped walls. The scan must not fit nearly as well at another heading in or
-/// around the windows, since rooms look alike; and if the found match explains less than half of
-/// the scan, the map's free space must not contradict the rest. These conditions keep the plain
-/// match for a view of a new place, where a correct match has few inliers.
+/// Searches windows for a better match than `plain`. The candidate is the match with the most
+/// inliers, of those from the best place in each window. It replaces `plain` if it has 5 % more
+/// inliers and
+///   - near odometry's prediction: `plain` is contradicted (UsualFit); or the candidate fits as
+///     usual; or it fits nearly as usual, and has twice the inliers or odometry contradicts
+///     `plain`;
+///   - far from that prediction: the candidate fits as usual, and `plain` is contradicted or leaves
+///     3 times as many beams unexplained; or `plain` is contradicted, and the candidate has 1.5
+///     times its inliers and fits as usual where mapped. In addition, no other heading may fit
+///     nearly as well, and the map's free space must not contradict a candidate that explains less
+///     than half of the scan.
+/// So `plain` is kept for a view of a new place, where a correct match has few inliers.
 ///
 /// @param points     ends of beams, base frame.
 /// @param ndt        map that the scan is matched with.

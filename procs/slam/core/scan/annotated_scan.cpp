@@ -28,11 +28,11 @@ std::vector<AnnotatedBeam> annotate(std::span<const Beam> beams,
       const double distance_m = distance_to_segment_m(beam.end_in_base, sighting);
       if (distance_m > nearest_m) continue;
       nearest_m = distance_m;
-      result.sight = Sight::kMarker;
+      result.label = BeamLabel::kMarker;
       result.marker_id = sighting.id;
     }
-    if (result.sight != Sight::kMarker && view && view->would_show(beam.end_in_base)) {
-      result.sight = Sight::kNone;
+    if (result.label != BeamLabel::kMarker && view && view->would_show(beam.end_in_base)) {
+      result.label = BeamLabel::kUnmarked;
     }
     annotated.push_back(result);
   }

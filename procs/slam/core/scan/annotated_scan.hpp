@@ -12,20 +12,20 @@
 namespace waymark {
 
 /// The camera's observation of the point where a beam ended.
-enum class Sight {
-  kUnknown,  ///< outside of the camera's view
-  kNone,     ///< no marker there
-  kMarker,   ///< a marker, see marker_id
+enum class BeamLabel {
+  kOutOfView,  ///< the camera does not see the point, or there is no camera frame
+  kUnmarked,   ///< no marker is there
+  kMarker,     ///< a marker is there, see marker_id
 };
 
 struct AnnotatedBeam {
   Beam beam{};
-  Sight sight{Sight::kUnknown};
+  BeamLabel label{BeamLabel::kOutOfView};
   int marker_id{kNoMarker};
 };
 
 /// Labels each beam that ends within `tolerance_m` of a sighted marker's segment with the id of the
-/// nearest one; the others with kNone if their end is in `view` (null: no camera frame).
+/// nearest one; the others with kUnmarked if their end is in `view` (null: no camera frame).
 std::vector<AnnotatedBeam> annotate(std::span<const Beam> beams,
                                     std::span<const MarkerSighting> sightings,
                                     const CameraView* view, double tolerance_m);

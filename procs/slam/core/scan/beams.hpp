@@ -27,8 +27,8 @@ struct Beam {
   double range_m{0.0};
 };
 
-/// Motion whose odometry noise is that of the mean error of all beams of a sweep relative to the
-/// scan's pose; the errors of single beams are larger. Zero if all beams were measured at once.
+/// Equivalent motion of a sweep: its random-walk covariance equals that of the beams' mean position
+/// error relative to the scan's pose. Zero if all beams were measured at once.
 struct MeanSweep {
   double distance_m{0.0};
   double turn_rad{0.0};  ///< absolute
@@ -38,7 +38,7 @@ struct MeanSweep {
 /// beams have the least odometry noise. Without times per beam the scan is unchanged.
 LidarScan at_middle_of_sweep(LidarScan scan);
 
-/// Latest time of a beam, or the scan's own if that is later; first_beam_time() is its counterpart.
+/// Latest (earliest) time of a beam, or the scan's own time if that is later (earlier).
 Timestamp last_beam_time(const LidarScan& scan);
 Timestamp first_beam_time(const LidarScan& scan);
 

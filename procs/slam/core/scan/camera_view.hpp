@@ -13,7 +13,7 @@ namespace waymark {
 /// A horizontal wedge in front of the camera. A missing detection is evidence only inside it.
 struct CameraView {
   Se2 base_from_camera{};   ///< x = viewing direction
-  double left_rad{0.45};    ///< edges of the wedge, counter-clockwise from the viewing direction
+  double left_rad{0.45};    ///< edges of the wedge, counter-clockwise from the viewing direction,
   double right_rad{-0.45};  ///< so far inside the image that a whole marker fits
   double range_min_m{0.3};  ///< nearer markers do not fit into the image
   double range_max_m{3.3};  ///< markers further away may be missed

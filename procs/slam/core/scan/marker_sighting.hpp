@@ -23,11 +23,10 @@ struct MarkerSighting {
   /// [m^2, m rad, rad^2] order x y yaw, base frame.
   Eigen::Matrix3d covariance_in_base{Eigen::Matrix3d::Zero()};
   double size_m{0.0};  ///< side of the black square
-  /// Motion by odometry from the frame's time to the scan's; the covariance does not include the
-  /// noise of that motion.
-  double carried_m{0.0};
-  double carried_rad{0.0};
-  std::optional<FocalSighting> focal{};  ///< measurement of the camera's focal length
+  /// Motion by odometry between camera frame and scan: its noise is not in the covariance.
+  double driven_since_frame_m{0.0};
+  double turned_since_frame_rad{0.0};
+  std::optional<FocalMeasurement> focal{};  ///< measurement of the camera's focal length
 
   /// Point on the marker's line, `right_m` to the right of its centre as it is printed.
   Eigen::Vector2d point_at(double right_m) const {
@@ -36,8 +35,8 @@ struct MarkerSighting {
            right_m * Eigen::Vector2d{-std::sin(yaw_rad), std::cos(yaw_rad)};
   }
 
-  /// Standard deviation of the centre along the marker's line [m].
-  double sigma_along_m() const {
+  /// Standard deviation of the centre along the marker's line, which is its wall [m].
+  double sigma_along_wall_m() const {
     const double yaw_rad = base_from_marker.theta();
     const Eigen::Vector2d along{-std::sin(yaw_rad), std::cos(yaw_rad)};
     return std::sqrt(std::max(0.0, along.dot(covariance_in_base.topLeftCorner<2, 2>() * along)));

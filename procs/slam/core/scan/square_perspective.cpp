@@ -24,16 +24,16 @@ Edge edge_between(const Eigen::Vector2d& top, const Eigen::Vector2d& bottom, dou
 
 }  // namespace
 
-std::optional<FocalSighting> focal_error_of(const std::array<Eigen::Vector2d, 4>& corners,
-                                            double corner_sigma) {
+std::optional<FocalMeasurement> focal_error_of(const std::array<Eigen::Vector2d, 4>& corners,
+                                               double corner_sigma) {
   const Edge left = edge_between(corners[0], corners[3], corner_sigma);
   const Edge right = edge_between(corners[1], corners[2], corner_sigma);
   const double depth2 = 1.0 - (right.right - left.right) * (right.right - left.right);
   const double seen_depth = std::abs(right.ahead - left.ahead);
   if (!(depth2 > kMinDepth * kMinDepth) || !(seen_depth > 0.0)) return std::nullopt;
   const double ratio = std::sqrt(depth2) / seen_depth;
-  return FocalSighting{ratio - 1.0,
-                       ratio * std::hypot(left.ahead_sigma, right.ahead_sigma) / seen_depth};
+  return FocalMeasurement{ratio - 1.0,
+                          ratio * std::hypot(left.ahead_sigma, right.ahead_sigma) / seen_depth};
 }
 
 }  // namespace waymark

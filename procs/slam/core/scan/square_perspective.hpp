@@ -9,8 +9,8 @@
 
 namespace waymark {
 
-/// Relative error of a focal length: the true one is (1 + error) times the configured one.
-struct FocalSighting {
+/// Measured relative error of a focal length: the true one is (1 + error) times the configured one.
+struct FocalMeasurement {
   double error{0.0};
   double sigma{0.0};
 };
@@ -20,7 +20,7 @@ struct FocalSighting {
 /// @param corners  clockwise from the top left, as seen by a level camera with focal length 1.
 /// @param corner_sigma  of a corner coordinate, same unit.
 /// @return none for a frontal view, which has too little perspective.
-std::optional<FocalSighting> focal_error_of(const std::array<Eigen::Vector2d, 4>& corners,
-                                            double corner_sigma);
+std::optional<FocalMeasurement> focal_error_of(const std::array<Eigen::Vector2d, 4>& corners,
+                                               double corner_sigma);
 
 }  // namespace waymark

@@ -29,11 +29,11 @@ std::vector<ObservedSpot> observed_spots(const Observation& observation, double 
                                          double face_margin_m, double sighting_sigma_m) {
   std::vector<ObservedSpot> spots;
   for (const AnnotatedBeam& annotated : observation.beams) {
-    if (annotated.sight == Sight::kUnknown) continue;
+    if (annotated.label == BeamLabel::kOutOfView) continue;
     spots.push_back({annotated.beam.end_in_base, annotated.marker_id, 1.0});
   }
   for (const MarkerSighting& sighting : observation.sightings) {
-    const double sigmas = sighting.sigma_along_m() / sighting_sigma_m;
+    const double sigmas = sighting.sigma_along_wall_m() / sighting_sigma_m;
     const double weight = 1.0 / (1.0 + sigmas * sigmas);
     for (const FacePoint& point : face_points(sighting, face_spacing_m, face_margin_m))
       spots.push_back({point.in_base, point.marker_id, weight});

@@ -19,8 +19,8 @@ namespace waymark::viewer {
 namespace {
 
 constexpr double kText_px = 17.0;
-constexpr double kScaleBar_px = 320.0;      // at most
-constexpr double kScaleBarRoom_px = 450.0;  // with its label
+constexpr double kScaleBar_px = 320.0;      // largest length
+constexpr double kScaleBarRoom_px = 450.0;  // width of the bar with its label
 
 /// 1, 2 or 5 times a power of ten: the largest that is not longer than the limit.
 double round_length(double limit) {
@@ -88,8 +88,8 @@ constexpr std::pair<Health, std::string_view> named(Health health) {
   return {health, name_of(health)};
 }
 
-/// Shares of the updates in each health state, and with a weak axis by what observed the motion
-/// along it; empty without updates.
+/// Shares of the updates in each health state, and of those with a weak axis by what observed the
+/// motion along it; empty without updates.
 std::string health_summary(const std::vector<EstimatedPose>& estimates) {
   constexpr std::array kHealths{named(Health::kInitialising), named(Health::kTracking),
                                 named(Health::kDegenerate), named(Health::kLost),
@@ -120,14 +120,14 @@ void draw_fitting(cv::Mat& page, const std::string& text, const cv::Rect& area_p
             fitting(font, text, area_px.width));
 }
 
-/// With as many decimals as the step has.
+/// The number with as many decimals as the step has.
 std::string metres_text(double at_m, double step_m) {
   const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step_m) + 1e-9)));
   return fmt::format("{:.{}f} m", at_m, decimals);
 }
 
 /// Distance of a ruler's labels: a round length with room for the widest of them.
-double label_step(const View& view, const Font& font) {
+double label_step(const MapViewport& view, const Font& font) {
   constexpr double kRoom = 1.6;  // the first and last label are moved by half of their width
   constexpr double kLongest_m = 1e9;
   const auto has_room = [&](double step_m) {
@@ -180,7 +180,7 @@ void draw_ruler(cv::Mat& page, const Panel& panel) {
 void draw_strip_marks(cv::Mat& page, const MapPage& layout) {
   if (layout.strips.size() < 2) return;
   const cv::Rect& overview_px = layout.overview->page_px;
-  const View& overview = layout.overview->view;
+  const MapViewport& overview = layout.overview->view;
   const Font font{.height_px = 17.0, .colour = palette::kFaintInk, .bold = true};
   char letter = 'A';
   for (const Panel& strip : layout.strips) {

@@ -8,8 +8,8 @@
 
 namespace waymark::viewer {
 
-/// Title; size of the map and length of the path; shares of the health states, and of what observed
-/// the motion along weak axes.
+/// Title; size of the map and length of the path; shares of the health states, and of the sources
+/// that observed the motion along weak axes.
 void draw_heading(cv::Mat& page, const cv::Rect& area_px, const std::string& title,
                   const PageContent& content, const Se2& view_from_map,
                   const MapThresholds& thresholds);

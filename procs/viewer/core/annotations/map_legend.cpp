@@ -32,7 +32,7 @@ bool has_state(const PageContent& content, LandmarkState state) {
                      [state](const Landmark& landmark) { return landmark.state == state; });
 }
 
-bool has_source(const PathMarks& marks, WeakAxisSource source) {
+bool has_source(const UncertaintyMarks& marks, WeakAxisSource source) {
   return std::any_of(
       marks.weak_axes.begin(), marks.weak_axes.end(),
       [source](const EstimatedPose& pose) { return pose.weak_axis->source == source; });
@@ -68,7 +68,7 @@ class LegendWriter {
     });
   }
 
-  /// A label as it stands beside a marker.
+  /// A sample of the label beside a marker.
   void add_label(const std::string& meaning, LandmarkState state) {
     add(meaning, [&](cv::Point2d left, cv::Point2d right) {
       const cv::Rect2d box{left.x + 8, left.y - 16, right.x - left.x - 16, 32};
@@ -134,7 +134,7 @@ void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content, 
   });
 }
 
-void add_marks(LegendWriter& legend, cv::Mat& page, const PathMarks& marks) {
+void add_marks(LegendWriter& legend, cv::Mat& page, const UncertaintyMarks& marks) {
   const std::string size = marks.magnification == 1
                                ? "true size"
                                : fmt::format("drawn {} times as large", marks.magnification);
@@ -202,7 +202,7 @@ void add_changes(LegendWriter& legend, cv::Mat& page, const PageContent& content
                     .place = {has_line ? right.x : middle.x, -middle.y, 0.0},
                     .was_at = {has_line ? left.x + 6 : middle.x, -middle.y},
                     .size_m = 22.0}};
-      draw_changes(page, View{.px_per_m = 1.0}, symbol);
+      draw_changes(page, MapViewport{.px_per_m = 1.0}, symbol);
     });
   }
 }
@@ -210,7 +210,7 @@ void add_changes(LegendWriter& legend, cv::Mat& page, const PageContent& content
 }  // namespace
 
 int draw_legend(cv::Mat& page, const MapPage& layout, const PageContent& content,
-                const PathMarks& marks) {
+                const UncertaintyMarks& marks) {
   LegendWriter legend{page, layout.legend_px};
   add_paths(legend, page, content, layout.odometry_in_strips);
   legend.new_line();

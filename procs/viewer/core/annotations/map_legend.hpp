@@ -10,6 +10,6 @@ namespace waymark::viewer {
 /// Writes entries from left to right, line by line.
 /// @return the first row of the page below the legend.
 int draw_legend(cv::Mat& page, const MapPage& layout, const PageContent& content,
-                const PathMarks& marks);
+                const UncertaintyMarks& marks);
 
 }  // namespace waymark::viewer

@@ -19,7 +19,7 @@ class ExtentCounter {
   }
 
   double extent_cells() const {
-    constexpr int kStray = 3;  // bins with fewer free cells are noise
+    constexpr int kStray = 3;  // a bin with fewer free cells is noise
     long first = 0, last = -1;
     for (const auto& [bin, count] : counts_) {
       if (count < kStray) continue;
@@ -71,11 +71,11 @@ std::optional<corridor::CorridorLength> corridor_length(const GridMap& map,
                                                         const MapThresholds& thresholds) {
   constexpr double kElongated = 4.0;  // length over width
   constexpr double kMinShare = 0.8;   // area of the corridor over that of all free cells
-  constexpr double kMostCells = 1e6;  // a kilometre of corridor in cells of 5 cm; bounds the time
+  constexpr double kMaxCells = 1e6;   // a kilometre of corridor in cells of 5 cm; bounds the time
   const auto free_cells = static_cast<double>(
       std::count_if(map.occupancy_percent.begin(), map.occupancy_percent.end(),
                     [&](int percent) { return kind_of(percent, thresholds) == CellKind::kFree; }));
-  if (free_cells > kMostCells) return std::nullopt;
+  if (free_cells > kMaxCells) return std::nullopt;
   try {
     const corridor::CorridorLength length = corridor::measure_corridor(image_of(map, thresholds));
     const bool is_corridor = length.length_px >= kElongated * length.width_px &&

@@ -33,7 +33,7 @@ std::vector<cv::Point> fixed(std::span<const cv::Point2d> points_px) {
 }
 
 constexpr int kFace = cv::FONT_HERSHEY_DUPLEX;
-constexpr double kCapitalHeight_px = 21.0;  // of Hershey's capitals at scale 1
+constexpr double kCapitalHeight_px = 21.0;  // height of a Hershey capital at scale 1
 
 std::string ascii(std::string_view utf8) {
   std::string text;
@@ -65,7 +65,7 @@ void draw_dashed_polyline(cv::Mat& image, std::span<const cv::Point2d> points_px
                           double dash_px, double gap_px) {
   constexpr double kLongStep_px = 5000.0;
   bool is_dash = true;
-  double left_px = dash_px;  // of the dash or gap under way
+  double left_px = dash_px;  // remaining length of the current dash or gap
   std::vector<cv::Point2d> dash;
   for (std::size_t i = 1; i < points_px.size(); ++i) {
     cv::Point2d from = points_px[i - 1];

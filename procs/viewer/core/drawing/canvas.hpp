@@ -34,7 +34,7 @@ void fill_box(cv::Mat& image, const cv::Rect2d& box_px, double corner_radius_px,
               const cv::Scalar& colour);
 
 struct Font {
-  double height_px{16.0};  ///< of a capital letter
+  double height_px{16.0};  ///< height of a capital letter
   cv::Scalar colour{};
   bool bold{false};
 };

@@ -3,7 +3,7 @@
 // maps of 32767 cells or more along one side.
 #pragma once
 
-#include "viewer/core/drawing/view.hpp"
+#include "viewer/core/drawing/map_viewport.hpp"
 #include "viewer/core/scene/grid_map.hpp"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace waymark::viewer {
 
 /// Calls paint(pixel, cell), both (column, row), for each pixel whose centre lies on the map.
 template <class Paint>
-void for_each_pixel_on_map(const View& view, const GridMap& map, cv::Size size_px,
+void for_each_pixel_on_map(const MapViewport& view, const GridMap& map, cv::Size size_px,
                            const Paint& paint) {
   const Se2 map_from_view = view.view_from_map.inverse();
   const auto cells_at = [&](double x_px, double y_px) -> Eigen::Vector2d {

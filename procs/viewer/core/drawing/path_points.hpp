@@ -2,7 +2,7 @@
 // A path as points on the page.
 #pragma once
 
-#include "viewer/core/drawing/view.hpp"
+#include "viewer/core/drawing/map_viewport.hpp"
 #include "viewer/core/scene/scene.hpp"
 
 #include <opencv2/core.hpp>
@@ -23,7 +23,7 @@ inline const Se2& pose_of(const TimedPose& pose) {
 /// Positions on the page, thinned to steps of at least 3 px; poses that are not finite are left
 /// out.
 template <class Pose>
-std::vector<cv::Point2d> points_on_page(const View& view, std::span<const Pose> path) {
+std::vector<cv::Point2d> points_on_page(const MapViewport& view, std::span<const Pose> path) {
   constexpr double kStep_px = 3.0;
   std::vector<cv::Point2d> points;
   for (const Pose& pose : path) {
@@ -35,7 +35,7 @@ std::vector<cv::Point2d> points_on_page(const View& view, std::span<const Pose> 
 }
 
 template <class Pose>
-std::vector<cv::Point2d> points_on_page(const View& view, const std::vector<Pose>& path) {
+std::vector<cv::Point2d> points_on_page(const MapViewport& view, const std::vector<Pose>& path) {
   return points_on_page(view, std::span<const Pose>{path});
 }
 

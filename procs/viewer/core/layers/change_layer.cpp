@@ -11,8 +11,8 @@ namespace waymark::viewer {
 namespace {
 
 constexpr int kWidth_px = 4;
-constexpr double kMark_m = 0.2;  // half of a marker's usual side
-constexpr double kLeast_px = 7.0;
+constexpr double kMark_m = 0.2;  // half size of a mark: half of a marker's usual side
+constexpr double kMinMark_px = 7.0;
 constexpr double kOutlineDash_px = 10.0;
 constexpr double kOutlineGap_px = 7.0;
 
@@ -30,13 +30,13 @@ void draw_box(cv::Mat& panel, cv::Point2d centre_px, double half_px, bool is_das
 
 }  // namespace
 
-void draw_changes(cv::Mat& panel, const View& view, std::span<const MapChange> changes) {
+void draw_changes(cv::Mat& panel, const MapViewport& view, std::span<const MapChange> changes) {
   const Pen pen{palette::kMoved, kWidth_px};
-  const double mark_px = std::max(kLeast_px, kMark_m * view.px_per_m);
+  const double mark_px = std::max(kMinMark_px, kMark_m * view.px_per_m);
   for (const MapChange& change : changes) {
     const cv::Point2d now = view(change.place.translation());
     const cv::Point2d before = view(change.was_at);
-    const double half_px = std::max(kLeast_px, 0.5 * change.size_m * view.px_per_m);
+    const double half_px = std::max(kMinMark_px, 0.5 * change.size_m * view.px_per_m);
     switch (change.kind) {
       case MapChange::Kind::kMissing:
         draw_line(panel, now - cv::Point2d{mark_px, mark_px}, now + cv::Point2d{mark_px, mark_px},

@@ -35,7 +35,7 @@ CellColour occupancy_colour() {
   };
 }
 
-void draw_cells(cv::Mat& panel, const View& view, const GridMap& map,
+void draw_cells(cv::Mat& panel, const MapViewport& view, const GridMap& map,
                 const CellColour& colour_of_cell) {
   panel.setTo(palette::kUnknown);
   if (map.empty()) return;
@@ -50,7 +50,7 @@ void draw_cells(cv::Mat& panel, const View& view, const GridMap& map,
   });
 }
 
-void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,
+void draw_paths(cv::Mat& panel, const MapViewport& view, const PageContent& content,
                 const StrokeWidths& widths, Odometry odometry) {
   draw_polyline(panel, points_on_page(view, content.truth_in_map),
                 {palette::kTrue, widths.true_px});
@@ -64,12 +64,13 @@ void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,
                        {palette::kFinal, widths.estimated_px}, kDash_px, kDashGap_px);
 }
 
-void draw_particles(cv::Mat& panel, const View& view, const std::vector<Se2>& particles) {
+void draw_particles(cv::Mat& panel, const MapViewport& view, const std::vector<Se2>& particles) {
   for (const Se2& particle : particles)
     fill_circle(panel, view(particle.translation()), 2.0, palette::kParticle);
 }
 
-void draw_ends(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates) {
+void draw_ends(cv::Mat& panel, const MapViewport& view,
+               const std::vector<EstimatedPose>& estimates) {
   if (estimates.empty()) return;
   const cv::Point2d start = view(estimates.front().map_from_base.translation());
   const double scale = std::max(0.6, mark_scale(view.px_per_m));
@@ -89,7 +90,7 @@ void draw_ends(cv::Mat& panel, const View& view, const std::vector<EstimatedPose
   fill_polygon(panel, arrow(16.0 * scale), palette::kEstimated);
 }
 
-void draw_plates(cv::Mat& panel, const View& view, const std::vector<Landmark>& landmarks,
+void draw_plates(cv::Mat& panel, const MapViewport& view, const std::vector<Landmark>& landmarks,
                  double marker_size_m, int width_px) {
   for (const Landmark& landmark : landmarks) {
     const cv::Point2d centre = view(landmark.map_from_marker.translation());

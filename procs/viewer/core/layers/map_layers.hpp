@@ -31,21 +31,22 @@ using CellColour = std::function<Colour(int occupancy_percent, int marker_id)>;
 CellColour occupancy_colour();
 
 /// Where several cells share a pixel, they are drawn as one (shrunk()).
-void draw_cells(cv::Mat& panel, const View& view, const GridMap& map,
+void draw_cells(cv::Mat& panel, const MapViewport& view, const GridMap& map,
                 const CellColour& colour_of_cell);
 
 /// All paths, from the broadest stroke at the bottom to the finest, so that coinciding ones stay
 /// visible; the final trajectory is dashed, on top.
-void draw_paths(cv::Mat& panel, const View& view, const PageContent& content,
+void draw_paths(cv::Mat& panel, const MapViewport& view, const PageContent& content,
                 const StrokeWidths& widths, Odometry odometry);
 
-void draw_particles(cv::Mat& panel, const View& view, const std::vector<Se2>& particles);
+void draw_particles(cv::Mat& panel, const MapViewport& view, const std::vector<Se2>& particles);
 
 /// First pose of the base (ring) and last one (arrow head along the heading).
-void draw_ends(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates);
+void draw_ends(cv::Mat& panel, const MapViewport& view,
+               const std::vector<EstimatedPose>& estimates);
 
 /// A bar for each marker, along its wall, and a short line towards the side that it faces.
-void draw_plates(cv::Mat& panel, const View& view, const std::vector<Landmark>& landmarks,
+void draw_plates(cv::Mat& panel, const MapViewport& view, const std::vector<Landmark>& landmarks,
                  double marker_size_m, int width_px);
 
 }  // namespace waymark::viewer

@@ -21,9 +21,9 @@ constexpr int kOpenBelow_percent = 50;
 /// Share of a box on the page that lies on open space.
 class OpenSpace {
  public:
-  OpenSpace(const GridMap& map, const View& view) {
+  OpenSpace(const GridMap& map, const MapViewport& view) {
     cv::Mat_<uchar> open(rows(view), columns(view), uchar{0});
-    View coarse = view;
+    MapViewport coarse = view;
     coarse.px_per_m /= kCoarse;
     for_each_pixel_on_map(coarse, map, open.size(), [&](cv::Point pixel, cv::Point cell) {
       const int percent = map.occupancy_percent(cell);
@@ -49,11 +49,11 @@ class OpenSpace {
  private:
   static constexpr double kCoarse = 4.0;  // page pixels per pixel of the mask
 
-  static int columns(const View& view) {
+  static int columns(const MapViewport& view) {
     return static_cast<int>(view.size_px().width / kCoarse) + 1;
   }
 
-  static int rows(const View& view) {
+  static int rows(const MapViewport& view) {
     return static_cast<int>(view.size_px().height / kCoarse) + 1;
   }
 
@@ -82,7 +82,7 @@ struct Placer {
 
   cv::Rect2d best_box(cv::Point2d marker_px, cv::Point2d behind, cv::Size2d size) const {
     const cv::Point2d along{-behind.y, behind.x};
-    // From the marker to the label's middle, so that the label just clears the wall.
+    // Distance from the marker to the label's middle at which the label just clears the wall.
     const double reach_px =
         16.0 + 0.5 * (std::abs(behind.x) * size.width + std::abs(behind.y) * size.height);
     cv::Rect2d best;
@@ -130,7 +130,7 @@ cv::Scalar colour_of(LandmarkState state) {
 }
 
 std::vector<MarkerLabel> place_labels(const std::vector<Landmark>& landmarks, const GridMap& map,
-                                      const View& view, double text_height_px) {
+                                      const MapViewport& view, double text_height_px) {
   const OpenSpace open_space{map, view};
   const cv::Rect2d panel{cv::Point2d{0, 0}, cv::Size2d{view.size_px()}};
   std::vector<cv::Rect2d> taken;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Labels with the markers' ids: behind their wall, not on free space, not overlapping.
+// Places labels with the markers' ids behind their wall, not on free space, without overlap.
 #pragma once
 
 #include "viewer/core/drawing/palette.hpp"
@@ -25,7 +25,7 @@ std::string label_text(const Landmark& landmark);
 /// Places the labels of the markers in the view, one after the other, each at the position of least
 /// cost. Deterministic.
 std::vector<MarkerLabel> place_labels(const std::vector<Landmark>& landmarks, const GridMap& map,
-                                      const View& view, double text_height_px);
+                                      const MapViewport& view, double text_height_px);
 
 cv::Scalar colour_of(LandmarkState state);
 

@@ -19,8 +19,8 @@ namespace {
 constexpr double kLongestBar_px = 34.0;   // half length
 constexpr double kShortestBar_px = 11.0;  // half length
 constexpr int kBarWidth_px = 6;
-/// Marks of one kind on the map; more would hide it.
-constexpr std::size_t kMostMarks = 60;
+/// Largest number of marks of one kind; more would hide the map.
+constexpr std::size_t kMaxMarks = 60;
 
 bool is_finite(const EstimatedPose& pose) {
   return pose.map_from_base.translation().allFinite();
@@ -73,7 +73,7 @@ std::vector<EstimatedPose> ellipse_candidates(const std::vector<EstimatedPose>& 
 std::vector<EstimatedPose> weak_axis_candidates(const std::vector<EstimatedPose>& estimates,
                                                 double spacing_m) {
   std::vector<EstimatedPose> chosen;
-  const EstimatedPose* before = nullptr;  // the pose before, if it had a weak axis; else null
+  const EstimatedPose* before = nullptr;  // previous pose; null if its scan observed all directions
   double travelled_m = 0.0;
   for (const EstimatedPose& pose : estimates) {
     if (!has_weak_axis(pose)) {
@@ -103,14 +103,14 @@ std::vector<EstimatedPose> with_clearance(const std::vector<EstimatedPose>& cand
   return kept;
 }
 
-/// Keeps marks with clearance, from the highest rank down, at most kMostMarks; in order of time.
+/// Keeps marks with clearance, from the highest rank down, at most kMaxMarks; in order of time.
 std::vector<EstimatedPose> thinned_out(std::vector<EstimatedPose> candidates, double clearance_m,
                                        const std::function<double(const EstimatedPose&)>& rank) {
   std::stable_sort(
       candidates.begin(), candidates.end(),
       [&](const EstimatedPose& a, const EstimatedPose& b) { return rank(a) > rank(b); });
   std::vector<EstimatedPose> kept = with_clearance(candidates, clearance_m);
-  while (kept.size() > kMostMarks) {
+  while (kept.size() > kMaxMarks) {
     clearance_m *= 1.2;
     kept = with_clearance(kept, clearance_m);
   }
@@ -119,7 +119,7 @@ std::vector<EstimatedPose> thinned_out(std::vector<EstimatedPose> candidates, do
   return kept;
 }
 
-/// An axis that nothing observes matters most.
+/// Importance of a weak axis among overlapping ones: one that nothing observes matters most.
 double rank_of(WeakAxisSource source) {
   switch (source) {
     case WeakAxisSource::kNothing:
@@ -156,7 +156,7 @@ int magnification_of(const std::vector<EstimatedPose>& ellipses, double px_per_m
 }
 
 std::vector<cv::Point2d> outline_of(const Ellipse& ellipse, const EstimatedPose& pose,
-                                    const View& view, int magnification) {
+                                    const MapViewport& view, int magnification) {
   const double scale = magnification * view.px_per_m;
   const cv::Point2d centre = view(pose.map_from_base.translation());
   const cv::Point2d along = view.direction(ellipse.angle_rad);
@@ -205,9 +205,10 @@ std::optional<Ellipse> two_sigma_ellipse(const Eigen::Matrix3d& covariance) {
   return Ellipse{2.0 * sigma_m(1), 2.0 * sigma_m(0), std::atan2(axis.y(), axis.x())};
 }
 
-PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
-                       double spacing_px) {
-  PathMarks marks{.px_per_m = px_per_m, .spacing_m = round_length_from(spacing_px / px_per_m)};
+UncertaintyMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
+                              double spacing_px) {
+  UncertaintyMarks marks{.px_per_m = px_per_m,
+                         .spacing_m = round_length_from(spacing_px / px_per_m)};
   marks.ellipses = thinned_out(ellipse_candidates(estimates, marks.spacing_m),
                                0.6 * spacing_px / px_per_m, major_m);
   marks.weak_axes =
@@ -217,7 +218,7 @@ PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_pe
   return marks;
 }
 
-void draw_ellipses(cv::Mat& panel, const View& view, const PathMarks& marks) {
+void draw_ellipses(cv::Mat& panel, const MapViewport& view, const UncertaintyMarks& marks) {
   constexpr double kOpacity = 0.16;
   std::vector<std::vector<cv::Point2d>> outlines;
   std::vector<std::vector<cv::Point2d>> to_fill;
@@ -252,7 +253,7 @@ void draw_weak_axis_bar(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px,
     draw_line(image, from, to, {colour_of(source), width_px});
 }
 
-void draw_weak_axes(cv::Mat& panel, const View& view, const PathMarks& marks) {
+void draw_weak_axes(cv::Mat& panel, const MapViewport& view, const UncertaintyMarks& marks) {
   constexpr double kMostlyHeading = 0.7;  // theta component of the unit direction
   const double scale = mark_scale(view.px_per_m);
   const int width_px = bar_width_px(scale);
@@ -275,8 +276,8 @@ void draw_weak_axes(cv::Mat& panel, const View& view, const PathMarks& marks) {
   }
 }
 
-void draw_health(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates,
-                 int width_px) {
+void draw_health(cv::Mat& panel, const MapViewport& view,
+                 const std::vector<EstimatedPose>& estimates, int width_px) {
   for (std::size_t begin = 0; begin < estimates.size();) {
     const Health health = estimates[begin].health;
     std::size_t end = begin;

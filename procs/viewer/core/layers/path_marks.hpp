@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Marks along the path: its health, its covariance, and the direction that the scans do not
-// observe.
+// Marks along the path: health, covariance ellipses, and weak axes (WeakAxis).
 #pragma once
 
-#include "viewer/core/drawing/view.hpp"
+#include "viewer/core/drawing/map_viewport.hpp"
 #include "viewer/core/scene/scene.hpp"
 
 #include <opencv2/core.hpp>
@@ -22,39 +21,39 @@ struct Ellipse {
 /// semidefinite).
 std::optional<Ellipse> two_sigma_ellipse(const Eigen::Matrix3d& covariance);
 
-/// The poses that get a mark, and how large the marks are drawn.
-struct PathMarks {
-  int magnification{1};                    ///< of ellipses and weak axes, so that they are visible
-  double px_per_m{1.0};                    ///< of the page that the marks were chosen for
+/// The poses at which the uncertainty is drawn, and how large.
+struct UncertaintyMarks {
+  int magnification{1};                    ///< factor that makes ellipses and weak axes visible
+  double px_per_m{1.0};                    ///< scale of the page that the marks were chosen for
   double spacing_m{1.0};                   ///< distance along the path between marks
   std::vector<EstimatedPose> ellipses{};   ///< in order of time; each has an ellipse
   std::vector<EstimatedPose> weak_axes{};  ///< in order of time; each has a weak axis
 };
 
-/// Ellipses every round number of metres and at the end; weak axes at the same spacing,
-/// where one begins, and where another source begins to observe it. Of overlapping marks the least
-/// certain one is kept (of weak axes: the one with the worst source); the clearance grows until at
-/// most 60 of a kind are left. O(n + c log c + c m): n poses, c candidates, m marks kept in the
-/// first pass.
-PathMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
-                       double spacing_px);
+/// Places ellipses a round number of metres apart and at the end; weak axes at the same spacing,
+/// where one begins, and where another source begins to observe it. Of overlapping ellipses the
+/// largest is kept, of overlapping weak axes the one with the worst source; the clearance grows
+/// until at most 60 of each kind are left. O(n + c log c + c m): n poses, c candidates, m marks
+/// kept in the first pass.
+UncertaintyMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
+                              double spacing_px);
 
 /// Two-sigma ellipses, magnified.
-void draw_ellipses(cv::Mat& panel, const View& view, const PathMarks& marks);
+void draw_ellipses(cv::Mat& panel, const MapViewport& view, const UncertaintyMarks& marks);
 
 /// A bar along each weak axis in the colour of what observed the motion along it; its half length
 /// is two sigma of one scan along it, magnified, within limits. A ring where the weak axis is
 /// mainly the heading.
-void draw_weak_axes(cv::Mat& panel, const View& view, const PathMarks& marks);
+void draw_weak_axes(cv::Mat& panel, const MapViewport& view, const UncertaintyMarks& marks);
 
 /// One bar as draw_weak_axes() draws it.
-/// @param scale  of its width and caps; 1 = full size.
+/// @param scale  factor on its width and caps; 1 = full size.
 void draw_weak_axis_bar(cv::Mat& image, cv::Point2d from_px, cv::Point2d to_px,
                         WeakAxisSource source, double scale);
 
-/// A broad band, to lie below the path, wherever its health is not `tracking`.
-void draw_health(cv::Mat& panel, const View& view, const std::vector<EstimatedPose>& estimates,
-                 int width_px);
+/// A broad band along the path wherever the health is not `tracking`; draw it before the path.
+void draw_health(cv::Mat& panel, const MapViewport& view,
+                 const std::vector<EstimatedPose>& estimates, int width_px);
 
 cv::Scalar colour_of(Health health);
 

@@ -20,7 +20,7 @@ constexpr double kOverviewHeight_px = 600.0;
 /// Odometry's path is left out of the strips if it would reduce their scale to less than this
 /// share.
 constexpr double kMinScaleShare = 0.85;
-constexpr int kMinPageWidth_px = 1700;  // for the legend
+constexpr int kMinPageWidth_px = 1700;  // the legend needs this
 /// Room around the map for the markers' labels.
 constexpr double kLabelRoom_px = 74.0;
 /// Overlap of neighbouring strips, so that objects at a cut are whole in one of them.
@@ -74,7 +74,7 @@ void add_known_cells(const GridMap& map, const Se2& view_from_map, BoxBuilder& b
   }
 }
 
-/// Where a run without cells is: its first pose, or else its first marker.
+/// Where to look if no cell is known: the first pose, or else the first marker.
 std::optional<Eigen::Vector2d> start_of(const PageContent& content) {
   std::optional<Eigen::Vector2d> start;
   if (!content.landmarks.empty()) start = content.landmarks.front().map_from_marker.translation();
@@ -105,7 +105,7 @@ Folding best_folding(const Box& box, const MapPageStyle& style) {
     const double height_px = style.page_height_px - (n - 1) * (kGap_px + kRulerHeight_px);
     folding.px_per_m = std::min({width_px / folding.strip_width_m(box),
                                  height_px / (n * box.height_m()), style.max_scale_px_per_m});
-    // More strips break the picture: only for a clearly larger scale.
+    // More strips cut the map more often, so they need a clearly larger scale.
     if (folding.px_per_m > 1.25 * best.px_per_m) best = folding;
   }
   return best;
@@ -116,7 +116,7 @@ Box with_label_room(const Box& tight, const MapPageStyle& style) {
   return padded(tight, kLabelRoom_px / rough_px_per_m);
 }
 
-Panel panel_at(const View& view, int left_px, int top_px) {
+Panel panel_at(const MapViewport& view, int left_px, int top_px) {
   return {view, cv::Rect{cv::Point{left_px, top_px}, view.size_px()}};
 }
 
@@ -154,7 +154,7 @@ Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odomet
 }
 
 Se2 view_from_map(const GridMap& map) {
-  constexpr double kLong = 5.0;  // length / width from which on a map is long
+  constexpr double kLong = 5.0;  // least length / width of a long map
   const double kNearlyHorizontal_rad = radians(20);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   Eigen::Matrix2d sum_of_squares = Eigen::Matrix2d::Zero();

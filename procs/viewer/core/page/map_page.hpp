@@ -2,7 +2,7 @@
 // Layout of map.png: a long map is folded into strips below an overview of the whole.
 #pragma once
 
-#include "viewer/core/drawing/view.hpp"
+#include "viewer/core/drawing/map_viewport.hpp"
 #include "viewer/core/page/style.hpp"
 #include "viewer/core/scene/scene.hpp"
 
@@ -11,9 +11,9 @@
 
 namespace waymark::viewer {
 
-/// A window onto the map and its place on the page.
+/// A part of the map and its place on the page.
 struct Panel {
-  View view{};
+  MapViewport view{};
   cv::Rect page_px{};
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kText_px = 18.0;
 
-/// Faint version of the map, with the ids in strong colours.
+/// Colour of a cell: strong with an id, faint without.
 Colour id_colour(int percent, int marker_id) {
   const cv::Scalar faint_wall = blend(palette::kFree, palette::kOccupied, 0.4);
   if (marker_id >= 0) return to_colour(colour_of_id(marker_id));

@@ -35,10 +35,10 @@ void draw_overview(cv::Mat& page, const Panel& overview, const PageContent& cont
 }
 
 void draw_strip(cv::Mat& page, const Panel& strip, const PageContent& content,
-                const CellColour& cell_colour, const MapPageStyle& style, const PathMarks& marks,
-                Odometry odometry) {
+                const CellColour& cell_colour, const MapPageStyle& style,
+                const UncertaintyMarks& marks, Odometry odometry) {
   cv::Mat panel = page(strip.page_px);
-  const View& view = strip.view;
+  const MapViewport& view = strip.view;
   const StrokeWidths widths = strokes_at(view.px_per_m);
   draw_cells(panel, view, content.map, cell_colour);
   draw_health(panel, view, content.estimates, widths.health_px);
@@ -62,7 +62,7 @@ cv::Mat paint_map(const Scene& scene, const MapPageStyle& style) {
   const MapPage layout = lay_out(content, style);
   const CellColour cell_colour = occupancy_colour();
   const double px_per_m = layout.strips.front().view.px_per_m;
-  const PathMarks marks = choose_marks(content.estimates, px_per_m, style.mark_spacing_px);
+  const UncertaintyMarks marks = choose_marks(content.estimates, px_per_m, style.mark_spacing_px);
 
   cv::Mat page{layout.size_px, CV_8UC3, palette::kPage};
   draw_heading(page, layout.heading_px, scene.title, content,

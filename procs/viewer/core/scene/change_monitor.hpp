@@ -28,7 +28,7 @@ class ChangeMonitor {
   /// count as localised: in a corridor they alternate.
   std::optional<Change> update(const EstimatedPose& estimate);
 
-  /// Markers that are new, gone, or in another state than before; by id and instance.
+  /// Reports markers that are new, gone, or in another state than before; by id and instance.
   std::vector<Change> update(Timestamp time, const std::vector<Landmark>& landmarks);
 
  private:

@@ -9,19 +9,19 @@
 
 namespace waymark::viewer {
 
-/// Distinguishes a new map, after a restart or a reset of slam, from late messages of an earlier
-/// one. So many of these that the clock was set back are a new map.
+/// Distinguishes the messages of a new map, after a restart or a reset of slam, from late messages
+/// of an earlier map. So many older messages that the clock must have been set back are a new map.
 class CurrentMap {
  public:
   enum class Origin { kOfThisMap, kOfFirstMap, kOfNewMap, kLate };
 
-  /// After kOfFirstMap and kOfNewMap this is the map of the message.
-  Origin take(std::int64_t map_id, Timestamp time) {
+  /// @return which map the message is of. With kOfFirstMap or kOfNewMap, it is the current map now.
+  Origin update(std::int64_t map_id, Timestamp time) {
     if (map_id == id_) {
-      clock_.see_fitting();
+      clock_.note_consistent();
       return Origin::kOfThisMap;
     }
-    if (id_ && time < began_ && !clock_.see_misfit(time)) return Origin::kLate;
+    if (id_ && time < began_ && !clock_.note_inconsistent(time)) return Origin::kLate;
     const Origin origin = id_ ? Origin::kOfNewMap : Origin::kOfFirstMap;
     id_ = map_id;
     began_ = time;
@@ -33,7 +33,7 @@ class CurrentMap {
  private:
   std::optional<std::int64_t> id_{};
   Timestamp began_{};
-  ClockStepDetector clock_{};  ///< of the messages of another map
+  ClockStepDetector clock_{};  ///< counts older messages of other maps
 };
 
 }  // namespace waymark::viewer

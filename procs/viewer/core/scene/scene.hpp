@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The content of all messages so far, input of pictures and files.
+// The content of all messages so far: the input of pictures and files.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -28,12 +28,13 @@ enum class LandmarkState { kUnknown, kConfirmed, kTentative, kMoved };
 /// "confirmed", ...
 std::string_view name_of(LandmarkState state);
 
-/// A direction that the scan alone hardly observes.
+/// The degenerate direction of a scan: the one that the walls alone hardly observe, such as the
+/// direction along a bare corridor.
 struct WeakAxis {
   /// Unit vector; order x y theta (scaled by 1 m), map frame.
   Eigen::Vector3d direction{Eigen::Vector3d::Zero()};
-  double information{0.0};  ///< [1/m^2] of one scan along `direction`
-  WeakAxisSource source{WeakAxisSource::kUnknown};
+  double information{0.0};  ///< information of one scan along `direction` [1/m^2]
+  WeakAxisSource source{WeakAxisSource::kUnknown};  ///< what observes `direction` instead
 };
 
 /// Pose of the base in the frame of its path.
@@ -47,7 +48,7 @@ struct EstimatedPose {
   Se2 map_from_base{};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< order x y theta, map frame
   Health health{Health::kUnknown};
-  std::optional<WeakAxis> weak_axis{};  ///< none where the scan observes every direction
+  std::optional<WeakAxis> weak_axis{};  ///< nullopt: the scan observes all directions
 };
 
 struct Landmark {
@@ -78,8 +79,8 @@ struct MapChange {
 struct Finding {
   std::string name{};
   std::string text{};
-  double value{0.0};              ///< unit as in the name; a count where there is a share
-  std::optional<double> share{};  ///< of the observations or scans that it concerns
+  double value{0.0};              ///< unit as in the name; a count if there is a share
+  std::optional<double> share{};  ///< affected observations or scans / all of them
 };
 
 /// A scan whose beams carry the ids of the markers that they hit.
@@ -93,7 +94,7 @@ struct AnnotatedScan {
   bool has_marker() const;
 };
 
-/// Plain state. Paths are in order of time, without repeats.
+/// Paths are in order of time, without repeats.
 struct Scene {
   std::string title{};  ///< heading of map.png: viewer.title, else the output folder's name
   TiledMap map{kMaxMapCells};
@@ -101,7 +102,7 @@ struct Scene {
   std::optional<std::vector<MapChange>> changes{};  ///< nullopt: slam has sent no comparison
   std::optional<std::vector<Finding>> findings{};   ///< nullopt: slam has not reported any
   std::vector<EstimatedPose> estimates{};
-  std::vector<TimedPose> final_trajectory{};  ///< as the estimator knows it at the end
+  std::vector<TimedPose> final_trajectory{};  ///< as corrected by the end of the run
   std::vector<TimedPose> odometry{};          ///< odom_from_base
   std::vector<TimedPose> truth{};             ///< world_from_base; empty on a real robot
   std::vector<Se2> particles{};               ///< map_from_base of each

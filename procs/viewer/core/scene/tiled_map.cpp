@@ -9,8 +9,8 @@
 namespace waymark::viewer {
 namespace {
 
-constexpr double kLongestSide = 1e6;           // of a PNG file, by libpng
-constexpr std::size_t kMostCounted = 100'000;  // of the tiles left out; bounds memory
+constexpr double kMaxSide_px = 1e6;           // limit of libpng
+constexpr std::size_t kMaxCounted = 100'000;  // further tiles that are left out are not counted
 
 bool is_well_formed(const TileLayout& layout, const TileUpdate& update) {
   if (!(layout.resolution_m > 0.0) || !std::isfinite(layout.resolution_m)) return false;
@@ -49,8 +49,8 @@ TiledMap::Outcome TiledMap::put(const TileLayout& layout, Timestamp time,
   box.include(update.tile_x, update.tile_y);
   const double columns = box.columns(layout.size_cells);
   const double rows = box.rows(layout.size_cells);
-  if (columns * rows > static_cast<double>(max_cells_) || std::max(columns, rows) > kLongestSide) {
-    if (left_out_.size() < kMostCounted) left_out_.insert({update.tile_x, update.tile_y});
+  if (columns * rows > static_cast<double>(max_cells_) || std::max(columns, rows) > kMaxSide_px) {
+    if (left_out_.size() < kMaxCounted) left_out_.insert({update.tile_x, update.tile_y});
     return Outcome::kTooFarAway;
   }
   if (is_another_map) {

@@ -34,11 +34,11 @@ struct TileUpdate {
   std::span<const std::int16_t> marker_ids{};
 };
 
-/// Of a message after others: a stamp further behind theirs is no late one, but of another clock.
+/// A message whose stamp is further behind earlier messages is not late: the clock was set.
 inline constexpr Duration kLongestDelay = std::chrono::seconds{10};
 
-/// True for a stamp before a known one, unless it is so long before that the clock was set back or
-/// the known one was wrong: then what came last is newer.
+/// True for a stamp before a known one, unless it is more than kLongestDelay before: then the clock
+/// was set back, or the known stamp was wrong, and the later message counts as newer.
 inline bool is_older(Timestamp time, Timestamp known) {
   return time < known && time >= known - kLongestDelay;
 }
@@ -55,7 +55,7 @@ class TiledMap {
   /// so that all old tiles are removed.
   Outcome put(const TileLayout& layout, Timestamp time, const TileUpdate& update);
 
-  /// Number of tiles that were too far away: those of the map that are missing.
+  /// Number of tiles that are missing because they were too far away.
   std::size_t num_left_out() const { return left_out_.size(); }
 
   /// True when no tile has come.

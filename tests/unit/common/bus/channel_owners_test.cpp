@@ -50,7 +50,7 @@ TEST(ChannelOwners, ChannelsOfSeveralDriversAreNoConflict) {
   }
 }
 
-// Both begin in the same moment, each first on another channel.
+// Both senders begin at the same time, each first on another channel.
 TEST(ChannelOwners, TwoDrivesOnTheSameChannelsAreNotMixed) {
   ChannelOwners owners;
   EXPECT_EQ(owners.check("ODOMETRY", kDriver, at(0)), Verdict::kAccepted);
@@ -65,7 +65,7 @@ TEST(ChannelOwners, TwoDrivesOnTheSameChannelsAreNotMixed) {
   }
 }
 
-// A log that holds MARKERS is played while a detector runs: the rest of the log is still heard.
+// A log with MARKERS is played while a detector runs: its other channels are still accepted.
 TEST(ChannelOwners, ARefusedSenderIsAcceptedOnOtherChannels) {
   ChannelOwners owners;
   owners.check("MARKERS", kDriver, at(0));

@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-/// What a LiDAR with these beams sees on its way through the room, with 2 cm noise.
+/// Scans by a LiDAR with these beams along a path through the room, with 2 cm noise.
 std::vector<std::vector<double>> scans_of(std::size_t num_beams, const BeamAngles& angles,
                                           Walls walls = Walls::kRoom) {
   std::mt19937 random{5};

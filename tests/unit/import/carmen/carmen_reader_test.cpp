@@ -136,7 +136,7 @@ TEST(CarmenReader, ACorrectedLogHasNoMounting) {
 std::string scan_line(int num_beams, double time_s, double logger_time_s = 0.0) {
   std::vector<double> ranges_m;
   for (int i = 0; i < num_beams; ++i)
-    ranges_m.push_back(i % 2 == 0 ? 2.0 : 1.95);  // equal ones would be a code for "no return"
+    ranges_m.push_back(i % 2 == 0 ? 2.0 : 1.95);  // equal ranges would be a code for "no return"
   return fmt::format("FLASER {} {} 0 0 0 0 0 0 {:.6f} host {:.6f}\n", num_beams,
                      fmt::join(ranges_m, " "), time_s, logger_time_s);
 }
@@ -263,9 +263,9 @@ TEST(CarmenReader, ACutOffBzip2FileIsNamed) {
   EXPECT_EQ(report.skipped_by_kind().at("damaged file"), 1);
 }
 
-TEST(CarmenReader, OfACutOffGzipFileTheWholeLinesAreRead) {
+TEST(CarmenReader, TheCompleteLinesOfACutOffGzipFileAreRead) {
   const auto file = test_folder() / "whole.clf.gz";
-  gzFile gz = gzopen(file.c_str(), "wb0");  // stored: a line of text lies where it lay
+  gzFile gz = gzopen(file.c_str(), "wb0");  // "stored": text lines keep their positions
   for (int second = 1; second <= 100; ++second) {
     const std::string line =
         "FLASER 4 1 1 1 1 0 0 0 0 0 0 " + std::to_string(second) + ".5 host 0\n";

@@ -15,7 +15,7 @@ using What = CarmenMounting::What;
 constexpr CarmenLidar kFront = CarmenLidar::kFront;
 constexpr CarmenLidar kRear = CarmenLidar::kRear;
 
-/// A hundred lines that say the same, the first three garbled.
+/// A hundred lines with the same pose, but the first three garbled.
 std::vector<Se2> lines(const Se2& base_from_lidar) {
   std::vector<Se2> poses(100, base_from_lidar);
   poses[0] = {90.0, 0.0, 1.0};

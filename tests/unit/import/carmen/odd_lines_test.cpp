@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Logs whose lines are whole, but mean something else: other units, other times, two LiDARs.
+// Logs with intact lines of unusual meaning: other units, other times, two LiDARs.
 #include "common/errors/setup_error.hpp"
 #include "import/carmen/carmen_reader.hpp"
 #include "import_files.hpp"
@@ -35,7 +35,7 @@ std::string text_of(const Line& line) {
                      line.heading + line.lidar_yaw_rad, line.x_m, line.heading, line.times);
 }
 
-/// Forty scans; each as `change` makes it of its number.
+/// Forty scans; `change` modifies each by its number.
 std::string forty(const std::function<void(int, Line&)>& change) {
   std::string text;
   for (int i = 0; i < 40; ++i) {
@@ -184,7 +184,7 @@ std::string corridor_in_cm(const std::string& start, const std::string& end) {
   return text;
 }
 
-TEST(OddLines, WholeNumbersThatAreShortAsCentimetresAreRefusedToo) {
+TEST(OddLines, RangesInWholeNumbersAreRefusedEvenIfPlausibleAsMetres) {
   EXPECT_THAT([] { read_lines(corridor_in_cm("FLASER 4", "")); },
               ThrowsMessage<SetupError>(
                   AllOf(HasSubstr("whole numbers, up to 8191"), HasSubstr("--range-unit"))));

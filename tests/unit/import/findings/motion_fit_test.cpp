@@ -14,7 +14,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// To and fro in the room with straight ways, 80 s.
+/// 80 s of straight drives to and fro in the room.
 ImportedLog long_drive() {
   std::vector<Se2> steps;
   for (int i = 0; i < 400; ++i) {
@@ -24,7 +24,7 @@ ImportedLog long_drive() {
   return drive(steps, CountedAs::kDriven);
 }
 
-/// Ways of 2 cm and turns by up to 0.06 rad a step.
+/// Steps of 2 cm with turns by up to 0.06 rad.
 std::vector<Se2> to_and_fro_turning() {
   std::vector<Se2> steps;
   for (int i = 0; i < 400; ++i)
@@ -61,7 +61,7 @@ TEST(MotionFit, ALidarThatIsTurnedByFiveDegreesIsNamedWithItsYaw) {
       scan.message = encode(channels::kLidar, message);
     }
   };
-  // Its own zero is 5 degrees to the left of the base's.
+  // The LiDAR's zero direction is 5 degrees to the left of the base's.
   seen([](planar_lidar_t& message) { message.rad0 -= static_cast<float>(radians(5.0)); });
 
   const auto error = lidar_yaw_error(log, {});

@@ -20,8 +20,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-/// Scans of a hall of 60 m x 45 m from places all over it. What is further than `reach_m`, and one
-/// beam of fifty at random, has no return: `code(random)`.
+/// Scans of a hall of 60 m x 45 m from places all over it. Beams longer than `reach_m`, and one
+/// beam of fifty at random, have no return: their range is `code(random)`.
 template <class Code>
 std::vector<LidarScan> hall(double reach_m, double sigma_m, double step_m, const Code& code,
                             unsigned seed = 1) {
@@ -95,7 +95,7 @@ TEST(NoReturn, TheFarthestWallsAreNoCode) {
   EXPECT_FALSE(find_no_return_code({}));
 }
 
-TEST(NoReturn, ConstantRangesOfAStandingRobotAreNoNoReturnValue) {
+TEST(NoReturn, ConstantRangesOfAStandingRobotAreNotTakenForNoReturn) {
   for (const double step_m : {0.001, 0.01, 0.05}) {
     const auto one = hall(100.0, 0.003, step_m, none);
     const std::vector<LidarScan> standing(200, one.front());

@@ -16,7 +16,7 @@ using ::testing::SizeIs;
 
 constexpr double kExact = 1e-9;
 
-/// Two ways of 20 steps with a stop of 20 between them.
+/// Two drives of 20 steps with a stop of 20 steps in between.
 ImportedLog drive_with_stop() {
   std::vector<Se2> steps;
   for (int i = 0; i < 60; ++i)
@@ -24,18 +24,18 @@ ImportedLog drive_with_stop() {
   return drive(steps, CountedAs::kDriven);
 }
 
-struct Mended {
+struct Repaired {
   ImportedLog log{};
   ImportReport report{"log", AddressUnit::kLine};
 };
 
-Mended mend(ImportedLog log) {
-  Mended mended{std::move(log)};
-  mend_odometry_breaks(mended.log, mended.report);
-  return mended;
+Repaired repair(ImportedLog log) {
+  Repaired repaired{std::move(log)};
+  repair_odometry_breaks(repaired.log, repaired.report);
+  return repaired;
 }
 
-/// Everything from scan `first` on is this much later.
+/// Delays all records from scan `first` on.
 void delay(ImportedLog& log, std::size_t first, Duration later) {
   for (std::size_t i = first; i < log.scans.size(); ++i) {
     auto message = decode<planar_lidar_t>(log.scans[i].message.payload).message.value();
@@ -59,9 +59,9 @@ double way_m(const ImportedLog& log) {
 
 TEST(OdometryBreaks, OdometryWithoutBreaksIsUnchanged) {
   const ImportedLog log = drive_with_stop();
-  const Mended mended = mend(log);
-  EXPECT_THAT(mended.report.notes(), IsEmpty());
-  EXPECT_EQ(way_m(mended.log), way_m(log));
+  const Repaired repaired = repair(log);
+  EXPECT_THAT(repaired.report.notes(), IsEmpty());
+  EXPECT_EQ(way_m(repaired.log), way_m(log));
 }
 
 TEST(OdometryBreaks, AResetAfterAPauseIsJoinedAndIsNoClockSeam) {
@@ -69,13 +69,13 @@ TEST(OdometryBreaks, AResetAfterAPauseIsJoinedAndIsNoClockSeam) {
   begin_anew(log, 30);
   delay(log, 30, std::chrono::minutes{12});
 
-  const Mended mended = mend(log);
+  const Repaired repaired = repair(log);
 
-  EXPECT_NEAR(way_m(mended.log), way_m(drive_with_stop()), kExact);
-  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("odometry begins anew at")));
-  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("the longest of 12.0 min")));
-  for (std::size_t i = 1; i < mended.log.odometry.size(); ++i)
-    EXPECT_LE(mended.log.odometry[i].time - mended.log.odometry[i - 1].time,
+  EXPECT_NEAR(way_m(repaired.log), way_m(drive_with_stop()), kExact);
+  EXPECT_THAT(repaired.report.notes(), Contains(HasSubstr("odometry begins anew at")));
+  EXPECT_THAT(repaired.report.notes(), Contains(HasSubstr("the longest of 12.0 min")));
+  for (std::size_t i = 1; i < repaired.log.odometry.size(); ++i)
+    EXPECT_LE(repaired.log.odometry[i].time - repaired.log.odometry[i - 1].time,
               std::chrono::minutes{5});
 }
 
@@ -86,10 +86,11 @@ TEST(OdometryBreaks, MotionDuringAGapInABareCorridorIsKept) {
     for (std::size_t i = 30; i < log.odometry.size(); ++i)
       log.odometry[i].pose = Se2{2.0, 0.0, 0.0} * log.odometry[i].pose;
     delay(log, 30, std::chrono::seconds{10});
-    return way_m(mend(log).log);
+    return way_m(repair(log).log);
   };
   EXPECT_NEAR(way_of_drive_with_gap(Walls::kCorridor), 5.0, kExact);
-  EXPECT_NEAR(way_of_drive_with_gap(Walls::kRoom), 2.95, kExact);  // the scans show that it stood
+  // The scans show that the robot stood.
+  EXPECT_NEAR(way_of_drive_with_gap(Walls::kRoom), 2.95, kExact);
 }
 
 TEST(OdometryBreaks, AResetToZeroAfterAPauseInABareCorridorIsFound) {
@@ -102,29 +103,29 @@ TEST(OdometryBreaks, AResetToZeroAfterAPauseInABareCorridorIsFound) {
     log.odometry[i].pose = old_from_new.inverse() * log.odometry[i].pose;
   delay(log, kNewBeginning, std::chrono::hours{24});
 
-  const Mended mended = mend(log);
+  const Repaired repaired = repair(log);
 
-  EXPECT_NEAR(way_m(mended.log), 59 * 0.05, kExact);
-  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("odometry begins anew at")));
+  EXPECT_NEAR(way_m(repaired.log), 59 * 0.05, kExact);
+  EXPECT_THAT(repaired.report.notes(), Contains(HasSubstr("odometry begins anew at")));
 }
 
 TEST(OdometryBreaks, AResetWhileDrivingIsJoinedAtTheLastVelocity) {
   ImportedLog log = drive_with_stop();
   begin_anew(log, 50);
 
-  const Mended mended = mend(log);
+  const Repaired repaired = repair(log);
 
-  EXPECT_NEAR(way_m(mended.log), way_m(drive_with_stop()), 0.01);
+  EXPECT_NEAR(way_m(repaired.log), way_m(drive_with_stop()), 0.01);
 }
 
 TEST(OdometryBreaks, ASinglePoseElsewhereIsInterpolated) {
   ImportedLog log = drive_with_stop();
   log.odometry[10].pose = Se2{-9.0, 4.0, 0.0};
 
-  const Mended mended = mend(log);
+  const Repaired repaired = repair(log);
 
-  EXPECT_NEAR(way_m(mended.log), way_m(drive_with_stop()), 1e-4);
-  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("1 single poses")));
+  EXPECT_NEAR(way_m(repaired.log), way_m(drive_with_stop()), 1e-4);
+  EXPECT_THAT(repaired.report.notes(), Contains(HasSubstr("1 single poses")));
 }
 
 TEST(OdometryBreaks, OdometryThatIs0UntilItStartsIsJoinedWhereTheRobotStands) {
@@ -134,10 +135,10 @@ TEST(OdometryBreaks, OdometryThatIs0UntilItStartsIsJoinedWhereTheRobotStands) {
   for (std::size_t i = 0; i < log.odometry.size(); ++i)
     log.odometry[i].pose = i < 20 ? Se2{} : Se2{5.0, 5.0, 1.0} * log.odometry[i].pose;
 
-  const Mended mended = mend(log);
+  const Repaired repaired = repair(log);
 
-  EXPECT_NEAR(way_m(mended.log), 1.5, kExact);
-  EXPECT_THAT(mended.report.notes(), Contains(HasSubstr("odometry is 0 for the first 4.0 s")));
+  EXPECT_NEAR(way_m(repaired.log), 1.5, kExact);
+  EXPECT_THAT(repaired.report.notes(), Contains(HasSubstr("odometry is 0 for the first 4.0 s")));
 }
 
 TEST(OdometryBreaks, ScansOfMotionBeforeOdometryStartsAreLeftOut) {
@@ -145,11 +146,11 @@ TEST(OdometryBreaks, ScansOfMotionBeforeOdometryStartsAreLeftOut) {
   for (std::size_t i = 0; i < log.odometry.size(); ++i)
     log.odometry[i].pose = i < 15 ? Se2{} : Se2{5.0, 5.0, 1.0} * log.odometry[i].pose;
 
-  const Mended mended = mend(log);
+  const Repaired repaired = repair(log);
 
-  EXPECT_EQ(mended.report.num_skipped(), 15);
-  EXPECT_THAT(mended.log.scans, SizeIs(61 - 15));
-  EXPECT_EQ(mended.log.odometry.front().time, mended.log.scans.front().time);
+  EXPECT_EQ(repaired.report.num_skipped(), 15);
+  EXPECT_THAT(repaired.log.scans, SizeIs(61 - 15));
+  EXPECT_EQ(repaired.log.odometry.front().time, repaired.log.scans.front().time);
 }
 
 TEST(OdometryBreaks, AGapInWhichTheRobotIsMovedIsReported) {
@@ -161,7 +162,7 @@ TEST(OdometryBreaks, AGapInWhichTheRobotIsMovedIsReported) {
   for (std::size_t i = 21; i < log.odometry.size(); ++i)
     log.odometry[i].pose = held * moved.inverse() * log.odometry[i].pose;
 
-  EXPECT_THAT(mend(log).report.notes(), Contains(HasSubstr("the robot was moved meanwhile")));
+  EXPECT_THAT(repair(log).report.notes(), Contains(HasSubstr("the robot was moved meanwhile")));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-/// A room of 8 m x 6 m with the LiDAR off its middle; ranges with noise, written in steps.
+/// A scan in a room of 8 m x 6 m, with noise, its ranges rounded to steps.
 LidarScan room(double sigma_m, double step_m, std::mt19937& random) {
   std::normal_distribution<double> noise{0.0, 1.0};
   LidarScan scan{};
@@ -45,7 +45,7 @@ TEST(WallScatter, ClutterInHalfOfTheBeamsDoesNotRaiseTheNoise) {
     WallScatter noise;
     for (int i = 0; i < 60; ++i) {
       LidarScan scan = room(sigma_m, 1e-3, random);
-      double extent_m = 0.0;  // of one thing, some beams wide: from cables to shelves
+      double extent_m = 0.0;  // depth of the object that the next ten beams hit
       for (std::size_t beam = 0; beam < 200; ++beam) {
         if (beam % 10 == 0) extent_m = std::exp(log_extent(random));
         scan.ranges_m[beam] += extent_m * depth(random);

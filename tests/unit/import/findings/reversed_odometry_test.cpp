@@ -56,7 +56,7 @@ TEST(ReversedOdometry, ABareCorridorDecidesNothing) {
 
 TEST(ReversedOdometry, UndecidedStepsFollowTheirNeighbours) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kForward);
-  // The scans of five steps in the middle of backing up see hardly anything.
+  // The scans of five steps in the middle of backing up have no returns.
   for (std::size_t i = 28; i < 33; ++i) {
     auto message = decode<planar_lidar_t>(log.scans[i].message.payload).message.value();
     std::ranges::fill(message.ranges, std::numeric_limits<float>::infinity());
@@ -73,9 +73,9 @@ TEST(ReversedOdometry, IsCorrectedOnRequestAndAlwaysReported) {
   EXPECT_EQ(log.odometry.back().pose.x(), wrong_end.x());
   EXPECT_THAT(named.notes(), Contains(HasSubstr("--fix-reversed-odometry turns it round")));
 
-  ImportReport mended{"log", AddressUnit::kLine};
-  examine(log, ReversedOdometry::kCorrect, mended);
-  EXPECT_THAT(mended.notes(), Contains(HasSubstr("20 steps between scans, 0.9 m")));
+  ImportReport repaired{"log", AddressUnit::kLine};
+  examine(log, ReversedOdometry::kCorrect, repaired);
+  EXPECT_THAT(repaired.notes(), Contains(HasSubstr("20 steps between scans, 0.9 m")));
   const Se2 end = drive(to_and_fro(), CountedAs::kDriven).odometry.back().pose;
   EXPECT_NEAR(log.odometry.back().pose.x(), end.x(), 1e-6);
   EXPECT_NEAR(log.odometry.back().pose.y(), end.y(), 1e-6);

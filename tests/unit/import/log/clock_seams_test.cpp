@@ -15,7 +15,7 @@ using ::testing::SizeIs;
 constexpr std::int64_t kPeriod_us = 200'000;
 constexpr std::int64_t kSecond_us = 1'000'000;
 
-/// `count` stamps five times a second.
+/// `count` stamps, five per second.
 std::vector<Timestamp> from(std::int64_t start_us, int count) {
   std::vector<Timestamp> stamps;
   for (int i = 0; i < count; ++i)

@@ -88,7 +88,7 @@ TEST(OrderWithinTolerance, ALargeStepBackIsKept) {
               ElementsAre(0, 1, 2));
 }
 
-/// Length of the longest ascending subsequence by trying all of them.
+/// Length of the longest ascending subsequence, found by trying all subsequences.
 int slow_length(const std::vector<Timestamp>& all) {
   int best = 0;
   for (unsigned subset = 0; subset < (1U << all.size()); ++subset) {

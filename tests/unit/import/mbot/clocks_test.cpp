@@ -13,8 +13,8 @@ using ::testing::IsEmpty;
 
 constexpr std::int64_t kSecond_us = 1'000'000;
 
-/// Sixty messages, one a second from `first_us` on by their own clock, logged a bit later by
-/// another one that is ahead.
+/// Sixty messages, stamped every second from `first_us` on by their own clock, and logged a little
+/// later by another clock, which is ahead.
 ChannelClock channel(std::int64_t first_us, std::int64_t logger_ahead_us) {
   ChannelClock clock;
   for (int i = 0; i < 60; ++i) {
@@ -39,7 +39,7 @@ Result put(const ChannelClock& lidar, const ChannelClock& odometry, std::int64_t
 }
 
 TEST(Clocks, StampsOfAnotherClockAreShiftedByTheLogTimes) {
-  // Odometry's clock began with its microcontroller, the LiDAR's is the host's.
+  // Odometry's clock started with its microcontroller; the LiDAR's clock is that of the host.
   const auto [time, notes] = put(channel(5'000 * kSecond_us, 0),
                                  channel(3 * kSecond_us, 4'997 * kSecond_us), 10 * kSecond_us);
 

@@ -38,7 +38,7 @@ MbotOptions encoders_on(const std::string& channel) {
 }
 
 Message event(const std::string& channel, std::vector<std::uint8_t> payload) {
-  return {channel, timestamp_from_us(5), std::move(payload)};  // a logger's clock is another one
+  return {channel, timestamp_from_us(5), std::move(payload)};  // the logger has another clock
 }
 
 /// Two beams, the second 0.1 s after the first.
@@ -269,7 +269,7 @@ TEST(MbotReader, MotorFeedbackOf2014HasItsOwnWheels) {
             1);
 }
 
-TEST(MbotReader, WithoutOdometryThereIsAClearSentence) {
+TEST(MbotReader, WithoutOdometryTheErrorListsTheChannels) {
   const auto sentence = [](const std::vector<Message>& events) -> std::string {
     try {
       read(events, {});
@@ -311,7 +311,7 @@ Message image_event(const std::string& channel, std::int64_t utime_us) {
   return event(channel, encode(channels::kCamera, image).payload);
 }
 
-TEST(MbotReader, ImagesAreTakenOver) {
+TEST(MbotReader, ImagesAreImported) {
   const std::vector<Message> drive{ticks_event(kStart_us, 0, 0), rotating_event(kStart_us + 1000),
                                    ticks_event(kStart_us + 500'000, 200, 200)};
   for (const std::string channel : {"CAMERA", "FRONT"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags that are damaged, incomplete or unusual. Whole bags: tests/python/rosbag_test.py.
+// Bags that are damaged, incomplete or unusual. tests/python/rosbag_test.py reads normal bags.
 #include "import/rosbag/rosbag_reader.hpp"
 
 #include "common/errors/setup_error.hpp"

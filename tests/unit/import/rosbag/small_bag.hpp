@@ -16,7 +16,7 @@ namespace waymark {
 
 inline constexpr std::int64_t kBagStart_ns = 1'600'000'000'000'000'000;
 
-/// Fields of a message in CDR.
+/// Writes the fields of a message in CDR.
 class CdrWriter {
  public:
   template <class Number>
@@ -90,7 +90,7 @@ inline BagMessage bag_image(const std::string& topic, const std::string& encodin
   return {topic, "sensor_msgs/msg/Image", kBagStart_ns, data.done()};
 }
 
-/// P as given (fx, cx, fy, cy), K with the focal length k.
+/// A CameraInfo with the given P (fx, cx, fy, cy), and a K with the focal length k.
 inline BagMessage bag_camera_info(int width_px, int height_px, const std::vector<double>& p,
                                   double k = 55.0) {
   CdrWriter data;
@@ -100,7 +100,7 @@ inline BagMessage bag_camera_info(int width_px, int height_px, const std::vector
   return {"/camera_info", "sensor_msgs/msg/CameraInfo", kBagStart_ns, data.done()};
 }
 
-/// tf_static: the LiDAR 0.25 m ahead of the base, and an arm with that quaternion.
+/// tf_static with the LiDAR 0.25 m ahead of the base, and an arm with that quaternion.
 inline BagMessage bag_transforms(const std::vector<double>& arm_xyzw) {
   CdrWriter data;
   data.put(std::uint32_t{2});

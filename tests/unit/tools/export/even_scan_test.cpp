@@ -44,7 +44,7 @@ TEST(EvenScan, BeamsMayCrossTheEndOfTheTurn) {
   EXPECT_THAT(scan.ranges_m, ElementsAre(1.0F, 2.0F, 3.0F));
 }
 
-// As of the MBot: clockwise from just below zero, unevenly, once around and over the start.
+// Beams as of the MBot: clockwise from just below zero, uneven, slightly more than one turn.
 TEST(EvenScan, UnevenBeamsKeepTheirDirections) {
   constexpr int kBeams = 300;
   constexpr double kSpacing = 0.021;
@@ -67,7 +67,7 @@ TEST(EvenScan, UnevenBeamsKeepTheirDirections) {
   EXPECT_EQ(num_found, kBeams);
 }
 
-TEST(EvenScan, OfBeamsOnOnePlaceTheNearerOneStays) {
+TEST(EvenScan, OfTwoBeamsAtOnePlaceTheNearerOneIsKept) {
   const EvenScan scan = even_scan(std::vector{0.0F, 0.005F, 0.5F, 1.0F, 1.0F},
                                   std::vector{kNoReturn, 2.0F, 3.0F, 4.0F, 5.0F});
   EXPECT_EQ(scan.ranges_m.size(), 20U);

@@ -10,7 +10,7 @@ namespace {
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// The base drives along x: 1 m/s by odometry; in the map 5 m ahead of that.
+/// The base drives along x at 1 m/s by odometry; in the map it is 5 m ahead of that.
 viewer::TimedPose odometry_at(double time_s) {
   return {Timestamp{duration_from_seconds(time_s)}, {time_s, 0.0, 0.0}};
 }
@@ -35,7 +35,7 @@ void drive(PosePairing& pairing, double from_s, double to_s) {
   }
 }
 
-TEST(PosePairing, AnEstimateWaitsForThePoseAfterIt) {
+TEST(PosePairing, AnEstimateWaitsForTheNextPoseOfTheOtherChannel) {
   PosePairing pairing;
   drive(pairing, 0.0, 2.0);
   pairing.finish();
@@ -78,7 +78,7 @@ TEST(PosePairing, AForgottenEstimateIsNotPaired) {
   EXPECT_THAT(pairing.take_pairs(), IsEmpty());
 }
 
-TEST(PosePairing, ALoneWrongStampLosesOnlyItself) {
+TEST(PosePairing, ASingleWrongStampLosesOnlyItsOwnPose) {
   for (const double wrong_s : {3600.0, 30.0, 0.5, -0.5, -3600.0}) {
     SCOPED_TRACE(wrong_s);
     PosePairing pairing;
@@ -97,7 +97,7 @@ TEST(PosePairing, ALoneWrongStampLosesOnlyItself) {
   }
 }
 
-TEST(PosePairing, AClockThatWasSetGoesOn) {
+TEST(PosePairing, PairingContinuesAfterTheClockWasSet) {
   for (const double later_s : {3600.0, -3600.0}) {
     SCOPED_TRACE(later_s);
     PosePairing pairing;

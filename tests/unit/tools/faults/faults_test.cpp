@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faults put into messages: how many, which, and nothing else.
+// Injected faults: how many messages are affected, which, and that nothing else changes.
 #include "common/log/log_file.hpp"
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
@@ -217,7 +217,7 @@ TEST(FaultyRun, TheRecordedRunIsNotOverwritten) {
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "run/run.lcm"), 12U);
 }
 
-/// What refuses to put the faults in; empty: nothing does.
+/// The error of injecting the faults; empty if there is none.
 std::string problem_of(const std::filesystem::path& run_dir, const std::filesystem::path& out_dir,
                        const FaultConfig& faults = {.every_id = 0}) {
   try {

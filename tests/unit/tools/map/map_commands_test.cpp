@@ -13,7 +13,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// A map file of two walls of a few cells, each in one of these places.
+/// A map file with two walls of a few cells, one at each of these places.
 std::filesystem::path map_with(const evaluate::TemporaryFolder& folder,
                                const Eigen::Vector2d& first_m, const Eigen::Vector2d& second_m) {
   MapSnapshot map;
@@ -51,7 +51,7 @@ TEST(ExportMap, AMapThatIsTooLargeIsRefusedAndNotCut) {
   EXPECT_FALSE(std::filesystem::exists(out / "map.pgm"));
 }
 
-TEST(TransformMap, AMapMayLieOutsideTheCityButNotWherePosesAreCoarse) {
+TEST(TransformMap, AMapMayLieKilometresAwayButNotWherePosesAreCoarse) {
   const evaluate::TemporaryFolder folder;
   const auto file = map_with(folder, {0.0, 0.0}, {20.0, 10.0});
   const auto out = folder.path() / "b.map.lcm";

@@ -13,7 +13,7 @@ struct Wall {
   Eigen::Vector2d to;
 };
 
-/// A map of walls as it is drawn in its own frame, with poses along a way.
+/// A map of walls, with poses along `way`.
 MapSnapshot map_of(const std::vector<Wall>& walls, const std::vector<Se2>& way,
                    const Se2& map_from_world) {
   MapSnapshot map;
@@ -33,7 +33,7 @@ MapSnapshot map_of(const std::vector<Wall>& walls, const std::vector<Se2>& way,
   return map;
 }
 
-/// Three rooms side by side, each with other nooks.
+/// Three rooms side by side, each with different niches.
 std::vector<Wall> rooms() {
   return {{{0, 0}, {18, 0}},         {{0, 5}, {18, 5}},          {{0, 0}, {0, 5}},
           {{18, 0}, {18, 5}},        {{6, 0}, {6, 3.2}},         {{12, 2}, {12, 5}},

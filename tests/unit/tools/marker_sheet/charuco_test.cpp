@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boards on paper, read back: every corner where OpenCV's board has it.
+// Printed boards are read back: every corner is where OpenCV's board has it.
 #include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
 #include "marker_sheet/pdf_pages.hpp"

@@ -102,7 +102,7 @@ TEST(Placement, WithoutMarkersSigmaGrowsWithTheRootOfTheDistance) {
   input.config.slam.waymark.learn_noise = false;
   const std::vector<double> sigma_m = sigmas(input);
   const double quarter_m = sigma_m[sigma_m.size() / 4];
-  constexpr double kRounding = 0.03;  // of steps
+  constexpr double kRounding = 0.03;  // rounding of the path to whole steps
   EXPECT_NEAR(sigma_m.back() / quarter_m, 2.0, kRounding * 2.0);
 }
 
@@ -196,9 +196,8 @@ TEST(Placement, AdvisedMarkersMeetTheTargetAndAllOfThemAreNeeded) {
   ASSERT_GT(placement.worst_now_m(), kTarget_m);
   ASSERT_TRUE(placement.is_met());
   ASSERT_THAT(placement.markers, Not(IsEmpty()));
-  EXPECT_EQ(placement.markers.front().id, 1);  // the smallest that is free
-  // As markers that hang they have the sigmas that were predicted; without one the target is
-  // missed.
+  EXPECT_EQ(placement.markers.front().id, 1);  // the smallest free id
+  // With the advised markers, the sigmas are those predicted; without one, the target is missed.
   for (const NewMarker& marker : placement.markers)
     input.markers.push_back({marker.id, 0, marker.place.map_from_marker});
   EXPECT_THAT(sigmas(input), Each(Le(kTarget_m)));
@@ -212,7 +211,7 @@ TEST(Placement, AdvisedMarkersMeetTheTargetAndAllOfThemAreNeeded) {
 TEST(Placement, AnUnobservedScaleIsNamedAsTheLimit) {
   PlacementInput input = drive(16.0);
   input.config.robot.camera.focal_sigma = 0.02;
-  input.config.slam.waymark.markers.perspective_max_sigma = 1e-9;  // perspective says nothing
+  input.config.slam.waymark.markers.perspective_max_sigma = 1e-9;  // perspective is not used
   const Placement placement = place_markers(input, 0.012);
   EXPECT_FALSE(placement.is_met());
   EXPECT_GT(placement.reachable_m(), 0.012);
@@ -250,14 +249,14 @@ TEST(Placement, MarkersThatHangHighLeaveThePictureEarlier) {
   EXPECT_GT(nearest_view_m(camera_m + 1.0), 2.0);
 }
 
-TEST(Placement, TheSigmaWithMarkersEverywhereIsReportedAsItIs) {
+TEST(Placement, TheReachableSigmaIsThatOfMarkersEverywhere) {
   PlacementInput input = drive(16.0);
   input.config.robot.camera.focal_sigma = 0.02;
   input.config.slam.waymark.markers.perspective_max_sigma = 1e-9;
   const Placement placement = place_markers(input, 0.012);
   ASSERT_FALSE(placement.is_met());
   EXPECT_EQ(placement.reachable_m(), placement.advice.everywhere_m);
-  // The markers that hang everywhere have the sigma that is reported.
+  // Markers hung everywhere give the reported sigma.
   const OccupiedWalls walls{input.image};
   const std::vector<Step> steps = drive_along(input.places, walls, input.config);
   constexpr double kPlate_m = 0.6, kApart_m = 0.5;
@@ -288,7 +287,7 @@ class PlacementRow : public ::testing::Test {
   evaluate::TemporaryFolder folder_;
 };
 
-TEST_F(PlacementRow, AConfigurationIsLaidOverThatOfTheRow) {
+TEST_F(PlacementRow, AGivenConfigurationOverridesThatOfTheRow) {
   write("slam.toml", "[slam]\nestimator = \"waymark\"\n[robot.camera]\nz_m = 0.3\n");
   const PlacementInput input = read_placement_input(row(), row() / "slam.toml");
   EXPECT_EQ(input.config.robot.camera.fx_px, 777.0);
@@ -322,8 +321,7 @@ TEST(Placement, SmallModulesAreDetectedRarely) {
 
 TEST(Placement, AFolderThatIsNoRunIsRefusedInOneSentence) {
   EXPECT_THROW(read_placement_input("/nowhere.map.lcm", ""), std::runtime_error);
-  EXPECT_THROW(read_placement_input(std::filesystem::temp_directory_path(), ""),
-               evaluate::InputError);
+  EXPECT_THROW(read_placement_input(std::filesystem::temp_directory_path(), ""), SetupError);
 }
 
 }  // namespace

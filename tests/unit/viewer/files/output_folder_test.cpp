@@ -48,7 +48,7 @@ TEST_F(OutputFolderTest, CreatesFoldersAndLeavesNothingButTheFiles) {
 }
 
 TEST_F(OutputFolderTest, AFullDiskIsReportedAndLeavesNoFile) {
-  // The temporary file's place is taken by a link to the device that is always full.
+  // In place of the temporary file there is a link to /dev/full, a device that is always full.
   OutputFolder folder{root_};
   folder.write("a", "old");
   fs::create_symlink("/dev/full", root_ / ".a.part");

@@ -93,25 +93,25 @@ ViewPtr view_at(double time_s, std::uint64_t number) {
   return std::make_shared<LiveView>(view);
 }
 
-TEST(Board, KeepsAnEvenHistoryOfBoundedSize) {
-  Board board;
+TEST(ViewStore, KeepsAnEvenHistoryOfBoundedSize) {
+  ViewStore views;
   for (int i = 0; i <= 10'000; ++i)
-    board.post(view_at(i, static_cast<std::uint64_t>(i) + 1), {});
-  EXPECT_EQ(board.history().last, at_s(10'000));
+    views.post(view_at(i, static_cast<std::uint64_t>(i) + 1), {});
+  EXPECT_EQ(views.history().last, at_s(10'000));
   for (double time_s = 0.0; time_s <= 10'000.0; time_s += 123.4) {
-    const double shown_s = to_seconds(board.at(at_s(time_s))->time);
+    const double shown_s = to_seconds(views.at(at_s(time_s))->time);
     EXPECT_LE(shown_s, time_s);
     // Evenly spread, the sparsest history of 10 000 s has half the largest number of views.
-    EXPECT_GT(shown_s, time_s - 2.0 * 10'000.0 / Board::kMaxHistory - 1.0);
+    EXPECT_GT(shown_s, time_s - 2.0 * 10'000.0 / ViewStore::kMaxHistory - 1.0);
   }
 }
 
-TEST(Board, WaitsUntilThereIsANewerView) {
-  Board board;
-  EXPECT_EQ(board.wait_for_newer(0, std::chrono::milliseconds{1}), nullptr);
-  board.post(view_at(1.0, 7), {});
-  EXPECT_EQ(board.wait_for_newer(6, std::chrono::milliseconds{1})->number, 7U);
-  EXPECT_EQ(board.wait_for_newer(7, std::chrono::milliseconds{1}), nullptr);
+TEST(ViewStore, WaitsUntilThereIsANewerView) {
+  ViewStore views;
+  EXPECT_EQ(views.wait_for_newer(0, std::chrono::milliseconds{1}), nullptr);
+  views.post(view_at(1.0, 7), {});
+  EXPECT_EQ(views.wait_for_newer(6, std::chrono::milliseconds{1})->number, 7U);
+  EXPECT_EQ(views.wait_for_newer(7, std::chrono::milliseconds{1}), nullptr);
 }
 
 map_tiles_t tile(int x, std::int8_t occupancy, double origin_x_m = 0.0) {
@@ -133,45 +133,45 @@ constexpr std::size_t kHeaderBytes = 40;
 constexpr std::size_t kTileBytes = 8 + 4;
 
 TEST(LiveFeed, OnlyChangedTilesAreSent) {
-  Board board;
-  LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
+  ViewStore views;
+  LiveFeed feed{views, "run", LiveFeed::Pace::kMessageTime};
   feed.add(tile(0, 10));
   feed.add(tile(1, 20));
   feed.post_last();
-  const std::uint32_t version = board.newest()->map->version;
-  EXPECT_THAT(tile_bytes(*board.newest()->map, 0), SizeIs(kHeaderBytes + 2 * kTileBytes));
+  const std::uint32_t version = views.newest()->map->version;
+  EXPECT_THAT(tile_bytes(*views.newest()->map, 0), SizeIs(kHeaderBytes + 2 * kTileBytes));
   feed.add(tile(0, 10));
   feed.post_last();
-  EXPECT_THAT(tile_bytes(*board.newest()->map, version), SizeIs(kHeaderBytes));
+  EXPECT_THAT(tile_bytes(*views.newest()->map, version), SizeIs(kHeaderBytes));
   feed.add(tile(1, 99));
   feed.post_last();
-  const std::string bytes = tile_bytes(*board.newest()->map, version);
+  const std::string bytes = tile_bytes(*views.newest()->map, version);
   ASSERT_THAT(bytes, SizeIs(kHeaderBytes + kTileBytes));
   EXPECT_EQ(bytes.substr(bytes.size() - 4), std::string(4, 99));
 }
 
 TEST(LiveFeed, AnotherTileLayoutStartsANewMap) {
-  Board board;
-  LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
+  ViewStore views;
+  LiveFeed feed{views, "run", LiveFeed::Pace::kMessageTime};
   feed.add(tile(0, 10));
   feed.post_last();
-  const std::uint32_t generation = board.newest()->map->generation;
+  const std::uint32_t generation = views.newest()->map->generation;
   feed.add(tile(1, 20, 5.0));
   feed.post_last();
-  EXPECT_NE(board.newest()->map->generation, generation);
-  EXPECT_THAT(board.newest()->map->tiles, SizeIs(1));
+  EXPECT_NE(views.newest()->map->generation, generation);
+  EXPECT_THAT(views.newest()->map->tiles, SizeIs(1));
 }
 
 TEST(LiveFeed, ShowsTheStateAtAGivenTimeOfALog) {
-  Board board;
-  LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
+  ViewStore views;
+  LiveFeed feed{views, "run", LiveFeed::Pace::kMessageTime};
   for (int i = 0; i <= 100; ++i) {
     slam_estimate_t message{};
     message.has_pose = 1;
     message.markers_in_view = i == 40 ? 1 : 0;
     feed.add(message, {.time = at_s(i), .map_from_base = {0.1 * i, 0.0, 0.0}});
   }
-  const auto json = Json::parse(view_json(*board.at(at_s(50.5)), board.history()));
+  const auto json = Json::parse(view_json(*views.at(at_s(50.5)), views.history()));
   EXPECT_EQ(json["time_s"], 50.0);
   EXPECT_EQ(json["since_marker_s"], 10.0);
   EXPECT_EQ(json["estimate"]["pose"][0], 5.0);
@@ -179,32 +179,32 @@ TEST(LiveFeed, ShowsTheStateAtAGivenTimeOfALog) {
   EXPECT_EQ(json["history_s"], Json::parse("[0.0, 100.0]"));
 }
 
-TEST(LiveFeed, GoesOnWhenTheClockIsSetBack) {
-  Board board;
-  LiveFeed feed{board, "run", LiveFeed::Pace::kMessageTime};
+TEST(LiveFeed, FollowsAClockThatIsSetBack) {
+  ViewStore views;
+  LiveFeed feed{views, "run", LiveFeed::Pace::kMessageTime};
   for (int i = 0; i < 10; ++i)
     feed.add_markers(at_s(1000.0 + i), {});
   feed.add_markers(at_s(9000.0), {});
-  EXPECT_EQ(board.newest()->time, at_s(1009.0)) << "one stamp is wrong";
+  EXPECT_EQ(views.newest()->time, at_s(1009.0)) << "one stamp is wrong";
   for (int i = 0; i < 30; ++i)
     feed.add_markers(at_s(500.0 + i), {});
-  EXPECT_EQ(board.newest()->time, at_s(529.0));
+  EXPECT_EQ(views.newest()->time, at_s(529.0));
 }
 
 TEST(LiveFeed, UpdatesSlowlyWithoutClients) {
-  Board board;
-  LiveFeed feed{board, "run", LiveFeed::Pace::kWallClock};
+  ViewStore views;
+  LiveFeed feed{views, "run", LiveFeed::Pace::kWallClock};
   const auto number_after_300_ms = [&] {
     std::this_thread::sleep_for(std::chrono::milliseconds{300});
     feed.add_markers(at_s(1.0), {});
-    return board.wait_for_newer(0, std::chrono::milliseconds{1})->number;
+    return views.wait_for_newer(0, std::chrono::milliseconds{1})->number;
   };
   feed.add_markers(at_s(1.0), {});
   std::this_thread::sleep_for(std::chrono::milliseconds{300});
-  feed.add_markers(at_s(1.0), {});  // not due: nobody has looked
-  EXPECT_FALSE(board.is_watched());
-  EXPECT_EQ(board.newest()->number, 1U);
-  EXPECT_TRUE(board.is_watched());
+  feed.add_markers(at_s(1.0), {});  // no view is due, as no client reads
+  EXPECT_FALSE(views.is_watched());
+  EXPECT_EQ(views.newest()->number, 1U);
+  EXPECT_TRUE(views.is_watched());
   EXPECT_EQ(number_after_300_ms(), 2U);
   EXPECT_EQ(number_after_300_ms(), 3U);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The web server over the loopback network, with clients that behave and clients that do not.
+// The web server over the loopback network, with well-behaved clients and others.
 #include "viewer/http/page_server.hpp"
 
 #include "common/errors/setup_error.hpp"
@@ -30,7 +30,7 @@ class PageServerTest : public ::testing::Test {
     LiveView view;
     view.number = number;
     view.title = std::string(kTitleBytes, 't');
-    board_.post(std::make_shared<LiveView>(view), {});
+    views_.post(std::make_shared<LiveView>(view), {});
   }
 
   int status_of(const std::string& path) {
@@ -38,7 +38,7 @@ class PageServerTest : public ::testing::Test {
     return result ? result->status : 0;
   }
 
-  /// A connection of our own, for what no client library would send.
+  /// A raw connection, for bytes that no client library would send.
   int connect() const {
     const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
     const sockaddr_in address = test::loopback(port_);
@@ -48,7 +48,7 @@ class PageServerTest : public ::testing::Test {
     return socket;
   }
 
-  /// The beginning of what comes back; empty when the server only closes the connection.
+  /// The beginning of the answer; empty when the server only closes the connection.
   std::string answer_to(const std::string& request) const {
     const int socket = connect();
     ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
@@ -60,8 +60,8 @@ class PageServerTest : public ::testing::Test {
 
   static constexpr std::size_t kTitleBytes = 100'000;  // so that few views fill a socket's buffers
   const int port_ = test::free_port();
-  Board board_{};
-  PageServer server_{{.host = "127.0.0.1", .port = port_}, board_, ::testing::TempDir()};
+  ViewStore views_{};
+  PageServer server_{{.host = "127.0.0.1", .port = port_}, views_, ::testing::TempDir()};
   httplib::Client client_{"127.0.0.1", port_};
 };
 
@@ -89,7 +89,7 @@ TEST_F(PageServerTest, ALongPathComesInSeveralEvents) {
   LiveView view;
   view.number = 2;
   view.path_length = 25'000;
-  board_.post(std::make_shared<LiveView>(view), std::vector<PathPoint>(view.path_length));
+  views_.post(std::make_shared<LiveView>(view), std::vector<PathPoint>(view.path_length));
   std::string received;
   client_.Get("/events", [&](const char* data, std::size_t size) {
     received.append(data, size);
@@ -127,7 +127,7 @@ TEST_F(PageServerTest, RefusesWritesAndForeignHostHeaders) {
   EXPECT_EQ(client_.Get("/", {{"Host", "robot.example"}})->status, 403);
 }
 
-/// A page with commands, which a slam in this process answers.
+/// A page with commands, which this process answers in place of slam.
 class PageCommandsTest : public PageServerTest {
  protected:
   static constexpr auto kToken = "0123456789abcdef";
@@ -142,7 +142,7 @@ class PageCommandsTest : public PageServerTest {
   std::optional<reply_t> reply_{
       reply_t{.utime = 0, .command_id = 0, .state = reply_t::STATE_DONE, .text = "saved"}};
   PageServer commanded_{{.host = "127.0.0.1", .port = command_port_},
-                        board_,
+                        views_,
                         ::testing::TempDir(),
                         PageCommands{.token = kToken, .ask = [this](const command_t& command) {
                                        asked_.push_back(command);
@@ -214,8 +214,8 @@ TEST(HttpToken, IsLongEnoughAndMayStandInAFile) {
 }
 
 TEST_F(PageServerTest, ATakenPortIsASetupError) {
-  Board board;
-  EXPECT_THROW((PageServer{{.host = "127.0.0.1", .port = port_}, board, "."}), SetupError);
+  ViewStore views;
+  EXPECT_THROW((PageServer{{.host = "127.0.0.1", .port = port_}, views, "."}), SetupError);
 }
 
 TEST_F(PageServerTest, GarbageCausesNoServerErrorAndServingContinues) {
@@ -239,7 +239,7 @@ TEST_F(PageServerTest, GarbageCausesNoServerErrorAndServingContinues) {
   }
   for (const std::string& request : requests) {
     const std::string answer = answer_to(request);
-    // A connection that is closed without a word is an answer, too; some changes do no harm.
+    // Closing the connection without an answer is allowed; and some changes do no harm.
     const bool is_fine =
         answer.empty() || answer.starts_with("HTTP/1.1 4") || answer.starts_with("HTTP/1.1 2");
     EXPECT_TRUE(is_fine) << request.substr(0, 200) << " -> " << answer.substr(0, 200);

@@ -28,12 +28,12 @@ TEST(ScanTrajectory, IsEmptyWithoutScans) {
 }
 
 TEST(ScanTrajectory, FollowsOdometryAfterTheLastUpdate) {
-  ScanTrajectory trail;
-  trail.add(at(0), {}, true);
-  trail.add(at(1), step(1.0, std::numbers::pi / 2), false);
-  trail.add(at(2), step(2.0), false);
+  ScanTrajectory trajectory;
+  trajectory.add(at(0), {}, true);
+  trajectory.add(at(1), step(1.0, std::numbers::pi / 2), false);
+  trajectory.add(at(2), step(2.0), false);
   const std::vector<Se2> updates{Se2{5.0, 0.0, 0.0}};
-  const auto poses = trail.along(updates);
+  const auto poses = trajectory.along(updates);
   ASSERT_EQ(poses.size(), 3U);
   expect_pose(poses[0], 0, {5.0, 0.0, 0.0});
   expect_pose(poses[1], 1, {6.0, 0.0, std::numbers::pi / 2});
@@ -41,14 +41,14 @@ TEST(ScanTrajectory, FollowsOdometryAfterTheLastUpdate) {
 }
 
 TEST(ScanTrajectory, PassesThroughTheUpdatesAndSpreadsTheDifferenceOverTheSteps) {
-  ScanTrajectory trail;
-  trail.add(at(0), {}, true);
-  trail.add(at(1), step(1.0), false);
-  trail.add(at(2), {}, false);  // stands still: no share of the difference
-  trail.add(at(3), step(3.0), true);
-  trail.add(at(4), step(1.0), true);
+  ScanTrajectory trajectory;
+  trajectory.add(at(0), {}, true);
+  trajectory.add(at(1), step(1.0), false);
+  trajectory.add(at(2), {}, false);  // stands still: no share of the difference
+  trajectory.add(at(3), step(3.0), true);
+  trajectory.add(at(4), step(1.0), true);
   const std::vector<Se2> updates{Se2{}, Se2{4.4, 0.8, 0.0}, Se2{9.0, 9.0, 1.0}};
-  const auto poses = trail.along(updates);
+  const auto poses = trajectory.along(updates);
   ASSERT_EQ(poses.size(), 5U);
   expect_pose(poses[1], 1, {1.1, 0.2, 0.0});
   expect_pose(poses[2], 2, {1.1, 0.2, 0.0});
@@ -57,12 +57,12 @@ TEST(ScanTrajectory, PassesThroughTheUpdatesAndSpreadsTheDifferenceOverTheSteps)
 }
 
 TEST(ScanTrajectory, TheDifferenceIsDistributedInProportionToTurnsToo) {
-  ScanTrajectory trail;
-  trail.add(at(0), {}, true);
-  trail.add(at(1), step(0.0, 0.25), false);
-  trail.add(at(2), step(0.0, 0.75), true);
+  ScanTrajectory trajectory;
+  trajectory.add(at(0), {}, true);
+  trajectory.add(at(1), step(0.0, 0.25), false);
+  trajectory.add(at(2), step(0.0, 0.75), true);
   const std::vector<Se2> updates{Se2{}, Se2{0.0, 0.0, 1.2}};
-  expect_pose(trail.along(updates)[1], 1, {0.0, 0.0, 0.30});
+  expect_pose(trajectory.along(updates)[1], 1, {0.0, 0.0, 0.30});
 }
 
 }  // namespace

@@ -18,15 +18,15 @@ TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
   CalibrationKnowledge knowledge{sigmas};
   constexpr double kTrue = 5e-3;
   constexpr double kMeasured = 2e-4;
-  knowledge.observe(FocalSighting{kTrue, kMeasured});
+  knowledge.observe(FocalMeasurement{kTrue, kMeasured});
   Calibration value = Calibration::Zero();
   Eigen::MatrixXd h;
-  for (int i = 0; i < 3; ++i) {  // the prior's component follows the estimate
+  for (int i = 0; i < 3; ++i) {  // the prior's width follows the estimate
     h = Eigen::MatrixXd::Zero(kCalibrationSize, kCalibrationSize);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(kCalibrationSize);
     knowledge.add_to(value, h, g);
     value -= h.ldlt().solve(g);
-    knowledge.weigh(value, h.inverse().diagonal());
+    knowledge.choose_prior_widths(value, h.inverse().diagonal());
   }
   const Eigen::Index focal = kOdometryTerms + SightingNoise::kFocal;
   EXPECT_NEAR(value[focal], kTrue, 3.0 * kMeasured);
@@ -36,20 +36,20 @@ TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
 
 TEST(CalibrationKnowledge, AConsistentDescriptionKeepsItsWeight) {
   CalibrationKnowledge knowledge{Calibration::Constant(1e-3)};
-  knowledge.observe(FocalSighting{1.5e-3, 1e-3});
+  knowledge.observe(FocalMeasurement{1.5e-3, 1e-3});
   Calibration value = Calibration::Zero();
   for (int i = 0; i < 3; ++i) {
     Eigen::MatrixXd h = Eigen::MatrixXd::Zero(kCalibrationSize, kCalibrationSize);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(kCalibrationSize);
     knowledge.add_to(value, h, g);
     value -= h.ldlt().solve(g);
-    knowledge.weigh(value, h.inverse().diagonal());
+    knowledge.choose_prior_widths(value, h.inverse().diagonal());
   }
   EXPECT_NEAR(value[kOdometryTerms + SightingNoise::kFocal], 0.75e-3, 1e-6);
   EXPECT_TRUE(knowledge.doubted_terms(value).empty());
 }
 
-/// Of a singular or indefinite matrix, covariances are not finite or not positive.
+/// Variances from a singular or indefinite matrix are not finite or not positive.
 TEST(CalibrationKnowledge, ImpossibleVariancesLeaveThePriorAsItIs) {
   constexpr double kSigma = 1e-3;
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -57,7 +57,8 @@ TEST(CalibrationKnowledge, ImpossibleVariancesLeaveThePriorAsItIs) {
   for (const double variance : {kNan, kInfinite, 0.0, -1e-9}) {
     for (const double estimate : {0.0, 2e-3, kNan}) {
       CalibrationKnowledge knowledge{Calibration::Constant(kSigma)};
-      knowledge.weigh(Calibration::Constant(estimate), Calibration::Constant(variance));
+      knowledge.choose_prior_widths(Calibration::Constant(estimate),
+                                    Calibration::Constant(variance));
       Eigen::MatrixXd h = Eigen::MatrixXd::Zero(kCalibrationSize, kCalibrationSize);
       Eigen::VectorXd g = Eigen::VectorXd::Zero(kCalibrationSize);
       knowledge.add_to(Calibration::Zero(), h, g);

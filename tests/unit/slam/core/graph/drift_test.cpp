@@ -13,15 +13,15 @@ constexpr double kApart_m = 0.25;
 constexpr double kTurnSigma_rad = 0.01;
 constexpr int kTurnsAt = 20;
 
-/// Ahead, and from a keyframe on to the left.
+/// Pose of a keyframe: straight ahead, then from one keyframe on sideways to the left.
 Se2 place(int keyframe) {
   const int ahead = std::min(keyframe, kTurnsAt);
   return {5.0 + kApart_m * ahead, 2.0 + kApart_m * (keyframe - ahead), 0.0};
 }
 
-/// Of keyframes whose headings alone err.
-Drift drift_of_headings(int keyframes) {
-  Drift drift;
+/// Drift of keyframes with errors in the heading only.
+DriftCovariance drift_of_headings(int keyframes) {
+  DriftCovariance drift;
   for (int k = 0; k < keyframes; ++k) {
     const double sigma_rad = k == 0 ? 0.0 : kTurnSigma_rad;
     drift.add_keyframe(place(k), Eigen::Vector3d{0.0, 0.0, sigma_rad * sigma_rad}.asDiagonal());
@@ -29,9 +29,9 @@ Drift drift_of_headings(int keyframes) {
   return drift;
 }
 
-TEST(Drift, AHeadingErrorMovesThePositionByItsLeverArm) {
+TEST(DriftCovariance, AHeadingErrorMovesThePositionByItsLeverArm) {
   constexpr int kNewest = 30;
-  const Drift drift = drift_of_headings(kNewest + 1);
+  const DriftCovariance drift = drift_of_headings(kNewest + 1);
   for (const int since : {0, 7, 25, kNewest}) {
     Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
     for (int k = since + 1; k <= kNewest; ++k) {
@@ -43,16 +43,16 @@ TEST(Drift, AHeadingErrorMovesThePositionByItsLeverArm) {
   }
 }
 
-TEST(Drift, BetweenTwoKeyframesIsTheSumOfTheirStepsAtTheNewestOne) {
-  const Drift drift = drift_of_headings(31);
+TEST(DriftCovariance, BetweenTwoKeyframesIsTheSumOfTheirStepsAtTheNewestOne) {
+  const DriftCovariance drift = drift_of_headings(31);
   const Eigen::Matrix3d between = drift.between(7, 25);
   EXPECT_LT((between - (drift.since(7) - drift.since(25))).norm(), 1e-12);
   EXPECT_LT((between - drift.between(25, 7)).norm(), 1e-12);
   EXPECT_TRUE(drift.between(9, 9).isZero());
 }
 
-TEST(Drift, IsInvariantUnderAChangeOfFrame) {
-  Drift drift = drift_of_headings(30);
+TEST(DriftCovariance, IsInvariantUnderAChangeOfFrame) {
+  DriftCovariance drift = drift_of_headings(30);
   const Se2 new_from_old{-40.0, 13.0, 2.0};
   const Eigen::Matrix3d before = drift.since(3);
   drift.move_to_frame(new_from_old);

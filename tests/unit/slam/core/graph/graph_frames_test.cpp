@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A graph keeps its shape when all of it turns, and knows a slip from an old pose.
+// A graph keeps its shape when all of it turns; a slip is distinguished from an outdated pose.
 #include "slam/core/graph/graph.hpp"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST(GraphFrames, CovariancesAreInTheMapsAxes) {
   EXPECT_GT(axis.dot(covariance * axis) / covariance.trace(), 0.95);
 }
 
-/// The poses behind the window follow a new calibration with the next solution of the whole graph.
+/// The poses outside the window follow a new calibration with the next solution of the whole graph.
 TEST(GraphFrames, AChangeOfTheCalibrationIsNotTakenForASlip) {
   constexpr double kScale = 1.03;
   Graph graph = drive({}, 1e-4, 0.05, kScale);
@@ -93,8 +93,8 @@ TEST(GraphFrames, AfterARelocalisationEachMeasurementCountsOnce) {
   EXPECT_NEAR(of_step(2, 2), random_walk(motion, OdometryNoise{})(2, 2), 0.1 * of_step(2, 2));
 }
 
-/// Odometry stood still since a keyframe behind the window, so that only a step of the whole graph
-/// could use it.
+/// Odometry stood still since a keyframe outside the window, so that only a step of the whole graph
+/// could use its factor.
 TEST(GraphFrames, ARelocatedPoseDoesNotDependOnEarlierPoses) {
   constexpr double kSigma_m = 0.3;
   Graph graph = drive({}, 1e-4, 1e-4, 1.0);

@@ -64,7 +64,7 @@ void expect_jacobians_hold(const State& state,
 TEST(Factors, JacobianOfOdometryIsTheDerivativeOfItsResidual) {
   const State state = some_state();
   const OdometryFactor factor{0, 1, straight(0.22, 0.09)};
-  // By the calibration it is the derivative at the measured motion, so only poses are compared.
+  // The derivative by the calibration is taken at the measured motion, so only poses are compared.
   LinearFactor linear = factor.linearise(state, {});
   ASSERT_EQ(linear.blocks.size(), 3U);
   expect_jacobians_hold(state, [&](const State& at) {
@@ -88,7 +88,8 @@ TEST(Factors, JacobianOfAMarkerByPosesIsTheDerivativeOfItsResidual) {
   factor.measurement = some_measurement();
   factor.root_information = root_of(factor.measurement.covariance.inverse());
   State state = some_state();
-  state.calibration.setZero();  // what it does is taken where the marker is: second order in both
+  state.calibration
+      .setZero();  // its Jacobian is taken at the estimated marker: a second-order effect
   expect_jacobians_hold(state, [&](const State& at) { return factor.linearise(at, 1e12); });
 }
 
@@ -200,7 +201,7 @@ TEST(Graph, InformationAboutTheCalibrationFadesWithoutMovingPoses) {
   const Se2 pose = graph.state().keyframes.back();
   const Eigen::Matrix3d of_pose = graph.covariance_of(drive.newest());
   const Eigen::MatrixXd before = graph.covariance({}, {});
-  graph.let_calibration_wander(kDriven_m);
+  graph.add_calibration_random_walk(kDriven_m);
   graph.optimise();
   const Eigen::MatrixXd after = graph.covariance({}, {});
   for (Eigen::Index i = 0; i < kOdometryTerms; ++i) {
@@ -242,7 +243,7 @@ TEST(Graph, CovarianceSinceAKeyframeGrowsWithTheDistance) {
   }
 }
 
-TEST(Graph, ARemovedKeyframeMovesWithItsCarrierAndHasNoFactors) {
+TEST(Graph, ARemovedKeyframeMovesWithItsAnchorAndHasNoFactors) {
   Drive drive{6};
   Graph& graph = drive.graph();
   const std::size_t num_factors = graph.factors().size();
@@ -257,8 +258,8 @@ TEST(Graph, ARemovedKeyframeMovesWithItsCarrierAndHasNoFactors) {
       EXPECT_FALSE(graph.is_removed(marker->keyframe));
     } else if (const auto* odometry = std::get_if<OdometryFactor>(&factor)) {
       EXPECT_FALSE(graph.is_removed(odometry->from) || graph.is_removed(odometry->to));
-      EXPECT_EQ(odometry->is_cut, odometry->from == 1);
-      EXPECT_EQ(odometry->to, odometry->is_cut ? 4U : odometry->from + 1);
+      EXPECT_EQ(odometry->is_disabled, odometry->from == 1);
+      EXPECT_EQ(odometry->to, odometry->is_disabled ? 4U : odometry->from + 1);
     }
   }
   EXPECT_LT(graph.factors().size(), num_factors);

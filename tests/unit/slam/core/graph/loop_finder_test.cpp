@@ -41,7 +41,7 @@ bool every_two_metres(double x) {
   return std::fmod(x + 100.0, 2.0) < 0.4;
 }
 
-/// No two distances are alike.
+/// No two distances between pillars are equal.
 bool irregularly(double x) {
   for (const double pillar_m : {0.7, 1.9, 4.4, 5.3, 8.1, 9.0, 10.6, 13.5})
     if (x >= pillar_m && x < pillar_m + 0.4) return true;
@@ -86,12 +86,12 @@ class Corridor {
     covariance_since_ = sigma * sigma * Eigen::Matrix3d::Identity();
   }
 
-  /// Since the submap.
+  /// Sigma of the pose relative to the submap.
   void set_drift(double sigma) {
     covariance_against_ = sigma * sigma * Eigen::Matrix3d::Identity();
   }
 
-  /// Along the corridor, since the submap.
+  /// The same along the corridor only.
   void set_drift_along(double sigma_m) { covariance_against_(0, 0) = sigma_m * sigma_m; }
 
   const LoopFinder& finder() const { return finder_; }
@@ -119,7 +119,7 @@ TEST(LoopFinder, TwoScansThatAgreeCloseALoop) {
 
 /// The drift since the submap is underestimated: by good luck, or because fewer walls fit by
 /// chance, the first search reached the right place all the same.
-TEST(LoopFinder, TheSecondScanIsSearchedForWhereTheFirstOneHasTheRobot) {
+TEST(LoopFinder, TheSecondScanIsSearchedForAtThePoseCorrectedByTheFirstMatch) {
   const Se2 drift{1.2, 0.1, 0.1};
   const Se2 first{6.0, 0.0, 0.0};
   for (const bool has_candidate : {false, true}) {
@@ -137,7 +137,7 @@ TEST(LoopFinder, TheSecondScanIsSearchedForWhereTheFirstOneHasTheRobot) {
   }
 }
 
-/// Where it would have to be, the scan does not fit.
+/// The second scan does not fit where the candidate would have the robot.
 TEST(LoopFinder, AWrongCandidateIsNotConfirmed) {
   Corridor corridor{irregularly};
   corridor.set_drift_since_found(0.01);
@@ -149,7 +149,7 @@ TEST(LoopFinder, AWrongCandidateIsNotConfirmed) {
   EXPECT_TRUE(corridor.look_around(second, drift * Se2{6.5, 0.0, 0.0}).empty());
 }
 
-/// Its keyframe may be forgotten meanwhile.
+/// The candidate's keyframe may have been removed meanwhile.
 TEST(LoopFinder, ACandidateExpiresWithTheDistance) {
   Corridor corridor{irregularly};
   const Se2 drift{1.2, 0.1, 0.3};
@@ -161,7 +161,7 @@ TEST(LoopFinder, ACandidateExpiresWithTheDistance) {
   EXPECT_TRUE(corridor.look_around(place, drift * place).empty());
 }
 
-/// However alike it looks.
+/// A place beyond the possible drift is not searched, even if it looks alike.
 TEST(LoopFinder, TheSearchIsBoundedByTheDriftSinceTheSubmap) {
   const Se2 first{6.0, 0.0, 0.0};
   const Se2 second{6.5, 0.0, 0.0};
@@ -204,7 +204,7 @@ TEST(LoopFinder, ADegenerateMatchBeyondTheGateIsRejected) {
   EXPECT_EQ(found_in([](double) { return false; }), 0U);
 }
 
-/// Beyond the end of what is mapped of a bare corridor, more of a scan is mapped further back.
+/// At the end of the mapped part of a bare corridor, more of a scan is mapped further back.
 TEST(LoopFinder, AMatchDoesNotCorrectThePoseAlongAWall) {
   Corridor corridor{[](double) {
     return false;

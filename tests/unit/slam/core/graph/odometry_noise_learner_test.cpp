@@ -21,9 +21,10 @@ TEST(OdometryNoiseLearner, KeepsTheConfiguredNoiseUntilInnovationsContradictIt) 
     described.observe_turn({1e-3 * normal, 1e-6, 1e-8});
     worse.observe_turn({8e-3 * normal, 1e-6, 1e-8});
   }
-  EXPECT_NEAR(described.scale().turn, 1.0, 1e-3);
-  EXPECT_NEAR(worse.scale().turn, 8.0, 3.0);
-  EXPECT_GT(worse.scale().along, 1.5);  // wheels that are bad in the turn are so along the way
+  EXPECT_NEAR(described.learnt_noise().turn, 1.0, 1e-3);
+  EXPECT_NEAR(worse.learnt_noise().turn, 8.0, 3.0);
+  EXPECT_GT(worse.learnt_noise().along,
+            1.5);  // wheels that are bad in the turn are so along the way
 }
 
 TEST(OdometryNoiseLearner, AWheelThatSpinsForMetresDoesNotRaiseTheNoise) {
@@ -37,9 +38,9 @@ TEST(OdometryNoiseLearner, AWheelThatSpinsForMetresDoesNotRaiseTheNoise) {
     const double spin_rad = i >= 100 && i < 160 ? 0.35 * distance_m : 0.0;
     spins.observe_turn({noise_rad + spin_rad, squared(sigma_rad), 1e-7, distance_m});
     worse.observe_turn({8.0 * noise_rad, squared(sigma_rad), 1e-7, distance_m});
-    EXPECT_LT(spins.scale().turn, 2.0) << i;
+    EXPECT_LT(spins.learnt_noise().turn, 2.0) << i;
   }
-  EXPECT_NEAR(worse.scale().turn, 8.0, 3.0);
+  EXPECT_NEAR(worse.learnt_noise().turn, 8.0, 3.0);
 }
 
 /// 40 m in steps of 5 cm, each seen to 5 mm; `slips_per_m` of 10 cm.
@@ -59,19 +60,19 @@ OdometryNoiseLearner learner_after(double slips_per_m) {
 TEST(OdometryNoiseLearner, SlipsAddTheirSecondMomentPerMetre) {
   const OdometryNoiseLearner learner = learner_after(0.7);
   EXPECT_NEAR(learner.num_slips(), 28, 12);
-  EXPECT_GT(learner.scale().slip_m2_per_m, 0.7 * 0.01);
-  EXPECT_LT(learner.scale().slip_m2_per_m, 2.0 * 0.7 * 0.01);
-  EXPECT_LT(learner.scale().slip_per_m, -0.7 * 0.05);
-  EXPECT_NEAR(learner.scale().slip_m2, 0.01, 0.002);
+  EXPECT_GT(learner.learnt_noise().slip_m2_per_m, 0.7 * 0.01);
+  EXPECT_LT(learner.learnt_noise().slip_m2_per_m, 2.0 * 0.7 * 0.01);
+  EXPECT_LT(learner.learnt_noise().slip_per_m, -0.7 * 0.05);
+  EXPECT_NEAR(learner.learnt_noise().slip_m2, 0.01, 0.002);
 }
 
 TEST(OdometryNoiseLearner, WithoutSlipsTheLearntSlipVarianceIsSmall) {
-  EXPECT_LT(learner_after(0.0).scale().slip_m2_per_m, 2e-5);
+  EXPECT_LT(learner_after(0.0).learnt_noise().slip_m2_per_m, 2e-5);
 }
 
 /// Variance along the path of a factor over 1 m, if all else observes it to `sigma_m`.
 double variance_along(double sigma_m) {
-  OdometryScale scale = learner_after(0.7).scale();
+  LearntOdometryNoise scale = learner_after(0.7).learnt_noise();
   scale.along = 1.0;
   OdometryFactor factor{0, 1, Motion::between({}, {1.0, 0.0, 0.0})};
   const Eigen::Matrix2d place = squared(sigma_m) * Eigen::Matrix2d::Identity();

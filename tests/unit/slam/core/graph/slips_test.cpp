@@ -96,7 +96,7 @@ TEST(Slips, ThePredictedCostReductionIsExactForFixedPoses) {
   const OdometryFactor::Change change =
       factor.best_change(linear, Eigen::Matrix3d::Zero(), state, noise, {});
   const double before = factor.cost(state, noise, {});
-  ASSERT_EQ(change.kind, MotionKind::kSlipping);
+  ASSERT_EQ(change.kind, MotionKind::kBothSlip);
   factor.kind = change.kind;
   EXPECT_NEAR(change.gain, before - factor.cost(state, noise, {}), 1e-9);
 }

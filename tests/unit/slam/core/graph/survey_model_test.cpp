@@ -230,10 +230,10 @@ TEST(Survey, APriorIsTestedAgainWhenItsMarkerHasBeenSightedMuchMoreOften) {
 TEST(Survey, AnEntryWithoutPriorGoesToTheNearestMarkerOfItsIdOnceTheFrameIsKnown) {
   SurveyedDrive drive{6, 1};
   Graph& graph = drive.graph();
-  const std::size_t twin = 11;  // of marker 2, at the other end
+  const std::size_t duplicate = 11;  // of marker 2, at the other end
   MarkerBook book;
-  for (std::size_t m = 0; m <= twin; ++m) {
-    book.add(m == twin ? 2 : static_cast<int>(m), {});
+  for (std::size_t m = 0; m <= duplicate; ++m) {
+    book.add(m == duplicate ? 2 : static_cast<int>(m), {});
     if (m == 2) continue;
     for (int i = 0; i < 2; ++i)
       book.note_sighting(m, {});
@@ -244,14 +244,14 @@ TEST(Survey, AnEntryWithoutPriorGoesToTheNearestMarkerOfItsIdOnceTheFrameIsKnown
   ASSERT_TRUE(survey.match(graph, book));
   graph.move_to_frame(*survey.new_frame(graph));
   survey.apply(graph);
-  EXPECT_FALSE(graph.is_prior_on(twin));
+  EXPECT_FALSE(graph.is_prior_on(duplicate));
   EXPECT_EQ(survey.changes(graph).size(), 1U);
   for (int i = 0; i < 2; ++i)
     book.note_sighting(2, {});
   ASSERT_TRUE(survey.match(graph, book));
   survey.apply(graph);
   EXPECT_TRUE(graph.is_prior_on(2));
-  EXPECT_FALSE(graph.is_prior_on(twin));
+  EXPECT_FALSE(graph.is_prior_on(duplicate));
   EXPECT_TRUE(survey.changes(graph).empty());
   const Se2& place = graph.state().landmarks[2];
   EXPECT_LT((place.translation() - right.survey_from_marker.translation()).norm(), 0.1);

@@ -35,17 +35,17 @@ TEST(UnmeasuredMotion, IsZeroWhileOdometryMoves) {
   Robot robot;
   robot.drive();
   EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
-  EXPECT_EQ(robot.motion.suspected_m(), 0.0);
+  EXPECT_EQ(robot.motion.possibly_stuck_m(), 0.0);
 }
 
-TEST(UnmeasuredMotion, IsSuspectedWhileOdometryStandsUntilTheMotionIsObserved) {
+TEST(UnmeasuredMotion, IsPossibleWhileOdometryStandsUntilTheMotionIsObserved) {
   Robot robot;
   robot.drive();
   robot.stand(50);
   EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
-  EXPECT_GT(robot.motion.suspected_m(), 0.1);  // of the metre that it would have driven
+  EXPECT_GT(robot.motion.possibly_stuck_m(), 0.1);  // of the metre that it would have driven
   robot.motion.note_observed();
-  EXPECT_EQ(robot.motion.suspected_m(), 0.0);
+  EXPECT_EQ(robot.motion.possibly_stuck_m(), 0.0);
 }
 
 TEST(UnmeasuredMotion, StepsOfAFifthOfAMillimetreAreStandingAndOfTwoMillimetresAreNot) {
@@ -61,7 +61,7 @@ TEST(UnmeasuredMotion, IsBoundedForAParkedRobot) {
   Robot robot;
   robot.drive();
   robot.stand(50'000);
-  EXPECT_LT(robot.motion.suspected_m(), 0.5);
+  EXPECT_LT(robot.motion.possibly_stuck_m(), 0.5);
 }
 
 TEST(UnmeasuredMotion, GrowsWhileOdometryIsStuck) {
@@ -70,12 +70,12 @@ TEST(UnmeasuredMotion, GrowsWhileOdometryIsStuck) {
   robot.stand(1);
   robot.motion.note_moved(0.02, 0.2);
   robot.motion.note_observed();
-  EXPECT_TRUE(robot.motion.is_silent());
+  EXPECT_TRUE(robot.motion.is_unreliable());
   robot.stand(50);
   EXPECT_NEAR(robot.motion.unmeasured_m(), 1.0, 0.1);
   robot.observe(0.02);
-  EXPECT_FALSE(robot.motion.is_silent());
-  EXPECT_NEAR(robot.motion.take_unmeasured_m(), 1.0, 0.15);  // nobody has said what was driven
+  EXPECT_FALSE(robot.motion.is_unreliable());
+  EXPECT_NEAR(robot.motion.take_unmeasured_m(), 1.0, 0.15);  // the motion was not observed
   EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
 }
 
@@ -85,11 +85,11 @@ TEST(UnmeasuredMotion, AfterARobotReturnsItsOdometryIsNotTakenForStuck) {
   robot.stand(1);
   robot.motion.note_moved(0.09, 0.4);
   robot.stand(5);
-  EXPECT_TRUE(robot.motion.is_silent());
+  EXPECT_TRUE(robot.motion.is_unreliable());
   EXPECT_GT(robot.motion.unmeasured_m(), 0.0);
   robot.motion.note_returned();
   robot.stand(5);
-  EXPECT_FALSE(robot.motion.is_silent());
+  EXPECT_FALSE(robot.motion.is_unreliable());
   EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
 }
 
@@ -99,7 +99,7 @@ TEST(UnmeasuredMotion, UsesTheEstimatedSpeedIfOdometryHasNeverMoved) {
   robot.motion.note_moved(0.1, 0.2);
   robot.motion.note_observed();
   robot.stand(10);
-  EXPECT_TRUE(robot.motion.is_silent());
+  EXPECT_TRUE(robot.motion.is_unreliable());
   EXPECT_NEAR(robot.motion.unmeasured_m(), 1.0, 0.11);  // 0.5 m/s for 2 s
 }
 
@@ -111,7 +111,7 @@ TEST(UnmeasuredMotion, IsZeroAfterOdometryHasCaughtUp) {
   robot.stand(50);
   robot.observe(1.0, false, true);
   EXPECT_EQ(robot.motion.unmeasured_m(), 0.0);
-  EXPECT_FALSE(robot.motion.is_silent());
+  EXPECT_FALSE(robot.motion.is_unreliable());
 }
 
 TEST(UnmeasuredMotion, GrowsWhileOdometryJumps) {
@@ -119,7 +119,7 @@ TEST(UnmeasuredMotion, GrowsWhileOdometryJumps) {
   robot.drive();
   for (int i = 0; i < 5; ++i)
     robot.observe(0.0, true);
-  EXPECT_TRUE(robot.motion.is_silent());
+  EXPECT_TRUE(robot.motion.is_unreliable());
   EXPECT_NEAR(robot.motion.unmeasured_m(), 0.1, 0.02);
 }
 

@@ -100,7 +100,7 @@ std::vector<MapChange> changes_by_one_more(const Observation& observation,
   return detector.changes();
 }
 
-/// Of the inner rows: a changed cell needs free cells on all sides.
+/// One change, of the inner rows only: a changed cell needs free cells on all sides.
 void expect_change_of_inner_rows(const std::vector<MapChange>& changes, MapChange::Kind kind,
                                  double away_m) {
   ASSERT_EQ(changes.size(), 1U);

@@ -45,7 +45,7 @@ class Line {
 
 GraphNoise rolling_only() {
   GraphNoise noise;
-  noise.odometry.may_slip = false;  // no jerk of the odometry explains a wrong loop
+  noise.odometry.may_slip = false;  // no slip explains a wrong loop
   return noise;
 }
 
@@ -64,8 +64,8 @@ TEST(WholeGraph, AWrongLoopAmongCorrectOnesLosesItsWeight) {
   }
 }
 
-/// Far from the optimum the linearisation does not hold: a step that raises the cost is shortened,
-/// or keyframes leave the building.
+/// Far from the optimum the linearisation is invalid: unless a step that raises the cost is
+/// shortened, keyframes leave the building.
 TEST(WholeGraph, NoStepRaisesTheCostHoweverWrongTheLoopsAre) {
   constexpr std::size_t kLength = 300;
   constexpr int kLoops = 12;
@@ -73,7 +73,7 @@ TEST(WholeGraph, NoStepRaisesTheCostHoweverWrongTheLoopsAre) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random{{seed}};
     GraphNoise noise = seed % 2 == 0 ? GraphNoise{} : rolling_only();
-    noise.scale = {8.0, 8.0};
+    noise.learnt_odometry = {8.0, 8.0};
     Line line{kLength, noise};
     for (int i = 0; i < kLoops; ++i) {
       const auto from = static_cast<std::size_t>(random.uniform(0.0, 150.0));

@@ -15,7 +15,7 @@ using test::frame_at;
 using test::odometry_at;
 using test::scan_at;
 
-/// Of frames in the first second, all used for one scan.
+/// Skips of frames in the first second, all used for one scan.
 std::vector<Skip> skips_of(const std::vector<MarkerDetections>& frames) {
   SensorSetup setup;
   setup.lidar.range_max_m = 5.0;

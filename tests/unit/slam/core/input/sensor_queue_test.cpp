@@ -95,7 +95,7 @@ double way_m(const std::vector<SensorQueue::Ready>& all) {
   return way;
 }
 
-/// 20 s with odometry, scans and frames at 10 Hz; `stamp_ms` is what the clock tells at a time.
+/// 20 s with odometry, scans and frames at 10 Hz; `stamp_ms` is the clock's reading at a time.
 std::vector<SensorQueue::Ready> all_ready_by(SensorQueue& queue,
                                              const std::function<int(int)>& stamp_ms) {
   std::vector<SensorQueue::Ready> all;
@@ -240,7 +240,7 @@ TEST(SensorQueue, OdometryWithAWrongStampIsDroppedAlone) {
   }
 }
 
-TEST(SensorQueue, WrongStampsOfAllSensorsAtOnceCostOnlyThoseValues) {
+TEST(SensorQueue, WrongStampsOfAllSensorsAtOnceDropOnlyThoseValues) {
   const Drive clean = drive_with({});
   for (const int by_ms : kAheadOrPast_ms) {
     const Drive drive = drive_with({.by_ms = by_ms, .odometry = true, .scan = true, .frame = true});
@@ -251,7 +251,7 @@ TEST(SensorQueue, WrongStampsOfAllSensorsAtOnceCostOnlyThoseValues) {
   }
 }
 
-TEST(SensorQueue, AFirstValueStampedAheadCostsNoLaterValue) {
+TEST(SensorQueue, AFirstValueStampedAheadDropsNoLaterValue) {
   const Drive clean = drive_with({});
   const auto from_second = without(clean.times_ms, 0);
   for (const int by_ms : {250, 3000, 9950}) {

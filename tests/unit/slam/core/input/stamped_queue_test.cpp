@@ -14,7 +14,7 @@ struct Value {
 };
 
 constexpr QueuePolicy kPolicy{.capacity = 4,
-                              .longest = Duration::max(),
+                              .max_age = Duration::max(),
                               .out_of_order = Skip::kScanOutOfOrder,
                               .ahead = Skip::kScanAhead,
                               .overflow = Skip::kScanOverflow};
@@ -46,17 +46,17 @@ TEST(StampedQueue, ValuesInOrderAreKept) {
   EXPECT_EQ(result_of({1, 2, 3}), (Result{{1, 2, 3}, {}}));
 }
 
-TEST(StampedQueue, AValueThatIsTooEarlyIsSkippedOnceTheNextOneIsNewerThanAll) {
+TEST(StampedQueue, AValueStampedTooEarlyIsDroppedOnceTheNextOneIsNewerThanAll) {
   EXPECT_EQ(result_of({5, 6, 2}), (Result{{5, 6}, {}})) << "it may yet be right";
   EXPECT_EQ(result_of({5, 6, 2, 7}), (Result{{5, 6, 7}, {Skip::kScanOutOfOrder}}));
 }
 
-TEST(StampedQueue, ValuesStampedAheadAreSkippedOnceTwoOlderOnesFollow) {
+TEST(StampedQueue, ValuesStampedAheadAreDroppedOnceTwoOlderOnesFollow) {
   EXPECT_EQ(result_of({1, 2, 60, 61, 3, 4}),
             (Result{{1, 2, 3, 4}, {Skip::kScanAhead, Skip::kScanAhead}}));
 }
 
-TEST(StampedQueue, TheSameStampTwiceIsSkipped) {
+TEST(StampedQueue, ASecondValueWithTheNewestStampIsDropped) {
   EXPECT_EQ(result_of({1, 2, 2, 3}), (Result{{1, 2, 3}, {Skip::kScanOutOfOrder}}));
 }
 
@@ -67,7 +67,7 @@ TEST(StampedQueue, BeyondTheCapacityTheOldestValueIsDropped) {
 
 TEST(StampedQueue, ValuesMuchOlderThanTheNewestAreDropped) {
   QueuePolicy policy = kPolicy;
-  policy.longest = std::chrono::seconds{20};
+  policy.max_age = std::chrono::seconds{20};
   StampedQueue<Value> queue{policy};
   Skips skips;
   for (const int time_s : {1, 15, 21, 22})

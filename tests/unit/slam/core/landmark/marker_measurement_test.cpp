@@ -56,8 +56,8 @@ TEST(MeasureMarkers, OdometryBetweenFrameAndScanMovesASighting) {
     return measure_markers(observation, {}, odometry, {}).at(0).covariance;
   };
   const Eigen::Matrix3d at_once = covariance_of();
-  observation.sightings[0].carried_m = 0.05;
-  observation.sightings[0].carried_rad = 0.02;
+  observation.sightings[0].driven_since_frame_m = 0.05;
+  observation.sightings[0].turned_since_frame_rad = 0.02;
   const Eigen::Matrix3d more = covariance_of() - at_once;
 
   const Eigen::Matrix3d walk = random_walk(0.05, 0.02, odometry);

@@ -30,14 +30,14 @@ Observation scan_of_a_circle(double radius_m) {
   return observation;
 }
 
-std::vector<Se2> a_way(std::size_t scans) {
+std::vector<Se2> straight_path(std::size_t scans) {
   std::vector<Se2> poses;
   for (std::size_t i = 0; i < scans; ++i)
     poses.push_back({0.15 * static_cast<double>(i), 0.01 * static_cast<double>(i), 0.02});
   return poses;
 }
 
-GridMap empty_ground() {
+GridMap empty_map() {
   return {GridFrame::centred_on_map_origin(0.05), {}, {}};
 }
 
@@ -52,9 +52,9 @@ void expect_equal_maps(const GridMap& one, const GridMap& other) {
   EXPECT_EQ(different, 0);
 }
 
-TEST(DrawnMap, FollowingNewPosesEqualsDrawingAlongThem) {
-  DrawnMap map{MapperConfig{}, empty_ground()};
-  std::vector<Se2> poses = a_way(60);
+TEST(DrawnMap, RedrawingForNewPosesEqualsDrawingAlongThem) {
+  DrawnMap map{MapperConfig{}, empty_map()};
+  std::vector<Se2> poses = straight_path(60);
   for (std::size_t i = 0; i < poses.size(); ++i)
     map.add(scan_of_a_circle(2.0 + 0.01 * static_cast<double>(i)), poses[i]);
   for (Se2& pose : poses)
@@ -62,27 +62,27 @@ TEST(DrawnMap, FollowingNewPosesEqualsDrawingAlongThem) {
   const auto pose_of = [&](std::size_t scan) {
     return poses[scan];
   };
-  map.begin_to_follow();
+  map.note_poses_changed();
   for (std::size_t i = 0; i < poses.size(); ++i)
-    map.follow(pose_of);
+    map.redraw_some(pose_of);
   expect_equal_maps(map.map(), map.drawn_along(pose_of));
 }
 
 TEST(DrawnMap, ScansThatMoveByLessThanACellAreNotRedrawn) {
-  DrawnMap map{MapperConfig{}, empty_ground()};
-  const std::vector<Se2> poses = a_way(10);
+  DrawnMap map{MapperConfig{}, empty_map()};
+  const std::vector<Se2> poses = straight_path(10);
   for (const Se2& pose : poses)
     map.add(scan_of_a_circle(2.0), pose);
   const GridMap before = map.map();
-  map.begin_to_follow();
+  map.note_poses_changed();
   for (int i = 0; i < 10; ++i)
-    map.follow([&](std::size_t scan) { return Se2{0.01, 0.0, 0.0} * poses[scan]; });
+    map.redraw_some([&](std::size_t scan) { return Se2{0.01, 0.0, 0.0} * poses[scan]; });
   expect_equal_maps(map.map(), before);
 }
 
 /// Where a robot comes by again and again, the map holds what the archive holds.
 TEST(DrawnMap, ScansThatTheArchiveHasEmptiedAreNotInTheMap) {
-  DrawnMap map{MapperConfig{}, empty_ground()};
+  DrawnMap map{MapperConfig{}, empty_map()};
   const Se2 here{0.05, 0.05, 0.1};
   for (std::size_t i = 0; i < 2 * ScanArchive::kScansPerPlace; ++i)
     map.add(scan_of_a_circle(2.0), here);

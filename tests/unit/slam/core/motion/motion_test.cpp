@@ -147,7 +147,7 @@ TEST(OdometryBuffer, DrivingSlowlyThroughTheOriginIsMotion) {
   EXPECT_NEAR(buffer.motion_between(at_ms(500), at_ms(1500)).start_from_end.x(), 0.5, 1e-12);
 }
 
-TEST(OdometryBuffer, AfterAShortStandstillALeapIsLateMotionAtAnyRate) {
+TEST(OdometryBuffer, AfterAShortStandstillAJumpIsLateMotionAtAnySampleRate) {
   for (const int rate_hz : {10, 30, 100}) {
     for (const double stuck_s : {1.0, 2.0, 4.0}) {
       OdometryBuffer buffer;
@@ -193,7 +193,7 @@ TEST(OdometryBuffer, MotionDuringGarbageIsReportedAfterIt) {
   EXPECT_NEAR(reported.start_from_end.y() + late_motion->start_from_end.y(), whole.y(), 1e-9);
 }
 
-/// Stands at (5, 1, 0.5), for a second unless said, then tells another pose.
+/// Stands at (5, 1, 0.5), by default for a second, then reports another pose.
 OdometryBuffer::Outcome outcome_after_standing(const Se2& then, OdometryBuffer& buffer,
                                                int standing_ms = 1000) {
   for (int ms = 0; ms <= standing_ms; ms += 50)
@@ -332,7 +332,7 @@ struct Spread {
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
 };
 
-/// Of the end of a straight 2 m drive that is cut into equal steps.
+/// Spread at the end of a straight 2 m drive that is divided into equal steps.
 Spread spread_after(int steps, const MotionNoise& noise) {
   constexpr int kSamples = 20000;
   const double step_m = 2.0 / steps;

@@ -19,9 +19,9 @@ Eigen::Matrix3d likeliest_covariance(const Eigen::Vector3d& residual,
 TEST(OdometryMixture, ASlippingWheelCorrectsDistanceAndTurnTogether) {
   const Eigen::Matrix3d rolling = Eigen::Vector3d{1e-6, 1e-6, 1e-5}.asDiagonal();
   for (const double turn_rad : {0.05, -0.05}) {
-    const Eigen::Matrix3d spins = likeliest_covariance({0.0, 0.0, turn_rad}, rolling);
-    // What the turn says about the way: negative, whichever wheel spins.
-    EXPECT_LT(spins(0, 2) / spins(2, 2) * turn_rad, -0.1 * std::abs(turn_rad));
+    const Eigen::Matrix3d slips = likeliest_covariance({0.0, 0.0, turn_rad}, rolling);
+    // Correlation of distance with the amount of turn: negative, whichever wheel slips.
+    EXPECT_LT(slips(0, 2) / slips(2, 2) * turn_rad, -0.1 * std::abs(turn_rad));
   }
   EXPECT_EQ(likeliest_covariance({0.0005, 0.0, 0.002}, rolling), rolling);
 }
@@ -30,7 +30,7 @@ TEST(OdometryMixture, SlipsDoNotScaleWithTheLearntNoise) {
   const Eigen::Matrix3d described = Eigen::Vector3d{1e-6, 1e-6, 1e-5}.asDiagonal();
   const Eigen::Matrix3d learnt = 400.0 * described;
   for (const MotionKind kind :
-       {MotionKind::kLeftSpins, MotionKind::kJerked, MotionKind::kAnything}) {
+       {MotionKind::kLeftSlips, MotionKind::kDisturbed, MotionKind::kGrossError}) {
     const Eigen::Matrix3d as_described = covariance_of(kind, {described, described, kHalfTrack_m});
     const Eigen::Matrix3d as_learnt = covariance_of(kind, {learnt, described, kHalfTrack_m});
     EXPECT_LT((as_learnt - as_described - (learnt - described)).norm(), 1e-12);

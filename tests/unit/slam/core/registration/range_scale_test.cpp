@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When the scale of a LiDAR's ranges is believed to have changed.
+// Scale errors of a LiDAR's ranges: their estimates, and which of them are accepted.
 #include "slam/core/registration/range_scale.hpp"
 
 #include "common/random/random.hpp"
@@ -39,9 +39,9 @@ Points scaled(Points points, double factor) {
   return points;
 }
 
-bool is_believed(RangeScaleMonitor& monitor, const Points& points, const Se2& map_from_base) {
-  return monitor.believes(kTooLong, points, Eigen::Vector2d::Zero(), map_from_base, kNearby,
-                          RangeNoise{kRangeSigma_m});
+bool is_accepted(RangeScaleMonitor& monitor, const Points& points, const Se2& map_from_base) {
+  return monitor.accepts(kTooLong, points, Eigen::Vector2d::Zero(), map_from_base, kNearby,
+                         RangeNoise{kRangeSigma_m});
 }
 
 TEST(FitRangeScale, FindsTheScaleAtAnInexactPose) {
@@ -52,40 +52,40 @@ TEST(FitRangeScale, FindsTheScaleAtAnInexactPose) {
   const RangeScale scale =
       fit_range_scale(scaled(corridor_end(truth, 2.0, 2), 1.0 + kTooLong), Eigen::Vector2d::Zero(),
                       map, {}, kNearby, RangeNoise{kRangeSigma_m});
-  EXPECT_NEAR(scale.share, kTooLong, 0.004);
+  EXPECT_NEAR(scale.error, kTooLong, 0.004);
   EXPECT_LT(scale.sigma, 0.004);
 }
 
-TEST(RangeScaleMonitor, BelievesAScaleThatHasChangedSinceTheLastScan) {
+TEST(RangeScaleMonitor, AcceptsAnErrorThatBeganSinceTheLastScan) {
   RangeScaleMonitor monitor{kCellSpacing_m};
   monitor.note_unscaled(corridor_end({}, 2.0, 1), {});
   const Se2 ahead{0.1, 0.0, 0.0};
-  EXPECT_TRUE(is_believed(monitor, scaled(corridor_end(ahead, 2.0, 2), 1.0 + kTooLong), ahead));
+  EXPECT_TRUE(is_accepted(monitor, scaled(corridor_end(ahead, 2.0, 2), 1.0 + kTooLong), ahead));
 }
 
 /// The scan fits at another scale since the pose is in the wrong one of two corridors.
-TEST(RangeScaleMonitor, DoesNotBelieveAScaleAtWhichTheLastScanWouldHaveFitted) {
+TEST(RangeScaleMonitor, RejectsAnErrorThatTheLastScanHadAsWell) {
   constexpr double kWidth_m = 2.0 * (1.0 + kTooLong);
   RangeScaleMonitor monitor{kCellSpacing_m};
   monitor.note_unscaled(corridor_end({}, kWidth_m, 1), {});
   const Se2 ahead{0.1, 0.0, 0.0};
-  EXPECT_FALSE(is_believed(monitor, corridor_end(ahead, kWidth_m, 2), ahead));
+  EXPECT_FALSE(is_accepted(monitor, corridor_end(ahead, kWidth_m, 2), ahead));
 }
 
-TEST(RangeScaleMonitor, GoesOnBelievingAScaleWhereverTheRobotIs) {
+TEST(RangeScaleMonitor, AcceptsAnEqualErrorAgainWhereverTheRobotIs) {
   RangeScaleMonitor monitor{kCellSpacing_m};
   monitor.note_unscaled(corridor_end({}, 2.0, 1), {});
   const Points wrong = scaled(corridor_end({}, 2.0, 2), 1.0 + kTooLong);
-  ASSERT_TRUE(is_believed(monitor, wrong, {}));
+  ASSERT_TRUE(is_accepted(monitor, wrong, {}));
   const Se2 far_away{40.0, 0.0, 0.0};
-  EXPECT_TRUE(is_believed(monitor, wrong, far_away));
+  EXPECT_TRUE(is_accepted(monitor, wrong, far_away));
   monitor.note_unscaled(corridor_end({}, 2.0, 3), {});
-  EXPECT_FALSE(is_believed(monitor, wrong, far_away));
+  EXPECT_FALSE(is_accepted(monitor, wrong, far_away));
 }
 
-TEST(RangeScaleMonitor, BelievesNothingWithoutAScanThatFitted) {
+TEST(RangeScaleMonitor, AcceptsNothingBeforeAScanHasFitted) {
   RangeScaleMonitor monitor{kCellSpacing_m};
-  EXPECT_FALSE(is_believed(monitor, scaled(corridor_end({}, 2.0, 1), 1.0 + kTooLong), {}));
+  EXPECT_FALSE(is_accepted(monitor, scaled(corridor_end({}, 2.0, 1), 1.0 + kTooLong), {}));
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ constexpr double kManyScatter_m = 0.05;
 
 constexpr int kKeyframes = 20;
 
-/// Of a scan whose points lie exactly on what was mapped, with a LiDAR that scatters.
+/// Match of a scan whose points lie exactly on the mapped ones, with a noisy LiDAR.
 ScanMatch match_without_a_deviation(const Points& points, int keyframes = kKeyframes) {
   Submap wall{0.25, 1};
   for (int i = 0; i < keyframes; ++i)
@@ -185,7 +185,7 @@ double known_share(int keyframes) {
   return keyframes / (keyframes + 3.0);
 }
 
-/// Of so many beams that meet a wall squarely, if they were independent.
+/// Information of so many beams that meet a wall at a right angle, if they were independent.
 double information_of(std::size_t beams) {
   return known_share(kKeyframes) * static_cast<double>(beams) / (kManyScatter_m * kManyScatter_m);
 }
@@ -226,7 +226,7 @@ TEST(ScanMatch, ManyBeamsInOneCellHaveTheInformationOfAFew) {
   EXPECT_LT(match.observed.information(0, 0), 0.15 * information_of(points.size()));
 }
 
-/// Its turn about the pole is not observed, nor is the way across that belongs to it.
+/// The turn about the pole is unobserved, and so is the sideways motion that goes with it.
 TEST(ScanMatch, ASinglePoleFarAwayLeavesTheHeadingAsGuessed) {
   const auto pole_from = [](const Se2& map_from_base, std::uint64_t seed) {
     Random random{{seed}};
@@ -275,15 +275,15 @@ TEST(ScanMatch, FewInliersOrNoHeadingAreNotUsable) {
   EXPECT_FALSE(match.is_usable({}));
 }
 
-/// The information is about x + heading: once x is forgotten, that sum says nothing about the
-/// heading.
-TEST(ObservedAxes, ForgettingADirectionKeepsTheMarginalInformationOfTheOthers) {
+/// The information is about x + heading: without information about x, none about the heading is
+/// left.
+TEST(ObservedAxes, DroppingADirectionKeepsTheMarginalInformationOfTheOthers) {
   const Eigen::Vector3d sum{1.0, 0.0, 1.0};  // of x and the heading
   ObservedAxes observed;
   observed.information = 100.0 * sum * sum.transpose();
   observed.information.diagonal() += Eigen::Vector3d{1.0, 4.0, 9.0};
   const Eigen::Matrix3d covariance = observed.information.inverse();
-  observed.forget(Eigen::Vector2d::UnitX());
+  observed.drop_information_along(Eigen::Vector2d::UnitX());
   EXPECT_LT(observed.information.col(0).norm(), 1e-9);
   EXPECT_NEAR(observed.information(1, 1), 1.0 / covariance(1, 1), 1e-9);
   EXPECT_NEAR(observed.information(2, 2), 1.0 / covariance(2, 2), 1e-9);

@@ -23,16 +23,16 @@ struct Drive {
 
 TEST(Submaps, WithoutKeyframesThereIsNoSubmap) {
   const Submaps submaps{0.25, kKeyframesEach, 100.0};
-  EXPECT_EQ(submaps.matched(), nullptr);
+  EXPECT_EQ(submaps.current(), nullptr);
   EXPECT_TRUE(submaps.finished().empty());
 }
 
-TEST(Submaps, TheMatchedSubmapHoldsAtLeastHalfOfItsLength) {
+TEST(Submaps, TheCurrentSubmapHasAtLeastHalfOfItsKeyframes) {
   Drive drive;
   drive.go(kKeyframesEach / 2);
   for (int i = 0; i < 40; ++i) {
-    EXPECT_GE(drive.submaps.matched()->num_keyframes(), kKeyframesEach / 2U);
-    EXPECT_LE(drive.submaps.matched()->num_keyframes(), static_cast<std::size_t>(kKeyframesEach));
+    EXPECT_GE(drive.submaps.current()->num_keyframes(), kKeyframesEach / 2U);
+    EXPECT_LE(drive.submaps.current()->num_keyframes(), static_cast<std::size_t>(kKeyframesEach));
     drive.go(1);
   }
 }
@@ -66,7 +66,7 @@ TEST(Submaps, ScansAreWhereTheirKeyframesAre) {
   Drive drive;
   drive.go(3);
   drive.submaps.add_between({{1.0, 0.5}}, {0.25, 0.0, 0.0}, drive.keyframes);
-  const Points& points = drive.submaps.matched()->points();
+  const Points& points = drive.submaps.current()->points();
   ASSERT_EQ(points.size(), 4U);
   EXPECT_NEAR(points[2].x(), 1.2, 1e-9);
   EXPECT_NEAR(points[3].x(), 1.25, 1e-9);
@@ -79,8 +79,8 @@ TEST(Submaps, ScansFollowTheirKeyframesWhenTheseMoveRelativeToEachOther) {
   drive.go(3);
   drive.submaps.add_between({{1.0, 0.5}}, {0.25, 0.0, 0.0}, drive.keyframes);
   drive.keyframes[2] = {0.2, 0.3, 0.0};
-  drive.submaps.follow(drive.keyframes);
-  const Submap& submap = *drive.submaps.matched();
+  drive.submaps.rebuild_deformed(drive.keyframes);
+  const Submap& submap = *drive.submaps.current();
   ASSERT_EQ(submap.points().size(), 4U);
   EXPECT_NEAR(submap.points()[1].y(), 0.0, 1e-9);
   EXPECT_NEAR(submap.points()[2].y(), 0.3, 1e-9);
@@ -94,10 +94,10 @@ TEST(Submaps, ASubmapBegunBeforeItsPredecessorEndsFollowsItsKeyframes) {
   Drive drive;
   drive.go(8);
   drive.keyframes[7] = {0.7, 0.3, 0.0};
-  drive.submaps.follow(drive.keyframes);
+  drive.submaps.rebuild_deformed(drive.keyframes);
   drive.go(3);
-  ASSERT_EQ(drive.submaps.matched()->first_keyframe(), 5U);
-  EXPECT_NEAR(drive.submaps.matched()->submap_from_keyframe(7).y(), 0.3, 1e-9);
+  ASSERT_EQ(drive.submaps.current()->first_keyframe(), 5U);
+  EXPECT_NEAR(drive.submaps.current()->submap_from_keyframe(7).y(), 0.3, 1e-9);
 }
 
 TEST(Submaps, KeyframesThatMoveTogetherLeaveTheSubmapAsItIs) {
@@ -106,9 +106,9 @@ TEST(Submaps, KeyframesThatMoveTogetherLeaveTheSubmapAsItIs) {
   const Se2 moved{5.0, 1.0, 0.5};
   for (std::size_t i = 0; i < 3; ++i)
     drive.keyframes[i] = moved * drive.keyframes[i];
-  EXPECT_FALSE(drive.submaps.matched()->is_bent(drive.keyframes));
+  EXPECT_FALSE(drive.submaps.current()->is_deformed(drive.keyframes));
   drive.keyframes[2] = drive.keyframes[2] * Se2{0.0, 0.0, 0.05};
-  EXPECT_TRUE(drive.submaps.matched()->is_bent(drive.keyframes));
+  EXPECT_TRUE(drive.submaps.current()->is_deformed(drive.keyframes));
 }
 
 TEST(Submaps, StartingANewSubmapKeepsFinishedOnes) {
@@ -116,9 +116,9 @@ TEST(Submaps, StartingANewSubmapKeepsFinishedOnes) {
   drive.go(21);
   const std::size_t finished = drive.submaps.finished().size();
   drive.submaps.begin_anew();
-  EXPECT_EQ(drive.submaps.matched(), nullptr);
+  EXPECT_EQ(drive.submaps.current(), nullptr);
   drive.go(1);
-  EXPECT_EQ(drive.submaps.matched()->first_keyframe(), 21U);
+  EXPECT_EQ(drive.submaps.current()->first_keyframe(), 21U);
   EXPECT_EQ(drive.submaps.finished().size(), finished);
 }
 

@@ -147,7 +147,7 @@ TEST(Annotate, BeamsOnTheMarkerCarryItsIdAlsoWhenItIsZero) {
     const Eigen::Vector2d end = world_from_base * beam.beam.end_in_base;
     if (end.y() > 0.99 && std::abs(end.x() - 7.5) < 0.2) {
       EXPECT_EQ(beam.marker_id, 0);
-      EXPECT_EQ(beam.sight, Sight::kMarker);
+      EXPECT_EQ(beam.label, BeamLabel::kMarker);
       ++on_marker;
     }
     if (std::abs(end.x() - 7.5) > 0.3 || end.y() < 0.0) {
@@ -157,17 +157,17 @@ TEST(Annotate, BeamsOnTheMarkerCarryItsIdAlsoWhenItIsZero) {
   EXPECT_GE(on_marker, 2);
 }
 
-TEST(Annotate, NoMarkerIsSeenOnlyWhereTheCameraLooks) {
+TEST(Annotate, BeamsAreLabelledUnmarkedOnlyInTheCamerasView) {
   const auto beams = beams_from(Se2{5.0, 0.0, 0.0});
   for (const AnnotatedBeam& beam : annotate(beams, {}, &kView, 0.08)) {
     const bool is_ahead = beam.beam.end_in_base.x() > 2.4 && beam.beam.end_in_base.x() < 3.0;
     const bool is_aside = beam.beam.end_in_base.x() < 1.8;
     if (is_ahead || is_aside) {
-      EXPECT_EQ(beam.sight, is_ahead ? Sight::kNone : Sight::kUnknown);
+      EXPECT_EQ(beam.label, is_ahead ? BeamLabel::kUnmarked : BeamLabel::kOutOfView);
     }
   }
   for (const AnnotatedBeam& beam : annotate(beams, {}, nullptr, 0.08))
-    EXPECT_EQ(beam.sight, Sight::kUnknown);
+    EXPECT_EQ(beam.label, BeamLabel::kOutOfView);
 }
 
 TEST(Observability, ABareCorridorIsDegenerateAlongItsAxis) {

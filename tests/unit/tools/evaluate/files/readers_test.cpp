@@ -26,7 +26,7 @@ std::string map_error(const std::string& yaml, const std::string& pgm) {
   folder.file("map.pgm", pgm);
   try {
     read_map(folder.file("map.yaml", yaml));
-  } catch (const InputError& error) {
+  } catch (const SetupError& error) {
     return error.what();
   }
   return "no error";
@@ -92,7 +92,7 @@ TEST(ReadMap, ErrorsAreNamed) {
 
 TEST(ReadTum, YawIsThatOfTheQuaternion) {
   const TemporaryFolder folder;
-  Skipped skipped;
+  SkippedLines skipped;
   const Trajectory trajectory =
       read_tum(folder.file("a.tum",
                            "# t x y z qx qy qz qw\n1 2 3 0.1 0 0 0.5 0.8660254037844386\r\n\n"
@@ -111,7 +111,7 @@ TEST(ReadTum, YawIsThatOfTheXAxisOfARobotThatIsTilted) {
   const Eigen::Quaterniond turned{Eigen::AngleAxisd{0.7, Eigen::Vector3d::UnitZ()} *
                                   Eigen::AngleAxisd{0.3, Eigen::Vector3d::UnitY()} *
                                   Eigen::AngleAxisd{0.4, Eigen::Vector3d::UnitX()}};
-  Skipped skipped;
+  SkippedLines skipped;
   const Trajectory trajectory =
       read_tum(folder.file("a.tum", fmt::format("1 0 0 0 {} {} {} {}\n", turned.x(), turned.y(),
                                                 turned.z(), turned.w())),
@@ -121,7 +121,7 @@ TEST(ReadTum, YawIsThatOfTheXAxisOfARobotThatIsTilted) {
 
 TEST(ReadTum, BadLinesAreNamedAndLeftOut) {
   const TemporaryFolder folder;
-  Skipped skipped;
+  SkippedLines skipped;
   const Trajectory trajectory = read_tum(folder.file("a.tum",
                                                      "1 0 0 0 0 0 0 1\n"
                                                      "2 0 0 0 0 0 1\n"
@@ -141,10 +141,10 @@ TEST(ReadTum, BadLinesAreNamedAndLeftOut) {
 
 TEST(ReadTum, NoPoseIsAnError) {
   const TemporaryFolder folder;
-  Skipped skipped;
-  EXPECT_THROW(read_tum(folder.file("a.tum", "# nothing\n"), skipped), InputError);
-  EXPECT_THROW(read_tum(folder.path() / "none.tum", skipped), InputError);
-  EXPECT_THROW(read_tum(folder.path(), skipped), InputError);
+  SkippedLines skipped;
+  EXPECT_THROW(read_tum(folder.file("a.tum", "# nothing\n"), skipped), SetupError);
+  EXPECT_THROW(read_tum(folder.path() / "none.tum", skipped), SetupError);
+  EXPECT_THROW(read_tum(folder.path(), skipped), SetupError);
 }
 
 TEST(PoseAt, LiesBetweenTheNeighboursAndTurnsTheShortWay) {
@@ -155,22 +155,22 @@ TEST(PoseAt, LiesBetweenTheNeighboursAndTurnsTheShortWay) {
   EXPECT_NEAR(middle->y(), 0.5, kExact);
   EXPECT_NEAR(middle->theta(), radians(175), kExact);
   EXPECT_EQ(pose_at(trajectory, 12.0)->x(), 4.0);
-  EXPECT_EQ(pose_at(trajectory, 12.000001)->x(), 4.0);  // rounding of a file
+  EXPECT_EQ(pose_at(trajectory, 12.000001)->x(), 4.0);  // within the rounding of a file
   EXPECT_FALSE(pose_at(trajectory, 9.999));
   EXPECT_FALSE(pose_at(trajectory, 12.001));
 }
 
 TEST(ReadCsv, ColumnsAreFoundByName) {
   const TemporaryFolder folder;
-  Skipped skipped;
+  SkippedLines skipped;
   const CsvTable table =
       read_csv(folder.file("a.csv", "b,extra,a\n1,2,3\nx,2,3\n4,5\n6,7,8\n"), {"a", "b"}, skipped);
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_EQ(table.at(table.rows[1], "a"), 8.0);
   EXPECT_EQ(table.at(table.rows[1], "b"), 6.0);
   EXPECT_THAT(skipped, ElementsAre(HasSubstr("a.csv:3"), HasSubstr("a.csv:4")));
-  EXPECT_THROW(read_csv(folder.file("b.csv", "a\n1\n"), {"a", "b"}, skipped), InputError);
-  EXPECT_THROW(read_csv(folder.file("c.csv", ""), {"a"}, skipped), InputError);
+  EXPECT_THROW(read_csv(folder.file("b.csv", "a\n1\n"), {"a", "b"}, skipped), SetupError);
+  EXPECT_THROW(read_csv(folder.file("c.csv", ""), {"a"}, skipped), SetupError);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ constexpr double kGate_m = 5.0;
 TEST(MarkerError, IsMeasuredInTheWorld) {
   const Se2 world_from_map{1, 0, radians(90)};
   const std::vector<Marker> world{{7, Se2{1, 4, 0}}, {0, Se2{0, 4, radians(179)}}};
-  // Marker 7 at (4, 0) in the map would be exact; it is 0.3 m and 2 deg off. Marker 0 is 0.1 m off,
-  // its yaw -179 deg in the world.
+  // Marker 7 should be at (4, 0) in the map, and is 0.3 m and 2 deg off. Marker 0 is 0.1 m off; its
+  // yaw is -179 deg in the world.
   const std::vector<Marker> map{{7, Se2{4.3, 0, radians(-88)}}, {0, Se2{4, 0.9, radians(91)}}};
 
   const MarkerError error = marker_error(map, world, world_from_map, kGate_m);
@@ -29,7 +29,7 @@ TEST(MarkerError, IsMeasuredInTheWorld) {
   EXPECT_NEAR(*error.max_yaw_deg, 2.0, kExact);
 }
 
-TEST(MarkerError, DuplicatesOfAnIdFindTheirOwnPlaces) {
+TEST(MarkerError, MarkersOfOneIdAreMatchedByTheirPlaces) {
   const std::vector<Marker> world{{5, Se2{4, 0, 0}}, {5, Se2{8, 0, 0}}};
   // The first estimate is within the gate of both; the second is nearer to the second place.
   const std::vector<Marker> map{{5, Se2{5, 0, 0}}, {5, Se2{8.2, 0, 0}}};
@@ -40,7 +40,7 @@ TEST(MarkerError, DuplicatesOfAnIdFindTheirOwnPlaces) {
 
 TEST(MarkerError, MissingAndSpuriousAreCounted) {
   const std::vector<Marker> world{{1, Se2{0, 0, 0}}, {2, Se2{1, 0, 0}}, {3, Se2{2, 0, 0}}};
-  // 1 twice, 2 too far away, 9 does not exist, 3 not seen.
+  // Marker 1 is there twice, 2 is too far away, 9 does not exist, 3 is not seen.
   const std::vector<Marker> map{
       {1, Se2{0, 0, 0}}, {1, Se2{0.1, 0, 0}}, {2, Se2{7, 0, 0}}, {9, Se2{2, 0, 0}}};
   const MarkerError error = marker_error(map, world, Se2{}, kGate_m);
@@ -54,7 +54,7 @@ TEST(MarkerError, MovedMarkersAreScoredAtTheirFinalPlace) {
   const TemporaryFolder folder;
   folder.file("truth.csv", "id,instance,x_m,y_m,yaw_rad\n5,0,4,0,0\n5,1,8,0,0\n6,0,9,0,0\n");
   folder.file("moves.csv", "t_s,id,instance,x_m,y_m,yaw_rad\n7,5,1,8.5,0,0\n9,5,1,9,0,0\n");
-  Skipped skipped;
+  SkippedLines skipped;
   const auto world = with_moves(read_markers(folder.path() / "truth.csv", skipped),
                                 folder.path() / "moves.csv", skipped);
   ASSERT_EQ(world.size(), 3u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scenario expects, checked against results that are written by hand.
+// A scenario's expectations, checked with hand-written results.
 #include "evaluate/run/expectation.hpp"
 
 #include "evaluate/run/run_evaluation.hpp"

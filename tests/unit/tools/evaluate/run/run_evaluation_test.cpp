@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The run sub-command on a folder as a run leaves it.
+// The sub-command `run` on a folder with the files of a run.
 #include "evaluate/commands.hpp"
 #include "unit/tools/evaluate/run/run_folder.hpp"
 
@@ -142,7 +142,7 @@ TEST(Run, AFinalTrajectoryHasItsOwnFiguresAndRow) {
   EXPECT_THAT(table, Not(HasSubstr("odometry, final")));
 }
 
-// A survey defines the map's frame: the world's, without alignment.
+// With a survey, the map's frame is the world's, so nothing is aligned.
 TEST(Run, PosesInASurveysCoordinatesAreNotAligned) {
   const TemporaryFolder run;
   add_truth(run);
@@ -251,7 +251,7 @@ TEST(Run, AWorldWithCornersHasNoLength) {
   EXPECT_THAT(read_text(run.path() / "results.md"), HasSubstr("Not one straight corridor"));
 
   EvaluationOptions options{};
-  options.true_length_m = 10.0;  // whoever says so wants it
+  options.true_length_m = 10.0;  // given by the user, so it is used
   EXPECT_EQ(run_run(run.path(), {}, options, kQuietly), kExitOk);
   EXPECT_EQ(json_in(run.path() / "waymark/metrics.json")["accuracy_percent"], 100.0);
 }
@@ -263,7 +263,7 @@ TEST(Run, InvalidExpectationsAreNamedWithFileAndKey) {
     run.file("expect.toml", text);
     try {
       run_run(run.path(), {}, {}, kQuietly);
-    } catch (const InputError& error) {
+    } catch (const SetupError& error) {
       return error.what();
     }
     return "";
@@ -284,14 +284,14 @@ TEST(Run, InvalidExpectationsAreNamedWithFileAndKey) {
 
 TEST(Run, WhatCannotBeEvaluatedAtAllIsAUsageError) {
   const TemporaryFolder run;
-  EXPECT_THROW(run_run(run.path() / "none", {}, {}, kQuietly), InputError);
-  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+  EXPECT_THROW(run_run(run.path() / "none", {}, {}, kQuietly), SetupError);
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), SetupError);
   add_estimator(run, "odometry", 200, 1.0);
-  EXPECT_THROW(run_run(run.path(), {"gmapping"}, {}, kQuietly), InputError);
+  EXPECT_THROW(run_run(run.path(), {"gmapping"}, {}, kQuietly), SetupError);
   run.file("scenario.toml", "[world\n");
-  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), SetupError);
   run.file("scenario.toml", "[world]\nlength_m = \"long\"\n");
-  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), InputError);
+  EXPECT_THROW(run_run(run.path(), {}, {}, kQuietly), SetupError);
 }
 
 }  // namespace

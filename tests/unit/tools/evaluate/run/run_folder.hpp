@@ -18,8 +18,8 @@ inline const Output kQuietly{false, false};
 
 inline constexpr int kPoses = 81;
 
-/// A drive of 8 m in 16 s; an estimate's steps are longer by a factor.
-/// @param poses  to write, from number `first` on.
+/// A drive of 8 m in 16 s, with steps longer by `factor`.
+/// @param poses  number of poses to write, from number `first` on.
 inline std::string tum(double x0_m, double factor, int poses = kPoses, int first = 0) {
   std::string text;
   for (int i = first; i < first + poses; ++i)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The summary of a sweep's folder, with runs that were reached, missed, failed and never done.
+// The summary of a sweep's folder, with runs that met or missed expectations, failed, or are
+// missing.
 #include "evaluate/commands.hpp"
 #include "evaluate/sweep/sweep_report.hpp"
 #include "unit/tools/temporary_folder.hpp"
@@ -22,7 +23,7 @@ std::string metrics(double ate_m, double accuracy_percent, bool hit) {
       ate_m, accuracy_percent, ate_m, hit);
 }
 
-/// Two scenarios; seed 3 of `dark` failed to be recorded, seed 2 of its row was never done.
+/// Two scenarios. Recording seed 3 of `dark` failed; seed 2 of its row was not run.
 struct SweptFolder {
   TemporaryFolder folder{};
 
@@ -92,7 +93,8 @@ TEST(Sweep, TheTableListsACommandForEachBadSeed) {
   EXPECT_THAT(table, Not(HasSubstr("again plain 1")));
 }
 
-/// Four seeds of `plain`; the last misses. What is expected of all seeds is in every run's file.
+/// Four seeds of `plain`; the last misses its expectation. Expectations over all seeds are in the
+/// file of every run.
 std::vector<SweepRow> rows_with(const std::string& expected_of_seeds) {
   const TemporaryFolder folder;
   std::string plan;
@@ -164,7 +166,7 @@ TEST(Sweep, PlotsAreAsWideAndHaveAsManyLabelsAsThereAreRows) {
   EXPECT_THAT(program, HasSubstr("plot for [i=0:3] 'stations.dat'"));
 }
 
-/// Seed 2 of the row `waymark` of `plain` has other metrics.
+/// Changes a metric of seed 2 of the row `waymark` of `plain`.
 void change_metrics(const SweptFolder& sweep, const std::string& key, const Json& value) {
   const auto file = sweep.folder.path() / "plain/seed-2/waymark/metrics.json";
   Json json = Json::parse(read_text(file));
@@ -172,7 +174,7 @@ void change_metrics(const SweptFolder& sweep, const std::string& key, const Json
   sweep.folder.file("plain/seed-2/waymark/metrics.json", json.dump());
 }
 
-TEST(Sweep, AFigureThatASeedDoesNotHaveHasNoWorst) {
+TEST(Sweep, AFigureThatASeedDoesNotHaveHasNoWorstValue) {
   const SweptFolder sweep;
   change_metrics(sweep, "accuracy_percent", nullptr);
   const auto rows = sweep.rows();
@@ -235,9 +237,9 @@ TEST(Sweep, AllFilesAreWritten) {
 
 TEST(Sweep, WithoutAPlanThereIsNoSweep) {
   const TemporaryFolder folder;
-  EXPECT_THROW(read_runs(folder.path()), InputError);
+  EXPECT_THROW(read_runs(folder.path()), SetupError);
   folder.file("plan/runs.tsv", "plain 1 x\n");
-  EXPECT_THROW(read_runs(folder.path()), InputError);
+  EXPECT_THROW(read_runs(folder.path()), SetupError);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What part of a trajectory another one covers.
+// How much of a trajectory another one covers.
 #include "evaluate/trajectory/overlap.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ struct Poses {
   double every_s{};
 };
 
-/// Along x at 0.5 m/s, but at rest between 40 and 60 s.
+/// A drive along x at 0.5 m/s, at rest between 40 and 60 s.
 Trajectory drive_with_a_rest(const Poses& poses) {
   Trajectory trajectory;
   const int count = static_cast<int>(std::lround((poses.to_s - poses.from_s) / poses.every_s));
@@ -64,19 +64,19 @@ TEST(Overlap, CountsFromTheFirstPoseOnAndSaysWhenThatIsLate) {
   EXPECT_FALSE(late_start_of(overlap_with_100_s(drive_with_a_rest({4.0, 100.0, 0.2})), "truth"));
 }
 
-TEST(Overlap, AGapIsOnlyCoveredWhereTheRobotHardlyDrives) {
+TEST(Overlap, AGapInTheEstimateCountsAsCoveredIfTheRobotHardlyMoves) {
   const Trajectory estimate = drive_with_a_rest({0.0, 100.0, 0.2});
   EXPECT_NEAR(overlap_with_100_s(without(estimate, 40.0, 60.0)).covered_share, 1.0, kTolerance);
   EXPECT_NEAR(overlap_with_100_s(without(estimate, 10.0, 30.0)).covered_share, 0.8, kTolerance);
 }
 
-TEST(Overlap, EstimatesThatArePublishedAtUpdatesOnlyCoverAll) {
+TEST(Overlap, EstimatesPublishedOnlyAtUpdatesCoverTheWholeRun) {
   constexpr double kUpdate_s = 2.0;  // a metre
   const Trajectory updates = drive_with_a_rest({0.0, 100.0, kUpdate_s});
   EXPECT_NEAR(overlap_with_100_s(updates).covered_share, 1.0, kTolerance);
 }
 
-TEST(Overlap, TheWayDrivenInAGapCountsNotTheDistance) {
+TEST(Overlap, TheDistanceDrivenInAGapCountsNotTheStraightLine) {
   Trajectory circle;
   for (int i = 0; i <= 100; ++i)
     circle.push_back({1.0 * i, Se2{std::cos(0.1 * i), std::sin(0.1 * i), 0.0}});

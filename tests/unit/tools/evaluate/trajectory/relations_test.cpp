@@ -18,14 +18,14 @@ constexpr double kExact = 1e-9;
 TEST(Relations, ErrorsAreThoseComputedByHand) {
   // One metre per second along x, then a quarter turn on the spot from t=2 to t=4.
   const Trajectory trajectory{{0, Se2{0, 0, 0}}, {2, Se2{2, 0, 0}}, {4, Se2{2, 0, radians(90)}}};
-  // 0.5 -> 1.5 s: 1 m ahead; said 0.9 m ahead and 0.1 m left, turned 2 deg: 0.1 sqrt 2 and 2 deg.
-  // 1 -> 3 s: 1 m ahead, turned 45 deg; said the same: no error.
-  // 4 -> 1 s (backwards): seen from the turned robot the place 1 m behind is (0, 1), turned -90
-  // deg; said (0.3, 1), -90 + 10 deg: 0.3 m and 10 deg.
+  // - 0.5 -> 1.5 s: 1 m ahead; relation: 0.9 m ahead, 0.1 m left, 2 deg; error 0.1 sqrt 2 m, 2 deg.
+  // - 1 -> 3 s: 1 m ahead, 45 deg; the relation is the same: no error.
+  // - 4 -> 1 s, seen after the turn: (0, 1), -90 deg; relation: (0.3, 1), -80 deg; error 0.3 m, 10
+  //   deg.
   const std::vector<Relation> relations{{1, 0.5, 1.5, Se2{0.9, 0.1, radians(2)}},
                                         {2, 1.0, 3.0, Se2{1.0, 0.0, radians(45)}},
                                         {3, 4.0, 1.0, Se2{0.3, 1.0, radians(-80)}}};
-  Skipped skipped;
+  SkippedLines skipped;
 
   const RelationsError error = relations_error(trajectory, relations, "r", skipped);
 
@@ -42,7 +42,7 @@ TEST(Relations, ErrorsAreThoseComputedByHand) {
 
 TEST(Relations, TimesOutsideTheTrajectoryAreNamed) {
   const Trajectory trajectory{{10, Se2{}}, {11, Se2{}}};
-  Skipped skipped;
+  SkippedLines skipped;
   const RelationsError error = relations_error(
       trajectory, {{4, 9.5, 10.5, Se2{}}, {5, 10.0, 11.0, Se2{}}, {6, 10.5, 11.5, Se2{}}}, "r",
       skipped);
@@ -54,7 +54,7 @@ TEST(Relations, TimesOutsideTheTrajectoryAreNamed) {
 
 TEST(Relations, NearAndFarAreDistinguishedByTheTimeBetween) {
   const Trajectory trajectory{{0, Se2{}}, {100, Se2{}}};
-  Skipped skipped;
+  SkippedLines skipped;
   const RelationsError error = relations_error(trajectory,
                                                {{1, 0.0, 4.9, Se2{1, 0, 0}},
                                                 {2, 4.0, 0.0, Se2{3, 0, 0}},  // backwards in time
@@ -72,7 +72,7 @@ TEST(Relations, NearAndFarAreDistinguishedByTheTimeBetween) {
 
 TEST(Relations, BadLinesAreNamed) {
   const TemporaryFolder folder;
-  Skipped skipped;
+  SkippedLines skipped;
   const auto relations =
       read_relations(folder.file("r",
                                  "# t1 t2 x y z roll pitch yaw\n1 2 3 4 0 0 0 0.5\n1 2 3 4 0 0 0\n"
@@ -84,13 +84,13 @@ TEST(Relations, BadLinesAreNamed) {
   EXPECT_EQ(relations[0].base1_from_base2.theta(), 0.5);
   EXPECT_THAT(skipped, ElementsAre(HasSubstr("r:3: got"), HasSubstr("r:4: z, roll and pitch"),
                                    HasSubstr("r:5: got")));
-  EXPECT_THROW(read_relations(folder.file("empty", ""), skipped), InputError);
+  EXPECT_THROW(read_relations(folder.file("empty", ""), skipped), SetupError);
 }
 
 TEST(Relations, TheFreiburgFileIsReadWhole) {
   const std::filesystem::path file = "/work/shared/data/logs/fr079.relations";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
-  Skipped skipped;
+  SkippedLines skipped;
   EXPECT_EQ(read_relations(file, skipped).size(), 1685u);
   EXPECT_THAT(skipped, IsEmpty());
 }

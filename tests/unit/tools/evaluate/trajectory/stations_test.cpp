@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors along the trajectory, consistency over runs, and what happens after a kidnap.
+// Errors along the trajectory, consistency over runs, and the behaviour after a kidnap.
 #include "common/log/log_file.hpp"
 #include "common/messages/codec.hpp"
 #include "common/random/random.hpp"
@@ -77,7 +77,7 @@ TEST(Stations, GrowthIsFromOneStationToAnother) {
 TEST(Stations, TheFileReadsBack) {
   const TemporaryFolder folder;
   const auto pairs = drive(12, {0.02, 0.0, 0.0});
-  Skipped skipped;
+  SkippedLines skipped;
   const auto with = read_stations(
       folder.file("a.csv", stations_csv(stations(pairs, covariances(pairs, 0.01), {}))), skipped);
   const auto without =
@@ -124,7 +124,8 @@ TEST(Consistency, QuantilesAreThoseOfTheTables) {
   EXPECT_NEAR(chi_square_quantile(60, k975), 83.298, 0.01);
 }
 
-/// 20 runs with normal errors of standard deviation 0.1; covariances that claim sigma_m.
+/// Share of stations in the band for 20 runs with normal errors of sigma 0.1 m and reported
+/// sigma_m.
 double share_for(double sigma_m) {
   std::vector<std::vector<Station>> runs;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -147,7 +148,7 @@ double share_for(double sigma_m) {
 TEST(Consistency, ConsistentCovariancesAreInTheBandAndOthersAreNot) {
   EXPECT_NEAR(share_for(0.1), 0.95, 0.04);
   EXPECT_LT(share_for(0.07), 0.1);  // overconfident
-  EXPECT_LT(share_for(0.15), 0.1);  // timid
+  EXPECT_LT(share_for(0.15), 0.1);  // underconfident
 }
 
 TEST(Consistency, StationsWithoutACovarianceDoNotCount) {
@@ -167,8 +168,8 @@ TEST(Consistency, StationsWithoutAUsableCovarianceAreCounted) {
 
 // --------------------------------------------------------------------------- timeline
 
-/// Lifted by 3 m at t = 4 s; the estimate goes on as if nothing had been, says that it is lost from
-/// t = 5 s on, and is right again from t = 6 s on.
+/// The robot is displaced by 3 m at t = 4 s. The estimate ignores this at first, has the health
+/// `lost` from t = 5 s on, and is right again from t = 6 s on.
 struct Kidnapped {
   std::vector<PosePair> pairs = drive(50, {});
   std::vector<StampedCovariance> stamped{};
@@ -236,7 +237,7 @@ TEST(Timeline, KidnapsAreJumpsOfTheTruth) {
   EXPECT_NEAR(lifted_t_s(truth).value(), 2.0, 1e-9);
 }
 
-TEST(Timeline, ATruthWithFewPosesIsNotLifted) {
+TEST(Timeline, LongStepsOfARarelySampledTruthAreNotTakenForAKidnap) {
   Trajectory truth = true_drive(1.0);
   EXPECT_FALSE(lifted_t_s(truth));
   truth[20].parent_from_base = Se2{12.0, 0.0, 0.0};
@@ -269,7 +270,7 @@ TEST(Timeline, SightingsAreFramesThatShowAMarker) {
   }
   writer.close();
   EXPECT_THAT(sighting_times(log), ElementsAre(1.0, 2.0));
-  EXPECT_THROW(sighting_times(folder.path() / "none"), InputError);
+  EXPECT_THROW(sighting_times(folder.path() / "none"), SetupError);
 }
 
 }  // namespace

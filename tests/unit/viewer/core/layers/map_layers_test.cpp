@@ -15,7 +15,7 @@ TEST(DrawCells, WallsOfOneCellStayVisibleWhereSeveralCellsShareAPixel) {
   map.occupancy_percent.setTo(0);
   for (int column = 7; column < map.occupancy_percent.cols; column += 101)
     map.occupancy_percent.col(column).setTo(100);
-  const View view{.box = {0, 0, 100, 100}, .px_per_m = 5.3};  // 3.8 cells per pixel
+  const MapViewport view{.box = {0, 0, 100, 100}, .px_per_m = 5.3};  // 3.8 cells per pixel
   cv::Mat panel(view.size_px(), CV_8UC3);
   draw_cells(panel, view, map, occupancy_colour());
   int walls = 0;
@@ -30,9 +30,9 @@ TEST(DrawCells, WallsOfOneCellStayVisibleWhereSeveralCellsShareAPixel) {
 
 TEST(DrawCells, EachPixelHasTheCellBelowItsCentre) {
   const GridMap map = drawn_map({"#.", ".#", "#."});
-  const View view{.view_from_map = {0, 0, std::numbers::pi / 2},
-                  .box = {-3 * kCell_m, 0, 0, 2 * kCell_m},
-                  .px_per_m = 4 / kCell_m};
+  const MapViewport view{.view_from_map = {0, 0, std::numbers::pi / 2},
+                         .box = {-3 * kCell_m, 0, 0, 2 * kCell_m},
+                         .px_per_m = 4 / kCell_m};
   cv::Mat panel(view.size_px(), CV_8UC3);
   draw_cells(panel, view, map, occupancy_colour());
   ASSERT_EQ(panel.size(), (cv::Size{12, 8}));

@@ -50,9 +50,9 @@ WeakAxis axis_along(double x, double y, double heading, WeakAxisSource source,
   return {.direction = {x, y, heading}, .information = information, .source = source};
 }
 
-/// 2 m x 2 m around the origin of the map, on 200 x 200 pixels.
+/// A picture of 2 m x 2 m around the origin of the map, with 200 x 200 pixels.
 struct Sheet {
-  View view{.box = {-1.0, -1.0, 1.0, 1.0}, .px_per_m = kPxPerM};
+  MapViewport view{.box = {-1.0, -1.0, 1.0, 1.0}, .px_per_m = kPxPerM};
   cv::Mat_<Colour> image = cv::Mat_<Colour>(200, 200, Colour{255, 255, 255});
 
   cv::Rect drawn_box() const {
@@ -68,7 +68,7 @@ struct Sheet {
   }
 };
 
-PathMarks only(const EstimatedPose& pose) {
+UncertaintyMarks only(const EstimatedPose& pose) {
   return {.px_per_m = kPxPerM, .ellipses = {pose}, .weak_axes = {pose}};
 }
 
@@ -116,7 +116,7 @@ TEST(ChooseMarks, AnEmptyPathHasNoMarksAndOnePoseHasOne) {
   EXPECT_THAT(choose_marks({pose_at(0, 1, 2, 0.1)}, kPxPerM, kSpacing_px).ellipses, SizeIs(1));
 }
 
-TEST(ChooseMarks, MarksAreAtRoundDistancesAndAtTheEnd) {
+TEST(ChooseMarks, EllipsesAreAtRoundDistancesAndAtTheEnd) {
   const auto marks = choose_marks(straight_path(9.0, 0.05), kPxPerM, kSpacing_px);
   EXPECT_EQ(marks.spacing_m, 2.0);
   EXPECT_THAT(marks.ellipses, SizeIs(AllOf(Ge(4U), Le(5U))));
@@ -243,7 +243,7 @@ TEST(DrawEllipses, DrawsAnOutlineAndATintInside) {
 
 TEST(DrawEllipses, ScalesByTheMagnification) {
   Sheet sheet;
-  PathMarks marks = only(pose_at(0, 0, 0, 0.005));
+  UncertaintyMarks marks = only(pose_at(0, 0, 0, 0.005));
   marks.magnification = 50;
   draw_ellipses(sheet.image, sheet.view, marks);
   EXPECT_NEAR(sheet.drawn_box().width, 100, 5);

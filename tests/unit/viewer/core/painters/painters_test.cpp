@@ -112,7 +112,7 @@ TEST(PaintMap, TheLegendGrowsWithWhatIsDrawn) {
 }
 
 TEST(PaintMap, TheFinalTrajectoryIsDashedOverTheOthers) {
-  const View view{.box = {0, -1, 4, 1}, .px_per_m = 50.0};
+  const MapViewport view{.box = {0, -1, 4, 1}, .px_per_m = 50.0};
   PageContent content;
   content.estimates = {{.map_from_base = {0, 0, 0}}, {.map_from_base = {4, 0, 0}}};
   content.final_in_map = {{{}, {0, 0, 0}}, {{}, {4, 0, 0}}};
@@ -159,7 +159,7 @@ TEST(PaintMap, WithoutCellsTheFrameIsAroundMarkersAndPoses) {
   EXPECT_LT(frame().right_m, -290.0);
 }
 
-TEST(PaintMap, OneCellAndAbsurdNumbersArePainted) {
+TEST(PaintMap, ASceneWithOneCellAndExtremeNumbersIsPainted) {
   EXPECT_FALSE(paint_map(scene_of(drawn_map({"#"})), kStyle).empty());
 
   Scene scene = corridor_scene(10.0);
@@ -309,7 +309,7 @@ TEST(Labels, MarkersSideBySideGetLabelsSideBySide) {
   for (int i = 0; i < 6; ++i)
     landmarks.push_back({.id = 100 + i, .map_from_marker = {0.1 * i, 1.0, -1.5707963}});
   const GridMap map = room(-3, -1, 3, 1);
-  const View view{.box = {-3.5, -2.0, 3.5, 2.5}, .px_per_m = 100.0};
+  const MapViewport view{.box = {-3.5, -2.0, 3.5, 2.5}, .px_per_m = 100.0};
   const auto labels = place_labels(landmarks, map, view, 16.0);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k)

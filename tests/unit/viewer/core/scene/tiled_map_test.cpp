@@ -18,7 +18,7 @@ Timestamp at_s(double seconds) {
   return Timestamp{duration_from_seconds(seconds)};
 }
 
-/// A 2 x 2 tile that is all alike.
+/// A tile of 2 x 2 equal cells.
 struct Filled {
   std::vector<std::int8_t> occupancy;
   std::vector<std::int16_t> ids;
@@ -82,14 +82,14 @@ TEST(TiledMap, TheNewestContentWinsWhateverTheOrderOfArrival) {
   EXPECT_EQ(map.grid().occupancy_percent(0, 0), 80);
 }
 
-TEST(TiledMap, ATileFromLongBeforeComesAfterAStepOfTheClock) {
+TEST(TiledMap, ATileWithAMuchOlderStampCountsAsNewerAfterAClockStep) {
   TiledMap map{1000};
   map.put(kLayout, at_s(100), Filled{80, -1}.at(0, 0));
   EXPECT_EQ(map.put(kLayout, at_s(10), Filled{10, -1}.at(0, 0)), Outcome::kStored);
   EXPECT_EQ(map.grid().occupancy_percent(0, 0), 10);
 }
 
-TEST(TiledMap, AStrayTileCannotAskForUnboundedMemory) {
+TEST(TiledMap, AStrayTileCannotAllocateUnboundedMemory) {
   TiledMap map{1000};
   map.put(kLayout, at_s(1), Filled{0, -1}.at(0, 0));
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From metres in the map to pixels on a page.
+// Transforms metres in the map to pixels on a page.
 #pragma once
 
 #include "common/geometry/se2.hpp"
@@ -20,9 +20,9 @@ struct Box {
   double height_m() const { return top_m - bottom_m; }
 };
 
-/// A window onto the map: `box` of the view frame (x right, y up), drawn at a scale with the box's
-/// upper left corner at pixel (0, 0).
-struct View {
+/// The part of the map that is drawn: `box` in the view frame (x right, y up), scaled by px_per_m,
+/// its upper left corner at pixel (0, 0). operator() gives the pixel of a point in the map.
+struct MapViewport {
   Se2 view_from_map{};
   Box box{};
   double px_per_m{1.0};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exchange of views between the node, which posts them, and the web server's threads, which read
-// them.
+// Passes views from the node, which posts them, to the threads of the web server, which read them.
 #pragma once
 
 #include "viewer/http/live_view.hpp"
@@ -19,9 +18,9 @@ namespace waymark::viewer {
 using ViewPtr = std::shared_ptr<const LiveView>;
 
 /// Thread-safe. The lock is held only to copy pointers and path points, never to serialise or send.
-class Board {
+class ViewStore {
  public:
-  /// Posts a view and the points by which the path has grown.
+  /// Stores a view and appends the path's new points.
   void post(ViewPtr view, std::span<const PathPoint> path_growth);
 
   /// Like post(), but does nothing when a reader holds the lock.
@@ -51,7 +50,7 @@ class Board {
   /// True when a client has read a view within the last five seconds of wall-clock time.
   bool is_watched() const;
 
-  /// Ends all waiting.
+  /// Makes all waiting threads return.
   void close();
   bool closed() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "viewer/http/board.hpp"
+#include "viewer/http/view_store.hpp"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace waymark::viewer {
 namespace {
 
 constexpr Duration kFirstSpacing = std::chrono::milliseconds{200};
-/// Longer than the period in which clients ask for a view.
+/// Longer than the interval between a client's requests for views.
 constexpr std::int64_t kWatched_ms = 5000;
 
 std::int64_t wall_clock_ms() {
@@ -17,7 +17,7 @@ std::int64_t wall_clock_ms() {
 
 }  // namespace
 
-void Board::post(ViewPtr view, std::span<const PathPoint> path_growth) {
+void ViewStore::post(ViewPtr view, std::span<const PathPoint> path_growth) {
   {
     const std::scoped_lock lock{mutex_};
     store(view, path_growth);
@@ -25,7 +25,7 @@ void Board::post(ViewPtr view, std::span<const PathPoint> path_growth) {
   changed_.notify_all();
 }
 
-bool Board::try_post(const ViewPtr& view, std::span<const PathPoint> path_growth) {
+bool ViewStore::try_post(const ViewPtr& view, std::span<const PathPoint> path_growth) {
   {
     const std::unique_lock lock{mutex_, std::try_to_lock};
     if (!lock) return false;
@@ -35,7 +35,7 @@ bool Board::try_post(const ViewPtr& view, std::span<const PathPoint> path_growth
   return true;
 }
 
-void Board::store(const ViewPtr& view, std::span<const PathPoint> path_growth) {
+void ViewStore::store(const ViewPtr& view, std::span<const PathPoint> path_growth) {
   newest_ = view;
   path_.insert(path_.end(), path_growth.begin(), path_growth.end());
   // When message time jumps back, the history begins again.
@@ -51,21 +51,21 @@ void Board::store(const ViewPtr& view, std::span<const PathPoint> path_growth) {
   history_spacing_ = (history_.back()->time - history_.front()->time) / static_cast<int>(kept - 1);
 }
 
-void Board::note_reader() const {
+void ViewStore::note_reader() const {
   last_read_ms_ = wall_clock_ms();
 }
 
-bool Board::is_watched() const {
+bool ViewStore::is_watched() const {
   return wall_clock_ms() - last_read_ms_ < kWatched_ms;
 }
 
-ViewPtr Board::newest() const {
+ViewPtr ViewStore::newest() const {
   note_reader();
   const std::scoped_lock lock{mutex_};
   return newest_;
 }
 
-ViewPtr Board::at(Timestamp time) const {
+ViewPtr ViewStore::at(Timestamp time) const {
   note_reader();
   const std::scoped_lock lock{mutex_};
   if (!newest_ || newest_->time <= time) return newest_;
@@ -74,7 +74,7 @@ ViewPtr Board::at(Timestamp time) const {
   return history_.empty() ? newest_ : history_.front();
 }
 
-ViewPtr Board::wait_for_newer(std::uint64_t number, std::chrono::milliseconds timeout) const {
+ViewPtr ViewStore::wait_for_newer(std::uint64_t number, std::chrono::milliseconds timeout) const {
   note_reader();
   std::unique_lock lock{mutex_};
   const auto is_newer = [&] {
@@ -84,7 +84,7 @@ ViewPtr Board::wait_for_newer(std::uint64_t number, std::chrono::milliseconds ti
   return !closed_ && is_newer() ? newest_ : nullptr;
 }
 
-std::vector<PathPoint> Board::path(std::size_t first, std::size_t last) const {
+std::vector<PathPoint> ViewStore::path(std::size_t first, std::size_t last) const {
   const std::scoped_lock lock{mutex_};
   last = std::min(last, path_.size());
   first = std::min(first, last);
@@ -92,13 +92,13 @@ std::vector<PathPoint> Board::path(std::size_t first, std::size_t last) const {
           path_.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
-Board::Span Board::history() const {
+ViewStore::Span ViewStore::history() const {
   const std::scoped_lock lock{mutex_};
   if (!newest_) return {};
   return {history_.empty() ? newest_->time : history_.front()->time, newest_->time};
 }
 
-void Board::close() {
+void ViewStore::close() {
   {
     const std::scoped_lock lock{mutex_};
     closed_ = true;
@@ -106,7 +106,7 @@ void Board::close() {
   changed_.notify_all();
 }
 
-bool Board::closed() const {
+bool ViewStore::closed() const {
   const std::scoped_lock lock{mutex_};
   return closed_;
 }
