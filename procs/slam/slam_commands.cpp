@@ -113,6 +113,17 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
   frame_ = survey_.empty() ? "map" : "survey";
 }
 
+/// Looks for the robot in the whole loaded map, after its scans have refuted the start pose.
+void SlamNode::localise_anywhere() {
+  if (const auto statistics = estimator_->statistics()) {
+    refuted_.scans_in_loaded_map += statistics->scans_in_loaded_map;
+    refuted_.scans_contradict_loaded_map += statistics->scans_contradict_loaded_map;
+  }
+  counters_.add("start poses that the scans refuted");
+  logging::warn("the scans contradict the loaded map at the start pose: localises anywhere in it");
+  begin_estimator(config_.slam.mode, loaded_map_, unknown_start());
+}
+
 std::string SlamNode::reset() {
   const bool has_map = loaded_map_ != nullptr;
   begin_estimator(config_.slam.mode, loaded_map_, has_map ? unknown_start() : StartPose{});

@@ -142,8 +142,10 @@ void SlamNode::attempt(std::string_view part, const std::function<void()>& work)
 }
 
 std::optional<std::vector<Finding>> SlamNode::findings() const {
-  const std::optional<SensorStatistics> found = estimator_->statistics();
+  std::optional<SensorStatistics> found = estimator_->statistics();
   if (!found) return std::nullopt;
+  found->scans_in_loaded_map += refuted_.scans_in_loaded_map;
+  found->scans_contradict_loaded_map += refuted_.scans_contradict_loaded_map;
   return reportable_findings(*found, counters_.get(to_string(Skip::kScanRepeated)));
 }
 
@@ -200,7 +202,8 @@ void SlamNode::check_input() {
         "no pose: in {} estimates the survey's frame was never known; that takes two surveyed "
         "markers, or one with yaw, each sighted three times",
         without_pose);
-  } else if (!last_estimate_time_ && without_pose > 0) {
+  } else if (loaded_map_ != nullptr && without_pose > 0 &&
+             (!last_estimate_time_ || (was_refuted() && !newest_estimate_))) {
     failed_ = true;
     logging::error(
         "no pose: in {} estimates the robot's pose in '{}' was never certain; more than one place, "
@@ -274,6 +277,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
   outbox_.publish(channels::kSlamCorrection, correction_.make(estimate, odom_from_base_, map_id_));
   outbox_.publish(channels::kSlamParticles, to_message(estimator_->particles(), time));
   publish_map_when_due(time);
+  if (estimate.start_refuted) localise_anywhere();
 }
 
 void SlamNode::publish_map_when_due(Timestamp time) {

@@ -167,7 +167,7 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   if (used.is_used) {
     note_reason(EstimateReason::kScan);
     learn_noise(scan.expected, *matched);
-    confirm_place(*matched);
+    confirm_place(observation, *matched);
     if (matched->submap != nullptr)
       add_scan_factor(keyframe, *matched->submap, matched->match, false);
     else
@@ -324,8 +324,9 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                               : markers_known_                        ? WeakAxisSource::kMarkers
                                                                       : WeakAxisSource::kOdometry;
   estimate.ranges_wrong = is_rescaled_;
+  estimate.start_refuted = is_loaded_map_refuted();
   const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kSuspicious ||
-                       inlier_share_ < config_.lost_inlier_share || is_loaded_map_refuted() ||
+                       inlier_share_ < config_.lost_inlier_share || estimate.start_refuted ||
                        survey_.is_undecided();
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
                               !estimate.observability.is_degenerate ||

@@ -189,7 +189,7 @@ class WaymarkEstimator final : public Estimator {
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
   bool is_loaded_map_refuted() const;
-  void confirm_place(const MatchedScan& scan);
+  void confirm_place(const Observation& observation, const MatchedScan& scan);
   void compare_with_loaded_map(const Observation& observation);
   std::optional<RescaledScan> rescaled(const Observation& observation,
                                        const ScanAtPrediction& scan) const;

@@ -56,10 +56,16 @@ bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
          match.mapped_share >= kMinMapped;
 }
 
-/// A match that observes every direction confirms the pose in the loaded map.
-void WaymarkEstimator::confirm_place(const MatchedScan& scan) {
-  if (scan.submap == nullptr && !scan.match.observed.is_degenerate && is_in_loaded_map(scan.match))
-    is_confirmed_ = true;
+/// A match that observes every direction confirms the pose in the loaded map, unless too many beams
+/// cross the map's walls or end in its free space: at a wrong heading, the walls that are in the
+/// map may fit all the same.
+void WaymarkEstimator::confirm_place(const Observation& observation, const MatchedScan& scan) {
+  if (is_confirmed_ || scan.submap != nullptr || scan.match.observed.is_degenerate ||
+      !is_in_loaded_map(scan.match))
+    return;
+  const MapFit fit =
+      fit_in_map(setup_.loaded_map->grid, observation.beams, scan.match.map_from_base);
+  is_confirmed_ = !fit.is_contradicted();
 }
 
 /// Compares the newest keyframe's scan, at its estimated pose, with the loaded map.
