@@ -113,7 +113,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
                            graph_.state().keyframes.back().inverse() * now.map_from_base,
                            is_observed_});
   }
-  return has_frame() ? now : estimate_without_pose(observation);
+  return has_map_frame() ? now : estimate_without_pose(observation);
 }
 
 void WaymarkEstimator::note_reason(EstimateReason reason) {
@@ -157,8 +157,8 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   const std::size_t keyframe =
       graph_.add_keyframe(is_moved ? matched->map_from_submap * matched->match.map_from_base
                                    : scan.expected.map_from_base);
-  // Scans that observe all axes reveal slips, even with a large sigma along the path: reducing the
-  // weight of odometry beside them makes long trajectories worse.
+  // A scan that observes all axes measures slips, so odometry keeps its full weight here: with a
+  // lower weight, long trajectories become worse, even where sigma along the path is large.
   hidden_slips_ = used.observes_all_axes ? 0.0 : hidden_slips(measurements);
   add_odometry_factor(keyframe);
   if (matched && matched->match.num_mapped >= config_.scan.min_inliers)
@@ -233,9 +233,9 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
   is_observed_ = markers_known_ || used.observes_all_axes;
   if (is_observed_) unmeasured_motion_.note_observed();
   compare_with_loaded_map(observation);
-  was_confirmed_ |= is_confirmed_;
+  was_confirmed_ |= is_confirmed();
   // A scan whose pose is uncertain is not mapped.
-  const bool is_mapped = !is_suspicious && !used.is_refuted && is_confirmed_;
+  const bool is_mapped = !is_suspicious && !used.is_refuted && is_confirmed();
   if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
   if (!is_map_fixed())
     map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? scan.points : Points{});
@@ -262,7 +262,7 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
 /// left out: its pose may be wrong, and later scans would be matched with it.
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
-  if (is_map_fixed() || !is_confirmed_ || since_insertion_m_ < config_.insert_distance_m ||
+  if (is_map_fixed() || !is_confirmed() || since_insertion_m_ < config_.insert_distance_m ||
       usual_fit_.is_worse_than_usual(match) ||
       verdict_ == RelocalisationMonitor::Verdict::kSuspicious) {
     return;

@@ -164,6 +164,13 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| from start
   };
 
+  /// What the pose in the loaded map rests on. Walls of another place may fit, too.
+  enum class PlaceTrust {
+    kAssumed,    ///< only a start pose or a command
+    kFitsWalls,  ///< a scan that observes every direction
+    kKnown,      ///< markers, the place finder, or a start pose that is certain
+  };
+
   /// Numbers of keyframes' scans compared with the loaded map since the pose was last commanded.
   struct LoadedMapVotes {
     std::int64_t decisive{0};       ///< scans with enough beams in mapped cells (MapFit)
@@ -176,7 +183,7 @@ class WaymarkEstimator final : public Estimator {
   std::vector<Landmark> landmarks_of(const Graph& graph) const;
   const Graph& solved() const;
 
-  bool has_frame() const { return survey_.is_empty() || survey_.has_frame(); }
+  bool has_map_frame() const { return survey_.is_empty() || survey_.has_map_frame(); }
 
   bool is_map_fixed() const { return setup_.map_mode == MapMode::kLocalise; }
 
@@ -188,6 +195,9 @@ class WaymarkEstimator final : public Estimator {
   const NdtMap& ndt_of(const MatchedScan& scan) const;
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
+
+  bool is_confirmed() const { return place_trust_ != PlaceTrust::kAssumed; }
+
   bool is_loaded_map_refuted() const;
   void confirm_place(const Observation& observation, const MatchedScan& scan);
   void compare_with_loaded_map(const Observation& observation);
@@ -288,8 +298,8 @@ class WaymarkEstimator final : public Estimator {
   CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
                                              : config_.scan.cell_spacing_m};  ///< of loaded_points_
   LoadedMapVotes loaded_map_votes_{};
-  bool is_confirmed_{true};   ///< markers or walls confirm the pose in the loaded map
-  bool was_confirmed_{true};  ///< is_confirmed_ was true at least once
+  PlaceTrust place_trust_{PlaceTrust::kKnown};
+  bool was_confirmed_{true};                          ///< is_confirmed() was true at least once
   std::optional<WallChangeDetector> wall_changes_{};  ///< relative to the loaded map
   Survey survey_;
   std::optional<StartPose> commanded_pose_{};  ///< for the next keyframe

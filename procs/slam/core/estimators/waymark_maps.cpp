@@ -33,7 +33,7 @@ void WaymarkEstimator::load(const MapSnapshot& map) {
   for (const Eigen::Vector2d& point : loaded_points_)
     loaded_coarse_.add(point);
   wall_changes_.emplace(setup_.loaded_map);
-  is_confirmed_ = false;
+  place_trust_ = PlaceTrust::kAssumed;
   was_confirmed_ = false;
   if (start_.kind == StartKind::kAnywhere) place_finder_.emplace(setup_.loaded_map, config_.scan);
 }
@@ -60,12 +60,12 @@ bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
 /// cross the map's walls or end in its free space: at a wrong heading, the walls that are in the
 /// map may fit all the same.
 void WaymarkEstimator::confirm_place(const Observation& observation, const MatchedScan& scan) {
-  if (is_confirmed_ || scan.submap != nullptr || scan.match.observed.is_degenerate ||
+  if (is_confirmed() || scan.submap != nullptr || scan.match.observed.is_degenerate ||
       !is_in_loaded_map(scan.match))
     return;
   const MapFit fit =
       fit_in_map(setup_.loaded_map->grid, observation.beams, scan.match.map_from_base);
-  is_confirmed_ = !fit.is_contradicted();
+  if (!fit.is_refuted()) place_trust_ = PlaceTrust::kFitsWalls;
 }
 
 /// Compares the newest keyframe's scan, at its estimated pose, with the loaded map.
@@ -76,14 +76,13 @@ void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
   if (!fit.is_decisive()) return;
   ++statistics_.scans_in_loaded_map;
   ++loaded_map_votes_.decisive;
-  if (!fit.is_contradicted()) return;
-  ++statistics_.scans_contradict_loaded_map;
-  ++loaded_map_votes_.contradicting;
+  if (fit.is_contradicted()) ++statistics_.scans_contradict_loaded_map;
+  if (fit.is_refuted()) ++loaded_map_votes_.contradicting;
 }
 
-/// Whether nothing has confirmed the pose in the loaded map, and most scans contradict it.
+/// Whether most scans contradict the pose in the loaded map, and it is not known otherwise.
 bool WaymarkEstimator::is_loaded_map_refuted() const {
-  return !is_confirmed_ && loaded_map_votes_.decisive >= kScansToDecide &&
+  return place_trust_ != PlaceTrust::kKnown && loaded_map_votes_.decisive >= kScansToDecide &&
          2 * loaded_map_votes_.contradicting > loaded_map_votes_.decisive;
 }
 
@@ -107,7 +106,7 @@ void WaymarkEstimator::use_survey() {
     loop_finder_.reset();
     forget_recent_motion();
   }
-  if (!survey_.has_frame()) return;
+  if (!survey_.has_map_frame()) return;
   if (survey_.apply(graph_) || survey_from_map) graph_.optimise_all(kSurveySteps);
   graph_.optimise();
   solve_schedule_.begin(graph_.state().keyframes.size());
@@ -134,7 +133,7 @@ std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
 /// None before the pose in the loaded map was confirmed: the map might mix two buildings. None
 /// before the survey's frame is known: the map would be in another frame.
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
-  if (is_map_fixed() || graph_.state().keyframes.empty() || !was_confirmed_ || !has_frame())
+  if (is_map_fixed() || graph_.state().keyframes.empty() || !was_confirmed_ || !has_map_frame())
     return std::nullopt;
   const Graph& graph = solved();
   MapSnapshot snapshot;

@@ -98,14 +98,15 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     markers_known_ = true;
     // In a fixed map, this run's own markers are fixed, too, once they have left the window.
     if (setup_.loaded_map && nearest->landmark < setup_.loaded_map->landmarks.size())
-      is_confirmed_ = true;
+      place_trust_ = PlaceTrust::kKnown;
     if (!graph_.is_fixed(nearest->landmark) &&
         !graph_.is_active({VariableKind::kLandmark, nearest->landmark}))
       returning.push_back(nearest->landmark);
   }
   if (!matches.empty()) note_reason(EstimateReason::kMarker);
   if (markers_known_) unobserved_m_ = 0.0;
-  // Before new landmarks are added: the step solves the window, where each needs a measurement.
+  // Before new landmarks are added, since step_whole_graph() also solves the window, and a landmark
+  // without a measurement there would make the equations singular.
   if (!returning.empty()) step_whole_graph(returning);
   const std::size_t first_new = book_.entries().size();
   for (const Match& match : matches) {

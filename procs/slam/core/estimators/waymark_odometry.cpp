@@ -142,8 +142,9 @@ void WaymarkEstimator::compare_with_odometry() {
   standstill_->moved_at_s = clock_s_;
 }
 
-/// For the final trajectory: distributes late motion evenly in time over the scans of the
-/// standstill, separately between scans that markers or walls observed.
+/// Corrects the final trajectory for a standstill during which odometry was stuck: its poses are
+/// interpolated linearly in time between those that are known, which are the standstill's start,
+/// the scans that markers or walls observed, and `observation`.
 void WaymarkEstimator::spread_late_motion(const Observation& observation) {
   ScanPose known{standstill_->since, standstill_->keyframe, standstill_->motion.start_from_end};
   const ScanPose end{observation.time, known.keyframe,

@@ -25,7 +25,7 @@ void WaymarkEstimator::add_first_keyframe() {
 }
 
 bool WaymarkEstimator::set_pose(const StartPose& pose) {
-  if (!has_frame()) return false;
+  if (!has_map_frame()) return false;
   const bool has_begun = !graph_.state().keyframes.empty();
   if (!has_begun && !setup_.loaded_map) return false;  // there is no map that it could be in
   const Eigen::Vector2d given{pose.x_m, pose.y_m};
@@ -39,7 +39,7 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
     commanded_pose_ = pose;
   else
     start_ = pose;
-  if (place_finder_) is_confirmed_ = pose.is_certain;
+  if (place_finder_) place_trust_ = pose.is_certain ? PlaceTrust::kKnown : PlaceTrust::kAssumed;
   place_finder_.reset();
   note_reason(pose.kind == StartKind::kLast ? EstimateReason::kRelocalised
                                             : EstimateReason::kCommand);
@@ -53,7 +53,7 @@ void WaymarkEstimator::add_keyframe_at_commanded_pose(const StartPose& pose) {
   graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_, true});
   const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
-  is_confirmed_ = !setup_.loaded_map || pose.is_certain;
+  place_trust_ = !setup_.loaded_map || pose.is_certain ? PlaceTrust::kKnown : PlaceTrust::kAssumed;
   loaded_map_votes_ = {};
   relocalisation_ = {};
   forget_recent_motion();
@@ -76,7 +76,7 @@ bool WaymarkEstimator::try_global_localisation(const Observation& observation) {
   if (!found) return false;
   start_ = {StartKind::kPose, found->x(), found->y(), found->theta(), kFound_m, kFound_rad};
   place_finder_.reset();
-  is_confirmed_ = true;
+  place_trust_ = PlaceTrust::kKnown;
   motion_ = {};
   note_reason(EstimateReason::kRelocalised);
   return true;

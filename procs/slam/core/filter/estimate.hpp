@@ -36,7 +36,7 @@ struct Estimate {
   /// The odometry's newest step was rejected: scans contradict it (gmapping), or it exceeds the
   /// robot's speed limits (waymark).
   bool odometry_refused{false};
-  /// Nothing confirmed the pose in the loaded map, and most scans contradict it there.
+  /// Most scans contradict the pose in the loaded map, and no marker has confirmed it.
   bool start_refuted{false};
   bool ranges_wrong{false};  ///< the scan fits known walls only at another scale: it was scaled
   /// A calibration term is further from its description than its standard deviation allows

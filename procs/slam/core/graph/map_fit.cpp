@@ -30,7 +30,7 @@ bool is_free(const GridMap& map, const Eigen::Vector2d& point) {
   return cell.is_mapped() && cell.occupancy() < kFree;
 }
 
-/// Whether a mapped wall lies between the two points.
+/// Whether a mapped wall crosses the beam more than kBeforeEnd_m before its end `to`.
 bool is_crossed(const GridMap& map, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const double length_m = (to - from).norm();
   if (length_m <= kBeforeEnd_m) return false;
@@ -53,6 +53,7 @@ MapFit fit_in_map(const GridMap& map, std::span<const AnnotatedBeam> beams,
     ++fit.beams;
     if (is_crossed(map, map_from_base * beam.start_in_base, end)) {
       ++fit.contradicting;
+      ++fit.crossing;
     } else if (is_beside_wall(map, end)) {
       ++fit.fitting;
     } else if (is_free(map, end)) {

@@ -17,9 +17,12 @@ struct MapFit {
   int beams{0};          ///< number of compared beams
   int fitting{0};        ///< end on a mapped wall
   int contradicting{0};  ///< cross a mapped wall, or end where the map is free
+  int crossing{0};       ///< of these, cross a mapped wall: nobody in the way explains that
 
   static constexpr int kMinBeams = 20;  ///< fitting and contradicting beams; fewer are not decisive
   static constexpr double kMaxMisfit = 0.3;  ///< misfit() of a correct map at the correct pose
+
+  static constexpr double kMaxCrossing = 0.2;  ///< crossing / (fitting + crossing), likewise
 
   bool is_decisive() const { return fitting + contradicting >= kMinBeams; }
 
@@ -29,6 +32,11 @@ struct MapFit {
   }
 
   bool is_contradicted() const { return is_decisive() && misfit() >= kMaxMisfit; }
+
+  /// Also right among people, whose beams end where the map is free.
+  bool is_refuted() const {
+    return is_decisive() && crossing > kMaxCrossing * (fitting + crossing);
+  }
 };
 
 /// Compares at most 120 beams, evenly spread over the scan.

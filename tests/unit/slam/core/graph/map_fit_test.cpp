@@ -39,8 +39,11 @@ TEST(MapFit, ABeamFitsContradictsOrEndsInUnmappedSpace) {
   EXPECT_EQ(same.fitting, same.beams);
   const MapFit nearer = fit_in_map(map, in_a_round_room(1.5), {});  // where the map is free
   EXPECT_EQ(nearer.contradicting, nearer.beams);
+  EXPECT_TRUE(nearer.is_contradicted());
+  EXPECT_FALSE(nearer.is_refuted());  // people may stand all round the robot
   const MapFit farther = fit_in_map(map, in_a_round_room(3.0), {});  // through its wall
   EXPECT_GT(farther.contradicting, 0.8 * farther.beams);  // some pass diagonally between cells
+  EXPECT_TRUE(farther.is_refuted());
   const MapFit elsewhere = fit_in_map(map, in_a_round_room(2.0), {10.0, 0.0, 0.0});
   EXPECT_FALSE(elsewhere.is_decisive());
   EXPECT_FALSE(elsewhere.is_contradicted());
