@@ -12,6 +12,9 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <cmath>
+#include <vector>
+
 namespace waymark {
 namespace {
 
@@ -59,7 +62,7 @@ TEST(DoctorsCamera, AccurateMeasurementsAreWrittenEvenIfTheDescriptionPasses) {
 }
 
 TEST(DoctorsVerdict, OnlyWhatIsContradictedOrMeasuredMuchBetterThanItsLimitIsWritten) {
-  constexpr Limits kLimits{0.01, 0.05};
+  constexpr DeviationLimits kLimits{0.01, 0.05};
   const auto is_written = [&](double deviation, double sigma) {
     return is_worth_writing(verdict_of(deviation, sigma, kLimits), deviation, sigma, kLimits);
   };
@@ -96,6 +99,27 @@ TEST(DoctorsCamera, AWrongOdometryScaleDoesNotBiasTheFocalLength) {
   EXPECT_EQ(check_of(input, "odometry_distance_scale").verdict, Verdict::kWarn);
 }
 
+TEST(DoctorsCamera, OdometryOfWrongScalesIsCorrectedAlongItsArcs) {
+  constexpr double kStep_m = 0.05;
+  constexpr double kTurn_rad = 0.06;
+  constexpr int kNumSteps = 100;
+  const auto on_circle = [](double distance_scale, double turn_scale) {
+    const double turn_rad = turn_scale * kTurn_rad;
+    const double radius_m = distance_scale * kStep_m / turn_rad;
+    std::vector<ImportedPose> poses;
+    for (int i = 0; i <= kNumSteps; ++i) {
+      const double angle_rad = i * turn_rad;
+      poses.push_back({.pose = {radius_m * std::sin(angle_rad),
+                                radius_m * (1.0 - std::cos(angle_rad)), angle_rad}});
+    }
+    return poses;
+  };
+  const Se2 expected = on_circle(1.0, 1.0).back().pose;
+  const Se2 corrected = rescaled(on_circle(1.25, 1.2), 1.25, 1.2).back().pose;
+  EXPECT_NEAR((corrected.translation() - expected.translation()).norm(), 0.0, 0.002);
+  EXPECT_NEAR(angle_difference(corrected.theta(), expected.theta()), 0.0, 1e-9);
+}
+
 TEST(DoctorsCamera, MarkersOfAnotherDictionaryAreReportedWithItsName) {
   DoctorInput input = drive_in_room({.duration_s = 20.0});
   input.camera->markers_of_described = 2;  // read by chance
@@ -114,7 +138,7 @@ TEST(DoctorsCamera, MarkersOfAnotherDictionaryAreReportedWithItsName) {
 TEST(DoctorsCamera, BlurAndUnreadableFramesAreNamed) {
   DoctorInput input = drive_in_room({.duration_s = 20.0});
   std::ranges::fill(input.camera->blurs_px, 4.0);
-  input.camera->problems["another size"] = input.camera->num_decoded / 2;
+  input.camera->problems["another size"] = input.camera->num_examined / 2;
   EXPECT_EQ(check_of(input, "blur").verdict, Verdict::kFail);
   const Check frames = check_of(input, "camera_frames");
   EXPECT_EQ(frames.verdict, Verdict::kFail);

@@ -8,13 +8,18 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <numeric>
+#include <vector>
 
 namespace waymark {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::filesystem::path test_folder() {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
@@ -93,6 +98,43 @@ TEST(DoctorProgram, LogsThatCannotBeUsedGive2AndASentence) {
     EXPECT_EQ(ended.code, 2) << arguments;
     EXPECT_FALSE(ended.errors.empty()) << arguments;
   }
+}
+
+TEST(DoctorInput, TheMessagesOfEachChannelAreCounted) {
+  const std::string log = run_of({.duration_s = 3.0});
+  std::map<std::string, std::vector<std::int64_t>> sizes_bytes;
+  LogReader reader{log};
+  while (const auto event = reader.next())
+    sizes_bytes[event->channel].push_back(std::ssize(event->payload));
+
+  const DoctorInput input = read_input(log, {}, {});
+
+  EXPECT_NEAR(input.recorded_s, 3.0, 0.1);
+  ASSERT_EQ(input.channels.size(), sizes_bytes.size());
+  for (const auto& [channel, sizes] : sizes_bytes) {
+    const ChannelTraffic& traffic = input.channels.at(channel);
+    EXPECT_EQ(traffic.messages, std::ssize(sizes)) << channel;
+    EXPECT_EQ(traffic.bytes, std::accumulate(sizes.begin(), sizes.end(), std::int64_t{0}));
+    EXPECT_EQ(traffic.largest_bytes, std::ranges::max(sizes));
+    EXPECT_NEAR(traffic.first_s, 0.0, 0.1);
+    EXPECT_NEAR(traffic.last_s, 3.0, 0.2);
+  }
+}
+
+TEST(DoctorProgram, WithoutOdometryTheErrorAsksForItOrForTheChannelThatTheUserNamed) {
+  const std::string log = run_of({.duration_s = 2.0});
+  for (const std::string option : {"--odometry-channel", "--encoder-channel"}) {
+    const Ended named = doctor(log + " " + option + " NONE");
+    EXPECT_THAT(named.errors, HasSubstr("there is no channel NONE"));
+    EXPECT_THAT(named.errors, Not(HasSubstr("the log has no ODOMETRY")));
+  }
+  LogWriter only_lidar{test_folder() / "no_odometry.lcm"};
+  LogReader reader{log};
+  while (const auto event = reader.next())
+    if (event->channel == channels::kLidar.name) only_lidar.write(*event);
+  only_lidar.close();
+  EXPECT_THAT(doctor((test_folder() / "no_odometry.lcm").string()).errors,
+              HasSubstr("the log has no ODOMETRY, but LIDAR"));
 }
 
 TEST(DoctorProgram, ASensorThatStopsForGoodIsNamedButAStepOfTheClockIsNot) {

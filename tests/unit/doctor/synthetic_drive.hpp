@@ -77,7 +77,7 @@ inline void add_sightings(CameraRecord& record, const RobotConfig& described,
                           std::mt19937& random) {
   std::normal_distribution<double> noise{0.0, 1.0};
   record.times.push_back(time);
-  ++record.num_decoded;
+  ++record.num_examined;
   CameraConfig camera = described.camera;
   camera.yaw_rad += faults.camera_yaw_rad;
   const Eigen::Isometry3d camera_from_base = camera.base_from_camera().inverse();

@@ -36,11 +36,11 @@ RouteConfig short_route() {
 TEST(WheelSpeeds, MatchTheGeometryStraightOnAndOnTheSpot) {
   const BaseConfig base{};
   const WheelPair straight = wheel_speeds(base, {0.33, 0.0});
-  EXPECT_DOUBLE_EQ(straight.left_rad, 10.0);
-  EXPECT_DOUBLE_EQ(straight.right_rad, 10.0);
+  EXPECT_DOUBLE_EQ(straight.left, 10.0);
+  EXPECT_DOUBLE_EQ(straight.right, 10.0);
   const WheelPair to_the_left = wheel_speeds(base, {0.0, 1.0});
-  EXPECT_DOUBLE_EQ(to_the_left.right_rad, 0.287 / 2 / 0.033);
-  EXPECT_DOUBLE_EQ(to_the_left.left_rad, -to_the_left.right_rad);
+  EXPECT_DOUBLE_EQ(to_the_left.right, 0.287 / 2 / 0.033);
+  EXPECT_DOUBLE_EQ(to_the_left.left, -to_the_left.right);
 }
 
 TEST(RouteFollower, DrivesStraightToTheEndInTheExpectedTime) {

@@ -22,11 +22,11 @@ OdometryErrorConfig no_errors() {
 Se2 after(const OdometryErrorConfig& errors, double left_m, double right_m, int steps,
           std::int64_t seed = 1) {
   const BaseConfig base{};
-  Encoders encoders{base, errors, seed};
-  OdometrySample sample = encoders.measure({}, {});
+  WheelOdometry odometry{base, errors, seed};
+  OdometrySample sample = odometry.measure({}, {});
   for (int i = 1; i <= steps; ++i) {
     const double share = static_cast<double>(i) / steps;
-    sample = encoders.measure(
+    sample = odometry.measure(
         {}, {share * left_m / base.wheel_radius_m, share * right_m / base.wheel_radius_m});
   }
   return sample.odom_from_base;
@@ -49,21 +49,21 @@ Spread spread(const OdometryErrorConfig& errors, double distance_m, int steps) {
   return {std::sqrt(sum_x2 / kRuns), std::sqrt(sum_theta2 / kRuns)};
 }
 
-TEST(Encoders, StartAtTheIdentity) {
-  Encoders encoders{{}, {}, 1};
-  const OdometrySample first = encoders.measure(timestamp_from_us(5), {});
+TEST(WheelOdometry, StartsAtTheIdentity) {
+  WheelOdometry odometry{{}, {}, 1};
+  const OdometrySample first = odometry.measure(timestamp_from_us(5), {});
   EXPECT_EQ(first.time, timestamp_from_us(5));
   EXPECT_EQ(first.odom_from_base.x(), 0.0);
   EXPECT_EQ(first.odom_from_base.theta(), 0.0);
 }
 
-TEST(Encoders, WithoutErrorsAStraightLineIsExact) {
+TEST(WheelOdometry, WithoutErrorsAStraightLineIsExact) {
   const Se2 end = after(no_errors(), 2.0, 2.0, 100);
   EXPECT_NEAR(end.x(), 2.0, 1e-12);
   EXPECT_EQ(end.y(), 0.0);
 }
 
-TEST(Encoders, WithoutErrorsAQuarterCircleIsExact) {
+TEST(WheelOdometry, WithoutErrorsAQuarterCircleIsExact) {
   const double radius_m = 1.0;
   const double half_separation_m = 0.287 / 2;
   const double quarter = std::numbers::pi / 2;
@@ -74,7 +74,7 @@ TEST(Encoders, WithoutErrorsAQuarterCircleIsExact) {
   EXPECT_NEAR(end.theta(), quarter, 1e-12);
 }
 
-TEST(Encoders, ScalesStretchDistancesAndTurns) {
+TEST(WheelOdometry, ScalesStretchDistancesAndTurns) {
   OdometryErrorConfig errors = no_errors();
   errors.scale = 0.01;
   errors.heading_scale = -0.1;
@@ -82,7 +82,7 @@ TEST(Encoders, ScalesStretchDistancesAndTurns) {
   EXPECT_NEAR(after(errors, -0.287 / 2, 0.287 / 2, 10).theta(), 0.9, 1e-12);
 }
 
-TEST(Encoders, DiffusionIsAsConfiguredAndIndependentOfTheRate) {
+TEST(WheelOdometry, DiffusionIsAsConfiguredAndIndependentOfTheRate) {
   OdometryErrorConfig errors = no_errors();
   errors.diffusion_m_per_sqrt_m = 0.003;
   errors.heading_diffusion_deg_per_sqrt_m = 0.5;
@@ -94,20 +94,20 @@ TEST(Encoders, DiffusionIsAsConfiguredAndIndependentOfTheRate) {
   }
 }
 
-TEST(Encoders, AStandingRobotDoesNotDrift) {
+TEST(WheelOdometry, AStandingRobotDoesNotDrift) {
   const Se2 end = after({}, 0.0, 0.0, 1000);
   EXPECT_EQ(end.x(), 0.0);
   EXPECT_EQ(end.theta(), 0.0);
 }
 
-TEST(Encoders, TickRoundingDoesNotAccumulate) {
+TEST(WheelOdometry, TickRoundingDoesNotAccumulate) {
   OdometryErrorConfig errors = no_errors();
   errors.ticks_per_turn = 64;
   const double tick_m = 2 * std::numbers::pi * 0.033 / 64;
   EXPECT_NEAR(after(errors, 1.0, 1.0, 1000).x(), 1.0, 0.5 * tick_m + 1e-12);
 }
 
-TEST(Encoders, SlipsLengthenThePath) {
+TEST(WheelOdometry, SlipsLengthenThePath) {
   OdometryErrorConfig errors = no_errors();
   errors.slips_per_m = 5.0;
   errors.slip_m = 0.02;
@@ -118,7 +118,7 @@ TEST(Encoders, SlipsLengthenThePath) {
   EXPECT_NEAR(sum_m / kRuns, 5.0 * 4.0 * 0.02, 0.03);  // sigma of the mean: 0.009
 }
 
-TEST(Encoders, TheSeedDeterminesSignOfScaleAndSizeOfHeadingScale) {
+TEST(WheelOdometry, TheSeedDeterminesSignOfScaleAndSizeOfHeadingScale) {
   EXPECT_EQ(errors_of_seed({}, 1).scale, 0.01);
   EXPECT_EQ(errors_of_seed({}, 2).scale, -0.01);
   for (std::int64_t seed = 0; seed < 50; ++seed)

@@ -5,13 +5,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace waymark {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Each;
 using ::testing::ElementsAre;
+using ::testing::Ge;
 using ::testing::IsEmpty;
+using ::testing::Le;
 
 /// Measured once per second; the value is the time.
 struct Reading {
@@ -110,6 +115,34 @@ TEST(Corruption, ScaledRangesBeyondTheMaximumHaveNoReturn) {
   EXPECT_TRUE(std::isnan(scan.ranges_m[2]));
 }
 
+TEST(Corruption, ScaledRangesBelowTheMinimumAreInvalid) {
+  LidarScan scan{};
+  scan.ranges_m = {1.0, 0.15};
+  scale_ranges(scan, {}, -0.3);
+  EXPECT_DOUBLE_EQ(scan.ranges_m[0], 0.7);
+  EXPECT_TRUE(std::isnan(scan.ranges_m[1]));
+}
+
+TEST(Corruption, GarbageIsSpreadOverAllValuesThatTheSensorCouldSend) {
+  LidarConfig lidar{};
+  lidar.range_min_m = 1.0;
+  lidar.range_max_m = 3.0;
+  LidarScan scan{};
+  scan.ranges_m.assign(2000, 2.0);
+  Random random{1};
+  make_garbage(scan, lidar, random);
+  EXPECT_THAT(scan.ranges_m, Each(AllOf(Ge(1.0), Le(3.0))));
+  EXPECT_LT(*std::ranges::min_element(scan.ranges_m), 1.05);
+  EXPECT_GT(*std::ranges::max_element(scan.ranges_m), 2.95);
+
+  for (int i = 0; i < 200; ++i) {
+    OdometrySample sample{.odom_from_base = {5.0, -2.0, 1.0}};
+    make_garbage(sample, random);
+    EXPECT_NEAR(sample.odom_from_base.x(), 5.0, 1.0);
+    EXPECT_NEAR(sample.odom_from_base.y(), -2.0, 1.0);
+  }
+}
+
 TEST(Corruption, AWheelSlipIsLimitedInTimeAndStaysInTheOdometry) {
   FaultConfig config = fault(FaultKind::kWrong, {.from_s = 1.0, .to_s = 2.0});
   config.sensor = Sensor::kOdometry;
@@ -122,8 +155,22 @@ TEST(Corruption, AWheelSlipIsLimitedInTimeAndStaysInTheOdometry) {
     const double time_s = 0.1 * i;
     counted = wheels.counted({2.0 * time_s, 3.0 * time_s}, faults, {time_s, 0.0});
   }
-  EXPECT_NEAR(counted.left_rad, 6.0 + 0.1 * 2.0, 0.021);  // give or take one period
-  EXPECT_DOUBLE_EQ(counted.right_rad, 9.0);
+  EXPECT_NEAR(counted.left, 6.0 + 0.1 * 2.0, 0.021);  // give or take one period
+  EXPECT_DOUBLE_EQ(counted.right, 9.0);
+}
+
+TEST(Corruption, TheWheelsOfAFaultSpinAndTheOtherDoesNot) {
+  for (const Wheel wheel : {Wheel::kBoth, Wheel::kLeft, Wheel::kRight}) {
+    FaultConfig config = fault(FaultKind::kWrong);
+    config.sensor = Sensor::kOdometry;
+    config.share = 0.5;
+    config.wheel = wheel;
+    SpinningWheels wheels;
+    const WheelPair counted =
+        wheels.counted({2.0, 4.0}, Faults{Sensor::kOdometry, {config}}, Moment{});
+    EXPECT_DOUBLE_EQ(counted.left, wheel == Wheel::kRight ? 2.0 : 3.0);
+    EXPECT_DOUBLE_EQ(counted.right, wheel == Wheel::kLeft ? 4.0 : 6.0);
+  }
 }
 
 }  // namespace

@@ -51,6 +51,22 @@ TEST(Lidar, SeesTheInnerFacesFromItsMounting) {
   }
 }
 
+TEST(Lidar, AMirroredLidarCountsItsAnglesClockwise) {
+  const Physics physics = standing_at({3.0, -0.2, 0.4});
+  LidarConfig mirrored_config{};
+  mirrored_config.mirrored = true;
+  Lidar lidar{{}, {0.0, 0.0}, 1};
+  Lidar mirrored{mirrored_config, {0.0, 0.0}, 1};
+  const LidarScan scan = lidar.scan({}, physics);
+  const LidarScan reversed = mirrored.scan({}, physics);
+  ASSERT_EQ(reversed.ranges_m.size(), 360U);
+  EXPECT_EQ(reversed.angles_rad, scan.angles_rad);
+  for (std::size_t i = 1; i < 360; ++i) {
+    if (std::isinf(scan.ranges_m[i])) continue;
+    EXPECT_NEAR(reversed.ranges_m[360 - i], scan.ranges_m[i], 1e-9);
+  }
+}
+
 TEST(Lidar, NoiseAndDropoutsAreAsConfigured) {
   const Physics physics = standing_at({10.0, 0.0, 0.0});
   Lidar clean{{}, {0.0, 0.0}, 1};

@@ -37,7 +37,7 @@ TEST(Physics, StandsStillOnItsWheels) {
   EXPECT_NEAR(physics.world_from_base().y(), 0.3, 1e-4);
   EXPECT_NEAR(physics.world_from_base().theta(), 0.5, 1e-4);
   EXPECT_NEAR(physics.world_from_base_3d().translation().z(), 0.0, 0.001);
-  EXPECT_NEAR(physics.wheel_angles().left_rad, 0.0, 1e-3);
+  EXPECT_NEAR(physics.wheel_angles().left, 0.0, 1e-3);
 }
 
 TEST(Physics, MassIsThatOfTheWafflePi) {
@@ -49,7 +49,7 @@ TEST(Physics, DrivesAsItsWheelsTurn) {
   Physics physics = standing_at({2.0, 0.0, 0.0});
   drive(physics, {0.2, 0.0}, 5.0);
   const double travelled_m = physics.world_from_base().x() - 2.0;
-  const double rolled_m = physics.wheel_angles().left_rad * BaseConfig{}.wheel_radius_m;
+  const double rolled_m = physics.wheel_angles().left * BaseConfig{}.wheel_radius_m;
   EXPECT_NEAR(travelled_m, 0.2 * 4.75, 0.01);
   EXPECT_NEAR(rolled_m, travelled_m, 0.0005 * travelled_m);  // slip below 0.05 %
 }
@@ -61,11 +61,29 @@ TEST(Physics, TurnsOnTheSpot) {
   EXPECT_NEAR(physics.world_from_base().x(), 2.0, 0.01);
 }
 
+TEST(Physics, ThePoseAtAnotherTimeIsThatOfAnEvenMotion) {
+  constexpr double kLater_s = 0.1;
+  Physics physics = standing_at({2.0, 0.0, 0.5});
+  drive(physics, {0.2, 0.5}, 2.0);
+  const Eigen::Isometry3d expected_later = physics.world_from_base_3d_at(kLater_s);
+  const Eigen::Isometry3d now = physics.world_from_base_3d();
+  EXPECT_TRUE(physics.world_from_base_3d_at(0.0).isApprox(now));
+  for (int i = 0; i < kLater_s * kRate_hz; ++i)
+    physics.step(wheel_speeds({}, {0.2, 0.5}));
+  const Eigen::Isometry3d later = physics.world_from_base_3d();
+  EXPECT_NEAR((later.translation() - now.translation()).norm(), 0.02, 0.001);
+  // In 0.1 s the heading turns by 0.05 rad, so that the path bends by half of that.
+  EXPECT_NEAR((later.translation() - expected_later.translation()).norm(), 0.0, 0.03 * 0.02);
+  EXPECT_NEAR((expected_later.linear().transpose() * later.linear()).trace(), 3.0, 1e-4);
+  const Eigen::Isometry3d expected_now = physics.world_from_base_3d_at(-kLater_s);
+  EXPECT_NEAR((now.translation() - expected_now.translation()).norm(), 0.0, 0.03 * 0.02);
+}
+
 TEST(Physics, WallsStopTheRobotAndItsWheelsSlip) {
   Physics physics = standing_at({49.5, 0.0, 0.0});
   drive(physics, {0.3, 0.0}, 5.0);
   const double travelled_m = physics.world_from_base().x() - 49.5;
-  const double rolled_m = physics.wheel_angles().left_rad * BaseConfig{}.wheel_radius_m;
+  const double rolled_m = physics.wheel_angles().left * BaseConfig{}.wheel_radius_m;
   EXPECT_LT(travelled_m, 0.5);
   EXPECT_GT(rolled_m, travelled_m + 0.1);
 }

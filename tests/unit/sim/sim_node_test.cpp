@@ -200,7 +200,7 @@ TEST(SimNode, FollowsDriveCommandsIfTheScenarioSaysSo) {
   inbox.deliver(encode(channels::kDriveCommand, command));
   EXPECT_EQ(inbox.counters().get("DRIVE_COMMAND obeyed"), 1);
   EXPECT_EQ(inbox.counters().get("DRIVE_COMMAND dropped: a newer one has acted"), 1);
-  EXPECT_EQ(node.progress(), "at (1.1, 0.0) m");
+  EXPECT_EQ(node.progress_text(), "at (1.1, 0.0) m");
 }
 
 }  // namespace

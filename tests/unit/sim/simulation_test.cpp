@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <cmath>
 
@@ -87,6 +89,40 @@ TEST(Simulation, AnotherSeedGivesAnotherImage) {
   other_seed.run.seed = 2;
   EXPECT_NE(Simulation{small_scenario()}.advance().frames[0].jpeg,
             Simulation{other_seed}.advance().frames[0].jpeg);
+}
+
+/// The camera's frame after two seconds of an even turn to the left, without noise.
+cv::Mat frame_while_turning(double exposure_s) {
+  Scenario scenario = small_scenario();
+  scenario.route.source = DriveSource::kCommand;
+  scenario.route.duration_s = 10.0;
+  scenario.camera_noise = {.sigma_grey_levels = 0.0, .exposure_s = exposure_s, .jpeg_quality = 95};
+  Simulation simulation{scenario};
+  simulation.command(timestamp_from_us(0), {0.0, 0.5});
+  Tick tick;
+  for (int i = 0; i < 20; ++i)
+    tick = simulation.advance();
+  cv::Mat picture;
+  cv::imdecode(tick.frames.back().jpeg, cv::IMREAD_GRAYSCALE).convertTo(picture, CV_32F);
+  return picture;
+}
+
+TEST(Simulation, AnExposedFrameIsBlurredByMotionAboutTheTimeOfItsStamp) {
+  const cv::Mat sharp = frame_while_turning(0.0);
+  const cv::Mat blurred = frame_while_turning(0.1);  // 0.05 rad, 6.6 px in the middle
+  cv::Mat edges, blurred_edges;
+  cv::Sobel(sharp, edges, CV_32F, 1, 0);
+  cv::Sobel(blurred, blurred_edges, CV_32F, 1, 0);
+  EXPECT_LT(cv::norm(blurred_edges), 0.8 * cv::norm(edges));
+  EXPECT_NEAR(cv::mean(blurred)[0], cv::mean(sharp)[0], 1.0) << "no brighter or darker";
+  // Centred: it differs as much from the sharp picture shifted to the left as to the right.
+  constexpr int kShift_px = 3;
+  const auto difference = [&](int shift_px) {
+    const cv::Range columns{kShift_px, sharp.cols - kShift_px};
+    const cv::Range shifted{columns.start + shift_px, columns.end + shift_px};
+    return cv::norm(blurred.colRange(columns), sharp.colRange(shifted));
+  };
+  EXPECT_NEAR(difference(-kShift_px) / difference(kShift_px), 1.0, 0.1);
 }
 
 TEST(Simulation, ARollingScanTakesItsBeamsOneAfterTheOther) {

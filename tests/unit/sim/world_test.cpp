@@ -48,7 +48,7 @@ TEST(World, MarkersHangOnTheirWallAndFaceTheMiddle) {
   }
 }
 
-TEST(World, StaggeredShiftsTheRightWallByHalfASpacing) {
+TEST(World, StaggeredMarkersOnTheRightWallAreShiftedByHalfASpacing) {
   MarkerLayoutConfig markers{};
   markers.layout = MarkerLayout::kStaggered;
   markers.last_m = 12.0;

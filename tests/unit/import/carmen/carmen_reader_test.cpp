@@ -251,7 +251,7 @@ TEST(CarmenReader, ABzip2FileOfSeveralStreamsIsReadWhole) {
   EXPECT_EQ(report.num_skipped(), 0);
 }
 
-TEST(CarmenReader, ACutOffBzip2FileIsNamed) {
+TEST(CarmenReader, ATruncatedBzip2FileIsReadUpToTheDamageWhichIsReported) {
   const std::string stream =
       read_file(write_bzip2("small.clf.bz2", read_file(data_file("small.clf"))));
   const auto file = write_file("cut.clf.bz2", stream + stream.substr(0, stream.size() / 2));

@@ -103,7 +103,7 @@ TEST(NoReturn, ConstantRangesOfAStandingRobotAreNotTakenForNoReturn) {
   }
 }
 
-TEST(NoReturn, IsReplacedReportedAndSetsTheMaximumRange) {
+TEST(NoReturn, TheCodeIsReplacedAndReportedAndSetsTheMaximumRange) {
   ImportedLog log = drive(to_and_fro(), CountedAs::kDriven);
   edit_ranges(log, [](float range_m, std::size_t beam) {
     return std::isinf(range_m) || beam % 15 == 0 ? 50.0F : beam == 1 ? 0.0F : range_m;

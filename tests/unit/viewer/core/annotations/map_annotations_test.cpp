@@ -2,11 +2,16 @@
 #include "viewer/core/annotations/map_annotations.hpp"
 
 #include "unit/viewer/drawn_scene.hpp"
+#include "unit/viewer/found_on_picture.hpp"
 #include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/painters/map_painter.hpp"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace waymark::viewer {
 namespace {
@@ -52,6 +57,41 @@ TEST(Ruler, LabelsFarFromTheOriginDiffer) {
     return page.rowRange(115, 145).colRange(x - 80, x + 80);
   };
   EXPECT_GT(cv::norm(label_at(200), label_at(400)), 0.0);
+}
+
+TEST(ScaleBar, IsAsLongAsItsLabelSays) {
+  const std::vector<std::pair<double, std::string>> labels{
+      {240.0, "1 m"}, {150.0, "2 m"}, {64.0, "5 m"}, {63.0, "5 m"}, {5.0, "50 m"}};
+  for (const auto& [px_per_m, label] : labels) {
+    cv::Mat page(60, 800, CV_8UC3, palette::kPage);
+    draw_scale_bar(page, {700.0, 30.0}, px_per_m);
+    EXPECT_TRUE(shows_text(page, label, {.height_px = 17.0, .colour = palette::kInk})) << label;
+    int left = 699;
+    while (left > 0 && count_pixels(page.col(left), palette::kInk) > 0)
+      --left;
+    EXPECT_NEAR(699 - left, px_per_m * std::stod(label), 2.0) << label;
+  }
+}
+
+TEST(Heading, SummarisesMapPathAndHealth) {
+  PageContent content{.map = room(-2, -2, 3, 3), .landmarks = {{.id = 1}, {.id = 2}}};
+  for (int i = 0; i <= 100; ++i) {  // 10 m in 75 s
+    content.estimates.push_back({.time = Timestamp{Duration{750'000 * i}},
+                                 .map_from_base = {0.1 * i, 0.0, 0.0},
+                                 .health = i == 50 ? Health::kLost : Health::kTracking});
+    if (i < 26) content.estimates.back().weak_axis = WeakAxis{.source = WeakAxisSource::kMarkers};
+  }
+  cv::Mat page(160, 2000, CV_8UC3, palette::kPage);
+  draw_heading(page, {60, 0, 1880, 158}, "office", content, Se2{}, {});
+  const Font font{.height_px = 18.0, .colour = palette::kFaintInk};
+  EXPECT_TRUE(shows_text(page,
+                         "free space 5.0 m x 5.0 m   |   2 markers   |   path 10.00 m in "
+                         "1 min 15 s",
+                         font));
+  EXPECT_TRUE(shows_text(page,
+                         "health: tracking 99 %, lost 1 %   |   weak axis observed by "
+                         "markers 26 % of the updates",
+                         font));
 }
 
 TEST(Legend, ANarrowPageHasTheWholeLegend) {

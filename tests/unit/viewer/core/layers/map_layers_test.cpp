@@ -2,6 +2,7 @@
 #include "viewer/core/layers/map_layers.hpp"
 
 #include "unit/viewer/drawn_scene.hpp"
+#include "unit/viewer/found_on_picture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,6 +45,49 @@ TEST(DrawCells, EachPixelHasTheCellBelowItsCentre) {
           << x << " " << y;
     }
   }
+}
+
+/// A picture of 2 m x 2 m around the map's origin, with 200 x 200 pixels, map x to the right.
+struct Picture {
+  MapViewport view{.box = {-1.0, -1.0, 1.0, 1.0}, .px_per_m = 100.0};
+  cv::Mat_<Colour> pixels = cv::Mat_<Colour>(200, 200, to_colour(palette::kPage));
+
+  bool has(const cv::Scalar& colour, int x, int y) const {
+    return pixels(y, x) == to_colour(colour);
+  }
+};
+
+TEST(DrawPlates, AMarkerIsABarAlongItsWallWithALineTowardsItsFront) {
+  Picture picture;
+  const Landmark facing_up{.map_from_marker = {0.5, 0.2, std::numbers::pi / 2},
+                           .state = LandmarkState::kConfirmed};
+  draw_plates(picture.pixels, picture.view, {facing_up}, 0.4, 6);
+  const cv::Rect box = box_of_colour(picture.pixels, palette::kMarker);
+  EXPECT_NEAR(box.x, 130, 4) << "0.2 m to the left of its middle";
+  EXPECT_NEAR(box.br().x, 170, 4);
+  EXPECT_TRUE(picture.has(palette::kMarker, 150, 80 - 9)) << "its front";
+  EXPECT_FALSE(picture.has(palette::kMarker, 150, 80 + 9)) << "its back";
+}
+
+TEST(DrawEnds, TheStartIsARingAndTheEndAnArrowHeadAlongTheHeading) {
+  Picture picture;
+  draw_ends(
+      picture.pixels, picture.view,
+      {{.map_from_base = {-0.6, 0.0, 0.0}}, {.map_from_base = {0.4, 0.0, std::numbers::pi / 2}}});
+  EXPECT_TRUE(picture.has(palette::kEstimated, 40 + 11, 100)) << "the ring";
+  EXPECT_TRUE(picture.has(palette::kPage, 40, 100)) << "its middle";
+  EXPECT_TRUE(picture.has(palette::kEstimated, 140, 100 - 15)) << "the arrow's tip";
+  EXPECT_FALSE(picture.has(palette::kEstimated, 140, 100 + 13)) << "its notch";
+  EXPECT_TRUE(picture.has(palette::kEstimated, 140 - 13, 100 + 12)) << "its left wing";
+  EXPECT_TRUE(picture.has(palette::kEstimated, 140 + 13, 100 + 12)) << "its right wing";
+}
+
+TEST(DrawParticles, EachParticleIsADot) {
+  Picture picture;
+  draw_particles(picture.pixels, picture.view, {{0.5, 0.5, 0.0}, {-0.5, 0.5, 1.0}});
+  EXPECT_EQ(spots_of_colour(picture.pixels, palette::kParticle).size(), 2U);
+  EXPECT_TRUE(picture.has(palette::kParticle, 150, 50));
+  EXPECT_TRUE(picture.has(palette::kParticle, 50, 50));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(PaintMap, ALongCorridorIsFoldedIntoReadableStrips) {
 TEST(PaintMap, StripsCoverTheWholeMap) {
   const PageContent content = content_of(corridor_scene(50.0));
   const MapPage page = lay_out(content, kStyle);
-  const Box box = bounds(content, Se2{}, Odometry::kLeftOut);
+  const Box box = bounds(content, Se2{}, OdometryPath::kLeftOut);
 
   EXPECT_LT(page.strips.front().view.box.left_m, box.left_m);
   EXPECT_GT(page.strips.back().view.box.right_m, box.right_m);
@@ -117,7 +117,7 @@ TEST(PaintMap, TheFinalTrajectoryIsDashedOverTheOthers) {
   content.estimates = {{.map_from_base = {0, 0, 0}}, {.map_from_base = {4, 0, 0}}};
   content.final_in_map = {{{}, {0, 0, 0}}, {{}, {4, 0, 0}}};
   cv::Mat_<Colour> panel(100, 200, Colour{255, 255, 255});
-  draw_paths(panel, view, content, {}, Odometry::kIncluded);
+  draw_paths(panel, view, content, {}, OdometryPath::kIncluded);
   int dashes = 0, gaps = 0;
   for (int x = 0; x < panel.cols; ++x) {
     dashes += panel(50, x) == to_colour(palette::kFinal) ? 1 : 0;
@@ -197,7 +197,7 @@ TEST(PaintMap, TheWholeEstimatedPathIsInTheFrame) {
 TEST(PaintMap, DriftingOdometryIsDrawnInTheOverviewOnly) {
   Scene scene = corridor_scene(10.0);
   const MapPage before = lay_out(content_of(scene), kStyle);
-  EXPECT_EQ(before.odometry_in_strips, Odometry::kIncluded);
+  EXPECT_EQ(before.odometry_in_strips, OdometryPath::kIncluded);
   EXPECT_FALSE(before.overview);
   double along_m = 0.0;
   for (TimedPose& pose : scene.odometry) {
@@ -205,7 +205,7 @@ TEST(PaintMap, DriftingOdometryIsDrawnInTheOverviewOnly) {
     pose.frame_from_base = {along_m, 2.5 * along_m, 0.0};  // 20 m sideways
   }
   const MapPage page = lay_out(content_of(scene), kStyle);
-  EXPECT_EQ(page.odometry_in_strips, Odometry::kLeftOut);
+  EXPECT_EQ(page.odometry_in_strips, OdometryPath::kLeftOut);
   ASSERT_TRUE(page.overview);
   EXPECT_GT(page.overview->view.box.top_m, 19.0);
   EXPECT_LT(page.strips.front().view.box.top_m, 3.0);
