@@ -123,7 +123,7 @@ std::vector<Message> SimNode::advance(Timestamp& tick_end) {
   return messages;
 }
 
-std::string SimNode::progress() const {
+std::string SimNode::progress_text() const {
   const Se2 at = simulation_->world_from_base();
   if (config_.route.source == DriveSource::kCommand || !config_.route.waypoints.empty()) {
     return fmt::format("at ({:.1f}, {:.1f}) m", rounded(at.x(), 10.0), rounded(at.y(), 10.0));

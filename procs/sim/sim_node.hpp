@@ -45,7 +45,7 @@ class SimNode final : public TickSource {
 
   double progress_fraction() const override { return simulation_->progress_fraction(); }
 
-  std::string progress() const override;
+  std::string progress_text() const override;
   void finish() override;
 
  private:

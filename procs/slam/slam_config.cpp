@@ -85,13 +85,15 @@ void SlamSection::describe(Fields& fields) {
         "mode", mode,
         {{"map", MapMode::kMap}, {"localise", MapMode::kLocalise}, {"extend", MapMode::kExtend}},
         "draw a new map, or use the one of --load-map: as it is, or to add to it");
-    fields.choice("start", start.kind,
-                  {{"origin", StartKind::kOrigin},
-                   {"pose", StartKind::kPose},
-                   {"last", StartKind::kLast},
-                   {"anywhere", StartKind::kAnywhere}},
-                  "where in the loaded map: where mapping began, at start_pose, where slam stopped "
-                  "(by state_folder, else as anywhere), or unknown");
+    fields.choice(
+        "start", start.kind,
+        {{"origin", StartKind::kOrigin},
+         {"pose", StartKind::kPose},
+         {"last", StartKind::kLast},
+         {"anywhere", StartKind::kAnywhere}},
+        "where in the loaded map: at its origin (where mapping began or, with a survey, "
+        "the survey's origin), at start_pose, where slam stopped (by state_folder, else as "
+        "anywhere), or unknown");
     fields.when(start.kind == StartKind::kPose, "only slam.start = pose uses it",
                 [&] { fields.section("start_pose", start); });
     fields.field(

@@ -59,8 +59,8 @@ class ViewerNode final : public Node {
   /// Writes the files of the scene's map to a folder of its own.
   void archive_map(std::int64_t map_id);
   void write_files();
-  /// Writes the data files when a period has passed, and one of the pictures: all at once would
-  /// delay a lockstep run. Large maps, which take longer, are written less often (Pacer).
+  /// Once per write period: writes the data files and one of the pictures, in turn. All pictures at
+  /// once would delay a lockstep run. Large maps take longer and are written less often (Pacer).
   void write_when_due(Timestamp time);
   /// Writes the file, or, without data, removes it: it is of an earlier run.
   template <class MakeBytes>

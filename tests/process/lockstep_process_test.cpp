@@ -161,7 +161,7 @@ class Endless final : public TickSource {
 
   double progress_fraction() const override { return 0.0; }
 
-  std::string progress() const override { return ""; }
+  std::string progress_text() const override { return ""; }
 
   void finish() override {}
 };

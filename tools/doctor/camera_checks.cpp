@@ -13,14 +13,14 @@
 namespace waymark {
 namespace {
 
-constexpr Limits kFocal{0.01, 0.05};
-constexpr Limits kSize{0.01, 0.03};
-constexpr Limits kYaw_rad{0.0087, 0.035};  // 0.5 and 2 degrees
-constexpr Limits kLate_s{0.01, 0.05};
+constexpr DeviationLimits kFocal{0.01, 0.05};
+constexpr DeviationLimits kSize{0.01, 0.03};
+constexpr DeviationLimits kYaw_rad{0.0087, 0.035};  // 0.5 and 2 degrees
+constexpr DeviationLimits kLate_s{0.01, 0.05};
 // Corners are refined within three pixels of the edge (RefinementConfig::reach_px). A blur whose
 // sigma is half of that reach fills it; one whose sigma is the whole reach exceeds it.
-constexpr Limits kBlur_px{1.5, 3.0};
-constexpr Limits kUnreadable{0.01, 0.1};  // share of the frames
+constexpr DeviationLimits kBlur_px{1.5, 3.0};
+constexpr DeviationLimits kUnreadable{0.01, 0.1};  // share of the frames
 constexpr std::size_t kMinMarkers = 20;
 constexpr double kSigmaOfMedian = 1.2533;  // sigma of a normal's median, in sigma / sqrt(n)
 
@@ -50,10 +50,10 @@ Check frames_check(const CameraRecord& camera, const RobotConfig& robot) {
     bad += count;
     reasons += fmt::format(", {} {}", count, reason);
   }
-  const double share =
-      static_cast<double>(bad) / static_cast<double>(std::max<std::int64_t>(1, camera.num_decoded));
+  const double share = static_cast<double>(bad) /
+                       static_cast<double>(std::max<std::int64_t>(1, camera.num_examined));
   return {"camera_frames", verdict_of(share, 0.0, kUnreadable),
-          fmt::format("{} of {} frames cannot be used{}", bad, camera.num_decoded, reasons),
+          fmt::format("{} of {} frames cannot be used{}", bad, camera.num_examined, reasons),
           fmt::format("send images of {}x{} (robot.camera.width_px, height_px), whole and as JPEG "
                       "or grey",
                       robot.camera.width_px, robot.camera.height_px),
@@ -134,9 +134,9 @@ std::vector<Check> check_camera(const DoctorInput& input,
     for (const char* name : {"marker_dictionary", "blur"})
       checks.push_back(unchecked(name, "the log has MARKERS but no CAMERA", "record CAMERA, too"));
   }
-  const auto add = [&](const char* name, const Measured& measured, double expected, Limits limits,
-                       double unit, const std::string& finding, const auto& write,
-                       const auto& remedy) {
+  const auto add = [&](const char* name, const Measured& measured, double expected,
+                       DeviationLimits limits, double unit, const std::string& finding,
+                       const auto& write, const auto& remedy) {
     if (!is_known(measured, limits)) return checks.push_back(no_sightings(name));
     const double deviation = measured.value - expected;
     const Verdict verdict = verdict_of(deviation, measured.sigma, limits);

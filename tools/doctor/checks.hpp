@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The checks. Those with a parameter `robot` correct the description where it does not pass.
+// The checks. Those with a parameter `robot` write corrections into it, some of them even when the
+// check passes: see is_worth_writing().
 #pragma once
 
 #include "doctor/camera/camera_calibration.hpp"

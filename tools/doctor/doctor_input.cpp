@@ -146,7 +146,7 @@ DoctorInput read_input(const std::filesystem::path& file,
   } else if (is_bag(file)) {
     input.log = read_rosbag(file, {.without_images = true}, input.report);
   } else {
-    input.report.count_in(AddressUnit::kLine);
+    input.report.set_address_unit(AddressUnit::kLine);
     input.log = read_carmen_log(file, {}, input.report);
   }
   std::vector<std::filesystem::path> descriptions = robot;

@@ -13,11 +13,11 @@
 namespace waymark {
 namespace {
 
-constexpr Limits kScale{0.03, 0.1};     // deviation from 1
-constexpr Limits kOffset_s{0.02, 0.1};  // at 1 rad/s, 17 ms are a degree
-constexpr Limits kPlace_m{0.03, 0.1};
-constexpr Limits kAngle_rad{0.026, 0.087};  // 1.5 and 5 degrees
-constexpr std::size_t kMinReversed = 5;     // as in waymark-import
+constexpr DeviationLimits kScale{0.03, 0.1};     // deviation from 1
+constexpr DeviationLimits kOffset_s{0.02, 0.1};  // at 1 rad/s, 17 ms are a degree
+constexpr DeviationLimits kPlace_m{0.03, 0.1};
+constexpr DeviationLimits kAngle_rad{0.026, 0.087};  // 1.5 and 5 degrees
+constexpr std::size_t kMinReversed = 5;              // as in waymark-import
 
 Check no_turns(std::string name) {
   return unchecked(std::move(name), "the robot turns too little (less than once around in all)",
@@ -154,8 +154,8 @@ std::vector<Check> check_mounting(const DoctorInput& input,
   const LidarConfig described = input.log.robot.lidar;
   std::vector<Check> checks;
   const auto add = [&](const char* name, std::string_view key, const Measured& measured,
-                       double described_value, double deviation, Limits limits, double unit,
-                       const char* unit_name, double& target) {
+                       double described_value, double deviation, DeviationLimits limits,
+                       double unit, const char* unit_name, double& target) {
     if (!is_known(measured, limits)) {
       checks.push_back(no_motions(name));
       return;

@@ -9,33 +9,35 @@
 
 namespace waymark {
 
-/// Deviations up to `good` have no effect; beyond `bad` they damage maps.
-struct Limits {
-  double good{0.0};
-  double bad{0.0};
+/// Deviations up to `warn_above` have no effect; above `fail_above` they damage maps.
+struct DeviationLimits {
+  double warn_above{0.0};
+  double fail_above{0.0};
 };
 
 inline constexpr double kSigmas = 3.0;
 
 /// The verdict for the absolute deviation minus three standard deviations.
-inline Verdict verdict_of(double deviation, double sigma, Limits limits) {
+inline Verdict verdict_of(double deviation, double sigma, DeviationLimits limits) {
   const double certain = std::abs(deviation) - kSigmas * sigma;
-  return certain <= limits.good  ? Verdict::kPass
-         : certain <= limits.bad ? Verdict::kWarn
-                                 : Verdict::kFail;
+  return certain <= limits.warn_above   ? Verdict::kPass
+         : certain <= limits.fail_above ? Verdict::kWarn
+                                        : Verdict::kFail;
 }
 
-/// True when three standard deviations are within the limit `bad`.
-inline bool is_known(const Measured& measured, Limits limits) {
-  return kSigmas * measured.sigma <= limits.bad;
+/// True when three standard deviations are within the limit `fail_above`.
+inline bool is_known(const Measured& measured, DeviationLimits limits) {
+  return kSigmas * measured.sigma <= limits.fail_above;
 }
 
-/// Whether a measured value should replace the described one: the verdict is against the described
-/// one, or the two differ clearly and the measurement is much more accurate than the limit `good`.
-inline bool is_worth_writing(Verdict verdict, double deviation, double sigma, Limits limits) {
+/// Whether robot.toml should get the measured value: the described one does not pass the check, or
+/// differs by more than three sigmas while the measurement's three sigmas are less than half of
+/// `warn_above`.
+inline bool is_worth_writing(Verdict verdict, double deviation, double sigma,
+                             DeviationLimits limits) {
   constexpr double kMuchBetter = 2.0;
-  return verdict != Verdict::kPass ||
-         (std::abs(deviation) > kSigmas * sigma && kMuchBetter * kSigmas * sigma < limits.good);
+  return verdict != Verdict::kPass || (std::abs(deviation) > kSigmas * sigma &&
+                                       kMuchBetter * kSigmas * sigma < limits.warn_above);
 }
 
 }  // namespace waymark

@@ -26,7 +26,7 @@ int report_skipped(const SkippedLines& skipped, const Output& output);
 int run_length(const std::filesystem::path& map_yaml, std::optional<double> true_length_m,
                const Output& output);
 
-/// @return kExitFailed, too, if the two overlap in part only: see overlap.hpp.
+/// @return kExitFailed also if problems_of() finds a problem with the overlap: see overlap.hpp.
 int run_trajectory(const std::filesystem::path& estimate, const std::filesystem::path& reference,
                    Alignment alignment, const Output& output);
 

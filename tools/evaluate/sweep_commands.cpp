@@ -51,7 +51,7 @@ int run_sweep(const fs::path& sweep_dir, const Output& output) {
   auto json = nlohmann::ordered_json::array();
   for (const SweepRow& row : rows)
     json.push_back({{"scenario", row.scenario},
-                    {"estimator", row.row},
+                    {"estimator", row.estimator},
                     {"failures", row.failures()},
                     {"misses", row.misses()},
                     {"problems", row.with_problems()},
@@ -76,10 +76,10 @@ int run_consistency(const std::vector<fs::path>& row_dirs, const Output& output)
       fmt::print("{:4.0f} m  {:6}  {:9.2f}  {:6.2f} .. {:6.2f}  {:7.3f} m{}\n", station.travel_m,
                  station.runs, station.mean_nees, station.band_low, station.band_high,
                  station.rms_along_m, station.in_band() ? "" : "  outside");
-    const SquaresOverVariances squares = squares_over_variances(runs);
+    const NeesPerAxis nees = nees_per_axis(runs);
     fmt::print(
         "squared errors over variances: along {:.2f}, across {:.2f}, heading {:.2f}; 1 is right\n",
-        squares.along, squares.across, squares.heading);
+        nees.along, nees.across, nees.heading);
     fmt::print("in the band: {:.1f} % of {} stations\n", 100.0 * share_in_band(stations),
                stations.size());
   }

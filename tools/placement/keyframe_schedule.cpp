@@ -89,7 +89,8 @@ void choose_submaps(const WaymarkConfig& config, std::vector<StepPlan>& plan) {
   }
 }
 
-/// Sets the loop closures: with old steps nearby whose walls observe every direction.
+/// Chooses the loop closures: once per loops.every_m, a step whose walls observe all directions
+/// closes a loop with the nearest old step within loops.reach_m whose walls do so, too.
 void choose_loops(std::span<const Step> steps, const WaymarkConfig& config,
                   std::vector<StepPlan>& plan) {
   if (!config.loops.enabled) return;

@@ -29,7 +29,8 @@ Vector2d left_of(const Vector2d& direction) {
 struct Views {
   EndView start{};
   EndView end{};
-  double between_px{};  ///< length of the medial line between the two origins; 0: they coincide
+  /// Length of the medial line from start.origin_px to end.origin_px; 0 in a straight corridor.
+  double between_px{};
 };
 
 /// Indices of the medial line's points from which the ends are looked for.

@@ -209,7 +209,7 @@ class RealTimeFeed {
   Timestamp newest_{};
 };
 
-/// Live, on whatever arrives, until a signal asks to stop.
+/// Live: processes what arrives until a signal asks to stop or the node throws.
 int run_real_time(const ProcessTraits& traits, const Network& network, Node& node, Inbox& inbox,
                   Outbox& outbox) {
   Bus bus{network.url, inbox.subscriptions(), network.large_messages, network.names,

@@ -204,7 +204,7 @@ class Run {
     progress_.show(
         source_.progress_fraction(),
         fmt::format("{:.1f} s simulated, {:.1f} x real time, {}", simulated_s,
-                    simulated_s / std::max(progress_.elapsed_s(), 1e-9), source_.progress()));
+                    simulated_s / std::max(progress_.elapsed_s(), 1e-9), source_.progress_text()));
     reporter_.report(bus_, inbox_.counters(), tick_end_, state);
   }
 

@@ -33,7 +33,7 @@ class TickSource {
   virtual std::vector<Message> advance(Timestamp& tick_end) = 0;
   virtual double progress_fraction() const = 0;
   /// E.g. "x 12.3 m of 49.0 m".
-  virtual std::string progress() const = 0;
+  virtual std::string progress_text() const = 0;
   /// The run has ended, successfully or not.
   virtual void finish() = 0;
 };

@@ -52,14 +52,14 @@ Sides sides_of(const Corners& corners) {
           Side{corners[3], corners[0]}};
 }
 
-/// @param corner_px  see SampledSquare::corner_px().
-std::vector<EdgePoint> edge_points(const SampledSide& sampled, double black, double corner_px,
+/// @param margin_px  see SampledSquare::corner_margin_px().
+std::vector<EdgePoint> edge_points(const SampledSide& sampled, double black, double margin_px,
                                    double min_contrast) {
   const double half_window_px = sampled.half_window_px();
   std::vector<EdgePoint> points;
   for (const EdgeProfile& profile : sampled.profiles) {
     if (profile.white - black < min_contrast) continue;
-    if (std::min(profile.along_px, sampled.side.length_px() - profile.along_px) < corner_px)
+    if (std::min(profile.along_px, sampled.side.length_px() - profile.along_px) < margin_px)
       continue;
     const auto offset_px = profile.edge_px(black, half_window_px);
     if (offset_px) points.push_back({profile.along_px, *offset_px});
@@ -184,7 +184,7 @@ std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camer
   for (std::size_t k = 0; k < 4; ++k) {
     const SampledSide& side = square.sides[k];
     const auto line =
-        fit_line(edge_points(side, square.black, square.corner_px(k), config.min_contrast),
+        fit_line(edge_points(side, square.black, square.corner_margin_px(k), config.min_contrast),
                  side.side.length_px(), config.min_points);
     if (!line || line->residual_px > config.max_residual_px) return std::nullopt;
     lines[k] = *line;

@@ -35,12 +35,12 @@ struct MeasuredCorners {
 
 /// Finds points on the black-white edge along the four sides of a marker, fits a line to each side,
 /// and intersects neighbouring lines. Works in ideal pixels, where lens distortion does not bend
-/// lines. If a side has too few good points, or a corner would move too far, all four corners stay
-/// where they were, with the standard deviation unrefined_sigma_px.
+/// lines. If a side has too few edge points, or these scatter too much, or a corner would move too
+/// far, all four corners stay where they were, with the standard deviation unrefined_sigma_px.
 ///
 /// @param gray                8-bit, one channel.
-/// @param raw_corners_px      from the first stage, right to within about two pixels, and where the
-///                            lens can be inverted.
+/// @param raw_corners_px      from the first stage: at most about two pixels off, and at places
+///                            where the lens distortion can be inverted.
 /// @param modules_per_side    bits of the dictionary plus the two of the border.
 MeasuredCorners refine_corners(const cv::Mat& gray, const CameraModel& camera,
                                const Corners& raw_corners_px, int modules_per_side,

@@ -119,7 +119,7 @@ std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel&
   std::vector<EdgeProfile> profiles;
   for (int i = 0; i < count; ++i) {
     EdgeProfile profile{.along_px = margin_px + i * spacing_px, .reach_px = reach_px};
-    const Eigen::Vector2d place_px = side.start_px + profile.along_px * side.direction();
+    const Eigen::Vector2d place_px = side.start_px + profile.along_px * side.along();
     for (int k = 0; k <= steps; ++k) {
       const double offset_px = reach_px * (2.0 * k / steps - 1.0);
       const auto value =

@@ -28,9 +28,9 @@ struct Side {
 
   double length_px() const { return (end_px - start_px).norm(); }
 
-  Eigen::Vector2d direction() const { return (end_px - start_px).normalized(); }
+  Eigen::Vector2d along() const { return (end_px - start_px).normalized(); }
 
-  Eigen::Vector2d outward() const { return {direction().y(), -direction().x()}; }
+  Eigen::Vector2d outward() const { return {along().y(), -along().x()}; }
 };
 
 /// Grey levels along a line perpendicular to a side, in equal steps from -reach_px (inside, in the

@@ -37,14 +37,15 @@ struct SampledSquare {
 
   /// Length [px] to leave out at both ends of a side, where the blur of the neighbouring sides
   /// bends the edge; 0 when neither neighbour is blurred.
-  double corner_px(std::size_t side) const;
+  double corner_margin_px(std::size_t side) const;
 
   /// 0 when sides 0 and 2 have thicker borders than sides 1 and 3, in sum; else 1.
   std::size_t thick_side() const;
 };
 
 /// @param modules_per_side  bits of the dictionary plus the two of the border.
-/// @param reach_px          how far from a side to look; at most the border's thickness.
+/// @param reach_px          half length of the profiles; shortened to the border's thickness where
+///                          that is smaller, but not below 1.5 px.
 SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
                             const std::array<Side, 4>& sides, int modules_per_side,
                             double reach_px);

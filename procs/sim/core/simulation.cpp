@@ -41,7 +41,7 @@ Simulation::Simulation(const Scenario& scenario)
       commands_{scenario.route,
                 scenario.route.command_delay_ticks * duration_from_seconds(scenario.run.tick_s),
                 1.0 / scenario.run.physics_rate_hz},
-      encoders_{scenario.robot.base, scenario.odometry_errors, scenario.run.seed},
+      wheel_odometry_{scenario.robot.base, scenario.odometry_errors, scenario.run.seed},
       lidar_{scenario.robot.lidar, scenario.lidar_noise, scenario.run.seed},
       renderer_{world_, scenario.marker_print(), plate_print(scenario), camera_.pinhole(),
                 physics_},
@@ -122,8 +122,8 @@ void Simulation::measure(Tick& tick) {
 
 void Simulation::measure_odometry() {
   const Faults& faults = odometry_outlet_.faults();
-  OdometrySample sample =
-      encoders_.measure(now(), spinning_wheels_.counted(physics_.wheel_angles(), faults, moment()));
+  OdometrySample sample = wheel_odometry_.measure(
+      now(), spinning_wheels_.counted(physics_.wheel_angles(), faults, moment()));
   if (faults.active(FaultKind::kGarbage, moment()) != nullptr) {
     Random random = garbage_random(Sensor::kOdometry);
     make_garbage(sample, random);

@@ -90,7 +90,7 @@ class Simulation {
   Physics physics_;
   RouteFollower route_;
   CommandFollower commands_;
-  Encoders encoders_;
+  WheelOdometry wheel_odometry_;
   Lidar lidar_;
   Renderer renderer_;
   SceneDynamics scene_dynamics_;

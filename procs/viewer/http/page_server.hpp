@@ -22,8 +22,8 @@ void check_http_address(const HttpAddress& address);
 /// `/tiles` and `/camera.jpg`, with `time_s=T` for a time in the past; the files of the output
 /// folder as last written. A client that takes longer than two seconds to receive a view is
 /// disconnected. With commands: POST `/command` (see parse_page_command) with the header
-/// "Authorization: Bearer TOKEN": 200 done, 401 wrong token, 409 refused by slam with its reason,
-/// 429 another command is under way, 504 no answer. Without commands: 405.
+/// "Authorization: Bearer TOKEN": 200 done, 400 malformed, 401 wrong token, 409 refused by slam
+/// with its reason, 429 another command is under way, 504 no answer. Without commands: 405.
 class PageServer {
  public:
   /// @param views  must outlive this object; closed by the destructor.

@@ -240,7 +240,7 @@ TEST_F(LogFile, WouldOverwriteRecognisesLinksAndOtherSpellingsOfAPath) {
   std::filesystem::remove(link);
 }
 
-TEST_F(LogFile, InputsAreProtectedAndNamed) {
+TEST_F(LogFile, WritingOverAnInputIsRefusedAndBothPathsAreNamed) {
   good_log(1);
   const std::filesystem::path elsewhere = path_.string() + ".other";
   EXPECT_NO_THROW(protect_inputs("--out-log", elsewhere, {path_}));

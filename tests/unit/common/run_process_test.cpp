@@ -203,7 +203,7 @@ class Source final : public TickSource {
 
   double progress_fraction() const override { return 1.0; }
 
-  std::string progress() const override { return ""; }
+  std::string progress_text() const override { return ""; }
 
   void finish() override { asked_ += "finish "; }
 

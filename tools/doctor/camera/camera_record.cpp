@@ -56,7 +56,7 @@ class CameraReader {
   }
 
   void add(const image_t& image, bool try_dictionaries) {
-    ++record_.num_decoded;
+    ++record_.num_examined;
     const DecodedFrame frame =
         decode_image(image, {robot_.camera.width_px, robot_.camera.height_px});
     if (frame.problem != FrameProblem::kNone) {
@@ -134,7 +134,7 @@ CameraRecord read_markers(const std::filesystem::path& lcm_log, const RobotConfi
     frames.push_back(to_detections(*message.message));
     record.times.push_back(frames.back().time);
   }
-  record.num_decoded = std::ssize(frames);
+  record.num_examined = std::ssize(frames);
   const std::size_t every = 1 + frames.size() / kMaxMessages;
   for (std::size_t i = 0; i < frames.size(); i += every) {
     for (const MarkerDetection& marker : frames[i].detections) {
@@ -169,7 +169,7 @@ CameraRecord read_camera(const std::filesystem::path& lcm_log, const RobotConfig
     if (image.message) {
       camera.add(*image.message, current % every_for_dictionaries == 0);
     } else {
-      ++camera.record().num_decoded;
+      ++camera.record().num_examined;
       ++camera.record().problems["damaged message"];
     }
   }

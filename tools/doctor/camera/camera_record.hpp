@@ -28,11 +28,13 @@ struct CameraSighting {
 struct CameraRecord {
   bool has_images{true};           ///< false: only sightings, from MARKERS
   std::vector<Timestamp> times{};  ///< of all frames
-  std::int64_t num_decoded{0};  ///< frames decoded, evenly spread; without images, MARKERS messages
+  /// Frames that were to be decoded; without images, messages of MARKERS that were read.
+  std::int64_t num_examined{0};
   std::map<std::string, std::int64_t> problems{};  ///< number of unusable frames by reason
   std::vector<CameraSighting> sightings{};
-  std::vector<double> blurs_px{};    ///< one per sighting: standard deviation across its sides
-  std::vector<double> modules_px{};  ///< one per sighting: side of a module
+  /// Of sightings whose blur could be measured: standard deviation across the marker's sides.
+  std::vector<double> blurs_px{};
+  std::vector<double> modules_px{};  ///< side of a module, for the same sightings as blurs_px
   /// Numbers of markers read in some of the frames: with the described dictionary, and with the
   /// largest one of every family.
   std::int64_t markers_of_described{0};

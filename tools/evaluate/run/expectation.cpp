@@ -46,28 +46,29 @@ Figure marker_map_share(const EstimatorResult& result) {
 }
 
 Figure found_again_s(const EstimatorResult& result) {
-  return result.timeline && result.timeline->kidnap ? result.timeline->kidnap->found_again_s
-                                                    : std::nullopt;
+  return result.health_summary && result.health_summary->kidnap
+             ? result.health_summary->kidnap->found_again_s
+             : std::nullopt;
 }
 
 /// The earlier of says_lost_s and found_again_s: an estimator that has found the pose again need
 /// not report `lost`.
 Figure says_lost_s(const EstimatorResult& result) {
-  if (!result.timeline || !result.timeline->kidnap) return std::nullopt;
-  const Kidnap& kidnap = *result.timeline->kidnap;
+  if (!result.health_summary || !result.health_summary->kidnap) return std::nullopt;
+  const Kidnap& kidnap = *result.health_summary->kidnap;
   if (!kidnap.says_lost_s || !kidnap.found_again_s)
     return kidnap.says_lost_s ? kidnap.says_lost_s : kidnap.found_again_s;
   return std::min(*kidnap.says_lost_s, *kidnap.found_again_s);
 }
 
 Figure confident_wrong_s(const EstimatorResult& result) {
-  return result.timeline && result.timeline->kidnap
-             ? Figure{result.timeline->kidnap->confident_wrong_s}
+  return result.health_summary && result.health_summary->kidnap
+             ? Figure{result.health_summary->kidnap->confident_wrong_s}
              : std::nullopt;
 }
 
 Figure max_jump_m(const EstimatorResult& result) {
-  return result.timeline ? Figure{result.timeline->max_jump_m} : std::nullopt;
+  return result.health_summary ? Figure{result.health_summary->max_jump_m} : std::nullopt;
 }
 
 Figure max_wall_cells(const EstimatorResult& result) {

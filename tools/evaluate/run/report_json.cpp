@@ -63,13 +63,14 @@ Json json_of(const std::optional<Overlap>& overlap) {
   return json;
 }
 
-Json json_of(const std::optional<Timeline>& timeline) {
-  const Kidnap* const kidnap = timeline && timeline->kidnap ? &*timeline->kidnap : nullptr;
+Json json_of(const std::optional<HealthSummary>& health_summary) {
+  const Kidnap* const kidnap =
+      health_summary && health_summary->kidnap ? &*health_summary->kidnap : nullptr;
   Json json;
-  json["max_jump_m"] = timeline ? number(timeline->max_jump_m) : Json{};
-  json["share_tracking"] = timeline ? number(timeline->share_tracking) : Json{};
-  json["share_degenerate"] = timeline ? number(timeline->share_degenerate) : Json{};
-  json["share_lost"] = timeline ? number(timeline->share_lost) : Json{};
+  json["max_jump_m"] = health_summary ? number(health_summary->max_jump_m) : Json{};
+  json["share_tracking"] = health_summary ? number(health_summary->share_tracking) : Json{};
+  json["share_degenerate"] = health_summary ? number(health_summary->share_degenerate) : Json{};
+  json["share_lost"] = health_summary ? number(health_summary->share_lost) : Json{};
   json["lifted_at_s"] = kidnap ? number(kidnap->lifted_t_s) : Json{};
   json["first_sighting_at_s"] = kidnap ? number(kidnap->sighting_t_s) : Json{};
   json["says_lost_s"] = kidnap ? number(kidnap->says_lost_s) : Json{};
@@ -174,7 +175,7 @@ Json metrics_json(const EstimatorResult& result) {
   json.update(json_of(result.markers));
   json.update(json_of(result.nees));
   json["wall_cells"] = result.wall_cells ? Json(*result.wall_cells) : Json{};
-  json.update(json_of(result.timeline));
+  json.update(json_of(result.health_summary));
   json["driven_m"] = number(result.driven_m);
   json["memory_mb_per_m"] = number(result.memory_mb_per_m);
   json["sigma_growth"] = number(result.sigma_growth);

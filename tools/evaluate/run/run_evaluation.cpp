@@ -193,8 +193,8 @@ void add_trajectory(const fs::path& dir, const RunTruth& truth, const Evaluation
   }
   result.driven_m = driven_m(pairs);
   result.stations = stations(pairs, covariances, world_from_map);
-  result.timeline =
-      timeline(pairs, covariances, world_from_map, truth.lifted_t_s, truth.sightings_s);
+  result.health_summary =
+      health_summary(pairs, covariances, world_from_map, truth.lifted_t_s, truth.sightings_s);
 }
 
 void add_final_trajectory(const fs::path& dir, const Trajectory& truth,

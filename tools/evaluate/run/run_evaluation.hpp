@@ -52,7 +52,7 @@ struct EstimatorResult {
   std::optional<MarkerError> markers{};
   std::optional<Nees> nees{};
   std::vector<Station> stations{};
-  std::optional<Timeline> timeline{};
+  std::optional<HealthSummary> health_summary{};
   std::optional<double> driven_m{};         ///< distance that the true robot drove
   std::optional<double> sigma_growth{};     ///< between the stations given in [expect]
   std::optional<double> memory_mb_per_m{};  ///< peak memory of the process / driven_m

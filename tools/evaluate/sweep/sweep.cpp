@@ -54,7 +54,7 @@ bool is_as_written(const Json& metrics) {
 SweptRun read_run(const fs::path& sweep_dir, const PlannedRun& plan) {
   SweptRun run{.plan = plan};
   const fs::path folder = sweep_dir / plan.folder;
-  const fs::path row = folder / plan.row;
+  const fs::path row = folder / plan.estimator;
   for (const fs::path& failed : {folder / "failed", row / "failed"}) {
     if (!fs::exists(failed)) continue;
     run.failure = first_line(failed);
@@ -121,7 +121,7 @@ std::vector<std::string> SweptRun::problems() const {
   return metrics.value("problems", std::vector<std::string>{});
 }
 
-double SweptRun::limit_of_seeds(const std::string& key) const {
+double SweptRun::sweep_limit(const std::string& key) const {
   const Json::json_pointer place{"/expected_of_seeds/" + key};
   if (!metrics.is_object() || !metrics.contains(place) || !metrics[place].is_number()) return 0.0;
   return metrics[place].get<double>();
@@ -171,7 +171,7 @@ Figures SweepRow::figures(const std::string& key) const {
 double SweepRow::limit(const std::string& key) const {
   double limit = 0.0;
   for (const SweptRun& run : runs)
-    limit = std::max(limit, run.limit_of_seeds(key));
+    limit = std::max(limit, run.sweep_limit(key));
   return limit;
 }
 
@@ -183,7 +183,7 @@ bool SweepRow::expects_anything() const {
          });
 }
 
-bool SweepRow::is_hit() const {
+bool SweepRow::meets_expectations() const {
   constexpr double kAll = 1.0;
   const double wanted = limit("seeds_share") > 0.0 ? limit("seeds_share") : kAll;
   const auto is_good = [](const SweptRun& run) {
@@ -210,14 +210,16 @@ const SweptRun* SweepRow::worst_run() const {
 std::vector<SweepRow> sweep_rows(std::vector<SweptRun> runs) {
   std::map<std::string, std::optional<double>> odometry_ate_m;  // by folder
   for (const SweptRun& run : runs) {
-    if (run.plan.row == "odometry") odometry_ate_m[run.plan.folder] = run.figure("ate_origin_m");
+    if (run.plan.estimator == "odometry")
+      odometry_ate_m[run.plan.folder] = run.figure("ate_origin_m");
   }
   std::vector<SweepRow> rows;
   std::map<std::pair<std::string, std::string>, std::size_t> row_of;
   for (SweptRun& run : runs) {
     add_figures(run, odometry_ate_m[run.plan.folder]);
-    const auto [place, is_new] = row_of.try_emplace({run.plan.scenario, run.plan.row}, rows.size());
-    if (is_new) rows.push_back({.scenario = run.plan.scenario, .row = run.plan.row});
+    const auto [place, is_new] =
+        row_of.try_emplace({run.plan.scenario, run.plan.estimator}, rows.size());
+    if (is_new) rows.push_back({.scenario = run.plan.scenario, .estimator = run.plan.estimator});
     rows[place->second].runs.push_back(std::move(run));
   }
   for (SweepRow& row : rows) {

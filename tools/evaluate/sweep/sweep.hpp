@@ -18,9 +18,9 @@ namespace waymark::evaluate {
 struct PlannedRun {
   std::string scenario{};  ///< with "+VARIANT" for a log with faults
   std::string seed{};
-  std::string folder{};  ///< folder of the run, relative to the sweep's
-  std::string row{};     ///< folder of the estimator, relative to `folder`
-  std::string again{};   ///< command that repeats this run alone
+  std::string folder{};          ///< folder of the run, relative to the sweep's
+  std::string estimator{};       ///< folder of the estimator, relative to `folder`
+  std::string repeat_command{};  ///< command that repeats this run alone
 };
 
 /// @throws SetupError if the plan cannot be read or a line is not five fields separated by tabs.
@@ -41,8 +41,8 @@ struct SweptRun {
   /// Why figures are missing or not those of the whole run; empty if nothing is wrong.
   std::vector<std::string> problems() const;
 
-  /// A limit in [expect] that holds over all seeds; 0 = none.
-  double limit_of_seeds(const std::string& key) const;
+  /// A limit in [expect] on all seeds together (seeds_share or nees_in_band_share); 0 = none.
+  double sweep_limit(const std::string& key) const;
 
   /// A number in metrics.json; nullopt if there is none.
   std::optional<double> figure(const std::string& key) const;
@@ -65,7 +65,7 @@ struct Figures {
 /// All seeds of one scenario and estimator.
 struct SweepRow {
   std::string scenario{};
-  std::string row{};
+  std::string estimator{};
   std::vector<SweptRun> runs{};
   std::vector<StationConsistency> stations{};
   std::size_t stations_left_out{};  ///< stations without a usable covariance, over all runs
@@ -77,15 +77,16 @@ struct SweepRow {
 
   bool expects_anything() const;
 
-  /// True if the share of seeds that neither failed nor missed an expectation nor have problems,
-  /// and the share of stations whose mean NEES is in its band, reach their limits in [expect].
-  bool is_hit() const;
+  /// True if enough seeds are good (not failed, no missed expectation, no problem), and enough
+  /// stations have their mean NEES in its band. [expect] says what is enough; default: all seeds
+  /// must be good, and any share of the stations.
+  bool meets_expectations() const;
 
   /// The seed with the largest ATE, among those that missed expectations if there are any; null if
   /// every seed failed.
   const SweptRun* worst_run() const;
 
-  /// The largest limit_of_seeds() of the runs; 0 = none.
+  /// The largest sweep_limit() of the runs; 0 = none.
   double limit(const std::string& key) const;
 };
 

@@ -46,7 +46,7 @@ std::string shown(const Figures& figures, int decimals) {
 }
 
 std::string label_of(const SweepRow& row) {
-  return row.scenario + ", " + row.row;
+  return row.scenario + ", " + row.estimator;
 }
 
 std::string with(std::string text, std::string_view key, double limit) {
@@ -79,11 +79,11 @@ std::string expected_of(const SweepRow& row) {
 std::string verdict_of(const SweepRow& row) {
   if (row.failures() > 0) return "FAIL";
   if (expected_of(row) == "-") return "-";
-  return row.is_hit() ? "hit" : "MISS";
+  return row.meets_expectations() ? "hit" : "MISS";
 }
 
 std::string row_line(const SweepRow& row) {
-  std::string line = fmt::format("| {} | {} | {} |", row.scenario, row.row, row.runs.size());
+  std::string line = fmt::format("| {} | {} | {} |", row.scenario, row.estimator, row.runs.size());
   for (const Column& column : kColumns) {
     line += fmt::format(" {} |", shown(row.figures(column.key), column.decimals));
   }
@@ -128,14 +128,14 @@ std::string left_out_of(const SweepRow& row) {
 }
 
 std::string page_of(const SweepRow& row) {
-  std::string text = fmt::format("<section><h2>{} &mdash; {}</h2>\n", row.scenario, row.row);
+  std::string text = fmt::format("<section><h2>{} &mdash; {}</h2>\n", row.scenario, row.estimator);
   for (const SweptRun& run : row.runs) {
     if (run.has_failed())
       text += fmt::format("<p class=fail>seed {}: {}</p>\n", run.plan.seed, run.failure);
   }
   const SweptRun* const worst = row.worst_run();
   if (worst == nullptr) return text + "</section>\n";
-  const std::string folder = worst->plan.folder + "/" + worst->plan.row;
+  const std::string folder = worst->plan.folder + "/" + worst->plan.estimator;
   return text + fmt::format(
                     "<p>worst: seed {}, ATE {} m, length error {} %{}</p>\n"
                     "<a href=\"{}/map.png\"><img loading=lazy src=\"{}/map.png\"></a>\n"
@@ -174,7 +174,7 @@ std::string sweep_markdown(const std::vector<SweepRow>& rows) {
       const std::string faults = faults_of(run);
       if (faults.empty()) continue;
       commands += fmt::format("\n# {}, seed {}: {}\n{}\n", label_of(row), run.plan.seed, faults,
-                              run.plan.again);
+                              run.plan.repeat_command);
     }
   }
   if (commands.empty()) return text;
@@ -189,9 +189,9 @@ std::string sweep_csv(const std::vector<SweepRow>& rows) {
     text += fmt::format(",{0}_median,{0}_worst", key);
   text += "\n";
   for (const SweepRow& row : rows) {
-    text +=
-        fmt::format("{},{},{},{},{},{},{}", row.scenario, row.row, row.runs.size(), row.failures(),
-                    row.misses(), row.with_problems(), for_csv(share_in_band(row.stations)));
+    text += fmt::format("{},{},{},{},{},{},{}", row.scenario, row.estimator, row.runs.size(),
+                        row.failures(), row.misses(), row.with_problems(),
+                        for_csv(share_in_band(row.stations)));
     const auto add = [&](const char* key) {
       const Figures figures = row.figures(key);
       text += fmt::format(",{},{}", for_csv(figures.median),
@@ -215,8 +215,9 @@ std::string sweep_runs_csv(const std::vector<SweepRow>& rows) {
   text += ",problems\n";
   for (const SweepRow& row : rows) {
     for (const SweptRun& run : row.runs) {
-      text += fmt::format("{},{},{},{}/{},{},{}", row.scenario, row.row, run.plan.seed,
-                          run.plan.folder, row.row, run.has_failed() ? 1 : 0, run.misses() ? 1 : 0);
+      text += fmt::format("{},{},{},{}/{},{},{}", row.scenario, row.estimator, run.plan.seed,
+                          run.plan.folder, row.estimator, run.has_failed() ? 1 : 0,
+                          run.misses() ? 1 : 0);
       for (const Column& column : kColumns)
         text += fmt::format(",{}", for_csv(run.figure(column.key)));
       for (const char* key : kMoreKeys)

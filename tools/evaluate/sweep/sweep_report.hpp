@@ -13,7 +13,8 @@ namespace waymark::evaluate {
 /// failed, missed an expectation or has problems.
 std::string sweep_markdown(const std::vector<SweepRow>& rows);
 
-/// One line per scenario and estimator. The worst of a figure is "none" if a seed does not have it.
+/// One line per scenario and estimator. The worst value of a figure is "none" if only some of the
+/// seeds have the figure, and empty if none has it.
 std::string sweep_csv(const std::vector<SweepRow>& rows);
 
 /// One line per run.

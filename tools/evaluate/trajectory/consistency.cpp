@@ -59,8 +59,8 @@ std::vector<StationConsistency> consistency(const std::vector<std::vector<Statio
   return stations;
 }
 
-SquaresOverVariances squares_over_variances(const std::vector<std::vector<Station>>& runs) {
-  SquaresOverVariances sums;
+NeesPerAxis nees_per_axis(const std::vector<std::vector<Station>>& runs) {
+  NeesPerAxis sums;
   double count = 0.0;
   const auto ratio = [](double error, const std::optional<double>& sigma) {
     return error * error / (sigma.value() * sigma.value());

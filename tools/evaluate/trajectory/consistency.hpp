@@ -30,15 +30,15 @@ struct StationConsistency {
 /// In order of travel. Stations without any covariance are left out.
 std::vector<StationConsistency> consistency(const std::vector<std::vector<Station>>& runs);
 
-/// Mean over all stations and runs of squared error over variance, per axis: 1 is consistent, below
-/// 1 the covariance is too large. NaN without a covariance.
-struct SquaresOverVariances {
+/// Mean of error^2 / variance over all stations and runs, per axis: 1 if consistent, below 1 if the
+/// covariances are too large. NaN without a covariance.
+struct NeesPerAxis {
   double along{};
   double across{};
   double heading{};
 };
 
-SquaresOverVariances squares_over_variances(const std::vector<std::vector<Station>>& runs);
+NeesPerAxis nees_per_axis(const std::vector<std::vector<Station>>& runs);
 
 /// Stations of single runs that have no usable covariance, and are left out of the means above.
 std::size_t count_without_covariance(const std::vector<std::vector<Station>>& runs);

@@ -24,7 +24,7 @@ struct StampedCovariance {
 struct Nees {
   std::size_t poses{};
   // Numbers of poses that are left out:
-  std::size_t missing{};   ///< there is no covariance of their time
+  std::size_t missing{};   ///< no covariance has their stamp
   std::size_t invalid{};   ///< a variance is negative, or a correlation above 1
   std::size_t singular{};  ///< the covariance has no inverse, e.g. that of the first pose
   double mean{};           ///< NaN if there is no pose

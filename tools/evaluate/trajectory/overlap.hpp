@@ -17,8 +17,8 @@ struct Overlap {
   std::size_t outside{};  ///< how many of them lie outside the truth's time span
   double truth_s{};       ///< duration of the truth
   double first_pose_s{};  ///< time of the first pose inside, since the truth's begin
-  /// Share of the truth's time from the first pose on, up to the last pose, and without the gaps in
-  /// which the true robot drives more than 2 m.
+  /// Share of the time from the first pose to the end of the truth that is covered. Not covered:
+  /// after the last pose, and between poses more than 2 m of true travel apart.
   double covered_share{};
 };
 
@@ -31,8 +31,8 @@ Overlap overlap_of(const Trajectory& estimate, const Trajectory& truth,
 /// @param truth  name of the truth in the sentences.
 std::vector<std::string> problems_of(const Overlap& overlap, std::string_view truth);
 
-/// A sentence if the first pose comes after more than 5 % of the truth's time; this alone is no
-/// problem.
+/// A sentence if the first pose comes after more than 5 %, but at most half, of the truth's time:
+/// no problem, but worth a note. problems_of() reports later starts.
 std::optional<std::string> late_start_of(const Overlap& overlap, std::string_view truth);
 
 }  // namespace waymark::evaluate

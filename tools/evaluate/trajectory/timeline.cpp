@@ -108,26 +108,27 @@ std::optional<double> lifted_t_s(const Trajectory& truth) {
   return std::nullopt;
 }
 
-Timeline timeline(const std::vector<PosePair>& pairs,
-                  const std::vector<StampedCovariance>& covariances, const Se2& world_from_map,
-                  std::optional<double> lifted_t_s, const std::vector<double>& sightings_s) {
-  Timeline timeline{};
+HealthSummary health_summary(const std::vector<PosePair>& pairs,
+                             const std::vector<StampedCovariance>& covariances,
+                             const Se2& world_from_map, std::optional<double> lifted_t_s,
+                             const std::vector<double>& sightings_s) {
+  HealthSummary summary{};
   double known = 0.0;
   for (const StampedCovariance& stamped : covariances) {
     known += stamped.health == Health::kUnknown ? 0.0 : 1.0;
-    timeline.share_tracking += stamped.health == Health::kTracking ? 1.0 : 0.0;
-    timeline.share_degenerate += stamped.health == Health::kDegenerate ? 1.0 : 0.0;
-    timeline.share_lost += stamped.health == Health::kLost ? 1.0 : 0.0;
+    summary.share_tracking += stamped.health == Health::kTracking ? 1.0 : 0.0;
+    summary.share_degenerate += stamped.health == Health::kDegenerate ? 1.0 : 0.0;
+    summary.share_lost += stamped.health == Health::kLost ? 1.0 : 0.0;
   }
-  for (double* share : {&timeline.share_tracking, &timeline.share_degenerate, &timeline.share_lost})
+  for (double* share : {&summary.share_tracking, &summary.share_degenerate, &summary.share_lost})
     *share /= std::max(known, 1.0);
   if (lifted_t_s)
-    timeline.kidnap = kidnap_at(*lifted_t_s, pairs, covariances, world_from_map, sightings_s);
+    summary.kidnap = kidnap_at(*lifted_t_s, pairs, covariances, world_from_map, sightings_s);
   for (std::size_t i = 1; i < pairs.size(); ++i) {
     if (lifted_t_s && pairs[i].t_s >= *lifted_t_s) break;  // relocalising is a jump by nature
-    timeline.max_jump_m = std::max(timeline.max_jump_m, jump_m(pairs[i - 1], pairs[i]));
+    summary.max_jump_m = std::max(summary.max_jump_m, jump_m(pairs[i - 1], pairs[i]));
   }
-  return timeline;
+  return summary;
 }
 
 }  // namespace waymark::evaluate

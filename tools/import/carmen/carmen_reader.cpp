@@ -308,7 +308,7 @@ ImportedLog CarmenReader::finish() {
     add_scan(scan);
   keep_usual_beam_count(log_.scans, report_);
   log_.robot.lidar.range_min_m = options_.range_min_m;
-  complete(log_, report_);
+  make_consistent(log_, report_);
   mark_no_returns(log_, {options_.range_max_m, usual_range_max_m()}, report_);
   return std::move(log_);
 }

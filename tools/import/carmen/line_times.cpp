@@ -47,7 +47,7 @@ void count_by_period(std::vector<ReadScan>& scans, std::optional<double> period_
 /// Corrects each sample's stamp like the neighbouring scan in the file, before or after it, whose
 /// stamp is nearer.
 void shift_odometry(std::vector<ReadOdometry>& odometry, const std::vector<ReadScan>& scans,
-                    const std::vector<Timestamp>& stamps, const std::vector<Duration>& late) {
+                    const std::vector<Timestamp>& stamps, const std::vector<Duration>& shifts) {
   std::size_t behind = 0;  // the next scan in the file
   for (ReadOdometry& sample : odometry) {
     while (behind < scans.size() && scans[behind].at < sample.at)
@@ -57,7 +57,7 @@ void shift_odometry(std::vector<ReadOdometry>& odometry, const std::vector<ReadS
     const auto distance = [&](std::size_t i) {
       return std::chrono::abs(sample.time - stamps[i]);
     };
-    sample.time += late[distance(before) < distance(after) ? before : after];
+    sample.time += shifts[distance(before) < distance(after) ? before : after];
   }
 }
 
@@ -70,13 +70,13 @@ void go_on_behind_seams(std::vector<ReadScan>& scans, std::vector<ReadOdometry>&
     report.note(fmt::format(
         "the clock was set {} by {:.1f} s at line {}, {}: all lines are kept, "
         "and time goes on there without a step",
-        seam.late > Duration::zero() ? "back" : "ahead", std::abs(to_seconds(seam.late)),
+        seam.shift > Duration::zero() ? "back" : "ahead", std::abs(to_seconds(seam.shift)),
         scans[seam.index].at, date_text(stamps[seam.index - 1])));
   }
-  const std::vector<Duration> late = corrections(stamps, seams);
-  shift_odometry(odometry, scans, stamps, late);
+  const std::vector<Duration> shifts = corrections(stamps, seams);
+  shift_odometry(odometry, scans, stamps, shifts);
   for (std::size_t i = 0; i < scans.size(); ++i)
-    scans[i].time += late[i];
+    scans[i].time += shifts[i];
 }
 
 template <class Line>

@@ -22,8 +22,8 @@ struct CarmenTimes {
   Timestamp by(CarmenStamps stamps) const { return stamps == CarmenStamps::kIpc ? ipc : logger; }
 };
 
-/// The wanted stamps; else ipc_timestamp, or, if it stands still or jumps and logger_timestamp
-/// gives more scans distinct times, logger_timestamp, which is reported.
+/// `wanted`, if given; else ipc_timestamp. If that gives fewer than 90 % of the scans ascending
+/// times, and logger_timestamp gives more, then logger_timestamp, which is reported.
 /// @throws SetupError when neither advances.
 CarmenStamps choose_stamps(const std::vector<CarmenTimes>& scans,
                            std::optional<CarmenStamps> wanted, ImportReport& report);

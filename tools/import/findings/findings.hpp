@@ -11,7 +11,7 @@ enum class ReversedOdometry { kReport, kCorrect };
 
 /// All checks of a log by its scans (README.md, "Findings"): estimates the noise of the ranges,
 /// repairs breaks of the odometry, and reports everything found as notes.
-/// @param log  complete.
+/// @param log  after make_consistent().
 void examine(ImportedLog& log, ReversedOdometry reversed, ImportReport& report);
 
 }  // namespace waymark

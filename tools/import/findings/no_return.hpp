@@ -17,9 +17,10 @@ struct NoReturnCode {
   std::int64_t count{0};          ///< number of ranges at or above the smallest of codes_m
 };
 
-/// A range is such a code if it occurs at least 20 times and ten times as often as ranges up to a
-/// fifth shorter, if nearly no range is longer, and if neighbouring beams are rarely slightly
-/// shorter: on a wall, neighbours have similar ranges; beside a code, they differ.
+/// A range is such a code if it occurs at least 20 times, on at least ten beams, and ten times as
+/// often as ranges up to a fifth shorter, if nearly no range is longer, and if neighbouring beams
+/// are rarely slightly shorter: on a wall, neighbours have similar ranges; beside a code, they
+/// differ.
 /// @param scans  of distinct places: the scans of a standing robot would pile up, too.
 std::optional<NoReturnCode> find_no_return_code(std::span<const LidarScan> scans);
 
@@ -31,7 +32,7 @@ struct RangeLimit {
 
 /// Finds the code, replaces it and all longer ranges by "no return" (+inf, in lidar_t 0), and a
 /// range 0 of planar_lidar_t by NaN; sets the robot's range_max_m, and reports what was found.
-/// @param log  complete.
+/// @param log  after make_consistent().
 /// @throws SetupError when no beam has a range below the limit.
 void mark_no_returns(ImportedLog& log, const RangeLimit& limit, ImportReport& report);
 

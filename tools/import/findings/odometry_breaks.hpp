@@ -13,7 +13,7 @@ namespace waymark {
 ///  - odometry that begins anew while the scans show that the robot stands: continued;
 ///  - a pause so long that slam would assume that the clock was set: interpolated.
 /// A gap in the log in which the robot was moved is only reported.
-/// @param log  complete.
+/// @param log  after make_consistent().
 void repair_odometry_breaks(ImportedLog& log, ImportReport& report);
 
 }  // namespace waymark

@@ -20,7 +20,8 @@ struct ReversedStep {
 /// The score of a step is the logarithm of the misfits' ratio (0 if walls along the motion do not
 /// decide). The result is the most likely sequence of the two directions (Viterbi): a reversed
 /// sequence has to fit twice as well reversed, and better if the direction changes at high speed.
-/// Empty if drives of 0.4 m along all reversed sequences do not fit twice as well, too.
+/// As a check, drives of 0.4 m along all reversed sequences, taken together, have to fit twice as
+/// well reversed, too; else the result is empty.
 /// @param body  beams to ignore.
 std::vector<ReversedStep> find_reversed_steps(const ImportedLog& log, const BodyBeams& body = {});
 

@@ -74,27 +74,27 @@ bool are_pieces_in_disorder(Stamps stamps, std::span<const ClockSeam> seams) {
 }
 
 std::vector<Duration> corrections(Stamps stamps, std::span<const ClockSeam> seams) {
-  std::vector<Duration> late(stamps.size(), Duration::zero());
+  std::vector<Duration> shifts(stamps.size(), Duration::zero());
   Duration sum{0};
   Duration of_longest{0};
   std::size_t longest = 0;
   const std::vector<Piece> pieces = pieces_of(stamps, seams);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (i > 0) sum += seams[i - 1].late;
-    std::fill(late.begin() + static_cast<std::ptrdiff_t>(pieces[i].begin),
-              late.begin() + static_cast<std::ptrdiff_t>(pieces[i].end), sum);
+    if (i > 0) sum += seams[i - 1].shift;
+    std::fill(shifts.begin() + static_cast<std::ptrdiff_t>(pieces[i].begin),
+              shifts.begin() + static_cast<std::ptrdiff_t>(pieces[i].end), sum);
     if (pieces[i].end - pieces[i].begin <= longest) continue;
     longest = pieces[i].end - pieces[i].begin;
     of_longest = sum;
   }
   const auto is_before_0 = [&](std::size_t i) {
-    return stamps[i] + late[i] - of_longest < Timestamp{};
+    return stamps[i] + shifts[i] - of_longest < Timestamp{};
   };
   for (const Piece& piece : pieces)
-    if (is_before_0(piece.begin)) return late;
-  for (Duration& duration : late)
-    duration -= of_longest;
-  return late;
+    if (is_before_0(piece.begin)) return shifts;
+  for (Duration& shift : shifts)
+    shift -= of_longest;
+  return shifts;
 }
 
 }  // namespace waymark

@@ -11,11 +11,11 @@
 
 namespace waymark {
 
-/// Adding `late` to the stamps from `index` on makes them continue those before at the usual
-/// period.
+/// The clock was set just before stamp `index`: adding `shift` to the stamps from there on makes
+/// them continue those before at the usual period.
 struct ClockSeam {
   std::size_t index{0};
-  Duration late{0};
+  Duration shift{0};
 };
 
 /// Steps back by more than kSmallDisorder, or ahead by more than kLongestLog, with ten stamps in

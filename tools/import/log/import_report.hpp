@@ -25,7 +25,7 @@ class ImportReport {
   ImportReport(const std::filesystem::path& file, AddressUnit unit)
       : file_{file.filename().string()}, unit_{unit} {}
 
-  void count_in(AddressUnit unit) { unit_ = unit; }
+  void set_address_unit(AddressUnit unit) { unit_ = unit; }
 
   /// A line or event that is skipped. All are counted; the first of each kind get a message.
   /// @param at  line number (from 1), byte offset (from 0) or row of a table

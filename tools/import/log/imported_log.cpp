@@ -163,7 +163,7 @@ void cover_scans(ImportedLog& log, ImportReport& report) {
   }
 }
 
-void complete(ImportedLog& log, ImportReport& report) {
+void make_consistent(ImportedLog& log, ImportReport& report) {
   restore_order(log.scans, "scan", report);
   keep_ascending(log.scans, "a scan", report);
   restore_order(log.odometry, "odometry sample", report);

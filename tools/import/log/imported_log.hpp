@@ -23,7 +23,7 @@ struct ImportedScan {
   Message message{};                    ///< for the channel LIDAR
   std::optional<Se2> odom_from_base{};  ///< odometry pose in the scan's record, if it has one
   bool is_mirrored{false};              ///< the message's angles count clockwise
-  Duration late{0};                     ///< delay of the message's stamp, not contained in `time`
+  Duration late{0};                     ///< delay of the message's stamp; subtracted in `time`
 };
 
 struct ImportedPose {
@@ -69,9 +69,9 @@ Se2 pose_at(const std::vector<ImportedPose>& poses, Timestamp time);
 /// Motion between two scans (indices) by odometry: first_from_last.
 Se2 odometry_between(const ImportedLog& log, std::size_t first, std::size_t last);
 
-/// Removes scans with a rare number of beams (garbled lines). Kept, with a note, are numbers of at
-/// least two scans that differ by one from the most frequent number (of equally frequent ones: the
-/// smallest), or that 5 % of all scans have: some drivers alternate between 180 and 181 beams.
+/// Removes scans with a rare number of beams (garbled lines). The most frequent number is kept (the
+/// smallest, if several are) and, with a note, numbers that at least two scans have and that differ
+/// from it by one, or that 5 % of all scans have: some drivers alternate (180, 181 beams).
 void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& report);
 
 /// Extends odometry to cover the scans, as slam processes no scan without odometry. Where odometry
@@ -80,10 +80,11 @@ void keep_usual_beam_count(std::vector<ImportedScan>& scans, ImportReport& repor
 /// Scans and images more than a second outside odometry's times are removed.
 void cover_scans(ImportedLog& log, ImportReport& report);
 
-/// Sorts all records by time, uses the scans' odometry if there is no other, and sets the rates and
-/// the number of beams in `log.robot`.
+/// Makes the log usable for slam: sorts slightly disordered records by time, removes records that
+/// are still out of order, takes odometry from the scans if there is no other, applies
+/// cover_scans(), and sets the rates and the number of beams in `log.robot`.
 /// @throws SetupError when no scan or no odometry is left.
-void complete(ImportedLog& log, ImportReport& report);
+void make_consistent(ImportedLog& log, ImportReport& report);
 
 /// Multiplies x and y of all poses by `factor`.
 void scale_distances(std::vector<ImportedPose>& odometry, double factor);

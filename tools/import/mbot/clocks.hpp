@@ -19,8 +19,8 @@ class ChannelClock {
   /// Median of logger time minus stamp. @pre !empty()
   Duration logger_ahead() const;
 
-  /// Whether the log is less than twice as long by one clock (stamps, logger) as by the other;
-  /// otherwise their difference means nothing.
+  /// Whether the durations of the log by stamps and by the logger's clock differ by less than a
+  /// factor of two. If not, one of the clocks is unusable, and so is their offset.
   bool is_comparable() const;
 
  private:

@@ -94,7 +94,7 @@ EncoderResult read_encoders(std::span<const std::uint8_t> payload) {
   if (!time) return LineProblem{"bad time", "utime is negative or far in the future"};
   return EncoderTicks{*time, 0, read_big_endian<std::int32_t>(&payload[kBodyOffset]),
                       read_big_endian<std::int32_t>(&payload[kBodyOffset + 4]),
-                      is_feedback ? Encoders::kMaebot2014 : Encoders::kMaebot};
+                      is_feedback ? RobotModel::kMaebot2014 : RobotModel::kMaebot};
 }
 
 PoseResult read_pose(std::span<const std::uint8_t> payload) {

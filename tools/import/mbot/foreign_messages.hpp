@@ -15,8 +15,8 @@
 
 namespace waymark {
 
-/// Message type of the encoder ticks, which shows the robot.
-enum class Encoders {
+/// Robot model, recognised by the type of its encoder messages.
+enum class RobotModel {
   kMaebot,      ///< MAEBOT_ENCODERS
   kMaebot2014,  ///< MAEBOT_MOTOR_FEEDBACK, whose further fields are not read
 };
@@ -27,7 +27,7 @@ struct EncoderTicks {
   std::int64_t at{0};
   std::int32_t left{0};
   std::int32_t right{0};
-  Encoders encoders{Encoders::kMaebot};
+  RobotModel robot_model{RobotModel::kMaebot};
 };
 
 struct ForeignPose {

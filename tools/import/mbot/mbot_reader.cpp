@@ -205,7 +205,7 @@ void MbotReader::apply_ticks() {
   if (ticks_.empty()) return;
   restore_order(ticks_, "encoder reading", report_);
   keep_ascending(ticks_, "an encoder reading", report_);
-  WheelGeometry wheels = geometry_of(ticks_.front().encoders);
+  WheelGeometry wheels = geometry_of(ticks_.front().robot_model);
   wheels.meters_per_tick = options_.meters_per_tick.value_or(wheels.meters_per_tick);
   wheels.wheel_base_m = options_.wheel_base_m.value_or(wheels.wheel_base_m);
   log_.odometry = wheel_odometry(ticks_, wheels, report_);
@@ -239,7 +239,7 @@ ImportedLog MbotReader::finish() {
   lidar.x_m = options_.mounting.x_m.value_or(0.0);
   lidar.y_m = options_.mounting.y_m.value_or(0.0);
   lidar.yaw_rad = options_.mounting.yaw_rad.value_or(0.0);
-  complete(log_, report_);
+  make_consistent(log_, report_);
   mark_no_returns(log_, {options_.range_max_m, usual_range_max_m()}, report_);
   return std::move(log_);
 }

@@ -16,8 +16,8 @@ struct MbotOptions {
   std::string encoder_channel{};    ///< MAEBot's encoders; given only without odometry_channel
   std::string camera_channel{};     ///< image_t; empty: CAMERA, if the log has such images
   std::string reference_channel{};  ///< poses to compare with, types as for odometry; empty: none
-  std::optional<double> meters_per_tick{};  ///< nullopt = geometry_of() the messages
-  std::optional<double> wheel_base_m{};     ///< nullopt = geometry_of() the messages
+  std::optional<double> meters_per_tick{};  ///< nullopt = that of the robot model, geometry_of()
+  std::optional<double> wheel_base_m{};     ///< nullopt = that of the robot model, geometry_of()
   std::optional<double> range_max_m{};      ///< nullopt = see mark_no_returns(); usual: RPLIDAR A1
   double range_min_m{0.0};
   LidarMounting mounting{};

@@ -33,9 +33,9 @@ Se2 motion(const WheelStep& step, double wheel_base_m) {
 
 }  // namespace
 
-WheelGeometry geometry_of(Encoders encoders) {
+WheelGeometry geometry_of(RobotModel model) {
   constexpr double kWheelBase_m = 0.08;
-  if (encoders == Encoders::kMaebot2014) return {std::numbers::pi * 0.032 / 480.0, kWheelBase_m};
+  if (model == RobotModel::kMaebot2014) return {std::numbers::pi * 0.032 / 480.0, kWheelBase_m};
   return {0.100528 / 1200.0, kWheelBase_m};
 }
 

@@ -17,7 +17,7 @@ struct WheelGeometry {
 
 /// Robots of the course ROB 550 (University of Michigan): 1200 ticks per wheel turn of 0.100528 m;
 /// those of 2014: 480 ticks per turn of a wheel of 0.032 m diameter.
-WheelGeometry geometry_of(Encoders encoders);
+WheelGeometry geometry_of(RobotModel model);
 
 /// One pose (odom_from_base) per reading, starting at the origin; each step is a straight line at
 /// half the turn. A step faster than 10 m/s (a reset or garbled counter) is reported and counts as

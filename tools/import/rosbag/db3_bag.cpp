@@ -96,7 +96,7 @@ std::map<std::int64_t, Topic> read_topics(const Database& database,
 
 void read_db3_bag(const std::filesystem::path& file, const HandleRecord& handle,
                   ImportReport& report) {
-  report.count_in(AddressUnit::kRow);
+  report.set_address_unit(AddressUnit::kRow);
   const Database database = open_database(file);
   const std::map<std::int64_t, Topic> topics = read_topics(database, file, report);
   const Statement rows =

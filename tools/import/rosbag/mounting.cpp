@@ -59,10 +59,10 @@ void describe_lens(CameraConfig& camera, const RosCameraInfo& info, ImportReport
 
 }  // namespace
 
-ScanPlane describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
-                         const SensorFrames& frames, const LidarMounting& given,
-                         ImportReport& report) {
-  ScanPlane plane = ScanPlane::kUpright;
+LidarOrientation describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
+                                const SensorFrames& frames, const LidarMounting& given,
+                                ImportReport& report) {
+  LidarOrientation orientation = LidarOrientation::kUpright;
   lidar.x_m = lidar.y_m = lidar.yaw_rad = 0.0;
   if (const auto base_from_lidar = transforms.find(frames.base, frames.lidar)) {
     const Eigen::Vector3d forward = base_from_lidar->linear().col(0);
@@ -72,7 +72,7 @@ ScanPlane describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
     lidar.z_m = std::max(0.0, base_from_lidar->translation().z());
     lidar.yaw_rad = std::atan2(forward.y(), forward.x());
     if (up < 0.0) {
-      plane = ScanPlane::kUpsideDown;
+      orientation = LidarOrientation::kUpsideDown;
       report.note(frames.lidar + " is mounted upside down: its angles are turned round");
     }
     if (std::abs(up) < kLevel) {
@@ -88,17 +88,19 @@ ScanPlane describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
   lidar.x_m = given.x_m.value_or(lidar.x_m);
   lidar.y_m = given.y_m.value_or(lidar.y_m);
   lidar.yaw_rad = given.yaw_rad.value_or(lidar.yaw_rad);
-  return plane;
+  return orientation;
 }
 
 void describe_camera(CameraConfig& camera, const StaticFrames& transforms,
                      const SensorFrames& frames, const std::optional<RosCameraInfo>& info,
-                     const ImportedImage& image, Rectified rectified, ImportReport& report) {
+                     const ImportedImage& image, ImageRectification rectification,
+                     ImportReport& report) {
   const image_t picture = decode<image_t>(image.message.payload).message.value();
   camera.width_px = picture.width;
   camera.height_px = picture.height;
-  const bool is_known = info && (info->camera_matrix[0] > 0.0 ||
-                                 (rectified == Rectified::kYes && has_projection(*info)));
+  const bool is_known =
+      info && (info->camera_matrix[0] > 0.0 ||
+               (rectification == ImageRectification::kRectified && has_projection(*info)));
   if (!is_known) {
     report.note("no CameraInfo: the camera's focal length is a guess; edit [robot.camera]");
   } else if (info->width_px != picture.width || info->height_px != picture.height) {
@@ -106,7 +108,7 @@ void describe_camera(CameraConfig& camera, const StaticFrames& transforms,
         "CameraInfo is of images of {}x{}, but they have {}x{}: the camera's focal length is a "
         "guess; edit [robot.camera]",
         info->width_px, info->height_px, picture.width, picture.height));
-  } else if (rectified == Rectified::kYes) {
+  } else if (rectification == ImageRectification::kRectified) {
     describe_pinhole(camera, *info, report);
   } else {
     describe_lens(camera, *info, report);

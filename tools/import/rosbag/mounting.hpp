@@ -19,17 +19,19 @@ struct SensorFrames {
 
 /// Sets position and yaw of the LiDAR; the origin, with a note, if no fixed transforms lead to its
 /// frame. Values given by the user override the transforms.
-ScanPlane describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
-                         const SensorFrames& frames, const LidarMounting& given,
-                         ImportReport& report);
+/// @return whether the LiDAR is mounted upside down.
+LidarOrientation describe_lidar(LidarConfig& lidar, const StaticFrames& transforms,
+                                const SensorFrames& frames, const LidarMounting& given,
+                                ImportReport& report);
 
 /// Whether the camera's images have been rectified by CameraInfo.
-enum class Rectified { kNo, kYes };
+enum class ImageRectification { kRaw, kRectified };
 
 /// Sets lens and mounting of the camera; values that the bag lacks are guessed, with a note.
 /// @param image  an image of the bag, for its size in pixels
 void describe_camera(CameraConfig& camera, const StaticFrames& transforms,
                      const SensorFrames& frames, const std::optional<RosCameraInfo>& info,
-                     const ImportedImage& image, Rectified rectified, ImportReport& report);
+                     const ImportedImage& image, ImageRectification rectification,
+                     ImportReport& report);
 
 }  // namespace waymark

@@ -53,7 +53,7 @@ LineProblem absurd(RejectReason reason) {
 }  // namespace
 
 RosScanResult to_imported_scan(const RosScan& scan, Timestamp time, std::int64_t at,
-                               ScanPlane plane) {
+                               LidarOrientation orientation) {
   const std::size_t num_beams = scan.ranges_m.size();
   const double sweep_s = std::abs(double{scan.time_increment_s}) * static_cast<double>(num_beams);
   if (num_beams == 0) return LineProblem{"absurd scan", "no beam"};
@@ -71,7 +71,7 @@ RosScanResult to_imported_scan(const RosScan& scan, Timestamp time, std::int64_t
     if (!std::isfinite(ranges_m.back())) continue;
     imported.longest_range_m = std::max(imported.longest_range_m, double{ranges_m.back()});
   }
-  const float sense = plane == ScanPlane::kUpright ? 1.0F : -1.0F;
+  const float sense = orientation == LidarOrientation::kUpright ? 1.0F : -1.0F;
   if (scan.time_increment_s == 0.0F) {
     planar_lidar_t message = planar_message(scan, time, sense);
     message.nranges = imported.num_beams;

@@ -9,8 +9,8 @@
 
 namespace waymark {
 
-/// Angles of an upside-down LiDAR count clockwise in the base frame.
-enum class ScanPlane { kUpright, kUpsideDown };
+/// How the LiDAR is mounted. Upside down, its angles increase clockwise in the base frame.
+enum class LidarOrientation { kUpright, kUpsideDown };
 
 using RosScanResult = std::variant<ImportedScan, LineProblem>;
 
@@ -19,6 +19,6 @@ using RosScanResult = std::variant<ImportedScan, LineProblem>;
 /// measurement (also below range_min, and 0).
 /// @return a problem if the number of beams, angles or duration are impossible for a LiDAR.
 RosScanResult to_imported_scan(const RosScan& scan, Timestamp time, std::int64_t at,
-                               ScanPlane plane);
+                               LidarOrientation orientation);
 
 }  // namespace waymark

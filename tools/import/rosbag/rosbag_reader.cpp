@@ -141,7 +141,7 @@ class RosbagReader {
   void add_image(const RosRecord& record);
   void add_camera_info(const RosRecord& record);
   void add_transforms(const RosRecord& record);
-  void add_scans(ScanPlane plane);
+  void add_scans(LidarOrientation orientation);
   void note_zeros();
   std::optional<double> usual_range_max_m() const;
 
@@ -210,9 +210,9 @@ void RosbagReader::add_transforms(const RosRecord& record) {
   }
 }
 
-void RosbagReader::add_scans(ScanPlane plane) {
+void RosbagReader::add_scans(LidarOrientation orientation) {
   for (const HeldScan& held : scans_) {
-    RosScanResult result = to_imported_scan(held.scan, held.time, held.at, plane);
+    RosScanResult result = to_imported_scan(held.scan, held.time, held.at, orientation);
     if (const auto* problem = std::get_if<LineProblem>(&result)) {
       report_.skip(problem->kind, held.at, scan_ + ": " + problem->detail);
     } else {
@@ -252,7 +252,7 @@ ImportedLog RosbagReader::finish() {
   }
   RobotConfig& robot = log_.robot;
   add_scans(describe_lidar(robot.lidar, transforms_, frames_, options_.mounting, report_));
-  complete(log_, report_);
+  make_consistent(log_, report_);
   note_zeros();
   std::vector<double> shortest_m;
   for (const HeldScan& held : scans_)
@@ -262,7 +262,8 @@ ImportedLog RosbagReader::finish() {
   if (!log_.images.empty()) {
     const bool is_rectified = image_.find("image_rect") != std::string::npos;
     describe_camera(robot.camera, transforms_, frames_, info_, log_.images.front(),
-                    is_rectified ? Rectified::kYes : Rectified::kNo, report_);
+                    is_rectified ? ImageRectification::kRectified : ImageRectification::kRaw,
+                    report_);
   }
   return std::move(log_);
 }

@@ -35,13 +35,11 @@ void make_garbage(OdometrySample& sample, Random& random) {
 WheelPair SpinningWheels::counted(const WheelPair& angles, const Faults& odometry,
                                   const Moment& moment) {
   if (const FaultConfig* fault = odometry.active(FaultKind::kWrong, moment)) {
-    if (fault->wheel != Wheel::kRight)
-      spun_.left_rad += fault->share * (angles.left_rad - last_.left_rad);
-    if (fault->wheel != Wheel::kLeft)
-      spun_.right_rad += fault->share * (angles.right_rad - last_.right_rad);
+    if (fault->wheel != Wheel::kRight) spun_.left += fault->share * (angles.left - last_.left);
+    if (fault->wheel != Wheel::kLeft) spun_.right += fault->share * (angles.right - last_.right);
   }
   last_ = angles;
-  return {angles.left_rad + spun_.left_rad, angles.right_rad + spun_.right_rad};
+  return {angles.left + spun_.left, angles.right + spun_.right};
 }
 
 }  // namespace waymark

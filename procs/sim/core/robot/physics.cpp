@@ -65,8 +65,8 @@ void Physics::come_to_rest() {
 }
 
 void Physics::step(const WheelPair& target_speed_per_s) {
-  data_->ctrl[left_.actuator] = target_speed_per_s.left_rad;
-  data_->ctrl[right_.actuator] = target_speed_per_s.right_rad;
+  data_->ctrl[left_.actuator] = target_speed_per_s.left;
+  data_->ctrl[right_.actuator] = target_speed_per_s.right;
   mj_step(model_.get(), data_.get());
 }
 

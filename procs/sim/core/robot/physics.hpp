@@ -19,10 +19,10 @@ class SimulatorError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Angles [rad] of the driven wheels, or their speeds [rad/s].
+/// A value per driven wheel: angle [rad] or speed [rad/s].
 struct WheelPair {
-  double left_rad{0.0};
-  double right_rad{0.0};
+  double left{0.0};
+  double right{0.0};
 };
 
 /// Owns one MuJoCo model with its state. After construction the robot stands still on its wheels.
@@ -52,8 +52,8 @@ class Physics {
 
   const mjModel& model() const { return *model_; }
 
-  /// MuJoCo's state, for ray casting and rendering. The poses of the robot's parts in it are older
-  /// than the joint coordinates after step(), by one step, and after put_down().
+  /// MuJoCo's state, for ray casting and rendering. Body poses in it lag behind the joint
+  /// coordinates: by one step after step(), and until the next step() after put_down().
   mjData& data() { return *data_; }
 
   const mjData& data() const { return *data_; }

@@ -42,26 +42,27 @@ OdometryErrorConfig errors_of_seed(const OdometryErrorConfig& config, std::int64
   return errors;
 }
 
-Encoders::Encoders(const BaseConfig& base, const OdometryErrorConfig& errors, std::int64_t seed)
+WheelOdometry::WheelOdometry(const BaseConfig& base, const OdometryErrorConfig& errors,
+                             std::int64_t seed)
     : base_{base}, errors_{errors_of_seed(errors, seed)}, seed_{static_cast<std::uint64_t>(seed)} {}
 
-double Encoders::counted_angle_rad(double angle_rad) const {
+double WheelOdometry::counted_angle_rad(double angle_rad) const {
   if (errors_.ticks_per_turn == 0) return angle_rad;
   const double tick_rad = 2.0 * std::numbers::pi / errors_.ticks_per_turn;
   return std::floor(angle_rad / tick_rad + 0.5) * tick_rad;
 }
 
 /// Slips are a Poisson process over the distance, with exponentially distributed lengths.
-double Encoders::slip_m(double distance_m, Random& random) const {
+double WheelOdometry::slip_m(double distance_m, Random& random) const {
   const double chance = random.uniform();
   const double length_m = -std::log(1.0 - random.uniform()) * errors_.slip_m;
   return chance < errors_.slips_per_m * distance_m ? length_m : 0.0;
 }
 
-OdometrySample Encoders::measure(Timestamp time, const WheelPair& angles) {
-  const WheelPair counted{counted_angle_rad(angles.left_rad), counted_angle_rad(angles.right_rad)};
-  const double left_m = (counted.left_rad - last_.left_rad) * base_.wheel_radius_m;
-  const double right_m = (counted.right_rad - last_.right_rad) * base_.wheel_radius_m;
+OdometrySample WheelOdometry::measure(Timestamp time, const WheelPair& angles) {
+  const WheelPair counted{counted_angle_rad(angles.left), counted_angle_rad(angles.right)};
+  const double left_m = (counted.left - last_.left) * base_.wheel_radius_m;
+  const double right_m = (counted.right - last_.right) * base_.wheel_radius_m;
   last_ = counted;
 
   // Variances grow with the path, so that the errors do not depend on how often measure() is

@@ -31,9 +31,9 @@ struct OdometryErrorConfig {
 OdometryErrorConfig errors_of_seed(const OdometryErrorConfig& config, std::int64_t seed);
 
 /// Integrates wheel angles, with the errors of the odometry, to a pose that starts at the identity.
-class Encoders {
+class WheelOdometry {
  public:
-  Encoders(const BaseConfig& base, const OdometryErrorConfig& errors, std::int64_t seed);
+  WheelOdometry(const BaseConfig& base, const OdometryErrorConfig& errors, std::int64_t seed);
 
   /// Call at the odometry rate, in order of time.
   /// @param angles  angles [rad] of the wheels since the start.

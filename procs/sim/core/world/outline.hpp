@@ -30,8 +30,8 @@ struct Wall {
   Eigen::Vector2d to_m{0.0, 0.0};
   double height_m{0.0};
   double thickness_m{0.0};
-  double beyond_from_m{0.0};  ///< the solid wall extends beyond the face, to close corners
-  double beyond_to_m{0.0};
+  double beyond_from_m{0.0};  ///< length of solid wall beyond from_m, which closes the corner
+  double beyond_to_m{0.0};    ///< the same beyond to_m
 
   double length_m() const { return (to_m - from_m).norm(); }
 
@@ -47,7 +47,8 @@ std::vector<Corridor> corridors(const WorldConfig& world);
 /// All walls; consecutive walls of a closed line share a point.
 std::vector<Wall> outline(const WorldConfig& world);
 
-/// Index of the first opening at whose centre there is no wall of its corridor that is wide enough.
+/// Index of the first opening whose corridor does not exist, or has no wall wide enough at the
+/// opening's centre; nullopt if every opening fits.
 std::optional<std::size_t> opening_without_wall(const WorldConfig& world);
 
 /// True when two walls cross or overlap, e.g. those of two rooms in the same place.

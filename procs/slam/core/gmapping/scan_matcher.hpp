@@ -18,7 +18,7 @@ class Fields;
 
 /// The condition that the cell before a hit is free ("free_cells" in this folder's README).
 enum class FreeCells {
-  kAsReleased,  ///< the released code reads a cell half a map away, so no hit is ever rejected
+  kAsReleased,  ///< by a bug it reads a cell half a map away, never a wall: always fulfilled
   kIntended,    ///< the cell sqrt(2) cells before the end of the beam must not be a wall
 };
 

@@ -12,8 +12,9 @@
 namespace waymark {
 namespace {
 
-constexpr double kWidest = 256.0;     // width of the mixture's widest component
-constexpr double kTail = 2.0;         // a component k times as wide has 1 / k^2 of the probability
+// The prior is a mixture of normals with 1, 2, 4, ..., kWidest times the configured sigma.
+constexpr double kWidest = 256.0;     // factor on the configured sigma
+constexpr double kTail = 2.0;         // the weight of the normal with factor k is 1 / k^kTail
 constexpr double kMinShare = 1e-9;    // information relative to the prior's; less is rounding
 constexpr double kDoubtSigmas = 5.0;  // error beyond which the description counts as wrong
 constexpr double kExactSigma = 1e-9;  // stands for 0, which has no inverse

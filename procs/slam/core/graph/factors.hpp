@@ -116,7 +116,7 @@ struct MarkerFactor {
   MarkerMeasurement measurement{};
   Eigen::Matrix3d root_information{Eigen::Matrix3d::Identity()};
 
-  /// @param gate  chi^2 beyond which the robust weight in the cost is (gate / chi^2)^2.
+  /// @param gate  up to this chi^2 the factor has full weight; beyond it, (gate / chi^2)^2.
   LinearFactor linearise(const State& state, double gate) const;
 };
 

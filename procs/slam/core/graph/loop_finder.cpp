@@ -53,7 +53,7 @@ const Submap* LoopFinder::nearest_submap(const Guess& guess, const Scan& scan) c
         submap.submap_from_map(scan.state.keyframes) * guess.map_from_base.translation();
     const double off_m = reach_m(guess.covariance_against(submap.first_keyframe()));
     double near_m = std::min(least_m, config_.reach_m + std::min(config_.max_search_m, off_m));
-    if (place.norm() - submap.reach_m() >= near_m) continue;
+    if (place.norm() - submap.radius_m() >= near_m) continue;
     for (std::size_t k = submap.first_keyframe(); k <= submap.last_keyframe(); ++k) {
       const double distance_m = (submap.submap_from_keyframe(k).translation() - place).norm();
       if (distance_m >= near_m) continue;

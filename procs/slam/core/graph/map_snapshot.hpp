@@ -51,7 +51,7 @@ enum class MapMode {
 
 /// Where in a loaded map the robot starts.
 enum class StartKind {
-  kOrigin,    ///< at the map's origin, where mapping began
+  kOrigin,    ///< at the map's origin: where mapping began or, with a survey, the survey's origin
   kPose,      ///< at a given pose
   kLast,      ///< where slam stopped, if map and odometry still match; else unknown
   kAnywhere,  ///< unknown

@@ -120,7 +120,7 @@ std::optional<std::size_t> Survey::landmark_of(const SurveyedMarker& marker, con
     nearest = i;
   }
   // Without a frame, markers of the same id cannot be distinguished.
-  if (!has_frame_ && candidates > 1) return std::nullopt;
+  if (!has_map_frame_ && candidates > 1) return std::nullopt;
   return nearest;
 }
 
@@ -147,13 +147,13 @@ bool Survey::match(const Graph& graph, const MarkerBook& book) {
 }
 
 std::optional<Se2> Survey::new_frame(const Graph& graph) {
-  if (has_frame_) return std::nullopt;
+  if (has_map_frame_) return std::nullopt;
   const auto mapped = [&](const Entry& entry) -> const Se2& {
     return graph.state().landmarks[*entry.landmark];
   };
   for (const Entry& entry : entries_) {
     if (!entry.landmark || !entry.marker.has_yaw) continue;
-    has_frame_ = true;
+    has_map_frame_ = true;
     return entry.marker.survey_from_marker * mapped(entry).inverse();
   }
   for (const Entry& a : entries_) {
@@ -163,7 +163,7 @@ std::optional<Se2> Survey::new_frame(const Graph& graph) {
           b.marker.survey_from_marker.translation() - a.marker.survey_from_marker.translation();
       const Eigen::Vector2d by_map = mapped(b).translation() - mapped(a).translation();
       if (std::min(by_survey.norm(), by_map.norm()) < kMinApart_m) continue;
-      has_frame_ = true;
+      has_map_frame_ = true;
       const Se2 turn{0.0, 0.0,
                      std::atan2(by_survey.y(), by_survey.x()) - std::atan2(by_map.y(), by_map.x())};
       const Eigen::Vector2d middle = 0.5 * (mapped(a).translation() + mapped(b).translation());

@@ -21,7 +21,7 @@ class Survey {
 
   bool is_empty() const { return entries_.empty(); }
 
-  bool has_frame() const { return has_frame_; }
+  bool has_map_frame() const { return has_map_frame_; }
 
   /// Associates surveyed markers with landmarks that have enough sightings, and those whose priors
   /// are off with the nearest landmarks of their ids.
@@ -58,7 +58,7 @@ class Survey {
   double sigmas_off(const Entry& entry, const Graph& graph) const;
 
   std::vector<Entry> entries_{};
-  bool has_frame_{false};
+  bool has_map_frame_{false};
   double unresolved_sigmas_{0.0};  ///< root of the excess of chi^2 that remains; 0: none
 };
 

@@ -85,8 +85,8 @@ Eigen::Matrix3d covariance_of(MotionKind kind, const MixtureNoise& noise) {
         Eigen::Vector3d{kPush_m, kPush_m, kPush_rad}.cwiseAbs2().asDiagonal();
     return noise.rolling + squared(kGrossErrorWidth) * noise.described + pushed;
   }
-  // The encoder of a spinning wheel overcounts: d(x, y)/d(theta) = (-half_track, 0) of the left
-  // wheel, (half_track, 0) of the right one.
+  // If only the left wheel spins by d, odometry reports the motion (d / 2, 0, -d / (2 half_track)):
+  // x changes by -half_track per radian. For the right wheel, by +half_track.
   const bool is_left = kind == MotionKind::kLeftSlips;
   const Eigen::Vector3d slip{is_left ? -noise.half_track_m : noise.half_track_m, 0.0, 1.0};
   return noise.rolling + squared(kOneWheelRest) * noise.described +

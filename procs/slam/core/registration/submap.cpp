@@ -15,9 +15,9 @@ constexpr double kDeformed_rad = 0.006;  // displaces walls 5 m away by as much
 
 void Submap::insert(const Points& points_in_base, const Se2& submap_from_base) {
   if (!poses_.empty())
-    length_m_ += (submap_from_base.translation() - poses_.back().translation()).norm();
+    path_length_m_ += (submap_from_base.translation() - poses_.back().translation()).norm();
   poses_.push_back(submap_from_base);
-  reach_m_ = std::max(reach_m_, submap_from_base.translation().norm());
+  radius_m_ = std::max(radius_m_, submap_from_base.translation().norm());
   add(points_in_base, submap_from_base);
 }
 

@@ -60,10 +60,10 @@ class Submap {
   void finish();
 
   /// Largest distance of a keyframe from the first one.
-  double reach_m() const { return reach_m_; }
+  double radius_m() const { return radius_m_; }
 
   /// Length of the path from the first keyframe to the last.
-  double length_m() const { return length_m_; }
+  double path_length_m() const { return path_length_m_; }
 
   /// The pose at which a keyframe was inserted.
   const Se2& submap_from_keyframe(std::size_t keyframe) const {
@@ -87,8 +87,8 @@ class Submap {
   NdtMap ndt_;
   CoarseNdt coarse_;
   std::vector<Se2> poses_{};
-  double reach_m_{0.0};
-  double length_m_{0.0};
+  double radius_m_{0.0};
+  double path_length_m_{0.0};
   bool is_shape_frozen_{false};
   std::vector<Scan> scans_{};                   ///< until the submap is finished
   std::unordered_set<NdtMap::Key> occupied_{};  ///< cells of kThinned_m; never iterated over

@@ -13,7 +13,7 @@ const Submap* Submaps::find(std::size_t first_keyframe) const {
 
 void Submaps::add_keyframe(const Points& points_in_base, const PoseSequence& keyframes) {
   if (growing_.empty() || growing_.back().num_keyframes() >= half_keyframes_ ||
-      growing_.back().length_m() >= half_m_) {
+      growing_.back().path_length_m() >= half_m_) {
     if (growing_.size() > 1) {
       finished_.push_back(std::move(growing_.front()));
       finished_.back().finish();

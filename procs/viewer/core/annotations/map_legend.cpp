@@ -102,7 +102,8 @@ class LegendWriter {
   double y_px_;
 };
 
-void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content, Odometry odometry) {
+void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content,
+               OdometryPath odometry) {
   const StrokeWidths widths{};
   const bool has_estimate = !content.estimates.empty();
   if (has_estimate) {
@@ -117,7 +118,7 @@ void add_paths(LegendWriter& legend, cv::Mat& page, const PageContent& content, 
   }
   if (!content.truth_in_map.empty()) legend.add_line("true path", {palette::kTrue, widths.true_px});
   if (!content.odometry_in_map.empty()) {
-    legend.add_line(odometry == Odometry::kIncluded ? "odometry" : "odometry, above only",
+    legend.add_line(odometry == OdometryPath::kIncluded ? "odometry" : "odometry, above only",
                     {palette::kOdometry, widths.odometry_px});
   }
   if (!has_estimate) return;

@@ -51,10 +51,10 @@ void draw_cells(cv::Mat& panel, const MapViewport& view, const GridMap& map,
 }
 
 void draw_paths(cv::Mat& panel, const MapViewport& view, const PageContent& content,
-                const StrokeWidths& widths, Odometry odometry) {
+                const StrokeWidths& widths, OdometryPath odometry) {
   draw_polyline(panel, points_on_page(view, content.truth_in_map),
                 {palette::kTrue, widths.true_px});
-  if (odometry == Odometry::kIncluded) {
+  if (odometry == OdometryPath::kIncluded) {
     draw_polyline(panel, points_on_page(view, content.odometry_in_map),
                   {palette::kOdometry, widths.odometry_px});
   }

@@ -37,7 +37,7 @@ void draw_cells(cv::Mat& panel, const MapViewport& view, const GridMap& map,
 /// All paths, from the broadest stroke at the bottom to the finest, so that coinciding ones stay
 /// visible; the final trajectory is dashed, on top.
 void draw_paths(cv::Mat& panel, const MapViewport& view, const PageContent& content,
-                const StrokeWidths& widths, Odometry odometry);
+                const StrokeWidths& widths, OdometryPath odometry);
 
 void draw_particles(cv::Mat& panel, const MapViewport& view, const std::vector<Se2>& particles);
 

@@ -30,11 +30,11 @@ struct UncertaintyMarks {
   std::vector<EstimatedPose> weak_axes{};  ///< in order of time; each has a weak axis
 };
 
-/// Places ellipses a round number of metres apart and at the end; weak axes at the same spacing,
-/// where one begins, and where another source begins to observe it. Of overlapping ellipses the
-/// largest is kept, of overlapping weak axes the one with the worst source; the clearance grows
-/// until at most 60 of each kind are left. O(n + c log c + c m): n poses, c candidates, m marks
-/// kept in the first pass.
+/// Ellipses: at a round spacing along the path, and at its end. Weak axes: where one begins, where
+/// another source begins to observe it, and at the same spacing in between. Where marks are too
+/// close to each other, the largest ellipse and the weak axis with the worst source are kept; the
+/// least distance grows until at most 60 of each kind are left. O(n + c log c + c m): n poses, c
+/// candidates, m marks kept in the first pass.
 UncertaintyMarks choose_marks(const std::vector<EstimatedPose>& estimates, double px_per_m,
                               double spacing_px);
 

@@ -133,7 +133,7 @@ PageContent content_of(const Scene& scene) {
           .particles = scene.particles};
 }
 
-Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry) {
+Box bounds(const PageContent& content, const Se2& view_from_map, OdometryPath odometry) {
   BoxBuilder bounds;
   add_known_cells(content.map, view_from_map, bounds);
   const bool has_cells = !bounds.is_empty();
@@ -149,7 +149,7 @@ Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odomet
   add_path(content.estimates);
   add_path(content.final_in_map);
   add_path(content.truth_in_map);
-  if (odometry == Odometry::kIncluded) add_path(content.odometry_in_map);
+  if (odometry == OdometryPath::kIncluded) add_path(content.odometry_in_map);
   return bounds.box();
 }
 
@@ -181,14 +181,16 @@ Se2 view_from_map(const GridMap& map) {
 MapPage lay_out(const PageContent& content, const MapPageStyle& style) {
   const Se2 view_from_map = viewer::view_from_map(content.map);
   // Odometry that would shrink the map is drawn in the overview only.
-  const Box whole_box = with_label_room(bounds(content, view_from_map, Odometry::kIncluded), style);
-  Box box = with_label_room(bounds(content, view_from_map, Odometry::kLeftOut), style);
+  const Box whole_box =
+      with_label_room(bounds(content, view_from_map, OdometryPath::kIncluded), style);
+  Box box = with_label_room(bounds(content, view_from_map, OdometryPath::kLeftOut), style);
   const bool odometry_fits =
       best_folding(whole_box, style).px_per_m >= kMinScaleShare * best_folding(box, style).px_per_m;
   if (odometry_fits) box = whole_box;
   const Folding folding = best_folding(box, style);
 
-  MapPage page{.odometry_in_strips = odometry_fits ? Odometry::kIncluded : Odometry::kLeftOut};
+  MapPage page{.odometry_in_strips =
+                   odometry_fits ? OdometryPath::kIncluded : OdometryPath::kLeftOut};
   int y_px = kHeadingHeight_px;
   const int inner_px = style.page_width_px - 2 * kMargin_px;
   if (folding.num_strips > 1 || !odometry_fits) {

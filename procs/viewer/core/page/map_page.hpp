@@ -18,14 +18,15 @@ struct Panel {
 };
 
 /// Whether odometry's path, which may drift far away from the map, is drawn.
-enum class Odometry { kIncluded, kLeftOut };
+enum class OdometryPath { kIncluded, kLeftOut };
 
 struct MapPage {
   cv::Size size_px{};
   cv::Rect heading_px{};
   std::optional<Panel> overview{};
   std::vector<Panel> strips{};
-  Odometry odometry_in_strips{Odometry::kIncluded};  ///< left out where it would shrink the map
+  /// Left out where it would shrink the map.
+  OdometryPath odometry_in_strips{OdometryPath::kIncluded};
   cv::Rect legend_px{};  ///< as high as the longest possible legend; the unused part is cut off
 };
 
@@ -48,7 +49,7 @@ PageContent content_of(const Scene& scene);
 
 /// Bounding box of the map, the markers and all paths in the view frame; markers and poses far away
 /// from the map are ignored. Never empty.
-Box bounds(const PageContent& content, const Se2& view_from_map, Odometry odometry);
+Box bounds(const PageContent& content, const Se2& view_from_map, OdometryPath odometry);
 
 /// Rotation that makes a long map horizontal; identity for other maps, and for long maps that are
 /// within 20 degrees of horizontal.

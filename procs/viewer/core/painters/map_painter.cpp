@@ -30,13 +30,13 @@ void draw_overview(cv::Mat& page, const Panel& overview, const PageContent& cont
   cv::Mat panel = page(overview.page_px);
   draw_cells(panel, overview.view, content.map, cell_colour);
   draw_health(panel, overview.view, content.estimates, kFineStrokes.health_px);
-  draw_paths(panel, overview.view, content, kFineStrokes, Odometry::kIncluded);
+  draw_paths(panel, overview.view, content, kFineStrokes, OdometryPath::kIncluded);
   draw_plates(panel, overview.view, content.landmarks, style.marker_size_m, kFineStrokes.plate_px);
 }
 
 void draw_strip(cv::Mat& page, const Panel& strip, const PageContent& content,
                 const CellColour& cell_colour, const MapPageStyle& style,
-                const UncertaintyMarks& marks, Odometry odometry) {
+                const UncertaintyMarks& marks, OdometryPath odometry) {
   cv::Mat panel = page(strip.page_px);
   const MapViewport& view = strip.view;
   const StrokeWidths widths = strokes_at(view.px_per_m);

@@ -9,8 +9,9 @@
 
 namespace waymark::viewer {
 
-/// Distinguishes the messages of a new map, after a restart or a reset of slam, from late messages
-/// of an earlier map. So many older messages that the clock must have been set back are a new map.
+/// Distinguishes messages of a new map (slam was restarted or reset) from late messages of an
+/// earlier map, which are stamped before the current map's first message. Many such messages in a
+/// row mean that the clock was set back: then they are of a new map.
 class CurrentMap {
  public:
   enum class Origin { kOfThisMap, kOfFirstMap, kOfNewMap, kLate };

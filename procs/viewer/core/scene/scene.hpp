@@ -68,11 +68,11 @@ struct MapChange {
   Kind kind{Kind::kNone};
   int id{kNoMarker};
   int instance{0};
-  Se2 place{};
-  Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};
-  double size_m{0.0};  ///< longer side of the box around a wall
+  Se2 place{};                                      ///< now; of what is gone: where it was
+  Eigen::Vector2d was_at{Eigen::Vector2d::Zero()};  ///< in the loaded map or the survey
+  double size_m{0.0};                               ///< longer side of the box around a wall
   double sigmas{0.0};  ///< distance from the survey in standard deviations; only for kSurveyOff
-  int support{0};
+  int support{0};      ///< sightings, or misses, that show the change; of a wall: number of cells
 };
 
 /// A deviation of a sensor from its description, or data that slam did not use.

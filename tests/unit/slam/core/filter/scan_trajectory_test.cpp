@@ -40,11 +40,11 @@ TEST(ScanTrajectory, FollowsOdometryAfterTheLastUpdate) {
   expect_pose(poses[2], 2, {6.0, 2.0, std::numbers::pi / 2});
 }
 
-TEST(ScanTrajectory, PassesThroughTheUpdatesAndSpreadsTheDifferenceOverTheSteps) {
+TEST(ScanTrajectory, PassesThroughTheUpdatesAndSpreadsTheCorrectionOverTheSteps) {
   ScanTrajectory trajectory;
   trajectory.add(at(0), {}, true);
   trajectory.add(at(1), step(1.0), false);
-  trajectory.add(at(2), {}, false);  // stands still: no share of the difference
+  trajectory.add(at(2), {}, false);  // stands still: no share of the correction
   trajectory.add(at(3), step(3.0), true);
   trajectory.add(at(4), step(1.0), true);
   const std::vector<Se2> updates{Se2{}, Se2{4.4, 0.8, 0.0}, Se2{9.0, 9.0, 1.0}};
@@ -56,7 +56,7 @@ TEST(ScanTrajectory, PassesThroughTheUpdatesAndSpreadsTheDifferenceOverTheSteps)
   expect_pose(poses[4], 4, updates[2]);
 }
 
-TEST(ScanTrajectory, TheDifferenceIsDistributedInProportionToTurnsToo) {
+TEST(ScanTrajectory, TheCorrectionIsSpreadInProportionToTurnsToo) {
   ScanTrajectory trajectory;
   trajectory.add(at(0), {}, true);
   trajectory.add(at(1), step(0.0, 0.25), false);

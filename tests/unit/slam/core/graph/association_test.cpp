@@ -63,7 +63,7 @@ TEST(MarkerBook, AMissedMarkerWithANewOneOfItsIdElsewhereWasMoved) {
   EXPECT_TRUE(marker.book().entries()[1].was_moved);
 }
 
-TEST(MarkerBook, AMarkerThatWasSeenLaterThanTheOtherOneWasNotMoved) {
+TEST(MarkerBook, AMarkerSeenAfterANewOneOfItsIdAppearedWasNotMoved) {
   MissedMarker marker{1000};
   marker.add_another(1005);
   marker.look_for_it(1025, 10);

@@ -66,7 +66,7 @@ TEST(MovingBeams, ABeamThatMayEndOnAWallIsKept) {
   EXPECT_EQ(without_moving(points, room_with_a_wall(), {}, sigmas(0.05, 0.01)).size(), 3U);
 }
 
-TEST(MovingBeams, SomebodyCloseByIsLeftOutThoughMostBeamsEndThere) {
+TEST(MovingBeams, ManyBeamsOnSomebodyCloseByAreLeftOut) {
   std::vector<Eigen::Vector2d> points{{0.5, 0.3}, {0.5, 0.6}};
   for (int i = 0; i < 10; ++i)
     points.emplace_back(0.25, 0.5);
@@ -74,7 +74,7 @@ TEST(MovingBeams, SomebodyCloseByIsLeftOutThoughMostBeamsEndThere) {
   EXPECT_EQ(standing.size(), 2U);
 }
 
-TEST(MovingBeams, IfMostBeamsEndInFreeSpaceAllAreKept) {
+TEST(MovingBeams, IfMostOfTheOutlineLiesInFreeSpaceAllAreKept) {
   const std::vector<Eigen::Vector2d> points{{0.2, 0.3}, {0.25, 0.5}, {0.5, 0.6}};
   EXPECT_EQ(without_moving(points, room_with_a_wall(), {}, sigmas(0.01, 0.01)).size(), 3U);
 }

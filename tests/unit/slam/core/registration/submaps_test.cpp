@@ -57,8 +57,8 @@ TEST(Submaps, EndAtTheGivenLengthOrAtMostAFifthLater) {
   drive.go(60);
   ASSERT_FALSE(drive.submaps.finished().empty());
   for (const Submap& submap : drive.submaps.finished()) {
-    EXPECT_GE(submap.length_m(), 2.0);
-    EXPECT_LT(submap.length_m(), 2.4);  // by a keyframe of each half
+    EXPECT_GE(submap.path_length_m(), 2.0);
+    EXPECT_LT(submap.path_length_m(), 2.4);  // by a keyframe of each half
   }
 }
 

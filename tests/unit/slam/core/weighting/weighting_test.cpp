@@ -224,7 +224,7 @@ TEST(Resampling, CountsAreTheRoundedShares) {
   }
 }
 
-TEST(Resampling, TheEffectiveNumberIsOneForOneParticleAndNForEqualWeights) {
+TEST(Resampling, TheEffectiveNumberIsOneIfOneParticleHasAllWeightAndNForEqualWeights) {
   EXPECT_NEAR(effective_number(std::vector{0.25, 0.25, 0.25, 0.25}), 4.0, 1e-12);
   EXPECT_NEAR(effective_number(std::vector{1.0, 0.0, 0.0, 0.0}), 1.0, 1e-12);
 }

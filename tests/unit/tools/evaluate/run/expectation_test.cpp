@@ -24,8 +24,8 @@ EstimatorResult result_of(const std::string& row) {
   result.markers->right_share = 0.98;
   result.markers->mean_position_m = 0.025;
   result.markers->moved_named_share = 0.5;
-  result.timeline = Timeline{.max_jump_m = 0.05};
-  result.timeline->kidnap = Kidnap{.confident_wrong_s = 0.3};
+  result.health_summary = HealthSummary{.max_jump_m = 0.05};
+  result.health_summary->kidnap = Kidnap{.confident_wrong_s = 0.3};
   result.memory_mb_per_m = 0.4;
   result.sigma_growth = 2.0;
   result.wall_cells = 2;
@@ -104,13 +104,13 @@ TEST(Expectation, AMissingFigureFails) {
 
 TEST(Expectation, ARelocalisedRobotNeedNotReportLost) {
   EstimatorResult result = result_of("waymark");
-  result.timeline->kidnap = Kidnap{.says_lost_s = std::nullopt, .found_again_s = 1.5};
+  result.health_summary->kidnap = Kidnap{.says_lost_s = std::nullopt, .found_again_s = 1.5};
   EXPECT_TRUE(hits({.says_lost_s = 2.0}, result));
   EXPECT_TRUE(hits({.found_again_s = 3.0}, result));
-  result.timeline->kidnap = Kidnap{.says_lost_s = 0.5, .found_again_s = 9.0};
+  result.health_summary->kidnap = Kidnap{.says_lost_s = 0.5, .found_again_s = 9.0};
   EXPECT_TRUE(hits({.says_lost_s = 2.0}, result));
   EXPECT_FALSE(hits({.found_again_s = 3.0}, result));
-  result.timeline->kidnap = Kidnap{};
+  result.health_summary->kidnap = Kidnap{};
   EXPECT_FALSE(hits({.says_lost_s = 2.0}, result));
 }
 

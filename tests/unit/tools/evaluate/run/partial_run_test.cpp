@@ -64,7 +64,7 @@ TEST(PartOfARun, AFinalTrajectoryIsCheckedLikeThePublishedOne) {
               ElementsAre(HasSubstr("trajectory_final.tum: 81 of 162 poses are outside")));
 }
 
-TEST(PartOfARun, APoseThatComesLateIsNamedButNoProblem) {
+TEST(PartOfARun, ALateFirstPoseIsANoteNotAProblem) {
   const RunWithWaymark run;
   run.folder.file("waymark/trajectory.tum", tum(0.0, 1.0, 61, 20));
   EXPECT_EQ(run.evaluate(), kExitOk);

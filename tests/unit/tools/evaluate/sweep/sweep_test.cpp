@@ -60,7 +60,7 @@ TEST(Sweep, RowsHaveMedianWorstFailuresAndUnmetExpectations) {
   const auto rows = sweep.rows();
   ASSERT_EQ(rows.size(), 4u);
   const SweepRow& waymark = rows[1];
-  EXPECT_EQ(waymark.row, "waymark");
+  EXPECT_EQ(waymark.estimator, "waymark");
   EXPECT_EQ(waymark.failures(), 0u);
   EXPECT_EQ(waymark.misses(), 1u);
   EXPECT_NEAR(waymark.figures("ate_origin_m").median.value(), 0.08, 1e-12);
@@ -115,17 +115,17 @@ std::vector<SweepRow> rows_with(const std::string& expected_of_seeds) {
 }
 
 TEST(Sweep, AllSeedsCountUnlessTheScenarioSaysHowMany) {
-  EXPECT_FALSE(rows_with("{}")[0].is_hit());
-  EXPECT_TRUE(rows_with(R"({"seeds_share": 0.75})")[0].is_hit());
-  EXPECT_FALSE(rows_with(R"({"seeds_share": 0.8})")[0].is_hit());
+  EXPECT_FALSE(rows_with("{}")[0].meets_expectations());
+  EXPECT_TRUE(rows_with(R"({"seeds_share": 0.75})")[0].meets_expectations());
+  EXPECT_FALSE(rows_with(R"({"seeds_share": 0.8})")[0].meets_expectations());
   EXPECT_THAT(sweep_markdown(rows_with(R"({"seeds_share": 0.75})")),
               HasSubstr("| ate_origin_m 0.1, seeds_share 0.75 | hit |"));
 }
 
 TEST(Sweep, StationsOutsideTheirBandAreAnUnmetExpectation) {
   const std::string wanted = R"({{"seeds_share": 0.75, "nees_in_band_share": {}}})";
-  EXPECT_TRUE(rows_with(fmt::format(fmt::runtime(wanted), 0.5))[0].is_hit());
-  EXPECT_FALSE(rows_with(fmt::format(fmt::runtime(wanted), 0.6))[0].is_hit());
+  EXPECT_TRUE(rows_with(fmt::format(fmt::runtime(wanted), 0.5))[0].meets_expectations());
+  EXPECT_FALSE(rows_with(fmt::format(fmt::runtime(wanted), 0.6))[0].meets_expectations());
 }
 
 TEST(Sweep, TheWorstFigureIsTheSmallestWhereLargerIsBetter) {
@@ -191,12 +191,12 @@ TEST(Sweep, RunsWithProblemsAreCountedAndAreNoHits) {
   change_metrics(sweep, "expected_of_seeds", {{"seeds_share", 0.6}});
   const auto rows = sweep.rows();
   EXPECT_EQ(rows[1].with_problems(), 1u);
-  EXPECT_FALSE(rows[1].is_hit());
+  EXPECT_FALSE(rows[1].meets_expectations());
   const std::string table = sweep_markdown(rows);
   EXPECT_THAT(table, HasSubstr("| 0 | 1 | 1 | ate_origin_m 0.1, seeds_share 0.6 | MISS |"));
   EXPECT_THAT(table, HasSubstr("seed 2: covers 50 % of the truth\nagain plain 2\n"));
   change_metrics(sweep, "problems", Json::array());
-  EXPECT_TRUE(sweep.rows()[1].is_hit());
+  EXPECT_TRUE(sweep.rows()[1].meets_expectations());
 }
 
 TEST(Sweep, MetricsOfAnotherFormAreAFailure) {

@@ -110,10 +110,10 @@ TEST(Consistency, SquaredErrorsAreComparedAxisByAxis) {
     const auto pairs = drive(35, {0.02, -0.01, heading_rad});
     return stations(pairs, covariances(pairs, 1e-4), {});
   };
-  const SquaresOverVariances squares = squares_over_variances({run(0.0), run(0.02)});
-  EXPECT_NEAR(squares.along, 4.0, 0.01);
-  EXPECT_NEAR(squares.across, 1.0, 0.01);
-  EXPECT_NEAR(squares.heading, 2.0, 0.01);
+  const NeesPerAxis nees = nees_per_axis({run(0.0), run(0.02)});
+  EXPECT_NEAR(nees.along, 4.0, 0.01);
+  EXPECT_NEAR(nees.across, 1.0, 0.01);
+  EXPECT_NEAR(nees.heading, 2.0, 0.01);
 }
 
 TEST(Consistency, QuantilesAreThoseOfTheTables) {
@@ -163,10 +163,10 @@ TEST(Consistency, StationsWithoutAUsableCovarianceAreCounted) {
   Station with = with_nees_only;
   with.sigma_along_m = with.sigma_across_m = with.sigma_heading_rad = 0.1;
   EXPECT_EQ(count_without_covariance({{without, with}, {with_nees_only}}), 2u);
-  EXPECT_TRUE(std::isnan(squares_over_variances({{with_nees_only}}).along));
+  EXPECT_TRUE(std::isnan(nees_per_axis({{with_nees_only}}).along));
 }
 
-// --------------------------------------------------------------------------- timeline
+// --------------------------------------------------------------------------- health_summary
 
 /// The robot is displaced by 3 m at t = 4 s. The estimate ignores this at first, has the health
 /// `lost` from t = 5 s on, and is right again from t = 6 s on.
@@ -185,9 +185,9 @@ struct Kidnapped {
   }
 };
 
-TEST(Timeline, TimesUntilLostAndFoundCountFromTheFirstSightingAfterTheKidnap) {
+TEST(HealthSummary, TimesUntilLostAndFoundCountFromTheFirstSightingAfterTheKidnap) {
   const Kidnapped run;
-  const Timeline result = timeline(run.pairs, run.stamped, {}, 4.0, {1.0, 4.6, 4.7});
+  const HealthSummary result = health_summary(run.pairs, run.stamped, {}, 4.0, {1.0, 4.6, 4.7});
   ASSERT_TRUE(result.kidnap);
   EXPECT_NEAR(result.kidnap->sighting_t_s, 4.6, 1e-9);
   EXPECT_NEAR(result.kidnap->says_lost_s.value(), 0.4, 1e-6);
@@ -196,30 +196,30 @@ TEST(Timeline, TimesUntilLostAndFoundCountFromTheFirstSightingAfterTheKidnap) {
   EXPECT_NEAR(result.max_jump_m, 0.0, 1e-9);                 // relocalising is no jump
 }
 
-TEST(Timeline, AConfidentWrongPoseThatNeverEndsIsCounted) {
+TEST(HealthSummary, AConfidentWrongPoseThatNeverEndsIsCounted) {
   Kidnapped run;
   for (std::size_t i = 0; i < run.pairs.size(); ++i) {
     run.pairs[i].map_from_estimate = Se2{0.1 * static_cast<double>(i), 0.0, 0.0};
     run.stamped[i].health = Health::kTracking;
   }
-  const Timeline result = timeline(run.pairs, run.stamped, {}, 4.0, {});
+  const HealthSummary result = health_summary(run.pairs, run.stamped, {}, 4.0, {});
   EXPECT_FALSE(result.kidnap->says_lost_s || result.kidnap->found_again_s);
   EXPECT_NEAR(result.kidnap->confident_wrong_s, 6.0, 0.25);
   EXPECT_EQ(result.share_tracking, 1.0);
 }
 
-TEST(Timeline, AWideCovarianceIsNotConfident) {
+TEST(HealthSummary, AWideCovarianceIsNotConfident) {
   Kidnapped run;
   for (StampedCovariance& stamped : run.stamped)
     stamped.covariance *= 1000.0;
-  EXPECT_EQ(timeline(run.pairs, run.stamped, {}, 4.0, {}).kidnap->confident_wrong_s, 0.0);
+  EXPECT_EQ(health_summary(run.pairs, run.stamped, {}, 4.0, {}).kidnap->confident_wrong_s, 0.0);
 }
 
-TEST(Timeline, AJumpIsAStepOfTheEstimateThatDiffersFromTheTrueMotion) {
+TEST(HealthSummary, AJumpIsAStepOfTheEstimateThatDiffersFromTheTrueMotion) {
   auto pairs = drive(20, {});
   for (std::size_t i = 10; i < pairs.size(); ++i)
     pairs[i].map_from_estimate = Se2{0.0, 0.25, 0.0} * pairs[i].map_from_estimate;
-  EXPECT_NEAR(timeline(pairs, {}, {}, std::nullopt, {}).max_jump_m, 0.25, 1e-9);
+  EXPECT_NEAR(health_summary(pairs, {}, {}, std::nullopt, {}).max_jump_m, 0.25, 1e-9);
 }
 
 /// 30 poses of a robot that drives at 0.5 m/s.
@@ -230,30 +230,30 @@ Trajectory true_drive(double step_s) {
   return truth;
 }
 
-TEST(Timeline, KidnapsAreJumpsOfTheTruth) {
+TEST(HealthSummary, KidnapsAreJumpsOfTheTruth) {
   Trajectory truth = true_drive(0.1);
   EXPECT_FALSE(lifted_t_s(truth));
   truth[20].parent_from_base = Se2{8.0, 0.0, 0.0};
   EXPECT_NEAR(lifted_t_s(truth).value(), 2.0, 1e-9);
 }
 
-TEST(Timeline, LongStepsOfARarelySampledTruthAreNotTakenForAKidnap) {
+TEST(HealthSummary, LongStepsOfARarelySampledTruthAreNotTakenForAKidnap) {
   Trajectory truth = true_drive(1.0);
   EXPECT_FALSE(lifted_t_s(truth));
   truth[20].parent_from_base = Se2{12.0, 0.0, 0.0};
   EXPECT_NEAR(lifted_t_s(truth).value(), 20.0, 1e-9);
 }
 
-TEST(Timeline, APoseThatIsRightForLessThanASecondIsNotFoundAgain) {
+TEST(HealthSummary, APoseThatIsRightForLessThanASecondIsNotFoundAgain) {
   Kidnapped run;
   std::erase_if(run.pairs, [](const PosePair& pair) { return pair.t_s > 6.9; });
-  EXPECT_FALSE(timeline(run.pairs, run.stamped, {}, 4.0, {}).kidnap->found_again_s);
+  EXPECT_FALSE(health_summary(run.pairs, run.stamped, {}, 4.0, {}).kidnap->found_again_s);
   run = {};
   std::erase_if(run.pairs, [](const PosePair& pair) { return pair.t_s > 7.1; });
-  EXPECT_TRUE(timeline(run.pairs, run.stamped, {}, 4.0, {}).kidnap->found_again_s);
+  EXPECT_TRUE(health_summary(run.pairs, run.stamped, {}, 4.0, {}).kidnap->found_again_s);
 }
 
-TEST(Timeline, SightingsAreFramesThatShowAMarker) {
+TEST(HealthSummary, SightingsAreFramesThatShowAMarker) {
   const TemporaryFolder folder;
   const auto log = folder.path() / "run.lcm";
   LogWriter writer{log};
