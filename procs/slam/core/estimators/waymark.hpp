@@ -174,7 +174,7 @@ class WaymarkEstimator final : public Estimator {
   /// Numbers of keyframes' scans compared with the loaded map since the pose was last commanded.
   struct LoadedMapVotes {
     std::int64_t decisive{0};       ///< scans with enough beams in mapped cells (MapFit)
-    std::int64_t contradicting{0};  ///< decisive scans that contradict the map
+    std::int64_t contradicting{0};  ///< of these, with beams through its walls
   };
 
   bool try_global_localisation(const Observation& observation);

@@ -57,8 +57,7 @@ bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
 }
 
 /// A match that observes every direction confirms the pose in the loaded map, unless too many beams
-/// cross the map's walls or end in its free space: at a wrong heading, the walls that are in the
-/// map may fit all the same.
+/// cross the map's walls: at a wrong heading, the walls that are in the map may fit all the same.
 void WaymarkEstimator::confirm_place(const Observation& observation, const MatchedScan& scan) {
   if (is_confirmed() || scan.submap != nullptr || scan.match.observed.is_degenerate ||
       !is_in_loaded_map(scan.match))
