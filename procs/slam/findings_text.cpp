@@ -96,7 +96,7 @@ void add_ranges(const SensorStatistics& f, std::int64_t repeated_scans, List& li
   list.add_share("scans_contradict_loaded_map",
                  "{:.1f} % of the scans contradict the loaded map: it is of another place, or much "
                  "has changed",
-                 f.scans_contradict_loaded_map, f.scans_in_loaded_map, kManyScans);
+                 f.loaded_map.contradicting, f.loaded_map.scans, kManyScans);
   list.add_share("scans_unusable",
                  "{:.1f} % of the scans show too few mapped walls and were left out",
                  f.scans_unusable, f.scans);

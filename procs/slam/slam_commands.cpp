@@ -96,6 +96,7 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
   loaded_map_ = std::move(map);
   estimator_ = make_estimator(config_, loaded_map_, survey_);
   newest_estimate_.reset();
+  refuted_ = {};
   map_period_.reset();
   if (last_estimate_time_) {
     // Clears the old map's tiles at subscribers.
@@ -115,13 +116,12 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
 
 /// Looks for the robot in the whole loaded map, after its scans have refuted the start pose.
 void SlamNode::localise_anywhere() {
-  if (const auto statistics = estimator_->statistics()) {
-    refuted_.scans_in_loaded_map += statistics->scans_in_loaded_map;
-    refuted_.scans_contradict_loaded_map += statistics->scans_contradict_loaded_map;
-  }
+  LoadedMapFit refuted = refuted_;
+  if (const auto statistics = estimator_->statistics()) refuted += statistics->loaded_map;
   counters_.add("start poses that the scans refuted");
   logging::warn("the scans contradict the loaded map at the start pose: localises anywhere in it");
   begin_estimator(config_.slam.mode, loaded_map_, unknown_start());
+  refuted_ = refuted;
 }
 
 std::string SlamNode::reset() {

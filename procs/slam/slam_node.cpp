@@ -144,8 +144,7 @@ void SlamNode::attempt(std::string_view part, const std::function<void()>& work)
 std::optional<std::vector<Finding>> SlamNode::findings() const {
   std::optional<SensorStatistics> found = estimator_->statistics();
   if (!found) return std::nullopt;
-  found->scans_in_loaded_map += refuted_.scans_in_loaded_map;
-  found->scans_contradict_loaded_map += refuted_.scans_contradict_loaded_map;
+  found->loaded_map += refuted_;
   return reportable_findings(*found, counters_.get(to_string(Skip::kScanRepeated)));
 }
 
@@ -203,7 +202,7 @@ void SlamNode::check_input() {
         "markers, or one with yaw, each sighted three times",
         without_pose);
   } else if (loaded_map_ != nullptr && without_pose > 0 &&
-             (!last_estimate_time_ || (was_refuted() && !newest_estimate_))) {
+             (!last_estimate_time_ || (refuted_.scans > 0 && !newest_estimate_))) {
     failed_ = true;
     logging::error(
         "no pose: in {} estimates the robot's pose in '{}' was never certain; more than one place, "

@@ -83,8 +83,6 @@ class SlamNode final : public Node {
                        const StartPose& start);
   void localise_anywhere();
 
-  bool was_refuted() const { return refuted_.scans_in_loaded_map > 0; }
-
   void resume_last_pose(const Observation& first);
   void keep_last_pose();
   void handle(LidarScan scan);
@@ -121,8 +119,7 @@ class SlamNode final : public Node {
   Se2 odom_from_base_{};                  ///< odometry at the newest observation, as it was sent
   Timestamp newest_{};                    ///< time of the newest observation
   std::set<int> named_survey_ids_{};
-  /// Counts of estimators whose start was refuted (Estimate::start_refuted); the rest is empty.
-  SensorStatistics refuted_{};
+  LoadedMapFit refuted_{};   ///< of estimators in this map whose start was refuted
   bool was_resumed_{false};  ///< resume_last_pose() was called, successfully or not
   bool is_broken_{false};    ///< the estimator has thrown and gets no more scans
   Period map_period_;

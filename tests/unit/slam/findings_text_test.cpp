@@ -59,10 +59,10 @@ TEST(FindingsText, AFewScansThatDoNotFitAreNotReported) {
   statistics.scans_refuted = 50;
   EXPECT_FALSE(reportable_findings(statistics, 0).empty());
   statistics = as_described();
-  statistics.scans_in_loaded_map = 100;
-  statistics.scans_contradict_loaded_map = 4;
+  statistics.loaded_map.scans = 100;
+  statistics.loaded_map.contradicting = 4;
   EXPECT_TRUE(reportable_findings(statistics, 0).empty());
-  statistics.scans_contradict_loaded_map = 6;
+  statistics.loaded_map.contradicting = 6;
   EXPECT_FALSE(reportable_findings(statistics, 0).empty());
 }
 

@@ -167,11 +167,12 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   if (used.is_used) {
     note_reason(EstimateReason::kScan);
     learn_noise(scan.expected, *matched);
-    confirm_place(observation, *matched);
     if (matched->submap != nullptr)
       add_scan_factor(keyframe, *matched->submap, matched->match, false);
     else
       add_map_factor(keyframe, matched->match);
+    used.fits_loaded_map =
+        matched->submap == nullptr && used.observes_all_axes && is_in_loaded_map(matched->match);
     usual_fit_.note_keyframe(matched->match);
   }
   unobserved_m_ += motion_.distance_m;
@@ -232,7 +233,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
   compare_with_odometry();
   is_observed_ = markers_known_ || used.observes_all_axes;
   if (is_observed_) unmeasured_motion_.note_observed();
-  compare_with_loaded_map(observation);
+  compare_with_loaded_map(observation, used);
   was_confirmed_ |= is_confirmed();
   // A scan whose pose is uncertain is not mapped.
   const bool is_mapped = !is_suspicious && !used.is_refuted && is_confirmed();

@@ -134,6 +134,7 @@ class WaymarkEstimator final : public Estimator {
     bool is_refuted{false};         ///< the scan contradicts the map
     bool is_used{false};            ///< the scan has a factor
     bool observes_all_axes{false};  ///< the scan has a factor and observes every direction
+    bool fits_loaded_map{false};    ///< likewise, with the loaded map
   };
 
   /// Pose of a scan relative to the newest keyframe at that time.
@@ -199,8 +200,7 @@ class WaymarkEstimator final : public Estimator {
   bool is_confirmed() const { return place_trust_ != PlaceTrust::kAssumed; }
 
   bool is_loaded_map_refuted() const;
-  void confirm_place(const Observation& observation, const MatchedScan& scan);
-  void compare_with_loaded_map(const Observation& observation);
+  void compare_with_loaded_map(const Observation& observation, const KeyframeScan& used);
   std::optional<RescaledScan> rescaled(const Observation& observation,
                                        const ScanAtPrediction& scan) const;
   std::optional<Observation> with_right_scale(const Observation& observation,

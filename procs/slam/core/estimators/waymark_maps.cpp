@@ -56,26 +56,20 @@ bool WaymarkEstimator::is_in_loaded_map(const ScanMatch& match) const {
          match.mapped_share >= kMinMapped;
 }
 
-/// A match that observes every direction confirms the pose in the loaded map, unless too many beams
-/// cross the map's walls: at a wrong heading, the walls that are in the map may fit all the same.
-void WaymarkEstimator::confirm_place(const Observation& observation, const MatchedScan& scan) {
-  if (is_confirmed() || scan.submap != nullptr || scan.match.observed.is_degenerate ||
-      !is_in_loaded_map(scan.match))
-    return;
-  const MapFit fit =
-      fit_in_map(setup_.loaded_map->grid, observation.beams, scan.match.map_from_base);
-  if (!fit.is_refuted()) place_trust_ = PlaceTrust::kFitsWalls;
-}
-
-/// Compares the newest keyframe's scan, at its estimated pose, with the loaded map.
-void WaymarkEstimator::compare_with_loaded_map(const Observation& observation) {
+/// Compares the newest keyframe's scan, at its estimated pose, with the loaded map. A match that
+/// observes every direction confirms the pose, unless too many beams cross the map's walls: at a
+/// wrong heading, the walls that are in the map may fit all the same.
+void WaymarkEstimator::compare_with_loaded_map(const Observation& observation,
+                                               const KeyframeScan& used) {
   if (!setup_.loaded_map) return;
   const MapFit fit =
       fit_in_map(setup_.loaded_map->grid, observation.beams, graph_.state().keyframes.back());
+  if (used.fits_loaded_map && !is_confirmed() && !fit.is_refuted())
+    place_trust_ = PlaceTrust::kFitsWalls;
   if (!fit.is_decisive()) return;
-  ++statistics_.scans_in_loaded_map;
+  ++statistics_.loaded_map.scans;
   ++loaded_map_votes_.decisive;
-  if (fit.is_contradicted()) ++statistics_.scans_contradict_loaded_map;
+  if (fit.is_contradicted()) ++statistics_.loaded_map.contradicting;
   if (fit.is_refuted()) ++loaded_map_votes_.contradicting;
 }
 

@@ -15,6 +15,18 @@ struct Miscalibration {
   double sigma{0.0};  ///< standard deviation of `error`
 };
 
+/// Keyframes' scans that were compared with the loaded map.
+struct LoadedMapFit {
+  std::int64_t scans{0};          ///< with enough beams in mapped cells
+  std::int64_t contradicting{0};  ///< of these, contradict the map
+
+  LoadedMapFit& operator+=(const LoadedMapFit& more) {
+    scans += more.scans;
+    contradicting += more.contradicting;
+    return *this;
+  }
+};
+
 /// Learnt noise, and counts over a run.
 struct SensorStatistics {
   std::int64_t observations{0};
@@ -37,8 +49,7 @@ struct SensorStatistics {
   std::int64_t beams{0};           ///< with returns
   std::int64_t beams_moving{0};    ///< of these, ended in free space and were left out of matching
 
-  std::int64_t scans_in_loaded_map{0};  ///< keyframes' scans with enough beams in mapped cells
-  std::int64_t scans_contradict_loaded_map{0};  ///< of these, contradict the loaded map
+  LoadedMapFit loaded_map{};
 
   std::int64_t loops_ambiguous{0};  ///< matches that fitted at several places and closed no loop
   std::int64_t relocalisations{0};

@@ -22,7 +22,9 @@ struct MapFit {
   static constexpr int kMinBeams = 20;  ///< fitting and contradicting beams; fewer are not decisive
   static constexpr double kMaxMisfit = 0.3;  ///< misfit() of a correct map at the correct pose
 
-  static constexpr double kMaxCrossing = 0.2;  ///< crossing / (fitting + crossing), likewise
+  /// The same of crossing / (fitting + crossing): less than that at correct poses in fr079 and
+  /// aces, also among people; more than that in most scans at wrong ones.
+  static constexpr double kMaxCrossing = 0.2;
 
   bool is_decisive() const { return fitting + contradicting >= kMinBeams; }
 
@@ -33,7 +35,7 @@ struct MapFit {
 
   bool is_contradicted() const { return is_decisive() && misfit() >= kMaxMisfit; }
 
-  /// Also right among people, whose beams end where the map is free.
+  /// The pose or the map is wrong, whoever stands around the robot.
   bool is_refuted() const {
     return is_decisive() && crossing > kMaxCrossing * (fitting + crossing);
   }
