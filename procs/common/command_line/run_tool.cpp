@@ -11,21 +11,28 @@
 
 namespace waymark {
 
-int run_tool(std::string_view program, const std::function<int()>& work, int code_of_errors) {
-  const auto fail = [&](std::string_view what, int code) {
-    fmt::print(stderr, "{}: {}\n", program, what);
-    return code;
-  };
+int run_and_report(const std::function<int()>& work,
+                   const std::function<void(std::string_view)>& report, int code_of_errors) {
   try {
     const int code = work();
+    // Only when the rest of the buffer is written, a full disk may show.
     if (std::fflush(stdout) == 0) return code;
-    const std::string why = std::generic_category().message(errno);
-    return fail("standard output cannot be written: " + why, code == kExitOk ? kExitFailed : code);
+    report("standard output cannot be written: " + std::generic_category().message(errno));
+    return code == kExitOk ? kExitFailed : code;
   } catch (const SetupError& error) {
-    return fail(error.what(), kExitUsage);
+    report(error.what());
+    return kExitUsage;
   } catch (const std::exception& error) {
-    return fail(error.what(), code_of_errors);
+    report(error.what());
+    return code_of_errors;
   }
+}
+
+int run_tool(std::string_view program, const std::function<int()>& work, int code_of_errors) {
+  const auto report = [&](std::string_view what) {
+    fmt::print(stderr, "{}: {}\n", program, what);
+  };
+  return run_and_report(work, report, code_of_errors);
 }
 
 }  // namespace waymark

@@ -45,10 +45,6 @@ struct ScenarioPart {
   }
 };
 
-ScenarioPart read_scenario(const fs::path& file) {
-  return load_part<ScenarioPart>(file);
-}
-
 /// Reads expect.toml, in which (unlike in a scenario) unknown keys are errors.
 ExpectConfig read_expectations(const fs::path& file) {
   return load_config<ExpectFile>({{file}, {}}).expect;
@@ -135,7 +131,7 @@ std::vector<std::string> changes_in(const fs::path& file) {
   return lines;
 }
 
-/// Runs one part of the evaluation; an SetupError is added to the problems.
+/// Runs one part of the evaluation; a SetupError is added to the problems.
 void attempt(std::vector<std::string>& problems, const std::function<void()>& part) {
   try {
     part();
@@ -243,7 +239,7 @@ RunTruth read_truth(const fs::path& run_dir, const EvaluationOptions& options) {
   RunTruth truth{};
   truth.scenario_toml = text_if_there(run_dir / "scenario.toml");
   if (truth.scenario_toml) {
-    const ScenarioPart scenario = read_scenario(run_dir / "scenario.toml");
+    const ScenarioPart scenario = load_part<ScenarioPart>(run_dir / "scenario.toml");
     truth.is_one_corridor = scenario.world.layout == kOneCorridor;
     if (truth.is_one_corridor) truth.length_m = scenario.world.length_m;
     truth.expect = scenario.expect;
