@@ -14,6 +14,7 @@ namespace {
 
 using test::config_for;
 using test::corridor_of;
+using test::pose_command;
 namespace fs = std::filesystem;
 
 command_t save_command(const std::string& name) {
@@ -21,16 +22,6 @@ command_t save_command(const std::string& name) {
   command.command_id = 1;
   command.kind = command_t::KIND_SAVE_MAP;
   command.name = name;
-  return command;
-}
-
-command_t pose_command(double x_m, double yaw_rad) {
-  command_t command{};
-  command.command_id = 2;
-  command.kind = command_t::KIND_SET_POSE;
-  command.pose[0] = x_m;
-  command.pose[2] = yaw_rad;
-  command.sigmas[0] = command.sigmas[1] = 0.1;
   return command;
 }
 
@@ -60,11 +51,15 @@ TEST(Command, InvalidMapNamesAreRefused) {
 }
 
 TEST(Command, InvalidPosesAreRefused) {
-  EXPECT_EQ(why_refused(pose_command(1.0, 3.0)), "");
-  EXPECT_NE(why_refused(pose_command(std::numeric_limits<double>::quiet_NaN(), 0.0)), "");
-  EXPECT_NE(why_refused(pose_command(0.0, std::numeric_limits<double>::infinity())), "");
-  EXPECT_NE(why_refused(pose_command(1e7, 0.0)), "");
-  command_t exact = pose_command(1.0, 0.0);
+  EXPECT_EQ(why_refused(pose_command({1.0, 0.0, 3.0})), "");
+  command_t unknown_x = pose_command({});
+  unknown_x.pose[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(why_refused(unknown_x), "");
+  command_t infinite_turn = pose_command({});
+  infinite_turn.pose[2] = std::numeric_limits<double>::infinity();
+  EXPECT_NE(why_refused(infinite_turn), "");
+  EXPECT_NE(why_refused(pose_command({1e7, 0.0, 0.0})), "");
+  command_t exact = pose_command({1.0, 0.0, 0.0});
   for (const double sigma : {0.0, -0.1, 1e-300, 1e200}) {
     exact.sigmas[0] = sigma;
     EXPECT_NE(why_refused(exact).find("sigmas must be from 1e-06"), std::string::npos) << sigma;
@@ -198,7 +193,7 @@ TEST_F(CommandedSlam, RefusesAPoseBeforeTheSurveysFrameIsKnown) {
   SlamConfig config = mapping();
   config.robot.markers.survey_file = survey;
   const auto replies = replies_of(
-      drive_with(config, messages_of(*drive_, 0.0, 5.0), {{3.0, pose_command(1.0, 0.0)}}));
+      drive_with(config, messages_of(*drive_, 0.0, 5.0), {{3.0, pose_command({1.0, 0.0, 0.0})}}));
   ASSERT_EQ(replies.size(), 1U);
   EXPECT_EQ(replies[0].state, reply_t::STATE_REFUSED) << replies[0].text;
 }
@@ -276,9 +271,7 @@ TEST_F(CommandedSlam, ACommandedPoseIsTheRobotsPose) {
     messages.push_back(message);
   }
   const Se2 there = test::map_from_world(*drive_) * test::true_pose(*drive_, 10'200'000);
-  command_t command = pose_command(there.x(), there.theta());
-  command.pose[1] = there.y();
-  const test::Drive drive = drive_with(mapping(), messages, {{20.15, command}});
+  const test::Drive drive = drive_with(mapping(), messages, {{20.15, pose_command(there)}});
   const auto replies = replies_of(drive);
   ASSERT_EQ(replies.size(), 1U);
   EXPECT_EQ(replies[0].state, reply_t::STATE_DONE) << replies[0].text;
@@ -293,7 +286,7 @@ TEST_F(CommandedSlam, ACommandedPoseIsTheRobotsPose) {
 
 TEST_F(CommandedSlam, ACommandedPoseWithAnySigmasGivesValidEstimates) {
   for (const double sigma : {1e-300, 1e-6, 1.0, 1e3, 1e6, 1e200}) {
-    command_t command = pose_command(1.0, 0.5);
+    command_t command = pose_command({1.0, 0.0, 0.5});
     command.sigmas[0] = command.sigmas[1] = sigma;
     const test::Drive drive =
         drive_with(mapping(), messages_of(*drive_, 0.0, 6.0), {{3.0, command}});
@@ -307,10 +300,8 @@ TEST_F(CommandedSlam, ACommandedPoseWithAnySigmasGivesValidEstimates) {
 TEST_F(CommandedSlam, APoseBeyondTheLargestGridIsRefused) {
   SlamConfig config = mapping();
   config.slam.grid.resolution_m = 0.02;
-  command_t within = pose_command(420.0, 0.0);
-  within.pose[1] = 420.0;
-  command_t beyond = pose_command(-1400.0, 0.0);
-  beyond.pose[1] = 0.0;
+  const command_t within = pose_command({420.0, 420.0, 0.0});
+  const command_t beyond = pose_command({-1400.0, 0.0, 0.0});
   const test::Drive drive =
       drive_with(config, messages_of(*drive_, 0.0, 4.0), {{2.0, beyond}, {3.0, within}});
   const auto replies = replies_of(drive);
@@ -333,8 +324,7 @@ TEST_F(CommandedSlam, ResultsBeforeTheEstimatorThrowsAreWritten) {
     return message.channel == channels::kMarkers.name;  // would reveal the true pose
   });
   for (int i = 1; i <= 4; ++i) {
-    command_t command = pose_command(100.0 * i, 0.0);
-    command.pose[1] = command.pose[0];
+    command_t command = pose_command({100.0 * i, 100.0 * i, 0.0});
     command.command_id = i;
     command.utime = 1'000'000 * (2 * i);
     command.in_tick = 1;

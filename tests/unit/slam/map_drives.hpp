@@ -73,6 +73,18 @@ inline SlamConfig config_for(MapMode mode, const fs::path& map,
   return config;
 }
 
+/// Says that the robot is at a pose, with the usual sigmas.
+inline command_t pose_command(const Se2& map_from_base) {
+  command_t command{};
+  command.command_id = 2;
+  command.kind = command_t::KIND_SET_POSE;
+  command.pose[0] = map_from_base.x();
+  command.pose[1] = map_from_base.y();
+  command.pose[2] = map_from_base.theta();
+  command.sigmas[0] = command.sigmas[1] = 0.1;
+  return command;
+}
+
 /// The first true pose of a drive is the origin of its map.
 inline Se2 map_from_world(const SensorLog& log) {
   return log.truth.front().world_from_base.inverse();

@@ -37,15 +37,9 @@ class WrongStart : public test::SavedMap {
   static test::Drive drive_from(double start_yaw_rad, double commanded_yaw_rad) {
     std::vector<Message> messages = messages_with_markers_from(kNever_us);
     const Se2 there = map_from_world(*drive_) * test::true_pose(*drive_, kCommand_us);
-    command_t command{};
+    command_t command = test::pose_command(there * Se2{0.0, 0.0, commanded_yaw_rad});
     command.utime = kCommand_us;
-    command.command_id = 1;
     command.in_tick = 1;
-    command.kind = command_t::KIND_SET_POSE;
-    command.pose[0] = there.x();
-    command.pose[1] = there.y();
-    command.pose[2] = there.theta() + commanded_yaw_rad;
-    command.sigmas[0] = command.sigmas[1] = 0.05;
     messages.push_back(encode(channels::kSlamCommand, command));
     std::sort(messages.begin(), messages.end(), comes_before);
     return test::drive_through(start_with(start_yaw_rad), messages);
@@ -78,16 +72,15 @@ TEST_F(WrongStart, AWrongPoseIsNoticedAfterALongRightDrive) {
 
 TEST_F(WrongStart, ARefutedStartIsGivenUpAndTheRobotIsFoundByMarkers) {
   const std::int64_t first_marker_us = 15'000'000;
-  const test::Drive drive = test::drive_through(start_with(0.5 * std::numbers::pi),
-                                                messages_with_markers_from(first_marker_us));
+  test::Drive drive = test::drive_through(start_with(0.5 * std::numbers::pi),
+                                          messages_with_markers_from(first_marker_us));
   EXPECT_EQ(unknown_share(drive, 10'000'000, first_marker_us), 1.0);
   ASSERT_EQ(drive.estimates.back().has_pose, 1);
   EXPECT_EQ(drive.estimates.back().health, slam_estimate_t::HEALTH_TRACKING);
-  test::Drive found = drive;
-  std::erase_if(found.estimates,
+  std::erase_if(drive.estimates,
                 [&](const slam_estimate_t& estimate) { return estimate.utime < first_marker_us; });
-  EXPECT_GT(test::with_pose(found), found.estimates.size() / 2);
-  EXPECT_LT(test::worst_error_m(found, *drive_, map_from_world(*drive_)), 0.1);
+  EXPECT_GT(test::with_pose(drive), drive.estimates.size() / 2);
+  EXPECT_LT(test::worst_error_m(drive, *drive_, map_from_world(*drive_)), 0.1);
 }
 
 }  // namespace

@@ -19,6 +19,10 @@ inline cv::Mat mask_of_colour(const cv::Mat& picture, const cv::Scalar& colour) 
   return mask;
 }
 
+inline int count_pixels(const cv::Mat& picture, const cv::Scalar& colour) {
+  return cv::countNonZero(mask_of_colour(picture, colour));
+}
+
 inline cv::Rect box_of_colour(const cv::Mat& picture, const cv::Scalar& colour) {
   return cv::boundingRect(mask_of_colour(picture, colour));
 }

@@ -16,12 +16,6 @@
 namespace waymark::viewer {
 namespace {
 
-int count_pixels(const cv::Mat& image, const cv::Scalar& colour) {
-  cv::Mat mask;
-  cv::inRange(image, colour, colour, mask);
-  return cv::countNonZero(mask);
-}
-
 TEST(Heading, LongTextIsClippedToItsArea) {
   PageContent content = content_of(corridor_scene(50.0));
   for (std::size_t i = 0; i < content.estimates.size(); ++i) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "unit/viewer/drawn_scene.hpp"
+#include "unit/viewer/found_on_picture.hpp"
 #include "viewer/core/annotations/map_annotations.hpp"
 #include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/layers/map_layers.hpp"
@@ -30,9 +31,7 @@ Scene scene_of(const GridMap& map) {
 }
 
 bool contains_colour(const cv::Mat& image, const cv::Scalar& colour) {
-  cv::Mat mask;
-  cv::inRange(image, colour, colour, mask);
-  return cv::countNonZero(mask) > 0;
+  return count_pixels(image, colour) > 0;
 }
 
 TEST(PaintMap, ALongCorridorIsFoldedIntoReadableStrips) {
@@ -250,9 +249,7 @@ Scene building_scene() {
 }
 
 double share_of_colour(const cv::Mat& image, const cv::Scalar& colour) {
-  cv::Mat mask;
-  cv::inRange(image, colour, colour, mask);
-  return static_cast<double>(cv::countNonZero(mask)) / static_cast<double>(image.total());
+  return static_cast<double>(count_pixels(image, colour)) / static_cast<double>(image.total());
 }
 
 TEST(PaintMap, HealthAndUncertaintyMarksHideLessThan60PercentOfFreeSpace) {
