@@ -60,6 +60,7 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
       outbox_{outbox},
       queue_{sensor_setup(config)},
       loaded_map_{load_map(config_, frame_)},
+      configured_start_{config_.slam.start},
       survey_{load_survey(config_)},
       map_id_{loaded_map_ && config_.slam.mode == MapMode::kLocalise ? loaded_map_->map_id : 0},
       map_file_ids_{.loaded = loaded_map_ ? loaded_map_->map_id : 0},
@@ -344,7 +345,7 @@ void SlamNode::obey(const mbot_slam_reset_t& reset) {
   counters_.add("MBOT_SYSTEM_RESET obeyed");
   logging::info("MBOT_SYSTEM_RESET: begins anew");
   queue_ = SensorQueue{sensor_setup(config_)};
-  begin_estimator(config_.slam.mode, loaded_map_, config_.slam.start);
+  begin_estimator(config_.slam.mode, loaded_map_, configured_start_);
 }
 
 }  // namespace waymark

@@ -106,6 +106,7 @@ class SlamNode final : public Node {
   SensorQueue queue_;
   std::string frame_{};  ///< name of the map's frame
   std::shared_ptr<const MapSnapshot> loaded_map_;
+  const StartPose configured_start_;  ///< as resolved for the loaded map
   std::vector<SurveyedMarker> survey_;
   std::int64_t map_id_;  ///< id of the published map; 0: not begun
   MapFileIds map_file_ids_;

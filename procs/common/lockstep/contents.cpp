@@ -2,6 +2,7 @@
 #include "common/lockstep/contents.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -40,18 +41,19 @@ bool MessagePool::add(Message message) {
   return true;
 }
 
-Message MessagePool::use(std::int64_t hash) {
-  Entry& entry = messages_.at(hash);
-  if (!entry.is_used) {
-    entry.is_used = true;
+std::vector<Message> MessagePool::use(std::span<const std::int64_t> hashes) {
+  std::vector<Message> messages;
+  for (const std::int64_t hash : hashes) {
+    Entry& entry = messages_.at(hash);
+    messages.push_back(entry.message);
+    if (std::exchange(entry.is_used, true)) continue;
     waiting_.bytes -= entry.message.payload.size();
     used_.bytes += entry.message.payload.size();
     used_.hashes.push_back(hash);
   }
-  Message message = entry.message;
   while (used_.bytes > kMaxUsedBytes || used_.hashes.size() > kMaxUsedMessages)
     forget_oldest(used_);
-  return message;
+  return messages;
 }
 
 void MessagePool::forget_oldest(Queue& queue) {

@@ -9,6 +9,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,9 @@ class MessagePool {
 
   bool has(std::int64_t hash) const { return messages_.contains(hash); }
 
-  /// Marks the message as used. @return a copy; the message stays in the pool for later ticks.
-  /// Requires has(hash).
-  Message use(std::int64_t hash);
+  /// Marks the messages as used. @return copies; the messages stay in the pool for later ticks.
+  /// Requires has() of each hash.
+  std::vector<Message> use(std::span<const std::int64_t> hashes);
 
  private:
   /// Hashes in the order in which their messages are dropped.

@@ -115,9 +115,7 @@ std::vector<Message> LockstepParticipant::advance() {
     if (!needed || !std::ranges::all_of(*needed, [this](auto hash) { return pool_.has(hash); })) {
       break;
     }
-    std::vector<Message> messages;
-    for (const std::int64_t hash : *needed)
-      messages.push_back(pool_.use(hash));
+    std::vector<Message> messages = pool_.use(*needed);
     std::ranges::sort(messages, comes_before);
     const tick_t tick = *open->second.tick;
     open_ticks_.erase(open);

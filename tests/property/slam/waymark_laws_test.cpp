@@ -3,6 +3,7 @@
 #include "common/random/random.hpp"
 #include "estimator_run.hpp"
 #include "slam/core/estimators/waymark.hpp"
+#include "support/room_with_column.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -206,6 +207,23 @@ TEST(WaymarkEstimator, TheFinalTrajectoryFollowsMarkersWhileOdometryIsStuck) {
     worst_m = std::max(worst_m, off.norm());
   }
   EXPECT_LT(worst_m, 0.3);
+}
+
+/// Three quarters of the walls are seen a little farther away, so that the scan is not used.
+TEST(WaymarkEstimator, AScanThatIsNotUsedGivesNoTrackingHealth) {
+  const SyntheticCorridor corridor = corridor_with_markers(1);
+  WaymarkEstimator estimator{estimator_setup_of(corridor, 1), {}};
+  int seen = 0;
+  const auto handle = [&](Observation& observation, bool) {
+    const bool is_changed = ++seen > 8;
+    for (std::size_t i = 0; i < observation.beams.size(); ++i)
+      if (is_changed && i / 10 % 4 != 0) observation.beams[i].beam.end_in_base *= 1.13;
+    const Estimate estimate = estimator.update(observation);
+    if (seen > 2) {
+      EXPECT_EQ(estimate.health == Health::kTracking, !is_changed) << seen;
+    }
+  };
+  test::drive_through_room(Motion::between({}, {0.1, 0.0, 0.02}), -1, {}, handle);
 }
 
 TEST(WaymarkEstimator, ScansOfRandomRangesAreNotMapped) {

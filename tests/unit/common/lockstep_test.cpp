@@ -372,5 +372,27 @@ TEST(MessagePool, DropsTheOldestMessagesAndStaysBounded) {
   EXPECT_TRUE(pool.has(content_hash(large)));
 }
 
+TEST(MessagePool, NoMessageOfATickIsDroppedForAnotherOfTheTick) {
+  MessagePool pool;
+  Message large = odometry(0, 0.0F);
+  large.payload.resize(60000);
+  std::vector<std::int64_t> tick;
+  for (std::uint8_t i = 0; i < 250; ++i) {  // 250 x 60 kB are within the bound, 300 are not
+    large.payload[0] = i;
+    pool.add(large);
+    tick.push_back(content_hash(large));
+  }
+  EXPECT_EQ(pool.use(tick).size(), tick.size());
+  std::vector<std::int64_t> next;
+  for (std::uint8_t i = 0; i < 50; ++i) {
+    large.payload[1] = 1;
+    large.payload[0] = i;
+    pool.add(large);
+    next.push_back(content_hash(large));
+  }
+  next.push_back(tick.front());  // the oldest of those that were used
+  EXPECT_EQ(pool.use(next).size(), next.size());
+}
+
 }  // namespace
 }  // namespace waymark

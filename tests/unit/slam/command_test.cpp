@@ -302,14 +302,25 @@ TEST_F(CommandedSlam, APoseBeyondTheLargestGridIsRefused) {
   config.slam.grid.resolution_m = 0.02;
   const command_t within = pose_command({420.0, 420.0, 0.0});
   const command_t beyond = pose_command({-1400.0, 0.0, 0.0});
-  const test::Drive drive =
-      drive_with(config, messages_of(*drive_, 0.0, 4.0), {{2.0, beyond}, {3.0, within}});
+  std::vector<Message> messages = messages_of(*drive_, 0.0, 4.0);
+  std::erase_if(messages, [](const Message& message) {
+    return message.channel == channels::kMarkers.name;  // would reveal the true pose
+  });
+  const test::Drive drive = drive_with(config, messages, {{2.0, beyond}, {3.0, within}});
   const auto replies = replies_of(drive);
   ASSERT_EQ(replies.size(), 2U);
   EXPECT_EQ(replies[0].state, reply_t::STATE_REFUSED) << replies[0].text;
   EXPECT_NE(replies[0].text.find("more than 600 m away"), std::string::npos) << replies[0].text;
   EXPECT_EQ(replies[1].state, reply_t::STATE_DONE) << replies[1].text;
   EXPECT_NEAR(drive.estimates.back().x_m, 420.0, 1.0);
+}
+
+TEST_F(CommandedSlam, MarkersCorrectACommandedPoseThatIsFarFromTheRobot) {
+  const test::Drive drive =
+      drive_with(mapping(), messages_of(*drive_), {{2.0, pose_command({40.0, 3.0, 0.0})}});
+  const Se2 truth = test::map_from_world(*drive_) * drive_->truth.back().world_from_base;
+  EXPECT_NEAR(drive.estimates.back().x_m, truth.x(), 0.05);
+  EXPECT_NEAR(drive.estimates.back().y_m, truth.y(), 0.05);
 }
 
 // The robot is carried further and further away, until the grid would exceed its largest size.

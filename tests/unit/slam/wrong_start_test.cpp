@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Start poses and commanded poses that the scans refute.
+#include "common/runtime/run_process.hpp"
 #include "unit/slam/map_drives.hpp"
 
 #include <gtest/gtest.h>
@@ -68,6 +69,23 @@ TEST_F(WrongStart, AWrongPoseIsNoticedAfterALongRightDrive) {
   const test::Drive drive = drive_from(0.0, 0.5 * std::numbers::pi);
   EXPECT_LT(unknown_share(drive, 1'000'000, kCommand_us - 1), 0.1);
   EXPECT_GT(unknown_share(drive, kCommand_us + 5'000'000, kCommand_us + 10'000'000), 0.9);
+}
+
+/// Of an MBot's app. Slam has given its start pose up before.
+TEST_F(WrongStart, AResetBeginsAtTheConfiguredStart) {
+  SlamConfig config = start_with(0.5 * std::numbers::pi);
+  ProcessOptions options;
+  options.config_sources.files = {WAYMARK_SOURCE_DIR "/deploy/mbot.toml"};
+  config.channels = process_config_from<SlamConfig>(options).own.channels;
+  std::vector<Message> messages = messages_with_markers_from(kNever_us);
+  mbot_slam_reset_t reset{};
+  reset.utime = kCommand_us;
+  reset.slam_mode = slam_status_t::MODE_LOCALISATION_ONLY;
+  messages.push_back(encode(channels::kMbotSystemReset, reset));
+  std::sort(messages.begin(), messages.end(), comes_before);
+  const test::Drive drive = test::drive_through(config, messages);
+  EXPECT_GT(unknown_share(drive, 9'000'000, kCommand_us - 1), 0.9);
+  EXPECT_LT(unknown_share(drive, kCommand_us + 200'000, kCommand_us + 1'000'000), 0.1);
 }
 
 TEST_F(WrongStart, ARefutedStartIsGivenUpAndTheRobotIsFoundByMarkers) {

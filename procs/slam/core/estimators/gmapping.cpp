@@ -35,6 +35,7 @@ Estimate GmappingEstimator::update(const Observation& observation) {
   const Motion missing = Motion::between({}, {0.0, 0.0, missing_rad.value_or(0.0)});
   const Motion motion = missing_rad ? observation.motion.then(missing) : observation.motion;
   propagate(motion);
+  updated_at_ += observation.clock_set;
   // As in the released code, which knows odometry at scans only: jitter in between is not driven.
   since_update_ = since_update_.then(Motion::between({}, motion.start_from_end));
   const bool is_due = config_.gate.is_open(since_update_, observation.time - updated_at_);

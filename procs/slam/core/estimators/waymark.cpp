@@ -110,7 +110,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   reason_ = EstimateReason::kOdometry;
   if (!is_map_fixed()) {
     scan_poses_.push_back({observation.time, newest(),
-                           graph_.state().keyframes.back().inverse() * now.map_from_base,
+                           graph_.state().keyframes.back().inverse() * now.map_from_base, clock_s_,
                            is_observed_});
   }
   return has_map_frame() ? now : estimate_without_pose(observation);
@@ -329,9 +329,9 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kSuspicious ||
                        inlier_share_ < config_.lost_inlier_share || estimate.start_refuted ||
                        survey_.is_undecided();
-  estimate.health = health_of(graph_.state().keyframes.size(), is_lost,
-                              !estimate.observability.is_degenerate ||
-                                  estimate.weak_axis_source == WeakAxisSource::kMarkers);
+  const bool observes_all_axes = (is_observed_ && !estimate.observability.is_degenerate) ||
+                                 estimate.weak_axis_source == WeakAxisSource::kMarkers;
+  estimate.health = health_of(graph_.state().keyframes.size(), is_lost, observes_all_axes);
   return estimate;
 }
 

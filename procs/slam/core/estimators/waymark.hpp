@@ -142,6 +142,7 @@ class WaymarkEstimator final : public Estimator {
     Timestamp time{};
     std::size_t keyframe{0};
     Se2 keyframe_from_base{};
+    double clock_s{0.0};      ///< clock_s_ at the scan
     bool is_observed{false};  ///< markers or walls observe the pose in every direction
   };
 
@@ -157,11 +158,11 @@ class WaymarkEstimator final : public Estimator {
   /// A time without motion by odometry: the robot stands, or odometry is stuck.
   struct Standstill {
     std::size_t keyframe{0};
-    Motion motion{};       ///< since `keyframe`
-    Se2 map_from_start{};  ///< pose when the standstill began
-    Se2 map_from_base{};   ///< pose of the last keyframe at which the robot was observed to move
-    Timestamp since{};
-    double moved_at_s{0.0};                             ///< clock_s_ at map_from_base
+    Motion motion{};         ///< since `keyframe`
+    Se2 map_from_start{};    ///< pose when the standstill began
+    Se2 map_from_base{};     ///< pose of the last keyframe at which the robot was observed to move
+    double since_s{0.0};     ///< clock_s_ when it began
+    double moved_at_s{0.0};  ///< clock_s_ at map_from_base
     Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| from start
   };
 

@@ -59,7 +59,7 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
   } else if (!standstill_ && !graph_.state().keyframes.empty()) {
     const Se2 here = graph_.state().keyframes.back() * newest_from_last_scan_ *
                      observation.motion.start_from_end;
-    standstill_ = Standstill{moved_from_, motion_, here, here, observation.time, clock_s_};
+    standstill_ = Standstill{moved_from_, motion_, here, here, clock_s_, clock_s_};
   }
   ++statistics_.observations;
   if (observation.odometry_jumped || odometry_check_.is_refused()) {
@@ -146,23 +146,24 @@ void WaymarkEstimator::compare_with_odometry() {
 /// interpolated linearly in time between those that are known, which are the standstill's start,
 /// the scans that markers or walls observed, and `observation`.
 void WaymarkEstimator::spread_late_motion(const Observation& observation) {
-  ScanPose known{standstill_->since, standstill_->keyframe, standstill_->motion.start_from_end};
+  ScanPose known{observation.time, standstill_->keyframe, standstill_->motion.start_from_end,
+                 standstill_->since_s};
   const ScanPose end{observation.time, known.keyframe,
-                     known.keyframe_from_base * observation.motion.start_from_end};
+                     known.keyframe_from_base * observation.motion.start_from_end, clock_s_};
   const auto map_from = [this](const ScanPose& scan) {
     return graph_.state().keyframes[scan.keyframe] * scan.keyframe_from_base;
   };
   auto scan = std::find_if(scan_poses_.rbegin(), scan_poses_.rend(), [&known](const auto& earlier) {
-                return earlier.time <= known.time;
+                return earlier.clock_s <= known.clock_s;
               }).base();
   while (scan != scan_poses_.end()) {
     const auto next =
         std::find_if(scan, scan_poses_.end(), [](const auto& later) { return later.is_observed; });
     const ScanPose& then = next != scan_poses_.end() ? *next : end;
     const Se2 moved = map_from(known).inverse() * map_from(then);
-    const double whole_s = to_seconds(then.time - known.time);
+    const double whole_s = then.clock_s - known.clock_s;
     for (; scan != next; ++scan) {
-      const double share = to_seconds(scan->time - known.time) / whole_s;
+      const double share = (scan->clock_s - known.clock_s) / whole_s;
       scan->keyframe = known.keyframe;
       scan->keyframe_from_base = known.keyframe_from_base * interpolate(Se2{}, moved, share);
     }

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kFound_m = 0.1;  // sigmas of a pose from global localisation
 constexpr double kFound_rad = 0.05;
-constexpr double kReturned_m = 0.3;  // sigmas of the pose after a relocalisation was reverted
-constexpr double kReturned_rad = 0.1;
+constexpr double kRelocated_m = 0.3;  // sigmas of the pose after a relocalisation, or its revert
+constexpr double kRelocated_rad = 0.1;
 
 }  // namespace
 
@@ -89,13 +89,13 @@ Estimate WaymarkEstimator::estimate_without_pose(const Observation& observation)
   return estimate;
 }
 
+/// The prior takes the place of the odometry factor, which holds no longer: without it, the robust
+/// weights of markers that are metres away from where the solver begins would be next to nothing.
 void WaymarkEstimator::relocate(const Se2& map_from_base) {
   ++statistics_.relocalisations;
   graph_.relocate_newest(map_from_base);
-  if (verdict_ == RelocalisationMonitor::Verdict::kReverted) {
-    const Eigen::Vector3d sigmas{kReturned_m, kReturned_m, kReturned_rad};
-    graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
-  }
+  const Eigen::Vector3d sigmas{kRelocated_m, kRelocated_m, kRelocated_rad};
+  graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
   graph_.optimise();
   is_pose_reset_ = true;
   begin_submaps_anew();

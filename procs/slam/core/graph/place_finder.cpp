@@ -99,9 +99,9 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
     if (scores_walls || (place.wall_score == 0.0 && place.score() >= kDecided))
       score_walls(place, observation, noise);
   }
-  if (hypotheses_.empty()) {
+  std::erase_if(hypotheses_, [](const Hypothesis& place) { return place.score() < -kHopeless; });
+  if (std::ranges::none_of(hypotheses_, &Hypothesis::may_be_right))
     return measurements.empty() ? by_walls_.search(observation, noise) : std::nullopt;
-  }
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score() > b.score(); });
   const Hypothesis& best = hypotheses_.front();
@@ -212,8 +212,9 @@ void PlaceFinder::score_walls(Hypothesis& place, const Observation& observation,
   const ScanMatch match = match_scan(points, map_->walls, place.map_from_base, near, noise, scan_);
   if (match.is_usable(scan_)) place.map_from_base = match.map_from_base;
   const MapFit fit = fit_in_map(map_->grid, observation.beams, place.map_from_base);
-  place.fits_walls = fit.beams < MapFit::kMinBeams ||
-                     (fit.fitting >= kMinMapped * fit.beams && !fit.is_contradicted());
+  const bool fits = fit.fitting >= kMinMapped * fit.beams && !fit.is_contradicted();
+  place.may_be_right = fit.beams >= MapFit::kMinBeams && fits;
+  place.fits_walls = fit.beams < MapFit::kMinBeams || fits;
   if (fit.is_decisive()) place.wall_score -= kMisfit * std::max(0.0, fit.misfit() - kUsualMisfit);
 }
 

@@ -26,8 +26,8 @@ namespace waymark {
 /// taken down and moved. The best hypothesis wins if it fits the walls, is clearly better than the
 /// second best, and is clearly better than the null hypothesis or has two markers at their mapped
 /// places. So one marker with a unique id is enough if nothing contradicts it; among several
-/// markers of one id, other markers and walls decide. While there is no hypothesis and no marker is
-/// in view, walls alone may decide (WallPlaceFinder).
+/// markers of one id, other markers and walls decide. While no hypothesis fits the walls and no
+/// marker is in view, walls alone may decide (WallPlaceFinder).
 class PlaceFinder {
  public:
   PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
@@ -56,7 +56,8 @@ class PlaceFinder {
     std::map<std::pair<Clue, int>, Episode> clues{};
     std::set<int> seen_in_place{};  ///< landmarks whose score has reached its upper bound
     double wall_score{0.0};
-    bool fits_walls{true};
+    bool fits_walls{true};    ///< as far as the map has walls there
+    bool may_be_right{true};  ///< its walls fit, or were not compared yet
 
     double score() const;
     void add(Clue clue, int index, double score);

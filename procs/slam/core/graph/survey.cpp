@@ -127,7 +127,7 @@ std::optional<std::size_t> Survey::landmark_of(const SurveyedMarker& marker, con
 /// An entry whose prior is on keeps its landmark; one whose prior is off may have been associated
 /// with another marker of its id before the frame was known.
 void Survey::associate(Entry& entry, const Graph& graph, const MarkerBook& book) const {
-  if (entry.has_prior && graph.is_prior_on(*entry.landmark)) return;
+  if (entry.is_prior_on) return;
   const auto landmark = landmark_of(entry.marker, graph, book);
   if (landmark == entry.landmark || (entry.has_prior && !landmark)) return;
   entry = Entry{entry.marker, landmark};
@@ -177,19 +177,23 @@ std::optional<Se2> Survey::new_frame(const Graph& graph) {
 void Survey::add_priors(Graph& graph) {
   for (Entry& entry : entries_) {
     if (!entry.landmark || entry.has_prior) continue;
-    if (!graph.has_prior(*entry.landmark)) graph.add(prior_of(entry.marker, *entry.landmark));
     entry.has_prior = true;
+    if (graph.has_prior(*entry.landmark)) continue;  // one that is off
+    graph.add(prior_of(entry.marker, *entry.landmark));
+    entry.is_prior_on = true;
   }
 }
 
 bool Survey::apply(Graph& graph) {
   add_priors(graph);
+  std::vector<Entry*> entries;
   std::vector<std::size_t> landmarks;
   std::vector<LandmarkPrior> priors;  // all on: tested again, with the new measurements
-  for (const Entry& entry : entries_) {
+  for (Entry& entry : entries_) {
     if (!entry.has_prior) continue;
     priors.push_back(prior_of(entry.marker, landmarks.size()));
     landmarks.push_back(*entry.landmark);
+    entries.push_back(&entry);
   }
   auto marginal = graph.marginal_of(landmarks);
   if (!marginal) return false;
@@ -197,8 +201,9 @@ bool Survey::apply(Graph& graph) {
   bool has_switched = false;
   for (std::size_t i = 0; i < priors.size(); ++i) {
     const bool is_on = !priors[i].is_off;
-    has_switched |= graph.is_prior_on(landmarks[i]) != is_on;
+    if (std::exchange(entries[i]->is_prior_on, is_on) == is_on) continue;
     graph.switch_prior(landmarks[i], is_on);
+    has_switched = true;
   }
   return has_switched;
 }
@@ -212,8 +217,8 @@ std::vector<MapChange> Survey::changes(const Graph& graph) const {
   std::vector<MapChange> changes;
   for (const Entry& entry : entries_) {
     if (!entry.has_prior) continue;
-    const bool is_on = graph.is_prior_on(*entry.landmark);
-    const double sigmas = std::max(sigmas_off(entry, graph), is_on ? unresolved_sigmas_ : 0.0);
+    const double sigmas =
+        std::max(sigmas_off(entry, graph), entry.is_prior_on ? unresolved_sigmas_ : 0.0);
     if (sigmas <= kWrong) continue;
     MapChange change;
     change.kind = MapChange::Kind::kSurveyOff;

@@ -49,6 +49,7 @@ class Survey {
     std::optional<std::size_t> landmark{};
     int tested_sightings{0};  ///< landmark's sightings when its prior was last tested
     bool has_prior{false};    ///< the graph has its prior
+    bool is_prior_on{false};
   };
 
   std::optional<std::size_t> landmark_of(const SurveyedMarker& marker, const Graph& graph,

@@ -124,5 +124,40 @@ TEST(PlaceFinder, WallsLocaliseAcrossAMarkerThatTheMapDoesNotHave) {
   EXPECT_NEAR(found->x(), way.back().x(), 0.05);
 }
 
+/// Sights a marker of the map once, where it is not.
+std::optional<Se2> found_after_a_misread_id(const Se2& map_from_marker) {
+  std::vector<Se2> way;
+  for (int i = 0; i < 6; ++i)
+    way.emplace_back(0.8 + 0.5 * i, 2.4 + 0.05 * i, 0.1);
+  auto map = std::make_shared<MapSnapshot>(*map_of(room()));
+  map->landmarks.push_back({.id = 7, .map_from_marker = map_from_marker, .sightings = 10});
+  PlaceFinder finder{map, {}};
+  std::optional<Se2> found;
+  for (std::size_t i = 0; i < way.size() && !found; ++i) {
+    Observation observation;
+    observation.beams = scan_of(room(), way[i]);
+    std::vector<MarkerMeasurement> measurements(i == 0 ? 1 : 0);
+    for (MarkerMeasurement& misread : measurements) {
+      misread.id = 7;
+      misread.base_from_marker = {2.0, 0.0, std::numbers::pi};
+    }
+    const Motion motion = i == 0 ? Motion{} : Motion::between(way[i - 1], way[i]);
+    found = finder.update(motion, observation, measurements, {}, RangeNoise{0.01});
+    if (found) {
+      EXPECT_NEAR(found->x(), way[i].x(), 0.05);
+      EXPECT_NEAR(found->y(), way[i].y(), 0.05);
+    }
+  }
+  return found;
+}
+
+TEST(PlaceFinder, WallsLocaliseAfterAMisreadIdWhosePlaceContradictsThem) {
+  EXPECT_TRUE(found_after_a_misread_id({3.4, 4.2, 0.0}));
+}
+
+TEST(PlaceFinder, WallsLocaliseAfterAMisreadIdWhosePlaceIsOutsideTheMap) {
+  EXPECT_TRUE(found_after_a_misread_id({40.0, 40.0, 0.0}));
+}
+
 }  // namespace
 }  // namespace waymark
