@@ -317,7 +317,7 @@ TEST_F(CommandedSlam, APoseBeyondTheLargestGridIsRefused) {
 
 TEST_F(CommandedSlam, MarkersCorrectACommandedPoseThatIsFarFromTheRobot) {
   const test::Drive drive =
-      drive_with(mapping(), messages_of(*drive_), {{2.0, pose_command({40.0, 3.0, 0.0})}});
+      drive_with(mapping(), messages_of(*drive_), {{3.0, pose_command({40.0, 3.0, 0.0})}});
   const Se2 truth = test::map_from_world(*drive_) * drive_->truth.back().world_from_base;
   EXPECT_NEAR(drive.estimates.back().x_m, truth.x(), 0.05);
   EXPECT_NEAR(drive.estimates.back().y_m, truth.y(), 0.05);

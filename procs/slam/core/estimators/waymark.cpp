@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/waymark.hpp"
 
+#include "slam/core/graph/map_fit.hpp"
 #include "slam/core/mapping/moving_beams.hpp"
 
 #include <Eigen/Cholesky>
@@ -181,8 +182,17 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
 
 /// Relocates the newest keyframe if markers show that the robot was carried, or that the last
 /// relocalisation was wrong.
-void WaymarkEstimator::check_pose(std::span<const MarkerMeasurement> measurements) {
-  verdict_ = relocalisation_.update(graph_.state().keyframes.back(), hints(measurements), motion_);
+void WaymarkEstimator::check_pose(const Observation& observation,
+                                  std::span<const MarkerMeasurement> measurements) {
+  const auto compare_walls = [&](const Se2& first, const Se2& second) {
+    const bool is_first_refuted = fit_in_map(map_.map(), observation.beams, first).is_refuted();
+    const bool is_second_refuted = fit_in_map(map_.map(), observation.beams, second).is_refuted();
+    if (is_first_refuted == is_second_refuted) return RelocalisationMonitor::Walls::kUndecided;
+    return is_first_refuted ? RelocalisationMonitor::Walls::kContradictFirst
+                            : RelocalisationMonitor::Walls::kContradictSecond;
+  };
+  verdict_ = relocalisation_.update(graph_.state().keyframes.back(), hints(measurements), motion_,
+                                    std::exchange(may_be_carried_, false), compare_walls);
   if (verdict_ == RelocalisationMonitor::Verdict::kRelocated ||
       verdict_ == RelocalisationMonitor::Verdict::kReverted) {
     relocate(relocalisation_.map_from_base());
@@ -219,8 +229,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
   else
     used = add_predicted_keyframe(observation, measurements, scan);
   graph_.optimise();
-  check_pose(measurements);
-  const bool is_suspicious = verdict_ == RelocalisationMonitor::Verdict::kSuspicious;
+  check_pose(observation, measurements);
+  const bool is_suspicious = is_pose_suspicious();
   markers_known_ = false;
   if (!is_map_fixed()) add_drift(used.is_used);
   if (!is_suspicious) {
@@ -264,8 +274,7 @@ Estimate WaymarkEstimator::estimate_at_keyframe(const Observation& observation) 
 void WaymarkEstimator::insert_between(const Points& points, const ScanMatch& match,
                                       const Se2& map_from_base) {
   if (is_map_fixed() || !is_confirmed() || since_insertion_m_ < config_.insert_distance_m ||
-      usual_fit_.is_worse_than_usual(match) ||
-      verdict_ == RelocalisationMonitor::Verdict::kSuspicious) {
+      usual_fit_.is_worse_than_usual(match) || is_pose_suspicious()) {
     return;
   }
   since_insertion_m_ = 0.0;
@@ -326,9 +335,8 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                                                       : WeakAxisSource::kOdometry;
   estimate.ranges_wrong = is_rescaled_;
   estimate.start_refuted = is_loaded_map_refuted();
-  const bool is_lost = verdict_ == RelocalisationMonitor::Verdict::kSuspicious ||
-                       inlier_share_ < config_.lost_inlier_share || estimate.start_refuted ||
-                       survey_.is_undecided();
+  const bool is_lost = is_pose_suspicious() || inlier_share_ < config_.lost_inlier_share ||
+                       estimate.start_refuted || survey_.is_undecided();
   const bool observes_all_axes = (is_observed_ && !estimate.observability.is_degenerate) ||
                                  estimate.weak_axis_source == WeakAxisSource::kMarkers;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost, observes_all_axes);

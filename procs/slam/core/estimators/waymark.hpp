@@ -200,6 +200,10 @@ class WaymarkEstimator final : public Estimator {
 
   bool is_confirmed() const { return place_trust_ != PlaceTrust::kAssumed; }
 
+  bool is_pose_suspicious() const {
+    return verdict_ == RelocalisationMonitor::Verdict::kSuspicious || relocalisation_.is_doubtful();
+  }
+
   bool is_loaded_map_refuted() const;
   void compare_with_loaded_map(const Observation& observation, const KeyframeScan& used);
   std::optional<RescaledScan> rescaled(const Observation& observation,
@@ -226,7 +230,7 @@ class WaymarkEstimator final : public Estimator {
   KeyframeScan add_predicted_keyframe(const Observation& observation,
                                       std::span<const MarkerMeasurement> measurements,
                                       ScanAtPrediction& scan);
-  void check_pose(std::span<const MarkerMeasurement> measurements);
+  void check_pose(const Observation& observation, std::span<const MarkerMeasurement> measurements);
   void add_drift(bool has_scan_factor);
   void slide_window();
   void add_first_keyframe();
@@ -266,6 +270,7 @@ class WaymarkEstimator final : public Estimator {
   Graph graph_;
   MarkerBook book_{};
   RelocalisationMonitor relocalisation_{};
+  bool may_be_carried_{false};  ///< odometry stood still or jumped since the newest keyframe
   RangeNoise range_noise_;
   OdometryNoiseLearner noise_learner_{};
   DriftCovariance drift_{};

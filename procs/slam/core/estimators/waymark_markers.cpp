@@ -55,6 +55,11 @@ std::vector<PoseHint> WaymarkEstimator::hints(
     hint.id = measurement.id;
     const Se2 there = map_from_measured(graph_.state(), newest(), measurement);
     const auto nearest = book_.nearest(graph_, newest(), measurement);
+    const auto unique = book_.unique(measurement.id);
+    if (unique) {
+      const Se2 base_from_marker = graph_.state().keyframes.back().inverse() * there;
+      hint.map_from_base = graph_.state().landmarks[*unique] * base_from_marker.inverse();
+    }
     if (!nearest) {
       hint.kind = PoseHint::Kind::kNew;
       hint.is_in_known_place =
@@ -62,10 +67,8 @@ std::vector<PoseHint> WaymarkEstimator::hints(
     } else if (nearest->chi2 < config_.marker_gate ||
                nearest->distance_m() < config_.marker_near_m) {
       hint.kind = PoseHint::Kind::kAgrees;
-    } else if (const auto unique = book_.unique(measurement.id)) {
+    } else if (unique) {
       hint.kind = PoseHint::Kind::kElsewhere;
-      const Se2 base_from_marker = graph_.state().keyframes.back().inverse() * there;
-      hint.map_from_base = graph_.state().landmarks[*unique] * base_from_marker.inverse();
     } else {
       hint.kind = PoseHint::Kind::kAmbiguous;
     }

@@ -18,6 +18,7 @@ constexpr double kMoved_rad = 0.05;
 constexpr double kNearStandstill_m = 0.3;
 constexpr double kNearStandstill_rad = 0.2;
 constexpr double kReturned = 0.7;
+constexpr double kLift_s = 0.5;  // standing still: less is too short for a robot to be carried off
 constexpr double kOtherNoise = 2.0;  // ratio of variances beyond which the whole graph takes a step
 constexpr std::size_t kReweighEvery = 10;  // keyframes
 
@@ -61,6 +62,9 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
                      observation.motion.start_from_end;
     standstill_ = Standstill{moved_from_, motion_, here, here, clock_s_, clock_s_};
   }
+  may_be_carried_ |= (standstill_ && clock_s_ - standstill_->since_s >= kLift_s) ||
+                     odometry_check_.is_refused() || observation.odometry_jumped ||
+                     observation.odometry_caught_up || observation.clock_set != Duration{};
   ++statistics_.observations;
   if (observation.odometry_jumped || odometry_check_.is_refused()) {
     ++statistics_.odometry_jumping;

@@ -14,34 +14,101 @@ constexpr double kSameHeading_rad = 0.35;
 constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
 constexpr double kMisread_m = 0.5;   // driven without another sighting: the first was a misreading
 constexpr double kPatience_m = 5.0;  // that limit after kRealSightings or more
-constexpr double kReturn_m = 30.0;   // driven until a relocalisation is final
+constexpr double kClearlyNearer = 2.0;    // ratio of distances of a marker's pose from two others
+constexpr double kMetresPerRadian = 1.0;  // weight of the heading in these distances
+constexpr double kReturn_m = 30.0;        // driven until a relocalisation is final
+
+bool is_same_pose(const Se2& a, const Se2& b) {
+  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
+         std::abs(angle_difference(a.theta(), b.theta())) < kSameHeading_rad;
+}
+
+double apart_m(const Se2& a, const Se2& b) {
+  return (a.translation() - b.translation()).norm() +
+         kMetresPerRadian * std::abs(angle_difference(a.theta(), b.theta()));
+}
+
+bool has_enough(const std::map<int, int>& sightings, std::size_t markers) {
+  return std::ranges::count_if(sightings, [](const auto& seen) {
+           return seen.second >= kSightingsNeeded;
+         }) >= static_cast<std::ptrdiff_t>(markers);
+}
 
 }  // namespace
 
 RelocalisationMonitor::Verdict RelocalisationMonitor::update(const Se2& map_from_base,
                                                              std::span<const PoseHint> hints,
-                                                             const Motion& motion) {
+                                                             const Motion& motion,
+                                                             bool may_be_carried,
+                                                             const CompareWalls& compare_walls) {
   propagate(motion);
-  if (is_lookalike_place(hints)) {
-    relocated_ = *abandoned_;
-    abandoned_.reset();
-    drop_alternative();
-    return Verdict::kReverted;
+  if (may_be_carried) is_certain_ = false;
+  if (is_lookalike_place(hints)) return revert();
+  if (is_doubtful_) {
+    if (const auto decided = settle_doubt(map_from_base, hints, compare_walls)) return *decided;
   }
   bool is_confirmed = false;
   for (const PoseHint& hint : hints) {
-    if (hint.kind == PoseHint::Kind::kElsewhere) support_alternative(hint);
+    if (hint.kind == PoseHint::Kind::kElsewhere && !moved_ids_.contains(hint.id))
+      support_alternative(hint);
     is_confirmed |= hint.kind == PoseHint::Kind::kAgrees || hint.kind == PoseHint::Kind::kNew;
+    is_certain_ |= hint.kind == PoseHint::Kind::kAgrees && !is_doubtful_;
   }
   if (is_confirmed) drop_alternative();
-  if (!alternative_) return Verdict::kConsistent;
-  if (!is_supported()) return Verdict::kSuspicious;
+  if (!alternative_) return is_doubtful_ ? Verdict::kSuspicious : Verdict::kConsistent;
+  if (!has_enough(sightings_, kMarkersNeeded)) return Verdict::kSuspicious;
+  const Walls walls = compare_walls(*alternative_, map_from_base);
+  if (walls == Walls::kContradictFirst && !is_doubtful_) {
+    for (const auto& [id, count] : sightings_)
+      moved_ids_.insert(id);
+    drop_alternative();
+    return Verdict::kConsistent;
+  }
+  return relocate(map_from_base, walls == Walls::kContradictSecond || !is_certain_);
+}
+
+RelocalisationMonitor::Verdict RelocalisationMonitor::relocate(const Se2& map_from_base,
+                                                               bool is_certain) {
   relocated_ = *alternative_;
+  relocated_by_.clear();
+  for (const auto& [id, count] : sightings_)
+    relocated_by_.insert(id);
   drop_alternative();
-  abandoned_ = map_from_base;
+  // In doubt, the pose that markers had confirmed stays the other hypothesis.
+  if (!is_doubtful_) abandoned_ = map_from_base;
+  is_doubtful_ = !is_certain;
   unexpected_ids_.clear();
+  votes_for_.clear();
+  votes_against_.clear();
   relocated_m_ = 0.0;
   return Verdict::kRelocated;
+}
+
+RelocalisationMonitor::Verdict RelocalisationMonitor::revert() {
+  relocated_ = *abandoned_;
+  moved_ids_.merge(relocated_by_);
+  abandoned_.reset();
+  is_doubtful_ = false;
+  drop_alternative();
+  return Verdict::kReverted;
+}
+
+/// @return kReverted or kConsistent, if the doubt is over.
+std::optional<RelocalisationMonitor::Verdict> RelocalisationMonitor::settle_doubt(
+    const Se2& map_from_base, std::span<const PoseHint> hints, const CompareWalls& compare_walls) {
+  for (const PoseHint& hint : hints) {
+    if (relocated_by_.contains(hint.id) || !hint.map_from_base) continue;
+    const double from_new_m = apart_m(*hint.map_from_base, map_from_base);
+    const double from_old_m = apart_m(*hint.map_from_base, *abandoned_);
+    if (kClearlyNearer * from_new_m < from_old_m) ++votes_for_[hint.id];
+    if (kClearlyNearer * from_old_m < from_new_m) ++votes_against_[hint.id];
+  }
+  const Walls walls = compare_walls(map_from_base, *abandoned_);
+  if (has_enough(votes_against_, 1) || walls == Walls::kContradictFirst) return revert();
+  if (!has_enough(votes_for_, 1) && walls != Walls::kContradictSecond) return std::nullopt;
+  is_doubtful_ = false;
+  drop_alternative();
+  return Verdict::kConsistent;
 }
 
 void RelocalisationMonitor::propagate(const Motion& motion) {
@@ -54,7 +121,9 @@ void RelocalisationMonitor::propagate(const Motion& motion) {
   if (abandoned_) {
     abandoned_ = *abandoned_ * motion.start_from_end;
     relocated_m_ += motion.distance_m;
-    if (relocated_m_ > kReturn_m) abandoned_.reset();
+    if (relocated_m_ <= kReturn_m) return;
+    abandoned_.reset();
+    is_doubtful_ = false;
   }
 }
 
@@ -67,12 +136,7 @@ bool RelocalisationMonitor::is_lookalike_place(std::span<const PoseHint> hints) 
 }
 
 void RelocalisationMonitor::support_alternative(const PoseHint& hint) {
-  const bool agrees =
-      alternative_ &&
-      (hint.map_from_base.translation() - alternative_->translation()).norm() < kSamePlace_m &&
-      std::abs(angle_difference(hint.map_from_base.theta(), alternative_->theta())) <
-          kSameHeading_rad;
-  if (!agrees) sightings_.clear();
+  if (!alternative_ || !is_same_pose(*hint.map_from_base, *alternative_)) sightings_.clear();
   ++sightings_[hint.id];
   unsupported_m_ = 0.0;
   alternative_ = hint.map_from_base;
@@ -83,12 +147,6 @@ int RelocalisationMonitor::num_sightings() const {
   for (const auto& [id, count] : sightings_)
     sum += count;
   return sum;
-}
-
-bool RelocalisationMonitor::is_supported() const {
-  return std::count_if(sightings_.begin(), sightings_.end(), [](const auto& seen) {
-           return seen.second >= kSightingsNeeded;
-         }) >= static_cast<std::ptrdiff_t>(kMarkersNeeded);
 }
 
 void RelocalisationMonitor::drop_alternative() {

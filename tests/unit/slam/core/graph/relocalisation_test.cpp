@@ -25,44 +25,123 @@ PoseHint unexpected(int id) {
   return {PoseHint::Kind::kNew, id, {}, true};
 }
 
+PoseHint supports(const Se2& map_from_base, int id) {
+  return {PoseHint::Kind::kElsewhere, id, map_from_base};
+}
+
+const Motion kOnwards{{1.0, 0.0, 0.0}, 1.0, 0.0};
+
+/// A monitor with what it is given at each keyframe.
+struct MonitoredRobot {
+  RelocalisationMonitor monitor{};
+  Se2 map_from_base{kConsecutive};  ///< as estimated
+  RelocalisationMonitor::Walls walls{RelocalisationMonitor::Walls::kUndecided};
+
+  Verdict sees(const std::vector<PoseHint>& hints, const Motion& motion = {},
+               bool may_be_carried = false) {
+    map_from_base = map_from_base * motion.start_from_end;
+    const Verdict verdict = monitor.update(map_from_base, hints, motion, may_be_carried,
+                                           [this](const Se2&, const Se2&) { return walls; });
+    if (verdict == Verdict::kRelocated || verdict == Verdict::kReverted)
+      map_from_base = monitor.map_from_base();
+    return verdict;
+  }
+
+  /// Two markers were moved together by 5 m.
+  Verdict sees_moved_pair() {
+    sees({elsewhere(3), elsewhere(4)});
+    return sees({elsewhere(3), elsewhere(4)});
+  }
+};
+
 TEST(RelocalisationMonitor, OneMarkerElsewhereIsSuspicious) {
-  RelocalisationMonitor monitor;
+  MonitoredRobot robot;
   for (int i = 0; i < 5; ++i)
-    EXPECT_EQ(monitor.update(kConsecutive, std::vector{elsewhere(3)}, {}), Verdict::kSuspicious);
+    EXPECT_EQ(robot.sees({elsewhere(3)}), Verdict::kSuspicious);
 }
 
 TEST(RelocalisationMonitor, TwoMarkersThatAgreeRelocate) {
-  RelocalisationMonitor monitor;
+  MonitoredRobot robot;
   const std::vector pair{elsewhere(3), elsewhere(4)};
-  EXPECT_EQ(monitor.update(kConsecutive, pair, {}), Verdict::kSuspicious);
-  EXPECT_EQ(monitor.update(kConsecutive, pair, {}), Verdict::kRelocated);
-  EXPECT_EQ(monitor.map_from_base().x(), kElsewhere.x());
-  EXPECT_EQ(monitor.update(kElsewhere, std::vector{as_expected(3)}, {}), Verdict::kConsistent);
+  EXPECT_EQ(robot.sees(pair), Verdict::kSuspicious);
+  EXPECT_EQ(robot.sees(pair), Verdict::kRelocated);
+  EXPECT_EQ(robot.monitor.map_from_base().x(), kElsewhere.x());
+  EXPECT_EQ(robot.sees({as_expected(3)}), Verdict::kConsistent);
 }
 
 TEST(RelocalisationMonitor, AMarkerWhereItIsExpectedEndsTheSuspicion) {
-  RelocalisationMonitor monitor;
-  EXPECT_EQ(monitor.update(kConsecutive, std::vector{elsewhere(3)}, {}), Verdict::kSuspicious);
-  EXPECT_EQ(monitor.update(kConsecutive, std::vector{elsewhere(3), as_expected(5)}, {}),
-            Verdict::kConsistent);
+  MonitoredRobot robot;
+  EXPECT_EQ(robot.sees({elsewhere(3)}), Verdict::kSuspicious);
+  EXPECT_EQ(robot.sees({elsewhere(3), as_expected(5)}), Verdict::kConsistent);
 }
 
 TEST(RelocalisationMonitor, AMisreadIdIsDroppedSoon) {
-  RelocalisationMonitor monitor;
-  EXPECT_EQ(monitor.update(kConsecutive, std::vector{elsewhere(3)}, {}), Verdict::kSuspicious);
-  const Motion onwards{{1.0, 0.0, 0.0}, 1.0, 0.0};
-  EXPECT_EQ(monitor.update(kConsecutive, {}, onwards), Verdict::kConsistent);
+  MonitoredRobot robot;
+  EXPECT_EQ(robot.sees({elsewhere(3)}), Verdict::kSuspicious);
+  EXPECT_EQ(robot.sees({}, kOnwards), Verdict::kConsistent);
 }
 
 TEST(RelocalisationMonitor, TwoUnexpectedIdsRevertARelocalisation) {
-  RelocalisationMonitor monitor;
+  MonitoredRobot robot;
   const std::vector pair{elsewhere(3), elsewhere(4)};
-  monitor.update(kConsecutive, pair, {});
-  ASSERT_EQ(monitor.update(kConsecutive, pair, {}), Verdict::kRelocated);
-  const Motion onwards{{1.0, 0.0, 0.0}, 1.0, 0.0};
-  EXPECT_EQ(monitor.update(kElsewhere, std::vector{unexpected(20), unexpected(21)}, onwards),
-            Verdict::kReverted);
-  EXPECT_NEAR(monitor.map_from_base().x(), kConsecutive.x() + 1.0, 1e-9);
+  robot.sees(pair);
+  ASSERT_EQ(robot.sees(pair), Verdict::kRelocated);
+  EXPECT_EQ(robot.sees({unexpected(20), unexpected(21)}, kOnwards), Verdict::kReverted);
+  EXPECT_NEAR(robot.monitor.map_from_base().x(), kConsecutive.x() + 1.0, 1e-9);
+}
+
+TEST(RelocalisationMonitor,
+     ARelocalisationThatNobodyCanHaveCausedIsDoubtedUntilAThirdMarkerAgrees) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  ASSERT_EQ(robot.sees_moved_pair(), Verdict::kRelocated);
+  EXPECT_TRUE(robot.monitor.is_doubtful());
+  EXPECT_EQ(robot.sees({as_expected(3), as_expected(4)}, kOnwards), Verdict::kSuspicious);
+  EXPECT_NEAR(robot.monitor.alternative()->x(), kConsecutive.x() + 1.0, 1e-9);
+  const PoseHint third{PoseHint::Kind::kAgrees, 5, robot.map_from_base};
+  robot.sees({third});
+  EXPECT_TRUE(robot.monitor.is_doubtful());
+  EXPECT_EQ(robot.sees({third}), Verdict::kConsistent);
+  EXPECT_FALSE(robot.monitor.is_doubtful());
+}
+
+TEST(RelocalisationMonitor, ARobotThatStoodMayHaveBeenCarried) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  robot.sees({}, {}, true);
+  ASSERT_EQ(robot.sees_moved_pair(), Verdict::kRelocated);
+  EXPECT_FALSE(robot.monitor.is_doubtful());
+}
+
+TEST(RelocalisationMonitor, AMarkerThatSupportsTheFormerPoseRevertsAndTheMovedPairIsKnown) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  ASSERT_EQ(robot.sees_moved_pair(), Verdict::kRelocated);
+  robot.sees({}, kOnwards);
+  const Se2 former{kConsecutive.x() + 1.0, 0.0, 0.0};
+  EXPECT_EQ(robot.sees({supports(former, 6)}), Verdict::kSuspicious);
+  EXPECT_EQ(robot.sees({supports(former, 6)}), Verdict::kReverted);
+  EXPECT_NEAR(robot.map_from_base.x(), former.x(), 1e-9);
+  EXPECT_EQ(robot.sees_moved_pair(), Verdict::kConsistent);
+}
+
+TEST(RelocalisationMonitor, WallsDecideBetweenTwoPoses) {
+  MonitoredRobot moved;
+  moved.sees({as_expected(2)});
+  moved.walls = RelocalisationMonitor::Walls::kContradictFirst;
+  EXPECT_EQ(moved.sees_moved_pair(), Verdict::kConsistent);
+
+  MonitoredRobot carried;
+  carried.sees({as_expected(2)});
+  carried.walls = RelocalisationMonitor::Walls::kContradictSecond;
+  EXPECT_EQ(carried.sees_moved_pair(), Verdict::kRelocated);
+  EXPECT_FALSE(carried.monitor.is_doubtful());
+
+  MonitoredRobot later;
+  later.sees({as_expected(2)});
+  ASSERT_EQ(later.sees_moved_pair(), Verdict::kRelocated);
+  later.walls = RelocalisationMonitor::Walls::kContradictFirst;
+  EXPECT_EQ(later.sees({}, kOnwards), Verdict::kReverted);
 }
 
 }  // namespace
