@@ -97,6 +97,14 @@ void add_ranges(const SensorStatistics& f, std::int64_t repeated_scans, List& li
                  "{:.1f} % of the scans contradict the loaded map: it is of another place, or much "
                  "has changed",
                  f.loaded_map.contradicting, f.loaded_map.scans, kManyScans);
+  if (f.loaded_map.do_markers_contradict()) {
+    const std::int64_t sighted = f.loaded_map.markers_moved + f.loaded_map.markers_in_place;
+    list.add("markers_contradict_loaded_map",
+             fmt::format("{} of {} sighted markers of the loaded map hang elsewhere: it is of "
+                         "another building, or is to be made anew",
+                         f.loaded_map.markers_moved, sighted),
+             static_cast<double>(f.loaded_map.markers_moved));
+  }
   list.add_share("scans_unusable",
                  "{:.1f} % of the scans show too few mapped walls and were left out",
                  f.scans_unusable, f.scans);

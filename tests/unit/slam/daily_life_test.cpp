@@ -236,6 +236,18 @@ TEST_F(DailyLife, AMapIsNotExtendedInAnotherBuilding) {
   EXPECT_EQ(drive.estimates.back().has_pose, 0);
 }
 
+// The other building has the same ids in pairs on its walls, which are as far apart.
+TEST_F(DailyLife, AMapIsNotExtendedWhereMostOfItsMarkersHangElsewhere) {
+  test::SyntheticCorridor other = corridor_of(2);
+  other.markers = test::opposite_markers(other, 3.5, 2.2);
+  SlamConfig config = config_for(MapMode::kExtend, *file_);
+  config.save_map = folder_ / "mixture.map.lcm";
+  const test::Drive drive = test::drive_through(config, messages_of(test::drive(other)));
+  EXPECT_TRUE(drive.failed);
+  EXPECT_FALSE(fs::exists(config.save_map));
+  EXPECT_EQ(drive.estimates.back().health, slam_estimate_t::HEALTH_LOST);
+}
+
 // The markers mapped in this run stay its own, also when the robot returns to them.
 TEST_F(DailyLife, MarkersOfThisRunDoNotConfirmTheLoadedMap) {
   test::SyntheticCorridor other = corridor_of(2);

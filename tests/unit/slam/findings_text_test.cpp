@@ -66,5 +66,16 @@ TEST(FindingsText, AFewScansThatDoNotFitAreNotReported) {
   EXPECT_FALSE(reportable_findings(statistics, 0).empty());
 }
 
+TEST(FindingsText, AMapMostOfWhoseMarkersHangElsewhereIsReported) {
+  SensorStatistics statistics = as_described();
+  statistics.loaded_map.markers_in_place = 4;
+  statistics.loaded_map.markers_moved = 4;
+  EXPECT_TRUE(reportable_findings(statistics, 0).empty());
+  statistics.loaded_map.markers_moved = 5;
+  const auto found = reportable_findings(statistics, 0);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().text.substr(0, 18), "5 of 9 sighted mar");
+}
+
 }  // namespace
 }  // namespace waymark

@@ -336,7 +336,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   estimate.ranges_wrong = is_rescaled_;
   estimate.start_refuted = is_loaded_map_refuted();
   const bool is_lost = is_pose_suspicious() || inlier_share_ < config_.lost_inlier_share ||
-                       estimate.start_refuted || survey_.is_undecided();
+                       estimate.start_refuted || is_of_another_building() || survey_.is_undecided();
   const bool observes_all_axes = (is_observed_ && !estimate.observability.is_degenerate) ||
                                  estimate.weak_axis_source == WeakAxisSource::kMarkers;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost, observes_all_axes);

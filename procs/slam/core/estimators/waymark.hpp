@@ -173,7 +173,7 @@ class WaymarkEstimator final : public Estimator {
     kKnown,      ///< markers, the place finder, or a start pose that is certain
   };
 
-  /// Numbers of keyframes' scans compared with the loaded map since the pose was last commanded.
+  /// Numbers of recent keyframes' scans compared with the loaded map, none from before a command.
   struct LoadedMapVotes {
     std::int64_t decisive{0};       ///< scans with enough beams in mapped cells (MapFit)
     std::int64_t contradicting{0};  ///< of these, with beams through its walls
@@ -205,6 +205,7 @@ class WaymarkEstimator final : public Estimator {
   }
 
   bool is_loaded_map_refuted() const;
+  bool is_of_another_building() const;
   void compare_with_loaded_map(const Observation& observation, const KeyframeScan& used);
   std::optional<RescaledScan> rescaled(const Observation& observation,
                                        const ScanAtPrediction& scan) const;

@@ -21,6 +21,7 @@ namespace {
 constexpr int kSurveySteps = 12;
 constexpr double kMinMapped = 0.6;           // share of mapped beams, for a scan to be in the map
 constexpr std::int64_t kScansToDecide = 10;  // before the loaded map can be refuted
+constexpr std::int64_t kScansKept = 20;  // about so many vote: earlier ones may have looked alike
 
 }  // namespace
 
@@ -66,11 +67,28 @@ void WaymarkEstimator::compare_with_loaded_map(const Observation& observation,
       fit_in_map(setup_.loaded_map->grid, observation.beams, graph_.state().keyframes.back());
   if (used.fits_loaded_map && !is_confirmed() && !fit.is_refuted())
     place_trust_ = PlaceTrust::kFitsWalls;
+  LoadedMapFit& all = statistics_.loaded_map;
+  const MarkerBook::KnownMarkers markers = book_.known_markers();
+  all.markers_in_place = markers.in_place;
+  all.markers_moved = markers.moved;
   if (!fit.is_decisive()) return;
-  ++statistics_.loaded_map.scans;
+  if (loaded_map_votes_.decisive >= kScansKept) {
+    loaded_map_votes_.decisive /= 2;
+    loaded_map_votes_.contradicting /= 2;
+  }
+  ++all.scans;
   ++loaded_map_votes_.decisive;
-  if (fit.is_contradicted()) ++statistics_.loaded_map.contradicting;
-  if (fit.is_refuted()) ++loaded_map_votes_.contradicting;
+  if (fit.is_contradicted()) ++all.contradicting;
+  if (!fit.is_refuted()) return;
+  ++all.refuting;
+  ++loaded_map_votes_.contradicting;
+}
+
+/// Whether most of what was seen contradicts the loaded map, although some of its markers are where
+/// it has them: another building may have the same ids, at some of the same places.
+bool WaymarkEstimator::is_of_another_building() const {
+  return statistics_.loaded_map.do_markers_contradict() ||
+         statistics_.loaded_map.do_walls_contradict();
 }
 
 /// Whether most scans contradict the pose in the loaded map, and it is not known otherwise.
@@ -123,11 +141,14 @@ std::optional<PoseGraph> WaymarkEstimator::pose_graph() const {
   return pose_graph_of(solved());
 }
 
-/// None before the pose in the loaded map was confirmed: the map might mix two buildings. None
+/// None before the pose in the loaded map was confirmed, or if most contradicts that map: the new
+/// map might mix two buildings. None
 /// before the survey's frame is known: the map would be in another frame.
 std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
-  if (is_map_fixed() || graph_.state().keyframes.empty() || !was_confirmed_ || !has_map_frame())
+  if (is_map_fixed() || graph_.state().keyframes.empty() || !was_confirmed_ ||
+      is_of_another_building() || !has_map_frame()) {
     return std::nullopt;
+  }
   const Graph& graph = solved();
   MapSnapshot snapshot;
   if (setup_.loaded_map) snapshot.parent_map_id = setup_.loaded_map->map_id;

@@ -72,6 +72,7 @@ void MarkerBook::add(int id, Timestamp time) {
   fresh.last_seen = time;
   entries_.push_back(fresh);
   is_retired_.push_back(false);
+  was_sighted_.push_back(true);
   moved_from_.emplace_back();
 }
 
@@ -83,11 +84,13 @@ void MarkerBook::add_known(const Landmark& landmark) {
   entries_.back().last_seen = {};
   entries_.back().misses = 0;
   is_retired_.push_back(false);
+  was_sighted_.push_back(false);
   moved_from_.emplace_back();
 }
 
 void MarkerBook::note_sighting(std::size_t landmark, Timestamp time) {
   ++entries_[landmark].sightings;
+  was_sighted_[landmark] = true;
   entries_[landmark].misses = 0;
   entries_[landmark].last_seen = time;
 }
@@ -121,6 +124,17 @@ void MarkerBook::note_misses(const State& state, std::size_t keyframe,
       break;
     }
   }
+}
+
+MarkerBook::KnownMarkers MarkerBook::known_markers() const {
+  KnownMarkers markers;
+  for (std::size_t i = 0; i < num_known_; ++i) {
+    if (is_retired_[i])
+      ++markers.moved;
+    else if (was_sighted_[i])
+      ++markers.in_place;
+  }
+  return markers;
 }
 
 bool MarkerBook::knows(int id) const {

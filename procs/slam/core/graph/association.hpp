@@ -63,6 +63,14 @@ class MarkerBook {
     return moved_from_[landmark];
   }
 
+  /// Numbers of the loaded map's markers that were sighted in this run.
+  struct KnownMarkers {
+    int in_place{0};
+    int moved{0};
+  };
+
+  KnownMarkers known_markers() const;
+
   bool is_retired(std::size_t landmark) const { return is_retired_[landmark]; }
 
   bool knows(int id) const;
@@ -88,6 +96,7 @@ class MarkerBook {
   std::size_t num_known_{0};         ///< markers of a loaded map
   std::vector<Landmark> entries_{};  ///< pose and covariance are not maintained: see Graph
   std::vector<bool> is_retired_{};
+  std::vector<bool> was_sighted_{};  ///< in this run
   std::vector<std::optional<std::size_t>> moved_from_{};
 };
 

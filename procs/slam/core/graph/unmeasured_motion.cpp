@@ -11,6 +11,8 @@ namespace {
 constexpr double kStill_m_s = 0.002;
 constexpr double kStill_rad_s = 0.005;
 constexpr double kSpeedMemory_s = 1.0;
+// Odometry that begins anew together with its clock: how long it was silent is not known.
+constexpr double kUnknownPause_s = 10.0;
 constexpr double kStuckShare = 0.05;  // probability that odometry that stops is stuck; chosen
 constexpr double kLongestStandstill_s = 20.0;  // after that the robot is parked
 
@@ -25,6 +27,7 @@ void UnmeasuredMotion::follow(const Observation& observation) {
     note_observed();
     is_stuck_ = false;
   } else if (is_unreliable()) {
+    if (observation.clock_set != Duration{}) unreliable_s_ += kUnknownPause_s;
     is_stuck_ = is_stuck_ && is_standing_;
     unreliable_s_ += elapsed_s;
   } else if (is_standing_) {

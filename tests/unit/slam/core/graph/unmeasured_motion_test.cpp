@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 namespace waymark {
 namespace {
 
@@ -11,8 +13,10 @@ class Robot {
  public:
   UnmeasuredMotion motion{};
 
-  void observe(double distance_m, bool is_doubtful = false, bool caught_up = false) {
+  void observe(double distance_m, bool is_doubtful = false, bool caught_up = false,
+               Duration clock_set = {}) {
     Observation observation;
+    observation.clock_set = clock_set;
     observation.elapsed_s = 0.2;
     observation.motion = {{distance_m, 0.0, 0.0}, distance_m, 0.0};
     observation.odometry_jumped = is_doubtful;
@@ -30,6 +34,17 @@ class Robot {
       observe(0.0);
   }
 };
+
+TEST(UnmeasuredMotion, OdometryAndClockThatBeginAnewLeaveTheLengthOfThePauseOpen) {
+  Robot robot;
+  robot.drive();
+  robot.observe(8.0, true, false, std::chrono::seconds{-30});
+  EXPECT_GT(robot.motion.unmeasured_m(), 0.5);  // 0.1 m/s for several seconds
+  Robot continuing;
+  continuing.drive();
+  continuing.observe(0.02, false, false, std::chrono::seconds{-30});
+  EXPECT_EQ(continuing.motion.unmeasured_m(), 0.0);
+}
 
 TEST(UnmeasuredMotion, IsZeroWhileOdometryMoves) {
   Robot robot;
