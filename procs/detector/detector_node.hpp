@@ -24,6 +24,10 @@ class DetectorNode final : public Node {
 
   void finish() override {}
 
+  std::vector<std::string_view> needed_channels() const override {
+    return {channels::kCamera.name};
+  }
+
  private:
   /// Publishes MARKERS for every frame; for an unreadable frame with an empty list, so that slam
   /// does not wait for its markers.

@@ -26,7 +26,9 @@ struct CandidateConfig {
   double threshold_constant{8.0};
   double error_correction_rate{0.6};
   double min_perimeter_rate{0.03};
-  double min_marker_distance_rate{0.05};
+  /// At OpenCV's default of 0.05, the outer edge of a white quiet zone before a dark wall replaces
+  /// the marker's own edge, and the marker is missed.
+  double min_marker_distance_rate{0.02};
   double polygon_accuracy_rate{0.03};
   int border_distance_px{3};
 

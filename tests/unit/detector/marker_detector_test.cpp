@@ -130,6 +130,22 @@ TEST(MarkerDetector, TwoMarkersOfOneIdAreTwoDetections) {
   EXPECT_LT(detections[1].base_from_marker.translation().y(), 0.0);
 }
 
+/// A marker ahead, whose white quiet zone of one module hangs on a dark wall.
+cv::Mat marker_on_dark_wall(const RobotConfig& robot, double ahead_m) {
+  return render_markers(
+      robot, {placed(robot, 4, base_from_upright_marker({ahead_m, 0.1, 0.2}, radians(165)))},
+      {.wall = 15.0, .quiet_zone_modules = 1.0}, Random{7});
+}
+
+TEST(MarkerDetector, AMarkerOnADarkWallIsNotMistakenForItsQuietZone) {
+  const RobotConfig robot;
+  for (const double ahead_m : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0}) {
+    const auto detections = MarkerDetector{robot, {}}.detect(marker_on_dark_wall(robot, ahead_m));
+    ASSERT_EQ(detections.size(), 1U) << ahead_m << " m";
+    EXPECT_NEAR(detections[0].base_from_marker.translation().x(), ahead_m, 0.01 * ahead_m);
+  }
+}
+
 TEST(MarkerDetector, AprilTagsAreReadToo) {
   RobotConfig robot;
   robot.markers.dictionary = "DICT_APRILTAG_36h11";
