@@ -124,6 +124,9 @@ std::vector<Finding> reportable_findings(const SensorStatistics& statistics,
   add_odometry(statistics, list);
   add_ranges(statistics, repeated_scans, list);
   for (const Miscalibration& found : statistics.miscalibrated) {
+    // The more a turn is noise, the smaller is the scale that predicts it best (regression
+    // dilution): good for predictions, but no advice on how to mend the odometry.
+    if (found.term == OdometryTerm::kTurnScale && statistics.odometry_turn >= kWorse) continue;
     const CalibrationTerm& term = kCalibrationTerms.at(found.term);
     list.add(fmt::format("calibration_{}", term.key),
              fmt::format("{}: {:+.4g} +- {:.1g} {} from the description", term.name,

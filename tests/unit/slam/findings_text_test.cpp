@@ -52,6 +52,16 @@ TEST(FindingsText, AMountingThatIsNotAsDescribedIsReportedWithItsError) {
   EXPECT_EQ(found.front().name, "calibration_lidar_yaw_rad");
 }
 
+TEST(FindingsText, TheScaleOfTurnsIsNotReportedWhereTurnsAreMostlyNoise) {
+  SensorStatistics statistics = as_described();
+  statistics.miscalibrated = {{OdometryTerm::kTurnScale, -0.12, 0.004}};
+  EXPECT_EQ(reportable_findings(statistics, 0).size(), 1U);
+  statistics.odometry_turn = 4.0;
+  const auto found = reportable_findings(statistics, 0);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().name, "odometry_turn_noise_scale");
+}
+
 TEST(FindingsText, AFewScansThatDoNotFitAreNotReported) {
   SensorStatistics statistics = as_described();
   statistics.scans_refuted = 5;
