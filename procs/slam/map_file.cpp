@@ -298,6 +298,11 @@ std::filesystem::path move_aside(const std::filesystem::path& file) {
   return free;
 }
 
+bool is_map_file(const std::filesystem::path& file) {
+  const auto first = LogReader{file}.next();
+  return first && first->channel == channels::kMapHeader.name;
+}
+
 MapFile read_map_file(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& what) {
     throw SetupError{fmt::format("map '{}' {}", file.string(), what)};

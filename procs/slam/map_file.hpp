@@ -44,6 +44,10 @@ std::int64_t write_map_file(const std::filesystem::path& file, const MapSnapshot
 /// @throws std::filesystem::filesystem_error
 std::filesystem::path move_aside(const std::filesystem::path& file);
 
+/// Whether the file begins as a map file does; the rest of it may be damaged.
+/// @throws std::runtime_error saying why the file cannot be read.
+bool is_map_file(const std::filesystem::path& file);
+
 /// @throws SetupError  in one sentence: missing, not a map, of another format, damaged, truncated.
 MapFile read_map_file(const std::filesystem::path& file);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/slam_inputs.hpp"
 
+#include "common/log/log_file.hpp"
 #include "common/logging/logging.hpp"
 #include "slam/last_pose.hpp"
 #include "slam/map_file.hpp"
@@ -51,6 +52,24 @@ bool is_to_be_continued(const SlamConfig& config) {
          !std::filesystem::equivalent(config.save_map, config.load_map, none);
 }
 
+/// Refuses to replace a recording, or any other file that has content and is not a map.
+void protect_other_files(const SlamConfig& config) {
+  if (config.save_map.empty() || is_to_be_continued(config)) return;
+  for (const auto& file : {config.save_map, part_path_of(config.save_map)}) {
+    std::error_code none;
+    if (!std::filesystem::exists(file, none) || std::filesystem::is_empty(file, none)) continue;
+    try {
+      if (is_map_file(file)) continue;
+    } catch (const std::exception& error) {
+      throw SetupError{fmt::format("--save-map: {}", error.what())};
+    }
+    throw SetupError{fmt::format(
+        "--save-map: '{}' is there already and is not a map, so that it is not replaced: give "
+        "another name",
+        file.string())};
+  }
+}
+
 /// The file of --save-map, if the last pose is in its map: mapping was interrupted. If it is not,
 /// keeps_old_map is set.
 std::optional<MapFile> left_unfinished(SlamConfig& config) {
@@ -77,6 +96,7 @@ std::optional<MapFile> left_unfinished(SlamConfig& config) {
 std::shared_ptr<const MapSnapshot> load_map(SlamConfig& config, std::string& frame) {
   frame = config.robot.markers.survey_file.empty() ? "map" : "survey";
   check_map_options(config);
+  protect_other_files(config);
   std::optional<MapFile> found = left_unfinished(config);
   if (found) {
     logging::info("continues the map in '{}'", config.save_map.string());

@@ -18,8 +18,9 @@ namespace waymark {
 /// @param config  in: as configured; out: load_map, mode and start as they are used.
 /// @param frame   out: name of the frame that the map is in, or will be.
 /// @return nullptr: no map is to be loaded.
-/// @throws SetupError  if the map cannot be read or does not suit this robot, or the options for
-///                     loading and saving contradict each other.
+/// @throws SetupError  if the map cannot be read or does not suit this robot, the options for
+///                     loading and saving contradict each other, or a file that is not a map would
+///                     be replaced.
 std::shared_ptr<const MapSnapshot> load_map(SlamConfig& config, std::string& frame);
 
 /// The surveyed markers. With a loaded map, whose frame is already defined, they are only checked.

@@ -92,6 +92,7 @@ SlamNode::SlamNode(const SlamConfig& config, Inbox& inbox, Outbox& outbox)
 }
 
 void SlamNode::check(const Config& config) {
+  if (!config.slam.state_folder.empty()) check_writable_folder(config.slam.state_folder);
   Config read = config;
   std::string frame;
   const auto map = load_map(read, frame);
@@ -164,7 +165,9 @@ void SlamNode::publish_findings(Timestamp time) {
 }
 
 std::string_view SlamNode::why_no_map() const {
-  if (loaded_map_) return "neither markers nor walls confirmed the pose in the loaded map";
+  if (loaded_map_)
+    return "neither markers nor walls confirmed the pose in the loaded map, or most of them "
+           "contradict it";
   if (!survey_.empty() && !newest_estimate_) return "the survey's frame is not known yet";
   return "no scan was processed yet, or the estimator cannot save maps";
 }

@@ -167,6 +167,18 @@ void ViewerNode::subscribe(Inbox& inbox) {
   });
 }
 
+void ViewerNode::poll(const WallClock& clock) {
+  if (!live_feed_) return;
+  viewer::Silences silences{.slam_s = {},
+                            .estimate_s = clock.silence_s(channels::kSlamEstimate.name),
+                            .lidar_s = clock.silence_s(channels::kLidar.name),
+                            .odometry_s = clock.silence_s(channels::kOdometry.name)};
+  silences.slam_s = silences.estimate_s;
+  if (const auto status_s = clock.silence_s(channels::kSlamStatus.name))
+    silences.slam_s = std::min(*status_s, silences.slam_s.value_or(*status_s));
+  live_feed_->note_silences(silences);
+}
+
 bool ViewerNode::follow(std::int64_t map_id, Timestamp time) {
   using Origin = viewer::CurrentMap::Origin;
   const auto old_map_id = current_map_.id();

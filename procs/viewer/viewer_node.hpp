@@ -39,6 +39,9 @@ class ViewerNode final : public Node {
   /// waits for Ctrl-C.
   void finish() override;
 
+  /// Shows on the live page what is silent.
+  void poll(const WallClock& clock) override;
+
   /// True when a file could not be written, now or earlier, or a map was too large for its files.
   bool failed() const override {
     return archive_failed_ || map_was_cut_ || !folder_.failed_files().empty();

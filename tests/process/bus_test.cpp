@@ -275,6 +275,48 @@ TEST(BusSetup, AnUnusableUrlIsASetupError) {
   EXPECT_THROW((Bus{"no-such-scheme://", {}}), SetupError);
 }
 
+std::string why_refused(const std::string& url) {
+  try {
+    const Bus bus{url, {{"ODOMETRY"}}};
+    return "";
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+}
+
+TEST(BusSetup, AWrongUrlIsNamedAndNoRouteIsAdvised) {
+  for (const char* url : {"239.255.76.67:7667", "upd://239.255.76.67:7667", "nonsense",
+                          "udpm://300.1.1.1:7667", "udpm://239.255.76.67:70000"}) {
+    const std::string why = why_refused(url);
+    EXPECT_NE(why.find(url), std::string::npos) << why;
+    EXPECT_NE(why.find("expected udpm://ADDRESS:PORT"), std::string::npos) << why;
+    EXPECT_EQ(why.find("route"), std::string::npos) << why;
+  }
+  const std::string no_server = why_refused("tcpq://127.0.0.1:1");
+  EXPECT_NE(no_server.find("is its server there?"), std::string::npos) << no_server;
+}
+
+TEST(BusSetup, ForLargeMessagesALargeBufferIsAskedForUnlessTheUrlSaysHowLarge) {
+  EXPECT_EQ(with_large_buffer("udpm://239.255.76.67:7667?ttl=0"),
+            "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=8388608");
+  EXPECT_EQ(with_large_buffer("udpm://"), "udpm://?recv_buf_size=8388608");
+  for (const char* url : {"udpm://239.255.76.67:7667?recv_buf_size=1000", "tcpq://"})
+    EXPECT_EQ(with_large_buffer(url), url);
+}
+
+TEST(BusHeard, ChannelsWithoutASubscriptionAreHeard) {
+  const PrivateNetwork network;
+  Bus bus{network.url(), {{"ODOMETRY"}}};
+  network.send_datagram(lcm_datagram("SCAN", {1, 2, 3}));
+  network.send_datagram(lcm_datagram("SCAN", {1, 2, 3}));
+  bus.publish(pose(1));
+  EXPECT_EQ(bus.receive(milliseconds{1000}), pose(1));
+  const HeardChannels heard = bus.heard();
+  EXPECT_EQ(heard.size(), 2U);
+  EXPECT_EQ(heard.at("SCAN").count, 2);
+  EXPECT_EQ(heard.at("ODOMETRY").count, 1);
+}
+
 TEST(BusSetup, TheCommandLineWinsOverTheEnvironment) {
   setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:1?ttl=0", 1);
   EXPECT_EQ(lcm_url_or_default("memq://"), "memq://");

@@ -30,7 +30,9 @@ import tomllib
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = SOURCE / "docs/robot.md"
 IN_LOCKSTEP = ("recorder", "detector", "slam", "viewer")
+ENDS_FIRST = "slam"  # the others are ended when it has sent its last messages
 LONGEST_END_S = 20
+LONGEST_DRIVE_S = 3600
 MAY_FAIL = "--write-robot"  # the doctor finds what is wrong
 BOARD_FRAMES = 40
 MIRRORED_EVERY = 5
@@ -113,15 +115,20 @@ def commands_of(document):
 
 
 def play(name, arguments):
-    """One of the document's programs, with the simulated robot. The recorder is started when the robot is about to drive."""
+    """One of the document's programs, with the simulated robot, which begins to drive with the recorder."""
     plan = json.loads(pathlib.Path(os.environ["FIRST_HOUR_PLAN"]).read_text())
     stopped = []
     signal.signal(signal.SIGINT, lambda *_: stopped.append(True))
     arguments = [argument for argument in arguments if argument != "--real-time"]
+    if "--for-s" in arguments:
+        at = arguments.index("--for-s")
+        del arguments[at : at + 2]
     if "--http" in arguments:
         arguments[arguments.index("--http") + 1] = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
     if name != "recorder":
         program = subprocess.Popen([f"{plan['build']}/waymark-{name}", *arguments])
+        if name == ENDS_FIRST:
+            return wait_for(program, LONGEST_DRIVE_S)
         while not stopped:
             time.sleep(0.02)  # a robot's programs do not end by themselves
         return wait_for(program)
@@ -133,10 +140,10 @@ def play(name, arguments):
     return wait_for(recorder) or code
 
 
-def wait_for(program):
+def wait_for(program, longest_s=LONGEST_END_S):
     """The simulator has ended: so does the program."""
     try:
-        return program.wait(LONGEST_END_S)
+        return program.wait(longest_s)
     except subprocess.TimeoutExpired:
         program.terminate()
         return 1

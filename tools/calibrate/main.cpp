@@ -4,6 +4,7 @@
 #include "common/errors/exit_codes.hpp"
 #include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
+#include "common/files/writable_folder.hpp"
 #include "common/logging/logging.hpp"
 #include "common/pictures/png.hpp"
 #include "common/runtime/guard.hpp"
@@ -35,6 +36,8 @@ int run(const Options& options) {
   if (std::filesystem::exists(options.out))
     throw SetupError{options.out.string() +
                      ": is there already; give --out another name, or move it away"};
+  check_output_file("--out", options.out);
+  if (!options.coverage.empty()) check_output_file("--coverage", options.coverage);
   const auto board = make_board(options.board);
   const CameraCalibration calibration = calibrate_camera(options.input, board);
   fmt::print("{}", to_text(calibration));

@@ -4,8 +4,11 @@
 #include "common/logging/logging.hpp"
 #include "common/messages/channels.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -18,6 +21,14 @@ constexpr std::array kDataChannels{
     channels::kSlamScan.name,     channels::kSlamTrajectory.name, channels::kSlamCorrection.name,
     channels::kSlamChanges.name,  channels::kSlamCommand.name,    channels::kSlamReply.name,
     channels::kSlamFindings.name, channels::kMapGraph.name};
+
+constexpr std::chrono::seconds kBetweenLines{10};
+constexpr std::size_t kMaxHeldBack = 100;
+
+/// Commands and replies may have no stamp.
+bool may_lack_a_stamp(std::string_view channel) {
+  return channel == channels::kSlamCommand.name || channel == channels::kSlamReply.name;
+}
 
 /// @throws SetupError if the log, or its partial file of a recording that crashed or runs, exists.
 void protect_recordings(const std::filesystem::path& log) {
@@ -67,15 +78,49 @@ RecorderNode::RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox&)
 
 void RecorderNode::record(const Message& message) {
   if (failed_) return;
+  if (!has_stamped_ && message.time == Timestamp{} && may_lack_a_stamp(message.channel) &&
+      held_back_.size() < kMaxHeldBack) {
+    held_back_.push_back(message);
+    return;
+  }
+  write_held_back(message.time);
+  write(message);
+}
+
+/// A command that came before the sensors has no stamp; at time 0, it would begin the log, decades
+/// before everything else.
+void RecorderNode::write_held_back(Timestamp time) {
+  has_stamped_ = true;
+  for (Message& message : std::exchange(held_back_, {})) {
+    message.time = time;
+    write(message);
+  }
+}
+
+void RecorderNode::write(const Message& message) {
+  if (failed_) return;
   try {
     writer_->write(message);
     counters_.add(message.channel + " recorded");
+    ++recent_[message.channel];
   } catch (const std::exception& error) {
     fail(error.what());
   }
 }
 
+void RecorderNode::poll(const WallClock& clock) {
+  if (!last_line_) last_line_ = clock.now;
+  if (clock.now - *last_line_ < kBetweenLines) return;
+  last_line_ = clock.now;
+  if (recent_.empty()) return;
+  std::string text;
+  for (auto& [channel, count] : recent_)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", channel, std::exchange(count, 0));
+  logging::info("recorded in {} s: {}", kBetweenLines.count(), text);
+}
+
 void RecorderNode::finish() {
+  write_held_back({});
   if (failed_) return;
   try {
     writer_->close();

@@ -8,7 +8,10 @@
 #include "common/log/log_file.hpp"
 #include "common/node/node.hpp"
 
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,14 +47,24 @@ class RecorderNode final : public Node {
 
   void finish() override;
 
+  /// Logs every 10 s how many messages of each channel have come in that time.
+  void poll(const WallClock& clock) override;
+
   bool failed() const override { return failed_; }
 
  private:
   void record(const Message& message);
+  void write(const Message& message);
+  /// @param time  for those that were held back.
+  void write_held_back(Timestamp time);
   void fail(const std::string& what);
 
   std::optional<LogWriter> writer_;
   Counters& counters_;
+  std::vector<Message> held_back_{};  ///< without a stamp, before the first one with a stamp
+  bool has_stamped_{false};
+  std::map<std::string, std::int64_t, std::less<>> recent_{};  ///< messages since last_line_
+  std::optional<std::chrono::steady_clock::time_point> last_line_{};
   bool failed_{false};
 };
 

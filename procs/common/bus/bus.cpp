@@ -6,8 +6,11 @@
 #include "common/logging/logging.hpp"
 #include "common/messages/codec.hpp"
 
+#include <fmt/format.h>
 #include <lcm/lcm.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
@@ -35,7 +38,30 @@ constexpr const char* kMalformed = "datagrams rejected: no whole message of LCM"
 constexpr const char* kFragments =
     "datagrams rejected: parts of messages above 65 kB, which need --large-messages";
 
+// A second of 640 x 480 RGB images at 10 Hz.
+constexpr int kLargeBuffer_bytes = 8 << 20;
+constexpr std::string_view kMulticastScheme = "udpm://";
+// Kinds of networks that liblcm 1.3.1 knows.
+constexpr std::array kSchemes{kMulticastScheme, std::string_view{"tcpq://"},
+                              std::string_view{"memq://"}, std::string_view{"file://"}};
+
+/// @throws SetupError for a URL that is wrong whatever the network is.
+void check_url(const std::string& url) {
+  const auto is_of = [&](std::string_view scheme) {
+    return url.starts_with(scheme);
+  };
+  if (std::ranges::none_of(kSchemes, is_of)) {
+    throw SetupError{fmt::format(
+        "cannot join the LCM network {}: expected udpm://ADDRESS:PORT?ttl=N, such as {}, or "
+        "tcpq://HOST:PORT",
+        url, kDefaultUrl)};
+  }
+  multicast_group_of(url);
+}
+
 SetupError no_network(const std::string& url) {
+  if (!url.starts_with(kMulticastScheme))
+    return SetupError{"cannot join the LCM network " + url + ": is its server there?"};
   return SetupError{"cannot join the LCM network " + url +
                     "\n  without a network, give multicast a route over loopback:"
                     "\n    ip link set lo up"
@@ -60,6 +86,13 @@ std::string lcm_url_or_default(const std::string& given_url) {
   return std::string{kDefaultUrl};
 }
 
+std::string with_large_buffer(const std::string& lcm_url) {
+  if (!lcm_url.starts_with(kMulticastScheme) || lcm_url.find("recv_buf_size=") != lcm_url.npos)
+    return lcm_url;
+  const bool has_options = lcm_url.find('?') != lcm_url.npos;
+  return fmt::format("{}{}recv_buf_size={}", lcm_url, has_options ? "&" : "?", kLargeBuffer_bytes);
+}
+
 class Bus::Implementation {
  public:
   Implementation(const std::string& url, const std::vector<Inbox::Subscription>& subscriptions,
@@ -68,7 +101,7 @@ class Bus::Implementation {
                                                                       : kMaxPayloadBytes},
         names_{names},
         publishers_{publishers},
-        lcm_{lcm_create(url.c_str()), &lcm_destroy} {
+        lcm_{create(url, large_messages), &lcm_destroy} {
     if (lcm_ == nullptr) throw no_network(url);
     const auto group =
         large_messages == LargeMessages::kRefused ? multicast_group_of(url) : std::nullopt;
@@ -132,6 +165,11 @@ class Bus::Implementation {
                 static_cast<unsigned>(message.payload.size()));
   }
 
+  HeardChannels heard() const {
+    const std::lock_guard lock{mutex_};
+    return heard_;
+  }
+
   void collect_counts(Counters& counters) {
     const std::lock_guard lock{mutex_};
     if (const std::int64_t lost = datagrams_ ? datagrams_->take_overflowed() : 0; lost > 0)
@@ -147,6 +185,13 @@ class Bus::Implementation {
     std::deque<Message> messages{};
     std::size_t bytes{0};
   };
+
+  /// @return nullptr if the network cannot be joined.
+  static lcm_t* create(const std::string& url, LargeMessages large_messages) {
+    check_url(url);
+    const bool is_large = large_messages == LargeMessages::kAccepted;
+    return lcm_create((is_large ? with_large_buffer(url) : url).c_str());
+  }
 
   void join(const MulticastGroup& group, const std::string& url) {
     try {
@@ -173,6 +218,7 @@ class Bus::Implementation {
                const std::optional<Sender>& sender) {
     const std::lock_guard lock{mutex_};
     const auto now = std::chrono::steady_clock::now();
+    note_heard(heard_, name, now);
     if (sender) owners_.note_activity(*sender, now);
     const auto found = channels_of_.find(name);
     if (found == channels_of_.end()) return;
@@ -265,11 +311,12 @@ class Bus::Implementation {
   std::map<std::string, std::vector<std::string>, std::less<>> channels_of_;
   std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;
   std::optional<DatagramReceiver> datagrams_;  ///< nullopt: liblcm receives instead
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable arrived_;
   std::map<std::string, Queue, std::less<>> queues_;
   std::deque<Queue*> order_;  ///< queue of each waiting message, by arrival
   Counters counts_;
+  HeardChannels heard_;
   ChannelOwners owners_;
   /// Time of the last warning of a rival publisher, by channel.
   std::map<std::string, ChannelOwners::Time, std::less<>> warned_;
@@ -295,6 +342,10 @@ std::optional<Message> Bus::receive(std::chrono::milliseconds timeout) {
 
 void Bus::publish(const Message& message) {
   implementation_->publish(message);
+}
+
+HeardChannels Bus::heard() const {
+  return implementation_->heard();
 }
 
 void Bus::collect_counts(Counters& counters) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/bus/channel_names.hpp"
+#include "common/bus/heard_channels.hpp"
 #include "common/messages/message.hpp"
 #include "common/node/node.hpp"
 
@@ -28,6 +29,10 @@ enum class Publishers {
 
 /// `--lcm-url`, else $LCM_DEFAULT_URL, else the loopback default.
 std::string lcm_url_or_default(const std::string& given_url);
+
+/// The URL, with a request for a receive buffer that holds several large messages, unless it has
+/// one. The kernel grants no more than net.core.rmem_max.
+std::string with_large_buffer(const std::string& lcm_url);
 
 /// Checks that the network can be used, by joining and leaving it.
 /// @throws SetupError as Bus does.
@@ -56,6 +61,10 @@ class Bus {
   /// @throws std::logic_error when the payload does not fit one datagram, or the channel has no
   /// name on the network (ChannelNames::uses()).
   void publish(const Message& message);
+
+  /// All channels that have come, also those without a subscription; only those with one where
+  /// liblcm receives. Large messages are left out unless they are accepted.
+  HeardChannels heard() const;
 
   /// Adds to `counters` the numbers of messages refused or dropped since the last call.
   void collect_counts(Counters& counters);

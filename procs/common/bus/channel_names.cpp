@@ -98,6 +98,10 @@ std::string_view ChannelNames::on_network(std::string_view channel) const {
   return found == names_.end() ? channel : std::string_view{found->second};
 }
 
+bool ChannelNames::has_on_network(std::string_view name) const {
+  return std::ranges::any_of(names_, [&](const auto& entry) { return entry.second == name; });
+}
+
 const std::string& ChannelNames::of_type(const std::vector<std::string>& candidates,
                                          std::int64_t fingerprint) {
   const auto found = std::ranges::find_if(candidates, [&](const std::string& channel) {

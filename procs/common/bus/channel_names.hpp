@@ -31,6 +31,9 @@ class ChannelNames {
   /// does not list, and those of channels in map files only, are returned as they are.
   std::string_view on_network(std::string_view channel) const;
 
+  /// Whether any of our channels has that name on the network.
+  bool has_on_network(std::string_view name) const;
+
   /// @param candidates  channels that share a name on the network.
   /// @return the one whose type has the fingerprint; the first one if none has, so that its handler
   /// rejects the message.

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -134,9 +135,26 @@ std::optional<int> Program::parse(int argc, const char* const* argv) {
   try {
     app_->parse(argc, argv);
     return std::nullopt;
+  } catch (const CLI::RequiredError& error) {
+    const std::string unknown = unknown_subcommand();
+    if (unknown.empty()) return app_->exit(error) == 0 ? kExitOk : kExitUsage;
+    app_->exit(CLI::ExtrasError{unknown, CLI::ExitCodes::ExtrasError});
+    return kExitUsage;
   } catch (const CLI::ParseError& error) {
     return app_->exit(error) == 0 ? kExitOk : kExitUsage;
   }
+}
+
+/// What is wrong with the word that stands where a subcommand is required; empty without one.
+std::string Program::unknown_subcommand() const {
+  if (app_->get_require_subcommand_min() == 0 || !app_->get_subcommands().empty()) return {};
+  const std::vector<std::string> rest = app_->remaining();
+  const auto word = std::ranges::find_if(rest, [](const auto& w) { return !w.starts_with('-'); });
+  if (word == rest.end()) return {};
+  std::string choices;
+  for (const CLI::App* subcommand : app_->get_subcommands([](const CLI::App*) { return true; }))
+    choices += (choices.empty() ? "" : ", ") + subcommand->get_name();
+  return "there is no command '" + *word + "', expected one of " + choices;
 }
 
 int Program::refuse_without(const std::string& missing) {

@@ -103,6 +103,8 @@ class Program : public Command {
  private:
   Program(std::unique_ptr<CLI::App> app);
 
+  std::string unknown_subcommand() const;
+
   std::unique_ptr<CLI::App> owned_;
 };
 

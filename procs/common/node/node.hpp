@@ -7,9 +7,11 @@
 #include "common/messages/codec.hpp"
 #include "common/node/counters.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -83,6 +85,13 @@ class Outbox {
   std::vector<Message> messages_;
 };
 
+/// The wall clock, and the network by it, as a node sees them in real time.
+struct WallClock {
+  std::chrono::steady_clock::time_point now{};
+  /// Seconds since the last message on a channel; nullopt if none has come, or none is heard.
+  std::function<std::optional<double>(std::string_view channel)> silence_s{};
+};
+
 /// Base of DetectorNode, SlamNode, ViewerNode, RecorderNode. A node type also has
 ///   using Config = ...;                               a described configuration struct
 ///   static constexpr ProcessTraits kTraits{...};
@@ -95,11 +104,16 @@ class Node {
   /// The input has ended: publish or write what is left.
   virtual void finish() = 0;
 
+  /// Is called a few times a second in real time only, also while no message comes. Results must
+  /// not depend on it.
+  virtual void poll(const WallClock& /*clock*/) {}
+
   /// True when some output could not be produced, e.g. a file not written. The node logs it when it
   /// happens; the exit code at the end is kExitFailed.
   virtual bool failed() const { return false; }
 
-  /// Channels that a replay needs: each must be in at least one of its logs.
+  /// Channels that this process needs: each must be in at least one of the logs of a replay, and in
+  /// real time one that is silent is named.
   virtual std::vector<std::string_view> needed_channels() const { return {}; }
 };
 

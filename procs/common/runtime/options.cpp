@@ -3,12 +3,10 @@
 
 #include "common/command_line/command_line.hpp"
 #include "common/errors/setup_error.hpp"
+#include "common/files/writable_folder.hpp"
 #include "common/log/log_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include <system_error>
 
 namespace waymark {
 
@@ -52,6 +50,11 @@ ParsedOptions parse_options(int argc, char** argv, const ProcessTraits& traits,
         "--large-messages", options.large_messages,
         "with --real-time: also take messages of several datagrams, such as large images of a "
         "camera driver; only in a network that you trust (see docs/reference.md, Limits)");
+  }
+  if (option_set.for_s) {
+    app.add_option("--for-s", options.for_s,
+                   "with --real-time: end after so many seconds, as by Ctrl-C")
+        .check(positive_number());
   }
   if (option_set.log) {
     app.add_option(
@@ -125,6 +128,7 @@ void check_options(const ProcessOptions& options, const OptionSet& option_set) {
   }
   if (options.large_messages && !options.real_time)
     throw SetupError{"--large-messages needs --real-time"};
+  if (options.for_s && !options.real_time) throw SetupError{"--for-s needs --real-time"};
   if (!is_replay && !options.report.empty()) {
     throw SetupError{"--report needs --log: it is about a replay"};
   }
@@ -136,15 +140,7 @@ void check_options(const ProcessOptions& options, const OptionSet& option_set) {
   std::vector<std::filesystem::path> inputs = inputs_of(options);
   std::erase(inputs, options.load_map);  // the map may be replaced by its extended version
   protect_inputs("--save-map", options.save_map, inputs);
-  const std::filesystem::path folder =
-      options.save_map.has_parent_path() ? options.save_map.parent_path() : ".";
-  std::error_code error;
-  if (!std::filesystem::is_directory(folder, error) && error != std::errc::permission_denied)
-    throw SetupError{"--save-map: there is no folder '" + folder.string() + "'"};
-  if (std::filesystem::is_directory(options.save_map, error))
-    throw SetupError{"--save-map: '" + options.save_map.string() + "' is a folder"};
-  if (::access(folder.c_str(), W_OK) != 0)
-    throw SetupError{"--save-map: cannot write to the folder '" + folder.string() + "'"};
+  check_output_file("--save-map", options.save_map);
 }
 
 }  // namespace waymark

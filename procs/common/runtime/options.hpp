@@ -23,6 +23,7 @@ struct ProcessOptions {
   std::string lcm_url{};
   bool real_time{false};
   bool large_messages{false};
+  std::optional<double> for_s{};  ///< wall-clock time after which the process ends by itself
   std::vector<std::filesystem::path> logs{};
   double skip_s{0.0};               ///< from the first message of the logs
   std::optional<double> until_s{};  ///< from the first message of the logs; nullopt = to their end
@@ -42,6 +43,7 @@ std::vector<std::filesystem::path> inputs_of(const ProcessOptions& options);
 /// Which of the optional options a process has.
 struct OptionSet {
   bool large_messages{false};
+  bool for_s{false};
   bool log{false};
   bool out_log{false};
   bool out_dir{false};

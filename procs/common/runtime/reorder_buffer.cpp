@@ -6,12 +6,28 @@
 #include <algorithm>
 
 namespace waymark {
+namespace {
+
+bool is_unstamped(const Message& message) {
+  return message.time == Timestamp{} && (message.channel == channels::kSlamCommand.name ||
+                                         message.channel == channels::kSlamReply.name);
+}
+
+template <class Type>
+Message with_stamp(Channel<Type> channel, Message message, Timestamp time) {
+  const auto decoded = decode<Type>(message.payload);
+  if (!decoded.message) return message;
+  Type stamped = *decoded.message;
+  stamped.utime = to_us(time);
+  return encode(channel, stamped);
+}
+
+}  // namespace
 
 ReorderBuffer::ReorderBuffer(Duration window) : window_{window} {}
 
 std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
-  if (message.time == Timestamp{} && message.channel == channels::kSlamCommand.name)
-    return {stamped(std::move(message))};
+  if (is_unstamped(message)) return {stamped(std::move(message))};
   if (const OrderProblem problem = order_problem_of(message); problem != OrderProblem::kNone) {
     if (problem == OrderProblem::kLate) {
       counters.add(message.channel + " late, dropped", CountKind::kLoss);
@@ -43,13 +59,13 @@ std::vector<Message> ReorderBuffer::add(Message message, Counters& counters) {
 }
 
 /// A command without a stamp (utime 0) acts now: it gets the newest stamp, so that a replay of the
-/// log executes it at the same place.
+/// log executes it at the same place. So does slam's reply to one that came before all sensors.
+/// Without any message before, they stay as they are; the order begins with a stamped message.
 Message ReorderBuffer::stamped(Message message) const {
-  const auto command = decode<command_t>(message.payload);
-  if (!has_any_ || !command.message) return message;
-  command_t timed = *command.message;
-  timed.utime = to_us(newest_);
-  return encode(channels::kSlamCommand, timed);
+  if (!has_any_) return message;
+  if (message.channel == channels::kSlamReply.name)
+    return with_stamp(channels::kSlamReply, std::move(message), newest_);
+  return with_stamp(channels::kSlamCommand, std::move(message), newest_);
 }
 
 ReorderBuffer::OrderProblem ReorderBuffer::order_problem_of(const Message& message) const {

@@ -26,6 +26,8 @@ namespace waymark {
 /// stamp is wrong. The next message of its channel decides: a newer one confirms it, an older one
 /// drops it.
 ///
+/// Commands and replies without a stamp of their own are released at once.
+///
 /// Memory is bounded, also with a sender whose clock stands still: further messages that would be
 /// set aside are dropped, and when too many wait, the oldest are released.
 class ReorderBuffer {

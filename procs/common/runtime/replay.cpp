@@ -100,28 +100,35 @@ bool report_skipped(const std::vector<Source>& sources) {
 }
 
 /// Reports each log that has no channel of this process, with the channels that it does have. (A
-/// log whose channels are all replaced by later logs is not reported.) @return whether there is
-/// any.
+/// log whose channels are all replaced by later logs is not reported.)
+/// @return whether that is an error: a log has no event, or no log has a channel of this process.
 bool report_useless(const std::vector<Source>& sources,
                     const std::vector<Inbox::Subscription>& subscriptions) {
   std::vector<std::string> wanted;
   for (const auto& subscription : subscriptions)
     wanted.push_back(subscription.channel);
-  bool any = false;
+  const auto is_useful = [&](const Source& source) {
+    return std::ranges::find_first_of(source.all_channels, wanted) != source.all_channels.end();
+  };
+  const bool any_useful = std::ranges::any_of(sources, is_useful);
+  bool any_error = false;
   for (const Source& source : sources) {
-    if (std::ranges::find_first_of(source.all_channels, wanted) != source.all_channels.end())
-      continue;
-    any = true;
+    if (is_useful(source)) continue;
+    const bool is_error = source.all_channels.empty() || !any_useful;
+    any_error = any_error || is_error;
     if (source.all_channels.empty()) {
       logging::error("{}: has no LCM event; is it an LCM log?", source.path.string());
-    } else {
-      logging::error(
-          "{}: has none of the channels that this process reads ({}), but {}; logs of other robots "
-          "are for waymark-import first",
-          source.path.string(), fmt::join(wanted, ", "), fmt::join(source.all_channels, ", "));
+      continue;
     }
+    logging::write(
+        is_error ? logging::Level::kError : logging::Level::kWarn,
+        fmt::format("{}: has none of the channels that this process reads ({}), but {}; {}",
+                    source.path.string(), fmt::join(wanted, ", "),
+                    fmt::join(source.all_channels, ", "),
+                    is_error ? "logs of other robots are for waymark-import first"
+                             : "the other logs are used without it"));
   }
-  return any;
+  return any_error;
 }
 
 /// Channels that occur in the logs.
@@ -213,6 +220,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
                                    : std::nullopt;
   Timestamp last = first;
   std::int64_t num_messages = 0;
+  bool has_begun = false;  // for good: later messages may be stamped earlier, by a clock set back
   bool is_working = true;
   while (Source* source = oldest(sources)) {
     if (stop_signal() != 0) {
@@ -221,7 +229,8 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
     }
     if (end && source->head->time > *end) break;
     last = std::max(last, source->head->time);
-    if (source->head->time < begin) {
+    has_begun = has_begun || source->head->time >= begin;
+    if (!has_begun) {
       source->advance();
       continue;
     }

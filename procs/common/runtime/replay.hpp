@@ -12,9 +12,10 @@ namespace waymark {
 void print_channels(const std::vector<std::filesystem::path>& logs);
 
 /// Replays the logs of the options through the node.
-/// @return exit code. 1: a log has bytes that are not events, or none of the channels that this
-/// process reads; a channel that the node needs is in no log; nothing is left between --skip-s and
-/// --until-s; messages were rejected; or the node failed. 128 + n: ended by signal n.
+/// @return exit code. 1: a log has bytes that are not events, or no event; no log has any of the
+/// channels that this process reads; a channel that the node needs is in no log; nothing is left
+/// between --skip-s and --until-s; messages were rejected; or the node failed. 128 + n: ended by
+/// signal n.
 /// @throws SetupError when a log cannot be opened.
 int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& outbox);
 

@@ -10,6 +10,7 @@
 #include "common/runtime/reorder_buffer.hpp"
 #include "common/runtime/replay.hpp"
 #include "common/runtime/signals.hpp"
+#include "common/runtime/silence_monitor.hpp"
 #include "common/runtime/status.hpp"
 #include "common/runtime/supervisor.hpp"
 
@@ -29,7 +30,8 @@ using std::chrono::steady_clock;
 constexpr milliseconds kPoll{50};
 // How long a participant that has finished answers re-sent ticks if the closing TICK is lost.
 constexpr seconds kLinger{5};
-// Without messages for this long, the user gets a hint. The simulator re-sends a tick sooner.
+constexpr milliseconds kBetweenChecks{250};  // of what is silent
+// Without ticks for this long, the user gets a hint. The simulator re-sends a tick sooner.
 constexpr seconds kNothingHint{10};
 constexpr seconds kSilence{1};  // after this long without a message, no delayed one is expected
 // How long received messages are still processed after a stop signal.
@@ -70,10 +72,12 @@ auto set_up(const Work& work) {
   }
 }
 
+/// Where a live process listens, and how.
 struct Network {
   std::string url;
   ChannelNames names;
   LargeMessages large_messages;  ///< for real time; in lockstep nobody sends them
+  std::optional<double> for_s;   ///< in real time: how long to listen; nullopt: until a signal
 };
 
 /// Thrown through LockstepParticipant, so that a tick on which the node failed is not acknowledged.
@@ -209,7 +213,39 @@ class RealTimeFeed {
   Timestamp newest_{};
 };
 
-/// Live: processes what arrives until a signal asks to stop or the node throws.
+/// Several times a second: logs which channels are silent, and polls the node.
+class WallClockChecks {
+ public:
+  WallClockChecks(const Bus& bus, const Network& network, Node& node, const Inbox& inbox)
+      : bus_{bus},
+        names_{network.names},
+        node_{node},
+        monitor_{node.needed_channels(), inbox.subscriptions(), network.names, network.url,
+                 steady_clock::now()} {}
+
+  void run_when_due() {
+    const auto now = steady_clock::now();
+    if (now - last_ < kBetweenChecks) return;
+    last_ = now;
+    const HeardChannels heard = bus_.heard();
+    for (const SilenceMonitor::Line& line : monitor_.check(heard, now))
+      logging::write(line.level, line.text);
+    node_.poll({now, [&](std::string_view channel) -> std::optional<double> {
+                  const auto found = heard.find(names_.on_network(channel));
+                  if (found == heard.end()) return std::nullopt;
+                  return std::chrono::duration<double>{now - found->second.last}.count();
+                }});
+  }
+
+ private:
+  const Bus& bus_;
+  const ChannelNames& names_;
+  Node& node_;
+  SilenceMonitor monitor_;
+  steady_clock::time_point last_{};
+};
+
+/// Live: processes what arrives until a signal asks to stop, the time is over, or the node throws.
 int run_real_time(const ProcessTraits& traits, const Network& network, Node& node, Inbox& inbox,
                   Outbox& outbox) {
   Bus bus{network.url, inbox.subscriptions(), network.large_messages, network.names,
@@ -218,18 +254,19 @@ int run_real_time(const ProcessTraits& traits, const Network& network, Node& nod
   RealTimeFeed feed{bus, inbox, outbox};
   logging::info("ready, real time on {}", network.url);
   notify_supervisor(kReady);
-  const auto start = steady_clock::now();
-  bool hinted = false;
+  WallClockChecks checks{bus, network, node, inbox};
   bool is_working = true;
-  while (is_working && stop_signal() == 0) {
+  const auto start = steady_clock::now();
+  const auto is_time_over = [&] {
+    const std::chrono::duration<double> listened = steady_clock::now() - start;
+    return network.for_s && listened.count() >= *network.for_s;
+  };
+  while (is_working && stop_signal() == 0 && !is_time_over()) {
     const auto last = feed.last_arrival();
     is_working = run_and_log_errors([&] {
       if (!feed.receive_one(kPoll) && last && steady_clock::now() - *last > kSilence) feed.flush();
+      checks.run_when_due();
     });
-    if (!hinted && !last && steady_clock::now() - start > kNothingHint) {
-      logging::warn("nothing has come on {} so far; is it the robot's LCM network?", network.url);
-      hinted = true;
-    }
     if (reporter.report(bus, inbox.counters(), feed.newest(), "real-time"))
       notify_supervisor(kAlive);
   }
@@ -284,7 +321,7 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
     const Network network{
         lcm_url_or_default(options.lcm_url),
         description.channel_names ? description.channel_names(options) : ChannelNames{},
-        options.large_messages ? LargeMessages::kAccepted : LargeMessages::kRefused};
+        options.large_messages ? LargeMessages::kAccepted : LargeMessages::kRefused, options.for_s};
     const auto run = options.real_time ? run_real_time : run_lockstep;
     try {
       return run(description.traits, network, *node, inbox, outbox);

@@ -80,6 +80,7 @@ ProcessDescription describe_process() {
   ProcessDescription description;
   description.traits = NodeType::kTraits;
   description.option_set = {.large_messages = true,
+                            .for_s = kIsRecorder,
                             .log = !kIsRecorder,
                             .out_log = !kWritesFolder,
                             .out_dir = kWritesFolder,

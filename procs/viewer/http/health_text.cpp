@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace waymark::viewer {
 namespace {
@@ -13,6 +14,36 @@ namespace {
 constexpr double kCameraSilent_s = 2.0;
 // Longer than a robot at walking pace takes between markers 4 m apart.
 constexpr double kMarkerOverdue_s = 5.0;
+
+// Ten periods of slam's estimates, which come at the LiDAR's rate; two of its statuses.
+constexpr double kSlamSilent_s = 2.0;
+constexpr double kSensorSilent_s = 2.0;
+
+bool is_above(const std::optional<double>& silence_s, double limit_s) {
+  return silence_s && *silence_s > limit_s;
+}
+
+bool is_silent(const LiveView& view) {
+  return is_above(view.silences.estimate_s, kSlamSilent_s);
+}
+
+/// Slam has ended or hangs, or it has no input from which to estimate.
+std::string silence_sentence(const Silences& silences) {
+  if (is_above(silences.slam_s, kSlamSilent_s))
+    return fmt::format("Slam has been silent for {:.0f} s: it has ended, or hangs.",
+                       *silences.slam_s);
+  return fmt::format("Slam has sent no pose for {:.0f} s.", *silences.estimate_s);
+}
+
+std::string silent_sensors_sentence(const Silences& silences) {
+  std::string text;
+  for (const auto& [name, silence_s] :
+       {std::pair{"LIDAR", silences.lidar_s}, std::pair{"ODOMETRY", silences.odometry_s}}) {
+    if (is_above(silence_s, kSensorSilent_s))
+      text += fmt::format(" {} has been silent for {:.0f} s.", name, *silence_s);
+  }
+  return text;
+}
 
 bool is_turn(const WeakAxis& axis) {
   return std::abs(axis.direction.z()) > axis.direction.head<2>().norm();
@@ -68,6 +99,7 @@ std::string findings_sentence(const std::vector<Finding>& findings) {
 }  // namespace
 
 std::string_view health_name(const LiveView& view) {
+  if (is_silent(view)) return "silent";
   if (view.estimate) return name_of(view.estimate->health);
   return view.is_unplaced ? name_of(Health::kInitialising) : "waiting";
 }
@@ -92,9 +124,15 @@ std::optional<double> seconds_since(const std::optional<Timestamp>& then, Timest
 }
 
 std::string health_reason(const LiveView& view) {
-  if (!view.estimate && !view.is_unplaced) return "Nothing has come from slam yet.";
-  std::string reason = view.estimate ? state_sentence(*view.estimate)
-                                     : std::string{state_sentence(Health::kInitialising)};
+  std::string reason{"Nothing has come from slam yet."};
+  if (is_silent(view))
+    reason = silence_sentence(view.silences);
+  else if (view.estimate)
+    reason = state_sentence(*view.estimate);
+  else if (view.is_unplaced)
+    reason = state_sentence(Health::kInitialising);
+  reason += silent_sensors_sentence(view.silences);
+  if (!view.estimate && !view.is_unplaced) return reason;
   const auto since_camera_s = seconds_since(view.last_camera, view.time);
   const auto since_marker_s = seconds_since(view.last_marker, view.time);
   if (since_camera_s && *since_camera_s > kCameraSilent_s) {

@@ -9,7 +9,8 @@
 
 namespace waymark::viewer {
 
-/// "tracking", "degenerate", ...; "waiting" before the first message of slam.
+/// "tracking", "degenerate", ...; "waiting" before the first message of slam; "silent" when slam
+/// has sent no estimate for 2 s.
 std::string_view health_name(const LiveView& view);
 
 std::string_view source_name(WeakAxisSource source);

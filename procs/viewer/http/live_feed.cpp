@@ -147,6 +147,11 @@ void LiveFeed::add_findings(Timestamp time, const std::vector<Finding>& findings
   advance_to(time);
 }
 
+void LiveFeed::note_silences(const Silences& silences) {
+  current_.silences = silences;
+  post_when_due();
+}
+
 void LiveFeed::grow_path(const Se2& map_from_base) {
   const PathPoint point{static_cast<float>(map_from_base.x()),
                         static_cast<float>(map_from_base.y())};
@@ -167,9 +172,20 @@ void LiveFeed::advance_to(Timestamp time) {
     current_.time = std::max(current_.time, time);
     clock_steps_.note_consistent();
   } else if (clock_steps_.note_inconsistent(time)) {
-    current_.time = time;
+    follow_clock(time);
   }
   post_when_due();
+}
+
+void LiveFeed::follow_clock(Timestamp time) {
+  const Timestamp before = current_.time;
+  const Duration step = clock_steps_.first_inconsistent() - before;
+  for (auto* last : {&current_.last_camera, &current_.last_marker}) {
+    // What came since the step has a stamp of the new clock.
+    const bool is_of_old_clock = *last && abs(**last - before) < abs(**last - time);
+    if (is_of_old_clock) **last += step;
+  }
+  current_.time = time;
 }
 
 void LiveFeed::post_when_due() {

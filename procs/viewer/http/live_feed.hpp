@@ -41,6 +41,9 @@ class LiveFeed {
   /// @param findings  all findings so far.
   void add_findings(Timestamp time, const std::vector<Finding>& findings);
 
+  /// In real time, also while no message comes.
+  void note_silences(const Silences& silences);
+
   /// Posts the present view, also if it has to wait for readers.
   void post_last();
 
@@ -48,6 +51,8 @@ class LiveFeed {
   /// Advances the current time to a message's stamp; ignores single wrong stamps, and follows a
   /// clock that was set.
   void advance_to(Timestamp time);
+  /// Shifts the times that are compared with the current one when the clock is set.
+  void follow_clock(Timestamp time);
   void post_when_due();
   ViewPtr snapshot();
   void grow_path(const Se2& map_from_base);

@@ -56,6 +56,15 @@ struct ProcessState {
       losses{};  ///< counts of lost or rejected messages
 };
 
+/// For how long channels have been silent [s], by the wall clock; nullopt: never heard. All are
+/// nullopt where time is the messages' own, in lockstep and in replays.
+struct Silences {
+  std::optional<double> slam_s{};      ///< all of slam
+  std::optional<double> estimate_s{};  ///< its estimates
+  std::optional<double> lidar_s{};
+  std::optional<double> odometry_s{};
+};
+
 using PathPoint = std::array<float, 2>;  ///< (x, y) [m], map frame
 
 struct LiveView {
@@ -74,6 +83,7 @@ struct LiveView {
   std::optional<Timestamp> last_camera{};  ///< last frame or detections, with markers or without
   std::optional<Timestamp> last_marker{};  ///< last estimate with a marker sighting
   std::vector<ProcessState> processes{};
+  Silences silences{};
   std::size_t path_begin{0};   ///< index of the first path point in the present map
   std::size_t path_length{0};  ///< number of points of ViewStore::path() up to this view
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/http/view_store.hpp"
 
+#include "common/time/clock_step_detector.hpp"
+
 #include <algorithm>
 
 namespace waymark::viewer {
@@ -40,6 +42,10 @@ void ViewStore::store(const ViewPtr& view, std::span<const PathPoint> path_growt
   path_.insert(path_.end(), path_growth.begin(), path_growth.end());
   // When message time jumps back, the history begins again.
   if (!history_.empty() && view->time < history_.back()->time) history_.clear();
+  // A view before the first stamped message would stretch the history back to time 0.
+  const bool is_first_stamp = !history_.empty() && history_.back()->time == Timestamp{} &&
+                              view->time > Timestamp{} + ClockStepDetector::kLongestPause;
+  if (is_first_stamp) history_.clear();
   if (history_.empty()) history_spacing_ = kFirstSpacing;
   if (!history_.empty() && view->time - history_.back()->time < history_spacing_) return;
   history_.push_back(view);

@@ -156,6 +156,11 @@ TEST(CalibrateProgram, TooFewViewsGive1AndUnusableInputGives2) {
   const Ended other = calibrate("camera " + few + " --dictionary DICT_4X4_50" + out);
   EXPECT_EQ(other.code, 1);
   EXPECT_THAT(other.out, HasSubstr("5 frames without the board: view_100.png"));
+  const std::string nowhere = (folder.path() / "none/camera.toml").string();
+  const Ended unwritable = calibrate("camera " + few + " --out " + nowhere);
+  EXPECT_EQ(unwritable.code, 2);
+  EXPECT_THAT(unwritable.errors, HasSubstr("--out: there is no folder"));
+  EXPECT_EQ(unwritable.out, "") << "no work before the refusal";
   for (const std::string& arguments :
        {std::string{}, "camera" + out, "camera " + few, "camera " + empty + out,
         "camera " + text + out, "camera " + few + "/missing" + out,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/runtime/reorder_buffer.hpp"
 
+#include "common/messages/codec.hpp"
+
 #include <gtest/gtest.h>
 
 namespace waymark {
@@ -93,6 +95,24 @@ TEST(ReorderBuffer, AStampInTheFutureAffectsItsOwnMessageOnly) {
     EXPECT_EQ(streamed.counters.get("A rejected: time jumps ahead"), 4) << ahead_us;
     EXPECT_EQ(streamed.counters.total(CountKind::kLoss), 0) << ahead_us;
   }
+}
+
+TEST(ReorderBuffer, ACommandAndItsReplyBeforeTheSensorsDoNotSetTheTime) {
+  Counters counters;
+  ReorderBuffer buffer{Duration{0}};
+  const Message command = encode(channels::kSlamCommand, command_t{});
+  reply_t done{};
+  done.state = reply_t::STATE_DONE;
+  const Message reply = encode(channels::kSlamReply, done);
+  EXPECT_EQ(buffer.add(command, counters), std::vector{command});
+  EXPECT_EQ(buffer.add(reply, counters), std::vector{reply});
+  int released = 0;
+  for (int i = 0; i < 30; ++i)
+    released += static_cast<int>(buffer.add(at(3600 * kSecond_us + 50'000 * i), counters).size());
+  EXPECT_EQ(released, 30);
+  EXPECT_EQ(buffer.add(reply, counters).at(0).time,
+            timestamp_from_us(3600 * kSecond_us + 29 * 50'000));
+  EXPECT_EQ(counters.total(CountKind::kRejection) + counters.total(CountKind::kLoss), 0);
 }
 
 TEST(ReorderBuffer, AfterAPauseNothingIsLost) {

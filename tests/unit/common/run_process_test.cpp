@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -59,6 +60,58 @@ TEST(RunProcess, LargeMessagesNeedRealTime) {
   const Refused refused = run("unused", {"--large-messages"});
   EXPECT_EQ(refused.exit_code, kExitUsage);
   EXPECT_THAT(refused.output, HasSubstr("--large-messages needs --real-time"));
+}
+
+TEST(RunProcess, ATimeToListenNeedsRealTime) {
+  ::testing::internal::CaptureStderr();
+  std::vector<std::string> words{"program", "--for-s", "5"};
+  std::vector<char*> arguments{words[0].data(), words[1].data(), words[2].data()};
+  const int exit_code = run_described_process(
+      3, arguments.data(),
+      {.traits = {"timed", "Does nothing.", false}, .option_set = {.for_s = true}});
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("--for-s needs --real-time"));
+  EXPECT_EQ(exit_code, kExitUsage);
+}
+
+/// Counts the polls.
+class PolledNode final : public Node {
+ public:
+  explicit PolledNode(int& polls, Inbox& inbox) : polls_{polls} {
+    inbox.on<pose2D_t>(channels::kOdometry, [](const pose2D_t&) {});
+  }
+
+  void poll(const WallClock& clock) override {
+    EXPECT_FALSE(clock.silence_s("ODOMETRY")) << "nothing has come";
+    ++polls_;
+  }
+
+  void finish() override {}
+
+ private:
+  int& polls_;
+};
+
+TEST(RunProcess, InRealTimeItEndsAfterTheGivenTimeAndTheNodeIsPolledMeanwhile) {
+  int polls = 0;
+  std::vector<std::string> words{"program", "--real-time", "--for-s",
+                                 "1.2",     "--lcm-url",   "memq://"};
+  std::vector<char*> arguments;
+  for (std::string& word : words)
+    arguments.push_back(word.data());
+  ::testing::internal::CaptureStderr();
+  const auto start = std::chrono::steady_clock::now();
+  const int exit_code =
+      run_described_process(static_cast<int>(arguments.size()), arguments.data(),
+                            {.traits = {"listening", "Listens.", false},
+                             .option_set = {.for_s = true},
+                             .make_node = [&](const ProcessOptions&, Inbox& inbox, Outbox&) {
+                               return std::make_unique<PolledNode>(polls, inbox);
+                             }});
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("nothing came on memq://"));
+  EXPECT_EQ(exit_code, kExitFailed);
+  EXPECT_GE(took.count(), 1.2);
+  EXPECT_GE(polls, 2);
 }
 
 TEST(RunProcess, AFileThatANodeCannotExamineIsASetupError) {

@@ -77,7 +77,31 @@ TEST(WritableFolder, WhereNoneCanBeTheErrorNamesFolderAndReason) {
   } catch (const SetupError& error) {
     EXPECT_THAT(error.what(), HasSubstr(file.string() + ": files cannot be written there ("));
   }
+  EXPECT_THROW(check_writable_folder(file), SetupError);
+  EXPECT_THROW(check_writable_folder(file / "deeper"), SetupError);
   std::filesystem::remove(file);
+}
+
+TEST(WritableFolder, IsCheckedWithoutBeingMade) {
+  const auto folder = std::filesystem::path{::testing::TempDir()} / "checked_folder_test";
+  EXPECT_NO_THROW(check_writable_folder(folder / "deeper"));
+  EXPECT_NO_THROW(check_writable_folder("a_name_in_the_present_folder"));
+  EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
+TEST(OutputFile, IsRefusedWhereItCannotBeWrittenWithTheOptionsName) {
+  const auto why_refused = [](const std::filesystem::path& file) -> std::string {
+    try {
+      check_output_file("--out", file);
+      return "";
+    } catch (const SetupError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(why_refused("/no/such/folder/a.toml"), "--out: there is no folder '/no/such/folder'");
+  EXPECT_EQ(why_refused(::testing::TempDir()), "--out: '" + ::testing::TempDir() + "' is a folder");
+  EXPECT_EQ(why_refused(std::filesystem::path{::testing::TempDir()} / "a.toml"), "");
+  EXPECT_EQ(why_refused("a.toml"), "");
 }
 
 }  // namespace

@@ -86,6 +86,22 @@ TEST_F(HealthText, SaysWhenTheScanDoesNotFitOrSlamSendsNothing) {
   EXPECT_EQ(health_reason(view_), "Nothing has come from slam yet.");
 }
 
+TEST_F(HealthText, SaysThatSlamIsSilentInsteadOfItsLastHealth) {
+  view_.silences = {.slam_s = 0.5, .estimate_s = 0.5, .lidar_s = 0.5, .odometry_s = 0.5};
+  EXPECT_EQ(health_name(view_), "tracking");
+  view_.silences = {.slam_s = 7.0, .estimate_s = 7.2, .lidar_s = 0.5, .odometry_s = 0.5};
+  EXPECT_EQ(health_name(view_), "silent");
+  EXPECT_EQ(health_reason(view_), "Slam has been silent for 7 s: it has ended, or hangs.");
+  view_.silences.slam_s = 0.5;
+  view_.silences.odometry_s = 8.0;
+  EXPECT_EQ(health_name(view_), "silent");
+  EXPECT_EQ(health_reason(view_),
+            "Slam has sent no pose for 7 s. ODOMETRY has been silent for 8 s.");
+  view_.silences = {.slam_s = 0.1, .estimate_s = 0.1, .lidar_s = 3.0, .odometry_s = 0.1};
+  EXPECT_EQ(health_name(view_), "tracking");
+  EXPECT_THAT(health_reason(view_), EndsWith(" LIDAR has been silent for 3 s."));
+}
+
 ViewPtr view_at(double time_s, std::uint64_t number) {
   LiveView view;
   view.time = at_s(time_s);
@@ -104,6 +120,13 @@ TEST(ViewStore, KeepsAnEvenHistoryOfBoundedSize) {
     // Evenly spread, the sparsest history of 10 000 s has half the largest number of views.
     EXPECT_GT(shown_s, time_s - 2.0 * 10'000.0 / ViewStore::kMaxHistory - 1.0);
   }
+}
+
+TEST(ViewStore, TheHistoryBeginsWithTheFirstStampNotWithTime0) {
+  ViewStore views;
+  for (const double time_s : {0.0, 0.0, 1234.0, 1235.0})
+    views.post(view_at(time_s, 1), {});
+  EXPECT_EQ(views.history().first, at_s(1234.0));
 }
 
 TEST(ViewStore, WaitsUntilThereIsANewerView) {
@@ -189,6 +212,36 @@ TEST(LiveFeed, FollowsAClockThatIsSetBack) {
   for (int i = 0; i < 30; ++i)
     feed.add_markers(at_s(500.0 + i), {});
   EXPECT_EQ(views.newest()->time, at_s(529.0));
+}
+
+TEST(LiveFeed, WhenTheClockIsSetTheTimesSinceMarkerAndCameraGoOn) {
+  for (const double step_s : {-900.0, 3600.0}) {
+    ViewStore views;
+    LiveFeed feed{views, "run", LiveFeed::Pace::kMessageTime};
+    slam_estimate_t with_marker{};
+    with_marker.has_pose = 1;
+    with_marker.markers_in_view = 1;
+    feed.add(with_marker, {.time = at_s(1000.0)});
+    marker_detections_t detections{};
+    for (int i = 1; i <= 60; ++i) {
+      const double time_s = 1000.0 + 0.1 * i + (i > 20 ? step_s : 0.0);
+      feed.add_markers(at_s(time_s), {});
+      detections.utime = to_us(at_s(time_s));
+      if (i == 25) feed.add(detections);
+    }
+    feed.post_last();
+    const LiveView& view = *views.newest();
+    EXPECT_NEAR(*seconds_since(view.last_marker, view.time), 6.0, 0.2) << step_s;
+    EXPECT_NEAR(*seconds_since(view.last_camera, view.time), 3.5, 0.2) << step_s;
+  }
+}
+
+TEST(LiveFeed, UpdatesWithoutMessagesWhenItIsToldOfSilence) {
+  ViewStore views;
+  LiveFeed feed{views, "run", LiveFeed::Pace::kWallClock};
+  feed.note_silences({.slam_s = 3.0, .estimate_s = 3.0});
+  ASSERT_NE(views.newest(), nullptr);
+  EXPECT_EQ(health_name(*views.newest()), "silent");
 }
 
 TEST(LiveFeed, UpdatesSlowlyWithoutClients) {
