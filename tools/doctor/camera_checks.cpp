@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace waymark {
 namespace {
@@ -112,11 +113,35 @@ Check no_sightings(const char* name) {
                    "that start and stop while one is in view");
 }
 
+/// The checks that compare the camera with the motion, where the stamps of the two do not fit.
+std::vector<Check> checks_with_wrong_clocks(const ClockFindings& clocks, const RobotConfig& robot,
+                                            const DoctorInput& input) {
+  const char* const cause = clocks.camera_late_s ? "camera_time_offset" : "time_offset";
+  std::vector<Check> checks;
+  for (const char* name : {"focal_length", "marker_size", "camera_yaw"}) {
+    checks.push_back(unchecked(name, "the stamps of the sensors do not fit",
+                               fmt::format("first see {}", cause)));
+  }
+  if (!clocks.camera_late_s) {
+    checks.push_back(unchecked("camera_time_offset", "the stamps of the sensors do not fit",
+                               "first see time_offset"));
+    return checks;
+  }
+  const double late_s = robot.camera.late_s + *clocks.camera_late_s;
+  checks.push_back(
+      {"camera_time_offset", Verdict::kFail,
+       fmt::format("the stamps of the camera are {:.1f} s {} than those of {}", std::abs(late_s),
+                   late_s > 0.0 ? "later" : "earlier",
+                   input.odometry_channel.empty() ? "odometry" : input.odometry_channel),
+       "stamp both with one clock, frames when they are exposed", 1e3 * late_s});
+  return checks;
+}
+
 }  // namespace
 
 std::vector<Check> check_camera(const DoctorInput& input,
                                 const std::optional<CameraCalibration>& calibration,
-                                RobotConfig& robot) {
+                                const ClockFindings& clocks, RobotConfig& robot) {
   std::vector<Check> checks;
   if (!input.camera) {
     return {unchecked(
@@ -144,6 +169,11 @@ std::vector<Check> check_camera(const DoctorInput& input,
     if (is_worth_writing(verdict, deviation, measured.sigma, limits)) write();
     checks.push_back({name, verdict, finding, to_do, unit * measured.value});
   };
+  if (clocks.lidar_is_unrelated || clocks.camera_late_s) {
+    std::ranges::move(checks_with_wrong_clocks(clocks, described, input),
+                      std::back_inserter(checks));
+    return checks;
+  }
   if (!calibration) {
     for (const char* name : {"focal_length", "marker_size", "camera_yaw", "camera_time_offset"})
       checks.push_back(no_sightings(name));

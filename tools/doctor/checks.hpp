@@ -28,17 +28,26 @@ Check check_scans_fit(const ImportedLog& log, const LidarMotions& motions);
 Check check_odometry_moves(const ImportedLog& log);
 Check check_mirror(const std::optional<TurnComparison>& turns, RobotConfig& robot);
 Check check_turn_scale(const std::optional<TurnComparison>& turns);
-Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig& robot);
+Check check_time_offset(const DoctorInput& input, const std::optional<TurnComparison>& turns,
+                        RobotConfig& robot);
+/// For each check that compares motions of LiDAR and odometry, where their turns are contradictory.
+Check unrelated_motions(std::string name);
 Check check_distance_scale(const std::optional<HandEye>& calibration);
 Check check_backing_up(const ImportedLog& log);
 /// One check each for x, y and yaw of the LiDAR.
 std::vector<Check> check_mounting(const DoctorInput& input,
                                   const std::optional<HandEye>& calibration, RobotConfig& robot);
 
+/// What the clocks of the sensors rule out in the calibration of the camera.
+struct ClockFindings {
+  bool lidar_is_unrelated{false};         ///< the LiDAR's turns and odometry's are contradictory
+  std::optional<double> camera_late_s{};  ///< a delay of seconds, relative to odometry
+};
+
 /// All checks of camera and markers; a single unchecked one when the log has neither.
 std::vector<Check> check_camera(const DoctorInput& input,
                                 const std::optional<CameraCalibration>& calibration,
-                                RobotConfig& robot);
+                                const ClockFindings& clocks, RobotConfig& robot);
 /// @pre the log has a camera.
 Check check_camera_drops(const DoctorInput& input);
 

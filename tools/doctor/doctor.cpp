@@ -2,6 +2,7 @@
 #include "doctor/doctor.hpp"
 
 #include "doctor/checks.hpp"
+#include "doctor/motion/far_offset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ namespace {
 // the scale is 1 with kUnmeasuredScaleSigma, as for wheels whose description is unchecked.
 constexpr double kGoodScaleSigma = 0.01;
 constexpr double kUnmeasuredScaleSigma = 0.1;
+constexpr double kOtherClock_s = 1.0;  // a driver's delay is shorter
 
 /// The log with the LiDAR's measured mounting, and with mirrored scans corrected.
 ImportedLog with_lidar(ImportedLog log, const LidarConfig& lidar, bool is_mirrored) {
@@ -45,6 +47,18 @@ std::optional<CameraCalibration> calibrate(const DoctorInput& input, ImportedLog
                           input.described->markers, log, lidar_late, {distance.sigma, turn.sigma});
 }
 
+/// A delay of the camera's stamps of seconds, if there is one.
+std::optional<double> camera_delay_s(const DoctorInput& input) {
+  if (!input.camera || !input.described) return std::nullopt;
+  // Both were put onto the LiDAR's clock by what was added to each.
+  const Duration by_clocks = input.log.odometry_shift - input.log.images_shift;
+  const bool has_own_clock = input.log.images_shift != Duration{0};
+  if (has_own_clock && std::abs(to_seconds(by_clocks)) > kOtherClock_s)
+    return to_seconds(by_clocks);
+  return far_camera_late_s(input.camera->sightings, input.described->camera.base_from_camera(),
+                           input.log.odometry);
+}
+
 }  // namespace
 
 Diagnosis diagnose(const DoctorInput& input, const ShowProgress& progress) {
@@ -67,14 +81,21 @@ Diagnosis diagnose(const DoctorInput& input, const ShowProgress& progress) {
   checks.push_back(check_odometry_moves(input.log));
   checks.push_back(check_mirror(turns, diagnosis.robot));
   checks.push_back(check_turn_scale(turns));
-  checks.push_back(check_time_offset(turns, diagnosis.robot));
-  checks.push_back(check_distance_scale(calibration));
-  std::vector<Check> mounting = check_mounting(input, calibration, diagnosis.robot);
+  checks.push_back(check_time_offset(input, turns, diagnosis.robot));
+  const bool is_unrelated = turns && turns->are_contradictory();
+  checks.push_back(is_unrelated ? unrelated_motions("odometry_distance_scale")
+                                : check_distance_scale(calibration));
+  std::vector<Check> mounting =
+      is_unrelated ? std::vector{unrelated_motions("lidar_x"), unrelated_motions("lidar_y"),
+                                 unrelated_motions("lidar_yaw")}
+                   : check_mounting(input, calibration, diagnosis.robot);
   const ImportedLog placed = with_lidar(input.log, diagnosis.robot.lidar, is_mirrored);
-  checks.push_back(check_backing_up(placed));
+  checks.push_back(is_unrelated ? unrelated_motions("backing_up") : check_backing_up(placed));
   std::ranges::move(mounting, std::back_inserter(checks));
   const auto camera = calibrate(input, placed, turns, calibration, late);
-  std::ranges::move(check_camera(input, camera, diagnosis.robot), std::back_inserter(checks));
+  const ClockFindings clocks{is_unrelated, camera_delay_s(input)};
+  std::ranges::move(check_camera(input, camera, clocks, diagnosis.robot),
+                    std::back_inserter(checks));
   return diagnosis;
 }
 

@@ -110,6 +110,26 @@ ImportedLog read_log(const std::filesystem::path& file, const Contents& contents
   }
 }
 
+/// A recorder that was killed leaves its log under another name.
+void check_is_there(const std::filesystem::path& file) {
+  const std::filesystem::path part = part_path_of(file);
+  if (std::filesystem::exists(file) || !std::filesystem::exists(part)) return;
+  throw SetupError{fmt::format(
+      "{}: there is no such file, but '{}': its recorder runs still, or was killed; give that one, "
+      "which is complete up to the last seconds",
+      file.string(), part.string())};
+}
+
+ImportedLog read_as_carmen(const std::filesystem::path& file, ImportReport& report) {
+  try {
+    return read_carmen_log(file, {}, report);
+  } catch (const NotACarmenLog&) {
+    throw SetupError{file.string() +
+                     ": is no log: neither an LCM log nor a bag of ROS, and no line begins with a "
+                     "keyword of CARMEN's logs"};
+  }
+}
+
 void estimate_noise(DoctorInput& input) {
   ImportedLog& log = input.log;
   WallScatter scatter;
@@ -132,6 +152,7 @@ Silence silence_of(const DoctorInput& input, const std::string& channel) {
 DoctorInput read_input(const std::filesystem::path& file,
                        const std::vector<std::filesystem::path>& robot, const InputChannels& wanted,
                        const ShowProgress& progress) {
+  check_is_there(file);
   DoctorInput input{.report = {file, AddressUnit::kByte}, .mounting = Mounting::kInLog};
   if (is_lcm_log(file)) {
     const Contents contents = contents_of(file);
@@ -147,7 +168,7 @@ DoctorInput read_input(const std::filesystem::path& file,
     input.log = read_rosbag(file, {.without_images = true}, input.report);
   } else {
     input.report.set_address_unit(AddressUnit::kLine);
-    input.log = read_carmen_log(file, {}, input.report);
+    input.log = read_as_carmen(file, input.report);
   }
   std::vector<std::filesystem::path> descriptions = robot;
   if (descriptions.empty() && std::filesystem::exists(file.parent_path() / "robot.toml"))
@@ -175,7 +196,8 @@ DoctorInput read_input(const std::filesystem::path& file,
     }
     if (input.camera) {
       for (CameraSighting& sighting : input.camera->sightings)
-        sighting.time -= duration_from_seconds(input.described->camera.late_s);
+        sighting.time +=
+            input.log.images_shift - duration_from_seconds(input.described->camera.late_s);
     }
   }
   estimate_noise(input);

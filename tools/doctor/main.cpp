@@ -3,6 +3,7 @@
 #include "common/errors/exit_codes.hpp"
 #include "common/errors/setup_error.hpp"
 #include "common/files/whole_file.hpp"
+#include "common/files/writable_folder.hpp"
 #include "common/runtime/guard.hpp"
 #include "common/runtime/progress.hpp"
 #include "doctor/live_log.hpp"
@@ -53,9 +54,12 @@ DoctorInput read(const Options& options) {
 }
 
 int run(const Options& options) {
-  if (!options.write_robot.empty() && std::filesystem::exists(options.write_robot)) {
-    throw SetupError{options.write_robot.string() +
-                     ": is there already; give --write-robot another name, or move it away"};
+  if (!options.write_robot.empty()) {
+    if (std::filesystem::exists(options.write_robot)) {
+      throw SetupError{options.write_robot.string() +
+                       ": is there already; give --write-robot another name, or move it away"};
+    }
+    check_output_file("--write-robot", options.write_robot);
   }
   const DoctorInput input = options.seconds > 0 ? listen(options) : read(options);
   Progress scans{"scans"};

@@ -29,7 +29,26 @@ Check no_motions(std::string name) {
                    "record a log of a minute with turns, in a room rather than a bare corridor");
 }
 
+constexpr const char* kUnrelated = "turns of LiDAR and odometry have nothing to do with each other";
+constexpr const char* kOneClock = "stamp both with one clock, when they are measured";
+
+/// "3.0 s later than those of ODOMETRY"
+std::string later_than(double late_s, std::string_view other) {
+  return fmt::format("{:.1f} s {} than those of {}", std::abs(late_s),
+                     late_s > 0.0 ? "later" : "earlier", other);
+}
+
+std::string name_or(const std::string& channel, const char* what) {
+  return channel.empty() ? what : channel;
+}
+
 }  // namespace
+
+Check unrelated_motions(std::string name) {
+  return unchecked(std::move(name), kUnrelated,
+                   "first see time_offset: check the times of both, and that both are of this "
+                   "robot");
+}
 
 double usable_lateness_s(const TurnComparison& turns) {
   return is_known(turns.lidar_late_s, kOffset_s) ? turns.lidar_late_s.value : 0.0;
@@ -55,11 +74,7 @@ Check check_odometry_moves(const ImportedLog& log) {
 Check check_mirror(const std::optional<TurnComparison>& turns, RobotConfig& robot) {
   if (!turns) return no_turns("lidar_mirrored");
   const double ratio = turns->ratio.value;
-  if (std::abs(ratio) <= kSigmas * turns->ratio.sigma) {
-    return unchecked("lidar_mirrored",
-                     "turns of LiDAR and odometry have nothing to do with each other",
-                     "check the times of both, and that both are of this robot");
-  }
+  if (!turns->are_related()) return unrelated_motions("lidar_mirrored");
   if (ratio < 0.0) robot.lidar.mirrored = !robot.lidar.mirrored;
   return {"lidar_mirrored", ratio > 0.0 ? Verdict::kPass : Verdict::kFail,
           fmt::format("LiDAR and odometry turn {} (ratio {:.3f} over {:.1f} rad)",
@@ -74,6 +89,7 @@ Check check_mirror(const std::optional<TurnComparison>& turns, RobotConfig& robo
 
 Check check_turn_scale(const std::optional<TurnComparison>& turns) {
   if (!turns) return no_turns("odometry_turn_scale");
+  if (!turns->are_related()) return unrelated_motions("odometry_turn_scale");
   const double scale = std::abs(turns->ratio.value);
   const Verdict verdict = verdict_of(scale - 1.0, turns->ratio.sigma, kScale);
   return {"odometry_turn_scale", verdict,
@@ -87,8 +103,26 @@ Check check_turn_scale(const std::optional<TurnComparison>& turns) {
           scale};
 }
 
-Check check_time_offset(const std::optional<TurnComparison>& turns, RobotConfig& robot) {
+Check check_time_offset(const DoctorInput& input, const std::optional<TurnComparison>& turns,
+                        RobotConfig& robot) {
+  const auto far_off = [&](double late_s, std::string_view source) -> Check {
+    return {"time_offset", Verdict::kFail,
+            fmt::format("the stamps of {} are {}: {}", name_or(input.lidar_channel, "the LiDAR"),
+                        later_than(late_s, name_or(input.odometry_channel, "odometry")), source),
+            kOneClock, 1e3 * late_s};
+  };
+  if (input.log.odometry_shift != Duration{0}) {
+    return far_off(to_seconds(input.log.odometry_shift) + (turns ? turns->lidar_late_s.value : 0.0),
+                   "by the times at which the log received them (corrected for the other checks)");
+  }
   if (!turns) return no_turns("time_offset");
+  if (turns->far_late_s)
+    return far_off(robot.lidar.late_s + *turns->far_late_s, "there the turns of both fit");
+  if (turns->are_contradictory()) {
+    return unchecked("time_offset", fmt::format("{}, at no offset within 10 s", kUnrelated),
+                     "check that both are of this robot, that odometry counts turns, and that both "
+                     "are stamped with one clock");
+  }
   const Measured& late = turns->lidar_late_s;
   if (!is_known(late, kOffset_s)) {
     return unchecked(

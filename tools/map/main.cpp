@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   std::filesystem::path out;
   std::string frame;
   bool as_json = false;
+  bool is_forced = false;
   double x_m = 0.0;
   double y_m = 0.0;
   double yaw_rad = 0.0;
@@ -26,7 +27,9 @@ int main(int argc, char** argv) {
   Program program{
       "Shows, checks, exports, transforms and merges map files (NAME.map.lcm, written by "
       "waymark-slam --save-map).\n"
-      "Exit code: 0 success; 1 not the whole map could be written; 2 wrong usage, or no map file.",
+      "Exit code: 0 success; 1 not the whole map could be written; 2 wrong usage, no map file, or "
+      "maps "
+      "that do not fit.",
       "waymark-map"};
   program.require_subcommand();
   const auto add = [&](const char* name, const char* what) {
@@ -72,9 +75,13 @@ int main(int argc, char** argv) {
       add("merge", "merge two maps, aligned by the markers in both, else by their walls");
   merge.add_option("other", other, "map file that is put into the frame of the first").required();
   merge.add_option("--out", out, "the new map file; must not exist yet").required();
+  merge.add_flag("--force", is_forced,
+                 "merge even if not more than half of the shared markers agree, or walls of one "
+                 "map stand in the free space of the other");
   merge.when_given([&] {
     command = [&] {
-      return merge_maps(file, other, out) + "\n";
+      return merge_maps(file, other, out, is_forced ? MergeCheck::kForce : MergeCheck::kRefuse) +
+             "\n";
     };
   });
   if (const auto exit_code = program.parse(argc, argv)) return *exit_code;

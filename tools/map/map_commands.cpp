@@ -5,6 +5,7 @@
 #include "common/geometry/rounded.hpp"
 #include "common/log/log_file.hpp"
 #include "common/messages/bounds.hpp"
+#include "map/map_agreement.hpp"
 #include "map/map_merge.hpp"
 #include "map/wall_alignment.hpp"
 #include "slam/core/graph/calibration_terms.hpp"
@@ -201,7 +202,7 @@ std::string transform_map(const std::filesystem::path& file, const Se2& new_from
 }
 
 std::string merge_maps(const std::filesystem::path& a, const std::filesystem::path& b,
-                       const std::filesystem::path& out) {
+                       const std::filesystem::path& out, MergeCheck check) {
   check_is_new(out);
   const MapFile first = read_map_file(a);
   const MapFile second = read_map_file(b);
@@ -215,11 +216,22 @@ std::string merge_maps(const std::filesystem::path& a, const std::filesystem::pa
         "direction, that lie alike in both: nothing says how they fit",
         a.string(), b.string())};
   }
+  const MapAgreement agreement = agreement_of(first.map, second.map, alignment->a_from_b);
+  const std::string objection = agreement.objection();
+  if (!objection.empty() && check == MergeCheck::kRefuse) {
+    throw SetupError{fmt::format(
+        "'{}' and '{}' do not show the same building: {}; nothing is written (--force merges them "
+        "nevertheless)",
+        a.string(), b.string(), objection)};
+  }
   const std::int64_t map_id =
       write_map_file(out, merged(first.map, second.map, alignment->a_from_b), first.info);
-  return fmt::format("map {} of both is in '{}': {} {} agree to {:.3f} m", hex(map_id),
-                     out.string(), alignment->shared,
-                     is_by_markers ? "shared markers" : "stretches of walls", alignment->rms_m);
+  return fmt::format(
+      "map {} of both is in '{}': aligned by {} {} to {:.3f} m; {}; {:.0f} % of the "
+      "walls contradict each other{}",
+      hex(map_id), out.string(), alignment->shared,
+      is_by_markers ? "markers" : "stretches of walls", alignment->rms_m, agreement.markers_text(),
+      100.0 * agreement.contradicting_walls, objection.empty() ? "" : " (merged by --force)");
 }
 
 }  // namespace waymark

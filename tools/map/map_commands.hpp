@@ -25,9 +25,14 @@ void export_map(const std::filesystem::path& file, const std::filesystem::path& 
 std::string transform_map(const std::filesystem::path& file, const Se2& new_from_old,
                           const std::string& frame, const std::filesystem::path& out);
 
+/// Whether maps are merged whose markers or walls say that they show different buildings.
+enum class MergeCheck { kRefuse, kForce };
+
 /// Writes both maps as one, in the frame of `a`.
+/// @throws SetupError also if not more than half of the shared markers agree, or the walls of one
+/// map stand in the free space of the other, unless forced.
 /// @return a sentence about the result.
 std::string merge_maps(const std::filesystem::path& a, const std::filesystem::path& b,
-                       const std::filesystem::path& out);
+                       const std::filesystem::path& out, MergeCheck check = MergeCheck::kRefuse);
 
 }  // namespace waymark

@@ -2,18 +2,20 @@
 #include "map/map_merge.hpp"
 
 #include "common/geometry/rigid_fit.hpp"
+#include "map/map_agreement.hpp"
 
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <utility>
 
 namespace waymark {
 namespace {
 
-constexpr double kInlier_m = 0.3;  // largest distance between a marker's positions in the two maps
+constexpr int kRefinements = 5;        // of the set of markers that agree; it changes by one or two
 constexpr double kMinApart_m = 1.0;    // distance of two markers that determine the rotation
 constexpr int kSamplesAlong = 6;       // sample points along an NDT cell's major axis
 constexpr double kSameMarker_m = 0.5;  // landmarks of one id closer than this are one marker
@@ -71,27 +73,19 @@ void add_transformed(const NdtMap& walls, const Se2& new_from_old, NdtMap& resul
   }
 }
 
-/// The only confirmed marker of that id; nullptr if there is none or more than one.
-const Landmark* only_one(const MapSnapshot& map, int id) {
-  const Landmark* only = nullptr;
-  for (const Landmark& landmark : map.landmarks) {
-    if (landmark.id != id || !landmark.is_confirmed()) continue;
-    if (only != nullptr) return nullptr;
-    only = &landmark;
-  }
-  return only;
+using Markers = std::vector<SharedMarker>;
+
+Se2 fit_of(const Markers& markers) {
+  std::vector<PointPair> pairs;
+  for (const SharedMarker& marker : markers)
+    pairs.push_back({marker.in_a, marker.in_b});
+  return rigid_fit(pairs);
 }
 
-using Pairs = std::vector<PointPair>;  ///< target: in a, source: in b
-
-double distance_m(const Se2& a_from_b, const PointPair& pair) {
-  return (a_from_b * pair.source - pair.target).norm();
-}
-
-Pairs inliers_of(const Pairs& pairs, const Se2& a_from_b) {
-  Pairs agree;
-  for (const PointPair& pair : pairs)
-    if (distance_m(a_from_b, pair) < kInlier_m) agree.push_back(pair);
+Markers inliers_of(const Markers& markers, const Se2& a_from_b) {
+  Markers agree;
+  std::copy_if(markers.begin(), markers.end(), std::back_inserter(agree),
+               [&](const SharedMarker& marker) { return marker.agrees(a_from_b); });
   return agree;
 }
 
@@ -106,13 +100,17 @@ Landmark mean_of(const Landmark& a, const Landmark& b) {
   return mean;
 }
 
-void add_landmark(std::vector<Landmark>& landmarks, Landmark landmark) {
+/// @param has_moved  the maps disagree about where the only marker of that id is.
+void add_landmark(std::vector<Landmark>& landmarks, Landmark landmark, bool has_moved) {
   int instance = 0;
   for (Landmark& known : landmarks) {
     if (known.id != landmark.id) continue;
     if ((known.map_from_marker.translation() - landmark.map_from_marker.translation()).norm() <
         kSameMarker_m) {
-      known = mean_of(known, landmark);
+      if (!has_moved)
+        known = mean_of(known, landmark);
+      else if (known.last_seen < landmark.last_seen)
+        known = landmark;
       return;
     }
     instance = std::max(instance, known.instance + 1);
@@ -146,24 +144,22 @@ MapSnapshot transformed(const MapSnapshot& map, const Se2& new_from_old) {
 }
 
 std::optional<MapAlignment> align_by_markers(const MapSnapshot& a, const MapSnapshot& b) {
-  Pairs pairs;
-  for (const Landmark& landmark : a.landmarks) {
-    const Landmark* other = only_one(b, landmark.id);
-    if (other == nullptr || only_one(a, landmark.id) != &landmark) continue;
-    pairs.push_back({landmark.map_from_marker.translation(), other->map_from_marker.translation()});
-  }
-  Pairs best;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    for (std::size_t k = i + 1; k < pairs.size(); ++k) {
-      if ((pairs[i].target - pairs[k].target).norm() < kMinApart_m) continue;
-      const Pairs agree = inliers_of(pairs, rigid_fit({pairs[i], pairs[k]}));
+  const Markers shared = shared_markers(a, b);
+  Markers best;
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    for (std::size_t k = i + 1; k < shared.size(); ++k) {
+      if ((shared[i].in_a - shared[k].in_a).norm() < kMinApart_m) continue;
+      const Markers agree = inliers_of(shared, fit_of({shared[i], shared[k]}));
       if (agree.size() > best.size()) best = agree;
     }
   }
+  // The fit of all of them is better than that of two, and may leave out a marker that was moved.
+  for (int i = 0; i < kRefinements && best.size() >= 2; ++i)
+    best = inliers_of(shared, fit_of(best));
   if (best.size() < 2) return std::nullopt;
-  MapAlignment alignment{rigid_fit(best), best.size(), 0.0};
-  for (const PointPair& pair : best)
-    alignment.rms_m += std::pow(distance_m(alignment.a_from_b, pair), 2);
+  MapAlignment alignment{fit_of(best), best.size(), 0.0};
+  for (const SharedMarker& marker : best)
+    alignment.rms_m += std::pow(marker.apart_m(alignment.a_from_b), 2);
   alignment.rms_m = std::sqrt(alignment.rms_m / static_cast<double>(best.size()));
   return alignment;
 }
@@ -185,8 +181,11 @@ MapSnapshot merged(const MapSnapshot& a, const MapSnapshot& b, const Se2& a_from
   });
   for (const NdtCellSums& cell : other.walls.sums())
     result.walls.add(cell);
+  std::set<int> moved;
+  for (const SharedMarker& marker : shared_markers(a, b))
+    if (!marker.agrees(a_from_b)) moved.insert(marker.id);
   for (const Landmark& landmark : other.landmarks)
-    add_landmark(result.landmarks, landmark);
+    add_landmark(result.landmarks, landmark, moved.contains(landmark.id));
   std::stable_sort(result.landmarks.begin(), result.landmarks.end(),
                    [](const Landmark& x, const Landmark& y) {
                      return std::pair{x.id, x.instance} < std::pair{y.id, y.instance};

@@ -20,11 +20,13 @@ struct MapAlignment {
   double rms_m{0.0};      ///< root mean square of the inliers' distances
 };
 
-/// Aligns by the markers whose id is unique in both maps, using the largest consistent set, so that
-/// a few moved markers do not matter. nullopt if no two consistent markers are a metre apart.
+/// Aligns by the markers whose id is unique in both maps, using the largest set that agrees within
+/// its covariances (see SharedMarker), so that a few moved markers do not matter; agreement_of()
+/// says which those are. nullopt if no two consistent markers are a metre apart.
 std::optional<MapAlignment> align_by_markers(const MapSnapshot& a, const MapSnapshot& b);
 
-/// Both maps as one, in the frame of `a`. Markers in both are averaged by their information.
+/// Both maps as one, in the frame of `a`. Markers in both are averaged by their information; of one
+/// that was moved a little in between, the place where it was seen last counts.
 MapSnapshot merged(const MapSnapshot& a, const MapSnapshot& b, const Se2& a_from_b);
 
 }  // namespace waymark

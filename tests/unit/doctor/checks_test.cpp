@@ -164,10 +164,18 @@ TEST(DoctorsChecks, OppositeTurnsMeanAMirroredLidarUnlessTheyAreUncertain) {
   EXPECT_EQ(check_turn_scale(turns(-1.0, 0.001)).verdict, Verdict::kPass) << "only mirrored";
 }
 
+TEST(DoctorsChecks, ATurnScaleThatIsNoneGivesNoRemedy) {
+  const Check unrelated = check_turn_scale(turns(0.005, 0.003));
+  EXPECT_EQ(unrelated.verdict, Verdict::kUnchecked);
+  EXPECT_THAT(unrelated.finding, HasSubstr("nothing to do with each other"));
+  EXPECT_EQ(check_turn_scale(turns(0.5, 0.01)).verdict, Verdict::kFail);
+}
+
 TEST(DoctorsChecks, ATimeOffsetIsAddedToTheDescribedOne) {
   RobotConfig robot{};
   robot.lidar.late_s = 0.05;
-  const Check behind = check_time_offset(turns(1.0, 0.01, 0.03), robot);
+  const DoctorInput input = described_input("log");
+  const Check behind = check_time_offset(input, turns(1.0, 0.01, 0.03), robot);
   EXPECT_EQ(behind.verdict, Verdict::kWarn);
   EXPECT_NEAR(robot.lidar.late_s, 0.08, 1e-12);
   EXPECT_NEAR(behind.value.value(), 80.0, 1e-9);
@@ -175,13 +183,13 @@ TEST(DoctorsChecks, ATimeOffsetIsAddedToTheDescribedOne) {
   EXPECT_THAT(behind.remedy, HasSubstr("robot.lidar.late_s = 0.0800"));
 
   robot.lidar.late_s = 0.05;
-  const Check ahead = check_time_offset(turns(1.0, 0.01, -0.2), robot);
+  const Check ahead = check_time_offset(input, turns(1.0, 0.01, -0.2), robot);
   EXPECT_EQ(ahead.verdict, Verdict::kFail);
   EXPECT_NEAR(robot.lidar.late_s, -0.15, 1e-12);
   EXPECT_THAT(ahead.finding, HasSubstr("150 +- 1 ms ahead of odometry's"));
 
   const auto uncertain = turns(1.0, 0.01, 0.2, 0.04);
-  EXPECT_EQ(check_time_offset(uncertain, robot).verdict, Verdict::kUnchecked);
+  EXPECT_EQ(check_time_offset(input, uncertain, robot).verdict, Verdict::kUnchecked);
   EXPECT_EQ(usable_lateness_s(*uncertain), 0.0);
   EXPECT_EQ(usable_lateness_s(*turns(1.0, 0.01, 0.2)), 0.2);
 }

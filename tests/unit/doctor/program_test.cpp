@@ -18,6 +18,7 @@
 namespace waymark {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -74,6 +75,10 @@ TEST(DoctorProgram, WritesARobotFileButReplacesNone) {
   const Ended second = doctor(log + " --write-robot " + robot);
   EXPECT_EQ(second.code, 2) << "it replaces nothing";
   EXPECT_EQ(second.out, "") << "it says so before the analysis";
+  const Ended nowhere = doctor(log + " --write-robot " + (test_folder() / "none/a.toml").string());
+  EXPECT_EQ(nowhere.code, 2);
+  EXPECT_EQ(nowhere.out, "");
+  EXPECT_THAT(nowhere.errors, HasSubstr("--write-robot: there is no folder"));
   EXPECT_EQ(doctor(log + " --config " + robot).code, 0) << "its own description is right";
 }
 
@@ -98,6 +103,50 @@ TEST(DoctorProgram, LogsThatCannotBeUsedGive2AndASentence) {
     EXPECT_EQ(ended.code, 2) << arguments;
     EXPECT_FALSE(ended.errors.empty()) << arguments;
   }
+}
+
+TEST(DoctorProgram, AFileOfAnotherKindIsNoLogAndAPartOfALogIsMentioned) {
+  const std::string log = run_of({.duration_s = 5.0});
+  const std::string robot = (test_folder() / "robot.toml").string();
+  std::ofstream{test_folder() / "paper.pdf"} << "%PDF-1.4\n1 0 obj\n<< /Type /Catalog >>\n";
+  for (const std::string& file : {robot, (test_folder() / "paper.pdf").string()})
+    EXPECT_THAT(doctor(file).errors, HasSubstr(file + ": is no log"));
+  EXPECT_THAT(doctor((test_folder() / "none.lcm").string()).errors, Not(HasSubstr(".part")));
+  std::filesystem::rename(log, part_path_of(log));
+  const Ended unfinished = doctor(log);
+  EXPECT_EQ(unfinished.code, 2);
+  EXPECT_THAT(unfinished.errors, HasSubstr("but '" + part_path_of(log).string() + "'"));
+}
+
+TEST(DoctorProgram, SensorsOnClocksThatAreDaysApartAreNamedWithTheDistance) {
+  const std::string log = run_of({.duration_s = 20.0});
+  constexpr std::int64_t kDays_us = 3 * std::int64_t{86'400'000'000};
+  LogWriter apart{test_folder() / "apart.lcm"};    // recorded by the stamps
+  LogWriter logged{test_folder() / "logged.lcm"};  // with the times of arrival
+  LogReader reader{log};
+  while (auto event = reader.next()) {
+    if (event->channel == channels::kOdometry.name) {
+      pose2D_t odometry = *decode<pose2D_t>(event->payload).message;
+      odometry.utime += kDays_us;
+      const Timestamp arrival = event->time;
+      *event = encode(channels::kOdometry, odometry);
+      apart.write(*event);
+      event->time = arrival;
+    } else {
+      apart.write(*event);
+    }
+    logged.write(*event);
+  }
+  apart.close();
+  logged.close();
+  const Ended by_stamps = doctor((test_folder() / "apart.lcm").string());
+  EXPECT_EQ(by_stamps.code, 2);
+  EXPECT_THAT(by_stamps.errors,
+              AllOf(HasSubstr("no scan has odometry at its time"), HasSubstr("(3.0 days) later"),
+                    HasSubstr("stamp both with one clock")));
+  const Ended by_arrival = doctor((test_folder() / "logged.lcm").string());
+  EXPECT_EQ(by_arrival.code, 1);
+  EXPECT_THAT(by_arrival.out, HasSubstr("LIDAR are 259200.0 s earlier than those of ODOMETRY"));
 }
 
 TEST(DoctorInput, TheMessagesOfEachChannelAreCounted) {

@@ -19,6 +19,16 @@ struct TurnComparison {
   Measured ratio{};         ///< negative: one of the two is mirrored
   Measured lidar_late_s{};  ///< delay of the scans' stamps, relative to odometry's clock
   double turned_rad{0.0};   ///< sum of the LiDAR's absolute turns
+  /// Correlation of the LiDAR's consecutive turns, see persistence_of().
+  double persistence{1.0};
+  /// Delay of the scans' stamps that is too long for lidar_late_s, see far_lidar_late_s().
+  std::optional<double> far_late_s{};
+
+  /// Whether odometry turns when the LiDAR does.
+  bool are_related() const;
+
+  /// The LiDAR turns, but odometry does not then: nothing that compares their motions is right.
+  bool are_contradictory() const;
 };
 
 /// Robust least squares over the turns between consecutive scans. The time offset is searched

@@ -3,6 +3,7 @@
 
 #include "common/config/config.hpp"
 #include "evaluate/map/wall_thickness.hpp"
+#include "evaluate/run/loaded_map.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -282,6 +283,13 @@ EstimatorResult evaluate_estimator(const fs::path& dir, const RunTruth& truth,
   attempt(result.problems, [&] {
     if (!options.world_from_map && is_surveyed(dir / "config.toml")) options.world_from_map = Se2{};
     result.changes = changes_in(dir / "changes.csv");
+  });
+  attempt(result.problems, [&] {
+    if (options.mapped_in.empty()) return;
+    const auto foreign = foreign_map(dir / "markers.csv", options.mapped_in, result.skipped);
+    if (!foreign) return;
+    options.world_from_map.reset();
+    result.problems.push_back(*foreign);
   });
   result.name = dir.filename().string();
   result.true_length_m = truth.length_m;

@@ -283,6 +283,10 @@ ImportedLog CarmenReader::finish() {
     log_.contents += fmt::format("{}{} {}", log_.contents.empty() ? "" : ", ", name, count);
   }
   if (scans_.empty()) {
+    if (report_.skipped_by_kind().contains("unknown line") &&
+        std::ranges::all_of(counts_,
+                            [](const auto& entry) { return entry.first == CarmenOther{}.keyword; }))
+      throw NotACarmenLog{"it is no CARMEN log: no line begins with one of its keywords"};
     throw SetupError{"no LiDAR scan could be read" +
                      (log_.contents.empty() ? "" : "; the log holds " + log_.contents) +
                      what_is_not_read()};

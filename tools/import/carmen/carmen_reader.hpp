@@ -2,6 +2,7 @@
 // Reader of CARMEN logs (.clf, .log; plain, gzip or bzip2).
 #pragma once
 
+#include "common/errors/setup_error.hpp"
 #include "import/carmen/carmen_line.hpp"
 #include "import/carmen/odometry_lines.hpp"
 #include "import/carmen/stamps.hpp"
@@ -25,7 +26,14 @@ struct CarmenOptions {
   LidarMounting mounting{};
 };
 
-/// @throws SetupError when the file is unreadable, empty, or gives no scan or no odometry.
+/// No line of the file begins with a keyword of CARMEN's loggers: it is a file of another kind.
+class NotACarmenLog : public SetupError {
+ public:
+  using SetupError::SetupError;
+};
+
+/// @throws SetupError when the file is unreadable, empty, or gives no scan or no odometry;
+/// NotACarmenLog when it is a file of another kind.
 ImportedLog read_carmen_log(const std::filesystem::path& file, const CarmenOptions& options,
                             ImportReport& report);
 

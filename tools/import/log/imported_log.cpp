@@ -60,6 +60,24 @@ std::string held_or_extrapolated(const Se2& held, const Se2& pose, std::string_v
   return fmt::format("{} {}", which, is_held ? "pose held" : "motion goes on");
 }
 
+/// When the scans and odometry were stamped, for a log in which no scan has odometry at its time.
+std::string times_of(const std::vector<ImportedScan>& scans,
+                     const std::vector<ImportedPose>& odometry) {
+  constexpr double kDay_s = 86'400.0;
+  const double first_s = to_seconds(odometry.front().time);
+  const double last_s = to_seconds(odometry.back().time);
+  const double first_scan_s = to_seconds(scans.front().time);
+  const double last_scan_s = to_seconds(scans.back().last_beam_time);
+  const double middles_apart_s = 0.5 * (first_s + last_s - first_scan_s - last_scan_s);
+  const double apart_s = std::abs(middles_apart_s);
+  return fmt::format(
+      "the scans are stamped {:.3f} s to {:.3f} s, odometry {:.3f} s to {:.3f} s, about {:.1f} s{} "
+      "{}: stamp both with one clock, when they are measured",
+      first_scan_s, last_scan_s, first_s, last_s, apart_s,
+      apart_s > kDay_s ? fmt::format(" ({:.1f} days)", apart_s / kDay_s) : "",
+      middles_apart_s > 0.0 ? "later" : "earlier");
+}
+
 }  // namespace
 
 LidarScan scan_of(const ImportedScan& scan) {
@@ -177,11 +195,13 @@ void make_consistent(ImportedLog& log, ImportReport& report) {
   keep_ascending(log.odometry, "odometry", report);
   keep_ascending(log.reference, "a reference pose", report);
   const bool had_scans = !log.scans.empty();
+  const std::string times =
+      had_scans && !log.odometry.empty() ? times_of(log.scans, log.odometry) : "";
   cover_scans(log, report);
   const std::string held = log.contents.empty() ? "" : "; the log holds " + log.contents;
   if (!had_scans) throw SetupError{"no LiDAR scan could be read" + held};
   if (log.odometry.empty()) throw SetupError{"no odometry could be read" + held};
-  if (log.scans.empty()) throw SetupError{"no scan has odometry at its time" + held};
+  if (log.scans.empty()) throw SetupError{"no scan has odometry at its time: " + times + held};
   log.robot.base.odometry_rate_hz = rate_hz(log.odometry, 1.0, 200.0);
   log.robot.lidar.rate_hz = rate_hz(log.scans, 0.1, 100.0);
   std::ranges::sort(log.images, {}, &ImportedImage::time);

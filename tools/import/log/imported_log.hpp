@@ -47,6 +47,9 @@ struct ImportedLog {
   RobotConfig robot{};
   std::vector<double> no_return_codes_m{};  ///< ranges found to mean "no return", ascending
   std::string contents{};                   ///< channels or topics with counts, for the summary
+  /// What was added to the stamps of odometry and images, whose clocks are not the LiDAR's.
+  Duration odometry_shift{0};
+  Duration images_shift{0};
 };
 
 /// Pose of the LiDAR in the base frame as given by the user; nullopt = from the log, else 0.
@@ -83,7 +86,8 @@ void cover_scans(ImportedLog& log, ImportReport& report);
 /// Makes the log usable for slam: sorts slightly disordered records by time, removes records that
 /// are still out of order, takes odometry from the scans if there is no other, applies
 /// cover_scans(), and sets the rates and the number of beams in `log.robot`.
-/// @throws SetupError when no scan or no odometry is left.
+/// @throws SetupError when no scan or no odometry is left; where their stamps lie apart, with how
+/// far.
 void make_consistent(ImportedLog& log, ImportReport& report);
 
 /// Multiplies x and y of all poses by `factor`.

@@ -56,20 +56,21 @@ bool ChannelClock::is_comparable() const {
   return by_logger_s > kComparable * by_stamps_s && by_stamps_s > kComparable * by_logger_s;
 }
 
-void put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::string_view name,
-                  std::vector<ImportedPose>& poses, ImportReport& report) {
+Duration put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::string_view name,
+                      std::vector<ImportedPose>& poses, ImportReport& report) {
   const auto shift = shift_of(lidar, other, name, report);
-  if (!shift) return;
+  if (!shift) return Duration{0};
   // A stamp that would become negative is garbage: it stays, and is later removed as out of order.
   for (ImportedPose& pose : poses) {
     if (to_us(pose.time + *shift) >= 0) pose.time += *shift;
   }
+  return *shift;
 }
 
-void put_on_clock(const ChannelClock& lidar, const ChannelClock& camera,
-                  std::vector<ImportedImage>& images, ImportReport& report) {
+Duration put_on_clock(const ChannelClock& lidar, const ChannelClock& camera,
+                      std::vector<ImportedImage>& images, ImportReport& report) {
   const auto shift = shift_of(lidar, camera, "images", report);
-  if (!shift) return;
+  if (!shift) return Duration{0};
   for (ImportedImage& image : images) {
     if (to_us(image.time + *shift) < 0) continue;
     image.time += *shift;
@@ -77,6 +78,7 @@ void put_on_clock(const ChannelClock& lidar, const ChannelClock& camera,
     message.utime = to_us(image.time);
     image.message = encode(channels::kCamera, message);
   }
+  return *shift;
 }
 
 }  // namespace waymark

@@ -31,11 +31,12 @@ class ChannelClock {
 /// Shifts poses onto the LiDAR's clock, with a note, if by the logger's times the clocks differ by
 /// more than a second (no driver's delay is that long). Error of the shift: the difference of the
 /// two drivers' delays.
-void put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::string_view name,
-                  std::vector<ImportedPose>& poses, ImportReport& report);
+/// @return the shift that was added to the stamps, else 0.
+Duration put_on_clock(const ChannelClock& lidar, const ChannelClock& other, std::string_view name,
+                      std::vector<ImportedPose>& poses, ImportReport& report);
 
 /// The same for images.
-void put_on_clock(const ChannelClock& lidar, const ChannelClock& camera,
-                  std::vector<ImportedImage>& images, ImportReport& report);
+Duration put_on_clock(const ChannelClock& lidar, const ChannelClock& camera,
+                      std::vector<ImportedImage>& images, ImportReport& report);
 
 }  // namespace waymark

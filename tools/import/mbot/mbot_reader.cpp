@@ -228,9 +228,10 @@ std::optional<double> MbotReader::usual_range_max_m() const {
 ImportedLog MbotReader::finish() {
   check_channels();
   apply_ticks();
-  put_on_clock(lidar_clock_, odometry_clock_, "odometry", log_.odometry, report_);
+  log_.odometry_shift =
+      put_on_clock(lidar_clock_, odometry_clock_, "odometry", log_.odometry, report_);
   put_on_clock(lidar_clock_, reference_clock_, "reference", log_.reference, report_);
-  put_on_clock(lidar_clock_, camera_clock_, log_.images, report_);
+  log_.images_shift = put_on_clock(lidar_clock_, camera_clock_, log_.images, report_);
   describe_camera();
   // Turns of a rotating LiDAR (lidar_t) differ by a few beams; planar_lidar_t scans do not.
   if (has_planar_scans_) keep_usual_beam_count(log_.scans, report_);
