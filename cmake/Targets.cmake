@@ -54,9 +54,6 @@ foreach(label unit property statistics process simulation)
   add_custom_target(${label}_tests)
 endforeach()
 
-# The presets run four tests at once on two cores. A test counts for one of these, and for two if it keeps a core busy.
-set(waymark_busy_test 2)
-
 # waymark_test(NAME [FAST] LABEL unit|property|statistics|process|simulation SOURCES ... [ALONE ...] LIBRARIES ...): one
 # GoogleTest program, which is one test of CTest; the target LABEL_tests builds all of a label. statistics: accuracy over many
 # drives, views or samples; minutes under sanitizers, so .ci/run leaves these without them (tests/nightly.sh does not). FAST:
@@ -77,5 +74,5 @@ function(waymark_test name)
   waymark_unity(${name} ${ARG_ALONE})
   add_dependencies(${ARG_LABEL}_tests ${name})
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 1500 PROCESSORS ${waymark_busy_test})
+  set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 1500)
 endfunction()
