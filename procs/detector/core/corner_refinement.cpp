@@ -52,14 +52,12 @@ Sides sides_of(const Corners& corners) {
           Side{corners[3], corners[0]}};
 }
 
-std::vector<EdgePoint> edge_points(const SampledSquare& square, std::size_t side,
+/// @param margin_px  see SampledSquare::corner_margin_px().
+std::vector<EdgePoint> edge_points(const SampledSide& sampled, double black, double margin_px,
                                    double min_contrast) {
-  const SampledSide& sampled = square.sides[side];
   const double half_window_px = sampled.half_window_px();
-  const double margin_px = square.corner_margin_px(side);
   std::vector<EdgePoint> points;
   for (const EdgeProfile& profile : sampled.profiles) {
-    const double black = square.black_at(sampled, profile);
     if (profile.white - black < min_contrast) continue;
     if (std::min(profile.along_px, sampled.side.length_px() - profile.along_px) < margin_px)
       continue;
@@ -185,8 +183,9 @@ std::optional<FittedQuad> fit_quad(const cv::Mat& gray, const CameraModel& camer
   std::array<EdgeLine, 4> lines;
   for (std::size_t k = 0; k < 4; ++k) {
     const SampledSide& side = square.sides[k];
-    const auto line = fit_line(edge_points(square, k, config.min_contrast), side.side.length_px(),
-                               config.min_points);
+    const auto line =
+        fit_line(edge_points(side, square.black, square.corner_margin_px(k), config.min_contrast),
+                 side.side.length_px(), config.min_points);
     if (!line || line->residual_px > config.max_residual_px) return std::nullopt;
     lines[k] = *line;
     double sigma_px = common_sigma_px(side.border_px, config);

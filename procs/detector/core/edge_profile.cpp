@@ -15,7 +15,6 @@ constexpr double kMaxCornerMarginRate = 0.2;
 // Offsets at which the white and black levels are read, as shares of the reach: outside the blur of
 // the edge.
 constexpr double kWhiteFrom = 0.6;
-constexpr double kThinZoneWidth = 0.25;  // window for the white of a thin quiet zone
 constexpr double kBlackAt = 0.5 * kThickBorder;
 constexpr double kBlackHalfWidth = 0.15;
 constexpr double kDark = 0.12;  // a bit up to this share of the contrast above the darkest is black
@@ -50,49 +49,6 @@ double mean_between(const EdgeProfile& profile, double from_rate, double to_rate
   for (std::size_t i = first; i <= last; ++i)
     sum += profile.brightness[i];
   return sum / static_cast<double>(last - first + 1);
-}
-
-EdgeProfile mean_of(const std::vector<EdgeProfile>& profiles) {
-  EdgeProfile mean = profiles.front();
-  const auto count = static_cast<double>(profiles.size());
-  std::ranges::fill(mean.brightness, 0.0);
-  mean.white = mean.black = 0.0;
-  for (const EdgeProfile& profile : profiles) {
-    for (std::size_t i = 0; i < mean.brightness.size(); ++i)
-      mean.brightness[i] += profile.brightness[i] / count;
-    mean.white += profile.white / count;
-    mean.black += profile.black / count;
-  }
-  return mean;
-}
-
-/// Where a quiet zone thinner than the reach is white: the start [share of the reach] of the window
-/// in which the mean profile of a side is brightest, if that is nearer to the edge than where white
-/// is usually read. (The brightest window of a single profile would be that of its noise.)
-std::optional<double> thin_quiet_zone(const EdgeProfile& mean) {
-  constexpr double kNearest = 0.25;
-  constexpr double kStep = 0.05;
-  constexpr int kWindows = 11;
-  // By more than this share of the contrast; less is noise, or the overshoot of a sharpened image.
-  constexpr double kBrighter = 0.03;
-  double brightest = mean.white + kBrighter * (mean.white - mean.black);
-  std::optional<double> start;
-  for (int k = 0; k < kWindows; ++k) {
-    const double rate = kNearest + k * kStep;
-    const double level = mean_between(mean, rate, rate + kThinZoneWidth);
-    if (level <= brightest) continue;
-    brightest = level;
-    start = rate;
-  }
-  return start && *start < kWhiteFrom - 0.5 * kStep ? start : std::nullopt;
-}
-
-void read_white_of_thin_quiet_zone(std::vector<EdgeProfile>& profiles) {
-  if (profiles.empty()) return;
-  const auto start = thin_quiet_zone(mean_of(profiles));
-  if (!start) return;
-  for (EdgeProfile& profile : profiles)
-    profile.white = mean_between(profile, *start, *start + kThinZoneWidth);
 }
 
 }  // namespace
@@ -178,7 +134,6 @@ std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel&
     read_levels(profile, border_px);
     profiles.push_back(std::move(profile));
   }
-  read_white_of_thin_quiet_zone(profiles);
   return profiles;
 }
 

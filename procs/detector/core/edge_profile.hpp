@@ -60,13 +60,12 @@ struct EdgeProfile {
   std::optional<double> blur_px(double black_level) const;
 };
 
-/// Sets `white` and `black` of a profile from its samples, for a quiet zone wider than the reach.
+/// Sets `white` and `black` of a profile from its samples.
 /// @param border_px  thickness of the black border.
 void read_levels(EdgeProfile& profile, double border_px);
 
 /// About one profile per pixel of the side's length, 2 to 80 in all, none near its corners.
-/// Profiles that would leave the image are left out. If the quiet zone is thinner than reach_px,
-/// their white level is read nearer to the edge.
+/// Profiles that would leave the image are left out.
 std::vector<EdgeProfile> sample_profiles(const cv::Mat& gray, const CameraModel& camera,
                                          const Side& side, double reach_px, double border_px);
 

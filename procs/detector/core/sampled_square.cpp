@@ -15,7 +15,7 @@ namespace {
 constexpr double kSharpPx = 0.95;
 constexpr double kMinBorderPx = 2.0;
 constexpr double kCornerBlurs = 3.0;  // a corner bends the edge over so many sigmas of the blur
-constexpr double kHalfWhite = 0.5;    // assumed share of white bits behind all of a border
+constexpr double kHalfWhite = 0.5;    // assumed share of white bits; has little effect here
 constexpr std::size_t kMinLevels = 4;
 
 double triangle_area(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
@@ -50,10 +50,9 @@ std::array<double, 4> border_thickness_px(const std::array<Side, 4>& sides, int 
   return thickness_px;
 }
 
-/// Sets the black level: the median of the two opposite sides with the thicker borders. If even
-/// these borders are thin, blur lets white bits brighten them: then only profiles in front of black
-/// bits count.
-void read_black(SampledSquare& square) {
+/// Median black level of the two opposite sides with the thicker borders. If even these borders are
+/// thin, blur lets white bits brighten them: then only profiles in front of black bits count.
+double black_level(const SampledSquare& square) {
   const std::size_t first = square.thick_side();
   std::vector<double> levels;
   std::vector<double> before_black_bits;
@@ -63,13 +62,11 @@ void read_black(SampledSquare& square) {
       if (!profile.is_white_behind) before_black_bits.push_back(profile.black);
     }
   }
-  if (levels.empty()) return;
-  if (!square.sides[first].has_thick_border() && before_black_bits.size() >= kMinLevels) {
-    square.black = upper_median(std::move(before_black_bits));
-  } else {
-    square.black = upper_median(std::move(levels));
-    square.white_behind_black = kHalfWhite;
-  }
+  if (levels.empty()) return 0.0;
+  const bool is_thin = square.sides[first].border_px < kThickBorder * square.sides[first].reach_px;
+  return upper_median(is_thin && before_black_bits.size() >= kMinLevels
+                          ? std::move(before_black_bits)
+                          : std::move(levels));
 }
 
 double blur_of(const std::vector<EdgeProfile>& profiles, double black) {
@@ -92,10 +89,6 @@ bool SampledSide::is_blurred() const {
   return blur_px > kSharpPx && border_px > kMinBorderPx;
 }
 
-bool SampledSide::has_thick_border() const {
-  return border_px >= kThickBorder * reach_px;
-}
-
 double SampledSide::half_window_px() const {
   constexpr double kInnerBlurPx = 1.1;
   return std::clamp(border_px - kInnerBlurPx, 0.4, 2.0);
@@ -103,10 +96,6 @@ double SampledSide::half_window_px() const {
 
 bool SampledSquare::is_blurred() const {
   return std::ranges::any_of(sides, [](const SampledSide& side) { return side.is_blurred(); });
-}
-
-double SampledSquare::black_at(const SampledSide& side, const EdgeProfile& profile) const {
-  return side.has_thick_border() && !side.is_blurred() ? profile.black : black;
 }
 
 double SampledSquare::corner_margin_px(std::size_t side) const {
@@ -132,7 +121,7 @@ SampledSquare sample_square(const cv::Mat& gray, const CameraModel& camera,
     square.sides[k] = {sides[k], border_px[k], side_reach_px,
                        sample_profiles(gray, camera, sides[k], side_reach_px, border_px[k])};
   }
-  read_black(square);
+  square.black = black_level(square);
   for (SampledSide& side : square.sides)
     side.blur_px = blur_of(side.profiles, square.black);
   return square;
@@ -149,7 +138,7 @@ double blur_bias_px(const cv::Mat& gray, const CameraModel& camera, const Sample
       std::clamp((*inner - square.black) / (mean_white(sampled.profiles) - square.black), 0.0, 1.0);
   const SampledSide& thick = square.sides[square.thick_side()];
   const double blurred_black =
-      BlurredSide{std::max(kSharpPx, thick.blur_px), thick.border_px, square.white_behind_black}
+      BlurredSide{std::max(kSharpPx, thick.blur_px), thick.border_px, kHalfWhite}
           .profile(thick.reach_px)
           .black;
   return BlurredSide{sampled.blur_px, sampled.border_px, inner_white}.bias_px(

@@ -24,10 +24,6 @@ struct SampledSide {
   /// border (up to 2 px), where blur cannot be measured: the bits behind the border widen the edge.
   bool is_blurred() const;
 
-  /// True when the border is so thick that the blur of the bits behind it does not change the black
-  /// levels of the profiles.
-  bool has_thick_border() const;
-
   /// Half window for EdgeProfile::edge_px(): wide enough for the blur of the edge, narrow enough to
   /// exclude the blur of the inner bits.
   double half_window_px() const;
@@ -35,14 +31,9 @@ struct SampledSide {
 
 struct SampledSquare {
   std::array<SampledSide, 4> sides{};
-  double black{0.0};               ///< grey level of the black border
-  double white_behind_black{0.0};  ///< share of white bits behind the border where `black` was read
+  double black{0.0};  ///< grey level of the black border
 
   bool is_blurred() const;
-
-  /// Black level at a profile of a side. Where the border is thick and not blurred it is the
-  /// profile's own, because shadows and glare change it along the side; else `black`.
-  double black_at(const SampledSide& side, const EdgeProfile& profile) const;
 
   /// Length [px] to leave out at both ends of a side, where the blur of the neighbouring sides
   /// bends the edge; 0 when neither neighbour is blurred.

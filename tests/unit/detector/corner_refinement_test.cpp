@@ -174,15 +174,6 @@ TEST(CornerRefinement, EdgesBentByALensDoNotBiasCorners) {
     EXPECT_LT(error.norm(), 0.03);
 }
 
-TEST(CornerRefinement, AShadowAcrossAMarkerDoesNotBiasItsCorners) {
-  Scene scene = scene_with({}, base_from_upright_marker({2.0, 0.0, 0.2}, std::numbers::pi),
-                           {.black = 50.0, .noise_sigma = 0.0});
-  const double middle_px = 0.5 * (scene.true_raw_px[0].x() + scene.true_raw_px[1].x());
-  scene.image.colRange(static_cast<int>(middle_px), scene.image.cols) *= 0.4;
-  for (const Eigen::Vector2d& error : refined_error_px(scene, 0.7))
-    EXPECT_LT(error.norm(), 0.03);
-}
-
 TEST(CornerRefinement, CornersThatWouldMoveFarAreKeptWithALargeCovariance) {
   const Scene scene =
       scene_with({}, base_from_upright_marker({1.5, 0.0, 0.1}, std::numbers::pi), {});

@@ -102,26 +102,6 @@ TEST(SampleProfiles, AreSpreadAlongTheSideAwayFromItsCornersAndReadTheLevelsOnBo
   }
 }
 
-TEST(SampleProfiles, WhiteIsReadInAQuietZoneThinnerThanTheReach) {
-  const Side side{{10.0, 19.5}, {40.0, 19.5}};
-  cv::Mat image = horizontal_edge();
-  image.rowRange(0, 17).setTo(120);  // leaves a quiet zone of 3 px
-  for (const EdgeProfile& profile : sample_profiles(image, kCamera, side, 4.0, 6.0))
-    EXPECT_EQ(profile.white, 220.0);
-}
-
-TEST(SampleProfiles, WhiteIsReadFarFromTheEdgeWhereTheQuietZoneIsWide) {
-  const Side side{{10.0, 19.5}, {40.0, 19.5}};
-  cv::Mat image = horizontal_edge();
-  image.rowRange(0, 17).setTo(250);
-  for (const EdgeProfile& profile : sample_profiles(image, kCamera, side, 4.0, 6.0))
-    EXPECT_GT(profile.white, 235.0) << "brighter outwards, as by the blur of the edge";
-  image = horizontal_edge();
-  image.row(18).colRange(25, 26).setTo(255);
-  for (const EdgeProfile& profile : sample_profiles(image, kCamera, side, 4.0, 6.0))
-    EXPECT_EQ(profile.white, 220.0) << "noise in a single profile";
-}
-
 TEST(SampleProfiles, ThoseThatWouldLeaveTheImageAreLeftOut) {
   const auto count = [](const Side& side) {
     return sample_profiles(horizontal_edge(), kCamera, side, 4.0, 6.0).size();

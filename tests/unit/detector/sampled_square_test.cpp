@@ -74,28 +74,6 @@ TEST(SampledSquare, BordersBlackAndBlurAreMeasured) {
   EXPECT_EQ(sharp.corner_margin_px(0), 0.0);
 }
 
-/// Black levels against which the edge of the top side is measured: at its start and at its end.
-std::array<double, 2> black_at_ends_of_top(const cv::Mat& image, cv::Size module_px) {
-  const SampledSquare square = sampled(image, module_px);
-  const SampledSide& top = square.sides[0];
-  return {square.black_at(top, top.profiles.front()), square.black_at(top, top.profiles.back())};
-}
-
-TEST(SampledSquare, AShadowLowersTheBlackLevelOfAThickSharpBorderWhereItFalls) {
-  const auto in_shadow_on_the_right = [](cv::Size module_px, double blur_px) {
-    cv::Mat image = blurred_box(module_px, kBlack, blur_px);
-    image.colRange(kLeft_px + 4 * module_px.width, image.cols) *= 0.5;
-    return black_at_ends_of_top(image, module_px);
-  };
-  const auto [lit, shadowed] = in_shadow_on_the_right({9, 9}, 0.5);
-  EXPECT_NEAR(lit, kBlack, 2.0);
-  EXPECT_NEAR(shadowed, 0.5 * kBlack, 2.0);
-  const auto thin = in_shadow_on_the_right({4, 4}, 0.5);
-  EXPECT_EQ(thin[0], thin[1]) << "one level: the bits behind a thin border are blurred into it";
-  const auto blurred = in_shadow_on_the_right({9, 9}, 1.5);
-  EXPECT_EQ(blurred[0], blurred[1]) << "one level: wide blur reaches across a thick border";
-}
-
 TEST(SampledSquare, TheMoreBlurredNeighbourBendsTheEndsOfASide) {
   SampledSquare square;
   square.sides[1] = {.border_px = 6.0, .blur_px = 2.0};
@@ -130,27 +108,6 @@ TEST(SampledSquare, BlurMovesAThinSideInwardsIfWhiteBitsLieBehindItAsTheModelPre
       EXPECT_NEAR(bias_px, bits == kWhite ? -0.07 : 0.0, 0.01);
       EXPECT_NEAR(blur_bias_px(image, kPinhole, square, side), bias_px, 0.02);
     }
-  }
-}
-
-TEST(SampledSquare, TheModelReadsBlackWhereItWasMeasured) {
-  EXPECT_EQ(sampled(blurred_box({4, 4}, kBlack, 1.0), {4, 4}).white_behind_black, 0.0);
-  EXPECT_EQ(sampled(blurred_box({9, 9}, kBlack, 1.0), {9, 9}).white_behind_black, 0.5)
-      << "a thick border is read everywhere";
-}
-
-TEST(SampledSquare, TheBiasOfAThinBlurredBorderBeforeBlackAndWhiteBitsIsAsTheModelPredicts) {
-  constexpr double kBlur_px = 1.2;
-  const cv::Size module_px{4, 4};
-  cv::Mat image = blurred_box(module_px, kBlack, 0.01);
-  for (int v = 1; v < kModulesPerSide - 1; ++v)
-    for (int u = 1 + v % 2; u < kModulesPerSide - 1; u += 2)
-      image(cv::Rect{{kLeft_px + 4 * u, kTop_px + 4 * v}, module_px}).setTo(kWhite);
-  cv::GaussianBlur(image, image, {}, kBlur_px);
-  const SampledSquare square = sampled(image, module_px);
-  for (std::size_t side = 0; side < 4; ++side) {
-    const double bias_px = measured_bias_px(square, side);
-    EXPECT_NEAR(blur_bias_px(image, kPinhole, square, side), bias_px, 0.02);
   }
 }
 
