@@ -128,12 +128,9 @@ std::vector<Check> checks_with_wrong_clocks(const ClockFindings& clocks, const R
     return checks;
   }
   const double late_s = robot.camera.late_s + *clocks.camera_late_s;
-  checks.push_back(
-      {"camera_time_offset", Verdict::kFail,
-       fmt::format("the stamps of the camera are {:.1f} s {} than those of {}", std::abs(late_s),
-                   late_s > 0.0 ? "later" : "earlier",
-                   input.odometry_channel.empty() ? "odometry" : input.odometry_channel),
-       "stamp both with one clock, frames when they are exposed", 1e3 * late_s});
+  checks.push_back({"camera_time_offset", Verdict::kFail,
+                    "the stamps of the camera are " + later_than_odometry(late_s, input),
+                    "stamp both with one clock, frames when they are exposed", 1e3 * late_s});
   return checks;
 }
 

@@ -38,6 +38,9 @@ Check check_backing_up(const ImportedLog& log);
 std::vector<Check> check_mounting(const DoctorInput& input,
                                   const std::optional<HandEye>& calibration, RobotConfig& robot);
 
+/// "3.0 s later than those of ODOMETRY", with the log's name of odometry.
+std::string later_than_odometry(double late_s, const DoctorInput& input);
+
 /// What the clocks of the sensors rule out in the calibration of the camera.
 struct ClockFindings {
   bool lidar_is_unrelated{false};         ///< the LiDAR's turns and odometry's are contradictory

@@ -32,17 +32,17 @@ Check no_motions(std::string name) {
 constexpr const char* kUnrelated = "turns of LiDAR and odometry have nothing to do with each other";
 constexpr const char* kOneClock = "stamp both with one clock, when they are measured";
 
-/// "3.0 s later than those of ODOMETRY"
-std::string later_than(double late_s, std::string_view other) {
-  return fmt::format("{:.1f} s {} than those of {}", std::abs(late_s),
-                     late_s > 0.0 ? "later" : "earlier", other);
-}
-
 std::string name_or(const std::string& channel, const char* what) {
   return channel.empty() ? what : channel;
 }
 
 }  // namespace
+
+std::string later_than_odometry(double late_s, const DoctorInput& input) {
+  return fmt::format("{:.1f} s {} than those of {}", std::abs(late_s),
+                     late_s > 0.0 ? "later" : "earlier",
+                     name_or(input.odometry_channel, "odometry"));
+}
 
 Check unrelated_motions(std::string name) {
   return unchecked(std::move(name), kUnrelated,
@@ -108,7 +108,7 @@ Check check_time_offset(const DoctorInput& input, const std::optional<TurnCompar
   const auto far_off = [&](double late_s, std::string_view source) -> Check {
     return {"time_offset", Verdict::kFail,
             fmt::format("the stamps of {} are {}: {}", name_or(input.lidar_channel, "the LiDAR"),
-                        later_than(late_s, name_or(input.odometry_channel, "odometry")), source),
+                        later_than_odometry(late_s, input), source),
             kOneClock, 1e3 * late_s};
   };
   if (input.log.odometry_shift != Duration{0}) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/map_agreement.hpp"
 
+#include "slam/core/graph/map_fit.hpp"
 #include "slam/core/grid/occupied_points.hpp"
 
 #include <Eigen/LU>
@@ -17,14 +18,12 @@ namespace {
 constexpr double kDrift_m = 0.03;
 constexpr double kMaxMahalanobis2 = 13.8;  // 99.9 % of the chi-squared of two degrees of freedom
 constexpr double kMaxApart_m = 0.3;        // farther apart, a rigid merge would double the walls
-constexpr double kFreeSpace = 0.1;         // largest occupancy of free space, as of MapFit
-constexpr double kOccupied = 0.4;          // least occupancy of a wall, as of MapFit
 constexpr double kBeside_m = 0.15;  // farthest of a wall from itself in the other map: the drift
 constexpr std::size_t kMinWallCells = 40;  // 2 m of walls of 0.05 m; fewer may be a person
 /// Share of a map's walls in the other map's free space: furniture and doors change on a day, but
 /// of a corridor that is wider by a metre, half of the walls stand in the free space.
-constexpr double kMaxContradicting = 0.2;  // as MapFit::kMaxCrossing
-constexpr std::size_t kMaxNamed = 12;      // markers that fit in a sentence
+constexpr double kMaxContradicting = MapFit::kMaxCrossing;
+constexpr std::size_t kMaxNamed = 12;  // markers that fit in a sentence
 
 /// By id, the confirmed landmark; nullptr if there is more than one.
 std::map<int, const Landmark*> unique_landmarks(const MapSnapshot& map) {
@@ -47,8 +46,8 @@ Cover cover_at(const GridMap& map, const Eigen::Vector2d& point) {
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) {
       const OccupancyCell& cell = map.occupancy[CellIndex{centre.x + x, centre.y + y}];
-      if (cell.occupancy() > kOccupied) return Cover::kWall;
-      is_free = is_free && cell.is_mapped() && cell.occupancy() < kFreeSpace;
+      if (cell.occupancy() > kWallOccupancy) return Cover::kWall;
+      is_free = is_free && cell.is_mapped() && cell.occupancy() < kFreeOccupancy;
     }
   }
   return is_free ? Cover::kFree : Cover::kUnknown;

@@ -3,6 +3,7 @@
 
 #include "common/logging/logging.hpp"
 #include "common/messages/channels.hpp"
+#include "common/runtime/reorder_buffer.hpp"
 
 #include <fmt/format.h>
 
@@ -24,11 +25,6 @@ constexpr std::array kDataChannels{
 
 constexpr std::chrono::seconds kBetweenLines{10};
 constexpr std::size_t kMaxHeldBack = 100;
-
-/// Commands and replies may have no stamp.
-bool may_lack_a_stamp(std::string_view channel) {
-  return channel == channels::kSlamCommand.name || channel == channels::kSlamReply.name;
-}
 
 /// @throws SetupError if the log, or its partial file of a recording that crashed or runs, exists.
 void protect_recordings(const std::filesystem::path& log) {
@@ -78,8 +74,7 @@ RecorderNode::RecorderNode(const RecorderConfig& config, Inbox& inbox, Outbox&)
 
 void RecorderNode::record(const Message& message) {
   if (failed_) return;
-  if (!has_stamped_ && message.time == Timestamp{} && may_lack_a_stamp(message.channel) &&
-      held_back_.size() < kMaxHeldBack) {
+  if (!has_stamped_ && is_unstamped(message) && held_back_.size() < kMaxHeldBack) {
     held_back_.push_back(message);
     return;
   }

@@ -8,11 +8,6 @@
 namespace waymark {
 namespace {
 
-bool is_unstamped(const Message& message) {
-  return message.time == Timestamp{} && (message.channel == channels::kSlamCommand.name ||
-                                         message.channel == channels::kSlamReply.name);
-}
-
 template <class Type>
 Message with_stamp(Channel<Type> channel, Message message, Timestamp time) {
   const auto decoded = decode<Type>(message.payload);
@@ -23,6 +18,11 @@ Message with_stamp(Channel<Type> channel, Message message, Timestamp time) {
 }
 
 }  // namespace
+
+bool is_unstamped(const Message& message) {
+  return message.time == Timestamp{} && (message.channel == channels::kSlamCommand.name ||
+                                         message.channel == channels::kSlamReply.name);
+}
 
 ReorderBuffer::ReorderBuffer(Duration window) : window_{window} {}
 

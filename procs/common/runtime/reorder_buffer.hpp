@@ -15,6 +15,9 @@
 
 namespace waymark {
 
+/// Whether it is a command without a stamp of its own (utime 0), or slam's reply to one.
+bool is_unstamped(const Message& message);
+
 /// Holds messages until one is `window` newer, then releases them by (time, channel, payload).
 /// Drops and counts messages older than a released one of their channel, and messages more than
 /// ClockStepDetector::kLongestPause ahead of the newest one, which would release all others. Many

@@ -10,11 +10,9 @@ namespace {
 
 constexpr std::size_t kMaxCompared = 120;  // beams
 constexpr double kBeforeEnd_m = 0.3;  // last part of a beam, which may graze the wall that it hits
-constexpr double kOccupied = 0.4;     // least occupancy of a wall
-constexpr double kFree = 0.1;         // largest occupancy of free space
 
 bool is_wall(const GridMap& map, CellIndex cell) {
-  return map.occupancy[cell].occupancy() > kOccupied;
+  return map.occupancy[cell].occupancy() > kWallOccupancy;
 }
 
 bool is_beside_wall(const GridMap& map, const Eigen::Vector2d& point) {
@@ -27,7 +25,7 @@ bool is_beside_wall(const GridMap& map, const Eigen::Vector2d& point) {
 
 bool is_free(const GridMap& map, const Eigen::Vector2d& point) {
   const OccupancyCell& cell = map.occupancy[map.frame.cell_of(point)];
-  return cell.is_mapped() && cell.occupancy() < kFree;
+  return cell.is_mapped() && cell.occupancy() < kFreeOccupancy;
 }
 
 /// Whether a mapped wall crosses the beam more than kBeforeEnd_m before its end `to`.

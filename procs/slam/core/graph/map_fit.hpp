@@ -11,6 +11,9 @@
 
 namespace waymark {
 
+inline constexpr double kWallOccupancy = 0.4;  ///< least occupancy of a wall
+inline constexpr double kFreeOccupancy = 0.1;  ///< largest occupancy of free space
+
 /// A scan's beams compared with a map. Beams that end in unmapped or uncertain cells count as
 /// neither fitting nor contradicting.
 struct MapFit {

@@ -109,7 +109,7 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
       hypotheses_.size() == 1 || best.score() - hypotheses_[1].score() >= kDecided;
   // Two markers at their mapped relative pose are no coincidence, even if others are missing.
   const bool beats_none = best.score() >= kDecided || best.seen_in_place.size() >= 2;
-  if (beats_others && beats_none && best.fits_walls) return best.map_from_base;
+  if (beats_others && beats_none && best.walls != Walls::kContradict) return best.map_from_base;
   const double least = best.score() - kHopeless;
   std::erase_if(hypotheses_, [&](const Hypothesis& place) { return place.score() < least; });
   if (hypotheses_.size() > kMaxHypotheses) hypotheses_.resize(kMaxHypotheses);
@@ -213,8 +213,9 @@ void PlaceFinder::score_walls(Hypothesis& place, const Observation& observation,
   if (match.is_usable(scan_)) place.map_from_base = match.map_from_base;
   const MapFit fit = fit_in_map(map_->grid, observation.beams, place.map_from_base);
   const bool fits = fit.fitting >= kMinMapped * fit.beams && !fit.is_contradicted();
-  place.may_be_right = fit.beams >= MapFit::kMinBeams && fits;
-  place.fits_walls = fit.beams < MapFit::kMinBeams || fits;
+  place.walls = fit.beams < MapFit::kMinBeams ? Walls::kTooFew
+                : fits                        ? Walls::kFit
+                                              : Walls::kContradict;
   if (fit.is_decisive()) place.wall_score -= kMisfit * std::max(0.0, fit.misfit() - kUsualMisfit);
 }
 

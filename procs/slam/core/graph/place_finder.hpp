@@ -44,6 +44,9 @@ class PlaceFinder {
  private:
   enum class Clue { kLandmark, kUnexpectedId };
 
+  /// How the newest scan that was compared fits the map's walls.
+  enum class Walls { kNotCompared, kTooFew, kFit, kContradict };
+
   struct Hypothesis {
     /// One pass by a marker.
     struct Episode {
@@ -56,10 +59,12 @@ class PlaceFinder {
     std::map<std::pair<Clue, int>, Episode> clues{};
     std::set<int> seen_in_place{};  ///< landmarks whose score has reached its upper bound
     double wall_score{0.0};
-    bool fits_walls{true};    ///< as far as the map has walls there
-    bool may_be_right{true};  ///< its walls fit, or were not compared yet
+    Walls walls{Walls::kNotCompared};
 
     double score() const;
+
+    bool may_be_right() const { return walls == Walls::kFit || walls == Walls::kNotCompared; }
+
     void add(Clue clue, int index, double score);
     void drive(double distance_m);
   };

@@ -64,11 +64,11 @@ RelocalisationMonitor::Verdict RelocalisationMonitor::update(const Se2& map_from
     drop_alternative();
     return Verdict::kConsistent;
   }
-  return relocate(map_from_base, walls == Walls::kContradictSecond || !is_certain_);
+  return relocate(map_from_base, is_certain_ && walls != Walls::kContradictSecond);
 }
 
 RelocalisationMonitor::Verdict RelocalisationMonitor::relocate(const Se2& map_from_base,
-                                                               bool is_certain) {
+                                                               bool is_doubtful) {
   relocated_ = *alternative_;
   relocated_by_.clear();
   for (const auto& [id, count] : sightings_)
@@ -76,7 +76,7 @@ RelocalisationMonitor::Verdict RelocalisationMonitor::relocate(const Se2& map_fr
   drop_alternative();
   // In doubt, the pose that markers had confirmed stays the other hypothesis.
   if (!is_doubtful_) abandoned_ = map_from_base;
-  is_doubtful_ = !is_certain;
+  is_doubtful_ = is_doubtful;
   unexpected_ids_.clear();
   votes_for_.clear();
   votes_against_.clear();

@@ -70,7 +70,7 @@ class RelocalisationMonitor {
   void support_alternative(const PoseHint& hint);
   int num_sightings() const;
   bool is_lookalike_place(std::span<const PoseHint> hints);
-  Verdict relocate(const Se2& map_from_base, bool is_certain);
+  Verdict relocate(const Se2& map_from_base, bool is_doubtful);
   Verdict revert();
   std::optional<Verdict> settle_doubt(const Se2& map_from_base, std::span<const PoseHint> hints,
                                       const CompareWalls& compare_walls);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/graph/wall_change_detector.hpp"
 
+#include "slam/core/graph/map_fit.hpp"
 #include "slam/core/mapping/insert_scan.hpp"
 
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace {
 
 constexpr std::uint32_t kMinVisits = 8;    // beams; a person walking past leaves fewer
 constexpr double kWall = 0.5;              // least occupancy of a wall
-constexpr double kFree = 0.1;              // largest occupancy of free space
 constexpr int kAgedEvery = 100;            // scans
 constexpr std::uint32_t kMaxVisits = 200;  // a cell with more gets its counts halved
 constexpr std::size_t kMinCells = 6;       // 0.3 m of wall in cells of 0.05 m
@@ -104,10 +104,10 @@ std::vector<MapChange> WallChangeDetector::changes() const {
   const auto& then = map_->grid.occupancy;
   const auto& now = seen_.occupancy;
   const auto was_free = [&](CellIndex cell) {
-    return then[cell].is_mapped() && then[cell].occupancy() < kFree;
+    return then[cell].is_mapped() && then[cell].occupancy() < kFreeOccupancy;
   };
   const auto is_free = [&](CellIndex cell) {
-    return now[cell].visits >= kMinVisits && now[cell].occupancy() < kFree;
+    return now[cell].visits >= kMinVisits && now[cell].occupancy() < kFreeOccupancy;
   };
   Cells appeared;
   Cells gone;
