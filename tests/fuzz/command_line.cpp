@@ -92,13 +92,13 @@ template <class Description>
 void check_settings(const Description& description, ProcessOptions options) {
   options.config_sources.files.clear();
   std::string printed;
-  if (!is_allowed([&] { printed = description.dump_config(options); })) return;
+  if (!is_allowed([&] { printed = description.config.dump(options); })) return;
   if (!options.print_config.empty())
-    is_allowed([&] { description.config_value(options, options.print_config); });
+    is_allowed([&] { description.config.value(options, options.print_config); });
   const std::span bytes{reinterpret_cast<const std::uint8_t*>(printed.data()), printed.size()};
   options.config_sources = {{memory_file(bytes)}, {}};
   options.seed.reset();
-  require(description.dump_config(options) == printed);
+  require(description.config.dump(options) == printed);
 }
 
 template <class Description>

@@ -295,18 +295,18 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
   const ProcessOptions& options = parsed.options;
   return run_guarded(description.traits, [&] {
     if (options.check) {
-      description.dump_config(options);
+      description.config.dump(options);
       check_options(options, description.option_set);
       set_up([&] { description.check_node(options); });
       if (options.logs.empty()) check_network(lcm_url_or_default(options.lcm_url));
       return int{kExitOk};
     }
     if (!options.print_config.empty()) {
-      fmt::print("{}\n", description.config_value(options, options.print_config));
+      fmt::print("{}\n", description.config.value(options, options.print_config));
       return int{kExitOk};
     }
     if (options.dump_config) {
-      fmt::print("{}", description.dump_config(options));
+      fmt::print("{}", description.config.dump(options));
       return int{kExitOk};
     }
     check_options(options, description.option_set);
@@ -319,8 +319,7 @@ int run_described_process(int argc, char** argv, const ProcessDescription& descr
     const auto node = set_up([&] { return description.make_node(options, inbox, outbox); });
     if (!options.logs.empty()) return run_replay(options, *node, inbox, outbox);
     const Network network{
-        lcm_url_or_default(options.lcm_url),
-        description.channel_names ? description.channel_names(options) : ChannelNames{},
+        lcm_url_or_default(options.lcm_url), description.config.channel_names(options),
         options.large_messages ? LargeMessages::kAccepted : LargeMessages::kRefused, options.for_s};
     const auto run = options.real_time ? run_real_time : run_lockstep;
     try {

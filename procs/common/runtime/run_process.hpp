@@ -14,13 +14,20 @@
 
 namespace waymark {
 
+/// The configuration of a program by its options, type-erased.
+struct ConfigAccess {
+  std::function<std::string(const ProcessOptions&)> dump{};
+  std::function<std::string(const ProcessOptions&, const std::string& key)> value{};
+  std::function<ChannelNames(const ProcessOptions&)> channel_names{[](const ProcessOptions&) {
+    return ChannelNames{};
+  }};
+};
+
 /// A node type and its configuration, type-erased, so that run_described_process() is no template.
 struct ProcessDescription {
   ProcessTraits traits{};
   OptionSet option_set{};
-  std::function<std::string(const ProcessOptions&)> dump_config{};
-  std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
-  std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none = the defaults
+  ConfigAccess config{};
   std::function<void(const ProcessOptions&)> check_node{};  ///< the node's own part of --check
   std::function<std::unique_ptr<Node>(const ProcessOptions&, Inbox&, Outbox&)> make_node{};
 };
@@ -62,6 +69,18 @@ ProcessConfig<Config> process_config_from(const ProcessOptions& options) {
   return loaded;
 }
 
+/// @param load  reads the whole configuration.
+template <class Config>
+ConfigAccess config_access(ProcessConfig<Config> (*load)(const ProcessOptions&)) {
+  return {.dump = [load](const auto& options) { return dump_config(load(options)); },
+          .value = [load](const auto& options,
+                          const auto& key) { return config_value(load(options), key); },
+          .channel_names =
+              [load](const auto& options) {
+                return load(options).channels;
+              }};
+}
+
 template <class NodeType>
 ProcessDescription describe_process() {
   using Config = typename NodeType::Config;
@@ -86,15 +105,7 @@ ProcessDescription describe_process() {
                             .out_dir = kWritesFolder,
                             .http = kServesPage,
                             .maps = kHasMaps};
-  description.dump_config = [](const ProcessOptions& options) {
-    return dump_config(process_config_from<Config>(options));
-  };
-  description.channel_names = [](const ProcessOptions& options) {
-    return process_config_from<Config>(options).channels;
-  };
-  description.config_value = [](const ProcessOptions& options, const std::string& key) {
-    return config_value(process_config_from<Config>(options), key);
-  };
+  description.config = config_access(process_config_from<Config>);
   description.check_node = [](const ProcessOptions& options) {
     if constexpr (requires(const Config& c) { NodeType::check(c); })
       NodeType::check(process_config_from<Config>(options).own);

@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <memory>
 #include <span>
-#include <thread>
 
 namespace waymark {
 namespace {
@@ -217,16 +216,12 @@ class Run {
   Timestamp tick_end_{};
 };
 
-ChannelNames names_of(const ProcessOptions& options, const SimulatorDescription& description) {
-  return description.channel_names ? description.channel_names(options) : ChannelNames{};
-}
-
 /// Null in real time, where receivers accept one publisher per channel (ChannelOwners).
 std::unique_ptr<SimulatorLock> lock_of(const ProcessOptions& options,
                                        const SimulatorDescription& description) {
   if (options.real_time) return nullptr;
   return std::make_unique<SimulatorLock>(lcm_url_or_default(options.lcm_url),
-                                         names_of(options, description));
+                                         description.config.channel_names(options));
 }
 
 /// Option --check: builds the world and joins the network, but writes no file.
@@ -248,11 +243,11 @@ int run_described_simulator(int argc, char** argv, const SimulatorDescription& d
   return run_guarded(description.traits, [&] {
     if (options.check) return check(options, description);
     if (!options.print_config.empty()) {
-      fmt::print("{}\n", description.config_value(options, options.print_config));
+      fmt::print("{}\n", description.config.value(options, options.print_config));
       return int{kExitOk};
     }
     if (options.dump_config || options.dump_robot_config) {
-      fmt::print("{}", options.dump_config ? description.dump_config(options)
+      fmt::print("{}", options.dump_config ? description.config.dump(options)
                                            : description.dump_robot_config(options));
       return int{kExitOk};
     }
@@ -261,8 +256,8 @@ int run_described_simulator(int argc, char** argv, const SimulatorDescription& d
     Inbox inbox;
     const auto source = description.make_source(options, inbox);
     const auto lock = lock_of(options, description);
-    Run run{description.traits, lcm_url_or_default(options.lcm_url), names_of(options, description),
-            *source, inbox};
+    Run run{description.traits, lcm_url_or_default(options.lcm_url),
+            description.config.channel_names(options), *source, inbox};
     source->begin();
     const int code = options.real_time ? run.in_real_time() : run.in_lockstep();
     source->finish();

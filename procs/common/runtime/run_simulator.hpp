@@ -40,10 +40,8 @@ class TickSource {
 
 struct SimulatorDescription {
   ProcessTraits traits{};
-  std::function<std::string(const ProcessOptions&)> dump_config{};
+  ConfigAccess config{};
   std::function<std::string(const ProcessOptions&)> dump_robot_config{};
-  std::function<std::string(const ProcessOptions&, const std::string& key)> config_value{};
-  std::function<ChannelNames(const ProcessOptions&)> channel_names{};  ///< none = the defaults
   std::function<std::unique_ptr<TickSource>(const ProcessOptions&, Inbox&)> make_source{};
   std::vector<std::string_view> files{};  ///< names of the files that it writes into --out
 };
@@ -70,17 +68,9 @@ SimulatorDescription describe_simulator() {
   SimulatorDescription description;
   description.traits = SourceType::kTraits;
   description.files = {SourceType::kFiles.begin(), SourceType::kFiles.end()};
-  description.dump_config = [](const ProcessOptions& options) {
-    return dump_config(simulator_config_from<Config>(options));
-  };
+  description.config = config_access(simulator_config_from<Config>);
   description.dump_robot_config = [](const ProcessOptions& options) {
     return dump_robot_config(simulator_config_from<Config>(options).own.robot);
-  };
-  description.channel_names = [](const ProcessOptions& options) {
-    return simulator_config_from<Config>(options).channels;
-  };
-  description.config_value = [](const ProcessOptions& options, const std::string& key) {
-    return config_value(simulator_config_from<Config>(options), key);
   };
   description.make_source = [](const ProcessOptions& options, Inbox& inbox) {
     return std::make_unique<SourceType>(simulator_config_from<Config>(options).own, inbox);

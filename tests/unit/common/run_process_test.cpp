@@ -307,7 +307,10 @@ Simulated simulate(std::string_view name, std::vector<std::string> words) {
   simulated.result.exit_code = run_described_simulator(
       static_cast<int>(arguments.size()), arguments.data(),
       {.traits = {name, "Does nothing.", false},
-       .config_value = [](const ProcessOptions&, const std::string&) { return "7"; },
+       .config = {.value =
+                      [](const ProcessOptions&, const std::string&) {
+                        return "7";
+                      }},
        .make_source = [&](const ProcessOptions&,
                           Inbox&) { return std::make_unique<Source>(simulated.asked); },
        .files = {"scenario.toml"}});
