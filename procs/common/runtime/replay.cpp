@@ -16,7 +16,9 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -159,16 +161,38 @@ bool report_missing(const std::vector<Source>& sources,
   return any;
 }
 
-/// Whether the logs have images, but not the detections in them, which this process reads.
-bool has_only_images(const std::vector<Source>& sources,
-                     const std::vector<Inbox::Subscription>& subscriptions) {
+/// Warns if the logs have images, but not the detections in them, which this process reads.
+void warn_of_unused_images(const std::vector<Source>& sources,
+                           const std::vector<Inbox::Subscription>& subscriptions) {
   const auto is_wanted = [&](std::string_view channel) {
     return std::ranges::find(subscriptions, channel, &Inbox::Subscription::channel) !=
            subscriptions.end();
   };
   const auto held = channels_held(sources);
-  return is_wanted(channels::kMarkers.name) && !is_wanted(channels::kCamera.name) &&
-         held.contains(channels::kCamera.name) && !held.contains(channels::kMarkers.name);
+  if (!is_wanted(channels::kMarkers.name) || is_wanted(channels::kCamera.name) ||
+      !held.contains(channels::kCamera.name) || held.contains(channels::kMarkers.name))
+    return;
+  logging::warn(
+      "the log has images ({}), but no {}: the markers in them are not used. `waymark-detector "
+      "--config robot.toml --log LOG --out-log FILE` finds them; then --log LOG --log FILE",
+      channels::kCamera.name, channels::kMarkers.name);
+}
+
+std::optional<LogWriter> open_writer(const std::filesystem::path& file) {
+  if (file.empty()) return std::nullopt;
+  try {
+    return std::optional<LogWriter>{std::in_place, file};
+  } catch (const std::exception& error) {
+    throw SetupError{error.what()};
+  }
+}
+
+void log_report(const ReplayReport& report) {
+  logging::info(
+      "replayed {} messages, {:.1f} s of log in {:.2f} s ({:.1f} x real time), peak memory {:.0f} "
+      "MB",
+      report.messages, report.log_s, report.wall_s, report.real_time_factor(),
+      report.peak_memory_mb);
 }
 
 }  // namespace
@@ -190,24 +214,12 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
   std::vector<Source> sources = open_sources(options.logs, inbox.subscriptions());
   const bool useless = report_useless(sources, inbox.subscriptions());
   const bool missing = !useless && report_missing(sources, node.needed_channels());
-  if (has_only_images(sources, inbox.subscriptions())) {
-    logging::warn(
-        "the log has images ({}), but no {}: the markers in them are not used. `waymark-detector "
-        "--config robot.toml --log LOG --out-log FILE` finds them; then --log LOG --log FILE",
-        channels::kCamera.name, channels::kMarkers.name);
-  }
+  warn_of_unused_images(sources, inbox.subscriptions());
   if (oldest(sources) == nullptr) {
     report_skipped(sources);
     return kExitFailed;
   }
-  std::optional<LogWriter> writer;
-  if (!options.out_log.empty()) {
-    try {
-      writer.emplace(options.out_log);
-    } catch (const std::exception& error) {
-      throw SetupError{error.what()};
-    }
-  }
+  std::optional<LogWriter> writer = open_writer(options.out_log);
   const auto write_out = [&] {
     for (const Message& message : outbox.take()) {
       if (writer) writer->write(message);
@@ -254,11 +266,7 @@ int run_replay(const ProcessOptions& options, Node& node, Inbox& inbox, Outbox& 
                             .log_s = to_seconds(last - begin),
                             .wall_s = progress.elapsed_s(),
                             .peak_memory_mb = peak_memory_mb()};
-  logging::info(
-      "replayed {} messages, {:.1f} s of log in {:.2f} s ({:.1f} x real time), peak memory {:.0f} "
-      "MB",
-      report.messages, report.log_s, report.wall_s, report.real_time_factor(),
-      report.peak_memory_mb);
+  log_report(report);
   if (!options.report.empty()) write_whole_file(options.report, to_json(report, inbox.counters()));
   log_counters(inbox.counters());
   const bool skipped = report_skipped(sources);

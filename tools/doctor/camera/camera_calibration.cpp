@@ -55,6 +55,13 @@ struct Residual {
   std::size_t track{0};
   std::function<Eigen::Vector2d(const Errors&)> value{};
   Eigen::Matrix2d information{Eigen::Matrix2d::Zero()};
+
+  /// Derivative by one of the errors, from the difference between a step forwards and one back.
+  Eigen::Vector2d slope(const Errors& errors, Eigen::Index term, double step) const {
+    Errors change = Errors::Zero();
+    change[term] = step;
+    return (value(errors + change) - value(errors - change)) / (2.0 * step);
+  }
 };
 
 class Problem {
@@ -104,10 +111,7 @@ class Problem {
 
   /// Information [1/s^2] of a residual about the time offset kLate, by central differences.
   double late_information(const Residual& residual, double step_s) const {
-    Errors step = Errors::Zero();
-    step[kLate] = step_s;
-    const Eigen::Vector2d slope =
-        (residual.value(errors_ + step) - residual.value(errors_ - step)) / (2.0 * step_s);
+    const Eigen::Vector2d slope = residual.slope(errors_, kLate, step_s);
     return slope.dot(residual.information * slope);
   }
 
@@ -262,13 +266,8 @@ std::optional<CameraCalibration> Problem::solve() {
     for (const Residual& residual : residuals_) {
       const Eigen::Vector2d value = residual.value(errors_);
       Eigen::Matrix<double, 2, kTerms> jacobian;
-      for (Eigen::Index i = 0; i < kTerms; ++i) {
-        Errors step = Errors::Zero();
-        const double size = kSteps[static_cast<std::size_t>(i)];
-        step[i] = size;
-        jacobian.col(i) =
-            (residual.value(errors_ + step) - residual.value(errors_ - step)) / (2.0 * size);
-      }
+      for (Eigen::Index i = 0; i < kTerms; ++i)
+        jacobian.col(i) = residual.slope(errors_, i, kSteps[static_cast<std::size_t>(i)]);
       const double distance2 = value.dot(residual.information * value);
       const double weight = 1.0 / (1.0 + distance2 / squared(kCutoff));
       const Information added = weight * jacobian.transpose() * residual.information * jacobian;
