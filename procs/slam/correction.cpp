@@ -2,32 +2,19 @@
 #include "slam/correction.hpp"
 
 #include "common/geometry/se2.hpp"
-#include "slam/slam_messages.hpp"
 
 namespace waymark {
 namespace {
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-std::int8_t to_message(EstimateReason reason) {
-  switch (reason) {
-    case EstimateReason::kOdometry:
-      return correction_t::REASON_ODOMETRY;
-    case EstimateReason::kScan:
-      return correction_t::REASON_SCAN;
-    case EstimateReason::kMarker:
-      return correction_t::REASON_MARKER;
-    case EstimateReason::kLoop:
-      return correction_t::REASON_LOOP;
-    case EstimateReason::kRelocalised:
-      return correction_t::REASON_RELOCALISED;
-    case EstimateReason::kSurvey:
-      return correction_t::REASON_SURVEY;
-    case EstimateReason::kCommand:
-      return correction_t::REASON_COMMAND;
-  }
-  return correction_t::REASON_ODOMETRY;
-}
+static_assert(static_cast<int>(EstimateReason::kOdometry) == correction_t::REASON_ODOMETRY &&
+              static_cast<int>(EstimateReason::kScan) == correction_t::REASON_SCAN &&
+              static_cast<int>(EstimateReason::kMarker) == correction_t::REASON_MARKER &&
+              static_cast<int>(EstimateReason::kLoop) == correction_t::REASON_LOOP &&
+              static_cast<int>(EstimateReason::kRelocalised) == correction_t::REASON_RELOCALISED &&
+              static_cast<int>(EstimateReason::kSurvey) == correction_t::REASON_SURVEY &&
+              static_cast<int>(EstimateReason::kCommand) == correction_t::REASON_COMMAND);
 
 }  // namespace
 
@@ -49,7 +36,7 @@ correction_t CorrectionMaker::make(const Estimate& estimate, const Se2& odom_fro
   message.health = static_cast<std::int8_t>(estimate.health);
   Eigen::Map<Eigen::Vector3d>{message.jump} =
       pose_difference(estimate.map_from_base, by_the_one_before);
-  message.reason = to_message(estimate.reason);
+  message.reason = static_cast<std::int8_t>(estimate.reason);
   return message;
 }
 

@@ -3,7 +3,7 @@
 
 #include "common/log/log_file.hpp"
 #include "common/messages/codec.hpp"
-#include "common/messages/convert.hpp"
+#include "slam/in_parts.hpp"
 #include "slam/map_publisher.hpp"
 #include "slam/slam_messages.hpp"
 
@@ -28,33 +28,22 @@ constexpr std::size_t kCellsPerMessage = 1000;  // 56 bytes each
 constexpr std::uint32_t kLoadedVisits = 100;
 constexpr float kLoadedVotes = 5.0F;
 
-template <class Item>
-std::size_t num_parts(const std::vector<Item>& items, std::size_t per_message) {
-  return std::max<std::size_t>(1, (items.size() + per_message - 1) / per_message);
-}
-
 std::vector<map_walls_t> wall_messages(const NdtMap& walls, Timestamp time) {
   const std::vector<NdtCellSums> cells = walls.sums();
-  std::vector<map_walls_t> messages(num_parts(cells, kCellsPerMessage));
-  for (std::size_t part = 0; part < messages.size(); ++part) {
-    map_walls_t& message = messages[part];
-    message.utime = to_us(time);
-    message.part = static_cast<std::int32_t>(part);
-    message.num_parts = static_cast<std::int32_t>(messages.size());
-    message.spacing_m = walls.spacing_m();
-    const std::size_t end = std::min(cells.size(), (part + 1) * kCellsPerMessage);
-    for (std::size_t i = part * kCellsPerMessage; i < end; ++i) {
-      wall_cell_t cell{};
-      cell.column = cells[i].column;
-      cell.row = cells[i].row;
-      cell.count = cells[i].count;
-      Eigen::Map<Eigen::Vector2d>{cell.sum_m} = cells[i].sum_m;
-      Eigen::Map<Eigen::Vector3d>{cell.squares_m2} = cells[i].squares_m2;
-      message.cells.push_back(cell);
-    }
-    message.num_cells = static_cast<std::int32_t>(message.cells.size());
-  }
-  return messages;
+  return in_parts<map_walls_t>(std::max<std::size_t>(1, cells.size()), kCellsPerMessage, time,
+                               [&](map_walls_t& message, const Part& part) {
+                                 message.spacing_m = walls.spacing_m();
+                                 for (const NdtCellSums& sums : part.of(cells)) {
+                                   wall_cell_t& cell = message.cells.emplace_back();
+                                   cell.column = sums.column;
+                                   cell.row = sums.row;
+                                   cell.count = sums.count;
+                                   Eigen::Map<Eigen::Vector2d>{cell.sum_m} = sums.sum_m;
+                                   Eigen::Map<Eigen::Vector3d>{cell.squares_m2} = sums.squares_m2;
+                                 }
+                                 message.num_cells =
+                                     static_cast<std::int32_t>(message.cells.size());
+                               });
 }
 
 calibration_t to_message(const LearntCalibration& calibration, Timestamp time) {

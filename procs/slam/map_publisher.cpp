@@ -2,6 +2,7 @@
 #include "slam/map_publisher.hpp"
 
 #include "common/messages/message.hpp"
+#include "slam/in_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,22 +51,16 @@ map_tile_t to_message(const GridMap& map, TileIndex index) {
 
 std::vector<map_tiles_t> to_messages(const GridMap& map, const std::vector<TileIndex>& tiles,
                                      Timestamp time) {
-  std::vector<map_tiles_t> messages((tiles.size() + kTilesPerMessage - 1) / kTilesPerMessage);
-  for (std::size_t part = 0; part < messages.size(); ++part) {
-    map_tiles_t& message = messages[part];
-    message.utime = to_us(time);
-    message.part = static_cast<std::int32_t>(part);
-    message.num_parts = static_cast<std::int32_t>(messages.size());
-    message.origin_x_m = map.frame.origin_m.x();
-    message.origin_y_m = map.frame.origin_m.y();
-    message.resolution_m = map.frame.resolution_m;
-    message.tile_size_cells = kTileSize;
-    const std::size_t last = std::min(tiles.size(), (part + 1) * kTilesPerMessage);
-    for (std::size_t i = part * kTilesPerMessage; i < last; ++i)
-      message.tiles.push_back(to_message(map, tiles[i]));
-    message.num_tiles = static_cast<std::int32_t>(message.tiles.size());
-  }
-  return messages;
+  return in_parts<map_tiles_t>(
+      tiles.size(), kTilesPerMessage, time, [&](map_tiles_t& message, const Part& part) {
+        message.origin_x_m = map.frame.origin_m.x();
+        message.origin_y_m = map.frame.origin_m.y();
+        message.resolution_m = map.frame.resolution_m;
+        message.tile_size_cells = kTileSize;
+        for (const TileIndex tile : part.of(tiles))
+          message.tiles.push_back(to_message(map, tile));
+        message.num_tiles = static_cast<std::int32_t>(message.tiles.size());
+      });
 }
 
 /// Log odds of the cell's occupancy in the units of MBot grids, which are integers.

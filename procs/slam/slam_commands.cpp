@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace waymark {
@@ -100,7 +99,7 @@ void SlamNode::begin_estimator(MapMode mode, std::shared_ptr<const MapSnapshot> 
   map_period_.reset();
   if (last_estimate_time_) {
     // Clears the old map's tiles at subscribers.
-    publish_tiles(map_publisher_.all_tiles(estimator_->map(), *last_estimate_time_));
+    publish(channels::kSlamMap, map_publisher_.all_tiles(estimator_->map(), *last_estimate_time_));
     publish_markers(*last_estimate_time_);
   }
   if (mode == MapMode::kLocalise) return;

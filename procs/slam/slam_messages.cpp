@@ -3,6 +3,7 @@
 
 #include "common/messages/codec.hpp"
 #include "common/messages/convert.hpp"
+#include "slam/in_parts.hpp"
 
 #include <algorithm>
 
@@ -19,30 +20,20 @@ static_assert(static_cast<int>(WeakAxisSource::kOdometry) == slam_estimate_t::SO
               static_cast<int>(WeakAxisSource::kMarkers) == slam_estimate_t::SOURCE_MARKERS &&
               static_cast<int>(WeakAxisSource::kNothing) == slam_estimate_t::SOURCE_NOTHING);
 
+static_assert(static_cast<int>(MapChange::Kind::kMarkerMoved) == map_change_t::KIND_MARKER_MOVED &&
+              static_cast<int>(MapChange::Kind::kMarkerMissing) ==
+                  map_change_t::KIND_MARKER_MISSING &&
+              static_cast<int>(MapChange::Kind::kMarkerNew) == map_change_t::KIND_MARKER_NEW &&
+              static_cast<int>(MapChange::Kind::kWallNew) == map_change_t::KIND_WALL_NEW &&
+              static_cast<int>(MapChange::Kind::kWallGone) == map_change_t::KIND_WALL_GONE &&
+              static_cast<int>(MapChange::Kind::kSurveyOff) == map_change_t::KIND_SURVEY_OFF);
+
 constexpr std::size_t kBeamsPerMessage = 5400;      // 12 bytes each
 constexpr std::size_t kParticlesPerMessage = 1300;  // 48 bytes each
 constexpr std::size_t kLandmarksPerMessage = 500;   // 125 bytes each
 constexpr std::size_t kPosesPerMessage = 3000;      // 20 bytes each
 constexpr std::size_t kVerticesPerMessage = 500;    // 24 bytes each, and as many edges of 80 bytes
 constexpr std::size_t kChangesPerMessage = 900;     // 69 bytes each
-
-std::int8_t to_message(MapChange::Kind kind) {
-  switch (kind) {
-    case MapChange::Kind::kMarkerMoved:
-      return map_change_t::KIND_MARKER_MOVED;
-    case MapChange::Kind::kMarkerMissing:
-      return map_change_t::KIND_MARKER_MISSING;
-    case MapChange::Kind::kMarkerNew:
-      return map_change_t::KIND_MARKER_NEW;
-    case MapChange::Kind::kWallNew:
-      return map_change_t::KIND_WALL_NEW;
-    case MapChange::Kind::kWallGone:
-      return map_change_t::KIND_WALL_GONE;
-    case MapChange::Kind::kSurveyOff:
-      return map_change_t::KIND_SURVEY_OFF;
-  }
-  return map_change_t::KIND_MARKER_NEW;
-}
 
 marker_landmark_t to_message(const Landmark& landmark) {
   marker_landmark_t message{};
@@ -154,20 +145,13 @@ particles_t to_message(std::span<const PublishedParticle> particles, Timestamp t
 }
 
 std::vector<marker_map_t> to_messages(std::span<const Landmark> landmarks, Timestamp time) {
-  const std::size_t parts = std::max<std::size_t>(
-      1, (landmarks.size() + kLandmarksPerMessage - 1) / kLandmarksPerMessage);
-  std::vector<marker_map_t> messages(parts);
-  for (std::size_t part = 0; part < parts; ++part) {
-    marker_map_t& message = messages[part];
-    message.utime = to_us(time);
-    message.part = static_cast<std::int32_t>(part);
-    message.num_parts = static_cast<std::int32_t>(parts);
-    const std::size_t last = std::min(landmarks.size(), (part + 1) * kLandmarksPerMessage);
-    for (std::size_t i = part * kLandmarksPerMessage; i < last; ++i)
-      message.landmarks.push_back(to_message(landmarks[i]));
-    message.num_landmarks = static_cast<std::int32_t>(message.landmarks.size());
-  }
-  return messages;
+  return in_parts<marker_map_t>(std::max<std::size_t>(1, landmarks.size()), kLandmarksPerMessage,
+                                time, [&](marker_map_t& message, const Part& part) {
+                                  for (const Landmark& landmark : part.of(landmarks))
+                                    message.landmarks.push_back(to_message(landmark));
+                                  message.num_landmarks =
+                                      static_cast<std::int32_t>(message.landmarks.size());
+                                });
 }
 
 findings_t to_message(std::span<const Finding> findings, Timestamp time, std::int64_t map_id) {
@@ -191,7 +175,7 @@ map_changes_t to_message(std::span<const MapChange> changes, Timestamp time, std
   message.map_id = map_id;
   for (const MapChange& change : changes.first(std::min(changes.size(), kChangesPerMessage))) {
     map_change_t& sent = message.changes.emplace_back();
-    sent.kind = to_message(change.kind);
+    sent.kind = static_cast<std::int8_t>(change.kind);
     sent.id = change.id;
     sent.instance = change.instance;
     sent.x_m = change.place.x();
@@ -208,39 +192,26 @@ map_changes_t to_message(std::span<const MapChange> changes, Timestamp time, std
 }
 
 std::vector<trajectory_t> to_messages(std::span<const TimedPose> trajectory) {
-  std::vector<trajectory_t> messages((trajectory.size() + kPosesPerMessage - 1) / kPosesPerMessage);
-  for (std::size_t part = 0; part < messages.size(); ++part) {
-    trajectory_t& message = messages[part];
-    message.utime = to_us(trajectory.back().time);
-    message.part = static_cast<std::int32_t>(part);
-    message.num_parts = static_cast<std::int32_t>(messages.size());
-    const std::size_t first = part * kPosesPerMessage;
-    const std::size_t count = std::min(kPosesPerMessage, trajectory.size() - first);
-    for (const TimedPose& pose : trajectory.subspan(first, count))
-      message.poses.push_back(to_pose_message(pose.time, pose.map_from_base));
-    message.num_poses = static_cast<std::int32_t>(count);
-  }
-  return messages;
+  const Timestamp time = trajectory.empty() ? Timestamp{} : trajectory.back().time;
+  return in_parts<trajectory_t>(
+      trajectory.size(), kPosesPerMessage, time, [&](trajectory_t& message, const Part& part) {
+        for (const TimedPose& pose : part.of(trajectory))
+          message.poses.push_back(to_pose_message(pose.time, pose.map_from_base));
+        message.num_poses = static_cast<std::int32_t>(message.poses.size());
+      });
 }
 
 std::vector<pose_graph_t> to_messages(const PoseGraph& graph, Timestamp time) {
   const std::size_t items = std::max({graph.poses.size(), graph.edges.size(), std::size_t{1}});
-  std::vector<pose_graph_t> messages((items + kVerticesPerMessage - 1) / kVerticesPerMessage);
-  for (std::size_t part = 0; part < messages.size(); ++part) {
-    pose_graph_t& message = messages[part];
-    message.utime = to_us(time);
-    message.part = static_cast<std::int32_t>(part);
-    message.num_parts = static_cast<std::int32_t>(messages.size());
-    const std::size_t begin = part * kVerticesPerMessage;
-    const std::size_t end = begin + kVerticesPerMessage;
-    for (std::size_t i = begin; i < std::min(end, graph.poses.size()); ++i)
-      message.vertices.push_back({graph.poses[i].x(), graph.poses[i].y(), graph.poses[i].theta()});
-    for (std::size_t i = begin; i < std::min(end, graph.edges.size()); ++i)
-      message.edges.push_back(to_message(graph.edges[i]));
-    message.num_vertices = static_cast<std::int32_t>(message.vertices.size());
-    message.num_edges = static_cast<std::int32_t>(message.edges.size());
-  }
-  return messages;
+  return in_parts<pose_graph_t>(
+      items, kVerticesPerMessage, time, [&](pose_graph_t& message, const Part& part) {
+        for (const Se2& pose : part.of(graph.poses))
+          message.vertices.push_back({pose.x(), pose.y(), pose.theta()});
+        for (const GraphEdge& edge : part.of(graph.edges))
+          message.edges.push_back(to_message(edge));
+        message.num_vertices = static_cast<std::int32_t>(message.vertices.size());
+        message.num_edges = static_cast<std::int32_t>(message.edges.size());
+      });
 }
 
 }  // namespace waymark

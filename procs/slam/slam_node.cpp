@@ -7,6 +7,7 @@
 #include "common/robot/described_sensors.hpp"
 #include "slam/estimator_factory.hpp"
 #include "slam/map_file.hpp"
+#include "slam/skip_counts.hpp"
 #include "slam/slam_inputs.hpp"
 #include "slam/slam_messages.hpp"
 
@@ -22,34 +23,6 @@ constexpr std::string_view kEstimatesWithoutPose = "estimates before the pose in
 std::int32_t mbot_mode(MapMode mode) {
   if (mode == MapMode::kLocalise) return slam_status_t::MODE_LOCALISATION_ONLY;
   return slam_status_t::MODE_FULL;
-}
-
-CountKind kind_of(Skip skip) {
-  switch (skip) {
-    case Skip::kOdometryAhead:
-      return CountKind::kRejection;
-    case Skip::kOdometryOutOfOrder:
-    case Skip::kScanOutOfOrder:
-    case Skip::kScanAhead:
-    case Skip::kScanOverflow:
-    case Skip::kFrameOutOfOrder:
-    case Skip::kFrameAhead:
-    case Skip::kFrameWithoutOdometry:
-    case Skip::kFrameOverflow:
-      return CountKind::kLoss;
-    case Skip::kClockSet:
-    case Skip::kOdometryJumped:
-    case Skip::kOdometryStuck:
-    case Skip::kScanWithoutReturns:
-    case Skip::kScanRepeated:
-    case Skip::kScanBeforeOdometry:
-    case Skip::kScanWithoutOdometry:
-    case Skip::kFrameRepeated:
-    case Skip::kMarkerImplausible:
-    case Skip::kMarkerUncertain:
-      break;
-  }
-  return CountKind::kEvent;
 }
 
 }  // namespace
@@ -112,16 +85,12 @@ void SlamNode::finish() {
 
 void SlamNode::publish_end(Timestamp time) {
   attempt("the map", [&] {
-    publish_tiles(map_publisher_.all_tiles(estimator_->redrawn_map(), time));
+    publish(channels::kSlamMap, map_publisher_.all_tiles(estimator_->redrawn_map(), time));
     publish_markers(time);
     publish_grid(time);
   });
-  attempt("the trajectory", [&] {
-    for (trajectory_t part : to_messages(estimator_->trajectory())) {
-      part.map_id = map_id_;
-      outbox_.publish(channels::kSlamTrajectory, part);
-    }
-  });
+  attempt("the trajectory",
+          [&] { publish(channels::kSlamTrajectory, to_messages(estimator_->trajectory())); });
   attempt("the graph", [&] {
     const auto graph = estimator_->pose_graph();
     if (!graph) return;
@@ -147,7 +116,7 @@ std::optional<std::vector<Finding>> SlamNode::findings() const {
   std::optional<SensorStatistics> found = estimator_->statistics();
   if (!found) return std::nullopt;
   found->loaded_map += refuted_;
-  return reportable_findings(*found, counters_.get(to_string(Skip::kScanRepeated)));
+  return reportable_findings(*found, counters_.get(count_of(Skip::kScanRepeated).name));
 }
 
 /// Publishes the findings; shares of unused data are also counted, for the status.
@@ -219,7 +188,7 @@ void SlamNode::check_input() {
         odometry);
   }
   const std::int64_t processed = counters_.get(kScansProcessed);
-  if (processed > 0 && counters_.get(to_string(Skip::kScanWithoutReturns)) >= processed) {
+  if (processed > 0 && counters_.get(count_of(Skip::kScanWithoutReturns).name) >= processed) {
     failed_ = true;
     logging::error(
         "no map: no scan has a range from {} to {} m; are they in metres, and is [robot.lidar] "
@@ -243,8 +212,10 @@ void SlamNode::process_ready_scans() {
     process(*ready);
     is_broken_ = false;
   }
-  for (const Skip skip : queue_.take_skips())
-    counters_.add(to_string(skip), kind_of(skip));
+  for (const Skip skip : queue_.take_skips()) {
+    const SkipCount count = count_of(skip);
+    counters_.add(count.name, count.kind);
+  }
 }
 
 void SlamNode::process(const SensorQueue::Ready& ready) {
@@ -285,7 +256,7 @@ void SlamNode::process(const SensorQueue::Ready& ready) {
 
 void SlamNode::publish_map_when_due(Timestamp time) {
   if (!map_period_.is_due(time)) return;
-  publish_tiles(map_publisher_.changed_tiles(estimator_->map(), time));
+  publish(channels::kSlamMap, map_publisher_.changed_tiles(estimator_->map(), time));
   publish_markers(time);
   publish_grid(time);
   publish_findings(time);
@@ -299,18 +270,8 @@ void SlamNode::save_map_when_due(Timestamp time) {
   if (!save_map()) counters_.add("map not saved", CountKind::kLoss);
 }
 
-void SlamNode::publish_tiles(std::vector<map_tiles_t> parts) {
-  for (map_tiles_t& part : parts) {
-    part.map_id = map_id_;
-    outbox_.publish(channels::kSlamMap, part);
-  }
-}
-
 void SlamNode::publish_markers(Timestamp time) {
-  for (marker_map_t part : to_messages(estimator_->landmarks(), time)) {
-    part.map_id = map_id_;
-    outbox_.publish(channels::kSlamMarkers, part);
-  }
+  publish(channels::kSlamMarkers, to_messages(estimator_->landmarks(), time));
   if (loaded_map_ == nullptr && survey_.empty()) return;
   const std::vector<MapChange> changes = estimator_->changes();
   outbox_.publish(channels::kSlamChanges, to_message(changes, time, map_id_));

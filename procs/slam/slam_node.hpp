@@ -92,7 +92,16 @@ class SlamNode final : public Node {
   void process(const SensorQueue::Ready& ready);
   void publish_map_when_due(Timestamp time);
   void save_map_when_due(Timestamp time);
-  void publish_tiles(std::vector<map_tiles_t> parts);
+
+  /// With map_id_ in each part.
+  template <class Type>
+  void publish(Channel<Type> channel, std::vector<Type> parts) {
+    for (Type& part : parts) {
+      part.map_id = map_id_;
+      outbox_.publish(channel, part);
+    }
+  }
+
   void publish_markers(Timestamp time);
   void publish_findings(Timestamp time);
   void publish_grid(Timestamp time);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,8 +29,6 @@ enum class Skip {
   kMarkerImplausible,
   kMarkerUncertain,
 };
-
-std::string_view to_string(Skip skip);
 
 /// Reasons in order of time.
 class Skips {

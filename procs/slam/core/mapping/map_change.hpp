@@ -10,8 +10,9 @@
 namespace waymark {
 
 struct MapChange {
+  /// Values as in lcmtypes/map_change_t.lcm.
   enum class Kind {
-    kMarkerMoved,
+    kMarkerMoved = 1,
     kMarkerMissing,
     kMarkerNew,
     kWallNew,
