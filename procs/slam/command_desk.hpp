@@ -4,7 +4,7 @@
 
 #include "common/messages/channels.hpp"
 #include "common/time/time.hpp"
-#include "slam/core/graph/map_snapshot.hpp"
+#include "slam/core/estimators/map_use.hpp"
 
 #include <deque>
 #include <functional>

@@ -3,7 +3,7 @@
 #include "common/config/fields.hpp"
 #include "slam/core/estimators/gmapping.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
-#include "slam/core/estimators/waymark.hpp"
+#include "slam/core/estimators/waymark_config.hpp"
 #include "slam/core/input/preprocessing.hpp"
 #include "slam/sigma_range.hpp"
 

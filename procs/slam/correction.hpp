@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/messages/channels.hpp"
-#include "slam/core/filter/estimate.hpp"
+#include "slam/core/estimators/estimate.hpp"
 
 #include <optional>
 

@@ -2,7 +2,7 @@
 // Findings about the sensors as texts and numbers.
 #pragma once
 
-#include "slam/core/filter/sensor_statistics.hpp"
+#include "slam/core/estimators/sensor_statistics.hpp"
 
 #include <cstdint>
 #include <optional>

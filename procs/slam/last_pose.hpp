@@ -4,7 +4,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/time/time.hpp"
-#include "slam/core/graph/map_snapshot.hpp"
+#include "slam/core/estimators/map_use.hpp"
 
 #include <Eigen/Core>
 

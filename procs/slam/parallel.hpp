@@ -2,7 +2,7 @@
 // Threads for the core's parallel loops.
 #pragma once
 
-#include "slam/core/filter/parallel_for.hpp"
+#include "slam/core/estimators/parallel_for.hpp"
 
 namespace waymark {
 

@@ -8,7 +8,7 @@
 #include "slam/core/estimators/estimator.hpp"
 #include "slam/core/estimators/gmapping.hpp"
 #include "slam/core/estimators/marker_matching.hpp"
-#include "slam/core/estimators/waymark.hpp"
+#include "slam/core/estimators/waymark_config.hpp"
 #include "slam/core/input/sensor_queue.hpp"
 
 #include <cstdint>

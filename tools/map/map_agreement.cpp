@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/map_agreement.hpp"
 
+#include "common/geometry/chi2.hpp"
 #include "slam/core/graph/map_fit.hpp"
 #include "slam/core/grid/occupied_points.hpp"
 
@@ -16,9 +17,8 @@ namespace {
 /// Sigma of a marker's place in each map that its covariance leaves out: walls that are not quite
 /// straight, and frames that bend where the merge is rigid.
 constexpr double kDrift_m = 0.03;
-constexpr double kMaxMahalanobis2 = 13.8;  // 99.9 % of the chi-squared of two degrees of freedom
-constexpr double kMaxApart_m = 0.3;        // farther apart, a rigid merge would double the walls
-constexpr double kBeside_m = 0.15;  // farthest of a wall from itself in the other map: the drift
+constexpr double kMaxApart_m = 0.3;  // farther apart, a rigid merge would double the walls
+constexpr double kBeside_m = 0.15;   // farthest of a wall from itself in the other map: the drift
 constexpr std::size_t kMinWallCells = 40;  // 2 m of walls of 0.05 m; fewer may be a person
 /// Share of a map's walls in the other map's free space: furniture and doors change on a day, but
 /// of a corridor that is wider by a metre, half of the walls stand in the free space.
@@ -64,7 +64,7 @@ bool SharedMarker::agrees(const Se2& a_from_b) const {
   const Eigen::Matrix2d covariance = covariance_a + rotation * covariance_b * rotation.transpose() +
                                      2.0 * kDrift_m * kDrift_m * Eigen::Matrix2d::Identity();
   const Eigen::Vector2d off = a_from_b * in_b - in_a;
-  return off.norm() < kMaxApart_m && off.dot(covariance.inverse() * off) < kMaxMahalanobis2;
+  return off.norm() < kMaxApart_m && off.dot(covariance.inverse() * off) < kChi2Gate2;
 }
 
 std::vector<SharedMarker> shared_markers(const MapSnapshot& a, const MapSnapshot& b) {

@@ -5,6 +5,7 @@
 #include "common/geometry/se2.hpp"
 #include "placement/keyframe_schedule.hpp"
 #include "placement/pose_covariance.hpp"
+#include "slam/core/estimators/waymark.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placement/keyframe_schedule.hpp"
 
+#include "slam/core/estimators/waymark.hpp"
 #include "slam/core/graph/odometry_noise_learner.hpp"
 
 #include <Eigen/LU>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copies of particles share memory: results must equal those of plain copies.
 #include "common/random/random.hpp"
-#include "slam/core/filter/particle_set.hpp"
 #include "slam/core/gmapping/hit_map.hpp"
 #include "slam/core/gmapping/published_map.hpp"
+#include "slam/core/resampling/particle_set.hpp"
 #include "support/plain_hit_map.hpp"
 
 #include <gmock/gmock.h>

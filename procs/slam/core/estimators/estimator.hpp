@@ -2,11 +2,12 @@
 // The interface that all SLAM methods implement.
 #pragma once
 
-#include "slam/core/filter/estimate.hpp"
-#include "slam/core/filter/parallel_for.hpp"
-#include "slam/core/filter/scan_trajectory.hpp"
-#include "slam/core/filter/sensor_statistics.hpp"
-#include "slam/core/filter/update_gate.hpp"
+#include "slam/core/estimators/estimate.hpp"
+#include "slam/core/estimators/map_use.hpp"
+#include "slam/core/estimators/parallel_for.hpp"
+#include "slam/core/estimators/scan_trajectory.hpp"
+#include "slam/core/estimators/sensor_statistics.hpp"
+#include "slam/core/estimators/update_gate.hpp"
 #include "slam/core/graph/map_snapshot.hpp"
 #include "slam/core/grid/grid_map.hpp"
 #include "slam/core/landmark/sighting_noise.hpp"
@@ -69,7 +70,9 @@ class Estimator {
   /// The map so far. Copies are cheap, and tiles that did not change keep their address.
   virtual const GridMap& map() const = 0;
   virtual std::vector<Landmark> landmarks() const = 0;
-  virtual std::vector<PublishedParticle> particles() const = 0;
+
+  /// Only of particle filters, and dead reckoning as one particle.
+  virtual std::vector<PublishedParticle> particles() const { return {}; }
 
   /// The smoothed trajectory, one pose per scan, in the frame of map(). Empty when the method is a
   /// filter that never corrects past poses. O(scans).

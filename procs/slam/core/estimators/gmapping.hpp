@@ -3,12 +3,12 @@
 #pragma once
 
 #include "slam/core/estimators/estimator.hpp"
-#include "slam/core/filter/particle_set.hpp"
 #include "slam/core/gmapping/motion_noise.hpp"
 #include "slam/core/gmapping/published_map.hpp"
 #include "slam/core/gmapping/scan_gate.hpp"
 #include "slam/core/gmapping/scan_matcher.hpp"
 #include "slam/core/gmapping/trajectory.hpp"
+#include "slam/core/resampling/particle_set.hpp"
 #include "slam/core/scan/turn_monitor.hpp"
 
 #include <cstdint>

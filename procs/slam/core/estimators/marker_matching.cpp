@@ -3,8 +3,6 @@
 
 #include "slam/core/weighting/wall_score.hpp"
 
-#include <algorithm>
-
 namespace waymark {
 namespace {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "slam/core/estimators/estimator.hpp"
-#include "slam/core/filter/particle_set.hpp"
+#include "slam/core/resampling/particle_set.hpp"
 #include "slam/core/weighting/marker_score.hpp"
 
 #include <cstdint>

@@ -361,8 +361,4 @@ std::vector<Landmark> WaymarkEstimator::landmarks_of(const Graph& graph) const {
   return known;
 }
 
-std::vector<PublishedParticle> WaymarkEstimator::particles() const {
-  return {};
-}
-
 }  // namespace waymark

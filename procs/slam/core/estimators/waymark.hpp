@@ -3,6 +3,7 @@
 #pragma once
 
 #include "slam/core/estimators/estimator.hpp"
+#include "slam/core/estimators/waymark_config.hpp"
 #include "slam/core/graph/association.hpp"
 #include "slam/core/graph/drift.hpp"
 #include "slam/core/graph/graph.hpp"
@@ -29,33 +30,6 @@
 
 namespace waymark {
 
-class Fields;
-
-struct WaymarkConfig {
-  double keyframe_distance_m{0.15};
-  double keyframe_turn_rad{0.15};
-  double marker_keyframe_distance_m{0.05};
-  double insert_distance_m{0.04};
-  int window_keyframes{48};
-  int submap_keyframes{40};
-  double submap_length_m{9.0};
-  int keyframes_per_place{60};
-  bool learn_noise{true};
-  bool calibrate{true};
-  double marker_gate{16.3};
-  double marker_near_m{0.25};
-  double same_marker_within_m{0.5};
-  double lost_inlier_share{0.3};
-  double min_inlier_share{0.5};
-  OdometryNoise odometry{};
-  ScanMatchConfig scan{};
-  MarkerMeasurementConfig markers{};
-  LoopConfig loops{};
-
-  /// Names, units and explanations of the keys: core_fields.cpp.
-  void describe(Fields& fields);
-};
-
 inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]; the first pose defines the map frame
 /// Consecutive keyframes in a group; one of them represents the group in scan factors.
 inline constexpr std::size_t kGroupedKeyframes = 15;
@@ -72,7 +46,6 @@ class WaymarkEstimator final : public Estimator {
   const GridMap& map() const override { return map_.map(); }
 
   std::vector<Landmark> landmarks() const override;
-  std::vector<PublishedParticle> particles() const override;
   std::vector<TimedPose> trajectory() const override;
   GridMap redrawn_map() const override;
   std::optional<PoseGraph> pose_graph() const override;

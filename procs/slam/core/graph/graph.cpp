@@ -124,12 +124,11 @@ void Graph::switch_prior(std::size_t landmark, bool is_on) {
       prior->is_off = !is_on;
 }
 
-/// Null: none.
-const LandmarkPrior* Graph::prior_of(std::size_t landmark) const {
-  for (const Factor& factor : factors_)
-    if (const auto* prior = std::get_if<LandmarkPrior>(&factor))
-      if (prior->landmark == landmark) return prior;
-  return nullptr;
+bool Graph::has_prior(std::size_t landmark) const {
+  return std::ranges::any_of(factors_, [&](const Factor& factor) {
+    const auto* prior = std::get_if<LandmarkPrior>(&factor);
+    return prior && prior->landmark == landmark;
+  });
 }
 
 /// The loss whose robust weight MarkerFactor uses.

@@ -3,6 +3,7 @@
 // after loops and other information about old poses.
 #pragma once
 
+#include "common/geometry/chi2.hpp"
 #include "slam/core/graph/calibration_knowledge.hpp"
 #include "slam/core/graph/damped_root.hpp"
 #include "slam/core/graph/factors.hpp"
@@ -19,7 +20,7 @@ namespace waymark {
 struct GraphNoise {
   OdometryNoise odometry{};  ///< as configured
   LearntOdometryNoise learnt_odometry{};
-  double marker_gate{16.3};  ///< chi^2, 3 degrees of freedom
+  double marker_gate{kChi2Gate3};
 };
 
 /// Normal equations of some landmarks, from which all other variables have been eliminated: with a
@@ -76,11 +77,7 @@ class Graph {
   /// Switches the LandmarkPrior of a landmark on or off. Takes effect in step_all() at the latest.
   void switch_prior(std::size_t landmark, bool is_on);
 
-  bool has_prior(std::size_t landmark) const { return prior_of(landmark) != nullptr; }
-
-  bool is_prior_on(std::size_t landmark) const {
-    return has_prior(landmark) && !prior_of(landmark)->is_off;
-  }
+  bool has_prior(std::size_t landmark) const;
 
   /// -2 log-likelihood of all factors, up to a constant; without the priors of calibration and
   /// window.
@@ -168,7 +165,6 @@ class Graph {
     Se2 anchor_from_keyframe{};
   };
 
-  const LandmarkPrior* prior_of(std::size_t landmark) const;
   bool forget_removed(Factor& factor) const;
   /// Moves the removed keyframes with their anchors.
   void move_removed();

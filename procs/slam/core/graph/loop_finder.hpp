@@ -2,6 +2,7 @@
 // Loop closure: registers the newest scan in old submaps.
 #pragma once
 
+#include "common/geometry/chi2.hpp"
 #include "slam/core/graph/factors.hpp"
 #include "slam/core/registration/correlative_search.hpp"
 #include "slam/core/registration/submap.hpp"
@@ -25,7 +26,7 @@ struct LoopConfig {
   double min_mapped_share{0.6};
   double min_score{0.4};
   double runner_up_share{0.85};
-  double gate{16.3};
+  double gate{kChi2Gate3};
   double surprise_share{0.85};
 
   /// Names, units and explanations of the keys: core_fields.cpp.

@@ -3,6 +3,7 @@
 
 #include "common/geometry/principal_axes.hpp"
 #include "common/geometry/squared.hpp"
+#include "slam/core/registration/scan_match.hpp"
 
 #include <Eigen/LU>
 
@@ -20,7 +21,7 @@ constexpr int kFits = 4;
 constexpr int kMinBeams = 8;
 constexpr double kMinExtent_m = 0.1;            // standard deviation of the points along the line
 constexpr double kMaxTurn_rad = radians(25.0);  // between the camera's and the LiDAR's wall
-constexpr double kRoughness_m = 0.003;          // of walls, added to the range noise across them
+constexpr double kRoughness_m = ScanMatchConfig{}.roughness_m;
 
 // Ratio of variances of the odometry noise, a single wall to the mean of a sweep (MeanSweep). All
 // beams on a wall are measured at about the same time, on average a quarter of the sweep from its

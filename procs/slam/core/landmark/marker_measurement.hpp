@@ -2,6 +2,7 @@
 // Pose of a marker in the base frame, from the camera and from the wall that the LiDAR sees there.
 #pragma once
 
+#include "common/geometry/chi2.hpp"
 #include "common/geometry/se2.hpp"
 #include "slam/core/landmark/sighting_noise.hpp"
 #include "slam/core/motion/odometry_errors.hpp"
@@ -20,7 +21,7 @@ struct MarkerMeasurementConfig {
   double perspective_sigma{0.02};
   double perspective_max_sigma{0.003};
   double covariance_factor{1.0};
-  double gate{16.3};
+  double gate{kChi2Gate3};  // wide for its two degrees of freedom: 99.97 %
 
   /// Names, units and explanations of the keys: core_fields.cpp.
   void describe(Fields& fields);

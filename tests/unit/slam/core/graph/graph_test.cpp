@@ -15,7 +15,7 @@ namespace waymark {
 namespace {
 
 constexpr double kStep = 1e-6;
-constexpr double kGate = 16.3;
+constexpr double kGate = kChi2Gate3;
 
 Motion straight(double distance_m, double turn_rad = 0.0) {
   return Motion::between({}, {distance_m, 0.0, turn_rad});

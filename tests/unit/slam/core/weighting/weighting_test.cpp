@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/geometry/squared.hpp"
 #include "common/random/random.hpp"
-#include "slam/core/filter/particle_set.hpp"
 #include "slam/core/mapping/insert_scan.hpp"
+#include "slam/core/resampling/particle_set.hpp"
 #include "slam/core/resampling/systematic.hpp"
 #include "slam/core/scan/observability.hpp"
 #include "slam/core/weighting/marker_score.hpp"

@@ -2,8 +2,11 @@
 // Particles of a filter: states with log weights.
 #pragma once
 
+#include "common/geometry/se2.hpp"
 #include "common/random/random.hpp"
 #include "slam/core/resampling/systematic.hpp"
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cassert>
@@ -79,5 +82,34 @@ class ParticleSet {
   std::vector<double> log_weights_;
   std::vector<double> weights_;
 };
+
+/// Weighted mean of the particles' poses; headings are averaged on the circle.
+/// @tparam State  has a member map_from_base.
+template <class State>
+Se2 mean_pose(const ParticleSet<State>& particles) {
+  Eigen::Vector2d translation = Eigen::Vector2d::Zero();
+  Eigen::Vector2d heading = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const Se2& pose = particles.state(i).map_from_base;
+    const double weight = particles.weights()[i];
+    translation += weight * pose.translation();
+    heading += weight * Eigen::Vector2d{std::cos(pose.theta()), std::sin(pose.theta())};
+  }
+  return {translation, std::atan2(heading.y(), heading.x())};
+}
+
+/// Mean square of the particles' deviations from a pose, map frame. If the pose is not their mean,
+/// the result includes the square of the difference, as an error of that pose.
+/// @tparam State  has a member map_from_base.
+template <class State>
+Eigen::Matrix3d covariance_about(const Se2& map_from_base, const ParticleSet<State>& particles) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const Eigen::Vector3d deviation =
+        pose_difference(particles.state(i).map_from_base, map_from_base);
+    covariance += particles.weights()[i] * deviation * deviation.transpose();
+  }
+  return covariance;
+}
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/filter/scan_trajectory.hpp"
+#include "slam/core/estimators/scan_trajectory.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -5,7 +5,6 @@
 #include "common/geometry/se2.hpp"
 #include "common/health/health.hpp"
 #include "common/time/time.hpp"
-#include "slam/core/filter/particle_set.hpp"
 #include "slam/core/scan/observability.hpp"
 #include "slam/core/scan/observation.hpp"
 
@@ -15,7 +14,8 @@
 
 namespace waymark {
 
-/// What determined the estimate, in ascending precedence: the last of these that applies.
+/// What determined the estimate, in ascending precedence: the last of these that applies. Values as
+/// in lcmtypes/correction_t.lcm.
 enum class EstimateReason { kOdometry, kScan, kMarker, kLoop, kRelocalised, kSurvey, kCommand };
 
 struct Estimate {
@@ -51,33 +51,5 @@ Health health_of(std::uint64_t updates, bool is_lost, bool observes_all_axes);
 /// An estimate with the fields that follow from the observation and the pose alone.
 Estimate describe_observation(const Observation& observation, const Se2& map_from_base,
                               double range_sigma_m);
-
-/// Weighted mean of the particles' poses; headings are averaged on the circle.
-template <class State>
-Se2 mean_pose(const ParticleSet<State>& particles) {
-  Eigen::Vector2d translation = Eigen::Vector2d::Zero();
-  Eigen::Vector2d heading = Eigen::Vector2d::Zero();
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const Se2& pose = particles.state(i).map_from_base;
-    const double weight = particles.weights()[i];
-    translation += weight * pose.translation();
-    heading += weight * Eigen::Vector2d{std::cos(pose.theta()), std::sin(pose.theta())};
-  }
-  return {translation, std::atan2(heading.y(), heading.x())};
-}
-
-/// Mean square of the particles' deviations from a pose, map frame. If the pose is not their mean,
-/// the result includes the square of the difference, as an error of that pose.
-/// @tparam State  has a member map_from_base.
-template <class State>
-Eigen::Matrix3d covariance_about(const Se2& map_from_base, const ParticleSet<State>& particles) {
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const Eigen::Vector3d deviation =
-        pose_difference(particles.state(i).map_from_base, map_from_base);
-    covariance += particles.weights()[i] * deviation * deviation.transpose();
-  }
-  return covariance;
-}
 
 }  // namespace waymark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/filter/estimate.hpp"
+#include "slam/core/estimators/estimate.hpp"
 
 #include <algorithm>
 
