@@ -16,7 +16,6 @@
 #include <optional>
 #include <set>
 #include <sstream>
-#include <string_view>
 #include <system_error>
 
 namespace waymark {

@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
-#include <string>
 #include <vector>
 
 namespace waymark::testing {

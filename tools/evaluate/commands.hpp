@@ -7,10 +7,8 @@
 #include "evaluate/run/run_evaluation.hpp"
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace waymark::evaluate {

@@ -6,7 +6,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <span>
 #include <stdexcept>
 #include <system_error>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/map_commands.hpp"
 
-#include "common/files/whole_file.hpp"
 #include "common/geometry/rounded.hpp"
 #include "common/log/log_file.hpp"
 #include "common/messages/bounds.hpp"

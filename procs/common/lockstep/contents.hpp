@@ -7,10 +7,8 @@
 
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <map>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace waymark {

@@ -6,7 +6,6 @@
 #include <opencv2/core.hpp>
 
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/files/map_files.hpp"
 
+#include "viewer/core/painters/plain_painter.hpp"
+
 #include <fmt/format.h>
 
 namespace waymark::viewer {

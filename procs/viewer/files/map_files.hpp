@@ -2,7 +2,7 @@
 // The map in the format of ROS's map_server: an image (map.pgm) and its description (map.yaml).
 #pragma once
 
-#include "viewer/core/painters/plain_painter.hpp"
+#include "viewer/core/scene/grid_map.hpp"
 
 #include <string>
 #include <string_view>

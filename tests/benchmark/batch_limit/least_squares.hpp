@@ -5,7 +5,6 @@
 #include "batch_limit/association.hpp"
 
 #include <string>
-#include <vector>
 
 namespace waymark::benchmark {
 

@@ -8,7 +8,6 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <set>

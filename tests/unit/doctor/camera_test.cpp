@@ -3,7 +3,6 @@
 #include "corridor_drive.hpp"
 #include "doctor/camera/camera_calibration.hpp"
 #include "doctor/doctor.hpp"
-#include "doctor/report.hpp"
 #include "doctor/verdict.hpp"
 #include "drive_diagnosis.hpp"
 

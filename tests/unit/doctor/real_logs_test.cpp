@@ -2,7 +2,6 @@
 // Real logs, which are third-party data outside the project: the doctor finds the faults that their
 // README states. Skipped where they are absent.
 #include "doctor/doctor.hpp"
-#include "doctor/report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Real logs, which are third-party data outside the project; their README states the expected
 // properties. Skipped where they are absent.
-#include "common/messages/convert.hpp"
 #include "import/carmen/carmen_reader.hpp"
 #include "import/findings/findings.hpp"
 #include "import/findings/reversed_odometry.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/sim_node.hpp"
 
-#include "common/messages/convert.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

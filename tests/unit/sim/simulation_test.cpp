@@ -6,8 +6,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include <cmath>
-
 namespace waymark {
 namespace {
 

@@ -2,7 +2,6 @@
 // Drives through one corridor on several days, and a map of the first.
 #pragma once
 
-#include "common/messages/convert.hpp"
 #include "slam/map_file.hpp"
 #include "slam/slam_node.hpp"
 #include "slam_run.hpp"

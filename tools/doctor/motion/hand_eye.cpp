@@ -7,7 +7,6 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -335,8 +334,7 @@ std::optional<HandEye> hand_eye(const std::vector<LidarMotion>& motions,
   return HandEye{{found[2] / scale, std::max(least_sigma_m, sigma(2) / scale)},
                  {found[3] / scale, std::max(least_sigma_m, sigma(3) / scale)},
                  {std::atan2(found[1], found[0]), sigma_direction / scale},
-                 {scale, sigma_direction},
-                 static_cast<int>(equations.rows.size())};
+                 {scale, sigma_direction}};
 }
 
 }  // namespace waymark

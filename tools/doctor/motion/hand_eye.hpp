@@ -44,7 +44,6 @@ struct HandEye {
   Measured y_m{};
   Measured yaw_rad{};
   Measured scale{};
-  int num_motions{0};
 };
 
 /// Solves A X = X B with A = motion of the base (odometry), B = motion of the LiDAR: translations

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/core/faults/corruption.hpp"
 
-#include <cmath>
 #include <limits>
 #include <numbers>
 

@@ -8,12 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
-#include <set>
-#include <utility>
-#include <variant>
 
 namespace waymark {
 namespace {

@@ -2,8 +2,6 @@
 // How the graph estimator initialises, takes a commanded pose, and relocalises.
 #include "slam/core/estimators/waymark.hpp"
 
-#include <utility>
-
 namespace waymark {
 namespace {
 

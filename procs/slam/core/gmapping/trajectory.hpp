@@ -6,7 +6,6 @@
 #include "slam/core/scan/beams.hpp"
 
 #include <memory>
-#include <span>
 #include <vector>
 
 namespace waymark {

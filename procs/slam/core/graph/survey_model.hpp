@@ -4,7 +4,6 @@
 
 #include "slam/core/graph/graph.hpp"
 
-#include <cstddef>
 #include <vector>
 
 namespace waymark {

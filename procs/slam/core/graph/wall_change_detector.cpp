@@ -4,7 +4,6 @@
 #include "slam/core/graph/map_fit.hpp"
 #include "slam/core/mapping/insert_scan.hpp"
 
-#include <algorithm>
 #include <map>
 #include <utility>
 

@@ -4,7 +4,6 @@
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/step_share.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

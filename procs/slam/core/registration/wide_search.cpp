@@ -2,7 +2,6 @@
 #include "slam/core/registration/wide_search.hpp"
 
 #include "common/geometry/chi2.hpp"
-#include "common/geometry/squared.hpp"
 #include "slam/core/registration/correlative_search.hpp"
 #include "slam/core/registration/unique_place.hpp"
 

@@ -6,7 +6,6 @@
 #include <opencv2/core.hpp>
 
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -6,8 +6,6 @@
 #include "viewer/core/drawing/map_viewport.hpp"
 #include "viewer/core/scene/grid_map.hpp"
 
-#include <cmath>
-
 namespace waymark::viewer {
 
 /// Calls paint(pixel, cell), both (column, row), for each pixel whose centre lies on the map.

@@ -3,7 +3,6 @@
 
 #include "viewer/core/annotations/map_annotations.hpp"
 #include "viewer/core/annotations/map_legend.hpp"
-#include "viewer/core/drawing/canvas.hpp"
 #include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/layers/change_layer.hpp"
 #include "viewer/core/layers/map_layers.hpp"

@@ -2,7 +2,6 @@
 #include "import/log/log_output.hpp"
 
 #include "common/errors/setup_error.hpp"
-#include "common/messages/convert.hpp"
 #include "import/carmen/carmen_reader.hpp"
 #include "import_files.hpp"
 

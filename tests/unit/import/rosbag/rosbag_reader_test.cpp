@@ -3,7 +3,6 @@
 #include "import/rosbag/rosbag_reader.hpp"
 
 #include "common/errors/setup_error.hpp"
-#include "common/messages/codec.hpp"
 #include "small_bag.hpp"
 
 #include <gmock/gmock.h>

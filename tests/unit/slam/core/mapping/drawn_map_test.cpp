@@ -2,8 +2,6 @@
 // A map that follows the poses of its scans.
 #include "slam/core/mapping/drawn_map.hpp"
 
-#include "common/random/random.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -10,7 +10,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace waymark::viewer {
 namespace {

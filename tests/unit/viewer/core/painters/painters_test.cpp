@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "unit/viewer/drawn_scene.hpp"
 #include "unit/viewer/found_on_picture.hpp"
-#include "viewer/core/annotations/map_annotations.hpp"
 #include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/layers/map_layers.hpp"
 #include "viewer/core/layers/marker_labels.hpp"
