@@ -177,6 +177,8 @@ class Graph {
   double cost_of(const MarkerFactor& factor) const;
   double cost_of(const Factor& factor) const;
   bool is_within_window(const Factor& factor) const;
+  std::vector<Variable> variables_outside_window() const;
+  std::vector<LinearFactor> factors_outside_window() const;
   void insert_variable(const Variable& variable);
   void add_to(NormalEquations& equations, const LinearFactor& linear) const;
   NormalEquations window_equations() const;

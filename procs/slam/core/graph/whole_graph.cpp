@@ -31,6 +31,27 @@ void Graph::optimise_all(int steps) {
   }
 }
 
+std::vector<Variable> Graph::variables_outside_window() const {
+  std::vector<Variable> variables;
+  for (std::size_t i = 0; i < first_keyframe_; ++i)
+    if (!is_removed(i)) variables.push_back({VariableKind::kKeyframe, i});
+  for (std::size_t i = 0; i < state_.landmarks.size(); ++i)
+    if (const Variable landmark{VariableKind::kLandmark, i}; !is_fixed_[i] && !is_active(landmark))
+      variables.push_back(landmark);
+  return variables;
+}
+
+std::vector<LinearFactor> Graph::factors_outside_window() const {
+  std::vector<bool> is_active_factor(factors_.size(), false);
+  for (const std::size_t index : active_factors_)
+    is_active_factor[index] = true;
+  std::vector<LinearFactor> outside;
+  outside.reserve(factors_.size());
+  for (std::size_t index = 0; index < factors_.size(); ++index)
+    if (!is_active_factor[index]) outside.push_back(linearised(factors_[index]));
+  return outside;
+}
+
 double Graph::step_all(const std::vector<std::size_t>& activated) {
   std::vector<Variable> inserted;
   for (const std::size_t landmark : activated) {
@@ -39,12 +60,7 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
     insert_variable(variable);
     inserted.push_back(variable);
   }
-  std::vector<Variable> variables;
-  for (std::size_t i = 0; i < first_keyframe_; ++i)
-    if (!is_removed(i)) variables.push_back({VariableKind::kKeyframe, i});
-  for (std::size_t i = 0; i < state_.landmarks.size(); ++i)
-    if (const Variable landmark{VariableKind::kLandmark, i}; !is_fixed_[i] && !is_active(landmark))
-      variables.push_back(landmark);
+  const std::vector<Variable> variables = variables_outside_window();
   const Eigen::Index num_window = prior_.g.size();
   if (variables.empty()) {
     const double moved = solve_window().cwiseAbs().maxCoeff();
@@ -53,14 +69,8 @@ double Graph::step_all(const std::vector<std::size_t>& activated) {
   }
 
   const double cost_before = cost();
-  std::vector<bool> is_active_factor(factors_.size(), false);
-  for (const std::size_t index : active_factors_)
-    is_active_factor[index] = true;
-  std::vector<LinearFactor> outside;
-  outside.reserve(factors_.size());
-  for (std::size_t index = 0; index < factors_.size(); ++index)
-    if (!is_active_factor[index]) outside.push_back(linearised(factors_[index]));
-  const Elimination elimination{variables, outside, num_window, [this](const Variable& variable) {
+  const Elimination elimination{variables, factors_outside_window(), num_window,
+                                [this](const Variable& variable) {
                                   return offsets_.at(variable);
                                 }};
   if (!elimination.has_solution()) {
