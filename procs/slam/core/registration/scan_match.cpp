@@ -34,6 +34,11 @@ constexpr double kIndependentBeams = 4.0;
 constexpr double kFewKeyframes = 3.0;
 constexpr double kAlongWeak = 0.98;  // cosine of the angle to the weak direction
 
+// Added to the guess's sigmas in the descent. The guess chooses among optima some centimetres
+// apart. If it were believed more, the match would stop short of the optimum, agree with odometry
+// by construction, and odometry would count twice.
+const Eigen::Vector3d kDescentAdded{0.03, 0.03, 0.01};  // [m, m, rad]
+
 // In the last step the guess's sigmas are multiplied by the first, then the second is added.
 constexpr double kGuessFactor = 10.0;
 const Eigen::Vector3d kGuessAdded{0.2, 0.2, 0.1};  // [m, m, rad]
@@ -290,7 +295,9 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
                      std::span<const NdtMap> coarse) {
   const double point_variance_m2 = noise.variance_m2();
   const double open_m = ends_open_m(points_in_base, guess_covariance);
-  const Descent descent{guess, guess_covariance, config};
+  Eigen::Matrix3d descent_covariance = guess_covariance;
+  descent_covariance.diagonal() += kDescentAdded.cwiseAbs2();
+  const Descent descent{guess, descent_covariance, config};
   ScanMatch match;
   match.map_from_base = guess;
   for (auto level = coarse.rbegin(); level != coarse.rend(); ++level) {

@@ -226,6 +226,17 @@ TEST(ScanMatch, ManyBeamsInOneCellHaveTheInformationOfAFew) {
   EXPECT_LT(match.observed.information(0, 0), 0.15 * information_of(points.size()));
 }
 
+TEST(ScanMatch, AGuessThatCountsAsCertainDoesNotHoldTheMatch) {
+  const Submap submap = submap_of(room_from);
+  const Se2 truth{0.7, 0.1, 0.0};
+  const auto matched_x_m = [&](double guess_off_m) {
+    return match_scan(room_from(truth, 77), submap.ndt(), truth * Se2{guess_off_m, 0.0, 0.0},
+                      sigmas(0.001, 0.001), RangeNoise{kSigma_m}, {})
+        .map_from_base.x();
+  };
+  EXPECT_NEAR(matched_x_m(0.05), matched_x_m(-0.05), 0.002);
+}
+
 /// The turn about the pole is unobserved, and so is the sideways motion that goes with it.
 TEST(ScanMatch, ASinglePoleFarAwayLeavesTheHeadingAsGuessed) {
   const auto pole_from = [](const Se2& map_from_base, std::uint64_t seed) {
