@@ -21,13 +21,14 @@ constexpr std::array kColumns{Column{"length error [%]", "length_error_percent",
                               Column{"along [m]", "along_rmse_m", 3},
                               Column{"heading [deg]", "heading_rmse_deg", 3},
                               Column{"markers [m]", "marker_error_mean_m", 3},
-                              Column{"x odometry", "ate_over_odometry", 2}};
+                              Column{"x odometry", "ate_over_odometry", 2},
+                              Column{"mean NEES", "nees_mean", 1}};
 
 /// Figures of metrics.json that are columns of results.csv and runs.csv, but not of results.md.
 constexpr std::array kMoreKeys{
     "length_px",     "marker_map_share", "moved_named_share", "max_jump_m",       "wall_cells",
     "found_again_s", "says_lost_s",      "confident_wrong_s", "share_degenerate", "share_lost",
-    "nees_mean",     "sigma_growth",     "memory_mb_per_m",   "across_rmse_m",    "distance_max_m"};
+    "sigma_growth",  "memory_mb_per_m",  "across_rmse_m",     "distance_max_m"};
 
 std::string shown(const std::optional<double>& value, int decimals) {
   return value && std::isfinite(*value) ? fmt::format("{:.{}f}", *value, decimals) : "-";
@@ -160,7 +161,8 @@ std::string sweep_markdown(const std::vector<SweepRow>& rows) {
     text += row_line(row);
   text +=
       "\nTwo numbers: median / worst over the seeds; `none (2 of 3)`: the third seed does not have "
-      "the figure, and may be the worst. NEES in band: stations, one every metre, where the mean "
+      "the figure, and may be the worst. Mean NEES: over the poses of a run; 3 is right, more a "
+      "covariance that is too small. NEES in band: stations, one every metre, where the mean "
       "over the seeds lies in its 95 % band. Misses: seeds that do not reach what the scenario "
       "expects. Failures: runs without a result. Problems: runs with figures that are missing or "
       "of a part of the run; none of them is a hit.\n";

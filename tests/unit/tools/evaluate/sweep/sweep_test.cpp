@@ -18,7 +18,7 @@ using ::testing::Not;
 
 std::string metrics(double ate_m, double accuracy_percent, bool hit) {
   return fmt::format(
-      R"({{"ate_origin_m": {}, "accuracy_percent": {}, "along_rmse_m": null,
+      R"({{"ate_origin_m": {}, "accuracy_percent": {}, "along_rmse_m": null, "nees_mean": 2.5,
            "expectations": [{{"figure": "ate_origin_m", "limit": 0.1, "got": {}, "hit": {}}}]}})",
       ate_m, accuracy_percent, ate_m, hit);
 }
@@ -87,6 +87,8 @@ TEST(Sweep, TheTableListsACommandForEachBadSeed) {
   const std::string table = sweep_markdown(sweep.rows());
   EXPECT_THAT(table, HasSubstr("| plain | waymark | 3 | 0.10 / 0.10 | 0.080 / 0.120 |"));
   EXPECT_THAT(table, HasSubstr("| 0 | 1 | 0 | ate_origin_m 0.1 | MISS |"));
+  EXPECT_THAT(table, HasSubstr("| x odometry | mean NEES |"));
+  EXPECT_THAT(table, HasSubstr(" | 2.5 / 2.5 | 50 | 0 | 1 | 0 |"));
   EXPECT_THAT(table, HasSubstr("# plain, waymark, seed 3: ate_origin_m 0.12 (limit 0.1)\n"
                                "again plain 3\n"));
   EXPECT_THAT(table, HasSubstr("seed 1: FAILED: replay ended with code 139"));
