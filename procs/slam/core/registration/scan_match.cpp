@@ -237,13 +237,18 @@ class Descent {
   const ScanMatchConfig& config_;
 };
 
-/// Information that keeps the pose in unobserved directions and has little effect in the others:
-/// that of the guess with kGuessFactor times its standard deviations, plus kGuessAdded. Not less
-/// information, so that the step stays small enough for the quadratic model.
+/// A covariance with its standard deviations multiplied by a factor, plus some more.
+Eigen::Matrix3d widened(const Eigen::Matrix3d& covariance, double factor,
+                        const Eigen::Vector3d& added_sigmas) {
+  Eigen::Matrix3d wide = squared(factor) * covariance;
+  wide.diagonal() += added_sigmas.cwiseAbs2();
+  return wide;
+}
+
+/// Information that keeps the pose in unobserved directions and has little effect in the others.
+/// Not less information, so that the step stays small enough for the quadratic model.
 Eigen::Matrix3d nearly_none(const Eigen::Matrix3d& guess_covariance) {
-  Eigen::Matrix3d covariance = squared(kGuessFactor) * guess_covariance;
-  covariance.diagonal() += kGuessAdded.cwiseAbs2();
-  return covariance.inverse();
+  return widened(guess_covariance, kGuessFactor, kGuessAdded).inverse();
 }
 
 /// Standard deviation [m] of the beams' ends, across the beams, due to the covariance of the pose:
@@ -295,9 +300,7 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
                      std::span<const NdtMap> coarse) {
   const double point_variance_m2 = noise.variance_m2();
   const double open_m = ends_open_m(points_in_base, guess_covariance);
-  Eigen::Matrix3d descent_covariance = guess_covariance;
-  descent_covariance.diagonal() += kDescentAdded.cwiseAbs2();
-  const Descent descent{guess, descent_covariance, config};
+  const Descent descent{guess, widened(guess_covariance, 1.0, kDescentAdded), config};
   ScanMatch match;
   match.map_from_base = guess;
   for (auto level = coarse.rbegin(); level != coarse.rend(); ++level) {
