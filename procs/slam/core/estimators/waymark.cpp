@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/core/estimators/waymark.hpp"
 
+#include "common/geometry/squared.hpp"
 #include "slam/core/graph/map_fit.hpp"
 #include "slam/core/mapping/moving_beams.hpp"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace waymark {
@@ -24,6 +26,14 @@ constexpr double kContradiction_rad = 0.02;
 
 // Standard deviations from scan to scan while odometry stands still, since it may be stuck.
 const Eigen::Vector3d kStuckStep{0.1, 0.1, 0.05};
+
+constexpr double kCarried_m = 5.0;  // standard deviation of the distance that a robot is carried
+
+/// Variances of (x, y, theta) of a robot that was carried, and has driven since: any heading.
+Eigen::Vector3d unknown_pose_variances(double driven_m) {
+  const double place_m2 = squared(kCarried_m) + squared(driven_m);
+  return {place_m2, place_m2, squared(std::numbers::pi) / 3.0};
+}
 
 GraphNoise graph_noise(const EstimatorSetup& setup, const WaymarkConfig& config) {
   GraphNoise noise;
@@ -70,6 +80,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   newest_time_ = measured.time;
   clock_s_ += measured.elapsed_s;
   if (measured.clock_set != Duration{}) book_.set_clock(measured.clock_set);
+  if (may_be_carried_since_) *may_be_carried_since_ += measured.clock_set;
   is_pose_reset_ = false;
   is_observed_ = false;
   solved_.reset();
@@ -185,14 +196,20 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
 void WaymarkEstimator::check_pose(const Observation& observation,
                                   std::span<const MarkerMeasurement> measurements) {
   const auto compare_walls = [&](const Se2& first, const Se2& second) {
+    // The map has walls that were drawn at unknown poses.
+    if (carried_) return RelocalisationMonitor::Walls::kUndecided;
     const bool is_first_refuted = fit_in_map(map_.map(), observation.beams, first).is_refuted();
     const bool is_second_refuted = fit_in_map(map_.map(), observation.beams, second).is_refuted();
     if (is_first_refuted == is_second_refuted) return RelocalisationMonitor::Walls::kUndecided;
     return is_first_refuted ? RelocalisationMonitor::Walls::kContradictFirst
                             : RelocalisationMonitor::Walls::kContradictSecond;
   };
+  const auto missed = [&](const Se2& map_from_base) {
+    return missed_markers(observation, map_from_base);
+  };
   verdict_ = relocalisation_.update(graph_.state().keyframes.back(), hints(measurements), motion_,
-                                    std::exchange(may_be_carried_, false), compare_walls);
+                                    may_be_carried_since_.has_value(), {compare_walls, missed});
+  if (relocalisation_.is_certain()) note_pose_known();
   if (verdict_ == RelocalisationMonitor::Verdict::kRelocated ||
       verdict_ == RelocalisationMonitor::Verdict::kReverted) {
     relocate(relocalisation_.map_from_base());
@@ -213,7 +230,7 @@ void WaymarkEstimator::slide_window() {
   if (is_map_fixed()) {
     graph_.add_calibration_random_walk(motion_.distance_m);
     graph_.forget_outside_window();
-  } else {
+  } else if (!carried_) {
     remove_redundant_keyframes();
   }
 }
@@ -228,6 +245,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
     add_keyframe_at_commanded_pose(*std::exchange(commanded_pose_, std::nullopt));
   else
     used = add_predicted_keyframe(observation, measurements, scan);
+  note_scan_after_standstill(scan, used);
   graph_.optimise();
   check_pose(observation, measurements);
   const bool is_suspicious = is_pose_suspicious();
@@ -237,7 +255,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
     use_markers(measurements);
     note_misses(observation);
     if (!measurements.empty()) use_survey();
-    if (config_.loops.enabled && !used.is_refuted && !is_map_fixed()) close_loops(scan.points);
+    if (config_.loops.enabled && !used.is_refuted && !is_map_fixed() && !carried_)
+      close_loops(scan.points);
   }
   reweigh_old_factors();
   compare_with_odometry();
@@ -327,6 +346,7 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
     const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
     estimate.covariance += away * away.transpose();
   }
+  if (carried_) estimate.covariance.diagonal() += unknown_pose_variances(carried_->driven_m);
   estimate.odometry_refused = odometry_check_.is_refused();
   estimate.reason = reason_;
   estimate.calibration_widened = !graph_.doubted_calibration_terms().empty();
@@ -335,8 +355,9 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                                                                       : WeakAxisSource::kOdometry;
   estimate.ranges_wrong = is_rescaled_;
   estimate.start_refuted = is_loaded_map_refuted();
-  const bool is_lost = is_pose_suspicious() || inlier_share_ < config_.lost_inlier_share ||
-                       estimate.start_refuted || is_of_another_building() || survey_.is_undecided();
+  const bool is_lost = carried_ || is_pose_suspicious() ||
+                       inlier_share_ < config_.lost_inlier_share || estimate.start_refuted ||
+                       is_of_another_building() || survey_.is_undecided();
   const bool observes_all_axes = (is_observed_ && !estimate.observability.is_degenerate) ||
                                  estimate.weak_axis_source == WeakAxisSource::kMarkers;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost, observes_all_axes);

@@ -139,6 +139,16 @@ class WaymarkEstimator final : public Estimator {
     Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| from start
   };
 
+  /// The robot stood, and then its scan contradicted the map: it was probably carried. Its pose is
+  /// unknown until a marker that was mapped before, or the walls around it, are found again.
+  struct Carried {
+    std::size_t keyframe{0};       ///< the first one after it was put down
+    std::size_t num_landmarks{0};  ///< mapped before
+    NdtMap walls;                  ///< that it saw before
+    Se2 map_from_walls{};
+    double driven_m{0.0};  ///< since then
+  };
+
   /// What the pose in the loaded map rests on. Walls of another place may fit, too.
   enum class PlaceTrust {
     kAssumed,    ///< only a start pose or a command
@@ -226,8 +236,13 @@ class WaymarkEstimator final : public Estimator {
   std::vector<PoseHint> hints(std::span<const MarkerMeasurement> measurements) const;
   void use_markers(std::span<const MarkerMeasurement> measurements);
   std::size_t new_landmark(const MarkerMeasurement& measurement, std::size_t first_new);
+  std::vector<std::size_t> missed_markers(const Observation& observation,
+                                          const Se2& map_from_base) const;
   void note_misses(const Observation& observation);
   void relocate(const Se2& map_from_base);
+  void note_scan_after_standstill(const ScanAtPrediction& scan, const KeyframeScan& used);
+  bool fits_walls_before_carry(const Points& points) const;
+  void note_pose_known();
   void begin_submaps_anew();
   void map_keyframe(const Observation& observation, const Points& points);
   Estimate estimate(const Observation& observation, const Se2& map_from_base,
@@ -244,7 +259,9 @@ class WaymarkEstimator final : public Estimator {
   Graph graph_;
   MarkerBook book_{};
   RelocalisationMonitor relocalisation_{};
-  bool may_be_carried_{false};  ///< odometry stood still or jumped since the newest keyframe
+  /// Since when nothing shows that nobody has carried the robot: odometry stood still, or jumped.
+  std::optional<Timestamp> may_be_carried_since_{};
+  std::optional<Carried> carried_{};
   RangeNoise range_noise_;
   OdometryNoiseLearner noise_learner_{};
   DriftCovariance drift_{};

@@ -109,6 +109,7 @@ void WaymarkEstimator::use_survey() {
     unmatched_drift_.move_to_frame(*survey_from_map);
     map_.redraw_all(poses_of(graph_));
     relocalisation_ = {};
+    note_pose_known();
     loop_finder_.reset();
     forget_recent_motion();
   }

@@ -67,6 +67,8 @@ std::vector<PoseHint> WaymarkEstimator::hints(
     } else if (nearest->chi2 < config_.marker_gate ||
                nearest->distance_m() < config_.marker_near_m) {
       hint.kind = PoseHint::Kind::kAgrees;
+      hint.is_mapped_since = may_be_carried_since_ &&
+                             book_.entries()[nearest->landmark].first_seen > *may_be_carried_since_;
     } else if (unique) {
       hint.kind = PoseHint::Kind::kElsewhere;
     } else {
@@ -144,12 +146,17 @@ std::size_t WaymarkEstimator::new_landmark(const MarkerMeasurement& measurement,
 
 /// Negative information: a marker without a sighting is missed if the camera should have seen it
 /// and nothing occludes it, since the LiDAR sees its wall.
-void WaymarkEstimator::note_misses(const Observation& observation) {
-  if (!observation.camera_reported) return;
+std::vector<std::size_t> WaymarkEstimator::missed_markers(const Observation& observation,
+                                                          const Se2& map_from_base) const {
+  if (!observation.camera_reported) return {};
   const auto is_in_view = [&](const Se2& base_from_marker) {
     return is_expected_in_view(base_from_marker, setup_.camera, observation.beams);
   };
-  book_.note_misses(graph_.state(), newest(), is_in_view, observation.time - kSightingAge);
+  return book_.missed(graph_.state(), map_from_base, is_in_view, observation.time - kSightingAge);
+}
+
+void WaymarkEstimator::note_misses(const Observation& observation) {
+  book_.note_misses(missed_markers(observation, graph_.state().keyframes.back()));
 }
 
 }  // namespace waymark

@@ -62,9 +62,10 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
                      observation.motion.start_from_end;
     standstill_ = Standstill{moved_from_, motion_, here, here, clock_s_, clock_s_};
   }
-  may_be_carried_ |= (standstill_ && clock_s_ - standstill_->since_s >= kLift_s) ||
-                     odometry_check_.is_refused() || observation.odometry_jumped ||
-                     observation.odometry_caught_up || observation.clock_set != Duration{};
+  const bool may_be_carried = (standstill_ && clock_s_ - standstill_->since_s >= kLift_s) ||
+                              odometry_check_.is_refused() || observation.odometry_jumped ||
+                              observation.odometry_caught_up || observation.clock_set != Duration{};
+  if (may_be_carried && !may_be_carried_since_) may_be_carried_since_ = observation.time;
   ++statistics_.observations;
   if (observation.odometry_jumped || odometry_check_.is_refused()) {
     ++statistics_.odometry_jumping;

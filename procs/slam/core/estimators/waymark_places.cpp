@@ -54,6 +54,7 @@ void WaymarkEstimator::add_keyframe_at_commanded_pose(const StartPose& pose) {
   place_trust_ = !setup_.loaded_map || pose.is_certain ? PlaceTrust::kKnown : PlaceTrust::kAssumed;
   loaded_map_votes_ = {};
   relocalisation_ = {};
+  note_pose_known();
   forget_recent_motion();
   begin_submaps_anew();
 }
@@ -87,16 +88,60 @@ Estimate WaymarkEstimator::estimate_without_pose(const Observation& observation)
   return estimate;
 }
 
-/// The prior takes the place of the odometry factor, which holds no longer: without it, the robust
-/// weights of markers that are metres away from where the solver begins would be next to nothing.
+/// A robot that was carried has driven along a path of unknown place: that path is moved as a
+/// whole. Otherwise a prior takes the place of the odometry factor, which holds no longer: without
+/// it, the robust weights of markers that are metres away from where the solver begins would be
+/// next to nothing.
 void WaymarkEstimator::relocate(const Se2& map_from_base) {
   ++statistics_.relocalisations;
-  graph_.relocate_newest(map_from_base);
+  const bool has_path = carried_ && !is_map_fixed();
+  if (has_path)
+    graph_.move_since(carried_->keyframe, carried_->num_landmarks,
+                      map_from_base * graph_.state().keyframes.back().inverse());
+  else
+    graph_.relocate_newest(map_from_base);
   const Eigen::Vector3d sigmas{kRelocated_m, kRelocated_m, kRelocated_rad};
   graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
-  graph_.optimise();
+  if (has_path) {
+    graph_.step_all();
+    map_.redraw_all(poses_of(graph_));
+  } else {
+    graph_.optimise();
+    begin_submaps_anew();
+  }
   is_pose_reset_ = true;
-  begin_submaps_anew();
+  note_pose_known();
+}
+
+/// A scan that observes all axes at the predicted pose shows that nobody has carried the robot; one
+/// that contradicts the map, that somebody has.
+void WaymarkEstimator::note_scan_after_standstill(const ScanAtPrediction& scan,
+                                                  const KeyframeScan& used) {
+  const bool contradicts = inlier_share_ < config_.lost_inlier_share;
+  if (carried_) {
+    carried_->driven_m += motion_.distance_m;
+    if (fits_walls_before_carry(scan.points)) note_pose_known();
+  } else if (may_be_carried_since_ && contradicts) {
+    carried_ = Carried{newest(), graph_.state().landmarks.size(), ndt_of(*scan.matched),
+                       scan.matched->map_from_submap};
+    begin_submaps_anew();
+  } else if (used.observes_all_axes && !scan.was_searched_widely) {
+    note_pose_known();
+  }
+}
+
+bool WaymarkEstimator::fits_walls_before_carry(const Points& points) const {
+  const SubmapPrediction guess = in_submap(
+      {graph_.state().keyframes.back(), graph_.covariance_of({VariableKind::kKeyframe, newest()})},
+      carried_->map_from_walls);
+  const ScanMatch match = match_scan(points, carried_->walls, guess.submap_from_base,
+                                     guess.covariance, range_noise_, config_.scan);
+  return usual_fit_.is_nearly_usual(match) && usual_fit_.is_as_usual_where_mapped(match);
+}
+
+void WaymarkEstimator::note_pose_known() {
+  may_be_carried_since_.reset();
+  carried_.reset();
 }
 
 void WaymarkEstimator::begin_submaps_anew() {

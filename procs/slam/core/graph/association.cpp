@@ -101,14 +101,22 @@ void MarkerBook::set_clock(Duration later) {
       if (*time != Timestamp{}) *time += later;
 }
 
-void MarkerBook::note_misses(const State& state, std::size_t keyframe,
-                             const std::function<bool(const Se2&)>& is_in_view, Timestamp since) {
-  const Se2 base_from_map = state.keyframes[keyframe].inverse();
+std::vector<std::size_t> MarkerBook::missed(const State& state, const Se2& map_from_base,
+                                            const std::function<bool(const Se2&)>& is_in_view,
+                                            Timestamp since) const {
+  const Se2 base_from_map = map_from_base.inverse();
+  std::vector<std::size_t> missed;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (is_retired_[i] || entries_[i].last_seen >= since ||
-        !is_in_view(base_from_map * state.landmarks[i])) {
-      continue;
+    if (!is_retired_[i] && entries_[i].last_seen < since &&
+        is_in_view(base_from_map * state.landmarks[i])) {
+      missed.push_back(i);
     }
+  }
+  return missed;
+}
+
+void MarkerBook::note_misses(const std::vector<std::size_t>& landmarks) {
+  for (const std::size_t i : landmarks) {
     ++entries_[i].misses;
     if (!entries_[i].is_missed()) continue;
     for (std::size_t k = 0; k < entries_.size(); ++k) {

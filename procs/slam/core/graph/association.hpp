@@ -50,12 +50,14 @@ class MarkerBook {
   /// To be called when the clock was set: the times of all sightings are in the new clock then.
   void set_clock(Duration later);
 
-  /// Counts a missed detection for every marker that should be in view and has not been sighted
-  /// since `since`. If another marker of the same id has appeared after the missing one was last
-  /// seen, the marker was moved: its old landmark is retired.
-  void note_misses(const State& state, std::size_t keyframe,
-                   const std::function<bool(const Se2& base_from_marker)>& is_in_view,
-                   Timestamp since);
+  /// Landmarks that should be in view and have not been sighted since `since`.
+  std::vector<std::size_t> missed(
+      const State& state, const Se2& map_from_base,
+      const std::function<bool(const Se2& base_from_marker)>& is_in_view, Timestamp since) const;
+
+  /// Counts a missed detection of each landmark. If another marker of the same id has appeared
+  /// after the missing one was last seen, the marker was moved: its old landmark is retired.
+  void note_misses(const std::vector<std::size_t>& landmarks);
 
   /// The retired landmark at the former place of this landmark's marker; none: it was not moved.
   std::optional<std::size_t> moved_from(std::size_t landmark) const {

@@ -178,6 +178,19 @@ void Graph::relocate_newest(const Se2& map_from_base) {
   add(disabled);
 }
 
+void Graph::move_since(std::size_t keyframe, std::size_t landmark, const Se2& new_from_old) {
+  for (std::size_t i = keyframe; i < state_.keyframes.size(); ++i)
+    state_.keyframes[i] = new_from_old * state_.keyframes[i];
+  for (std::size_t i = landmark; i < state_.landmarks.size(); ++i)
+    state_.landmarks[i] = new_from_old * state_.landmarks[i];
+  for (Factor& factor : factors_) {
+    if (auto* odometry = std::get_if<OdometryFactor>(&factor); odometry && odometry->to == keyframe)
+      odometry->is_disabled = true;
+    if (auto* scan = std::get_if<ScanFactor>(&factor); scan && scan->keyframe == keyframe)
+      scan->root_information.setZero();
+  }
+}
+
 void Graph::disable_odometry_since(std::size_t keyframe) {
   for (const std::size_t index : active_factors_) {
     auto* odometry = std::get_if<OdometryFactor>(&factors_[index]);

@@ -87,6 +87,10 @@ class Graph {
   /// that keyframe.
   void relocate_newest(const Se2& map_from_base);
 
+  /// Moves the keyframes and landmarks from the given ones on, as a rigid body: it is not known how
+  /// the robot came to that keyframe. To be followed by step_all().
+  void move_since(std::size_t keyframe, std::size_t landmark, const Se2& new_from_old);
+
   /// Marks the motion of the window's odometry factors from `keyframe` on as unknown.
   void disable_odometry_since(std::size_t keyframe);
 

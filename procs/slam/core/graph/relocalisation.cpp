@@ -14,6 +14,9 @@ constexpr double kSameHeading_rad = 0.35;
 constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
 constexpr double kMisread_m = 0.5;   // driven without another sighting: the first was a misreading
 constexpr double kPatience_m = 5.0;  // that limit after kRealSightings or more
+constexpr int kMissesNeeded = 3;     // of one marker: a single frame may be blurred
+constexpr int kMissedInDoubt = 2;    // markers: both may have been moved
+constexpr int kMissedIfCarried = 3;
 constexpr double kClearlyNearer = 2.0;    // ratio of distances of a marker's pose from two others
 constexpr double kMetresPerRadian = 1.0;  // weight of the heading in these distances
 constexpr double kReturn_m = 30.0;        // driven until a relocalisation is final
@@ -40,31 +43,38 @@ RelocalisationMonitor::Verdict RelocalisationMonitor::update(const Se2& map_from
                                                              std::span<const PoseHint> hints,
                                                              const Motion& motion,
                                                              bool may_be_carried,
-                                                             const CompareWalls& compare_walls) {
+                                                             const View& view) {
   propagate(motion);
   if (may_be_carried) is_certain_ = false;
   if (is_lookalike_place(hints)) return revert();
+  count_misses(is_doubtful_ ? *abandoned_ : map_from_base, view);
   if (is_doubtful_) {
-    if (const auto decided = settle_doubt(map_from_base, hints, compare_walls)) return *decided;
+    if (const auto decided = settle_doubt(map_from_base, hints, view)) return *decided;
   }
   bool is_confirmed = false;
   for (const PoseHint& hint : hints) {
     if (hint.kind == PoseHint::Kind::kElsewhere && !moved_ids_.contains(hint.id))
       support_alternative(hint);
     is_confirmed |= hint.kind == PoseHint::Kind::kAgrees || hint.kind == PoseHint::Kind::kNew;
-    is_certain_ |= hint.kind == PoseHint::Kind::kAgrees && !is_doubtful_;
+    if (hint.kind != PoseHint::Kind::kAgrees || hint.is_mapped_since || is_doubtful_) continue;
+    is_certain_ = true;
+    misses_.clear();
   }
   if (is_confirmed) drop_alternative();
   if (!alternative_) return is_doubtful_ ? Verdict::kSuspicious : Verdict::kConsistent;
   if (!has_enough(sightings_, kMarkersNeeded)) return Verdict::kSuspicious;
-  const Walls walls = compare_walls(*alternative_, map_from_base);
-  if (walls == Walls::kContradictFirst && !is_doubtful_) {
+  const Walls walls = view.compare_walls(*alternative_, map_from_base);
+  const bool is_carried =
+      !is_certain_ || walls == Walls::kContradictSecond || num_missed() >= kMissedIfCarried;
+  const bool are_others =
+      walls == Walls::kContradictFirst || (!is_carried && num_missed() < kMissedInDoubt);
+  if (are_others && !is_doubtful_) {
     for (const auto& [id, count] : sightings_)
       moved_ids_.insert(id);
     drop_alternative();
     return Verdict::kConsistent;
   }
-  return relocate(map_from_base, is_certain_ && walls != Walls::kContradictSecond);
+  return relocate(map_from_base, !is_carried);
 }
 
 RelocalisationMonitor::Verdict RelocalisationMonitor::relocate(const Se2& map_from_base,
@@ -78,7 +88,6 @@ RelocalisationMonitor::Verdict RelocalisationMonitor::relocate(const Se2& map_fr
   if (!is_doubtful_) abandoned_ = map_from_base;
   is_doubtful_ = is_doubtful;
   unexpected_ids_.clear();
-  votes_for_.clear();
   votes_against_.clear();
   relocated_m_ = 0.0;
   return Verdict::kRelocated;
@@ -95,20 +104,29 @@ RelocalisationMonitor::Verdict RelocalisationMonitor::revert() {
 
 /// @return kReverted or kConsistent, if the doubt is over.
 std::optional<RelocalisationMonitor::Verdict> RelocalisationMonitor::settle_doubt(
-    const Se2& map_from_base, std::span<const PoseHint> hints, const CompareWalls& compare_walls) {
+    const Se2& map_from_base, std::span<const PoseHint> hints, const View& view) {
   for (const PoseHint& hint : hints) {
     if (relocated_by_.contains(hint.id) || !hint.map_from_base) continue;
     const double from_new_m = apart_m(*hint.map_from_base, map_from_base);
     const double from_old_m = apart_m(*hint.map_from_base, *abandoned_);
-    if (kClearlyNearer * from_new_m < from_old_m) ++votes_for_[hint.id];
     if (kClearlyNearer * from_old_m < from_new_m) ++votes_against_[hint.id];
   }
-  const Walls walls = compare_walls(map_from_base, *abandoned_);
+  const Walls walls = view.compare_walls(map_from_base, *abandoned_);
   if (has_enough(votes_against_, 1) || walls == Walls::kContradictFirst) return revert();
-  if (!has_enough(votes_for_, 1) && walls != Walls::kContradictSecond) return std::nullopt;
+  if (num_missed() < kMissedIfCarried && walls != Walls::kContradictSecond) return std::nullopt;
   is_doubtful_ = false;
   drop_alternative();
   return Verdict::kConsistent;
+}
+
+void RelocalisationMonitor::count_misses(const Se2& map_from_base, const View& view) {
+  for (const std::size_t landmark : view.missed(map_from_base))
+    ++misses_[landmark];
+}
+
+std::ptrdiff_t RelocalisationMonitor::num_missed() const {
+  return std::ranges::count_if(misses_,
+                               [](const auto& missed) { return missed.second >= kMissesNeeded; });
 }
 
 void RelocalisationMonitor::propagate(const Motion& motion) {

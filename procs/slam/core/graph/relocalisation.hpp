@@ -5,11 +5,13 @@
 #include "common/geometry/se2.hpp"
 #include "slam/core/motion/motion.hpp"
 
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
 #include <set>
 #include <span>
+#include <vector>
 
 namespace waymark {
 
@@ -27,6 +29,8 @@ struct PoseHint {
   /// Pose of the robot if the marker has not moved. None if several markers carry the id.
   std::optional<Se2> map_from_base{};
   bool is_in_known_place{false};  ///< if kNew: the map has another marker at that place
+  /// If kAgrees: first sighted since the robot may have been carried, so that it confirms nothing.
+  bool is_mapped_since{false};
 };
 
 /// Decides between two hypotheses. (1) The estimated pose is right: markers sighted away from their
@@ -38,8 +42,10 @@ struct PoseHint {
 /// has other markers, the relocalisation is reverted: the place only looked alike.
 ///
 /// If nobody can have carried the robot, since it drove all the time after a marker had confirmed
-/// its pose, the two markers may as well have been moved together. Then the new pose is in doubt
-/// until a third marker or the walls decide for it, or a marker or the walls for the pose before.
+/// its pose, markers that are missed at that pose decide, or walls. With fewer than two missed
+/// markers there are more markers of these ids, in a part of the building that is not mapped. With
+/// two, these may have been moved together, or the wheels slipped: the new pose is in doubt until
+/// a third is missed or the walls decide for it, or a marker or the walls for the pose before.
 /// After that the two markers are taken for moved ones.
 class RelocalisationMonitor {
  public:
@@ -47,19 +53,27 @@ class RelocalisationMonitor {
 
   /// How the walls fit at a pose, compared with another pose.
   enum class Walls { kUndecided, kContradictFirst, kContradictSecond };
-  using CompareWalls = std::function<Walls(const Se2& first, const Se2& second)>;
+
+  /// The newest frame and scan, compared with the map at a pose; may be expensive.
+  struct View {
+    std::function<Walls(const Se2& first, const Se2& second)> compare_walls{};
+    /// Indices of the landmarks that should be in view and are not.
+    std::function<std::vector<std::size_t>(const Se2& map_from_base)> missed{};
+  };
 
   /// @param motion          since the last call.
-  /// @param may_be_carried  odometry stood still or jumped since the last call.
-  /// @param compare_walls   of the newest scan; may be expensive.
+  /// @param may_be_carried  by somebody, since is_certain() was last true.
   Verdict update(const Se2& map_from_base, std::span<const PoseHint> hints, const Motion& motion,
-                 bool may_be_carried, const CompareWalls& compare_walls);
+                 bool may_be_carried, const View& view);
 
   /// After kRelocated and kReverted: the robot's new pose.
   const Se2& map_from_base() const { return relocated_; }
 
   /// While the pose is suspicious or in doubt: the other hypothesis.
   const std::optional<Se2>& alternative() const { return is_doubtful_ ? abandoned_ : alternative_; }
+
+  /// Whether a marker has confirmed the pose, and since then nobody can have carried the robot.
+  bool is_certain() const { return is_certain_; }
 
   /// Whether the robot was relocated, and it is not decided whether rightly.
   bool is_doubtful() const { return is_doubtful_; }
@@ -73,7 +87,9 @@ class RelocalisationMonitor {
   Verdict relocate(const Se2& map_from_base, bool is_doubtful);
   Verdict revert();
   std::optional<Verdict> settle_doubt(const Se2& map_from_base, std::span<const PoseHint> hints,
-                                      const CompareWalls& compare_walls);
+                                      const View& view);
+  void count_misses(const Se2& map_from_base, const View& view);
+  std::ptrdiff_t num_missed() const;
 
   Se2 relocated_{};
   std::optional<Se2> alternative_{};
@@ -84,13 +100,12 @@ class RelocalisationMonitor {
   std::set<int> unexpected_ids_{};
   double relocated_m_{0.0};  ///< distance driven since the relocalisation
 
-  /// A marker has confirmed the pose, and since then nobody can have carried the robot.
   bool is_certain_{false};
   bool is_doubtful_{false};
-  std::set<int> relocated_by_{};        ///< ids that have relocated the robot
-  std::map<int, int> votes_for_{};      ///< sightings in doubt, by id: for the new pose,
-  std::map<int, int> votes_against_{};  ///< and for the abandoned one
-  std::set<int> moved_ids_{};           ///< of markers that have relocated the robot wrongly
+  std::set<int> relocated_by_{};         ///< ids that have relocated the robot
+  std::map<int, int> votes_against_{};   ///< sightings in doubt that support the abandoned pose
+  std::map<std::size_t, int> misses_{};  ///< by landmark, at the pose that markers have confirmed
+  std::set<int> moved_ids_{};            ///< of markers that have relocated the robot wrongly
 };
 
 }  // namespace waymark

@@ -30,8 +30,8 @@ class MissedMarker {
   /// In view, and not sighted, in so many keyframes, one per second.
   void look_for_it(int from_s, int keyframes) {
     for (int i = 0; i < keyframes; ++i)
-      book_.note_misses(
-          state_, 0, [](const Se2&) { return true; }, at_s(from_s + i - 1));
+      book_.note_misses(book_.missed(
+          state_, {}, [](const Se2&) { return true; }, at_s(from_s + i - 1)));
   }
 
   void add_another(int first_s) {

@@ -36,21 +36,31 @@ struct MonitoredRobot {
   RelocalisationMonitor monitor{};
   Se2 map_from_base{kConsecutive};  ///< as estimated
   RelocalisationMonitor::Walls walls{RelocalisationMonitor::Walls::kUndecided};
+  std::vector<std::size_t> missed{};  ///< landmarks, at the pose before a relocalisation
 
   Verdict sees(const std::vector<PoseHint>& hints, const Motion& motion = {},
                bool may_be_carried = false) {
     map_from_base = map_from_base * motion.start_from_end;
     const Verdict verdict = monitor.update(map_from_base, hints, motion, may_be_carried,
-                                           [this](const Se2&, const Se2&) { return walls; });
+                                           {[this](const Se2&, const Se2&) { return walls; },
+                                            [this](const Se2&) {
+                                              return missed;
+                                            }});
     if (verdict == Verdict::kRelocated || verdict == Verdict::kReverted)
       map_from_base = monitor.map_from_base();
     return verdict;
   }
 
-  /// Two markers were moved together by 5 m.
-  Verdict sees_moved_pair() {
+  Verdict sees_pair_elsewhere() {
     sees({elsewhere(3), elsewhere(4)});
     return sees({elsewhere(3), elsewhere(4)});
+  }
+
+  /// Two markers were moved together by 5 m, and are missed where they were.
+  Verdict sees_moved_pair() {
+    missed = {3, 4};
+    sees({elsewhere(3)});
+    return sees_pair_elsewhere();
   }
 };
 
@@ -91,17 +101,51 @@ TEST(RelocalisationMonitor, TwoUnexpectedIdsRevertARelocalisation) {
 }
 
 TEST(RelocalisationMonitor,
-     ARelocalisationThatNobodyCanHaveCausedIsDoubtedUntilAThirdMarkerAgrees) {
+     ARelocalisationThatNobodyCanHaveCausedIsDoubtedUntilAThirdMarkerIsMissed) {
   MonitoredRobot robot;
   robot.sees({as_expected(2)});
   ASSERT_EQ(robot.sees_moved_pair(), Verdict::kRelocated);
   EXPECT_TRUE(robot.monitor.is_doubtful());
+  robot.missed.clear();
   EXPECT_EQ(robot.sees({as_expected(3), as_expected(4)}, kOnwards), Verdict::kSuspicious);
   EXPECT_NEAR(robot.monitor.alternative()->x(), kConsecutive.x() + 1.0, 1e-9);
   const PoseHint third{PoseHint::Kind::kAgrees, 5, robot.map_from_base};
+  robot.missed = {5};
+  robot.sees({third});
   robot.sees({third});
   EXPECT_TRUE(robot.monitor.is_doubtful());
   EXPECT_EQ(robot.sees({third}), Verdict::kConsistent);
+  EXPECT_FALSE(robot.monitor.is_doubtful());
+}
+
+TEST(RelocalisationMonitor, AnotherSetOfTheSameIdsDoesNotRelocateARobotThatDroveThere) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  EXPECT_EQ(robot.sees_pair_elsewhere(), Verdict::kConsistent);
+  for (int id = 5; id < 9; ++id)
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NE(robot.sees({elsewhere(id)}, kOnwards), Verdict::kRelocated);
+  EXPECT_TRUE(robot.monitor.is_certain());
+}
+
+TEST(RelocalisationMonitor, MarkersMissedOnTheWayShowThatARobotWasCarriedAlthoughItsWheelsTurned) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  robot.missed = {10, 11, 12};
+  for (int i = 0; i < 3; ++i)
+    robot.sees({}, kOnwards);
+  EXPECT_EQ(robot.sees_pair_elsewhere(), Verdict::kRelocated);
+  EXPECT_FALSE(robot.monitor.is_doubtful());
+}
+
+TEST(RelocalisationMonitor, MarkersMappedSinceTheRobotMayHaveBeenCarriedConfirmNothing) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  PoseHint since = as_expected(20);
+  since.is_mapped_since = true;
+  robot.sees({since}, kOnwards, true);
+  EXPECT_FALSE(robot.monitor.is_certain());
+  EXPECT_EQ(robot.sees_pair_elsewhere(), Verdict::kRelocated);
   EXPECT_FALSE(robot.monitor.is_doubtful());
 }
 
@@ -109,7 +153,7 @@ TEST(RelocalisationMonitor, ARobotThatStoodMayHaveBeenCarried) {
   MonitoredRobot robot;
   robot.sees({as_expected(2)});
   robot.sees({}, {}, true);
-  ASSERT_EQ(robot.sees_moved_pair(), Verdict::kRelocated);
+  ASSERT_EQ(robot.sees_pair_elsewhere(), Verdict::kRelocated);
   EXPECT_FALSE(robot.monitor.is_doubtful());
 }
 
@@ -134,7 +178,7 @@ TEST(RelocalisationMonitor, WallsDecideBetweenTwoPoses) {
   MonitoredRobot carried;
   carried.sees({as_expected(2)});
   carried.walls = RelocalisationMonitor::Walls::kContradictSecond;
-  EXPECT_EQ(carried.sees_moved_pair(), Verdict::kRelocated);
+  EXPECT_EQ(carried.sees_pair_elsewhere(), Verdict::kRelocated);
   EXPECT_FALSE(carried.monitor.is_doubtful());
 
   MonitoredRobot later;
