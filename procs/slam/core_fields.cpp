@@ -158,11 +158,6 @@ void OdometryNoise::describe(Fields& fields) {
 void MarkerMeasurementConfig::describe(Fields& fields) {
   fields.field("reach_m", reach_m, kPositive,
                "length of wall on each side of a marker that is assumed to be straight");
-  fields.field("perspective_sigma", perspective_sigma, kPositive,
-               "added standard deviation of the focal length from a marker's perspective, since "
-               "the errors of views are correlated");
-  fields.field("perspective_max_sigma", perspective_max_sigma, kPositive,
-               "views with a larger standard deviation from corner noise are not used for it");
   fields.field("covariance_factor", covariance_factor, kPositive,
                "factor on the detector's covariances: errors of successive frames are correlated");
   fields.field(

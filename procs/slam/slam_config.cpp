@@ -2,7 +2,6 @@
 #include "slam/slam_config.hpp"
 
 #include "common/markers/marker_dictionary.hpp"
-#include "common/robot/camera_model.hpp"
 #include "slam/parallel.hpp"
 
 #include <fmt/format.h>
@@ -15,8 +14,6 @@
 
 namespace waymark {
 namespace {
-
-constexpr double kCornerSigma_px = 0.02;  // of refined corners
 
 /// The horizontal wedge in which a marker is wholly in the image and large enough to be detected.
 CameraView camera_view(const CameraConfig& camera, const MarkerConfig& markers,
@@ -142,11 +139,6 @@ SensorSetup sensor_setup(const SlamConfig& config) {
   setup.marker_size_m = config.robot.markers.size_m;
   setup.preprocessing = config.slam.preprocessing;
   setup.blank_ids = config.slam.blank_ids;
-  const CameraModel camera{config.robot.camera};
-  setup.ray_of_pixel = [camera](const Eigen::Vector2d& raw_px) {
-    return camera.normalized_from_ideal(camera.ideal_from_raw(raw_px));
-  };
-  setup.corner_sigma = kCornerSigma_px / config.robot.camera.fx_px;
   return setup;
 }
 

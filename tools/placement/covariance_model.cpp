@@ -84,8 +84,8 @@ void match_scan_of(std::span<const Step> steps, std::size_t now, const Reference
   known.measure(blocks_of(factor.linearise(state), variables, {}, std::sqrt(keyframes)));
 }
 
-/// Updates the calibration with what a view of a marker observes of it: by the wall that the LiDAR
-/// measures, and by perspective (focal length).
+/// Updates the calibration with what a view of a marker observes of it, by the wall that the LiDAR
+/// measures.
 void learn_calibration(const MarkerMeasurement& measured, double keyframes, PoseCovariance& known) {
   const double root_weight = std::sqrt(keyframes);
   if (measured.wall) {
@@ -94,11 +94,6 @@ void learn_calibration(const MarkerMeasurement& measured, double keyframes, Pose
     rows.rightCols<kCameraTerms>() =
         root_weight * root.matrixL().solve(measured.wall->jacobian_calibration());
     known.measure({{PoseCovariance::kCalibration, rows}});
-  }
-  if (measured.focal) {
-    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, kCalibrationSize);
-    row(0, kOdometryTerms + SightingNoise::kFocal) = root_weight / measured.focal->sigma;
-    known.measure({{PoseCovariance::kCalibration, row}});
   }
 }
 

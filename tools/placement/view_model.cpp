@@ -134,7 +134,6 @@ ViewModel::ViewModel(const SlamConfig& config, int modules_per_side, double mark
       camera_{config.robot.camera},
       modules_per_side_{modules_per_side},
       marker_height_m_{marker_height_m},
-      corner_sigma_{sensor_setup(config).corner_sigma},
       max_sigma_m_{config.slam.preprocessing.max_sigma_m},
       reach_m_{config.robot.camera.fx_px * config.robot.markers.size_m /
                (kReadShares.front().module_px * modules_per_side)} {
@@ -150,7 +149,6 @@ std::optional<MarkerView> ViewModel::view(const Se2& base_from_marker,
   if (camera_from_marker.linear().col(2).dot(camera_from_marker.translation()) >= 0.0)
     return std::nullopt;  // it faces away
   SeenCorners seen;
-  std::array<Eigen::Vector2d, 4> rays;
   const auto corners_m = corners_in_marker(robot_.markers.size_m);
   for (std::size_t k = 0; k < 4; ++k) {
     const Eigen::Vector3d arm = camera_from_marker.linear() * corners_m[k];
@@ -163,7 +161,6 @@ std::optional<MarkerView> ViewModel::view(const Se2& base_from_marker,
         raw_px.y() > robot_.camera.height_px - 1 - kImageMargin_px) {
       return std::nullopt;
     }
-    rays[k] = camera_.normalized_from_ideal(seen.px[k]);
     const auto projection = camera_.projection_jacobian(corner);
     Eigen::Matrix3d cross;
     cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
@@ -189,7 +186,6 @@ std::optional<MarkerView> ViewModel::view(const Se2& base_from_marker,
     return std::nullopt;
   sighting.size_m = robot_.markers.size_m;
   sighting.driven_since_frame_m = 0.5 * speed_mps / robot_.camera.rate_hz;
-  sighting.focal = focal_error_of(rays, corner_sigma_);
 
   Observation observation;
   observation.sightings = {sighting};

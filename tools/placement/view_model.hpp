@@ -49,7 +49,6 @@ class ViewModel {
   CameraModel camera_;
   int modules_per_side_;
   double marker_height_m_;
-  double corner_sigma_;
   double max_sigma_m_;
   double reach_m_;  ///< farther away, even a marker seen frontally is too small to be read
 };

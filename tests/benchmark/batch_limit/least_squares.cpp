@@ -34,7 +34,6 @@ class Batch {
     add_walls(model.straight_over_m);
     add_markers();
     add_hanging(model);
-    add_perspective(model.perspective_sigma);
     add_priors(model);
     problem_.SetParameterBlockConstant(poses_.front().data());
   }
@@ -117,20 +116,6 @@ class Batch {
                                           robust(), markers_[i].data(), &wall.knots_m[piece],
                                           &wall.knots_m[piece + 1], &solution_.standoff_m);
     }
-  }
-
-  /// Views err alike, so that all of them together count as one.
-  void add_perspective(double sigma) {
-    double sum = 0.0;
-    double weight = 0.0;
-    for (const Link& link : solution_.scene.marker_links) {
-      const auto& focal = stops_[link.stop].markers[link.measurement].focal;
-      if (!focal) continue;
-      sum += focal->error / (focal->sigma * focal->sigma);
-      weight += 1.0 / (focal->sigma * focal->sigma);
-    }
-    if (weight > 0.0)
-      add<FocalResidual, 1, 2>({{sum / weight, sigma}}, nullptr, solution_.camera_errors.data());
   }
 
   void add_priors(const BatchModel& model) {

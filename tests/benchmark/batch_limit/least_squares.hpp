@@ -11,7 +11,6 @@ namespace waymark::benchmark {
 struct BatchModel {
   OdometryNoise odometry{};
   SightingNoise sightings{};
-  double perspective_sigma{MarkerMeasurementConfig{}.perspective_sigma};
   double same_marker_within_m{0.0};  ///< sightings of an id further apart are of different markers
   double straight_over_m{1.0};       ///< walls may bend from one such piece to the next
 };

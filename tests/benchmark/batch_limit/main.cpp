@@ -48,8 +48,7 @@ Trajectory trajectory_of(const benchmark::Scene& scene, const std::vector<benchm
 
 benchmark::BatchModel model_of(const SlamConfig& config, const Arguments& arguments) {
   const WaymarkConfig& waymark = config.slam.waymark;
-  return {waymark.odometry, estimator_setup(config).sighting_noise,
-          waymark.markers.perspective_sigma, waymark.same_marker_within_m,
+  return {waymark.odometry, estimator_setup(config).sighting_noise, waymark.same_marker_within_m,
           arguments.straight_over_m};
 }
 

@@ -151,16 +151,6 @@ struct HangingResidual {
   }
 };
 
-struct FocalResidual {
-  FocalMeasurement focal;
-
-  template <class T>
-  bool operator()(const T* camera, T* out) const {
-    out[0] = (focal.error - camera[1]) / focal.sigma;
-    return true;
-  }
-};
-
 /// Holds values near zero.
 template <int kSize>
 struct PriorResidual {

@@ -94,7 +94,6 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     if (!is_it && (book_.is_full() || book_.is_misread(graph_.state(), newest(), measurement)))
       continue;
     if (measurement.wall) graph_.calibration_knowledge().observe(*measurement.wall);
-    if (measurement.focal) graph_.calibration_knowledge().observe(*measurement.focal);
     matches.push_back({&measurement});
     if (!is_it) continue;
     matches.back().landmark = nearest->landmark;

@@ -31,12 +31,6 @@ void CalibrationKnowledge::observe(const WallInnovation& wall) {
   camera_vector_ += jacobian.transpose() * information * wall.residual;
 }
 
-void CalibrationKnowledge::observe(const FocalMeasurement& focal) {
-  const double information = 1.0 / (focal.sigma * focal.sigma);
-  camera_information_(SightingNoise::kFocal, SightingNoise::kFocal) += information;
-  camera_vector_[SightingNoise::kFocal] += information * focal.error;
-}
-
 void CalibrationKnowledge::fade(double share) {
   camera_information_ *= share;
   camera_vector_ *= share;

@@ -13,7 +13,7 @@
 
 namespace waymark {
 
-/// The robot's description as a prior, and measurements of the camera by walls and by perspective:
+/// The robot's description as a prior, and measurements of the camera by walls:
 /// all linear in the calibration, so that their sum is one quadratic. The prior is a scale mixture
 /// of normal distributions, which has the long tails of a Student-t: a term whose description the
 /// measurements contradict by many standard deviations gets a prior that much wider (West 1987, "On
@@ -24,7 +24,6 @@ class CalibrationKnowledge {
   explicit CalibrationKnowledge(const Calibration& sigmas);
 
   void observe(const WallInnovation& wall);
-  void observe(const FocalMeasurement& focal);
 
   /// Multiplies the information of all observations by `share`.
   void fade(double share);

@@ -199,15 +199,6 @@ void SensorQueue::add_frames(Timestamp time, Observation& observation) {
   }
 }
 
-std::optional<FocalMeasurement> SensorQueue::focal_measurement(
-    const MarkerDetection& detection) const {
-  if (!setup_.ray_of_pixel) return std::nullopt;
-  std::array<Eigen::Vector2d, 4> corners;
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    corners[i] = setup_.ray_of_pixel(detection.corners_px[i]);
-  return focal_error_of(corners, setup_.corner_sigma);
-}
-
 void SensorQueue::add_sightings(const MarkerDetections& frame, Timestamp time,
                                 std::vector<MarkerSighting>& sightings) {
   const Se2 scan_base_from_frame_base =
@@ -220,7 +211,6 @@ void SensorQueue::add_sightings(const MarkerDetections& frame, Timestamp time,
     } else if (sighting->sigma_along_wall_m() > setup_.preprocessing.max_sigma_m) {
       skips_.add(Skip::kMarkerUncertain);
     } else {
-      sighting->focal = focal_measurement(detection);
       sightings.push_back(*sighting);
     }
   }

@@ -8,7 +8,6 @@
 #include "slam/core/input/stamped_queue.hpp"
 #include "slam/core/scan/observation.hpp"
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,10 +20,7 @@ struct SensorSetup {
   CameraView camera{};
   double marker_size_m{0.4};
   Preprocessing preprocessing{};
-  /// Ray of a pixel: its point at distance 1 in front of a camera without lens errors.
-  std::function<Eigen::Vector2d(const Eigen::Vector2d&)> ray_of_pixel{};
-  double corner_sigma{1e-4};  ///< sigma of a marker's corner, same unit as ray_of_pixel
-  bool blank_ids{false};      ///< control experiment: ignore all markers
+  bool blank_ids{false};  ///< control experiment: ignore all markers
 };
 
 /// A scan becomes an observation when odometry covers it and the camera frames up to its time have
@@ -66,7 +62,6 @@ class SensorQueue {
   Observation observation_at(Timestamp time, std::span<const Beam> beams);
   void add_motion(Timestamp time, Observation& observation) const;
   void add_frames(Timestamp time, Observation& observation);
-  std::optional<FocalMeasurement> focal_measurement(const MarkerDetection& detection) const;
   void add_sightings(const MarkerDetections& frame, Timestamp time,
                      std::vector<MarkerSighting>& sightings);
 

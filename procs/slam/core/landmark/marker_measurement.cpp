@@ -191,13 +191,6 @@ std::optional<WallLine> fit_wall(std::span<const AnnotatedBeam> beams,
   return wall;
 }
 
-std::optional<FocalMeasurement> usable(std::optional<FocalMeasurement> focal,
-                                       const MarkerMeasurementConfig& config) {
-  if (!focal || focal->sigma > config.perspective_max_sigma) return std::nullopt;
-  focal->sigma = std::hypot(focal->sigma, config.perspective_sigma);
-  return focal;
-}
-
 std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
                                                const MarkerSensors& sensors,
                                                const OdometryNoise& odometry,
@@ -221,8 +214,7 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
         camera_jacobian(sighting.base_from_marker.translation(), sensors.base_from_camera),
         Eigen::Vector3d::Zero(),
         sensors.base_from_camera,
-        Eigen::Matrix3d::Identity(),
-        usable(sighting.focal, config)};
+        Eigen::Matrix3d::Identity()};
     const auto wall =
         fit_wall(observation.beams, sighting.base_from_marker.translation(),
                  sighting.base_from_marker.theta(), sensors.range_sigma_m, config.reach_m);

@@ -18,8 +18,6 @@ class Fields;
 
 struct MarkerMeasurementConfig {
   double reach_m{1.5};
-  double perspective_sigma{0.02};
-  double perspective_max_sigma{0.003};
   double covariance_factor{1.0};
   double gate{kChi2Gate3};  // wide for its two degrees of freedom: 99.97 %
 
@@ -75,8 +73,7 @@ struct MarkerMeasurement {
   Se2 base_from_camera{};
   /// d(pose) / d(pose measured by the camera alone): I - K H of the update with the wall.
   Eigen::Matrix3d jacobian_view{Eigen::Matrix3d::Zero()};
-  std::optional<FocalMeasurement> focal{};  ///< from the marker's perspective
-  std::optional<WallInnovation> wall{};     ///< uncorrelated with the error of base_from_marker
+  std::optional<WallInnovation> wall{};  ///< uncorrelated with the error of base_from_marker
 
   /// d(x, y, yaw) / d(camera yaw [rad], focal length (relative), standoff [m]).
   Eigen::Matrix3d jacobian_calibration() const {

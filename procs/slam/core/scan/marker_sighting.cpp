@@ -52,8 +52,7 @@ std::optional<MarkerSighting> sight_marker(const MarkerDetection& detection, Tim
                         in_axes(scan_base_from_frame_base.rotation(), covariance),
                         size_m,
                         scan_base_from_frame_base.translation().norm(),
-                        std::abs(scan_base_from_frame_base.theta()),
-                        std::nullopt};
+                        std::abs(scan_base_from_frame_base.theta())};
 }
 
 }  // namespace waymark

@@ -4,7 +4,6 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/sensors/sensors.hpp"
-#include "slam/core/scan/square_perspective.hpp"
 
 #include <Eigen/Core>
 
@@ -26,7 +25,6 @@ struct MarkerSighting {
   /// Motion by odometry between camera frame and scan: its noise is not in the covariance.
   double driven_since_frame_m{0.0};
   double turned_since_frame_rad{0.0};
-  std::optional<FocalMeasurement> focal{};  ///< measurement of the camera's focal length
 
   /// Point on the marker's line, `right_m` to the right of its centre as it is printed.
   Eigen::Vector2d point_at(double right_m) const {

@@ -211,7 +211,6 @@ TEST(Placement, AdvisedMarkersMeetTheTargetAndAllOfThemAreNeeded) {
 TEST(Placement, AnUnobservedScaleIsNamedAsTheLimit) {
   PlacementInput input = drive(16.0);
   input.config.robot.camera.focal_sigma = 0.02;
-  input.config.slam.waymark.markers.perspective_max_sigma = 1e-9;  // perspective is not used
   const Placement placement = place_markers(input, 0.012);
   EXPECT_FALSE(placement.is_met());
   EXPECT_GT(placement.reachable_m(), 0.012);
@@ -252,7 +251,6 @@ TEST(Placement, MarkersThatHangHighLeaveThePictureEarlier) {
 TEST(Placement, TheReachableSigmaIsThatOfMarkersEverywhere) {
   PlacementInput input = drive(16.0);
   input.config.robot.camera.focal_sigma = 0.02;
-  input.config.slam.waymark.markers.perspective_max_sigma = 1e-9;
   const Placement placement = place_markers(input, 0.012);
   ASSERT_FALSE(placement.is_met());
   EXPECT_EQ(placement.reachable_m(), placement.advice.everywhere_m);

@@ -12,13 +12,23 @@
 namespace waymark {
 namespace {
 
+/// A measurement by a wall that depends on the focal length alone.
+WallInnovation focal_length_off_by(double error, double sigma) {
+  WallInnovation wall;
+  wall.residual << error, 0.0;
+  wall.jacobian_camera(0, SightingNoise::kFocal) = 1.0;
+  wall.jacobian_standoff.setZero();
+  wall.covariance = Eigen::Vector2d{sigma * sigma, 1.0}.asDiagonal();
+  return wall;
+}
+
 TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
   Calibration sigmas = Calibration::Constant(0.01);
   sigmas[kOdometryTerms + SightingNoise::kFocal] = 1e-4;
   CalibrationKnowledge knowledge{sigmas};
   constexpr double kTrue = 5e-3;
   constexpr double kMeasured = 2e-4;
-  knowledge.observe(FocalMeasurement{kTrue, kMeasured});
+  knowledge.observe(focal_length_off_by(kTrue, kMeasured));
   Calibration value = Calibration::Zero();
   Eigen::MatrixXd h;
   for (int i = 0; i < 3; ++i) {  // the prior's width follows the estimate
@@ -36,7 +46,7 @@ TEST(CalibrationKnowledge, MeasurementsOverruleADescriptionThatIsFarOff) {
 
 TEST(CalibrationKnowledge, AConsistentDescriptionKeepsItsWeight) {
   CalibrationKnowledge knowledge{Calibration::Constant(1e-3)};
-  knowledge.observe(FocalMeasurement{1.5e-3, 1e-3});
+  knowledge.observe(focal_length_off_by(1.5e-3, 1e-3));
   Calibration value = Calibration::Zero();
   for (int i = 0; i < 3; ++i) {
     Eigen::MatrixXd h = Eigen::MatrixXd::Zero(kCalibrationSize, kCalibrationSize);

@@ -2,7 +2,6 @@
 // What a sighting of a marker measures, with the walls that the LiDAR sees.
 #include "slam/core/landmark/marker_measurement.hpp"
 
-#include "slam/core/scan/square_perspective.hpp"
 #include "support/small_world.hpp"
 
 #include <gtest/gtest.h>
@@ -12,26 +11,6 @@ namespace {
 
 using test::corridor_beams;
 using test::diagonal;
-
-TEST(SquarePerspective, MeasuresTheFocalLength) {
-  for (const double error : {-0.01, 0.0, 0.02}) {
-    std::array<Eigen::Vector2d, 4> corners;
-    const double ahead[]{2.4, 2.0, 2.0, 2.4};
-    const double down[]{-0.2, -0.2, 0.2, 0.2};
-    for (std::size_t i = 0; i < 4; ++i)
-      corners[i] = (1.0 + error) * Eigen::Vector2d{-1.0 / ahead[i], down[i] / ahead[i]};
-    const auto focal = focal_error_of(corners, 1e-4);
-    ASSERT_TRUE(focal);
-    EXPECT_NEAR(focal->error, error, 1e-9);
-    EXPECT_GT(focal->sigma, 0.0);
-  }
-}
-
-TEST(SquarePerspective, AFrontalViewGivesNoMeasurement) {
-  EXPECT_FALSE(focal_error_of({Eigen::Vector2d{-0.1, -0.1}, Eigen::Vector2d{0.1, -0.1},
-                               Eigen::Vector2d{0.1, 0.1}, Eigen::Vector2d{-0.1, 0.1}},
-                              1e-4));
-}
 
 TEST(WallFit, ExtendsTheWallWithItsUncertainty) {
   Random random{6};
