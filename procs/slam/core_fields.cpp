@@ -221,8 +221,6 @@ void WaymarkConfig::describe(Fields& fields) {
                "whether systematic errors of odometry and camera are learnt; else they are 0");
   fields.field("marker_gate", marker_gate, kPositive,
                "chi^2 (3 degrees of freedom) of a marker's innovation that still associates it");
-  fields.field("marker_near_m", marker_near_m, kNotNegative,
-               "a known marker within this distance agrees with the pose even beyond the gate");
   fields.field("same_marker_within_m", same_marker_within_m, kPositive,
                "a known marker of the same id within this distance is associated even beyond the "
                "gate, with a smaller weight");

@@ -233,6 +233,8 @@ class WaymarkEstimator final : public Estimator {
   void learn_noise(const Prediction& expected, const MatchedScan& scan);
   void learn_noise(const MarkerInnovation& innovation, const MarkerMeasurement& measurement);
   std::vector<MarkerMeasurement> measured(const Observation& observation) const;
+
+  bool is_at_mapped_place(const MarkerInnovation& nearest, double within_if_vague_m) const;
   std::vector<PoseHint> hints(std::span<const MarkerMeasurement> measurements) const;
   void use_markers(std::span<const MarkerMeasurement> measurements);
   std::size_t new_landmark(const MarkerMeasurement& measurement, std::size_t first_new);

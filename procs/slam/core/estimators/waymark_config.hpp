@@ -24,8 +24,7 @@ struct WaymarkConfig {
   bool learn_noise{true};
   bool calibrate{true};
   double marker_gate{kChi2Gate3};
-  double marker_near_m{0.25};
-  double same_marker_within_m{0.5};
+  double same_marker_within_m{0.15};
   double lost_inlier_share{0.3};
   double min_inlier_share{0.5};
   OdometryNoise odometry{};

@@ -9,6 +9,7 @@ namespace waymark {
 namespace {
 
 constexpr double kSamePlace_m = 0.5;    // between two markers at the same place
+constexpr double kAgrees_m = 0.25;      // while the pose is vague
 constexpr double kContradicts_m = 0.5;  // distance of a sighting from all mapped markers of its id
 // That distance while odometry stands still: the larger of kStandsStill_m and so many sigmas.
 constexpr double kStandsStill_m = 0.03;
@@ -47,6 +48,17 @@ std::vector<MarkerMeasurement> WaymarkEstimator::measured(const Observation& obs
                          graph_.odometry_noise(), config_.markers);
 }
 
+/// Whether the nearest marker of the sighted id is where it is mapped: within the gate or, beyond
+/// it, near enough. Where odometry says little, a larger distance is more likely the robot's than
+/// the marker's.
+bool WaymarkEstimator::is_at_mapped_place(const MarkerInnovation& nearest,
+                                          double within_if_vague_m) const {
+  const bool is_pose_vague = verdict_ == RelocalisationMonitor::Verdict::kSlipped ||
+                             unmeasured_motion_.is_standing() || unmeasured_motion_.is_unreliable();
+  return nearest.chi2 < config_.marker_gate ||
+         nearest.distance_m() < (is_pose_vague ? within_if_vague_m : config_.same_marker_within_m);
+}
+
 std::vector<PoseHint> WaymarkEstimator::hints(
     std::span<const MarkerMeasurement> measurements) const {
   std::vector<PoseHint> hints;
@@ -64,8 +76,7 @@ std::vector<PoseHint> WaymarkEstimator::hints(
       hint.kind = PoseHint::Kind::kNew;
       hint.is_in_known_place =
           book_.has_one_near(graph_.state(), there.translation(), kSamePlace_m);
-    } else if (nearest->chi2 < config_.marker_gate ||
-               nearest->distance_m() < config_.marker_near_m) {
+    } else if (is_at_mapped_place(*nearest, kAgrees_m)) {
       hint.kind = PoseHint::Kind::kAgrees;
       hint.is_mapped_since = may_be_carried_since_ &&
                              book_.entries()[nearest->landmark].first_seen > *may_be_carried_since_;
@@ -89,8 +100,7 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
   std::vector<std::size_t> returning;
   for (const MarkerMeasurement& measurement : measurements) {
     const auto nearest = book_.nearest(graph_, newest(), measurement);
-    const bool is_it = nearest && (nearest->chi2 < config_.marker_gate ||
-                                   nearest->distance_m() < config_.same_marker_within_m);
+    const bool is_it = nearest && is_at_mapped_place(*nearest, kContradicts_m);
     if (!is_it && (book_.is_full() || book_.is_misread(graph_.state(), newest(), measurement)))
       continue;
     if (measurement.wall) graph_.calibration_knowledge().observe(*measurement.wall);

@@ -14,9 +14,12 @@ constexpr double kSameHeading_rad = 0.35;
 constexpr int kRealSightings = 3;    // fewer of one marker may be a misreading
 constexpr double kMisread_m = 0.5;   // driven without another sighting: the first was a misreading
 constexpr double kPatience_m = 5.0;  // that limit after kRealSightings or more
-constexpr int kMissesNeeded = 3;     // of one marker: a single frame may be blurred
+constexpr int kMissesNeeded = 2;     // of one marker: a single frame may be blurred
 constexpr int kMissedInDoubt = 2;    // markers: both may have been moved
 constexpr int kMissedIfCarried = 3;
+constexpr double kLargestSlip_m = 0.5;
+constexpr double kLongestSpin_m = 2.0;
+constexpr double kSpinAside_m = 0.3;
 constexpr double kClearlyNearer = 2.0;    // ratio of distances of a marker's pose from two others
 constexpr double kMetresPerRadian = 1.0;  // weight of the heading in these distances
 constexpr double kReturn_m = 30.0;        // driven until a relocalisation is final
@@ -29,6 +32,13 @@ bool is_same_pose(const Se2& a, const Se2& b) {
 double apart_m(const Se2& a, const Se2& b) {
   return (a.translation() - b.translation()).norm() +
          kMetresPerRadian * std::abs(angle_difference(a.theta(), b.theta()));
+}
+
+/// Whether one pose is before or behind the other one, and no farther than wheels may spin.
+bool is_along_path(const Se2& a, const Se2& b) {
+  const Se2 apart = a.inverse() * b;
+  return std::abs(apart.x()) < kLongestSpin_m && std::abs(apart.y()) < kSpinAside_m &&
+         std::abs(apart.theta()) < kSameHeading_rad;
 }
 
 bool has_enough(const std::map<int, int>& sightings, std::size_t markers) {
@@ -61,11 +71,16 @@ RelocalisationMonitor::Verdict RelocalisationMonitor::update(const Se2& map_from
     misses_.clear();
   }
   if (is_confirmed) drop_alternative();
-  if (!alternative_) return is_doubtful_ ? Verdict::kSuspicious : Verdict::kConsistent;
+  if (!alternative_ || is_latent_)
+    return is_doubtful_ ? Verdict::kSuspicious : Verdict::kConsistent;
   if (!has_enough(sightings_, kMarkersNeeded)) return Verdict::kSuspicious;
+  if (is_certain_ && apart_m(*alternative_, map_from_base) < kLargestSlip_m) {
+    drop_alternative();
+    return Verdict::kSlipped;
+  }
   const Walls walls = view.compare_walls(*alternative_, map_from_base);
-  const bool is_carried =
-      !is_certain_ || walls == Walls::kContradictSecond || num_missed() >= kMissedIfCarried;
+  const bool is_carried = !is_certain_ || is_along_path(map_from_base, *alternative_) ||
+                          walls == Walls::kContradictSecond || num_missed() >= kMissedIfCarried;
   const bool are_others =
       walls == Walls::kContradictFirst || (!is_carried && num_missed() < kMissedInDoubt);
   if (are_others && !is_doubtful_) {
@@ -133,8 +148,8 @@ void RelocalisationMonitor::propagate(const Motion& motion) {
   if (alternative_) {
     alternative_ = *alternative_ * motion.start_from_end;
     unsupported_m_ += motion.distance_m;
-    if (unsupported_m_ > (num_sightings() < kRealSightings ? kMisread_m : kPatience_m))
-      drop_alternative();
+    is_latent_ |= unsupported_m_ > (num_sightings() < kRealSightings ? kMisread_m : kPatience_m);
+    if (is_latent_ && !has_enough(sightings_, 1)) drop_alternative();
   }
   if (abandoned_) {
     abandoned_ = *abandoned_ * motion.start_from_end;
@@ -157,6 +172,7 @@ void RelocalisationMonitor::support_alternative(const PoseHint& hint) {
   if (!alternative_ || !is_same_pose(*hint.map_from_base, *alternative_)) sightings_.clear();
   ++sightings_[hint.id];
   unsupported_m_ = 0.0;
+  is_latent_ = false;
   alternative_ = hint.map_from_base;
 }
 
@@ -171,6 +187,7 @@ void RelocalisationMonitor::drop_alternative() {
   alternative_.reset();
   sightings_.clear();
   unsupported_m_ = 0.0;
+  is_latent_ = false;
 }
 
 }  // namespace waymark

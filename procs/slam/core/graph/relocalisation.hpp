@@ -33,23 +33,30 @@ struct PoseHint {
   bool is_mapped_since{false};
 };
 
-/// Decides between two hypotheses. (1) The estimated pose is right: markers sighted away from their
-/// mapped places were moved, are misread or have duplicates. (2) The robot was carried: the mapped
-/// places of such markers give its pose.
+/// Decides between three hypotheses about markers that are sighted away from their mapped places.
+/// (1) The estimated pose is right: they were moved, are misread or have duplicates. (2) The wheels
+/// slipped. (3) The robot was carried. In (2) and (3) their mapped places give its pose.
 ///
-/// Two markers, each sighted twice, that agree on a pose relocate the robot. A marker sighted where
-/// it is mapped, or with an unknown id, supports (1). If two unknown ids then appear where the map
-/// has other markers, the relocalisation is reverted: the place only looked alike.
+/// Two markers, each sighted twice, that agree on another pose decide: half a metre away it is a
+/// slip; farther away the robot is relocated. A marker sighted where it is mapped, or with an
+/// unknown id, supports (1). If two unknown ids then appear where the map has other markers, the
+/// relocalisation is reverted: the place only looked alike.
 ///
 /// If nobody can have carried the robot, since it drove all the time after a marker had confirmed
-/// its pose, markers that are missed at that pose decide, or walls. With fewer than two missed
-/// markers there are more markers of these ids, in a part of the building that is not mapped. With
-/// two, these may have been moved together, or the wheels slipped: the new pose is in doubt until
-/// a third is missed or the walls decide for it, or a marker or the walls for the pose before.
-/// After that the two markers are taken for moved ones.
+/// its pose, and wheels that spun do not explain the other pose, markers that are missed at the
+/// estimated pose decide, or walls. With fewer than two missed markers there are more markers of
+/// these ids, in a part of the building that is not mapped. With two, these may have been moved
+/// together: the new pose is in doubt until a third is missed or the walls decide for it, or a
+/// marker or the walls for the pose before. After that the two markers are taken for moved ones.
 class RelocalisationMonitor {
  public:
-  enum class Verdict { kConsistent, kSuspicious, kRelocated, kReverted };
+  enum class Verdict {
+    kConsistent,
+    kSuspicious,
+    kSlipped,  ///< the wheels have slipped by less than half a metre: the markers have not moved
+    kRelocated,
+    kReverted,
+  };
 
   /// How the walls fit at a pose, compared with another pose.
   enum class Walls { kUndecided, kContradictFirst, kContradictSecond };
@@ -70,7 +77,10 @@ class RelocalisationMonitor {
   const Se2& map_from_base() const { return relocated_; }
 
   /// While the pose is suspicious or in doubt: the other hypothesis.
-  const std::optional<Se2>& alternative() const { return is_doubtful_ ? abandoned_ : alternative_; }
+  std::optional<Se2> alternative() const {
+    if (is_doubtful_) return abandoned_;
+    return is_latent_ ? std::nullopt : alternative_;
+  }
 
   /// Whether a marker has confirmed the pose, and since then nobody can have carried the robot.
   bool is_certain() const { return is_certain_; }
@@ -95,6 +105,7 @@ class RelocalisationMonitor {
   std::optional<Se2> alternative_{};
   std::map<int, int> sightings_{};  ///< number of sightings that support the alternative, by id
   double unsupported_m_{0.0};       ///< distance driven since the last such sighting
+  bool is_latent_{false};           ///< too long since: it counts once another marker supports it
 
   std::optional<Se2> abandoned_{};  ///< pose before the relocalisation, propagated by odometry
   std::set<int> unexpected_ids_{};

@@ -112,7 +112,6 @@ TEST(RelocalisationMonitor,
   const PoseHint third{PoseHint::Kind::kAgrees, 5, robot.map_from_base};
   robot.missed = {5};
   robot.sees({third});
-  robot.sees({third});
   EXPECT_TRUE(robot.monitor.is_doubtful());
   EXPECT_EQ(robot.sees({third}), Verdict::kConsistent);
   EXPECT_FALSE(robot.monitor.is_doubtful());
@@ -126,6 +125,40 @@ TEST(RelocalisationMonitor, AnotherSetOfTheSameIdsDoesNotRelocateARobotThatDrove
     for (int i = 0; i < 3; ++i)
       EXPECT_NE(robot.sees({elsewhere(id)}, kOnwards), Verdict::kRelocated);
   EXPECT_TRUE(robot.monitor.is_certain());
+}
+
+PoseHint displaced(int id, double along_m) {
+  return {PoseHint::Kind::kElsewhere, id, Se2{kConsecutive.x() + along_m, 0.02, 0.01}};
+}
+
+TEST(RelocalisationMonitor, TwoMarkersThatAreNearlyWhereTheyAreMappedShowASlip) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  EXPECT_EQ(robot.sees({displaced(3, 0.2), displaced(4, 0.2)}), Verdict::kSuspicious);
+  EXPECT_EQ(robot.sees({displaced(3, 0.2), displaced(4, 0.2)}), Verdict::kSlipped);
+  EXPECT_EQ(robot.sees({}), Verdict::kConsistent);
+}
+
+TEST(RelocalisationMonitor, WheelsThatSpanRelocateTheRobotAlongItsPath) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  robot.sees({displaced(3, -0.8), displaced(4, -0.8)});
+  EXPECT_EQ(robot.sees({displaced(3, -0.8), displaced(4, -0.8)}), Verdict::kRelocated);
+  EXPECT_FALSE(robot.monitor.is_doubtful());
+}
+
+TEST(RelocalisationMonitor, MarkersFarApartShowTheSameSpin) {
+  MonitoredRobot robot;
+  robot.sees({as_expected(2)});
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(robot.sees({displaced(3, -0.8)}), Verdict::kSuspicious);
+  for (int i = 0; i < 8; ++i)
+    robot.sees({}, kOnwards);
+  EXPECT_EQ(robot.sees({}), Verdict::kConsistent);
+  EXPECT_FALSE(robot.monitor.alternative());
+  const PoseHint next = displaced(4, 8.0 - 0.8);
+  EXPECT_EQ(robot.sees({next}), Verdict::kSuspicious);
+  EXPECT_EQ(robot.sees({next}), Verdict::kRelocated);
 }
 
 TEST(RelocalisationMonitor, MarkersMissedOnTheWayShowThatARobotWasCarriedAlthoughItsWheelsTurned) {
