@@ -219,7 +219,7 @@ class WaymarkEstimator final : public Estimator {
   void slide_window();
   void add_first_keyframe();
   void add_keyframe_at_commanded_pose(const StartPose& pose);
-  void forget_recent_motion();
+  void note_pose_given();
   void use_survey();
   void note_reason(EstimateReason reason);
   void add_map_factor(std::size_t keyframe, const ScanMatch& match);

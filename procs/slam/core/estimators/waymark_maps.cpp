@@ -108,10 +108,8 @@ void WaymarkEstimator::use_survey() {
     drift_.move_to_frame(*survey_from_map);
     unmatched_drift_.move_to_frame(*survey_from_map);
     map_.redraw_all(poses_of(graph_));
-    relocalisation_ = {};
-    note_pose_known();
     loop_finder_.reset();
-    forget_recent_motion();
+    note_pose_given();
   }
   if (!survey_.has_map_frame()) return;
   if (survey_.apply(graph_) || survey_from_map) graph_.optimise_all(kSurveySteps);

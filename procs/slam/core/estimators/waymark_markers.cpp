@@ -9,8 +9,10 @@ namespace waymark {
 namespace {
 
 constexpr double kSamePlace_m = 0.5;    // between two markers at the same place
-constexpr double kAgrees_m = 0.25;      // while the pose is vague
 constexpr double kContradicts_m = 0.5;  // distance of a sighting from all mapped markers of its id
+// While the pose is vague, a marker of its id nearer than kContradicts_m is the one that was
+// sighted, and one nearer than this confirms the pose.
+constexpr double kAgrees_m = 0.25;
 // That distance while odometry stands still: the larger of kStandsStill_m and so many sigmas.
 constexpr double kStandsStill_m = 0.03;
 constexpr double kStandsStillSigmas = 4.0;

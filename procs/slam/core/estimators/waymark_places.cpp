@@ -53,16 +53,16 @@ void WaymarkEstimator::add_keyframe_at_commanded_pose(const StartPose& pose) {
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
   place_trust_ = !setup_.loaded_map || pose.is_certain ? PlaceTrust::kKnown : PlaceTrust::kAssumed;
   loaded_map_votes_ = {};
-  relocalisation_ = {};
-  note_pose_known();
-  forget_recent_motion();
+  note_pose_given();
   begin_submaps_anew();
 }
 
 /// To be called after a command or a new map frame has changed the pose. (After a relocalisation
 /// the standstill is kept instead, since odometry may have been stuck.)
-void WaymarkEstimator::forget_recent_motion() {
+void WaymarkEstimator::note_pose_given() {
   is_pose_reset_ = true;
+  relocalisation_ = {};
+  note_pose_known();
   standstill_.reset();
   keyframes_standing_ = 0;
   unmeasured_motion_.note_observed();
