@@ -278,7 +278,7 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
 void WaymarkEstimator::map_keyframe(const Observation& observation, const Points& points) {
   const Se2& map_from_base = graph_.state().keyframes.back();
   submaps_.rebuild_deformed(graph_.state().keyframes);
-  submaps_.add_keyframe(points, graph_.state().keyframes);
+  submaps_.add_keyframe(points, graph_.state().keyframes, range_noise_.variance_m2());
   map_.add(observation, map_from_base);
   map_.redraw_some(poses_of(graph_));
 }

@@ -10,6 +10,23 @@ namespace {
 constexpr int kMinPoints = 4;         // of a cell, to have a distribution
 constexpr double kPriorPoints = 6.0;  // weight of the prior on a cell's variance, in points
 constexpr double kLineRatio = 0.1;    // largest ratio of variances, across to along, of a line
+// Variance across a wall, relative to that of its points and in addition, of a thick cell.
+constexpr double kThickRatio = 3.0;
+constexpr double kThick_m = 0.005;
+
+std::int32_t column_of(NdtMap::Key key) {
+  return static_cast<std::int32_t>(key >> 32);
+}
+
+std::int32_t row_of(NdtMap::Key key) {
+  return static_cast<std::int32_t>(key);
+}
+
+/// Rounds to the nearest integer; `divisor` is odd and positive.
+int divided(int value, int divisor) {
+  const int shifted = value + divisor / 2;
+  return shifted >= 0 ? shifted / divisor : -((divisor - 1 - shifted) / divisor);
+}
 
 }  // namespace
 
@@ -18,13 +35,23 @@ NdtMap::Key NdtMap::key(int column, int row) {
          static_cast<std::uint32_t>(row);
 }
 
+NdtMap::Key NdtMap::cell_of_part(Key part) {
+  return key(divided(column_of(part), kParts), divided(row_of(part), kParts));
+}
+
 void NdtMap::add(const Eigen::Vector2d& point, int keyframe, double weight) {
-  const auto column = static_cast<int>(std::floor(point.x() / spacing_m_));
-  const auto row = static_cast<int>(std::floor(point.y() / spacing_m_));
+  add(point, keyframe, weight, spacing_m_, cells_);
+  if (is_divided_) add(point, keyframe, weight, part_spacing_m(), parts_);
+}
+
+void NdtMap::add(const Eigen::Vector2d& point, int keyframe, double weight, double spacing_m,
+                 CellMap& cells) {
+  const auto column = static_cast<int>(std::floor(point.x() / spacing_m));
+  const auto row = static_cast<int>(std::floor(point.y() / spacing_m));
   for (int i = column; i <= column + 1; ++i) {
     for (int k = row; k <= row + 1; ++k) {
-      Cell& cell = cells_[key(i, k)];
-      const Eigen::Vector2d offset = point - spacing_m_ * Eigen::Vector2d{i, k};
+      Cell& cell = cells[key(i, k)];
+      const Eigen::Vector2d offset = point - spacing_m * Eigen::Vector2d{i, k};
       if (cell.count == 0.0) cell.distribution.first_keyframe = keyframe;
       cell.distribution.last_keyframe = keyframe;
       cell.count += weight;
@@ -41,8 +68,8 @@ std::vector<NdtCellSums> NdtMap::sums() const {
   std::vector<NdtCellSums> all;
   all.reserve(cells_.size());
   for (const auto& [where, cell] : cells_) {
-    all.push_back({static_cast<std::int32_t>(where >> 32), static_cast<std::int32_t>(where),
-                   cell.count, cell.sum, Eigen::Vector3d{cell.xx, cell.xy, cell.yy}});
+    all.push_back({column_of(where), row_of(where), cell.count, cell.sum,
+                   Eigen::Vector3d{cell.xx, cell.xy, cell.yy}});
   }
   std::sort(all.begin(), all.end(), [](const NdtCellSums& a, const NdtCellSums& b) {
     return std::pair{a.column, a.row} < std::pair{b.column, b.row};
@@ -60,7 +87,17 @@ void NdtMap::add(const NdtCellSums& sums) {
   cell.fitted_with_m2 = kStale;
 }
 
-void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_variance_m2) const {
+NdtMap::Key NdtMap::key_at(const Eigen::Vector2d& point, double spacing_m) {
+  return key(static_cast<int>(std::floor(point.x() / spacing_m + 0.5)),
+             static_cast<int>(std::floor(point.y() / spacing_m + 0.5)));
+}
+
+const NdtCell* NdtMap::fitted(Key key, double point_variance_m2, double spacing_m, CellMap& cells) {
+  const auto found = cells.find(key);
+  if (found == cells.end() || found->second.count < kMinPoints) return nullptr;
+  Cell& cell = found->second;
+  NdtCell& fitted = cell.distribution;
+  if (cell.fitted_with_m2 == point_variance_m2) return &fitted;
   const Eigen::Vector2d mean = cell.sum / cell.count;
   const double xx = cell.xx / cell.count - mean.x() * mean.x();
   const double xy = cell.xy / cell.count - mean.x() * mean.y();
@@ -71,8 +108,7 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   // Two parameters of the line were fitted to the points.
   const double across_m2 =
       std::max(0.0, half_trace - radius) * cell.count / std::max(1.0, cell.count - 2.0);
-  NdtCell& fitted = cell.distribution;
-  fitted.mean = centre + mean;
+  fitted.mean = spacing_m * Eigen::Vector2d{column_of(key), row_of(key)} + mean;
   fitted.normal = {-std::sin(along_rad), std::cos(along_rad)};
   fitted.across_m2 =
       (cell.count * across_m2 + kPriorPoints * point_variance_m2) / (cell.count + kPriorPoints);
@@ -80,25 +116,28 @@ void NdtMap::refresh(Cell& cell, const Eigen::Vector2d& centre, double point_var
   // Without the range noise, so that a noisy LiDAR still sees a wall as a line.
   fitted.is_line =
       fitted.across_m2 - point_variance_m2 < kLineRatio * (fitted.along_m2 - point_variance_m2);
+  fitted.is_thick = fitted.across_m2 > kThickRatio * point_variance_m2 + kThick_m * kThick_m;
   fitted.count = static_cast<int>(cell.count);
   cell.fitted_with_m2 = point_variance_m2;
-}
-
-NdtMap::Key NdtMap::key_at(const Eigen::Vector2d& point) const {
-  return key(static_cast<int>(std::floor(point.x() / spacing_m_ + 0.5)),
-             static_cast<int>(std::floor(point.y() / spacing_m_ + 0.5)));
+  return &fitted;
 }
 
 const NdtCell* NdtMap::at(Key key, double point_variance_m2) const {
-  const auto found = cells_.find(key);
-  if (found == cells_.end() || found->second.count < kMinPoints) return nullptr;
-  Cell& cell = found->second;
-  if (cell.fitted_with_m2 != point_variance_m2) {
-    const auto column = static_cast<std::int32_t>(key >> 32);
-    const auto row = static_cast<std::int32_t>(key);
-    refresh(cell, spacing_m_ * Eigen::Vector2d{column, row}, point_variance_m2);
-  }
-  return &cell.distribution;
+  return fitted(key, point_variance_m2, spacing_m_, cells_);
+}
+
+const NdtCell* NdtMap::at_part(Key part, double point_variance_m2) const {
+  const NdtCell* whole = at(cell_of_part(part), point_variance_m2);
+  if (whole == nullptr || !whole->is_thick) return whole;
+  const NdtCell* fine = fitted(part, point_variance_m2, part_spacing_m(), parts_);
+  return fine != nullptr ? fine : whole;
+}
+
+void NdtMap::drop_unused_parts(double point_variance_m2) {
+  std::erase_if(parts_, [&](const auto& part) {
+    const NdtCell* whole = at(cell_of_part(part.first), point_variance_m2);
+    return whole == nullptr || !whole->is_thick;
+  });
 }
 
 }  // namespace waymark

@@ -20,9 +20,10 @@ constexpr double kBlurStep = 1.0 / 3.0;  // factor from one stage to the next fi
 constexpr double kFinestBlur_m = 0.01;   // a smaller blur is left out
 constexpr int kStepsPerStage = 3;
 constexpr int kFinalSteps = 6;
-constexpr double kConverged = 2e-5;   // metres or radians
-constexpr double kMaxBlur_m = 0.25;   // no more than half of a cell
-constexpr double kReachOfCell = 0.5;  // of a level's spacing; a more certain guess skips the level
+constexpr double kConverged = 2e-5;    // metres or radians
+constexpr double kMaxBlur_m = 0.25;    // no more than half of a cell
+constexpr double kPartsBlur_m = 0.06;  // largest blur at which parts of cells are used
+constexpr double kReachOfCell = 0.5;   // of a level's spacing; a more certain guess skips the level
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
 // Largest number of beams in one cell that count as independent: the error of the cell's mean is
@@ -97,8 +98,14 @@ double known_share(const NdtCell& cell) {
 /// A scan in a map, with the cells of its points cached: most stay the same from step to step.
 class PointsInMap {
  public:
-  PointsInMap(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2)
-      : points_{points}, map_{map}, point_variance_m2_{point_variance_m2}, places_(points.size()) {}
+  /// @param uses_parts  of thick cells, if the map is divided.
+  PointsInMap(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
+              bool uses_parts)
+      : points_{points},
+        map_{map},
+        point_variance_m2_{point_variance_m2},
+        uses_parts_{uses_parts && map.is_divided()},
+        places_(points.size()) {}
 
   Quadratic quadratic_about(const Se2& pose, double blur_m2, const ScanMatchConfig& config) {
     Quadratic sum;
@@ -127,18 +134,20 @@ class PointsInMap {
   struct Place {
     NdtMap::Key key{0};
     const NdtCell* cell{nullptr};
-    int* beams{nullptr};  ///< number of the scan's beams in that cell
+    int* beams{nullptr};  ///< number of the scan's beams in that cell, in all of its parts
     bool is_known{false};
   };
 
   void find_place(std::size_t point, const Eigen::Vector2d& there) {
     Place& place = places_[point];
-    const NdtMap::Key key = map_.key_at(there);
+    const NdtMap::Key key = uses_parts_ ? map_.part_at(there) : map_.key_at(there);
     if (place.is_known && place.key == key) return;
     if (place.cell != nullptr) --*place.beams;
-    place = {key, map_.at(key, point_variance_m2_), nullptr, true};
+    const NdtCell* cell =
+        uses_parts_ ? map_.at_part(key, point_variance_m2_) : map_.at(key, point_variance_m2_);
+    place = {key, cell, nullptr, true};
     if (place.cell == nullptr) return;
-    place.beams = &beams_on_[place.cell];
+    place.beams = &beams_on_[uses_parts_ ? NdtMap::cell_of_part(key) : key];
     ++*place.beams;
   }
 
@@ -160,8 +169,9 @@ class PointsInMap {
   std::span<const Eigen::Vector2d> points_;
   const NdtMap& map_;
   double point_variance_m2_;
+  bool uses_parts_;
   std::vector<Place> places_;
-  std::unordered_map<const NdtCell*, int> beams_on_{};  ///< never iterated over
+  std::unordered_map<NdtMap::Key, int> beams_on_{};  ///< by cell; never iterated over
 };
 
 void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, double point_variance_m2,
@@ -305,15 +315,18 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
   match.map_from_base = guess;
   for (auto level = coarse.rbegin(); level != coarse.rend(); ++level) {
     if (open_m < kReachOfCell * level->spacing_m()) continue;
-    PointsInMap points{points_in_base, *level, point_variance_m2};
+    PointsInMap points{points_in_base, *level, point_variance_m2, false};
     match.map_from_base =
         descent.from(match.map_from_base, points, std::min(level->spacing_m(), open_m),
                      kStepsPerStage, kConvergedCoarse);
   }
-  PointsInMap points{points_in_base, map, point_variance_m2};
-  for (double blur_m = std::min(kMaxBlur_m, open_m); blur_m >= kFinestBlur_m; blur_m *= kBlurStep)
+  PointsInMap in_cells{points_in_base, map, point_variance_m2, false};
+  PointsInMap points{points_in_base, map, point_variance_m2, true};
+  for (double blur_m = std::min(kMaxBlur_m, open_m); blur_m >= kFinestBlur_m; blur_m *= kBlurStep) {
     match.map_from_base =
-        descent.from(match.map_from_base, points, blur_m, kStepsPerStage, kConverged);
+        descent.from(match.map_from_base, blur_m > kPartsBlur_m ? in_cells : points, blur_m,
+                     kStepsPerStage, kConverged);
+  }
   match.map_from_base = descent.from(match.map_from_base, points, 0.0, kFinalSteps, kConverged);
   // One step towards the optimum almost without the guess, in observed directions.
   const Quadratic model = points.quadratic_about(match.map_from_base, 0.0, config);

@@ -63,7 +63,8 @@ Submap Submap::rebuilt(const PoseSequence& keyframes) const {
   return submap;
 }
 
-void Submap::finish() {
+void Submap::finish(double point_variance_m2) {
+  ndt_.drop_unused_parts(point_variance_m2);
   occupied_.clear();
   scans_ = {};
 }

@@ -19,7 +19,7 @@ class Submap {
   Submap(double cell_spacing_m, std::size_t first_keyframe)
       : spacing_m_{cell_spacing_m},
         first_keyframe_{first_keyframe},
-        ndt_{cell_spacing_m},
+        ndt_{cell_spacing_m, NdtMap::Cells::kDivided},
         coarse_{cell_spacing_m} {}
 
   /// Inserts the next keyframe; there must be no gap.
@@ -57,7 +57,8 @@ class Submap {
   const Points& points() const { return points_; }
 
   /// To be called after the last insertion: frees memory.
-  void finish();
+  /// @param point_variance_m2  as in later uses of ndt().
+  void finish(double point_variance_m2);
 
   /// Largest distance of a keyframe from the first one.
   double radius_m() const { return radius_m_; }

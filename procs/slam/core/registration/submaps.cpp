@@ -11,12 +11,13 @@ const Submap* Submaps::find(std::size_t first_keyframe) const {
   return found == finished_.end() ? nullptr : &*found;
 }
 
-void Submaps::add_keyframe(const Points& points_in_base, const PoseSequence& keyframes) {
+void Submaps::add_keyframe(const Points& points_in_base, const PoseSequence& keyframes,
+                           double point_variance_m2) {
   if (growing_.empty() || growing_.back().num_keyframes() >= half_keyframes_ ||
       growing_.back().path_length_m() >= half_m_) {
     if (growing_.size() > 1) {
       finished_.push_back(std::move(growing_.front()));
-      finished_.back().finish();
+      finished_.back().finish(point_variance_m2);
       growing_.pop_front();
     }
     growing_.emplace_back(cell_spacing_m_, keyframes.size() - 1);

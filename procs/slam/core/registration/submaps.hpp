@@ -32,7 +32,9 @@ class Submaps {
   const Submap* find(std::size_t first_keyframe) const;
 
   /// Adds the scan of the newest keyframe.
-  void add_keyframe(const Points& points_in_base, const PoseSequence& keyframes);
+  /// @param point_variance_m2  of ranges, as learnt so far.
+  void add_keyframe(const Points& points_in_base, const PoseSequence& keyframes,
+                    double point_variance_m2);
 
   /// Adds a scan between keyframes, attributed to the newest keyframe.
   void add_between(const Points& points_in_base, const Se2& map_from_base,

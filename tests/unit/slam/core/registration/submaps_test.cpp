@@ -16,7 +16,7 @@ struct Drive {
   void go(int num_keyframes) {
     for (int i = 0; i < num_keyframes; ++i) {
       keyframes.push_back({0.1 * static_cast<double>(keyframes.size()), 0.0, 0.0});
-      submaps.add_keyframe({{1.0, 0.0}}, keyframes);
+      submaps.add_keyframe({{1.0, 0.0}}, keyframes, 1e-4);
     }
   }
 };
