@@ -96,8 +96,8 @@ const NdtCell* NdtMap::fitted(Key key, double point_variance_m2, double spacing_
   const auto found = cells.find(key);
   if (found == cells.end() || found->second.count < kMinPoints) return nullptr;
   Cell& cell = found->second;
-  NdtCell& fitted = cell.distribution;
-  if (cell.fitted_with_m2 == point_variance_m2) return &fitted;
+  NdtCell& fit = cell.distribution;
+  if (cell.fitted_with_m2 == point_variance_m2) return &fit;
   const Eigen::Vector2d mean = cell.sum / cell.count;
   const double xx = cell.xx / cell.count - mean.x() * mean.x();
   const double xy = cell.xy / cell.count - mean.x() * mean.y();
@@ -108,18 +108,17 @@ const NdtCell* NdtMap::fitted(Key key, double point_variance_m2, double spacing_
   // Two parameters of the line were fitted to the points.
   const double across_m2 =
       std::max(0.0, half_trace - radius) * cell.count / std::max(1.0, cell.count - 2.0);
-  fitted.mean = spacing_m * Eigen::Vector2d{column_of(key), row_of(key)} + mean;
-  fitted.normal = {-std::sin(along_rad), std::cos(along_rad)};
-  fitted.across_m2 =
+  fit.mean = spacing_m * Eigen::Vector2d{column_of(key), row_of(key)} + mean;
+  fit.normal = {-std::sin(along_rad), std::cos(along_rad)};
+  fit.across_m2 =
       (cell.count * across_m2 + kPriorPoints * point_variance_m2) / (cell.count + kPriorPoints);
-  fitted.along_m2 = half_trace + radius;
+  fit.along_m2 = half_trace + radius;
   // Without the range noise, so that a noisy LiDAR still sees a wall as a line.
-  fitted.is_line =
-      fitted.across_m2 - point_variance_m2 < kLineRatio * (fitted.along_m2 - point_variance_m2);
-  fitted.is_thick = fitted.across_m2 > kThickRatio * point_variance_m2 + kThick_m * kThick_m;
-  fitted.count = static_cast<int>(cell.count);
+  fit.is_line = fit.across_m2 - point_variance_m2 < kLineRatio * (fit.along_m2 - point_variance_m2);
+  fit.is_thick = fit.across_m2 > kThickRatio * point_variance_m2 + kThick_m * kThick_m;
+  fit.count = static_cast<int>(cell.count);
   cell.fitted_with_m2 = point_variance_m2;
-  return &fitted;
+  return &fit;
 }
 
 const NdtCell* NdtMap::at(Key key, double point_variance_m2) const {
