@@ -10,7 +10,8 @@ namespace {
 constexpr int kMinPoints = 4;         // of a cell, to have a distribution
 constexpr double kPriorPoints = 6.0;  // weight of the prior on a cell's variance, in points
 constexpr double kLineRatio = 0.1;    // largest ratio of variances, across to along, of a line
-// Variance across a wall, relative to that of its points and in addition, of a thick cell.
+// A cell is thick if its variance across the wall exceeds so many times that of the points, plus
+// the square of kThick_m. A flat wall's is about one times that of the points.
 constexpr double kThickRatio = 3.0;
 constexpr double kThick_m = 0.005;
 
@@ -22,10 +23,14 @@ std::int32_t row_of(NdtMap::Key key) {
   return static_cast<std::int32_t>(key);
 }
 
-/// Rounds to the nearest integer; `divisor` is odd and positive.
-int divided(int value, int divisor) {
+/// Rounded to the nearest integer; `divisor` is odd and positive.
+int rounded_quotient(int value, int divisor) {
   const int shifted = value + divisor / 2;
   return shifted >= 0 ? shifted / divisor : -((divisor - 1 - shifted) / divisor);
+}
+
+bool is_replaced_by_parts(const NdtCell* whole) {
+  return whole != nullptr && whole->is_thick;
 }
 
 }  // namespace
@@ -36,7 +41,7 @@ NdtMap::Key NdtMap::key(int column, int row) {
 }
 
 NdtMap::Key NdtMap::cell_of_part(Key part) {
-  return key(divided(column_of(part), kParts), divided(row_of(part), kParts));
+  return key(rounded_quotient(column_of(part), kParts), rounded_quotient(row_of(part), kParts));
 }
 
 void NdtMap::add(const Eigen::Vector2d& point, int keyframe, double weight) {
@@ -127,15 +132,14 @@ const NdtCell* NdtMap::at(Key key, double point_variance_m2) const {
 
 const NdtCell* NdtMap::at_part(Key part, double point_variance_m2) const {
   const NdtCell* whole = at(cell_of_part(part), point_variance_m2);
-  if (whole == nullptr || !whole->is_thick) return whole;
+  if (!is_replaced_by_parts(whole)) return whole;
   const NdtCell* fine = fitted(part, point_variance_m2, part_spacing_m(), parts_);
   return fine != nullptr ? fine : whole;
 }
 
 void NdtMap::drop_unused_parts(double point_variance_m2) {
   std::erase_if(parts_, [&](const auto& part) {
-    const NdtCell* whole = at(cell_of_part(part.first), point_variance_m2);
-    return whole == nullptr || !whole->is_thick;
+    return !is_replaced_by_parts(at(cell_of_part(part.first), point_variance_m2));
   });
 }
 

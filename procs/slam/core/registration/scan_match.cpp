@@ -22,7 +22,7 @@ constexpr int kStepsPerStage = 3;
 constexpr int kFinalSteps = 6;
 constexpr double kConverged = 2e-5;    // metres or radians
 constexpr double kMaxBlur_m = 0.25;    // no more than half of a cell
-constexpr double kPartsBlur_m = 0.06;  // largest blur at which parts of cells are used
+constexpr double kPartsBlur_m = 0.06;  // less than the distance of parts; above it, whole cells
 constexpr double kReachOfCell = 0.5;   // of a level's spacing; a more certain guess skips the level
 constexpr double kConvergedCoarse = 1e-3;
 constexpr double kInlierWeight = 0.25;  // robust weight at the kernel's width
@@ -320,13 +320,17 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
         descent.from(match.map_from_base, points, std::min(level->spacing_m(), open_m),
                      kStepsPerStage, kConvergedCoarse);
   }
-  PointsInMap in_cells{points_in_base, map, point_variance_m2, false};
-  PointsInMap points{points_in_base, map, point_variance_m2, true};
-  for (double blur_m = std::min(kMaxBlur_m, open_m); blur_m >= kFinestBlur_m; blur_m *= kBlurStep) {
-    match.map_from_base =
-        descent.from(match.map_from_base, blur_m > kPartsBlur_m ? in_cells : points, blur_m,
-                     kStepsPerStage, kConverged);
+  double blur_m = std::min(kMaxBlur_m, open_m);
+  if (blur_m > kPartsBlur_m) {
+    PointsInMap whole_cells{points_in_base, map, point_variance_m2, false};
+    for (; blur_m > kPartsBlur_m; blur_m *= kBlurStep)
+      match.map_from_base =
+          descent.from(match.map_from_base, whole_cells, blur_m, kStepsPerStage, kConverged);
   }
+  PointsInMap points{points_in_base, map, point_variance_m2, true};
+  for (; blur_m >= kFinestBlur_m; blur_m *= kBlurStep)
+    match.map_from_base =
+        descent.from(match.map_from_base, points, blur_m, kStepsPerStage, kConverged);
   match.map_from_base = descent.from(match.map_from_base, points, 0.0, kFinalSteps, kConverged);
   // One step towards the optimum almost without the guess, in observed directions.
   const Quadratic model = points.quadratic_about(match.map_from_base, 0.0, config);

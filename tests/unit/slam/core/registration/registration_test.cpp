@@ -34,23 +34,32 @@ Points corridor_from(const Se2& map_from_base, std::uint64_t seed) {
   return corridor_from(map_from_base, seed, kSigma_m);
 }
 
-/// The walls of a room of 6 m x 4 m about the map's origin.
-Points room_from(const Se2& map_from_base, std::uint64_t seed) {
-  Random random{{seed}};
-  Points points;
-  const auto add = [&](double x, double y) {
+/// Points of the map as seen from a pose, with noise.
+struct NoisyView {
+  Se2 map_from_base;
+  Random random;
+  Points points{};
+
+  NoisyView(const Se2& from, std::uint64_t seed) : map_from_base{from}, random{{seed}} {}
+
+  void add(double x, double y) {
     points.push_back(map_from_base.inverse() * Eigen::Vector2d{x + kSigma_m * random.normal(),
                                                                y + kSigma_m * random.normal()});
-  };
+  }
+};
+
+/// The walls of a room of 6 m x 4 m about the map's origin.
+Points room_from(const Se2& map_from_base, std::uint64_t seed) {
+  NoisyView view{map_from_base, seed};
   for (double x = -3.0; x <= 3.0; x += 0.08) {
-    add(x, -2.0);
-    add(x, 2.0);
+    view.add(x, -2.0);
+    view.add(x, 2.0);
   }
   for (double y = -2.0; y <= 2.0; y += 0.08) {
-    add(-3.0, y);
-    add(3.0, y);
+    view.add(-3.0, y);
+    view.add(3.0, y);
   }
-  return points;
+  return view.points;
 }
 
 template <class View>
@@ -139,19 +148,14 @@ TEST(ScanMatch, AFewPillarsObserveTheAxisOfACorridor) {
 
 /// A corridor with a door that stands back by 0.2 m on one side.
 Points door_from(const Se2& map_from_base, std::uint64_t seed) {
-  Random random{{seed}};
-  Points points;
-  const auto add = [&](double x, double y) {
-    points.push_back(map_from_base.inverse() * Eigen::Vector2d{x + kSigma_m * random.normal(),
-                                                               y + kSigma_m * random.normal()});
-  };
+  NoisyView view{map_from_base, seed};
   for (double x = -2.0; x <= 4.0; x += 0.05) {
-    add(x, -1.0);
-    add(x, x > 2.0 && x < 3.0 ? 1.2 : 1.0);
+    view.add(x, -1.0);
+    view.add(x, x > 2.0 && x < 3.0 ? 1.2 : 1.0);
   }
   for (double y = 1.02; y < 1.2; y += 0.02)
-    add(3.0, y);
-  return points;
+    view.add(3.0, y);
+  return view.points;
 }
 
 TEST(ScanMatch, AShallowDoorObservesTheAxisOfACorridor) {
