@@ -5,7 +5,7 @@
 
 #include "common/errors/setup_error.hpp"
 #include "common/messages/message.hpp"
-#include "slam/core/graph/map_snapshot.hpp"
+#include "slam/core/localisation/map_snapshot.hpp"
 
 #include <filesystem>
 #include <string>

@@ -2,8 +2,8 @@
 // Files that slam reads before it starts: a map, and surveyed markers.
 #pragma once
 
-#include "slam/core/graph/map_snapshot.hpp"
 #include "slam/core/landmark/surveyed_marker.hpp"
+#include "slam/core/localisation/map_snapshot.hpp"
 #include "slam/slam_config.hpp"
 
 #include <memory>

@@ -2,8 +2,8 @@
 #include "map/map_agreement.hpp"
 
 #include "common/geometry/chi2.hpp"
-#include "slam/core/graph/map_fit.hpp"
 #include "slam/core/grid/occupied_points.hpp"
+#include "slam/core/localisation/map_fit.hpp"
 
 #include <Eigen/LU>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // Whether two maps show the same building once one is laid over the other.
 #pragma once
 
-#include "slam/core/graph/map_snapshot.hpp"
+#include "slam/core/localisation/map_snapshot.hpp"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 // Transforms maps into other frames, and merges two maps.
 #pragma once
 
-#include "slam/core/graph/map_snapshot.hpp"
+#include "slam/core/localisation/map_snapshot.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -2,7 +2,7 @@
 #include "placement/keyframe_schedule.hpp"
 
 #include "slam/core/estimators/waymark.hpp"
-#include "slam/core/graph/odometry_noise_learner.hpp"
+#include "slam/core/odometry/odometry_noise_learner.hpp"
 
 #include <Eigen/LU>
 

@@ -2,7 +2,7 @@
 #include "slam/core/estimators/waymark.hpp"
 
 #include "common/geometry/squared.hpp"
-#include "slam/core/graph/map_fit.hpp"
+#include "slam/core/localisation/map_fit.hpp"
 #include "slam/core/mapping/moving_beams.hpp"
 
 #include <Eigen/Cholesky>
@@ -73,7 +73,7 @@ WaymarkEstimator::WaymarkEstimator(const EstimatorSetup& setup, const WaymarkCon
       noise_of_old_factors_{graph_.odometry_noise()},
       start_{setup.start},
       survey_{setup.loaded_map ? std::vector<SurveyedMarker>{} : setup.survey} {
-  if (setup_.loaded_map) load(*setup_.loaded_map);
+  if (setup_.loaded_map) load(setup_.loaded_map);
 }
 
 Estimate WaymarkEstimator::update(const Observation& measured) {
@@ -121,9 +121,7 @@ Estimate WaymarkEstimator::update(const Observation& measured) {
   newest_from_last_scan_ = graph_.state().keyframes.back().inverse() * now.map_from_base;
   reason_ = EstimateReason::kOdometry;
   if (!is_map_fixed()) {
-    scan_poses_.push_back({observation.time, newest(),
-                           graph_.state().keyframes.back().inverse() * now.map_from_base, clock_s_,
-                           is_observed_});
+    scan_poses_.add({observation.time, newest(), newest_from_last_scan_, clock_s_, is_observed_});
   }
   return has_map_frame() ? now : estimate_without_pose(observation);
 }
@@ -262,17 +260,19 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
   compare_with_odometry();
   is_observed_ = markers_known_ || used.observes_all_axes;
   if (is_observed_) unmeasured_motion_.note_observed();
-  compare_with_loaded_map(observation, used);
-  was_confirmed_ |= is_confirmed();
+  if (loaded_map_) {
+    loaded_map_->compare(observation, graph_.state().keyframes.back(), used.fits_loaded_map,
+                         book_.known_markers());
+  }
   // A scan whose pose is uncertain is not mapped.
   const bool is_mapped = !is_suspicious && !used.is_refuted && is_confirmed();
-  if (wall_changes_ && is_mapped) wall_changes_->add(observation, graph_.state().keyframes.back());
+  if (loaded_map_ && is_mapped) loaded_map_->add_scan(observation, graph_.state().keyframes.back());
   if (!is_map_fixed())
     map_keyframe(is_mapped ? observation : Observation{}, is_mapped ? scan.points : Points{});
   slide_window();
   motion_ = {};
   moved_from_ = newest();
-  if (standstill_ && standstill_->keyframe == moved_from_) standstill_->motion = {};
+  if (standstill_ && standstill_->keyframe() == moved_from_) standstill_->note_keyframe_here();
 }
 
 void WaymarkEstimator::map_keyframe(const Observation& observation, const Points& points) {
@@ -340,8 +340,8 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
   estimate.covariance = 0.5 * (covariance + covariance.transpose());
   estimate.covariance += in_axes(map_from_base.rotation(),
                                  unmeasured_covariance(unmeasured_motion_.possibly_stuck_m()));
-  if (setup_.loaded_map)
-    estimate.covariance += covariance_at(*setup_.loaded_map, map_from_base.translation());
+  if (loaded_map_)
+    estimate.covariance += covariance_at(loaded_map_->snapshot(), map_from_base.translation());
   if (relocalisation_.alternative()) {
     const Eigen::Vector3d away = pose_difference(*relocalisation_.alternative(), map_from_base);
     estimate.covariance += away * away.transpose();
@@ -354,10 +354,11 @@ Estimate WaymarkEstimator::estimate(const Observation& observation, const Se2& m
                               : markers_known_                        ? WeakAxisSource::kMarkers
                                                                       : WeakAxisSource::kOdometry;
   estimate.ranges_wrong = is_rescaled_;
-  estimate.start_refuted = is_loaded_map_refuted();
+  estimate.start_refuted = loaded_map_ && loaded_map_->is_pose_refuted();
+  const bool is_other_building = loaded_map_ && loaded_map_->is_of_another_building();
   const bool is_lost = carried_ || is_pose_suspicious() ||
                        inlier_share_ < config_.lost_inlier_share || estimate.start_refuted ||
-                       is_of_another_building() || survey_.is_undecided();
+                       is_other_building || survey_.is_undecided();
   const bool observes_all_axes = (is_observed_ && !estimate.observability.is_degenerate) ||
                                  estimate.weak_axis_source == WeakAxisSource::kMarkers;
   estimate.health = health_of(graph_.state().keyframes.size(), is_lost, observes_all_axes);

@@ -2,29 +2,32 @@
 // Our method: a fixed-lag smoother over keyframes, markers and calibration, with loop closure.
 #pragma once
 
+#include "slam/core/association/marker_book.hpp"
+#include "slam/core/association/survey.hpp"
 #include "slam/core/estimators/estimator.hpp"
+#include "slam/core/estimators/scan_poses.hpp"
 #include "slam/core/estimators/waymark_config.hpp"
-#include "slam/core/graph/association.hpp"
 #include "slam/core/graph/drift.hpp"
 #include "slam/core/graph/graph.hpp"
 #include "slam/core/graph/keyframe_thinning.hpp"
 #include "slam/core/graph/loop_finder.hpp"
-#include "slam/core/graph/odometry_noise_learner.hpp"
-#include "slam/core/graph/place_finder.hpp"
-#include "slam/core/graph/relocalisation.hpp"
 #include "slam/core/graph/solve_schedule.hpp"
-#include "slam/core/graph/survey.hpp"
-#include "slam/core/graph/unmeasured_motion.hpp"
-#include "slam/core/graph/wall_change_detector.hpp"
 #include "slam/core/landmark/marker_measurement.hpp"
+#include "slam/core/localisation/loaded_map.hpp"
+#include "slam/core/localisation/place_finder.hpp"
+#include "slam/core/localisation/relocalisation.hpp"
 #include "slam/core/mapping/drawn_map.hpp"
 #include "slam/core/motion/odometry_check.hpp"
+#include "slam/core/odometry/odometry_noise_learner.hpp"
+#include "slam/core/odometry/standstill.hpp"
+#include "slam/core/odometry/unmeasured_motion.hpp"
 #include "slam/core/registration/range_scale.hpp"
 #include "slam/core/registration/submaps.hpp"
 #include "slam/core/registration/usual_fit.hpp"
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -110,15 +113,6 @@ class WaymarkEstimator final : public Estimator {
     bool fits_loaded_map{false};    ///< likewise, with the loaded map
   };
 
-  /// Pose of a scan relative to the newest keyframe at that time.
-  struct ScanPose {
-    Timestamp time{};
-    std::size_t keyframe{0};
-    Se2 keyframe_from_base{};
-    double clock_s{0.0};      ///< clock_s_ at the scan
-    bool is_observed{false};  ///< markers or walls observe the pose in every direction
-  };
-
   /// Pose at a scan that is no keyframe.
   struct BetweenKeyframes {
     Se2 map_from_base{};
@@ -126,17 +120,6 @@ class WaymarkEstimator final : public Estimator {
     std::optional<ScanMatch> match{};
     bool contradicts_odometry{false};
     bool observes_all_axes{false};
-  };
-
-  /// A time without motion by odometry: the robot stands, or odometry is stuck.
-  struct Standstill {
-    std::size_t keyframe{0};
-    Motion motion{};         ///< since `keyframe`
-    Se2 map_from_start{};    ///< pose when the standstill began
-    Se2 map_from_base{};     ///< pose of the last keyframe at which the robot was observed to move
-    double since_s{0.0};     ///< clock_s_ when it began
-    double moved_at_s{0.0};  ///< clock_s_ at map_from_base
-    Eigen::Vector3d farthest{Eigen::Vector3d::Zero()};  ///< largest |x|, |y|, |theta| from start
   };
 
   /// The robot stood, and then its scan contradicted the map: it was probably carried. Its pose is
@@ -149,22 +132,9 @@ class WaymarkEstimator final : public Estimator {
     double driven_m{0.0};  ///< since then
   };
 
-  /// What the pose in the loaded map rests on. Walls of another place may fit, too.
-  enum class PlaceTrust {
-    kAssumed,    ///< only a start pose or a command
-    kFitsWalls,  ///< a scan that observes every direction
-    kKnown,      ///< markers, the place finder, or a start pose that is certain
-  };
-
-  /// Numbers of recent keyframes' scans compared with the loaded map, none from before a command.
-  struct LoadedMapVotes {
-    std::int64_t decisive{0};       ///< scans with enough beams in mapped cells (MapFit)
-    std::int64_t contradicting{0};  ///< of these, with beams through its walls
-  };
-
   bool try_global_localisation(const Observation& observation);
   Estimate estimate_without_pose(const Observation& observation) const;
-  void load(const MapSnapshot& map);
+  void load(const std::shared_ptr<const MapSnapshot>& map);
   std::vector<Landmark> landmarks_of(const Graph& graph) const;
   const Graph& solved() const;
 
@@ -181,15 +151,12 @@ class WaymarkEstimator final : public Estimator {
   Points points_near(const MatchedScan& scan, const Se2& submap_from_base, double within_m) const;
   bool is_in_loaded_map(const ScanMatch& match) const;
 
-  bool is_confirmed() const { return place_trust_ != PlaceTrust::kAssumed; }
+  bool is_confirmed() const { return !loaded_map_ || loaded_map_->is_confirmed(); }
 
   bool is_pose_suspicious() const {
     return verdict_ == RelocalisationMonitor::Verdict::kSuspicious || relocalisation_.is_doubtful();
   }
 
-  bool is_loaded_map_refuted() const;
-  bool is_of_another_building() const;
-  void compare_with_loaded_map(const Observation& observation, const KeyframeScan& used);
   std::optional<RescaledScan> rescaled(const Observation& observation,
                                        const ScanAtPrediction& scan) const;
   std::optional<Observation> with_right_scale(const Observation& observation,
@@ -287,19 +254,13 @@ class WaymarkEstimator final : public Estimator {
   double since_insertion_m_{0.0};
   double unobserved_m_{0.0};  ///< driven since markers or walls last observed the motion
   DrawnMap map_;
-  std::vector<ScanPose> scan_poses_{};
+  ScanPoses scan_poses_{};
   OdometryNoise noise_of_old_factors_;  ///< odometry noise when old factors were last reweighted
   SensorStatistics statistics_{};       ///< only the counts; see statistics()
 
   StartPose start_;
   std::optional<PlaceFinder> place_finder_{};  ///< while it is not known where the robot started
-  Points loaded_points_{};                     ///< the loaded map's walls
-  CoarseNdt loaded_coarse_{setup_.loaded_map ? setup_.loaded_map->walls.spacing_m()
-                                             : config_.scan.cell_spacing_m};  ///< of loaded_points_
-  LoadedMapVotes loaded_map_votes_{};
-  PlaceTrust place_trust_{PlaceTrust::kKnown};
-  bool was_confirmed_{true};                          ///< is_confirmed() was true at least once
-  std::optional<WallChangeDetector> wall_changes_{};  ///< relative to the loaded map
+  std::optional<LoadedMap> loaded_map_{};
   Survey survey_;
   std::optional<StartPose> commanded_pose_{};  ///< for the next keyframe
   Timestamp newest_time_{};

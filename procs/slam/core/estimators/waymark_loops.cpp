@@ -100,13 +100,7 @@ const Graph& WaymarkEstimator::solved() const {
 
 std::vector<TimedPose> WaymarkEstimator::trajectory() const {
   if (is_map_fixed()) return {};
-  const Graph& graph = solved();
-  std::vector<TimedPose> trajectory;
-  trajectory.reserve(scan_poses_.size());
-  for (const ScanPose& scan : scan_poses_)
-    trajectory.push_back(
-        {scan.time, graph.state().keyframes[scan.keyframe] * scan.keyframe_from_base});
-  return trajectory;
+  return scan_poses_.along(solved().state().keyframes);
 }
 
 GridMap WaymarkEstimator::redrawn_map() const {

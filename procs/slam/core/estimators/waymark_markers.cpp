@@ -113,8 +113,8 @@ void WaymarkEstimator::use_markers(std::span<const MarkerMeasurement> measuremen
     if (!markers_known_) learn_noise(*nearest, measurement);
     markers_known_ = true;
     // In a fixed map, this run's own markers are fixed, too, once they have left the window.
-    if (setup_.loaded_map && nearest->landmark < setup_.loaded_map->landmarks.size())
-      place_trust_ = PlaceTrust::kKnown;
+    if (loaded_map_ && nearest->landmark < loaded_map_->snapshot().landmarks.size())
+      loaded_map_->trust(PlaceTrust::kKnown);
     if (!graph_.is_fixed(nearest->landmark) &&
         !graph_.is_active({VariableKind::kLandmark, nearest->landmark}))
       returning.push_back(nearest->landmark);

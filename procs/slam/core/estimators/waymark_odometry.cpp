@@ -10,14 +10,6 @@
 namespace waymark {
 namespace {
 
-// Odometry that stands still is stuck if the estimate moves by more than this.
-constexpr double kMoved_m = 0.03;
-constexpr double kMoved_rad = 0.05;
-// A scan was mismatched, and odometry is not stuck, if the estimate was never farther than this
-// from where odometry came to a standstill, and has come back to kReturned of the largest distance.
-constexpr double kNearStandstill_m = 0.3;
-constexpr double kNearStandstill_rad = 0.2;
-constexpr double kReturned = 0.7;
 constexpr double kLift_s = 0.5;  // standing still: less is too short for a robot to be carried off
 constexpr double kOtherNoise = 2.0;  // ratio of variances beyond which the whole graph takes a step
 constexpr std::size_t kReweighEvery = 10;  // keyframes
@@ -38,17 +30,17 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
   unmeasured_motion_.follow(observation);
   if (observation.odometry_caught_up) ++statistics_.odometry_caught_up;
   if (observation.odometry_caught_up && standstill_) {
-    const std::size_t start = standstill_->keyframe;
+    const std::size_t start = standstill_->keyframe();
     graph_.disable_odometry_since(start);
     submaps_.freeze_shapes();
     const bool is_in_graph = !is_map_fixed() && !graph_.is_removed(start);
     if (is_in_graph || graph_.is_active({VariableKind::kKeyframe, start})) {
       moved_from_ = start;
-      motion_ = standstill_->motion;
+      motion_ = standstill_->motion();
     } else {
       motion_ = {};
       motion_.start_from_end =
-          graph_.state().keyframes.back().inverse() * standstill_->map_from_start;
+          graph_.state().keyframes.back().inverse() * standstill_->map_from_start();
     }
     spread_late_motion(observation);
   }
@@ -60,9 +52,9 @@ void WaymarkEstimator::follow_odometry(const Observation& observation) {
   } else if (!standstill_ && !graph_.state().keyframes.empty()) {
     const Se2 here = graph_.state().keyframes.back() * newest_from_last_scan_ *
                      observation.motion.start_from_end;
-    standstill_ = Standstill{moved_from_, motion_, here, here, clock_s_, clock_s_};
+    standstill_.emplace(moved_from_, motion_, here, clock_s_);
   }
-  const bool may_be_carried = (standstill_ && clock_s_ - standstill_->since_s >= kLift_s) ||
+  const bool may_be_carried = (standstill_ && clock_s_ - standstill_->since_s() >= kLift_s) ||
                               odometry_check_.is_refused() || observation.odometry_jumped ||
                               observation.odometry_caught_up || observation.clock_set != Duration{};
   if (may_be_carried && !may_be_carried_since_) may_be_carried_since_ = observation.time;
@@ -128,54 +120,22 @@ void WaymarkEstimator::add_odometry_factor(std::size_t keyframe) {
 void WaymarkEstimator::compare_with_odometry() {
   if (!standstill_) return;
   ++keyframes_standing_;
-  const Se2& now = graph_.state().keyframes.back();
-  const Eigen::Vector3d moved = pose_difference(now, standstill_->map_from_base);
-  if (moved.head<2>().norm() < kMoved_m && std::abs(moved.z()) < kMoved_rad) return;
-  const Eigen::Vector3d away = pose_difference(now, standstill_->map_from_start).cwiseAbs();
-  standstill_->farthest = standstill_->farthest.cwiseMax(away);
-  const double farthest_m = standstill_->farthest.head<2>().norm();
-  const double farthest_rad = standstill_->farthest.z();
-  const bool was_near = farthest_m < kNearStandstill_m && farthest_rad < kNearStandstill_rad;
-  if (was_near && away.head<2>().norm() <= kReturned * farthest_m &&
-      away.z() <= kReturned * farthest_rad) {
-    unmeasured_motion_.note_returned();
-  } else {
-    unmeasured_motion_.note_moved(moved.head<2>().norm(), clock_s_ - standstill_->moved_at_s);
-  }
+  const auto moved = standstill_->compare(graph_.state().keyframes.back(), clock_s_);
+  if (!moved) return;
   keyframes_standing_ = 0;
-  standstill_->map_from_base = now;
-  standstill_->moved_at_s = clock_s_;
+  if (moved->has_returned)
+    unmeasured_motion_.note_returned();
+  else
+    unmeasured_motion_.note_moved(moved->distance_m, moved->elapsed_s);
 }
 
-/// Corrects the final trajectory for a standstill during which odometry was stuck: its poses are
-/// interpolated linearly in time between those that are known, which are the standstill's start,
-/// the scans that markers or walls observed, and `observation`.
+/// Corrects the final trajectory for a standstill during which odometry was stuck.
 void WaymarkEstimator::spread_late_motion(const Observation& observation) {
-  ScanPose known{observation.time, standstill_->keyframe, standstill_->motion.start_from_end,
-                 standstill_->since_s};
-  const ScanPose end{observation.time, known.keyframe,
-                     known.keyframe_from_base * observation.motion.start_from_end, clock_s_};
-  const auto map_from = [this](const ScanPose& scan) {
-    return graph_.state().keyframes[scan.keyframe] * scan.keyframe_from_base;
-  };
-  auto scan = std::find_if(scan_poses_.rbegin(), scan_poses_.rend(), [&known](const auto& earlier) {
-                return earlier.clock_s <= known.clock_s;
-              }).base();
-  while (scan != scan_poses_.end()) {
-    const auto next =
-        std::find_if(scan, scan_poses_.end(), [](const auto& later) { return later.is_observed; });
-    const ScanPose& then = next != scan_poses_.end() ? *next : end;
-    const Se2 moved = map_from(known).inverse() * map_from(then);
-    const double whole_s = then.clock_s - known.clock_s;
-    for (; scan != next; ++scan) {
-      const double share = (scan->clock_s - known.clock_s) / whole_s;
-      scan->keyframe = known.keyframe;
-      scan->keyframe_from_base = known.keyframe_from_base * interpolate(Se2{}, moved, share);
-    }
-    if (next == scan_poses_.end()) return;
-    known = *next;
-    ++scan;
-  }
+  const ScanPose start{observation.time, standstill_->keyframe(),
+                       standstill_->motion().start_from_end, standstill_->since_s()};
+  const ScanPose end{observation.time, start.keyframe,
+                     start.keyframe_from_base * observation.motion.start_from_end, clock_s_};
+  scan_poses_.spread_motion(start, end, graph_.state().keyframes);
 }
 
 /// Learns from the innovation of a scan: matched minus predicted pose, in the base frame.

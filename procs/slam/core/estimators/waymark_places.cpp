@@ -10,12 +10,16 @@ constexpr double kFound_rad = 0.05;
 constexpr double kRelocated_m = 0.3;  // sigmas of the pose after a relocalisation, or its revert
 constexpr double kRelocated_rad = 0.1;
 
+PlaceTrust trust_in(const StartPose& pose) {
+  return pose.is_certain ? PlaceTrust::kKnown : PlaceTrust::kAssumed;
+}
+
 }  // namespace
 
 void WaymarkEstimator::add_first_keyframe() {
   const Se2 map_from_base{start_.x_m, start_.y_m, start_.yaw_rad};
   graph_.add_keyframe(map_from_base);
-  const bool defines_frame = !setup_.loaded_map;
+  const bool defines_frame = !loaded_map_;
   const Eigen::Vector3d sigmas =
       defines_frame ? Eigen::Vector3d::Constant(kFirstPoseSigma)
                     : Eigen::Vector3d{start_.sigma_m, start_.sigma_m, start_.sigma_rad};
@@ -25,19 +29,19 @@ void WaymarkEstimator::add_first_keyframe() {
 bool WaymarkEstimator::set_pose(const StartPose& pose) {
   if (!has_map_frame()) return false;
   const bool has_begun = !graph_.state().keyframes.empty();
-  if (!has_begun && !setup_.loaded_map) return false;  // there is no map that it could be in
+  if (!has_begun && !loaded_map_) return false;  // there is no map that it could be in
   const Eigen::Vector2d given{pose.x_m, pose.y_m};
   Eigen::Vector2d known = given;
   if (has_begun)
     known = graph_.state().keyframes.back().translation();
-  else if (!loaded_points_.empty())
-    known = loaded_points_.front();
+  else if (!loaded_map_->wall_points().empty())
+    known = loaded_map_->wall_points().front();
   if ((given - known).norm() > farthest_pose_m(setup_.grid.resolution_m)) return false;
   if (has_begun)
     commanded_pose_ = pose;
   else
     start_ = pose;
-  if (place_finder_) place_trust_ = pose.is_certain ? PlaceTrust::kKnown : PlaceTrust::kAssumed;
+  if (place_finder_) loaded_map_->trust(trust_in(pose));
   place_finder_.reset();
   note_reason(pose.kind == StartKind::kLast ? EstimateReason::kRelocalised
                                             : EstimateReason::kCommand);
@@ -51,8 +55,10 @@ void WaymarkEstimator::add_keyframe_at_commanded_pose(const StartPose& pose) {
   graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_, true});
   const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
   graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
-  place_trust_ = !setup_.loaded_map || pose.is_certain ? PlaceTrust::kKnown : PlaceTrust::kAssumed;
-  loaded_map_votes_ = {};
+  if (loaded_map_) {
+    loaded_map_->trust(trust_in(pose));
+    loaded_map_->forget_votes();
+  }
   note_pose_given();
   begin_submaps_anew();
 }
@@ -75,7 +81,7 @@ bool WaymarkEstimator::try_global_localisation(const Observation& observation) {
   if (!found) return false;
   start_ = {StartKind::kPose, found->x(), found->y(), found->theta(), kFound_m, kFound_rad};
   place_finder_.reset();
-  place_trust_ = PlaceTrust::kKnown;
+  loaded_map_->trust(PlaceTrust::kKnown);
   motion_ = {};
   note_reason(EstimateReason::kRelocalised);
   return true;

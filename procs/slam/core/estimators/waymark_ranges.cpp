@@ -101,6 +101,7 @@ std::optional<SensorStatistics> WaymarkEstimator::statistics() const {
   statistics.slip_m_per_sqrt_m = std::sqrt(learnt.slip_m2_per_m);
   statistics.range_sigma_m = std::sqrt(range_noise_.variance_m2());
   statistics.described_range_sigma_m = setup_.range_sigma_m;
+  if (loaded_map_) statistics.loaded_map = loaded_map_->fit();
   statistics.loops_ambiguous = loop_finder_.num_ambiguous();
   const Calibration variances = graph_.covariance({}, {}).diagonal();
   for (const std::size_t term : graph_.doubted_calibration_terms()) {

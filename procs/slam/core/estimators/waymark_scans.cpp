@@ -2,7 +2,7 @@
 // How the graph estimator uses scans.
 #include "common/geometry/information.hpp"
 #include "slam/core/estimators/waymark.hpp"
-#include "slam/core/graph/map_fit.hpp"
+#include "slam/core/localisation/map_fit.hpp"
 #include "slam/core/registration/wide_search.hpp"
 
 #include <algorithm>
@@ -21,10 +21,9 @@ std::optional<WaymarkEstimator::MatchedScan> WaymarkEstimator::matched(
     const Points& points, const Prediction& prediction) const {
   if (points.empty()) return std::nullopt;
   MatchedScan scan;
-  if (setup_.loaded_map) {
-    scan.match =
-        match_scan(points, setup_.loaded_map->walls, prediction.map_from_base,
-                   prediction.covariance, range_noise_, config_.scan, loaded_coarse_.levels());
+  if (loaded_map_) {
+    scan.match = loaded_map_->match(points, prediction.map_from_base, prediction.covariance,
+                                    range_noise_, config_.scan);
     if (is_map_fixed() || is_in_loaded_map(scan.match)) return scan;
   }
   scan.submap = submaps_.current();
