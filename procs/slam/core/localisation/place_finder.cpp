@@ -10,7 +10,8 @@ namespace waymark {
 namespace {
 
 // All scores are natural logarithms of likelihood ratios, chosen so that a decision needs sightings
-// of a marker in three frames, since a single frame may be wrong.
+// of a marker in three frames, since a single frame may be wrong, or of two markers: two mistakes
+// do not agree.
 constexpr double kDecided = 2.5;  // lead over the second best hypothesis and the null hypothesis
 
 // Hypotheses.
@@ -21,6 +22,7 @@ constexpr double kHopeless = 12.0;  // score below the best one at which a hypot
 
 // Markers.
 constexpr double kSighting = 1.0;        // score of a marker that is sighted where the map has it,
+constexpr double kAnother = 1.5;         // of the first sighting of a second one,
 constexpr double kUnexpected = -1.0;     // of one that is mapped elsewhere, or in another's place,
 constexpr double kMissed = -0.5;         // and of one that should be in view but is not sighted
 constexpr double kMaxMarkerScore = 3.0;  // bound on the absolute score of one marker in one pass
@@ -57,6 +59,16 @@ double PlaceFinder::Hypothesis::score() const {
   for (const auto& [clue, episode] : clues)
     sum += episode.score;
   return sum;
+}
+
+bool PlaceFinder::Hypothesis::is_second_marker(int index) const {
+  bool has_other = false;
+  for (const auto& [clue, episode] : clues) {
+    if (clue.first != Clue::kLandmark) continue;
+    if (clue.second == index) return false;
+    has_other |= episode.score > 0.0;
+  }
+  return has_other;
 }
 
 void PlaceFinder::Hypothesis::add(Clue clue, int index, double score) {
@@ -160,7 +172,8 @@ std::vector<int> PlaceFinder::score_sightings(
     const Eigen::Vector2d there =
         (place.map_from_base * measurement.base_from_marker).translation();
     if (const auto landmark = landmark_at(measurement.id, there)) {
-      place.add(Clue::kLandmark, *landmark, kSighting);
+      place.add(Clue::kLandmark, *landmark,
+                place.is_second_marker(*landmark) ? kAnother : kSighting);
       const Eigen::Vector2d off =
           map_->landmarks[static_cast<std::size_t>(*landmark)].map_from_marker.translation() -
           there;

@@ -25,8 +25,9 @@ namespace waymark {
 /// is nowhere in the map. The contribution of one marker in one pass is bounded, since markers are
 /// taken down and moved. The best hypothesis wins if it fits the walls, is clearly better than the
 /// second best, and is clearly better than the null hypothesis or has two markers at their mapped
-/// places. So one marker with a unique id is enough if nothing contradicts it; among several
-/// markers of one id, other markers and walls decide. While no hypothesis fits the walls and no
+/// places. So three sightings of one marker with a unique id are enough if nothing contradicts
+/// them, or one of each of two markers; among several markers of one id, other markers and walls
+/// decide. While no hypothesis fits the walls and no
 /// marker is in view, walls alone may decide (WallPlaceFinder).
 class PlaceFinder {
  public:
@@ -64,6 +65,10 @@ class PlaceFinder {
     double score() const;
 
     bool may_be_right() const { return walls == Walls::kFit || walls == Walls::kNotCompared; }
+
+    /// Whether another landmark than this one has been sighted in its place in this pass, and this
+    /// one has neither been sighted nor missed.
+    bool is_second_marker(int index) const;
 
     void add(Clue clue, int index, double score);
     void drive(double distance_m);

@@ -25,8 +25,8 @@ class RangeNoise {
   double variance_m2() const { return sum_m2_ / weight_; }
 
  private:
-  static constexpr double kDescribedPoints = 2000.0;  ///< weight of the description, in points
-  static constexpr double kMaxPooled = 2e5;           ///< largest weight; older points fade
+  static constexpr double kDescribedPoints = 200.0;  ///< weight of the description: about one scan
+  static constexpr double kMaxPooled = 2e5;          ///< largest weight; older points fade
 
   double sum_m2_;
   double weight_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam/core/localisation/wall_place_finder.hpp"
-
 #include "slam/core/localisation/place_finder.hpp"
+
+#include "slam/core/localisation/wall_place_finder.hpp"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -122,6 +122,44 @@ TEST(PlaceFinder, WallsLocaliseAcrossAMarkerThatTheMapDoesNotHave) {
   }
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->x(), way.back().x(), 0.05);
+}
+
+const Se2 kRobot{0.8, 2.4, 0.1};
+
+MarkerMeasurement sighting(int id, const Se2& map_from_marker) {
+  MarkerMeasurement measurement;
+  measurement.id = id;
+  measurement.base_from_marker = kRobot.inverse() * map_from_marker;
+  return measurement;
+}
+
+/// The standing robot sights one marker at a time; the map has markers 3 and 7.
+bool is_found_after(const std::vector<MarkerMeasurement>& sightings) {
+  auto map = std::make_shared<MapSnapshot>(*map_of(room()));
+  map->landmarks.push_back({.id = 3, .map_from_marker = {2.0, 1.0, 3.1}, .sightings = 10});
+  map->landmarks.push_back({.id = 7, .map_from_marker = {2.5, 5.0, -1.6}, .sightings = 10});
+  PlaceFinder finder{map, {}};
+  std::optional<Se2> found;
+  for (const MarkerMeasurement& seen : sightings) {
+    Observation observation;
+    observation.beams = scan_of(room(), kRobot);
+    found = finder.update({}, observation, std::vector{seen}, {}, RangeNoise{0.01});
+  }
+  return found.has_value();
+}
+
+TEST(PlaceFinder, OneMarkerDecidesAtItsThirdSighting) {
+  const MarkerMeasurement seen = sighting(3, {2.0, 1.0, 3.1});
+  EXPECT_FALSE(is_found_after({seen, seen}));
+  EXPECT_TRUE(is_found_after({seen, seen, seen}));
+}
+
+TEST(PlaceFinder, TwoMarkersDecideAtOneSightingOfEach) {
+  EXPECT_TRUE(is_found_after({sighting(3, {2.0, 1.0, 3.1}), sighting(7, {2.5, 5.0, -1.6})}));
+}
+
+TEST(PlaceFinder, TwoMarkersThatDisagreeDecideNothing) {
+  EXPECT_FALSE(is_found_after({sighting(3, {2.0, 1.0, 3.1}), sighting(7, {4.0, 5.0, -1.6})}));
 }
 
 /// Sights a marker of the map once, where it is not.
