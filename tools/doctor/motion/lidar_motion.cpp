@@ -40,7 +40,7 @@ struct Anchor {
 Anchor anchor_of(Timestamp time, const Points& points, const ScanMatchConfig& config) {
   Anchor anchor{time, NdtMap{config.cell_spacing_m}};
   for (const Eigen::Vector2d& point : points)
-    anchor.map.add(point, 0);
+    anchor.map.add(point, kNoKeyframe);
   return anchor;
 }
 

@@ -130,6 +130,10 @@ void WaymarkEstimator::note_reason(EstimateReason reason) {
   reason_ = std::max(reason_, reason);
 }
 
+Points WaymarkEstimator::without_moving(const Points& points, const Prediction& searched) const {
+  return waymark::without_moving(points, map_.map(), searched.map_from_base, searched.covariance);
+}
+
 /// The first scan and the one after a commanded pose get neither a prediction nor a match.
 WaymarkEstimator::ScanAtPrediction WaymarkEstimator::match_at_prediction(
     const Observation& observation) const {
@@ -137,13 +141,13 @@ WaymarkEstimator::ScanAtPrediction WaymarkEstimator::match_at_prediction(
   if (graph_.state().keyframes.empty() || commanded_pose_) return scan;
   scan.since_last_s = observation.elapsed_s;
   scan.expected = prediction();
-  Prediction searched = scan.expected;
-  if (unmeasured_motion_.is_standing()) searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
+  scan.searched = scan.expected;
+  if (unmeasured_motion_.is_standing())
+    scan.searched.covariance.diagonal() += kStuckStep.cwiseAbs2();
   const std::size_t all = scan.points.size();
-  scan.points =
-      without_moving(scan.points, map_.map(), searched.map_from_base, searched.covariance);
+  scan.points = without_moving(scan.points, scan.searched);
   scan.beams_moving = all - scan.points.size();
-  scan.matched = matched(scan.points, searched);
+  scan.matched = matched(scan.points, scan.searched);
   // A scan that contradicts the map may fit at another pose; its range scale is tested only if it
   // fits none.
   if (scan.matched && usual_fit_.is_contradicted(scan.matched->match))
@@ -159,33 +163,33 @@ WaymarkEstimator::KeyframeScan WaymarkEstimator::add_predicted_keyframe(
   const auto& matched = scan.matched;
   KeyframeScan used;
   used.is_refuted = matched && usual_fit_.is_refuted(matched->match);
-  used.is_used = matched && !used.is_refuted && matched->match.is_usable(config_.scan);
-  used.observes_all_axes = used.is_used && !matched->match.observed.is_degenerate;
+  const bool is_usable = matched && !used.is_refuted && matched->match.is_usable(config_.scan);
+  const bool observes_all_axes = is_usable && !matched->match.observed.is_degenerate;
   // The noise of standing odometry is so small that the solver would keep the predicted pose: the
   // keyframe is initialised at the match instead.
-  const bool is_moved = used.is_used && unmeasured_motion_.is_standing();
+  const bool is_moved = is_usable && unmeasured_motion_.is_standing();
   const std::size_t keyframe =
       graph_.add_keyframe(is_moved ? matched->map_from_submap * matched->match.map_from_base
                                    : scan.expected.map_from_base);
   // A scan that observes all axes measures slips, so odometry keeps its full weight here: with a
   // lower weight, long trajectories become worse, even where sigma along the path is large.
-  hidden_slips_ = used.observes_all_axes ? 0.0 : hidden_slips(measurements);
+  hidden_slips_ = observes_all_axes ? 0.0 : hidden_slips(measurements);
   add_odometry_factor(keyframe);
   if (matched && matched->match.num_mapped >= config_.scan.min_inliers)
     inlier_share_ = matched->match.inlier_share;
   if (matched) note_fit(matched->match);
-  if (used.is_used) {
+  if (is_usable) {
     note_reason(EstimateReason::kScan);
     learn_noise(scan.expected, *matched);
-    if (matched->submap != nullptr)
-      add_scan_factor(keyframe, *matched->submap, matched->match, false);
-    else
-      add_map_factor(keyframe, matched->match);
+    if (matched->submap == nullptr) add_map_factor(keyframe, matched->match);
+    used.is_used = matched->submap == nullptr ||
+                   add_scan_factor(keyframe, *matched->submap, matched->match, false);
+    used.observes_all_axes = used.is_used && observes_all_axes;
     used.fits_loaded_map =
         matched->submap == nullptr && used.observes_all_axes && is_in_loaded_map(matched->match);
     usual_fit_.note_keyframe(matched->match);
   }
-  unobserved_m_ += motion_.distance_m;
+  unobserved_m_ = used.observes_all_axes ? 0.0 : unobserved_m_ + motion_.distance_m;
   return used;
 }
 
@@ -243,8 +247,8 @@ void WaymarkEstimator::add_keyframe(const Observation& observation, ScanAtPredic
     add_keyframe_at_commanded_pose(*std::exchange(commanded_pose_, std::nullopt));
   else
     used = add_predicted_keyframe(observation, measurements, scan);
-  note_scan_after_standstill(scan, used);
   graph_.optimise();
+  note_scan_after_standstill(scan, used);
   check_pose(observation, measurements);
   const bool is_suspicious = is_pose_suspicious();
   markers_known_ = false;

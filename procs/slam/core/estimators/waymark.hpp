@@ -33,10 +33,6 @@
 
 namespace waymark {
 
-inline constexpr double kFirstPoseSigma = 1e-5;  ///< [m, rad]; the first pose defines the map frame
-/// Consecutive keyframes in a group; one of them represents the group in scan factors.
-inline constexpr std::size_t kGroupedKeyframes = 15;
-
 /// Prior standard deviations of the calibration.
 Calibration calibration_sigmas(const EstimatorSetup& setup, const WaymarkConfig& config);
 
@@ -65,7 +61,8 @@ class WaymarkEstimator final : public Estimator {
 
   struct Prediction {
     Se2 map_from_base{};
-    Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};  ///< given the newest keyframe; map axes
+    Eigen::Matrix3d covariance{
+        Eigen::Matrix3d::Zero()};  ///< given the keyframe it moved from; map axes
   };
 
   /// A prediction in the frame of a submap.
@@ -92,6 +89,7 @@ class WaymarkEstimator final : public Estimator {
   struct ScanAtPrediction {
     Points points{};  ///< without beams that end on moving objects
     Prediction expected{};
+    Prediction searched{};  ///< `expected`, with a larger covariance if odometry may be stuck
     std::optional<MatchedScan> matched{};
     double since_last_s{0.0};         ///< time since the last scan
     bool was_searched_widely{false};  ///< search_widely() has been called
@@ -176,6 +174,7 @@ class WaymarkEstimator final : public Estimator {
   std::optional<MatchedScan> matched(const Points& points, const Prediction& prediction) const;
   static SubmapPrediction in_submap(const Prediction& prediction, const Se2& map_from_submap);
   void search_widely(const Observation& observation, ScanAtPrediction& scan) const;
+  Points without_moving(const Points& points, const Prediction& searched) const;
   ScanAtPrediction match_at_prediction(const Observation& observation) const;
   void add_keyframe(const Observation& observation, ScanAtPrediction& scan);
   KeyframeScan add_predicted_keyframe(const Observation& observation,
@@ -191,7 +190,7 @@ class WaymarkEstimator final : public Estimator {
   void note_reason(EstimateReason reason);
   void add_map_factor(std::size_t keyframe, const ScanMatch& match);
   std::vector<KeyframeGroup> keyframe_groups(const ScanMatch& match, bool is_loop) const;
-  void add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
+  bool add_scan_factor(std::size_t keyframe, const Submap& submap, const ScanMatch& match,
                        bool is_loop);
   void close_loops(const Points& points);
   void remove_redundant_keyframes();
@@ -265,7 +264,7 @@ class WaymarkEstimator final : public Estimator {
   std::optional<StartPose> commanded_pose_{};  ///< for the next keyframe
   Timestamp newest_time_{};
   double clock_s_{0.0};  ///< time since the first observation, without steps of the clock
-  /// A command, a new map frame or a relocalisation has just changed the pose.
+  /// The first keyframe, a command, a new map frame or a relocalisation has just set the pose.
   bool is_pose_reset_{false};
 
   // Of the newest keyframe:

@@ -99,7 +99,7 @@ std::optional<MapSnapshot> WaymarkEstimator::snapshot() const {
   for (std::size_t i = 0; i < map_.scans().size(); ++i) {
     const Se2& map_from_base = graph.state().keyframes[i];
     for (const AnnotatedBeam& annotated : map_.scans().at(i).beams)
-      snapshot.walls.add(map_from_base * annotated.beam.end_in_base, 0);
+      snapshot.walls.add(map_from_base * annotated.beam.end_in_base, kNoKeyframe);
   }
   snapshot.grid = map_.drawn_along(poses_of(graph));
   snapshot.walls = walls_to_save(snapshot.walls, snapshot.grid, range_noise_.variance_m2());

@@ -160,7 +160,6 @@ void WaymarkEstimator::learn_noise(const Prediction& expected, const MatchedScan
     const Eigen::Matrix3d covariance = information.inverse();
     noise_learner_.observe_along({off.x(), along_m2_per_m(described) * motion_.distance_m,
                                   2.0 * covariance(0, 0), motion_.distance_m});
-    unobserved_m_ = -motion_.distance_m;  // 0 after add_predicted_keyframe() has added this motion
   }
   graph_.set_learnt_odometry_noise(noise_learner_.learnt_noise());
 }

@@ -5,10 +5,21 @@
 namespace waymark {
 namespace {
 
-constexpr double kFound_m = 0.1;  // sigmas of a pose from global localisation
+constexpr double kFirstPoseSigma = 1e-5;  // [m, rad]; the first pose defines the map frame
+constexpr double kFound_m = 0.1;          // sigmas of a pose from global localisation
 constexpr double kFound_rad = 0.05;
 constexpr double kRelocated_m = 0.3;  // sigmas of the pose after a relocalisation, or its revert
 constexpr double kRelocated_rad = 0.1;
+
+Se2 map_from_base_at(const StartPose& pose) {
+  return {pose.x_m, pose.y_m, pose.yaw_rad};
+}
+
+PosePrior pose_prior(std::size_t keyframe, const Se2& map_from_base, double sigma_m,
+                     double sigma_rad) {
+  const Eigen::Vector3d sigmas{sigma_m, sigma_m, sigma_rad};
+  return {keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()};
+}
 
 PlaceTrust trust_in(const StartPose& pose) {
   return pose.is_certain ? PlaceTrust::kKnown : PlaceTrust::kAssumed;
@@ -17,13 +28,11 @@ PlaceTrust trust_in(const StartPose& pose) {
 }  // namespace
 
 void WaymarkEstimator::add_first_keyframe() {
-  const Se2 map_from_base{start_.x_m, start_.y_m, start_.yaw_rad};
+  is_pose_reset_ = true;
+  const Se2 map_from_base = map_from_base_at(start_);
   graph_.add_keyframe(map_from_base);
-  const bool defines_frame = !loaded_map_;
-  const Eigen::Vector3d sigmas =
-      defines_frame ? Eigen::Vector3d::Constant(kFirstPoseSigma)
-                    : Eigen::Vector3d{start_.sigma_m, start_.sigma_m, start_.sigma_rad};
-  graph_.add(PosePrior{0, map_from_base, sigmas.cwiseInverse().asDiagonal()});
+  graph_.add(loaded_map_ ? pose_prior(0, map_from_base, start_.sigma_m, start_.sigma_rad)
+                         : pose_prior(0, map_from_base, kFirstPoseSigma, kFirstPoseSigma));
 }
 
 bool WaymarkEstimator::set_pose(const StartPose& pose) {
@@ -50,11 +59,14 @@ bool WaymarkEstimator::set_pose(const StartPose& pose) {
 
 /// Adds a keyframe at a commanded pose, without odometry from the previous keyframe.
 void WaymarkEstimator::add_keyframe_at_commanded_pose(const StartPose& pose) {
-  const Se2 map_from_base{pose.x_m, pose.y_m, pose.yaw_rad};
+  const Se2 map_from_base = map_from_base_at(pose);
   const std::size_t keyframe = graph_.add_keyframe(map_from_base);
-  graph_.add(OdometryFactor{keyframe - 1, keyframe, motion_, true});
-  const Eigen::Vector3d sigmas{pose.sigma_m, pose.sigma_m, pose.sigma_rad};
-  graph_.add(PosePrior{keyframe, map_from_base, sigmas.cwiseInverse().asDiagonal()});
+  OdometryFactor disabled;
+  disabled.from = keyframe - 1;
+  disabled.to = keyframe;
+  disabled.is_disabled = true;
+  graph_.add(disabled);
+  graph_.add(pose_prior(keyframe, map_from_base, pose.sigma_m, pose.sigma_rad));
   if (loaded_map_) {
     loaded_map_->trust(trust_in(pose));
     loaded_map_->forget_votes();
@@ -106,8 +118,7 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
                       map_from_base * graph_.state().keyframes.back().inverse());
   else
     graph_.relocate_newest(map_from_base);
-  const Eigen::Vector3d sigmas{kRelocated_m, kRelocated_m, kRelocated_rad};
-  graph_.add(PosePrior{newest(), map_from_base, sigmas.cwiseInverse().asDiagonal()});
+  graph_.add(pose_prior(newest(), map_from_base, kRelocated_m, kRelocated_rad));
   if (has_path) {
     graph_.step_all();
     map_.redraw_all(poses_of(graph_));
@@ -123,7 +134,7 @@ void WaymarkEstimator::relocate(const Se2& map_from_base) {
 /// that contradicts the map, that somebody has.
 void WaymarkEstimator::note_scan_after_standstill(const ScanAtPrediction& scan,
                                                   const KeyframeScan& used) {
-  const bool contradicts = inlier_share_ < config_.lost_inlier_share;
+  const bool contradicts = scan.matched && inlier_share_ < config_.lost_inlier_share;
   if (carried_) {
     carried_->driven_m += motion_.distance_m;
     if (fits_walls_before_carry(scan.points)) note_pose_known();

@@ -44,8 +44,8 @@ std::optional<WaymarkEstimator::RescaledScan> WaymarkEstimator::rescaled(
   if (std::abs(scale.error) < std::max(kMinRangeError, kMinSigmas * scale.sigma))
     return std::nullopt;
   RescaledScan scaled{scale.error, scaled_ranges(observation, scale.error)};
-  scaled.points = points_of(scaled.observation);
-  const auto fitted = matched(scaled.points, scan.expected);
+  scaled.points = without_moving(points_of(scaled.observation), scan.searched);
+  const auto fitted = matched(scaled.points, scan.searched);
   if (!fitted || fitted->match.inliers < kClearlyBetter * plain.match.inliers ||
       usual_fit_.is_contradicted(fitted->match)) {
     return std::nullopt;

@@ -9,6 +9,12 @@
 #include <cmath>
 
 namespace waymark {
+namespace {
+
+/// Consecutive keyframes in a group; one of them represents the group in scan factors.
+constexpr std::size_t kGroupedKeyframes = 15;
+
+}  // namespace
 
 WaymarkEstimator::SubmapPrediction WaymarkEstimator::in_submap(const Prediction& prediction,
                                                                const Se2& map_from_submap) {
@@ -55,7 +61,7 @@ void WaymarkEstimator::search_widely(const Observation& observation, ScanAtPredi
   search.min_score = config_.loops.min_score;
   search.contradicts_map = [&](const Se2& submap_from_base) {
     const Se2 map_from_base = matched.map_from_submap * submap_from_base;
-    return fit_in_map(map_.map(), observation.beams, map_from_base).misfit() > MapFit::kMaxMisfit;
+    return fit_in_map(map_.map(), observation.beams, map_from_base).is_contradicted();
   };
   matched.match = searched_widely(matched.match, scan.points, ndt_of(matched),
                                   points_near(matched, expected.submap_from_base,
@@ -90,7 +96,8 @@ std::vector<WaymarkEstimator::KeyframeGroup> WaymarkEstimator::keyframe_groups(
   return groups;
 }
 
-void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
+/// @return whether there is a keyframe in the window that the scan can be related to.
+bool WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& submap,
                                        const ScanMatch& match, bool is_loop) {
   ScanFactor factor;
   factor.is_loop = is_loop;
@@ -104,13 +111,14 @@ void WaymarkEstimator::add_scan_factor(std::size_t keyframe, const Submap& subma
          submap.submap_from_keyframe(group.reference).inverse() * match.map_from_base});
     drift += group.share * group.share * unmatched_drift_.between(group.middle, group.reference);
   }
-  if (!factor.normalise_shares()) return;
+  if (!factor.normalise_shares()) return false;
   const Eigen::Matrix3d information =
       in_axes(match.map_from_base.rotation().transpose(), match.observed.information);
   const Eigen::Matrix3d drift_in_base =
       in_axes(graph_.state().keyframes[keyframe].rotation().transpose(), drift);
   factor.root_information = root_of(with_more_noise(information, drift_in_base));
   graph_.add(factor);
+  return true;
 }
 
 }  // namespace waymark

@@ -107,7 +107,7 @@ std::optional<Se2> PlaceFinder::update(const Motion& motion, const Observation& 
   if (scores_walls) since_walls_m_ = 0.0;
   for (Hypothesis& place : hypotheses_) {
     score_markers(place, observation, measurements, view);
-    if (scores_walls || (place.wall_score == 0.0 && place.score() >= kDecided))
+    if (scores_walls || (place.walls == Walls::kNotCompared && place.score() >= kDecided))
       score_walls(place, observation, noise);
   }
   std::erase_if(hypotheses_, [](const Hypothesis& place) { return place.score() < -kHopeless; });

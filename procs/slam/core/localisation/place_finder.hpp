@@ -23,12 +23,12 @@ namespace waymark {
 ///
 /// Each hypothesis has a score, a log-likelihood ratio against the null hypothesis that the robot
 /// is nowhere in the map. The contribution of one marker in one pass is bounded, since markers are
-/// taken down and moved. The best hypothesis wins if it fits the walls, is clearly better than the
-/// second best, and is clearly better than the null hypothesis or has two markers at their mapped
-/// places. So three sightings of one marker with a unique id are enough if nothing contradicts
-/// them, or one of each of two markers; among several markers of one id, other markers and walls
-/// decide. While no hypothesis fits the walls and no
-/// marker is in view, walls alone may decide (WallPlaceFinder).
+/// taken down and moved. The best hypothesis wins if the walls do not contradict it, is clearly
+/// better than the second best, and is clearly better than the null hypothesis or has two markers
+/// at their mapped places. So three sightings of one marker with a unique id are enough if nothing
+/// contradicts them, or one of each of two markers; among several markers of one id, other markers
+/// and walls decide. While the walls contradict every hypothesis and no marker is in view, walls
+/// alone may decide (WallPlaceFinder).
 class PlaceFinder {
  public:
   PlaceFinder(std::shared_ptr<const MapSnapshot> map, const ScanMatchConfig& scan);
@@ -64,7 +64,7 @@ class PlaceFinder {
 
     double score() const;
 
-    bool may_be_right() const { return walls == Walls::kFit || walls == Walls::kNotCompared; }
+    bool may_be_right() const { return walls != Walls::kContradict; }
 
     /// Whether another landmark than this one has been sighted in its place in this pass, and this
     /// one has neither been sighted nor missed.

@@ -22,7 +22,7 @@ class CoarseNdt {
 
   void add(const Eigen::Vector2d& point) {
     for (NdtMap& level : levels_)
-      level.add(point, 0);
+      level.add(point, kNoKeyframe);
   }
 
   /// The finest first.

@@ -10,16 +10,18 @@
 
 namespace waymark {
 
+inline constexpr int kNoKeyframe = -1;  ///< of points of a map without keyframes
+
 /// Distribution of the points of one cell.
 struct NdtCell {
   Eigen::Vector2d mean{Eigen::Vector2d::Zero()};
   Eigen::Vector2d normal{
-      Eigen::Vector2d::UnitX()};  ///< direction of least variance; unit, any sign
-  double across_m2{0.0};          ///< variance along `normal`
-  double along_m2{0.0};           ///< variance at right angles to it
-  int count{0};                   ///< points
-  int first_keyframe{0};          ///< the points came from keyframes in [first, last]
-  int last_keyframe{0};
+      Eigen::Vector2d::UnitX()};    ///< direction of least variance; unit, any sign
+  double across_m2{0.0};            ///< variance along `normal`
+  double along_m2{0.0};             ///< variance at right angles to it
+  int count{0};                     ///< points
+  int first_keyframe{kNoKeyframe};  ///< the points came from keyframes in [first, last]
+  int last_keyframe{kNoKeyframe};
   bool is_line{false};   ///< a piece of wall; else a corner, a table leg or clutter
   bool is_thick{false};  ///< thicker than a wall that is seen with range noise
 };
@@ -46,7 +48,7 @@ class NdtMap {
   explicit NdtMap(double spacing_m, Cells cells = Cells::kWhole)
       : spacing_m_{spacing_m}, is_divided_{cells == Cells::kDivided} {}
 
-  /// @param keyframe  the one that observed the point.
+  /// @param keyframe  the one that observed the point; kNoKeyframe: none.
   /// @param weight    number of points that this point counts as.
   void add(const Eigen::Vector2d& point, int keyframe, double weight = 1.0);
 

@@ -91,7 +91,7 @@ bool RangeScaleMonitor::accepts(double error, const Points& points_in_base,
   if (!error_ || !agrees(*error_)) {
     NdtMap last{cell_spacing_m_};
     for (const Eigen::Vector2d& point : unscaled_in_base_)
-      last.add(point, 0);
+      last.add(point, kNoKeyframe);
     const Se2 last_from_map = map_from_unscaled_.inverse();
     const RangeScale since_last =
         fit_range_scale(points_in_base, origin_in_base, last, last_from_map * map_from_base,

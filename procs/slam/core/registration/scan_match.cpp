@@ -90,7 +90,7 @@ BeamTerm compare(const NdtCell& cell, const Eigen::Vector2d& point, const Eigen:
 }
 
 double known_share(const NdtCell& cell) {
-  if (cell.last_keyframe == 0) return 1.0;  // a map without keyframes, or the first scan
+  if (cell.last_keyframe == kNoKeyframe) return 1.0;
   const int seen_from = cell.last_keyframe - cell.first_keyframe + 1;
   return seen_from / (seen_from + kFewKeyframes);
 }
@@ -192,6 +192,7 @@ void summarise(std::span<const Eigen::Vector2d> points, const NdtMap& map, doubl
       off_range_m.push_back(std::abs(term.across_m) / square_on);
     if (term.robust < kInlierWeight) continue;
     ++match.inliers;
+    if (cell->last_keyframe == kNoKeyframe) continue;
     const int keyframes = cell->last_keyframe - cell->first_keyframe + 1;
     for (int k = cell->first_keyframe; k <= cell->last_keyframe; ++k)
       shares[k] += 1.0 / keyframes;
