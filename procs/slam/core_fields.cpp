@@ -211,7 +211,7 @@ void WaymarkConfig::describe(Fields& fields) {
                "keyframes in the window that is optimised; at most 16 with mode = localise");
   fields.field("submap_keyframes", submap_keyframes, {2, 100000}, "keyframes of a submap, at most");
   fields.field("submap_length_m", submap_length_m, {0.1, 1e4},
-               "length of the path through a submap, at most");
+               "length of the path after which a submap ends");
   fields.field("keyframes_per_place", keyframes_per_place, {1, 100000},
                "kept per square metre and quarter of a turn; later ones are removed once others "
                "connect the trajectory to these");

@@ -40,7 +40,6 @@ Estimate OdometryEstimator::update(const Observation& observation) {
   }
 
   Estimate estimate = describe_observation(observation, map_from_base_, setup_.range_sigma_m);
-  estimate.map_from_base = map_from_base_;
   estimate.covariance = covariance_;
   estimate.health = Health::kDegenerate;  // nothing ever corrects dead reckoning
   estimate.weak_axis_source = WeakAxisSource::kOdometry;

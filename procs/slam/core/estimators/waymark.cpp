@@ -5,7 +5,6 @@
 #include "slam/core/localisation/map_fit.hpp"
 #include "slam/core/mapping/moving_beams.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>

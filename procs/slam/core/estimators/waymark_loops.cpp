@@ -59,7 +59,7 @@ void WaymarkEstimator::close_loops(const Points& points) {
       note_reason(EstimateReason::kLoop);
     }
   }
-  if (solve_schedule_.is_step_due(graph_.state().keyframes.size())) step_whole_graph({});
+  if (solve_schedule_.advance(graph_.state().keyframes.size())) step_whole_graph({});
 }
 
 /// Takes one step of the whole graph; the published map follows it.

@@ -3,9 +3,6 @@
 #include "slam/core/estimators/waymark.hpp"
 #include "slam/core/localisation/marker_changes.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
 #include <optional>
 
 namespace waymark {

@@ -18,7 +18,7 @@ double along_m2_per_m(const OdometryNoise& noise) {
   return noise.along_per_sqrt_m * noise.along_per_sqrt_m;
 }
 
-bool is_other(double a, double b) {
+bool differs_clearly(double a, double b) {
   return a > kOtherNoise * b || b > kOtherNoise * a;
 }
 
@@ -187,9 +187,10 @@ void WaymarkEstimator::learn_noise(const MarkerInnovation& innovation,
 void WaymarkEstimator::reweigh_old_factors() {
   const OdometryNoise noise = graph_.odometry_noise();
   const bool is_other_noise =
-      is_other(along_m2_per_m(noise), along_m2_per_m(noise_of_old_factors_)) ||
-      is_other(noise.turn_per_sqrt_m * noise.turn_per_sqrt_m,
-               noise_of_old_factors_.turn_per_sqrt_m * noise_of_old_factors_.turn_per_sqrt_m);
+      differs_clearly(along_m2_per_m(noise), along_m2_per_m(noise_of_old_factors_)) ||
+      differs_clearly(
+          noise.turn_per_sqrt_m * noise.turn_per_sqrt_m,
+          noise_of_old_factors_.turn_per_sqrt_m * noise_of_old_factors_.turn_per_sqrt_m);
   const std::size_t all = graph_.state().keyframes.size();
   if (is_map_fixed() || !is_other_noise || solve_schedule_.num_since_solution(all) < kReweighEvery)
     return;

@@ -66,7 +66,7 @@ std::optional<Observation> WaymarkEstimator::with_right_scale(const Observation&
     return std::nullopt;
   }
   std::optional<RescaledScan> scaled = rescaled(observation, scan);
-  if (!scaled || !range_scale_.accepts(
+  if (!scaled || !range_scale_.try_accept(
                      scaled->range_error, scan.points, observation.beams.front().beam.start_in_base,
                      scan.expected.map_from_base, nearby(scan.expected.covariance), range_noise_)) {
     return std::nullopt;

@@ -17,6 +17,7 @@ constexpr double kWidest = 256.0;     // factor on the configured sigma
 constexpr double kTail = 2.0;         // the weight of the normal with factor k is 1 / k^kTail
 constexpr double kMinShare = 1e-9;    // information relative to the prior's; less is rounding
 constexpr double kDoubtSigmas = 5.0;  // error beyond which the description counts as wrong
+constexpr double kWide = 8.0;         // width from which the camera's sigmas count as unreliable
 constexpr double kExactSigma = 1e-9;  // stands for 0, which has no inverse
 
 }  // namespace
@@ -44,7 +45,7 @@ void CalibrationKnowledge::choose_prior_widths(const Calibration& value,
   const Eigen::Vector3d usual = SightingNoise{}.calibration;
   for (Eigen::Index i = 0; i < kCameraTerms; ++i) {
     double& width = widths_[kOdometryTerms + i];
-    if (width > kDoubtSigmas) width = std::max(width, usual[i] / sigmas_[kOdometryTerms + i]);
+    if (width >= kWide) width = std::max(width, usual[i] / sigmas_[kOdometryTerms + i]);
   }
 }
 

@@ -20,9 +20,9 @@ constexpr double kDirectReach_m = 0.3;  // scan matching converges from this far
 constexpr double kDirectReach_rad = 0.15;
 constexpr std::size_t kSearchBeams = 120;
 constexpr std::size_t kFields = 8;                     // kept in the cache
-const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.01};  // of a match in a submap [m, m, rad]
+const Eigen::Vector3d kMatchSigmas{0.05, 0.05, 0.01};  // of a match in a submap [m, m, rad]
 /// Covariance of the best place of a correlative search: 0.1 m, 0.03 rad.
-const Eigen::Matrix3d kFound = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
+const Eigen::Matrix3d kSearchCovariance = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
 constexpr double kAgree_m = 0.3;  // between two candidates' corrections
 constexpr double kAgree_rad = 0.05;
 constexpr double kAgreeWithin_m = 5.0;  // largest distance between the matches, driven and straight
@@ -38,7 +38,7 @@ double reach_rad(const Eigen::Matrix3d& covariance) {
 /// Covariance of the estimated pose relative to a match at a recent keyframe.
 Eigen::Matrix3d since_match(std::size_t keyframe, const LoopSearch& search) {
   Eigen::Matrix3d covariance = kLoopCovarianceMargin * search.covariance_since(keyframe);
-  covariance.diagonal() += kFoundSigmas.cwiseAbs2();
+  covariance.diagonal() += kMatchSigmas.cwiseAbs2();
   return covariance;
 }
 
@@ -96,8 +96,8 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Guess& guess
   if (!is_good(loop.match)) {
     const auto best = field.best(beams, expected, {wide_m, wide_rad}, config_.min_score);
     if (!best) return std::nullopt;
-    loop.match =
-        match_scan(scan.points, old.ndt(), best->submap_from_base, kFound, scan.noise, scan_);
+    loop.match = match_scan(scan.points, old.ndt(), best->submap_from_base, kSearchCovariance,
+                            scan.noise, scan_);
     if (!is_good(loop.match)) return std::nullopt;
   }
   // The search for a runner-up is centred at the match, so that its window contains the match, and
@@ -105,7 +105,7 @@ std::optional<LoopMatch> LoopFinder::match(const Submap& old, const Guess& guess
   const Se2& found = loop.match.map_from_base;
   const Se2 estimated = submap_from_map * scan.search.map_from_base;
   const double moved_m = (found.translation() - estimated.translation()).norm();
-  const double turned_rad = std::abs(angle_difference(expected.theta(), estimated.theta()));
+  const double turned_rad = std::abs(angle_difference(found.theta(), estimated.theta()));
   const auto other = field.best_apart_from(found, kOtherPlace_m, kOtherPlace_rad, beams, found,
                                            {wide_m + moved_m, wide_rad + turned_rad},
                                            config_.runner_up_share * field.score(beams, found));

@@ -7,6 +7,8 @@
 #include "slam/core/registration/correlative_search.hpp"
 #include "slam/core/registration/submap.hpp"
 
+#include <Eigen/LU>
+
 #include <deque>
 #include <functional>
 #include <optional>

@@ -26,8 +26,9 @@ class SolveSchedule {
     loops_matter_ = false;
   }
 
-  /// At a new keyframe. @return whether a step is due.
-  bool is_step_due(std::size_t num_keyframes) {
+  /// At a new keyframe: begins a solution if loops are waiting for one. @return whether a step is
+  /// due.
+  bool advance(std::size_t num_keyframes) {
     const std::size_t share = num_keyframes / (loops_matter_ ? kShare : kRoutineShare);
     if (has_new_loops_ && num_since_solution(num_keyframes) >= std::max(kEvery, share))
       begin(num_keyframes);

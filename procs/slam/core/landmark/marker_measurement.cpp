@@ -67,9 +67,9 @@ LineFit collect(std::span<const AnnotatedBeam> beams, const Line& line,
   return fit;
 }
 
-Eigen::Matrix3d in_robot_frame(const MarkerSighting& sighting, const MarkerSensors& sensors,
-                               const OdometryNoise& odometry,
-                               const MarkerMeasurementConfig& config) {
+Eigen::Matrix3d covariance_in_base(const MarkerSighting& sighting, const MarkerSensors& sensors,
+                                   const OdometryNoise& odometry,
+                                   const MarkerMeasurementConfig& config) {
   const Eigen::Vector2d ray =
       sighting.base_from_marker.translation() - sensors.base_from_camera.translation();
   const Eigen::Vector2d across{-ray.y(), ray.x()};
@@ -210,7 +210,7 @@ std::vector<MarkerMeasurement> measure_markers(const Observation& observation,
         sighting.time,
         sighting.size_m,
         sighting.base_from_marker,
-        in_robot_frame(sighting, sensors, odometry, config),
+        covariance_in_base(sighting, sensors, odometry, config),
         camera_jacobian(sighting.base_from_marker.translation(), sensors.base_from_camera),
         Eigen::Vector3d::Zero(),
         sensors.base_from_camera,

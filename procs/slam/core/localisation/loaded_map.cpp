@@ -51,19 +51,19 @@ void LoadedMap::compare(const Observation& observation, const Se2& map_from_base
   if (!scan.is_decisive()) return;
   if (votes_.decisive >= kScansKept) {
     votes_.decisive /= 2;
-    votes_.contradicting /= 2;
+    votes_.refuting /= 2;
   }
   ++fit_.scans;
   ++votes_.decisive;
   if (scan.is_contradicted()) ++fit_.contradicting;
   if (!scan.is_refuted()) return;
   ++fit_.refuting;
-  ++votes_.contradicting;
+  ++votes_.refuting;
 }
 
 bool LoadedMap::is_pose_refuted() const {
   return place_trust_ != PlaceTrust::kKnown && votes_.decisive >= kScansToDecide &&
-         2 * votes_.contradicting > votes_.decisive;
+         2 * votes_.refuting > votes_.decisive;
 }
 
 }  // namespace waymark

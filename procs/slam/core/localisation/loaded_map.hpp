@@ -80,8 +80,8 @@ class LoadedMap {
  private:
   /// Numbers of recent scans that were compared, none from before a command.
   struct Votes {
-    std::int64_t decisive{0};       ///< scans with enough beams in mapped cells (MapFit)
-    std::int64_t contradicting{0};  ///< of these, with beams through walls
+    std::int64_t decisive{0};  ///< scans with enough beams in mapped cells (MapFit)
+    std::int64_t refuting{0};  ///< of these, with too many beams through walls
   };
 
   std::shared_ptr<const MapSnapshot> map_;

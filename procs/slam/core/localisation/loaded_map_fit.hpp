@@ -10,7 +10,7 @@ namespace waymark {
 struct LoadedMapFit {
   std::int64_t scans{0};             ///< with enough beams in mapped cells
   std::int64_t contradicting{0};     ///< of these, contradict the map
-  std::int64_t refuting{0};          ///< of these, with too many beams through its walls
+  std::int64_t refuting{0};          ///< of `scans`, with too many beams through its walls
   std::int64_t markers_in_place{0};  ///< markers of the map that were sighted where it has them
   std::int64_t markers_moved{0};     ///< those that hang elsewhere
 

@@ -37,10 +37,11 @@ struct PoseHint {
 /// (1) The estimated pose is right: they were moved, are misread or have duplicates. (2) The wheels
 /// slipped. (3) The robot was carried. In (2) and (3) their mapped places give its pose.
 ///
-/// Two markers, each sighted twice, that agree on another pose decide: half a metre away it is a
-/// slip; farther away the robot is relocated. A marker sighted where it is mapped, or with an
-/// unknown id, supports (1). If two unknown ids then appear where the map has other markers, the
-/// relocalisation is reverted: the place only looked alike.
+/// Two markers, each sighted twice, that agree on another pose decide: where nobody can have
+/// carried the robot, one nearer than half a metre shows a slip; otherwise the robot is relocated.
+/// A marker sighted where it is mapped, or with an unknown id, supports (1). If two unknown ids
+/// then appear where the map has other markers, the relocalisation is reverted: the place only
+/// looked alike.
 ///
 /// If nobody can have carried the robot, since it drove all the time after a marker had confirmed
 /// its pose, and wheels that spun do not explain the other pose, markers that are missed at the
@@ -53,7 +54,7 @@ class RelocalisationMonitor {
   enum class Verdict {
     kConsistent,
     kSuspicious,
-    kSlipped,  ///< the wheels have slipped by less than half a metre: the markers have not moved
+    kSlipped,  ///< the wheels have slipped: the markers have not moved
     kRelocated,
     kReverted,
   };
@@ -116,7 +117,7 @@ class RelocalisationMonitor {
   std::set<int> relocated_by_{};         ///< ids that have relocated the robot
   std::map<int, int> votes_against_{};   ///< sightings in doubt that support the abandoned pose
   std::map<std::size_t, int> misses_{};  ///< by landmark, at the pose that markers have confirmed
-  std::set<int> moved_ids_{};            ///< of markers that have relocated the robot wrongly
+  std::set<int> moved_ids_{};  ///< of markers taken for moved, or for others with the same id
 };
 
 }  // namespace waymark

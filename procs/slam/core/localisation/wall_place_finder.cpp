@@ -22,7 +22,7 @@ constexpr double kAgree_m = 0.2;  // between a match and the candidate
 constexpr double kAgree_rad = 0.1;
 constexpr double kMinInliers = 0.8;                  // share of the mapped beams
 constexpr double kMinMappedShare = 0.8;              // share of all beams
-const Eigen::Vector3d kFoundSigmas{0.1, 0.1, 0.05};  // of the search's best place [m, m, rad]
+const Eigen::Vector3d kPlaceSigmas{0.1, 0.1, 0.05};  // of the search's best place [m, m, rad]
 
 }  // namespace
 
@@ -65,7 +65,7 @@ std::optional<Se2> WallPlaceFinder::search(const Observation& observation,
 std::optional<Se2> WallPlaceFinder::found(const Points& points, const RangeNoise& noise) const {
   const auto best = unique_place(*field_, points, middle_, window_, kUnique);
   if (!best) return std::nullopt;
-  const Eigen::Matrix3d near = kFoundSigmas.cwiseAbs2().asDiagonal();
+  const Eigen::Matrix3d near = kPlaceSigmas.cwiseAbs2().asDiagonal();
   const ScanMatch match =
       match_scan(points, map_->walls, best->submap_from_base, near, noise, scan_);
   const bool fits = match.is_usable(scan_) && match.inlier_share >= kMinInliers &&

@@ -141,6 +141,7 @@ void NdtMap::drop_unused_parts(double point_variance_m2) {
   std::erase_if(parts_, [&](const auto& part) {
     return !is_replaced_by_parts(at(cell_of_part(part.first), point_variance_m2));
   });
+  parts_.rehash(0);
 }
 
 }  // namespace waymark

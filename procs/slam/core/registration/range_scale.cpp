@@ -12,11 +12,11 @@
 namespace waymark {
 namespace {
 
-constexpr int kScaleSteps = 8;
-constexpr double kScaleKernel_m = 0.1;
-constexpr double kScalePrior = 0.2;
+constexpr int kScaleSteps = 8;          // of Gauss-Newton
+constexpr double kScaleKernel_m = 0.1;  // width of the robust kernel
+constexpr double kScalePrior = 0.2;     // standard deviation of an error, and the largest one
 
-constexpr double kAgreeing = 0.01;  // largest difference between equal errors
+constexpr double kEqualErrors = 0.01;  // largest difference between equal errors
 
 using Vector4 = Eigen::Vector4d;
 
@@ -82,11 +82,11 @@ void RangeScaleMonitor::note_unscaled(const Points& points_in_base, const Se2& m
   error_.reset();
 }
 
-bool RangeScaleMonitor::accepts(double error, const Points& points_in_base,
-                                const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
-                                const Eigen::Matrix3d& covariance, const RangeNoise& noise) {
+bool RangeScaleMonitor::try_accept(double error, const Points& points_in_base,
+                                   const Eigen::Vector2d& origin_in_base, const Se2& map_from_base,
+                                   const Eigen::Matrix3d& covariance, const RangeNoise& noise) {
   const auto agrees = [error](double other) {
-    return std::abs(error - other) < kAgreeing;
+    return std::abs(error - other) < kEqualErrors;
   };
   if (!error_ || !agrees(*error_)) {
     NdtMap last{cell_spacing_m_};

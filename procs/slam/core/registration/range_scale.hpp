@@ -42,9 +42,9 @@ class RangeScaleMonitor {
   /// Whether the scale error at which the newest scan fits the map is real. If so, it counts as
   /// accepted.
   /// @param covariance  of (x, y, theta) of map_from_base, map's axes.
-  bool accepts(double error, const Points& points_in_base, const Eigen::Vector2d& origin_in_base,
-               const Se2& map_from_base, const Eigen::Matrix3d& covariance,
-               const RangeNoise& noise);
+  bool try_accept(double error, const Points& points_in_base, const Eigen::Vector2d& origin_in_base,
+                  const Se2& map_from_base, const Eigen::Matrix3d& covariance,
+                  const RangeNoise& noise);
 
  private:
   double cell_spacing_m_;

@@ -264,8 +264,8 @@ Eigen::Matrix3d nearly_none(const Eigen::Matrix3d& guess_covariance) {
 
 /// Standard deviation [m] of the beams' ends, across the beams, due to the covariance of the pose:
 /// root mean square over all beams; position and heading count as uncorrelated.
-double ends_open_m(std::span<const Eigen::Vector2d> points_in_base,
-                   const Eigen::Matrix3d& covariance) {
+double beam_end_sigma_m(std::span<const Eigen::Vector2d> points_in_base,
+                        const Eigen::Matrix3d& covariance) {
   double lever2_m2 = 0.0;
   for (const Eigen::Vector2d& point : points_in_base)
     lever2_m2 += point.squaredNorm();
@@ -310,18 +310,18 @@ ScanMatch match_scan(std::span<const Eigen::Vector2d> points_in_base, const NdtM
                      const RangeNoise& noise, const ScanMatchConfig& config,
                      std::span<const NdtMap> coarse) {
   const double point_variance_m2 = noise.variance_m2();
-  const double open_m = ends_open_m(points_in_base, guess_covariance);
+  const double guess_sigma_m = beam_end_sigma_m(points_in_base, guess_covariance);
   const Descent descent{guess, widened(guess_covariance, 1.0, kDescentAdded), config};
   ScanMatch match;
   match.map_from_base = guess;
   for (auto level = coarse.rbegin(); level != coarse.rend(); ++level) {
-    if (open_m < kReachOfCell * level->spacing_m()) continue;
+    if (guess_sigma_m < kReachOfCell * level->spacing_m()) continue;
     PointsInMap points{points_in_base, *level, point_variance_m2, false};
     match.map_from_base =
-        descent.from(match.map_from_base, points, std::min(level->spacing_m(), open_m),
+        descent.from(match.map_from_base, points, std::min(level->spacing_m(), guess_sigma_m),
                      kStepsPerStage, kConvergedCoarse);
   }
-  double blur_m = std::min(kMaxBlur_m, open_m);
+  double blur_m = std::min(kMaxBlur_m, guess_sigma_m);
   if (blur_m > kPartsBlur_m) {
     PointsInMap whole_cells{points_in_base, map, point_variance_m2, false};
     for (; blur_m > kPartsBlur_m; blur_m *= kBlurStep)

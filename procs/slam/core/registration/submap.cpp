@@ -65,8 +65,8 @@ Submap Submap::rebuilt(const PoseSequence& keyframes) const {
 
 void Submap::finish(double point_variance_m2) {
   ndt_.drop_unused_parts(point_variance_m2);
-  occupied_.clear();
-  scans_ = {};
+  occupied_ = std::unordered_set<NdtMap::Key>{};  // unlike clear(), frees the buckets
+  scans_ = std::vector<Scan>{};
 }
 
 }  // namespace waymark

@@ -6,11 +6,11 @@
 namespace waymark {
 
 bool UsualFit::is_refuted(const ScanMatch& match) const {
-  return match.num_mapped >= min_inliers_ && match.inlier_share < min_inlier_share_;
+  return match.num_mapped >= min_mapped_ && match.inlier_share < min_inlier_share_;
 }
 
 bool UsualFit::is_contradicted(const ScanMatch& match) const {
-  return match.num_mapped >= min_inliers_ &&
+  return match.num_mapped >= min_mapped_ &&
          match.inlier_share < std::max(min_inlier_share_, kContradicted * inlier_share_);
 }
 
@@ -27,7 +27,7 @@ bool UsualFit::is_nearly_usual(const ScanMatch& match) const {
 }
 
 void UsualFit::note_scan(const ScanMatch& match) {
-  if (match.num_mapped < min_inliers_) return;
+  if (match.num_mapped < min_mapped_) return;
   inlier_share_ += kMemory * (match.inlier_share - inlier_share_);
 }
 

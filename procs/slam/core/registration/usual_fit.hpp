@@ -8,10 +8,10 @@ namespace waymark {
 
 class UsualFit {
  public:
-  /// @param min_inliers       a scan with fewer mapped beams is not classified.
+  /// @param min_mapped        a scan with fewer mapped beams is neither refuted nor contradicted.
   /// @param min_inlier_share  a scan with a smaller ScanMatch::inlier_share is refuted.
-  UsualFit(int min_inliers, double min_inlier_share)
-      : min_inliers_{min_inliers}, min_inlier_share_{min_inlier_share} {}
+  UsualFit(int min_mapped, double min_inlier_share)
+      : min_mapped_{min_mapped}, min_inlier_share_{min_inlier_share} {}
 
   /// Most mapped beams are outliers: sensor or pose is wrong. (In a new place beams are unmapped.)
   bool is_refuted(const ScanMatch& match) const;
@@ -30,10 +30,11 @@ class UsualFit {
   /// Inliers among all beams: more than kNearlyUsual times the mean.
   bool is_nearly_usual(const ScanMatch& match) const;
 
-  /// Updates the means with a scan that is not contradicted.
+  /// Updates the mean share among mapped beams, with a scan that is not contradicted.
   void note_scan(const ScanMatch& match);
 
-  /// Updates the means with the scan of a keyframe that was added to the graph.
+  /// Updates the mean share among all beams, with the scan of a keyframe that was added to the
+  /// graph.
   void note_keyframe(const ScanMatch& match);
 
  private:
@@ -42,7 +43,7 @@ class UsualFit {
   static constexpr double kAsUsual = 0.93;
   static constexpr double kNearlyUsual = 0.8;
 
-  int min_inliers_;
+  int min_mapped_;
   double min_inlier_share_;
   double inlier_share_{0.0};   ///< share of the mapped beams that are inliers, mean over scans
   double overall_share_{0.0};  ///< share of all beams that are inliers, mean over keyframes

@@ -29,8 +29,8 @@ constexpr double kFarFarther = 4.0;  // ratio of distances from odometry, found 
 // Ratio of scores and of inliers, other to found place, above which the found place is ambiguous.
 // On thinned logs of fr079 and aces it was higher at wrong places, and lower at most right ones.
 constexpr double kNearlyAsWell = 0.8;
-constexpr double kSameHeading_rad = 0.1;               // 3 sigmas of a search
-const Eigen::Vector3d kFoundSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a heading step
+constexpr double kSameHeading_rad = 0.1;                // 3 sigmas of a search
+const Eigen::Vector3d kSearchSigmas{0.05, 0.05, 0.03};  // of a search: a cell, a heading step
 
 /// Half the side of the windows.
 double reach_m(double driven_m) {
@@ -107,7 +107,7 @@ class PlaceSearch {
 
  private:
   ScanMatch match_at(const SearchMatch& place) const {
-    return match_scan(points_, ndt_, place.submap_from_base, kFoundSigmas.cwiseAbs2().asDiagonal(),
+    return match_scan(points_, ndt_, place.submap_from_base, kSearchSigmas.cwiseAbs2().asDiagonal(),
                       noise_, config_);
   }
 
